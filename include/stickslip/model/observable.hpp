@@ -1,0 +1,35 @@
+#pragma once
+/// Functions f(x, y, v) of the state, by name or as an expression.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "stickslip/model/friction.hpp"
+
+namespace stickslip::model {
+
+/// An observable of the process: x the noise, y = sign of the motion (0 at rest), v the velocity.
+struct Observable {
+  std::string name;  ///< as given by the user
+  std::function<double(double x, double y, double v)> value;
+
+  [[nodiscard]] double operator()(double x, double y, double v) const { return value(x, y, v); }
+  /// (f(x, y, v) + f(-x, -y, -v))/2 and the odd counterpart.
+  [[nodiscard]] double even(double x, double y, double v) const {
+    return (value(x, y, v) + value(-x, -y, -v)) / 2;
+  }
+  [[nodiscard]] double odd(double x, double y, double v) const {
+    return (value(x, y, v) - value(-x, -y, -v)) / 2;
+  }
+};
+
+/// Names that need no expression: 1, x, v, v^2, |v|, stick, slide, |x|<=mu_s.
+[[nodiscard]] const std::vector<std::string>& observable_names();
+
+/// A named observable or an expression in x, y, v (and mu_s, mu_d), such as "x*v" or
+/// "y == 0 ? x^2 : 0", read by muParser. Levels that equal mu_s up to rounding count as below it in
+/// |x|<=mu_s. Throws std::invalid_argument with the parser's message and the place of the error.
+[[nodiscard]] Observable parse_observable(const std::string& text, const Friction& friction);
+
+}  // namespace stickslip::model
