@@ -1,0 +1,31 @@
+#pragma once
+/// Elements in v, graded towards v = 0.
+
+#include <vector>
+
+#include "stickslip/model/process.hpp"
+
+namespace stickslip::velocity {
+
+/// What fixes the elements. See mesh.cpp for the reasons behind the numbers.
+struct MeshRule {
+  double v_max = 1;    ///< end of the axis
+  double ratio = 0.3;  ///< quotient of neighbouring element ends near v = 0
+  double decay = 8;    ///< largest drop of log-density over one element
+  int layers = 0;      ///< elements of the graded part; 0: from smallest_scale
+};
+
+/// Thickness of the finest layer at v = 0 that a solution shows [velocity].
+[[nodiscard]] double smallest_scale(const model::Process& process);
+
+/// Number of graded elements that resolve smallest_scale under `rule`.
+[[nodiscard]] int natural_layers(const model::Process& process, const MeshRule& rule);
+
+/// Element ends 0 = e_0 < e_1 < ... < e_E = v_max.
+[[nodiscard]] std::vector<double> element_ends(const model::Process& process, const MeshRule& rule);
+
+/// Velocity beyond which the stationary density is below `tolerance`, from its white-noise bound
+/// exp(-mu_d v + int_0^v b): coloured noise and discrete levels only shorten the tail.
+[[nodiscard]] double tail_velocity(const model::Process& process, double tolerance);
+
+}  // namespace stickslip::velocity

@@ -1,0 +1,88 @@
+#include "stickslip/velocity/mesh.hpp"
+
+#include <algorithm>
+#include <boost/math/tools/roots.hpp>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace stickslip::velocity {
+namespace {
+
+// Local decay rate of log-density in white noise, -d/dv log exp(-mu_d v + int b) = mu_d - b(v).
+double decay_rate(const model::Process& process, double v) {
+  return process.friction.mu_d - process.drag(v);
+}
+
+// Where geometric growth stops because an element would span more than `decay` of log-density.
+double graded_end(const model::Process& process, const MeshRule& rule) {
+  const double growth = 1 / rule.ratio - 1;
+  const auto spare = [&](double v) { return rule.decay - growth * v * decay_rate(process, v); };
+  if (spare(rule.v_max) >= 0) return rule.v_max;
+  std::uintmax_t iterations = 200;
+  const auto bracket = boost::math::tools::toms748_solve(
+      spare, 0.0, rule.v_max, boost::math::tools::eps_tolerance<double>(20), iterations);
+  return bracket.first;
+}
+
+// Distance from mu_d down to the nearest level below it, for levels that can come to rest.
+double gap_below(const model::Process& process) {
+  const double delta = process.noise.delta;
+  const auto level = static_cast<int>(std::floor(process.friction.mu_d / delta));
+  for (int i = level + 1; i >= level - 1; --i) {
+    if (process.excess(i) < 0) return -process.excess(i);
+  }
+  return delta;
+}
+
+}  // namespace
+
+// Two layers can form at v = 0. The kinetic layer around x = mu_d mixes levels delta apart, at
+// speeds about delta, in the time 1/Lambda = tau^2 delta^2/2 between jumps: 0.3 delta^3 tau^2 is
+// fine enough at every degree tried. A level at a distance g below mu_d comes to rest through the
+// factor (1 + v/s)^(-Lambda/c), s = g/c, c = -b'(0): with fast jumps it is over before it matters
+// (the first test), with slow ones it is a feature of its own on the scale s.
+double smallest_scale(const model::Process& process) {
+  const auto& noise = process.noise;
+  const double kinetic = 0.3 * noise.delta * noise.delta * noise.delta * noise.tau * noise.tau;
+  const double slope = -process.drag.slope_at_rest();
+  if (slope == 0) return kinetic;
+  const double rest = gap_below(process) / slope;
+  if (rest >= kinetic) return kinetic;
+  const double left = std::log(rest / kinetic) * noise.rate() / slope;
+  return left < std::log(1e-16) ? kinetic : rest;
+}
+
+int natural_layers(const model::Process& process, const MeshRule& rule) {
+  const double span = graded_end(process, rule) / smallest_scale(process);
+  return span <= 1 ? 1 : 1 + static_cast<int>(std::ceil(std::log(span) / -std::log(rule.ratio)));
+}
+
+std::vector<double> element_ends(const model::Process& process, const MeshRule& rule) {
+  const int layers = rule.layers > 0 ? rule.layers : natural_layers(process, rule);
+  const double graded = graded_end(process, rule);
+  std::vector<double> ends{0};
+  for (int n = layers - 1; n >= 0; --n) ends.push_back(graded * std::pow(rule.ratio, n));
+  while (ends.back() < rule.v_max) {
+    const double step = rule.decay / decay_rate(process, ends.back());
+    const double next = ends.back() + std::min(step, ends.back() * (1 / rule.ratio - 1));
+    // A remainder much shorter than its neighbour is merged into it.
+    ends.push_back(next + 0.3 * step >= rule.v_max ? rule.v_max : next);
+  }
+  return ends;
+}
+
+double tail_velocity(const model::Process& process, double tolerance) {
+  const double drop = -std::log(tolerance) + 5;  // 5: polynomial factors of the moments
+  const double mu_d = process.friction.mu_d;
+  const double without_drag = drop / mu_d;
+  if (!process.drag.bounds_velocity()) return without_drag;
+  const auto left = [&](double v) { return drop - mu_d * v + process.drag.potential(v); };
+  if (!std::isfinite(left(without_drag))) return without_drag;
+  std::uintmax_t iterations = 200;
+  const auto bracket = boost::math::tools::toms748_solve(
+      left, 0.0, without_drag, boost::math::tools::eps_tolerance<double>(20), iterations);
+  return bracket.second;
+}
+
+}  // namespace stickslip::velocity

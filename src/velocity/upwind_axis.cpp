@@ -1,0 +1,38 @@
+#include "stickslip/velocity/upwind_axis.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace stickslip::velocity {
+
+UpwindAxis::UpwindAxis(double spacing, int count, const model::Drag& drag) : spacing_(spacing) {
+  if (!(spacing > 0) || count < 1) throw std::invalid_argument("upwind axis without nodes");
+  cells_.push_back(0);
+  for (int j = 1; j <= count; ++j) {
+    nodes_.push_back(j * spacing);
+    weights_.push_back(spacing);
+    cells_.push_back((j + 0.5) * spacing);
+    drag_at_nodes_.push_back(drag(nodes_.back()));
+  }
+}
+
+void UpwindAxis::transport(double excess, int j, TransportRow& row) const {
+  const double rate = (excess + drag_at_nodes_[j]) / spacing_;
+  row.entries.clear();
+  row.inflow = row.outflow = 0;
+  if (rate < 0 && j > 0) row.entries.push_back({j - 1, -rate});
+  if (rate < 0 && j == 0) row.inflow = -rate;
+  if (rate > 0 && j < size() - 1) row.entries.push_back({j + 1, rate});
+}
+
+// A node stands for the cell around it; the mass is spread evenly over the cell.
+double UpwindAxis::mass_below(std::span<const double> mass, double v) const {
+  double below = 0;
+  for (int j = 0; j < size(); ++j) {
+    const double share = (v - nodes_[j]) / spacing_ + 0.5;
+    below += mass[j] * std::clamp(share, 0.0, 1.0);
+  }
+  return below;
+}
+
+}  // namespace stickslip::velocity
