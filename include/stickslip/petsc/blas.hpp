@@ -1,0 +1,20 @@
+#pragma once
+/// Which BLAS this process uses. It decides the speed of a factorisation.
+
+#include <string>
+
+namespace stickslip::petsc {
+
+struct Blas {
+  std::string library;  ///< path of the shared library that provides dgemm
+  bool reference;       ///< the unoptimised reference implementation, several times slower here
+};
+
+/// Looks the loaded library up; local, microseconds.
+[[nodiscard]] Blas loaded_blas();
+
+/// Keeps an OpenBLAS to one thread unless the environment names a number: the blocks of these
+/// factorisations are too small to gain from threads, and ranks share the cores.
+void keep_blas_to_one_thread();
+
+}  // namespace stickslip::petsc

@@ -1,0 +1,59 @@
+#pragma once
+/// A matrix factored once, solved with as often as wanted.
+
+#include <petscmat.h>
+
+#include <string>
+
+#include "stickslip/petsc/handle.hpp"
+#include "stickslip/petsc/ledger.hpp"
+
+namespace stickslip::petsc {
+
+/// A solution with its last correction; solution - correction is what one solve alone gave, and
+/// the effect of the correction on a functional estimates the rounding error in it.
+struct Solution {
+  VecHandle x;
+  VecHandle correction;
+  /// Of the corrected x, with r = b - A x: max_i |r|_i / (|A| |x| + |b|)_i for a plain solve,
+  /// sum_i |r|_i / sum_i (|A|^T |x| + |b|)_i for a transposed one.
+  double backward_error = 0;
+};
+
+/// KSP of type preonly around an LU factorisation by MUMPS with the ordering AMF. MUMPS would
+/// choose PORD here (METIS is not in Debian's build), which costs 10 to 30 times more on these
+/// matrices. Every choice is a PETSc option under the prefix, e.g. -slide_mat_mumps_icntl_7 0 or
+/// -slide_pc_factor_mat_solver_type klu.
+///
+/// A direct solver reports success on a singular matrix too, so each solve computes its residual
+/// and makes one step of iterative refinement. All members are collective.
+class Factorization {
+ public:
+  /// Analyses and factors `matrix` (kept by reference count). `prefix` without the dash, with the
+  /// trailing underscore. Times and counts go to `ledger`, which must outlive this object.
+  /// Throws NoMemory when the factors do not fit, NotReached when the factorisation fails.
+  Factorization(Mat matrix, const std::string& prefix, Ledger& ledger);
+
+  /// A x = b. Throws NotReached when the backward error stays above 1e-12.
+  [[nodiscard]] Solution solve(Vec b) { return solve(b, false); }
+  /// A^T x = b (no conjugation).
+  [[nodiscard]] Solution solve_transposed(Vec b) { return solve(b, true); }
+
+  /// Reads all options of a role once, on a 2 x 2 matrix, so that unknown ones can be told before
+  /// any work. Collective on PETSC_COMM_SELF only.
+  static void probe_options(const std::string& prefix);
+
+ private:
+  [[nodiscard]] Solution solve(Vec b, bool transposed);
+  void apply(Vec b, Vec x, bool transposed);
+  [[nodiscard]] double backward_error(Vec residual, Vec b, Vec x, bool transposed) const;
+  void record_memory();
+
+  MatHandle matrix_;
+  MatHandle magnitude_;  // |a_ij|, for backward errors
+  KspHandle ksp_;
+  std::string prefix_;
+  Ledger& ledger_;
+};
+
+}  // namespace stickslip::petsc

@@ -1,0 +1,44 @@
+#include "stickslip/petsc/blas.hpp"
+
+#include <dlfcn.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+namespace stickslip::petsc {
+namespace {
+
+bool names_optimised(const std::string& path) {
+  for (const char* name : {"openblas", "mkl", "blis", "atlas", "armpl", "nvpl"}) {
+    if (path.find(name) != std::string::npos) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Blas loaded_blas() {
+  void* dgemm = dlsym(RTLD_DEFAULT, "dgemm_");
+  Dl_info info{};
+  if (dgemm == nullptr || dladdr(dgemm, &info) == 0 || info.dli_fname == nullptr) {
+    return {"unknown", false};
+  }
+  // Debian's alternatives hide the implementation behind libblas.so.3: follow the link.
+  std::error_code error;
+  const auto resolved = std::filesystem::canonical(info.dli_fname, error);
+  const std::string path = error ? std::string(info.dli_fname) : resolved.string();
+  return {path, !names_optimised(path)};
+}
+
+void keep_blas_to_one_thread() {
+  for (const char* name : {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"}) {
+    if (std::getenv(name) != nullptr) return;
+  }
+  using SetThreads = void (*)(int);
+  if (auto set = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))) {
+    set(1);
+  }
+}
+
+}  // namespace stickslip::petsc

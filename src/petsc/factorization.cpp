@@ -1,0 +1,216 @@
+#include "stickslip/petsc/factorization.hpp"
+
+#include <fmt/format.h>
+#include <petscsys.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/support/errors.hpp"
+
+namespace stickslip::petsc {
+namespace {
+
+constexpr double kBackwardErrorLimit = 1e-12;
+constexpr bool kComplex = PetscDefined(USE_COMPLEX);
+
+// A default that any option of the user overrides.
+void set_default(const std::string& option, const char* value) {
+  PetscBool given = PETSC_FALSE;
+  check(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &given));
+  if (given == PETSC_FALSE) check(PetscOptionsSetValue(nullptr, option.c_str(), value));
+}
+
+bool uses_mumps(KSP ksp) {
+  PC pc = nullptr;
+  check(KSPGetPC(ksp, &pc));
+  MatSolverType type = nullptr;
+  check(PCFactorGetMatSolverType(pc, &type));
+  return type != nullptr && std::strcmp(type, MATSOLVERMUMPS) == 0;
+}
+
+KspHandle configured_solver(Mat matrix, const std::string& prefix) {
+  MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(matrix));
+  KspHandle ksp;
+  check(KSPCreate(comm, ksp.out()));
+  check(KSPSetOptionsPrefix(ksp, prefix.c_str()));
+  check(KSPSetOperators(ksp, matrix, matrix));
+  check(KSPSetType(ksp, KSPPREONLY));
+  PC pc = nullptr;
+  check(KSPGetPC(ksp, &pc));
+  check(PCSetType(pc, PCLU));
+  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  check(KSPSetFromOptions(ksp));
+  if (uses_mumps(ksp)) set_default("-" + prefix + "mat_mumps_icntl_7", "2");  // AMF
+  return ksp;
+}
+
+std::string describe_failure(KSP ksp) {
+  PC pc = nullptr;
+  check(KSPGetPC(ksp, &pc));
+  if (!uses_mumps(ksp)) return "the factorisation failed";
+  Mat factor = nullptr;
+  check(PCFactorGetMatrix(pc, &factor));
+  PetscInt info1 = 0, info2 = 0;
+  check(MatMumpsGetInfog(factor, 1, &info1));
+  check(MatMumpsGetInfog(factor, 2, &info2));
+  return fmt::format("MUMPS stopped with INFOG(1) = {}, INFOG(2) = {}", info1, info2);
+}
+
+void require_factored(KSP ksp, const std::string& prefix) {
+  PC pc = nullptr;
+  check(KSPGetPC(ksp, &pc));
+  PCFailedReason reason = PC_NOERROR;
+  check(PCGetFailedReason(pc, &reason));
+  if (reason == PC_NOERROR) return;
+  const std::string what = describe_failure(ksp);
+  if (reason == PC_FACTOR_OUTMEMORY) {
+    throw NoMemory(what + ": the factors need more memory than there is; use a larger -delta, a "
+                          "looser -accuracy or more ranks");
+  }
+  throw NotReached(fmt::format("{}; the matrix of -{} may be singular", what, prefix));
+}
+
+void take_magnitudes_of_block(Mat block) {
+  MatInfo info{};
+  check(MatGetInfo(block, MAT_LOCAL, &info));
+  PetscScalar* values = nullptr;
+  check(MatSeqAIJGetArray(block, &values));
+  const auto count = static_cast<std::ptrdiff_t>(info.nz_used);
+  std::transform(values, values + count, values, [](PetscScalar a) { return PetscAbsScalar(a); });
+  check(MatSeqAIJRestoreArray(block, &values));
+}
+
+MatHandle magnitudes(Mat matrix) {
+  MatHandle copy;
+  check(MatDuplicate(matrix, MAT_COPY_VALUES, copy.out()));
+  PetscBool sequential = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix), MATSEQAIJ, &sequential));
+  if (sequential == PETSC_TRUE) {
+    take_magnitudes_of_block(copy);
+  } else {
+    Mat diagonal = nullptr, off_diagonal = nullptr;
+    check(MatMPIAIJGetSeqAIJ(copy, &diagonal, &off_diagonal, nullptr));
+    take_magnitudes_of_block(diagonal);
+    take_magnitudes_of_block(off_diagonal);
+  }
+  return copy;
+}
+
+}  // namespace
+
+Factorization::Factorization(Mat matrix, const std::string& prefix, Ledger& ledger)
+    : prefix_(prefix), ledger_(ledger) {
+  check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
+  matrix_ = MatHandle(matrix);
+  magnitude_ = magnitudes(matrix);
+  double total = 0;
+  const double symbolic_before = logged_seconds("MatLUFactorSym");
+  {
+    const PhaseTimer timer("factorisation", total);
+    ksp_ = configured_solver(matrix, prefix);
+    check(KSPSetUp(ksp_));
+    require_factored(ksp_, prefix_);
+  }
+  const double symbolic = logged_seconds("MatLUFactorSym") - symbolic_before;
+  ledger_.analysis_seconds += symbolic;
+  ledger_.factorization_seconds += total - symbolic;
+  ++(kComplex ? ledger_.factorizations_complex : ledger_.factorizations_real);
+  record_memory();
+}
+
+void Factorization::record_memory() {
+  if (!uses_mumps(ksp_)) return;
+  PC pc = nullptr;
+  check(KSPGetPC(ksp_, &pc));
+  Mat factor = nullptr;
+  check(PCFactorGetMatrix(pc, &factor));
+  PetscInt entries = 0, megabytes = 0;
+  check(MatMumpsGetInfog(factor, 29, &entries));    // entries of the factors, all ranks
+  check(MatMumpsGetInfog(factor, 22, &megabytes));  // memory used, all ranks
+  Ledger size;
+  size.factor_entries = entries < 0 ? -1000000LL * entries : entries;  // in millions if negative
+  size.factor_megabytes = static_cast<double>(megabytes);
+  ledger_ += size;
+}
+
+void Factorization::apply(Vec b, Vec x, bool transposed) {
+  check(transposed ? KSPSolveTranspose(ksp_, b, x) : KSPSolve(ksp_, b, x));
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  check(KSPGetConvergedReason(ksp_, &reason));
+  if (reason < 0) {
+    throw NotReached(
+        fmt::format("the solver -{} stopped: {}", prefix_, KSPConvergedReasons[reason]));
+  }
+}
+
+// The rows of A differ by many orders of magnitude, so that norms of the whole matrix would hide a
+// bad row; |A| |x| does not. A plain solution is of one size: the largest component counts (Oettli
+// and Prager). A transposed one is an occupation, time spent in each state: |A|^T |x| counts
+// visits, falls off by tens of orders of magnitude, and its sum is what functionals see.
+double Factorization::backward_error(Vec residual, Vec b, Vec x, bool transposed) const {
+  VecHandle size, bound, b_size;
+  check(VecDuplicate(x, size.out()));
+  check(VecDuplicate(b, bound.out()));
+  check(VecDuplicate(b, b_size.out()));
+  check(VecCopy(x, size));
+  check(VecAbs(size));
+  check(VecCopy(b, b_size));
+  check(VecAbs(b_size));
+  check(transposed ? MatMultTransposeAdd(magnitude_, size, b_size, bound)
+                   : MatMultAdd(magnitude_, size, b_size, bound));
+  PetscReal error = 0, scale = 1;
+  if (transposed) {
+    check(VecNorm(residual, NORM_1, &error));
+    check(VecNorm(bound, NORM_1, &scale));
+  } else {
+    check(VecPointwiseDivide(residual, residual, bound));  // 0/0 counts as 0 in PETSc
+    check(VecNorm(residual, NORM_INFINITY, &error));
+  }
+  return error / scale;
+}
+
+Solution Factorization::solve(Vec b, bool transposed) {
+  const PhaseTimer timer("solve", ledger_.solve_seconds);
+  Solution s;
+  VecHandle residual;
+  check(VecDuplicate(b, s.x.out()));
+  check(VecDuplicate(b, s.correction.out()));
+  check(VecDuplicate(b, residual.out()));
+  const auto compute_residual = [&] {
+    check(transposed ? MatMultTranspose(matrix_, s.x, residual) : MatMult(matrix_, s.x, residual));
+    check(VecAYPX(residual, -1, b));
+  };
+  apply(b, s.x, transposed);
+  compute_residual();
+  apply(residual, s.correction, transposed);
+  check(VecAXPY(s.x, 1, s.correction));
+  compute_residual();
+  s.backward_error = backward_error(residual, b, s.x, transposed);
+  ++ledger_.solves;
+  ++ledger_.corrections;
+  Ledger seen;
+  seen.backward_error = s.backward_error;
+  ledger_ += seen;
+  if (!(s.backward_error <= kBackwardErrorLimit)) {
+    throw NotReached(fmt::format("the solver -{} left a backward error of {:.1e} (limit {:.0e})",
+                                 prefix_, s.backward_error, kBackwardErrorLimit));
+  }
+  return s;
+}
+
+void Factorization::probe_options(const std::string& prefix) {
+  MatHandle unit;
+  check(MatCreate(PETSC_COMM_SELF, unit.out()));
+  check(MatSetSizes(unit, 2, 2, 2, 2));
+  check(MatSetType(unit, MATAIJ));
+  check(MatSetUp(unit));
+  for (PetscInt i = 0; i < 2; ++i) check(MatSetValue(unit, i, i, 1, INSERT_VALUES));
+  check(MatAssemblyBegin(unit, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(unit, MAT_FINAL_ASSEMBLY));
+  const KspHandle ksp = configured_solver(unit, prefix);
+  check(KSPSetUp(ksp));
+}
+
+}  // namespace stickslip::petsc

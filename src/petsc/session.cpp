@@ -1,0 +1,58 @@
+#include "stickslip/petsc/session.hpp"
+
+#include <slepcsys.h>
+
+#include <csignal>
+#include <cstdlib>
+
+#include "stickslip/petsc/check.hpp"
+
+namespace stickslip::petsc {
+namespace {
+
+bool under_mpiexec() {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "PMI_SIZE"}) {
+    if (std::getenv(name) != nullptr) return true;
+  }
+  return false;
+}
+
+void shorten_start_of_single_process() {
+  if (under_mpiexec()) return;
+  constexpr int keep_users_choice = 0;
+  setenv("OMPI_MCA_ess_singleton_isolated", "1", keep_users_choice);
+  setenv("OMPI_MCA_btl", "self", keep_users_choice);
+  setenv("OMPI_MCA_pml", "ob1", keep_users_choice);
+}
+
+}  // namespace
+
+Session::Session(int& argc, char**& argv) : arguments_(argv, argv + argc) {
+  shorten_start_of_single_process();
+  static char skip_petscrc[] = "-skip_petscrc";
+  arguments_.push_back(skip_petscrc);
+  arguments_.push_back(nullptr);
+  int count = argc + 1;
+  char** values = arguments_.data();
+  const PetscErrorCode code = SlepcInitialize(&count, &values, nullptr, nullptr);
+  if (code != 0) throw PetscFailure(code, "PETSc could not start with these arguments");
+  collect_error_messages();
+  check(PetscLogDefaultBegin());  // the ledger reads event times
+  std::signal(SIGPIPE, SIG_DFL);  // a closed pipe (| head) is no crash
+}
+
+Session::~Session() { (void)SlepcFinalize(); }
+
+int rank(MPI_Comm comm) {
+  int value = 0;
+  MPI_Comm_rank(comm, &value);
+  return value;
+}
+
+int ranks(MPI_Comm comm) {
+  int value = 1;
+  MPI_Comm_size(comm, &value);
+  return value;
+}
+
+}  // namespace stickslip::petsc
