@@ -1,0 +1,53 @@
+#pragma once
+/// A validated run: the scene, the questions, the method and where the answers go.
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "stickslip/model/scene.hpp"
+
+namespace stickslip::options {
+
+/// What can be asked for by -quantities.
+enum class Quantity { sticking, moments, noise_law, entry_law, density };
+
+enum class Scheme { hp, upwind };
+
+/// Choices of the discretisation made by hand; one of the first three switches refinement off.
+struct Method {
+  Scheme scheme = Scheme::hp;
+  std::optional<int> degree, layers;  ///< hp
+  std::optional<int> points;          ///< upwind, per noise step
+
+  [[nodiscard]] bool fixed() const { return degree || layers || points; }
+};
+
+struct Request {
+  model::Scene scene;
+  std::set<Quantity> quantities;
+  double accuracy = 1e-6;
+  Method method;
+  std::string summary, output;  ///< file names; empty if not asked for
+  bool progress = false;
+  std::vector<std::string> warnings;
+  /// All options of the table as used, name and value, for the record.
+  std::vector<std::pair<std::string, std::string>> resolved;
+
+  [[nodiscard]] bool wants(Quantity q) const { return quantities.contains(q); }
+};
+
+/// Prefixes of the solver roles whose PETSc options a run may carry.
+[[nodiscard]] std::vector<std::string> solver_prefixes();
+
+/// Reads and validates everything before anything is computed. `argv` is searched for words that
+/// belong to no option. Throws BadInput that tells all problems at once: name, value, allowed
+/// range, fix; for an unknown option the nearest known one. Local; the same on every rank.
+[[nodiscard]] Request read_request(const std::vector<std::string>& argv);
+
+/// Tells what is wrong with the options files named in `argv`, before PETSc reads them.
+/// Throws BadInput with file, line and fix.
+void check_options_files(const std::vector<std::string>& argv);
+
+}  // namespace stickslip::options

@@ -1,0 +1,55 @@
+#pragma once
+/// Values of the table's options as the user gave them.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "stickslip/options/table.hpp"
+
+namespace stickslip::options {
+
+/// Messages about everything that is wrong with the input, told together.
+class Problems {
+ public:
+  void add(std::string message) { messages_.push_back(std::move(message)); }
+  /// "-delta = -1: must be ...; fix".
+  void add(const Option& option, const std::string& value, const std::string& why,
+           const std::string& fix);
+  [[nodiscard]] bool empty() const { return messages_.empty(); }
+  /// Throws BadInput with all messages, if there are any.
+  void raise() const;
+
+ private:
+  std::vector<std::string> messages_;
+};
+
+/// Typed access to the options of the table. A value that cannot be read is reported to the
+/// Problems given to read() and replaced by its default, so that reading can go on.
+class Settings {
+ public:
+  /// Reads all options of the table from the PETSc options database, and marks them used. Local.
+  static Settings read(Problems& problems);
+
+  [[nodiscard]] bool given(const std::string& name) const { return text_.contains(name); }
+  /// The value as given or its default; empty if neither exists.
+  [[nodiscard]] std::string text(const std::string& name) const;
+  [[nodiscard]] double real(const std::string& name) const { return numbers_.at(name); }
+  /// The whole number given or the default; nothing if neither exists or a word was given.
+  [[nodiscard]] std::optional<int> integer(const std::string& name) const;
+  [[nodiscard]] std::vector<std::string> list(const std::string& name) const;
+  /// Reports a problem with the value of `name`.
+  void report(Problems& problems, const std::string& name, const std::string& why,
+              const std::string& fix) const;
+
+ private:
+  void parse(const Option& option, const std::string& value, Problems& problems);
+  std::map<std::string, std::string> text_;
+  std::map<std::string, double> numbers_;
+};
+
+/// A finite decimal number that fills the whole text.
+[[nodiscard]] std::optional<double> parse_number(const std::string& text);
+
+}  // namespace stickslip::options

@@ -1,0 +1,69 @@
+#pragma once
+/// The one table of options: help, reference page and validation are made from it.
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stickslip::options {
+
+/// What a value must look like.
+enum class Kind {
+  real,     ///< a finite decimal number
+  integer,  ///< a whole number
+  choice,   ///< one of a few words
+  list,     ///< a comma list of words, each at most once
+  path,     ///< a file to write
+};
+
+/// An interval of numbers; unbounded and open by default.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_included = false;
+  bool high_included = false;
+
+  [[nodiscard]] bool contains(double value) const;
+  /// "(0, inf)".
+  [[nodiscard]] std::string text() const;
+};
+
+struct Option {
+  std::string name;                ///< without the dash
+  Kind kind;                       ///< form of the value
+  std::string unit;                ///< of a number; empty if it has none
+  std::string initial;             ///< default as text; empty: see `sentence`
+  Range range;                     ///< of a number
+  std::vector<std::string> words;  ///< allowed words; beside numbers for kind integer
+  std::string sentence;            ///< what it does
+  std::string fix;                 ///< what to do about a value out of range; may be empty
+};
+
+struct Group {
+  std::string title;
+  std::string explanation;
+  std::vector<Option> options;
+};
+
+/// All options by group, in the order of the help text.
+[[nodiscard]] std::span<const Group> table();
+
+/// The option of that name (without dash), or nullptr.
+[[nodiscard]] const Option* find(std::string_view name);
+
+/// Names with their dash, for suggestions.
+[[nodiscard]] std::vector<std::string> all_names();
+
+/// "a real number in (0, inf)", "one of linear, none or cubic", ...
+[[nodiscard]] std::string allowed_values(const Option& option);
+
+/// The text of -help.
+[[nodiscard]] std::string help_text();
+
+/// The reference page in Markdown (docs/options.md).
+[[nodiscard]] std::string reference_page();
+
+}  // namespace stickslip::options

@@ -1,0 +1,292 @@
+#include "stickslip/options/request.hpp"
+
+#include <fmt/format.h>
+#include <petscsys.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "stickslip/options/settings.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/factorization.hpp"
+#include "stickslip/support/errors.hpp"
+#include "stickslip/support/text.hpp"
+
+namespace stickslip::options {
+namespace {
+
+bool is_option_name(const std::string& word) {
+  return word.size() > 1 && word[0] == '-' && !parse_number(word);
+}
+
+model::Drag read_drag(const Settings& settings, Request& request) {
+  const std::string law = settings.text("drag");
+  const auto warn_unused = [&](const std::string& name) {
+    if (settings.given(name)) {
+      request.warnings.push_back(fmt::format("-{} has no effect with -drag {}", name, law));
+    }
+  };
+  if (law == "none") warn_unused("drag_coefficient");
+  if (law != "cubic") warn_unused("drag_cubic");
+  return {law == "none" ? 0 : settings.real("drag_coefficient"),
+          law == "cubic" ? settings.real("drag_cubic") : 0};
+}
+
+// The levels that exist, and that some of them slide.
+void check_noise(const Settings& settings, model::Scene& scene, Problems& problems) {
+  int full = 0, k = 0;
+  try {
+    full = scene.full_levels();
+    k = scene.friction.static_index(scene.delta);
+  } catch (const std::out_of_range&) {
+    settings.report(problems, "delta", "gives more noise levels than can be counted",
+                    "take a larger step");
+    return;
+  }
+  if (settings.text("noise_levels") == "full") scene.noise_levels = full;
+  const double tau = scene.tau, delta = scene.delta;
+  if (full < 1) {
+    settings.report(problems, "delta",
+                    fmt::format("leaves no noise level besides 0: tau delta^2 = {:g} must be at "
+                                "most 2",
+                                tau * delta * delta),
+                    fmt::format("take -delta at most {:g}", std::sqrt(2 / tau)));
+    return;
+  }
+  if (scene.noise_levels.value_or(1) > full) {
+    settings.report(problems, "noise_levels",
+                    fmt::format("gives tau delta L_X = {:g} with L_X = N delta, but jump "
+                                "probabilities need at most 2",
+                                tau * delta * delta * *scene.noise_levels),
+                    fmt::format("take at most {}, or full", full));
+    return;
+  }
+  const int levels = scene.noise_levels.value_or(full);
+  if (k >= levels) {
+    settings.report(problems, "mu_s",
+                    fmt::format("is not below the largest noise level {:g}: nothing ever slides",
+                                levels * delta),
+                    levels < full ? fmt::format("take -noise_levels above {}", k)
+                                  : fmt::format("take -mu_s below {:g}, or smaller -tau or -delta",
+                                                levels * delta));
+  }
+}
+
+model::Scene read_scene(const Settings& settings, Request& request, Problems& problems) {
+  model::Scene scene;
+  scene.tau = settings.real("tau");
+  scene.delta = settings.real("delta");
+  scene.friction = {settings.real("mu_s"), settings.real("mu_d")};
+  scene.drag_name = settings.text("drag");
+  scene.drag = read_drag(settings, request);
+  scene.noise_levels = settings.integer("noise_levels");
+  if (settings.given("v_max")) scene.v_max = settings.real("v_max");
+  if (scene.friction.mu_d > scene.friction.mu_s) {
+    settings.report(problems, "mu_d",
+                    fmt::format("must be in (0, mu_s], and mu_s = {}", settings.text("mu_s")),
+                    "friction cannot grow when the body starts to slide");
+  }
+  return scene;
+}
+
+Quantity quantity_named(const std::string& name) {
+  if (name == "moments") return Quantity::moments;
+  if (name == "noise_law") return Quantity::noise_law;
+  if (name == "entry_law") return Quantity::entry_law;
+  if (name == "density") return Quantity::density;
+  return Quantity::sticking;
+}
+
+Method read_method(const Settings& settings, Problems& problems) {
+  Method method;
+  method.scheme = settings.text("scheme") == "upwind" ? Scheme::upwind : Scheme::hp;
+  method.degree = settings.integer("degree");
+  method.layers = settings.integer("layers");
+  method.points = settings.integer("p");
+  const bool hp = method.scheme == Scheme::hp;
+  for (const char* name : {"degree", "layers"}) {
+    if (!hp && settings.given(name)) {
+      settings.report(problems, name, "belongs to -scheme hp", "leave it out, or take -scheme hp");
+    }
+  }
+  if (hp && settings.given("p")) {
+    settings.report(problems, "p", "belongs to -scheme upwind",
+                    "leave it out, or take -scheme upwind");
+  }
+  return method;
+}
+
+void check_writable(const Settings& settings, const std::string& name, Problems& problems) {
+  if (!settings.given(name) || settings.text(name).empty()) return;
+  const std::filesystem::path file = settings.text(name);
+  const std::filesystem::path folder =
+      file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) {
+    settings.report(problems, name, "is in a folder that does not exist", "make the folder first");
+  } else if (access(folder.c_str(), W_OK) != 0) {
+    settings.report(problems, name, "is in a folder that cannot be written", "name another place");
+  } else if (std::filesystem::is_directory(file, error)) {
+    settings.report(problems, name, "is a folder", "name a file");
+  } else if (std::filesystem::exists(file, error) && access(file.c_str(), W_OK) != 0) {
+    settings.report(problems, name, "is a file that cannot be written", "name another file");
+  }
+}
+
+void read_output(const Settings& settings, Request& request, Problems& problems) {
+  check_writable(settings, "summary", problems);
+  check_writable(settings, "output", problems);
+  request.summary = settings.text("summary");
+  request.output = settings.text("output");
+  const std::string progress = settings.text("progress");
+  request.progress = progress == "on" || (progress == "auto" && isatty(STDERR_FILENO) != 0);
+  if (request.wants(Quantity::density) && request.output.empty()) {
+    settings.report(problems, "quantities", "asks for density, a field that needs a file",
+                    "add -output FILE.h5");
+  }
+}
+
+// Words on the line that are neither an option nor the value of one; PETSc would ignore them.
+void check_stray_words(const std::vector<std::string>& argv, Problems& problems) {
+  for (std::size_t n = 0; n < argv.size(); ++n) {
+    const bool is_value = n > 0 && is_option_name(argv[n - 1]);
+    if (is_option_name(argv[n]) || is_value) continue;
+    std::error_code error;
+    const bool is_file = std::filesystem::is_regular_file(argv[n], error);
+    problems.add(fmt::format("{}: belongs to no option; {}", argv[n],
+                             is_file ? "did you mean -options_file " + argv[n] + "?"
+                                     : "options look like -name value"));
+  }
+}
+
+// Options of PETSc itself that it reads later, or reads and does not count as used.
+bool belongs_to_petsc(const std::string& name) {
+  static const std::vector<std::string> exact{"options_left",
+                                              "options_view",
+                                              "citations",
+                                              "skip_petscrc",
+                                              "log_view",
+                                              "log_view_memory",
+                                              "malloc_dump",
+                                              "malloc_debug",
+                                              "malloc",
+                                              "malloc_view",
+                                              "memory_view",
+                                              "objects_dump",
+                                              "info",
+                                              "options_file",
+                                              "no_signal_handler",
+                                              "nox",
+                                              "log",
+                                              "log_trace",
+                                              "log_summary",
+                                              "on_error_abort",
+                                              "fp_trap",
+                                              "debug",
+                                              "start_in_debugger",
+                                              "on_error_attach_debugger",
+                                              "viewfromoptions"};
+  return std::find(exact.begin(), exact.end(), name) != exact.end();
+}
+
+std::string unknown_option(const std::string& name) {
+  for (const auto& prefix : solver_prefixes()) {
+    if (name.starts_with(prefix)) {
+      return fmt::format("-{}: the solver of this role knows no such option; -{}ksp_view shows "
+                         "what it uses",
+                         name, prefix);
+    }
+  }
+  const auto names = all_names();
+  const std::string near = nearest_word("-" + name, names);
+  return fmt::format("-{}: unknown option; {}", name,
+                     near.empty() ? "-help lists all" : "did you mean " + near + "?");
+}
+
+// What the solver of a role says to its options, tried on a tiny matrix.
+void check_solver_options(Problems& problems) {
+  for (const auto& prefix : solver_prefixes()) {
+    try {
+      petsc::Factorization::probe_options(prefix);
+    } catch (const petsc::PetscFailure& failure) {
+      const std::string text = failure.what();
+      problems.add(fmt::format("-{}...: {}", prefix, text.substr(0, text.find('\n'))));
+    }
+  }
+}
+
+void check_unknown_options(Problems& problems) {
+  PetscInt count = 0;
+  char** names = nullptr;
+  char** values = nullptr;
+  petsc::check(PetscOptionsLeftGet(nullptr, &count, &names, &values));
+  for (PetscInt n = 0; n < count; ++n) {
+    if (!belongs_to_petsc(names[n])) problems.add(unknown_option(names[n]));
+  }
+  petsc::check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
+}
+
+}  // namespace
+
+std::vector<std::string> solver_prefixes() { return {"slide_"}; }
+
+Request read_request(const std::vector<std::string>& argv) {
+  Problems problems;
+  Request request;
+  const Settings settings = Settings::read(problems);
+  check_stray_words(argv, problems);
+  check_solver_options(problems);
+  check_unknown_options(problems);
+  problems.raise();  // what follows relates values to one another
+
+  request.scene = read_scene(settings, request, problems);
+  check_noise(settings, request.scene, problems);
+  for (const auto& name : settings.list("quantities")) {
+    request.quantities.insert(quantity_named(name));
+  }
+  request.accuracy = settings.real("accuracy");
+  request.method = read_method(settings, problems);
+  read_output(settings, request, problems);
+  for (const auto& group : table()) {
+    for (const auto& option : group.options) {
+      request.resolved.emplace_back(option.name, settings.text(option.name));
+    }
+  }
+  problems.raise();
+  return request;
+}
+
+void check_options_files(const std::vector<std::string>& argv) {
+  Problems problems;
+  for (std::size_t n = 0; n < argv.size(); ++n) {
+    if (argv[n] != "-options_file") continue;
+    if (n + 1 == argv.size()) {
+      problems.add("-options_file: names no file; write -options_file scene.opts");
+      break;
+    }
+    const std::string& name = argv[n + 1];
+    std::ifstream file(name);
+    std::error_code error;
+    if (!file || std::filesystem::is_directory(name, error)) {
+      problems.add(fmt::format("-options_file {}: cannot be read; check the name and that you may "
+                               "read it",
+                               name));
+      continue;
+    }
+    if (name.ends_with(".yml") || name.ends_with(".yaml")) continue;  // PETSc's YAML reader
+    std::string line;
+    for (int number = 1; std::getline(file, line); ++number) {
+      const auto first = line.find_first_not_of(" \t\r");
+      if (first == line.npos || line[first] == '#' || line[first] == '-') continue;
+      problems.add(fmt::format("{}:{}: \"{}\" does not start with -name; put a # before comments",
+                               name, number, line.substr(first, 40)));
+    }
+  }
+  problems.raise();
+}
+
+}  // namespace stickslip::options

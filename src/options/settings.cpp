@@ -1,0 +1,129 @@
+#include "stickslip/options/settings.hpp"
+
+#include <fmt/format.h>
+#include <petscsys.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/support/errors.hpp"
+#include "stickslip/support/text.hpp"
+
+namespace stickslip::options {
+namespace {
+
+std::optional<std::string> value_in_database(const std::string& name) {
+  PetscBool found = PETSC_FALSE;
+  petsc::check(PetscOptionsHasName(nullptr, nullptr, ("-" + name).c_str(), &found));
+  if (found == PETSC_FALSE) return std::nullopt;
+  std::array<char, 4096> buffer{};
+  petsc::check(PetscOptionsGetString(nullptr, nullptr, ("-" + name).c_str(), buffer.data(),
+                                     buffer.size(), &found));
+  return std::string(buffer.data());
+}
+
+std::string unknown_word(const Option& option, const std::string& word) {
+  const std::string near = nearest_word(word, option.words);
+  return near.empty() ? "" : fmt::format("did you mean {}?", near);
+}
+
+void check_words(const Option& option, const std::string& value, Problems& problems) {
+  const auto given = option.kind == Kind::list ? split(value, ',') : std::vector{value};
+  const std::string must = "must be " + allowed_values(option);
+  if (given.empty()) problems.add(option, value, must, "");
+  for (auto word = given.begin(); word != given.end(); ++word) {
+    const bool known =
+        std::find(option.words.begin(), option.words.end(), *word) != option.words.end();
+    if (!known) problems.add(option, *word, must, unknown_word(option, *word));
+    if (std::find(given.begin(), word, *word) != word) {
+      problems.add(option, value, "names " + *word + " twice", "name it once");
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<double> parse_number(const std::string& text) {
+  double value = 0;
+  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+void Problems::add(const Option& option, const std::string& value, const std::string& why,
+                   const std::string& fix) {
+  std::string message = fmt::format("-{} = {}: {}", option.name, value, why);
+  if (!fix.empty()) message += "; " + fix;
+  add(message);
+}
+
+void Problems::raise() const {
+  if (messages_.empty()) return;
+  throw BadInput(fmt::format("{}", fmt::join(messages_, "\n")));
+}
+
+Settings Settings::read(Problems& problems) {
+  Settings settings;
+  for (const auto& group : table()) {
+    for (const auto& option : group.options) {
+      const auto given = value_in_database(option.name);
+      if (given) settings.text_[option.name] = *given;
+      if (!option.initial.empty()) settings.parse(option, option.initial, problems);
+      if (given) settings.parse(option, *given, problems);
+    }
+  }
+  return settings;
+}
+
+void Settings::parse(const Option& option, const std::string& value, Problems& problems) {
+  const std::string must = "must be " + allowed_values(option);
+  switch (option.kind) {
+  case Kind::real:
+  case Kind::integer: {
+    const bool is_word =
+        std::find(option.words.begin(), option.words.end(), value) != option.words.end();
+    if (is_word) break;
+    const auto number = parse_number(value);
+    const bool whole = number && (option.kind == Kind::real || *number == std::floor(*number));
+    if (whole && option.range.contains(*number)) {
+      numbers_[option.name] = *number;
+    } else {
+      problems.add(option, value, must, option.fix);
+    }
+    break;
+  }
+  case Kind::choice:
+  case Kind::list: check_words(option, value, problems); break;
+  case Kind::path:
+    if (value.empty()) problems.add(option, value, must, "name the file after the option");
+    break;
+  }
+}
+
+std::string Settings::text(const std::string& name) const {
+  const auto found = text_.find(name);
+  return found != text_.end() ? found->second : find(name)->initial;
+}
+
+std::optional<int> Settings::integer(const std::string& name) const {
+  const auto found = numbers_.find(name);
+  if (found == numbers_.end()) return std::nullopt;
+  return static_cast<int>(found->second);
+}
+
+std::vector<std::string> Settings::list(const std::string& name) const {
+  return split(text(name), ',');
+}
+
+void Settings::report(Problems& problems, const std::string& name, const std::string& why,
+                      const std::string& fix) const {
+  problems.add(*find(name), text(name), why, fix);
+}
+
+}  // namespace stickslip::options

@@ -1,0 +1,237 @@
+#include "stickslip/options/table.hpp"
+
+#include <fmt/format.h>
+
+#include "stickslip/support/text.hpp"
+
+namespace stickslip::options {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Range positive() { return {0, kInfinity, false, false}; }
+Range not_negative() { return {0, kInfinity, true, false}; }
+Range whole(double low, double high) { return {low, high, true, true}; }
+
+Option real(std::string name, std::string unit, std::string initial, Range range,
+            std::string sentence, std::string fix) {
+  return {std::move(name), Kind::real, std::move(unit),     std::move(initial),
+          range,           {},         std::move(sentence), std::move(fix)};
+}
+
+Option integer(std::string name, std::string initial, Range range, std::vector<std::string> words,
+               std::string sentence, std::string fix) {
+  return {std::move(name),     Kind::integer, "", std::move(initial), range, std::move(words),
+          std::move(sentence), std::move(fix)};
+}
+
+Option words(std::string name, Kind kind, std::string initial, std::vector<std::string> words,
+             std::string sentence) {
+  return {std::move(name),     kind, "", std::move(initial), {}, std::move(words),
+          std::move(sentence), ""};
+}
+
+Option path(std::string name, std::string sentence) {
+  return {std::move(name), Kind::path, "", "", {}, {}, std::move(sentence), ""};
+}
+
+Group scene_group() {
+  return {
+      "Scene",
+      "What is simulated: dV/dt = X + b(V) - mu_d sign(V) while the body slides, V = 0 while it "
+      "sticks and |X| <= mu_s; forces are per unit mass",
+      {
+          real("mu_s", "force", "1", positive(), "static friction coefficient",
+               "friction must be able to hold the body"),
+          real("mu_d", "force", "1", positive(), "dynamic friction coefficient, at most mu_s",
+               "for sliding without friction take a small value such as 1e-8"),
+          real("tau", "time", "1", positive(), "correlation time of the noise X",
+               "for white noise take a small value such as 0.01"),
+          real("delta", "force", "0.125", positive(), "step between neighbouring noise levels",
+               "the continuous noise is the limit of small steps such as 0.125"),
+          integer("noise_levels", "", whole(1, 1e9), {"full"},
+                  "levels N of the noise on each side of 0; `full` is floor(2/(tau delta^2)). "
+                  "Without it, the full range is meant, and as much of it is kept as -accuracy "
+                  "needs",
+                  "leave it out to have it chosen from -accuracy"),
+          words("drag", Kind::choice, "linear", {"linear", "none", "cubic"},
+                "drag law b(v): -c v, 0, or -c v - c3 v^3"),
+          real("drag_coefficient", "1/time", "1", not_negative(), "c in the drag law",
+               "the drag must not grow with the velocity, it would drive the body"),
+          real("drag_cubic", "time/length^2", "0", not_negative(), "c3 in the cubic drag law",
+               "the drag must not grow with the velocity, it would drive the body"),
+          real("v_max", "velocity", "", positive(),
+               "cut of the velocity axis; bodies that reach it wait there until the noise falls. "
+               "Without it, the largest velocity that matters at -accuracy is taken",
+               "leave it out to have it chosen from -accuracy"),
+      }};
+}
+
+Group question_group() {
+  return {"Question",
+          "What is asked for; only what is named is assembled, factored and solved",
+          {
+              words("quantities", Kind::list, "sticking,moments,noise_law",
+                    {"sticking", "moments", "noise_law", "entry_law", "density"},
+                    "comma list. sticking: P_stick, P_slide, mean_stick, mean_slide, "
+                    "mean_excursion. moments: E_V2, E_absV, E_XV, E_V. noise_law: P_X_le_mu_s, "
+                    "E_X2. entry_law: the level at which sliding ends (an array), f_stick_0. "
+                    "density: the stationary law as a field (needs -output)"),
+              real("accuracy", "", "1e-6", {1e-15, 0.1, true, true},
+                   "relative error wanted for every scalar asked for, at the given delta",
+                   "double precision allows down to about 1e-12, scene by scene"),
+          }};
+}
+
+Group method_group() {
+  return {"Method",
+          "How it is computed",
+          {
+              words("scheme", Kind::choice, "hp", {"hp", "upwind"},
+                    "discretisation in v: hp discontinuous Galerkin elements, or the first-order "
+                    "upwind differences of the paper"),
+              integer("degree", "", whole(1, 24), {},
+                      "polynomial degree of the hp elements; fixing it switches refinement off",
+                      "leave it out to have it chosen from -accuracy"),
+              integer("layers", "", whole(1, 200), {},
+                      "elements graded towards v = 0; fixing it switches refinement off",
+                      "leave it out to have it chosen from the scene"),
+              integer("p", "", whole(1, 1e7), {},
+                      "points of the upwind scheme per noise step; fixing it switches refinement "
+                      "off",
+                      "leave it out to have it chosen from -accuracy"),
+              words("route", Kind::choice, "excursion", {"excursion"},
+                    "excursion: one transposed solve with the sliding operator gives the whole "
+                    "stationary law"),
+          }};
+}
+
+Group output_group() {
+  return {
+      "Output",
+      "A table goes to standard output, progress to standard error",
+      {
+          path("summary", "write everything as JSON to this file"),
+          path("output", "write everything and the fields as HDF5 to this file; with density also "
+                         "FILE.xdmf, which ParaView opens"),
+          words("progress", Kind::choice, "auto", {"auto", "on", "off"},
+                "show what is being done; auto: when standard error is a terminal"),
+      }};
+}
+
+std::string number(double value) {
+  if (value == kInfinity) return "inf";
+  if (value == -kInfinity) return "-inf";
+  return fmt::format("{:g}", value);
+}
+
+std::string kind_name(Kind kind) {
+  switch (kind) {
+  case Kind::real: return "number";
+  case Kind::integer: return "integer";
+  case Kind::choice: return "word";
+  case Kind::list: return "list";
+  case Kind::path: return "file";
+  }
+  return "";
+}
+
+std::string cell(const std::string& text) { return text.empty() ? " " : text; }
+
+}  // namespace
+
+bool Range::contains(double value) const {
+  return (low_included ? value >= low : value > low) &&
+         (high_included ? value <= high : value < high);
+}
+
+std::string Range::text() const {
+  return fmt::format("{}{}, {}{}", low_included ? '[' : '(', number(low), number(high),
+                     high_included ? ']' : ')');
+}
+
+std::span<const Group> table() {
+  static const std::vector<Group> groups{scene_group(), question_group(), method_group(),
+                                         output_group()};
+  return groups;
+}
+
+const Option* find(std::string_view name) {
+  for (const auto& group : table()) {
+    for (const auto& option : group.options) {
+      if (option.name == name) return &option;
+    }
+  }
+  return nullptr;
+}
+
+std::vector<std::string> all_names() {
+  std::vector<std::string> names{"-help", "-version", "-reference", "-options_file"};
+  for (const auto& group : table()) {
+    for (const auto& option : group.options) names.push_back("-" + option.name);
+  }
+  return names;
+}
+
+std::string allowed_values(const Option& option) {
+  switch (option.kind) {
+  case Kind::real: return "a number in " + option.range.text();
+  case Kind::integer:
+    return "a whole number in " + option.range.text() +
+           (option.words.empty() ? "" : " or " + enumerate(option.words, "or"));
+  case Kind::choice: return enumerate(option.words, "or");
+  case Kind::list: return "a comma list of " + enumerate(option.words, "and");
+  case Kind::path: return "a file name";
+  }
+  return "";
+}
+
+std::string help_text() {
+  std::string text =
+      "stickslip: dry friction under random forcing, to the digits you ask for\n\n"
+      "  stickslip -options_file scene.opts [-name value ...]\n\n"
+      "Every choice is a PETSc option, on the line or in an options file; the last one given "
+      "counts.\n";
+  for (const auto& group : table()) {
+    text += fmt::format("\n{}. {}\n", group.title, wrap(group.explanation, 88, 2));
+    for (const auto& option : group.options) {
+      const std::string initial =
+          option.initial.empty() ? "" : fmt::format(" (default {})", option.initial);
+      const std::string unit = option.unit.empty() ? "" : fmt::format(" [{}]", option.unit);
+      text += fmt::format(
+          "  -{:<17} {}\n", option.name,
+          wrap(fmt::format("{}{}{}; {}", option.sentence, unit, initial, allowed_values(option)),
+               76, 21));
+    }
+  }
+  text += "\nOther:\n"
+          "  -options_file      read options from a file, one -name value a line, # for comments\n"
+          "  -help, -version    print this text, or the versions, and stop\n"
+          "  -reference         print the reference page in Markdown and stop\n"
+          "  -slide_...         PETSc options of the solver for the sliding operator, for example\n"
+          "                     -slide_mat_mumps_icntl_7 2 or -slide_ksp_view\n"
+          "  -log_view, ...     PETSc's own options\n\n"
+          "Exit status: 0 done; 1 other error; 2 bad input; 3 accuracy not reached or a solver\n"
+          "failed (what was reached is still written); 4 would not fit in memory.\n";
+  return text;
+}
+
+std::string reference_page() {
+  std::string text =
+      "# Options\n\n"
+      "Generated by `stickslip -reference` from the table that also validates the options.\n"
+      "Give them on the command line or in an options file (`-options_file scene.opts`, one\n"
+      "`-name value` a line, `#` for comments); the last one given counts.\n";
+  for (const auto& group : table()) {
+    text += fmt::format("\n## {}\n\n{}.\n\n", group.title, group.explanation);
+    text += "| option | form | unit | default | allowed | meaning |\n";
+    text += "| --- | --- | --- | --- | --- | --- |\n";
+    for (const auto& o : group.options) {
+      text += fmt::format("| `-{}` | {} | {} | {} | {} | {} |\n", o.name, kind_name(o.kind),
+                          cell(o.unit), cell(o.initial), allowed_values(o), o.sentence);
+    }
+  }
+  return text;
+}
+
+}  // namespace stickslip::options
