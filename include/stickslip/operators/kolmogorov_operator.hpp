@@ -1,0 +1,85 @@
+#pragma once
+/// lambda - L on discrete states: the operator of every backward Kolmogorov equation solved here.
+
+#include <petscmat.h>
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "stickslip/operators/state_space.hpp"
+#include "stickslip/petsc/handle.hpp"
+
+namespace stickslip::operators {
+
+/// The part of the static states in an operator.
+enum class Rest {
+  killing,         ///< no unknowns: the process is killed on reaching them, A_us is kept apart
+  kept,            ///< unknowns like all others: the whole process
+  killed_on_exit,  ///< unknowns; the process is killed on leaving them (L' of Prop. 3.1)
+  killing_edges    ///< unknowns, but killed on reaching (x_+-k, 0, 0) (R-check of Prop. 4.1)
+};
+
+/// A = lambda - L. On level l of a half, with B_l(v) = x_l - mu_d + b(v),
+///
+///   (A u)_l = lambda u_l - B_l u_l' - Lambda (alpha_l u_{l+1} - u_l + (1 - alpha_l) u_{l-1}),
+///
+/// and where the flow reaches v = 0 the value met there is
+///   |l| <= k:  the static value s,
+///   l < -k:    u(0+) on level -l of the other half, or +- that on the same half when folded.
+/// Levels that leave v = 0 need no condition. Static values follow the noise until they leave to
+/// s+- = (+-x_{k+1}, +-1, 0).
+///
+/// Diagonals are summed from the off-diagonals, so that the rates out of a state add up to zero
+/// with its diagonal to rounding. On an upwind axis off-diagonals of -A are >= 0.
+class KolmogorovOperator {
+ public:
+  /// Assembles the local rows, with exact preallocation. Collective. O(local nonzeros).
+  KolmogorovOperator(MPI_Comm comm, const model::Process& process, const velocity::Axis& axis,
+                     PetscScalar lambda, Symmetry symmetry, Rest rest);
+
+  [[nodiscard]] const StateSpace& states() const { return states_; }
+  [[nodiscard]] Mat matrix() const { return matrix_; }
+  [[nodiscard]] PetscInt64 nonzeros() const { return nonzeros_; }
+
+  /// The functional u -> u(s+) (upper) or u(s-) (lower; unfolded only) as a vector. Collective.
+  [[nodiscard]] petsc::VecHandle trace_at_exit(Half half = Half::upper) const;
+
+  /// nu -> -nu A_us, index i + k: the rate at which an occupation flows into each static level; the
+  /// same on all ranks. Rest::killing only. Collective.
+  [[nodiscard]] std::vector<PetscScalar> entry_rates(Vec nu) const;
+  /// -A_us s, a right-hand side: what static values s, index i + k, send into the sliding states.
+  /// Rest::killing only. Collective.
+  [[nodiscard]] petsc::VecHandle from_rest(const std::vector<PetscScalar>& s) const;
+
+  /// Rates of leaving the static states upwards or downwards, a right-hand side for the probability
+  /// of doing so. Rest::killed_on_exit only. Collective.
+  [[nodiscard]] petsc::VecHandle exit_rates(Half half) const;
+
+  /// f(x, y, v) on all states. Collective.
+  using Observable = std::function<double(double x, double y, double v)>;
+  [[nodiscard]] petsc::VecHandle values(const Observable& f) const;
+  /// A vector of the operator's layout, zero. Collective.
+  [[nodiscard]] petsc::VecHandle zeros() const;
+
+ private:
+  struct Coupling {
+    PetscInt row;  // local
+    int level;     // static level i, or the side of an exit
+    double rate;
+  };
+  class Assembler;
+  using Functional = std::vector<std::pair<PetscInt, double>>;
+
+  StateSpace states_;
+  model::Process process_;
+  std::vector<double> nodes_;
+  double v_max_;
+  Functional trace_upper_, trace_lower_;
+  std::vector<Coupling> rest_coupling_;  // -A_us
+  std::vector<Coupling> exit_coupling_;  // level +1 upwards, -1 downwards
+  petsc::MatHandle matrix_;
+  PetscInt64 nonzeros_ = 0;
+};
+
+}  // namespace stickslip::operators

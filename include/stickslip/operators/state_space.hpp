@@ -1,0 +1,115 @@
+#pragma once
+/// Numbering of the discrete states and their distribution over ranks.
+
+#include <petscsys.h>
+
+#include <span>
+#include <vector>
+
+#include "stickslip/model/process.hpp"
+#include "stickslip/velocity/axis.hpp"
+
+namespace stickslip::operators {
+
+/// Functions under (x, y, v) -> (-x, -y, -v): even or odd, for which the half y = +1 is enough
+/// ("folded"), or of no symmetry, for which both halves are kept.
+enum class Symmetry { even, odd, none };
+
+/// The two half lines of the velocity.
+enum class Half { upper, lower };
+
+/// What a state stands for.
+enum class StateKind {
+  node,     ///< sliding at a velocity node
+  origin,   ///< (x_i, +-1, 0) with |x_i| > mu_s: a grid scheme keeps it, its body is about to slide
+  holding,  ///< at v_max, waiting for the noise to fall
+  rest      ///< static, (x_i, 0, 0)
+};
+
+/// One state. The level of a sliding state counts along its own half: on the lower half level l
+/// stands for the noise x_{-l}, so that both halves look alike. The level of a state at rest is i.
+struct State {
+  StateKind kind;
+  Half half;  ///< upper for states at rest
+  int level;
+  int node;  ///< index on the velocity axis, for nodes
+};
+
+/// All states of a discretisation: for each half and level its nodes and, if it has them, an origin
+/// and a holding state; with `with_rest` also the static states, of which the even fold keeps
+/// 0 <= i <= k and the odd one 1 <= i <= k.
+///
+/// States are numbered rank by rank; a rank owns whole shells {i, -i} of noise levels, which the
+/// reflection at v = 0 couples, and numbers its states by velocity from low to high, noise levels
+/// fastest: incomplete factorisations need that order, complete ones do not mind. Tables of size N
+/// on every rank, nothing of the size of the grid.
+class StateSpace {
+ public:
+  /// Collective on `comm`. Throws NoMemory when the states exceed PETSc's index type.
+  StateSpace(MPI_Comm comm, const model::Process& process, const velocity::Axis& axis,
+             Symmetry symmetry, bool with_rest);
+
+  [[nodiscard]] MPI_Comm comm() const { return comm_; }
+  [[nodiscard]] Symmetry symmetry() const { return symmetry_; }
+  [[nodiscard]] bool with_rest() const { return with_rest_; }
+  [[nodiscard]] bool folded() const { return symmetry_ != Symmetry::none; }
+  /// Halves that are kept.
+  [[nodiscard]] std::span<const Half> halves() const;
+
+  [[nodiscard]] PetscInt global_size() const { return global_size_; }
+  [[nodiscard]] PetscInt local_size() const { return local_size_; }
+  /// First global index of this rank.
+  [[nodiscard]] PetscInt local_begin() const { return blocks_[rank_].begin; }
+  /// Noise levels i owned by this rank, rising.
+  [[nodiscard]] std::vector<int> local_levels() const;
+
+  [[nodiscard]] bool has_origin(int level) const { return keeps_origin_ && level > k_; }
+  [[nodiscard]] bool has_holding(int level) const { return level >= first_holding_; }
+  /// Whether the static level i is an unknown of its own.
+  [[nodiscard]] bool has_rest(int i) const { return with_rest_ && i >= lowest_rest_ && i <= k_; }
+
+  /// Global index of a state that exists. O(1).
+  [[nodiscard]] PetscInt index(const State& state) const;
+
+  /// Calls visit(state) for the local states in the order of their indices.
+  template <class Visit>
+  void for_each_local(Visit visit) const {
+    const std::vector<int> levels = local_levels();
+    for (int row = first_row(); row <= last_row(); ++row) {
+      for (int i : levels) {
+        if (has_state(row, i)) visit(state_at(row, i));
+      }
+    }
+  }
+
+ private:
+  // Shells [first, last) of a rank and its first global index.
+  struct Block {
+    int first, last;
+    PetscInt begin;
+  };
+
+  // Rows of equal velocity: 0 is v = 0, +-1 ... +-n the nodes, +-(n+1) the holding states.
+  [[nodiscard]] int last_row() const { return nodes_ + 1; }
+  [[nodiscard]] int first_row() const { return folded() ? 0 : -last_row(); }
+  [[nodiscard]] bool has_state(int row, int i) const;
+  [[nodiscard]] State state_at(int row, int i) const;
+  [[nodiscard]] int levels_below(const Block& block, int i) const;
+  [[nodiscard]] int count(const Block& block, int row) const;
+  [[nodiscard]] int position(const Block& block, int row, int i) const;
+  [[nodiscard]] PetscInt row_offset(const Block& block, int row) const;
+  [[nodiscard]] PetscInt size(const Block& block) const;
+
+  MPI_Comm comm_;
+  Symmetry symmetry_;
+  bool with_rest_, keeps_origin_;
+  int levels_, nodes_, k_;
+  int first_holding_;  // holding states exist for levels >= this; N + 1 if there are none
+  int lowest_rest_;    // static states exist for i >= this
+  int rank_;
+  std::vector<Block> blocks_;        // by rank
+  std::vector<int> owner_of_shell_;  // rank
+  PetscInt global_size_ = 0, local_size_ = 0;
+};
+
+}  // namespace stickslip::operators

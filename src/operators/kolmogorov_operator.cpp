@@ -1,0 +1,289 @@
+#include "stickslip/operators/kolmogorov_operator.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/vectors.hpp"
+
+namespace stickslip::operators {
+namespace {
+
+using petsc::check;
+
+Half other(Half half) { return half == Half::upper ? Half::lower : Half::upper; }
+
+}  // namespace
+
+/// Collects the rates out of one state at a time and appends its row to the local CSR arrays.
+class KolmogorovOperator::Assembler {
+ public:
+  Assembler(const model::Process& process, const velocity::Axis& axis, const StateSpace& states,
+            PetscScalar lambda, Rest rest)
+      : process_(process),
+        axis_(axis),
+        states_(states),
+        lambda_(lambda),
+        rest_(rest),
+        k_(process.static_index()),
+        top_(process.noise.levels),
+        zero_trace_(axis.trace_at_zero()),
+        top_trace_(axis.trace_at_top()) {}
+
+  void assemble() {
+    states_.for_each_local([this](const State& state) { append(state); });
+  }
+
+  /// u(0+) on a level of a half that leaves v = 0, as global indices and coefficients.
+  [[nodiscard]] Functional trace_at_zero(Half half, int level) const {
+    if (states_.has_origin(level)) {
+      return {{states_.index({StateKind::origin, half, level, 0}), 1.0}};
+    }
+    Functional trace;
+    for (const auto& e : zero_trace_) trace.emplace_back(node(half, level, e.node), e.value);
+    return trace;
+  }
+
+  std::vector<PetscInt> row_start{0};
+  std::vector<PetscInt> columns;
+  std::vector<PetscScalar> values;
+  std::vector<Coupling> rest_coupling, exit_coupling;
+
+ private:
+  void append(const State& state) {
+    switch (state.kind) {
+    case StateKind::node: rates_of_node(state); break;
+    case StateKind::origin: rates_of_origin(state); break;
+    case StateKind::holding: rates_of_holding(state); break;
+    case StateKind::rest: rates_of_rest(state.level); break;
+    }
+    finish_row(states_.index(state));
+  }
+
+  void rates_of_node(const State& s) {
+    axis_.transport(process_.excess(s.level), s.node, transport_);
+    for (const auto& e : transport_.entries) rate_to(node(s.half, s.level, e.node), e.value);
+    if (transport_.inflow != 0) rate_to_zero(s, transport_.inflow);
+    if (transport_.outflow != 0) rate_to(holding(s.half, s.level), transport_.outflow);
+    if (s.level < top_) rate_to(node(s.half, s.level + 1, s.node), up_rate(s.level));
+    if (s.level > -top_) rate_to(node(s.half, s.level - 1, s.node), down_rate(s.level));
+  }
+
+  void rates_of_origin(const State& s) {
+    const auto origin = [&](int level) {
+      return states_.index({StateKind::origin, s.half, level, 0});
+    };
+    rate_to(node(s.half, s.level, 0), axis_.origin_rate(process_.excess(s.level)));
+    if (s.level < top_) rate_to(origin(s.level + 1), up_rate(s.level));
+    if (s.level - 1 > k_) {
+      rate_to(origin(s.level - 1), down_rate(s.level));
+    } else {
+      rate_to_rest(noise_level(s.half, k_), down_rate(s.level));
+    }
+  }
+
+  void rates_of_holding(const State& s) {
+    if (s.level < top_) rate_to(holding(s.half, s.level + 1), up_rate(s.level));
+    if (states_.has_holding(s.level - 1)) {
+      rate_to(holding(s.half, s.level - 1), down_rate(s.level));
+    } else if (s.level > -top_) {
+      for (const auto& e : top_trace_) {
+        rate_to(node(s.half, s.level - 1, e.node), down_rate(s.level) * e.value);
+      }
+    }
+  }
+
+  void rates_of_rest(int i) {
+    if (rest_ == Rest::killing_edges && std::abs(i) == k_) {
+      leaving_ = process_.noise.rate();  // value 0 there: killed at once
+      return;
+    }
+    if (i < k_) rate_to_rest(i + 1, up_rate(i));
+    if (i == k_) rate_to_exit(Half::upper, up_rate(i));
+    if (i > -k_) rate_to_rest(i - 1, down_rate(i));
+    if (i == -k_) rate_to_exit(Half::lower, down_rate(i));
+  }
+
+  // Where a sliding body meets v = 0.
+  void rate_to_zero(const State& s, double rate) {
+    if (s.level > k_) {
+      // A grid scheme near a turning point: back to the state at v = 0.
+      rate_to(states_.index({StateKind::origin, s.half, s.level, 0}), rate);
+    } else if (s.level >= -k_) {
+      rate_to_rest(noise_level(s.half, s.level), rate);
+    } else if (states_.folded()) {
+      rate_to_trace(trace_at_zero(s.half, -s.level), rate, reflection());
+    } else {
+      rate_to_trace(trace_at_zero(other(s.half), -s.level), rate, 1);
+    }
+  }
+
+  void rate_to_rest(int i, double rate) {
+    leaving_ += rate;
+    if (rest_ == Rest::killing) {
+      rest_coupling.push_back({local_row(), i, rate});
+      return;
+    }
+    const int kept = states_.folded() ? std::abs(i) : i;
+    if (!states_.has_rest(kept)) return;  // an odd function at x = 0
+    const double sign = kept == i ? 1 : reflection();
+    row_.emplace_back(states_.index({StateKind::rest, Half::upper, kept, 0}), -sign * rate);
+  }
+
+  void rate_to_exit(Half half, double rate) {
+    if (rest_ == Rest::killed_on_exit) {
+      leaving_ += rate;
+      exit_coupling.push_back({local_row(), half == Half::upper ? 1 : -1, rate});
+    } else if (states_.folded()) {
+      rate_to_trace(trace_at_zero(Half::upper, k_ + 1), rate,
+                    half == Half::upper ? 1 : reflection());
+    } else {
+      rate_to_trace(trace_at_zero(half, k_ + 1), rate, 1);
+    }
+  }
+
+  void rate_to_trace(const Functional& trace, double rate, double sign) {
+    for (const auto& [column, weight] : trace) row_.emplace_back(column, -sign * rate * weight);
+    leaving_ += rate;
+  }
+
+  void rate_to(PetscInt column, double rate) {
+    row_.emplace_back(column, -rate);
+    leaving_ += rate;
+  }
+
+  void finish_row(PetscInt diagonal) {
+    row_.emplace_back(diagonal, lambda_ + leaving_);
+    std::sort(row_.begin(), row_.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [column, value] : row_) {
+      const bool repeated =
+          static_cast<PetscInt>(columns.size()) > row_start.back() && columns.back() == column;
+      if (repeated) {
+        values.back() += value;
+      } else {
+        columns.push_back(column);
+        values.push_back(value);
+      }
+    }
+    row_start.push_back(static_cast<PetscInt>(columns.size()));
+    row_.clear();
+    leaving_ = 0;
+  }
+
+  [[nodiscard]] PetscInt local_row() const { return static_cast<PetscInt>(row_start.size()) - 1; }
+  [[nodiscard]] PetscInt node(Half half, int level, int j) const {
+    return states_.index({StateKind::node, half, level, j});
+  }
+  [[nodiscard]] PetscInt holding(Half half, int level) const {
+    return states_.index({StateKind::holding, half, level, 0});
+  }
+  static int noise_level(Half half, int level) { return half == Half::upper ? level : -level; }
+  [[nodiscard]] double reflection() const { return states_.symmetry() == Symmetry::odd ? -1 : 1; }
+  [[nodiscard]] double up_rate(int level) const {
+    return process_.noise.rate() * process_.noise.up(level);
+  }
+  [[nodiscard]] double down_rate(int level) const {
+    return process_.noise.rate() * process_.noise.down(level);
+  }
+
+  const model::Process& process_;
+  const velocity::Axis& axis_;
+  const StateSpace& states_;
+  PetscScalar lambda_;
+  Rest rest_;
+  int k_, top_;
+  std::vector<velocity::Entry> zero_trace_, top_trace_;
+  velocity::TransportRow transport_;
+  std::vector<std::pair<PetscInt, PetscScalar>> row_;
+  double leaving_ = 0;
+};
+
+KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const model::Process& process,
+                                       const velocity::Axis& axis, PetscScalar lambda,
+                                       Symmetry symmetry, Rest rest)
+    : states_(comm, process, axis, symmetry, rest != Rest::killing),
+      process_(process),
+      nodes_(axis.nodes().begin(), axis.nodes().end()),
+      v_max_(axis.v_max()) {
+  Assembler rows(process, axis, states_, lambda, rest);
+  rows.assemble();
+  trace_upper_ = rows.trace_at_zero(Half::upper, process.static_index() + 1);
+  if (!states_.folded()) trace_lower_ = rows.trace_at_zero(Half::lower, process.static_index() + 1);
+  rest_coupling_ = std::move(rows.rest_coupling);
+  exit_coupling_ = std::move(rows.exit_coupling);
+
+  const PetscInt local = states_.local_size(), global = states_.global_size();
+  check(MatCreate(comm, matrix_.out()));
+  check(MatSetSizes(matrix_, local, local, global, global));
+  check(MatSetType(matrix_, MATAIJ));
+  check(MatSeqAIJSetPreallocationCSR(matrix_, rows.row_start.data(), rows.columns.data(),
+                                     rows.values.data()));
+  check(MatMPIAIJSetPreallocationCSR(matrix_, rows.row_start.data(), rows.columns.data(),
+                                     rows.values.data()));
+  nonzeros_ = rows.row_start.back();
+  MPI_Allreduce(MPI_IN_PLACE, &nonzeros_, 1, MPIU_INT64, MPI_SUM, comm);
+}
+
+petsc::VecHandle KolmogorovOperator::zeros() const {
+  petsc::VecHandle x;
+  check(MatCreateVecs(matrix_, nullptr, x.out()));
+  return x;
+}
+
+petsc::VecHandle KolmogorovOperator::trace_at_exit(Half half) const {
+  petsc::VecHandle g = zeros();
+  const PetscInt begin = states_.local_begin(), end = begin + states_.local_size();
+  for (const auto& [index, weight] : half == Half::upper ? trace_upper_ : trace_lower_) {
+    if (index < begin || index >= end) continue;
+    check(VecSetValue(g, index, weight, INSERT_VALUES));
+  }
+  check(VecAssemblyBegin(g));
+  check(VecAssemblyEnd(g));
+  return g;
+}
+
+std::vector<PetscScalar> KolmogorovOperator::entry_rates(Vec nu) const {
+  const int k = process_.static_index();
+  std::vector<PetscScalar> rates(2 * static_cast<std::size_t>(k) + 1, 0.0);
+  const petsc::ReadView local(nu);
+  for (const auto& c : rest_coupling_) rates[k + c.level] += c.rate * local[c.row];
+  MPI_Allreduce(MPI_IN_PLACE, rates.data(), static_cast<int>(rates.size()), MPIU_SCALAR, MPIU_SUM,
+                states_.comm());
+  return rates;
+}
+
+petsc::VecHandle KolmogorovOperator::from_rest(const std::vector<PetscScalar>& s) const {
+  const int k = process_.static_index();
+  petsc::VecHandle f = zeros();
+  petsc::WriteView local(f);
+  for (const auto& c : rest_coupling_) local[c.row] += c.rate * s[k + c.level];
+  return f;
+}
+
+petsc::VecHandle KolmogorovOperator::exit_rates(Half half) const {
+  const int side = half == Half::upper ? 1 : -1;
+  petsc::VecHandle f = zeros();
+  petsc::WriteView local(f);
+  for (const auto& c : exit_coupling_) {
+    if (c.level == side) local[c.row] += c.rate;
+  }
+  return f;
+}
+
+petsc::VecHandle KolmogorovOperator::values(const Observable& f) const {
+  petsc::VecHandle result = zeros();
+  petsc::WriteView local(result);
+  PetscInt at = 0;
+  states_.for_each_local([&](const State& s) {
+    const double sign = s.half == Half::upper ? 1 : -1;
+    const double x = sign * process_.noise.level(s.level);
+    double v = 0;
+    if (s.kind == StateKind::node) v = sign * nodes_[s.node];
+    if (s.kind == StateKind::holding) v = sign * v_max_;
+    local[at++] = f(x, s.kind == StateKind::rest ? 0 : sign, v);
+  });
+  return result;
+}
+
+}  // namespace stickslip::operators

@@ -1,0 +1,27 @@
+#include "stickslip/operators/systems.hpp"
+
+namespace stickslip::operators {
+
+KolmogorovOperator assemble(MPI_Comm comm, const model::Process& process,
+                            const velocity::Axis& axis, PetscScalar lambda, Symmetry symmetry,
+                            Rest rest, petsc::Ledger& ledger) {
+  const petsc::PhaseTimer timer("assembly", ledger.assembly_seconds);
+  KolmogorovOperator a(comm, process, axis, lambda, symmetry, rest);
+  petsc::Ledger made;
+  made.assemblies = 1;
+  made.unknowns = a.states().global_size();
+  made.nonzeros = a.nonzeros();
+  ledger += made;
+  return a;
+}
+
+System& Systems::at(double lambda, Symmetry symmetry, Rest rest) {
+  auto& system = systems_[{lambda, symmetry, rest}];
+  if (!system) {
+    system = std::make_unique<System>(
+        assemble(comm_, process_, *axis_, lambda, symmetry, rest, ledger_), ledger_);
+  }
+  return *system;
+}
+
+}  // namespace stickslip::operators
