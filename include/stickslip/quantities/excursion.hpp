@@ -1,0 +1,51 @@
+#pragma once
+/// Everything that one mean excursion from s+ tells about the stationary law.
+
+#include <vector>
+
+#include "stickslip/model/process.hpp"
+#include "stickslip/quantities/results.hpp"
+
+namespace stickslip::quantities {
+
+/// Means over one excursion, which starts at s+ = (x_{k+1}, +1, 0), slides, sticks and ends at
+/// the next exit. Positions are folded: (x, y, v) stands for (-x, -y, -v) as well, such that y >=
+/// 0. Arrays over noise levels have the index i + N, those over static levels i + k.
+struct Excursion {
+  std::vector<double> slide_time;         ///< time spent sliding on level i [time]
+  std::vector<double> slide_distance;     ///< int |V| dt on level i [length]
+  std::vector<double> slide_square;       ///< int V^2 dt on level i
+  std::vector<double> entry;              ///< probability that sliding ends on folded level i
+  std::vector<double> entry_orientation;  ///< the same, counted negative if V < 0 then; or empty
+  std::vector<double> stick_time;         ///< time spent sticking on folded level i [time]
+  double lost_probability = 0;            ///< sum of entry less 1, before it was scaled to 1
+
+  [[nodiscard]] double mean_slide() const;      ///< E[tau_hat_1], section 4.3 of the paper [time]
+  [[nodiscard]] double mean_stick() const;      ///< E[tau_1 - tau_hat_1] [time]
+  [[nodiscard]] double mean_excursion() const;  ///< E[tau_1] [time]
+
+  /// Relative violation of an identity that holds exactly on every discretisation: by renewal,
+  /// the time spent beyond mu_s is pi(|X| > mu_s) E[tau_1]. What is left is rounding, of the matrix
+  /// entries too, which residuals do not see. The square of lost_probability is added: scaling has
+  /// removed its first order.
+  [[nodiscard]] double conservation_defect(const model::Process& process) const;
+};
+
+/// P_stick, P_slide, mean_stick, mean_slide, mean_excursion; ratios of positive sums.
+void append_sticking(const Excursion& excursion, Results& results);
+
+/// E_V2, E_absV, E_XV and E_V (0 by symmetry).
+void append_moments(const model::Process& process, const Excursion& excursion, Results& results);
+
+/// entry_law: P(X = x_k when the first slide from s+ ends), k = -K ... K, and
+/// f_stick_0 = Lambda alpha_K (entry_K + entry_-K), the density of sticking times at 0+.
+void append_entry_law(const model::Process& process, const Excursion& excursion, Results& results);
+
+/// P_X_le_mu_s and E_X2 of the noise alone, from its closed law.
+void append_noise_law(const model::Process& process, Results& results);
+
+/// The stationary law of X as the excursion sees it, summed over the grid; index i + N.
+[[nodiscard]] std::vector<double> marginal_of_noise(const model::Process& process,
+                                                    const Excursion& excursion);
+
+}  // namespace stickslip::quantities

@@ -1,0 +1,28 @@
+#pragma once
+/// Named results with their errors.
+
+#include <string>
+#include <vector>
+
+namespace stickslip::quantities {
+
+/// A scalar (no abscissa, one value) or an array over an abscissa.
+struct Result {
+  std::string key;            ///< name in table, JSON and HDF5
+  std::string unit;           ///< empty for pure numbers
+  std::string abscissa_name;  ///< empty for a scalar
+  std::vector<double> abscissa;
+  std::vector<double> value;
+  std::vector<double> error;  ///< absolute error estimates, one for each value
+
+  [[nodiscard]] bool is_scalar() const { return abscissa_name.empty(); }
+};
+
+using Results = std::vector<Result>;
+
+/// A scalar result.
+[[nodiscard]] inline Result scalar(std::string key, std::string unit, double value, double error) {
+  return {std::move(key), std::move(unit), "", {}, {value}, {error}};
+}
+
+}  // namespace stickslip::quantities

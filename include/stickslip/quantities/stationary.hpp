@@ -1,0 +1,64 @@
+#pragma once
+/// The stationary law from one transposed solve with the sliding operator.
+
+#include <memory>
+#include <vector>
+
+#include "stickslip/operators/systems.hpp"
+#include "stickslip/quantities/excursion.hpp"
+#include "stickslip/velocity/axis.hpp"
+
+namespace stickslip::quantities {
+
+/// Occupation of the sliding states over one excursion and what follows from it:
+///
+///   nu A(0, even) = g,   entry = -nu A_us,   stick_time (-Q) = entry,
+///
+/// so that pi = (nu, stick_time)/E[tau_1], symmetrised, and pi(f) is a sum for every f.
+class StationaryLaw {
+ public:
+  /// One transposed solve with systems.at(0, even). Collective. Throws NotReached or NoMemory.
+  explicit StationaryLaw(operators::Systems& systems);
+
+  /// Adds Excursion::entry_orientation. It is no even functional: one more transposed solve, with
+  /// systems.at(0, odd). Collective.
+  void orient(operators::Systems& systems);
+
+  [[nodiscard]] const model::Process& process() const { return process_; }
+  [[nodiscard]] const velocity::Axis& axis() const { return *axis_; }
+  [[nodiscard]] const std::shared_ptr<const velocity::Axis>& shared_axis() const { return axis_; }
+  [[nodiscard]] const operators::StateSpace& states() const { return states_; }
+
+  /// Means over an excursion, the same on all ranks.
+  [[nodiscard]] const Excursion& excursion() const { return excursion_; }
+  /// The same before the last correction of the solve: the difference shows rounding.
+  [[nodiscard]] const Excursion& uncorrected() const { return uncorrected_; }
+
+  /// nu, distributed as states() says [time]: the time spent in each sliding state.
+  [[nodiscard]] Vec occupation() const { return occupation_; }
+
+  /// The law of |V| as point masses, the same on all ranks.
+  struct SpeedLaw {
+    std::vector<double> mass;  ///< of the velocity nodes
+    double at_rest;            ///< P_stick, and the origin states of a grid scheme
+    double at_top;             ///< holding states: what the velocity cut keeps back
+  };
+  /// Collective.
+  [[nodiscard]] SpeedLaw speed_law() const;
+
+ private:
+  model::Process process_;
+  std::shared_ptr<const velocity::Axis> axis_;
+  operators::StateSpace states_;
+  petsc::VecHandle occupation_;
+  Excursion excursion_, uncorrected_;
+};
+
+/// sup |F_1 - F_2| over the cells of axis 2, F the distribution functions of |V| in two
+/// discretisations.
+[[nodiscard]] double speed_law_distance(const velocity::Axis& axis_1,
+                                        const StationaryLaw::SpeedLaw& law_1,
+                                        const velocity::Axis& axis_2,
+                                        const StationaryLaw::SpeedLaw& law_2);
+
+}  // namespace stickslip::quantities

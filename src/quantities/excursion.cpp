@@ -1,0 +1,93 @@
+#include "stickslip/quantities/excursion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace stickslip::quantities {
+namespace {
+
+double sum(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+}  // namespace
+
+double Excursion::mean_slide() const { return sum(slide_time); }
+double Excursion::mean_stick() const { return sum(stick_time); }
+double Excursion::mean_excursion() const { return mean_slide() + mean_stick(); }
+
+double Excursion::conservation_defect(const model::Process& process) const {
+  const int n = process.noise.levels, k = process.static_index();
+  double beyond = 0;
+  for (int i = k + 1; i <= n; ++i) beyond += slide_time[n + i] + slide_time[n - i];
+  const double expected = model::noise_moments(process.noise, k).beyond * mean_excursion();
+  return std::abs(beyond / expected - 1) + lost_probability * lost_probability;
+}
+
+void append_sticking(const Excursion& excursion, Results& results) {
+  const double slide = excursion.mean_slide(), stick = excursion.mean_stick();
+  const double total = excursion.mean_excursion();
+  results.push_back(scalar("P_stick", "", stick / total, 0));
+  results.push_back(scalar("P_slide", "", slide / total, 0));
+  results.push_back(scalar("mean_stick", "time", stick, 0));
+  results.push_back(scalar("mean_slide", "time", slide, 0));
+  results.push_back(scalar("mean_excursion", "time", total, 0));
+}
+
+void append_moments(const model::Process& process, const Excursion& excursion, Results& results) {
+  const double total = excursion.mean_excursion();
+  const int n = process.noise.levels;
+  double force_times_velocity = 0;
+  for (int i = -n; i <= n; ++i) {
+    force_times_velocity += process.noise.level(i) * excursion.slide_distance[n + i];
+  }
+  results.push_back(scalar("E_V2", "velocity^2", sum(excursion.slide_square) / total, 0));
+  results.push_back(scalar("E_absV", "velocity", sum(excursion.slide_distance) / total, 0));
+  results.push_back(scalar("E_XV", "force*velocity", force_times_velocity / total, 0));
+  results.push_back(scalar("E_V", "velocity", 0, 0));
+}
+
+void append_entry_law(const model::Process& process, const Excursion& excursion, Results& results) {
+  const auto& folded = excursion.entry;
+  const auto& oriented = excursion.entry_orientation;
+  const int k = process.static_index();
+  Result law{"entry_law", "", "k", {}, {}, {}};
+  for (int i = -k; i <= k; ++i) {
+    // Slides that end with V > 0 on level i, and with V < 0 on level -i in folded coordinates.
+    const double same = (folded[k + i] + oriented[k + i]) / 2;
+    const double mirrored = (folded[k - i] - oriented[k - i]) / 2;
+    law.abscissa.push_back(i);
+    law.value.push_back(same + mirrored);
+    law.error.push_back(0);
+  }
+  results.push_back(law);
+  const double rate = process.noise.rate() * process.noise.up(k);
+  results.push_back(scalar("f_stick_0", "1/time", rate * (folded.back() + folded.front()), 0));
+}
+
+void append_noise_law(const model::Process& process, Results& results) {
+  const auto moments = model::noise_moments(process.noise, process.static_index());
+  // Weights are products of up to N factors, each rounded; the bulk of the law holds about
+  // sqrt(N) of them.
+  const double rounding =
+      std::numeric_limits<double>::epsilon() * (4 + std::sqrt(process.noise.levels));
+  results.push_back(scalar("P_X_le_mu_s", "", moments.within, rounding * moments.within));
+  results.push_back(scalar("E_X2", "force^2", moments.variance, rounding * moments.variance));
+}
+
+std::vector<double> marginal_of_noise(const model::Process& process, const Excursion& excursion) {
+  const int n = process.noise.levels, k = process.static_index();
+  const double total = excursion.mean_excursion();
+  std::vector<double> law(excursion.slide_time.size());
+  for (int i = -n; i <= n; ++i) {
+    law[n + i] = (excursion.slide_time[n + i] + excursion.slide_time[n - i]) / (2 * total);
+    if (std::abs(i) <= k) {
+      law[n + i] += (excursion.stick_time[k + i] + excursion.stick_time[k - i]) / (2 * total);
+    }
+  }
+  return law;
+}
+
+}  // namespace stickslip::quantities

@@ -1,0 +1,131 @@
+#include "stickslip/quantities/stationary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "stickslip/operators/static_chain.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/vectors.hpp"
+#include "stickslip/support/errors.hpp"
+
+namespace stickslip::quantities {
+namespace {
+
+using operators::KolmogorovOperator;
+using operators::State;
+using operators::StateKind;
+using operators::Symmetry;
+using operators::Systems;
+
+std::vector<double> real_parts(const std::vector<PetscScalar>& values) {
+  std::vector<double> parts;
+  for (const auto& value : values) parts.push_back(PetscRealPart(value));
+  return parts;
+}
+
+void sum_over_ranks(MPI_Comm comm, std::vector<double>& values) {
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
+                comm);
+}
+
+double speed(const State& state, const velocity::Axis& axis) {
+  if (state.kind == StateKind::node) return axis.nodes()[state.node];
+  return state.kind == StateKind::holding ? axis.v_max() : 0;
+}
+
+// Scales nu such that sliding ends somewhere: sum_i P_i = 1 holds on every discretisation. Where
+// slides last long against the time steps of the noise, nu is nearly a null vector of A, and
+// rounding (of the entries of A too) changes little but its length; this sets it right.
+double normalise(const KolmogorovOperator& a, Vec nu) {
+  const auto entry = real_parts(a.entry_rates(nu));
+  const double total = std::accumulate(entry.begin(), entry.end(), 0.0);
+  if (!(std::abs(total - 1) < 0.1)) {
+    throw NotReached(fmt::format("rounding leaves {:.2g} for the probability that a slide ends; "
+                                 "slides last too long against "
+                                 "the noise for double precision",
+                                 total));
+  }
+  petsc::check(VecScale(nu, 1 / total));
+  return total - 1;
+}
+
+Excursion excursion_of(const Systems& systems, const KolmogorovOperator& a, Vec nu) {
+  const auto& noise = systems.process().noise;
+  const std::size_t levels = 2 * static_cast<std::size_t>(noise.levels) + 1;
+  Excursion e;
+  const double lost = normalise(a, nu);
+  for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square}) sums->resize(levels);
+  const petsc::ReadView local(nu);
+  PetscInt at = 0;
+  a.states().for_each_local([&](const State& state) {
+    const double mass = PetscRealPart(local[at++]), v = speed(state, systems.axis());
+    const std::size_t level = noise.levels + state.level;
+    e.slide_time[level] += mass;
+    e.slide_distance[level] += mass * v;
+    e.slide_square[level] += mass * v * v;
+  });
+  // Each level lives on one rank, so that the sums do not depend on the distribution.
+  for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square}) {
+    sum_over_ranks(systems.comm(), *sums);
+  }
+  e.entry = real_parts(a.entry_rates(nu));
+  e.lost_probability = lost;
+  const int k = systems.process().static_index();
+  e.stick_time = operators::StaticChain(noise, k).occupation(e.entry);
+  return e;
+}
+
+}  // namespace
+
+StationaryLaw::StationaryLaw(Systems& systems)
+    : process_(systems.process()),
+      axis_(systems.shared_axis()),
+      states_(systems.at(0, Symmetry::even).a().states()) {
+  auto& system = systems.at(0, Symmetry::even);
+  petsc::Solution nu = system.factors().solve_transposed(system.a().trace_at_exit());
+  petsc::check(VecAYPX(nu.correction, -1, nu.x));  // the solution without it
+  excursion_ = excursion_of(systems, system.a(), nu.x);
+  uncorrected_ = excursion_of(systems, system.a(), nu.correction);
+  occupation_ = std::move(nu.x);
+}
+
+void StationaryLaw::orient(Systems& systems) {
+  auto& system = systems.at(0, Symmetry::odd);
+  const petsc::Solution nu = system.factors().solve_transposed(system.a().trace_at_exit());
+  excursion_.entry_orientation = real_parts(system.a().entry_rates(nu.x));
+  petsc::check(VecAYPX(nu.correction, -1, nu.x));
+  uncorrected_.entry_orientation = real_parts(system.a().entry_rates(nu.correction));
+}
+
+StationaryLaw::SpeedLaw StationaryLaw::speed_law() const {
+  const double total = excursion_.mean_excursion();
+  const std::size_t nodes = axis_->size();
+  std::vector<double> sums(nodes + 2, 0.0);  // of the nodes, the origin and the holding states
+  const petsc::ReadView local(occupation_);
+  PetscInt at = 0;
+  states_.for_each_local([&](const State& state) {
+    std::size_t place = static_cast<std::size_t>(state.node);
+    if (state.kind != StateKind::node) place = nodes + (state.kind == StateKind::holding ? 1 : 0);
+    sums[place] += PetscRealPart(local[at++]) / total;
+  });
+  sum_over_ranks(states_.comm(), sums);
+  return {{sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(nodes)},
+          sums[nodes] + excursion_.mean_stick() / total,
+          sums[nodes + 1]};
+}
+
+double speed_law_distance(const velocity::Axis& axis_1, const StationaryLaw::SpeedLaw& law_1,
+                          const velocity::Axis& axis_2, const StationaryLaw::SpeedLaw& law_2) {
+  double distance = std::abs(law_1.at_rest - law_2.at_rest);
+  for (double v : axis_2.cells()) {
+    const double below_1 = law_1.at_rest + axis_1.mass_below(law_1.mass, v);
+    const double below_2 = law_2.at_rest + axis_2.mass_below(law_2.mass, v);
+    distance = std::max(distance, std::abs(below_1 - below_2));
+  }
+  return distance;
+}
+
+}  // namespace stickslip::quantities
