@@ -1,0 +1,40 @@
+#pragma once
+/// Discretisations in the order in which refinement tries them.
+
+#include "stickslip/accuracy/resolution.hpp"
+#include "stickslip/options/request.hpp"
+
+namespace stickslip::accuracy {
+
+/// Rung 0 is only there to be compared with; each further rung is finer in every respect (degree
+/// or points, noise range, velocity cut), so that the change from one rung to the next shows the
+/// error of the coarser one, whatever its cause.
+class Ladder {
+ public:
+  explicit Ladder(const options::Request& request);
+
+  /// Number of the last rung that may be tried.
+  [[nodiscard]] int last() const { return last_; }
+  [[nodiscard]] Resolution rung(int n) const;
+
+  /// Bound for error(rung n) / |change from rung n-1 to rung n|, n >= 1.
+  [[nodiscard]] double error_per_change(int n) const;
+  /// The same for the change from rung n-2 to rung n-1; 0 where it tells nothing.
+  [[nodiscard]] double error_per_earlier_change() const;
+  /// Whether the error falls only as a power of the unknowns.
+  [[nodiscard]] bool first_order() const { return method_.scheme == options::Scheme::upwind; }
+  /// Truncation error allowed on rung n, relative.
+  [[nodiscard]] double tail_tolerance(int n) const;
+
+ private:
+  [[nodiscard]] int degree(int n) const;
+  [[nodiscard]] int points(int n) const;
+
+  model::Scene scene_;
+  options::Method method_;
+  double accuracy_;
+  int first_degree_ = 0;  // of rung 1
+  int last_;
+};
+
+}  // namespace stickslip::accuracy

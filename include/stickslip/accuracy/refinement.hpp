@@ -1,0 +1,52 @@
+#pragma once
+/// Refinement of a discretisation until every number asked for is as accurate as asked for.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "stickslip/accuracy/resolution.hpp"
+#include "stickslip/options/request.hpp"
+#include "stickslip/petsc/ledger.hpp"
+#include "stickslip/quantities/results.hpp"
+#include "stickslip/quantities/stationary.hpp"
+
+namespace stickslip::accuracy {
+
+/// One discretisation that was solved, with what it cost and how accurate it was.
+struct Step {
+  Resolution resolution;
+  petsc::Ledger ledger;
+  double seconds = 0;        ///< wall time of the whole step
+  double estimate = 0;       ///< largest relative error estimate of a scalar; 0 if none yet
+  std::string limiting_key;  ///< the scalar that has it
+};
+
+struct Outcome {
+  quantities::Results results;  ///< values of the last step with their error estimates
+  bool reached = false;         ///< whether all estimates are within the accuracy
+  std::string shortfall;        ///< why not, and what would help
+  std::vector<Step> steps;
+  petsc::Ledger total;
+  /// The last stationary law, for fields; none if no system was solved.
+  std::unique_ptr<quantities::StationaryLaw> law;
+  double speed_law_error = 0;  ///< of the distribution function of |V|
+};
+
+/// Called before each step with its number, its resolution and the seconds it is expected to take
+/// (0 for the first, of which nothing is known).
+using Progress = std::function<void(int, const Resolution&, double)>;
+
+/// Climbs the ladder of the request. The error estimate of a value is
+///
+///   max(error_per_change |last change|, error_per_earlier_change |change before|)
+///   + |effect of the last correction of the solve| + conservation defect |value|,
+///
+/// where the second line estimates rounding. Stops when every scalar meets the accuracy, when
+/// rounding forbids it, or at the end of the ladder. Collective. Throws NoMemory before anything is
+/// allocated that would not fit, NotReached when a solver fails.
+[[nodiscard]] Outcome refine(MPI_Comm comm, const options::Request& request,
+                             const Progress& progress);
+
+}  // namespace stickslip::accuracy

@@ -1,0 +1,52 @@
+#pragma once
+/// One discretisation of a scene: noise range, velocity cut and velocity axis.
+
+#include <cstdint>
+#include <memory>
+
+#include "stickslip/model/scene.hpp"
+#include "stickslip/options/request.hpp"
+#include "stickslip/velocity/axis.hpp"
+
+namespace stickslip::accuracy {
+
+struct Resolution {
+  options::Scheme scheme = options::Scheme::hp;
+  int degree = 0;    ///< hp: polynomial degree
+  int layers = 0;    ///< hp: elements graded towards v = 0
+  int points = 0;    ///< upwind: nodes per noise step
+  int levels = 0;    ///< N, noise levels on each side of 0
+  double v_max = 0;  ///< end of the velocity axis [velocity]
+};
+
+/// Noise levels on each side of 0 whose tail beyond weighs less than `tolerance` against the level
+/// from which slides start, second moments included; never more than the full range, and always
+/// more than k. Where drag does not hold it back, a body is fast because the noise stayed high:
+/// there the law of X is shifted upwards, and the range with it.
+[[nodiscard]] int levels_for(const model::Scene& scene, double tolerance);
+
+/// End of the velocity axis: the terminal velocity of the highest level, or where the density has
+/// fallen below `tolerance` if that comes first. What the user fixed goes before.
+[[nodiscard]] double velocity_end(const model::Scene& scene, int levels, double tolerance);
+
+/// hp of polynomial degree `degree`, the open rest chosen for truncation errors of `tolerance`.
+[[nodiscard]] Resolution hp_resolution(const model::Scene& scene, int degree, int layers,
+                                       double tolerance);
+
+/// Upwind with `points` nodes per noise step, the open rest chosen as above.
+[[nodiscard]] Resolution upwind_resolution(const model::Scene& scene, int points, double tolerance);
+
+[[nodiscard]] std::shared_ptr<const velocity::Axis> make_axis(const model::Scene& scene,
+                                                              const Resolution& resolution);
+
+/// Number of sliding unknowns, up to the few origin and holding states.
+[[nodiscard]] std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution);
+
+/// Memory that assembly and factorisation take, all ranks together [bytes]; fitted to MUMPS's
+/// counts (notes in resolution.cpp), within a factor 2.
+[[nodiscard]] double predicted_bytes(const model::Scene& scene, const Resolution& resolution);
+
+/// Arithmetic of the factorisation up to a common factor, to scale measured times with.
+[[nodiscard]] double relative_work(const model::Scene& scene, const Resolution& resolution);
+
+}  // namespace stickslip::accuracy

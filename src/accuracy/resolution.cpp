@@ -1,0 +1,130 @@
+#include "stickslip/accuracy/resolution.hpp"
+
+#include <petscsys.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "stickslip/velocity/hp_axis.hpp"
+#include "stickslip/velocity/mesh.hpp"
+#include "stickslip/velocity/upwind_axis.hpp"
+
+namespace stickslip::accuracy {
+namespace {
+
+velocity::MeshRule mesh_rule(const Resolution& resolution) {
+  velocity::MeshRule rule;
+  rule.v_max = resolution.v_max;
+  rule.layers = resolution.layers;
+  return rule;
+}
+
+// Number of nodes of the upwind axis: the first at or beyond v_max is its last.
+double upwind_nodes(const model::Scene& scene, const Resolution& resolution) {
+  const double ratio = resolution.v_max * resolution.points / scene.delta;
+  return std::max(1.0, std::ceil(ratio * (1 - 1e-12)));
+}
+
+int hp_elements(const model::Scene& scene, const Resolution& resolution) {
+  const auto process = scene.process(resolution.levels);
+  return static_cast<int>(velocity::element_ends(process, mesh_rule(resolution)).size()) - 1;
+}
+
+// Exponential tilt of the law of X, per unit of x, that comes with large velocities: without drag
+// the velocity decays at the rate mu_d and X conditioned on it is shifted by up to twice mu_d
+// (less where mu_d exceeds the noise, of standard deviation 1/sqrt(tau)).
+double tilt(const model::Scene& scene) {
+  const double mu_d = scene.friction.mu_d;
+  const double drag_time = -scene.drag.slope_at_rest() / (mu_d * mu_d);
+  if (drag_time > 1) return 0;
+  return 2 * scene.tau * std::min(mu_d, 1 / std::sqrt(scene.tau));
+}
+
+}  // namespace
+
+int levels_for(const model::Scene& scene, double tolerance) {
+  const int full = scene.full_levels();
+  const model::NoiseChain chain{scene.tau, scene.delta, full};
+  const int first = scene.friction.static_index(scene.delta) + 1;
+  const double shift = tilt(scene) * scene.delta;
+  double log_weight = 0;  // of level i against level `first`
+  int i = first;
+  while (i < full && log_weight > std::log(tolerance)) {
+    ++i;
+    log_weight += std::log(model::weight_ratio(chain, i)) + shift + 2 * std::log1p(1.0 / (i - 1));
+  }
+  return i;
+}
+
+double velocity_end(const model::Scene& scene, int levels, double tolerance) {
+  const auto process = scene.process(levels);
+  const double terminal = process.drag.terminal_velocity(process.excess(levels));
+  if (scene.v_max) return std::min(*scene.v_max, terminal);
+  const double tail = velocity::tail_velocity(process, tolerance);
+  // Holding states cost a little: a cut must save something.
+  return tail < 0.8 * terminal ? tail : terminal;
+}
+
+Resolution hp_resolution(const model::Scene& scene, int degree, int layers, double tolerance) {
+  Resolution r;
+  r.scheme = options::Scheme::hp;
+  r.degree = degree;
+  r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
+  r.v_max = velocity_end(scene, r.levels, tolerance);
+  r.layers = layers > 0 ? layers : velocity::natural_layers(scene.process(r.levels), mesh_rule(r));
+  return r;
+}
+
+Resolution upwind_resolution(const model::Scene& scene, int points, double tolerance) {
+  Resolution r;
+  r.scheme = options::Scheme::upwind;
+  r.points = points;
+  r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
+  r.v_max = velocity_end(scene, r.levels, tolerance);
+  return r;
+}
+
+std::shared_ptr<const velocity::Axis> make_axis(const model::Scene& scene,
+                                                const Resolution& resolution) {
+  if (resolution.scheme == options::Scheme::upwind) {
+    const double spacing = scene.delta / resolution.points;
+    const auto count = static_cast<int>(upwind_nodes(scene, resolution));
+    return std::make_shared<velocity::UpwindAxis>(spacing, count, scene.drag);
+  }
+  auto ends = velocity::element_ends(scene.process(resolution.levels), mesh_rule(resolution));
+  return std::make_shared<velocity::HpAxis>(std::move(ends), resolution.degree, scene.drag);
+}
+
+std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution) {
+  const double nodes = resolution.scheme == options::Scheme::upwind
+                           ? upwind_nodes(scene, resolution)
+                           : hp_elements(scene, resolution) * (resolution.degree + 1.0);
+  const double total = (2.0 * resolution.levels + 1) * nodes;
+  constexpr double most = 9e18;
+  return static_cast<std::int64_t>(std::min(total, most));
+}
+
+// Entries of the factors: an hp matrix is block tridiagonal in |i| with blocks of the n_v nodes of
+// a level, and 2.7 to 3.2 n n_v entries were counted for delta = 1/4 ... 1/128. The upwind matrix
+// is a two-dimensional grid, where the shorter side m decides: 4.5 n m^0.52 entries were counted
+// for m = 65 ... 257. MUMPS takes 9 to 12 bytes a real entry; the matrix, its magnitudes and
+// MUMPS's copy come on top.
+double predicted_bytes(const model::Scene& scene, const Resolution& resolution) {
+  const auto n = static_cast<double>(unknowns(scene, resolution));
+  const double levels = 2.0 * resolution.levels + 1;
+  const double nodes = n / levels;
+  const double scalars = PetscDefined(USE_COMPLEX) ? 2 : 1;
+  if (resolution.scheme == options::Scheme::upwind) {
+    return scalars * (12 * 4.5 * n * std::pow(std::min(levels, nodes), 0.52) + 60 * 4 * n);
+  }
+  return scalars * (10 * 3.0 * n * nodes + 60 * (2.0 * resolution.degree + 4) * n);
+}
+
+double relative_work(const model::Scene& scene, const Resolution& resolution) {
+  const auto n = static_cast<double>(unknowns(scene, resolution));
+  const double levels = 2.0 * resolution.levels + 1;
+  const double band = std::min(levels, n / levels);
+  return resolution.scheme == options::Scheme::upwind ? n * band : n * (n / levels) * band;
+}
+
+}  // namespace stickslip::accuracy
