@@ -1,0 +1,32 @@
+#pragma once
+/// Files that appear whole or not at all.
+
+#include <string>
+
+namespace stickslip::io {
+
+/// A name beside `target` to write to; commit() moves it over the target in one step. Without
+/// commit, the destructor removes what was written, and the target stays as it was.
+class AtomicFile {
+ public:
+  /// `tag` tells runs apart that write the same target; ranks of one run share it.
+  AtomicFile(std::string target, long tag);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Where to write.
+  [[nodiscard]] const std::string& part() const { return part_; }
+  /// Flushes to disk and renames; to be called by one process. Throws std::runtime_error when the
+  /// disk refuses.
+  void commit();
+
+ private:
+  std::string target_, part_;
+  bool committed_ = false;
+};
+
+/// Writes `text` to `target` atomically. Throws std::runtime_error with the system's reason.
+void write_text(const std::string& target, const std::string& text);
+
+}  // namespace stickslip::io

@@ -1,0 +1,134 @@
+#include "stickslip/app/run.hpp"
+
+#include <fmt/format.h>
+#include <mpi.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/io/atomic_file.hpp"
+#include "stickslip/io/provenance.hpp"
+#include "stickslip/io/report.hpp"
+#include "stickslip/options/request.hpp"
+#include "stickslip/options/table.hpp"
+#include "stickslip/petsc/blas.hpp"
+#include "stickslip/petsc/session.hpp"
+#include "stickslip/support/errors.hpp"
+
+namespace stickslip::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void say(const std::string& text) {
+  std::fputs((text + "\n").c_str(), stderr);
+  std::fflush(stderr);
+}
+
+/// Texts that need neither PETSc nor a scene; empty when none is asked for.
+std::string text_asked_for(const std::vector<std::string>& words) {
+  const auto asked = [&](const char* word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  if (asked("-help") || asked("--help") || asked("-h")) return options::help_text();
+  if (asked("-version") || asked("--version")) return io::version_text();
+  if (asked("-reference")) return options::reference_page();
+  return "";
+}
+
+void warn(const options::Request& request) {
+  for (const auto& warning : request.warnings) say("stickslip: " + warning);
+  const auto blas = petsc::loaded_blas();
+  if (blas.reference) {
+    say("stickslip: slow BLAS in use (" + blas.library +
+        "); factorisations take several times longer than with OpenBLAS, which "
+        "`apt install libopenblas0-pthread` provides");
+  }
+}
+
+accuracy::Progress progress_of(const options::Request& request, bool first_rank) {
+  if (!request.progress || !first_rank) return {};
+  return [&request](int step, const accuracy::Resolution& r, double seconds) {
+    const std::string axis = r.scheme == options::Scheme::hp ? fmt::format("degree {}", r.degree)
+                                                             : fmt::format("p = {}", r.points);
+    const std::string time = seconds < 1 ? "" : fmt::format(", about {:.0f} s", seconds);
+    say(fmt::format("step {}: {}, {} noise levels on each side, {} unknowns{}", step + 1, axis,
+                    r.levels, accuracy::unknowns(request.scene, r), time));
+  };
+}
+
+int compute(const options::Request& request, Clock::time_point start, double start_up) {
+  const MPI_Comm comm = MPI_COMM_WORLD;
+  const bool first_rank = petsc::rank(comm) == 0;
+  if (first_rank) warn(request);
+  const auto outcome = accuracy::refine(comm, request, progress_of(request, first_rank));
+  const io::RunTimes times{start_up, start_up + seconds_since(start)};
+  if (!request.output.empty()) io::write_hdf5(comm, request, outcome, times);
+  if (first_rank) {
+    if (!request.summary.empty()) {
+      io::write_text(request.summary, io::summary(comm, request, outcome, times));
+    }
+    std::fputs(io::table(request, outcome, times).c_str(), stdout);
+    std::fflush(stdout);
+  }
+  return static_cast<int>(outcome.reached ? ExitStatus::done : ExitStatus::not_reached);
+}
+
+int tell(const Failure& failure, bool first_rank) {
+  if (first_rank) say(fmt::format("stickslip: {}", failure.what()));
+  return static_cast<int>(failure.status());
+}
+
+/// Runs under a started PETSc. Bad input is found on all ranks alike and ends quietly; any other
+/// error may be known to one rank alone, and ends all of them.
+int run_session(const std::vector<std::string>& words, double start_up) {
+  const auto start = Clock::now();
+  const int rank = petsc::rank(MPI_COMM_WORLD);
+  int status = static_cast<int>(ExitStatus::other);
+  try {
+    return compute(options::read_request(words), start, start_up);
+  } catch (const BadInput& failure) {
+    return tell(failure, rank == 0);
+  } catch (const Failure& failure) {
+    status = tell(failure, true);
+  } catch (const std::exception& failure) {
+    say(fmt::format("stickslip: {}", failure.what()));
+  }
+  if (petsc::ranks(MPI_COMM_WORLD) > 1) MPI_Abort(MPI_COMM_WORLD, status);
+  return status;
+}
+
+}  // namespace
+
+int run(int argc, char** argv) {
+  const auto start = Clock::now();
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  const std::string text = text_asked_for(words);
+  if (!text.empty()) {
+    std::fputs(text.c_str(), stdout);
+    return 0;
+  }
+  try {
+    options::check_options_files(words);
+    const petsc::Session session(argc, argv);
+    petsc::keep_blas_to_one_thread();
+    return run_session(words, seconds_since(start));
+  } catch (const Failure& failure) {
+    return tell(failure, true);
+  } catch (const std::exception& failure) {
+    say(fmt::format("stickslip: {}", failure.what()));
+    return static_cast<int>(ExitStatus::bad_input);
+  }
+}
+
+}  // namespace stickslip::app

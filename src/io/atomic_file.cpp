@@ -1,0 +1,52 @@
+#include "stickslip/io/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+namespace stickslip::io {
+namespace {
+
+[[noreturn]] void fail(const std::string& what, const std::string& file) {
+  throw std::runtime_error(fmt::format("{} {}: {}", what, file, std::strerror(errno)));
+}
+
+void flush_to_disk(const std::string& file) {
+  const int descriptor = open(file.c_str(), O_RDONLY);
+  if (descriptor < 0) fail("cannot open", file);
+  const int status = fsync(descriptor);
+  close(descriptor);
+  if (status != 0) fail("cannot flush", file);
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::string target, long tag)
+    : target_(std::move(target)), part_(fmt::format("{}.part{}", target_, tag)) {}
+
+AtomicFile::~AtomicFile() {
+  if (!committed_) (void)std::remove(part_.c_str());
+}
+
+void AtomicFile::commit() {
+  flush_to_disk(part_);
+  if (std::rename(part_.c_str(), target_.c_str()) != 0) fail("cannot write", target_);
+  committed_ = true;
+}
+
+void write_text(const std::string& target, const std::string& text) {
+  AtomicFile file(target, getpid());
+  std::FILE* stream = std::fopen(file.part().c_str(), "wb");
+  if (stream == nullptr) fail("cannot write", target);
+  const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
+  const bool closed = std::fclose(stream) == 0;
+  if (!written || !closed) fail("cannot write", target);
+  file.commit();
+}
+
+}  // namespace stickslip::io

@@ -1,0 +1,112 @@
+#include <nlohmann/json.hpp>
+
+#include "stickslip/io/provenance.hpp"
+#include "stickslip/io/report.hpp"
+#include "stickslip/petsc/memory.hpp"
+
+// JSON for Modern C++: the common header-only writer; numbers are written so that they read back
+// to the same bits.
+using Json = nlohmann::ordered_json;
+
+namespace stickslip::io {
+namespace {
+
+Json scene_of(const options::Request& request, const accuracy::Outcome& outcome) {
+  const auto& s = request.scene;
+  Json scene{{"mu_s", s.friction.mu_s},
+             {"mu_d", s.friction.mu_d},
+             {"tau", s.tau},
+             {"delta", s.delta},
+             {"drag", s.drag_name},
+             {"drag_coefficient", s.drag.linear},
+             {"drag_cubic", s.drag.cubic},
+             {"noise_levels_meant", s.meant().noise.levels}};
+  if (!outcome.steps.empty()) {
+    scene["noise_levels"] = outcome.steps.back().resolution.levels;
+    scene["v_max"] = outcome.steps.back().resolution.v_max;
+  }
+  return scene;
+}
+
+Json results_of(const accuracy::Outcome& outcome) {
+  Json results = Json::object();
+  for (const auto& r : outcome.results) {
+    if (r.is_scalar()) {
+      results[r.key] = {{"value", r.value[0]}, {"error", r.error[0]}};
+    } else {
+      results[r.key] = {{r.abscissa_name, r.abscissa}, {"value", r.value}, {"error", r.error}};
+    }
+    if (!r.unit.empty()) results[r.key]["unit"] = r.unit;
+  }
+  return results;
+}
+
+Json seconds_of(const petsc::Ledger& l) {
+  return {{"assembly_seconds", l.assembly_seconds},
+          {"analysis_seconds", l.analysis_seconds},
+          {"factorization_seconds", l.factorization_seconds},
+          {"solve_seconds", l.solve_seconds}};
+}
+
+Json step_of(const accuracy::Step& step) {
+  const auto& r = step.resolution;
+  const bool hp = r.scheme == options::Scheme::hp;
+  Json json{{"scheme", hp ? "hp" : "upwind"}};
+  if (hp) {
+    json["degree"] = r.degree;
+    json["layers"] = r.layers;
+  } else {
+    json["p"] = r.points;
+  }
+  json.update({{"noise_levels", r.levels},
+               {"v_max", r.v_max},
+               {"unknowns", step.ledger.unknowns},
+               {"nonzeros", step.ledger.nonzeros},
+               {"factor_entries", step.ledger.factor_entries},
+               {"factor_megabytes", step.ledger.factor_megabytes},
+               {"backward_error", step.ledger.backward_error}});
+  json.update(seconds_of(step.ledger));
+  json["seconds"] = step.seconds;
+  if (!step.limiting_key.empty()) {
+    json["relative_error"] = step.estimate;
+    json["limited_by"] = step.limiting_key;
+  }
+  return json;
+}
+
+Json cost_of(const accuracy::Outcome& outcome, const RunTimes& times) {
+  Json cost{{"seconds", times.total},
+            {"start_up_seconds", times.start_up},
+            {"peak_resident_bytes", petsc::peak_resident_bytes()}};
+  cost.update(seconds_of(outcome.total));
+  cost["steps"] = Json::array();
+  for (const auto& step : outcome.steps) cost["steps"].push_back(step_of(step));
+  return cost;
+}
+
+Json plan_of(const petsc::Ledger& total) {
+  return {{"assemblies", total.assemblies},
+          {"factorizations_real", total.factorizations_real},
+          {"factorizations_complex", total.factorizations_complex},
+          {"solves", total.solves},
+          {"corrections", total.corrections},
+          {"unknowns", total.unknowns}};
+}
+
+}  // namespace
+
+std::string summary(MPI_Comm comm, const options::Request& request,
+                    const accuracy::Outcome& outcome, const RunTimes& times) {
+  Json json;
+  json["scene"] = scene_of(request, outcome);
+  json["results"] = results_of(outcome);
+  json["accuracy"] = {{"asked", request.accuracy}, {"reached", outcome.reached}};
+  if (!outcome.reached) json["accuracy"]["shortfall"] = outcome.shortfall;
+  json["cost"] = cost_of(outcome, times);
+  json["plan"] = plan_of(outcome.total);
+  for (const auto& [name, value] : provenance(comm)) json["provenance"][name] = value;
+  for (const auto& [name, value] : request.resolved) json["provenance"]["options"][name] = value;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace stickslip::io
