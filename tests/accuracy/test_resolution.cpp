@@ -1,0 +1,118 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "stickslip/accuracy/ladder.hpp"
+#include "stickslip/accuracy/resolution.hpp"
+#include "stickslip/operators/systems.hpp"
+#include "stickslip/velocity/axis.hpp"
+
+using namespace stickslip;
+using accuracy::hp_resolution;
+using accuracy::levels_for;
+
+namespace {
+
+model::Scene scene(double mu_s, double mu_d, double tau, double delta) {
+  model::Scene s;
+  s.friction = {mu_s, mu_d};
+  s.tau = tau;
+  s.delta = delta;
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("noise range: beyond mu_s by as much as the tolerance asks, within the full range") {
+  for (double mu_s : {0.1, 1.0, 6.0, 7.7}) {
+    const auto s = scene(mu_s, mu_s / 4, 1, 0.25);
+    const int k = s.friction.static_index(s.delta);
+    int before = 0;
+    for (double tolerance : {1e-2, 1e-6, 1e-12, 1e-30}) {
+      const int levels = levels_for(s, tolerance);
+      CHECK(levels > k);
+      CHECK(levels <= 32);
+      CHECK(levels >= before);
+      before = levels;
+      // What is cut off weighs less than the tolerance against the level slides start from.
+      const auto law = model::stationary_law(s.process(32).noise);
+      double cut = 0;
+      for (int i = levels + 1; i <= 32; ++i) cut += law[32 + i];
+      CHECK(cut <= tolerance * law[32 + k + 1]);
+    }
+  }
+}
+
+TEST_CASE("velocity end: terminal velocity, or where the tail allows a cut") {
+  auto s = scene(1, 0.25, 1, 0.25);
+  CHECK(accuracy::velocity_end(s, 32, 1e-12) == 7.75);
+  s.drag = {0.001, 0};  // terminal velocity 7750
+  CHECK(accuracy::velocity_end(s, 32, 1e-12) < 120);
+  s.v_max = 3;
+  CHECK(accuracy::velocity_end(s, 32, 1e-12) == 3);
+}
+
+TEST_CASE("resolution: what the user fixes stays fixed") {
+  auto s = scene(1, 0.25, 1, 0.25);
+  s.noise_levels = 20;
+  CHECK(hp_resolution(s, 5, 0, 1e-12).levels == 20);
+  CHECK(hp_resolution(s, 5, 9, 1e-12).layers == 9);
+  CHECK(hp_resolution(s, 5, 0, 1e-12).layers > 0);
+}
+
+TEST_CASE("ladder: every rung is finer in every respect") {
+  options::Request request;
+  request.scene = scene(1, 0.25, 1, 0.125);
+  request.quantities = {options::Quantity::sticking};
+  request.scene.drag = {0.01, 0};
+  const accuracy::Ladder ladder(request);
+  REQUIRE(ladder.last() > 3);
+  for (int n = 1; n <= ladder.last(); ++n) {
+    const auto coarse = ladder.rung(n - 1), fine = ladder.rung(n);
+    CHECK(fine.degree > coarse.degree);
+    CHECK(fine.levels >= coarse.levels);
+    CHECK(fine.v_max >= coarse.v_max);
+    CHECK(ladder.tail_tolerance(n) <= ladder.tail_tolerance(n - 1));
+  }
+}
+
+TEST_CASE("ladder: a discretisation fixed by hand has one companion and no more") {
+  options::Request request;
+  request.scene = scene(1, 0.25, 1, 0.25);
+  request.method.degree = 4;
+  CHECK(accuracy::Ladder(request).last() == 1);
+  CHECK(accuracy::Ladder(request).rung(1).degree == 4);
+  CHECK(accuracy::Ladder(request).rung(0).degree == 3);
+
+  request.method = {options::Scheme::upwind, {}, {}, 1};
+  const accuracy::Ladder one_point(request);
+  CHECK(one_point.rung(1).points == 1);
+  CHECK(one_point.rung(0).points == 2);  // nothing coarser exists
+  // u^p = u + C/p: the change C/2 is half the error at p = 1.
+  CHECK(one_point.error_per_change(1) >= 2);
+}
+
+TEST_CASE("memory: predicted within a factor 2.5 of what MUMPS counts", "[slow]") {
+  struct Case {
+    double delta;
+    int degree, points;
+  };
+  for (const auto& c : {Case{0.25, 9, 0}, Case{1.0 / 16, 5, 0}, Case{1.0 / 16, 11, 0},
+                        Case{1.0 / 64, 7, 0}, Case{0.25, 0, 128}, Case{1.0 / 16, 0, 16}}) {
+    const auto s = scene(1, 0.25, 1, c.delta);
+    const auto resolution = c.points > 0 ? accuracy::upwind_resolution(s, c.points, 1e-8)
+                                         : hp_resolution(s, c.degree, 0, 1e-8);
+    petsc::Ledger ledger;
+    operators::Systems systems(PETSC_COMM_WORLD, s.process(resolution.levels),
+                               accuracy::make_axis(s, resolution), ledger);
+    (void)systems.at(0, operators::Symmetry::even);
+    const double predicted = accuracy::predicted_bytes(s, resolution);
+    const double scalars = sizeof(PetscScalar) / 8.0;
+    const double counted =
+        1e6 * ledger.factor_megabytes + 50.0 * scalars * static_cast<double>(ledger.nonzeros);
+    INFO("delta " << c.delta << " degree " << c.degree << " p " << c.points);
+    CHECK(predicted > counted / 2.5);
+    CHECK(predicted < counted * 2.5);
+    CHECK(std::abs(static_cast<double>(accuracy::unknowns(s, resolution) - ledger.unknowns)) <
+          2.0 * resolution.levels + 2);
+  }
+}

@@ -1,0 +1,48 @@
+"""Runs the built programs as a user would; shared by the command-line tests."""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+BINARIES = pathlib.Path(os.environ["STICKSLIP_BINARIES"])
+SOURCES = pathlib.Path(__file__).resolve().parents[2]
+TWINS = ("stickslip", "stickslip-complex")
+
+
+def run(*options, twin="stickslip", ranks=0, folder=None, environment=None):
+    """The finished process; options are words of the command line."""
+    command = [str(BINARIES / twin), *map(str, options)]
+    if ranks:
+        command = ["mpiexec", "-n", str(ranks), *command]
+    return subprocess.run(command, capture_output=True, text=True, cwd=folder, timeout=600,
+                          env={**os.environ, **(environment or {})})
+
+
+def relative_difference(a, b):
+    return 0 if a == b else abs(a - b) / max(abs(a), abs(b))
+
+
+class Case(unittest.TestCase):
+    """A test with a folder of its own."""
+
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = pathlib.Path(holder.name)
+
+    def run_ok(self, *options, status=0, **how):
+        done = run(*options, folder=self.folder, **how)
+        self.assertEqual(done.returncode, status, done.stderr)
+        return done
+
+    def summary(self, *options, **how):
+        """Runs to the end and returns what -summary wrote."""
+        file = self.folder / "summary.json"
+        self.run_ok(*options, "-summary", file, **how)
+        return json.loads(file.read_text())
+
+    def assert_close(self, found, expected, tolerance, message=None):
+        self.assertLessEqual(relative_difference(found, expected), tolerance, message)

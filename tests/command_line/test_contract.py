@@ -1,0 +1,206 @@
+"""The command line that scripts rely on: options, exit statuses, summary and files."""
+
+import json
+import os
+import unittest
+
+import h5py
+import numpy
+
+from stickslip import Case, TWINS, SOURCES, run
+
+SMALL = ("-mu_d", "0.25", "-delta", "0.5")
+
+
+class Refusals(Case):
+    """Bad input ends with status 2 and a message, and touches nothing."""
+
+    def refuse(self, *options, told=()):
+        kept = self.folder / "kept.json"
+        kept.write_text("precious")
+        done = run(*options, "-summary", kept, folder=self.folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(kept.read_text(), "precious")
+        self.assertEqual([f.name for f in self.folder.iterdir() if ".part" in f.name], [])
+        for part in told:
+            self.assertIn(part, done.stderr)
+
+    def test_values_out_of_range(self):
+        self.refuse("-delta", "-0.5", told=("-delta = -0.5", "(0, inf)"))
+        self.refuse("-mu_d", "2", told=("-mu_d = 2", "(0, mu_s]"))
+        self.refuse("-tau", "nan", told=("-tau = nan",))
+        self.refuse("-drag_coefficient", "-1", told=("must not grow",))
+        self.refuse("-delta", "0.25", "-noise_levels", "99", told=("at most 32",))
+        self.refuse("-delta", "0.25", "-mu_s", "8", told=("nothing ever slides",))
+
+    def test_names(self):
+        self.refuse("-detla", "0.5", told=("did you mean -delta?",))
+        self.refuse("-mu_s=3", told=("-mu_s=3", "unknown option"))
+        self.refuse("-slide_mat_mumps_icntl_77", "3", told=("-slide_mat_mumps_icntl_77",))
+        self.refuse("scene.opts", told=("belongs to no option",))
+
+    def test_files(self):
+        self.refuse("-options_file", "/no/such/file", told=("cannot be read",))
+        self.refuse("-output", "/no/such/folder/x.h5", told=("-output", "does not exist"))
+        broken = self.folder / "broken.opts"
+        broken.write_text("-mu_s 1\nmu_d 0.5\n")
+        self.refuse("-options_file", broken, told=("broken.opts:2",))
+
+    def test_every_rank_knows_but_one_speaks(self):
+        done = run("-delta", "-1", ranks=2, folder=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(done.stderr.count("-delta = -1"), 1)
+
+
+class Statuses(Case):
+    def test_done(self):
+        self.assertEqual(run(*SMALL).returncode, 0)
+
+    def test_accuracy_not_reached_still_writes(self):
+        file = self.folder / "s.json"
+        done = run(*SMALL, "-degree", "3", "-accuracy", "1e-12", "-summary", file)
+        self.assertEqual(done.returncode, 3)
+        summary = json.loads(file.read_text())
+        self.assertFalse(summary["accuracy"]["reached"])
+        self.assertIn("shortfall", summary["accuracy"])
+        self.assertGreater(summary["results"]["P_stick"]["value"], 0)
+
+    def test_would_not_fit(self):
+        done = run(*SMALL, "-scheme", "upwind", "-p", "9999999")
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("memory", done.stderr)
+
+    def test_velocity_cut_by_hand_is_judged(self):
+        low = run(*SMALL, "-v_max", "1", "-accuracy", "1e-4")
+        self.assertEqual(low.returncode, 3)
+        self.assertIn("-v_max = 1 holds back", low.stdout)
+        self.assertEqual(run(*SMALL, "-v_max", "3.7", "-accuracy", "1e-4").returncode, 0)
+
+    def test_closed_pipe_is_no_crash(self):
+        import subprocess
+        from stickslip import BINARIES
+        line = f"{BINARIES / 'stickslip'} -help | head -1"
+        done = subprocess.run(line, shell=True, capture_output=True, text=True)
+        self.assertEqual(done.stderr, "")
+
+
+class SlowBlas(Case):
+    REFERENCE = "/usr/lib/x86_64-linux-gnu/blas/libblas.so.3"
+
+    @unittest.skipUnless(os.path.exists(REFERENCE), "the reference BLAS is not installed")
+    def test_is_told(self):
+        done = run(*SMALL, environment={"LD_PRELOAD": self.REFERENCE})
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("slow BLAS", done.stderr)
+        self.assertIn("libopenblas0", done.stderr)
+        self.assertNotIn("slow BLAS", run(*SMALL).stderr)
+
+
+class Texts(Case):
+    def test_help_and_versions(self):
+        for word in ("-help", "--help", "-h"):
+            done = run(word)
+            self.assertEqual(done.returncode, 0)
+            self.assertIn("-mu_d", done.stdout)
+        self.assertIn("PETSc 3.", run("-version").stdout)
+
+    def test_later_options_win(self):
+        scene = self.folder / "scene.opts"
+        scene.write_text("-mu_d 0.25\n-delta 0.5\n")
+        after = self.summary("-options_file", scene, "-mu_d", "0.5")
+        before = self.summary("-mu_d", "0.5", "-options_file", scene)
+        self.assertEqual(after["scene"]["mu_d"], 0.5)
+        self.assertEqual(before["scene"]["mu_d"], 0.25)
+
+    def test_petscrc_is_not_read(self):
+        (self.folder / ".petscrc").write_text("-mu_d 0.1\n")
+        self.assertEqual(self.summary(*SMALL[2:])["scene"]["mu_d"], 1.0)
+
+    def test_progress_on_request(self):
+        self.assertNotIn("step 1", run(*SMALL).stderr)
+        self.assertIn("step 1", run(*SMALL, "-progress", "on").stderr)
+
+
+class Summary(Case):
+    def test_layout(self):
+        s = self.summary(*SMALL, "-quantities", "sticking,moments,noise_law,entry_law")
+        self.assertEqual(list(s), ["scene", "results", "accuracy", "cost", "plan", "provenance"])
+        for key in ("P_stick", "P_slide", "mean_stick", "mean_slide", "mean_excursion", "E_V2",
+                    "E_absV", "E_XV", "E_V", "P_X_le_mu_s", "E_X2", "f_stick_0"):
+            self.assertIn("value", s["results"][key])
+            self.assertGreaterEqual(s["results"][key]["error"], 0)
+        law = s["results"]["entry_law"]
+        self.assertEqual(law["k"], [-2, -1, 0, 1, 2])
+        self.assertEqual(len(law["value"]), 5)
+        self.assertEqual(len(law["error"]), 5)
+        self.assertAlmostEqual(sum(law["value"]), 1, 12)
+        for key in ("assemblies", "factorizations_real", "factorizations_complex", "solves",
+                    "unknowns"):
+            self.assertIn(key, s["plan"])
+        self.assertEqual(s["provenance"]["options"]["delta"], "0.5")
+
+    def test_only_what_is_asked(self):
+        s = self.summary(*SMALL, "-quantities", "noise_law")
+        self.assertEqual(set(s["results"]), {"P_X_le_mu_s", "E_X2"})
+        self.assertEqual(s["plan"]["assemblies"], 0)
+        self.assertEqual(s["results"]["P_X_le_mu_s"]["value"], 51766 / 65536)
+
+    def test_twins_agree(self):
+        options = (*SMALL, "-quantities", "sticking,moments,entry_law", "-accuracy", "1e-10")
+        real, complex_ = (self.summary(*options, twin=twin)["results"] for twin in TWINS)
+        self.assertEqual(list(real), list(complex_))
+        for key, result in real.items():
+            for a, b in zip(numpy.atleast_1d(result["value"]),
+                            numpy.atleast_1d(complex_[key]["value"])):
+                self.assert_close(a, b, 1e-12, key)
+
+    def test_solver_can_be_replaced(self):
+        usual = self.summary(*SMALL)
+        other = self.summary(*SMALL, "-slide_pc_factor_mat_solver_type", "klu")
+        self.assert_close(usual["results"]["P_stick"]["value"],
+                          other["results"]["P_stick"]["value"], 1e-12)
+
+
+class Hdf5(Case):
+    OPTIONS = (*SMALL, "-quantities", "sticking,moments,noise_law,entry_law,density")
+
+    def test_same_numbers_as_the_summary(self):
+        s = self.summary(*self.OPTIONS, "-output", "out.h5")
+        with h5py.File(self.folder / "out.h5") as file:
+            for key, result in s["results"].items():
+                group = file["results"][key]
+                numpy.testing.assert_array_equal(group["value"], result["value"])
+                numpy.testing.assert_array_equal(group["error"], result["error"])
+            self.assertEqual(file["record/options"].attrs["delta"], "0.5")
+            self.assertIn("commit", file["record"].attrs)
+
+    def test_density(self):
+        for twin in TWINS:
+            s = self.summary(*self.OPTIONS, "-output", "out.h5", twin=twin)
+            with h5py.File(self.folder / "out.h5") as file:
+                d = {name: numpy.array(file["density"][name]) for name in file["density"]}
+            self.assertEqual(d["pdf"].shape, (len(d["x"]), len(d["v"])))
+            self.assertTrue(numpy.all(numpy.diff(d["v"]) > 0))
+            # pi is invariant under (x, v) -> (-x, -v).
+            numpy.testing.assert_allclose(d["pdf"], d["pdf"][::-1, ::-1], rtol=1e-12, atol=1e-14)
+            self.assertAlmostEqual(d["atom"].sum(), s["results"]["P_stick"]["value"], 12)
+            self.assertAlmostEqual(d["marginal_x"].sum(), 1, 12)
+            self.assertIn("out.h5:/density/pdf", (self.folder / "out.xdmf").read_text())
+
+    def test_an_old_file_is_replaced_whole(self):
+        (self.folder / "out.h5").write_text("old")
+        self.run_ok(*self.OPTIONS, "-output", "out.h5")
+        with h5py.File(self.folder / "out.h5") as file:
+            self.assertIn("results", file)
+        self.assertEqual(sorted(f.name for f in self.folder.iterdir()), ["out.h5", "out.xdmf"])
+
+
+class Sources(unittest.TestCase):
+    def test_version_matches_the_changelog(self):
+        version = run("-version").stdout.split()[1]
+        self.assertIn(f"## [{version}]", (SOURCES / "CHANGELOG.md").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()

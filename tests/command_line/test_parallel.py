@@ -1,0 +1,49 @@
+"""Results do not depend on the number of ranks."""
+
+import unittest
+
+import h5py
+import numpy
+
+from stickslip import Case, TWINS
+
+
+class Ranks(Case):
+    OPTIONS = ("-mu_d", "0.25", "-delta", "0.25", "-accuracy", "1e-9", "-quantities",
+               "sticking,moments,noise_law,entry_law,density", "-output", "out.h5")
+
+    def solve(self, *options, **how):
+        summary = self.summary(*options, **how)
+        with h5py.File(self.folder / "out.h5") as file:
+            return summary["results"], numpy.array(file["density/pdf"])
+
+    def compare(self, *options, **how):
+        results, field = self.solve(*options, **how)
+        for ranks in (1, 2, 3):
+            others, other_field = self.solve(*options, ranks=ranks, **how)
+            for key, result in results.items():
+                numpy.testing.assert_allclose(others[key]["value"], result["value"], rtol=1e-12,
+                                              atol=0, err_msg=f"{key} on {ranks} ranks")
+            numpy.testing.assert_allclose(other_field, field, rtol=1e-9, atol=1e-12)
+
+    def test_hp(self):
+        for twin in TWINS:
+            self.compare(*self.OPTIONS, twin=twin)
+
+    def test_upwind(self):
+        not_reached = 3  # a fixed grid of first order: compared all the same
+        self.compare(*self.OPTIONS, "-scheme", "upwind", "-p", "16", status=not_reached)
+
+    def test_without_drag(self):
+        self.compare(*self.OPTIONS, "-drag", "none")
+
+    def test_more_ranks_than_levels(self):
+        few = ("-delta", "0.5", "-noise_levels", "3", "-mu_d", "0.5", "-accuracy", "1e-8")
+        one = self.summary(*few)["results"]
+        many = self.summary(*few, ranks=5)["results"]
+        for key, result in one.items():
+            self.assert_close(many[key]["value"], result["value"], 1e-12, key)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,30 @@
+/// Starts PETSc around Catch2: the same cases run on every rank, only rank 0 reports unless another
+/// rank fails.
+
+#define CATCH_CONFIG_RUNNER
+#include <mpi.h>
+
+#include <catch2/catch.hpp>
+#include <iostream>
+#include <sstream>
+
+#include "stickslip/petsc/blas.hpp"
+#include "stickslip/petsc/session.hpp"
+
+int main(int argc, char** argv) {
+  int petsc_argc = 1;  // Catch2's flags are no PETSc options; those come by PETSC_OPTIONS
+  const stickslip::petsc::Session session(petsc_argc, argv);
+  stickslip::petsc::keep_blas_to_one_thread();
+  const int rank = stickslip::petsc::rank(MPI_COMM_WORLD);
+
+  std::ostringstream quiet;
+  std::streambuf* const terminal = std::cout.rdbuf();
+  if (rank != 0) std::cout.rdbuf(quiet.rdbuf());
+  const int failures = Catch::Session().run(argc, argv);
+  std::cout.rdbuf(terminal);
+  if (rank != 0 && failures != 0) std::cout << "[rank " << rank << "]\n" << quiet.str();
+
+  int worst = failures;
+  MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+  return worst == 0 ? 0 : 1;
+}

@@ -1,0 +1,86 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "../common/near.hpp"
+#include "stickslip/exact/fluid_queue.hpp"
+
+using namespace stickslip;
+using exact::FluidQueue;
+using test::relative_difference;
+
+namespace {
+
+model::Process without_drag(double delta, double mu_d) {
+  return {{1, delta, model::full_range(1, delta)}, {1, mu_d}, {0, 0}};
+}
+
+double sum(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+}  // namespace
+
+// N = 1, k = 0, mu_d = 1/2, delta = 1: one rising phase, speed 1/2; two falling ones, speeds 1/2
+// and 3/2; all jumps lead to 0 or away from it at rate 2. With p the probability that a slide ends
+// in phase 0 and q = 1 - p in phase -1 (a restart), the Riccati equation reads
+//   4 - 4 p - 4 p + 4/3 q + 2 p^2 = 0  (to phase 0)  and  -4 q + 2 p - 4/3 q + 2 p q = 0  (to -1).
+TEST_CASE("fluid queue: three phases satisfy their equations by hand") {
+  const model::Process process{{1, 1, 1}, {0.5, 0.5}, {0, 0}};
+  const FluidQueue queue(process);
+  // Every slide ends at rest in phase 0, after restarts in phase 1.
+  CHECK(queue.entry().size() == 1);
+  CHECK(queue.entry()[0] == Approx(1).epsilon(1e-14));
+  // Restarts change the side: the entry law counted by sides is p/(1 + q).
+  const double ratio = queue.entry_orientation()[0];
+  const double p = 2 * ratio / (1 + ratio), q = 1 - p;
+  CHECK(4 - 8 * p + 4 * q / 3 + 2 * p * p == Approx(0).margin(1e-13));
+  CHECK(-4 * q + 2 * p - 4 * q / 3 + 2 * p * q == Approx(0).margin(1e-13));
+}
+
+TEST_CASE("fluid queue: slides end, and the noise keeps its law beyond mu_s") {
+  for (double mu_d : {1.0, 0.5, 0.3, 0.25, 0.2500001, 0.05}) {
+    const auto process = without_drag(0.25, mu_d);
+    const FluidQueue queue(process);
+    INFO("mu_d " << mu_d);
+    CHECK(queue.residual() < 1e-14);
+    CHECK(std::abs(queue.slide_transform() - 1) < 1e-11);
+    // Between two exits the noise spends pi(x_i) of the time on |x_i| > mu_s: ratios are known.
+    const auto law = model::stationary_law(process.noise);
+    const auto at = [&](int i) { return queue.time()[32 + i] + queue.time()[32 - i]; };
+    for (int i = 6; i <= 20; ++i) {
+      CHECK(relative_difference(at(i) / at(5), law[32 + i] / law[37]) < 1e-10);
+    }
+  }
+}
+
+// Power balance pi(X V) = mu_d pi(|V|).
+TEST_CASE("fluid queue: power put in by the noise equals power dissipated") {
+  for (double mu_d : {1.0, 0.3, 0.25}) {
+    const auto process = without_drag(0.25, mu_d);
+    const FluidQueue queue(process);
+    double put_in = 0;
+    for (int i = -32; i <= 32; ++i) put_in += process.noise.level(i) * queue.distance()[32 + i];
+    CHECK(relative_difference(put_in, mu_d * sum(queue.distance())) < 1e-11);
+  }
+}
+
+TEST_CASE("fluid queue: the transform falls from 1 with the mean slide as its slope") {
+  const auto process = without_drag(0.25, 0.5);
+  const double mean = sum(FluidQueue(process).time());
+  const double h = 1e-5;
+  const double slope = (1 - FluidQueue(process, h).slide_transform()) / h;
+  CHECK(relative_difference(slope, mean) < 1e-3);
+  double before = 1;
+  for (double lambda : {0.01, 0.1, 1.0, 10.0, 1e3}) {
+    const double now = FluidQueue(process, lambda).slide_transform();
+    CHECK(now < before);
+    CHECK(now > 0);
+    before = now;
+  }
+}
+
+TEST_CASE("fluid queue: drag is refused") {
+  CHECK_THROWS_AS(FluidQueue({{1, 0.5, 8}, {1, 1}, {1, 0}}), std::invalid_argument);
+}

@@ -1,0 +1,40 @@
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "../common/temporary.hpp"
+#include "stickslip/io/atomic_file.hpp"
+
+using namespace stickslip::io;
+using stickslip::test::content;
+using stickslip::test::TemporaryFolder;
+
+TEST_CASE("atomic file: the target changes at commit and not before") {
+  const TemporaryFolder folder;
+  const auto target = folder / "result";
+  write_text(target, "old");
+  {
+    AtomicFile file(target, 1);
+    std::ofstream(file.part()) << "new";
+    CHECK(content(target) == "old");
+    file.commit();
+    CHECK(content(target) == "new");
+  }
+  CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("atomic file: without commit nothing changes and nothing is left") {
+  const TemporaryFolder folder;
+  const auto target = folder / "result";
+  write_text(target, "old");
+  {
+    const AtomicFile file(target, 2);
+    std::ofstream(file.part()) << "half";
+  }
+  CHECK(content(target) == "old");
+  CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("atomic file: a place that cannot be written is told") {
+  CHECK_THROWS_WITH(write_text("/no/such/folder/file", "text"),
+                    Catch::Contains("/no/such/folder/file"));
+}

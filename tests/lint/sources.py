@@ -1,0 +1,109 @@
+"""Rules that the compiler does not check.
+
+1. A room includes only rooms that come before it.
+2. Every call of PETSc, SLEPc is checked: inside check(...), assigned, returned or cast to void.
+3. Functions are short: median at most 8 lines, nine in ten at most 30, none above 60.
+4. The sources name neither folders of one machine nor who works on them.
+"""
+
+import pathlib
+import re
+import statistics
+import sys
+
+ROOMS = ("support", "model", "exact", "velocity", "petsc", "options", "operators", "quantities",
+         "accuracy", "io", "app")
+LONGEST, LONG, MEDIAN = 60, 30, 8
+
+
+def source_files(root, *folders):
+    for folder in folders:
+        for ending in ("*.hpp", "*.cpp"):
+            yield from sorted((root / folder).rglob(ending))
+
+
+def room_of(path, root):
+    parts = path.relative_to(root).parts
+    return parts[2] if parts[0] == "include" else parts[1]
+
+
+def check_rooms(root):
+    for path in source_files(root, "include", "src"):
+        own = ROOMS.index(room_of(path, root))
+        for line in path.read_text().splitlines():
+            found = re.match(r'#include "stickslip/(\w+)/', line)
+            if found and ROOMS.index(found.group(1)) > own:
+                yield f"{path}: {line} points upwards"
+
+
+def without_comments(text):
+    text = re.sub(r"//[^\n]*", "", text)
+    return re.sub(r'"(?:[^"\\\n]|\\.)*"', '""', text)
+
+
+PETSC_CALL = re.compile(r"\b(?:Petsc|Slepc|Vec|Mat|KSP|PC|EPS|ST|IS|TS|BV)[A-Z]\w*\(")
+HARMLESS = re.compile(r"(PetscRealPart|PetscImaginaryPart|PetscAbsScalar|PetscObjectComm|PetscConj"
+                      r"|PetscDefined|PetscReal|PetscScalar|PetscFailure)\($")
+
+
+def check_petsc_calls(root):
+    for path in source_files(root, "include", "src", "tests"):
+        text = without_comments(path.read_text())
+        for call in PETSC_CALL.finditer(text):
+            if HARMLESS.search(call.group(0)):
+                continue
+            statement = text[max(text.rfind(mark, 0, call.start()) for mark in ";{}") + 1:
+                             call.start()]
+            if not re.search(r"check\(|=|return|\(void\)|MPI_|auto |const ", statement):
+                line = text.count("\n", 0, call.start()) + 1
+                yield f"{path}:{line}: {call.group(0)}...) is not checked"
+
+
+def function_lengths(path):
+    """Lines of each block that follows a parameter list at namespace or class level."""
+    lines = without_comments(path.read_text()).splitlines()
+    start = None
+    for number, line in enumerate(lines):
+        indent = len(line) - len(line.lstrip())
+        opens = re.search(r"\)\s*(const|noexcept|override|->\s*[\w:<>]+|\s)*(:.*)?\{\s*$", line)
+        if start is None and opens and indent <= 4:
+            head = number
+            while head > 0 and not re.search(r"[;{}]\s*$|^\s*$|:\s*$", lines[head - 1]):
+                head -= 1
+            start, depth = head, len(lines[head]) - len(lines[head].lstrip())
+        elif start is not None and line.strip().startswith("}") and indent == depth:
+            yield number - start + 1
+            start = None
+
+
+def check_function_lengths(root):
+    lengths = []
+    for path in source_files(root, "include", "src"):
+        for length in function_lengths(path):
+            lengths.append(length)
+            if length > LONGEST:
+                yield f"{path}: a function of {length} lines"
+    lengths.sort()
+    if statistics.median(lengths) > MEDIAN:
+        yield f"median function length {statistics.median(lengths)}"
+    if lengths[int(0.9 * len(lengths))] > LONG:
+        yield f"nine in ten functions have up to {lengths[int(0.9 * len(lengths))]} lines"
+
+
+def check_words(root):
+    forbidden = re.compile(r"\"/(work|home|root|tmp)/|\bTODO\b|\bFIXME\b")
+    for path in source_files(root, "include", "src", "tests"):
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            if forbidden.search(line):
+                yield f"{path}:{number}: {line.strip()}"
+
+
+def main():
+    root = pathlib.Path(sys.argv[1])
+    complaints = [text for rule in (check_rooms, check_petsc_calls, check_function_lengths,
+                                    check_words) for text in rule(root)]
+    print("\n".join(complaints) or "sources follow the rules")
+    sys.exit(1 if complaints else 0)
+
+
+main()

@@ -1,0 +1,266 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numeric>
+
+#include "../common/full_grid.hpp"
+#include "stickslip/operators/kolmogorov_operator.hpp"
+#include "stickslip/operators/static_chain.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/vectors.hpp"
+#include "stickslip/velocity/hp_axis.hpp"
+#include "stickslip/velocity/upwind_axis.hpp"
+
+using namespace stickslip;
+using operators::Half;
+using operators::KolmogorovOperator;
+using operators::Rest;
+using operators::State;
+using operators::StateKind;
+using operators::Symmetry;
+using petsc::check;
+
+namespace {
+
+model::Process process_on(int levels, double mu_s, double mu_d, model::Drag drag = {1, 0}) {
+  return {{1, 0.25, levels}, {mu_s, mu_d}, drag};
+}
+
+// A vector that is the same function of the global index on any number of ranks.
+petsc::VecHandle test_vector(const KolmogorovOperator& a) {
+  petsc::VecHandle x = a.zeros();
+  petsc::WriteView local(x);
+  for (PetscInt r = 0; r < a.states().local_size(); ++r) {
+    local[r] = 1 + std::sin(static_cast<double>(a.states().local_begin() + r));
+  }
+  return x;
+}
+
+petsc::VecHandle row_sums(const KolmogorovOperator& a) {
+  petsc::VecHandle sums = a.zeros();
+  const auto one = a.values([](double, double, double) { return 1.0; });
+  check(MatMult(a.matrix(), one, sums));
+  return sums;
+}
+
+double largest(Vec x) {
+  PetscReal norm = 0;
+  check(VecNorm(x, NORM_INFINITY, &norm));
+  return norm;
+}
+
+double largest_entry(Mat a) {
+  PetscReal norm = 0;
+  check(MatNorm(a, NORM_INFINITY, &norm));
+  return norm;
+}
+
+struct Discretisation {
+  std::string name;
+  std::unique_ptr<velocity::Axis> axis;
+};
+
+std::vector<Discretisation> both_schemes(double v_max, const model::Drag& drag) {
+  std::vector<Discretisation> all;
+  all.push_back({"hp", std::make_unique<velocity::HpAxis>(
+                           std::vector<double>{0, 0.02, 0.1, 0.5, v_max}, 3, drag)});
+  all.push_back({"upwind", std::make_unique<velocity::UpwindAxis>(0.05, 40, drag)});
+  return all;
+}
+
+}  // namespace
+
+// The generator of the paper, built here from its definition on the (i, j) grid, entry by entry.
+TEST_CASE("kolmogorov operator: the unfolded upwind operator is -M of the paper") {
+  for (double mu_s : {1.0, 0.1}) {
+    const auto process = process_on(6, mu_s, 0.1, {1, 0.4});
+    const double spacing = 0.11;
+    const int nodes = 5;
+    const test::FullGrid grid(process, spacing, nodes);
+    const velocity::UpwindAxis axis(spacing, nodes, process.drag);
+    const KolmogorovOperator a(PETSC_COMM_SELF, process, axis, 0.0, Symmetry::none, Rest::kept);
+    const auto m = grid.generator();
+    REQUIRE(static_cast<std::size_t>(a.states().global_size()) == grid.size());
+    std::map<PetscInt, std::size_t> place;  // in the grid's numbering
+    a.states().for_each_local([&](const State& s) {
+      const int sign = s.half == Half::upper ? 1 : -1;
+      const int j = s.kind == StateKind::node ? s.node + 1 : 0;
+      place[a.states().index(s)] = grid.index(sign * s.level, sign * j);
+    });
+    for (const auto& [row, grid_row] : place) {
+      for (const auto& [column, grid_column] : place) {
+        PetscScalar value = 0;
+        check(MatGetValue(a.matrix(), row, column, &value));
+        const double expected = -m[grid_row * grid.size() + grid_column];
+        REQUIRE(PetscRealPart(value) == Approx(expected).epsilon(1e-13).margin(1e-12));
+      }
+    }
+  }
+}
+
+TEST_CASE("kolmogorov operator: constants are harmonic for the whole process", "[parallel]") {
+  const double v_max = GENERATE(8.0, 1.0);  // the second cuts the axis: holding states
+  const auto process = process_on(9, 1, 0.25);
+  for (const auto& d : both_schemes(v_max, process.drag)) {
+    for (Symmetry symmetry : {Symmetry::even, Symmetry::none}) {
+      const KolmogorovOperator a(PETSC_COMM_WORLD, process, *d.axis, 0.0, symmetry, Rest::kept);
+      INFO(d.name);
+      CHECK(largest(row_sums(a)) < 1e-14 * largest_entry(a.matrix()));
+    }
+  }
+}
+
+// nu (A 1) = -nu A_us 1 + lambda nu 1: what leaves the sliding states enters the static ones.
+TEST_CASE("kolmogorov operator: rows conserve probability up to killing", "[parallel]") {
+  const double lambda = GENERATE(0.0, 1.5);
+  const double v_max = GENERATE(8.0, 1.0);
+  const auto process = process_on(9, 1, 0.25);
+  for (const auto& d : both_schemes(v_max, process.drag)) {
+    for (Symmetry symmetry : {Symmetry::even, Symmetry::none}) {
+      INFO(d.name << " lambda " << lambda << " v_max " << v_max);
+      const KolmogorovOperator a(PETSC_COMM_WORLD, process, *d.axis, lambda, symmetry,
+                                 Rest::killing);
+      const auto nu = test_vector(a);
+      PetscScalar left = 0, mass = 0, sent = 0;
+      check(VecTDot(nu, row_sums(a), &left));
+      check(VecSum(nu, &mass));
+      const auto rates = a.entry_rates(nu);
+      const PetscScalar entering = std::accumulate(rates.begin(), rates.end(), PetscScalar(0));
+      CHECK(PetscRealPart(left) == Approx(PetscRealPart(entering + lambda * mass)).epsilon(1e-11));
+      // The same coupling read the other way: nu (-A_us s) with s = 1.
+      check(VecTDot(nu, a.from_rest(std::vector<PetscScalar>(rates.size(), 1.0)), &sent));
+      CHECK(PetscRealPart(sent) == Approx(PetscRealPart(entering)).epsilon(1e-12));
+    }
+  }
+}
+
+// The fold is exact: an even (odd) function on the whole space and its upper half see the same.
+TEST_CASE("kolmogorov operator: folded and unfolded agree on functions of their symmetry") {
+  const auto process = process_on(7, 0.6, 0.25);
+  const auto even = [](double x, double y, double v) { return 1 + x * v + std::cos(v) + y * x; };
+  const auto odd = [](double x, double y, double v) { return x + v * v * v + y; };
+  for (const auto& d : both_schemes(8, process.drag)) {
+    for (Symmetry symmetry : {Symmetry::even, Symmetry::odd}) {
+      for (Rest rest : {Rest::killing, Rest::kept, Rest::killing_edges}) {
+        const auto f = symmetry == Symmetry::even ? KolmogorovOperator::Observable(even)
+                                                  : KolmogorovOperator::Observable(odd);
+        const KolmogorovOperator half(PETSC_COMM_SELF, process, *d.axis, 0.3, symmetry, rest);
+        const KolmogorovOperator whole(PETSC_COMM_SELF, process, *d.axis, 0.3, Symmetry::none,
+                                       rest);
+        petsc::VecHandle from_half = half.zeros(), from_whole = whole.zeros();
+        check(MatMult(half.matrix(), half.values(f), from_half));
+        check(MatMult(whole.matrix(), whole.values(f), from_whole));
+        const petsc::ReadView of_half(from_half), of_whole(from_whole);
+        const double scale = largest_entry(whole.matrix());
+        PetscInt at = 0;
+        half.states().for_each_local([&](const State& s) {
+          const PetscInt there = whole.states().index(s);
+          CHECK(std::abs(of_half[at++] - of_whole[there]) < 1e-13 * scale);
+        });
+      }
+    }
+  }
+}
+
+TEST_CASE("kolmogorov operator: parity enters through levels below -k alone", "[parallel]") {
+  const auto process = process_on(9, 1, 0.25);
+  for (const auto& d : both_schemes(8, process.drag)) {
+    const KolmogorovOperator even(PETSC_COMM_WORLD, process, *d.axis, 0.0, Symmetry::even,
+                                  Rest::killing);
+    const KolmogorovOperator odd(PETSC_COMM_WORLD, process, *d.axis, 0.0, Symmetry::odd,
+                                 Rest::killing);
+    petsc::VecHandle change = row_sums(odd);
+    check(VecAXPY(change, -1, row_sums(even)));
+    const petsc::ReadView difference(change);
+    PetscInt at = 0;
+    even.states().for_each_local([&](const State& s) {
+      // hp lifts the value at v = 0 into the lowest element, upwind into the lowest node.
+      const int lowest = d.name == "hp" ? 4 : 1;
+      const bool reflects = s.kind == StateKind::node && s.level < -4 && s.node < lowest;
+      const double size = std::abs(difference[at++]);
+      CHECK((reflects ? size > 1 : size < 1e-8));
+    });
+  }
+}
+
+TEST_CASE("kolmogorov operator: upwind is an M-matrix of at most five entries a row") {
+  const auto process = process_on(9, 1, 0.25);
+  const velocity::UpwindAxis axis(0.05, 160, process.drag);
+  for (Symmetry symmetry : {Symmetry::even, Symmetry::none}) {
+    const KolmogorovOperator a(PETSC_COMM_SELF, process, axis, 0.0, symmetry, Rest::kept);
+    for (PetscInt r = 0; r < a.states().global_size(); ++r) {
+      PetscInt count = 0;
+      const PetscInt* columns = nullptr;
+      const PetscScalar* values = nullptr;
+      check(MatGetRow(a.matrix(), r, &count, &columns, &values));
+      CHECK(count <= 5);
+      for (PetscInt n = 0; n < count; ++n) {
+        const double value = PetscRealPart(values[n]);
+        CHECK((columns[n] == r ? value > 0 : value <= 0));
+      }
+      check(MatRestoreRow(a.matrix(), r, &count, &columns, &values));
+    }
+  }
+}
+
+// N = 1, k = 0, one upwind node, all rates by hand: Lambda = 2/(1 * 1)^2 = 2, alpha_0 = 1/2.
+TEST_CASE("kolmogorov operator: three noise levels by hand") {
+  const model::Process process{{1, 1, 1}, {0.5, 0.5}, {1, 0}};
+  const velocity::UpwindAxis axis(0.25, 1, process.drag);
+  for (const Symmetry symmetry : {Symmetry::even, Symmetry::odd}) {
+    const KolmogorovOperator a(PETSC_COMM_SELF, process, axis, 0.0, symmetry, Rest::killing);
+    REQUIRE(a.states().global_size() == 4);
+    const double sign = symmetry == Symmetry::even ? 1 : -1;
+    // Order: (1, v = 0), (-1, v), (0, v), (1, v). B_1(0) = 0.5 goes on at rate 2; B_-1(v) = -1.75
+    // reflects to (1, 0) at rate 7; B_0(v) = -0.75 comes to rest at rate 3; B_1(v) = 0.25 is held.
+    const double expected[4][4] = {
+        {2 + 2, 0, 0, -2}, {-7 * sign, 7 + 2, -2, 0}, {0, -1, 3 + 2, -1}, {0, 0, -2, 2}};
+    for (PetscInt r = 0; r < 4; ++r) {
+      for (PetscInt c = 0; c < 4; ++c) {
+        PetscScalar value = 0;
+        check(MatGetValue(a.matrix(), r, c, &value));
+        INFO("row " << r << " column " << c);
+        CHECK(PetscRealPart(value) == Approx(expected[r][c]).margin(1e-14));
+      }
+    }
+    // Into rest: from (0, v) at rate 3, and from (1, 0) when the noise falls, at rate 2.
+    petsc::VecHandle nu = a.zeros();
+    {
+      petsc::WriteView local(nu);
+      for (PetscInt r = 0; r < 4; ++r) local[r] = std::pow(10.0, static_cast<double>(r));
+    }
+    const auto entry = a.entry_rates(nu);
+    REQUIRE(entry.size() == 1);
+    CHECK(PetscRealPart(entry[0]) == Approx(2 * 1 + 3 * 100));
+  }
+}
+
+// Killed on exit, the static states see nothing of the sliding ones: their values are those of the
+// static chain, F_lambda for the sum of both exits.
+TEST_CASE("kolmogorov operator: exits of the static states carry their rates", "[parallel]") {
+  const auto process = process_on(9, 1, 0.25);
+  for (const auto& d : both_schemes(8, process.drag)) {
+    const KolmogorovOperator a(PETSC_COMM_WORLD, process, *d.axis, 0.7, Symmetry::none,
+                               Rest::killed_on_exit);
+    petsc::VecHandle rates = a.exit_rates(Half::upper);
+    check(VecAXPY(rates, 1, a.exit_rates(Half::lower)));
+    const auto transform = operators::StaticChain(process.noise, 4, 0.7).exit_transform();
+    petsc::VecHandle u = a.zeros(), residual = a.zeros();
+    {
+      petsc::WriteView local(u);
+      PetscInt at = 0;
+      a.states().for_each_local([&](const State& s) {
+        local[at++] = s.kind == StateKind::rest ? transform[s.level + 4] : 0.0;
+      });
+    }
+    check(MatMult(a.matrix(), u, residual));
+    check(VecAXPY(residual, -1, rates));
+    const petsc::ReadView local(residual);
+    PetscInt at = 0;
+    a.states().for_each_local([&](const State& s) {
+      if (s.kind == StateKind::rest) CHECK(std::abs(local[at]) < 1e-11);
+      ++at;
+    });
+  }
+}

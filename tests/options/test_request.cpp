@@ -1,0 +1,159 @@
+#include <catch2/catch.hpp>
+#include <petscsys.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include "../common/temporary.hpp"
+#include "stickslip/options/request.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/support/errors.hpp"
+
+using namespace stickslip;
+using namespace stickslip::options;
+
+namespace {
+
+/// Puts a command line into PETSc's options database for the life of the object.
+class Given {
+ public:
+  explicit Given(const std::string& line) {
+    petsc::check(PetscOptionsInsertString(nullptr, line.c_str()));
+    for (std::size_t begin = 0; begin < line.size();) {
+      const std::size_t end = std::min(line.find(' ', begin), line.size());
+      words_.push_back(line.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  }
+  ~Given() {
+    for (const auto& word : words_) {
+      if (word[0] == '-') (void)PetscOptionsClearValue(nullptr, word.c_str());
+    }
+  }
+  Given(const Given&) = delete;
+  Given& operator=(const Given&) = delete;
+  [[nodiscard]] Request read() const { return read_request(words_); }
+
+ private:
+  std::vector<std::string> words_;
+};
+
+std::string complaint(const std::string& line) {
+  const Given given(line);
+  try {
+    (void)given.read();
+  } catch (const BadInput& bad) {
+    CHECK(bad.status() == ExitStatus::bad_input);
+    return bad.what();
+  }
+  return "nothing";
+}
+
+}  // namespace
+
+TEST_CASE("request: defaults of the command-line contract") {
+  const Request r = Given("").read();
+  CHECK(r.scene.friction.mu_s == 1);
+  CHECK(r.scene.friction.mu_d == 1);
+  CHECK(r.scene.tau == 1);
+  CHECK(r.scene.delta == 0.125);
+  CHECK(r.scene.drag.linear == 1);
+  CHECK(r.scene.drag.cubic == 0);
+  CHECK_FALSE(r.scene.noise_levels);
+  CHECK_FALSE(r.scene.v_max);
+  CHECK(r.accuracy == 1e-6);
+  CHECK(r.method.scheme == Scheme::hp);
+  CHECK_FALSE(r.method.fixed());
+}
+
+TEST_CASE("request: values arrive where they belong") {
+  const Request r = Given("-mu_s 0.6 -mu_d 0.3 -tau 2 -delta 0.1 -noise_levels 40 -drag cubic "
+                          "-drag_coefficient 0.5 -drag_cubic 3 -v_max 9 -quantities "
+                          "moments,entry_law -accuracy 1e-9 -scheme upwind -p 12")
+                        .read();
+  CHECK(r.scene.friction.mu_d == 0.3);
+  CHECK(r.scene.noise_levels == 40);
+  CHECK(r.scene.drag.cubic == 3);
+  CHECK(r.scene.v_max == 9.0);
+  CHECK(r.wants(Quantity::entry_law));
+  CHECK_FALSE(r.wants(Quantity::sticking));
+  CHECK(r.method.points == 12);
+  CHECK(r.method.fixed());
+}
+
+TEST_CASE("request: full stands for the largest noise range") {
+  const Request r = Given("-delta 0.25 -noise_levels full").read();
+  CHECK(r.scene.noise_levels == 32);
+}
+
+TEST_CASE("request: no drag means no coefficient, and a useless one is told") {
+  const Request r = Given("-drag none -drag_coefficient 3").read();
+  CHECK(r.scene.drag.linear == 0);
+  REQUIRE(r.warnings.size() == 1);
+  CHECK_THAT(r.warnings[0], Catch::Contains("-drag_coefficient"));
+}
+
+TEST_CASE("request: every refusal names option, value, range and a way out") {
+  struct Case {
+    const char* line;
+    std::vector<std::string> told;
+  };
+  const std::vector<Case> cases{
+      {"-delta -0.5", {"-delta = -0.5", "(0, inf)", "0.125"}},
+      {"-tau nan", {"-tau = nan", "(0, inf)"}},
+      {"-tau 1e400", {"-tau = 1e400", "(0, inf)"}},
+      {"-mu_s 1 -mu_d 2", {"-mu_d = 2", "(0, mu_s]", "mu_s = 1"}},
+      {"-drag_coefficient -1", {"-drag_coefficient = -1", "[0, inf)", "must not grow"}},
+      {"-delta 0.25 -noise_levels 99", {"-noise_levels = 99", "at most 2", "at most 32"}},
+      {"-delta 0.25 -mu_s 8", {"-mu_s = 8", "nothing ever slides", "below 8"}},
+      {"-delta 0.25 -noise_levels 4", {"-mu_s = ", "nothing ever slides", "above 4"}},
+      {"-delta 1.5", {"-delta = 1.5", "no noise level", "at most 1.41421"}},
+      {"-delta 1e-300", {"-delta = 1e-300", "larger step"}},
+      {"-detla 0.5", {"-detla", "did you mean -delta"}},
+      {"-quantities stiking", {"-quantities = stiking", "did you mean sticking"}},
+      {"-quantities moments,moments", {"-quantities", "twice"}},
+      {"-quantities density", {"-quantities = density", "-output"}},
+      {"-scheme hp -p 4", {"-p = 4", "-scheme upwind"}},
+      {"-scheme upwind -degree 4", {"-degree = 4", "-scheme hp"}},
+      {"-degree 2.5", {"-degree = 2.5", "whole number"}},
+      {"-noise_levels 99999999999", {"-noise_levels = 99999999999", "full"}},
+      {"-accuracy 0", {"-accuracy = 0", "[1e-15, 0.1]"}},
+      {"-summary /no/such/folder/x.json", {"-summary", "folder", "make the folder"}},
+      {"-slide_mat_mumps_icntl_77 1", {"-slide_mat_mumps_icntl_77", "-slide_ksp_view"}},
+      {"-slide_ksp_type nonsense", {"-slide_", "nonsense"}},
+  };
+  for (const auto& c : cases) {
+    const std::string told = complaint(c.line);
+    for (const auto& part : c.told) {
+      INFO(c.line);
+      CHECK_THAT(told, Catch::Contains(part));
+    }
+  }
+}
+
+TEST_CASE("request: all problems are told at once") {
+  const std::string told = complaint("-delta -1 -tau 0 -nonsense 3");
+  for (const char* part : {"-delta", "-tau", "-nonsense"}) CHECK_THAT(told, Catch::Contains(part));
+}
+
+TEST_CASE("request: words that belong to no option are told") {
+  CHECK_THAT(complaint("-delta 0.5 scene.opts"), Catch::Contains("scene.opts: belongs to no"));
+}
+
+TEST_CASE("options files: unreadable files and lines are told with their place") {
+  const test::TemporaryFolder folder;
+  const std::string name = folder / "scene.opts";
+  std::ofstream(name) << "-mu_s 1  # fine\n\n# a comment\nmu_d 0.5\n";
+  try {
+    check_options_files({"-options_file", name});
+    FAIL("accepted");
+  } catch (const BadInput& bad) {
+    CHECK_THAT(bad.what(), Catch::Contains(name + ":4") && Catch::Contains("mu_d 0.5"));
+  }
+  std::ofstream(name) << "-mu_s 1\n";
+  CHECK_NOTHROW(check_options_files({"-options_file", name}));
+  std::remove(name.c_str());
+  CHECK_THROWS_AS(check_options_files({"-options_file", name}), BadInput);
+  CHECK_THROWS_AS(check_options_files({"-options_file"}), BadInput);
+  CHECK_THROWS_AS(check_options_files({"-options_file", "/"}), BadInput);
+}

@@ -1,0 +1,86 @@
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "stickslip/options/settings.hpp"
+#include "stickslip/options/table.hpp"
+#include "stickslip/support/text.hpp"
+
+using namespace stickslip;
+using namespace stickslip::options;
+
+namespace {
+
+std::string on_one_line(const std::string& text) {
+  std::istringstream words(text);
+  std::string line, word;
+  while (words >> word) line += word + " ";
+  return line;
+}
+
+}  // namespace
+
+TEST_CASE("option table: names are unique, defaults obey their own rules") {
+  std::set<std::string> names;
+  for (const auto& group : table()) {
+    for (const auto& option : group.options) {
+      INFO(option.name);
+      CHECK(names.insert(option.name).second);
+      CHECK_FALSE(option.sentence.empty());
+      if (option.initial.empty()) continue;
+      if (option.kind == Kind::real || option.kind == Kind::integer) {
+        const auto number = parse_number(option.initial);
+        REQUIRE(number);
+        CHECK(option.range.contains(*number));
+      } else {
+        for (const auto& word : split(option.initial, ',')) {
+          CHECK(std::find(option.words.begin(), option.words.end(), word) != option.words.end());
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("option table: help and reference name every option and its default") {
+  for (const auto& group : table()) {
+    for (const auto& option : group.options) {
+      CHECK_THAT(help_text(), Catch::Contains("-" + option.name));
+      CHECK_THAT(reference_page(), Catch::Contains("`-" + option.name + "`"));
+      if (!option.initial.empty()) {
+        CHECK_THAT(on_one_line(help_text()), Catch::Contains("default " + option.initial));
+      }
+    }
+  }
+}
+
+TEST_CASE("option table: the committed reference page is the generated one") {
+  std::ifstream file(std::string(STICKSLIP_SOURCE) + "/docs/options.md");
+  std::stringstream page;
+  page << file.rdbuf();
+  CHECK(page.str() == reference_page());
+}
+
+TEST_CASE("ranges: ends belong or not as the text says") {
+  const Range open{0, 1, false, false}, closed{0, 1, true, true};
+  CHECK_FALSE(open.contains(0));
+  CHECK_FALSE(open.contains(1));
+  CHECK(open.contains(0.5));
+  CHECK(closed.contains(0));
+  CHECK(closed.contains(1));
+  CHECK_FALSE(closed.contains(1.0000001));
+  CHECK(open.text() == "(0, 1)");
+  CHECK(closed.text() == "[0, 1]");
+  CHECK(Range{}.text() == "(-inf, inf)");
+}
+
+TEST_CASE("numbers: decimal and finite, nothing before or after") {
+  CHECK(parse_number("0.25") == 0.25);
+  CHECK(parse_number("-1e-3") == -1e-3);
+  CHECK(parse_number("+2") == 2.0);
+  for (const char* bad :
+       {"", "abc", "2.5xyz", "nan", "inf", "1e400", "1,5", " 1", "1 ", "0x10", "--1", "1e", "+"}) {
+    INFO(bad);
+    CHECK_FALSE(parse_number(bad));
+  }
+}

@@ -1,0 +1,114 @@
+#include <catch2/catch.hpp>
+#include <petscsys.h>
+
+#include "stickslip/petsc/blas.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/factorization.hpp"
+#include "stickslip/petsc/memory.hpp"
+#include "stickslip/petsc/vectors.hpp"
+#include "stickslip/support/errors.hpp"
+
+using namespace stickslip;
+using namespace stickslip::petsc;
+
+namespace {
+
+// Upper bidiagonal with 2 + r on the diagonal and -1 above: A x and A^T x are known by hand.
+MatHandle bidiagonal(PetscInt n) {
+  MatHandle a;
+  check(MatCreate(PETSC_COMM_WORLD, a.out()));
+  check(MatSetSizes(a, PETSC_DECIDE, PETSC_DECIDE, n, n));
+  check(MatSetType(a, MATAIJ));
+  check(MatSetUp(a));
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(a, &begin, &end));
+  for (PetscInt r = begin; r < end; ++r) {
+    check(MatSetValue(a, r, r, 2.0 + static_cast<double>(r), INSERT_VALUES));
+    if (r + 1 < n) check(MatSetValue(a, r, r + 1, -1, INSERT_VALUES));
+  }
+  check(MatAssemblyBegin(a, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(a, MAT_FINAL_ASSEMBLY));
+  return a;
+}
+
+double distance_from_one(Vec x) {
+  check(VecShift(x, -1));
+  PetscReal norm = 0;
+  check(VecNorm(x, NORM_INFINITY, &norm));
+  return norm;
+}
+
+}  // namespace
+
+TEST_CASE("factorization: plain and transposed solves, counted", "[parallel]") {
+  const MatHandle a = bidiagonal(20);
+  Ledger ledger;
+  Factorization factors(a, "test_", ledger);
+  VecHandle one, b;
+  check(MatCreateVecs(a, one.out(), b.out()));
+  check(VecSet(one, 1));
+  check(MatMult(a, one, b));
+  CHECK(distance_from_one(factors.solve(b).x) < 1e-14);
+  check(MatMultTranspose(a, one, b));
+  const auto transposed = factors.solve_transposed(b);
+  CHECK(transposed.backward_error < 1e-15);
+  CHECK(distance_from_one(transposed.x) < 1e-14);
+
+  const bool complex = PetscDefined(USE_COMPLEX);
+  CHECK(ledger.factorizations_real == (complex ? 0 : 1));
+  CHECK(ledger.factorizations_complex == (complex ? 1 : 0));
+  CHECK(ledger.solves == 2);
+  CHECK(ledger.corrections == 2);
+  CHECK(ledger.factor_entries > 0);
+}
+
+TEST_CASE("factorization: a singular matrix is refused, whatever the package reports") {
+  MatHandle a = bidiagonal(4);
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(a, &begin, &end));
+  // Rows that sum to zero: a generator, with the constants as null vectors.
+  for (PetscInt r = begin; r < end; ++r) {
+    check(MatSetValue(a, r, r, r + 1 < 4 ? 1 : 0, INSERT_VALUES));
+  }
+  check(MatAssemblyBegin(a, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(a, MAT_FINAL_ASSEMBLY));
+  VecHandle b;
+  check(MatCreateVecs(a, b.out(), nullptr));
+  check(VecSet(b, 1));
+  Ledger ledger;
+  const auto solve = [&] { return Factorization(a, "test_", ledger).solve(b); };
+  CHECK_THROWS_AS(solve(), NotReached);
+}
+
+TEST_CASE("factorization: options of the role override its defaults") {
+  check(PetscOptionsSetValue(nullptr, "-own_pc_factor_mat_solver_type", "petsc"));
+  const MatHandle a = bidiagonal(6);
+  Ledger ledger;
+  VecHandle one, b;
+  check(MatCreateVecs(a, one.out(), b.out()));
+  check(VecSet(one, 1));
+  check(MatMult(a, one, b));
+  Factorization factors(a, "own_", ledger);
+  CHECK(distance_from_one(factors.solve(b).x) < 1e-14);
+  CHECK(ledger.factor_entries == 0);  // MUMPS's count; another package ran
+  check(PetscOptionsClearValue(nullptr, "-own_pc_factor_mat_solver_type"));
+}
+
+TEST_CASE("factorization: probing marks the options of a role as known") {
+  check(PetscOptionsSetValue(nullptr, "-probe_mat_mumps_icntl_14", "30"));
+  check(PetscOptionsSetValue(nullptr, "-probe_mat_mumps_icntl_99", "1"));
+  Factorization::probe_options("probe_");
+  PetscBool used = PETSC_FALSE;
+  check(PetscOptionsUsed(nullptr, "probe_mat_mumps_icntl_14", &used));
+  CHECK(used == PETSC_TRUE);
+  check(PetscOptionsUsed(nullptr, "probe_mat_mumps_icntl_99", &used));
+  CHECK(used == PETSC_FALSE);
+  check(PetscOptionsClearValue(nullptr, "-probe_mat_mumps_icntl_14"));
+  check(PetscOptionsClearValue(nullptr, "-probe_mat_mumps_icntl_99"));
+}
+
+TEST_CASE("blas and memory: something is known about both", "[parallel]") {
+  CHECK_FALSE(loaded_blas().library.empty());
+  CHECK(available_bytes(PETSC_COMM_WORLD) > 1e6);
+  CHECK(peak_resident_bytes() > 1e6);
+}

@@ -1,0 +1,194 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "../common/full_grid.hpp"
+#include "../common/near.hpp"
+#include "stickslip/accuracy/resolution.hpp"
+#include "stickslip/quantities/density.hpp"
+#include "stickslip/quantities/stationary.hpp"
+#include "stickslip/velocity/upwind_axis.hpp"
+
+using namespace stickslip;
+using operators::Systems;
+using quantities::StationaryLaw;
+using test::relative_difference;
+
+namespace {
+
+model::Scene scene(double mu_s, double mu_d, double tau, double delta, model::Drag drag) {
+  model::Scene s;
+  s.friction = {mu_s, mu_d};
+  s.tau = tau;
+  s.delta = delta;
+  s.drag = drag;
+  return s;
+}
+
+double sum(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+double moment(const StationaryLaw& law, const char* key) {
+  quantities::Results results;
+  quantities::append_sticking(law.excursion(), results);
+  quantities::append_moments(law.process(), law.excursion(), results);
+  for (const auto& r : results) {
+    if (r.key == key) return r.value[0];
+  }
+  throw std::invalid_argument(key);
+}
+
+StationaryLaw solve(const model::Scene& s, const accuracy::Resolution& resolution) {
+  petsc::Ledger ledger;
+  Systems systems(PETSC_COMM_WORLD, s.process(resolution.levels),
+                  accuracy::make_axis(s, resolution), ledger);
+  StationaryLaw law(systems);
+  law.orient(systems);
+  return law;
+}
+
+const std::vector<model::Scene>& sample_scenes() {
+  static const std::vector<model::Scene> scenes{
+      scene(1, 0.25, 1, 0.25, {1, 0}),  scene(1, 1, 1, 0.5, {1, 0}),
+      scene(1, 1, 1, 0.5, {0, 0}),      scene(0.3, 0.3, 1, 0.1, {1, 0}),
+      scene(0.7, 0.4, 4, 0.25, {2, 1}), scene(0.2, 0.1, 0.25, 0.5, {0.1, 0})};
+  return scenes;
+}
+
+std::vector<accuracy::Resolution> sample_resolutions(const model::Scene& s) {
+  return {accuracy::hp_resolution(s, 2, 0, 1e-6), accuracy::hp_resolution(s, 7, 0, 1e-10),
+          accuracy::upwind_resolution(s, 1, 1e-6), accuracy::upwind_resolution(s, 8, 1e-8)};
+}
+
+}  // namespace
+
+// The folded excursion against the whole grid of the paper: no folding, no excursions, no PETSc.
+TEST_CASE("stationary law: upwind equals the null vector of the unfolded generator") {
+  struct Case {
+    double mu_s, mu_d, delta;
+    int levels, points;
+    model::Drag drag;
+  };
+  for (const auto& c : {Case{1, 0.25, 0.5, 5, 3, {1, 0}}, Case{0.4, 0.4, 0.5, 4, 5, {1, 0}},
+                        Case{1, 1, 0.5, 5, 2, {1, 0.5}}, Case{0.9, 0.6, 0.5, 4, 2, {3, 0}}}) {
+    const model::Process process{{1, c.delta, c.levels}, {c.mu_s, c.mu_d}, c.drag};
+    const double spacing = c.delta / c.points;
+    const double end = process.drag.terminal_velocity(process.excess(c.levels));
+    const int nodes = static_cast<int>(std::ceil(end / spacing * (1 - 1e-12)));
+    const test::FullGrid grid(process, spacing, nodes);
+    const auto pi = grid.stationary();
+    double stick = 0, square = 0;
+    grid.for_each([&](int i, int j, double v, std::size_t state) {
+      if (grid.is_static(i, j)) stick += pi[state];
+      square += pi[state] * v * v;
+    });
+
+    petsc::Ledger ledger;
+    Systems systems(PETSC_COMM_WORLD, process,
+                    std::make_shared<velocity::UpwindAxis>(spacing, nodes, process.drag), ledger);
+    StationaryLaw law(systems);
+    law.orient(systems);
+    CHECK(relative_difference(moment(law, "P_stick"), stick) < 1e-11);
+    CHECK(relative_difference(moment(law, "E_V2"), square) < 1e-11);
+
+    quantities::Results entry;
+    quantities::append_entry_law(process, law.excursion(), entry);
+    const int k = process.static_index();
+    for (int i = -k; i <= k; ++i) {
+      const double expected = grid.mean_at_rest([&](int at) { return at == i ? 1.0 : 0.0; });
+      CHECK(entry[0].value[i + k] == Approx(expected).epsilon(1e-10).margin(1e-14));
+    }
+  }
+}
+
+TEST_CASE("stationary law: sliding ends somewhere, and X keeps its own law", "[parallel]") {
+  for (const auto& s : sample_scenes()) {
+    for (const auto& resolution : sample_resolutions(s)) {
+      const auto law = solve(s, resolution);
+      INFO("mu_d " << s.friction.mu_d << " degree " << resolution.degree << " p "
+                   << resolution.points);
+      CHECK(std::abs(sum(law.excursion().entry) - 1) < 1e-11);
+      CHECK(law.excursion().conservation_defect(law.process()) < 1e-11);
+      const auto marginal = marginal_of_noise(law.process(), law.excursion());
+      const auto noise = model::stationary_law(law.process().noise);
+      for (std::size_t n = 0; n < noise.size(); ++n) {
+        CHECK(marginal[n] == Approx(noise[n]).epsilon(1e-10).margin(1e-14));
+      }
+    }
+  }
+}
+
+// pi(L f) = 0 for f = v on the sliding states: E[XV] = mu_d E|V| - E[b(V) V].
+TEST_CASE("stationary law: power put in by the noise equals power dissipated", "[parallel]") {
+  for (const auto& s : sample_scenes()) {
+    if (s.drag.cubic > 0) continue;  // would need E[V^4]
+    const auto law = solve(s, accuracy::hp_resolution(s, 13, 0, 1e-15));
+    const double dissipated =
+        s.friction.mu_d * moment(law, "E_absV") + s.drag.linear * moment(law, "E_V2");
+    CHECK(relative_difference(moment(law, "E_XV"), dissipated) < 1e-11);
+  }
+}
+
+TEST_CASE("stationary law: P(|X| <= mu_s) summed over the grid at every scheme and p") {
+  const double delta = GENERATE(0.5, 0.25);
+  auto s = scene(1, 0.25, 1, delta, {1, 0});
+  s.noise_levels = s.full_levels();
+  const int k = s.friction.static_index(delta);
+  const double closed = model::noise_moments(s.meant().noise, k).within;
+  std::vector<accuracy::Resolution> resolutions{accuracy::hp_resolution(s, 1, 0, 1e-8),
+                                                accuracy::hp_resolution(s, 8, 0, 1e-8)};
+  for (int p : {1, 2, 7, 64}) resolutions.push_back(accuracy::upwind_resolution(s, p, 1e-8));
+  for (const auto& resolution : resolutions) {
+    const auto law = solve(s, resolution);
+    const auto marginal = marginal_of_noise(law.process(), law.excursion());
+    double within = 0;
+    for (int i = -k; i <= k; ++i) within += marginal[*s.noise_levels + i];
+    CHECK(std::abs(within - closed) < 1e-12);
+  }
+}
+
+TEST_CASE("density: integrates to the law it came from", "[parallel]") {
+  const auto s = scene(1, 0.25, 1, 0.25, {1, 0});
+  for (const auto& resolution : sample_resolutions(s)) {
+    const auto law = solve(s, resolution);
+    const auto field = quantities::density_field(law);
+    const std::size_t half = field.v.size() / 2;
+    std::vector<double> weights(field.v.size());
+    for (std::size_t j = 0; j < half; ++j) {
+      weights[half + j] = weights[half - 1 - j] = law.axis().weights()[j];
+    }
+    CHECK(std::is_sorted(field.v.begin(), field.v.end()));
+    double sliding = 0;
+    for (std::size_t j = 0; j < field.v.size(); ++j) {
+      sliding += weights[j] * field.velocity_marginal[j];
+    }
+    const double stick = sum(field.atom);
+    CHECK(stick == Approx(moment(law, "P_stick")).epsilon(1e-12));
+    if (law.axis().keeps_origin()) continue;  // its states at v = 0 are no density
+    CHECK(sliding + stick + field.cut_mass == Approx(1).epsilon(1e-11));
+    // Each row integrates to P(X = x_i) less its atom, from both halves.
+    const int n = law.process().noise.levels;
+    for (std::size_t r = 0; r < field.local_levels.size(); ++r) {
+      const std::size_t level = static_cast<std::size_t>(field.local_levels[r] + n);
+      double mass = field.atom[level];
+      for (std::size_t j = 0; j < field.v.size(); ++j) {
+        mass += weights[j] * field.local_rows[r * field.v.size() + j];
+      }
+      CHECK(mass == Approx(field.noise_marginal[level]).epsilon(1e-10).margin(1e-13));
+    }
+  }
+}
+
+TEST_CASE("density: distribution functions of two discretisations approach each other") {
+  const auto s = scene(1, 0.25, 1, 0.25, {1, 0});
+  const auto coarse = solve(s, accuracy::hp_resolution(s, 3, 0, 1e-6));
+  const auto middle = solve(s, accuracy::hp_resolution(s, 6, 0, 1e-9));
+  const auto fine = solve(s, accuracy::hp_resolution(s, 9, 0, 1e-12));
+  const double first = quantities::speed_law_distance(coarse.axis(), coarse.speed_law(),
+                                                      fine.axis(), fine.speed_law());
+  const double second = quantities::speed_law_distance(middle.axis(), middle.speed_law(),
+                                                       fine.axis(), fine.speed_law());
+  CHECK(second < first / 2);
+  CHECK(second > 0);
+}

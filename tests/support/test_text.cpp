@@ -1,0 +1,37 @@
+#include <catch2/catch.hpp>
+
+#include "stickslip/support/text.hpp"
+
+using stickslip::enumerate;
+using stickslip::nearest_word;
+using stickslip::split;
+using stickslip::wrap;
+
+TEST_CASE("nearest word: a slip finds its target, nonsense finds none") {
+  const std::vector<std::string> names{"-delta", "-mu_d", "-mu_s", "-tau"};
+  CHECK(nearest_word("-detla", names) == "-delta");
+  CHECK(nearest_word("-mud", names) == "-mu_d");
+  CHECK(nearest_word("-temperature", names).empty());
+}
+
+TEST_CASE("split: trims blanks, keeps empty parts between separators") {
+  CHECK(split("", ',').empty());
+  CHECK(split("a", ',') == std::vector<std::string>{"a"});
+  CHECK(split(" a , b,,c ", ',') == std::vector<std::string>{"a", "b", "", "c"});
+}
+
+TEST_CASE("enumerate: commas, then the conjunction") {
+  CHECK(enumerate(std::vector<std::string>{"a"}, "or") == "a");
+  CHECK(enumerate(std::vector<std::string>{"a", "b", "c"}, "or") == "a, b or c");
+}
+
+TEST_CASE("wrap: no line beyond the width, no word lost") {
+  const std::string text = "one two three four five six seven eight nine ten";
+  const std::string wrapped = wrap(text, 12, 3);
+  std::string unwrapped;
+  for (const auto& line : split(wrapped, '\n')) {
+    CHECK(line.size() <= 12);
+    unwrapped += (unwrapped.empty() ? "" : " ") + line;
+  }
+  CHECK(unwrapped == text);
+}

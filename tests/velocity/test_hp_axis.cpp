@@ -1,0 +1,120 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+#include "stickslip/velocity/hp_axis.hpp"
+
+using namespace stickslip;
+using velocity::HpAxis;
+using velocity::ReferenceElement;
+
+namespace {
+
+double power(double x, int n) { return n == 0 ? 1 : std::pow(x, n); }
+
+// (T u)_j with the diagonal that makes T 1 = 0.
+double apply_row(const velocity::TransportRow& row, int j, const std::vector<double>& u,
+                 double at_rest, double at_top) {
+  double sum = row.inflow * (at_rest - u[j]) + row.outflow * (at_top - u[j]);
+  for (const auto& e : row.entries) sum += e.value * (u[e.node] - u[j]);
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("reference element: quadrature is exact up to degree 2q - 1") {
+  for (int degree : {0, 1, 2, 5, 9, 16, 24}) {
+    const ReferenceElement r(degree);
+    REQUIRE(r.size == degree + 1);
+    for (int n = 0; n <= 2 * degree + 1; ++n) {
+      double sum = 0;
+      for (int m = 0; m < r.size; ++m) sum += r.weight[m] * power(r.node[m], n);
+      CHECK(sum == Approx(1.0 / (n + 1)).epsilon(1e-13));
+    }
+  }
+}
+
+TEST_CASE("reference element: basis, end values and integrals reproduce polynomials") {
+  const ReferenceElement r(6);
+  const auto polynomial = [](double t) { return 1 - 3 * t + power(t, 4) - 2 * power(t, 6); };
+  const auto primitive = [](double t) {
+    return t - 1.5 * t * t + power(t, 5) / 5 - 2 * power(t, 7) / 7;
+  };
+  const auto combine = [&](const std::vector<double>& coefficients) {
+    double sum = 0;
+    for (int n = 0; n < r.size; ++n) sum += coefficients[n] * polynomial(r.node[n]);
+    return sum;
+  };
+  CHECK(combine(r.at_left) == Approx(polynomial(0)).epsilon(1e-13));
+  CHECK(combine(r.at_right) == Approx(polynomial(1)).epsilon(1e-13));
+  for (double t : {0.0, 0.13, 0.5, 0.77, 1.0}) {
+    CHECK(combine(r.basis(t)) == Approx(polynomial(t)).epsilon(1e-12));
+    CHECK(combine(r.integral(t)) == Approx(primitive(t)).epsilon(1e-12).margin(1e-14));
+  }
+  CHECK(combine(r.basis(r.node[2])) == polynomial(r.node[2]));
+}
+
+// For u a polynomial the jumps vanish and T u = B u' at the nodes, whichever way the flow goes.
+TEST_CASE("hp transport: exact on polynomials of its degree") {
+  const model::Drag drag{1, 0.3};
+  const HpAxis axis({0, 0.05, 0.2, 0.7, 2}, 4, drag);
+  const auto u = [](double v) { return 2 - v + 3 * v * v - power(v, 4); };
+  const auto slope = [](double v) { return -1 + 6 * v - 4 * power(v, 3); };
+  std::vector<double> values;
+  for (double v : axis.nodes()) values.push_back(u(v));
+  velocity::TransportRow row;
+  for (double excess : {-3.0, -0.1, 0.0, 0.4, 1.7, 9.0}) {
+    for (int j = 0; j < axis.size(); ++j) {
+      axis.transport(excess, j, row);
+      const double v = axis.nodes()[j];
+      const double expected = (excess + drag(v)) * slope(v);
+      CHECK(apply_row(row, j, values, u(0), u(2)) == Approx(expected).margin(1e-10));
+    }
+  }
+}
+
+TEST_CASE("hp transport: meets rest only where the flow reaches it, the top likewise") {
+  const HpAxis axis({0, 0.5, 1}, 3, model::Drag{1, 0});
+  const auto largest = [&](double excess, double velocity::TransportRow::*coefficient) {
+    velocity::TransportRow row;
+    double size = 0;
+    for (int j = 0; j < axis.size(); ++j) {
+      axis.transport(excess, j, row);
+      size = std::max(size, std::abs(row.*coefficient));
+    }
+    return size;
+  };
+  CHECK(largest(0.25, &velocity::TransportRow::inflow) == 0);
+  CHECK(largest(0.25, &velocity::TransportRow::outflow) == 0);
+  CHECK(largest(-0.25, &velocity::TransportRow::inflow) > 0);
+  CHECK(largest(1.25, &velocity::TransportRow::outflow) > 0);
+  // A level at mu_d creeps towards rest and never arrives.
+  CHECK(largest(0, &velocity::TransportRow::inflow) == 0);
+}
+
+TEST_CASE("hp axis: traces extrapolate, weights integrate, masses accumulate") {
+  const HpAxis axis({0, 0.1, 1, 3}, 5, model::Drag{1, 0});
+  std::vector<double> mass;
+  double integral = 0, at_zero = 0, at_top = 0;
+  const auto density = [](double v) { return 1 + v * v; };
+  for (int j = 0; j < axis.size(); ++j) {
+    mass.push_back(axis.weights()[j] * density(axis.nodes()[j]));
+    integral += mass.back();
+  }
+  for (const auto& e : axis.trace_at_zero()) at_zero += e.value * density(axis.nodes()[e.node]);
+  for (const auto& e : axis.trace_at_top()) at_top += e.value * density(axis.nodes()[e.node]);
+  CHECK(integral == Approx(12).epsilon(1e-14));
+  CHECK(at_zero == Approx(1).epsilon(1e-12));
+  CHECK(at_top == Approx(10).epsilon(1e-12));
+  for (double v : {0.0, 0.04, 0.1, 0.5, 1.0, 2.9, 3.0}) {
+    CHECK(axis.mass_below(mass, v) == Approx(v + v * v * v / 3).epsilon(1e-12).margin(1e-15));
+  }
+}
+
+TEST_CASE("hp axis: refuses elements that do not rise from 0") {
+  CHECK_THROWS_AS(HpAxis({0}, 2, model::Drag{}), std::invalid_argument);
+  CHECK_THROWS_AS(HpAxis({0.1, 1}, 2, model::Drag{}), std::invalid_argument);
+  CHECK_THROWS_AS(HpAxis({0, 2, 1}, 2, model::Drag{}), std::invalid_argument);
+  CHECK_THROWS_AS(HpAxis({0, 1}, -1, model::Drag{}), std::invalid_argument);
+}

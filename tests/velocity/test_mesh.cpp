@@ -1,0 +1,74 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "stickslip/velocity/mesh.hpp"
+
+using namespace stickslip;
+using velocity::MeshRule;
+
+namespace {
+
+model::Process process(double mu_d, double tau, double delta, model::Drag drag) {
+  return {{tau, delta, 30}, {std::max(1.0, mu_d), mu_d}, drag};
+}
+
+MeshRule rule_to(double v_max, int layers = 0) {
+  MeshRule rule;
+  rule.v_max = v_max;
+  rule.layers = layers;
+  return rule;
+}
+
+}  // namespace
+
+TEST_CASE("mesh: rises from 0 to v_max, fine enough at 0, never too coarse above") {
+  for (const auto& p : {process(0.25, 1, 0.25, {1, 0}), process(1, 1, 0.25, {0, 0}),
+                        process(0.25, 1.0 / 16, 0.5, {0.01, 0}), process(0.3, 4, 0.25, {10, 2}),
+                        process(1e-8, 1, 0.5, {0, 0})}) {
+    const double v_max = std::min(p.drag.terminal_velocity(7), velocity::tail_velocity(p, 1e-12));
+    const auto rule = rule_to(v_max);
+    const auto ends = velocity::element_ends(p, rule);
+    CHECK(ends.front() == 0);
+    CHECK(ends.back() == v_max);
+    CHECK(ends[1] <= std::max(velocity::smallest_scale(p), 0.31 * v_max) * (1 + 1e-12));
+    for (std::size_t e = 1; e + 1 < ends.size(); ++e) {
+      const double length = ends[e + 1] - ends[e];
+      const double decay = (p.friction.mu_d - p.drag(ends[e])) * length;
+      CHECK(length > 0);
+      CHECK(ends[e] >= 0.29 * ends[e + 1] * (1 - 1e-12));
+      CHECK(decay <= 1.31 * rule.decay);
+    }
+  }
+}
+
+TEST_CASE("mesh: the number of layers can be fixed, and moves only what lies near 0") {
+  const auto p = process(0.25, 1, 0.25, {1, 0});
+  const auto natural = velocity::element_ends(p, rule_to(7.5));
+  const int layers = velocity::natural_layers(p, rule_to(7.5));
+  const auto same = velocity::element_ends(p, rule_to(7.5, layers));
+  const auto more = velocity::element_ends(p, rule_to(7.5, layers + 2));
+  CHECK(same == natural);
+  REQUIRE(more.size() == natural.size() + 2);
+  CHECK(more.back() == natural.back());
+  CHECK(more[more.size() - 2] == Approx(natural[natural.size() - 2]).epsilon(1e-14));
+}
+
+TEST_CASE("smallest scale: follows a level just below mu_d only where drag outruns the noise") {
+  // On the grid: the kinetic layer 0.3 delta^3 tau^2.
+  CHECK(velocity::smallest_scale(process(0.25, 1, 0.25, {1, 0})) ==
+        Approx(0.3 * std::pow(0.25, 3)));
+  // mu_d 1e-5 above a level, Lambda/c = 32: nothing to resolve.
+  CHECK(velocity::smallest_scale(process(0.25001, 1, 0.25, {1, 0})) ==
+        Approx(0.3 * std::pow(0.25, 3)));
+  // The same with Lambda/c = 0.32: the scale (mu_d - x)/c.
+  CHECK(velocity::smallest_scale(process(0.25001, 1, 0.25, {100, 0})) ==
+        Approx(1e-7).epsilon(1e-6));
+}
+
+TEST_CASE("tail velocity: the white-noise bound on the density has fallen to the tolerance") {
+  const auto p = process(0.5, 1, 0.25, {0.3, 0.1});
+  const double v = velocity::tail_velocity(p, 1e-10);
+  CHECK(0.5 * v - p.drag.potential(v) == Approx(std::log(1e10) + 5).epsilon(1e-4));
+  CHECK(velocity::tail_velocity(process(0.5, 1, 0.25, {0, 0}), 1e-10) ==
+        Approx((std::log(1e10) + 5) / 0.5));
+}

@@ -1,0 +1,53 @@
+#include <catch2/catch.hpp>
+#include <numeric>
+
+#include "stickslip/velocity/upwind_axis.hpp"
+
+using namespace stickslip;
+using velocity::UpwindAxis;
+
+TEST_CASE("upwind transport: rates are >= 0 and go with the flow") {
+  const UpwindAxis axis(0.1, 20, model::Drag{1, 0});
+  velocity::TransportRow row;
+  for (double excess : {-0.55, 0.55, 3.0}) {
+    for (int j = 0; j < axis.size(); ++j) {
+      axis.transport(excess, j, row);
+      const double speed = excess - axis.nodes()[j];
+      const bool last = j == axis.size() - 1, first = j == 0;
+      const double expected = std::abs(speed) / 0.1;
+      CHECK(row.outflow == 0);
+      if (speed < 0 && first) {
+        CHECK(row.inflow == Approx(expected));
+        CHECK(row.entries.empty());
+      } else if (speed > 0 && last) {
+        CHECK(row.entries.empty());  // the last node holds what still accelerates
+      } else {
+        REQUIRE(row.entries.size() == 1);
+        CHECK(row.entries[0].node == (speed < 0 ? j - 1 : j + 1));
+        CHECK(row.entries[0].value == Approx(expected));
+        CHECK(row.inflow == 0);
+      }
+    }
+  }
+}
+
+TEST_CASE("upwind axis: a state at the origin moves on at speed over spacing") {
+  const UpwindAxis axis(0.5, 4, model::Drag{1, 0});
+  CHECK(axis.keeps_origin());
+  CHECK_FALSE(axis.needs_holding());
+  CHECK(axis.origin_rate(0.75) == 1.5);
+}
+
+TEST_CASE("upwind axis: cells share the mass of their nodes") {
+  const UpwindAxis axis(1, 3, model::Drag{1, 0});
+  const std::vector<double> mass{0.2, 0.3, 0.5};
+  CHECK(axis.mass_below(mass, 0.5) == 0);
+  CHECK(axis.mass_below(mass, 1) == Approx(0.1));
+  CHECK(axis.mass_below(mass, 1.5) == Approx(0.2));
+  CHECK(axis.mass_below(mass, 3.5) == Approx(1));
+}
+
+TEST_CASE("upwind axis: refuses to have no nodes") {
+  CHECK_THROWS_AS(UpwindAxis(0, 3, model::Drag{}), std::invalid_argument);
+  CHECK_THROWS_AS(UpwindAxis(1, 0, model::Drag{}), std::invalid_argument);
+}
