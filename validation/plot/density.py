@@ -1,0 +1,79 @@
+"""Draws the stationary law that `-quantities density -output FILE.h5` wrote.
+
+usage: python3 density.py FILE.h5 PICTURE.png
+"""
+
+import sys
+
+import h5py
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy
+
+SLIDE, STICK = "#3b6ea5", "#c65f1e"  # told apart by the colour-blind, and in grey
+
+
+def read(name):
+    with h5py.File(name) as file:
+        field = {key: numpy.array(value) for key, value in file["density"].items()}
+        scene = dict(file["record/options"].attrs)
+    return field, scene
+
+
+def edges(points):
+    middle = (points[1:] + points[:-1]) / 2
+    return numpy.concatenate([[points[0]], middle, [points[-1]]])
+
+
+def window(points, weight, share):
+    """The range of points outside which less than `share` of the weight lies."""
+    inside = points[weight > share * weight.max()]
+    return inside[0], inside[-1]
+
+
+def draw(field, scene, picture):
+    x, v = field["x"], field["v"]
+    step = x[1] - x[0]
+    figure, axes = plt.subplots(
+        2, 2, figsize=(7.2, 5.2), sharex="col", sharey="row", layout="constrained",
+        gridspec_kw={"width_ratios": (3, 1), "height_ratios": (3, 1.2)})
+    plane, by_v, by_x, corner = axes[0, 0], axes[0, 1], axes[1, 0], axes[1, 1]
+    corner.axis("off")
+
+    pdf = numpy.maximum(field["pdf"].T / step, 1e-12)
+    x_low, x_high = window(x, field["marginal_x"], 1e-4)
+    v_low, v_high = window(v, field["marginal_v"], 1e-4)
+    image = plane.pcolormesh(numpy.concatenate([x - step / 2, [x[-1] + step / 2]]), edges(v), pdf,
+                             norm=matplotlib.colors.LogNorm(1e-5, pdf.max()), cmap="Blues",
+                             rasterized=True)
+    stuck = field["atom"] > 0
+    plane.scatter(x[stuck], 0 * x[stuck], s=900 * field["atom"][stuck], color=STICK, zorder=3,
+                  label="sticking (area: probability)")
+    plane.set(xlim=(x_low, x_high), ylim=(v_low, v_high), ylabel="velocity $v$")
+    plane.legend(loc="upper left", frameon=False)
+    figure.colorbar(image, ax=by_v, label=r"density of $(x, v)$ while sliding")
+
+    by_v.plot(field["marginal_v"], v, color=SLIDE)
+    by_v.set(xlabel="density of $v$", xlim=(0, None))
+    by_v.tick_params(labelbottom=True)
+    by_x.bar(x, field["marginal_x"] - field["atom"], step * 0.9, field["atom"], color=SLIDE,
+             label="sliding")
+    by_x.bar(x, field["atom"], step * 0.9, color=STICK, label="sticking")
+    by_x.set(xlabel="forcing $x$", ylabel="$P(X = x)$")
+    by_x.legend(loc="upper left", frameon=False)
+    mu_s, mu_d, tau, delta = (float(scene[name]) for name in ("mu_s", "mu_d", "tau", "delta"))
+    figure.suptitle(rf"$\mu_s$ = {mu_s:g}, $\mu_d$ = {mu_d:g}, $\tau$ = {tau:g}, "
+                    rf"$\delta$ = {delta:g}: $P_{{stick}}$ = {field['atom'].sum():.4f}")
+    figure.savefig(picture, dpi=160)
+
+
+def main():
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    draw(*read(sys.argv[1]), sys.argv[2])
+
+
+if __name__ == "__main__":
+    main()
