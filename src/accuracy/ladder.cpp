@@ -33,9 +33,17 @@ int starting_degree(const options::Request& request) {
 Ladder::Ladder(const options::Request& request)
     : scene_(request.scene), method_(request.method), accuracy_(request.accuracy) {
   first_degree_ = method_.degree.value_or(starting_degree(request));
-  const int free_rungs =
-      method_.scheme == options::Scheme::hp ? 1 + kHighestDegree - first_degree_ : 20;
-  last_ = method_.fixed() ? 1 : free_rungs;
+  halves_ = options::on_full_grid(request.route) ? 2 : 1;
+  last_ = method_.fixed() ? 1 : free_rungs();
+}
+
+int Ladder::free_rungs() const {
+  switch (method_.scheme) {
+  case options::Scheme::hp: return 1 + kHighestDegree - first_degree_;
+  case options::Scheme::upwind: return 20;
+  case options::Scheme::none: return 3;
+  }
+  return 1;
 }
 
 int Ladder::degree(int n) const { return std::max(0, first_degree_ + n - 1); }
@@ -47,17 +55,23 @@ int Ladder::points(int n) const {
 }
 
 double Ladder::tail_tolerance(int n) const {
-  if (method_.scheme == options::Scheme::upwind) {
-    return 1e-3 * std::min(accuracy_, 1e-6);
-  }
+  if (method_.scheme == options::Scheme::upwind) return 1e-3 * std::min(accuracy_, 1e-6);
+  if (method_.scheme == options::Scheme::none)
+    return std::max(accuracy_ * std::pow(1e-2, n), 1e-18);
   return std::max(std::pow(10.0, -(degree(n) + 3)), 1e-18);
 }
 
 Resolution Ladder::rung(int n) const {
-  if (method_.scheme == options::Scheme::upwind) {
-    return upwind_resolution(scene_, points(n), tail_tolerance(n));
+  Resolution r;
+  switch (method_.scheme) {
+  case options::Scheme::hp:
+    r = hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n));
+    break;
+  case options::Scheme::upwind: r = upwind_resolution(scene_, points(n), tail_tolerance(n)); break;
+  case options::Scheme::none: r = exact_resolution(scene_, tail_tolerance(n)); break;
   }
-  return hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n));
+  r.halves = halves_;
+  return r;
 }
 
 double Ladder::error_per_change(int n) const {
@@ -69,7 +83,7 @@ double Ladder::error_per_change(int n) const {
 }
 
 double Ladder::error_per_earlier_change() const {
-  return method_.scheme == options::Scheme::upwind ? 0 : kErrorPerEarlierChange;
+  return method_.scheme == options::Scheme::hp ? kErrorPerEarlierChange : 0;
 }
 
 }  // namespace stickslip::accuracy

@@ -26,30 +26,6 @@ double wall_time() {
 
 std::string gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / 1e9); }
 
-// Quantities that need the sliding operator; values only, errors are set later.
-Results evaluate(const options::Request& request, const model::Process& process,
-                 const quantities::Excursion& excursion) {
-  Results results;
-  if (request.wants(Quantity::sticking)) quantities::append_sticking(excursion, results);
-  if (request.wants(Quantity::moments)) quantities::append_moments(process, excursion, results);
-  if (request.wants(Quantity::entry_law)) {
-    quantities::append_entry_law(process, excursion, results);
-  }
-  return results;
-}
-
-double largest(const std::vector<double>& values) {
-  double size = 0;
-  for (double v : values) size = std::max(size, std::abs(v));
-  return size;
-}
-
-// Largest error of a result relative to its size; arrays are measured by their largest entry.
-double relative_error(const quantities::Result& result) {
-  const double error = largest(result.error), size = largest(result.value);
-  return error == 0 ? 0 : error / size;
-}
-
 class Refiner {
  public:
   Refiner(MPI_Comm comm, const options::Request& request, const Progress& progress)
@@ -92,15 +68,14 @@ class Refiner {
     if (progress_) progress_(n, step.resolution, expected_seconds(step.resolution));
     const double start = wall_time();
     const auto process = request_.scene.process(step.resolution.levels);
-    auto law = solve_law(process, step);
-    Results results = evaluate(request_, process, law->excursion());
-    add_rounding(results, evaluate(request_, process, law->uncorrected()),
-                 law->excursion().conservation_defect(process));
-    if (n >= 1) add_discretisation(n, results);
-    if (request_.wants(Quantity::density)) follow_speed_law(*law);
+    auto evaluation = routes::evaluate(
+        {comm_, request_, process, make_axis(request_.scene, step.resolution), step.ledger});
+    step.checks = std::move(evaluation.checks);
+    remember_rounding(evaluation.results);
+    if (n >= 1) add_discretisation(n, evaluation.results);
+    if (request_.wants(Quantity::density)) follow_speed_law(*evaluation.law);
     step.seconds = wall_time() - start;
-    outcome_.results = std::move(results);
-    outcome_.law = std::move(law);
+    outcome_.last = std::move(evaluation);
     outcome_.total += step.ledger;
     outcome_.steps.push_back(std::move(step));
   }
@@ -112,43 +87,28 @@ class Refiner {
            relative_work(request_.scene, last.resolution);
   }
 
-  // One set of factors at a time.
-  std::unique_ptr<StationaryLaw> solve_law(const model::Process& process, Step& step) {
-    operators::Systems systems(comm_, process, make_axis(request_.scene, step.resolution),
-                               step.ledger);
-    auto law = std::make_unique<StationaryLaw>(systems);
-    if (request_.wants(Quantity::entry_law)) {
-      systems.release(0, operators::Symmetry::even);
-      law->orient(systems);
-    }
-    return law;
-  }
-
-  // Sets errors to the rounding estimate, and keeps it apart for the verdict.
-  void add_rounding(Results& results, const Results& uncorrected, double defect) {
+  // The errors of the route itself, for the verdict.
+  void remember_rounding(const Results& results) {
     rounding_.clear();
-    for (std::size_t r = 0; r < results.size(); ++r) {
-      auto& result = results[r];
-      for (std::size_t e = 0; e < result.value.size(); ++e) {
-        const double value = result.value[e];
-        result.error[e] = std::abs(value - uncorrected[r].value[e]) + defect * std::abs(value);
-      }
-      rounding_.push_back(relative_error(result));
-    }
+    for (const auto& result : results) rounding_.push_back(quantities::relative_error(result));
   }
 
   void add_discretisation(int n, Results& results) {
     const double factor = ladder_.error_per_change(n);
-    std::vector<std::vector<double>> changes;
+    std::vector<std::vector<double>> changes(results.size());
     for (std::size_t r = 0; r < results.size(); ++r) {
       auto& result = results[r];
-      changes.emplace_back();
+      const auto& coarse = outcome_.last.results[r].value;
       for (std::size_t e = 0; e < result.value.size(); ++e) {
-        const double change = std::abs(result.value[e] - outcome_.results[r].value[e]);
+        // A mode that the coarser grid did not find is all change.
+        const double before = e < coarse.size() ? coarse[e] : 0;
+        const double change = std::abs(result.value[e] - before);
         double error = factor * change;
-        if (n >= 2) error = std::max(error, ladder_.error_per_earlier_change() * changes_[r][e]);
+        if (n >= 2 && e < changes_[r].size()) {
+          error = std::max(error, ladder_.error_per_earlier_change() * changes_[r][e]);
+        }
         result.error[e] += error;
-        changes.back().push_back(change);
+        changes[r].push_back(change);
       }
     }
     changes_ = std::move(changes);
@@ -169,11 +129,11 @@ class Refiner {
   [[nodiscard]] bool finished() {
     Step& step = outcome_.steps.back();
     double rounding = 0;
-    for (std::size_t r = 0; r < outcome_.results.size(); ++r) {
-      const double error = relative_error(outcome_.results[r]);
+    for (std::size_t r = 0; r < outcome_.last.results.size(); ++r) {
+      const double error = quantities::relative_error(outcome_.last.results[r]);
       if (error <= step.estimate) continue;
       step.estimate = error;
-      step.limiting_key = outcome_.results[r].key;
+      step.limiting_key = outcome_.last.results[r].key;
       rounding = rounding_[r];
     }
     outcome_.reached = step.estimate <= request_.accuracy;
@@ -182,15 +142,18 @@ class Refiner {
       return true;
     }
     if (rounding <= request_.accuracy) return false;
-    outcome_.shortfall = fmt::format("rounding limits {} to {:.1e}; take -accuracy {:.0e}",
-                                     step.limiting_key, rounding, 2 * rounding);
+    const bool by_lambda = request_.route == options::Route::lambda;
+    outcome_.shortfall = fmt::format(
+        "{} {} to {:.1e}; take {}-accuracy {:.0e}",
+        by_lambda ? "lambda > 0 or rounding limits" : "rounding limits", step.limiting_key,
+        rounding, by_lambda ? "another -lambda or " : "", 2 * rounding);
     return true;
   }
 
   // A velocity cut made by hand is no part of the model: what it holds back is an error.
   void check_cut() {
     if (!request_.scene.v_max) return;
-    const auto law = outcome_.law->speed_law();
+    const auto law = outcome_.last.law->speed_law();
     const double held = law.at_top, sliding = 1 - law.at_rest;
     if (held <= request_.accuracy * sliding) return;
     outcome_.reached = false;
@@ -232,9 +195,13 @@ class Refiner {
   StationaryLaw::SpeedLaw coarse_law_;
 };
 
+// The law of the noise has a closed form; routes that check the model compute it all the same.
+bool closed_noise_law(const options::Request& request) {
+  return request.wants(Quantity::noise_law) && request.route == options::Route::excursion;
+}
+
 bool needs_system(const options::Request& request) {
-  return std::any_of(request.quantities.begin(), request.quantities.end(),
-                     [](Quantity q) { return q != Quantity::noise_law; });
+  return request.quantities.size() > (closed_noise_law(request) ? 1 : 0);
 }
 
 }  // namespace
@@ -243,8 +210,8 @@ Outcome refine(MPI_Comm comm, const options::Request& request, const Progress& p
   Outcome outcome;
   outcome.reached = true;
   if (needs_system(request)) outcome = Refiner(comm, request, progress).run();
-  if (request.wants(Quantity::noise_law)) {
-    quantities::append_noise_law(request.scene.meant(), outcome.results);
+  if (closed_noise_law(request)) {
+    quantities::append_noise_law(request.scene.meant(), outcome.last.results);
   }
   return outcome;
 }

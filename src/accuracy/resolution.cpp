@@ -84,8 +84,16 @@ Resolution upwind_resolution(const model::Scene& scene, int points, double toler
   return r;
 }
 
+Resolution exact_resolution(const model::Scene& scene, double tolerance) {
+  Resolution r;
+  r.scheme = options::Scheme::none;
+  r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
+  return r;
+}
+
 std::shared_ptr<const velocity::Axis> make_axis(const model::Scene& scene,
                                                 const Resolution& resolution) {
+  if (resolution.scheme == options::Scheme::none) return nullptr;
   if (resolution.scheme == options::Scheme::upwind) {
     const double spacing = scene.delta / resolution.points;
     const auto count = static_cast<int>(upwind_nodes(scene, resolution));
@@ -96,10 +104,13 @@ std::shared_ptr<const velocity::Axis> make_axis(const model::Scene& scene,
 }
 
 std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution) {
-  const double nodes = resolution.scheme == options::Scheme::upwind
-                           ? upwind_nodes(scene, resolution)
-                           : hp_elements(scene, resolution) * (resolution.degree + 1.0);
-  const double total = (2.0 * resolution.levels + 1) * nodes;
+  double nodes = 1;
+  if (resolution.scheme == options::Scheme::hp) {
+    nodes = hp_elements(scene, resolution) * (resolution.degree + 1.0);
+  } else if (resolution.scheme == options::Scheme::upwind) {
+    nodes = upwind_nodes(scene, resolution);
+  }
+  const double total = (2.0 * resolution.levels + 1) * nodes * resolution.halves;
   constexpr double most = 9e18;
   return static_cast<std::int64_t>(std::min(total, most));
 }
@@ -114,6 +125,10 @@ double predicted_bytes(const model::Scene& scene, const Resolution& resolution) 
   const double levels = 2.0 * resolution.levels + 1;
   const double nodes = n / levels;
   const double scalars = PetscDefined(USE_COMPLEX) ? 2 : 1;
+  if (resolution.scheme == options::Scheme::none) {
+    constexpr double dense_matrices = 30;
+    return 8 * dense_matrices * n * n;
+  }
   if (resolution.scheme == options::Scheme::upwind) {
     return scalars * (12 * 4.5 * n * std::pow(std::min(levels, nodes), 0.52) + 60 * 4 * n);
   }
@@ -123,6 +138,7 @@ double predicted_bytes(const model::Scene& scene, const Resolution& resolution) 
 double relative_work(const model::Scene& scene, const Resolution& resolution) {
   const auto n = static_cast<double>(unknowns(scene, resolution));
   const double levels = 2.0 * resolution.levels + 1;
+  if (resolution.scheme == options::Scheme::none) return n * n * n;
   const double band = std::min(levels, n / levels);
   return resolution.scheme == options::Scheme::upwind ? n * band : n * (n / levels) * band;
 }

@@ -59,8 +59,9 @@ void warn(const options::Request& request) {
 accuracy::Progress progress_of(const options::Request& request, bool first_rank) {
   if (!request.progress || !first_rank) return {};
   return [&request](int step, const accuracy::Resolution& r, double seconds) {
-    const std::string axis = r.scheme == options::Scheme::hp ? fmt::format("degree {}", r.degree)
-                                                             : fmt::format("p = {}", r.points);
+    std::string axis = "no grid in v";
+    if (r.scheme == options::Scheme::hp) axis = fmt::format("degree {}", r.degree);
+    if (r.scheme == options::Scheme::upwind) axis = fmt::format("p = {}", r.points);
     const std::string time = seconds < 1 ? "" : fmt::format(", about {:.0f} s", seconds);
     say(fmt::format("step {}: {}, {} noise levels on each side, {} unknowns{}", step + 1, axis,
                     r.levels, accuracy::unknowns(request.scene, r), time));

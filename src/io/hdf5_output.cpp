@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "stickslip/io/hdf5_file.hpp"
@@ -11,10 +12,16 @@
 namespace stickslip::io {
 namespace {
 
+// A slash would make a group of its own.
+std::string group_name(std::string key) {
+  std::replace(key.begin(), key.end(), '/', ':');
+  return key;
+}
+
 void write_results(Hdf5File& file, const quantities::Results& results) {
   file.make_group("/results");
   for (const auto& r : results) {
-    const std::string group = "/results/" + r.key;
+    const std::string group = "/results/" + group_name(r.key);
     file.make_group(group);
     if (!r.unit.empty()) file.attribute(group, "unit", r.unit);
     if (r.is_scalar()) {
@@ -40,14 +47,22 @@ void write_record(Hdf5File& file, MPI_Comm comm, const options::Request& request
   file.attribute("/record", "seconds", times.total);
 }
 
-void write_density(Hdf5File& file, const quantities::DensityField& field, double error) {
-  file.make_group("/density");
-  file.write_array("/density/x", field.x);
-  file.write_array("/density/v", field.v);
-  const int n = static_cast<int>(field.x.size()) / 2;
+void write_field(Hdf5File& file, const std::string& name, const quantities::PhaseField& field) {
+  const int n = static_cast<int>(field.x().size()) / 2;
   std::vector<std::size_t> rows;
-  for (int i : field.local_levels) rows.push_back(static_cast<std::size_t>(i + n));
-  file.write_rows("/density/pdf", field.x.size(), field.v.size(), rows, field.local_rows);
+  for (int i : field.local_levels()) rows.push_back(static_cast<std::size_t>(i + n));
+  file.write_rows(name, field.x().size(), field.v().size(), rows, field.local_rows());
+}
+
+void write_axes(Hdf5File& file, const std::string& group, const quantities::PhaseField& field) {
+  file.make_group(group);
+  file.write_array(group + "/x", field.x());
+  file.write_array(group + "/v", field.v());
+}
+
+void write_density(Hdf5File& file, const quantities::DensityField& field, double error) {
+  write_axes(file, "/density", field.pdf);
+  write_field(file, "/density/pdf", field.pdf);
   file.write_array("/density/atom", field.atom);
   file.write_array("/density/marginal_x", field.noise_marginal);
   file.write_array("/density/marginal_v", field.velocity_marginal);
@@ -60,6 +75,28 @@ void write_density(Hdf5File& file, const quantities::DensityField& field, double
   file.attribute("/density", "probability_at_velocity_cut", field.cut_mass);
 }
 
+void write_modes(Hdf5File& file, const std::string& parity,
+                 const std::vector<quantities::RelaxationMode>& modes) {
+  if (modes.empty()) return;
+  const std::string group = "/relaxation_" + parity;
+  write_axes(file, group, modes[0].real);
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    const std::string name = fmt::format("{}/mode_{}", group, n + 1);
+    std::vector<double> real, imaginary;
+    for (const auto& value : modes[n].at_rest) {
+      real.push_back(value.real());
+      imaginary.push_back(value.imag());
+    }
+    file.make_group(name);
+    file.attribute(name, "rate", modes[n].rate.real());
+    file.attribute(name, "frequency", modes[n].rate.imag());
+    write_field(file, name + "/real", modes[n].real);
+    write_field(file, name + "/imaginary", modes[n].imaginary);
+    file.write_array(name + "/at_rest_real", real);
+    file.write_array(name + "/at_rest_imaginary", imaginary);
+  }
+}
+
 // A rectilinear grid for ParaView and VisIt: v across, x upwards.
 std::string xdmf(const std::string& hdf5_name, const quantities::DensityField& field) {
   const auto item = [&](std::size_t rows, std::size_t columns, const char* name) {
@@ -69,7 +106,7 @@ std::string xdmf(const std::string& hdf5_name, const quantities::DensityField& f
                        "Format=\"HDF\">{}:/density/{}</DataItem>",
                        size, hdf5_name, name);
   };
-  const std::size_t rows = field.x.size(), columns = field.v.size();
+  const std::size_t rows = field.pdf.x().size(), columns = field.pdf.v().size();
   return fmt::format(
       "<?xml version=\"1.0\"?>\n"
       "<Xdmf Version=\"3.0\"><Domain><Grid Name=\"density\" GridType=\"Uniform\">\n"
@@ -85,10 +122,12 @@ std::string xdmf(const std::string& hdf5_name, const quantities::DensityField& f
 void write_hdf5(MPI_Comm comm, const options::Request& request, const accuracy::Outcome& outcome,
                 const RunTimes& times) {
   Hdf5File file(comm, request.output);
-  write_results(file, outcome.results);
+  write_results(file, outcome.last.results);
   write_record(file, comm, request, outcome, times);
+  write_modes(file, "even", outcome.last.even);
+  write_modes(file, "odd", outcome.last.odd);
   if (!request.wants(options::Quantity::density)) return file.commit();
-  const auto field = quantities::density_field(*outcome.law);
+  const auto field = quantities::density_field(*outcome.last.law);
   write_density(file, field, outcome.speed_law_error);
   file.commit();
   if (petsc::rank(comm) != 0) return;

@@ -23,14 +23,15 @@ Json scene_of(const options::Request& request, const accuracy::Outcome& outcome)
              {"noise_levels_meant", s.meant().noise.levels}};
   if (!outcome.steps.empty()) {
     scene["noise_levels"] = outcome.steps.back().resolution.levels;
-    scene["v_max"] = outcome.steps.back().resolution.v_max;
+    const double v_max = outcome.steps.back().resolution.v_max;
+    if (v_max > 0) scene["v_max"] = v_max;
   }
   return scene;
 }
 
 Json results_of(const accuracy::Outcome& outcome) {
   Json results = Json::object();
-  for (const auto& r : outcome.results) {
+  for (const auto& r : outcome.last.results) {
     if (r.is_scalar()) {
       results[r.key] = {{"value", r.value[0]}, {"error", r.error[0]}};
     } else {
@@ -50,16 +51,17 @@ Json seconds_of(const petsc::Ledger& l) {
 
 Json step_of(const accuracy::Step& step) {
   const auto& r = step.resolution;
-  const bool hp = r.scheme == options::Scheme::hp;
-  Json json{{"scheme", hp ? "hp" : "upwind"}};
-  if (hp) {
-    json["degree"] = r.degree;
-    json["layers"] = r.layers;
-  } else {
-    json["p"] = r.points;
+  Json json;
+  switch (r.scheme) {
+  case options::Scheme::hp:
+    json = {{"scheme", "hp"}, {"degree", r.degree}, {"layers", r.layers}, {"v_max", r.v_max}};
+    break;
+  case options::Scheme::upwind:
+    json = {{"scheme", "upwind"}, {"p", r.points}, {"v_max", r.v_max}};
+    break;
+  case options::Scheme::none: json = {{"scheme", "none"}}; break;
   }
   json.update({{"noise_levels", r.levels},
-               {"v_max", r.v_max},
                {"unknowns", step.ledger.unknowns},
                {"nonzeros", step.ledger.nonzeros},
                {"factor_entries", step.ledger.factor_entries},
@@ -67,6 +69,7 @@ Json step_of(const accuracy::Step& step) {
                {"backward_error", step.ledger.backward_error}});
   json.update(seconds_of(step.ledger));
   json["seconds"] = step.seconds;
+  for (const auto& [name, value] : step.checks) json["checks"][name] = value;
   if (!step.limiting_key.empty()) {
     json["relative_error"] = step.estimate;
     json["limited_by"] = step.limiting_key;

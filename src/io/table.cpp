@@ -35,14 +35,31 @@ std::string result_lines(const quantities::Result& r) {
   return lines;
 }
 
-std::string step_line(const accuracy::Step& step, bool hp) {
+// The discretisation in v.
+std::string axis_cells(const accuracy::Resolution& r) {
+  switch (r.scheme) {
+  case options::Scheme::hp: return fmt::format("{:>6} {:>6}", r.degree, r.layers);
+  case options::Scheme::upwind: return fmt::format("{:>13}", r.points);
+  case options::Scheme::none: break;
+  }
+  return fmt::format("{:>13}", "exact");
+}
+
+const char* axis_title(options::Scheme scheme) {
+  switch (scheme) {
+  case options::Scheme::hp: return "degree layers";
+  case options::Scheme::upwind: return "            p";
+  case options::Scheme::none: break;
+  }
+  return "         in v";
+}
+
+std::string step_line(const accuracy::Step& step) {
   const auto& r = step.resolution;
   const auto& l = step.ledger;
-  const std::string axis =
-      hp ? fmt::format("{:>6} {:>6}", r.degree, r.layers) : fmt::format("{:>13}", r.points);
   std::string line = fmt::format("{} {:>7} {:>8.4g} {:>9} {:>10} {:>8.0f} {:>9.3f} {:>9.3f} "
                                  "{:>9.3f} {:>9.3f} {:>9.3f}",
-                                 axis, r.levels, r.v_max, l.unknowns, l.nonzeros,
+                                 axis_cells(r), r.levels, r.v_max, l.unknowns, l.nonzeros,
                                  l.factor_megabytes, l.assembly_seconds, l.analysis_seconds,
                                  l.factorization_seconds, l.solve_seconds, step.seconds);
   line += step.limiting_key.empty() ? "  to compare with"
@@ -52,12 +69,14 @@ std::string step_line(const accuracy::Step& step, bool hp) {
 
 std::string cost_table(const options::Request& request, const accuracy::Outcome& outcome) {
   if (outcome.steps.empty()) return "no system was assembled: closed formulas only\n";
-  const bool hp = request.method.scheme == options::Scheme::hp;
   std::string text = fmt::format(
       "{} {:>7} {:>8} {:>9} {:>10} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9}  {}\n",
-      hp ? "degree layers" : "            p", "levels", "v_max", "unknowns", "nonzeros", "MB",
+      axis_title(request.method.scheme), "levels", "v_max", "unknowns", "nonzeros", "MB",
       "assembly", "analysis", "factor", "solve", "total s", "largest relative error");
-  for (const auto& step : outcome.steps) text += step_line(step, hp);
+  for (const auto& step : outcome.steps) text += step_line(step);
+  for (const auto& [name, value] : outcome.steps.back().checks) {
+    text += fmt::format("{} = {:.4g}\n", name, value);
+  }
   return text;
 }
 
@@ -67,7 +86,7 @@ std::string table(const options::Request& request, const accuracy::Outcome& outc
                   const RunTimes& times) {
   std::string text = scene_line(request);
   text += fmt::format("\n{:<16} {:>24}  {:>8}  {:>8}\n", "quantity", "value", "error", "relative");
-  for (const auto& result : outcome.results) text += result_lines(result);
+  for (const auto& result : outcome.last.results) text += result_lines(result);
   if (request.wants(options::Quantity::density)) {
     text += fmt::format("{:<16} {:>24}  {:>8.1e}  of the distribution function of |V|\n", "density",
                         "in " + request.output, outcome.speed_law_error);

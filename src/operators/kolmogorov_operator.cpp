@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <numeric>
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
@@ -95,7 +96,7 @@ class KolmogorovOperator::Assembler {
 
   void rates_of_rest(int i) {
     if (rest_ == Rest::killing_edges && std::abs(i) == k_) {
-      leaving_ = process_.noise.rate();  // value 0 there: killed at once
+      killing_ = process_.noise.rate();  // value 0 there: killed at once
       return;
     }
     if (i < k_) rate_to_rest(i + 1, up_rate(i));
@@ -119,20 +120,23 @@ class KolmogorovOperator::Assembler {
   }
 
   void rate_to_rest(int i, double rate) {
-    leaving_ += rate;
     if (rest_ == Rest::killing) {
+      killing_ += rate;
       rest_coupling.push_back({local_row(), i, rate});
       return;
     }
     const int kept = states_.folded() ? std::abs(i) : i;
-    if (!states_.has_rest(kept)) return;  // an odd function at x = 0
-    const double sign = kept == i ? 1 : reflection();
-    row_.emplace_back(states_.index({StateKind::rest, Half::upper, kept, 0}), -sign * rate);
+    if (!states_.has_rest(kept)) {
+      killing_ += rate;  // an odd function vanishes at x = 0
+      return;
+    }
+    rate_to(states_.index({StateKind::rest, Half::upper, kept, 0}), rate,
+            kept == i ? 1 : reflection());
   }
 
   void rate_to_exit(Half half, double rate) {
     if (rest_ == Rest::killed_on_exit) {
-      leaving_ += rate;
+      killing_ += rate;
       exit_coupling.push_back({local_row(), half == Half::upper ? 1 : -1, rate});
     } else if (states_.folded()) {
       rate_to_trace(trace_at_zero(Half::upper, k_ + 1), rate,
@@ -143,32 +147,37 @@ class KolmogorovOperator::Assembler {
   }
 
   void rate_to_trace(const Functional& trace, double rate, double sign) {
-    for (const auto& [column, weight] : trace) row_.emplace_back(column, -sign * rate * weight);
-    leaving_ += rate;
+    for (const auto& [column, weight] : trace) rate_to(column, rate * weight, sign);
   }
 
-  void rate_to(PetscInt column, double rate) {
-    row_.emplace_back(column, -rate);
-    leaving_ += rate;
+  // A value seen with sign -1 through a reflection leaves twice its rate in the row sum.
+  void rate_to(PetscInt column, double rate, double sign = 1) {
+    if (sign < 0) killing_ += 2 * rate;
+    row_.emplace_back(column, -sign * rate);
   }
 
   void finish_row(PetscInt diagonal) {
-    row_.emplace_back(diagonal, lambda_ + leaving_);
     std::sort(row_.begin(), row_.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (const auto& [column, value] : row_) {
-      const bool repeated =
-          static_cast<PetscInt>(columns.size()) > row_start.back() && columns.back() == column;
-      if (repeated) {
-        values.back() += value;
+    const auto begin = static_cast<std::ptrdiff_t>(columns.size());
+    for (const auto& [column, rate] : row_) {
+      if (column == diagonal) continue;  // back to itself
+      if (static_cast<std::ptrdiff_t>(columns.size()) > begin && columns.back() == column) {
+        values.back() += rate;
       } else {
         columns.push_back(column);
-        values.push_back(value);
+        values.push_back(rate);
       }
     }
+    // Summed as a reader of the row would sum it: with it the row adds up to exactly zero.
+    const PetscScalar leaving =
+        -std::accumulate(values.begin() + begin, values.end(), PetscScalar(0));
+    const auto place = std::lower_bound(columns.begin() + begin, columns.end(), diagonal);
+    values.insert(values.begin() + (place - columns.begin()), lambda_ + leaving + killing_);
+    columns.insert(place, diagonal);
     row_start.push_back(static_cast<PetscInt>(columns.size()));
     row_.clear();
-    leaving_ = 0;
+    killing_ = 0;
   }
 
   [[nodiscard]] PetscInt local_row() const { return static_cast<PetscInt>(row_start.size()) - 1; }
@@ -196,7 +205,7 @@ class KolmogorovOperator::Assembler {
   std::vector<velocity::Entry> zero_trace_, top_trace_;
   velocity::TransportRow transport_;
   std::vector<std::pair<PetscInt, PetscScalar>> row_;
-  double leaving_ = 0;
+  double killing_ = 0;  // row sum of A - lambda
 };
 
 KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const model::Process& process,

@@ -12,6 +12,7 @@
 
 #include "stickslip/options/settings.hpp"
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/eigensolver.hpp"
 #include "stickslip/petsc/factorization.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/text.hpp"
@@ -93,12 +94,109 @@ model::Scene read_scene(const Settings& settings, Request& request, Problems& pr
   return scene;
 }
 
-Quantity quantity_named(const std::string& name) {
-  if (name == "moments") return Quantity::moments;
-  if (name == "noise_law") return Quantity::noise_law;
-  if (name == "entry_law") return Quantity::entry_law;
-  if (name == "density") return Quantity::density;
-  return Quantity::sticking;
+struct Asked {
+  const char* name;
+  Quantity quantity;
+  std::vector<Route> routes;  // that give it
+};
+
+const std::vector<Asked>& askable() {
+  using enum Route;
+  static const std::vector<Asked> all{
+      {"sticking", Quantity::sticking, {excursion, lambda, hitting, null_vector, fluid_queue}},
+      {"moments", Quantity::moments, {excursion, lambda, null_vector, fluid_queue}},
+      {"noise_law", Quantity::noise_law, {excursion, lambda, null_vector, fluid_queue}},
+      {"entry_law", Quantity::entry_law, {excursion, fluid_queue}},
+      {"density", Quantity::density, {excursion}},
+      {"laplace", Quantity::laplace, {excursion, fluid_queue}},
+      {"resolvent", Quantity::resolvent, {excursion}},
+      {"relaxation", Quantity::relaxation, {excursion}}};
+  return all;
+}
+
+Route route_named(const std::string& name) {
+  if (name == "lambda") return Route::lambda;
+  if (name == "hitting") return Route::hitting;
+  if (name == "null_vector") return Route::null_vector;
+  if (name == "fluid_queue") return Route::fluid_queue;
+  return Route::excursion;
+}
+
+// The quantities named; of the default ones those that the route gives.
+void read_quantities(const Settings& settings, Request& request, Problems& problems) {
+  std::vector<std::string> given_by_route, refused;
+  for (const auto& asked : askable()) {
+    const auto names = settings.list("quantities");
+    const bool gives = std::count(asked.routes.begin(), asked.routes.end(), request.route) > 0;
+    const bool named = std::count(names.begin(), names.end(), asked.name) > 0;
+    if (gives) given_by_route.emplace_back(asked.name);
+    if (named && gives) request.quantities.insert(asked.quantity);
+    if (named && !gives) refused.emplace_back(asked.name);
+  }
+  if (refused.empty() || !settings.given("quantities")) return;
+  settings.report(problems, "quantities",
+                  fmt::format("{} cannot be had by -route {}, which gives {}",
+                              enumerate(refused, "and"), settings.text("route"),
+                              enumerate(given_by_route, "and")),
+                  "take -route excursion, or other quantities");
+}
+
+void read_observables(const Settings& settings, Request& request, Problems& problems) {
+  for (const auto& text : split(settings.text("observable"), ';')) {
+    try {
+      request.observables.push_back(model::parse_observable(text, request.scene.friction));
+    } catch (const std::invalid_argument& error) {
+      settings.report(problems, "observable", error.what(),
+                      "write for example \"v^2; x*v; stick\"");
+    }
+  }
+}
+
+// What the quantities and the route need besides the scene.
+void read_arguments(const Settings& settings, Request& request, Problems& problems) {
+  request.lambda = settings.numbers("lambda");
+  read_observables(settings, request, problems);
+  const bool transforms = request.wants(Quantity::laplace) || request.wants(Quantity::resolvent);
+  const bool resolvent = request.wants(Quantity::resolvent);
+  if (transforms && request.lambda.empty()) {
+    settings.report(problems, "quantities", "asks for functions of lambda and no values are given",
+                    "add for example -lambda 0.1,1,10");
+  }
+  if (resolvent && request.observables.empty() && !settings.given("observable")) {
+    settings.report(problems, "quantities", "asks for resolvent and no functions are given",
+                    "add for example -observable \"v^2; stick\"");
+  }
+  const bool by_lambda = request.route == Route::lambda;
+  if (by_lambda && !request.lambda.empty() &&
+      (request.lambda.size() > 1 || request.lambda[0] == 0)) {
+    settings.report(problems, "lambda", "must be one positive number with -route lambda",
+                    "leave it out to have it chosen from -accuracy");
+  }
+  const auto warn_unused = [&](const char* name, bool used) {
+    if (!used && settings.given(name)) {
+      request.warnings.push_back(fmt::format("-{} has no effect on what is asked for", name));
+    }
+  };
+  warn_unused("lambda", transforms || by_lambda);
+  warn_unused("observable", resolvent);
+}
+
+// What only some routes can do.
+void check_route(const Settings& settings, const Request& request, Problems& problems) {
+  if (request.route != Route::excursion && request.scene.v_max) {
+    settings.report(problems, "v_max", "is no choice of -route " + settings.text("route"),
+                    "leave it out, or take -route excursion");
+  }
+  if (request.route != Route::fluid_queue) return;
+  if (request.scene.drag.bounds_velocity()) {
+    settings.report(problems, "route", "needs b = 0: only then is the model a fluid queue",
+                    "add -drag none, or take -route excursion");
+  }
+  for (const char* name : {"scheme", "degree", "layers", "p"}) {
+    if (!settings.given(name)) continue;
+    settings.report(problems, name, "is no choice of -route fluid_queue, which has no grid in v",
+                    "leave it out");
+  }
 }
 
 Method read_method(const Settings& settings, Problems& problems) {
@@ -193,12 +291,27 @@ bool belongs_to_petsc(const std::string& name) {
   return std::find(exact.begin(), exact.end(), name) != exact.end();
 }
 
+/// A role of a solver, whose PETSc options carry a prefix.
+struct SolverRole {
+  const char* prefix;
+  void (*probe_options)(const std::string& prefix);
+  std::string show;  // option that shows what the solver uses, without the prefix
+};
+
+const std::vector<SolverRole>& solver_roles() {
+  static const std::vector<SolverRole> roles{
+      {"slide_", petsc::Factorization::probe_options, "ksp_view"},
+      {"null_", petsc::Eigensolver::probe_options, "eps_view"},
+      {"relax_", petsc::Eigensolver::probe_options, "eps_view"}};
+  return roles;
+}
+
 std::string unknown_option(const std::string& name) {
-  for (const auto& prefix : solver_prefixes()) {
-    if (name.starts_with(prefix)) {
-      return fmt::format("-{}: the solver of this role knows no such option; -{}ksp_view shows "
-                         "what it uses",
-                         name, prefix);
+  for (const auto& role : solver_roles()) {
+    if (name.starts_with(role.prefix)) {
+      return fmt::format("-{}: the solver of this role knows no such option; -{}{} shows what it "
+                         "uses",
+                         name, role.prefix, role.show);
     }
   }
   const auto names = all_names();
@@ -207,14 +320,31 @@ std::string unknown_option(const std::string& name) {
                      near.empty() ? "-help lists all" : "did you mean " + near + "?");
 }
 
+// Names of all options in the database, without the dash.
+std::vector<std::string> given_names() {
+  std::vector<std::string> names;
+  char* all = nullptr;
+  petsc::check(PetscOptionsGetAll(nullptr, &all));
+  for (const auto& word : split(all, ' ')) {
+    if (is_option_name(word)) names.push_back(word.substr(1));
+  }
+  petsc::check(PetscFree(all));
+  return names;
+}
+
 // What the solver of a role says to its options, tried on a tiny matrix.
 void check_solver_options(Problems& problems) {
-  for (const auto& prefix : solver_prefixes()) {
+  const auto names = given_names();
+  for (const auto& role : solver_roles()) {
+    const bool used = std::any_of(names.begin(), names.end(), [&role](const std::string& name) {
+      return name.starts_with(role.prefix);
+    });
+    if (!used) continue;
     try {
-      petsc::Factorization::probe_options(prefix);
+      role.probe_options(role.prefix);
     } catch (const petsc::PetscFailure& failure) {
       const std::string text = failure.what();
-      problems.add(fmt::format("-{}...: {}", prefix, text.substr(0, text.find('\n'))));
+      problems.add(fmt::format("-{}...: {}", role.prefix, text.substr(0, text.find('\n'))));
     }
   }
 }
@@ -232,8 +362,6 @@ void check_unknown_options(Problems& problems) {
 
 }  // namespace
 
-std::vector<std::string> solver_prefixes() { return {"slide_"}; }
-
 Request read_request(const std::vector<std::string>& argv) {
   Problems problems;
   Request request;
@@ -245,11 +373,13 @@ Request read_request(const std::vector<std::string>& argv) {
 
   request.scene = read_scene(settings, request, problems);
   check_noise(settings, request.scene, problems);
-  for (const auto& name : settings.list("quantities")) {
-    request.quantities.insert(quantity_named(name));
-  }
+  request.route = route_named(settings.text("route"));
+  read_quantities(settings, request, problems);
+  read_arguments(settings, request, problems);
   request.accuracy = settings.real("accuracy");
   request.method = read_method(settings, problems);
+  check_route(settings, request, problems);
+  if (request.route == Route::fluid_queue) request.method.scheme = Scheme::none;
   read_output(settings, request, problems);
   for (const auto& group : table()) {
     for (const auto& option : group.options) {

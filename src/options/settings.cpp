@@ -44,7 +44,49 @@ void check_words(const Option& option, const std::string& value, Problems& probl
   }
 }
 
+void check_numbers(const Option& option, const std::string& value,
+                   const std::optional<std::vector<double>>& values, Problems& problems) {
+  const std::string must = "must be " + allowed_values(option);
+  if (!values)
+    return problems.add(option, value, must, "write for example 0.1,1 or 0.01:10:31:log");
+  for (double v : *values) {
+    if (option.range.contains(v)) continue;
+    return problems.add(option, fmt::format("{:g}", v), must, option.fix);
+  }
+}
+
+// first:last:count[:log]; nothing if the parts make no sense.
+std::optional<std::vector<double>> parse_range(const std::vector<std::string>& parts) {
+  const bool log = parts.size() == 4 && parts[3] == "log";
+  if (parts.size() != 3 && !log) return std::nullopt;
+  const auto first = parse_number(parts[0]), last = parse_number(parts[1]),
+             count = parse_number(parts[2]);
+  constexpr double most = 1e6;
+  if (!first || !last || !count || *count != std::floor(*count)) return std::nullopt;
+  if (*count < 2 || *count > most || !(*first < *last) || (log && *first <= 0)) return std::nullopt;
+  std::vector<double> values;
+  for (int n = 0; n < *count; ++n) {
+    const double t = n / (*count - 1);
+    values.push_back(log ? *first * std::pow(*last / *first, t) : *first + t * (*last - *first));
+  }
+  values.back() = *last;
+  return values;
+}
+
 }  // namespace
+
+std::optional<std::vector<double>> parse_numbers(const std::string& text) {
+  const auto range = split(text, ':');
+  if (range.size() > 1) return parse_range(range);
+  std::vector<double> values;
+  for (const auto& word : split(text, ',')) {
+    const auto value = parse_number(word);
+    if (!value) return std::nullopt;
+    values.push_back(*value);
+  }
+  if (values.empty()) return std::nullopt;
+  return values;
+}
 
 std::optional<double> parse_number(const std::string& text) {
   double value = 0;
@@ -100,6 +142,13 @@ void Settings::parse(const Option& option, const std::string& value, Problems& p
   }
   case Kind::choice:
   case Kind::list: check_words(option, value, problems); break;
+  case Kind::numbers: {
+    const auto values = parse_numbers(value);
+    check_numbers(option, value, values, problems);
+    if (values) lists_[option.name] = *values;
+    break;
+  }
+  case Kind::text: break;
   case Kind::path:
     if (value.empty()) problems.add(option, value, must, "name the file after the option");
     break;
@@ -119,6 +168,11 @@ std::optional<int> Settings::integer(const std::string& name) const {
 
 std::vector<std::string> Settings::list(const std::string& name) const {
   return split(text(name), ',');
+}
+
+std::vector<double> Settings::numbers(const std::string& name) const {
+  const auto found = lists_.find(name);
+  return found == lists_.end() ? std::vector<double>{} : found->second;
 }
 
 void Settings::report(Problems& problems, const std::string& name, const std::string& why,

@@ -31,6 +31,21 @@ Option words(std::string name, Kind kind, std::string initial, std::vector<std::
           std::move(sentence), ""};
 }
 
+Option numbers(std::string name, std::string unit, Range range, std::string sentence) {
+  return {std::move(name),
+          Kind::numbers,
+          std::move(unit),
+          "",
+          range,
+          {},
+          std::move(sentence),
+          "negative and missing values mean nothing here"};
+}
+
+Option text(std::string name, std::string initial, std::string sentence) {
+  return {std::move(name), Kind::text, "", std::move(initial), {}, {}, std::move(sentence), ""};
+}
+
 Option path(std::string name, std::string sentence) {
   return {std::move(name), Kind::path, "", "", {}, {}, std::move(sentence), ""};
 }
@@ -68,42 +83,59 @@ Group scene_group() {
 }
 
 Group question_group() {
-  return {"Question",
-          "What is asked for; only what is named is assembled, factored and solved",
-          {
-              words("quantities", Kind::list, "sticking,moments,noise_law",
-                    {"sticking", "moments", "noise_law", "entry_law", "density"},
-                    "comma list. sticking: P_stick, P_slide, mean_stick, mean_slide, "
-                    "mean_excursion. moments: E_V2, E_absV, E_XV, E_V. noise_law: P_X_le_mu_s, "
-                    "E_X2. entry_law: the level at which sliding ends (an array), f_stick_0. "
-                    "density: the stationary law as a field (needs -output)"),
-              real("accuracy", "", "1e-6", {1e-15, 0.1, true, true},
-                   "relative error wanted for every scalar asked for, at the given delta",
-                   "double precision allows down to about 1e-12, scene by scene"),
-          }};
+  return {
+      "Question",
+      "What is asked for; only what is named is assembled, factored and solved",
+      {
+          words("quantities", Kind::list, "sticking,moments,noise_law",
+                {"sticking", "moments", "noise_law", "entry_law", "density", "laplace", "resolvent",
+                 "relaxation"},
+                "comma list. sticking: P_stick, P_slide, mean_stick, mean_slide, "
+                "mean_excursion. moments: E_V2, E_absV, E_XV, E_V. noise_law: P_X_le_mu_s, "
+                "E_X2. entry_law: the level at which sliding ends (an array), f_stick_0. "
+                "density: the stationary law as a field (needs -output). laplace: F_slide, "
+                "F_stick, F_excursion on -lambda. resolvent: h_plus, h_minus, w_one and for "
+                "each -observable u, w_plus, w_minus, pi, mu on -lambda. relaxation: leading "
+                "eigenvalues of -L for even and odd functions"),
+          numbers("lambda", "1/time", not_negative(),
+                  "values of lambda, as a,b,c or first:last:count or first:last:count:log. With "
+                  "-route lambda one value, chosen from -accuracy if it is left out"),
+          text("observable", "",
+               "functions of the state for resolvent, separated by semicolons: 1, x, v, v^2, "
+               "|v|, stick, slide, |x|<=mu_s, or expressions in x, y, v, mu_s, mu_d such as "
+               "\"x*v; abs(v)^3\""),
+          real("accuracy", "", "1e-6", {1e-15, 0.1, true, true},
+               "relative error wanted for every scalar asked for, at the given delta",
+               "double precision allows down to about 1e-12, scene by scene"),
+      }};
 }
 
 Group method_group() {
-  return {"Method",
-          "How it is computed",
-          {
-              words("scheme", Kind::choice, "hp", {"hp", "upwind"},
-                    "discretisation in v: hp discontinuous Galerkin elements, or the first-order "
-                    "upwind differences of the paper"),
-              integer("degree", "", whole(1, 24), {},
-                      "polynomial degree of the hp elements; fixing it switches refinement off",
-                      "leave it out to have it chosen from -accuracy"),
-              integer("layers", "", whole(1, 200), {},
-                      "elements graded towards v = 0; fixing it switches refinement off",
-                      "leave it out to have it chosen from the scene"),
-              integer("p", "", whole(1, 1e7), {},
-                      "points of the upwind scheme per noise step; fixing it switches refinement "
-                      "off",
-                      "leave it out to have it chosen from -accuracy"),
-              words("route", Kind::choice, "excursion", {"excursion"},
-                    "excursion: one transposed solve with the sliding operator gives the whole "
-                    "stationary law"),
-          }};
+  return {
+      "Method",
+      "How it is computed",
+      {
+          words("scheme", Kind::choice, "hp", {"hp", "upwind"},
+                "discretisation in v: hp discontinuous Galerkin elements, or the first-order "
+                "upwind differences of the paper"),
+          integer("degree", "", whole(1, 24), {},
+                  "polynomial degree of the hp elements; fixing it switches refinement off",
+                  "leave it out to have it chosen from -accuracy"),
+          integer("layers", "", whole(1, 200), {},
+                  "elements graded towards v = 0; fixing it switches refinement off",
+                  "leave it out to have it chosen from the scene"),
+          integer("p", "", whole(1, 1e7), {},
+                  "points of the upwind scheme per noise step; fixing it switches refinement "
+                  "off",
+                  "leave it out to have it chosen from -accuracy"),
+          words("route", Kind::choice, "excursion",
+                {"excursion", "lambda", "hitting", "null_vector", "fluid_queue"},
+                "excursion: one transposed solve with the sliding operator gives the whole "
+                "stationary law. The others work on both signs of v and check it. lambda: "
+                "lambda u_lambda for one small lambda. hitting: mean hitting times. null_vector: "
+                "the left null vector of the generator, by SLEPc. fluid_queue: b = 0 without any "
+                "discretisation in v"),
+      }};
 }
 
 Group output_group() {
@@ -131,6 +163,8 @@ std::string kind_name(Kind kind) {
   case Kind::integer: return "integer";
   case Kind::choice: return "word";
   case Kind::list: return "list";
+  case Kind::numbers: return "numbers";
+  case Kind::text: return "text";
   case Kind::path: return "file";
   }
   return "";
@@ -181,6 +215,10 @@ std::string allowed_values(const Option& option) {
            (option.words.empty() ? "" : " or " + enumerate(option.words, "or"));
   case Kind::choice: return enumerate(option.words, "or");
   case Kind::list: return "a comma list of " + enumerate(option.words, "and");
+  case Kind::numbers:
+    return "numbers in " + option.range.text() +
+           " as a,b,c or first:last:count or first:last:count:log";
+  case Kind::text: return "text";
   case Kind::path: return "a file name";
   }
   return "";
@@ -204,15 +242,18 @@ std::string help_text() {
                76, 21));
     }
   }
-  text += "\nOther:\n"
-          "  -options_file      read options from a file, one -name value a line, # for comments\n"
-          "  -help, -version    print this text, or the versions, and stop\n"
-          "  -reference         print the reference page in Markdown and stop\n"
-          "  -slide_...         PETSc options of the solver for the sliding operator, for example\n"
-          "                     -slide_mat_mumps_icntl_7 2 or -slide_ksp_view\n"
-          "  -log_view, ...     PETSc's own options\n\n"
-          "Exit status: 0 done; 1 other error; 2 bad input; 3 accuracy not reached or a solver\n"
-          "failed (what was reached is still written); 4 would not fit in memory.\n";
+  text +=
+      "\nOther:\n"
+      "  -options_file      read options from a file, one -name value a line, # for comments\n"
+      "  -help, -version    print this text, or the versions, and stop\n"
+      "  -reference         print the reference page in Markdown and stop\n"
+      "  -slide_...         PETSc options of the solver for the sliding operator, for example\n"
+      "                     -slide_mat_mumps_icntl_7 2 or -slide_ksp_view\n"
+      "  -null_..., -relax_...  SLEPc options of the eigensolvers of -route null_vector and of\n"
+      "                     relaxation, for example -relax_eps_nev 10 or -null_eps_view\n"
+      "  -log_view, ...     PETSc's own options\n\n"
+      "Exit status: 0 done; 1 other error; 2 bad input; 3 accuracy not reached or a solver\n"
+      "failed (what was reached is still written); 4 would not fit in memory.\n";
   return text;
 }
 

@@ -36,13 +36,9 @@ KspHandle configured_solver(Mat matrix, const std::string& prefix) {
   check(KSPCreate(comm, ksp.out()));
   check(KSPSetOptionsPrefix(ksp, prefix.c_str()));
   check(KSPSetOperators(ksp, matrix, matrix));
-  check(KSPSetType(ksp, KSPPREONLY));
-  PC pc = nullptr;
-  check(KSPGetPC(ksp, &pc));
-  check(PCSetType(pc, PCLU));
-  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  set_direct_solver(ksp);
   check(KSPSetFromOptions(ksp));
-  if (uses_mumps(ksp)) set_default("-" + prefix + "mat_mumps_icntl_7", "2");  // AMF
+  set_default_ordering(ksp);
   return ksp;
 }
 
@@ -56,20 +52,6 @@ std::string describe_failure(KSP ksp) {
   check(MatMumpsGetInfog(factor, 1, &info1));
   check(MatMumpsGetInfog(factor, 2, &info2));
   return fmt::format("MUMPS stopped with INFOG(1) = {}, INFOG(2) = {}", info1, info2);
-}
-
-void require_factored(KSP ksp, const std::string& prefix) {
-  PC pc = nullptr;
-  check(KSPGetPC(ksp, &pc));
-  PCFailedReason reason = PC_NOERROR;
-  check(PCGetFailedReason(pc, &reason));
-  if (reason == PC_NOERROR) return;
-  const std::string what = describe_failure(ksp);
-  if (reason == PC_FACTOR_OUTMEMORY) {
-    throw NoMemory(what + ": the factors need more memory than there is; use a larger -delta, a "
-                          "looser -accuracy or more ranks");
-  }
-  throw NotReached(fmt::format("{}; the matrix of -{} may be singular", what, prefix));
 }
 
 void take_magnitudes_of_block(Mat block) {
@@ -100,6 +82,49 @@ MatHandle magnitudes(Mat matrix) {
 
 }  // namespace
 
+void set_direct_solver(KSP ksp) {
+  check(KSPSetType(ksp, KSPPREONLY));
+  PC pc = nullptr;
+  check(KSPGetPC(ksp, &pc));
+  check(PCSetType(pc, PCLU));
+  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+}
+
+void set_default_ordering(KSP ksp) {
+  const char* prefix = nullptr;
+  check(KSPGetOptionsPrefix(ksp, &prefix));
+  if (uses_mumps(ksp)) set_default(fmt::format("-{}mat_mumps_icntl_7", prefix), "2");  // AMF
+}
+
+void require_factored(KSP ksp, const std::string& prefix) {
+  PC pc = nullptr;
+  check(KSPGetPC(ksp, &pc));
+  PCFailedReason reason = PC_NOERROR;
+  check(PCGetFailedReason(pc, &reason));
+  if (reason == PC_NOERROR) return;
+  const std::string what = describe_failure(ksp);
+  if (reason == PC_FACTOR_OUTMEMORY) {
+    throw NoMemory(what + ": the factors need more memory than there is; use a larger -delta, a "
+                          "looser -accuracy or more ranks");
+  }
+  throw NotReached(fmt::format("{}; the matrix of -{} may be singular", what, prefix));
+}
+
+void record_factors(KSP ksp, Ledger& ledger) {
+  if (!uses_mumps(ksp)) return;
+  PC pc = nullptr;
+  check(KSPGetPC(ksp, &pc));
+  Mat factor = nullptr;
+  check(PCFactorGetMatrix(pc, &factor));
+  PetscInt entries = 0, megabytes = 0;
+  check(MatMumpsGetInfog(factor, 29, &entries));    // entries of the factors, all ranks
+  check(MatMumpsGetInfog(factor, 22, &megabytes));  // memory used, all ranks
+  Ledger size;
+  size.factor_entries = entries < 0 ? -1000000LL * entries : entries;  // in millions if negative
+  size.factor_megabytes = static_cast<double>(megabytes);
+  ledger += size;
+}
+
 Factorization::Factorization(Mat matrix, const std::string& prefix, Ledger& ledger)
     : prefix_(prefix), ledger_(ledger) {
   check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
@@ -117,22 +142,7 @@ Factorization::Factorization(Mat matrix, const std::string& prefix, Ledger& ledg
   ledger_.analysis_seconds += symbolic;
   ledger_.factorization_seconds += total - symbolic;
   ++(kComplex ? ledger_.factorizations_complex : ledger_.factorizations_real);
-  record_memory();
-}
-
-void Factorization::record_memory() {
-  if (!uses_mumps(ksp_)) return;
-  PC pc = nullptr;
-  check(KSPGetPC(ksp_, &pc));
-  Mat factor = nullptr;
-  check(PCFactorGetMatrix(pc, &factor));
-  PetscInt entries = 0, megabytes = 0;
-  check(MatMumpsGetInfog(factor, 29, &entries));    // entries of the factors, all ranks
-  check(MatMumpsGetInfog(factor, 22, &megabytes));  // memory used, all ranks
-  Ledger size;
-  size.factor_entries = entries < 0 ? -1000000LL * entries : entries;  // in millions if negative
-  size.factor_megabytes = static_cast<double>(megabytes);
-  ledger_ += size;
+  record_factors(ksp_, ledger_);
 }
 
 void Factorization::apply(Vec b, Vec x, bool transposed) {

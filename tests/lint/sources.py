@@ -11,7 +11,7 @@ import re
 import statistics
 import sys
 
-ROOMS = ("support", "model", "exact", "velocity", "petsc", "options", "operators", "quantities",
+ROOMS = ("support", "model", "exact", "velocity", "petsc", "options", "operators", "quantities", "routes",
          "accuracy", "io", "app")
 LONGEST, LONG, MEDIAN = 60, 30, 8
 

@@ -153,14 +153,14 @@ TEST_CASE("density: integrates to the law it came from", "[parallel]") {
   for (const auto& resolution : sample_resolutions(s)) {
     const auto law = solve(s, resolution);
     const auto field = quantities::density_field(law);
-    const std::size_t half = field.v.size() / 2;
-    std::vector<double> weights(field.v.size());
+    const std::size_t half = field.pdf.v().size() / 2;
+    std::vector<double> weights(field.pdf.v().size());
     for (std::size_t j = 0; j < half; ++j) {
       weights[half + j] = weights[half - 1 - j] = law.axis().weights()[j];
     }
-    CHECK(std::is_sorted(field.v.begin(), field.v.end()));
+    CHECK(std::is_sorted(field.pdf.v().begin(), field.pdf.v().end()));
     double sliding = 0;
-    for (std::size_t j = 0; j < field.v.size(); ++j) {
+    for (std::size_t j = 0; j < field.pdf.v().size(); ++j) {
       sliding += weights[j] * field.velocity_marginal[j];
     }
     const double stick = sum(field.atom);
@@ -169,11 +169,11 @@ TEST_CASE("density: integrates to the law it came from", "[parallel]") {
     CHECK(sliding + stick + field.cut_mass == Approx(1).epsilon(1e-11));
     // Each row integrates to P(X = x_i) less its atom, from both halves.
     const int n = law.process().noise.levels;
-    for (std::size_t r = 0; r < field.local_levels.size(); ++r) {
-      const std::size_t level = static_cast<std::size_t>(field.local_levels[r] + n);
+    for (std::size_t r = 0; r < field.pdf.local_levels().size(); ++r) {
+      const std::size_t level = static_cast<std::size_t>(field.pdf.local_levels()[r] + n);
       double mass = field.atom[level];
-      for (std::size_t j = 0; j < field.v.size(); ++j) {
-        mass += weights[j] * field.local_rows[r * field.v.size() + j];
+      for (std::size_t j = 0; j < field.pdf.v().size(); ++j) {
+        mass += weights[j] * field.pdf.local_rows()[r * field.pdf.v().size() + j];
       }
       CHECK(mass == Approx(field.noise_marginal[level]).epsilon(1e-10).margin(1e-13));
     }

@@ -27,6 +27,7 @@ class Ladder {
   [[nodiscard]] double tail_tolerance(int n) const;
 
  private:
+  [[nodiscard]] int free_rungs() const;
   [[nodiscard]] int degree(int n) const;
   [[nodiscard]] int points(int n) const;
 
@@ -34,6 +35,7 @@ class Ladder {
   options::Method method_;
   double accuracy_;
   int first_degree_ = 0;  // of rung 1
+  int halves_ = 1;
   int last_;
 };
 

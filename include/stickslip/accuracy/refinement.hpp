@@ -9,8 +9,7 @@
 #include "stickslip/accuracy/resolution.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/petsc/ledger.hpp"
-#include "stickslip/quantities/results.hpp"
-#include "stickslip/quantities/stationary.hpp"
+#include "stickslip/routes/evaluation.hpp"
 
 namespace stickslip::accuracy {
 
@@ -21,16 +20,16 @@ struct Step {
   double seconds = 0;        ///< wall time of the whole step
   double estimate = 0;       ///< largest relative error estimate of a scalar; 0 if none yet
   std::string limiting_key;  ///< the scalar that has it
+  std::vector<std::pair<std::string, double>> checks;  ///< what the route tells about itself
 };
 
 struct Outcome {
-  quantities::Results results;  ///< values of the last step with their error estimates
-  bool reached = false;         ///< whether all estimates are within the accuracy
-  std::string shortfall;        ///< why not, and what would help
+  /// Of the last step: values with their error estimates, and the law and modes for fields.
+  routes::Evaluation last;
+  bool reached = false;   ///< whether all estimates are within the accuracy
+  std::string shortfall;  ///< why not, and what would help
   std::vector<Step> steps;
   petsc::Ledger total;
-  /// The last stationary law, for fields; none if no system was solved.
-  std::unique_ptr<quantities::StationaryLaw> law;
   double speed_law_error = 0;  ///< of the distribution function of |V|
 };
 
@@ -41,11 +40,11 @@ using Progress = std::function<void(int, const Resolution&, double)>;
 /// Climbs the ladder of the request. The error estimate of a value is
 ///
 ///   max(error_per_change |last change|, error_per_earlier_change |change before|)
-///   + |effect of the last correction of the solve| + conservation defect |value|,
+///   + error of the route on this discretisation,
 ///
-/// where the second line estimates rounding. Stops when every scalar meets the accuracy, when
-/// rounding forbids it, or at the end of the ladder. Collective. Throws NoMemory before anything is
-/// allocated that would not fit, NotReached when a solver fails.
+/// where the second line is mostly rounding; see routes::Evaluation. Stops when every scalar meets
+/// the accuracy, when rounding forbids it, or at the end of the ladder. Collective. Throws NoMemory
+/// before anything is allocated that would not fit, NotReached when a solver fails.
 [[nodiscard]] Outcome refine(MPI_Comm comm, const options::Request& request,
                              const Progress& progress);
 

@@ -17,6 +17,7 @@ struct Resolution {
   int points = 0;    ///< upwind: nodes per noise step
   int levels = 0;    ///< N, noise levels on each side of 0
   double v_max = 0;  ///< end of the velocity axis [velocity]
+  int halves = 1;    ///< 1: folded by symmetry, v > 0 only; 2: both signs of v
 };
 
 /// Noise levels on each side of 0 whose tail beyond weighs less than `tolerance` against the level
@@ -36,10 +37,15 @@ struct Resolution {
 /// Upwind with `points` nodes per noise step, the open rest chosen as above.
 [[nodiscard]] Resolution upwind_resolution(const model::Scene& scene, int points, double tolerance);
 
+/// No discretisation in v: only the noise range is chosen.
+[[nodiscard]] Resolution exact_resolution(const model::Scene& scene, double tolerance);
+
+/// None without a discretisation in v.
 [[nodiscard]] std::shared_ptr<const velocity::Axis> make_axis(const model::Scene& scene,
                                                               const Resolution& resolution);
 
-/// Number of sliding unknowns, up to the few origin and holding states.
+/// Number of sliding unknowns, up to the few origin and holding states; for the fluid queue that of
+/// its phases.
 [[nodiscard]] std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution);
 
 /// Memory that assembly and factorisation take, all ranks together [bytes]; fitted to MUMPS's

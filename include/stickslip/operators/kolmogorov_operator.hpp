@@ -30,8 +30,10 @@ enum class Rest {
 /// Levels that leave v = 0 need no condition. Static values follow the noise until they leave to
 /// s+- = (+-x_{k+1}, +-1, 0).
 ///
-/// Diagonals are summed from the off-diagonals, so that the rates out of a state add up to zero
-/// with its diagonal to rounding. On an upwind axis off-diagonals of -A are >= 0.
+/// Diagonals are summed from the off-diagonals of their row in the order of columns, so that with
+/// Rest::kept and lambda = 0 row sums are exactly zero. On an upwind axis the off-diagonals of -A
+/// are >= 0 and a row has at most five entries: unfolded and kept, -A then is the generator M of
+/// the paper's section 5.
 class KolmogorovOperator {
  public:
   /// Assembles the local rows, with exact preallocation. Collective. O(local nonzeros).

@@ -6,14 +6,33 @@
 #include <string>
 #include <vector>
 
+#include "stickslip/model/observable.hpp"
 #include "stickslip/model/scene.hpp"
 
 namespace stickslip::options {
 
 /// What can be asked for by -quantities.
-enum class Quantity { sticking, moments, noise_law, entry_law, density };
+enum class Quantity {
+  sticking,
+  moments,
+  noise_law,
+  entry_law,
+  density,
+  laplace,
+  resolvent,
+  relaxation
+};
 
-enum class Scheme { hp, upwind };
+/// Discretisation in v; `none` for the fluid queue, which needs none.
+enum class Scheme { hp, upwind, none };
+
+/// By which system of equations.
+enum class Route { excursion, lambda, hitting, null_vector, fluid_queue };
+
+/// Whether a route works on both signs of v, unfolded.
+[[nodiscard]] inline bool on_full_grid(Route route) {
+  return route == Route::lambda || route == Route::hitting || route == Route::null_vector;
+}
 
 /// Choices of the discretisation made by hand; one of the first three switches refinement off.
 struct Method {
@@ -27,7 +46,10 @@ struct Method {
 struct Request {
   model::Scene scene;
   std::set<Quantity> quantities;
+  std::vector<double> lambda;                  ///< of laplace and resolvent; one for -route lambda
+  std::vector<model::Observable> observables;  ///< of resolvent
   double accuracy = 1e-6;
+  Route route = Route::excursion;
   Method method;
   std::string summary, output;  ///< file names; empty if not asked for
   bool progress = false;
@@ -37,9 +59,6 @@ struct Request {
 
   [[nodiscard]] bool wants(Quantity q) const { return quantities.contains(q); }
 };
-
-/// Prefixes of the solver roles whose PETSc options a run may carry.
-[[nodiscard]] std::vector<std::string> solver_prefixes();
 
 /// Reads and validates everything before anything is computed. `argv` is searched for words that
 /// belong to no option. Throws BadInput that tells all problems at once: name, value, allowed

@@ -39,6 +39,8 @@ class Settings {
   /// The whole number given or the default; nothing if neither exists or a word was given.
   [[nodiscard]] std::optional<int> integer(const std::string& name) const;
   [[nodiscard]] std::vector<std::string> list(const std::string& name) const;
+  /// The numbers of a list option, empty if it was not given.
+  [[nodiscard]] std::vector<double> numbers(const std::string& name) const;
   /// Reports a problem with the value of `name`.
   void report(Problems& problems, const std::string& name, const std::string& why,
               const std::string& fix) const;
@@ -47,9 +49,13 @@ class Settings {
   void parse(const Option& option, const std::string& value, Problems& problems);
   std::map<std::string, std::string> text_;
   std::map<std::string, double> numbers_;
+  std::map<std::string, std::vector<double>> lists_;
 };
 
 /// A finite decimal number that fills the whole text.
 [[nodiscard]] std::optional<double> parse_number(const std::string& text);
+
+/// a,b,c as they are, first:last:count evenly spaced, first:last:count:log evenly in the logarithm.
+[[nodiscard]] std::optional<std::vector<double>> parse_numbers(const std::string& text);
 
 }  // namespace stickslip::options

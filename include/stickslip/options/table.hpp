@@ -16,6 +16,8 @@ enum class Kind {
   integer,  ///< a whole number
   choice,   ///< one of a few words
   list,     ///< a comma list of words, each at most once
+  numbers,  ///< a,b,c or first:last:count or first:last:count:log
+  text,     ///< free text
   path,     ///< a file to write
 };
 

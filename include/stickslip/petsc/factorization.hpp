@@ -20,6 +20,19 @@ struct Solution {
   double backward_error = 0;
 };
 
+/// Makes a KSP a direct solver, preonly around an LU factorisation by MUMPS; to be called before
+/// its options are read.
+void set_direct_solver(KSP ksp);
+
+/// The ordering AMF where MUMPS is used and the options say nothing else; to be called after.
+void set_default_ordering(KSP ksp);
+
+/// Throws NoMemory or NotReached when the factorisation of a KSP has failed.
+void require_factored(KSP ksp, const std::string& prefix);
+
+/// Memory and entries of the factors of a KSP, as MUMPS counts them; nothing for other solvers.
+void record_factors(KSP ksp, Ledger& ledger);
+
 /// KSP of type preonly around an LU factorisation by MUMPS with the ordering AMF. MUMPS would
 /// choose PORD here (METIS is not in Debian's build), which costs 10 to 30 times more on these
 /// matrices. Every choice is a PETSc option under the prefix, e.g. -slide_mat_mumps_icntl_7 0 or
@@ -47,7 +60,6 @@ class Factorization {
   [[nodiscard]] Solution solve(Vec b, bool transposed);
   void apply(Vec b, Vec x, bool transposed);
   [[nodiscard]] double backward_error(Vec residual, Vec b, Vec x, bool transposed) const;
-  void record_memory();
 
   MatHandle matrix_;
   MatHandle magnitude_;  // |a_ij|, for backward errors

@@ -3,6 +3,7 @@
 
 #include <petscksp.h>
 #include <petscviewerhdf5.h>
+#include <slepceps.h>
 
 #include <exception>
 #include <utility>
@@ -58,6 +59,7 @@ class Handle {
 using VecHandle = Handle<Vec, VecDestroy>;
 using MatHandle = Handle<Mat, MatDestroy>;
 using KspHandle = Handle<KSP, KSPDestroy>;
+using EpsHandle = Handle<EPS, EPSDestroy>;
 using ViewerHandle = Handle<PetscViewer, PetscViewerDestroy>;
 
 }  // namespace stickslip::petsc

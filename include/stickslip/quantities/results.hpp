@@ -14,6 +14,8 @@ struct Result {
   std::vector<double> abscissa;
   std::vector<double> value;
   std::vector<double> error;  ///< absolute error estimates, one for each value
+  /// Whether accuracy is meant relative to each value of an array, not to the largest one.
+  bool each_by_its_size = false;
 
   [[nodiscard]] bool is_scalar() const { return abscissa_name.empty(); }
 };
@@ -24,5 +26,14 @@ using Results = std::vector<Result>;
 [[nodiscard]] inline Result scalar(std::string key, std::string unit, double value, double error) {
   return {std::move(key), std::move(unit), "", {}, {value}, {error}};
 }
+
+/// An array result without values yet.
+[[nodiscard]] inline Result array(std::string key, std::string unit, std::string abscissa_name,
+                                  std::vector<double> abscissa) {
+  return {std::move(key), std::move(unit), std::move(abscissa_name), std::move(abscissa), {}, {}};
+}
+
+/// Largest error relative to the size of the values.
+[[nodiscard]] double relative_error(const Result& result);
 
 }  // namespace stickslip::quantities

@@ -1,0 +1,50 @@
+#pragma once
+/// Eigenpairs of a matrix nearest to a target.
+
+#include <petscmat.h>
+
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "stickslip/petsc/handle.hpp"
+#include "stickslip/petsc/ledger.hpp"
+
+namespace stickslip::petsc {
+
+struct Eigenpair {
+  std::complex<double> value;
+  VecHandle real,
+      imaginary;        ///< of the vector; imaginary is empty for a real pair of a real matrix
+  double residual = 0;  ///< ||A x - value x||_2 / ||x||_2
+};
+
+/// SLEPc's EPS: Krylov-Schur with shift-and-invert, the shifted matrix factored by MUMPS. Every
+/// choice is an option under the prefix: -null_eps_tol 1e-10, -relax_st_pc_factor_mat_solver_type
+/// klu, ... All members are collective.
+class Eigensolver {
+ public:
+  /// Finds `wanted` eigenpairs nearest to `target` (-..._eps_nev and -..._eps_target override),
+  /// which must not be an eigenvalue. `matrix` must outlive this object. Throws NotReached when
+  /// fewer converge, NoMemory when the factors do not fit.
+  Eigensolver(Mat matrix, const std::string& prefix, double target, int wanted, Ledger& ledger);
+
+  /// In the order found, nearest to the target first.
+  [[nodiscard]] const std::vector<Eigenpair>& pairs() const { return pairs_; }
+
+  /// One step of inverse iteration, x <- (A - target)^-1 x: what it changes shows rounding.
+  void iterate(Vec x);
+
+  /// Reads all options of a role once, on a small matrix; see Factorization::probe_options.
+  static void probe_options(const std::string& prefix);
+
+ private:
+  void collect_pairs();
+
+  Mat matrix_;
+  std::string prefix_;
+  EpsHandle eps_;
+  std::vector<Eigenpair> pairs_;
+};
+
+}  // namespace stickslip::petsc

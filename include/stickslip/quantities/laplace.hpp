@@ -1,0 +1,34 @@
+#pragma once
+/// Laplace transforms of the durations of slides, stays and excursions.
+
+#include <vector>
+
+#include "stickslip/operators/systems.hpp"
+#include "stickslip/quantities/results.hpp"
+#include "stickslip/quantities/uncertain.hpp"
+
+namespace stickslip::quantities {
+
+/// At one lambda, for the first excursion from s+.
+struct DurationTransforms {
+  Uncertain slide;      ///< F_slide = E[exp(-lambda tau_hat_1)]
+  Uncertain stick;      ///< F_stick = sum_i P_i F_lambda(x_i) (Prop. 4.2)
+  Uncertain excursion;  ///< E[exp(-lambda tau_1)]
+};
+
+/// F_stick from the entry law, by the static chain alone. Relative error that of `entry`.
+[[nodiscard]] Uncertain stick_transform(const model::Process& process, double lambda,
+                                        const std::vector<Uncertain>& entry);
+
+/// F_slide and F_excursion: A u = -A_us s with s = 1 (Prop. 4.3) or s = F_lambda, read at s+. Two
+/// solves with systems.at(lambda, even). Collective. lambda >= 0 [1/time].
+struct SlideTransforms {
+  Uncertain slide, excursion;
+};
+[[nodiscard]] SlideTransforms slide_transforms(operators::Systems& systems, double lambda);
+
+/// F_slide, F_stick and F_excursion as arrays over lambda; each value counts by its own size.
+void append_laplace(const std::vector<double>& lambda,
+                    const std::vector<DurationTransforms>& transforms, Results& results);
+
+}  // namespace stickslip::quantities

@@ -1,0 +1,36 @@
+#pragma once
+/// Leading eigenvalues of L: the slowest relaxation rates and their modes.
+
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "stickslip/operators/systems.hpp"
+#include "stickslip/quantities/phase_field.hpp"
+#include "stickslip/quantities/results.hpp"
+
+namespace stickslip::quantities {
+
+/// Prefix of the PETSc options of this eigensolver.
+inline const std::string kRelaxPrefix = "relax_";
+
+/// A mode exp(-rate t) phi(x, y, v) of the backward equation, L phi = -rate phi.
+struct RelaxationMode {
+  std::complex<double> rate;   ///< real part: decay, imaginary part >= 0: frequency [1/time]
+  double residual = 0;         ///< of the eigensolver
+  PhaseField real, imaginary;  ///< phi on the grid, largest modulus 1
+  std::vector<std::complex<double>> at_rest;  ///< phi(x_i, 0, 0), index i + k, on all ranks
+};
+
+/// The modes of even or odd functions with the smallest decay rates, the constant function left
+/// out: half as many as the eigensolver is asked for (-relax_eps_nev, 8 unless given), since those
+/// come in conjugate pairs, of which the member with frequency >= 0 is kept. One assembly and one
+/// factorisation. Collective. Throws NotReached or NoMemory.
+[[nodiscard]] std::vector<RelaxationMode> relaxation_modes(operators::Systems& systems,
+                                                           operators::Symmetry symmetry);
+
+/// relaxation_even and relaxation_even_frequency, or relaxation_odd and ..., by number of the mode.
+void append_relaxation(operators::Symmetry symmetry, const std::vector<RelaxationMode>& modes,
+                       Results& results);
+
+}  // namespace stickslip::quantities

@@ -1,0 +1,47 @@
+#pragma once
+/// Numbers that carry a bound for their error through arithmetic.
+
+#include <cmath>
+
+#include "stickslip/petsc/factorization.hpp"
+#include "stickslip/quantities/results.hpp"
+
+namespace stickslip::quantities {
+
+/// value with |error| to first order: bounds add, as worst cases do.
+struct Uncertain {
+  double value = 0;
+  double error = 0;
+};
+
+[[nodiscard]] inline Uncertain operator+(Uncertain a, Uncertain b) {
+  return {a.value + b.value, a.error + b.error};
+}
+[[nodiscard]] inline Uncertain operator-(Uncertain a, Uncertain b) {
+  return {a.value - b.value, a.error + b.error};
+}
+[[nodiscard]] inline Uncertain operator*(Uncertain a, Uncertain b) {
+  return {a.value * b.value, std::abs(a.value) * b.error + std::abs(b.value) * a.error};
+}
+[[nodiscard]] inline Uncertain operator/(Uncertain a, Uncertain b) {
+  const double q = a.value / b.value;
+  return {q, (a.error + std::abs(q) * b.error) / std::abs(b.value)};
+}
+[[nodiscard]] inline Uncertain operator*(double factor, Uncertain a) {
+  return {factor * a.value, std::abs(factor) * a.error};
+}
+
+/// functional . solution, with the effect of the last correction as its rounding. Collective.
+[[nodiscard]] Uncertain value_of(Vec functional, const petsc::Solution& solution);
+
+/// A scalar result.
+[[nodiscard]] inline Result scalar(std::string key, std::string unit, Uncertain value) {
+  return scalar(std::move(key), std::move(unit), value.value, value.error);
+}
+
+inline void append_value(Result& array, Uncertain value) {
+  array.value.push_back(value.value);
+  array.error.push_back(value.error);
+}
+
+}  // namespace stickslip::quantities

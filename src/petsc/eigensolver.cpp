@@ -1,0 +1,114 @@
+#include "stickslip/petsc/eigensolver.hpp"
+
+#include <fmt/format.h>
+
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/factorization.hpp"
+#include "stickslip/support/errors.hpp"
+
+namespace stickslip::petsc {
+namespace {
+
+constexpr bool kComplex = PetscDefined(USE_COMPLEX);
+constexpr double kTolerance = 1e-13;
+
+KSP solver_of(EPS eps) {
+  ST st = nullptr;
+  check(EPSGetST(eps, &st));
+  KSP ksp = nullptr;
+  check(STGetKSP(st, &ksp));
+  return ksp;
+}
+
+EpsHandle configured_eigensolver(Mat matrix, const std::string& prefix, double target, int wanted) {
+  EpsHandle eps;
+  check(EPSCreate(PetscObjectComm(reinterpret_cast<PetscObject>(matrix)), eps.out()));
+  check(EPSSetOptionsPrefix(eps, prefix.c_str()));
+  check(EPSSetOperators(eps, matrix, nullptr));
+  check(EPSSetProblemType(eps, EPS_NHEP));
+  check(EPSSetDimensions(eps, wanted, PETSC_DEFAULT, PETSC_DEFAULT));
+  check(EPSSetTolerances(eps, kTolerance, PETSC_DEFAULT));
+  check(EPSSetTarget(eps, target));
+  check(EPSSetWhichEigenpairs(eps, EPS_TARGET_MAGNITUDE));
+  ST st = nullptr;
+  check(EPSGetST(eps, &st));
+  check(STSetType(st, STSINVERT));
+  set_direct_solver(solver_of(eps));
+  check(EPSSetFromOptions(eps));
+  set_default_ordering(solver_of(eps));
+  return eps;
+}
+
+}  // namespace
+
+Eigensolver::Eigensolver(Mat matrix, const std::string& prefix, double target, int wanted,
+                         Ledger& ledger)
+    : matrix_(matrix), prefix_(prefix) {
+  double total = 0;
+  const double symbolic_before = logged_seconds("MatLUFactorSym");
+  const double numeric_before = logged_seconds("MatLUFactorNum");
+  {
+    const PhaseTimer timer("eigenvalues", total);
+    eps_ = configured_eigensolver(matrix, prefix, target, wanted);
+    check(EPSSetUp(eps_));
+    require_factored(solver_of(eps_), prefix + "st_");
+    check(EPSSolve(eps_));
+    collect_pairs();
+  }
+  const double symbolic = logged_seconds("MatLUFactorSym") - symbolic_before;
+  const double numeric = logged_seconds("MatLUFactorNum") - numeric_before;
+  ledger.analysis_seconds += symbolic;
+  ledger.factorization_seconds += numeric;
+  ledger.solve_seconds += total - symbolic - numeric;
+  ++(kComplex ? ledger.factorizations_complex : ledger.factorizations_real);
+  PetscInt solves = 0;
+  check(KSPGetTotalIterations(solver_of(eps_), &solves));
+  ledger.solves += static_cast<int>(solves);
+  record_factors(solver_of(eps_), ledger);
+}
+
+void Eigensolver::collect_pairs() {
+  PetscInt wanted = 0, found = 0;
+  check(EPSGetDimensions(eps_, &wanted, nullptr, nullptr));
+  check(EPSGetConverged(eps_, &found));
+  if (found < wanted) {
+    throw NotReached(fmt::format("the eigensolver -{} found {} of {} eigenvalues; raise "
+                                 "-{}eps_max_it or -{}eps_ncv",
+                                 prefix_, found, wanted, prefix_, prefix_));
+  }
+  for (PetscInt n = 0; n < found; ++n) {
+    Eigenpair pair;
+    PetscScalar re = 0, im = 0;
+    check(MatCreateVecs(matrix_, pair.real.out(), nullptr));
+    check(MatCreateVecs(matrix_, pair.imaginary.out(), nullptr));
+    check(EPSGetEigenpair(eps_, n, &re, &im, pair.real, pair.imaginary));
+    pair.value = {PetscRealPart(re), kComplex ? PetscImaginaryPart(re) : PetscRealPart(im)};
+    PetscReal residual = 0;
+    check(EPSComputeError(eps_, n, EPS_ERROR_ABSOLUTE, &residual));
+    pair.residual = residual;
+    pairs_.push_back(std::move(pair));
+  }
+}
+
+void Eigensolver::iterate(Vec x) {
+  VecHandle y;
+  check(VecDuplicate(x, y.out()));
+  check(KSPSolve(solver_of(eps_), x, y));
+  check(VecCopy(y, x));
+}
+
+void Eigensolver::probe_options(const std::string& prefix) {
+  constexpr PetscInt size = 100;
+  MatHandle diagonal;
+  check(MatCreateAIJ(PETSC_COMM_SELF, size, size, size, size, 1, nullptr, 0, nullptr,
+                     diagonal.out()));
+  for (PetscInt n = 0; n < size; ++n) {
+    check(MatSetValue(diagonal, n, n, static_cast<PetscScalar>(n + 1), INSERT_VALUES));
+  }
+  check(MatAssemblyBegin(diagonal, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(diagonal, MAT_FINAL_ASSEMBLY));
+  const EpsHandle eps = configured_eigensolver(diagonal, prefix, -0.5, 1);
+  check(EPSSetUp(eps));
+}
+
+}  // namespace stickslip::petsc

@@ -1,0 +1,46 @@
+#include "stickslip/quantities/laplace.hpp"
+
+#include "stickslip/operators/static_chain.hpp"
+
+namespace stickslip::quantities {
+namespace {
+
+std::vector<double> stay_transforms(const model::Process& process, double lambda) {
+  return operators::StaticChain(process.noise, process.static_index(), lambda).exit_transform();
+}
+
+}  // namespace
+
+Uncertain stick_transform(const model::Process& process, double lambda,
+                          const std::vector<Uncertain>& entry) {
+  const auto stay = stay_transforms(process, lambda);
+  Uncertain sum;
+  for (std::size_t n = 0; n < stay.size(); ++n) sum = sum + stay[n] * entry[n];
+  return sum;
+}
+
+SlideTransforms slide_transforms(operators::Systems& systems, double lambda) {
+  const auto stay = stay_transforms(systems.process(), lambda);
+  auto& system = systems.at(lambda, operators::Symmetry::even);
+  const petsc::VecHandle at_exit = system.a().trace_at_exit();
+  const auto transform = [&](const std::vector<double>& values) {
+    const std::vector<PetscScalar> s(values.begin(), values.end());
+    return value_of(at_exit, system.factors().solve(system.a().from_rest(s)));
+  };
+  return {transform(std::vector<double>(stay.size(), 1.0)), transform(stay)};
+}
+
+void append_laplace(const std::vector<double>& lambda,
+                    const std::vector<DurationTransforms>& transforms, Results& results) {
+  const auto append = [&](const char* key, Uncertain DurationTransforms::*member) {
+    Result result = array(key, "", "lambda", lambda);
+    result.each_by_its_size = true;
+    for (const auto& t : transforms) append_value(result, t.*member);
+    results.push_back(std::move(result));
+  };
+  append("F_slide", &DurationTransforms::slide);
+  append("F_stick", &DurationTransforms::stick);
+  append("F_excursion", &DurationTransforms::excursion);
+}
+
+}  // namespace stickslip::quantities

@@ -1,0 +1,124 @@
+#include "stickslip/quantities/relaxation.hpp"
+
+#include <algorithm>
+
+#include "stickslip/petsc/eigensolver.hpp"
+#include "stickslip/petsc/vectors.hpp"
+
+namespace stickslip::quantities {
+namespace {
+
+using operators::State;
+using operators::StateKind;
+using operators::Symmetry;
+using petsc::Eigenpair;
+
+constexpr int kAskedFor = 8;
+
+std::complex<double> entry(const petsc::ReadView& real, const petsc::ReadView& imaginary,
+                           PetscInt n) {
+  if (PetscDefined(USE_COMPLEX)) return {PetscRealPart(real[n]), PetscImaginaryPart(real[n])};
+  return {PetscRealPart(real[n]), PetscRealPart(imaginary[n])};
+}
+
+// Factor that turns the entry of largest modulus into 1, so that modes look alike on every run.
+std::complex<double> scale_of(MPI_Comm comm, const petsc::ReadView& real,
+                              const petsc::ReadView& imaginary) {
+  struct {
+    double size = -1;
+    int rank = 0;
+  } largest;
+  std::complex<double> value = 1;
+  for (PetscInt n = 0; n < real.size(); ++n) {
+    const auto here = entry(real, imaginary, n);
+    // A clear winner, so that rounding does not choose between equals.
+    if (std::abs(here) <= largest.size * (1 + 1e-6)) continue;
+    largest.size = std::abs(here);
+    value = here;
+  }
+  MPI_Comm_rank(comm, &largest.rank);
+  MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm);
+  MPI_Bcast(&value, 1, MPI_C_DOUBLE_COMPLEX, largest.rank, comm);
+  return 1.0 / value;
+}
+
+RelaxationMode mode_of(const operators::Systems& systems, const operators::StateSpace& states,
+                       const Eigenpair& pair) {
+  const double sign = states.symmetry() == Symmetry::odd ? -1 : 1;
+  const int k = systems.process().static_index();
+  const PhaseField empty(systems.process(), systems.axis(), states);
+  RelaxationMode mode{pair.value, pair.residual, empty, empty, {}};
+  mode.at_rest.resize(2 * static_cast<std::size_t>(k) + 1);
+  const petsc::ReadView real(pair.real), imaginary(pair.imaginary);
+  const auto scale = scale_of(systems.comm(), real, imaginary);
+  PetscInt at = 0;
+  states.for_each_local([&](const State& state) {
+    const auto value = scale * entry(real, imaginary, at++);
+    if (state.kind == StateKind::node) {
+      mode.real.add(state.level, state.node, value.real(), sign);
+      mode.imaginary.add(state.level, state.node, value.imag(), sign);
+    } else if (state.kind == StateKind::rest) {
+      mode.at_rest[k + state.level] = value;
+      mode.at_rest[k - state.level] = sign * value;
+    }
+  });
+  MPI_Allreduce(MPI_IN_PLACE, mode.at_rest.data(), static_cast<int>(mode.at_rest.size()),
+                MPI_C_DOUBLE_COMPLEX, MPI_SUM, systems.comm());
+  return mode;
+}
+
+// Slowest first, the constant and conjugates left out.
+std::vector<const Eigenpair*> chosen(const std::vector<Eigenpair>& pairs, Symmetry symmetry) {
+  std::vector<const Eigenpair*> kept;
+  for (const auto& pair : pairs) kept.push_back(&pair);
+  if (symmetry == Symmetry::even) {
+    kept.erase(std::min_element(kept.begin(), kept.end(), [](const auto* a, const auto* b) {
+      return std::abs(a->value) < std::abs(b->value);
+    }));
+  }
+  kept.erase(std::remove_if(kept.begin(), kept.end(),
+                            [](const auto* pair) {
+                              return pair->value.imag() < -1e-8 * std::abs(pair->value);
+                            }),
+             kept.end());
+  std::sort(kept.begin(), kept.end(),
+            [](const auto* a, const auto* b) { return a->value.real() < b->value.real(); });
+  if (2 * kept.size() > pairs.size()) kept.resize(pairs.size() / 2);
+  return kept;
+}
+
+}  // namespace
+
+std::vector<RelaxationMode> relaxation_modes(operators::Systems& systems, Symmetry symmetry) {
+  const auto& process = systems.process();
+  const auto a = operators::assemble(systems.comm(), process, systems.axis(), 0, symmetry,
+                                     operators::Rest::kept, systems.ledger());
+  // All rates have real parts >= 0; a target left of them, on the scale of the noise.
+  const double target = -0.1 / process.noise.tau;
+  const petsc::Eigensolver solver(a.matrix(), kRelaxPrefix, target, kAskedFor, systems.ledger());
+  std::vector<RelaxationMode> modes;
+  for (const auto* pair : chosen(solver.pairs(), symmetry)) {
+    modes.push_back(mode_of(systems, a.states(), *pair));
+  }
+  return modes;
+}
+
+void append_relaxation(Symmetry symmetry, const std::vector<RelaxationMode>& modes,
+                       Results& results) {
+  const std::string key = symmetry == Symmetry::even ? "relaxation_even" : "relaxation_odd";
+  std::vector<double> number;
+  for (std::size_t n = 0; n < modes.size(); ++n) number.push_back(static_cast<double>(n + 1));
+  Result decay = array(key, "1/time", "mode", number);
+  Result frequency = array(key + "_frequency", "1/time", "mode", number);
+  for (const auto& mode : modes) {
+    decay.value.push_back(mode.rate.real());
+    decay.error.push_back(mode.residual);
+    const bool oscillates = std::abs(mode.rate.imag()) > 1e-8 * std::abs(mode.rate);
+    frequency.value.push_back(oscillates ? mode.rate.imag() : 0);
+    frequency.error.push_back(oscillates ? mode.residual : 0);
+  }
+  results.push_back(std::move(decay));
+  results.push_back(std::move(frequency));
+}
+
+}  // namespace stickslip::quantities

@@ -1,0 +1,29 @@
+#pragma once
+/// Stationary averages pi(f) behind sticking, moments and noise_law, for routes that compute pi(f)
+/// for one f after the other.
+
+#include <string>
+#include <vector>
+
+#include "stickslip/model/observable.hpp"
+#include "stickslip/quantities/uncertain.hpp"
+#include "stickslip/routes/evaluation.hpp"
+
+namespace stickslip::routes {
+
+struct Average {
+  std::string key, unit;
+  model::Observable f;
+};
+
+/// Those that the request asks for, and P_X_gt_mu_s, which check_averages needs.
+[[nodiscard]] std::vector<Average> averages(const Setting& setting);
+
+/// Turns pi(f) of averages(setting) into results.
+///
+/// P(|X| > mu_s) is known in closed form; its relative error is rounding in pi itself, which the
+/// residuals of solves do not see, and is added to all errors (for P_stick as a share of P_slide).
+void append_averages(const Setting& setting, const std::vector<quantities::Uncertain>& values,
+                     quantities::Results& results);
+
+}  // namespace stickslip::routes

@@ -1,0 +1,18 @@
+#include "stickslip/routes/evaluation.hpp"
+
+#include "routes.hpp"
+
+namespace stickslip::routes {
+
+Evaluation evaluate(const Setting& setting) {
+  switch (setting.request.route) {
+  case options::Route::excursion: return by_excursion(setting);
+  case options::Route::lambda: return by_lambda(setting);
+  case options::Route::hitting: return by_hitting(setting);
+  case options::Route::null_vector: return by_null_vector(setting);
+  case options::Route::fluid_queue: return by_fluid_queue(setting);
+  }
+  return {};
+}
+
+}  // namespace stickslip::routes

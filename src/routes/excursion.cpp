@@ -1,0 +1,111 @@
+#include <cmath>
+
+#include "routes.hpp"
+#include "stickslip/operators/systems.hpp"
+#include "stickslip/quantities/laplace.hpp"
+#include "stickslip/quantities/resolvent.hpp"
+
+namespace stickslip::routes {
+namespace {
+
+using operators::Symmetry;
+using options::Quantity;
+using options::Request;
+using quantities::Results;
+using quantities::StationaryLaw;
+using quantities::Uncertain;
+
+bool needs_law(const Request& request) {
+  for (Quantity q : {Quantity::sticking, Quantity::moments, Quantity::entry_law, Quantity::density,
+                     Quantity::laplace}) {
+    if (request.wants(q)) return true;
+  }
+  return request.scene.v_max.has_value();  // what the cut holds back is judged by the law
+}
+
+Results results_of(const Request& request, const model::Process& process,
+                   const quantities::Excursion& excursion) {
+  Results results;
+  if (request.wants(Quantity::sticking)) quantities::append_sticking(excursion, results);
+  if (request.wants(Quantity::moments)) quantities::append_moments(process, excursion, results);
+  if (request.wants(Quantity::entry_law)) {
+    quantities::append_entry_law(process, excursion, results);
+  }
+  return results;
+}
+
+// Rounding: the effect of the last correction of the solve, and the defect of an exact identity.
+void set_rounding(const StationaryLaw& law, const Results& uncorrected, Results& results) {
+  const double defect = law.excursion().conservation_defect(law.process());
+  for (std::size_t r = 0; r < results.size(); ++r) {
+    auto& result = results[r];
+    for (std::size_t n = 0; n < result.value.size(); ++n) {
+      const double value = result.value[n];
+      result.error[n] = std::abs(value - uncorrected[r].value[n]) + defect * std::abs(value);
+    }
+  }
+}
+
+std::vector<Uncertain> entry_law(const StationaryLaw& law) {
+  const auto& p = law.excursion().entry;
+  const auto& before = law.uncorrected().entry;
+  std::vector<Uncertain> entry;
+  for (std::size_t n = 0; n < p.size(); ++n) entry.push_back({p[n], std::abs(p[n] - before[n])});
+  return entry;
+}
+
+void append_transforms(operators::Systems& systems, const Setting& setting,
+                       Evaluation& evaluation) {
+  const Request& request = setting.request;
+  std::vector<quantities::DurationTransforms> durations;
+  std::vector<quantities::Resolvent> resolvents;
+  std::vector<Uncertain> entry;
+  if (request.wants(Quantity::laplace)) entry = entry_law(*evaluation.law);
+  for (double lambda : request.lambda) {
+    if (request.wants(Quantity::laplace)) {
+      const auto t = quantities::slide_transforms(systems, lambda);
+      durations.push_back(
+          {t.slide, quantities::stick_transform(setting.process, lambda, entry), t.excursion});
+    }
+    if (request.wants(Quantity::resolvent)) {
+      resolvents.push_back(quantities::resolvent(systems, lambda, request.observables));
+    }
+    systems.release(lambda, Symmetry::even);
+  }
+  if (!durations.empty()) {
+    quantities::append_laplace(request.lambda, durations, evaluation.results);
+  }
+  if (!resolvents.empty()) {
+    quantities::append_resolvent(request.lambda, request.observables, resolvents,
+                                 evaluation.results);
+  }
+}
+
+}  // namespace
+
+// One set of factors at a time; those for lambda = 0 serve all that needs them first.
+Evaluation by_excursion(const Setting& setting) {
+  const Request& request = setting.request;
+  operators::Systems systems(setting.comm, setting.process, setting.axis, setting.ledger);
+  Evaluation evaluation;
+  if (needs_law(request)) {
+    evaluation.law = std::make_unique<StationaryLaw>(systems);
+    const bool again = !request.lambda.empty() && request.lambda[0] == 0;
+    if (!again) systems.release(0, Symmetry::even);
+    if (request.wants(Quantity::entry_law)) evaluation.law->orient(systems);
+    const auto& law = *evaluation.law;
+    evaluation.results = results_of(request, setting.process, law.excursion());
+    set_rounding(law, results_of(request, setting.process, law.uncorrected()), evaluation.results);
+    if (!(again && request.wants(Quantity::resolvent))) systems.release(0, Symmetry::odd);
+  }
+  append_transforms(systems, setting, evaluation);
+  if (request.wants(Quantity::relaxation)) {
+    evaluation.even = quantities::relaxation_modes(systems, Symmetry::even);
+    evaluation.odd = quantities::relaxation_modes(systems, Symmetry::odd);
+    quantities::append_relaxation(Symmetry::even, evaluation.even, evaluation.results);
+    quantities::append_relaxation(Symmetry::odd, evaluation.odd, evaluation.results);
+  }
+  return evaluation;
+}
+
+}  // namespace stickslip::routes

@@ -1,0 +1,33 @@
+#pragma once
+/// The routes behind evaluate(), each in a file of its own.
+
+#include "stickslip/routes/evaluation.hpp"
+
+namespace stickslip::routes {
+
+/// Everything from the sliding operator and the static chain; see quantities::StationaryLaw.
+[[nodiscard]] Evaluation by_excursion(const Setting& setting);
+
+/// pi(f) = lambda u_lambda(s+; f) + O(lambda) with (lambda - M) u_lambda = f on the full grid; one
+/// factorisation for all f.
+///
+/// With R = (lambda - M)^-1 a plain solve loses rounding/lambda. Since lambda R 1 = 1, the number
+/// lambda R f at s+ also is the c for which R(f - c) = 0 there; found by c <- c + lambda R(f - c),
+/// whose solutions stay of order one, it keeps all digits for any lambda well above the rounding of
+/// the diagonal of M. The bias is measured: (lambda R)^2 f differs from pi(f) by O(lambda^2) only,
+/// so that lambda R f - (lambda R)^2 f is the bias up to O(lambda^2). Unless -lambda fixes it,
+/// lambda starts at accuracy/100 (of 1/tau) and is lowered until the bias is below a quarter of the
+/// accuracy.
+[[nodiscard]] Evaluation by_lambda(const Setting& setting);
+
+/// P_slide = R^(s+)/(R-check(s+) + R(x_k)) of Prop. 4.1: mean times to rest, to the edge of rest,
+/// and from there to the exit, on the full grid and by the static chain.
+[[nodiscard]] Evaluation by_hitting(const Setting& setting);
+
+/// pi M = 0 by SLEPc on the full grid.
+[[nodiscard]] Evaluation by_null_vector(const Setting& setting);
+
+/// b = 0 without a grid in v; see exact::FluidQueue.
+[[nodiscard]] Evaluation by_fluid_queue(const Setting& setting);
+
+}  // namespace stickslip::routes
