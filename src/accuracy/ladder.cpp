@@ -71,6 +71,7 @@ Resolution Ladder::rung(int n) const {
   case options::Scheme::none: r = exact_resolution(scene_, tail_tolerance(n)); break;
   }
   r.halves = halves_;
+  r.factors = method_.factors;
   return r;
 }
 

@@ -129,10 +129,16 @@ double predicted_bytes(const model::Scene& scene, const Resolution& resolution) 
     constexpr double dense_matrices = 30;
     return 8 * dense_matrices * n * n;
   }
-  if (resolution.scheme == options::Scheme::upwind) {
-    return scalars * (12 * 4.5 * n * std::pow(std::min(levels, nodes), 0.52) + 60 * 4 * n);
+  const bool upwind = resolution.scheme == options::Scheme::upwind;
+  const double row = upwind ? 4 : 2.0 * resolution.degree + 4;  // entries of a row of the matrix
+  const double factors =
+      upwind ? 12 * 4.5 * n * std::pow(std::min(levels, nodes), 0.52) : 10 * 3.0 * n * nodes;
+  switch (resolution.factors) {
+  case options::Factors::in_memory: return scalars * (factors + 60 * row * n);
+  case options::Factors::on_disk: return scalars * (0.3 * factors + 60 * row * n);
+  case options::Factors::incomplete: break;
   }
-  return scalars * (10 * 3.0 * n * nodes + 60 * (2.0 * resolution.degree + 4) * n);
+  return scalars * 120 * row * n;
 }
 
 double relative_work(const model::Scene& scene, const Resolution& resolution) {

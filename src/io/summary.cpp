@@ -93,6 +93,7 @@ Json plan_of(const petsc::Ledger& total) {
           {"factorizations_complex", total.factorizations_complex},
           {"solves", total.solves},
           {"corrections", total.corrections},
+          {"iterations", total.iterations},
           {"unknowns", total.unknowns}};
 }
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -199,12 +200,28 @@ void check_route(const Settings& settings, const Request& request, Problems& pro
   }
 }
 
+std::string solver_option(const std::string& name) {
+  std::array<char, 256> text{};
+  PetscBool given = PETSC_FALSE;
+  petsc::check(
+      PetscOptionsGetString(nullptr, nullptr, name.c_str(), text.data(), text.size(), &given));
+  return given == PETSC_TRUE ? text.data() : "";
+}
+
+Factors read_factors() {
+  const std::string pc = solver_option("-slide_pc_type");
+  if (!pc.empty() && pc != "lu" && pc != "cholesky") return Factors::incomplete;
+  const bool on_disk = solver_option("-slide_mat_mumps_icntl_22") == "1";
+  return on_disk ? Factors::on_disk : Factors::in_memory;
+}
+
 Method read_method(const Settings& settings, Problems& problems) {
   Method method;
   method.scheme = settings.text("scheme") == "upwind" ? Scheme::upwind : Scheme::hp;
   method.degree = settings.integer("degree");
   method.layers = settings.integer("layers");
   method.points = settings.integer("p");
+  method.factors = read_factors();
   const bool hp = method.scheme == Scheme::hp;
   for (const char* name : {"degree", "layers"}) {
     if (!hp && settings.given(name)) {
@@ -296,14 +313,30 @@ struct SolverRole {
   const char* prefix;
   void (*probe_options)(const std::string& prefix);
   std::string show;  // option that shows what the solver uses, without the prefix
+  // Options that are read when something is solved, not before.
+  std::vector<std::string> read_later;
 };
 
 const std::vector<SolverRole>& solver_roles() {
+  static const std::vector<std::string> ksp{"ksp_view", "ksp_view_pre", "ksp_converged_reason",
+                                            "ksp_converged_rate", "ksp_view_final_residual"};
+  static const std::vector<std::string> eps{
+      "eps_view",           "eps_view_pre",       "eps_view_values",    "eps_converged_reason",
+      "eps_error_relative", "eps_error_absolute", "eps_error_backward", "eps_view_vectors"};
   static const std::vector<SolverRole> roles{
-      {"slide_", petsc::Factorization::probe_options, "ksp_view"},
-      {"null_", petsc::Eigensolver::probe_options, "eps_view"},
-      {"relax_", petsc::Eigensolver::probe_options, "eps_view"}};
+      {"slide_", petsc::Factorization::probe_options, "ksp_view", ksp},
+      {"null_", petsc::Eigensolver::probe_options, "eps_view", eps},
+      {"relax_", petsc::Eigensolver::probe_options, "eps_view", eps}};
   return roles;
+}
+
+bool is_read_later(const std::string& name) {
+  const auto& roles = solver_roles();
+  return std::any_of(roles.begin(), roles.end(), [&name](const SolverRole& role) {
+    const auto& later = role.read_later;
+    return std::any_of(later.begin(), later.end(),
+                       [&](const std::string& option) { return name == role.prefix + option; });
+  });
 }
 
 std::string unknown_option(const std::string& name) {
@@ -355,7 +388,8 @@ void check_unknown_options(Problems& problems) {
   char** values = nullptr;
   petsc::check(PetscOptionsLeftGet(nullptr, &count, &names, &values));
   for (PetscInt n = 0; n < count; ++n) {
-    if (!belongs_to_petsc(names[n])) problems.add(unknown_option(names[n]));
+    if (!belongs_to_petsc(names[n]) && !is_read_later(names[n]))
+      problems.add(unknown_option(names[n]));
   }
   petsc::check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
 }

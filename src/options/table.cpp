@@ -170,7 +170,12 @@ std::string kind_name(Kind kind) {
   return "";
 }
 
-std::string cell(const std::string& text) { return text.empty() ? " " : text; }
+// A cell of a Markdown table, where a bar would end it.
+std::string cell(const std::string& text) {
+  std::string escaped;
+  for (char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
+  return escaped.empty() ? " " : escaped;
+}
 
 }  // namespace
 
@@ -269,7 +274,7 @@ std::string reference_page() {
     text += "| --- | --- | --- | --- | --- | --- |\n";
     for (const auto& o : group.options) {
       text += fmt::format("| `-{}` | {} | {} | {} | {} | {} |\n", o.name, kind_name(o.kind),
-                          cell(o.unit), cell(o.initial), allowed_values(o), o.sentence);
+                          cell(o.unit), cell(o.initial), cell(allowed_values(o)), cell(o.sentence));
     }
   }
   return text;

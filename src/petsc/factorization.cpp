@@ -147,6 +147,9 @@ Factorization::Factorization(Mat matrix, const std::string& prefix, Ledger& ledg
 
 void Factorization::apply(Vec b, Vec x, bool transposed) {
   check(transposed ? KSPSolveTranspose(ksp_, b, x) : KSPSolve(ksp_, b, x));
+  PetscInt iterations = 0;
+  check(KSPGetIterationNumber(ksp_, &iterations));
+  if (iterations > 1) ledger_.iterations += static_cast<int>(iterations);
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check(KSPGetConvergedReason(ksp_, &reason));
   if (reason < 0) {

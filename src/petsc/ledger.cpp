@@ -31,6 +31,7 @@ Ledger& Ledger::operator+=(const Ledger& other) {
   factorizations_complex += other.factorizations_complex;
   solves += other.solves;
   corrections += other.corrections;
+  iterations += other.iterations;
   unknowns = std::max(unknowns, other.unknowns);
   nonzeros = std::max(nonzeros, other.nonzeros);
   factor_entries = std::max(factor_entries, other.factor_entries);

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "../common/full_grid.hpp"
+#include "../common/near.hpp"
 #include "stickslip/operators/kolmogorov_operator.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
@@ -26,6 +27,9 @@ namespace {
 model::Process process_on(int levels, double mu_s, double mu_d, model::Drag drag = {1, 0}) {
   return {{1, 0.25, levels}, {mu_s, mu_d}, drag};
 }
+
+// No parameter is a binary fraction: rates are rounded, and their sums.
+model::Process rough_process(int levels) { return {{1.3, 0.17, levels}, {0.7, 0.31}, {1, 0.4}}; }
 
 // A vector that is the same function of the global index on any number of ranks.
 petsc::VecHandle test_vector(const KolmogorovOperator& a) {
@@ -56,6 +60,25 @@ double largest_entry(Mat a) {
   return norm;
 }
 
+using Row = std::vector<std::pair<PetscInt, double>>;  // columns, rising, and values
+
+// Calls visit(row, entries) for the local rows.
+template <class Visit>
+void for_each_row(Mat a, Visit visit) {
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(a, &begin, &end));
+  for (PetscInt r = begin; r < end; ++r) {
+    PetscInt count = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    check(MatGetRow(a, r, &count, &columns, &values));
+    Row entries;
+    for (PetscInt n = 0; n < count; ++n) entries.emplace_back(columns[n], PetscRealPart(values[n]));
+    check(MatRestoreRow(a, r, &count, &columns, &values));
+    visit(r, entries);
+  }
+}
+
 struct Discretisation {
   std::string name;
   std::unique_ptr<velocity::Axis> axis;
@@ -71,10 +94,12 @@ std::vector<Discretisation> both_schemes(double v_max, const model::Drag& drag) 
 
 }  // namespace
 
-// The generator of the paper, built here from its definition on the (i, j) grid, entry by entry.
+// The generator of the paper, built here from its definition on the (i, j) grid, entry by entry: the
+// same states in another order, those at v = 0 beyond mu_s with the sign of their force as y.
 TEST_CASE("kolmogorov operator: the unfolded upwind operator is -M of the paper") {
-  for (double mu_s : {1.0, 0.1}) {
-    const auto process = process_on(6, mu_s, 0.1, {1, 0.4});
+  const std::vector<model::Process> processes{process_on(6, 1, 0.1, {1, 0.4}),
+                                              process_on(6, 0.1, 0.1, {1, 0.4}), rough_process(9)};
+  for (const auto& process : processes) {
     const double spacing = 0.11;
     const int nodes = 5;
     const test::FullGrid grid(process, spacing, nodes);
@@ -93,7 +118,7 @@ TEST_CASE("kolmogorov operator: the unfolded upwind operator is -M of the paper"
         PetscScalar value = 0;
         check(MatGetValue(a.matrix(), row, column, &value));
         const double expected = -m[grid_row * grid.size() + grid_column];
-        REQUIRE(PetscRealPart(value) == Approx(expected).epsilon(1e-13).margin(1e-12));
+        REQUIRE(test::relative_difference(PetscRealPart(value), expected) <= 1e-14);
       }
     }
   }
@@ -189,18 +214,29 @@ TEST_CASE("kolmogorov operator: upwind is an M-matrix of at most five entries a 
   const velocity::UpwindAxis axis(0.05, 160, process.drag);
   for (Symmetry symmetry : {Symmetry::even, Symmetry::none}) {
     const KolmogorovOperator a(PETSC_COMM_SELF, process, axis, 0.0, symmetry, Rest::kept);
-    for (PetscInt r = 0; r < a.states().global_size(); ++r) {
-      PetscInt count = 0;
-      const PetscInt* columns = nullptr;
-      const PetscScalar* values = nullptr;
-      check(MatGetRow(a.matrix(), r, &count, &columns, &values));
-      CHECK(count <= 5);
-      for (PetscInt n = 0; n < count; ++n) {
-        const double value = PetscRealPart(values[n]);
-        CHECK((columns[n] == r ? value > 0 : value <= 0));
+    for_each_row(a.matrix(), [](PetscInt row, const Row& entries) {
+      CHECK(entries.size() <= 5);
+      for (const auto& [column, value] : entries) CHECK((column == row ? value > 0 : value <= 0));
+    });
+  }
+}
+
+// Off-diagonals summed from left to right and the diagonal added last leave nothing, not even the
+// rounding of the rates.
+TEST_CASE("kolmogorov operator: unfolded and kept, upwind is minus a generator to the last bit",
+          "[parallel]") {
+  for (const auto& process : {process_on(9, 1, 0.25, {1, 0.4}), rough_process(53)}) {
+    const velocity::UpwindAxis axis(process.noise.delta / 3, 40, process.drag);
+    const KolmogorovOperator a(PETSC_COMM_WORLD, process, axis, 0.0, Symmetry::none, Rest::kept);
+    for_each_row(a.matrix(), [](PetscInt row, const Row& entries) {
+      double off_diagonal = 0, diagonal = 0;
+      for (const auto& [column, value] : entries) {
+        if (column != row) REQUIRE(value <= 0);
+        (column == row ? diagonal : off_diagonal) += value;
       }
-      check(MatRestoreRow(a.matrix(), r, &count, &columns, &values));
-    }
+      REQUIRE(off_diagonal + diagonal == 0.0);
+      REQUIRE(entries.size() <= 5);
+    });
   }
 }
 

@@ -26,6 +26,9 @@ enum class Quantity {
 /// Discretisation in v; `none` for the fluid queue, which needs none.
 enum class Scheme { hp, upwind, none };
 
+/// Where the factors of the sliding operator go; the PETSc options of -slide_ decide.
+enum class Factors { in_memory, on_disk, incomplete };
+
 /// By which system of equations.
 enum class Route { excursion, lambda, hitting, null_vector, fluid_queue };
 
@@ -39,6 +42,7 @@ struct Method {
   Scheme scheme = Scheme::hp;
   std::optional<int> degree, layers;  ///< hp
   std::optional<int> points;          ///< upwind, per noise step
+  Factors factors = Factors::in_memory;
 
   [[nodiscard]] bool fixed() const { return degree || layers || points; }
 };

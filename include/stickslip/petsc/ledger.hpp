@@ -15,6 +15,7 @@ struct Ledger {
   int factorizations_complex = 0;
   int solves = 0;       ///< right-hand sides solved for, plain or transposed
   int corrections = 0;  ///< further solves that corrected or measured rounding
+  int iterations = 0;   ///< of iterative solvers, all solves together
 
   std::int64_t unknowns = 0;        ///< of the largest system
   std::int64_t nonzeros = 0;        ///< of the largest matrix

@@ -1,0 +1,211 @@
+#include <catch2/catch.hpp>
+#include <petscsys.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <functional>
+#include <numbers>
+#include <type_traits>
+
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/eigensolver.hpp"
+#include "stickslip/petsc/vectors.hpp"
+#include "stickslip/support/errors.hpp"
+
+using namespace stickslip;
+using namespace stickslip::petsc;
+
+namespace {
+
+constexpr bool kComplex = PetscDefined(USE_COMPLEX);
+
+/// PETSc options for the life of the object.
+class Given {
+ public:
+  explicit Given(std::vector<std::pair<std::string, std::string>> options)
+      : options_(std::move(options)) {
+    for (const auto& [name, value] : options_) {
+      check(PetscOptionsSetValue(nullptr, name.c_str(), value.c_str()));
+    }
+  }
+  ~Given() {
+    for (const auto& option : options_) (void)PetscOptionsClearValue(nullptr, option.first.c_str());
+  }
+  Given(const Given&) = delete;
+  Given& operator=(const Given&) = delete;
+
+ private:
+  std::vector<std::pair<std::string, std::string>> options_;
+};
+
+using Row = std::vector<std::pair<PetscInt, double>>;  // columns and values
+
+// n x n, row(r) lists the entries of row r.
+MatHandle matrix(PetscInt n, const std::function<Row(PetscInt)>& row) {
+  MatHandle a;
+  check(MatCreate(PETSC_COMM_WORLD, a.out()));
+  check(MatSetSizes(a, PETSC_DECIDE, PETSC_DECIDE, n, n));
+  check(MatSetType(a, MATAIJ));
+  check(MatSetUp(a));
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(a, &begin, &end));
+  for (PetscInt r = begin; r < end; ++r) {
+    for (const auto& [c, value] : row(r)) check(MatSetValue(a, r, c, value, INSERT_VALUES));
+  }
+  check(MatAssemblyBegin(a, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(a, MAT_FINAL_ASSEMBLY));
+  return a;
+}
+
+// A walk round a ring, one way: 1 on the diagonal, -1 after it. Eigenvalues 1 - exp(2 pi i m/n).
+MatHandle ring(PetscInt n) {
+  return matrix(n, [n](PetscInt r) { return Row{{r, 1}, {(r + 1) % n, -1}}; });
+}
+
+// Blocks [a -b; b a] with a = 1, 2, ... and b = 1/2, each coupled to the next one: far from normal,
+// eigenvalues a +- i b.
+MatHandle rotations(PetscInt n) {
+  return matrix(n, [n](PetscInt r) {
+    const double a = 1 + static_cast<double>(r / 2);
+    Row row{{r, a}, r % 2 == 0 ? Row::value_type{r + 1, -0.5} : Row::value_type{r - 1, 0.5}};
+    if (r + 2 < n) row.emplace_back(r + 2, 1);
+    return row;
+  });
+}
+
+std::vector<std::complex<double>> values(const Eigensolver& solver) {
+  std::vector<std::complex<double>> all;
+  for (const auto& pair : solver.pairs()) all.push_back(pair.value);
+  return all;
+}
+
+// The value of an eigenpair as a scalar of this build; its real part if that is real.
+template <class Scalar = PetscScalar>
+Scalar scalar_of(std::complex<double> value) {
+  if constexpr (std::is_same_v<Scalar, double>) {
+    return value.real();
+  } else {
+    return value;
+  }
+}
+
+// ||A x - value x||_2; real builds keep the real and imaginary parts of x in two vectors.
+double residual(Mat a, const Eigenpair& pair) {
+  PetscReal real = 0, imaginary = 0;
+  VecHandle y;
+  check(VecDuplicate(pair.real, y.out()));
+  check(MatMult(a, pair.real, y));
+  check(VecAXPY(y, -scalar_of(pair.value), pair.real));
+  if (!kComplex) check(VecAXPY(y, pair.value.imag(), pair.imaginary));
+  check(VecNorm(y, NORM_2, &real));
+  if (kComplex) return real;
+  check(MatMult(a, pair.imaginary, y));
+  check(VecAXPY(y, -scalar_of(pair.value), pair.imaginary));
+  check(VecAXPY(y, -pair.value.imag(), pair.real));
+  check(VecNorm(y, NORM_2, &imaginary));
+  return std::hypot(real, imaginary);
+}
+
+}  // namespace
+
+TEST_CASE("eigensolver: complex pairs of a ring, nearest to the target first", "[parallel]") {
+  const PetscInt n = 12;
+  const MatHandle a = ring(n);
+  Ledger ledger;
+  const Eigensolver solver(a, "test_", -0.1, 5, ledger);
+  REQUIRE(solver.pairs().size() >= 5);
+  const auto found = values(solver);
+  for (int m : {0, 1, -1, 2, -2}) {
+    const auto known = 1.0 - std::polar(1.0, 2 * std::numbers::pi * m / static_cast<double>(n));
+    const auto near = [known](const auto& value) { return std::abs(value - known) < 1e-12; };
+    INFO("m = " << m);
+    CHECK(std::count_if(found.begin(), found.begin() + 5, near) == 1);
+  }
+  for (std::size_t p = 1; p < found.size(); ++p) {
+    CHECK(std::abs(found[p] + 0.1) > std::abs(found[p - 1] + 0.1) - 1e-12);
+  }
+}
+
+TEST_CASE("eigensolver: residuals are those of the vectors, far from normal matrices too",
+          "[parallel]") {
+  const MatHandle a = rotations(20);
+  Ledger ledger;
+  const Eigensolver solver(a, "test_", -0.1, 4, ledger);
+  const auto found = values(solver);
+  REQUIRE(found.size() >= 4);
+  for (std::size_t p = 0; p < 4; ++p) {
+    const auto& pair = solver.pairs()[p];
+    CHECK(pair.value.real() == Approx(p < 2 ? 1 : 2).epsilon(1e-10));
+    CHECK(std::abs(pair.value.imag()) == Approx(0.5).epsilon(1e-10));
+    CHECK(pair.residual < 1e-12);
+    CHECK(std::abs(residual(a, pair) - pair.residual) < 1e-13);
+  }
+  CHECK(found[0].imag() == Approx(-found[1].imag()).epsilon(1e-12));
+}
+
+TEST_CASE("eigensolver: what it did is entered in the ledger", "[parallel]") {
+  const MatHandle a = ring(12);
+  Ledger ledger;
+  const Eigensolver solver(a, "test_", -0.1, 1, ledger);
+  CHECK(ledger.factorizations_real == (kComplex ? 0 : 1));
+  CHECK(ledger.factorizations_complex == (kComplex ? 1 : 0));
+  CHECK(ledger.solves > 0);
+  CHECK(ledger.factor_entries > 0);
+}
+
+TEST_CASE("eigensolver: options of the role override number and target", "[parallel]") {
+  const MatHandle a = rotations(20);
+  const Given given({{"-own_eps_nev", "4"}, {"-own_eps_target", "7.1"}});
+  Ledger ledger;
+  const Eigensolver solver(a, "own_", -0.1, 1, ledger);
+  REQUIRE(solver.pairs().size() >= 4);
+  CHECK(solver.pairs()[0].value.real() == Approx(7).epsilon(1e-8));
+  CHECK(solver.pairs()[2].value.real() == Approx(8).epsilon(1e-8));
+}
+
+TEST_CASE("eigensolver: too few eigenvalues are refused, and the options that help are named") {
+  // Eigenvalues crowd around the target, and one small Krylov space must do.
+  const MatHandle a = ring(300);
+  const Given given({{"-few_eps_max_it", "1"}, {"-few_eps_ncv", "6"}, {"-few_eps_tol", "1e-15"}});
+  Ledger ledger;
+  try {
+    const Eigensolver solver(a, "few_", -0.1, 4, ledger);
+    FAIL("found " << solver.pairs().size());
+  } catch (const NotReached& failure) {
+    CHECK_THAT(failure.what(), Catch::Contains("of 4") && Catch::Contains("-few_eps_max_it"));
+  }
+}
+
+// The constants: A 1 = 0, so that (A - target)^-1 1 = -1/target.
+TEST_CASE("eigensolver: iterate is one step of inverse iteration", "[parallel]") {
+  const MatHandle a = ring(12);
+  Ledger ledger;
+  Eigensolver solver(a, "test_", -0.25, 1, ledger);
+  VecHandle x;
+  check(MatCreateVecs(a, x.out(), nullptr));
+  check(VecSet(x, 1));
+  solver.iterate(x);
+  check(VecShift(x, -4));
+  PetscReal distance = 1;
+  check(VecNorm(x, NORM_INFINITY, &distance));
+  CHECK(distance < 1e-13);
+}
+
+TEST_CASE("eigensolver: probing marks the options of a role as known") {
+  const std::vector<std::string> known{"eps_tol", "eps_ncv", "st_mat_mumps_icntl_14"};
+  const std::vector<std::string> unknown{"eps_tolerance", "st_mat_mumps_icntl_99"};
+  const Given given({{"-probe_eps_tol", "1e-9"},
+                     {"-probe_eps_ncv", "20"},
+                     {"-probe_st_mat_mumps_icntl_14", "30"},
+                     {"-probe_eps_tolerance", "1e-9"},
+                     {"-probe_st_mat_mumps_icntl_99", "1"}});
+  Eigensolver::probe_options("probe_");
+  const auto used = [](const std::string& name) {
+    PetscBool is_used = PETSC_FALSE;
+    check(PetscOptionsUsed(nullptr, ("probe_" + name).c_str(), &is_used));
+    return is_used == PETSC_TRUE;
+  };
+  for (const auto& name : known) CHECK(used(name));
+  for (const auto& name : unknown) CHECK_FALSE(used(name));
+}

@@ -1,0 +1,206 @@
+#include <petscsys.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "../common/scenes.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/quantities/density.hpp"
+#include "stickslip/quantities/relaxation.hpp"
+
+using namespace stickslip;
+using operators::Symmetry;
+using operators::Systems;
+using quantities::PhaseField;
+using quantities::RelaxationMode;
+using test::scene;
+
+namespace {
+
+struct Case {
+  test::Discrete discrete;
+  Symmetry symmetry;
+};
+
+std::vector<RelaxationMode> solve(const Case& c) {
+  petsc::Ledger ledger;
+  Systems systems(PETSC_COMM_WORLD, c.discrete.process, c.discrete.axis, ledger);
+  return quantities::relaxation_modes(systems, c.symmetry);
+}
+
+std::vector<Case> sample_cases() {
+  std::vector<Case> cases;
+  for (const auto& s : {scene(1, 0.25, 1, 0.5, {1, 0}), scene(1, 1, 2, 0.5, {1, 0.4}),
+                        scene(0.3, 0.3, 0.5, 0.5, {0.2, 0})}) {
+    for (Symmetry symmetry : {Symmetry::even, Symmetry::odd}) {
+      cases.push_back({test::on_hp(test::on_full_noise(s), 5), symmetry});
+      cases.push_back({test::on_upwind(test::on_full_noise(s), 4), symmetry});
+    }
+  }
+  return cases;
+}
+
+const RelaxationMode& with_rate(const std::vector<RelaxationMode>& modes, double rate) {
+  return *std::min_element(modes.begin(), modes.end(), [rate](const auto& a, const auto& b) {
+    return std::abs(a.rate - rate) < std::abs(b.rate - rate);
+  });
+}
+
+// Calls visit(level, column, value) for the local values of a field.
+template <class Visit>
+void for_each_value(const PhaseField& field, Visit visit) {
+  const std::size_t columns = field.v().size();
+  for (std::size_t r = 0; r < field.local_levels().size(); ++r) {
+    for (std::size_t j = 0; j < columns; ++j) {
+      visit(field.local_levels()[r], j, field.local_rows()[r * columns + j]);
+    }
+  }
+}
+
+double over_ranks(double local, MPI_Op operation) {
+  double all = 0;
+  MPI_Allreduce(&local, &all, 1, MPI_DOUBLE, operation, PETSC_COMM_WORLD);
+  return all;
+}
+
+// Largest distance of the mode, sliding and at rest, from factor f(x).
+template <class Function>
+double distance(const RelaxationMode& mode, const model::NoiseChain& noise, double factor,
+                Function f) {
+  double largest = 0;
+  for_each_value(mode.real, [&](int level, std::size_t, double value) {
+    largest = std::max(largest, std::abs(value - factor * f(noise.level(level))));
+  });
+  const int k = static_cast<int>(mode.at_rest.size() / 2);
+  for (int i = -k; i <= k; ++i) {
+    largest = std::max(largest, std::abs(mode.at_rest[k + i] - factor * f(noise.level(i))));
+  }
+  return over_ranks(largest, MPI_MAX);
+}
+
+// Whether the mode is proportional to f(x), with modulus 1 at the ends of the noise.
+template <class Function>
+bool is_function_of_noise(const RelaxationMode& mode, const model::NoiseChain& noise, Function f) {
+  const double factor = 1 / f(noise.level(noise.levels));
+  return std::min(distance(mode, noise, factor, f), distance(mode, noise, -factor, f)) < 1e-8;
+}
+
+// Row by row, first against last: levels come in pairs +-i, columns in pairs +-v.
+bool has_parity(const PhaseField& field, double sign) {
+  const auto& rows = field.local_rows();
+  return std::equal(rows.begin(), rows.end(), rows.rbegin(),
+                    [sign](double a, double b) { return a == sign * b; });
+}
+
+// Sliding or at rest; states at v = 0 beyond mu_s are not shown.
+double largest_modulus(const RelaxationMode& mode) {
+  const auto& imaginary = mode.imaginary.local_rows();
+  std::size_t at = 0;
+  double largest = 0;
+  for_each_value(mode.real, [&](int, std::size_t, double value) {
+    largest = std::max(largest, std::hypot(value, imaginary[at++]));
+  });
+  for (const auto& value : mode.at_rest) largest = std::max(largest, std::abs(value));
+  return over_ranks(largest, MPI_MAX);
+}
+
+// pi(phi) by the density of the stationary law; no state may be missing there.
+std::complex<double> average(const quantities::DensityField& density, const velocity::Axis& axis,
+                             const RelaxationMode& mode) {
+  const std::size_t half = axis.nodes().size();
+  const int n = static_cast<int>(density.atom.size() / 2);
+  const int k = static_cast<int>(mode.at_rest.size() / 2);
+  const auto& pdf = density.pdf.local_rows();
+  const auto& imaginary = mode.imaginary.local_rows();
+  std::size_t at = 0;
+  std::complex<double> sum = 0;
+  for_each_value(mode.real, [&](int, std::size_t j, double value) {
+    const double weight = axis.weights()[j < half ? half - 1 - j : j - half];
+    sum += weight * pdf[at] * std::complex<double>(value, imaginary[at]);
+    ++at;
+  });
+  sum = {over_ranks(sum.real(), MPI_SUM), over_ranks(sum.imag(), MPI_SUM)};
+  for (int i = -k; i <= k; ++i) sum += density.atom[n + i] * mode.at_rest[k + i];
+  return sum;
+}
+
+}  // namespace
+
+// L x = -x/tau and L (x^2 - 1/tau) = -2/tau (x^2 - 1/tau) on the whole noise range, whatever the
+// body does: the noise does not see it.
+TEST_CASE("relaxation: the noise relaxes at its own rates", "[parallel]") {
+  for (double tau : {1.0, 2.0}) {
+    const auto s = test::on_full_noise(scene(1, 0.25, tau, 0.5, {1, 0}));
+    for (const auto& d : {test::on_hp(s, 5), test::on_upwind(s, 4)}) {
+      const auto odd = solve({d, Symmetry::odd}), even = solve({d, Symmetry::even});
+      const auto& first = with_rate(odd, 1 / tau);
+      const auto& second = with_rate(even, 2 / tau);
+      const auto square = [tau](double x) { return x * x - 1 / tau; };
+      CHECK(std::abs(first.rate - 1 / tau) < 1e-8);
+      CHECK(std::abs(second.rate - 2 / tau) < 1e-8);
+      CHECK(is_function_of_noise(first, d.process.noise, [](double x) { return x; }));
+      CHECK(is_function_of_noise(second, d.process.noise, square));
+    }
+  }
+}
+
+TEST_CASE("relaxation: slowest first, decaying, one of each conjugate pair", "[parallel]") {
+  for (const auto& c : sample_cases()) {
+    const auto modes = solve(c);
+    CHECK(modes.size() == 4);
+    double before = 0.1;  // the constant is no mode
+    for (const auto& mode : modes) {
+      CHECK(mode.rate.real() >= before);
+      CHECK(mode.rate.imag() > -1e-8);
+      CHECK(mode.residual < 1e-9);
+      before = mode.rate.real();
+    }
+  }
+}
+
+TEST_CASE("relaxation: modes have their parity and the largest modulus 1", "[parallel]") {
+  for (const auto& c : sample_cases()) {
+    const double sign = c.symmetry == Symmetry::even ? 1 : -1;
+    for (const auto& mode : solve(c)) {
+      CHECK(has_parity(mode.real, sign));
+      CHECK(has_parity(mode.imaginary, sign));
+      CHECK(std::equal(mode.at_rest.begin(), mode.at_rest.end(), mode.at_rest.rbegin(),
+                       [sign](const auto& a, const auto& b) { return a == sign * b; }));
+      CHECK(largest_modulus(mode) == Approx(1).epsilon(1e-5));
+    }
+  }
+}
+
+// pi(L f) = 0 for every f, so that pi(phi) = 0 for every mode; odd ones have no average anyway.
+TEST_CASE("relaxation: modes have no stationary average", "[parallel]") {
+  for (const auto& c : sample_cases()) {
+    const auto& [process, axis] = c.discrete;
+    if (axis->keeps_origin() || c.symmetry == Symmetry::odd) continue;
+    petsc::Ledger ledger;
+    Systems systems(PETSC_COMM_WORLD, process, axis, ledger);
+    const auto density = quantities::density_field(quantities::StationaryLaw(systems));
+    REQUIRE(std::abs(density.cut_mass) < 1e-12);
+    for (const auto& mode : solve(c)) CHECK(std::abs(average(density, *axis, mode)) < 1e-11);
+  }
+}
+
+TEST_CASE("relaxation: half as many modes as the eigensolver is asked for") {
+  const auto s = test::on_full_noise(scene(1, 0.25, 1, 0.5, {1, 0}));
+  petsc::check(PetscOptionsSetValue(nullptr, "-relax_eps_nev", "5"));
+  const auto modes = solve({test::on_hp(s, 4), Symmetry::even});
+  petsc::check(PetscOptionsClearValue(nullptr, "-relax_eps_nev"));
+  CHECK(modes.size() == 2);
+
+  quantities::Results results;
+  quantities::append_relaxation(Symmetry::even, modes, results);
+  REQUIRE(results.size() == 2);
+  CHECK(results[0].key == "relaxation_even");
+  CHECK(results[1].key == "relaxation_even_frequency");
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    CHECK(results[0].abscissa[n] == static_cast<double>(n + 1));
+    CHECK(results[0].value[n] == modes[n].rate.real());
+    CHECK(results[0].error[n] == modes[n].residual);
+    CHECK(results[1].value[n] == 0);  // both decay without oscillation
+  }
+}

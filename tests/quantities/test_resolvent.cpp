@@ -1,0 +1,205 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "../common/near.hpp"
+#include "../common/scenes.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/quantities/laplace.hpp"
+#include "stickslip/quantities/resolvent.hpp"
+#include "stickslip/quantities/stationary.hpp"
+
+using namespace stickslip;
+using operators::Half;
+using operators::Rest;
+using operators::Symmetry;
+using operators::Systems;
+using petsc::check;
+using test::relative_difference;
+using test::scene;
+
+namespace {
+
+std::vector<model::Observable> observables(const std::vector<std::string>& texts) {
+  std::vector<model::Observable> all;
+  for (const auto& text : texts) all.push_back(model::parse_observable(text, {1, 0.25}));
+  return all;
+}
+
+/// u = R f on the whole grid, with R = (lambda - L)^-1, by its even and odd parts at s+.
+///
+/// R has the eigenvalue 1/lambda: rounding of the solve comes back as a constant of the size of
+/// rounding/lambda. The number c with R(f - c) = 0 at s+ and s- in the mean keeps all digits: found
+/// by c <- c + lambda R(f - c), it is lambda times the even part of u, and the solutions stay of
+/// order one. The odd part is half a difference, which sees no constants.
+class Direct {
+ public:
+  Direct(Systems& systems, double lambda)
+      : lambda_(lambda),
+        system_(systems.at(lambda, Symmetry::none, Rest::kept)),
+        upper_(system_.a().trace_at_exit(Half::upper)),
+        lower_(system_.a().trace_at_exit(Half::lower)) {}
+
+  struct Parts {
+    double even_by_lambda, odd;
+  };
+  [[nodiscard]] Parts of(const model::Observable& f) {
+    const petsc::VecHandle rest = system_.a().values(f.value);
+    double c = 0, odd = 0;
+    for (int n = 0; n < 4; ++n) {
+      const auto u = system_.factors().solve(rest);
+      const double at_plus = quantities::value_of(upper_, u).value;
+      const double at_minus = quantities::value_of(lower_, u).value;
+      const double step = lambda_ * (at_plus + at_minus) / 2;
+      odd = (at_plus - at_minus) / 2;
+      c += step;
+      check(VecShift(rest, -step));
+    }
+    return {c, odd};
+  }
+
+ private:
+  double lambda_;
+  operators::System& system_;
+  petsc::VecHandle upper_, lower_;
+};
+
+// Relative closeness; what is zero by symmetry is so up to rounding in the direct solution.
+bool close(double found, double expected) {
+  if (expected == 0) return std::abs(found) < 1e-12;
+  return relative_difference(found, expected) < 1e-9;
+}
+
+const std::vector<model::Scene>& sample_scenes() {
+  static const std::vector<model::Scene> scenes{
+      scene(1, 0.25, 1, 0.25, {1, 0}), scene(1, 1, 1, 0.5, {0, 0}), scene(0.7, 0.4, 1, 0.5, {2, 1}),
+      scene(0.2, 0.1, 0.25, 0.5, {0.1, 0})};
+  return scenes;
+}
+
+/// Systems of one discretisation, with what must outlive them.
+struct Discretised {
+  explicit Discretised(const test::Discrete& d)
+      : systems(PETSC_COMM_WORLD, d.process, d.axis, ledger) {}
+  petsc::Ledger ledger;
+  Systems systems;
+};
+
+std::vector<test::Discrete> sample_discretisations() {
+  std::vector<test::Discrete> all;
+  for (const auto& s : sample_scenes()) {
+    all.push_back(test::on_hp(s, 5, 1e-9));
+    all.push_back(test::on_upwind(s, 3));
+  }
+  return all;
+}
+
+}  // namespace
+
+// The folded problems of Prop. 3.1, static values first, against one unfolded solve.
+TEST_CASE("resolvent: the representation formula gives the resolvent of the whole process") {
+  const auto f = observables({"v^2", "stick", "v", "x*v+v"});
+  for (const auto& d : sample_discretisations()) {
+    Discretised made(d);
+    for (double lambda : {1e-8, 1e-4, 1e-2, 1.0, 1e2}) {
+      const auto r = quantities::resolvent(made.systems, lambda, f);
+      Direct direct(made.systems, lambda);
+      for (std::size_t n = 0; n < f.size(); ++n) {
+        const auto u = direct.of(f[n]);
+        INFO(f[n].name << " at lambda " << lambda);
+        CHECK(close(u.even_by_lambda, r.of[n].pi_lambda.value));
+        CHECK(close(u.odd, r.of[n].mu_lambda.value));
+        const double even = r.of[n].pi_lambda.value == 0 ? 0 : u.even_by_lambda / lambda;
+        CHECK(close(even + u.odd, r.of[n].u.value));
+      }
+    }
+  }
+}
+
+TEST_CASE("resolvent: an excursion ends at s+ or s-, now or later", "[parallel]") {
+  for (const auto& d : sample_discretisations()) {
+    Discretised made(d);
+    for (double lambda : {0.0, 1e-3, 1.0, 1e2}) {
+      const auto exits = quantities::resolvent(made.systems, lambda, {}).exits;
+      const double ends = exits.h_plus.value + exits.h_minus.value;
+      CHECK(std::abs(1 - ends - lambda * exits.w_one.value) < 1e-11);
+      CHECK(exits.h_plus.value > 0);
+      CHECK(exits.h_minus.value > 0);
+      const double excursion = quantities::slide_transforms(made.systems, lambda).excursion.value;
+      CHECK(relative_difference(ends, excursion) < 1e-11);
+    }
+  }
+}
+
+TEST_CASE("resolvent: pi at lambda = 0 are the stationary averages", "[parallel]") {
+  const auto f = observables({"stick", "v^2", "|v|", "x*v"});
+  for (const auto& d : sample_discretisations()) {
+    Discretised made(d);
+    const quantities::StationaryLaw law(made.systems);
+    quantities::Results known;
+    quantities::append_sticking(law.excursion(), known);
+    quantities::append_moments(d.process, law.excursion(), known);
+    const auto value = [&known](const std::string& key) {
+      const auto same = [&key](const auto& result) { return result.key == key; };
+      return std::find_if(known.begin(), known.end(), same)->value[0];
+    };
+    const auto r = quantities::resolvent(made.systems, 0, f);
+    CHECK(relative_difference(r.exits.w_one.value, value("mean_excursion")) < 1e-11);
+    const std::vector<std::string> keys{"P_stick", "E_V2", "E_absV", "E_XV"};
+    for (std::size_t n = 0; n < keys.size(); ++n) {
+      INFO(keys[n]);
+      CHECK(relative_difference(r.of[n].pi_lambda.value, value(keys[n])) < 1e-11);
+    }
+  }
+}
+
+TEST_CASE("resolvent: what is zero by symmetry is exactly zero", "[parallel]") {
+  const auto d = test::on_hp(sample_scenes()[0], 4, 1e-8);
+  Discretised made(d);
+  for (double lambda : {0.0, 0.5}) {
+    for (const auto& t : quantities::resolvent(made.systems, lambda, observables({"v", "x", "y*v^2"})).of) {
+      CHECK(t.pi_lambda.value == 0);
+      CHECK(t.pi_lambda.error == 0);
+      CHECK(t.w_plus.value == -t.w_minus.value);
+    }
+    for (const auto& t : quantities::resolvent(made.systems, lambda, observables({"v^2", "stick", "x*v"})).of) {
+      CHECK(t.mu_lambda.value == 0);
+      CHECK(t.mu_lambda.error == 0);
+      CHECK(t.w_plus.value == t.w_minus.value);
+    }
+  }
+}
+
+// (lambda - L) u = lambda c + (lambda - L) g has the solution u = c + g: with g = x, L x = -x/tau on
+// the whole noise range, u(s+) is known without any solve.
+TEST_CASE("resolvent: of the noise itself, in closed form", "[parallel]") {
+  for (double tau : {1.0, 2.0}) {
+    const auto s = test::on_full_noise(scene(1, 0.25, tau, 0.5, {1, 0}));
+    const auto d = test::on_hp(s, 5);
+    Discretised made(d);
+    const double x = d.process.noise.level(d.process.static_index() + 1);
+    for (double lambda : {1e-6, 0.3, 20.0}) {
+      const auto r = quantities::resolvent(made.systems, lambda, observables({"x", "x^2", "1"}));
+      CHECK(relative_difference(r.of[0].u.value, x / (lambda + 1 / tau)) < 1e-11);
+      const double square = 1 / (tau * lambda) + (x * x - 1 / tau) / (lambda + 2 / tau);
+      CHECK(relative_difference(r.of[1].u.value, square) < 1e-11);
+      CHECK(relative_difference(r.of[2].u.value, 1 / lambda) < 1e-13);
+    }
+  }
+}
+
+TEST_CASE("resolvent: u is given where all lambda are positive", "[parallel]") {
+  const auto d = test::on_hp(sample_scenes()[1], 3, 1e-6);
+  const auto f = observables({"v^2"});
+  for (double first : {0.0, 0.5}) {
+    Discretised made(d);
+    const std::vector<double> lambda{first, 1};
+    std::vector<quantities::Resolvent> all;
+    for (double l : lambda) all.push_back(quantities::resolvent(made.systems, l, f));
+    quantities::Results results;
+    quantities::append_resolvent(lambda, f, all, results);
+    const auto is_u = [](const auto& result) { return result.key == "u(v^2)"; };
+    CHECK(std::count_if(results.begin(), results.end(), is_u) == (first > 0 ? 1 : 0));
+    for (const auto& result : results) CHECK(result.value.size() == 2);
+  }
+}

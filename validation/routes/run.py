@@ -1,0 +1,193 @@
+"""Every route to the stationary numbers, on the same discretisations, in one table.
+
+usage: python3 validation/routes/run.py [--quick] [--program build/stickslip]
+
+Prints the table, then each claim of README.md with its verdict; exit status 1 if one fails.
+--quick leaves out delta = 1/8 and p = 256 (a few seconds instead of some minutes).
+"""
+
+import argparse
+import itertools
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+KEYS = ("P_stick", "E_V2", "P_X_le_mu_s")
+OBSERVABLES = "stick;v^2;|x|<=mu_s"
+ROUTES = ("excursion", "lambda", "hitting", "resolvent", "null_vector")
+
+
+class Program:
+    def __init__(self, path):
+        self.path = path
+
+    def run(self, **options):
+        """The summary of one run; underscores of PETSc's solver prefixes stay as they are."""
+        with tempfile.TemporaryDirectory() as folder:
+            summary = pathlib.Path(folder) / "summary.json"
+            words = [str(self.path), "-summary", str(summary)]
+            for name, value in options.items():
+                words += ["-" + name, str(value)]
+            done = subprocess.run(words, capture_output=True, text=True)
+            if done.returncode not in (0, 3):  # 3: a discretisation fixed by hand is not refined
+                sys.exit(f"{' '.join(words)}\n{done.stderr}")
+            return json.loads(summary.read_text())
+
+
+def numbers_by(program, route, scene):
+    """KEYS by one route: value and the error that the route itself states, and the solver's seconds."""
+    if route == "resolvent":
+        found = program.run(quantities="resolvent", observable=OBSERVABLES, **{"lambda": 0}, **scene)
+        names = [f"pi({f})" for f in OBSERVABLES.split(";")]
+        values = {key: found["results"][name]["value"][0] for key, name in zip(KEYS, names)}
+    else:
+        asked = "sticking" if route == "hitting" else "sticking,moments,noise_law"
+        found = program.run(quantities=asked, route=route, **scene)
+        values = {key: found["results"][key]["value"] for key in KEYS if key in found["results"]}
+    step = found["cost"]["steps"][-1]
+    return values, step.get("checks", {}), step["seconds"]
+
+
+def difference(a, b):
+    return abs(a - b) / abs(b)
+
+
+def binomial(delta, tau=1, mu_s=1):
+    """P(|X| <= mu_s) of the full chain: x = delta (B - N), B binomial of 2N trials."""
+    n, k = round(2 / (tau * delta**2)), round(mu_s / delta)
+    return sum(math.comb(2 * n, n + i) for i in range(-k, k + 1)) / 4**n
+
+
+class Report:
+    def __init__(self):
+        self.failed = False
+
+    def claim(self, text, worst, tolerance):
+        good = worst <= tolerance
+        self.failed |= not good
+        print(f"{'holds' if good else 'FAILS'}  {text}: largest {worst:.1e}, allowed {tolerance:.0e}")
+
+
+def common_table(program, report, scenes, discretisations, tolerance, routes, claim):
+    """Prints one row per route; claims that all agree with the first one."""
+    worst, worst_lambda, ratio = 0.0, 0.0, 0.0
+    mass, negative, binomial_error = 0.0, 0.0, 0.0
+    for (delta, mu_d), chosen in itertools.product(scenes, discretisations):
+        scene = {"delta": delta, "mu_d": mu_d, "noise_levels": "full", "accuracy": 1e-9, **chosen}
+        rows = {route: numbers_by(program, route, scene) for route in routes}
+        reference, _, seconds = rows["excursion"]
+        label = " ".join(f"{name} = {value}" for name, value in chosen.items() if name != "scheme")
+        print(f"\ndelta = {delta:g}  mu_d = {mu_d:g}  {chosen['scheme']}  {label}")
+        for route, (values, checks, _) in rows.items():
+            cells = "  ".join(f"{values[key]:.15f}" if key in values else " " * 17 for key in KEYS)
+            print(f"  {route:<12}{cells}")
+            apart = max(difference(values[key], reference[key]) for key in values)
+            if route == "lambda":
+                worst_lambda = max(worst_lambda, apart / max(checks["largest_relative_bias"], 1e-11))
+            else:
+                worst = max(worst, apart)
+            if "P_X_le_mu_s" in values and route != "lambda":
+                binomial_error = max(binomial_error,
+                                     difference(values["P_X_le_mu_s"], binomial(delta)))
+        if "null_vector" in rows:
+            checks = rows["null_vector"][1]
+            mass = max(mass, checks["norm_pi_M_over_norm_M"])
+            negative = max(negative, -checks["most_negative_pi"])
+            if seconds > 0.05:  # less is timer noise
+                ratio = max(ratio, rows["null_vector"][2] / seconds)
+    print()
+    report.claim(f"{claim}: routes agree, relative", worst, tolerance)
+    report.claim(f"{claim}: lambda differs by its own bias, times", worst_lambda, 2)
+    report.claim(f"{claim}: P_X_le_mu_s is the binomial sum, relative", binomial_error, 1e-10)
+    if "null_vector" in routes:
+        report.claim(f"{claim}: ||pi M|| / ||M||", mass, 1e-10)
+        report.claim(f"{claim}: most negative entry of pi", negative, 1e-15)
+        report.claim(f"{claim}: seconds of null_vector over those of excursion", ratio, 10)
+
+
+def first_order_values(program, report):
+    """P_stick of the paper's scheme and route at lambda = 1e-6, also by a script of its own."""
+    worst = 0.0
+    for delta, points, value in ((1 / 2, 64, 0.29655524), (1 / 2, 512, 0.29022545),
+                                 (1 / 4, 64, 0.2030130), (1 / 4, 256, 0.198250)):
+        scene = {"delta": delta, "mu_d": 0.25, "noise_levels": "full", "scheme": "upwind",
+                 "p": points, "quantities": "sticking"}
+        found = program.run(route="lambda", **{"lambda": 1e-6}, **scene)["results"]["P_stick"]
+        limit = program.run(**scene)["results"]["P_stick"]
+        print(f"  delta = {delta:g}  p = {points:<4} lambda = 1e-6: {found['value']:.10f}"
+              f"  lambda -> 0: {limit['value']:.10f}  other code {value}")
+        digits = len(repr(value).split(".")[1])
+        worst = max(worst, abs(found["value"] - value) / (5e-8 + 0.5 * 10.0**-digits))
+    report.claim("upwind P_stick at lambda = 1e-6 against another code, in units of its rounding",
+                 worst, 1)
+
+
+def fluid_queue(program, report, quick):
+    """b = 0: hp elements against the queue without a grid, and the queue against known digits."""
+    worst, exact = 0.0, 0.0
+    known = {(1 / 2, 1): (0.493915875516, 0.543424039081, None),
+             (1 / 4, 1): (0.453441658945, 0.566213687113, 0.308665061),
+             (1 / 4, 1 / 4): (0.0444301477306, 29.5037230587, None), (1 / 8, 1 / 2): None}
+    for (delta, mu_d), digits in known.items():
+        if quick and delta < 1 / 4:
+            continue
+        scene = {"delta": delta, "mu_d": mu_d, "drag": "none", "noise_levels": "full",
+                 "accuracy": 1e-10, "quantities": "sticking,moments,entry_law,laplace", "lambda": 1}
+        by_queue = program.run(route="fluid_queue", **scene)["results"]
+        by_hp = program.run(**scene)["results"]
+        row = f"  delta = {delta:g}  mu_d = {mu_d:g}"
+        for key in ("P_stick", "E_V2", "F_slide", "f_stick_0"):
+            one, other = (r[key]["value"] for r in (by_hp, by_queue))
+            one, other = (v[0] if isinstance(v, list) else v for v in (one, other))
+            row += f"  {key} {other:.13g}"
+            worst = max(worst, difference(one, other))
+        print(row)
+        if digits:
+            for key, value in zip(("P_stick", "E_V2", "f_stick_0"), digits):
+                if value:
+                    last = 0.5 * 10.0 ** -(len(repr(value).split(".")[1]))
+                    exact = max(exact, abs(by_queue[key]["value"] - value) / (2 * last))
+    report.claim("b = 0: hp against the fluid queue, relative", worst, 1e-9)
+    report.claim("fluid queue against known digits, in units of the last one", exact, 1)
+
+
+def representation_formula(program, report):
+    """lambda u_lambda(s+; f) by Prop. 3.2 and by a direct solve on both signs of v."""
+    worst = 0.0
+    for exponent in range(-8, 3):
+        scene = {"delta": 0.25, "mu_d": 0.25, "degree": 9, "lambda": f"1e{exponent}"}
+        formula = program.run(quantities="resolvent", observable="stick;v^2;x*v", **scene)["results"]
+        direct = program.run(quantities="sticking,moments", route="lambda", **scene)["results"]
+        for f, key in (("stick", "P_stick"), ("v^2", "E_V2"), ("x*v", "E_XV")):
+            u = formula[f"u({f})"]["value"][0] * 10.0**exponent
+            worst = max(worst, difference(u, direct[key]["value"]))
+    report.claim("representation formula against a direct solve, lambda = 1e-8 ... 1e2, relative",
+                 worst, 1e-9)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="leave out the large cases")
+    root = pathlib.Path(__file__).resolve().parents[2]
+    parser.add_argument("--program", default=root / "build" / "stickslip", type=pathlib.Path)
+    arguments = parser.parse_args()
+    program, report = Program(arguments.program), Report()
+    deltas = (1 / 2, 1 / 4) if arguments.quick else (1 / 2, 1 / 4, 1 / 8)
+    scenes = list(itertools.product(deltas, (1 / 4, 1)))
+    points = (16, 64) if arguments.quick else (16, 64, 256)
+    upwind = [{"scheme": "upwind", "p": p} for p in points]
+    common_table(program, report, scenes, upwind, 1e-9, ROUTES, "upwind")
+    common_table(program, report, scenes, [{"scheme": "hp", "degree": 9}], 1e-10, ROUTES[:4], "hp")
+    print("\nThe paper's scheme")
+    first_order_values(program, report)
+    print("\nWithout drag")
+    fluid_queue(program, report, arguments.quick)
+    print()
+    representation_formula(program, report)
+    sys.exit(1 if report.failed else 0)
+
+
+main()
