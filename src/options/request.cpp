@@ -111,7 +111,8 @@ const std::vector<Asked>& askable() {
       {"density", Quantity::density, {excursion}},
       {"laplace", Quantity::laplace, {excursion, fluid_queue}},
       {"resolvent", Quantity::resolvent, {excursion}},
-      {"relaxation", Quantity::relaxation, {excursion}}};
+      {"relaxation", Quantity::relaxation, {excursion}},
+      {"spectrum", Quantity::spectrum, {excursion}}};
   return all;
 }
 
@@ -156,6 +157,7 @@ void read_observables(const Settings& settings, Request& request, Problems& prob
 // What the quantities and the route need besides the scene.
 void read_arguments(const Settings& settings, Request& request, Problems& problems) {
   request.lambda = settings.numbers("lambda");
+  request.omega = settings.numbers("omega");
   read_observables(settings, request, problems);
   const bool transforms = request.wants(Quantity::laplace) || request.wants(Quantity::resolvent);
   const bool resolvent = request.wants(Quantity::resolvent);
@@ -180,6 +182,16 @@ void read_arguments(const Settings& settings, Request& request, Problems& proble
   };
   warn_unused("lambda", transforms || by_lambda);
   warn_unused("observable", resolvent);
+  warn_unused("omega", request.wants(Quantity::spectrum));
+  warn_unused("spectrum_solver", request.wants(Quantity::spectrum));
+}
+
+void read_spectrum_solver(const Settings& settings, Request& request, Problems& problems) {
+  if (settings.text("spectrum_solver") != "direct") return;
+  request.spectrum_solver = SpectrumSolver::direct;
+  if (PetscDefined(USE_COMPLEX)) return;
+  settings.report(problems, "spectrum_solver", "needs complex scalars",
+                  "run stickslip-complex with the same options, or take krylov");
 }
 
 // What only some routes can do.
@@ -410,6 +422,7 @@ Request read_request(const std::vector<std::string>& argv) {
   request.route = route_named(settings.text("route"));
   read_quantities(settings, request, problems);
   read_arguments(settings, request, problems);
+  read_spectrum_solver(settings, request, problems);
   request.accuracy = settings.real("accuracy");
   request.method = read_method(settings, problems);
   check_route(settings, request, problems);

@@ -129,12 +129,21 @@ Factorization::Factorization(Mat matrix, const std::string& prefix, Ledger& ledg
     : prefix_(prefix), ledger_(ledger) {
   check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
   matrix_ = MatHandle(matrix);
-  magnitude_ = magnitudes(matrix);
+  ksp_ = configured_solver(matrix, prefix);
+  factor();
+}
+
+void Factorization::update() {
+  check(KSPSetOperators(ksp_, matrix_, matrix_));
+  factor();
+}
+
+void Factorization::factor() {
+  magnitude_ = magnitudes(matrix_);
   double total = 0;
   const double symbolic_before = logged_seconds("MatLUFactorSym");
   {
     const PhaseTimer timer("factorisation", total);
-    ksp_ = configured_solver(matrix, prefix);
     check(KSPSetUp(ksp_));
     require_factored(ksp_, prefix_);
   }
@@ -143,6 +152,18 @@ Factorization::Factorization(Mat matrix, const std::string& prefix, Ledger& ledg
   ledger_.factorization_seconds += total - symbolic;
   ++(kComplex ? ledger_.factorizations_complex : ledger_.factorizations_real);
   record_factors(ksp_, ledger_);
+}
+
+void Factorization::solve_once(Vec b, Vec x) {
+  const PhaseTimer timer("solve", ledger_.solve_seconds);
+  apply(b, x, false);
+  ++ledger_.solves;
+}
+
+void Factorization::solve_transposed_once(Vec b, Vec x) {
+  const PhaseTimer timer("solve", ledger_.solve_seconds);
+  apply(b, x, true);
+  ++ledger_.solves;
 }
 
 void Factorization::apply(Vec b, Vec x, bool transposed) {

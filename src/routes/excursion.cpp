@@ -2,8 +2,10 @@
 
 #include "routes.hpp"
 #include "stickslip/operators/systems.hpp"
+#include "stickslip/petsc/session.hpp"
 #include "stickslip/quantities/laplace.hpp"
 #include "stickslip/quantities/resolvent.hpp"
+#include "stickslip/quantities/spectrum.hpp"
 
 namespace stickslip::routes {
 namespace {
@@ -17,7 +19,7 @@ using quantities::Uncertain;
 
 bool needs_law(const Request& request) {
   for (Quantity q : {Quantity::sticking, Quantity::moments, Quantity::entry_law, Quantity::density,
-                     Quantity::laplace}) {
+                     Quantity::laplace, Quantity::spectrum}) {
     if (request.wants(q)) return true;
   }
   return request.scene.v_max.has_value();  // what the cut holds back is judged by the law
@@ -81,6 +83,30 @@ void append_transforms(operators::Systems& systems, const Setting& setting,
   }
 }
 
+// On several ranks each computes the law for itself, then its share of the frequencies.
+quantities::Spectrum direct_spectrum(const Setting& setting) {
+  const MPI_Comm comm = petsc::ranks(setting.comm) > 1 ? PETSC_COMM_SELF : setting.comm;
+  operators::Systems systems(comm, setting.process, setting.axis, setting.ledger);
+  const StationaryLaw law(systems);
+  systems.release(0, Symmetry::even);
+  return quantities::direct_spectrum(setting.comm, systems, law, setting.request.omega);
+}
+
+void append_spectrum(operators::Systems& systems, const Setting& setting, Evaluation& evaluation) {
+  const Request& request = setting.request;
+  if (request.spectrum_solver == options::SpectrumSolver::direct) {
+    quantities::append_spectrum(request.omega, direct_spectrum(setting), evaluation.results);
+    return;
+  }
+  // A tenth of the accuracy, so that the projection does not rule the error.
+  const auto reduced =
+      quantities::reduced_spectrum(systems, *evaluation.law, request.omega, 0.1 * request.accuracy);
+  quantities::append_spectrum(request.omega, reduced.spectrum, evaluation.results);
+  quantities::append_shape(reduced.shape, evaluation.results);
+  evaluation.checks.emplace_back("krylov_vectors", reduced.vectors);
+  evaluation.checks.emplace_back("krylov_shifts", static_cast<double>(reduced.shifts.size()));
+}
+
 }  // namespace
 
 // One set of factors at a time; those for lambda = 0 serve all that needs them first.
@@ -99,6 +125,7 @@ Evaluation by_excursion(const Setting& setting) {
     if (!(again && request.wants(Quantity::resolvent))) systems.release(0, Symmetry::odd);
   }
   append_transforms(systems, setting, evaluation);
+  if (request.wants(Quantity::spectrum)) append_spectrum(systems, setting, evaluation);
   if (request.wants(Quantity::relaxation)) {
     evaluation.even = quantities::relaxation_modes(systems, Symmetry::even);
     evaluation.odd = quantities::relaxation_modes(systems, Symmetry::odd);

@@ -20,7 +20,8 @@ enum class Quantity {
   density,
   laplace,
   resolvent,
-  relaxation
+  relaxation,
+  spectrum
 };
 
 /// Discretisation in v; `none` for the fluid queue, which needs none.
@@ -31,6 +32,9 @@ enum class Factors { in_memory, on_disk, incomplete };
 
 /// By which system of equations.
 enum class Route { excursion, lambda, hitting, null_vector, fluid_queue };
+
+/// How the spectrum is computed.
+enum class SpectrumSolver { krylov, direct };
 
 /// Whether a route works on both signs of v, unfolded.
 [[nodiscard]] inline bool on_full_grid(Route route) {
@@ -52,7 +56,9 @@ struct Request {
   std::set<Quantity> quantities;
   std::vector<double> lambda;                  ///< of laplace and resolvent; one for -route lambda
   std::vector<model::Observable> observables;  ///< of resolvent
+  std::vector<double> omega;                   ///< of spectrum
   double accuracy = 1e-6;
+  SpectrumSolver spectrum_solver = SpectrumSolver::krylov;
   Route route = Route::excursion;
   Method method;
   std::string summary, output;  ///< file names; empty if not asked for

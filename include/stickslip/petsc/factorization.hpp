@@ -52,11 +52,21 @@ class Factorization {
   /// A^T x = b (no conjugation).
   [[nodiscard]] Solution solve_transposed(Vec b) { return solve(b, true); }
 
+  /// A x = b and A^T x = b without the residual and its correction, for directions that need not be
+  /// exact.
+  void solve_once(Vec b, Vec x);
+  void solve_transposed_once(Vec b, Vec x);
+
+  /// Factors again after the values of the matrix, not its pattern, have changed; the analysis is
+  /// kept.
+  void update();
+
   /// Reads all options of a role once, on a 2 x 2 matrix, so that unknown ones can be told before
   /// any work. Collective on PETSC_COMM_SELF only.
   static void probe_options(const std::string& prefix);
 
  private:
+  void factor();
   [[nodiscard]] Solution solve(Vec b, bool transposed);
   void apply(Vec b, Vec x, bool transposed);
   [[nodiscard]] double backward_error(Vec residual, Vec b, Vec x, bool transposed) const;

@@ -3,6 +3,7 @@
 
 #include <petscksp.h>
 #include <petscviewerhdf5.h>
+#include <slepcbv.h>
 #include <slepceps.h>
 
 #include <exception>
@@ -59,6 +60,7 @@ class Handle {
 using VecHandle = Handle<Vec, VecDestroy>;
 using MatHandle = Handle<Mat, MatDestroy>;
 using KspHandle = Handle<KSP, KSPDestroy>;
+using BvHandle = Handle<BV, BVDestroy>;
 using EpsHandle = Handle<EPS, EPSDestroy>;
 using ViewerHandle = Handle<PetscViewer, PetscViewerDestroy>;
 

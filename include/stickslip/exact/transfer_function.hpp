@@ -1,0 +1,28 @@
+#pragma once
+/// left (z - M)^-1 right for many z, M small and dense.
+
+#include <complex>
+#include <vector>
+
+#include "stickslip/exact/dense.hpp"
+
+namespace stickslip::exact {
+
+/// H(z) = left (z - M)^-1 right through the Schur form M = Q T Q^H (zgees), backward stable for
+/// matrices far from normal too. O(n^3) once, O(n^2) a value.
+class TransferFunction {
+ public:
+  /// Throws std::runtime_error when the Schur form does not converge.
+  TransferFunction(const Matrix& m, const std::vector<double>& left,
+                   const std::vector<double>& right);
+
+  /// Infinite at an eigenvalue of M.
+  [[nodiscard]] std::complex<double> operator()(std::complex<double> z) const;
+
+ private:
+  int n_;
+  std::vector<std::complex<double>> t_;             // upper triangle, by columns
+  std::vector<std::complex<double>> left_, right_;  // left Q, Q^H right
+};
+
+}  // namespace stickslip::exact

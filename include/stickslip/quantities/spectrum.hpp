@@ -1,0 +1,59 @@
+#pragma once
+/// Power spectral density of the velocity.
+
+#include <vector>
+
+#include "stickslip/operators/systems.hpp"
+#include "stickslip/quantities/results.hpp"
+#include "stickslip/quantities/stationary.hpp"
+#include "stickslip/quantities/uncertain.hpp"
+
+namespace stickslip::quantities {
+
+/// S_v(omega) = int E[V_0 V_t] exp(-i omega t) dt = 2 Re c (i omega - L)^-1 v, with c = pi v on the
+/// folded grid: odd functions only, so that omega = 0 is no special case.
+///
+/// Far out S_v falls as omega^-4, and the formula above subtracts terms of order omega^-2 that
+/// cancel because E[V dV/dt] = 0. There, with a = L v the acceleration,
+///   S_v(omega) = -(2/omega^2) Re (c L) (i omega - L)^-1 a
+///              = -(2/omega^3) Im (c L^2) (i omega - L)^-1 a
+/// is used, which has dropped the vanishing term and keeps its relative accuracy; small models take
+/// the second form.
+struct Spectrum {
+  Uncertain at_zero;             ///< S_v(0)
+  std::vector<Uncertain> value;  ///< S_v at the frequencies asked for [velocity^2 time]
+};
+
+/// What a reduced model knows besides: it is cheap at every frequency.
+struct SpectrumShape {
+  Uncertain
+      fwhm;  ///< full width at half of S_v(0) [1/time]; not a number if S_v never falls so far
+  Uncertain variance;  ///< (1/2 pi) int S_v d omega, which is E[V^2]
+};
+
+struct ReducedSpectrum {
+  Spectrum spectrum;
+  SpectrumShape shape;
+  int vectors = 0;             ///< pairs in the two spaces
+  std::vector<double> shifts;  ///< real shifts used [1/time]
+};
+
+/// By two-sided rational Krylov projection: a few real factorisations for all frequencies. The
+/// error at each frequency is what the last vectors changed there; shifts are added where it is
+/// largest, until all relative errors are below `tolerance` or nothing improves. Collective.
+[[nodiscard]] ReducedSpectrum reduced_spectrum(operators::Systems& systems,
+                                               const StationaryLaw& law,
+                                               const std::vector<double>& omega, double tolerance);
+
+/// By one factorisation of i omega - L for each frequency, its analysis done once. Complex scalars
+/// only. Collective; on several ranks each takes its share of the frequencies, alone: `systems` and
+/// `law` then live on one rank each, and `comm` has all of them.
+[[nodiscard]] Spectrum direct_spectrum(MPI_Comm comm, operators::Systems& systems,
+                                       const StationaryLaw& law, const std::vector<double>& omega);
+
+/// S_v by omega, S_0, diffusivity = S_0/2.
+void append_spectrum(const std::vector<double>& omega, const Spectrum& spectrum, Results& results);
+/// fwhm, t_corr = 1/fwhm, variance_from_spectrum.
+void append_shape(const SpectrumShape& shape, Results& results);
+
+}  // namespace stickslip::quantities

@@ -1,0 +1,271 @@
+#include "stickslip/quantities/spectrum.hpp"
+
+#include <algorithm>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <boost/math/tools/roots.hpp>
+#include <cmath>
+#include <complex>
+#include <cstdio>
+#include <limits>
+#include <memory>
+
+#include "stickslip/exact/transfer_function.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/session.hpp"
+#include "stickslip/petsc/vectors.hpp"
+#include "stickslip/quantities/reduced_model.hpp"
+
+namespace stickslip::quantities {
+namespace {
+
+using operators::KolmogorovOperator;
+using operators::Rest;
+using operators::State;
+using operators::StateKind;
+using operators::Symmetry;
+using petsc::check;
+
+constexpr int kMostVectors = 120;
+constexpr double kPi = 3.14159265358979323846;
+
+// i w; nothing in real arithmetic, where it is not asked for.
+PetscScalar imaginary([[maybe_unused]] double w) {
+#if defined(PETSC_USE_COMPLEX)
+  return {0, w};
+#else
+  return 0;
+#endif
+}
+
+double velocity(double, double, double v) { return v; }
+
+// c = pi v. Both spaces list the sliding states of a rank in the same order.
+petsc::VecHandle weighted_velocity(const KolmogorovOperator& odd, const StationaryLaw& law) {
+  petsc::VecHandle c = odd.values(velocity);
+  const double total = law.excursion().mean_excursion();
+  petsc::WriteView local(c);
+  const petsc::ReadView nu(law.occupation());
+  PetscInt at = 0, sliding = 0;
+  odd.states().for_each_local([&](const State& state) {
+    local[at++] *= state.kind == StateKind::rest ? 0 : nu[sliding++] / total;
+  });
+  return c;
+}
+
+// About pi, kept away from 0 and from the signs that high order gives far tails.
+petsc::VecHandle weights(const KolmogorovOperator& odd, const StationaryLaw& law) {
+  petsc::VecHandle d = odd.zeros();
+  {
+    petsc::WriteView local(d);
+    const petsc::ReadView nu(law.occupation());
+    const auto& stick = law.excursion().stick_time;
+    const std::size_t k = stick.size() / 2;
+    PetscInt at = 0, sliding = 0;
+    odd.states().for_each_local([&](const State& state) {
+      const bool rest = state.kind == StateKind::rest;
+      local[at++] =
+          rest ? stick[k + state.level] + stick[k - state.level] : PetscAbsScalar(nu[sliding++]);
+    });
+  }
+  PetscReal largest = 0;
+  check(VecNorm(d, NORM_INFINITY, &largest));
+  check(VecShift(d, 1e-12 * largest));
+  return d;
+}
+
+/// S_v of a reduced model.
+class ReducedFunction {
+ public:
+  ReducedFunction(const Reduced& r, double turn)
+      : turn_(turn),
+        near_(r.m, exact::row_times(r.gamma, r.g), r.beta),
+        far_(r.m, exact::row_times(exact::row_times(exact::row_times(r.gamma, r.g), r.m), r.m),
+             column(r.m, r.beta)) {}
+
+  [[nodiscard]] double operator()(double omega) const {
+    const std::complex<double> z(0, omega);
+    if (omega <= turn_) return 2 * near_(z).real();
+    return -2 * far_(z).imag() / (omega * omega * omega);
+  }
+
+ private:
+  static std::vector<double> column(const exact::Matrix& m, const std::vector<double>& x) {
+    std::vector<double> result(x.size(), 0.0);
+    for (int c = 0; c < m.columns(); ++c) {
+      for (int r = 0; r < m.rows(); ++r) result[r] += m(r, c) * x[c];
+    }
+    return result;
+  }
+
+  double turn_;  // where the formulas for large omega take over
+  exact::TransferFunction near_, far_;
+};
+
+// Frequencies at which a model is judged: those asked for, 0, and enough for the half width.
+std::vector<double> judged(const std::vector<double>& omega, double tau) {
+  std::vector<double> all = omega;
+  all.push_back(0);
+  for (double w = 0.1; w < 20; w *= 1.5) all.push_back(w / tau);
+  return all;
+}
+
+// First omega at which S falls to half of S(0); NaN if there is none.
+double half_width(const ReducedFunction& s, double tau) {
+  const double half = s(0) / 2;
+  constexpr double step = 1.05, most = 1e9;
+  double low = 0, high = 1e-3 / tau;
+  while (s(high) > half) {
+    low = high;
+    high *= step;
+    if (high * tau > most) return std::numeric_limits<double>::quiet_NaN();
+  }
+  std::uintmax_t iterations = 100;
+  const auto bracket =
+      boost::math::tools::toms748_solve([&](double w) { return s(w) - half; }, low, high,
+                                        boost::math::tools::eps_tolerance<double>(52), iterations);
+  return (bracket.first + bracket.second) / 2;
+}
+
+Uncertain full_width(const ReducedFunction& s, double tau, double relative_error) {
+  const double half = half_width(s, tau);
+  const double step = 1e-4 * half;
+  const double slope = (s(half + step) - s(half - step)) / (2 * step);
+  // S at half width and S(0) have that relative error each.
+  return {2 * half, 2 * relative_error * std::abs(s(0) / slope)};
+}
+
+// (1/pi) int_0^inf S: decade by decade, and C/omega^4 beyond.
+Uncertain integral(const ReducedFunction& s, double tau, double relative_error) {
+  using Rule = boost::math::quadrature::gauss_kronrod<double, 31>;
+  double sum = 0, doubt = 0, low = 0;
+  for (double high = 1e-3 / tau; high < 1e6 / tau; high *= std::sqrt(10)) {
+    double error = 0;
+    sum += Rule::integrate(s, low, high, 8, 1e-13, &error);
+    doubt += error;
+    low = high;
+  }
+  sum += s(low) * low / 3;
+  return {sum / kPi, (doubt + relative_error * sum) / kPi};
+}
+
+/// S_v at single frequencies by complex solves.
+class DirectSpectrum {
+ public:
+  DirectSpectrum(operators::Systems& systems, const StationaryLaw& law)
+      : a_(operators::assemble(systems.comm(), systems.process(), systems.axis(), 0, Symmetry::odd,
+                               Rest::kept, systems.ledger())),
+        ledger_(systems.ledger()),
+        turn_(1 / systems.process().noise.tau),
+        b_(a_.values(velocity)),
+        c_(weighted_velocity(a_, law)),
+        acceleration_(a_.zeros()),
+        cl_(a_.zeros()) {
+    check(MatMult(a_.matrix(), b_, acceleration_));
+    check(MatMultTranspose(a_.matrix(), c_, cl_));
+    check(VecScale(acceleration_, -1));
+  }
+
+  [[nodiscard]] Uncertain operator()(double omega) {
+    shift_to(omega);
+    if (omega <= turn_) return 2.0 * value_of(c_, factors_->solve(b_));
+    return (2 / (omega * omega)) * value_of(cl_, factors_->solve(acceleration_));
+  }
+
+ private:
+  void shift_to(double omega) {
+    check(MatShift(a_.matrix(), imaginary(omega - omega_)));
+    omega_ = omega;
+    if (factors_ == nullptr) {
+      factors_ =
+          std::make_unique<petsc::Factorization>(a_.matrix(), operators::kSlidePrefix, ledger_);
+    } else {
+      factors_->update();
+    }
+  }
+
+  KolmogorovOperator a_;
+  petsc::Ledger& ledger_;
+  double turn_, omega_ = 0;
+  petsc::VecHandle b_, c_, acceleration_, cl_;
+  std::unique_ptr<petsc::Factorization> factors_;
+};
+
+}  // namespace
+
+ReducedSpectrum reduced_spectrum(operators::Systems& systems, const StationaryLaw& law,
+                                 const std::vector<double>& omega, double tolerance) {
+  const auto& noise = systems.process().noise;
+  const double turn = 1 / noise.tau;
+  const auto odd = operators::assemble(systems.comm(), systems.process(), systems.axis(), 0,
+                                       Symmetry::odd, Rest::kept, systems.ledger());
+  ReducedModel model(systems, {Symmetry::odd, Rest::kept}, odd.values(velocity),
+                     weighted_velocity(odd, law), weights(odd, law), kMostVectors);
+  const std::vector<double> frequencies = judged(omega, noise.tau);
+  Questions questions;
+  questions.values = [&](const Reduced& reduced) {
+    const ReducedFunction s(reduced, turn);
+    std::vector<double> values;
+    for (double w : frequencies) values.push_back(s(w));
+    return values;
+  };
+  questions.shift = frequencies;
+  questions.each_by_its_size = true;
+  questions.tolerance = tolerance;
+  questions.first_shift = turn;
+  // Beyond the rate of the noise the moments at infinity rule.
+  questions.lowest = 0.05 * turn;
+  questions.highest = std::max(turn, noise.rate());
+  const Answers answers = ask(model, questions);
+
+  ReducedSpectrum result;
+  for (std::size_t n = 0; n < omega.size(); ++n) {
+    result.spectrum.value.push_back({answers.value[n], answers.error[n]});
+  }
+  result.spectrum.at_zero = {answers.value[omega.size()], answers.error[omega.size()]};
+  const ReducedFunction s(answers.model, turn);
+  result.shape.fwhm = full_width(s, noise.tau, answers.relative_error);
+  result.shape.variance = integral(s, noise.tau, answers.relative_error);
+  result.vectors = answers.vectors;
+  result.shifts = answers.shifts;
+  return result;
+}
+
+Spectrum direct_spectrum(MPI_Comm comm, operators::Systems& systems, const StationaryLaw& law,
+                         const std::vector<double>& omega) {
+  DirectSpectrum direct(systems, law);
+  const std::size_t count = omega.size() + 1;  // and omega = 0
+  std::vector<double> value(count, 0.0), error(count, 0.0);
+  const auto rank = static_cast<std::size_t>(petsc::rank(comm));
+  const auto ranks = static_cast<std::size_t>(petsc::ranks(comm));
+  for (std::size_t n = rank; n < count; n += ranks) {
+    const Uncertain s = direct(n < omega.size() ? omega[n] : 0);
+    value[n] = s.value;
+    error[n] = s.error;
+  }
+  for (auto* all : {&value, &error}) {
+    MPI_Allreduce(MPI_IN_PLACE, all->data(), static_cast<int>(count), MPI_DOUBLE, MPI_SUM, comm);
+  }
+  Spectrum spectrum;
+  for (std::size_t n = 0; n < omega.size(); ++n) spectrum.value.push_back({value[n], error[n]});
+  spectrum.at_zero = {value.back(), error.back()};
+  return spectrum;
+}
+
+void append_spectrum(const std::vector<double>& omega, const Spectrum& spectrum, Results& results) {
+  if (!omega.empty()) {
+    Result s = array("S_v", "velocity^2*time", "omega", omega);
+    s.each_by_its_size = true;
+    for (const auto& value : spectrum.value) append_value(s, value);
+    results.push_back(std::move(s));
+  }
+  results.push_back(scalar("S_0", "velocity^2*time", spectrum.at_zero));
+  results.push_back(scalar("diffusivity", "velocity^2*time", 0.5 * spectrum.at_zero));
+}
+
+void append_shape(const SpectrumShape& shape, Results& results) {
+  results.push_back(scalar("fwhm", "1/time", shape.fwhm));
+  results.push_back(scalar("t_corr", "time", Uncertain{1, 0} / shape.fwhm));
+  results.push_back(scalar("variance_from_spectrum", "velocity^2", shape.variance));
+}
+
+}  // namespace stickslip::quantities
