@@ -94,8 +94,8 @@ std::vector<Discretisation> both_schemes(double v_max, const model::Drag& drag) 
 
 }  // namespace
 
-// The generator of the paper, built here from its definition on the (i, j) grid, entry by entry: the
-// same states in another order, those at v = 0 beyond mu_s with the sign of their force as y.
+// The generator of the paper, built here from its definition on the (i, j) grid, entry by entry:
+// the same states in another order, those at v = 0 beyond mu_s with the sign of their force as y.
 TEST_CASE("kolmogorov operator: the unfolded upwind operator is -M of the paper") {
   const std::vector<model::Process> processes{process_on(6, 1, 0.1, {1, 0.4}),
                                               process_on(6, 0.1, 0.1, {1, 0.4}), rough_process(9)};

@@ -49,6 +49,19 @@ std::string complaint(const std::string& line) {
   return "nothing";
 }
 
+struct Refusal {
+  std::string line;
+  std::vector<std::string> told;  // parts of the message
+};
+
+void check_refusal(const Refusal& refusal) {
+  const std::string told = complaint(refusal.line);
+  for (const auto& part : refusal.told) {
+    INFO(refusal.line);
+    CHECK_THAT(told, Catch::Contains(part));
+  }
+}
+
 }  // namespace
 
 TEST_CASE("request: defaults of the command-line contract") {
@@ -94,11 +107,7 @@ TEST_CASE("request: no drag means no coefficient, and a useless one is told") {
 }
 
 TEST_CASE("request: every refusal names option, value, range and a way out") {
-  struct Case {
-    const char* line;
-    std::vector<std::string> told;
-  };
-  const std::vector<Case> cases{
+  const std::vector<Refusal> refusals{
       {"-delta -0.5", {"-delta = -0.5", "(0, inf)", "0.125"}},
       {"-tau nan", {"-tau = nan", "(0, inf)"}},
       {"-tau 1e400", {"-tau = 1e400", "(0, inf)"}},
@@ -122,13 +131,112 @@ TEST_CASE("request: every refusal names option, value, range and a way out") {
       {"-slide_mat_mumps_icntl_77 1", {"-slide_mat_mumps_icntl_77", "-slide_ksp_view"}},
       {"-slide_ksp_type nonsense", {"-slide_", "nonsense"}},
   };
-  for (const auto& c : cases) {
-    const std::string told = complaint(c.line);
-    for (const auto& part : c.told) {
-      INFO(c.line);
-      CHECK_THAT(told, Catch::Contains(part));
-    }
+  for (const auto& refusal : refusals) check_refusal(refusal);
+}
+
+TEST_CASE("request: a route refuses what it does not give, and names what it gives") {
+  const std::string excursion = "take -route excursion";
+  const std::vector<Refusal> refusals{
+      {"-route hitting -quantities sticking,moments",
+       {"-quantities = sticking,moments", "moments cannot be had by -route hitting",
+        "which gives sticking;", excursion}},
+      {"-route lambda -quantities sticking,entry_law,density",
+       {"entry_law and density cannot be had by -route lambda",
+        "which gives sticking, moments and noise_law;", excursion}},
+      {"-route null_vector -quantities laplace -lambda 1",
+       {"laplace cannot be had by -route null_vector",
+        "which gives sticking, moments and noise_law;"}},
+      {"-route null_vector -quantities relaxation",
+       {"relaxation cannot be had by -route null_vector"}},
+      {"-drag none -route fluid_queue -quantities resolvent -lambda 1 -observable v",
+       {"resolvent cannot be had by -route fluid_queue",
+        "which gives sticking, moments, noise_law, entry_law and laplace;"}},
+      {"-route nul_vector", {"-route = nul_vector", "did you mean null_vector?"}}};
+  for (const auto& refusal : refusals) check_refusal(refusal);
+}
+
+TEST_CASE("request: a route takes the default quantities that it gives") {
+  using Quantities = std::set<Quantity>;
+  const Quantities all{Quantity::sticking, Quantity::moments, Quantity::noise_law};
+  CHECK(Given("").read().quantities == all);
+  CHECK(Given("-route lambda").read().quantities == all);
+  CHECK(Given("-route null_vector").read().quantities == all);
+  CHECK(Given("-route fluid_queue -drag none").read().quantities == all);
+  CHECK(Given("-route hitting").read().quantities == Quantities{Quantity::sticking});
+}
+
+TEST_CASE("request: routes and what they need arrive where they belong") {
+  CHECK(Given("").read().route == Route::excursion);
+  const Request by_lambda = Given("-route lambda -lambda 1e-4 -scheme upwind -p 3").read();
+  CHECK(by_lambda.route == Route::lambda);
+  CHECK(by_lambda.lambda == std::vector<double>{1e-4});
+  CHECK(by_lambda.warnings.empty());
+  CHECK(Given("-route lambda").read().lambda.empty());
+  const Request queue = Given("-route fluid_queue -drag none").read();
+  CHECK(queue.route == Route::fluid_queue);
+  CHECK(queue.method.scheme == Scheme::none);
+  const Request transforms =
+      Given("-quantities laplace,resolvent -lambda 0:1:3 -observable x*v;stick;abs(v)^3").read();
+  CHECK(transforms.lambda == std::vector<double>{0, 0.5, 1});
+  REQUIRE(transforms.observables.size() == 3);
+  CHECK(transforms.observables[0].name == "x*v");
+  CHECK(transforms.observables[0](2, 1, 3) == 6);
+  CHECK(transforms.observables[2](2, -1, -3) == 27);
+}
+
+TEST_CASE("request: arguments that are missing or make no sense are told") {
+  const std::vector<Refusal> refusals{
+      {"-quantities laplace", {"-quantities = laplace", "no values", "-lambda 0.1,1,10"}},
+      {"-quantities resolvent -observable v", {"no values are given", "add for example -lambda"}},
+      {"-quantities resolvent -lambda 1", {"no functions are given", "-observable"}},
+      {"-quantities laplace -lambda 1,-2", {"-lambda = -2", "[0, inf)"}},
+      {"-quantities laplace -lambda 1:2", {"-lambda = 1:2", "first:last:count", "0.01:10:31:log"}},
+      {"-quantities resolvent -lambda 1 -observable v;x*(",
+       {"-observable = v;x*(", "write for example"}},
+      {"-quantities resolvent -lambda 1 -observable velocity", {"-observable = velocity"}},
+      {"-route lambda -lambda 1e-3,1e-4", {"-lambda = 1e-3,1e-4", "one positive number"}},
+      {"-route lambda -lambda 0", {"-lambda = 0", "one positive number", "leave it out"}},
+  };
+  for (const auto& refusal : refusals) check_refusal(refusal);
+}
+
+TEST_CASE("request: arguments that nothing needs are told, and harmless") {
+  for (const std::string line : {"-lambda 1", "-observable v", "-route hitting -lambda 1"}) {
+    const Request r = Given(line).read();
+    REQUIRE(r.warnings.size() == 1);
+    CHECK_THAT(r.warnings[0], Catch::Contains("has no effect"));
   }
+}
+
+TEST_CASE("request: the fluid queue has neither drag nor a grid in v") {
+  const std::vector<Refusal> refusals{
+      {"-route fluid_queue", {"-route = fluid_queue", "needs b = 0", "-drag none"}},
+      {"-route fluid_queue -drag cubic -drag_coefficient 0 -drag_cubic 1", {"needs b = 0"}},
+      {"-route fluid_queue -drag none -degree 4", {"-degree = 4", "no grid in v"}},
+      {"-route fluid_queue -drag none -scheme hp", {"-scheme = hp", "no grid in v"}},
+      {"-route fluid_queue -drag none -p 8", {"-p = 8", "no grid in v", "leave it out"}}};
+  for (const auto& refusal : refusals) check_refusal(refusal);
+  CHECK_NOTHROW(Given("-route fluid_queue -drag_coefficient 0").read());
+}
+
+TEST_CASE("request: a velocity cut by hand is for excursions alone") {
+  CHECK(Given("-v_max 5").read().scene.v_max == 5.0);
+  for (const std::string route : {"lambda", "hitting", "null_vector", "fluid_queue -drag none"}) {
+    check_refusal({"-v_max 5 -route " + route, {"-v_max = 5", "is no choice of -route"}});
+  }
+}
+
+TEST_CASE("request: options of the eigensolvers are known or told") {
+  CHECK_NOTHROW(Given("-relax_eps_nev 10").read());
+  CHECK_NOTHROW(Given("-null_eps_tol 1e-10 -null_eps_nev 10 -null_eps_ncv 40").read());
+  CHECK_NOTHROW(Given("-null_st_pc_factor_mat_solver_type petsc").read());
+  CHECK_NOTHROW(Given("-relax_eps_view -null_eps_converged_reason -slide_ksp_view").read());
+  const std::vector<Refusal> refusals{
+      {"-null_eps_tolerance 1e-10", {"-null_eps_tolerance", "-null_eps_view"}},
+      {"-relax_eps_nevs 10", {"-relax_eps_nevs", "-relax_eps_view"}},
+      {"-null_eps_type nonsense", {"-null_", "nonsense"}},
+      {"-relax_st_mat_mumps_icntl_99 1", {"-relax_st_mat_mumps_icntl_99"}}};
+  for (const auto& refusal : refusals) check_refusal(refusal);
 }
 
 TEST_CASE("request: all problems are told at once") {

@@ -40,8 +40,8 @@ class Durations {
 
 const std::vector<model::Scene>& sample_scenes() {
   static const std::vector<model::Scene> scenes{
-      scene(1, 0.25, 1, 0.25, {1, 0}), scene(1, 1, 1, 0.5, {0, 0}), scene(0.7, 0.4, 4, 0.25, {2, 1}),
-      scene(0.2, 0.1, 0.25, 0.5, {0.1, 0})};
+      scene(1, 0.25, 1, 0.25, {1, 0}), scene(1, 1, 1, 0.5, {0, 0}),
+      scene(0.7, 0.4, 4, 0.25, {2, 1}), scene(0.2, 0.1, 0.25, 0.5, {0.1, 0})};
   return scenes;
 }
 
@@ -93,11 +93,11 @@ TEST_CASE("laplace: the slope at 0 is the mean", "[parallel]") {
   }
 }
 
-TEST_CASE("laplace: transforms fall with lambda and stay positive", "[parallel]") {
+TEST_CASE("laplace: transforms fall with lambda and stay positive") {
   for (const auto& d : sample_discretisations()) {
     Durations durations(d);
     auto before = durations.at(0);
-    for (double lambda : {1e-3, 0.1, 1.0, 10.0, 100.0}) {
+    for (double lambda : {0.01, 1.0, 30.0}) {
       const auto now = durations.at(lambda);
       for (const auto member : kAll) {
         CHECK((now.*member).value < (before.*member).value);
@@ -113,7 +113,7 @@ TEST_CASE("laplace: without drag hp agrees with the fluid queue") {
     double delta, mu_d;
   };
   for (const auto& c : {Case{0.5, 1}, Case{0.25, 1}, Case{0.25, 0.25}, Case{0.125, 0.5}}) {
-    const auto d = test::on_hp(scene(1, c.mu_d, 1, c.delta, {0, 0}), 10);
+    const auto d = test::on_hp(scene(1, c.mu_d, 1, c.delta, {0, 0}), 9, 1e-11);
     Durations durations(d);
     for (double lambda : {1.0, 30.0}) {
       const auto found = durations.at(lambda), known = exact_transforms(d.process, lambda);

@@ -46,7 +46,7 @@ class Direct {
   [[nodiscard]] Parts of(const model::Observable& f) {
     const petsc::VecHandle rest = system_.a().values(f.value);
     double c = 0, odd = 0;
-    for (int n = 0; n < 4; ++n) {
+    for (int n = 0; n < 3; ++n) {
       const auto u = system_.factors().solve(rest);
       const double at_plus = quantities::value_of(upper_, u).value;
       const double at_minus = quantities::value_of(lower_, u).value;
@@ -72,8 +72,8 @@ bool close(double found, double expected) {
 
 const std::vector<model::Scene>& sample_scenes() {
   static const std::vector<model::Scene> scenes{
-      scene(1, 0.25, 1, 0.25, {1, 0}), scene(1, 1, 1, 0.5, {0, 0}), scene(0.7, 0.4, 1, 0.5, {2, 1}),
-      scene(0.2, 0.1, 0.25, 0.5, {0.1, 0})};
+      scene(1, 0.25, 1, 0.5, {1, 0}), scene(1, 1, 1, 0.5, {0, 0}), scene(0.7, 0.4, 1, 0.5, {2, 1}),
+      scene(0.2, 0.1, 0.5, 0.5, {0.3, 0})};
   return scenes;
 }
 
@@ -119,7 +119,7 @@ TEST_CASE("resolvent: the representation formula gives the resolvent of the whol
 TEST_CASE("resolvent: an excursion ends at s+ or s-, now or later", "[parallel]") {
   for (const auto& d : sample_discretisations()) {
     Discretised made(d);
-    for (double lambda : {0.0, 1e-3, 1.0, 1e2}) {
+    for (double lambda : {0.0, 1.0, 1e2}) {
       const auto exits = quantities::resolvent(made.systems, lambda, {}).exits;
       const double ends = exits.h_plus.value + exits.h_minus.value;
       CHECK(std::abs(1 - ends - lambda * exits.w_one.value) < 1e-11);
@@ -157,12 +157,14 @@ TEST_CASE("resolvent: what is zero by symmetry is exactly zero", "[parallel]") {
   const auto d = test::on_hp(sample_scenes()[0], 4, 1e-8);
   Discretised made(d);
   for (double lambda : {0.0, 0.5}) {
-    for (const auto& t : quantities::resolvent(made.systems, lambda, observables({"v", "x", "y*v^2"})).of) {
+    for (const auto& t :
+         quantities::resolvent(made.systems, lambda, observables({"v", "x", "y*v^2"})).of) {
       CHECK(t.pi_lambda.value == 0);
       CHECK(t.pi_lambda.error == 0);
       CHECK(t.w_plus.value == -t.w_minus.value);
     }
-    for (const auto& t : quantities::resolvent(made.systems, lambda, observables({"v^2", "stick", "x*v"})).of) {
+    for (const auto& t :
+         quantities::resolvent(made.systems, lambda, observables({"v^2", "stick", "x*v"})).of) {
       CHECK(t.mu_lambda.value == 0);
       CHECK(t.mu_lambda.error == 0);
       CHECK(t.w_plus.value == t.w_minus.value);
@@ -170,8 +172,8 @@ TEST_CASE("resolvent: what is zero by symmetry is exactly zero", "[parallel]") {
   }
 }
 
-// (lambda - L) u = lambda c + (lambda - L) g has the solution u = c + g: with g = x, L x = -x/tau on
-// the whole noise range, u(s+) is known without any solve.
+// (lambda - L) u = lambda c + (lambda - L) g has the solution u = c + g: with g = x, L x = -x/tau
+// on the whole noise range, u(s+) is known without any solve.
 TEST_CASE("resolvent: of the noise itself, in closed form", "[parallel]") {
   for (double tau : {1.0, 2.0}) {
     const auto s = test::on_full_noise(scene(1, 0.25, tau, 0.5, {1, 0}));

@@ -80,7 +80,7 @@ const std::set<Quantity> kAverages{Quantity::sticking, Quantity::moments, Quanti
 
 }  // namespace
 
-TEST_CASE("routes: hitting times and the null vector give what excursions give", "[parallel]") {
+TEST_CASE("routes: hitting times and the null vector give what excursions give") {
   for (const auto& s : sample_scenes()) {
     for (const auto& d : discretisations(s)) {
       const auto known = known_values(s, d);
@@ -99,8 +99,7 @@ TEST_CASE("routes: hitting times and the null vector give what excursions give",
   }
 }
 
-TEST_CASE("routes: a small lambda gives what excursions give, within its stated error",
-          "[parallel]") {
+TEST_CASE("routes: a small lambda gives what excursions give, within its stated error") {
   for (const auto& s : sample_scenes()) {
     for (const auto& d : discretisations(s)) {
       const auto known = known_values(s, d);
@@ -116,7 +115,20 @@ TEST_CASE("routes: a small lambda gives what excursions give, within its stated 
   }
 }
 
-TEST_CASE("routes: the bias of a fixed lambda is stated, and of first order", "[parallel]") {
+TEST_CASE("routes: all agree on any number of ranks", "[parallel]") {
+  const auto s = scene(1, 0.5, 1, 0.5, {0, 0});
+  for (const auto& d : {test::on_hp(s, 3, 1e-6), test::on_upwind(s, 2, 1e-5)}) {
+    const auto known = known_values(s, d);
+    for (Route route : {Route::lambda, Route::hitting, Route::null_vector}) {
+      for (const auto& r : evaluate(request(s, route, {Quantity::sticking}), d).results) {
+        INFO(r.key);
+        CHECK(relative_difference(r.value[0], known.at(r.key)) < 1e-8);
+      }
+    }
+  }
+}
+
+TEST_CASE("routes: the bias of a fixed lambda is stated, and of first order") {
   for (const auto& s : sample_scenes()) {
     const auto d = test::on_hp(s, 4, 1e-8);
     const auto known = known_values(s, d);
@@ -140,7 +152,7 @@ TEST_CASE("routes: the bias of a fixed lambda is stated, and of first order", "[
   }
 }
 
-TEST_CASE("routes: the null vector is one, and a probability on a grid", "[parallel]") {
+TEST_CASE("routes: the null vector is one, and a probability on a grid") {
   for (const auto& s : sample_scenes()) {
     for (const auto& d : discretisations(s)) {
       const auto found = evaluate(request(s, Route::null_vector, {Quantity::moments}), d);
@@ -158,13 +170,14 @@ TEST_CASE("routes: P(|X| <= mu_s) is the binomial sum at every p") {
   for (const auto& c : {Case{0.5, 51766.0 / 65536}, Case{0.25, 0.739564523423343}}) {
     const auto s = test::on_full_noise(scene(1, 0.25, 1, c.delta, {1, 0}));
     for (int p : {1, 2, 8}) {
+      if (p == 8 && c.delta < 0.5) continue;  // seconds, and nothing new
       const auto d = test::on_upwind(s, p);
-      const auto by_null_vector = evaluate(request(s, Route::null_vector, kAverages), d);
-      CHECK(std::abs(result(by_null_vector, "P_X_le_mu_s").value[0] - c.known) < 1e-12);
-      CHECK(std::abs(result(by_null_vector, "E_X2").value[0] - 1) < 1e-12);
-      const auto by_lambda = evaluate(request(s, Route::lambda, kAverages), d);
-      const auto& within = result(by_lambda, "P_X_le_mu_s");
-      CHECK(std::abs(within.value[0] - c.known) <= within.error[0] + 1e-15);
+      const auto exact = evaluate(request(s, Route::null_vector, {Quantity::noise_law}), d);
+      CHECK(relative_difference(result(exact, "P_X_le_mu_s").value[0], c.known) < 1e-12);
+      CHECK(relative_difference(result(exact, "E_X2").value[0], 1) < 1e-12);
+      const auto biased = evaluate(request(s, Route::lambda, {Quantity::noise_law}), d);
+      const auto& within = result(biased, "P_X_le_mu_s");
+      CHECK(std::abs(within.value[0] - c.known) <= within.error[0]);
       CHECK(within.error[0] < 1e-8);
     }
   }
@@ -173,9 +186,9 @@ TEST_CASE("routes: P(|X| <= mu_s) is the binomial sum at every p") {
 TEST_CASE("routes: without drag excursions agree with the fluid queue") {
   for (const auto& s : {scene(1, 1, 1, 0.5, {0, 0}), scene(1, 0.5, 1, 0.25, {0, 0}),
                         scene(0.2, 0.15, 1, 0.5, {0, 0}), scene(0.7, 0.3, 2, 0.5, {0, 0})}) {
-    auto r = request(s, Route::excursion,
-                     {Quantity::sticking, Quantity::moments, Quantity::entry_law,
-                      Quantity::laplace});
+    auto r =
+        request(s, Route::excursion,
+                {Quantity::sticking, Quantity::moments, Quantity::entry_law, Quantity::laplace});
     r.lambda = {0, 0.1, 3};
     const auto d = test::on_hp(s, 11, 1e-13);
     const auto found = evaluate(r, d);
