@@ -112,7 +112,8 @@ const std::vector<Asked>& askable() {
       {"laplace", Quantity::laplace, {excursion, fluid_queue}},
       {"resolvent", Quantity::resolvent, {excursion}},
       {"relaxation", Quantity::relaxation, {excursion}},
-      {"spectrum", Quantity::spectrum, {excursion}}};
+      {"spectrum", Quantity::spectrum, {excursion}},
+      {"duration_density", Quantity::duration_density, {excursion}}};
   return all;
 }
 
@@ -158,6 +159,7 @@ void read_observables(const Settings& settings, Request& request, Problems& prob
 void read_arguments(const Settings& settings, Request& request, Problems& problems) {
   request.lambda = settings.numbers("lambda");
   request.omega = settings.numbers("omega");
+  request.time = settings.numbers("time");
   read_observables(settings, request, problems);
   const bool transforms = request.wants(Quantity::laplace) || request.wants(Quantity::resolvent);
   const bool resolvent = request.wants(Quantity::resolvent);
@@ -168,6 +170,10 @@ void read_arguments(const Settings& settings, Request& request, Problems& proble
   if (resolvent && request.observables.empty() && !settings.given("observable")) {
     settings.report(problems, "quantities", "asks for resolvent and no functions are given",
                     "add for example -observable \"v^2; stick\"");
+  }
+  if (request.wants(Quantity::duration_density) && request.time.empty()) {
+    settings.report(problems, "quantities", "asks for functions of time and no times are given",
+                    "add for example -time 0.01:10:31:log");
   }
   const bool by_lambda = request.route == Route::lambda;
   if (by_lambda && !request.lambda.empty() &&
@@ -182,6 +188,7 @@ void read_arguments(const Settings& settings, Request& request, Problems& proble
   };
   warn_unused("lambda", transforms || by_lambda);
   warn_unused("observable", resolvent);
+  warn_unused("time", request.wants(Quantity::duration_density));
   warn_unused("omega", request.wants(Quantity::spectrum));
   warn_unused("spectrum_solver", request.wants(Quantity::spectrum));
 }

@@ -89,7 +89,7 @@ Group question_group() {
       {
           words("quantities", Kind::list, "sticking,moments,noise_law",
                 {"sticking", "moments", "noise_law", "entry_law", "density", "laplace", "resolvent",
-                 "relaxation", "spectrum"},
+                 "relaxation", "spectrum", "duration_density"},
                 "comma list. sticking: P_stick, P_slide, mean_stick, mean_slide, "
                 "mean_excursion. moments: E_V2, E_absV, E_XV, E_V. noise_law: P_X_le_mu_s, "
                 "E_X2. entry_law: the level at which sliding ends (an array), f_stick_0. "
@@ -97,12 +97,16 @@ Group question_group() {
                 "F_stick, F_excursion on -lambda. resolvent: h_plus, h_minus, w_one and for "
                 "each -observable u, w_plus, w_minus, pi, mu on -lambda. relaxation: leading "
                 "eigenvalues of -L for even and odd functions. spectrum: S_v on -omega, S_0, "
-                "diffusivity = S_0/2, fwhm, t_corr = 1/fwhm, variance_from_spectrum"),
+                "diffusivity = S_0/2, fwhm, t_corr = 1/fwhm, variance_from_spectrum. "
+                "duration_density: f_slide, "
+                "f_stick, f_excursion and cdf_slide, cdf_stick, cdf_excursion on -time"),
           numbers("lambda", "1/time", not_negative(),
                   "values of lambda, as a,b,c or first:last:count or first:last:count:log. With "
                   "-route lambda one value, chosen from -accuracy if it is left out"),
           numbers("omega", "1/time", not_negative(),
                   "angular frequencies of spectrum, in the forms of -lambda"),
+          numbers("time", "time", not_negative(),
+                  "times of duration_density, in the forms of -lambda"),
           text("observable", "",
                "functions of the state for resolvent, separated by semicolons: 1, x, v, v^2, "
                "|v|, stick, slide, |x|<=mu_s, or expressions in x, y, v, mu_s, mu_d such as "

@@ -19,36 +19,17 @@ petsc::BvHandle basis_like(Vec vec, int columns) {
   return basis;
 }
 
-// What is left of vec outside the first `column` columns, as a new column; its norm before scaling.
-double orthogonalised(BV basis, int column, Vec vec) {
+// What is left of vec outside the first `column` columns becomes a new column, unless it is
+// rounding.
+bool appended(BV basis, int column, Vec vec) {
+  constexpr double smallest = 1e-13;
+  PetscReal size = 0, left = 0;
+  check(VecNorm(vec, NORM_2, &size));
   check(BVInsertVec(basis, column, vec));
-  PetscReal norm = 0;
-  check(BVOrthogonalizeColumn(basis, column, nullptr, &norm, nullptr));
-  if (norm > 0) check(BVScaleColumn(basis, column, 1 / norm));
-  return norm;
-}
-
-exact::Matrix real_matrix(Mat dense, int size) {
-  exact::Matrix result(size, size);
-  const PetscScalar* values = nullptr;
-  PetscInt leading = 0;
-  check(MatDenseGetLDA(dense, &leading));
-  check(MatDenseGetArrayRead(dense, &values));
-  for (int c = 0; c < size; ++c) {
-    for (int r = 0; r < size; ++r) result(r, c) = PetscRealPart(values[c * leading + r]);
-  }
-  check(MatDenseRestoreArrayRead(dense, &values));
-  return result;
-}
-
-// Y^T X of the first columns.
-exact::Matrix products(BV x, BV y, int size) {
-  petsc::MatHandle dense;
-  check(MatCreateSeqDense(PETSC_COMM_SELF, size, size, nullptr, dense.out()));
-  check(BVSetActiveColumns(x, 0, size));
-  check(BVSetActiveColumns(y, 0, size));
-  check(BVDot(x, y, dense));
-  return real_matrix(dense, size);
+  check(BVOrthogonalizeColumn(basis, column, nullptr, &left, nullptr));
+  if (!(left > smallest * size)) return false;
+  check(BVScaleColumn(basis, column, 1 / left));
+  return true;
 }
 
 petsc::VecHandle copy_of(Vec vec) {
@@ -58,62 +39,64 @@ petsc::VecHandle copy_of(Vec vec) {
   return copy;
 }
 
+// Y^T X of the first columns.
+exact::Matrix products(BV x, BV y, int size) {
+  petsc::MatHandle dense;
+  check(MatCreateSeqDense(PETSC_COMM_SELF, size, size, nullptr, dense.out()));
+  check(BVDot(x, y, dense));
+  exact::Matrix result(size, size);
+  const PetscScalar* values = nullptr;
+  check(MatDenseGetArrayRead(dense, &values));
+  for (int c = 0; c < size; ++c) {
+    for (int r = 0; r < size; ++r) result(r, c) = PetscRealPart(values[c * size + r]);
+  }
+  check(MatDenseRestoreArrayRead(dense, &values));
+  return result;
+}
+
 }  // namespace
 
-ReducedModel::ReducedModel(operators::Systems& systems, Sector sector, Vec b, Vec c, Vec weight,
-                           int most_vectors)
+ReducedModel::ReducedModel(operators::Systems& systems, operators::KolmogorovOperator minus_l,
+                           operators::Rest rest, Vec b, Vec c, Vec weight, int most_pairs)
     : systems_(systems),
-      sector_(sector),
+      rest_(rest),
       root_(copy_of(weight)),
       inverse_root_(copy_of(weight)),
-      minus_l_(operators::assemble(systems.comm(), systems.process(), systems.axis(), 0,
-                                   sector.symmetry, sector.rest, systems.ledger())),
-      most_vectors_(most_vectors),
-      right_(basis_like(b, most_vectors)),
-      left_(basis_like(c, most_vectors)) {
+      minus_l_(std::move(minus_l)),
+      most_pairs_(most_pairs),
+      right_(basis_like(b, most_pairs)),
+      left_(basis_like(b, most_pairs)),
+      b_(copy_of(b)),
+      c_(copy_of(c)) {
   check(VecSqrtAbs(root_));
   check(VecCopy(root_, inverse_root_));
   check(VecReciprocal(inverse_root_));
   check(MatDiagonalScale(minus_l_.matrix(), root_, inverse_root_));
-  const petsc::VecHandle v = copy_of(b), w = copy_of(c), lv = copy_of(b), wl = copy_of(c);
-  check(VecPointwiseMult(v, v, root_));
-  check(VecPointwiseMult(w, w, inverse_root_));
-  check(VecNorm(v, NORM_2, &beta_));
-  check(VecNorm(w, NORM_2, &gamma_));
-  check(MatMult(minus_l_.matrix(), v, lv));
-  check(MatMultTranspose(minus_l_.matrix(), w, wl));
-  append(v, w);
-  append(lv, wl);
+  check(VecPointwiseMult(b_, b_, root_));
+  check(VecPointwiseMult(c_, c_, inverse_root_));
+  const petsc::VecHandle lb = copy_of(b), cl = copy_of(c);
+  check(MatMult(minus_l_.matrix(), b_, lb));
+  check(MatMultTranspose(minus_l_.matrix(), c_, cl));
+  append(b_, c_);
+  append(lb, cl);
 }
 
 ReducedModel::~ReducedModel() {
-  for (const auto& chain : chains_) systems_.release(chain.first, sector_.symmetry, sector_.rest);
+  for (const auto& chain : chains_) {
+    systems_.release(chain.first, minus_l_.states().symmetry(), rest_);
+  }
 }
 
 bool ReducedModel::append(Vec v, Vec w) {
-  PetscReal v_size = 0, w_size = 0;
-  check(VecNorm(v, NORM_2, &v_size));
-  check(VecNorm(w, NORM_2, &w_size));
-  const double v_new = orthogonalised(right_, size_, v), w_new = orthogonalised(left_, size_, w);
-  // What is left of a vector inside the space is rounding.
-  constexpr double smallest = 1e-13;
-  if (!(v_new > smallest * v_size) || !(w_new > smallest * w_size)) return false;
-  ++size_;
+  if (!appended(right_, pairs_, v) || !appended(left_, pairs_, w)) return false;
+  ++pairs_;
   return true;
 }
 
 int ReducedModel::extend(double shift, int count) {
-  auto& factors = systems_.at(shift, sector_.symmetry, sector_.rest).factors();
+  auto& factors = systems_.at(shift, minus_l_.states().symmetry(), rest_).factors();
   Chain& chain = chains_[shift];
-  if (chain.v == nullptr) {
-    Vec first = nullptr;
-    check(BVGetColumn(right_, 0, &first));
-    chain.v = copy_of(first);
-    check(BVRestoreColumn(right_, 0, &first));
-    check(BVGetColumn(left_, 0, &first));
-    chain.w = copy_of(first);
-    check(BVRestoreColumn(left_, 0, &first));
-  }
+  if (chain.v == nullptr) chain = {copy_of(b_), copy_of(c_)};
   int added = 0;
   for (; added < count && !full(); ++added) {
     const petsc::VecHandle v = copy_of(chain.v), w = copy_of(chain.w);
@@ -125,25 +108,27 @@ int ReducedModel::extend(double shift, int count) {
     check(VecPointwiseMult(chain.w, chain.w, inverse_root_));
     if (!append(chain.v, chain.w)) break;
     // The chain goes on from the new direction alone, as Arnoldi's process does.
-    check(BVCopyVec(right_, size_ - 1, chain.v));
-    check(BVCopyVec(left_, size_ - 1, chain.w));
+    check(BVCopyVec(right_, pairs_ - 1, chain.v));
+    check(BVCopyVec(left_, pairs_ - 1, chain.w));
   }
   return added;
 }
 
 Reduced ReducedModel::reduce() const {
-  Reduced r;
-  r.g = products(right_, left_, size_);
   petsc::BvHandle image;
   check(BVDuplicate(right_, image.out()));
-  check(BVSetActiveColumns(right_, 0, size_));
-  check(BVSetActiveColumns(image, 0, size_));
+  for (BV basis : {BV(right_), BV(left_), BV(image)}) check(BVSetActiveColumns(basis, 0, pairs_));
   check(BVMatMult(right_, minus_l_.matrix(), image));
-  r.m = exact::LuFactors(r.g).solve(-1.0 * products(image, left_, size_));
-  r.beta.assign(static_cast<std::size_t>(size_), 0.0);
-  r.gamma = r.beta;
-  r.beta[0] = beta_;
-  r.gamma[0] = gamma_;
+  const exact::Matrix g = products(right_, left_, pairs_);
+  Reduced r;
+  r.m = exact::LuFactors(g).solve(-1.0 * products(image, left_, pairs_));
+  // b and c are the first vectors but for their lengths.
+  PetscReal b_size = 0, c_size = 0;
+  check(VecNorm(b_, NORM_2, &b_size));
+  check(VecNorm(c_, NORM_2, &c_size));
+  r.beta.assign(static_cast<std::size_t>(pairs_), 0.0);
+  r.beta[0] = b_size;
+  for (int column = 0; column < pairs_; ++column) r.gamma.push_back(c_size * g(0, column));
   return r;
 }
 
@@ -156,6 +141,7 @@ class Search {
 
   Answers run() {
     shifts_ = {questions_.first_shift};
+    model_.extend(shifts_.back(), kBlock);  // a first model is not worth its questions
     grow();
     int barren = 0;  // blocks in a row that did not help
     while (!model_.full() && barren < kPatience && best_.relative_error > questions_.tolerance) {
@@ -164,7 +150,7 @@ class Search {
       barren = grew && best_.relative_error < 0.3 * before ? 0 : barren + 1;
       if (barren > 0) add_shift();
     }
-    best_.vectors = model_.size();
+    best_.pairs = model_.pairs();
     best_.shifts = shifts_;
     return std::move(best_);
   }
@@ -179,18 +165,21 @@ class Search {
     now.value = questions_.values(now.model);
     judge(now);
     last_ = now.value;
+    std::fprintf(stderr, "m %d shift %g rel %.1e at %ld\n", model_.pairs(), shifts_.back(),
+                 now.relative_error,
+                 (long)(std::max_element(relative_.begin(), relative_.end()) - relative_.begin()));
     if (best_.value.empty() || now.relative_error < best_.relative_error) best_ = std::move(now);
     return grew;
   }
 
   void judge(Answers& now) {
     relative_.assign(now.value.size(), 1.0);
-    double largest = 0;
-    for (double v : now.value) largest = std::max(largest, std::abs(v));
     for (std::size_t n = 0; n < now.value.size(); ++n) {
-      const double size = questions_.each_by_its_size ? std::abs(now.value[n]) : largest;
+      const double size = questions_.each_by_its_size ? std::abs(now.value[n]) : 1;
       const double rounding = std::numeric_limits<double>::epsilon() * size;
-      const double change = last_.empty() ? size : std::abs(now.value[n] - last_[n]);
+      double change = last_.empty() ? size : std::abs(now.value[n] - last_[n]);
+      // A projection may have a pole on the wrong side; the next ones have it elsewhere.
+      if (!std::isfinite(change)) change = std::numeric_limits<double>::infinity();
       now.error.push_back(std::max(change, rounding));
       relative_[n] = now.error[n] / size;
     }

@@ -3,6 +3,7 @@
 #include "routes.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/quantities/durations.hpp"
 #include "stickslip/quantities/laplace.hpp"
 #include "stickslip/quantities/resolvent.hpp"
 #include "stickslip/quantities/spectrum.hpp"
@@ -19,7 +20,7 @@ using quantities::Uncertain;
 
 bool needs_law(const Request& request) {
   for (Quantity q : {Quantity::sticking, Quantity::moments, Quantity::entry_law, Quantity::density,
-                     Quantity::laplace, Quantity::spectrum}) {
+                     Quantity::laplace, Quantity::spectrum, Quantity::duration_density}) {
     if (request.wants(q)) return true;
   }
   return request.scene.v_max.has_value();  // what the cut holds back is judged by the law
@@ -103,8 +104,22 @@ void append_spectrum(operators::Systems& systems, const Setting& setting, Evalua
       quantities::reduced_spectrum(systems, *evaluation.law, request.omega, 0.1 * request.accuracy);
   quantities::append_spectrum(request.omega, reduced.spectrum, evaluation.results);
   quantities::append_shape(reduced.shape, evaluation.results);
-  evaluation.checks.emplace_back("krylov_vectors", reduced.vectors);
+  evaluation.checks.emplace_back("krylov_pairs", reduced.pairs);
   evaluation.checks.emplace_back("krylov_shifts", static_cast<double>(reduced.shifts.size()));
+}
+
+void append_durations(operators::Systems& systems, const Setting& setting, Evaluation& evaluation) {
+  const auto& time = setting.request.time;
+  const auto& law = *evaluation.law;
+  const double tolerance = 0.1 * setting.request.accuracy;
+  const auto slide = quantities::slide_law(systems, law, time, tolerance);
+  const auto stick = quantities::stick_law(setting.process, entry_law(law), time);
+  const auto excursion = quantities::excursion_law(systems, law, time, tolerance);
+  quantities::append_duration("slide", time, slide, evaluation.results);
+  quantities::append_duration("stick", time, stick, evaluation.results);
+  quantities::append_duration("excursion", time, excursion, evaluation.results);
+  evaluation.checks.emplace_back("slide_pairs", slide.pairs);
+  evaluation.checks.emplace_back("excursion_pairs", excursion.pairs);
 }
 
 }  // namespace
@@ -126,6 +141,7 @@ Evaluation by_excursion(const Setting& setting) {
   }
   append_transforms(systems, setting, evaluation);
   if (request.wants(Quantity::spectrum)) append_spectrum(systems, setting, evaluation);
+  if (request.wants(Quantity::duration_density)) append_durations(systems, setting, evaluation);
   if (request.wants(Quantity::relaxation)) {
     evaluation.even = quantities::relaxation_modes(systems, Symmetry::even);
     evaluation.odd = quantities::relaxation_modes(systems, Symmetry::odd);

@@ -15,13 +15,19 @@ class TransferFunction {
   /// Throws std::runtime_error when the Schur form does not converge.
   TransferFunction(const Matrix& m, const std::vector<double>& left,
                    const std::vector<double>& right);
+  /// The same M between other vectors; shares no work but the Schur form. O(n^2).
+  [[nodiscard]] TransferFunction between(const std::vector<double>& left,
+                                         const std::vector<double>& right) const;
 
   /// Infinite at an eigenvalue of M.
   [[nodiscard]] std::complex<double> operator()(std::complex<double> z) const;
 
  private:
+  void set_ends(const std::vector<double>& left, const std::vector<double>& right);
+
   int n_;
-  std::vector<std::complex<double>> t_;             // upper triangle, by columns
+  std::vector<std::complex<double>> q_;             // by columns
+  std::vector<double> t_real_, t_imaginary_;        // upper triangle, by columns
   std::vector<std::complex<double>> left_, right_;  // left Q, Q^H right
 };
 

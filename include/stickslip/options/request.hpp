@@ -21,7 +21,8 @@ enum class Quantity {
   laplace,
   resolvent,
   relaxation,
-  spectrum
+  spectrum,
+  duration_density
 };
 
 /// Discretisation in v; `none` for the fluid queue, which needs none.
@@ -57,6 +58,7 @@ struct Request {
   std::vector<double> lambda;                  ///< of laplace and resolvent; one for -route lambda
   std::vector<model::Observable> observables;  ///< of resolvent
   std::vector<double> omega;                   ///< of spectrum
+  std::vector<double> time;                    ///< of duration_density
   double accuracy = 1e-6;
   SpectrumSolver spectrum_solver = SpectrumSolver::krylov;
   Route route = Route::excursion;

@@ -13,31 +13,27 @@
 
 namespace stickslip::quantities {
 
-/// L seen through W^T (.) V, with b = V beta and c = W gamma:
-///
-///   c (z - L)^-1 b ~ gamma G (z - M)^-1 beta,   G = W^T V,  M = G^-1 W^T L V.
+/// A small model of L: c (z - L)^-1 b ~ gamma (z - m)^-1 beta.
 struct Reduced {
-  exact::Matrix g, m;
+  exact::Matrix m;
   std::vector<double> beta, gamma;
 };
 
-/// Spans V by b, L b and chains (s - L)^-1 ... b, W by c, c L and the transposed chains, for real
-/// shifts s: real factorisations only. Each pair of vectors matches two more derivatives of the
-/// transfer function at its shift; b, L b, c, c L match four moments at infinity. One-sided
-/// projections, W = V, fail by orders of magnitude in the tail.
+/// Two-sided projection (W^T V)^-1 W^T L V. V spans b, L b and chains (s - L)^-1 ... b; W spans c,
+/// c L and the transposed chains, for real shifts s: real factorisations only. Each pair of vectors
+/// matches two more derivatives of the transfer function at its shift; b, L b, c, c L match four
+/// moments at infinity. One-sided projections, W = V, fail by orders of magnitude in the tail, and
+/// so does the orthogonal projection on V and W together in L2(D), although it cannot have growing
+/// modes.
 ///
 /// Vectors are orthogonalised in the scalar product with a weight D, V with D and W with D^-1: with
-/// D near the stationary law both then are functions in L2(pi). Without it, V sees fast bodies that
-/// never occur, W what does, and G is near singular.
+/// D near the stationary law both then are functions in L2(D). Without it V sees fast bodies that
+/// never occur, W what does, and W^T V is near singular.
 class ReducedModel {
  public:
-  /// `sector` says on which states L lives, `weight` > 0. Collective.
-  struct Sector {
-    operators::Symmetry symmetry;
-    operators::Rest rest;
-  };
-  ReducedModel(operators::Systems& systems, Sector sector, Vec b, Vec c, Vec weight,
-               int most_vectors);
+  /// `minus_l` is -L with the static states as `rest` says; `weight` D > 0. Collective.
+  ReducedModel(operators::Systems& systems, operators::KolmogorovOperator minus_l,
+               operators::Rest rest, Vec b, Vec c, Vec weight, int most_pairs);
   /// Releases the factors it had made. Collective.
   ~ReducedModel();
   ReducedModel(const ReducedModel&) = delete;
@@ -48,21 +44,21 @@ class ReducedModel {
   /// fewer when the space is full or invariant. Collective.
   int extend(double shift, int count);
 
-  [[nodiscard]] int size() const { return size_; }
-  [[nodiscard]] bool full() const { return size_ >= most_vectors_; }
-  /// The projection on all vectors so far. Collective. O(n size^2).
+  [[nodiscard]] int pairs() const { return pairs_; }
+  [[nodiscard]] bool full() const { return pairs_ >= most_pairs_; }
+  /// The projection on all vectors so far. Collective. O(n pairs^2).
   [[nodiscard]] Reduced reduce() const;
 
  private:
   bool append(Vec v, Vec w);
 
   operators::Systems& systems_;
-  Sector sector_;
+  operators::Rest rest_;
   petsc::VecHandle root_, inverse_root_;   // D^1/2, D^-1/2
   operators::KolmogorovOperator minus_l_;  // D^1/2 (-L) D^-1/2
-  int most_vectors_, size_ = 0;
+  int most_pairs_, pairs_ = 0;
   petsc::BvHandle right_, left_;  // D^1/2 V, D^-1/2 W
-  double beta_ = 0, gamma_ = 0;
+  petsc::VecHandle b_, c_;        // scaled like V and W
   struct Chain {
     petsc::VecHandle v, w;
   };
@@ -73,7 +69,7 @@ class ReducedModel {
 struct Questions {
   std::function<std::vector<double>(const Reduced&)> values;
   std::vector<double> shift;      ///< for each value a shift that serves it [1/time]
-  bool each_by_its_size = false;  ///< whether tolerance is relative to each value or to the largest
+  bool each_by_its_size = false;  ///< whether `tolerance` is relative to each value, or absolute
   double tolerance = 1e-8;
   double first_shift = 1;              ///< [1/time]
   double lowest = 0, highest = 1e300;  ///< range of further shifts
@@ -84,7 +80,7 @@ struct Answers {
   std::vector<double> value;
   std::vector<double> error;  ///< absolute: what the last vectors changed
   double relative_error = 1;  ///< the largest, in the sense of the questions
-  int vectors = 0;
+  int pairs = 0;              ///< of vectors in the space
   std::vector<double> shifts;
 };
 

@@ -34,7 +34,7 @@ struct SpectrumShape {
 struct ReducedSpectrum {
   Spectrum spectrum;
   SpectrumShape shape;
-  int vectors = 0;             ///< pairs in the two spaces
+  int pairs = 0;               ///< of vectors of the reduced model
   std::vector<double> shifts;  ///< real shifts used [1/time]
 };
 

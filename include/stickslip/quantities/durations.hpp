@@ -1,0 +1,42 @@
+#pragma once
+/// Densities and distribution functions of the durations of slides, stays and excursions.
+
+#include <vector>
+
+#include "stickslip/operators/systems.hpp"
+#include "stickslip/quantities/results.hpp"
+#include "stickslip/quantities/stationary.hpp"
+#include "stickslip/quantities/uncertain.hpp"
+
+namespace stickslip::quantities {
+
+/// Of one duration, by time.
+struct DurationLaw {
+  std::vector<Uncertain> density;       ///< [1/time]
+  std::vector<Uncertain> distribution;  ///< P(duration <= t)
+  int pairs = 0;                        ///< of vectors of the reduced model, 0 if there is none
+};
+
+/// Stays, from the entry law by the static chain alone: exp(Q t) as a sum of positive terms
+/// (uniformisation), so that every value keeps its relative accuracy. O(Lambda t_max k).
+[[nodiscard]] DurationLaw stick_law(const model::Process& process,
+                                    const std::vector<Uncertain>& entry,
+                                    const std::vector<double>& time);
+
+/// Slides: f(t) = g exp(-A t) r with A = A(0, even), r = -A_us 1, g the value at s+; by a reduced
+/// model. Errors are relative to the largest density, and for the distribution to 1. Collective.
+[[nodiscard]] DurationLaw slide_law(operators::Systems& systems, const StationaryLaw& law,
+                                    const std::vector<double>& time, double tolerance);
+
+/// Excursions: the same with the static states kept and killed when they are left.
+[[nodiscard]] DurationLaw excursion_law(operators::Systems& systems, const StationaryLaw& law,
+                                        const std::vector<double>& time, double tolerance);
+
+/// f_slide(0+): a slide can only end at once if one jump down from level k+1 reverses it.
+[[nodiscard]] double slide_density_at_zero(const model::Process& process);
+
+/// f_NAME and cdf_NAME by time.
+void append_duration(const char* name, const std::vector<double>& time, const DurationLaw& law,
+                     Results& results);
+
+}  // namespace stickslip::quantities

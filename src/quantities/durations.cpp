@@ -1,0 +1,197 @@
+#include "stickslip/quantities/durations.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/vectors.hpp"
+#include "stickslip/quantities/time_functions.hpp"
+
+namespace stickslip::quantities {
+namespace {
+
+using operators::KolmogorovOperator;
+using operators::Rest;
+using operators::State;
+using operators::StateKind;
+using operators::Symmetry;
+using petsc::check;
+
+constexpr int kMostPairs = 80;
+
+/// exp(Q t) for the static chain: at rate Lambda the noise jumps, up or down.
+class StayFlow {
+ public:
+  StayFlow(const model::Process& process, std::vector<double> start)
+      : noise_(process.noise), k_(process.static_index()), law_(std::move(start)) {}
+
+  void advance(double time) {
+    // Steps of at most 64 expected jumps, whose weights do not underflow.
+    const double jumps = noise_.rate() * time;
+    const int steps = std::max(1, static_cast<int>(std::ceil(jumps / 64)));
+    for (int n = 0; n < steps; ++n) step(jumps / steps);
+  }
+
+  [[nodiscard]] double exit_rate() const {
+    return noise_.rate() * noise_.up(k_) * (law_.back() + law_.front());
+  }
+  [[nodiscard]] double left() const { return left_; }
+
+ private:
+  // Poisson-weighted sum over the number of jumps; all terms are positive.
+  void step(double jumps) {
+    double weight = std::exp(-jumps);
+    std::vector<double> chain = law_, sum(law_.size(), 0.0);
+    double gone = 0;  // left after that many jumps
+    for (int n = 0;; ++n) {
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * chain[i];
+      left_ += weight * gone;
+      if (n > jumps && weight < 1e-18) break;
+      gone += jump(chain);
+      weight *= jumps / (n + 1);
+    }
+    law_ = std::move(sum);
+  }
+
+  // One jump of the noise; returns what leaves.
+  double jump(std::vector<double>& chain) const {
+    std::vector<double> next(chain.size(), 0.0);
+    double leaving = 0;
+    for (int i = -k_; i <= k_; ++i) {
+      const double mass = chain[k_ + i];
+      (i < k_ ? next[k_ + i + 1] : leaving) += mass * noise_.up(i);
+      (i > -k_ ? next[k_ + i - 1] : leaving) += mass * noise_.down(i);
+    }
+    chain = std::move(next);
+    return leaving;
+  }
+
+  model::NoiseChain noise_;
+  int k_;
+  std::vector<double> law_;
+  double left_ = 0;
+};
+
+// About the time spent in each state, kept away from 0.
+petsc::VecHandle weights(const KolmogorovOperator& a, const StationaryLaw& law) {
+  petsc::VecHandle d = a.zeros();
+  {
+    petsc::WriteView local(d);
+    const petsc::ReadView nu(law.occupation());
+    const auto& stick = law.excursion().stick_time;
+    const std::size_t k = stick.size() / 2;
+    PetscInt at = 0, sliding = 0;
+    a.states().for_each_local([&](const State& state) {
+      const bool rest = state.kind == StateKind::rest;
+      local[at++] =
+          rest ? stick[k + state.level] + stick[k - state.level] : PetscAbsScalar(nu[sliding++]);
+    });
+  }
+  PetscReal largest = 0;
+  check(VecNorm(d, NORM_INFINITY, &largest));
+  check(VecShift(d, 1e-12 * largest));
+  return d;
+}
+
+DurationLaw law_of(ReducedModel& model, const std::vector<double>& time, double mean, double tau,
+                   double tolerance) {
+  Questions questions;
+  questions.values = [&](const Reduced& reduced) {
+    const TimeFunction f = evaluate(reduced, time);
+    std::vector<double> values;
+    for (double density : f.value) values.push_back(density * mean);
+    values.insert(values.end(), f.integral.begin(), f.integral.end());
+    return values;
+  };
+  for (int twice = 0; twice < 2; ++twice) {
+    for (double t : time) questions.shift.push_back(2 / t);
+  }
+  questions.tolerance = tolerance;
+  questions.first_shift = 2 / tau;
+  questions.lowest = 0.05 / tau;
+  questions.highest = 1e6 / tau;
+  const Answers answers = ask(model, questions);
+  DurationLaw law;
+  law.pairs = answers.pairs;
+  const std::size_t count = time.size();
+  for (std::size_t n = 0; n < count; ++n) {
+    law.density.push_back({answers.value[n] / mean, answers.error[n] / mean});
+    law.distribution.push_back({answers.value[count + n], answers.error[count + n]});
+  }
+  return law;
+}
+
+}  // namespace
+
+DurationLaw stick_law(const model::Process& process, const std::vector<Uncertain>& entry,
+                      const std::vector<double>& time) {
+  std::vector<double> start;
+  double relative = 0;
+  for (const auto& p : entry) {
+    start.push_back(p.value);
+    relative = std::max(relative, p.error / std::abs(p.value));
+  }
+  std::vector<std::size_t> order(time.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return time[a] < time[b]; });
+  DurationLaw law;
+  law.density.resize(time.size());
+  law.distribution.resize(time.size());
+  StayFlow flow(process, std::move(start));
+  double now = 0;
+  for (std::size_t n : order) {
+    flow.advance(time[n] - now);
+    now = time[n];
+    // Each jump rounds; about Lambda t of them happen.
+    const double doubt = relative + 1e-16 * (8 + process.noise.rate() * now);
+    law.density[n] = {flow.exit_rate(), doubt * flow.exit_rate()};
+    law.distribution[n] = {flow.left(), doubt * flow.left()};
+  }
+  return law;
+}
+
+DurationLaw slide_law(operators::Systems& systems, const StationaryLaw& law,
+                      const std::vector<double>& time, double tolerance) {
+  auto a = operators::assemble(systems.comm(), systems.process(), systems.axis(), 0, Symmetry::even,
+                               Rest::killing, systems.ledger());
+  const std::size_t k = static_cast<std::size_t>(systems.process().static_index());
+  const petsc::VecHandle b = a.from_rest(std::vector<PetscScalar>(2 * k + 1, 1.0)),
+                         c = a.trace_at_exit(), d = weights(a, law);
+  ReducedModel model(systems, std::move(a), Rest::killing, b, c, d, kMostPairs);
+  return law_of(model, time, law.excursion().mean_slide(), systems.process().noise.tau, tolerance);
+}
+
+DurationLaw excursion_law(operators::Systems& systems, const StationaryLaw& law,
+                          const std::vector<double>& time, double tolerance) {
+  auto a = operators::assemble(systems.comm(), systems.process(), systems.axis(), 0, Symmetry::even,
+                               Rest::killed_on_exit, systems.ledger());
+  const petsc::VecHandle b = a.exit_rates(operators::Half::upper),
+                         down = a.exit_rates(operators::Half::lower), c = a.trace_at_exit(),
+                         d = weights(a, law);
+  check(VecAXPY(b, 1, down));
+  ReducedModel model(systems, std::move(a), Rest::killed_on_exit, b, c, d, kMostPairs);
+  return law_of(model, time, law.excursion().mean_excursion(), systems.process().noise.tau,
+                tolerance);
+}
+
+double slide_density_at_zero(const model::Process& process) {
+  const int k = process.static_index();
+  const double up = process.excess(k + 1), down = -process.excess(k);
+  if (down <= 0) return 0;
+  return process.noise.rate() * process.noise.down(k + 1) * down / (up + down);
+}
+
+void append_duration(const char* name, const std::vector<double>& time, const DurationLaw& law,
+                     Results& results) {
+  Result density = array(std::string("f_") + name, "1/time", "time", time);
+  Result distribution = array(std::string("cdf_") + name, "", "time", time);
+  for (const auto& value : law.density) append_value(density, value);
+  for (const auto& value : law.distribution) append_value(distribution, value);
+  results.push_back(std::move(density));
+  results.push_back(std::move(distribution));
+}
+
+}  // namespace stickslip::quantities

@@ -1,0 +1,57 @@
+#include "stickslip/quantities/time_functions.hpp"
+
+#include <cmath>
+#include <complex>
+
+#include "stickslip/exact/transfer_function.hpp"
+
+namespace stickslip::quantities {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr int kPoints = 24;
+
+/// Points and weights of sum Re w F(z) for t = 1, upper half of the contour.
+struct Contour {
+  std::vector<std::complex<double>> z, weight;
+
+  Contour() {
+    constexpr double a = 0.5017, b = 0.6407, c = 0.6122, d = 0.2645;
+    for (int n = kPoints / 2; n < kPoints; ++n) {
+      const double theta = kPi * (2.0 * n + 1 - kPoints) / kPoints;
+      const double sine = std::sin(b * theta), cotangent = std::cos(b * theta) / sine;
+      const std::complex<double> point(a * theta * cotangent - c, d * theta);
+      const std::complex<double> slope(a * cotangent - a * b * theta / (sine * sine), d);
+      z.push_back(static_cast<double>(kPoints) * point);
+      // exp(z) dz/(2 pi i), doubled for the lower half
+      weight.push_back(2.0 * std::exp(z.back()) * slope * std::complex<double>(0, -1));
+    }
+  }
+};
+
+}  // namespace
+
+TimeFunction evaluate(const Reduced& reduced, const std::vector<double>& time) {
+  static const Contour contour;
+  const exact::TransferFunction transfer(reduced.m, reduced.gamma, reduced.beta);
+  TimeFunction f;
+  for (double t : time) {
+    double value = 0, integral = 0;
+    if (t == 0) {
+      for (std::size_t n = 0; n < reduced.beta.size(); ++n) {
+        value += reduced.gamma[n] * reduced.beta[n];
+      }
+    }
+    for (std::size_t n = 0; t > 0 && n < contour.z.size(); ++n) {
+      const auto z = contour.z[n] / t;
+      const auto term = contour.weight[n] * transfer(z) / t;
+      value += term.real();
+      integral += (term / z).real();
+    }
+    f.value.push_back(value);
+    f.integral.push_back(integral);
+  }
+  return f;
+}
+
+}  // namespace stickslip::quantities
