@@ -252,6 +252,34 @@ petsc::VecHandle KolmogorovOperator::trace_at_exit(Half half) const {
   return g;
 }
 
+petsc::VecHandle KolmogorovOperator::value_at(const velocity::Axis& axis, int i, double v) const {
+  const int k = process_.static_index();
+  const bool rest = v == 0 && std::abs(i) <= k, below = v < 0 || (v == 0 && i < 0);
+  const bool mirrored = below && states_.folded();
+  const double sign = mirrored && states_.symmetry() == Symmetry::odd ? -1 : 1;
+  const Half half = below && !mirrored ? Half::lower : Half::upper;
+  const int level = below ? -i : i;
+  petsc::VecHandle g = zeros();
+  const PetscInt begin = states_.local_begin(), end = begin + states_.local_size();
+  const auto add = [&](const State& state, double weight) {
+    const PetscInt index = states_.index(state);
+    if (index >= begin && index < end) check(VecSetValue(g, index, weight, ADD_VALUES));
+  };
+  if (rest) {
+    const int kept = states_.folded() ? level : i;
+    if (states_.has_rest(kept)) add({StateKind::rest, Half::upper, kept, 0}, sign);
+  } else if (v == 0 && states_.has_origin(level)) {
+    add({StateKind::origin, half, level, 0}, sign);
+  } else {
+    for (const auto& e : v == 0 ? axis.trace_at_zero() : axis.value_at(std::abs(v))) {
+      add({StateKind::node, half, level, e.node}, sign * e.value);
+    }
+  }
+  check(VecAssemblyBegin(g));
+  check(VecAssemblyEnd(g));
+  return g;
+}
+
 std::vector<PetscScalar> KolmogorovOperator::entry_rates(Vec nu) const {
   const int k = process_.static_index();
   std::vector<PetscScalar> rates(2 * static_cast<std::size_t>(k) + 1, 0.0);

@@ -6,20 +6,14 @@
 #include <string>
 
 #include "stickslip/petsc/check.hpp"
-#include "stickslip/petsc/vectors.hpp"
 #include "stickslip/quantities/time_functions.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
-using operators::KolmogorovOperator;
 using operators::Rest;
-using operators::State;
-using operators::StateKind;
 using operators::Symmetry;
 using petsc::check;
-
-constexpr int kMostPairs = 80;
 
 /// exp(Q t) for the static chain: at rate Lambda the noise jumps, up or down.
 class StayFlow {
@@ -74,53 +68,8 @@ class StayFlow {
   double left_ = 0;
 };
 
-// About the time spent in each state, kept away from 0.
-petsc::VecHandle weights(const KolmogorovOperator& a, const StationaryLaw& law) {
-  petsc::VecHandle d = a.zeros();
-  {
-    petsc::WriteView local(d);
-    const petsc::ReadView nu(law.occupation());
-    const auto& stick = law.excursion().stick_time;
-    const std::size_t k = stick.size() / 2;
-    PetscInt at = 0, sliding = 0;
-    a.states().for_each_local([&](const State& state) {
-      const bool rest = state.kind == StateKind::rest;
-      local[at++] =
-          rest ? stick[k + state.level] + stick[k - state.level] : PetscAbsScalar(nu[sliding++]);
-    });
-  }
-  PetscReal largest = 0;
-  check(VecNorm(d, NORM_INFINITY, &largest));
-  check(VecShift(d, 1e-12 * largest));
-  return d;
-}
-
-DurationLaw law_of(ReducedModel& model, const std::vector<double>& time, double mean, double tau,
-                   double tolerance) {
-  Questions questions;
-  questions.values = [&](const Reduced& reduced) {
-    const TimeFunction f = evaluate(reduced, time);
-    std::vector<double> values;
-    for (double density : f.value) values.push_back(density * mean);
-    values.insert(values.end(), f.integral.begin(), f.integral.end());
-    return values;
-  };
-  for (int twice = 0; twice < 2; ++twice) {
-    for (double t : time) questions.shift.push_back(2 / t);
-  }
-  questions.tolerance = tolerance;
-  questions.first_shift = 2 / tau;
-  questions.lowest = 0.05 / tau;
-  questions.highest = 1e6 / tau;
-  const Answers answers = ask(model, questions);
-  DurationLaw law;
-  law.pairs = answers.pairs;
-  const std::size_t count = time.size();
-  for (std::size_t n = 0; n < count; ++n) {
-    law.density.push_back({answers.value[n] / mean, answers.error[n] / mean});
-    law.distribution.push_back({answers.value[count + n], answers.error[count + n]});
-  }
-  return law;
+DurationLaw law_of(TimeCurve curve) {
+  return {std::move(curve.value), std::move(curve.integral), curve.pairs};
 }
 
 }  // namespace
@@ -159,9 +108,9 @@ DurationLaw slide_law(operators::Systems& systems, const StationaryLaw& law,
                                Rest::killing, systems.ledger());
   const std::size_t k = static_cast<std::size_t>(systems.process().static_index());
   const petsc::VecHandle b = a.from_rest(std::vector<PetscScalar>(2 * k + 1, 1.0)),
-                         c = a.trace_at_exit(), d = weights(a, law);
-  ReducedModel model(systems, std::move(a), Rest::killing, b, c, d, kMostPairs);
-  return law_of(model, time, law.excursion().mean_slide(), systems.process().noise.tau, tolerance);
+                         c = a.trace_at_exit(), d = law.weight_on(a);
+  return law_of(time_curve(systems, std::move(a), Rest::killing, {b, c, d}, time,
+                           1 / law.excursion().mean_slide(), tolerance));
 }
 
 DurationLaw excursion_law(operators::Systems& systems, const StationaryLaw& law,
@@ -170,11 +119,10 @@ DurationLaw excursion_law(operators::Systems& systems, const StationaryLaw& law,
                                Rest::killed_on_exit, systems.ledger());
   const petsc::VecHandle b = a.exit_rates(operators::Half::upper),
                          down = a.exit_rates(operators::Half::lower), c = a.trace_at_exit(),
-                         d = weights(a, law);
+                         d = law.weight_on(a);
   check(VecAXPY(b, 1, down));
-  ReducedModel model(systems, std::move(a), Rest::killed_on_exit, b, c, d, kMostPairs);
-  return law_of(model, time, law.excursion().mean_excursion(), systems.process().noise.tau,
-                tolerance);
+  return law_of(time_curve(systems, std::move(a), Rest::killed_on_exit, {b, c, d}, time,
+                           1 / law.excursion().mean_excursion(), tolerance));
 }
 
 double slide_density_at_zero(const model::Process& process) {

@@ -165,9 +165,6 @@ class Search {
     now.value = questions_.values(now.model);
     judge(now);
     last_ = now.value;
-    std::fprintf(stderr, "m %d shift %g rel %.1e at %ld\n", model_.pairs(), shifts_.back(),
-                 now.relative_error,
-                 (long)(std::max_element(relative_.begin(), relative_.end()) - relative_.begin()));
     if (best_.value.empty() || now.relative_error < best_.relative_error) best_ = std::move(now);
     return grew;
   }

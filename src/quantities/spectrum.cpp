@@ -12,7 +12,6 @@
 #include "stickslip/exact/transfer_function.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
-#include "stickslip/petsc/vectors.hpp"
 #include "stickslip/quantities/reduced_model.hpp"
 
 namespace stickslip::quantities {
@@ -20,8 +19,6 @@ namespace {
 
 using operators::KolmogorovOperator;
 using operators::Rest;
-using operators::State;
-using operators::StateKind;
 using operators::Symmetry;
 using petsc::check;
 
@@ -38,40 +35,6 @@ PetscScalar imaginary([[maybe_unused]] double w) {
 }
 
 double velocity(double, double, double v) { return v; }
-
-// c = pi v. Both spaces list the sliding states of a rank in the same order.
-petsc::VecHandle weighted_velocity(const KolmogorovOperator& odd, const StationaryLaw& law) {
-  petsc::VecHandle c = odd.values(velocity);
-  const double total = law.excursion().mean_excursion();
-  petsc::WriteView local(c);
-  const petsc::ReadView nu(law.occupation());
-  PetscInt at = 0, sliding = 0;
-  odd.states().for_each_local([&](const State& state) {
-    local[at++] *= state.kind == StateKind::rest ? 0 : nu[sliding++] / total;
-  });
-  return c;
-}
-
-// About pi, kept away from 0 and from the signs that high order gives far tails.
-petsc::VecHandle weights(const KolmogorovOperator& odd, const StationaryLaw& law) {
-  petsc::VecHandle d = odd.zeros();
-  {
-    petsc::WriteView local(d);
-    const petsc::ReadView nu(law.occupation());
-    const auto& stick = law.excursion().stick_time;
-    const std::size_t k = stick.size() / 2;
-    PetscInt at = 0, sliding = 0;
-    odd.states().for_each_local([&](const State& state) {
-      const bool rest = state.kind == StateKind::rest;
-      local[at++] =
-          rest ? stick[k + state.level] + stick[k - state.level] : PetscAbsScalar(nu[sliding++]);
-    });
-  }
-  PetscReal largest = 0;
-  check(VecNorm(d, NORM_INFINITY, &largest));
-  check(VecShift(d, 1e-12 * largest));
-  return d;
-}
 
 /// S_v of a reduced model.
 class ReducedFunction {
@@ -158,7 +121,7 @@ class DirectSpectrum {
         ledger_(systems.ledger()),
         turn_(1 / systems.process().noise.tau),
         b_(a_.values(velocity)),
-        c_(weighted_velocity(a_, law)),
+        c_(law.weighted_velocity(a_)),
         acceleration_(a_.zeros()),
         cl_(a_.zeros()) {
     check(MatMult(a_.matrix(), b_, acceleration_));
@@ -199,8 +162,8 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems, const StationaryLa
   const double turn = 1 / noise.tau;
   auto odd = operators::assemble(systems.comm(), systems.process(), systems.axis(), 0,
                                  Symmetry::odd, Rest::kept, systems.ledger());
-  const petsc::VecHandle b = odd.values(velocity), c = weighted_velocity(odd, law),
-                         d = weights(odd, law);
+  const petsc::VecHandle b = odd.values(velocity), c = law.weighted_velocity(odd),
+                         d = law.weight_on(odd);
   ReducedModel model(systems, std::move(odd), Rest::kept, b, c, d, kMostPairs);
   const std::vector<double> frequencies = judged(omega, noise.tau);
   Questions questions;

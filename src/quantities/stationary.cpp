@@ -100,6 +100,42 @@ void StationaryLaw::orient(Systems& systems) {
   uncorrected_.entry_orientation = real_parts(system.a().entry_rates(nu.correction));
 }
 
+// All folded operators list the sliding states of a rank in the same order.
+petsc::VecHandle StationaryLaw::occupation_on(const KolmogorovOperator& a) const {
+  petsc::VecHandle all = a.zeros();
+  petsc::WriteView local(all);
+  const petsc::ReadView nu(occupation_);
+  const auto& stick = excursion_.stick_time;
+  const std::size_t k = stick.size() / 2;
+  PetscInt at = 0, sliding = 0;
+  a.states().for_each_local([&](const State& state) {
+    if (state.kind != StateKind::rest) {
+      local[at++] = nu[sliding++];
+    } else {
+      const double here = stick[k + state.level];
+      local[at++] = state.level == 0 ? here : here + stick[k - state.level];
+    }
+  });
+  return all;
+}
+
+petsc::VecHandle StationaryLaw::weighted_velocity(const KolmogorovOperator& a) const {
+  petsc::VecHandle c = a.values([](double, double, double v) { return v; });
+  petsc::check(VecPointwiseMult(c, c, occupation_on(a)));
+  petsc::check(VecScale(c, 1 / excursion_.mean_excursion()));
+  return c;
+}
+
+// High order leaves far tails with signs of their own.
+petsc::VecHandle StationaryLaw::weight_on(const KolmogorovOperator& a) const {
+  petsc::VecHandle weight = occupation_on(a);
+  PetscReal largest = 0;
+  petsc::check(VecAbs(weight));
+  petsc::check(VecNorm(weight, NORM_INFINITY, &largest));
+  petsc::check(VecShift(weight, 1e-12 * largest));
+  return weight;
+}
+
 StationaryLaw::SpeedLaw StationaryLaw::speed_law() const {
   const double total = excursion_.mean_excursion();
   const std::size_t nodes = axis_->size();

@@ -1,5 +1,6 @@
 #include "stickslip/quantities/time_functions.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 
@@ -52,6 +53,38 @@ TimeFunction evaluate(const Reduced& reduced, const std::vector<double>& time) {
     f.integral.push_back(integral);
   }
   return f;
+}
+
+TimeCurve time_curve(operators::Systems& systems, operators::KolmogorovOperator minus_l,
+                     operators::Rest rest, const Ends& ends, const std::vector<double>& time,
+                     double unit, double tolerance) {
+  constexpr int most_pairs = 80;
+  ReducedModel model(systems, std::move(minus_l), rest, ends.b, ends.c, ends.weight, most_pairs);
+  Questions questions;
+  questions.values = [&](const Reduced& reduced) {
+    const TimeFunction f = evaluate(reduced, time);
+    std::vector<double> values;
+    for (double value : f.value) values.push_back(value / unit);
+    values.insert(values.end(), f.integral.begin(), f.integral.end());
+    return values;
+  };
+  const double tau = systems.process().noise.tau;
+  for (std::size_t n = 0; n < 2 * time.size(); ++n) {
+    questions.shift.push_back(2 / std::max(time[n % time.size()], 1e-6 * tau));
+  }
+  questions.tolerance = tolerance;
+  questions.first_shift = 2 / tau;
+  questions.lowest = 0.05 / tau;
+  questions.highest = 1e6 / tau;
+  const Answers answers = ask(model, questions);
+  TimeCurve curve;
+  curve.pairs = answers.pairs;
+  for (std::size_t n = 0; n < time.size(); ++n) {
+    const std::size_t m = time.size() + n;
+    curve.value.push_back({unit * answers.value[n], unit * answers.error[n]});
+    curve.integral.push_back({answers.value[m], answers.error[m]});
+  }
+  return curve;
 }
 
 }  // namespace stickslip::quantities

@@ -123,6 +123,17 @@ std::vector<Entry> HpAxis::trace_at_top() const {
   return trace;
 }
 
+std::vector<Entry> HpAxis::value_at(double v) const {
+  const auto above = std::upper_bound(ends_.begin() + 1, ends_.end() - 1, v);
+  const int element = static_cast<int>(above - ends_.begin()) - 1;
+  const auto basis = reference_.basis((v - ends_[element]) / (ends_[element + 1] - ends_[element]));
+  std::vector<Entry> value;
+  for (int n = 0; n < reference_.size; ++n) {
+    value.push_back({element * reference_.size + n, basis[n]});
+  }
+  return value;
+}
+
 double HpAxis::mass_below(std::span<const double> mass, double v) const {
   const int q = reference_.size;
   double below = 0;

@@ -25,6 +25,14 @@ void UpwindAxis::transport(double excess, int j, TransportRow& row) const {
   if (rate > 0 && j < size() - 1) row.entries.push_back({j + 1, rate});
 }
 
+// Between two nodes; below the first one, where a cell of its own begins, its value.
+std::vector<Entry> UpwindAxis::value_at(double v) const {
+  const double place = std::clamp(v / spacing_ - 1, 0.0, size() - 1.0);
+  const int below = std::min(static_cast<int>(place), size() - 2);
+  if (below < 0) return {{0, 1.0}};
+  return {{below, 1 - (place - below)}, {below + 1, place - below}};
+}
+
 // A node stands for the cell around it; the mass is spread evenly over the cell.
 double UpwindAxis::mass_below(std::span<const double> mass, double v) const {
   double below = 0;

@@ -47,6 +47,10 @@ class KolmogorovOperator {
   /// The functional u -> u(s+) (upper) or u(s-) (lower; unfolded only) as a vector. Collective.
   [[nodiscard]] petsc::VecHandle trace_at_exit(Half half = Half::upper) const;
 
+  /// The functional u -> u(x_i, v), v = 0 being s+- for |i| > k and rest for |i| <= k; folded, from
+  /// the half that is kept. Static states must be kept. Collective.
+  [[nodiscard]] petsc::VecHandle value_at(const velocity::Axis& axis, int i, double v) const;
+
   /// nu -> -nu A_us, index i + k: the rate at which an occupation flows into each static level; the
   /// same on all ranks. Rest::killing only. Collective.
   [[nodiscard]] std::vector<PetscScalar> entry_rates(Vec nu) const;

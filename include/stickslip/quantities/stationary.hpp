@@ -37,6 +37,15 @@ class StationaryLaw {
   /// nu, distributed as states() says [time]: the time spent in each sliding state.
   [[nodiscard]] Vec occupation() const { return occupation_; }
 
+  /// Time spent per excursion in each state of an even or odd operator, its static states too, if
+  /// it has any: rest is counted folded, i and -i together [time]. Collective.
+  [[nodiscard]] petsc::VecHandle occupation_on(const operators::KolmogorovOperator& a) const;
+  /// About the same, but positive everywhere: a weight for ReducedModel. Collective.
+  [[nodiscard]] petsc::VecHandle weight_on(const operators::KolmogorovOperator& a) const;
+
+  /// c with c f = E[V f(X, Y, V)] for odd f on an odd operator. Collective.
+  [[nodiscard]] petsc::VecHandle weighted_velocity(const operators::KolmogorovOperator& a) const;
+
   /// The law of |V| as point masses, the same on all ranks.
   struct SpeedLaw {
     std::vector<double> mass;  ///< of the velocity nodes

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "stickslip/quantities/reduced_model.hpp"
+#include "stickslip/quantities/uncertain.hpp"
 
 namespace stickslip::quantities {
 
@@ -17,5 +18,21 @@ struct TimeFunction {
 /// Growing modes that a two-sided projection may have lie outside the contour and do no harm, as
 /// they would to exp(m t). Local. O(size^2) a time. Times >= 0.
 [[nodiscard]] TimeFunction evaluate(const Reduced& reduced, const std::vector<double>& time);
+
+/// c exp(L t) b and its integral with their errors, by reduced models grown until both stand still:
+/// the value to `tolerance` times `unit`, the integral, counted in times of 1/unit, to `tolerance`.
+struct TimeCurve {
+  std::vector<Uncertain> value, integral;
+  int pairs = 0;  ///< of vectors of the reduced model
+};
+/// Right and left vectors and the weight; see ReducedModel.
+struct Ends {
+  Vec b, c, weight;
+};
+/// `minus_l` is -L with the static states as `rest` says. Collective.
+[[nodiscard]] TimeCurve time_curve(operators::Systems& systems,
+                                   operators::KolmogorovOperator minus_l, operators::Rest rest,
+                                   const Ends& ends, const std::vector<double>& time, double unit,
+                                   double tolerance);
 
 }  // namespace stickslip::quantities

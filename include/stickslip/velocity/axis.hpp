@@ -45,6 +45,9 @@ class Axis {
   /// u(v_max) as a combination of nodal values.
   [[nodiscard]] virtual std::vector<Entry> trace_at_top() const = 0;
 
+  /// u(v) for 0 < v <= v_max as a combination of nodal values.
+  [[nodiscard]] virtual std::vector<Entry> value_at(double v) const = 0;
+
   /// Mass on (0, v] of a measure given by the masses of the nodes. O(size).
   [[nodiscard]] virtual double mass_below(std::span<const double> mass, double v) const = 0;
 

@@ -50,6 +50,7 @@ class HpAxis final : public Axis {
   void transport(double excess, int j, TransportRow& row) const override;
   [[nodiscard]] std::vector<Entry> trace_at_zero() const override;
   [[nodiscard]] std::vector<Entry> trace_at_top() const override;
+  [[nodiscard]] std::vector<Entry> value_at(double v) const override;
   [[nodiscard]] double mass_below(std::span<const double> mass, double v) const override;
   [[nodiscard]] bool keeps_origin() const override { return false; }
   [[nodiscard]] double origin_rate(double) const override { return 0; }

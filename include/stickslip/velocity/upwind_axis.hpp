@@ -28,6 +28,7 @@ class UpwindAxis final : public Axis {
   void transport(double excess, int j, TransportRow& row) const override;
   [[nodiscard]] std::vector<Entry> trace_at_zero() const override { return {}; }
   [[nodiscard]] std::vector<Entry> trace_at_top() const override { return {{size() - 1, 1.0}}; }
+  [[nodiscard]] std::vector<Entry> value_at(double v) const override;
   [[nodiscard]] double mass_below(std::span<const double> mass, double v) const override;
   [[nodiscard]] bool keeps_origin() const override { return true; }
   [[nodiscard]] double origin_rate(double excess) const override { return excess / spacing_; }
