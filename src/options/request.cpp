@@ -15,6 +15,7 @@
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/eigensolver.hpp"
 #include "stickslip/petsc/factorization.hpp"
+#include "stickslip/petsc/time_stepper.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/text.hpp"
 
@@ -113,7 +114,9 @@ const std::vector<Asked>& askable() {
       {"resolvent", Quantity::resolvent, {excursion}},
       {"relaxation", Quantity::relaxation, {excursion}},
       {"spectrum", Quantity::spectrum, {excursion}},
-      {"duration_density", Quantity::duration_density, {excursion}}};
+      {"duration_density", Quantity::duration_density, {excursion}},
+      {"autocorrelation", Quantity::autocorrelation, {excursion}},
+      {"expectation", Quantity::expectation, {excursion}}};
   return all;
 }
 
@@ -162,16 +165,19 @@ void read_arguments(const Settings& settings, Request& request, Problems& proble
   request.time = settings.numbers("time");
   read_observables(settings, request, problems);
   const bool transforms = request.wants(Quantity::laplace) || request.wants(Quantity::resolvent);
-  const bool resolvent = request.wants(Quantity::resolvent);
+  const bool resolvent = request.wants(Quantity::resolvent) || request.wants(Quantity::expectation);
   if (transforms && request.lambda.empty()) {
     settings.report(problems, "quantities", "asks for functions of lambda and no values are given",
                     "add for example -lambda 0.1,1,10");
   }
   if (resolvent && request.observables.empty() && !settings.given("observable")) {
-    settings.report(problems, "quantities", "asks for resolvent and no functions are given",
+    settings.report(problems, "quantities", "asks for functions of the state and none are given",
                     "add for example -observable \"v^2; stick\"");
   }
-  if (request.wants(Quantity::duration_density) && request.time.empty()) {
+  const bool of_time = request.wants(Quantity::duration_density) ||
+                       request.wants(Quantity::autocorrelation) ||
+                       request.wants(Quantity::expectation);
+  if (of_time && request.time.empty()) {
     settings.report(problems, "quantities", "asks for functions of time and no times are given",
                     "add for example -time 0.01:10:31:log");
   }
@@ -188,9 +194,36 @@ void read_arguments(const Settings& settings, Request& request, Problems& proble
   };
   warn_unused("lambda", transforms || by_lambda);
   warn_unused("observable", resolvent);
-  warn_unused("time", request.wants(Quantity::duration_density));
+  warn_unused("time", of_time);
+  warn_unused("start", request.wants(Quantity::expectation));
+  warn_unused("transient_solver", of_time);
   warn_unused("omega", request.wants(Quantity::spectrum));
   warn_unused("spectrum_solver", request.wants(Quantity::spectrum));
+}
+
+// s+, s- or x,v with x on a noise level.
+void read_start(const Settings& settings, Request& request, Problems& problems) {
+  const std::string text = settings.text("start");
+  const int exit = request.scene.friction.static_index(request.scene.delta) + 1;
+  request.start_level = text == "s-" ? -exit : exit;
+  if (text == "s+" || text == "s-") return;
+  const auto numbers = parse_numbers(text);
+  if (!numbers || numbers->size() != 2) {
+    settings.report(problems, "start", "must be s+, s- or x,v", "write for example -start 0.5,0");
+    return;
+  }
+  const double place = (*numbers)[0] / request.scene.delta, level = std::round(place);
+  request.start_v = (*numbers)[1];
+  const int levels = request.scene.noise_levels.value_or(request.scene.full_levels());
+  if (std::abs(place - level) > 1e-9 * std::max(1.0, std::abs(place)) || std::abs(level) > levels) {
+    settings.report(problems, "start",
+                    fmt::format("starts between the noise levels, which are {:g} apart up to {:g}",
+                                request.scene.delta, levels * request.scene.delta),
+                    fmt::format("take x = {:g}",
+                                std::clamp<double>(level, -levels, levels) * request.scene.delta));
+    return;
+  }
+  request.start_level = static_cast<int>(level);
 }
 
 void read_spectrum_solver(const Settings& settings, Request& request, Problems& problems) {
@@ -342,10 +375,13 @@ const std::vector<SolverRole>& solver_roles() {
   static const std::vector<std::string> eps{
       "eps_view",           "eps_view_pre",       "eps_view_values",    "eps_converged_reason",
       "eps_error_relative", "eps_error_absolute", "eps_error_backward", "eps_view_vectors"};
+  static const std::vector<std::string> ts{"ts_view", "ts_view_pre", "ts_adapt_view", "snes_view",
+                                           "ksp_view"};
   static const std::vector<SolverRole> roles{
       {"slide_", petsc::Factorization::probe_options, "ksp_view", ksp},
       {"null_", petsc::Eigensolver::probe_options, "eps_view", eps},
-      {"relax_", petsc::Eigensolver::probe_options, "eps_view", eps}};
+      {"relax_", petsc::Eigensolver::probe_options, "eps_view", eps},
+      {"backward_", petsc::TimeStepper::probe_options, "ts_view", ts}};
   return roles;
 }
 
@@ -430,6 +466,10 @@ Request read_request(const std::vector<std::string>& argv) {
   read_quantities(settings, request, problems);
   read_arguments(settings, request, problems);
   read_spectrum_solver(settings, request, problems);
+  read_start(settings, request, problems);
+  if (settings.text("transient_solver") == "stepping") {
+    request.transient_solver = TransientSolver::stepping;
+  }
   request.accuracy = settings.real("accuracy");
   request.method = read_method(settings, problems);
   check_route(settings, request, problems);

@@ -87,28 +87,35 @@ Group question_group() {
       "Question",
       "What is asked for; only what is named is assembled, factored and solved",
       {
-          words("quantities", Kind::list, "sticking,moments,noise_law",
-                {"sticking", "moments", "noise_law", "entry_law", "density", "laplace", "resolvent",
-                 "relaxation", "spectrum", "duration_density"},
-                "comma list. sticking: P_stick, P_slide, mean_stick, mean_slide, "
-                "mean_excursion. moments: E_V2, E_absV, E_XV, E_V. noise_law: P_X_le_mu_s, "
-                "E_X2. entry_law: the level at which sliding ends (an array), f_stick_0. "
-                "density: the stationary law as a field (needs -output). laplace: F_slide, "
-                "F_stick, F_excursion on -lambda. resolvent: h_plus, h_minus, w_one and for "
-                "each -observable u, w_plus, w_minus, pi, mu on -lambda. relaxation: leading "
-                "eigenvalues of -L for even and odd functions. spectrum: S_v on -omega, S_0, "
-                "diffusivity = S_0/2, fwhm, t_corr = 1/fwhm, variance_from_spectrum. "
-                "duration_density: f_slide, "
-                "f_stick, f_excursion and cdf_slide, cdf_stick, cdf_excursion on -time"),
+          words(
+              "quantities", Kind::list, "sticking,moments,noise_law",
+              {"sticking", "moments", "noise_law", "entry_law", "density", "laplace", "resolvent",
+               "relaxation", "spectrum", "duration_density", "autocorrelation", "expectation"},
+              "comma list. sticking: P_stick, P_slide, mean_stick, mean_slide, "
+              "mean_excursion. moments: E_V2, E_absV, E_XV, E_V. noise_law: P_X_le_mu_s, "
+              "E_X2. entry_law: the level at which sliding ends (an array), f_stick_0. "
+              "density: the stationary law as a field (needs -output). laplace: F_slide, "
+              "F_stick, F_excursion on -lambda. resolvent: h_plus, h_minus, w_one and for "
+              "each -observable u, w_plus, w_minus, pi, mu on -lambda. relaxation: leading "
+              "eigenvalues of -L for even and odd functions. spectrum: S_v on -omega, S_0, "
+              "diffusivity = S_0/2, fwhm, t_corr = 1/fwhm, variance_from_spectrum. "
+              "duration_density: f_slide, "
+              "f_stick, f_excursion and cdf_slide, cdf_stick, cdf_excursion on -time. "
+              "autocorrelation: C_vv = E[V_0 V_t] on -time. expectation: E[f(Z_t)] from -start for "
+              "each -observable on -time, and its limit pi(f)"),
           numbers("lambda", "1/time", not_negative(),
                   "values of lambda, as a,b,c or first:last:count or first:last:count:log. With "
                   "-route lambda one value, chosen from -accuracy if it is left out"),
           numbers("omega", "1/time", not_negative(),
                   "angular frequencies of spectrum, in the forms of -lambda"),
           numbers("time", "time", not_negative(),
-                  "times of duration_density, in the forms of -lambda"),
+                  "times of duration_density, autocorrelation and expectation, in the forms of "
+                  "-lambda"),
+          text("start", "s+",
+               "state at time 0 of expectation: s+, s-, or x,v with x a noise level"),
           text("observable", "",
-               "functions of the state for resolvent, separated by semicolons: 1, x, v, v^2, "
+               "functions of the state for resolvent and expectation, separated by semicolons: 1, "
+               "x, v, v^2, "
                "|v|, stick, slide, |x|<=mu_s, or expressions in x, y, v, mu_s, mu_d such as "
                "\"x*v; abs(v)^3\""),
           real("accuracy", "", "1e-6", {1e-15, 0.1, true, true},
@@ -139,6 +146,9 @@ Group method_group() {
                 "krylov: two-sided rational Krylov projection, a few real factorisations for all "
                 "frequencies. direct: one complex factorisation for each frequency "
                 "(stickslip-complex), to check it; gives S_v, S_0 and diffusivity"),
+          words("transient_solver", Kind::choice, "krylov", {"krylov", "stepping"},
+                "krylov: reduced models, all times at once. stepping: the backward Kolmogorov "
+                "equation by PETSc's time steppers, to check it (-backward_ts_...)"),
           words("route", Kind::choice, "excursion",
                 {"excursion", "lambda", "hitting", "null_vector", "fluid_queue"},
                 "excursion: one transposed solve with the sliding operator gives the whole "

@@ -20,14 +20,22 @@ KSP solver_of(EPS eps) {
   return ksp;
 }
 
+// One eigenvalue next to the target comes with the first few vectors, and each costs a solve. How
+// many are wanted, and in which space, the user may have changed.
+void keep_space_small_for_one(EPS eps) {
+  PetscInt wanted = 0, space = 0, projected = 0;
+  check(EPSGetDimensions(eps, &wanted, &space, &projected));
+  const bool open = space == PETSC_DEFAULT && projected == PETSC_DEFAULT;
+  if (wanted == 1 && open) check(EPSSetDimensions(eps, 1, 4, PETSC_DEFAULT));
+}
+
 EpsHandle configured_eigensolver(Mat matrix, const std::string& prefix, double target, int wanted) {
   EpsHandle eps;
   check(EPSCreate(PetscObjectComm(reinterpret_cast<PetscObject>(matrix)), eps.out()));
   check(EPSSetOptionsPrefix(eps, prefix.c_str()));
   check(EPSSetOperators(eps, matrix, nullptr));
   check(EPSSetProblemType(eps, EPS_NHEP));
-  // One eigenvalue next to the target comes with the first few vectors; each costs a solve.
-  check(EPSSetDimensions(eps, wanted, wanted == 1 ? 4 : PETSC_DEFAULT, PETSC_DEFAULT));
+  check(EPSSetDimensions(eps, wanted, PETSC_DEFAULT, PETSC_DEFAULT));
   check(EPSSetTolerances(eps, kTolerance, PETSC_DEFAULT));
   check(EPSSetTarget(eps, target));
   check(EPSSetWhichEigenpairs(eps, EPS_TARGET_MAGNITUDE));
@@ -36,6 +44,7 @@ EpsHandle configured_eigensolver(Mat matrix, const std::string& prefix, double t
   check(STSetType(st, STSINVERT));
   set_direct_solver(solver_of(eps));
   check(EPSSetFromOptions(eps));
+  keep_space_small_for_one(eps);
   set_default_ordering(solver_of(eps));
   return eps;
 }

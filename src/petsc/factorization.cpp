@@ -19,7 +19,9 @@ constexpr bool kComplex = PetscDefined(USE_COMPLEX);
 void set_default(const std::string& option, const char* value) {
   PetscBool given = PETSC_FALSE;
   check(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &given));
-  if (given == PETSC_FALSE) check(PetscOptionsSetValue(nullptr, option.c_str(), value));
+  if (given == PETSC_TRUE) return;
+  check(PetscOptionsSetValue(nullptr, option.c_str(), value));
+  check(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &given));  // counts as used
 }
 
 bool uses_mumps(KSP ksp) {

@@ -7,6 +7,7 @@
 #include "stickslip/quantities/laplace.hpp"
 #include "stickslip/quantities/resolvent.hpp"
 #include "stickslip/quantities/spectrum.hpp"
+#include "stickslip/quantities/transient.hpp"
 
 namespace stickslip::routes {
 namespace {
@@ -20,7 +21,8 @@ using quantities::Uncertain;
 
 bool needs_law(const Request& request) {
   for (Quantity q : {Quantity::sticking, Quantity::moments, Quantity::entry_law, Quantity::density,
-                     Quantity::laplace, Quantity::spectrum, Quantity::duration_density}) {
+                     Quantity::laplace, Quantity::spectrum, Quantity::duration_density,
+                     Quantity::autocorrelation, Quantity::expectation}) {
     if (request.wants(q)) return true;
   }
   return request.scene.v_max.has_value();  // what the cut holds back is judged by the law
@@ -122,6 +124,34 @@ void append_durations(operators::Systems& systems, const Setting& setting, Evalu
   evaluation.checks.emplace_back("excursion_pairs", excursion.pairs);
 }
 
+void append_transients(operators::Systems& systems, const Setting& setting,
+                       Evaluation& evaluation) {
+  const Request& request = setting.request;
+  const double tolerance = 0.1 * request.accuracy;
+  const auto method = request.transient_solver == options::TransientSolver::krylov
+                          ? quantities::TransientMethod::krylov
+                          : quantities::TransientMethod::stepping;
+  const auto append = [&](const std::string& key, const std::string& unit,
+                          const std::vector<Uncertain>& values) {
+    auto result = quantities::array(key, unit, "time", request.time);
+    for (const auto& value : values) quantities::append_value(result, value);
+    evaluation.results.push_back(std::move(result));
+  };
+  if (request.wants(Quantity::autocorrelation)) {
+    append("C_vv", "velocity^2",
+           quantities::autocorrelation(systems, *evaluation.law, request.time, method, tolerance));
+  }
+  if (!request.wants(Quantity::expectation)) return;
+  for (const auto& f : request.observables) {
+    const auto expectation =
+        quantities::expectation(systems, *evaluation.law, f, {request.start_level, request.start_v},
+                                request.time, method, tolerance);
+    append("E(" + f.name + ")", "", expectation.value);
+    evaluation.results.push_back(
+        quantities::scalar("stationary(" + f.name + ")", "", expectation.stationary, 0));
+  }
+}
+
 }  // namespace
 
 // One set of factors at a time; those for lambda = 0 serve all that needs them first.
@@ -142,6 +172,7 @@ Evaluation by_excursion(const Setting& setting) {
   append_transforms(systems, setting, evaluation);
   if (request.wants(Quantity::spectrum)) append_spectrum(systems, setting, evaluation);
   if (request.wants(Quantity::duration_density)) append_durations(systems, setting, evaluation);
+  append_transients(systems, setting, evaluation);
   if (request.wants(Quantity::relaxation)) {
     evaluation.even = quantities::relaxation_modes(systems, Symmetry::even);
     evaluation.odd = quantities::relaxation_modes(systems, Symmetry::odd);

@@ -22,7 +22,9 @@ enum class Quantity {
   resolvent,
   relaxation,
   spectrum,
-  duration_density
+  duration_density,
+  autocorrelation,
+  expectation
 };
 
 /// Discretisation in v; `none` for the fluid queue, which needs none.
@@ -33,6 +35,9 @@ enum class Factors { in_memory, on_disk, incomplete };
 
 /// By which system of equations.
 enum class Route { excursion, lambda, hitting, null_vector, fluid_queue };
+
+/// How functions of time are computed.
+enum class TransientSolver { krylov, stepping };
 
 /// How the spectrum is computed.
 enum class SpectrumSolver { krylov, direct };
@@ -56,11 +61,14 @@ struct Request {
   model::Scene scene;
   std::set<Quantity> quantities;
   std::vector<double> lambda;                  ///< of laplace and resolvent; one for -route lambda
-  std::vector<model::Observable> observables;  ///< of resolvent
+  std::vector<model::Observable> observables;  ///< of resolvent and expectation
   std::vector<double> omega;                   ///< of spectrum
-  std::vector<double> time;                    ///< of duration_density
+  std::vector<double> time;                    ///< of functions of time
+  int start_level = 0;                         ///< of expectation: x_i and v at time 0
+  double start_v = 0;
   double accuracy = 1e-6;
   SpectrumSolver spectrum_solver = SpectrumSolver::krylov;
+  TransientSolver transient_solver = TransientSolver::krylov;
   Route route = Route::excursion;
   Method method;
   std::string summary, output;  ///< file names; empty if not asked for

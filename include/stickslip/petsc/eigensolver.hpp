@@ -14,8 +14,9 @@ namespace stickslip::petsc {
 
 struct Eigenpair {
   std::complex<double> value;
-  VecHandle real,
-      imaginary;        ///< of the vector; imaginary is empty for a real pair of a real matrix
+  /// Parts of the vector. With real scalars `imaginary` is zero for a real pair; with complex ones
+  /// `real` holds both parts and `imaginary` is not used.
+  VecHandle real, imaginary;
   double residual = 0;  ///< ||A x - value x||_2 / ||x||_2
 };
 
