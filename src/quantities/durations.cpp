@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 
+#include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/quantities/time_functions.hpp"
 
@@ -130,6 +131,52 @@ double slide_density_at_zero(const model::Process& process) {
   const double up = process.excess(k + 1), down = -process.excess(k);
   if (down <= 0) return 0;
   return process.noise.rate() * process.noise.down(k + 1) * down / (up + down);
+}
+
+DurationMoments duration_moments(operators::Systems& systems, const std::vector<Uncertain>& entry) {
+  const auto& process = systems.process();
+  const operators::StaticChain chain(process.noise, process.static_index());
+  const auto once = chain.integral(std::vector<double>(entry.size(), 1.0));
+  const auto twice = chain.integral(once);
+  Uncertain stick, stick_square;
+  for (std::size_t n = 0; n < entry.size(); ++n) {
+    stick = stick + once[n] * entry[n];
+    stick_square = stick_square + 2 * twice[n] * entry[n];
+  }
+  auto& system = systems.at(0, Symmetry::even);
+  const petsc::VecHandle at_exit = system.a().trace_at_exit();
+  const petsc::VecHandle ones = system.a().values([](double, double, double) { return 1.0; });
+  const auto slide = system.factors().solve(ones);
+  const auto square = system.factors().solve(slide.x);
+  const auto stay = system.factors().solve(
+      system.a().from_rest(std::vector<PetscScalar>(once.begin(), once.end())));
+  const Uncertain s = value_of(at_exit, slide), s2 = 2.0 * value_of(at_exit, square);
+  const Uncertain st = value_of(at_exit, system.factors().solve(stay.x));
+  const Uncertain excursion = s + stick;
+  return {s,
+          stick,
+          excursion,
+          s2 - s * s,
+          stick_square - stick * stick,
+          s2 + 2.0 * st + stick_square - excursion * excursion};
+}
+
+void append_duration_moments(const model::Process& process, const DurationMoments& moments,
+                             const std::vector<Uncertain>& entry, Results& results) {
+  const auto append = [&](const char* key, const char* unit, Uncertain value) {
+    const bool there = std::any_of(results.begin(), results.end(),
+                                   [key](const Result& result) { return result.key == key; });
+    if (!there) results.push_back(scalar(key, unit, value));
+  };
+  append("mean_slide", "time", moments.mean_slide);
+  append("mean_stick", "time", moments.mean_stick);
+  append("mean_excursion", "time", moments.mean_excursion);
+  append("var_slide", "time^2", moments.var_slide);
+  append("var_stick", "time^2", moments.var_stick);
+  append("var_excursion", "time^2", moments.var_excursion);
+  const double rate = process.noise.rate() * process.noise.up(process.static_index());
+  append("f_slide_0", "1/time", {slide_density_at_zero(process), 0});
+  append("f_stick_0", "1/time", rate * (entry.front() + entry.back()));
 }
 
 void append_duration(const char* name, const std::vector<double>& time, const DurationLaw& law,

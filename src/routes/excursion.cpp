@@ -65,7 +65,12 @@ void append_transforms(operators::Systems& systems, const Setting& setting,
   std::vector<quantities::DurationTransforms> durations;
   std::vector<quantities::Resolvent> resolvents;
   std::vector<Uncertain> entry;
-  if (request.wants(Quantity::laplace)) entry = entry_law(*evaluation.law);
+  if (request.wants(Quantity::laplace)) {
+    entry = entry_law(*evaluation.law);
+    const auto moments = quantities::duration_moments(systems, entry);
+    quantities::append_duration_moments(setting.process, moments, entry, evaluation.results);
+    if (request.lambda.front() != 0) systems.release(0, Symmetry::even);
+  }
   for (double lambda : request.lambda) {
     if (request.wants(Quantity::laplace)) {
       const auto t = quantities::slide_transforms(systems, lambda);
@@ -161,7 +166,9 @@ Evaluation by_excursion(const Setting& setting) {
   Evaluation evaluation;
   if (needs_law(request)) {
     evaluation.law = std::make_unique<StationaryLaw>(systems);
-    const bool again = !request.lambda.empty() && request.lambda[0] == 0;
+    // Moments of durations and lambda = 0 at the head of -lambda use these factors again.
+    const bool again =
+        request.wants(Quantity::laplace) || (!request.lambda.empty() && request.lambda[0] == 0);
     if (!again) systems.release(0, Symmetry::even);
     if (request.wants(Quantity::entry_law)) evaluation.law->orient(systems);
     const auto& law = *evaluation.law;

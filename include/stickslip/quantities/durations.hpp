@@ -35,6 +35,22 @@ struct DurationLaw {
 /// f_slide(0+): a slide can only end at once if one jump down from level k+1 reverses it.
 [[nodiscard]] double slide_density_at_zero(const model::Process& process);
 
+/// Means and variances of the durations: what their transforms say at lambda -> 0.
+struct DurationMoments {
+  Uncertain mean_slide, mean_stick, mean_excursion;  ///< [time]
+  Uncertain var_slide, var_stick, var_excursion;     ///< [time^2]
+};
+/// E[S^2] = 2 g A^-2 1 for slides S, E[T^2] = 2 P R^2 1 for stays T with R = (-Q)^-1, and
+/// E[S T] = g A^-2 (-A_us R 1), since where a slide ends and how long it took go together. Three
+/// solves with systems.at(0, even). Collective.
+[[nodiscard]] DurationMoments duration_moments(operators::Systems& systems,
+                                               const std::vector<Uncertain>& entry);
+
+/// var_slide, var_stick, var_excursion, f_slide_0 and, unless they are there already, mean_slide,
+/// mean_stick, mean_excursion, f_stick_0.
+void append_duration_moments(const model::Process& process, const DurationMoments& moments,
+                             const std::vector<Uncertain>& entry, Results& results);
+
 /// f_NAME and cdf_NAME by time.
 void append_duration(const char* name, const std::vector<double>& time, const DurationLaw& law,
                      Results& results);
