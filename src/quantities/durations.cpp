@@ -69,10 +69,6 @@ class StayFlow {
   double left_ = 0;
 };
 
-DurationLaw law_of(TimeCurve curve) {
-  return {std::move(curve.value), std::move(curve.integral), curve.pairs};
-}
-
 }  // namespace
 
 DurationLaw stick_law(const model::Process& process, const std::vector<Uncertain>& entry,
@@ -103,27 +99,32 @@ DurationLaw stick_law(const model::Process& process, const std::vector<Uncertain
   return law;
 }
 
+namespace {
+
+// P(not over at t) = g exp(L t) 1 from s+, until `rest` kills; its decay is the density. The
+// function 1 makes better vectors than the rates of ending, which live next to v = 0.
+DurationLaw law_until(operators::Systems& systems, Rest rest, const StationaryLaw& law,
+                      const std::vector<double>& time, double mean, double tolerance) {
+  auto a = operators::assemble(systems.comm(), systems.process(), systems.axis(), 0, Symmetry::even,
+                               rest, systems.ledger());
+  const petsc::VecHandle b = a.values([](double, double, double) { return 1.0; }),
+                         c = a.trace_at_exit(), d = law.weight_on(a);
+  auto curve = time_curve(systems, std::move(a), rest, {b, c, d}, ReducedModel::Nature::rough,
+                          Shown::decay, time, 1 / mean, tolerance);
+  return {std::move(curve.value), std::move(curve.integral), curve.pairs};
+}
+
+}  // namespace
+
 DurationLaw slide_law(operators::Systems& systems, const StationaryLaw& law,
                       const std::vector<double>& time, double tolerance) {
-  auto a = operators::assemble(systems.comm(), systems.process(), systems.axis(), 0, Symmetry::even,
-                               Rest::killing, systems.ledger());
-  const std::size_t k = static_cast<std::size_t>(systems.process().static_index());
-  const petsc::VecHandle b = a.from_rest(std::vector<PetscScalar>(2 * k + 1, 1.0)),
-                         c = a.trace_at_exit(), d = law.weight_on(a);
-  return law_of(time_curve(systems, std::move(a), Rest::killing, {b, c, d}, time,
-                           1 / law.excursion().mean_slide(), tolerance));
+  return law_until(systems, Rest::killing, law, time, law.excursion().mean_slide(), tolerance);
 }
 
 DurationLaw excursion_law(operators::Systems& systems, const StationaryLaw& law,
                           const std::vector<double>& time, double tolerance) {
-  auto a = operators::assemble(systems.comm(), systems.process(), systems.axis(), 0, Symmetry::even,
-                               Rest::killed_on_exit, systems.ledger());
-  const petsc::VecHandle b = a.exit_rates(operators::Half::upper),
-                         down = a.exit_rates(operators::Half::lower), c = a.trace_at_exit(),
-                         d = law.weight_on(a);
-  check(VecAXPY(b, 1, down));
-  return law_of(time_curve(systems, std::move(a), Rest::killed_on_exit, {b, c, d}, time,
-                           1 / law.excursion().mean_excursion(), tolerance));
+  return law_until(systems, Rest::killed_on_exit, law, time, law.excursion().mean_excursion(),
+                   tolerance);
 }
 
 double slide_density_at_zero(const model::Process& process) {

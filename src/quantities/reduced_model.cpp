@@ -54,27 +54,38 @@ exact::Matrix products(BV x, BV y, int size) {
   return result;
 }
 
+// Y^T v of the first columns.
+std::vector<double> products(BV y, Vec v, int size) {
+  std::vector<PetscScalar> dots(static_cast<std::size_t>(size));
+  check(BVDotVec(y, v, dots.data()));
+  std::vector<double> result;
+  for (const auto& dot : dots) result.push_back(PetscRealPart(dot));
+  return result;
+}
+
 }  // namespace
 
 ReducedModel::ReducedModel(operators::Systems& systems, operators::KolmogorovOperator minus_l,
-                           operators::Rest rest, Vec b, Vec c, Vec weight, int most_pairs)
+                           operators::Rest rest, const Ends& ends, Nature nature, int most_pairs)
     : systems_(systems),
       rest_(rest),
-      root_(copy_of(weight)),
-      inverse_root_(copy_of(weight)),
+      nature_(nature),
+      root_(copy_of(ends.weight)),
+      inverse_root_(copy_of(ends.weight)),
       minus_l_(std::move(minus_l)),
       most_pairs_(most_pairs),
-      right_(basis_like(b, most_pairs)),
-      left_(basis_like(b, most_pairs)),
-      b_(copy_of(b)),
-      c_(copy_of(c)) {
+      right_(basis_like(ends.b, most_pairs)),
+      left_(basis_like(ends.b, most_pairs)),
+      b_(copy_of(ends.b)),
+      c_(copy_of(ends.c)) {
   check(VecSqrtAbs(root_));
   check(VecCopy(root_, inverse_root_));
   check(VecReciprocal(inverse_root_));
   check(MatDiagonalScale(minus_l_.matrix(), root_, inverse_root_));
   check(VecPointwiseMult(b_, b_, root_));
   check(VecPointwiseMult(c_, c_, inverse_root_));
-  const petsc::VecHandle lb = copy_of(b), cl = copy_of(c);
+  if (nature == Nature::rough) return;
+  const petsc::VecHandle lb = copy_of(b_), cl = copy_of(c_);
   check(MatMult(minus_l_.matrix(), b_, lb));
   check(MatMultTranspose(minus_l_.matrix(), c_, cl));
   append(b_, c_);
@@ -93,19 +104,29 @@ bool ReducedModel::append(Vec v, Vec w) {
   return true;
 }
 
+// v <- (s - L)^-1 v and w <- w (s - L)^-1, scaled.
+void ReducedModel::resolve(petsc::Factorization& factors, Vec v, Vec w) const {
+  const petsc::VecHandle b = copy_of(v), c = copy_of(w);
+  check(VecPointwiseMult(b, b, inverse_root_));
+  check(VecPointwiseMult(c, c, root_));
+  if (nature_ == Nature::smooth) {
+    factors.solve_once(b, v);
+    factors.solve_transposed_once(c, w);
+  } else {
+    check(VecCopy(factors.solve(b).x, v));
+    check(VecCopy(factors.solve_transposed(c).x, w));
+  }
+  check(VecPointwiseMult(v, v, root_));
+  check(VecPointwiseMult(w, w, inverse_root_));
+}
+
 int ReducedModel::extend(double shift, int count) {
   auto& factors = systems_.at(shift, minus_l_.states().symmetry(), rest_).factors();
   Chain& chain = chains_[shift];
   if (chain.v == nullptr) chain = {copy_of(b_), copy_of(c_)};
   int added = 0;
   for (; added < count && !full(); ++added) {
-    const petsc::VecHandle v = copy_of(chain.v), w = copy_of(chain.w);
-    check(VecPointwiseMult(v, v, inverse_root_));
-    check(VecPointwiseMult(w, w, root_));
-    factors.solve_once(v, chain.v);
-    factors.solve_transposed_once(w, chain.w);
-    check(VecPointwiseMult(chain.v, chain.v, root_));
-    check(VecPointwiseMult(chain.w, chain.w, inverse_root_));
+    resolve(factors, chain.v, chain.w);
     if (!append(chain.v, chain.w)) break;
     // The chain goes on from the new direction alone, as Arnoldi's process does.
     check(BVCopyVec(right_, pairs_ - 1, chain.v));
@@ -119,16 +140,15 @@ Reduced ReducedModel::reduce() const {
   check(BVDuplicate(right_, image.out()));
   for (BV basis : {BV(right_), BV(left_), BV(image)}) check(BVSetActiveColumns(basis, 0, pairs_));
   check(BVMatMult(right_, minus_l_.matrix(), image));
-  const exact::Matrix g = products(right_, left_, pairs_);
+  const exact::LuFactors g(products(right_, left_, pairs_));
+  exact::Matrix beta(pairs_, 1);
+  const auto left_b = products(left_, b_, pairs_);
+  for (int row = 0; row < pairs_; ++row) beta(row, 0) = left_b[row];
+  beta = g.solve(std::move(beta));
   Reduced r;
-  r.m = exact::LuFactors(g).solve(-1.0 * products(image, left_, pairs_));
-  // b and c are the first vectors but for their lengths.
-  PetscReal b_size = 0, c_size = 0;
-  check(VecNorm(b_, NORM_2, &b_size));
-  check(VecNorm(c_, NORM_2, &c_size));
-  r.beta.assign(static_cast<std::size_t>(pairs_), 0.0);
-  r.beta[0] = b_size;
-  for (int column = 0; column < pairs_; ++column) r.gamma.push_back(c_size * g(0, column));
+  r.m = g.solve(-1.0 * products(image, left_, pairs_));
+  r.beta.assign(beta.data(), beta.data() + pairs_);
+  r.gamma = products(right_, c_, pairs_);
   return r;
 }
 
@@ -140,8 +160,8 @@ class Search {
   Search(ReducedModel& model, const Questions& questions) : model_(model), questions_(questions) {}
 
   Answers run() {
-    shifts_ = {questions_.first_shift};
-    model_.extend(shifts_.back(), kBlock);  // a first model is not worth its questions
+    shifts_ = questions_.first_shifts;
+    extend();  // a first model is not worth its questions
     grow();
     int barren = 0;  // blocks in a row that did not help
     while (!model_.full() && barren < kPatience && best_.relative_error > questions_.tolerance) {
@@ -156,10 +176,19 @@ class Search {
   }
 
  private:
-  static constexpr int kBlock = 6, kPatience = 5;
+  static constexpr int kBlock = 6, kPatience = 4;
+
+  // About a block of pairs, shared out over the shifts: many pairs at few shifts are nearly
+  // dependent.
+  bool extend() {
+    const int each = std::max(1, kBlock / static_cast<int>(shifts_.size()));
+    int added = 0;
+    for (double shift : shifts_) added += model_.extend(shift, each);
+    return added > 0;
+  }
 
   bool grow() {
-    const bool grew = model_.extend(shifts_.back(), kBlock) > 0;
+    const bool grew = extend();
     Answers now;
     now.model = model_.reduce();
     now.value = questions_.values(now.model);

@@ -14,6 +14,10 @@ using operators::Symmetry;
 using petsc::Eigenpair;
 
 constexpr int kAskedFor = 8;
+// Perturbing a matrix by eps moves a defective double eigenvalue by about sqrt(eps). Rounding,
+// amplified as it is in a matrix far from normal, comes to 1e-6 |rate| and more; nothing below this
+// part of the rate is taken for a frequency.
+constexpr double kLeastFrequency = 1e-5;
 
 std::complex<double> entry(const petsc::ReadView& real, const petsc::ReadView& imaginary,
                            PetscInt n) {
@@ -42,18 +46,35 @@ std::complex<double> scale_of(MPI_Comm comm, const petsc::ReadView& real,
   return 1.0 / value;
 }
 
+bool oscillates(std::complex<double> rate) {
+  return std::abs(rate.imag()) > kLeastFrequency * std::abs(rate);
+}
+
+// Largest distance to a rate so close that rounding may have split the two.
+double spread_of(std::complex<double> rate, const std::vector<Eigenpair>& pairs) {
+  double spread = 0;
+  for (const auto& other : pairs) {
+    const double distance = std::abs(other.value - rate);
+    if (distance <= 2 * kLeastFrequency * std::abs(rate)) spread = std::max(spread, distance);
+  }
+  return spread;
+}
+
 RelaxationMode mode_of(const operators::Systems& systems, const operators::StateSpace& states,
                        const Eigenpair& pair) {
+  const bool real_rate = !oscillates(pair.value);
   const double sign = states.symmetry() == Symmetry::odd ? -1 : 1;
   const int k = systems.process().static_index();
   const PhaseField empty(systems.process(), systems.axis(), states);
-  RelaxationMode mode{pair.value, pair.residual, empty, empty, {}};
+  RelaxationMode mode{pair.value, pair.residual, 0, empty, empty, {}};
+  if (real_rate) mode.rate = pair.value.real();
   mode.at_rest.resize(2 * static_cast<std::size_t>(k) + 1);
   const petsc::ReadView real(pair.real), imaginary(pair.imaginary);
   const auto scale = scale_of(systems.comm(), real, imaginary);
   PetscInt at = 0;
   states.for_each_local([&](const State& state) {
-    const auto value = scale * entry(real, imaginary, at++);
+    auto value = scale * entry(real, imaginary, at++);
+    if (real_rate) value = value.real();
     if (state.kind == StateKind::node) {
       mode.real.add(state.level, state.node, value.real(), sign);
       mode.imaginary.add(state.level, state.node, value.imag(), sign);
@@ -67,7 +88,7 @@ RelaxationMode mode_of(const operators::Systems& systems, const operators::State
   return mode;
 }
 
-// Slowest first, the constant and conjugates left out.
+// Slowest first, the constant left out, and of conjugates those that turn backwards.
 std::vector<const Eigenpair*> chosen(const std::vector<Eigenpair>& pairs, Symmetry symmetry) {
   std::vector<const Eigenpair*> kept;
   for (const auto& pair : pairs) kept.push_back(&pair);
@@ -78,7 +99,7 @@ std::vector<const Eigenpair*> chosen(const std::vector<Eigenpair>& pairs, Symmet
   }
   kept.erase(std::remove_if(kept.begin(), kept.end(),
                             [](const auto* pair) {
-                              return pair->value.imag() < -1e-8 * std::abs(pair->value);
+                              return oscillates(pair->value) && pair->value.imag() < 0;
                             }),
              kept.end());
   std::sort(kept.begin(), kept.end(),
@@ -99,6 +120,7 @@ std::vector<RelaxationMode> relaxation_modes(operators::Systems& systems, Symmet
   std::vector<RelaxationMode> modes;
   for (const auto* pair : chosen(solver.pairs(), symmetry)) {
     modes.push_back(mode_of(systems, a.states(), *pair));
+    modes.back().spread = spread_of(pair->value, solver.pairs());
   }
   return modes;
 }
@@ -112,10 +134,10 @@ void append_relaxation(Symmetry symmetry, const std::vector<RelaxationMode>& mod
   Result frequency = array(key + "_frequency", "1/time", "mode", number);
   for (const auto& mode : modes) {
     decay.value.push_back(mode.rate.real());
-    decay.error.push_back(mode.residual);
-    const bool oscillates = std::abs(mode.rate.imag()) > 1e-8 * std::abs(mode.rate);
-    frequency.value.push_back(oscillates ? mode.rate.imag() : 0);
-    frequency.error.push_back(oscillates ? mode.residual : 0);
+    const double error = mode.residual + mode.spread;
+    decay.error.push_back(error);
+    frequency.value.push_back(mode.rate.imag());
+    frequency.error.push_back(mode.rate.imag() == 0 ? 0 : error);
   }
   results.push_back(std::move(decay));
   results.push_back(std::move(frequency));

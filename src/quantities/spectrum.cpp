@@ -164,7 +164,8 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems, const StationaryLa
                                  Symmetry::odd, Rest::kept, systems.ledger());
   const petsc::VecHandle b = odd.values(velocity), c = law.weighted_velocity(odd),
                          d = law.weight_on(odd);
-  ReducedModel model(systems, std::move(odd), Rest::kept, b, c, d, kMostPairs);
+  ReducedModel model(systems, std::move(odd), Rest::kept, {b, c, d}, ReducedModel::Nature::smooth,
+                     kMostPairs);
   const std::vector<double> frequencies = judged(omega, noise.tau);
   Questions questions;
   questions.values = [&](const Reduced& reduced) {
@@ -177,7 +178,7 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems, const StationaryLa
   questions.each_by_its_size = true;
   questions.tolerance = tolerance;
   // A little above the slowest rates: they come early anyway, the tail does not.
-  questions.first_shift = 5 * turn;
+  questions.first_shifts = {5 * turn};
   // Beyond the rate of the noise the moments at infinity rule.
   questions.lowest = 0.05 * turn;
   questions.highest = std::max(turn, noise.rate());

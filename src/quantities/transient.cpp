@@ -51,11 +51,13 @@ std::vector<double> stepped(operators::Systems& systems, const KolmogorovOperato
 
 // c exp(L t) b; errors in units of `unit`.
 std::vector<Uncertain> curve(operators::Systems& systems, const StationaryLaw& law,
-                             KolmogorovOperator a, Vec b, Vec c, const std::vector<double>& time,
-                             double unit, TransientMethod method, double tolerance) {
+                             KolmogorovOperator a, Vec b, Vec c, ReducedModel::Nature nature,
+                             const std::vector<double>& time, double unit, TransientMethod method,
+                             double tolerance) {
   if (method == TransientMethod::krylov) {
     const petsc::VecHandle weight = law.weight_on(a);
-    return time_curve(systems, std::move(a), Rest::kept, {b, c, weight}, time, unit, tolerance)
+    return time_curve(systems, std::move(a), Rest::kept, {b, c, weight}, nature, Shown::value, time,
+                      unit, tolerance)
         .value;
   }
   // Errors of steps add up; a run with coarser steps shows how far.
@@ -78,7 +80,8 @@ std::vector<Uncertain> autocorrelation(operators::Systems& systems, const Statio
   const petsc::VecHandle b = a.values([](double, double, double v) { return v; }),
                          c = law.weighted_velocity(a);
   const double variance = dot(c, b);
-  return curve(systems, law, std::move(a), b, c, time, variance, method, tolerance);
+  return curve(systems, law, std::move(a), b, c, ReducedModel::Nature::smooth, time, variance,
+               method, tolerance);
 }
 
 Expectation expectation(operators::Systems& systems, const StationaryLaw& law,
@@ -98,7 +101,8 @@ Expectation expectation(operators::Systems& systems, const StationaryLaw& law,
     if (symmetry == Symmetry::even) result.stationary = dot(pi, b);
     if (unit == 0) continue;
     const petsc::VecHandle c = a.value_at(systems.axis(), start.level, start.v);
-    const auto part = curve(systems, law, std::move(a), b, c, time, unit, method, tolerance);
+    const auto part = curve(systems, law, std::move(a), b, c, ReducedModel::Nature::rough, time,
+                            unit, method, tolerance);
     for (std::size_t n = 0; n < time.size(); ++n) result.value[n] = result.value[n] + part[n];
   }
   return result;

@@ -14,13 +14,17 @@ using operators::Symmetry;
 using petsc::check;
 using quantities::Uncertain;
 
-constexpr int kAttempts = 4;
-constexpr double kSmallest = 1e-15;  // of 1/tau
+constexpr int kMostTrials = 8, kMostMeans = 4;
+// In units of 1/tau: where rounding does not rule yet in any scene tried, and where it always does.
+constexpr double kSafe = 1e-11, kSmallest = 1e-15;
 constexpr int kMostSolves = 6;
 
-struct Averaged {
-  std::vector<Uncertain> values;  // errors: rounding and bias
-  double largest_bias = 0;        // relative
+/// What one lambda gives.
+struct Trial {
+  double lambda = 0;
+  quantities::Results results;  // errors: rounding and bias
+  double largest_bias = 0;      // relative
+  double largest_error = 0;     // relative
 };
 
 /// R = (lambda - M)^-1 read at s+.
@@ -62,38 +66,77 @@ class FullGrid {
   petsc::VecHandle at_exit_;
 };
 
-Averaged average_at(const Setting& setting, double lambda) {
+Trial average_at(const Setting& setting, double lambda) {
   FullGrid grid(setting, lambda);
-  Averaged result;
+  Trial trial;
+  trial.lambda = lambda;
+  std::vector<Uncertain> values;
   for (const auto& average : averages(setting)) {
     const auto mean = grid.of(average.f.value);
-    result.values.push_back(mean.value);
-    result.largest_bias = std::max(result.largest_bias, mean.bias / std::abs(mean.value.value));
+    values.push_back(mean.value);
+    trial.largest_bias = std::max(trial.largest_bias, mean.bias / std::abs(mean.value.value));
   }
-  return result;
+  append_averages(setting, values, trial.results);
+  for (const auto& result : trial.results) {
+    trial.largest_error = std::max(trial.largest_error, quantities::relative_error(result));
+  }
+  return trial;
 }
+
+/// The best lambda, by its whole error. The bias is proportional to lambda, while rounding grows
+/// steeply as lambda falls: goes down by what the bias asks for, and where that was too far, by
+/// geometric means between the best lambda and its neighbours.
+class Search {
+ public:
+  explicit Search(const Setting& setting) : setting_(setting) {}
+
+  Trial run() {
+    const double tau = setting_.process.noise.tau, wanted = 0.25 * setting_.request.accuracy;
+    best_ = average_at(setting_, std::max(0.01 * setting_.request.accuracy, kSafe) / tau);
+    for (int n = 1, means = 0; n < kMostTrials && means < kMostMeans; ++n) {
+      const double excess = best_.largest_bias / wanted;
+      if (excess <= 1) break;
+      if (smaller_ > 0) {
+        try_lambda(std::sqrt(best_.lambda * (rounding_rules() ? larger_.lambda : smaller_)));
+        ++means;
+      } else {
+        try_lambda(std::max(best_.lambda / (2 * excess), kSmallest / tau));
+      }
+    }
+    return std::move(best_);
+  }
+
+ private:
+  // Whether the bias at the best lambda is not the one that larger lambdas let expect.
+  [[nodiscard]] bool rounding_rules() const {
+    if (larger_.lambda == 0) return false;
+    return best_.largest_bias > 3 * larger_.largest_bias * best_.lambda / larger_.lambda;
+  }
+
+  void try_lambda(double lambda) {
+    Trial trial = average_at(setting_, lambda);
+    const bool better = trial.largest_error < best_.largest_error;
+    if (better) std::swap(trial, best_);
+    if (trial.lambda < best_.lambda) {
+      smaller_ = trial.lambda;
+    } else {
+      larger_ = std::move(trial);
+    }
+  }
+
+  const Setting& setting_;
+  Trial best_, larger_;  // the next larger one tried, no lambda if there is none
+  double smaller_ = 0;   // the next smaller one, 0 if there is none
+};
 
 }  // namespace
 
 Evaluation by_lambda(const Setting& setting) {
-  const auto& request = setting.request;
-  const bool fixed = !request.lambda.empty();
-  const double smallest = kSmallest / setting.process.noise.tau;
-  double lambda = fixed ? request.lambda[0] : 0.01 * request.accuracy / setting.process.noise.tau;
-  Averaged averaged = average_at(setting, lambda);
-  for (int n = 1; !fixed && n < kAttempts; ++n) {
-    const double excess = averaged.largest_bias / (0.25 * request.accuracy);
-    if (excess <= 1) break;
-    const double smaller = std::max(lambda / (2 * excess), smallest);
-    Averaged next = average_at(setting, smaller);
-    // Where the bias no longer falls, rounding has taken over.
-    if (next.largest_bias >= averaged.largest_bias) break;
-    lambda = smaller;
-    averaged = std::move(next);
-  }
+  const auto& fixed = setting.request.lambda;
+  Trial best = fixed.empty() ? Search(setting).run() : average_at(setting, fixed[0]);
   Evaluation evaluation;
-  append_averages(setting, averaged.values, evaluation.results);
-  evaluation.checks = {{"lambda", lambda}, {"largest_relative_bias", averaged.largest_bias}};
+  evaluation.results = std::move(best.results);
+  evaluation.checks = {{"lambda", best.lambda}, {"largest_relative_bias", best.largest_bias}};
   return evaluation;
 }
 

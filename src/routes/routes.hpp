@@ -17,7 +17,7 @@ namespace stickslip::routes {
 /// the diagonal of M. The bias is measured: (lambda R)^2 f differs from pi(f) by O(lambda^2) only,
 /// so that lambda R f - (lambda R)^2 f is the bias up to O(lambda^2). Unless -lambda fixes it,
 /// lambda starts at accuracy/100 (of 1/tau) and is lowered until the bias is below a quarter of the
-/// accuracy.
+/// accuracy, or as far as rounding lets the whole error fall.
 [[nodiscard]] Evaluation by_lambda(const Setting& setting);
 
 /// P_slide = R^(s+)/(R-check(s+) + R(x_k)) of Prop. 4.1: mean times to rest, to the edge of rest,

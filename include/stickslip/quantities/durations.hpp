@@ -23,8 +23,8 @@ struct DurationLaw {
                                     const std::vector<Uncertain>& entry,
                                     const std::vector<double>& time);
 
-/// Slides: f(t) = g exp(-A t) r with A = A(0, even), r = -A_us 1, g the value at s+; by a reduced
-/// model. Errors are relative to the largest density, and for the distribution to 1. Collective.
+/// Slides: f(t) = -(d/dt) g exp(-A t) 1 with A = A(0, even), g the value at s+; by a reduced model.
+/// Errors of densities are relative to 1/mean. Collective.
 [[nodiscard]] DurationLaw slide_law(operators::Systems& systems, const StationaryLaw& law,
                                     const std::vector<double>& time, double tolerance);
 

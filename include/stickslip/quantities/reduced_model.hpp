@@ -19,21 +19,30 @@ struct Reduced {
   std::vector<double> beta, gamma;
 };
 
-/// Two-sided projection (W^T V)^-1 W^T L V. V spans b, L b and chains (s - L)^-1 ... b; W spans c,
-/// c L and the transposed chains, for real shifts s: real factorisations only. Each pair of vectors
-/// matches two more derivatives of the transfer function at its shift; b, L b, c, c L match four
-/// moments at infinity. One-sided projections, W = V, fail by orders of magnitude in the tail, and
-/// so does the orthogonal projection on V and W together in L2(D), although it cannot have growing
-/// modes.
+/// Right and left vectors and the weight D of a problem.
+struct Ends {
+  Vec b, c, weight;
+};
+
+/// Two-sided projection (W^T V)^-1 W^T L V. V spans chains (s - L)^-1 ... b, W the transposed
+/// chains from c, for real shifts s: real factorisations only. Each pair of vectors matches two
+/// more derivatives of the transfer function at its shift. b, L b, c, c L, if they are smooth
+/// enough to be of use, match four moments at infinity. One-sided projections, W = V, fail by
+/// orders of magnitude in the tail, and so does the orthogonal projection on V and W together in
+/// L2(D), although it cannot have growing modes.
 ///
 /// Vectors are orthogonalised in the scalar product with a weight D, V with D and W with D^-1: with
 /// D near the stationary law both then are functions in L2(D). Without it V sees fast bodies that
 /// never occur, W what does, and W^T V is near singular.
 class ReducedModel {
  public:
-  /// `minus_l` is -L with the static states as `rest` says; `weight` D > 0. Collective.
+  /// Smooth b and c: V and W start with b, L b, c, c L. Rough ones, such as the value at a point,
+  /// say nothing at infinity; then W^T V is near singular all the same (1e-11 was seen), and the
+  /// solves of the chains are refined, which leaves seven digits of the largest value.
+  enum class Nature { smooth, rough };
+  /// `minus_l` is -L with the static states as `rest` says; `ends.weight` > 0. Collective.
   ReducedModel(operators::Systems& systems, operators::KolmogorovOperator minus_l,
-               operators::Rest rest, Vec b, Vec c, Vec weight, int most_pairs);
+               operators::Rest rest, const Ends& ends, Nature nature, int most_pairs);
   /// Releases the factors it had made. Collective.
   ~ReducedModel();
   ReducedModel(const ReducedModel&) = delete;
@@ -51,9 +60,11 @@ class ReducedModel {
 
  private:
   bool append(Vec v, Vec w);
+  void resolve(petsc::Factorization& factors, Vec v, Vec w) const;
 
   operators::Systems& systems_;
   operators::Rest rest_;
+  Nature nature_;
   petsc::VecHandle root_, inverse_root_;   // D^1/2, D^-1/2
   operators::KolmogorovOperator minus_l_;  // D^1/2 (-L) D^-1/2
   int most_pairs_, pairs_ = 0;
@@ -71,7 +82,7 @@ struct Questions {
   std::vector<double> shift;      ///< for each value a shift that serves it [1/time]
   bool each_by_its_size = false;  ///< whether `tolerance` is relative to each value, or absolute
   double tolerance = 1e-8;
-  double first_shift = 1;              ///< [1/time]
+  std::vector<double> first_shifts;    ///< [1/time]
   double lowest = 0, highest = 1e300;  ///< range of further shifts
 };
 

@@ -18,6 +18,7 @@ inline const std::string kRelaxPrefix = "relax_";
 struct RelaxationMode {
   std::complex<double> rate;   ///< real part: decay, imaginary part >= 0: frequency [1/time]
   double residual = 0;         ///< of the eigensolver
+  double spread = 0;           ///< distance to rates that rounding cannot tell from this one
   PhaseField real, imaginary;  ///< phi on the grid, largest modulus 1
   std::vector<std::complex<double>> at_rest;  ///< phi(x_i, 0, 0), index i + k, on all ranks
 };
@@ -26,6 +27,11 @@ struct RelaxationMode {
 /// out: half as many as the eigensolver is asked for (-relax_eps_nev, 8 unless given), since those
 /// come in conjugate pairs, of which the member with frequency >= 0 is kept. One assembly and one
 /// factorisation. Collective. Throws NotReached or NoMemory.
+///
+/// Rounding splits a (nearly) defective double rate into rates about sqrt(rounding) apart, at times
+/// conjugate, at times real. So a frequency below 1e-5 |rate| counts as none: both members of such
+/// a pair are kept, as two real modes whose fields agree to about as many digits as the rates do.
+/// `spread`, part of the error of a rate, is its distance to the rates that are as close as that.
 [[nodiscard]] std::vector<RelaxationMode> relaxation_modes(operators::Systems& systems,
                                                            operators::Symmetry symmetry);
 

@@ -19,20 +19,19 @@ struct TimeFunction {
 /// they would to exp(m t). Local. O(size^2) a time. Times >= 0.
 [[nodiscard]] TimeFunction evaluate(const Reduced& reduced, const std::vector<double>& time);
 
-/// c exp(L t) b and its integral with their errors, by reduced models grown until both stand still:
-/// the value to `tolerance` times `unit`, the integral, counted in times of 1/unit, to `tolerance`.
+/// What a curve shows: c exp(L t) b, or its decay -(d/dt) c exp(L t) b.
+enum class Shown { value, decay };
+
+/// The curve and its integral from 0 to t with their errors, by reduced models grown until both
+/// stand still: the curve to `tolerance` times `unit`, the integral to `tolerance`.
 struct TimeCurve {
   std::vector<Uncertain> value, integral;
   int pairs = 0;  ///< of vectors of the reduced model
 };
-/// Right and left vectors and the weight; see ReducedModel.
-struct Ends {
-  Vec b, c, weight;
-};
 /// `minus_l` is -L with the static states as `rest` says. Collective.
 [[nodiscard]] TimeCurve time_curve(operators::Systems& systems,
                                    operators::KolmogorovOperator minus_l, operators::Rest rest,
-                                   const Ends& ends, const std::vector<double>& time, double unit,
-                                   double tolerance);
+                                   const Ends& ends, ReducedModel::Nature nature, Shown shown,
+                                   const std::vector<double>& time, double unit, double tolerance);
 
 }  // namespace stickslip::quantities
