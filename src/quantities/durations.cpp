@@ -101,16 +101,16 @@ DurationLaw stick_law(const model::Process& process, const std::vector<Uncertain
 
 namespace {
 
-// P(not over at t) = g exp(L t) 1 from s+, until `rest` kills; its decay is the density. The
-// function 1 makes better vectors than the rates of ending, which live next to v = 0.
+// f(t) = g exp(L t) r from s+, r = -L 1 the rate of ending where `rest` kills.
 DurationLaw law_until(operators::Systems& systems, Rest rest, const StationaryLaw& law,
                       const std::vector<double>& time, double mean, double tolerance) {
   auto a = operators::assemble(systems.comm(), systems.process(), systems.axis(), 0, Symmetry::even,
                                rest, systems.ledger());
-  const petsc::VecHandle b = a.values([](double, double, double) { return 1.0; }),
+  const petsc::VecHandle one = a.values([](double, double, double) { return 1.0; }), b = a.zeros(),
                          c = a.trace_at_exit(), d = law.weight_on(a);
-  auto curve = time_curve(systems, std::move(a), rest, {b, c, d}, ReducedModel::Nature::rough,
-                          Shown::decay, time, 1 / mean, tolerance);
+  check(MatMult(a.matrix(), one, b));
+  auto curve = time_curve(systems, std::move(a), rest, {b, c, d}, ReducedModel::Nature::rough, time,
+                          1 / mean, tolerance);
   return {std::move(curve.value), std::move(curve.integral), curve.pairs};
 }
 

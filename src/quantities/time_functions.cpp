@@ -30,14 +30,6 @@ struct Contour {
   }
 };
 
-std::vector<double> minus_product(const exact::Matrix& m, const std::vector<double>& x) {
-  std::vector<double> result(x.size(), 0.0);
-  for (int c = 0; c < m.columns(); ++c) {
-    for (int r = 0; r < m.rows(); ++r) result[r] -= m(r, c) * x[c];
-  }
-  return result;
-}
-
 }  // namespace
 
 TimeFunction evaluate(const Reduced& reduced, const std::vector<double>& time) {
@@ -65,12 +57,11 @@ TimeFunction evaluate(const Reduced& reduced, const std::vector<double>& time) {
 
 TimeCurve time_curve(operators::Systems& systems, operators::KolmogorovOperator minus_l,
                      operators::Rest rest, const Ends& ends, ReducedModel::Nature nature,
-                     Shown shown, const std::vector<double>& time, double unit, double tolerance) {
+                     const std::vector<double>& time, double unit, double tolerance) {
   constexpr int most_pairs = 80;
   ReducedModel model(systems, std::move(minus_l), rest, ends, nature, most_pairs);
   Questions questions;
-  questions.values = [&](Reduced reduced) {
-    if (shown == Shown::decay) reduced.beta = minus_product(reduced.m, reduced.beta);
+  questions.values = [&](const Reduced& reduced) {
     const TimeFunction f = evaluate(reduced, time);
     std::vector<double> values;
     for (double value : f.value) values.push_back(value / unit);
@@ -83,7 +74,7 @@ TimeCurve time_curve(operators::Systems& systems, operators::KolmogorovOperator 
   }
   questions.tolerance = tolerance;
   // From the slowest rates to beyond the rate of the noise.
-  constexpr int shifts = 5;
+  constexpr int shifts = 6;
   const double low = 0.3 / tau, high = std::max(30 / tau, 12 * systems.process().noise.rate());
   for (int n = 0; n < shifts; ++n) {
     questions.first_shifts.push_back(low * std::pow(high / low, n / (shifts - 1.0)));

@@ -56,8 +56,8 @@ std::vector<Uncertain> curve(operators::Systems& systems, const StationaryLaw& l
                              double tolerance) {
   if (method == TransientMethod::krylov) {
     const petsc::VecHandle weight = law.weight_on(a);
-    return time_curve(systems, std::move(a), Rest::kept, {b, c, weight}, nature, Shown::value, time,
-                      unit, tolerance)
+    return time_curve(systems, std::move(a), Rest::kept, {b, c, weight}, nature, time, unit,
+                      tolerance)
         .value;
   }
   // Errors of steps add up; a run with coarser steps shows how far.

@@ -23,8 +23,9 @@ struct DurationLaw {
                                     const std::vector<Uncertain>& entry,
                                     const std::vector<double>& time);
 
-/// Slides: f(t) = -(d/dt) g exp(-A t) 1 with A = A(0, even), g the value at s+; by a reduced model.
-/// Errors of densities are relative to 1/mean. Collective.
+/// Slides: f(t) = g exp(-A t) r with A = A(0, even), r = A 1 = -A_us 1 the rate of coming to rest,
+/// g the value at s+; by a reduced model, to about 1e-8 to 2e-7 of 1/mean. Errors of densities are
+/// relative to 1/mean. Collective.
 [[nodiscard]] DurationLaw slide_law(operators::Systems& systems, const StationaryLaw& law,
                                     const std::vector<double>& time, double tolerance);
 

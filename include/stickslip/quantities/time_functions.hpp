@@ -19,10 +19,7 @@ struct TimeFunction {
 /// they would to exp(m t). Local. O(size^2) a time. Times >= 0.
 [[nodiscard]] TimeFunction evaluate(const Reduced& reduced, const std::vector<double>& time);
 
-/// What a curve shows: c exp(L t) b, or its decay -(d/dt) c exp(L t) b.
-enum class Shown { value, decay };
-
-/// The curve and its integral from 0 to t with their errors, by reduced models grown until both
+/// c exp(L t) b and its integral from 0 to t with their errors, by reduced models grown until both
 /// stand still: the curve to `tolerance` times `unit`, the integral to `tolerance`.
 struct TimeCurve {
   std::vector<Uncertain> value, integral;
@@ -31,7 +28,7 @@ struct TimeCurve {
 /// `minus_l` is -L with the static states as `rest` says. Collective.
 [[nodiscard]] TimeCurve time_curve(operators::Systems& systems,
                                    operators::KolmogorovOperator minus_l, operators::Rest rest,
-                                   const Ends& ends, ReducedModel::Nature nature, Shown shown,
+                                   const Ends& ends, ReducedModel::Nature nature,
                                    const std::vector<double>& time, double unit, double tolerance);
 
 }  // namespace stickslip::quantities
