@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "stickslip/accuracy/ladder.hpp"
@@ -141,7 +142,9 @@ class Refiner {
       check_cut();
       return true;
     }
-    if (rounding <= request_.accuracy) return false;
+    // What a finer discretisation still improves is no limit yet.
+    const bool falls = rounding < 0.5 * std::exchange(last_rounding_, rounding);
+    if (rounding <= request_.accuracy || falls) return false;
     const bool by_lambda = request_.route == options::Route::lambda;
     outcome_.shortfall = fmt::format(
         "{} {} to {:.1e}; take {}-accuracy {:.0e}",
@@ -189,7 +192,8 @@ class Refiner {
   const Progress& progress_;
   Ladder ladder_;
   Outcome outcome_;
-  std::vector<double> rounding_;              // relative, of each result
+  std::vector<double> rounding_;                                    // relative, of each result
+  double last_rounding_ = std::numeric_limits<double>::infinity();  // of the limiting result
   std::vector<std::vector<double>> changes_;  // of the last step, by result and entry
   std::shared_ptr<const velocity::Axis> coarse_axis_;
   StationaryLaw::SpeedLaw coarse_law_;
