@@ -466,7 +466,9 @@ Request read_request(const std::vector<std::string>& argv) {
   read_quantities(settings, request, problems);
   read_arguments(settings, request, problems);
   read_spectrum_solver(settings, request, problems);
-  read_start(settings, request, problems);
+  if (request.wants(Quantity::expectation) && problems.empty()) {
+    read_start(settings, request, problems);
+  }
   if (settings.text("transient_solver") == "stepping") {
     request.transient_solver = TransientSolver::stepping;
   }

@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "stickslip/model/observable.hpp"
+#include "stickslip/support/errors.hpp"
 
 using stickslip::model::Friction;
 using stickslip::model::observable_names;
@@ -52,5 +53,56 @@ TEST_CASE("observables: what cannot be read is told") {
   for (const char* bad : {"", "x+", "q", "sin(", "x v", "|x|"}) {
     INFO(bad);
     CHECK_THROWS_AS(parse_observable(bad, kFriction), std::invalid_argument);
+  }
+}
+
+namespace {
+
+std::string refusal(const char* text) {
+  try {
+    (void)parse_observable(text, kFriction);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+}  // namespace
+
+// muParser gives the last of several expressions, and assigns to its variables.
+TEST_CASE("observables: one expression, and no assignment") {
+  for (const char* several : {"v,x", "x*v, 1", "(v,x)"}) {
+    INFO(several);
+    CHECK_THROWS_AS(parse_observable(several, kFriction), std::invalid_argument);
+  }
+  CHECK_THAT(refusal("v,x"), Catch::Contains("more than one expression"));
+  for (const char* assignment : {"x=3", "x = 3", "v=x", "y == 0 ? (x=3) : 1", "1 + (x=2)"}) {
+    INFO(assignment);
+    CHECK_THAT(refusal(assignment), Catch::Contains("assigns"));
+  }
+  for (const char* comparison : {"x==3", "x<=3", "x >= 3", "x!=3", "max(x, v) == min(x, v)"}) {
+    INFO(comparison);
+    CHECK(refusal(comparison) == "none");
+  }
+}
+
+TEST_CASE("observables: not finite somewhere, and where is told") {
+  CHECK_THAT(refusal("1/v"), Catch::Contains("1/v is inf at x = 0, y = 0, v = 0"));
+  CHECK_THAT(refusal("log(x)"), Catch::Contains("at x = 0, y = 0, v = 0"));
+  CHECK_THAT(refusal("sqrt(x)"), Catch::Contains("at x = -0.15, y = 0, v = 0"));
+  CHECK_THAT(refusal("sqrt(v)"), Catch::Contains("at x = 0, y = -1, v = -0.001"));
+  CHECK_THAT(refusal("y == 0 ? 0 : 1/v"), Catch::Contains("at x = 0, y = 1, v = 0"));
+  CHECK_THAT(refusal("y == 1 ? log(x) : 1"), Catch::Contains("y = 1"));
+  CHECK(refusal("y == 0 ? 0 : 1/(abs(v) + 1)") == "none");
+  CHECK(refusal("sqrt(abs(x)) + log(1 + v^2)") == "none");
+
+  const auto pole = parse_observable("1/(abs(x) - 2)", kFriction);
+  CHECK(pole(1, 1, 0.5) == -1);
+  try {
+    (void)pole(-2, 1, 0.5);
+    FAIL("a value at the pole");
+  } catch (const stickslip::Failure& failure) {
+    CHECK(failure.status() == stickslip::ExitStatus::bad_input);
+    CHECK_THAT(failure.what(), Catch::Contains("inf at x = -2, y = 1, v = 0.5"));
   }
 }

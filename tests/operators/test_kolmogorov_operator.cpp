@@ -300,3 +300,95 @@ TEST_CASE("kolmogorov operator: exits of the static states carry their rates", "
     });
   }
 }
+
+namespace {
+
+// Linear in |v| on each half, so that both schemes have its exact values.
+double even_sample(double x, double y, double v) { return 1 + x * x + y * x + x * v + y * v; }
+double odd_sample(double x, double y, double v) { return x + 2 * y + 3 * v + x * x * x + x * y * v; }
+
+double applied(Vec functional, Vec values) {
+  PetscScalar sum = 0;
+  check(VecTDot(functional, values, &sum));
+  return PetscRealPart(sum);
+}
+
+// f at (x_i, v) by the definition of the process.
+double at_state(const model::Process& process, const KolmogorovOperator::Observable& f, int i,
+                double v) {
+  const bool rest = v == 0 && std::abs(i) <= process.static_index();
+  const double y = v > 0 || (v == 0 && i > 0) ? 1 : -1;
+  return f(process.noise.level(i), rest ? 0 : y, v);
+}
+
+struct Symmetric {
+  Symmetry symmetry;
+  KolmogorovOperator::Observable f;
+};
+
+std::vector<Symmetric> symmetric_samples() {
+  return {{Symmetry::even, even_sample},
+          {Symmetry::odd, odd_sample},
+          {Symmetry::none,
+           [](double x, double y, double v) { return even_sample(x, y, v) + odd_sample(x, y, v); }}};
+}
+
+}  // namespace
+
+// Every level at rest, at s+ and s- and beyond, and at velocities of both signs; folded, from the
+// half that is kept, with the sign of the symmetry.
+TEST_CASE("kolmogorov operator: values at single states", "[parallel]") {
+  const auto process = process_on(9, 1, 0.25);
+  for (const auto& d : both_schemes(2, process.drag)) {
+    for (const auto& [symmetry, f] : symmetric_samples()) {
+      const KolmogorovOperator a(PETSC_COMM_WORLD, process, *d.axis, 0.0, symmetry, Rest::kept);
+      const auto values = a.values(f);
+      for (int i = -9; i <= 9; ++i) {
+        for (double v : {0.0, 0.05, 0.333, 2.0, -0.05, -0.1234, -2.0}) {
+          INFO(d.name << " level " << i << " v " << v << " folded " << a.states().folded());
+          const double expected = at_state(process, f, i, v);
+          CHECK(applied(a.value_at(*d.axis, i, v), values) == Approx(expected).margin(1e-11));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("kolmogorov operator: values at s+ and s- are the traces at the exits", "[parallel]") {
+  const auto process = process_on(9, 1, 0.25);
+  const auto distance = [](const petsc::VecHandle& one, const petsc::VecHandle& other, double sign) {
+    check(VecAXPY(one, -sign, other));
+    return largest(one);
+  };
+  for (const auto& d : both_schemes(2, process.drag)) {
+    for (Symmetry symmetry : {Symmetry::even, Symmetry::odd, Symmetry::none}) {
+      const KolmogorovOperator a(PETSC_COMM_WORLD, process, *d.axis, 0.0, symmetry, Rest::kept);
+      const bool folded = a.states().folded();
+      const double sign = symmetry == Symmetry::odd ? -1 : 1;
+      const auto lower = a.trace_at_exit(folded ? Half::upper : Half::lower);
+      CHECK(distance(a.value_at(*d.axis, 5, 0), a.trace_at_exit(), 1) == 0);
+      CHECK(distance(a.value_at(*d.axis, -5, 0), lower, sign) == 0);
+    }
+  }
+}
+
+// At rest a value is one entry of the solution; an odd one vanishes at x = 0, and i and -i differ
+// by the sign.
+TEST_CASE("kolmogorov operator: a value at rest is one entry", "[parallel]") {
+  const auto process = process_on(9, 1, 0.25);
+  for (const auto& d : both_schemes(2, process.drag)) {
+    for (Symmetry symmetry : {Symmetry::even, Symmetry::odd, Symmetry::none}) {
+      const KolmogorovOperator a(PETSC_COMM_WORLD, process, *d.axis, 0.0, symmetry, Rest::kept);
+      for (int i = -4; i <= 4; ++i) {
+        const auto g = a.value_at(*d.axis, i, 0);
+        PetscReal entries = 0;
+        PetscScalar sum = 0;
+        check(VecNorm(g, NORM_1, &entries));
+        check(VecSum(g, &sum));
+        const bool odd = symmetry == Symmetry::odd;
+        CHECK(entries == (odd && i == 0 ? 0 : 1));
+        CHECK(PetscRealPart(sum) == (odd && i <= 0 ? (i == 0 ? 0 : -1) : 1));
+      }
+    }
+  }
+}

@@ -188,7 +188,7 @@ TEST_CASE("request: arguments that are missing or make no sense are told") {
   const std::vector<Refusal> refusals{
       {"-quantities laplace", {"-quantities = laplace", "no values", "-lambda 0.1,1,10"}},
       {"-quantities resolvent -observable v", {"no values are given", "add for example -lambda"}},
-      {"-quantities resolvent -lambda 1", {"no functions are given", "-observable"}},
+      {"-quantities resolvent -lambda 1", {"none are given", "-observable"}},
       {"-quantities laplace -lambda 1,-2", {"-lambda = -2", "[0, inf)"}},
       {"-quantities laplace -lambda 1:2", {"-lambda = 1:2", "first:last:count", "0.01:10:31:log"}},
       {"-quantities resolvent -lambda 1 -observable v;x*(",

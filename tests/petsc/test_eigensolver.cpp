@@ -223,3 +223,38 @@ TEST_CASE("eigensolver: probing marks the options of a role as known") {
   for (const auto& name : known) CHECK(used(name));
   for (const auto& name : unknown) CHECK_FALSE(used(name));
 }
+
+TEST_CASE("eigensolver: probing takes any number of eigenvalues and any space") {
+  for (const char* number : {"1", "4", "10", "60"}) {
+    const Given given({std::pair{"-many_eps_nev", number}});
+    CHECK_NOTHROW(Eigensolver::probe_options("many_"));
+  }
+  const Given given({{"-wide_eps_nev", "5"}, {"-wide_eps_ncv", "7"}});
+  CHECK_NOTHROW(Eigensolver::probe_options("wide_"));
+}
+
+// A Krylov space of four is enough for one eigenvalue next to the target.
+TEST_CASE("eigensolver: one eigenvalue takes few solves, unless a larger space is given") {
+  const MatHandle a = ring(300);
+  const auto solves = [&a](double target) {
+    Ledger ledger;
+    (void)Eigensolver(a, "one_", target, 1, ledger);
+    return ledger.solves;
+  };
+  const int few = solves(-1e-8);
+  CHECK(few <= 8);
+  const Given given({std::pair{"-one_eps_ncv", "40"}});
+  CHECK(solves(-1e-8) >= 40);
+}
+
+TEST_CASE("eigensolver: a real pair has no imaginary part") {
+  const MatHandle a = matrix(6, [](PetscInt r) { return Row{{r, static_cast<double>(r + 1)}}; });
+  Ledger ledger;
+  const Eigensolver solver(a, "test_", 0.5, 2, ledger);
+  for (const auto& pair : solver.pairs()) {
+    PetscReal size = 1;
+    check(VecNorm(pair.imaginary, NORM_INFINITY, &size));
+    CHECK(size == 0);
+    CHECK(std::abs(pair.value.imag()) <= (kComplex ? 1e-12 : 0));
+  }
+}

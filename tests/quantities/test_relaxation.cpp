@@ -197,3 +197,39 @@ TEST_CASE("relaxation: half as many modes as the eigensolver is asked for") {
     CHECK(results[1].value[n] == 0);  // both decay without oscillation
   }
 }
+
+// Here 4/tau, a rate of the noise, is a defective double eigenvalue of the even functions. Rounding
+// splits it, into conjugates or into two real ones as it happens.
+TEST_CASE("relaxation: a defective double rate has no frequency, and an error that shows it") {
+  const auto s = test::on_full_noise(scene(1, 1, 2, 0.5, {1, 0.4}));
+  for (int degree = 6; degree <= 12; ++degree) {
+    const auto modes = solve({test::on_hp(s, degree), Symmetry::even});
+    quantities::Results results;
+    quantities::append_relaxation(Symmetry::even, modes, results);
+    INFO("degree " << degree);
+    REQUIRE(modes.size() == 4);
+    for (std::size_t n = 2; n < 4; ++n) {
+      const double distance = std::abs(results[0].value[n] - 2);
+      CHECK(modes[n].rate.imag() == 0);
+      CHECK(distance < 1e-5);
+      CHECK(results[0].error[n] > distance);
+      CHECK(results[0].error[n] > 1e-9);  // whatever the residual is
+      CHECK(results[0].error[n] < 1e-4);
+      CHECK(results[1].value[n] == 0);
+      CHECK(results[1].error[n] == 0);
+      for_each_value(modes[n].imaginary, [](int, std::size_t, double v) { CHECK(v == 0); });
+    }
+    CHECK(results[0].error[0] < 1e-9);  // the others keep theirs
+    CHECK(results[0].error[1] < 1e-9);
+  }
+}
+
+TEST_CASE("relaxation: of conjugate rates the one that turns forwards") {
+  const auto s = test::on_full_noise(scene(1, 1, 1, 0.5, {1, 0}));
+  const auto modes = solve({test::on_hp(s, 7), Symmetry::even});
+  REQUIRE(modes.size() == 4);
+  CHECK(modes[2].rate.real() == Approx(3.37309160).epsilon(1e-8));
+  CHECK(modes[2].rate.imag() == Approx(0.70907858).epsilon(1e-7));
+  CHECK(modes[2].spread == 0);
+  CHECK(modes[3].rate.imag() == 0);
+}
