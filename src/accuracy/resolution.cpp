@@ -65,13 +65,16 @@ double velocity_end(const model::Scene& scene, int levels, double tolerance) {
   return tail < 0.8 * terminal ? tail : terminal;
 }
 
-Resolution hp_resolution(const model::Scene& scene, int degree, int layers, double tolerance) {
+Resolution hp_resolution(const model::Scene& scene, int degree, int layers, double tolerance,
+                         double lambda) {
   Resolution r;
   r.scheme = options::Scheme::hp;
   r.degree = degree;
   r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
   r.v_max = velocity_end(scene, r.levels, tolerance);
-  r.layers = layers > 0 ? layers : velocity::natural_layers(scene.process(r.levels), mesh_rule(r));
+  velocity::MeshRule rule = mesh_rule(r);
+  rule.lambda = lambda;
+  r.layers = layers > 0 ? layers : velocity::natural_layers(scene.process(r.levels), rule);
   return r;
 }
 

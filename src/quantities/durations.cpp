@@ -109,8 +109,8 @@ DurationLaw law_until(operators::Systems& systems, Rest rest, const StationaryLa
   const petsc::VecHandle one = a.values([](double, double, double) { return 1.0; }), b = a.zeros(),
                          c = a.trace_at_exit(), d = law.weight_on(a);
   check(MatMult(a.matrix(), one, b));
-  auto curve = time_curve(systems, std::move(a), rest, {b, c, d}, ReducedModel::Nature::rough, time,
-                          1 / mean, tolerance);
+  auto curve = time_curve(systems, std::move(a), rest, {b, c, d}, ReducedModel::Nature::rough,
+                          Integral::wanted, time, 1 / mean, tolerance);
   return {std::move(curve.value), std::move(curve.integral), curve.pairs};
 }
 

@@ -57,7 +57,8 @@ TimeFunction evaluate(const Reduced& reduced, const std::vector<double>& time) {
 
 TimeCurve time_curve(operators::Systems& systems, operators::KolmogorovOperator minus_l,
                      operators::Rest rest, const Ends& ends, ReducedModel::Nature nature,
-                     const std::vector<double>& time, double unit, double tolerance) {
+                     Integral integral, const std::vector<double>& time, double unit,
+                     double tolerance) {
   constexpr int most_pairs = 80;
   ReducedModel model(systems, std::move(minus_l), rest, ends, nature, most_pairs);
   Questions questions;
@@ -65,7 +66,9 @@ TimeCurve time_curve(operators::Systems& systems, operators::KolmogorovOperator 
     const TimeFunction f = evaluate(reduced, time);
     std::vector<double> values;
     for (double value : f.value) values.push_back(value / unit);
-    values.insert(values.end(), f.integral.begin(), f.integral.end());
+    if (integral == Integral::wanted) {
+      values.insert(values.end(), f.integral.begin(), f.integral.end());
+    }
     return values;
   };
   const double tau = systems.process().noise.tau;
@@ -87,7 +90,9 @@ TimeCurve time_curve(operators::Systems& systems, operators::KolmogorovOperator 
   for (std::size_t n = 0; n < time.size(); ++n) {
     const std::size_t m = time.size() + n;
     curve.value.push_back({unit * answers.value[n], unit * answers.error[n]});
-    curve.integral.push_back({answers.value[m], answers.error[m]});
+    if (m < answers.value.size()) {
+      curve.integral.push_back({answers.value[m], answers.error[m]});
+    }
   }
   return curve;
 }

@@ -56,8 +56,8 @@ std::vector<Uncertain> curve(operators::Systems& systems, const StationaryLaw& l
                              double tolerance) {
   if (method == TransientMethod::krylov) {
     const petsc::VecHandle weight = law.weight_on(a);
-    return time_curve(systems, std::move(a), Rest::kept, {b, c, weight}, nature, time, unit,
-                      tolerance)
+    return time_curve(systems, std::move(a), Rest::kept, {b, c, weight}, nature, Integral::left_out,
+                      time, unit, tolerance)
         .value;
   }
   // Errors of steps add up; a run with coarser steps shows how far.
@@ -66,7 +66,7 @@ std::vector<Uncertain> curve(operators::Systems& systems, const StationaryLaw& l
   const auto others = stepped(systems, a, b, c, time, coarse);
   std::vector<Uncertain> result;
   for (std::size_t n = 0; n < time.size(); ++n) {
-    result.push_back({values[n], std::abs(values[n] - others[n])});
+    result.push_back({values[n], std::max(fine, std::abs(values[n] - others[n]))});
   }
   return result;
 }
@@ -101,6 +101,9 @@ Expectation expectation(operators::Systems& systems, const StationaryLaw& law,
     if (symmetry == Symmetry::even) result.stationary = dot(pi, b);
     if (unit == 0) continue;
     const petsc::VecHandle c = a.value_at(systems.axis(), start.level, start.v);
+    PetscReal seen = 0;
+    check(VecNorm(c, NORM_INFINITY, &seen));
+    if (seen == 0) continue;  // odd functions vanish at rest at x = 0
     const auto part = curve(systems, law, std::move(a), b, c, ReducedModel::Nature::rough, time,
                             unit, method, tolerance);
     for (std::size_t n = 0; n < time.size(); ++n) result.value[n] = result.value[n] + part[n];

@@ -35,14 +35,12 @@ double gap_below(const model::Process& process) {
   return delta;
 }
 
-}  // namespace
-
-// Two layers can form at v = 0. The kinetic layer around x = mu_d mixes levels delta apart, at
-// speeds about delta, in the time 1/Lambda = tau^2 delta^2/2 between jumps: 0.3 delta^3 tau^2 is
-// fine enough at every degree tried. A level at a distance g below mu_d comes to rest through the
-// factor (1 + v/s)^(-Lambda/c), s = g/c, c = -b'(0): with fast jumps it is over before it matters
-// (the first test), with slow ones it is a feature of its own on the scale s.
-double smallest_scale(const model::Process& process) {
+// At lambda = 0 two layers can form at v = 0. The kinetic layer around x = mu_d mixes levels delta
+// apart, at speeds about delta, in the time 1/Lambda = tau^2 delta^2/2 between jumps: 0.3 delta^3
+// tau^2 is fine enough at every degree tried. A level at a distance g below mu_d comes to rest
+// through the factor (1 + v/s)^(-Lambda/c), s = g/c, c = -b'(0): with fast jumps it is over before
+// it matters (the first test), with slow ones it is a feature of its own on the scale s.
+double free_layer(const model::Process& process) {
   const auto& noise = process.noise;
   const double kinetic = 0.3 * noise.delta * noise.delta * noise.delta * noise.tau * noise.tau;
   const double slope = -process.drag.slope_at_rest();
@@ -53,8 +51,28 @@ double smallest_scale(const model::Process& process) {
   return left < std::log(1e-16) ? kinetic : rest;
 }
 
+// Bodies that rest within about 1/lambda do so through u = exp(-(Lambda + lambda) v/g) on levels at
+// a distance g below mu_d. The level nearest to mu_d has the thinnest layer, and a share about
+// q = (lambda/Lambda)(g/delta) of what comes to rest: unresolved it was seen in the 12th digit
+// where q was 0.1, and not at all below 0.01. Then the layer of the next level decides.
+double killed_layer(const model::Process& process, double lambda) {
+  const auto& noise = process.noise;
+  const double rate = noise.rate(), gap = gap_below(process);
+  const bool counts = lambda * gap > 1e-3 * rate * noise.delta;
+  return (counts ? gap : gap + noise.delta) / (rate + lambda);
+}
+
+}  // namespace
+
+// Grading with one ratio down to the finest layer resolves exponentials of every scale alike, so
+// that a large lambda asks for more elements at v = 0 and for none above.
+double smallest_scale(const model::Process& process, double lambda) {
+  const double free = free_layer(process);
+  return lambda > 0 ? std::min(free, killed_layer(process, lambda)) : free;
+}
+
 int natural_layers(const model::Process& process, const MeshRule& rule) {
-  const double span = graded_end(process, rule) / smallest_scale(process);
+  const double span = graded_end(process, rule) / smallest_scale(process, rule.lambda);
   return span <= 1 ? 1 : 1 + static_cast<int>(std::ceil(std::log(span) / -std::log(rule.ratio)));
 }
 

@@ -305,7 +305,9 @@ namespace {
 
 // Linear in |v| on each half, so that both schemes have its exact values.
 double even_sample(double x, double y, double v) { return 1 + x * x + y * x + x * v + y * v; }
-double odd_sample(double x, double y, double v) { return x + 2 * y + 3 * v + x * x * x + x * y * v; }
+double odd_sample(double x, double y, double v) {
+  return x + 2 * y + 3 * v + x * x * x + x * y * v;
+}
 
 double applied(Vec functional, Vec values) {
   PetscScalar sum = 0;
@@ -329,8 +331,9 @@ struct Symmetric {
 std::vector<Symmetric> symmetric_samples() {
   return {{Symmetry::even, even_sample},
           {Symmetry::odd, odd_sample},
-          {Symmetry::none,
-           [](double x, double y, double v) { return even_sample(x, y, v) + odd_sample(x, y, v); }}};
+          {Symmetry::none, [](double x, double y, double v) {
+             return even_sample(x, y, v) + odd_sample(x, y, v);
+           }}};
 }
 
 }  // namespace
@@ -356,7 +359,8 @@ TEST_CASE("kolmogorov operator: values at single states", "[parallel]") {
 
 TEST_CASE("kolmogorov operator: values at s+ and s- are the traces at the exits", "[parallel]") {
   const auto process = process_on(9, 1, 0.25);
-  const auto distance = [](const petsc::VecHandle& one, const petsc::VecHandle& other, double sign) {
+  const auto distance = [](const petsc::VecHandle& one, const petsc::VecHandle& other,
+                           double sign) {
     check(VecAXPY(one, -sign, other));
     return largest(one);
   };

@@ -118,3 +118,41 @@ TEST_CASE("hp axis: refuses elements that do not rise from 0") {
   CHECK_THROWS_AS(HpAxis({0, 2, 1}, 2, model::Drag{}), std::invalid_argument);
   CHECK_THROWS_AS(HpAxis({0, 1}, -1, model::Drag{}), std::invalid_argument);
 }
+
+TEST_CASE("hp axis: values are exact on polynomials of its degree, ends of elements included") {
+  const std::vector<double> ends{0, 1e-6, 0.01, 0.5, 3};
+  for (int degree : {0, 1, 4, 9}) {
+    const HpAxis axis(ends, degree, model::Drag{1, 0});
+    std::vector<double> places{1e-300, 1e-12, 3e-7, 0.007, 0.123, 2.9, std::nextafter(3.0, 0.0)};
+    places.insert(places.end(), ends.begin() + 1, ends.end());
+    places.push_back(axis.nodes()[degree]);
+    for (double v : places) {
+      for (int n = 0; n <= degree; ++n) {
+        double sum = 0, terms = 0;  // rounding is that of the terms
+        for (const auto& e : axis.value_at(v)) {
+          const double term = e.value * power(axis.nodes()[e.node], n);
+          sum += term;
+          terms += std::abs(term);
+        }
+        INFO("degree " << degree << " power " << n << " v " << v);
+        CHECK(std::abs(sum - power(v, n)) <= 1e-14 * terms);
+      }
+    }
+  }
+}
+
+TEST_CASE("hp axis: a value takes the nodes of its own element, a node itself") {
+  const std::vector<double> ends{0, 0.1, 1, 3};
+  const HpAxis axis(ends, 3, model::Drag{1, 0});
+  for (double v : {0.05, 0.6, 1.7, 3.0}) {
+    const auto value = axis.value_at(v);
+    REQUIRE(value.size() == 4);
+    const int element = value.front().node / 4;
+    CHECK(ends[element] < v);
+    CHECK(v <= ends[element + 1]);
+    for (int n = 0; n < 4; ++n) CHECK(value[n].node == 4 * element + n);
+  }
+  for (const auto& e : axis.value_at(axis.nodes()[6])) {
+    CHECK(e.value == Approx(e.node == 6 ? 1 : 0).margin(1e-12));
+  }
+}

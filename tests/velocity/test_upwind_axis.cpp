@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <numeric>
 
 #include "stickslip/velocity/upwind_axis.hpp"
@@ -50,4 +51,33 @@ TEST_CASE("upwind axis: cells share the mass of their nodes") {
 TEST_CASE("upwind axis: refuses to have no nodes") {
   CHECK_THROWS_AS(UpwindAxis(0, 3, model::Drag{}), std::invalid_argument);
   CHECK_THROWS_AS(UpwindAxis(1, 0, model::Drag{}), std::invalid_argument);
+}
+
+TEST_CASE("upwind axis: values are exact on linear functions between nodes") {
+  const UpwindAxis axis(0.1, 20, model::Drag{1, 0});
+  for (double v : {0.1, 0.1 + 1e-13, 0.17, 0.2, 1.999, std::nextafter(2.0, 0.0), 2.0}) {
+    double constant = 0, linear = 0;
+    for (const auto& e : axis.value_at(v)) {
+      CHECK(std::abs(axis.nodes()[e.node] - v) < 0.1 + 1e-12);
+      constant += e.value;
+      linear += e.value * axis.nodes()[e.node];
+    }
+    CHECK(constant == Approx(1).epsilon(1e-15));
+    CHECK(linear == Approx(v).epsilon(1e-14));
+  }
+}
+
+// The cell around v = 0 has a state of its own only on some levels.
+TEST_CASE("upwind axis: below the first node, its value") {
+  for (int count : {1, 2, 20}) {
+    const UpwindAxis axis(0.1, count, model::Drag{1, 0});
+    for (double v : {1e-300, 0.01, 0.0999}) {
+      double first = 0;
+      for (const auto& e : axis.value_at(v)) first += e.node == 0 ? e.value : 0 * e.value;
+      CHECK(first == 1);
+    }
+  }
+  const UpwindAxis one(0.1, 1, model::Drag{1, 0});
+  REQUIRE(one.value_at(0.1).size() == 1);
+  CHECK(one.value_at(0.1)[0].value == 1);
 }

@@ -5,21 +5,12 @@ usage: python3 density.py FILE.h5 PICTURE.png
 
 import sys
 
-import h5py
 import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy
 
-SLIDE, STICK = "#3b6ea5", "#c65f1e"  # told apart by the colour-blind, and in grey
+from results import COLOURS, File, plt, power_of_two
 
-
-def read(name):
-    with h5py.File(name) as file:
-        field = {key: numpy.array(value) for key, value in file["density"].items()}
-        scene = dict(file["record/options"].attrs)
-    return field, scene
+SLIDE, STICK = COLOURS[:2]
 
 
 def edges(points):
@@ -33,7 +24,8 @@ def window(points, weight, share):
     return inside[0], inside[-1]
 
 
-def draw(field, scene, picture):
+def draw(law, picture):
+    field = law.group("density")
     x, v = field["x"], field["v"]
     step = x[1] - x[0]
     figure, axes = plt.subplots(
@@ -51,28 +43,29 @@ def draw(field, scene, picture):
     stuck = field["atom"] > 0
     plane.scatter(x[stuck], 0 * x[stuck], s=900 * field["atom"][stuck], color=STICK, zorder=3,
                   label="sticking (area: probability)")
-    plane.set(xlim=(x_low, x_high), ylim=(v_low, v_high), ylabel="velocity $v$")
+    plane.set(xlim=(x_low, x_high), ylim=(v_low, v_high), ylabel="$v$  [velocity]")
     plane.legend(loc="upper left", frameon=False)
-    figure.colorbar(image, ax=by_v, label=r"density of $(x, v)$ while sliding")
+    figure.colorbar(image, ax=by_v, label="density while sliding  [1/(force velocity)]")
 
     by_v.plot(field["marginal_v"], v, color=SLIDE)
-    by_v.set(xlabel="density of $v$", xlim=(0, None))
+    by_v.set(xlabel="density of $v$\n[1/velocity]", xlim=(0, None))
     by_v.tick_params(labelbottom=True)
     by_x.bar(x, field["marginal_x"] - field["atom"], step * 0.9, field["atom"], color=SLIDE,
              label="sliding")
     by_x.bar(x, field["atom"], step * 0.9, color=STICK, label="sticking")
-    by_x.set(xlabel="forcing $x$", ylabel="$P(X = x)$")
+    by_x.set(xlabel="forcing $x$  [force]", ylabel="$P(X = x)$")
     by_x.legend(loc="upper left", frameon=False)
-    mu_s, mu_d, tau, delta = (float(scene[name]) for name in ("mu_s", "mu_d", "tau", "delta"))
+    mu_s, mu_d, tau, delta = (law.number(name) for name in ("mu_s", "mu_d", "tau", "delta"))
     figure.suptitle(rf"$\mu_s$ = {mu_s:g}, $\mu_d$ = {mu_d:g}, $\tau$ = {tau:g}, "
-                    rf"$\delta$ = {delta:g}: $P_{{stick}}$ = {field['atom'].sum():.4f}")
+                    rf"$\delta$ = {power_of_two(delta)}, $b(v) = {law.drag()}$: "
+                    rf"$P_{{stick}}$ = {field['atom'].sum():.4f}")
     figure.savefig(picture, dpi=160)
 
 
 def main():
     if len(sys.argv) != 3:
         sys.exit(__doc__)
-    draw(*read(sys.argv[1]), sys.argv[2])
+    draw(File(sys.argv[1]), sys.argv[2])
 
 
 if __name__ == "__main__":

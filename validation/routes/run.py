@@ -6,35 +6,17 @@ Prints the table, then each claim of README.md with its verdict; exit status 1 i
 --quick leaves out delta = 1/8 and p = 256 (a few seconds instead of some minutes).
 """
 
-import argparse
 import itertools
-import json
 import math
 import pathlib
-import subprocess
 import sys
-import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from harness import Program, Report, difference, parser
 
 KEYS = ("P_stick", "E_V2", "P_X_le_mu_s")
 OBSERVABLES = "stick;v^2;|x|<=mu_s"
 ROUTES = ("excursion", "lambda", "hitting", "resolvent", "null_vector")
-
-
-class Program:
-    def __init__(self, path):
-        self.path = path
-
-    def run(self, **options):
-        """The summary of one run; underscores of PETSc's solver prefixes stay as they are."""
-        with tempfile.TemporaryDirectory() as folder:
-            summary = pathlib.Path(folder) / "summary.json"
-            words = [str(self.path), "-summary", str(summary)]
-            for name, value in options.items():
-                words += ["-" + name, str(value)]
-            done = subprocess.run(words, capture_output=True, text=True)
-            if done.returncode not in (0, 3):  # 3: a discretisation fixed by hand is not refined
-                sys.exit(f"{' '.join(words)}\n{done.stderr}")
-            return json.loads(summary.read_text())
 
 
 def numbers_by(program, route, scene):
@@ -51,24 +33,10 @@ def numbers_by(program, route, scene):
     return values, step.get("checks", {}), step["seconds"]
 
 
-def difference(a, b):
-    return abs(a - b) / abs(b)
-
-
 def binomial(delta, tau=1, mu_s=1):
     """P(|X| <= mu_s) of the full chain: x = delta (B - N), B binomial of 2N trials."""
     n, k = round(2 / (tau * delta**2)), round(mu_s / delta)
     return sum(math.comb(2 * n, n + i) for i in range(-k, k + 1)) / 4**n
-
-
-class Report:
-    def __init__(self):
-        self.failed = False
-
-    def claim(self, text, worst, tolerance):
-        good = worst <= tolerance
-        self.failed |= not good
-        print(f"{'holds' if good else 'FAILS'}  {text}: largest {worst:.1e}, allowed {tolerance:.0e}")
 
 
 def common_table(program, report, scenes, discretisations, tolerance, routes, claim):
@@ -169,11 +137,7 @@ def representation_formula(program, report):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--quick", action="store_true", help="leave out the large cases")
-    root = pathlib.Path(__file__).resolve().parents[2]
-    parser.add_argument("--program", default=root / "build" / "stickslip", type=pathlib.Path)
-    arguments = parser.parse_args()
+    arguments = parser(__doc__).parse_args()
     program, report = Program(arguments.program), Report()
     deltas = (1 / 2, 1 / 4) if arguments.quick else (1 / 2, 1 / 4, 1 / 8)
     scenes = list(itertools.product(deltas, (1 / 4, 1)))

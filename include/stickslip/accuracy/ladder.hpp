@@ -35,6 +35,7 @@ class Ladder {
   options::Method method_;
   double accuracy_;
   int first_degree_ = 0;  // of rung 1
+  double lambda_ = 0;     // largest one asked for
   int halves_ = 1;
   int last_;
 };

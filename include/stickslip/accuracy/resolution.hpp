@@ -31,9 +31,10 @@ struct Resolution {
 /// fallen below `tolerance` if that comes first. What the user fixed goes before.
 [[nodiscard]] double velocity_end(const model::Scene& scene, int levels, double tolerance);
 
-/// hp of polynomial degree `degree`, the open rest chosen for truncation errors of `tolerance`.
+/// hp of polynomial degree `degree`, the open rest chosen for truncation errors of `tolerance`;
+/// `layers` 0 are chosen for equations (lambda - L) u = f with lambda from 0 to `lambda` [1/time].
 [[nodiscard]] Resolution hp_resolution(const model::Scene& scene, int degree, int layers,
-                                       double tolerance);
+                                       double tolerance, double lambda = 0);
 
 /// Upwind with `points` nodes per noise step, the open rest chosen as above.
 [[nodiscard]] Resolution upwind_resolution(const model::Scene& scene, int points, double tolerance);

@@ -15,8 +15,9 @@ namespace stickslip::petsc {
 struct Solution {
   VecHandle x;
   VecHandle correction;
-  /// Of the corrected x, with r = b - A x: max_i |r|_i / (|A| |x| + |b|)_i for a plain solve,
-  /// sum_i |r|_i / sum_i (|A|^T |x| + |b|)_i for a transposed one.
+  /// Of the corrected x, with r = b - A x: max_i |r|_i / (|A| |x| + |b|)_i for a plain solve, to
+  /// |x| added 1e-13 of its largest component; sum_i |r|_i / sum_i (|A|^T |x| + |b|)_i for a
+  /// transposed one.
   double backward_error = 0;
 };
 

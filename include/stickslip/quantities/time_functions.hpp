@@ -19,16 +19,19 @@ struct TimeFunction {
 /// they would to exp(m t). Local. O(size^2) a time. Times >= 0.
 [[nodiscard]] TimeFunction evaluate(const Reduced& reduced, const std::vector<double>& time);
 
-/// c exp(L t) b and its integral from 0 to t with their errors, by reduced models grown until both
-/// stand still: the curve to `tolerance` times `unit`, the integral to `tolerance`.
+/// Whether the integral of a curve is wanted too, to the tolerance itself.
+enum class Integral { wanted, left_out };
+
+/// c exp(L t) b to `tolerance` times `unit`, and its integral from 0 to t, with their errors, by
+/// reduced models grown until they stand still.
 struct TimeCurve {
-  std::vector<Uncertain> value, integral;
-  int pairs = 0;  ///< of vectors of the reduced model
+  std::vector<Uncertain> value, integral;  ///< no integral if it is left out
+  int pairs = 0;                           ///< of vectors of the reduced model
 };
 /// `minus_l` is -L with the static states as `rest` says. Collective.
 [[nodiscard]] TimeCurve time_curve(operators::Systems& systems,
                                    operators::KolmogorovOperator minus_l, operators::Rest rest,
-                                   const Ends& ends, ReducedModel::Nature nature,
+                                   const Ends& ends, ReducedModel::Nature nature, Integral integral,
                                    const std::vector<double>& time, double unit, double tolerance);
 
 }  // namespace stickslip::quantities

@@ -13,10 +13,12 @@ struct MeshRule {
   double ratio = 0.3;  ///< quotient of neighbouring element ends near v = 0
   double decay = 8;    ///< largest drop of log-density over one element
   int layers = 0;      ///< elements of the graded part; 0: from smallest_scale
+  double lambda = 0;   ///< largest lambda of the equations to be solved [1/time]
 };
 
-/// Thickness of the finest layer at v = 0 that a solution shows [velocity].
-[[nodiscard]] double smallest_scale(const model::Process& process);
+/// Thickness of the finest layer at v = 0 that a solution of (lambda - L) u = f shows, or one for
+/// any smaller lambda [velocity].
+[[nodiscard]] double smallest_scale(const model::Process& process, double lambda = 0);
 
 /// Number of graded elements that resolve smallest_scale under `rule`.
 [[nodiscard]] int natural_layers(const model::Process& process, const MeshRule& rule);

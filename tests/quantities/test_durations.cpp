@@ -1,0 +1,442 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "../common/exponential.hpp"
+#include "../common/full_grid.hpp"
+#include "../common/near.hpp"
+#include "../common/quadrature.hpp"
+#include "../common/solved.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/time_stepper.hpp"
+#include "stickslip/quantities/durations.hpp"
+#include "stickslip/quantities/laplace.hpp"
+#include "stickslip/velocity/upwind_axis.hpp"
+
+using namespace stickslip;
+using operators::Half;
+using operators::KolmogorovOperator;
+using operators::Rest;
+using operators::Symmetry;
+using petsc::check;
+using quantities::DurationLaw;
+using quantities::Uncertain;
+using test::relative_difference;
+using test::scene;
+using test::SmallMatrix;
+using test::Solved;
+
+namespace {
+
+struct Sample {
+  const char* name;
+  test::Discrete d;
+};
+
+// mu_d and mu_s on the grid of the noise, between its levels, and apart.
+std::vector<Sample> samples() {
+  return {{"linear drag", test::on_hp(scene(1, 0.25, 1, 0.5, {1, 0}), 12)},
+          {"mu_d = mu_s", test::on_hp(scene(1, 1, 1, 0.5, {1, 0}), 12)},
+          {"no drag", test::on_hp(scene(1, 1, 1, 0.5, {0, 0}), 12)},
+          {"off the grid", test::on_hp(scene(1.1, 1.1, 1, 0.5, {1, 0}), 16)},
+          {"cubic drag", test::on_hp(scene(0.7, 0.4, 1, 0.5, {2, 1}), 12)},
+          {"tau = 4", test::on_hp(scene(0.7, 0.4, 4, 0.25, {2, 1}), 16)}};
+}
+
+/// The laws of all durations at the same times.
+struct Laws {
+  DurationLaw slide, stick, excursion;
+};
+
+Laws laws(Solved& s, const std::vector<double>& time, double tolerance) {
+  return {quantities::slide_law(s.systems, s.law, time, tolerance),
+          quantities::stick_law(s.systems.process(), s.entry(), time),
+          quantities::excursion_law(s.systems, s.law, time, tolerance)};
+}
+
+constexpr DurationLaw Laws::*kAll[] = {&Laws::slide, &Laws::stick, &Laws::excursion};
+constexpr const char* kNames[] = {"slide", "stick", "excursion"};
+
+constexpr double kFirstTime = 1e-9;  // densities are constant before
+
+test::Quadrature all_times(double last) { return test::logarithmic_panels(kFirstTime, last, 24); }
+
+/// int weight f over all times, and the errors that the density states.
+template <class Weight>
+Uncertain integral(const test::Quadrature& q, const DurationLaw& law, Weight weight) {
+  const auto sum_of = [&](double Uncertain::*part) {
+    return q.sum([&](std::size_t n) { return weight(q.node[n]) * law.density[n].*part; });
+  };
+  const double start = kFirstTime * weight(0.0) * law.density.front().value;
+  return {start + sum_of(&Uncertain::value), sum_of(&Uncertain::error)};
+}
+
+// Far out densities are absolutely right only; weighted with t or t^2 it shows.
+void check_moment(Uncertain found, double known, double relative) {
+  INFO("off by " << found.value / known - 1 << ", stated " << found.error / known);
+  CHECK(std::abs(found.value - known) < relative * known + found.error);
+}
+
+// c exp(-A t) b by time steps.
+std::vector<double> stepped(const KolmogorovOperator& a, const petsc::VecHandle& b, Vec c,
+                            const std::vector<double>& time, double tolerance) {
+  petsc::Ledger ledger;
+  petsc::TimeStepper stepper(a.matrix(), b, "test_", tolerance, ledger);
+  std::vector<double> values;
+  for (double t : time) {
+    PetscScalar value = 0;
+    stepper.advance(t);
+    check(VecTDot(c, b, &value));
+    values.push_back(PetscRealPart(value));
+  }
+  return values;
+}
+
+std::vector<double> stepped_slide(Solved& s, const std::vector<double>& time, double tolerance) {
+  const auto& process = s.systems.process();
+  const KolmogorovOperator a(s.systems.comm(), process, s.systems.axis(), 0.0, Symmetry::even,
+                             Rest::killing);
+  const auto levels = 2 * static_cast<std::size_t>(process.static_index()) + 1;
+  const auto ends = a.from_rest(std::vector<PetscScalar>(levels, 1.0));
+  return stepped(a, ends, a.trace_at_exit(), time, tolerance);
+}
+
+std::vector<double> stepped_excursion(Solved& s, const std::vector<double>& time,
+                                      double tolerance) {
+  const KolmogorovOperator a(s.systems.comm(), s.systems.process(), s.systems.axis(), 0.0,
+                             Symmetry::even, Rest::killed_on_exit);
+  const auto ends = a.exit_rates(Half::upper), down = a.exit_rates(Half::lower);
+  check(VecAXPY(ends, 1, down));
+  return stepped(a, ends, a.trace_at_exit(), time, tolerance);
+}
+
+/// Durations on the whole grid of the paper: a dense chain, killed where a slide ends, or where an
+/// excursion does.
+class DenseDurations {
+ public:
+  enum class Ends { at_rest, after_rest };
+
+  DenseDurations(const test::FullGrid& grid, int k, Ends ends)
+      : m_(grid.generator()), rates_(grid.size()), start_(grid.index(k + 1, 0)) {
+    std::vector<bool> rests(grid.size());
+    grid.for_each([&](int i, int j, double, std::size_t s) { rests[s] = grid.is_static(i, j); });
+    for (std::size_t r = 0; r < grid.size(); ++r) {
+      for (std::size_t c = 0; c < grid.size(); ++c) {
+        const bool ending = ends == Ends::at_rest ? !rests[r] && rests[c] : rests[r] && !rests[c];
+        if (!ending) continue;
+        rates_[r] += static_cast<double>(m_(r, c));
+        m_(r, c) = 0;
+      }
+    }
+  }
+
+  [[nodiscard]] double density(double time) const {
+    return test::times(test::exponential(m_, time), rates_)[start_];
+  }
+  [[nodiscard]] double distribution(double time) const {
+    // What has ended is no state here; at rest, the static states still are.
+    std::vector<double> ended(rates_.size());
+    SmallMatrix all(rates_.size() + 1);
+    for (std::size_t r = 0; r < rates_.size(); ++r) {
+      for (std::size_t c = 0; c < rates_.size(); ++c) all(r, c) = m_(r, c);
+      all(r, rates_.size()) = rates_[r];
+    }
+    ended.push_back(1);
+    return test::times(test::exponential(all, time), ended)[start_];
+  }
+
+ private:
+  SmallMatrix m_;
+  std::vector<double> rates_;  // of ending
+  std::size_t start_;
+};
+
+double f_slide_at(const model::Process& process) {
+  return quantities::slide_density_at_zero(process);
+}
+
+model::Process process_with(double mu_s, double mu_d, int levels = 8) {
+  return {{1, 0.5, levels}, {mu_s, mu_d}, {1, 0}};
+}
+
+}  // namespace
+
+TEST_CASE("durations: densities integrate to 1, with the means and variances of the moments",
+          "[slow]") {
+  for (const auto& [name, d] : samples()) {
+    Solved s(d);
+    const auto m = quantities::duration_moments(s.systems, s.entry());
+    const std::vector<Uncertain> mean{m.mean_slide, m.mean_stick, m.mean_excursion},
+        variance{m.var_slide, m.var_stick, m.var_excursion};
+    const auto q = all_times(100 * d.process.noise.tau);
+    const auto all = laws(s, q.node, 1e-9);
+    for (std::size_t n = 0; n < std::size(kAll); ++n) {
+      const auto& law = all.*kAll[n];
+      const double square = variance[n].value + mean[n].value * mean[n].value;
+      INFO(name << ", " << kNames[n]);
+      check_moment(integral(q, law, [](double) { return 1.0; }), 1, 1e-8);
+      check_moment(integral(q, law, [](double t) { return t; }), mean[n].value, 1e-8);
+      check_moment(integral(q, law, [](double t) { return t * t; }), square, 1e-7);
+    }
+  }
+}
+
+TEST_CASE("durations: densities have the transforms of the operators", "[parallel]") {
+  const auto d = test::on_hp(scene(1, 0.25, 1, 0.5, {1, 0}), 10);
+  Solved s(d);
+  const auto q = all_times(150);
+  const auto all = laws(s, q.node, 1e-9);
+  for (double lambda : {0.1, 1.0, 10.0, 100.0}) {
+    const auto known = quantities::slide_transforms(s.systems, lambda);
+    const auto stick = quantities::stick_transform(d.process, lambda, s.entry());
+    s.systems.release(lambda, Symmetry::even);
+    const auto weight = [lambda](double t) { return std::exp(-lambda * t); };
+    INFO("lambda " << lambda);
+    CHECK(std::abs(integral(q, all.slide, weight).value - known.slide.value) < 1e-8);
+    CHECK(std::abs(integral(q, all.excursion, weight).value - known.excursion.value) < 1e-8);
+    CHECK(relative_difference(integral(q, all.stick, weight).value, stick.value) < 1e-11);
+  }
+}
+
+TEST_CASE("durations: distributions rise to 1 and are the integrals of the densities", "[slow]") {
+  const std::vector<double> ends{0, 0.05, 0.2, 0.7, 2, 6, 20, 200};
+  std::vector<double> time = ends;
+  std::vector<test::Quadrature> parts;
+  for (std::size_t n = 1; n < ends.size(); ++n) {
+    parts.push_back(test::panels(ends[n - 1], ends[n], n == 1 ? 8 : 6));
+    time.insert(time.end(), parts.back().node.begin(), parts.back().node.end());
+  }
+  for (const auto& [name, d] : samples()) {
+    Solved s(d);
+    const auto all = laws(s, time, 1e-9);
+    for (std::size_t which = 0; which < std::size(kAll); ++which) {
+      const auto& law = all.*kAll[which];
+      INFO(name << ", " << kNames[which]);
+      CHECK(std::abs(law.distribution[0].value) < 1e-9);
+      std::size_t at = ends.size();
+      for (std::size_t n = 1; n < ends.size(); ++n) {
+        const auto& part = parts[n - 1];
+        const double within = part.sum([&](std::size_t p) { return law.density[at + p].value; });
+        at += part.node.size();
+        const double rise = law.distribution[n].value - law.distribution[n - 1].value;
+        CHECK(rise > -1e-9);
+        // The first part has the layer of the shortest slides.
+        if (n > 1 && n + 1 < ends.size()) CHECK(std::abs(rise - within) < 1e-8);
+      }
+      CHECK(std::abs(law.distribution[ends.size() - 1].value - 1) < 1e-8);
+    }
+  }
+}
+
+TEST_CASE("durations: errors of distributions and densities cover finer models", "[slow]") {
+  const auto all_samples = samples();
+  for (std::size_t sample : {0, 2, 4}) {
+    const auto& [name, d] = all_samples[sample];
+    Solved s(d);
+    const std::vector<double> time{0.1, 0.5, 2, 8};
+    const auto rough = laws(s, time, 1e-3), fine = laws(s, time, 1e-10);
+    for (std::size_t which = 0; which < std::size(kAll); ++which) {
+      for (std::size_t n = 0; n < time.size(); ++n) {
+        const auto change = [&](auto member) {
+          const Uncertain one = ((rough.*kAll[which]).*member)[n];
+          const Uncertain other = ((fine.*kAll[which]).*member)[n];
+          return std::abs(one.value - other.value) / (one.error + other.error + 1e-12);
+        };
+        INFO(name << ", " << kNames[which] << " at " << time[n]);
+        CHECK(change(&DurationLaw::density) < 10);
+        CHECK(change(&DurationLaw::distribution) < 10);
+      }
+    }
+  }
+}
+
+// No folding, no excursions, no reduced models, no PETSc.
+TEST_CASE("durations: upwind equals dense exponentials on the whole grid", "[parallel]") {
+  struct Case {
+    double mu_s, mu_d;
+    int levels, nodes;
+    model::Drag drag;
+  };
+  const std::vector<double> time{0.05, 0.4, 2.5};
+  for (const auto& c : {Case{1, 0.25, 4, 6, {1, 0}}, Case{0.7, 0.7, 3, 7, {1, 0.5}}}) {
+    const model::Process process{{1, 0.5, c.levels}, {c.mu_s, c.mu_d}, c.drag};
+    const double spacing = 0.25;
+    const test::FullGrid grid(process, spacing, c.nodes);
+    const int k = process.static_index();
+    const DenseDurations slide(grid, k, DenseDurations::Ends::at_rest);
+    const DenseDurations excursion(grid, k, DenseDurations::Ends::after_rest);
+    Solved s({process, std::make_shared<velocity::UpwindAxis>(spacing, c.nodes, c.drag)});
+    const auto all = laws(s, time, 1e-10);
+    for (std::size_t n = 0; n < time.size(); ++n) {
+      INFO("mu_d " << c.mu_d << " time " << time[n]);
+      CHECK(std::abs(all.slide.density[n].value - slide.density(time[n])) < 1e-8);
+      CHECK(std::abs(all.slide.distribution[n].value - slide.distribution(time[n])) < 1e-8);
+      CHECK(std::abs(all.excursion.density[n].value - excursion.density(time[n])) < 1e-8);
+      CHECK(std::abs(all.excursion.distribution[n].value - excursion.distribution(time[n])) < 1e-8);
+    }
+  }
+}
+
+// A slide ends in a point: on hp elements time steps carry that as wiggles, which the reduced model
+// has not. An excursion ends at rest, and an upwind chain has no wiggles.
+TEST_CASE("durations: time steps give the same densities") {
+  const std::vector<double> time{0.1, 0.5, 2, 8};
+  for (const auto& d : {test::on_upwind(scene(1, 0.25, 1, 0.5, {1, 0}), 2),
+                        test::on_upwind(scene(0.7, 0.7, 1, 0.5, {0, 0}), 2)}) {
+    Solved s(d);
+    const auto all = laws(s, time, 1e-8);
+    const auto slide = stepped_slide(s, time, 1e-8), excursion = stepped_excursion(s, time, 1e-8);
+    for (std::size_t n = 0; n < time.size(); ++n) {
+      INFO("mu_d " << d.process.friction.mu_d << " time " << time[n]);
+      CHECK(std::abs(all.slide.density[n].value - slide[n]) < 1e-6);
+      CHECK(std::abs(all.excursion.density[n].value - excursion[n]) < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("durations: time steps on hp elements give the same excursions") {
+  const std::vector<double> time{0.1, 0.5, 2, 8};
+  Solved s(test::on_hp(scene(1, 0.25, 1, 0.5, {1, 0}), 7, 1e-9));
+  const auto law = quantities::excursion_law(s.systems, s.law, time, 1e-8);
+  const auto steps = stepped_excursion(s, time, 1e-8);
+  for (std::size_t n = 0; n < time.size(); ++n) {
+    INFO("time " << time[n]);
+    CHECK(std::abs(law.density[n].value - steps[n]) < 1e-6);
+  }
+}
+
+TEST_CASE("durations: a stay starts to end at the rate of its edges") {
+  for (const auto& [name, d] : samples()) {
+    Solved s(d);
+    const int k = d.process.static_index();
+    const auto entry = s.entry();
+    const double rate = d.process.noise.rate() * (d.process.noise.up(k) * entry.back().value +
+                                                  d.process.noise.down(-k) * entry[0].value);
+    const auto law = quantities::stick_law(d.process, entry, {0});
+    INFO(name);
+    CHECK(relative_difference(law.density[0].value, rate) < 1e-14);
+    CHECK(law.distribution[0].value == 0);
+  }
+}
+
+// From the middle of the chain: the shortest stays take k + 1 jumps. Shifted by the jump rate the
+// chain has no negative entries, so that the exponential is right to the size of each of its
+// entries.
+TEST_CASE("durations: stays by dense exponentials, right relative to their size") {
+  for (double mu_s : {0.3, 1.0, 1.7}) {
+    const auto process = process_with(mu_s, 0.25);
+    const int k = process.static_index();
+    const double rate = process.noise.rate();
+    const auto middle = static_cast<std::size_t>(k), left = 2 * middle + 1;
+    SmallMatrix q(left + 1);
+    for (int i = -k; i <= k; ++i) {
+      const std::size_t at = middle + i;
+      q(at, i < k ? at + 1 : left) += rate * process.noise.up(i);
+      q(at, i > -k ? at - 1 : left) += rate * process.noise.down(i);
+    }
+    q(left, left) = rate;
+    std::vector<Uncertain> entry(left, Uncertain{0, 0});
+    entry[middle] = {1, 0};
+    const std::vector<double> time{20, 0.5, 3, 1e-3, 0.02};  // in any order
+    const auto law = quantities::stick_law(process, entry, time);
+    for (std::size_t n = 0; n < time.size(); ++n) {
+      const auto flow = test::exponential(q, time[n]);
+      const double shift = std::exp(-rate * time[n]);
+      long double density = 0;
+      for (std::size_t c = 0; c < left; ++c) density += flow(middle, c) * q(c, left);
+      INFO("k " << k << " time " << time[n]);
+      const auto expected = static_cast<double>(shift * density);
+      CHECK(relative_difference(law.density[n].value, expected) < 1e-11);
+      CHECK(law.density[n].error < 1e-11 * expected);
+      const auto gone = static_cast<double>(shift * flow(middle, left));
+      CHECK(relative_difference(law.distribution[n].value, gone) < 1e-11);
+    }
+  }
+}
+
+TEST_CASE("durations: stays end in the end, and errors of the entry law go on") {
+  const model::Process process{{1, 0.25, 32}, {2.5, 0.25}, {1, 0}};
+  const auto k = static_cast<std::size_t>(process.static_index());
+  const double even = 1 / (2 * static_cast<double>(k) + 1);
+  const std::vector<Uncertain> entry(2 * k + 1, Uncertain{even, 1e-9 * even});
+  const auto law = quantities::stick_law(process, entry, {1e4, 1, 10});
+  CHECK(law.distribution[0].value == Approx(1).epsilon(1e-11));
+  CHECK(law.distribution[1].value < law.distribution[2].value);
+  CHECK(law.distribution[2].value < law.distribution[0].value);
+  for (const auto& value : law.density) CHECK(value.error >= 1e-9 * value.value);
+}
+
+// One jump down at time t and the way back: T = t (1 + up/down).
+TEST_CASE("durations: slides can end at once only where one jump down reverses them") {
+  CHECK(f_slide_at(process_with(1, 0.25)) == 0);
+  CHECK(f_slide_at(process_with(1, 1)) == 0);  // mu_d = x_k
+  CHECK(f_slide_at(process_with(1.2, 1)) == 0);
+  CHECK(f_slide_at(process_with(1.2, 0.9)) == 0);
+  for (double mu : {1.1, 1.25, 1.4}) {
+    const auto process = process_with(mu, mu);
+    const double up = 1.5 - mu, down = mu - 1;
+    const double rate = process.noise.rate() * process.noise.down(3);
+    CHECK(f_slide_at(process) == Approx(rate * down / (up + down)).epsilon(1e-13));
+  }
+  CHECK(f_slide_at(process_with(1.4, 1.2)) == f_slide_at(process_with(1.2, 1.2)));
+}
+
+// Three small times tell the limit.
+TEST_CASE("durations: the density of slides tends to its value at 0") {
+  for (double mu : {1.1, 1.25}) {
+    Solved s(test::on_hp(scene(mu, mu, 1, 0.5, {1, 0}), 16));
+    const double t = 1e-3;
+    const auto f = quantities::slide_law(s.systems, s.law, {t, 2 * t, 4 * t, 0.1, 1}, 1e-8).density;
+    const double limit = (8 * f[0].value - 6 * f[1].value + f[2].value) / 3;
+    CHECK(relative_difference(limit, f_slide_at(s.systems.process())) < 1e-5);
+  }
+  // With mu_d on a level of the noise nothing ends at once.
+  Solved s(test::on_hp(scene(1, 1, 1, 0.5, {1, 0}), 12));
+  const auto f = quantities::slide_law(s.systems, s.law, {1e-5, 1e-3, 0.1, 1}, 1e-8).density;
+  CHECK(std::abs(f[0].value) < 1e-3);
+  CHECK(f[1].value > 50 * f[0].value);
+}
+
+TEST_CASE("durations: means are those of the stationary law, and moments are positive",
+          "[parallel]") {
+  for (const auto& d : {test::on_hp(scene(1, 0.25, 1, 0.25, {1, 0}), 6, 1e-9),
+                        test::on_upwind(scene(1, 1, 1, 0.5, {0, 0}), 2)}) {
+    Solved s(d);
+    const auto m = quantities::duration_moments(s.systems, s.entry());
+    const auto& e = s.law.excursion();
+    CHECK(relative_difference(m.mean_slide.value, e.mean_slide()) < 1e-12);
+    CHECK(relative_difference(m.mean_stick.value, e.mean_stick()) < 1e-12);
+    CHECK(relative_difference(m.mean_excursion.value, e.mean_excursion()) < 1e-12);
+    CHECK(m.var_slide.value > 0);
+    CHECK(m.var_stick.value > 0);
+    // Long slides and where they end go together; the parts are not independent.
+    CHECK(m.var_excursion.value != Approx(m.var_slide.value + m.var_stick.value).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("durations: named results, means only where there are none yet") {
+  const auto process = process_with(1.1, 1.1);
+  const quantities::DurationMoments m{{1, 0.1}, {2, 0.1}, {3, 0.1}, {4, 0.1}, {5, 0.1}, {6, 0.1}};
+  const std::vector<Uncertain> entry(5, Uncertain{0.2, 0});
+  quantities::Results results{quantities::scalar("mean_stick", "time", 7, 0)};
+  quantities::append_duration_moments(process, m, entry, results);
+  const auto value = [&](const std::string& key) {
+    const auto same = [&key](const auto& result) { return result.key == key; };
+    CHECK(std::count_if(results.begin(), results.end(), same) == 1);
+    return std::find_if(results.begin(), results.end(), same)->value[0];
+  };
+  CHECK(value("mean_slide") == 1);
+  CHECK(value("mean_stick") == 7);
+  CHECK(value("mean_excursion") == 3);
+  CHECK(value("var_slide") == 4);
+  CHECK(value("var_stick") == 5);
+  CHECK(value("var_excursion") == 6);
+  CHECK(value("f_slide_0") == f_slide_at(process));
+  const double edge = process.noise.rate() * process.noise.up(2);
+  CHECK(value("f_stick_0") == Approx(0.4 * edge).epsilon(1e-14));
+  quantities::append_duration("slide", {1, 2}, {{{0.5, 0}, {0.25, 0}}, {{0.1, 0}, {0.6, 0}}, 0},
+                              results);
+  CHECK(value("f_slide") == 0.5);
+  CHECK(value("cdf_slide") == 0.1);
+}

@@ -1,0 +1,307 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "../common/full_grid.hpp"
+#include "../common/near.hpp"
+#include "../common/solved.hpp"
+#include "stickslip/petsc/session.hpp"
+#include "stickslip/quantities/spectrum.hpp"
+#include "stickslip/velocity/upwind_axis.hpp"
+
+using namespace stickslip;
+using quantities::ReducedSpectrum;
+using quantities::Uncertain;
+using test::relative_difference;
+using test::scene;
+using test::Solved;
+
+namespace {
+
+constexpr bool kComplex = PetscDefined(USE_COMPLEX);
+
+ReducedSpectrum reduced(Solved& s, const std::vector<double>& omega, double tolerance) {
+  return quantities::reduced_spectrum(s.systems, s.law, omega, tolerance);
+}
+
+// Digits as printed: off by no more than half a unit of the last one, and a little.
+struct Known {
+  double omega, value, unit;
+};
+
+bool is(double value, const Known& known) {
+  return std::abs(value - known.value) < 0.51 * known.unit;
+}
+
+struct Table {
+  double delta;
+  std::vector<Known> values;  // S_v
+};
+
+// b = -v, mu_s = 1, mu_d = 1/4, tau = 1.
+const std::vector<Table>& known_values() {
+  static const std::vector<Table> tables{{0.5,
+                                          {{0, 1.05184088, 1e-8},
+                                           {0.1, 1.03401702, 1e-8},
+                                           {1, 0.310095661, 1e-9},
+                                           {10, 1.85013e-4, 1e-9}}},
+                                         {0.25,
+                                          {{0, 1.08314710, 1e-8},
+                                           {0.1, 1.06555462, 1e-8},
+                                           {1, 0.330747341, 1e-9},
+                                           {10, 1.91001e-4, 1e-9}}}};
+  return tables;
+}
+
+std::vector<double> frequencies(const Table& table) {
+  std::vector<double> omega;
+  for (const auto& known : table.values) omega.push_back(known.omega);
+  return omega;
+}
+
+struct Sample {
+  const char* name;
+  test::Discrete d;
+};
+
+// Degrees for which the grid itself is right to 1e-8 up to omega = 50: what only the grid has, the
+// two methods see differently.
+std::vector<Sample> samples() {
+  return {{"linear drag", test::on_hp(scene(1, 0.25, 1, 0.25, {1, 0}), 8)},
+          {"mu_d = mu_s", test::on_hp(scene(1, 1, 1, 0.25, {1, 0}), 8)},
+          {"tau = 1/4", test::on_hp(scene(1, 0.25, 0.25, 0.5, {1, 0}), 8)},
+          {"tau = 4, cubic drag", test::on_hp(scene(0.7, 0.4, 4, 0.25, {2, 1}), 24)},
+          {"no drag", test::on_hp(scene(1, 1, 1, 0.5, {0, 0}), 20)},
+          {"upwind", test::on_upwind(scene(1, 0.25, 1, 0.5, {1, 0}), 4)}};
+}
+
+// Smaller ones, for what each model is asked about itself.
+std::vector<Sample> small_samples() {
+  return {{"linear drag", test::on_hp(scene(1, 0.25, 1, 0.5, {1, 0}), 8)},
+          {"mu_d = mu_s", test::on_hp(scene(1, 1, 1, 0.5, {1, 0}), 8)},
+          {"tau = 1/4", test::on_hp(scene(1, 0.25, 0.25, 1, {1, 0}), 8)},
+          {"cubic drag", test::on_hp(scene(0.7, 0.4, 1, 0.5, {2, 1}), 8)},
+          {"no drag", test::on_hp(scene(1, 1, 1, 0.5, {0, 0}), 12)}};
+}
+
+/// Small dense chains without any folding, 2 Re c (i omega - M)^-1 v as a real system.
+class DenseSpectrum {
+ public:
+  DenseSpectrum(const model::Process& process, double spacing, int nodes)
+      : grid_(process, spacing, nodes), v_(grid_.size()), c_(grid_.stationary()) {
+    grid_.for_each([&](int, int, double v, std::size_t s) {
+      v_[s] = v;
+      c_[s] *= v;
+    });
+  }
+
+  [[nodiscard]] double operator()(double omega) const {
+    const std::size_t n = grid_.size(), m = 2 * n;
+    std::vector<double> a(m * m), b(m);
+    for (std::size_t r = 0; r < n; ++r) {
+      for (std::size_t c = 0; c < n; ++c) {
+        a[r * m + c] = a[(n + r) * m + n + c] = -grid_.generator()[r * n + c];
+      }
+      a[r * m + n + r] = -omega;
+      a[(n + r) * m + r] = omega;
+      b[r] = v_[r];
+    }
+    const auto x = test::dense_solve(std::move(a), std::move(b));
+    double sum = 0;
+    for (std::size_t r = 0; r < n; ++r) sum += c_[r] * x[r];
+    return 2 * sum;
+  }
+
+  /// E[V L V]: 0 for the process, the diffusion of the scheme on a grid.
+  [[nodiscard]] double power() const {
+    const std::size_t n = grid_.size();
+    double sum = 0;
+    for (std::size_t r = 0; r < n; ++r) {
+      for (std::size_t c = 0; c < n; ++c) sum += c_[r] * grid_.generator()[r * n + c] * v_[c];
+    }
+    return sum;
+  }
+
+ private:
+  test::FullGrid grid_;
+  std::vector<double> v_, c_;
+};
+
+}  // namespace
+
+TEST_CASE("spectrum: known values by the reduced model", "[parallel]") {
+  for (const auto& table : known_values()) {
+    Solved s(test::on_hp(scene(1, 0.25, 1, table.delta, {1, 0}), 9));
+    const auto r = reduced(s, frequencies(table), 1e-10);
+    for (std::size_t n = 0; n < table.values.size(); ++n) {
+      INFO("delta " << table.delta << " omega " << table.values[n].omega);
+      CHECK(is(r.spectrum.value[n].value, table.values[n]));
+    }
+    CHECK(is(r.spectrum.at_zero.value, table.values[0]));
+  }
+}
+
+TEST_CASE("spectrum: known values by complex solves") {
+  if (!kComplex) return;
+  for (const auto& table : known_values()) {
+    Solved s(test::on_hp(scene(1, 0.25, 1, table.delta, {1, 0}), 9));
+    const auto direct =
+        quantities::direct_spectrum(PETSC_COMM_WORLD, s.systems, s.law, frequencies(table));
+    for (std::size_t n = 0; n < table.values.size(); ++n) {
+      INFO("delta " << table.delta << " omega " << table.values[n].omega);
+      CHECK(is(direct.value[n].value, table.values[n]));
+    }
+    CHECK(direct.at_zero.value == Approx(direct.value[0].value).epsilon(1e-14));
+    CHECK(s.ledger.factorizations_complex >= 5);
+  }
+}
+
+TEST_CASE("spectrum: the reduced model agrees with complex solves, within its errors", "[slow]") {
+  if (!kComplex) return;
+  const std::vector<double> omega{1e-3, 0.01, 0.05, 0.1, 0.3, 0.7, 1, 2, 5, 10, 25, 50};
+  for (const auto& [name, d] : samples()) {
+    Solved s(d);
+    const auto r = reduced(s, omega, 1e-9);
+    const auto direct = quantities::direct_spectrum(PETSC_COMM_WORLD, s.systems, s.law, omega);
+    for (std::size_t n = 0; n < omega.size(); ++n) {
+      const Uncertain one = r.spectrum.value[n], other = direct.value[n];
+      INFO(name << " omega " << omega[n] << " error " << one.error / one.value);
+      CHECK(relative_difference(one.value, other.value) < 1e-8);
+      CHECK(one.error < 1e-8 * one.value);
+      // What the last vectors changed is no bound, but tells the size; the grid has its say too.
+      const double slack = omega[n] < 25 ? 1e-12 : 3e-9;
+      CHECK(std::abs(one.value - other.value) < 10 * (one.error + other.error) + slack * one.value);
+    }
+    CHECK(relative_difference(r.spectrum.at_zero.value, direct.at_zero.value) < 1e-8);
+    CHECK(r.shifts.size() < 10);
+    CHECK(r.pairs <= 80);
+  }
+}
+
+// Factored anew or not, on one rank or shared out: the same numbers.
+TEST_CASE("spectrum: complex solves on several ranks give what one gives", "[parallel]") {
+  if (!kComplex) return;
+  const std::vector<double> omega{0.03, 0.5, 2, 7, 20};
+  const auto d = test::on_hp(scene(1, 0.25, 1, 0.5, {1, 0}), 6, 1e-9);
+  Solved alone(d, PETSC_COMM_SELF), together(d);
+  const auto shared =
+      quantities::direct_spectrum(PETSC_COMM_WORLD, alone.systems, alone.law, omega);
+  const auto own = quantities::direct_spectrum(PETSC_COMM_SELF, alone.systems, alone.law, omega);
+  const auto r = reduced(together, omega, 1e-9);
+  REQUIRE(shared.value.size() == omega.size());
+  for (std::size_t n = 0; n < omega.size(); ++n) {
+    CHECK(relative_difference(shared.value[n].value, own.value[n].value) < 1e-13);
+    CHECK(relative_difference(shared.value[n].value, r.spectrum.value[n].value) < 1e-7);
+  }
+  CHECK(relative_difference(shared.at_zero.value, own.at_zero.value) < 1e-13);
+}
+
+// No folding, no excursions, no PETSc. Beyond 1/tau what the scheme makes of E[V dV/dt] = 0 is left
+// out.
+TEST_CASE("spectrum: upwind equals dense solves on the whole grid") {
+  struct Case {
+    double mu_s, mu_d, tau;
+    int levels, nodes;
+    model::Drag drag;
+  };
+  for (const auto& c : {Case{1, 0.25, 1, 4, 7, {1, 0}}, Case{0.4, 0.4, 0.5, 3, 9, {1, 0.5}}}) {
+    const model::Process process{{c.tau, 0.5, c.levels}, {c.mu_s, c.mu_d}, c.drag};
+    const double spacing = 0.25;
+    const DenseSpectrum dense(process, spacing, c.nodes);
+    Solved s({process, std::make_shared<velocity::UpwindAxis>(spacing, c.nodes, c.drag)});
+    const std::vector<double> omega{0.05, 0.9 / c.tau, 1.1 / c.tau, 8};
+    const auto r = reduced(s, omega, 1e-11);
+    for (std::size_t n = 0; n < omega.size(); ++n) {
+      const double left_out = omega[n] * c.tau > 1 ? 2 * dense.power() / (omega[n] * omega[n]) : 0;
+      INFO("tau " << c.tau << " omega " << omega[n]);
+      CHECK(relative_difference(r.spectrum.value[n].value, dense(omega[n]) + left_out) < 1e-9);
+    }
+  }
+}
+
+// The acceleration jumps, so that S_v falls as omega^-4 for ever.
+TEST_CASE("spectrum: omega^4 S_v is constant far out") {
+  for (const auto& [name, d] : small_samples()) {
+    Solved s(d);
+    const std::vector<double> omega{1e5, 3e5, 1e6, 3e6, 1e7};
+    const auto r = reduced(s, omega, 1e-8);
+    const auto scaled = [&](std::size_t n) {
+      return r.spectrum.value[n].value * std::pow(omega[n], 4);
+    };
+    for (std::size_t n = 0; n < omega.size(); ++n) {
+      INFO(name << " omega " << omega[n]);
+      CHECK(scaled(n) > 0);
+      CHECK(relative_difference(scaled(n), scaled(4)) < 1e-6);
+    }
+    // Every noise jump while the body slides, and more: 2/tau^2 P_slide at least.
+    const auto& e = s.law.excursion();
+    const double tau = d.process.noise.tau;
+    CHECK(scaled(4) > 2 / (tau * tau) * e.mean_slide() / e.mean_excursion());
+  }
+}
+
+TEST_CASE("spectrum: omega = 0 is no special case, and both formulas meet at 1/tau") {
+  for (const auto& [name, d] : small_samples()) {
+    Solved s(d);
+    const double turn = 1 / d.process.noise.tau;
+    const auto r = reduced(s, {0, 1e-9, turn * (1 - 1e-10), turn * (1 + 1e-10)}, 1e-9);
+    const auto& value = r.spectrum.value;
+    INFO(name);
+    CHECK(value[0].value == r.spectrum.at_zero.value);
+    CHECK(relative_difference(value[1].value, value[0].value) < 1e-12);
+    CHECK(relative_difference(value[2].value, value[3].value) < 1e-8);
+  }
+}
+
+TEST_CASE("spectrum: its integral is the variance, and half of S_v(0) is met at half its width") {
+  for (const auto& [name, d] : small_samples()) {
+    Solved s(d);
+    const auto shape = reduced(s, {}, 1e-9).shape;
+    const auto r = reduced(s, {shape.fwhm.value / 2}, 1e-10);
+    INFO(name << " errors " << shape.variance.error << " " << shape.fwhm.error);
+    CHECK(relative_difference(shape.variance.value, s.mean_square_velocity()) < 1e-8);
+    CHECK(std::abs(shape.variance.value - s.mean_square_velocity()) < shape.variance.error);
+    CHECK(relative_difference(2 * r.spectrum.value[0].value, r.spectrum.at_zero.value) < 1e-8);
+  }
+}
+
+// b = -v, mu = 1, tau -> 0: closed forms, met as tau, so that two small tau tell the limit.
+TEST_CASE("spectrum: the white-noise limit", "[parallel]") {
+  const auto at = [](double tau) {
+    Solved s(test::on_hp(scene(1, 1, tau, 0.25 / std::sqrt(tau), {1, 0}), 6, 1e-9));
+    const auto r = reduced(s, {}, 1e-7);
+    return std::vector<double>{r.spectrum.at_zero.value, 1 / r.shape.fwhm.value,
+                               s.mean_square_velocity()};
+  };
+  const auto coarse = at(1.0 / 64), fine = at(1.0 / 256);
+  const std::vector<double> known{0.466391682733, 0.247854704305, 0.474864723839};
+  for (std::size_t n = 0; n < known.size(); ++n) {
+    CHECK(relative_difference(fine[n], known[n]) < 0.012);
+    CHECK(relative_difference((4 * fine[n] - coarse[n]) / 3, known[n]) < 5e-4);
+  }
+}
+
+TEST_CASE("spectrum: named results") {
+  const quantities::Spectrum spectrum{{2, 0.1}, {{1, 0.01}, {0.5, 0.02}}};
+  quantities::Results results;
+  quantities::append_spectrum({1, 3}, spectrum, results);
+  quantities::append_shape({{4, 0.2}, {0.3, 0.01}}, results);
+  const auto find = [&](const std::string& key) {
+    const auto same = [&key](const auto& result) { return result.key == key; };
+    return *std::find_if(results.begin(), results.end(), same);
+  };
+  CHECK(results.size() == 6);
+  CHECK(find("S_v").abscissa == std::vector<double>{1, 3});
+  CHECK(find("S_v").value == std::vector<double>{1, 0.5});
+  CHECK(find("S_v").error == std::vector<double>{0.01, 0.02});
+  CHECK(find("S_v").each_by_its_size);
+  CHECK(find("S_0").value[0] == 2);
+  CHECK(find("diffusivity").value[0] == 1);
+  CHECK(find("diffusivity").error[0] == 0.05);
+  CHECK(find("t_corr").value[0] == 0.25);
+  CHECK(find("t_corr").error[0] == Approx(0.0125).epsilon(1e-14));
+  CHECK(find("variance_from_spectrum").value[0] == 0.3);
+  results.clear();
+  quantities::append_spectrum({}, {{2, 0.1}, {}}, results);
+  CHECK(results.size() == 2);  // no frequencies, no array
+}

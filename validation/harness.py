@@ -1,0 +1,79 @@
+"""What the claims of validation/ share: running the program, and verdicts."""
+
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+
+
+class Refused(Exception):
+    """The program found the scene or the request invalid."""
+
+
+class Program:
+    def __init__(self, path):
+        self.path = path
+
+    def run(self, **options):
+        """The summary of one run; underscores of PETSc's solver prefixes stay as they are."""
+        with tempfile.TemporaryDirectory() as folder:
+            summary = pathlib.Path(folder) / "summary.json"
+            words = [str(self.path), "-summary", str(summary)]
+            for name, value in options.items():
+                words += ["-" + name, str(value)]
+            try:
+                done = subprocess.run(words, capture_output=True, text=True)
+            except OSError as problem:
+                sys.exit(f"{self.path} does not run: {problem.strerror}")
+            if done.returncode == 2:
+                raise Refused(done.stderr.strip())
+            if done.returncode not in (0, 3):  # 3: a discretisation fixed by hand is not refined
+                sys.exit(f"{' '.join(words)}\n{done.stderr}")
+            return json.loads(summary.read_text())
+
+
+class Report:
+    """Prints verdicts and remembers whether one was bad."""
+
+    def __init__(self):
+        self.failed = False
+
+    def claim(self, text, worst, tolerance):
+        """Holds if the largest deviation found is within the tolerance; a NaN is not."""
+        self._verdict(worst <= tolerance, text, f"largest {worst:.1e}, allowed {tolerance:.0e}")
+
+    def at_least(self, text, smallest, bound):
+        self._verdict(smallest >= bound, text, f"smallest {smallest:.3g}, wanted {bound:g}")
+
+    def _verdict(self, good, text, numbers):
+        self.failed |= not good
+        print(f"{'holds' if good else 'FAILS'}  {text}: {numbers}", flush=True)
+
+
+def difference(a, b):
+    """Relative to b."""
+    return abs(a - b) / abs(b)
+
+
+def worse(*values):
+    """The largest, or NaN if there is one: max() would lose it."""
+    return next((v for v in values if v != v), max(values))
+
+
+def last_place(text):
+    """One unit of the last digit of a number as it was printed."""
+    mantissa, _, exponent = text.lower().partition("e")
+    digits = len(mantissa.partition(".")[2])
+    return 10.0 ** (int(exponent or 0) - digits)
+
+
+def parser(doc):
+    """Command line with the options that every case has."""
+    result = argparse.ArgumentParser(description=doc.splitlines()[0])
+    result.add_argument("--quick", action="store_true", help="leave out the large cases")
+    result.add_argument("--program", default=ROOT / "build" / "stickslip", type=pathlib.Path)
+    return result
