@@ -12,6 +12,9 @@ void dgemm_(const char* transpose_a, const char* transpose_b, const int* m, cons
 void dgetrf_(const int* m, const int* n, double* a, const int* lda, int* pivots, int* info);
 void dgetrs_(const char* transpose, const int* n, const int* columns, const double* a,
              const int* lda, const int* pivots, double* b, const int* ldb, int* info);
+void dgesvd_(const char* left, const char* right, const int* m, const int* n, double* a,
+             const int* lda, double* values, double* u, const int* ldu, double* vt, const int* ldvt,
+             double* work, const int* work_size, int* info);
 }
 // NOLINTEND(readability-identifier-naming)
 
@@ -70,7 +73,7 @@ LuFactors::LuFactors(Matrix a) : lu_(std::move(a)), pivots_(static_cast<std::siz
   const int n = lu_.rows();
   int info = 0;
   if (n > 0) dgetrf_(&n, &n, lu_.data(), &n, pivots_.data(), &info);
-  if (info != 0) throw std::runtime_error("singular matrix in the fluid queue");
+  if (info != 0) throw std::runtime_error("a small dense matrix is singular");
 }
 
 Matrix LuFactors::solve(Matrix b) const {
@@ -87,6 +90,20 @@ std::vector<double> LuFactors::solve_row(std::vector<double> b) const {
   int info = 0;
   if (n > 0) dgetrs_("T", &n, &one, lu_.data(), &n, pivots_.data(), b.data(), &n, &info);
   return b;
+}
+
+SingularValues::SingularValues(Matrix a)
+    : left(a.rows(), a.rows()),
+      right_transposed(a.rows(), a.rows()),
+      value(static_cast<std::size_t>(a.rows())) {
+  const int n = a.rows(), work_size = 64 * n;
+  std::vector<double> work(static_cast<std::size_t>(work_size));
+  int info = 0;
+  if (n > 0) {
+    dgesvd_("A", "A", &n, &n, a.data(), &n, value.data(), left.data(), &n, right_transposed.data(),
+            &n, work.data(), &work_size, &info);
+  }
+  if (info != 0) throw std::runtime_error("the singular values of a matrix do not converge");
 }
 
 }  // namespace stickslip::exact

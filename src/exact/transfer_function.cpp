@@ -22,8 +22,10 @@ TransferFunction::TransferFunction(const Matrix& m, const std::vector<double>& l
   q_.resize(size * size);
   const int work_size = static_cast<int>(work.size());
   int selected = 0, info = 0;
-  zgees_("V", "N", nullptr, &n_, t.data(), &n_, &selected, values.data(), q_.data(), &n_,
-         work.data(), &work_size, real_work.data(), nullptr, &info);
+  if (n_ > 0) {
+    zgees_("V", "N", nullptr, &n_, t.data(), &n_, &selected, values.data(), q_.data(), &n_,
+           work.data(), &work_size, real_work.data(), nullptr, &info);
+  }
   if (info != 0) throw std::runtime_error("the Schur form of a reduced model does not converge");
   for (const Complex& entry : t) {
     t_real_.push_back(entry.real());

@@ -24,12 +24,20 @@ petsc::BvHandle basis_like(Vec vec, int columns) {
 bool appended(BV basis, int column, Vec vec) {
   constexpr double smallest = 1e-13;
   PetscReal size = 0, left = 0;
+  PetscBool dependent = PETSC_FALSE;
   check(VecNorm(vec, NORM_2, &size));
   check(BVInsertVec(basis, column, vec));
-  check(BVOrthogonalizeColumn(basis, column, nullptr, &left, nullptr));
-  if (!(left > smallest * size)) return false;
+  check(BVOrthogonalizeColumn(basis, column, nullptr, &left, &dependent));
+  if (dependent || !(left > smallest * size)) return false;
   check(BVScaleColumn(basis, column, 1 / left));
   return true;
+}
+
+// No space has more dimensions than vectors have entries.
+int room_for(int pairs, Vec vec) {
+  PetscInt entries = 0;
+  check(VecGetSize(vec, &entries));
+  return static_cast<int>(std::min<PetscInt>(pairs, entries));
 }
 
 petsc::VecHandle copy_of(Vec vec) {
@@ -73,9 +81,9 @@ ReducedModel::ReducedModel(operators::Systems& systems, operators::KolmogorovOpe
       root_(copy_of(ends.weight)),
       inverse_root_(copy_of(ends.weight)),
       minus_l_(std::move(minus_l)),
-      most_pairs_(most_pairs),
-      right_(basis_like(ends.b, most_pairs)),
-      left_(basis_like(ends.b, most_pairs)),
+      most_pairs_(room_for(most_pairs, ends.b)),
+      right_(basis_like(ends.b, most_pairs_)),
+      left_(basis_like(ends.b, most_pairs_)),
       b_(copy_of(ends.b)),
       c_(copy_of(ends.c)) {
   check(VecSqrtAbs(root_));
@@ -140,15 +148,29 @@ Reduced ReducedModel::reduce() const {
   check(BVDuplicate(right_, image.out()));
   for (BV basis : {BV(right_), BV(left_), BV(image)}) check(BVSetActiveColumns(basis, 0, pairs_));
   check(BVMatMult(right_, minus_l_.matrix(), image));
-  const exact::LuFactors g(products(right_, left_, pairs_));
-  exact::Matrix beta(pairs_, 1);
-  const auto left_b = products(left_, b_, pairs_);
-  for (int row = 0; row < pairs_; ++row) beta(row, 0) = left_b[row];
-  beta = g.solve(std::move(beta));
+  const exact::SingularValues g(products(right_, left_, pairs_));
+  const exact::Matrix projected = products(image, left_, pairs_);
+  // Directions of V and W that are orthogonal to the rounding of the products see nothing of each
+  // other; the others are scaled so that W^T V = 1.
+  constexpr double rounding = 1e-14;
+  const int seen = static_cast<int>(
+      std::count_if(g.value.begin(), g.value.end(), [](double s) { return s > rounding; }));
+  exact::Matrix to_left(seen, pairs_), to_right(pairs_, seen);
+  for (int n = 0; n < seen; ++n) {
+    const double scale = 1 / std::sqrt(g.value[n]);
+    for (int row = 0; row < pairs_; ++row) {
+      to_left(n, row) = scale * g.left(row, n);
+      to_right(row, n) = scale * g.right_transposed(n, row);
+    }
+  }
   Reduced r;
-  r.m = g.solve(-1.0 * products(image, left_, pairs_));
-  r.beta.assign(beta.data(), beta.data() + pairs_);
-  r.gamma = products(right_, c_, pairs_);
+  r.m = -1.0 * (to_left * projected * to_right);
+  exact::Matrix b(pairs_, 1);
+  const auto left_b = products(left_, b_, pairs_);
+  std::copy(left_b.begin(), left_b.end(), b.data());
+  b = to_left * b;
+  r.beta.assign(b.data(), b.data() + seen);
+  r.gamma = exact::row_times(products(right_, c_, pairs_), to_right);
   return r;
 }
 

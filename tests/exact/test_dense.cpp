@@ -6,6 +6,7 @@
 using stickslip::exact::LuFactors;
 using stickslip::exact::Matrix;
 using stickslip::exact::row_times;
+using stickslip::exact::SingularValues;
 
 namespace {
 
@@ -46,4 +47,25 @@ TEST_CASE("dense: factors solve from both sides") {
 TEST_CASE("dense: singular matrices are refused, empty ones are fine") {
   CHECK_THROWS_AS(LuFactors(Matrix(2, 2)), std::runtime_error);
   CHECK_NOTHROW(LuFactors(Matrix(0, 0)));
+}
+
+TEST_CASE("dense: singular values put a matrix together again") {
+  const Matrix a = sample(5, 5);
+  const SingularValues s(a);
+  Matrix scaled = s.left;
+  for (int c = 0; c < 5; ++c) {
+    if (c > 0) CHECK(s.value[c] <= s.value[c - 1]);
+    for (int r = 0; r < 5; ++r) scaled(r, c) *= s.value[c];
+  }
+  CHECK((scaled * s.right_transposed - a).largest() < 1e-14);
+}
+
+TEST_CASE("dense: singular values of singular and of empty matrices") {
+  Matrix golden(3, 3);  // rows (1, 1, 0), (1, 0, 0), 0
+  golden(0, 0) = golden(0, 1) = golden(1, 0) = 1;
+  const SingularValues s(golden);
+  CHECK(s.value[0] == Approx(1.6180339887498949).epsilon(1e-14));
+  CHECK(s.value[1] == Approx(0.6180339887498949).epsilon(1e-14));
+  CHECK(s.value[2] < 1e-15);
+  CHECK(SingularValues(Matrix(0, 0)).value.empty());
 }

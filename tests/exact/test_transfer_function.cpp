@@ -146,3 +146,7 @@ TEST_CASE("transfer function: what is not a number has no Schur form") {
   m(1, 2) = std::nan("");
   CHECK_THROWS_AS(TransferFunction(m, wave(4, 1), wave(4, 1)), std::runtime_error);
 }
+
+TEST_CASE("transfer function: a model of size 0 is 0") {
+  CHECK(TransferFunction(Matrix(0, 0), {}, {})({1, 2}) == Complex(0));
+}

@@ -58,4 +58,13 @@ class LuFactors {
   std::vector<int> pivots_;
 };
 
+/// A = left diag(value) right^T for a square matrix, the largest values first (dgesvd). O(n^3).
+struct SingularValues {
+  Matrix left, right_transposed;
+  std::vector<double> value;
+
+  /// Throws std::runtime_error when the iteration does not converge.
+  explicit SingularValues(Matrix a);
+};
+
 }  // namespace stickslip::exact

@@ -55,7 +55,8 @@ class ReducedModel {
 
   [[nodiscard]] int pairs() const { return pairs_; }
   [[nodiscard]] bool full() const { return pairs_ >= most_pairs_; }
-  /// The projection on all vectors so far. Collective. O(n pairs^2).
+  /// The projection on all vectors so far, without directions of V and W that see nothing of the
+  /// other space: of size 0 when b is never felt at c. Collective. O(n pairs^2).
   [[nodiscard]] Reduced reduce() const;
 
  private:
