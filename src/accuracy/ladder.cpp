@@ -28,12 +28,18 @@ int starting_degree(const options::Request& request) {
   return std::clamp(static_cast<int>(std::ceil(digits)) + extra, 3, kHighestDegree);
 }
 
-// The largest lambda of the equations to be solved, whose layers at v = 0 are the thinnest.
-double largest_lambda(const options::Request& request) {
+double largest(const std::vector<double>& values) {
+  return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
+}
+
+velocity::Rates fastest_rates(const options::Request& request) {
   using options::Quantity;
-  const bool transforms = request.wants(Quantity::laplace) || request.wants(Quantity::resolvent);
-  if (!transforms || request.lambda.empty()) return 0;
-  return *std::max_element(request.lambda.begin(), request.lambda.end());
+  velocity::Rates rates;
+  if (request.wants(Quantity::laplace) || request.wants(Quantity::resolvent)) {
+    rates.lambda = largest(request.lambda);
+  }
+  if (request.wants(Quantity::spectrum)) rates.omega = largest(request.omega);
+  return rates;
 }
 
 }  // namespace
@@ -41,7 +47,7 @@ double largest_lambda(const options::Request& request) {
 Ladder::Ladder(const options::Request& request)
     : scene_(request.scene), method_(request.method), accuracy_(request.accuracy) {
   first_degree_ = method_.degree.value_or(starting_degree(request));
-  lambda_ = largest_lambda(request);
+  rates_ = fastest_rates(request);
   halves_ = options::on_full_grid(request.route) ? 2 : 1;
   last_ = method_.fixed() ? 1 : free_rungs();
 }
@@ -74,7 +80,7 @@ Resolution Ladder::rung(int n) const {
   Resolution r;
   switch (method_.scheme) {
   case options::Scheme::hp:
-    r = hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n), lambda_);
+    r = hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n), rates_);
     break;
   case options::Scheme::upwind: r = upwind_resolution(scene_, points(n), tail_tolerance(n)); break;
   case options::Scheme::none: r = exact_resolution(scene_, tail_tolerance(n)); break;

@@ -16,6 +16,7 @@ velocity::MeshRule mesh_rule(const Resolution& resolution) {
   velocity::MeshRule rule;
   rule.v_max = resolution.v_max;
   rule.layers = resolution.layers;
+  rule.rates.omega = resolution.omega;
   return rule;
 }
 
@@ -66,14 +67,15 @@ double velocity_end(const model::Scene& scene, int levels, double tolerance) {
 }
 
 Resolution hp_resolution(const model::Scene& scene, int degree, int layers, double tolerance,
-                         double lambda) {
+                         const velocity::Rates& rates) {
   Resolution r;
   r.scheme = options::Scheme::hp;
   r.degree = degree;
+  r.omega = rates.omega;
   r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
   r.v_max = velocity_end(scene, r.levels, tolerance);
   velocity::MeshRule rule = mesh_rule(r);
-  rule.lambda = lambda;
+  rule.rates = rates;
   r.layers = layers > 0 ? layers : velocity::natural_layers(scene.process(r.levels), rule);
   return r;
 }

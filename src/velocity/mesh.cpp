@@ -9,6 +9,8 @@
 namespace stickslip::velocity {
 namespace {
 
+constexpr double kPi = 3.14159265358979323846;
+
 // Local decay rate of log-density in white noise, -d/dv log exp(-mu_d v + int b) = mu_d - b(v).
 double decay_rate(const model::Process& process, double v) {
   return process.friction.mu_d - process.drag(v);
@@ -62,6 +64,32 @@ double killed_layer(const model::Process& process, double lambda) {
   return (counts ? gap : gap + noise.delta) / (rate + lambda);
 }
 
+// Widest element that resolves the waves of frequency omega at v. A body that rests after the time
+// s sees the phase exp(i omega s): on a level at a distance a from mu_d the wave length is
+// 2 pi a/omega, and jumps of the noise damp it as exp(-Lambda v/a). Two waves an element are
+// enough at the degrees in use; where Lambda v/a > 20 nothing is left of a wave. Up to 8 Lambda the
+// damping is so strong that graded elements do, and waves much faster than the noise are small
+// beside the smooth part, so that they are followed up to 40 Lambda only.
+double wave_width(const model::Process& process, double omega, double v) {
+  const double rate = process.noise.rate();
+  const double slowest = std::max(gap_below(process), rate * v / 20);
+  return 4 * kPi * slowest / std::min(omega, 40 * rate);
+}
+
+// Cuts elements that are too wide for the waves.
+std::vector<double> cut_for_waves(const model::Process& process, double omega,
+                                  const std::vector<double>& ends) {
+  std::vector<double> cut{ends.front()};
+  for (std::size_t n = 1; n < ends.size(); ++n) {
+    const double start = ends[n - 1], width = ends[n] - start;
+    const auto pieces =
+        static_cast<int>(std::ceil(width / wave_width(process, omega, start) - 1e-9));
+    for (int p = 1; p < pieces; ++p) cut.push_back(start + width * p / pieces);
+    cut.push_back(ends[n]);
+  }
+  return cut;
+}
+
 }  // namespace
 
 // Grading with one ratio down to the finest layer resolves exponentials of every scale alike, so
@@ -72,7 +100,7 @@ double smallest_scale(const model::Process& process, double lambda) {
 }
 
 int natural_layers(const model::Process& process, const MeshRule& rule) {
-  const double span = graded_end(process, rule) / smallest_scale(process, rule.lambda);
+  const double span = graded_end(process, rule) / smallest_scale(process, rule.rates.lambda);
   return span <= 1 ? 1 : 1 + static_cast<int>(std::ceil(std::log(span) / -std::log(rule.ratio)));
 }
 
@@ -87,7 +115,8 @@ std::vector<double> element_ends(const model::Process& process, const MeshRule& 
     // A remainder much shorter than its neighbour is merged into it.
     ends.push_back(next + 0.3 * step >= rule.v_max ? rule.v_max : next);
   }
-  return ends;
+  const bool waves = rule.rates.omega > 8 * process.noise.rate();
+  return waves ? cut_for_waves(process, rule.rates.omega, ends) : ends;
 }
 
 double tail_velocity(const model::Process& process, double tolerance) {

@@ -11,8 +11,8 @@ import re
 import statistics
 import sys
 
-ROOMS = ("support", "model", "exact", "velocity", "petsc", "options", "operators", "quantities", "routes",
-         "accuracy", "io", "app")
+ROOMS = ("support", "model", "exact", "velocity", "simulation", "petsc", "options", "operators", "quantities",
+         "routes", "accuracy", "io", "app")
 LONGEST, LONG, MEDIAN = 60, 30, 8
 
 

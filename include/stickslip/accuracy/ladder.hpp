@@ -34,8 +34,8 @@ class Ladder {
   model::Scene scene_;
   options::Method method_;
   double accuracy_;
-  int first_degree_ = 0;  // of rung 1
-  double lambda_ = 0;     // largest one asked for
+  int first_degree_ = 0;   // of rung 1
+  velocity::Rates rates_;  // of the equations to be solved
   int halves_ = 1;
   int last_;
 };

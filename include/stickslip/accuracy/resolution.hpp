@@ -7,6 +7,7 @@
 #include "stickslip/model/scene.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/velocity/axis.hpp"
+#include "stickslip/velocity/mesh.hpp"
 
 namespace stickslip::accuracy {
 
@@ -14,6 +15,7 @@ struct Resolution {
   options::Scheme scheme = options::Scheme::hp;
   int degree = 0;    ///< hp: polynomial degree
   int layers = 0;    ///< hp: elements graded towards v = 0
+  double omega = 0;  ///< hp: frequency whose waves the elements resolve [1/time]
   int points = 0;    ///< upwind: nodes per noise step
   int levels = 0;    ///< N, noise levels on each side of 0
   double v_max = 0;  ///< end of the velocity axis [velocity]
@@ -32,9 +34,9 @@ struct Resolution {
 [[nodiscard]] double velocity_end(const model::Scene& scene, int levels, double tolerance);
 
 /// hp of polynomial degree `degree`, the open rest chosen for truncation errors of `tolerance`;
-/// `layers` 0 are chosen for equations (lambda - L) u = f with lambda from 0 to `lambda` [1/time].
+/// `layers` 0 are chosen for equations with rates up to `rates`.
 [[nodiscard]] Resolution hp_resolution(const model::Scene& scene, int degree, int layers,
-                                       double tolerance, double lambda = 0);
+                                       double tolerance, const velocity::Rates& rates = {});
 
 /// Upwind with `points` nodes per noise step, the open rest chosen as above.
 [[nodiscard]] Resolution upwind_resolution(const model::Scene& scene, int points, double tolerance);

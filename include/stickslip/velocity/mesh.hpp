@@ -7,13 +7,19 @@
 
 namespace stickslip::velocity {
 
+/// Fastest rates of the equations (z - L) u = f to be solved [1/time].
+struct Rates {
+  double lambda = 0;  ///< largest real z
+  double omega = 0;   ///< largest |Im z|
+};
+
 /// What fixes the elements. See mesh.cpp for the reasons behind the numbers.
 struct MeshRule {
   double v_max = 1;    ///< end of the axis
   double ratio = 0.3;  ///< quotient of neighbouring element ends near v = 0
   double decay = 8;    ///< largest drop of log-density over one element
   int layers = 0;      ///< elements of the graded part; 0: from smallest_scale
-  double lambda = 0;   ///< largest lambda of the equations to be solved [1/time]
+  Rates rates;
 };
 
 /// Thickness of the finest layer at v = 0 that a solution of (lambda - L) u = f shows, or one for

@@ -1,0 +1,113 @@
+#pragma once
+/// Motion between two jumps of the noise: u' = force + b(u) for the speed u = |V| >= 0.
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <vector>
+
+#include "stickslip/model/drag.hpp"
+
+namespace stickslip::simulation {
+
+/// A piece of a slide at constant force: over `time`, from one speed to `end`.
+struct Piece {
+  double time = 0;
+  double end = 0;        ///< speed at the end; 0 where the body came to rest
+  double path = 0;       ///< int u dt
+  double square = 0;     ///< int u^2 dt
+  bool stopped = false;  ///< whether u reached 0 before the time was over
+};
+
+namespace detail {
+
+// Below it the series are right to 1e-11, and cheaper than an exponential.
+constexpr double kSeries = 0.02;
+
+// sum (-z)^n coefficient_n
+template <std::size_t terms>
+[[nodiscard]] double series(double z, const double (&coefficient)[terms]) {
+  double sum = 0;
+  for (std::size_t n = terms; n-- > 0;) sum = coefficient[n] - z * sum;
+  return sum;
+}
+
+/// (1 - exp(-z))/z.
+[[nodiscard]] inline double phi_one(double z) {
+  if (z >= kSeries) return (1 - std::exp(-z)) / z;
+  return series(z, {1, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120});
+}
+
+/// (1 - phi_one)/z.
+[[nodiscard]] inline double phi_two(double z, double one) {
+  if (z >= kSeries) return (1 - one) / z;
+  return series(z, {1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720});
+}
+
+/// int_0^1 ((1 - exp(-z s))/z)^2 ds.
+[[nodiscard]] inline double mean_square(double z, double one) {
+  if (z >= kSeries) return (1 - one - z * one * one / 2) / (z * z);
+  return series(z, {1.0 / 3, 1.0 / 4, 7.0 / 60, 1.0 / 24, 31.0 / 2520});
+}
+
+}  // namespace detail
+
+/// Closed forms for b(u) = -c u, c >= 0, to 1e-11: nothing beside the spread of any sample. Local.
+class LinearFlow {
+ public:
+  explicit LinearFlow(const model::Drag& drag) : c_(drag.linear) {}
+
+  /// Moves for `time`, or until the body stops. `integrals`: whether path and square are wanted.
+  [[nodiscard]] Piece move(double speed, double force, double time, bool integrals) const;
+
+  /// int_0^time u(s) exp(-i omega s) ds over a piece, for each omega.
+  void transform(double speed, double force, const Piece& piece, const std::vector<double>& omega,
+                 std::vector<std::complex<double>>& result) const;
+
+ private:
+  [[nodiscard]] double time_to_stop(double speed, double force) const;
+
+  double c_;
+};
+
+inline double LinearFlow::time_to_stop(double speed, double force) const {
+  return c_ > 0 ? std::log1p(-c_ * speed / force) / c_ : -speed / force;
+}
+
+inline Piece LinearFlow::move(double speed, double force, double time, bool integrals) const {
+  Piece piece;
+  double one = detail::phi_one(c_ * time);
+  piece.time = time;
+  piece.end = speed + time * one * (force - c_ * speed);
+  if (piece.end <= 0) {
+    piece.stopped = true;
+    piece.end = 0;
+    piece.time = std::min(time, time_to_stop(speed, force));
+    one = detail::phi_one(c_ * piece.time);
+  }
+  if (!integrals) return piece;
+  const double t = piece.time, z = c_ * t, gain = force * t;
+  piece.path = t * (speed * one + gain * detail::phi_two(z, one));
+  piece.square = t * (speed * speed * one * (1 - z * one / 2) +
+                      gain * (speed * one * one + gain * detail::mean_square(z, one)));
+  return piece;
+}
+
+/// Any other drag, by Runge-Kutta-Fehlberg steps of order 7(8) from Boost.Odeint, whose errors are
+/// held to 1e-13; where the speed changes sign within a step, the step is cut there.
+class GeneralFlow {
+ public:
+  explicit GeneralFlow(const model::Drag& drag) : drag_(drag) {}
+
+  /// As LinearFlow::move.
+  [[nodiscard]] Piece move(double speed, double force, double time, bool integrals) const;
+  /// As LinearFlow::transform.
+  void transform(double speed, double force, const Piece& piece, const std::vector<double>& omega,
+                 std::vector<std::complex<double>>& result) const;
+
+ private:
+  model::Drag drag_;
+};
+
+}  // namespace stickslip::simulation

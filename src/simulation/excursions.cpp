@@ -1,0 +1,148 @@
+#include "stickslip/simulation/excursions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "stickslip/simulation/flow.hpp"
+
+namespace stickslip::simulation {
+namespace {
+
+/// The noise and the forces in tables over the levels that occur.
+class Levels {
+ public:
+  explicit Levels(const model::Process& process)
+      : k_(process.static_index()), reach_(reach(process)), mean_wait_(1 / process.noise.rate()) {
+    for (int i = -reach_; i <= reach_; ++i) {
+      level_.push_back(process.noise.level(i));
+      force_.push_back(process.excess(i));
+      // 2^-32 is far below what any number of excursions resolves.
+      up_.push_back(static_cast<std::uint64_t>(std::llround(process.noise.up(i) * 0x1p32)));
+    }
+  }
+
+  [[nodiscard]] int k() const { return k_; }
+  [[nodiscard]] bool rests(int i) const { return std::abs(i) <= k_; }
+  [[nodiscard]] double level(int i) const { return level_[at(i)]; }
+  /// Acceleration at v = 0 of a body that moves upwards.
+  [[nodiscard]] double force(int i) const { return force_[at(i)]; }
+  [[nodiscard]] double wait(RandomStream& random) const {
+    return mean_wait_ * random.exponential();
+  }
+  [[nodiscard]] int next(int i, RandomStream& random) const {
+    const int next = i + (random.half_word() < up_[at(i)] ? 1 : -1);
+    if (std::abs(next) > reach_) throw std::runtime_error("the noise left 40 deviations");
+    return next;
+  }
+
+ private:
+  // The noise passes 40 standard deviations with probability exp(-800).
+  static int reach(const model::Process& process) {
+    const double far = 40 / (std::sqrt(process.noise.tau) * process.noise.delta);
+    const double most = std::min<double>(process.noise.levels, process.static_index() + 2 + far);
+    return static_cast<int>(most);
+  }
+  [[nodiscard]] std::size_t at(int i) const { return static_cast<std::size_t>(i + reach_); }
+
+  int k_, reach_;
+  double mean_wait_;
+  std::vector<double> level_, force_;
+  std::vector<std::uint64_t> up_;  // alpha_i in units of 2^-32
+};
+
+/// In the frame of the motion: speed u = |V| >= 0, level j = i sign(V).
+template <class Flow>
+class Source : public ExcursionSource {
+ public:
+  Source(const model::Process& process, const Wanted& wanted)
+      : levels_(process), flow_(process.drag), wanted_(wanted) {
+    piece_transform_.resize(wanted.omega.size());
+    phase_.resize(wanted.omega.size());
+  }
+
+  void draw(RandomStream& random, Excursion& e) override {
+    e = {.transform = std::move(e.transform)};
+    e.transform.assign(wanted_.omega.size(), 0.0);
+    std::fill(phase_.begin(), phase_.end(), 1.0);
+    double wait = levels_.wait(random);
+    slide(random, e, wait);
+    stay(random, e, wait);
+  }
+
+ private:
+  // Until rest; `wait` is the time to the next jump of the noise.
+  void slide(RandomStream& random, Excursion& e, double& wait) {
+    const bool integrals = wanted_.moments || !wanted_.omega.empty();
+    int j = levels_.k() + 1, sign = 1;
+    double speed = 0;
+    for (;;) {
+      const double force = levels_.force(j);
+      const Piece piece = flow_.move(speed, force, wait, integrals);
+      follow(e, piece, j);
+      if (!wanted_.omega.empty()) follow_transform(e, piece, speed, force, sign);
+      speed = piece.end;
+      if (!piece.stopped) {
+        j = levels_.next(j, random);
+        wait = levels_.wait(random);
+        ++e.jumps;
+        continue;
+      }
+      wait -= piece.time;
+      if (levels_.rests(j)) break;
+      j = -j;  // pushed on the other way
+      sign = -sign;
+    }
+    e.entry = sign * j;
+  }
+
+  void follow(Excursion& e, const Piece& piece, int j) const {
+    e.slide += piece.time;
+    e.path += piece.path;
+    e.square += piece.square;
+    const double x = levels_.level(j);
+    e.product += x * piece.path;
+    if (!wanted_.noise) return;
+    e.noise_square += x * x * piece.time;
+    if (levels_.rests(j)) e.within += piece.time;
+  }
+
+  void follow_transform(Excursion& e, const Piece& piece, double speed, double force, int sign) {
+    flow_.transform(speed, force, piece, wanted_.omega, piece_transform_);
+    for (std::size_t n = 0; n < phase_.size(); ++n) {
+      e.transform[n] += static_cast<double>(sign) * phase_[n] * piece_transform_[n];
+      phase_[n] *= std::polar(1.0, -wanted_.omega[n] * piece.time);
+    }
+  }
+
+  // Until |X| > mu_s.
+  void stay(RandomStream& random, Excursion& e, double wait) const {
+    int i = e.entry;
+    for (;;) {
+      e.stick += wait;
+      if (wanted_.noise) e.noise_square += levels_.level(i) * levels_.level(i) * wait;
+      i = levels_.next(i, random);
+      ++e.jumps;
+      if (!levels_.rests(i)) break;
+      wait = levels_.wait(random);
+    }
+    e.within += e.stick;
+    e.turned = i < 0;
+  }
+
+  Levels levels_;
+  Flow flow_;
+  Wanted wanted_;
+  std::vector<std::complex<double>> piece_transform_, phase_;
+};
+
+}  // namespace
+
+std::unique_ptr<ExcursionSource> make_source(const model::Process& process, const Wanted& wanted) {
+  if (process.drag.cubic == 0) return std::make_unique<Source<LinearFlow>>(process, wanted);
+  return std::make_unique<Source<GeneralFlow>>(process, wanted);
+}
+
+}  // namespace stickslip::simulation
