@@ -205,17 +205,44 @@ bool closed_noise_law(const options::Request& request) {
 }
 
 bool needs_system(const options::Request& request) {
-  return request.quantities.size() > (closed_noise_law(request) ? 1 : 0);
+  std::size_t others = request.quantities.size();
+  for (bool closed : {closed_noise_law(request), request.wants(Quantity::trajectory)}) {
+    others -= closed ? 1 : 0;
+  }
+  return others > 0;
+}
+
+Outcome simulate(MPI_Comm comm, const options::Request& request,
+                 const routes::SimulationProgress& progress) {
+  Outcome outcome;
+  auto simulated = routes::monte_carlo(comm, request, progress);
+  outcome.last.results = std::move(simulated.results);
+  outcome.reached = simulated.reached;
+  outcome.shortfall = simulated.shortfall;
+  outcome.simulation = std::move(simulated);
+  return outcome;
 }
 
 }  // namespace
 
-Outcome refine(MPI_Comm comm, const options::Request& request, const Progress& progress) {
+Outcome refine(MPI_Comm comm, const options::Request& request, const Progress& progress,
+               const routes::SimulationProgress& simulation_progress) {
   Outcome outcome;
   outcome.reached = true;
-  if (needs_system(request)) outcome = Refiner(comm, request, progress).run();
+  if (needs_system(request)) {
+    outcome = request.route == options::Route::monte_carlo
+                  ? simulate(comm, request, simulation_progress)
+                  : Refiner(comm, request, progress).run();
+  }
   if (closed_noise_law(request)) {
     quantities::append_noise_law(request.scene.meant(), outcome.last.results);
+  }
+  if (request.wants(Quantity::trajectory)) {
+    outcome.path = simulation::simulate_path(request.scene.meant(), request.start_level,
+                                             request.start_v, request.horizon, request.seed);
+  }
+  if (!request.references.empty()) {
+    outcome.comparison = compare(request.compared, request.references, outcome.last.results);
   }
   return outcome;
 }

@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "stickslip/accuracy/refinement.hpp"
-#include "stickslip/io/atomic_file.hpp"
 #include "stickslip/io/provenance.hpp"
 #include "stickslip/io/report.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/options/table.hpp"
 #include "stickslip/petsc/blas.hpp"
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/support/atomic_file.hpp"
 #include "stickslip/support/errors.hpp"
 
 namespace stickslip::app {
@@ -68,21 +68,41 @@ accuracy::Progress progress_of(const options::Request& request, bool first_rank)
   };
 }
 
+routes::SimulationProgress simulation_progress_of(const options::Request& request) {
+  if (!request.progress) return {};
+  return [](const routes::SimulationState& s) {
+    const double share = 100 * s.excursions / s.wanted;
+    say(fmt::format(
+        "simulated {:.3g} of {:.3g} excursions ({:.0f} %), {:.2g} jumps/s, about {:.0f} "
+        "s left",
+        s.excursions, s.wanted, share, s.jumps / s.seconds, s.seconds_left));
+  };
+}
+
+int status_of(const accuracy::Outcome& outcome) {
+  const bool agrees = !outcome.comparison || !outcome.comparison->disagrees;
+  return static_cast<int>(outcome.reached && agrees ? ExitStatus::done : ExitStatus::not_reached);
+}
+
 int compute(const options::Request& request, Clock::time_point start, double start_up) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const bool first_rank = petsc::rank(comm) == 0;
   if (first_rank) warn(request);
-  const auto outcome = accuracy::refine(comm, request, progress_of(request, first_rank));
+  const auto outcome = accuracy::refine(comm, request, progress_of(request, first_rank),
+                                        simulation_progress_of(request));
   const io::RunTimes times{start_up, start_up + seconds_since(start)};
   if (!request.output.empty()) io::write_hdf5(comm, request, outcome, times);
   if (first_rank) {
     if (!request.summary.empty()) {
-      io::write_text(request.summary, io::summary(comm, request, outcome, times));
+      write_text(request.summary, io::summary(comm, request, outcome, times));
+    }
+    if (!request.trajectory.empty() && outcome.path) {
+      write_text(request.trajectory, io::trajectory_csv(*outcome.path));
     }
     std::fputs(io::table(request, outcome, times).c_str(), stdout);
     std::fflush(stdout);
   }
-  return static_cast<int>(outcome.reached ? ExitStatus::done : ExitStatus::not_reached);
+  return status_of(outcome);
 }
 
 int tell(const Failure& failure, bool first_rank) {

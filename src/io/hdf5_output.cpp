@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "stickslip/io/hdf5_file.hpp"
 #include "stickslip/io/provenance.hpp"
@@ -18,6 +19,13 @@ std::string group_name(std::string key) {
   return key;
 }
 
+template <class Row, class Get>
+std::vector<double> column(const std::vector<Row>& rows, Get get) {
+  std::vector<double> values;
+  for (const Row& row : rows) values.push_back(get(row));
+  return values;
+}
+
 void write_results(Hdf5File& file, const quantities::Results& results) {
   file.make_group("/results");
   for (const auto& r : results) {
@@ -27,10 +35,16 @@ void write_results(Hdf5File& file, const quantities::Results& results) {
     if (r.is_scalar()) {
       file.write_scalar(group + "/value", r.value[0]);
       file.write_scalar(group + "/error", r.error[0]);
+      if (r.ci95.empty()) continue;
+      file.write_scalar(group + "/low", r.ci95[0].first);
+      file.write_scalar(group + "/high", r.ci95[0].second);
     } else {
       file.write_array(group + "/" + r.abscissa_name, r.abscissa);
       file.write_array(group + "/value", r.value);
       file.write_array(group + "/error", r.error);
+      if (r.ci95.empty()) continue;
+      file.write_array(group + "/low", column(r.ci95, [](const auto& c) { return c.first; }));
+      file.write_array(group + "/high", column(r.ci95, [](const auto& c) { return c.second; }));
     }
   }
 }
@@ -73,6 +87,40 @@ void write_density(Hdf5File& file, const quantities::DensityField& field, double
   file.attribute("/density/marginal_v", "meaning", "density of V without its atom P_stick at 0");
   file.attribute("/density", "error_of_distribution_function_of_speed", error);
   file.attribute("/density", "probability_at_velocity_cut", field.cut_mass);
+}
+
+void write_path(Hdf5File& file, const simulation::Path& path) {
+  file.make_group("/trajectory");
+  file.attribute("/trajectory", "meaning",
+                 "state just after each event; between events x and y stay and v follows the flow");
+  file.write_array("/trajectory/time", path.time);
+  file.write_array("/trajectory/x", path.x);
+  file.write_array("/trajectory/y", path.y);
+  file.write_array("/trajectory/v", path.v);
+}
+
+// One group for each quantity, with a row for each of its arguments.
+void write_comparison(Hdf5File& file, const accuracy::Comparison& comparison) {
+  using accuracy::Compared;
+  file.make_group("/comparison");
+  file.attribute("/comparison", "file", comparison.file);
+  file.attribute("/comparison", "disagrees", comparison.disagrees ? "yes" : "no");
+  std::map<std::string, std::vector<Compared>> groups;
+  for (const auto& row : comparison.rows) groups[row.reference.quantity].push_back(row);
+  for (const auto& [key, rows] : groups) {
+    const std::string group = "/comparison/" + group_name(key);
+    file.make_group(group);
+    const auto write = [&](const char* name, auto get) {
+      file.write_array(group + "/" + name, column(rows, get));
+    };
+    write("argument", [](const Compared& c) { return c.reference.argument.value_or(0); });
+    write("value", [](const Compared& c) { return c.value; });
+    write("error", [](const Compared& c) { return c.error; });
+    write("reference", [](const Compared& c) { return c.reference.value; });
+    write("low", [](const Compared& c) { return c.reference.low; });
+    write("high", [](const Compared& c) { return c.reference.high; });
+    write("z", [](const Compared& c) { return c.z; });
+  }
 }
 
 void write_modes(Hdf5File& file, const std::string& parity,
@@ -126,6 +174,8 @@ void write_hdf5(MPI_Comm comm, const options::Request& request, const accuracy::
   write_record(file, comm, request, outcome, times);
   write_modes(file, "even", outcome.last.even);
   write_modes(file, "odd", outcome.last.odd);
+  if (outcome.path) write_path(file, *outcome.path);
+  if (outcome.comparison) write_comparison(file, *outcome.comparison);
   if (!request.wants(options::Quantity::density)) return file.commit();
   const auto field = quantities::density_field(*outcome.last.law);
   write_density(file, field, outcome.speed_law_error);

@@ -38,6 +38,8 @@ Json results_of(const accuracy::Outcome& outcome) {
       results[r.key] = {{r.abscissa_name, r.abscissa}, {"value", r.value}, {"error", r.error}};
     }
     if (!r.unit.empty()) results[r.key]["unit"] = r.unit;
+    if (r.ci95.empty()) continue;
+    results[r.key]["ci95"] = r.is_scalar() ? Json(r.ci95[0]) : Json(r.ci95);
   }
   return results;
 }
@@ -77,14 +79,43 @@ Json step_of(const accuracy::Step& step) {
   return json;
 }
 
+Json simulation_of(const routes::Simulated& simulated) {
+  const auto& s = simulated.state;
+  return {{"excursions", s.excursions},
+          {"continued_from", simulated.continued_from},
+          {"jumps", s.jumps},
+          {"seconds", s.seconds}};
+}
+
 Json cost_of(const accuracy::Outcome& outcome, const RunTimes& times) {
   Json cost{{"seconds", times.total},
             {"start_up_seconds", times.start_up},
             {"peak_resident_bytes", petsc::peak_resident_bytes()}};
   cost.update(seconds_of(outcome.total));
+  if (outcome.simulation) cost["simulation"] = simulation_of(*outcome.simulation);
   cost["steps"] = Json::array();
   for (const auto& step : outcome.steps) cost["steps"].push_back(step_of(step));
   return cost;
+}
+
+Json comparison_of(const accuracy::Comparison& comparison) {
+  Json rows = Json::array();
+  for (const auto& c : comparison.rows) {
+    const auto& r = c.reference;
+    Json row{{"quantity", r.quantity}};
+    if (r.argument) row["argument"] = *r.argument;
+    row.update({{"value", c.value},
+                {"error", c.error},
+                {"reference", r.value},
+                {"ci95", {r.low, r.high}},
+                {"z", c.z},
+                {"verdict", verdict_text(c.verdict)}});
+    rows.push_back(std::move(row));
+  }
+  return {{"file", comparison.file},
+          {"disagrees", comparison.disagrees},
+          {"left_out", comparison.left_out},
+          {"rows", std::move(rows)}};
 }
 
 Json plan_of(const petsc::Ledger& total) {
@@ -106,6 +137,7 @@ std::string summary(MPI_Comm comm, const options::Request& request,
   json["results"] = results_of(outcome);
   json["accuracy"] = {{"asked", request.accuracy}, {"reached", outcome.reached}};
   if (!outcome.reached) json["accuracy"]["shortfall"] = outcome.shortfall;
+  if (outcome.comparison) json["comparison"] = comparison_of(*outcome.comparison);
   json["cost"] = cost_of(outcome, times);
   json["plan"] = plan_of(outcome.total);
   for (const auto& [name, value] : provenance(comm)) json["provenance"][name] = value;

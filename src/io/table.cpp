@@ -67,7 +67,47 @@ std::string step_line(const accuracy::Step& step) {
   return line + "\n";
 }
 
+std::string simulation_lines(const routes::Simulated& simulated) {
+  const auto& s = simulated.state;
+  std::string text = fmt::format("{:.8g} excursions, ", s.excursions);
+  if (simulated.continued_from > 0) {
+    text += fmt::format("{:.8g} of them from the checkpoint, ", simulated.continued_from);
+  }
+  return text + fmt::format("{:.4g} jumps of the noise in {:.2f} s ({:.3g} ns a jump)\n", s.jumps,
+                            s.seconds, s.jumps > 0 ? 1e9 * s.seconds / s.jumps : 0);
+}
+
+std::string comparison_line(const accuracy::Compared& c) {
+  const auto& r = c.reference;
+  const std::string argument = r.argument ? fmt::format("{:g}", *r.argument) : "";
+  return fmt::format("{:<16} {:>9} {:>17.10g} {:>17.10g} [{:.7g}, {:.7g}] {:>7.2f}  {}\n",
+                     r.quantity, argument, c.value, r.value, r.low, r.high, c.z,
+                     verdict_text(c.verdict));
+}
+
+std::string comparison_table(const accuracy::Comparison& comparison) {
+  constexpr std::size_t most = 40;  // the files hold all
+  std::string text =
+      fmt::format("\nagainst {}\n{:<16} {:>9} {:>17} {:>17} {} {:>7}  {}\n", comparison.file,
+                  "quantity", "argument", "value", "reference", "95 % interval", "z", "verdict");
+  const auto& rows = comparison.rows;
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    const bool shown = rows.size() <= most || n < most / 2 || n >= rows.size() - most / 2 ||
+                       rows[n].verdict == accuracy::Verdict::disagrees;
+    if (shown) text += comparison_line(rows[n]);
+    if (!shown && n == most / 2) text += "...\n";
+  }
+  for (const auto& name : comparison.left_out) text += name + ": not computed here\n";
+  const auto inside = std::count_if(rows.begin(), rows.end(),
+                                    [](const auto& row) { return std::abs(row.z) < 1.96; });
+  return text +
+         fmt::format("{} of {} values within 1.96 standard deviations; {}\n", inside, rows.size(),
+                     comparison.disagrees ? "the disagreement is significant at the level 1e-3"
+                                          : "no significant disagreement");
+}
+
 std::string cost_table(const options::Request& request, const accuracy::Outcome& outcome) {
+  if (outcome.simulation) return simulation_lines(*outcome.simulation);
   if (outcome.steps.empty()) return "no system was assembled: closed formulas only\n";
   std::string text = fmt::format(
       "{} {:>7} {:>8} {:>9} {:>10} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9}  {}\n",
@@ -95,11 +135,27 @@ std::string table(const options::Request& request, const accuracy::Outcome& outc
     text += fmt::format("{:<16} {:>24}  {:>8.1e}  of the distribution function of |V|\n", "density",
                         "in " + request.output, outcome.speed_law_error);
   }
+  if (outcome.path) {
+    text += fmt::format("trajectory up to {:g}: {} events\n", request.horizon,
+                        outcome.path->time.size());
+  }
+  if (outcome.comparison) text += comparison_table(*outcome.comparison);
   text += "\n" + cost_table(request, outcome);
-  text +=
-      fmt::format("accuracy {:g} {}; {:.2f} s in all, {:.2f} s of it start-up\n", request.accuracy,
-                  outcome.reached ? "reached" : "NOT reached: " + outcome.shortfall, times.total,
-                  times.start_up);
+  // Simulations go on to the number of excursions unless an accuracy is asked for.
+  if (!outcome.simulation || request.accuracy_given) {
+    text += fmt::format("accuracy {:g} {}; ", request.accuracy,
+                        outcome.reached ? "reached" : "NOT reached: " + outcome.shortfall);
+  }
+  return text +
+         fmt::format("{:.2f} s in all, {:.2f} s of it start-up\n", times.total, times.start_up);
+}
+
+std::string trajectory_csv(const simulation::Path& path) {
+  std::string text = "time,x,y,v\n";
+  for (std::size_t n = 0; n < path.time.size(); ++n) {
+    text += fmt::format("{:.17g},{:.17g},{:g},{:.17g}\n", path.time[n], path.x[n], path.y[n],
+                        path.v[n]);
+  }
   return text;
 }
 

@@ -105,18 +105,23 @@ struct Asked {
 const std::vector<Asked>& askable() {
   using enum Route;
   static const std::vector<Asked> all{
-      {"sticking", Quantity::sticking, {excursion, lambda, hitting, null_vector, fluid_queue}},
-      {"moments", Quantity::moments, {excursion, lambda, null_vector, fluid_queue}},
-      {"noise_law", Quantity::noise_law, {excursion, lambda, null_vector, fluid_queue}},
-      {"entry_law", Quantity::entry_law, {excursion, fluid_queue}},
+      {"sticking",
+       Quantity::sticking,
+       {excursion, lambda, hitting, null_vector, fluid_queue, monte_carlo}},
+      {"moments", Quantity::moments, {excursion, lambda, null_vector, fluid_queue, monte_carlo}},
+      {"noise_law",
+       Quantity::noise_law,
+       {excursion, lambda, null_vector, fluid_queue, monte_carlo}},
+      {"entry_law", Quantity::entry_law, {excursion, fluid_queue, monte_carlo}},
       {"density", Quantity::density, {excursion}},
-      {"laplace", Quantity::laplace, {excursion, fluid_queue}},
+      {"laplace", Quantity::laplace, {excursion, fluid_queue, monte_carlo}},
       {"resolvent", Quantity::resolvent, {excursion}},
       {"relaxation", Quantity::relaxation, {excursion}},
-      {"spectrum", Quantity::spectrum, {excursion}},
-      {"duration_density", Quantity::duration_density, {excursion}},
+      {"spectrum", Quantity::spectrum, {excursion, monte_carlo}},
+      {"duration_density", Quantity::duration_density, {excursion, monte_carlo}},
       {"autocorrelation", Quantity::autocorrelation, {excursion}},
-      {"expectation", Quantity::expectation, {excursion}}};
+      {"expectation", Quantity::expectation, {excursion}},
+      {"trajectory", Quantity::trajectory, {excursion, monte_carlo}}};
   return all;
 }
 
@@ -125,14 +130,57 @@ Route route_named(const std::string& name) {
   if (name == "hitting") return Route::hitting;
   if (name == "null_vector") return Route::null_vector;
   if (name == "fluid_queue") return Route::fluid_queue;
+  if (name == "monte_carlo") return Route::monte_carlo;
   return Route::excursion;
 }
 
-// The quantities named; of the default ones those that the route gives.
+// The quantity that gives a result of that name; empty if none does.
+std::string quantity_of(const std::string& key) {
+  static const std::vector<std::pair<std::string, std::vector<std::string>>> keys{
+      {"sticking", {"P_stick", "P_slide", "mean_stick", "mean_slide", "mean_excursion"}},
+      {"moments", {"E_V2", "E_absV", "E_XV", "E_V"}},
+      {"noise_law", {"P_X_le_mu_s", "E_X2"}},
+      {"entry_law", {"entry_law", "f_stick_0"}},
+      {"laplace", {"F_slide", "F_stick", "F_excursion"}},
+      {"duration_density",
+       {"f_slide", "f_stick", "f_excursion", "cdf_slide", "cdf_stick", "cdf_excursion"}},
+      {"spectrum", {"S_v", "S_0", "fwhm", "t_corr"}},
+      {"autocorrelation", {"C_vv"}}};
+  for (const auto& [quantity, names] : keys) {
+    if (std::count(names.begin(), names.end(), key) > 0) return quantity;
+  }
+  return "";
+}
+
+void read_compared(const Settings& settings, Request& request, Problems& problems) {
+  request.compared = settings.text("compare");
+  if (request.compared.empty()) return;
+  try {
+    request.references = read_references(request.compared);
+  } catch (const std::invalid_argument& error) {
+    settings.report(problems, "compare", error.what(),
+                    "name a file written by -output or -summary, or CSV with the columns "
+                    "quantity,argument,value,low,high");
+  }
+}
+
+// Those named; else those of the file to compare with; else the default ones.
+std::vector<std::string> quantity_names(const Settings& settings, const Request& request) {
+  if (settings.given("quantities") || request.references.empty()) {
+    return settings.list("quantities");
+  }
+  std::vector<std::string> names;
+  for (const auto& reference : request.references) {
+    names.push_back(quantity_of(reference.quantity));
+  }
+  return names;
+}
+
+// The quantities named; of others those that the route gives.
 void read_quantities(const Settings& settings, Request& request, Problems& problems) {
   std::vector<std::string> given_by_route, refused;
+  const auto names = quantity_names(settings, request);
   for (const auto& asked : askable()) {
-    const auto names = settings.list("quantities");
     const bool gives = std::count(asked.routes.begin(), asked.routes.end(), request.route) > 0;
     const bool named = std::count(names.begin(), names.end(), asked.name) > 0;
     if (gives) given_by_route.emplace_back(asked.name);
@@ -158,11 +206,26 @@ void read_observables(const Settings& settings, Request& request, Problems& prob
   }
 }
 
+// The values given, or those of the file to compare with.
+std::vector<double> arguments(const Settings& settings, const Request& request,
+                              const std::string& option, const std::string& quantity) {
+  std::vector<double> values = settings.numbers(option);
+  if (settings.given(option)) return values;
+  for (const auto& reference : request.references) {
+    const bool asks = reference.argument && quantity_of(reference.quantity) == quantity;
+    const double value = reference.argument.value_or(0);
+    if (asks && value >= 0 && std::count(values.begin(), values.end(), value) == 0) {
+      values.push_back(value);
+    }
+  }
+  return values;
+}
+
 // What the quantities and the route need besides the scene.
 void read_arguments(const Settings& settings, Request& request, Problems& problems) {
-  request.lambda = settings.numbers("lambda");
-  request.omega = settings.numbers("omega");
-  request.time = settings.numbers("time");
+  request.lambda = arguments(settings, request, "lambda", "laplace");
+  request.omega = arguments(settings, request, "omega", "spectrum");
+  request.time = arguments(settings, request, "time", "duration_density");
   read_observables(settings, request, problems);
   const bool transforms = request.wants(Quantity::laplace) || request.wants(Quantity::resolvent);
   const bool resolvent = request.wants(Quantity::resolvent) || request.wants(Quantity::expectation);
@@ -195,7 +258,12 @@ void read_arguments(const Settings& settings, Request& request, Problems& proble
   warn_unused("lambda", transforms || by_lambda);
   warn_unused("observable", resolvent);
   warn_unused("time", of_time);
-  warn_unused("start", request.wants(Quantity::expectation));
+  warn_unused("start", request.wants(Quantity::expectation) || request.wants(Quantity::trajectory));
+  warn_unused("horizon", request.wants(Quantity::trajectory));
+  const bool simulates = request.route == Route::monte_carlo;
+  warn_unused("excursions", simulates);
+  warn_unused("checkpoint", simulates);
+  warn_unused("seed", simulates || request.wants(Quantity::trajectory));
   warn_unused("transient_solver", of_time);
   warn_unused("omega", request.wants(Quantity::spectrum));
   warn_unused("spectrum_solver", request.wants(Quantity::spectrum));
@@ -226,6 +294,19 @@ void read_start(const Settings& settings, Request& request, Problems& problems) 
   request.start_level = static_cast<int>(level);
 }
 
+// A path is kept in memory.
+void read_horizon(const Settings& settings, Request& request, Problems& problems) {
+  request.horizon = settings.real("horizon");
+  const auto& scene = request.scene;
+  const double jumps = request.horizon * scene.process(1).noise.rate();
+  constexpr double most = 5e7;
+  if (!request.wants(Quantity::trajectory) || jumps <= most) return;
+  settings.report(
+      problems, "horizon",
+      fmt::format("means {:.1e} jumps of the noise, and {:.0e} can be kept", jumps, most),
+      fmt::format("take at most {:.3g}", request.horizon * most / jumps));
+}
+
 void read_spectrum_solver(const Settings& settings, Request& request, Problems& problems) {
   if (settings.text("spectrum_solver") != "direct") return;
   request.spectrum_solver = SpectrumSolver::direct;
@@ -239,6 +320,17 @@ void check_route(const Settings& settings, const Request& request, Problems& pro
   if (request.route != Route::excursion && request.scene.v_max) {
     settings.report(problems, "v_max", "is no choice of -route " + settings.text("route"),
                     "leave it out, or take -route excursion");
+  }
+  if (request.route == Route::monte_carlo) {
+    for (const char* name : {"scheme", "degree", "layers", "p"}) {
+      if (!settings.given(name)) continue;
+      settings.report(problems, name, "is no choice of -route monte_carlo, which has no grid in v",
+                      "leave it out");
+    }
+    if (request.wants(Quantity::spectrum) && request.omega.empty()) {
+      settings.report(problems, "quantities", "asks for the spectrum and no frequencies are given",
+                      "add for example -omega 0:10:41");
+    }
   }
   if (request.route != Route::fluid_queue) return;
   if (request.scene.drag.bounds_velocity()) {
@@ -307,13 +399,21 @@ void check_writable(const Settings& settings, const std::string& name, Problems&
 void read_output(const Settings& settings, Request& request, Problems& problems) {
   check_writable(settings, "summary", problems);
   check_writable(settings, "output", problems);
+  check_writable(settings, "trajectory", problems);
+  check_writable(settings, "checkpoint", problems);
   request.summary = settings.text("summary");
   request.output = settings.text("output");
+  request.trajectory = settings.text("trajectory");
+  request.checkpoint = settings.text("checkpoint");
   const std::string progress = settings.text("progress");
   request.progress = progress == "on" || (progress == "auto" && isatty(STDERR_FILENO) != 0);
   if (request.wants(Quantity::density) && request.output.empty()) {
     settings.report(problems, "quantities", "asks for density, a field that needs a file",
                     "add -output FILE.h5");
+  }
+  if (request.wants(Quantity::trajectory) && request.output.empty() && request.trajectory.empty()) {
+    settings.report(problems, "quantities", "asks for a trajectory, which needs a file",
+                    "add -output FILE.h5 or -trajectory FILE.csv");
   }
 }
 
@@ -463,16 +563,20 @@ Request read_request(const std::vector<std::string>& argv) {
   request.scene = read_scene(settings, request, problems);
   check_noise(settings, request.scene, problems);
   request.route = route_named(settings.text("route"));
+  read_compared(settings, request, problems);
   read_quantities(settings, request, problems);
   read_arguments(settings, request, problems);
   read_spectrum_solver(settings, request, problems);
-  if (request.wants(Quantity::expectation) && problems.empty()) {
-    read_start(settings, request, problems);
-  }
+  const bool starts = request.wants(Quantity::expectation) || request.wants(Quantity::trajectory);
+  if (starts && problems.empty()) read_start(settings, request, problems);
   if (settings.text("transient_solver") == "stepping") {
     request.transient_solver = TransientSolver::stepping;
   }
   request.accuracy = settings.real("accuracy");
+  request.accuracy_given = settings.given("accuracy");
+  request.excursions = settings.real("excursions");
+  request.seed = static_cast<std::uint64_t>(settings.real("seed"));
+  read_horizon(settings, request, problems);
   request.method = read_method(settings, problems);
   check_route(settings, request, problems);
   if (request.route == Route::fluid_queue) request.method.scheme = Scheme::none;

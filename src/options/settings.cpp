@@ -150,6 +150,7 @@ void Settings::parse(const Option& option, const std::string& value, Problems& p
   }
   case Kind::text: break;
   case Kind::path:
+  case Kind::input:
     if (value.empty()) problems.add(option, value, must, "name the file after the option");
     break;
   }

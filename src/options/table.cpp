@@ -90,7 +90,8 @@ Group question_group() {
           words(
               "quantities", Kind::list, "sticking,moments,noise_law",
               {"sticking", "moments", "noise_law", "entry_law", "density", "laplace", "resolvent",
-               "relaxation", "spectrum", "duration_density", "autocorrelation", "expectation"},
+               "relaxation", "spectrum", "duration_density", "autocorrelation", "expectation",
+               "trajectory"},
               "comma list. sticking: P_stick, P_slide, mean_stick, mean_slide, "
               "mean_excursion. moments: E_V2, E_absV, E_XV, E_V. noise_law: P_X_le_mu_s, "
               "E_X2. entry_law: the level at which sliding ends (an array), f_stick_0. "
@@ -102,7 +103,8 @@ Group question_group() {
               "duration_density: f_slide, "
               "f_stick, f_excursion and cdf_slide, cdf_stick, cdf_excursion on -time. "
               "autocorrelation: C_vv = E[V_0 V_t] on -time. expectation: E[f(Z_t)] from -start for "
-              "each -observable on -time, and its limit pi(f)"),
+              "each -observable on -time, and its limit pi(f). trajectory: one simulated path from "
+              "-start up to -horizon, to -output or -trajectory"),
           numbers("lambda", "1/time", not_negative(),
                   "values of lambda, as a,b,c or first:last:count or first:last:count:log. With "
                   "-route lambda one value, chosen from -accuracy if it is left out"),
@@ -150,12 +152,26 @@ Group method_group() {
                 "krylov: reduced models, all times at once. stepping: the backward Kolmogorov "
                 "equation by PETSc's time steppers, to check it (-backward_ts_...)"),
           words("route", Kind::choice, "excursion",
-                {"excursion", "lambda", "hitting", "null_vector", "fluid_queue"},
+                {"excursion", "lambda", "hitting", "null_vector", "fluid_queue", "monte_carlo"},
                 "excursion: one transposed solve with the sliding operator gives the whole "
                 "stationary law. The others work on both signs of v and check it. lambda: "
                 "lambda u_lambda for one small lambda. hitting: mean hitting times. null_vector: "
                 "the left null vector of the generator, by SLEPc. fluid_queue: b = 0 without any "
-                "discretisation in v"),
+                "discretisation in v. monte_carlo: simulated excursions, with 95 % confidence "
+                "intervals"),
+          integer("excursions", "1000000", whole(2, 1e15), {},
+                  "number of simulated excursions with -route monte_carlo; with -accuracy it stops "
+                  "before that when every interval is small enough",
+                  "a million gives about three digits"),
+          integer("seed", "1", whole(0, 9007199254740992), {},
+                  "seed of what is simulated; the same seed gives the same numbers on any number "
+                  "of ranks",
+                  "any whole number will do"),
+          real("horizon", "time", "100", positive(), "end of the trajectory",
+               "take for example 100"),
+          path("checkpoint",
+               "go on with the simulation of this file if it exists, and keep it there "
+               "every few seconds; more -excursions later add to it"),
       }};
 }
 
@@ -167,6 +183,19 @@ Group output_group() {
           path("summary", "write everything as JSON to this file"),
           path("output", "write everything and the fields as HDF5 to this file; with density also "
                          "FILE.xdmf, which ParaView opens"),
+          path("trajectory", "write the trajectory as CSV (time, x, y, v) to this file"),
+          {"compare",
+           Kind::input,
+           "",
+           "",
+           {},
+           {},
+           "hold the results against the values of this file: HDF5 or JSON of this program, or CSV "
+           "with columns quantity,argument,value,low,high (95 % intervals). Without -quantities, "
+           "-lambda, -omega or -time, those of the file are taken. Exit status 3 when they "
+           "disagree "
+           "(family-wise level 1e-3)",
+           ""},
           words("progress", Kind::choice, "auto", {"auto", "on", "off"},
                 "show what is being done; auto: when standard error is a terminal"),
       }};
@@ -186,7 +215,8 @@ std::string kind_name(Kind kind) {
   case Kind::list: return "list";
   case Kind::numbers: return "numbers";
   case Kind::text: return "text";
-  case Kind::path: return "file";
+  case Kind::path:
+  case Kind::input: return "file";
   }
   return "";
 }
@@ -245,7 +275,8 @@ std::string allowed_values(const Option& option) {
     return "numbers in " + option.range.text() +
            " as a,b,c or first:last:count or first:last:count:log";
   case Kind::text: return "text";
-  case Kind::path: return "a file name";
+  case Kind::path:
+  case Kind::input: return "a file name";
   }
   return "";
 }

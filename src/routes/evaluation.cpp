@@ -11,6 +11,7 @@ Evaluation evaluate(const Setting& setting) {
   case options::Route::hitting: return by_hitting(setting);
   case options::Route::null_vector: return by_null_vector(setting);
   case options::Route::fluid_queue: return by_fluid_queue(setting);
+  case options::Route::monte_carlo: break;  // has no discretisation
   }
   return {};
 }

@@ -3,13 +3,17 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "stickslip/accuracy/comparison.hpp"
 #include "stickslip/accuracy/resolution.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/petsc/ledger.hpp"
 #include "stickslip/routes/evaluation.hpp"
+#include "stickslip/routes/monte_carlo.hpp"
+#include "stickslip/simulation/path.hpp"
 
 namespace stickslip::accuracy {
 
@@ -30,14 +34,18 @@ struct Outcome {
   std::string shortfall;  ///< why not, and what would help
   std::vector<Step> steps;
   petsc::Ledger total;
-  double speed_law_error = 0;  ///< of the distribution function of |V|
+  double speed_law_error = 0;                   ///< of the distribution function of |V|
+  std::optional<routes::Simulated> simulation;  ///< of -route monte_carlo
+  std::optional<simulation::Path> path;         ///< of trajectory
+  std::optional<Comparison> comparison;         ///< of -compare
 };
 
 /// Called before each step with its number, its resolution and the seconds it is expected to take
 /// (0 for the first, of which nothing is known).
 using Progress = std::function<void(int, const Resolution&, double)>;
 
-/// Climbs the ladder of the request. The error estimate of a value is
+/// All that the request asks for. Deterministic routes climb the ladder of the request; the error
+/// estimate of a value is
 ///
 ///   max(error_per_change |last change|, error_per_earlier_change |change before|)
 ///   + error of the route on this discretisation,
@@ -46,6 +54,7 @@ using Progress = std::function<void(int, const Resolution&, double)>;
 /// the accuracy, when rounding forbids it, or at the end of the ladder. Collective. Throws NoMemory
 /// before anything is allocated that would not fit, NotReached when a solver fails.
 [[nodiscard]] Outcome refine(MPI_Comm comm, const options::Request& request,
-                             const Progress& progress);
+                             const Progress& progress,
+                             const routes::SimulationProgress& simulation_progress);
 
 }  // namespace stickslip::accuracy

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "stickslip/io/atomic_file.hpp"
 #include "stickslip/petsc/handle.hpp"
+#include "stickslip/support/atomic_file.hpp"
 
 namespace stickslip::io {
 

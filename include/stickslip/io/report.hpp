@@ -24,6 +24,9 @@ struct RunTimes {
 [[nodiscard]] std::string summary(MPI_Comm comm, const options::Request& request,
                                   const accuracy::Outcome& outcome, const RunTimes& times);
 
+/// The columns time, x, y, v.
+[[nodiscard]] std::string trajectory_csv(const simulation::Path& path);
+
 /// Writes -output: results, steps, options, provenance, and the density field if it was asked
 /// for, with FILE.xdmf beside it. Collective. Throws std::runtime_error when the disk refuses.
 void write_hdf5(MPI_Comm comm, const options::Request& request, const accuracy::Outcome& outcome,

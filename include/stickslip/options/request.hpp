@@ -1,6 +1,7 @@
 #pragma once
 /// A validated run: the scene, the questions, the method and where the answers go.
 
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "stickslip/model/observable.hpp"
 #include "stickslip/model/scene.hpp"
+#include "stickslip/options/reference.hpp"
 
 namespace stickslip::options {
 
@@ -24,7 +26,8 @@ enum class Quantity {
   spectrum,
   duration_density,
   autocorrelation,
-  expectation
+  expectation,
+  trajectory
 };
 
 /// Discretisation in v; `none` for the fluid queue, which needs none.
@@ -34,7 +37,7 @@ enum class Scheme { hp, upwind, none };
 enum class Factors { in_memory, on_disk, incomplete };
 
 /// By which system of equations.
-enum class Route { excursion, lambda, hitting, null_vector, fluid_queue };
+enum class Route { excursion, lambda, hitting, null_vector, fluid_queue, monte_carlo };
 
 /// How functions of time are computed.
 enum class TransientSolver { krylov, stepping };
@@ -67,11 +70,18 @@ struct Request {
   int start_level = 0;                         ///< of expectation: x_i and v at time 0
   double start_v = 0;
   double accuracy = 1e-6;
+  bool accuracy_given = false;        ///< by the user
+  double excursions = 1e6;            ///< of -route monte_carlo, at most
+  std::uint64_t seed = 1;             ///< of whatever is simulated
+  double horizon = 100;               ///< end of the trajectory [time]
+  std::vector<Reference> references;  ///< of -compare
   SpectrumSolver spectrum_solver = SpectrumSolver::krylov;
   TransientSolver transient_solver = TransientSolver::krylov;
   Route route = Route::excursion;
   Method method;
-  std::string summary, output;  ///< file names; empty if not asked for
+  std::string summary, output, trajectory;  ///< file names; empty if not asked for
+  std::string checkpoint;                   ///< of -route monte_carlo
+  std::string compared;                     ///< file of the references
   bool progress = false;
   std::vector<std::string> warnings;
   /// All options of the table as used, name and value, for the record.

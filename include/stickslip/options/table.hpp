@@ -19,6 +19,7 @@ enum class Kind {
   numbers,  ///< a,b,c or first:last:count or first:last:count:log
   text,     ///< free text
   path,     ///< a file to write
+  input,    ///< a file to read
 };
 
 /// An interval of numbers; unbounded and open by default.

@@ -2,6 +2,7 @@
 /// Named results with their errors.
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace stickslip::quantities {
@@ -16,6 +17,8 @@ struct Result {
   std::vector<double> error;  ///< absolute error estimates, one for each value
   /// Whether accuracy is meant relative to each value of an array, not to the largest one.
   bool each_by_its_size = false;
+  /// 95 % confidence intervals, one for each value; none for deterministic results.
+  std::vector<std::pair<double, double>> ci95 = {};
 
   [[nodiscard]] bool is_scalar() const { return abscissa_name.empty(); }
 };

@@ -1,4 +1,4 @@
-#include "stickslip/io/atomic_file.hpp"
+#include "stickslip/support/atomic_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace stickslip::io {
+namespace stickslip {
 namespace {
 
 [[noreturn]] void fail(const std::string& what, const std::string& file) {
@@ -49,4 +49,4 @@ void write_text(const std::string& target, const std::string& text) {
   file.commit();
 }
 
-}  // namespace stickslip::io
+}  // namespace stickslip

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace stickslip::io {
+namespace stickslip {
 
 /// A name beside `target` to write to; commit() moves it over the target in one step. Without
 /// commit, the destructor removes what was written, and the target stays as it was.
@@ -29,4 +29,4 @@ class AtomicFile {
 /// Writes `text` to `target` atomically. Throws std::runtime_error with the system's reason.
 void write_text(const std::string& target, const std::string& text);
 
-}  // namespace stickslip::io
+}  // namespace stickslip

@@ -2,9 +2,9 @@
 #include <fstream>
 
 #include "../common/temporary.hpp"
-#include "stickslip/io/atomic_file.hpp"
+#include "stickslip/support/atomic_file.hpp"
 
-using namespace stickslip::io;
+using namespace stickslip;
 using stickslip::test::content;
 using stickslip::test::TemporaryFolder;
 

@@ -1,0 +1,42 @@
+#pragma once
+/// -route monte_carlo: the same quantities from simulated excursions, with confidence intervals.
+
+#include <mpi.h>
+
+#include <functional>
+#include <string>
+
+#include "stickslip/options/request.hpp"
+#include "stickslip/quantities/results.hpp"
+
+namespace stickslip::routes {
+
+/// How far a simulation is.
+struct SimulationState {
+  double excursions = 0, wanted = 0;  ///< done, and to be done at most
+  double jumps = 0;                   ///< of the noise, so far
+  double seconds = 0;                 ///< since this run began
+  double seconds_left = 0;            ///< as predicted; 0 while nothing is known
+};
+
+/// Called on the first rank now and then.
+using SimulationProgress = std::function<void(const SimulationState&)>;
+
+struct Simulated {
+  quantities::Results results;  ///< error: half the width of the 95 % interval
+  SimulationState state;        ///< at the end
+  double continued_from = 0;    ///< excursions found in the checkpoint
+  bool reached = false;         ///< the accuracy asked for, if one was, or all excursions
+  std::string shortfall;
+};
+
+/// Simulates request.excursions excursions, or fewer if -accuracy is given and met before. Batches
+/// of them have random streams of their own, are dealt out to the ranks, and merged in their order:
+/// the numbers depend on the scene, the seed and the excursions alone. With request.checkpoint the
+/// tally is read from that file if it exists, and written to it every few seconds. Collective.
+/// Throws BadInput when the checkpoint belongs to another run or is damaged, and when it would take
+/// more than a month.
+[[nodiscard]] Simulated monte_carlo(MPI_Comm comm, const options::Request& request,
+                                    const SimulationProgress& progress);
+
+}  // namespace stickslip::routes

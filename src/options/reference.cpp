@@ -1,0 +1,227 @@
+#include "stickslip/options/reference.hpp"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#define CSV_IO_NO_THREAD  // small files
+// Fast C++ CSV Parser: header only, tells file and line of what is wrong.
+#include <libfccp/csv.h>
+
+namespace stickslip::options {
+namespace {
+
+using Json = nlohmann::json;
+
+/// An array of a file, or a scalar as an array of one.
+struct Values {
+  std::vector<double> argument, value, error, low, high;  // low, high: simulated ones only
+  bool scalar = false;
+};
+
+constexpr double kNormal = 1.959963984540054;
+
+void require_equal_sizes(const std::string& key, const Values& v) {
+  const std::size_t n = v.value.size();
+  const bool intervals = v.low.empty() ? v.error.size() == n : v.low.size() == n;
+  if (n == 0 || !intervals || v.high.size() != v.low.size() ||
+      (!v.scalar && v.argument.size() != n)) {
+    throw std::invalid_argument(fmt::format("{} lacks values, errors or arguments", key));
+  }
+}
+
+void append(const std::string& key, const Values& v, std::vector<Reference>& all) {
+  require_equal_sizes(key, v);
+  const bool simulated = !v.low.empty();
+  if (simulated && !v.scalar && key.starts_with("f_")) return;
+  for (std::size_t n = 0; n < v.value.size(); ++n) {
+    // A computed error is a bound; as a standard deviation it errs on the safe side.
+    const double half = simulated ? 0 : kNormal * v.error[n];
+    all.push_back({key, v.scalar ? std::nullopt : std::optional(v.argument[n]), v.value[n],
+                   simulated ? v.low[n] : v.value[n] - half,
+                   simulated ? v.high[n] : v.value[n] + half});
+  }
+}
+
+std::vector<double> numbers(const Json& json) {
+  if (json.is_number()) return {json.get<double>()};
+  return json.get<std::vector<double>>();
+}
+
+void read_intervals(const Json& ci95, Values& v) {
+  const auto add = [&](const Json& pair) {
+    v.low.push_back(pair.at(0).get<double>());
+    v.high.push_back(pair.at(1).get<double>());
+  };
+  if (ci95.at(0).is_number()) return add(ci95);
+  for (const auto& pair : ci95) add(pair);
+}
+
+std::vector<Reference> read_json(const std::string& file) {
+  std::ifstream stream(file);
+  std::vector<Reference> all;
+  try {
+    const Json json = Json::parse(stream);
+    for (const auto& [key, result] : json.at("results").items()) {
+      Values v;
+      v.value = numbers(result.at("value"));
+      v.error = numbers(result.at("error"));
+      v.scalar = result.at("value").is_number();
+      if (result.contains("ci95")) read_intervals(result["ci95"], v);
+      for (const char* name : {"lambda", "omega", "time", "k", "n"}) {
+        if (result.contains(name)) v.argument = numbers(result[name]);
+      }
+      append(key, v, all);
+    }
+  } catch (const Json::exception& problem) {
+    throw std::invalid_argument(
+        fmt::format("is no JSON summary of this program ({})", problem.what()));
+  }
+  return all;
+}
+
+/// An HDF5 object that closes itself.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  operator hid_t() const { return id_; }  // NOLINT(google-explicit-constructor): stands for the id
+  [[nodiscard]] bool valid() const { return id_ >= 0; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+std::vector<std::string> names_in(hid_t group) {
+  std::vector<std::string> names;
+  const auto visit = [](hid_t, const char* name, const H5L_info_t*, void* data) -> herr_t {
+    static_cast<std::vector<std::string>*>(data)->emplace_back(name);
+    return 0;
+  };
+  H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, visit, &names);
+  return names;
+}
+
+std::vector<double> dataset(hid_t group, const std::string& name, bool* scalar = nullptr) {
+  const Handle data(H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!data.valid()) throw std::invalid_argument(name + " is no dataset");
+  const Handle space(H5Dget_space(data), H5Sclose);
+  const hssize_t size = H5Sget_simple_extent_npoints(space);
+  constexpr hssize_t most = 100000000;
+  if (size < 0 || size > most) throw std::invalid_argument(name + " has an absurd size");
+  if (scalar != nullptr) *scalar = H5Sget_simple_extent_type(space) == H5S_SCALAR;
+  std::vector<double> values(static_cast<std::size_t>(size));
+  if (size > 0 &&
+      H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+    throw std::invalid_argument(name + " cannot be read as numbers");
+  }
+  return values;
+}
+
+Values values_of(hid_t group) {
+  Values v;
+  for (const auto& name : names_in(group)) {
+    if (name == "value") {
+      v.value = dataset(group, name, &v.scalar);
+    } else if (name == "error") {
+      v.error = dataset(group, name);
+    } else if (name == "low") {
+      v.low = dataset(group, name);
+    } else if (name == "high") {
+      v.high = dataset(group, name);
+    } else {
+      v.argument = dataset(group, name);
+    }
+  }
+  return v;
+}
+
+std::vector<Reference> read_hdf5(const std::string& file) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // failures are told by exceptions
+  const Handle id(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!id.valid()) throw std::invalid_argument("is no readable HDF5 file");
+  const Handle results(H5Gopen2(id, "/results", H5P_DEFAULT), H5Gclose);
+  if (!results.valid()) throw std::invalid_argument("has no group /results");
+  std::vector<Reference> all;
+  for (const auto& key : names_in(results)) {
+    const Handle group(H5Gopen2(results, key.c_str(), H5P_DEFAULT), H5Gclose);
+    if (!group.valid()) throw std::invalid_argument("/results/" + key + " is no group");
+    append(key, values_of(group), all);
+  }
+  return all;
+}
+
+// A number, or nothing for an empty cell.
+std::optional<double> cell(const std::string& text, const std::string& column, unsigned line) {
+  if (text.empty()) return std::nullopt;
+  std::size_t end = 0;
+  double value = std::numeric_limits<double>::quiet_NaN();
+  try {
+    value = std::stod(text, &end);
+  } catch (const std::exception&) {
+    end = 0;
+  }
+  if (end != text.size() || !std::isfinite(value)) {
+    throw std::invalid_argument(
+        fmt::format("line {}: {} = {} is no finite number", line, column, text));
+  }
+  return value;
+}
+
+std::vector<Reference> read_csv(const std::string& file) {
+  std::vector<Reference> all;
+  try {
+    ::io::CSVReader<5, ::io::trim_chars<' ', '\t', '\r'>, ::io::double_quote_escape<',', '"'>>
+        reader(file);
+    reader.read_header(::io::ignore_extra_column, "quantity", "argument", "value", "low", "high");
+    std::string quantity, argument, value, low, high;
+    while (reader.read_row(quantity, argument, value, low, high)) {
+      const unsigned line = reader.get_file_line();
+      Reference r{quantity, cell(argument, "argument", line)};
+      const auto found = cell(value, "value", line);
+      if (!found || quantity.empty()) {
+        throw std::invalid_argument(fmt::format("line {}: no quantity or no value", line));
+      }
+      r.value = *found;
+      r.low = cell(low, "low", line).value_or(r.value);
+      r.high = cell(high, "high", line).value_or(r.value);
+      if (r.low > r.value || r.high < r.value) {
+        throw std::invalid_argument(
+            fmt::format("line {}: low <= value <= high does not hold", line));
+      }
+      all.push_back(std::move(r));
+    }
+  } catch (const ::io::error::base& problem) {
+    throw std::invalid_argument(fmt::format("is no CSV file of references: {}", problem.what()));
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<Reference> read_references(const std::string& file) {
+  if (!std::ifstream(file).good()) throw std::invalid_argument("cannot be read");
+  std::vector<Reference> all;
+  if (file.ends_with(".h5") || file.ends_with(".hdf5")) {
+    all = read_hdf5(file);
+  } else if (file.ends_with(".json")) {
+    all = read_json(file);
+  } else if (file.ends_with(".csv")) {
+    all = read_csv(file);
+  } else {
+    throw std::invalid_argument("has none of the endings .h5, .json and .csv");
+  }
+  if (all.empty()) throw std::invalid_argument("holds no values");
+  return all;
+}
+
+}  // namespace stickslip::options

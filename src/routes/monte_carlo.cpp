@@ -1,0 +1,390 @@
+#include "stickslip/routes/monte_carlo.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "checkpoint.hpp"
+#include "stickslip/operators/static_chain.hpp"
+#include "stickslip/petsc/session.hpp"
+#include "stickslip/simulation/tally.hpp"
+#include "stickslip/support/errors.hpp"
+
+namespace stickslip::routes {
+namespace {
+
+using options::Quantity;
+using options::Request;
+using quantities::Result;
+using quantities::Results;
+using simulation::Duration;
+using simulation::Estimate;
+using simulation::Tally;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kBatch = 256;  // excursions with one random stream
+constexpr int kRound = 64;   // batches between merges
+constexpr double kSecondsBetweenFiles = 3, kSecondsBetweenReports = 1;
+
+/// Cell of a histogram around one time of -time.
+struct Cell {
+  double low, high;
+};
+
+// Up to the middle between neighbours, and as far on the other side at the ends.
+std::vector<Cell> cells_around(const std::vector<double>& time) {
+  std::vector<double> sorted = time;
+  std::sort(sorted.begin(), sorted.end());
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  std::vector<Cell> cells;
+  for (double t : time) {
+    const auto at = std::lower_bound(sorted.begin(), sorted.end(), t);
+    const bool first = at == sorted.begin(), last = at + 1 == sorted.end();
+    const double alone = t > 0 ? 0.05 * t : 1;
+    const double up = last ? 0 : (*(at + 1) - t) / 2, down = first ? 0 : (t - *(at - 1)) / 2;
+    const double above = last ? (first ? alone : down) : up;
+    const double below = first ? (last ? alone : up) : down;
+    cells.push_back({std::max(0.0, t - below), t + above});
+  }
+  return cells;
+}
+
+simulation::Wanted wanted_of(const Request& request) {
+  simulation::Wanted wanted;
+  wanted.moments = request.wants(Quantity::moments);
+  wanted.noise = request.wants(Quantity::noise_law);
+  if (request.wants(Quantity::spectrum)) wanted.omega = request.omega;
+  if (request.wants(Quantity::laplace)) wanted.lambda = request.lambda;
+  if (!request.wants(Quantity::duration_density)) return wanted;
+  auto& edges = wanted.edges;
+  for (double t : request.time) edges.push_back(t);
+  for (const Cell& cell : cells_around(request.time)) {
+    edges.push_back(cell.low);
+    edges.push_back(cell.high);
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return wanted;
+}
+
+void append_value(Result& result, const Estimate& e) {
+  result.value.push_back(e.value);
+  result.error.push_back(std::max(e.high - e.value, e.value - e.low));
+  result.ci95.emplace_back(e.low, e.high);
+}
+
+/// Turns a tally into results.
+class Estimates {
+ public:
+  Estimates(const Request& request, const model::Process& process, const Tally& tally)
+      : request_(request), process_(process), tally_(tally) {}
+
+  Results all() {
+    if (request_.wants(Quantity::sticking)) append_sticking();
+    if (request_.wants(Quantity::moments)) append_moments();
+    if (request_.wants(Quantity::noise_law)) {
+      scalar("P_X_le_mu_s", "", tally_.within());
+      scalar("E_X2", "force^2", tally_.noise_square());
+    }
+    if (request_.wants(Quantity::entry_law)) append_entry_law();
+    if (request_.wants(Quantity::laplace)) append_laplace();
+    if (request_.wants(Quantity::duration_density)) append_durations();
+    if (request_.wants(Quantity::spectrum)) append_spectrum();
+    return std::move(results_);
+  }
+
+ private:
+  void scalar(const char* key, const char* unit, const Estimate& e) {
+    Result result{key, unit, "", {}, {}, {}};
+    append_value(result, e);
+    results_.push_back(std::move(result));
+  }
+
+  void append_sticking() {
+    scalar("P_stick", "", tally_.sticking());
+    scalar("P_slide", "", tally_.sliding());
+    scalar("mean_stick", "time", tally_.mean(Duration::stick));
+    scalar("mean_slide", "time", tally_.mean(Duration::slide));
+    scalar("mean_excursion", "time", tally_.mean(Duration::excursion));
+  }
+
+  void append_moments() {
+    scalar("E_V2", "velocity^2", tally_.mean_square());
+    scalar("E_absV", "velocity", tally_.mean_speed());
+    scalar("E_XV", "force*velocity", tally_.mean_product());
+    results_.push_back(quantities::scalar("E_V", "velocity", 0, 0));  // by symmetry
+  }
+
+  void append_entry_law() {
+    const int k = process_.static_index();
+    Result law = quantities::array("entry_law", "", "k", {});
+    for (int i = -k; i <= k; ++i) {
+      law.abscissa.push_back(i);
+      append_value(law, tally_.entry(i));
+    }
+    results_.push_back(std::move(law));
+    scalar("f_stick_0", "1/time",
+           tally_.entry_of_both(-k, k, process_.noise.rate() * process_.noise.up(k)));
+  }
+
+  void append_laplace() {
+    for (const auto& [key, duration] : names("F_")) {
+      Result result = quantities::array(key, "", "lambda", request_.lambda);
+      result.each_by_its_size = true;
+      for (std::size_t n = 0; n < request_.lambda.size(); ++n) {
+        append_value(result, tally_.laplace(n, duration));
+      }
+      results_.push_back(std::move(result));
+    }
+  }
+
+  void append_durations() {
+    const auto cells = cells_around(request_.time);
+    for (const auto& [key, duration] : names("f_")) {
+      Result density = quantities::array(key, "1/time", "time", request_.time);
+      for (const auto& cell : cells) {
+        const Estimate e = tally_.probability(duration, cell.low, cell.high);
+        const double width = cell.high - cell.low;
+        append_value(density, {e.value / width, e.low / width, e.high / width});
+      }
+      results_.push_back(std::move(density));
+      Result distribution = quantities::array("cd" + key, "", "time", request_.time);
+      for (double t : request_.time) append_value(distribution, tally_.probability(duration, 0, t));
+      results_.push_back(std::move(distribution));
+    }
+  }
+
+  void append_spectrum() {
+    Result s = quantities::array("S_v", "velocity^2*time", "omega", request_.omega);
+    s.each_by_its_size = true;
+    for (std::size_t n = 0; n < request_.omega.size(); ++n) append_value(s, tally_.spectrum(n));
+    results_.push_back(std::move(s));
+  }
+
+  static std::vector<std::pair<std::string, Duration>> names(const std::string& prefix) {
+    return {{prefix + "slide", Duration::slide},
+            {prefix + "stick", Duration::stick},
+            {prefix + "excursion", Duration::excursion}};
+  }
+
+  const Request& request_;
+  const model::Process& process_;
+  const Tally& tally_;
+  Results results_;
+};
+
+// Options that fix the numbers of a simulation, but for how many excursions there are.
+std::vector<std::pair<std::string, std::string>> identity(const Request& request) {
+  static const std::vector<std::string> names{
+      "mu_s",        "mu_d",   "tau",  "delta", "drag", "drag_cubic",
+      "quantities",  "lambda", "time", "omega", "seed", "drag_coefficient",
+      "noise_levels"};
+  std::vector<std::pair<std::string, std::string>> found;
+  for (const auto& option : request.resolved) {
+    if (std::count(names.begin(), names.end(), option.first) > 0) found.push_back(option);
+  }
+  return found;
+}
+
+class Campaign {
+ public:
+  Campaign(MPI_Comm comm, const Request& request, const SimulationProgress& progress)
+      : comm_(comm),
+        request_(request),
+        progress_(progress),
+        process_(request.scene.meant()),
+        wanted_(wanted_of(request)),
+        source_(simulation::make_source(process_, wanted_)),
+        tally_(wanted_, process_.static_index()) {}
+
+  Simulated run() {
+    require_time();
+    load();
+    const double all = request_.excursions;
+    state_.wanted = all;
+    while (!met() && done() < all) {
+      const auto left = static_cast<long>(all - done());
+      const bool whole = left >= static_cast<long>(kRound) * kBatch;
+      if (!whole) {
+        save(0);  // the checkpoint holds whole rounds, to go on from
+        round(left);
+        return outcome();
+      }
+      round(static_cast<long>(kRound) * kBatch);
+      ++rounds_;
+      save(kSecondsBetweenFiles);
+      if (since(last_report_) > kSecondsBetweenReports) report();
+    }
+    save(0);
+    return outcome();
+  }
+
+ private:
+  [[nodiscard]] double done() const { return tally_.excursions(); }
+  [[nodiscard]] static double since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  }
+  [[nodiscard]] bool first_rank() const { return petsc::rank(comm_) == 0; }
+
+  // Every stay begins at most at the edge of the static levels.
+  void require_time() const {
+    const operators::StaticChain chain(process_.noise, process_.static_index());
+    const auto stay = chain.integral(
+        std::vector<double>(2 * static_cast<std::size_t>(process_.static_index()) + 1, 1.0));
+    constexpr double jump = 15e-9, month = 30 * 86400.0;
+    const double jumps = process_.noise.rate() * stay.back();
+    const double seconds = request_.excursions * jumps * jump / petsc::ranks(comm_);
+    if (seconds < month) return;
+    throw BadInput(fmt::format(
+        "-excursions = {:g}: bodies stick for {:.1e} jumps of the noise and more, so that this "
+        "would take {:.0e} days; take fewer excursions, or -route excursion",
+        request_.excursions, jumps, seconds / 86400));
+  }
+
+  void load() {
+    if (request_.checkpoint.empty()) return;
+    const auto found = read_checkpoint(comm_, request_.checkpoint, identity(request_));
+    if (!found) return;
+    try {
+      tally_.unpack(found->tally);
+    } catch (const std::invalid_argument&) {
+      throw BadInput(fmt::format("-checkpoint = {}: is damaged; remove it", request_.checkpoint));
+    }
+    rounds_ = found->rounds;
+    continued_from_ = done();
+    jumps_before_ = tally_.jumps();
+  }
+
+  void save(double seconds_between) {
+    if (request_.checkpoint.empty() || !first_rank() || since(last_file_) < seconds_between) return;
+    write_checkpoint(request_.checkpoint, {identity(request_), rounds_, tally_.pack()});
+    last_file_ = Clock::now();
+  }
+
+  // Simulates `excursions` more, from the batch on that follows the whole rounds.
+  void round(long excursions) {
+    const long batches = (excursions + kBatch - 1) / kBatch;
+    const int ranks = petsc::ranks(comm_);
+    std::vector<double> own;
+    for (long b = petsc::rank(comm_); b < batches; b += ranks) {
+      const auto count = static_cast<int>(std::min<long>(kBatch, excursions - b * kBatch));
+      const auto number = static_cast<std::uint64_t>(rounds_ * kRound + b);
+      const auto part = simulation::simulate_batch(*source_, wanted_, process_.static_index(),
+                                                   request_.seed, number, count);
+      const auto packed = part.pack();
+      own.insert(own.end(), packed.begin(), packed.end());
+      if (!predicted_) predict(part);
+    }
+    merge(own, batches);
+  }
+
+  // The first batch tells how long it will take.
+  void predict(const Tally& batch) {
+    predicted_ = true;
+    state_.excursions = done() + batch.excursions();
+    state_.jumps = tally_.jumps() + batch.jumps();
+    state_.seconds = since(start_);
+    state_.seconds_left = (state_.wanted - state_.excursions) / batch.excursions() *
+                          state_.seconds / petsc::ranks(comm_);
+    if (progress_ && first_rank()) progress_(state_);
+    last_report_ = Clock::now();
+  }
+
+  // Batches in their order, whoever made them.
+  void merge(const std::vector<double>& own, long batches) {
+    const int ranks = petsc::ranks(comm_);
+    const auto size = static_cast<long>(tally_.pack().size());
+    std::vector<int> counts, starts;
+    int total = 0;
+    for (int r = 0; r < ranks; ++r) {
+      const long share = batches > r ? (batches - r + ranks - 1) / ranks : 0;
+      starts.push_back(total);
+      counts.push_back(static_cast<int>(share * size));
+      total += counts.back();
+    }
+    std::vector<double> all(static_cast<std::size_t>(total));
+    MPI_Allgatherv(own.data(), static_cast<int>(own.size()), MPI_DOUBLE, all.data(), counts.data(),
+                   starts.data(), MPI_DOUBLE, comm_);
+    Tally part(wanted_, process_.static_index());
+    for (long b = 0; b < batches; ++b) {
+      const double* packed = all.data() + starts[b % ranks] + b / ranks * size;
+      part.unpack({packed, static_cast<std::size_t>(size)});
+      tally_.merge(part);
+    }
+  }
+
+  [[nodiscard]] Results results() const { return Estimates(request_, process_, tally_).all(); }
+
+  [[nodiscard]] std::pair<double, std::string> worst(const Results& results) const {
+    std::pair<double, std::string> worst{0, ""};
+    for (const auto& result : results) {
+      const double error = quantities::relative_error(result);
+      if (!(error <= worst.first)) worst = {error, result.key};
+    }
+    return worst;
+  }
+
+  // Whether -accuracy is given and met.
+  [[nodiscard]] bool met() {
+    if (!request_.accuracy_given || done() == 0) return false;
+    const double error = worst(results()).first;
+    const double needed = done() * std::pow(error / request_.accuracy, 2);
+    state_.wanted = std::clamp(needed, done(), request_.excursions);
+    return error <= request_.accuracy;
+  }
+
+  void report() {
+    if (!progress_ || !first_rank()) return;
+    progress_(now());
+    last_report_ = Clock::now();
+  }
+
+  [[nodiscard]] SimulationState now() const {
+    SimulationState s = state_;
+    s.excursions = done();
+    s.jumps = tally_.jumps() - jumps_before_;
+    s.seconds = since(start_);
+    const double here = done() - continued_from_;
+    s.seconds_left = here > 0 ? s.seconds * std::max(0.0, s.wanted - done()) / here : 0;
+    return s;
+  }
+
+  Simulated outcome() {
+    Simulated simulated;
+    simulated.results = results();
+    const auto [error, key] = worst(simulated.results);
+    simulated.reached = !request_.accuracy_given || error <= request_.accuracy;
+    simulated.state = now();
+    simulated.continued_from = continued_from_;
+    if (!simulated.reached) {
+      simulated.shortfall =
+          fmt::format("the interval of {} is +-{:.1e}; it would take about -excursions {:.0e}", key,
+                      error, done() * std::pow(error / request_.accuracy, 2));
+    }
+    return simulated;
+  }
+
+  MPI_Comm comm_;
+  const Request& request_;
+  const SimulationProgress& progress_;
+  model::Process process_;
+  simulation::Wanted wanted_;
+  std::unique_ptr<simulation::ExcursionSource> source_;
+  Tally tally_;
+  SimulationState state_;
+  long rounds_ = 0;  // whole ones in the tally
+  double continued_from_ = 0, jumps_before_ = 0;
+  bool predicted_ = false;
+  Clock::time_point start_ = Clock::now(), last_report_ = start_, last_file_ = start_;
+};
+
+}  // namespace
+
+Simulated monte_carlo(MPI_Comm comm, const Request& request, const SimulationProgress& progress) {
+  return Campaign(comm, request, progress).run();
+}
+
+}  // namespace stickslip::routes
