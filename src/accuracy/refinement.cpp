@@ -27,17 +27,43 @@ double wall_time() {
 
 std::string gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / 1e9); }
 
+void require_memory(MPI_Comm comm, const options::Request& request, const Resolution& resolution) {
+  const double need = predicted_bytes(request.scene, resolution);
+  const double have = petsc::available_bytes(comm);
+  if (need <= have) return;
+  throw NoMemory(fmt::format(
+      "about {:.3g} unknowns would need {} of memory, and {} are free; take a larger -delta, a "
+      "looser -accuracy, fewer -noise_levels or more machines",
+      static_cast<double>(unknowns(request.scene, resolution)), gigabytes(need), gigabytes(have)));
+}
+
+Solved evaluated(MPI_Comm comm, const options::Request& request, const Resolution& resolution) {
+  Solved solved;
+  Step& step = solved.step;
+  step.resolution = resolution;
+  const double start = wall_time();
+  const auto process = request.scene.process(resolution.levels);
+  solved.evaluation =
+      routes::evaluate({comm, request, process, make_axis(request.scene, resolution), step.ledger});
+  step.checks = std::move(solved.evaluation.checks);
+  step.seconds = wall_time() - start;
+  return solved;
+}
+
 class Refiner {
  public:
   Refiner(MPI_Comm comm, const options::Request& request, const Progress& progress)
       : comm_(comm), request_(request), progress_(progress), ladder_(request) {}
 
   Outcome run() {
-    require_memory(ladder_.rung(1));
+    require_memory(comm_, request_, ladder_.rung(1));
     for (int n = 0; n <= ladder_.last(); ++n) {
       if (n >= 2 && !fits(ladder_.rung(n))) return short_of_memory(n);
       solve(n);
-      if (n >= 1 && finished()) return std::move(outcome_);
+      if (n >= 1 && finished()) {
+        if (outcome_.reached) outcome_.next_digit_seconds = next_digit(n);
+        return std::move(outcome_);
+      }
       if (n >= 1 && ladder_.first_order() && hopeless(n)) return std::move(outcome_);
     }
     outcome_.shortfall = request_.method.fixed()
@@ -52,30 +78,13 @@ class Refiner {
     return predicted_bytes(request_.scene, resolution) <= petsc::available_bytes(comm_);
   }
 
-  void require_memory(const Resolution& resolution) const {
-    const double need = predicted_bytes(request_.scene, resolution);
-    const double have = petsc::available_bytes(comm_);
-    if (need <= have) return;
-    throw NoMemory(fmt::format(
-        "about {:.3g} unknowns would need {} of memory, and {} are free; take a larger -delta, a "
-        "looser -accuracy, fewer -noise_levels or more machines",
-        static_cast<double>(unknowns(request_.scene, resolution)), gigabytes(need),
-        gigabytes(have)));
-  }
-
   void solve(int n) {
-    Step step;
-    step.resolution = ladder_.rung(n);
-    if (progress_) progress_(n, step.resolution, expected_seconds(step.resolution));
-    const double start = wall_time();
-    const auto process = request_.scene.process(step.resolution.levels);
-    auto evaluation = routes::evaluate(
-        {comm_, request_, process, make_axis(request_.scene, step.resolution), step.ledger});
-    step.checks = std::move(evaluation.checks);
+    const Resolution resolution = ladder_.rung(n);
+    if (progress_) progress_(n, resolution, expected_seconds(resolution));
+    auto [evaluation, step] = evaluated(comm_, request_, resolution);
     remember_rounding(evaluation.results);
     if (n >= 1) add_discretisation(n, evaluation.results);
     if (request_.wants(Quantity::density)) follow_speed_law(*evaluation.law);
-    step.seconds = wall_time() - start;
     outcome_.last = std::move(evaluation);
     outcome_.total += step.ledger;
     outcome_.steps.push_back(std::move(step));
@@ -153,6 +162,22 @@ class Refiner {
     return true;
   }
 
+  // Time of the run that would find one digit more, from how fast estimates fell.
+  [[nodiscard]] double next_digit(int n) const {
+    const auto& steps = outcome_.steps;
+    double fall = 1;  // digits a step
+    if (steps.size() >= 3 && steps.back().estimate > 0) {
+      fall = std::log10(steps[steps.size() - 2].estimate / steps.back().estimate);
+    }
+    if (ladder_.first_order()) fall = std::log10(2.0);
+    const int more = static_cast<int>(std::ceil(1 / std::clamp(fall, 0.2, 10.0)));
+    if (n + more > ladder_.last() || 0.1 * request_.accuracy < 1e-14) return 0;
+    double seconds = 0;
+    for (const Step& step : steps) seconds += step.seconds;
+    return seconds * relative_work(request_.scene, ladder_.rung(n + more)) /
+           relative_work(request_.scene, ladder_.rung(n));
+  }
+
   // A velocity cut made by hand is no part of the model: what it holds back is an error.
   void check_cut() {
     if (!request_.scene.v_max) return;
@@ -219,11 +244,17 @@ Outcome simulate(MPI_Comm comm, const options::Request& request,
   outcome.last.results = std::move(simulated.results);
   outcome.reached = simulated.reached;
   outcome.shortfall = simulated.shortfall;
+  outcome.next_digit_seconds = 100 * simulated.state.seconds;
   outcome.simulation = std::move(simulated);
   return outcome;
 }
 
 }  // namespace
+
+Solved solve_on(MPI_Comm comm, const options::Request& request, const Resolution& resolution) {
+  require_memory(comm, request, resolution);
+  return evaluated(comm, request, resolution);
+}
 
 Outcome refine(MPI_Comm comm, const options::Request& request, const Progress& progress,
                const routes::SimulationProgress& simulation_progress) {

@@ -14,6 +14,7 @@
 #include "stickslip/accuracy/refinement.hpp"
 #include "stickslip/io/provenance.hpp"
 #include "stickslip/io/report.hpp"
+#include "stickslip/io/study_report.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/options/table.hpp"
 #include "stickslip/petsc/blas.hpp"
@@ -84,6 +85,31 @@ int status_of(const accuracy::Outcome& outcome) {
   return static_cast<int>(outcome.reached && agrees ? ExitStatus::done : ExitStatus::not_reached);
 }
 
+studies::StudyProgress study_progress_of(const options::Request& request, bool first_rank) {
+  if (!request.progress || !first_rank) return {};
+  return [start = Clock::now()](int number, int count, const std::string& what) {
+    say(fmt::format("study, run {} of {}: {} ({:.0f} s so far)", number, count, what,
+                    seconds_since(start)));
+  };
+}
+
+int conduct_study(const options::Request& request, Clock::time_point start, double start_up) {
+  const MPI_Comm comm = MPI_COMM_WORLD;
+  const bool first_rank = petsc::rank(comm) == 0;
+  if (first_rank) warn(request);
+  const auto study = studies::conduct(comm, request, study_progress_of(request, first_rank));
+  const io::RunTimes times{start_up, start_up + seconds_since(start)};
+  if (!request.output.empty()) io::write_study_hdf5(comm, request, study, times);
+  if (!first_rank) return 0;
+  if (!request.summary.empty()) {
+    write_text(request.summary, io::study_summary(comm, request, study, times));
+  }
+  if (!request.study_csv.empty()) write_text(request.study_csv, io::study_csv(study));
+  std::fputs(io::study_table(request, study, times).c_str(), stdout);
+  std::fflush(stdout);
+  return 0;
+}
+
 int compute(const options::Request& request, Clock::time_point start, double start_up) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const bool first_rank = petsc::rank(comm) == 0;
@@ -117,7 +143,9 @@ int run_session(const std::vector<std::string>& words, double start_up) {
   const int rank = petsc::rank(MPI_COMM_WORLD);
   int status = static_cast<int>(ExitStatus::other);
   try {
-    return compute(options::read_request(words), start, start_up);
+    const auto request = options::read_request(words);
+    if (request.study != options::StudyKind::none) return conduct_study(request, start, start_up);
+    return compute(request, start, start_up);
   } catch (const BadInput& failure) {
     return tell(failure, rank == 0);
   } catch (const Failure& failure) {

@@ -4,9 +4,8 @@
 #include <filesystem>
 #include <map>
 
-#include "stickslip/io/hdf5_file.hpp"
+#include "parts.hpp"
 #include "stickslip/io/provenance.hpp"
-#include "stickslip/io/report.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/quantities/density.hpp"
 
@@ -47,18 +46,6 @@ void write_results(Hdf5File& file, const quantities::Results& results) {
       file.write_array(group + "/high", column(r.ci95, [](const auto& c) { return c.second; }));
     }
   }
-}
-
-void write_record(Hdf5File& file, MPI_Comm comm, const options::Request& request,
-                  const accuracy::Outcome& outcome, const RunTimes& times) {
-  file.make_group("/record");
-  for (const auto& [name, value] : provenance(comm)) file.attribute("/record", name, value);
-  file.make_group("/record/options");
-  for (const auto& [name, value] : request.resolved) {
-    file.attribute("/record/options", name, value);
-  }
-  file.attribute("/record", "accuracy_reached", outcome.reached ? "yes" : "no");
-  file.attribute("/record", "seconds", times.total);
 }
 
 void write_field(Hdf5File& file, const std::string& name, const quantities::PhaseField& field) {
@@ -167,11 +154,23 @@ std::string xdmf(const std::string& hdf5_name, const quantities::DensityField& f
 
 }  // namespace
 
+void write_record(Hdf5File& file, MPI_Comm comm, const options::Request& request,
+                  const RunTimes& times) {
+  file.make_group("/record");
+  for (const auto& [name, value] : provenance(comm)) file.attribute("/record", name, value);
+  file.make_group("/record/options");
+  for (const auto& [name, value] : request.resolved) {
+    file.attribute("/record/options", name, value);
+  }
+  file.attribute("/record", "seconds", times.total);
+}
+
 void write_hdf5(MPI_Comm comm, const options::Request& request, const accuracy::Outcome& outcome,
                 const RunTimes& times) {
   Hdf5File file(comm, request.output);
   write_results(file, outcome.last.results);
-  write_record(file, comm, request, outcome, times);
+  write_record(file, comm, request, times);
+  file.attribute("/record", "accuracy_reached", outcome.reached ? "yes" : "no");
   write_modes(file, "even", outcome.last.even);
   write_modes(file, "odd", outcome.last.odd);
   if (outcome.path) write_path(file, *outcome.path);

@@ -1,54 +1,60 @@
-#include <nlohmann/json.hpp>
-
+#include "parts.hpp"
 #include "stickslip/io/provenance.hpp"
-#include "stickslip/io/report.hpp"
 #include "stickslip/petsc/memory.hpp"
 
-// JSON for Modern C++: the common header-only writer; numbers are written so that they read back
-// to the same bits.
-using Json = nlohmann::ordered_json;
-
 namespace stickslip::io {
+
+Json scene_json(const options::Request& request) {
+  const auto& s = request.scene;
+  return {{"mu_s", s.friction.mu_s},
+          {"mu_d", s.friction.mu_d},
+          {"tau", s.tau},
+          {"delta", s.delta},
+          {"drag", s.drag_name},
+          {"drag_coefficient", s.drag.linear},
+          {"drag_cubic", s.drag.cubic},
+          {"noise_levels_meant", s.meant().noise.levels}};
+}
+
+Json results_json(const quantities::Results& results) {
+  Json json = Json::object();
+  for (const auto& r : results) {
+    if (r.is_scalar()) {
+      json[r.key] = {{"value", r.value[0]}, {"error", r.error[0]}};
+    } else {
+      json[r.key] = {{r.abscissa_name, r.abscissa}, {"value", r.value}, {"error", r.error}};
+    }
+    if (!r.unit.empty()) json[r.key]["unit"] = r.unit;
+    if (r.ci95.empty()) continue;
+    json[r.key]["ci95"] = r.is_scalar() ? Json(r.ci95[0]) : Json(r.ci95);
+  }
+  return json;
+}
+
+Json provenance_json(MPI_Comm comm, const options::Request& request) {
+  Json json;
+  for (const auto& [name, value] : provenance(comm)) json[name] = value;
+  for (const auto& [name, value] : request.resolved) json["options"][name] = value;
+  return json;
+}
+
+Json seconds_json(const petsc::Ledger& ledger) {
+  return {{"assembly_seconds", ledger.assembly_seconds},
+          {"analysis_seconds", ledger.analysis_seconds},
+          {"factorization_seconds", ledger.factorization_seconds},
+          {"solve_seconds", ledger.solve_seconds}};
+}
+
 namespace {
 
 Json scene_of(const options::Request& request, const accuracy::Outcome& outcome) {
-  const auto& s = request.scene;
-  Json scene{{"mu_s", s.friction.mu_s},
-             {"mu_d", s.friction.mu_d},
-             {"tau", s.tau},
-             {"delta", s.delta},
-             {"drag", s.drag_name},
-             {"drag_coefficient", s.drag.linear},
-             {"drag_cubic", s.drag.cubic},
-             {"noise_levels_meant", s.meant().noise.levels}};
+  Json scene = scene_json(request);
   if (!outcome.steps.empty()) {
     scene["noise_levels"] = outcome.steps.back().resolution.levels;
     const double v_max = outcome.steps.back().resolution.v_max;
     if (v_max > 0) scene["v_max"] = v_max;
   }
   return scene;
-}
-
-Json results_of(const accuracy::Outcome& outcome) {
-  Json results = Json::object();
-  for (const auto& r : outcome.last.results) {
-    if (r.is_scalar()) {
-      results[r.key] = {{"value", r.value[0]}, {"error", r.error[0]}};
-    } else {
-      results[r.key] = {{r.abscissa_name, r.abscissa}, {"value", r.value}, {"error", r.error}};
-    }
-    if (!r.unit.empty()) results[r.key]["unit"] = r.unit;
-    if (r.ci95.empty()) continue;
-    results[r.key]["ci95"] = r.is_scalar() ? Json(r.ci95[0]) : Json(r.ci95);
-  }
-  return results;
-}
-
-Json seconds_of(const petsc::Ledger& l) {
-  return {{"assembly_seconds", l.assembly_seconds},
-          {"analysis_seconds", l.analysis_seconds},
-          {"factorization_seconds", l.factorization_seconds},
-          {"solve_seconds", l.solve_seconds}};
 }
 
 Json step_of(const accuracy::Step& step) {
@@ -69,7 +75,7 @@ Json step_of(const accuracy::Step& step) {
                {"factor_entries", step.ledger.factor_entries},
                {"factor_megabytes", step.ledger.factor_megabytes},
                {"backward_error", step.ledger.backward_error}});
-  json.update(seconds_of(step.ledger));
+  json.update(seconds_json(step.ledger));
   json["seconds"] = step.seconds;
   for (const auto& [name, value] : step.checks) json["checks"][name] = value;
   if (!step.limiting_key.empty()) {
@@ -91,7 +97,8 @@ Json cost_of(const accuracy::Outcome& outcome, const RunTimes& times) {
   Json cost{{"seconds", times.total},
             {"start_up_seconds", times.start_up},
             {"peak_resident_bytes", petsc::peak_resident_bytes()}};
-  cost.update(seconds_of(outcome.total));
+  if (outcome.next_digit_seconds > 0) cost["next_digit_seconds"] = outcome.next_digit_seconds;
+  cost.update(seconds_json(outcome.total));
   if (outcome.simulation) cost["simulation"] = simulation_of(*outcome.simulation);
   cost["steps"] = Json::array();
   for (const auto& step : outcome.steps) cost["steps"].push_back(step_of(step));
@@ -134,14 +141,13 @@ std::string summary(MPI_Comm comm, const options::Request& request,
                     const accuracy::Outcome& outcome, const RunTimes& times) {
   Json json;
   json["scene"] = scene_of(request, outcome);
-  json["results"] = results_of(outcome);
+  json["results"] = results_json(outcome.last.results);
   json["accuracy"] = {{"asked", request.accuracy}, {"reached", outcome.reached}};
   if (!outcome.reached) json["accuracy"]["shortfall"] = outcome.shortfall;
   if (outcome.comparison) json["comparison"] = comparison_of(*outcome.comparison);
   json["cost"] = cost_of(outcome, times);
   json["plan"] = plan_of(outcome.total);
-  for (const auto& [name, value] : provenance(comm)) json["provenance"][name] = value;
-  for (const auto& [name, value] : request.resolved) json["provenance"]["options"][name] = value;
+  json["provenance"] = provenance_json(comm, request);
   return json.dump(2) + "\n";
 }
 

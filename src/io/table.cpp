@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stickslip/io/report.hpp"
+#include "parts.hpp"
 
 namespace stickslip::io {
-namespace {
 
 std::string scene_line(const options::Request& request) {
   const auto& s = request.scene;
@@ -16,6 +15,8 @@ std::string scene_line(const options::Request& request) {
   return fmt::format("mu_s = {:g}   mu_d = {:g}   tau = {:g}   delta = {:g}   drag {}\n",
                      s.friction.mu_s, s.friction.mu_d, s.tau, s.delta, drag);
 }
+
+namespace {
 
 std::string result_lines(const quantities::Result& r) {
   if (r.is_scalar()) {
@@ -146,8 +147,11 @@ std::string table(const options::Request& request, const accuracy::Outcome& outc
     text += fmt::format("accuracy {:g} {}; ", request.accuracy,
                         outcome.reached ? "reached" : "NOT reached: " + outcome.shortfall);
   }
-  return text +
-         fmt::format("{:.2f} s in all, {:.2f} s of it start-up\n", times.total, times.start_up);
+  text += fmt::format("{:.2f} s in all, {:.2f} s of it start-up\n", times.total, times.start_up);
+  if (outcome.next_digit_seconds > 0) {
+    text += fmt::format("one more digit would take about {:.2g} s\n", outcome.next_digit_seconds);
+  }
+  return text;
 }
 
 std::string trajectory_csv(const simulation::Path& path) {

@@ -379,6 +379,41 @@ Method read_method(const Settings& settings, Problems& problems) {
   return method;
 }
 
+StudyKind study_named(const std::string& name) {
+  if (name == "p") return StudyKind::points;
+  if (name == "delta") return StudyKind::steps;
+  if (name == "heuristic") return StudyKind::heuristic;
+  return name == "cost" ? StudyKind::cost : StudyKind::none;
+}
+
+// A study chooses discretisations and routes itself, and looks at scalars.
+void read_study(const Settings& settings, Request& request, Problems& problems) {
+  request.study = study_named(settings.text("study"));
+  request.study_steps = settings.integer("study_steps");
+  request.study_repeats = settings.integer("study_repeats").value_or(3);
+  request.study_csv = settings.text("study_csv");
+  if (request.study == StudyKind::none) {
+    for (const char* name : {"study_steps", "study_repeats", "study_csv"}) {
+      if (!settings.given(name)) continue;
+      request.warnings.push_back(fmt::format("-{} has no effect without -study", name));
+    }
+    return;
+  }
+  for (const char* name : {"route", "scheme", "degree", "layers", "p", "v_max", "compare",
+                           "checkpoint", "noise_levels"}) {
+    if (!settings.given(name)) continue;
+    settings.report(problems, name, "is chosen by -study itself", "leave it out");
+  }
+  for (Quantity q : request.quantities) {
+    const bool scalar =
+        q == Quantity::sticking || q == Quantity::moments || q == Quantity::noise_law;
+    if (scalar) continue;
+    settings.report(problems, "quantities", "of a study are sticking, moments and noise_law",
+                    "leave the others out");
+    return;
+  }
+}
+
 void check_writable(const Settings& settings, const std::string& name, Problems& problems) {
   if (!settings.given(name) || settings.text(name).empty()) return;
   const std::filesystem::path file = settings.text(name);
@@ -400,6 +435,7 @@ void read_output(const Settings& settings, Request& request, Problems& problems)
   check_writable(settings, "summary", problems);
   check_writable(settings, "output", problems);
   check_writable(settings, "trajectory", problems);
+  check_writable(settings, "study_csv", problems);
   check_writable(settings, "checkpoint", problems);
   request.summary = settings.text("summary");
   request.output = settings.text("output");
@@ -580,6 +616,7 @@ Request read_request(const std::vector<std::string>& argv) {
   request.method = read_method(settings, problems);
   check_route(settings, request, problems);
   if (request.route == Route::fluid_queue) request.method.scheme = Scheme::none;
+  read_study(settings, request, problems);
   read_output(settings, request, problems);
   for (const auto& group : table()) {
     for (const auto& option : group.options) {

@@ -159,6 +159,17 @@ Group method_group() {
                 "the left null vector of the generator, by SLEPc. fluid_queue: b = 0 without any "
                 "discretisation in v. monte_carlo: simulated excursions, with 95 % confidence "
                 "intervals"),
+          words("study", Kind::choice, "none", {"none", "p", "delta", "heuristic", "cost"},
+                "a series of runs instead of one. p: the upwind scheme on p = 2, 4, ..., its "
+                "observed order and Richardson's limit. delta: falling noise steps with mu_s on a "
+                "level and between two, observed order and limit. heuristic: the extrapolation of "
+                "the paper beside converged values. cost: error against time of all methods"),
+          integer("study_steps", "", whole(3, 20), {},
+                  "length of the series: number of values of p or delta (default 8 and 5)",
+                  "three values tell an order"),
+          integer("study_repeats", "3", whole(1, 99), {},
+                  "repetitions of each run of -study cost, of which the median time is taken",
+                  "an odd number is best"),
           integer("excursions", "1000000", whole(2, 1e15), {},
                   "number of simulated excursions with -route monte_carlo; with -accuracy it stops "
                   "before that when every interval is small enough",
@@ -183,6 +194,7 @@ Group output_group() {
           path("summary", "write everything as JSON to this file"),
           path("output", "write everything and the fields as HDF5 to this file; with density also "
                          "FILE.xdmf, which ParaView opens"),
+          path("study_csv", "write every scalar of every run of a study as CSV to this file"),
           path("trajectory", "write the trajectory as CSV (time, x, y, v) to this file"),
           {"compare",
            Kind::input,

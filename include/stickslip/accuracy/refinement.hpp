@@ -27,11 +27,23 @@ struct Step {
   std::vector<std::pair<std::string, double>> checks;  ///< what the route tells about itself
 };
 
+/// What is asked for on one discretisation.
+struct Solved {
+  routes::Evaluation evaluation;  ///< errors are those of the route on this discretisation alone
+  Step step;
+};
+
+/// Solves on one discretisation of the request's scene. Collective. Throws NoMemory before anything
+/// is allocated that would not fit, NotReached when a solver fails.
+[[nodiscard]] Solved solve_on(MPI_Comm comm, const options::Request& request,
+                              const Resolution& resolution);
+
 struct Outcome {
   /// Of the last step: values with their error estimates, and the law and modes for fields.
   routes::Evaluation last;
-  bool reached = false;   ///< whether all estimates are within the accuracy
-  std::string shortfall;  ///< why not, and what would help
+  bool reached = false;           ///< whether all estimates are within the accuracy
+  std::string shortfall;          ///< why not, and what would help
+  double next_digit_seconds = 0;  ///< predicted time of a run at a tenth of the error; 0: unknown
   std::vector<Step> steps;
   petsc::Ledger total;
   double speed_law_error = 0;                   ///< of the distribution function of |V|

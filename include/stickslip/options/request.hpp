@@ -45,6 +45,9 @@ enum class TransientSolver { krylov, stepping };
 /// How the spectrum is computed.
 enum class SpectrumSolver { krylov, direct };
 
+/// -study: series of runs.
+enum class StudyKind { none, points, steps, heuristic, cost };
+
 /// Whether a route works on both signs of v, unfolded.
 [[nodiscard]] inline bool on_full_grid(Route route) {
   return route == Route::lambda || route == Route::hitting || route == Route::null_vector;
@@ -75,6 +78,9 @@ struct Request {
   std::uint64_t seed = 1;             ///< of whatever is simulated
   double horizon = 100;               ///< end of the trajectory [time]
   std::vector<Reference> references;  ///< of -compare
+  StudyKind study = StudyKind::none;
+  std::optional<int> study_steps;  ///< length of a series, if fixed by the user
+  int study_repeats = 3;           ///< runs of which the median time is taken
   SpectrumSolver spectrum_solver = SpectrumSolver::krylov;
   TransientSolver transient_solver = TransientSolver::krylov;
   Route route = Route::excursion;
@@ -82,6 +88,7 @@ struct Request {
   std::string summary, output, trajectory;  ///< file names; empty if not asked for
   std::string checkpoint;                   ///< of -route monte_carlo
   std::string compared;                     ///< file of the references
+  std::string study_csv;
   bool progress = false;
   std::vector<std::string> warnings;
   /// All options of the table as used, name and value, for the record.

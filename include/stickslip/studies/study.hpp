@@ -1,0 +1,56 @@
+#pragma once
+/// Series of runs that show how results depend on the discretisation, and what accuracy costs.
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/options/request.hpp"
+
+namespace stickslip::studies {
+
+/// One run of a series.
+struct Run {
+  std::string method;                                      ///< hp, upwind, monte_carlo
+  std::vector<std::pair<std::string, double>> parameters;  ///< what sets it apart, by option
+  quantities::Results results;                             ///< scalars
+  double seconds = 0;                                      ///< median of the repeated runs
+  petsc::Ledger ledger;  ///< of the run that took this long; empty for a simulation
+};
+
+/// Numbers in rows and named columns; NaN where there is none.
+struct Table {
+  std::string name;   ///< such as "P_stick" or "cost hp"
+  std::string title;  ///< a line for people
+  std::vector<std::string> columns;
+  std::vector<std::vector<double>> rows;
+};
+
+struct Study {
+  std::string kind;
+  std::vector<Run> runs;
+  std::vector<Table> tables;
+  std::vector<std::string> conclusions;  ///< in words
+};
+
+/// Called on all ranks before each run with its number, how many there are, and what it is.
+using StudyProgress = std::function<void(int, int, const std::string&)>;
+
+/// -study of the request:
+///
+/// p: the upwind scheme on p = 2, 4, ... points per noise step, observed order
+///   kappa(p) = log2(|u^p - u^(p/2)|/|u^2p - u^p|), Richardson's extrapolation 2 u^2p - u^p, and
+///   the distances of both from the converged hp value.
+/// delta: the converged values for falling noise steps, in two families: mu_s on a noise level, and
+///   in the middle between two; observed order and limit.
+/// heuristic: the extrapolation in (p, delta) of the paper, with its index sets, beside converged
+///   values.
+/// cost: error against time for upwind, Richardson, hp and Monte Carlo.
+///
+/// Collective. Throws what the runs throw.
+[[nodiscard]] Study conduct(MPI_Comm comm, const options::Request& request,
+                            const StudyProgress& progress);
+
+}  // namespace stickslip::studies

@@ -1,0 +1,28 @@
+#pragma once
+/// Parts that reports of runs and of studies share.
+
+#include <mpi.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "stickslip/io/hdf5_file.hpp"
+#include "stickslip/io/report.hpp"
+
+namespace stickslip::io {
+
+// JSON for Modern C++: the common header-only writer; numbers are written so that they read back
+// to the same bits.
+using Json = nlohmann::ordered_json;
+
+/// The scene in a line.
+[[nodiscard]] std::string scene_line(const options::Request& request);
+[[nodiscard]] Json scene_json(const options::Request& request);
+[[nodiscard]] Json results_json(const quantities::Results& results);
+[[nodiscard]] Json provenance_json(MPI_Comm comm, const options::Request& request);
+[[nodiscard]] Json seconds_json(const petsc::Ledger& ledger);
+/// The group /record: provenance, options, seconds.
+void write_record(Hdf5File& file, MPI_Comm comm, const options::Request& request,
+                  const RunTimes& times);
+
+}  // namespace stickslip::io

@@ -1,0 +1,213 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "stickslip/routes/monte_carlo.hpp"
+#include "studies.hpp"
+
+namespace stickslip::studies {
+namespace {
+
+constexpr int kFinestDegree = 16;
+
+/// One point of a work-precision picture.
+struct Point {
+  double parameter, error, seconds;
+  petsc::Ledger ledger;
+};
+
+/// The points of one method.
+struct Curve {
+  std::string method, parameter;
+  std::vector<Point> points;
+};
+
+// The run of median time out of several.
+Run median_run(int repeats, const std::function<Run()>& make) {
+  std::vector<Run> runs;
+  for (int n = 0; n < repeats; ++n) runs.push_back(make());
+  const auto middle = runs.begin() + repeats / 2;
+  std::nth_element(runs.begin(), middle, runs.end(),
+                   [](const Run& a, const Run& b) { return a.seconds < b.seconds; });
+  return *middle;
+}
+
+class CostStudy {
+ public:
+  explicit CostStudy(const Setting& setting)
+      : setting_(setting), repeats_(setting.request.study_repeats) {
+    study_.kind = "cost";
+  }
+
+  Study conduct() {
+    count_ = 1 + kLastDegree - kFirstDegree + 1 + upwind_steps() + kSimulations;
+    reference_ = reference();
+    hp();
+    upwind();
+    monte_carlo();
+    for (const Curve& curve : curves_) tell(curve);
+    return std::move(study_);
+  }
+
+ private:
+  static constexpr int kFirstDegree = 2, kLastDegree = 12, kSimulations = 6;
+
+  [[nodiscard]] int upwind_steps() const { return setting_.request.study_steps.value_or(7); }
+  void announce(const std::string& what) { setting_.tell(++number_, count_, what); }
+
+  [[nodiscard]] static options::Request hp_request(const options::Request& request) {
+    options::Request hp = request;
+    hp.method = {};
+    return hp;
+  }
+
+  // Finer than every point that is held against it, in degree and in layers.
+  quantities::Results reference() {
+    announce("reference");
+    const auto request = hp_request(setting_.request);
+    auto resolution = accuracy::hp_resolution(request.scene, kFinestDegree, 0, 1e-18);
+    resolution.layers += 2;
+    return scalars(accuracy::solve_on(setting_.comm, request, resolution).evaluation.results);
+  }
+
+  // Largest relative error of a scalar.
+  [[nodiscard]] double error_of(const quantities::Results& results) const {
+    double largest = 0;
+    for (const auto& result : results) {
+      const double known = value_of(reference_, result.key);
+      if (std::isnan(known)) continue;
+      largest = std::max(largest, std::abs(result.value[0] / known - 1));
+    }
+    return largest;
+  }
+
+  void add(Curve& curve, const Run& run, double parameter, double error) {
+    curve.points.push_back({parameter, error, run.seconds, run.ledger});
+    study_.runs.push_back(run);
+  }
+
+  void hp() {
+    Curve curve{"hp", "degree", {}};
+    const auto request = hp_request(setting_.request);
+    for (int degree = kFirstDegree; degree <= kLastDegree; ++degree) {
+      announce(fmt::format("hp, degree {}", degree));
+      const auto resolution = accuracy::hp_resolution(
+          request.scene, degree, 0, std::max(std::pow(10.0, -(degree + 3)), 1e-18));
+      const Run run = median_run(repeats_, [&] {
+        auto [evaluation, step] = accuracy::solve_on(setting_.comm, request, resolution);
+        return Run{"hp",
+                   {{"degree", degree}, {"layers", resolution.layers}},
+                   scalars(evaluation.results),
+                   step.seconds,
+                   step.ledger};
+      });
+      add(curve, run, degree, error_of(run.results));
+    }
+    curves_.push_back(std::move(curve));
+  }
+
+  void upwind() {
+    Curve plain{"upwind", "p", {}}, extrapolated{"richardson", "p", {}};
+    for (int n = 0; n < upwind_steps(); ++n) {
+      const int points = 4 << n;
+      announce(fmt::format("upwind, p = {}", points));
+      const Run run =
+          median_run(repeats_, [&] { return upwind_run(setting_, setting_.request, points); });
+      if (n > 0) add_extrapolated(extrapolated, study_.runs.back(), run, points);
+      add(plain, run, points, error_of(run.results));
+    }
+    curves_.push_back(std::move(plain));
+    curves_.push_back(std::move(extrapolated));
+  }
+
+  // 2 u^2p - u^p, at the price of both.
+  void add_extrapolated(Curve& curve, const Run& coarse, const Run& fine, double points) const {
+    quantities::Results results = fine.results;
+    for (auto& result : results) {
+      result.value[0] = 2 * result.value[0] - value_of(coarse.results, result.key);
+    }
+    petsc::Ledger both = coarse.ledger;
+    both += fine.ledger;
+    curve.points.push_back({points, error_of(results), coarse.seconds + fine.seconds, both});
+  }
+
+  // The error is the standard deviation that the interval tells: a single one is a matter of luck.
+  void monte_carlo() {
+    Curve curve{"monte_carlo", "excursions", {}};
+    options::Request request = setting_.request;
+    request.accuracy_given = false;
+    request.checkpoint.clear();
+    for (int n = 0; n < kSimulations; ++n) {
+      request.excursions = 1000 * std::pow(4, n);
+      announce(fmt::format("Monte Carlo, {:g} excursions", request.excursions));
+      const Run run = median_run(repeats_, [&] { return simulated(request); });
+      double error = 0;
+      for (const auto& result : run.results) {
+        error = std::max(error, quantities::relative_error(result) / 1.96);
+      }
+      add(curve, run, request.excursions, error);
+    }
+    curves_.push_back(std::move(curve));
+  }
+
+  [[nodiscard]] Run simulated(const options::Request& request) const {
+    auto simulation = routes::monte_carlo(setting_.comm, request, {});
+    return {"monte_carlo",
+            {{"excursions", request.excursions}},
+            scalars(simulation.results),
+            simulation.state.seconds,
+            {}};
+  }
+
+  void tell(const Curve& curve) {
+    Table table{curve.method,
+                curve.method + ": error is the largest relative one of a scalar",
+                {curve.parameter, "error", "seconds", "megabytes", "assembly", "analysis",
+                 "factorization", "solve"},
+                {}};
+    for (const Point& p : curve.points) {
+      const auto& l = p.ledger;
+      table.rows.push_back({p.parameter, p.error, p.seconds, l.factor_megabytes, l.assembly_seconds,
+                            l.analysis_seconds, l.factorization_seconds, l.solve_seconds});
+    }
+    study_.tables.push_back(std::move(table));
+    study_.conclusions.push_back(price_of_a_digit(curve));
+  }
+
+  // time ~ error^-s by least squares in the logarithms, without points limited by rounding.
+  [[nodiscard]] static std::string price_of_a_digit(const Curve& curve) {
+    std::vector<Point> used;
+    for (const Point& p : curve.points) {
+      if (p.error > 1e-12) used.push_back(p);
+    }
+    if (used.size() < 3) return curve.method + ": too few points";
+    double x = 0, y = 0, xx = 0, xy = 0;
+    const auto count = static_cast<double>(used.size());
+    for (const Point& p : used) {
+      x += -std::log10(p.error) / count;
+      y += std::log10(p.seconds) / count;
+    }
+    for (const Point& p : used) {
+      xx += std::pow(-std::log10(p.error) - x, 2);
+      xy += (-std::log10(p.error) - x) * (std::log10(p.seconds) - y);
+    }
+    const double slope = xy / xx;
+    const auto at = [&](double digits) { return std::pow(10, y + slope * (digits - x)); };
+    return fmt::format("{}: one more digit costs {:.3g} times the time; 1e-6 takes about {:.2g} s, "
+                       "1e-9 about {:.2g} s",
+                       curve.method, std::pow(10, slope), at(6), at(9));
+  }
+
+  const Setting& setting_;
+  int repeats_, number_ = 0, count_ = 0;
+  quantities::Results reference_;
+  std::vector<Curve> curves_;
+  Study study_;
+};
+
+}  // namespace
+
+Study study_cost(const Setting& setting) { return CostStudy(setting).conduct(); }
+
+}  // namespace stickslip::studies

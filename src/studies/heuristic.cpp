@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+
+#include <map>
+
+#include "studies.hpp"
+
+namespace stickslip::studies {
+namespace {
+
+// p = 2^k, delta = 2^-l: the sets of the paper for its memory limit.
+bool is_computed(int k, int l) { return l <= 4 || (l == 5 && k <= 6) || (l == 6 && k <= 4); }
+constexpr int kPoints = 9, kSteps = 6;
+
+using Place = std::pair<int, int>;  // (k, l)
+using Values = std::map<Place, double>;
+
+// The change after next is to the next one as that is to the last: a + R (a - b), where R is the
+// ratio of changes one step before.
+double continued(double a, double b, double c) { return a + (a - b) / (b - c) * (a - b); }
+
+// S(k,l) = (S_V + S_H)/2, six values each.
+void extrapolate(Values& s) {
+  for (int l = 5; l <= kSteps; ++l) {
+    for (int k = 1; k <= kPoints; ++k) {
+      if (is_computed(k, l)) continue;
+      const double vertical = continued(s[{k, l - 1}], s[{k, l - 2}], s[{k, l - 3}]);
+      const double horizontal = continued(s[{k - 1, l}], s[{k - 2, l}], s[{k - 3, l}]);
+      s[{k, l}] = (vertical + horizontal) / 2;
+    }
+  }
+}
+
+/// All runs of the index set, and the converged values of the two finest steps.
+class Grid {
+ public:
+  explicit Grid(const Setting& setting) : setting_(setting) {}
+
+  void run() {
+    int number = 0, count = 2;
+    each([&](int, int) { ++count; });
+    each([&](int k, int l) {
+      setting_.tell(++number, count, fmt::format("p = {}, delta = 1/{}", 1 << k, 1 << l));
+      runs_[{k, l}] = upwind_run(setting_, with_delta(setting_.request, std::ldexp(1, -l)), 1 << k);
+    });
+    for (int l : {5, 6}) {
+      setting_.tell(++number, count, fmt::format("hp, delta = 1/{}", 1 << l));
+      converged_[l] =
+          converged_run(setting_, with_delta(setting_.request, std::ldexp(1, -l)), 1e-9);
+    }
+  }
+
+  [[nodiscard]] Table table(const std::string& key) const {
+    Values values;
+    for (const auto& [place, run] : runs_) values[place] = value_of(run.results, key);
+    extrapolate(values);
+    Table table{
+        key,
+        fmt::format("{} by the extrapolation of the paper, beside the converged value", key),
+        {"k", "l", "extrapolated", "converged", "relative_error"},
+        {}};
+    for (const auto& [place, value] : values) {
+      const auto [k, l] = place;
+      if (is_computed(k, l)) continue;
+      const double truth = value_of(converged_.at(l).results, key);
+      table.rows.push_back({static_cast<double>(k), static_cast<double>(l), value, truth,
+                            std::abs(value / truth - 1)});
+    }
+    return table;
+  }
+
+  [[nodiscard]] std::vector<Run> runs() const {
+    std::vector<Run> all;
+    for (const auto& [place, run] : runs_) all.push_back(run);
+    for (const auto& [l, run] : converged_) all.push_back(run);
+    return all;
+  }
+  [[nodiscard]] const quantities::Results& finest() const { return converged_.at(6).results; }
+
+ private:
+  template <class Action>
+  static void each(Action action) {
+    for (int l = 1; l <= kSteps; ++l) {
+      for (int k = 1; k <= kPoints; ++k) {
+        if (is_computed(k, l)) action(k, l);
+      }
+    }
+  }
+
+  const Setting& setting_;
+  std::map<Place, Run> runs_;
+  std::map<int, Run> converged_;
+};
+
+}  // namespace
+
+Study study_heuristic(const Setting& setting) {
+  Grid grid(setting);
+  grid.run();
+  Study study;
+  study.kind = "heuristic";
+  study.runs = grid.runs();
+  for (const auto& result : grid.finest()) {
+    study.tables.push_back(grid.table(result.key));
+    double worst = 0;
+    for (const auto& row : study.tables.back().rows) worst = std::max(worst, row[4]);
+    study.conclusions.push_back(
+        fmt::format("{}: extrapolated values are off by up to {:.1e}", result.key, worst));
+  }
+  return study;
+}
+
+}  // namespace stickslip::studies

@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include "studies.hpp"
+
+namespace stickslip::studies {
+namespace {
+
+// log2(|b - a|/|c - b|) for three values at p/2, p, 2p.
+double observed_order(double a, double b, double c) {
+  return std::log2(std::abs(b - a) / std::abs(c - b));
+}
+
+Table table_of(const std::string& key, const std::vector<Run>& runs, double limit) {
+  Table table{key,
+              key + " by the upwind scheme; kappa(p) is the observed order",
+              {"p", "value", "kappa", "richardson", "error", "richardson_error"},
+              {}};
+  for (std::size_t n = 0; n < runs.size(); ++n) {
+    const auto at = [&](std::size_t m) { return value_of(runs[m].results, key); };
+    const bool between = n > 0 && n + 1 < runs.size();
+    const double extrapolated = n > 0 ? 2 * at(n) - at(n - 1) : kNone;
+    table.rows.push_back({runs[n].parameters[1].second, at(n),
+                          between ? observed_order(at(n - 1), at(n), at(n + 1)) : kNone,
+                          extrapolated, std::abs(at(n) / limit - 1),
+                          std::abs(extrapolated / limit - 1)});
+  }
+  return table;
+}
+
+std::string conclusion(const Table& table, const quantities::Result& converged) {
+  const auto& last = table.rows.back();
+  const auto& before = table.rows[table.rows.size() - 2];
+  return fmt::format("{}: order {:.3f}; Richardson {:.10g} +- {:.1e}; hp {:.12g} +- {:.1e}",
+                     table.name, before[2], last[3], std::abs(last[3] - before[3]),
+                     converged.value[0], converged.error[0]);
+}
+
+}  // namespace
+
+Study study_points(const Setting& setting) {
+  Study study;
+  study.kind = "p";
+  const int steps = setting.request.study_steps.value_or(8);
+  for (int n = 1; n <= steps; ++n) {
+    setting.tell(n, steps + 1, fmt::format("p = {}", 1 << n));
+    study.runs.push_back(upwind_run(setting, setting.request, 1 << n));
+  }
+  setting.tell(steps + 1, steps + 1, "hp to compare with");
+  const Run converged = converged_run(setting, setting.request, 1e-10);
+  for (const auto& result : converged.results) {
+    study.tables.push_back(table_of(result.key, study.runs, result.value[0]));
+    study.conclusions.push_back(conclusion(study.tables.back(), result));
+  }
+  study.runs.push_back(converged);
+  return study;
+}
+
+}  // namespace stickslip::studies

@@ -1,0 +1,122 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/tools/roots.hpp>
+#include <cstdint>
+
+#include "studies.hpp"
+
+namespace stickslip::studies {
+namespace {
+
+/// A value and the noise step it belongs to.
+struct Sample {
+  double delta, value, error;
+};
+
+// d^q - e^q.
+double gap(double d, double e, double q) { return std::pow(d, q) - std::pow(e, q); }
+
+// q with (a - b)/(b - c) = (d_a^q - d_b^q)/(d_b^q - d_c^q), as for u + C d^q; NaN if there is none.
+double observed_order(const Sample& a, const Sample& b, const Sample& c) {
+  const double ratio = (a.value - b.value) / (b.value - c.value);
+  const auto defect = [&](double q) {
+    return std::log(gap(a.delta, b.delta, q) / gap(b.delta, c.delta, q)) - std::log(ratio);
+  };
+  constexpr double low = 0.05, high = 8;
+  if (!(ratio > 0) || defect(low) * defect(high) > 0) return kNone;
+  std::uintmax_t iterations = 100;
+  const auto root = boost::math::tools::toms748_solve(
+      defect, low, high, boost::math::tools::eps_tolerance<double>(40), iterations);
+  return root.first;
+}
+
+double limit(const Sample& b, const Sample& c, double order) {
+  const double share = std::pow(c.delta, order) / gap(b.delta, c.delta, order);
+  return c.value - (b.value - c.value) * share;
+}
+
+/// One family of steps, with mu_s at the same place between the levels.
+class Family {
+ public:
+  Family(const Setting& setting, double offset, std::string name)
+      : setting_(setting), name_(std::move(name)) {
+    const double mu_s = setting.request.scene.friction.mu_s;
+    const double first = std::max(1.0, std::round(mu_s / setting.request.scene.delta - offset));
+    const int steps = setting.request.study_steps.value_or(5);
+    for (int n = 0; n < steps; ++n) deltas_.push_back(mu_s / (first * (1 << n) + offset));
+  }
+
+  [[nodiscard]] const std::vector<double>& deltas() const { return deltas_; }
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::vector<Run>& runs() const { return runs_; }
+
+  void run(int& number, int count) {
+    for (double delta : deltas_) {
+      setting_.tell(++number, count, fmt::format("{}, delta = {:.6g}", name_, delta));
+      runs_.push_back(converged_run(setting_, with_delta(setting_.request, delta),
+                                    std::min(setting_.request.accuracy, 1e-9)));
+    }
+  }
+
+  [[nodiscard]] Table table(const std::string& key) const {
+    Table table{key + " " + name_,
+                fmt::format("{}, mu_s {}", key, name_),
+                {"delta", "value", "error", "order", "limit", "limit_error"},
+                {}};
+    const auto s = samples(key);
+    double before = kNone;
+    for (std::size_t n = 0; n < s.size(); ++n) {
+      const double order = n >= 2 ? observed_order(s[n - 2], s[n - 1], s[n]) : kNone;
+      const double extrapolated = n >= 2 ? limit(s[n - 1], s[n], order) : kNone;
+      table.rows.push_back({s[n].delta, s[n].value, s[n].error, order, extrapolated,
+                            std::abs(extrapolated - before)});
+      before = extrapolated;
+    }
+    return table;
+  }
+
+ private:
+  [[nodiscard]] std::vector<Sample> samples(const std::string& key) const {
+    std::vector<Sample> all;
+    for (const auto& run : runs_) {
+      for (const auto& result : run.results) {
+        if (result.key != key) continue;
+        all.push_back({run.parameters[0].second, result.value[0], result.error[0]});
+      }
+    }
+    return all;
+  }
+
+  const Setting& setting_;
+  std::string name_;
+  std::vector<double> deltas_;
+  std::vector<Run> runs_;
+};
+
+std::string conclusion(const Table& table) {
+  const auto& last = table.rows.back();
+  return fmt::format("{}: order {:.2f}, limit {:.10g} +- {:.1e}", table.name, last[3], last[4],
+                     last[5]);
+}
+
+}  // namespace
+
+Study study_steps(const Setting& setting) {
+  Study study;
+  study.kind = "delta";
+  Family on_level(setting, 0, "on a level"), between(setting, 0.5, "between levels");
+  const int count = static_cast<int>(on_level.deltas().size() + between.deltas().size());
+  int number = 0;
+  for (Family* family : {&on_level, &between}) {
+    family->run(number, count);
+    for (const auto& result : family->runs().back().results) {
+      study.tables.push_back(family->table(result.key));
+      study.conclusions.push_back(conclusion(study.tables.back()));
+    }
+    study.runs.insert(study.runs.end(), family->runs().begin(), family->runs().end());
+  }
+  return study;
+}
+
+}  // namespace stickslip::studies

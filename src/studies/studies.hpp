@@ -1,0 +1,42 @@
+#pragma once
+/// The studies one by one, and what they share.
+
+#include <cmath>
+#include <limits>
+
+#include "stickslip/studies/study.hpp"
+
+namespace stickslip::studies {
+
+/// What every study is given.
+struct Setting {
+  MPI_Comm comm;
+  const options::Request& request;
+  const StudyProgress& progress;
+
+  /// The progress line of run `number` of `count`.
+  void tell(int number, int count, const std::string& what) const {
+    if (progress) progress(number, count, what);
+  }
+};
+
+[[nodiscard]] Study study_points(const Setting& setting);
+[[nodiscard]] Study study_steps(const Setting& setting);
+[[nodiscard]] Study study_heuristic(const Setting& setting);
+[[nodiscard]] Study study_cost(const Setting& setting);
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// The scalar results whose size is not 0, in their order.
+[[nodiscard]] quantities::Results scalars(const quantities::Results& results);
+/// Value of the scalar `key`; NaN if there is none.
+[[nodiscard]] double value_of(const quantities::Results& results, const std::string& key);
+/// The request with another noise step, and without choices of the discretisation made by hand.
+[[nodiscard]] options::Request with_delta(const options::Request& request, double delta);
+/// Upwind with p points per noise step.
+[[nodiscard]] Run upwind_run(const Setting& setting, const options::Request& request, int points);
+/// Refined hp.
+[[nodiscard]] Run converged_run(const Setting& setting, const options::Request& request,
+                                double accuracy);
+
+}  // namespace stickslip::studies

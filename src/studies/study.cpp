@@ -1,0 +1,71 @@
+#include "stickslip/studies/study.hpp"
+
+#include "studies.hpp"
+
+namespace stickslip::studies {
+
+Study conduct(MPI_Comm comm, const options::Request& request, const StudyProgress& progress) {
+  const Setting setting{comm, request, progress};
+  switch (request.study) {
+  case options::StudyKind::points: return study_points(setting);
+  case options::StudyKind::steps: return study_steps(setting);
+  case options::StudyKind::heuristic: return study_heuristic(setting);
+  case options::StudyKind::cost: return study_cost(setting);
+  case options::StudyKind::none: break;
+  }
+  return {};
+}
+
+quantities::Results scalars(const quantities::Results& results) {
+  quantities::Results found;
+  for (const auto& result : results) {
+    if (result.is_scalar() && result.value[0] != 0) found.push_back(result);
+  }
+  return found;
+}
+
+double value_of(const quantities::Results& results, const std::string& key) {
+  for (const auto& result : results) {
+    if (result.key == key) return result.value[0];
+  }
+  return kNone;
+}
+
+options::Request with_delta(const options::Request& request, double delta) {
+  options::Request other = request;
+  other.scene.delta = delta;
+  other.scene.noise_levels.reset();
+  other.method = {};
+  return other;
+}
+
+Run upwind_run(const Setting& setting, const options::Request& request, int points) {
+  options::Request upwind = request;
+  upwind.method = {};
+  upwind.method.scheme = options::Scheme::upwind;
+  // Truncation far below the error of the scheme, which is about 1/p.
+  constexpr double tail = 1e-9;
+  const auto resolution = accuracy::upwind_resolution(upwind.scene, points, tail);
+  auto [evaluation, step] = accuracy::solve_on(setting.comm, upwind, resolution);
+  return {"upwind",
+          {{"delta", upwind.scene.delta}, {"p", points}},
+          scalars(evaluation.results),
+          step.seconds,
+          step.ledger};
+}
+
+Run converged_run(const Setting& setting, const options::Request& request, double accuracy) {
+  options::Request hp = request;
+  hp.method = {};
+  hp.accuracy = accuracy;
+  const auto outcome = accuracy::refine(setting.comm, hp, {}, {});
+  double seconds = 0;
+  for (const auto& step : outcome.steps) seconds += step.seconds;
+  return {"hp",
+          {{"delta", hp.scene.delta}, {"accuracy", accuracy}},
+          scalars(outcome.last.results),
+          seconds,
+          outcome.total};
+}
+
+}  // namespace stickslip::studies
