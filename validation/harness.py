@@ -15,20 +15,20 @@ class Refused(Exception):
 
 
 class Program:
-    def __init__(self, path):
-        self.path = path
+    def __init__(self, path, launcher=()):
+        self.path, self.launcher = path, launcher
 
     def run(self, **options):
         """The summary of one run; underscores of PETSc's solver prefixes stay as they are."""
         with tempfile.TemporaryDirectory() as folder:
             summary = pathlib.Path(folder) / "summary.json"
-            words = [str(self.path), "-summary", str(summary)]
+            words = [*self.launcher, str(self.path), "-summary", str(summary)]
             for name, value in options.items():
                 words += ["-" + name, str(value)]
             try:
                 done = subprocess.run(words, capture_output=True, text=True)
             except OSError as problem:
-                sys.exit(f"{self.path} does not run: {problem.strerror}")
+                sys.exit(f"{words[0]} does not run: {problem.strerror}")
             if done.returncode == 2:
                 raise Refused(done.stderr.strip())
             if done.returncode not in (0, 3):  # 3: a discretisation fixed by hand is not refined
@@ -44,12 +44,12 @@ class Report:
 
     def claim(self, text, worst, tolerance):
         """Holds if the largest deviation found is within the tolerance; a NaN is not."""
-        self._verdict(worst <= tolerance, text, f"largest {worst:.1e}, allowed {tolerance:.0e}")
+        self.verdict(worst <= tolerance, text, f"largest {worst:.1e}, allowed {tolerance:.0e}")
 
     def at_least(self, text, smallest, bound):
-        self._verdict(smallest >= bound, text, f"smallest {smallest:.3g}, wanted {bound:g}")
+        self.verdict(smallest >= bound, text, f"smallest {smallest:.3g}, wanted {bound:g}")
 
-    def _verdict(self, good, text, numbers):
+    def verdict(self, good, text, numbers):
         self.failed |= not good
         print(f"{'holds' if good else 'FAILS'}  {text}: {numbers}", flush=True)
 

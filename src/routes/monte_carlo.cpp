@@ -176,16 +176,27 @@ class Estimates {
   Results results_;
 };
 
-// Options that fix the numbers of a simulation, but for how many excursions there are.
+// What fixes the numbers of a simulation, but for how many excursions there are. The questions may
+// come from the file of -compare, so they are taken as understood, not as written.
 std::vector<std::pair<std::string, std::string>> identity(const Request& request) {
-  static const std::vector<std::string> names{
-      "mu_s",        "mu_d",   "tau",  "delta", "drag", "drag_cubic",
-      "quantities",  "lambda", "time", "omega", "seed", "drag_coefficient",
-      "noise_levels"};
+  static const std::vector<std::string> names{"mu_s",  "mu_d",       "tau",
+                                              "delta", "drag",       "drag_coefficient",
+                                              "seed",  "drag_cubic", "noise_levels"};
   std::vector<std::pair<std::string, std::string>> found;
   for (const auto& option : request.resolved) {
     if (std::count(names.begin(), names.end(), option.first) > 0) found.push_back(option);
   }
+  const auto wanted = wanted_of(request);
+  const auto add = [&](const char* name, const auto& values) {
+    found.emplace_back(name, values.empty() ? "none" : fmt::format("{}", fmt::join(values, ",")));
+  };
+  std::vector<std::string> followed;
+  if (wanted.moments) followed.emplace_back("moments");
+  if (wanted.noise) followed.emplace_back("noise_law");
+  add("quantities", followed);
+  add("lambda", wanted.lambda);
+  add("omega", wanted.omega);
+  add("time", wanted.edges.empty() ? wanted.edges : request.time);
   return found;
 }
 
@@ -248,12 +259,16 @@ class Campaign {
     if (request_.checkpoint.empty()) return;
     const auto found = read_checkpoint(comm_, request_.checkpoint, identity(request_));
     if (!found) return;
+    rounds_ = found->rounds;
+    bool whole = true;
     try {
       tally_.unpack(found->tally);
     } catch (const std::invalid_argument&) {
+      whole = false;
+    }
+    if (!whole || done() != static_cast<double>(rounds_) * kRound * kBatch) {
       throw BadInput(fmt::format("-checkpoint = {}: is damaged; remove it", request_.checkpoint));
     }
-    rounds_ = found->rounds;
     continued_from_ = done();
     jumps_before_ = tally_.jumps();
   }

@@ -9,21 +9,31 @@
 
 namespace stickslip::simulation {
 
-// (c + i omega) int u exp(-i omega s) ds = u(0) - u(t) exp(-i omega t) + force int exp(...) ds.
+// With theta = omega t, phi = int_0^1 exp(-i theta s) ds and psi = int_0^1 s exp(-i theta s) ds,
+//
+//   (c + i omega) int u exp(-i omega s) ds
+//       = i omega t (u(0) phi + force t psi) + c exp(-i theta) int u ds,
+//
+// where nothing cancels however small c and omega are.
 void LinearFlow::transform(double speed, double force, const Piece& piece,
                            const std::vector<double>& omega,
                            std::vector<std::complex<double>>& result) const {
+  const double t = piece.time;
   for (std::size_t n = 0; n < omega.size(); ++n) {
-    const std::complex<double> decay(c_, omega[n]);
-    const double half = omega[n] * piece.time / 2;
-    const double sine = std::sin(half), cosine = std::cos(half);
+    if (omega[n] == 0) {
+      result[n] = piece.path;
+      continue;
+    }
+    const double half = omega[n] * t / 2, sine = std::sin(half), cosine = std::cos(half);
     const std::complex<double> turn(cosine, -sine);
     const double mean = half > 0 ? sine / half : 1;
-    if (decay == 0.0) {
-      result[n] = piece.path;
-    } else {
-      result[n] = (speed - piece.end * turn * turn + force * piece.time * mean * turn) / decay;
-    }
+    const double bend = half > 0.02 ? (mean - cosine) / half : half * (1 - half * half / 10) / 3;
+    // phi = turn mean, psi = turn (mean - i bend)/2.
+    const std::complex<double> moved(mean * (speed + force * t / 2), -force * t * bend / 2);
+    const std::complex<double> pushed(omega[n] * t * turn * moved);
+    result[n] =
+        (std::complex<double>(-pushed.imag(), pushed.real()) + c_ * piece.path * turn * turn) /
+        std::complex<double>(c_, omega[n]);
   }
 }
 
@@ -40,7 +50,7 @@ constexpr double kTolerance = 1e-13;
 class Motion {
  public:
   Motion(const model::Drag& drag, double force, double speed)
-      : drag_(drag), force_(force), state_{speed, 0, 0} {}
+      : drag_(drag), force_(force), state_{speed, 0, 0}, stopped_(speed <= 0 && force < 0) {}
 
   [[nodiscard]] const State& state() const { return state_; }
   [[nodiscard]] double time() const { return time_; }
@@ -65,7 +75,9 @@ class Motion {
       Stepper().do_step(rates(), state_, 0.0, next, h, error);
       double ratio = 1e-8;  // of the error to what is allowed; a step grows tenfold at most
       for (std::size_t n = 0; n < error.size(); ++n) {
-        ratio = std::max(ratio, std::abs(error[n]) / (kTolerance * (1 + std::abs(next[n]))));
+        const double share = std::abs(error[n]) / (kTolerance * (1 + std::abs(next[n])));
+        const bool overflows = !std::isfinite(share) || !std::isfinite(next[n]);
+        ratio = std::max(ratio, overflows ? 1e8 : share);
       }
       step_ = 0.9 * h / std::pow(ratio, 1.0 / 8);
       if (ratio <= 1) break;
@@ -74,8 +86,10 @@ class Motion {
     const State before = state_;
     state_ = next;
     time_ = h == room ? end : time_ + h;
-    // A body that starts to slide is at 0 as well, but does not come from above.
-    if (state_[0] <= 0 && before[0] > 0) stop_after(before, h);
+    if (state_[0] > 0) return;
+    // Only a body that is pushed back stops; else the rest of the speed is below the tolerance.
+    if (force_ < 0) return stop_after(before, h);
+    state_[0] = 0;
   }
 
   // Stopped within the step of size h that was made last.
@@ -116,7 +130,10 @@ void GeneralFlow::transform(double speed, double force, const Piece& piece,
   result.assign(omega.size(), 0.0);
   if (omega.empty()) return;
   const double highest = *std::max_element(omega.begin(), omega.end());
-  const int panels = 1 + static_cast<int>(highest * piece.time / 3);
+  // The drag bends u(t) as fast as waves do.
+  const double fastest = std::max(speed, piece.end);
+  const double decay = drag_.linear + 3 * drag_.cubic * fastest * fastest;
+  const int panels = 1 + static_cast<int>((highest + decay) * piece.time / 3);
   const double half = piece.time / (2 * panels);
   Motion motion(drag_, force, speed);
   for (int p = 0; p < panels; ++p) {

@@ -2,33 +2,35 @@
 
 #include <map>
 
+#include "stickslip/studies/extrapolation.hpp"
 #include "studies.hpp"
 
 namespace stickslip::studies {
 namespace {
 
-// p = 2^k, delta = 2^-l: the sets of the paper for its memory limit.
-bool is_computed(int k, int l) { return l <= 4 || (l == 5 && k <= 6) || (l == 6 && k <= 4); }
-constexpr int kPoints = 9, kSteps = 6;
-
-using Place = std::pair<int, int>;  // (k, l)
-using Values = std::map<Place, double>;
-
 // The change after next is to the next one as that is to the last: a + R (a - b), where R is the
 // ratio of changes one step before.
 double continued(double a, double b, double c) { return a + (a - b) / (b - c) * (a - b); }
 
-// S(k,l) = (S_V + S_H)/2, six values each.
-void extrapolate(Values& s) {
-  for (int l = 5; l <= kSteps; ++l) {
-    for (int k = 1; k <= kPoints; ++k) {
-      if (is_computed(k, l)) continue;
+}  // namespace
+
+bool is_computed(const Place& place) {
+  const auto [k, l] = place;
+  return l <= 4 || (l == 5 && k <= 6) || (l == 6 && k <= 4);
+}
+
+void extrapolate(std::map<Place, double>& s) {
+  for (int l = 1; l <= kMostSteps; ++l) {
+    for (int k = 1; k <= kMostPoints; ++k) {
+      if (is_computed({k, l})) continue;
       const double vertical = continued(s[{k, l - 1}], s[{k, l - 2}], s[{k, l - 3}]);
       const double horizontal = continued(s[{k - 1, l}], s[{k - 2, l}], s[{k - 3, l}]);
       s[{k, l}] = (vertical + horizontal) / 2;
     }
   }
 }
+
+namespace {
 
 /// All runs of the index set, and the converged values of the two finest steps.
 class Grid {
@@ -40,7 +42,10 @@ class Grid {
     each([&](int, int) { ++count; });
     each([&](int k, int l) {
       setting_.tell(++number, count, fmt::format("p = {}, delta = 1/{}", 1 << k, 1 << l));
-      runs_[{k, l}] = upwind_run(setting_, with_delta(setting_.request, std::ldexp(1, -l)), 1 << k);
+      // Extrapolation itself is right to a few digits.
+      constexpr double tail = 1e-6;
+      runs_[{k, l}] =
+          upwind_run(setting_, with_delta(setting_.request, std::ldexp(1, -l)), 1 << k, tail);
     });
     for (int l : {5, 6}) {
       setting_.tell(++number, count, fmt::format("hp, delta = 1/{}", 1 << l));
@@ -50,7 +55,7 @@ class Grid {
   }
 
   [[nodiscard]] Table table(const std::string& key) const {
-    Values values;
+    std::map<Place, double> values;
     for (const auto& [place, run] : runs_) values[place] = value_of(run.results, key);
     extrapolate(values);
     Table table{
@@ -60,7 +65,7 @@ class Grid {
         {}};
     for (const auto& [place, value] : values) {
       const auto [k, l] = place;
-      if (is_computed(k, l)) continue;
+      if (is_computed(place)) continue;
       const double truth = value_of(converged_.at(l).results, key);
       table.rows.push_back({static_cast<double>(k), static_cast<double>(l), value, truth,
                             std::abs(value / truth - 1)});
@@ -79,9 +84,9 @@ class Grid {
  private:
   template <class Action>
   static void each(Action action) {
-    for (int l = 1; l <= kSteps; ++l) {
-      for (int k = 1; k <= kPoints; ++k) {
-        if (is_computed(k, l)) action(k, l);
+    for (int l = 1; l <= kMostSteps; ++l) {
+      for (int k = 1; k <= kMostPoints; ++k) {
+        if (is_computed({k, l})) action(k, l);
       }
     }
   }

@@ -33,8 +33,10 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 [[nodiscard]] double value_of(const quantities::Results& results, const std::string& key);
 /// The request with another noise step, and without choices of the discretisation made by hand.
 [[nodiscard]] options::Request with_delta(const options::Request& request, double delta);
-/// Upwind with p points per noise step.
-[[nodiscard]] Run upwind_run(const Setting& setting, const options::Request& request, int points);
+/// Upwind with p points per noise step; noise and velocity are cut where they weigh less than
+/// `tail`, by default far less than the error of the scheme, which is about 1/p.
+[[nodiscard]] Run upwind_run(const Setting& setting, const options::Request& request, int points,
+                             double tail = 1e-9);
 /// Refined hp.
 [[nodiscard]] Run converged_run(const Setting& setting, const options::Request& request,
                                 double accuracy);

@@ -39,12 +39,10 @@ options::Request with_delta(const options::Request& request, double delta) {
   return other;
 }
 
-Run upwind_run(const Setting& setting, const options::Request& request, int points) {
+Run upwind_run(const Setting& setting, const options::Request& request, int points, double tail) {
   options::Request upwind = request;
   upwind.method = {};
   upwind.method.scheme = options::Scheme::upwind;
-  // Truncation far below the error of the scheme, which is about 1/p.
-  constexpr double tail = 1e-9;
   const auto resolution = accuracy::upwind_resolution(upwind.scene, points, tail);
   auto [evaluation, step] = accuracy::solve_on(setting.comm, upwind, resolution);
   return {"upwind",

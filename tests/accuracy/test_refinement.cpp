@@ -25,7 +25,7 @@ Request request(double mu_s, double mu_d, double tau, double delta, model::Drag 
   return r;
 }
 
-Outcome solve(const Request& r) { return accuracy::refine(PETSC_COMM_WORLD, r, {}); }
+Outcome solve(const Request& r) { return accuracy::refine(PETSC_COMM_WORLD, r, {}, {}); }
 
 const quantities::Result& result(const Outcome& outcome, const std::string& key) {
   for (const auto& r : outcome.last.results) {

@@ -25,6 +25,9 @@ ASKED_BY = {  # what computes a dataset
     "t_corr": "-quantities spectrum",
     "f_slide": "-quantities duration_density -time 0:0.1:201",
     "density": "-quantities density",
+    "trajectory": "-quantities trajectory -horizon 100",
+    "comparison": "-compare FILE",
+    "study": "-study cost",
 }
 ASKED_BY["f_stick"] = ASKED_BY["f_excursion"] = ASKED_BY["f_slide"]
 
@@ -51,6 +54,17 @@ class File:
         """Every dataset of a group by name."""
         found = self._get(name, ASKED_BY[name])
         return {key: numpy.array(value) for key, value in found.items()}
+
+    def groups(self, name):
+        """Every group of a group, with its datasets by name."""
+        found = self._get(name, ASKED_BY[name])
+        return {key: {part: values[part][:] for part in values} for key, values in found.items()}
+
+    def unit(self, key):
+        return str(self.file[f"results/{key}"].attrs.get("unit", ""))
+
+    def is_scalar(self, key):
+        return self.file[f"results/{key}/value"].ndim == 0
 
     def value(self, key):
         return self._get(f"results/{key}", ASKED_BY[key])["value"][()]

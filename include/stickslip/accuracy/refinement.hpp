@@ -67,6 +67,6 @@ using Progress = std::function<void(int, const Resolution&, double)>;
 /// before anything is allocated that would not fit, NotReached when a solver fails.
 [[nodiscard]] Outcome refine(MPI_Comm comm, const options::Request& request,
                              const Progress& progress,
-                             const routes::SimulationProgress& simulation_progress);
+                             const routes::SimulationProgress& simulation_progress = {});
 
 }  // namespace stickslip::accuracy

@@ -81,8 +81,10 @@ inline Piece LinearFlow::move(double speed, double force, double time, bool inte
   piece.time = time;
   piece.end = speed + time * one * (force - c_ * speed);
   if (piece.end <= 0) {
-    piece.stopped = true;
     piece.end = 0;
+    piece.stopped = force < 0;  // else the rest of the speed is below rounding
+  }
+  if (piece.stopped) {
     piece.time = std::min(time, time_to_stop(speed, force));
     one = detail::phi_one(c_ * piece.time);
   }

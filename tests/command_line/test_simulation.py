@@ -1,0 +1,262 @@
+"""Simulated excursions, their checkpoints, comparisons with references, and trajectories."""
+
+import csv
+import json
+import signal
+import subprocess
+import time
+import unittest
+
+import h5py
+import numpy
+
+from stickslip import BINARIES, Case, SOURCES, run
+
+SMALL = ("-mu_d", "0.25", "-delta", "0.25")
+SIMULATE = (*SMALL, "-route", "monte_carlo")
+EVERYTHING = ("-quantities",
+              "sticking,moments,noise_law,entry_law,laplace,duration_density,spectrum",
+              "-lambda", "0.5,2", "-time", "0.5,1,3", "-omega", "0,1")
+
+
+class Simulated(Case):
+    def test_intervals_in_both_files(self):
+        s = self.summary(*SIMULATE, *EVERYTHING, "-excursions", "5000", "-output", "out.h5")
+        with h5py.File(self.folder / "out.h5") as file:
+            for key, result in s["results"].items():
+                group = file["results"][key]
+                numpy.testing.assert_array_equal(group["value"], result["value"])
+                if key == "E_V":  # 0 by symmetry, not simulated
+                    continue
+                ends = numpy.array(result["ci95"])
+                numpy.testing.assert_array_equal(group["low"], ends[..., 0])
+                numpy.testing.assert_array_equal(group["high"], ends[..., 1])
+                self.assertTrue(numpy.all(ends[..., 0] <= result["value"]), key)
+                self.assertTrue(numpy.all(ends[..., 1] >= result["value"]), key)
+
+    def test_computed_results_have_no_intervals(self):
+        self.assertNotIn("ci95", self.summary(*SMALL)["results"]["P_stick"])
+
+    def test_ranks_give_equal_bits(self):
+        options = (*SIMULATE, *EVERYTHING, "-excursions", "20000")
+        alone = self.summary(*options)["results"]
+        for ranks in (1, 2, 3):
+            self.assertEqual(self.summary(*options, ranks=ranks)["results"], alone)
+
+    def test_seeds(self):
+        options = (*SIMULATE, "-excursions", "1000")
+        first, same, other = (self.summary(*options, "-seed", seed)["results"]
+                              for seed in (1, 1, 2))
+        self.assertEqual(first, same)
+        self.assertNotEqual(first["P_stick"], other["P_stick"])
+
+    def test_accuracy(self):
+        few = run(*SIMULATE, "-excursions", "5000", "-accuracy", "1e-4", folder=self.folder)
+        self.assertEqual(few.returncode, 3)
+        self.assertIn("it would take about -excursions", few.stdout + few.stderr)
+        s = self.summary(*SIMULATE, "-excursions", "1e8", "-accuracy", "0.02")
+        self.assertTrue(s["accuracy"]["reached"])
+        for key, result in s["results"].items():
+            self.assertLessEqual(result["error"], 0.02 * abs(result["value"]), key)
+
+
+class Refusals(Case):
+    def refuse(self, *options, told):
+        done = run(*options, folder=self.folder)
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        for part in told:
+            self.assertIn(part, done.stderr)
+
+    def test_months(self):
+        self.refuse("-mu_s", "6", "-mu_d", "0.25", *SIMULATE[2:], told=("-excursions", "days"))
+        self.refuse(*SIMULATE, "-excursions", "1e15", told=("-excursions", "days"))
+
+    def test_choices_of_a_grid(self):
+        for option, value in (("-degree", "5"), ("-layers", "3"), ("-p", "8"), ("-scheme", "hp")):
+            self.refuse(*SIMULATE, option, value, told=(option, "no choice of -route monte_carlo"))
+
+    def test_numbers(self):
+        self.refuse(*SIMULATE, "-excursions", "1", told=("-excursions = 1",))
+        self.refuse(*SIMULATE, "-excursions", "2.5", told=("-excursions = 2.5",))
+        self.refuse(*SIMULATE, "-seed", "-1", told=("-seed = -1",))
+        self.refuse(*SMALL, "-quantities", "trajectory", "-trajectory", "t.csv", "-horizon", "0",
+                    told=("-horizon = 0",))
+        self.refuse(*SMALL, "-quantities", "trajectory", "-trajectory", "t.csv", "-horizon", "1e9",
+                    told=("-horizon", "jumps"))
+
+    def test_trajectory_without_a_file(self):
+        self.refuse(*SMALL, "-quantities", "trajectory",
+                    told=("-quantities", "-output FILE.h5 or -trajectory FILE.csv"))
+
+    def test_questions_it_cannot_answer(self):
+        self.refuse(*SIMULATE, "-quantities", "relaxation", told=("relaxation", "monte_carlo"))
+
+
+class Checkpoints(Case):
+    OPTIONS = (*SIMULATE, *EVERYTHING, "-excursions", "2000000")
+
+    def simulate(self, *options, **how):
+        return self.summary(*self.OPTIONS, *options, **how)["results"]
+
+    def interrupt(self, file):
+        """Kills a run soon after its first checkpoint."""
+        command = [BINARIES / "stickslip", *self.OPTIONS, "-checkpoint", file]
+        with subprocess.Popen([*map(str, command)], stdout=subprocess.DEVNULL,
+                              cwd=self.folder) as process:
+            self.addCleanup(process.kill)
+            end = time.monotonic() + 120
+            while not file.exists() and process.poll() is None and time.monotonic() < end:
+                time.sleep(0.02)
+            process.send_signal(signal.SIGKILL)
+            return process.wait()
+
+    def test_killed_and_continued(self):
+        file = self.folder / "run.checkpoint"
+        self.assertEqual(self.interrupt(file), -signal.SIGKILL)
+        kept = json.loads(file.read_text())
+        self.assertGreater(kept["rounds"], 0)
+        self.assertLess(kept["rounds"], 2000000 // (64 * 256))
+        continued = self.simulate("-checkpoint", file)
+        self.assertEqual(continued, self.simulate())
+        self.assertEqual([f.name for f in self.folder.iterdir() if ".part" in f.name], [])
+
+    def test_more_excursions_later_on_other_ranks(self):
+        file = self.folder / "run.checkpoint"
+        few = (*SIMULATE, "-excursions", "20000")
+        more = (*SIMULATE, "-excursions", "40000")
+        self.summary(*few, "-checkpoint", file)
+        self.assertEqual(self.summary(*more, "-checkpoint", file, ranks=2)["results"],
+                         self.summary(*more)["results"])
+
+    def test_damaged_and_foreign(self):
+        file = self.folder / "run.checkpoint"
+        few = (*SIMULATE, "-excursions", "20000", "-checkpoint", file)
+        self.run_ok(*few)
+        good = file.read_text()
+        for options, told in (((), "damaged"), (("-seed", "2"), "-seed 1, not 2"),
+                              (("-mu_d", "0.3"), "-mu_d 0.25, not 0.3")):
+            file.write_text(good if options else good[:-100])
+            done = run(*few, *options, folder=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(told, done.stderr)
+            self.assertIn("-checkpoint", done.stderr)
+
+
+class Compared(Case):
+    LOOP = SOURCES / "validation" / "monte_carlo" / "plain_loop.cpp"
+
+    def reference(self, *words):
+        """CSV of the plain loop, compiled here."""
+        program = self.folder / "plain_loop"
+        if not program.exists():
+            subprocess.run(["g++", "-O2", "-std=c++20", "-o", program, self.LOOP], check=True)
+        done = subprocess.run([program, "1", "0.25", "1", "0.25", *map(str, words)],
+                              capture_output=True, text=True, check=True)
+        file = self.folder / "reference.csv"
+        file.write_text(done.stdout)
+        return file
+
+    def test_agrees_with_the_plain_loop(self):
+        file = self.reference(1000000, 1)
+        s = self.summary(*SMALL, "-compare", file)
+        self.assertFalse(s["comparison"]["disagrees"])
+        self.assertEqual(s["comparison"]["left_out"], [])
+        table = run(*SMALL, "-compare", file, folder=self.folder).stdout
+        self.assertIn("against", table)
+        self.assertIn("agrees", table)
+
+    def test_a_jump_rate_off_by_two_per_cent_is_seen(self):
+        file = self.reference(1000000, 1, 1.02)
+        s = self.summary(*SMALL, "-compare", file, status=3)
+        self.assertTrue(s["comparison"]["disagrees"])
+        table = run(*SMALL, "-compare", file, folder=self.folder)
+        self.assertIn("DISAGREES", table.stdout)
+        self.assertEqual(self.run_ok(*SIMULATE, "-excursions", "1000000", "-compare", file,
+                                     status=3).returncode, 3)
+
+    def test_files_of_this_program(self):
+        self.run_ok(*SIMULATE, *EVERYTHING, "-excursions", "20000", "-output", "simulated.h5",
+                    "-summary", "simulated.json")
+        for name in ("simulated.h5", "simulated.json"):
+            # Questions and arguments come from the file.
+            s = self.summary(*SMALL, "-compare", name)
+            self.assertFalse(s["comparison"]["disagrees"], name)
+            self.assertEqual(s["comparison"]["left_out"], [], name)
+            self.assertEqual(s["results"]["F_slide"]["lambda"], [0.5, 2])
+            self.assertEqual(s["results"]["cdf_stick"]["time"], [0.5, 1, 3])
+
+    def test_a_checkpoint_of_questions_from_another_file(self):
+        for value in ("1", "2"):
+            (self.folder / f"{value}.csv").write_text(
+                f"quantity,argument,value,low,high\nF_slide,{value},0.5,0,1\n")
+        options = (*SIMULATE, "-excursions", "20000", "-checkpoint", "run.checkpoint", "-compare")
+        self.run_ok(*options, "1.csv")
+        done = run(*options, "2.csv", folder=self.folder)
+        self.assertEqual(done.returncode, 2, done.stdout)
+        self.assertIn("-checkpoint", done.stderr)
+
+    def test_bad_files(self):
+        header = "quantity,argument,value,low,high\n"
+        for name, text, told in (
+                ("none.csv", None, "cannot be read"),
+                ("a.txt", header, ".h5, .json and .csv"),
+                ("a.csv", header + "P_stick,,x,,\n", "line 2"),
+                ("b.csv", header, "holds no values"),
+                ("c.csv", "P_stick,1\n", "no CSV file of references"),
+                ("a.json", "{", "no JSON summary"),
+                ("a.h5", "text", "no readable HDF5 file")):
+            if text is not None:
+                (self.folder / name).write_text(text)
+            done = run(*SMALL, "-compare", name, folder=self.folder)
+            self.assertEqual(done.returncode, 2, name + done.stdout)
+            self.assertEqual(done.stdout, "")
+            self.assertIn(f"-compare = {name}", done.stderr)
+            self.assertIn(told, done.stderr)
+
+    def test_hdf5_of_others(self):
+        with h5py.File(self.folder / "a.h5", "w") as file:
+            file["values"] = [1.0, 2.0]
+        done = run(*SMALL, "-compare", "a.h5", folder=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("has no group /results", done.stderr)
+
+
+class Trajectories(Case):
+    OPTIONS = (*SMALL, "-quantities", "trajectory", "-horizon", "30", "-start", "0.5,-0.75",
+               "-trajectory", "path.csv", "-output", "path.h5")
+
+    def columns(self):
+        with open(self.folder / "path.csv", newline="") as file:
+            rows = list(csv.reader(file))
+        self.assertEqual(rows[0], ["time", "x", "y", "v"])
+        return numpy.array(rows[1:], dtype=float).T
+
+    def test_both_files(self):
+        self.run_ok(*self.OPTIONS)
+        t, x, y, v = self.columns()
+        with h5py.File(self.folder / "path.h5") as file:
+            for name, column in zip(("time", "x", "y", "v"), (t, x, y, v)):
+                numpy.testing.assert_array_equal(file["trajectory"][name], column)
+        self.assertEqual((t[0], t[-1]), (0, 30))
+        self.assertEqual((x[0], y[0], v[0]), (0.5, -1, -0.75))
+        self.assertTrue(numpy.all(numpy.diff(t) > 0))
+        self.assertTrue(numpy.all(numpy.isin(numpy.diff(x), (-0.25, 0, 0.25))))
+        self.assertTrue(numpy.all(v[y == 0] == 0))
+        self.assertTrue(numpy.all(v * y >= 0))
+
+    def test_seed_and_ranks(self):
+        found = []
+        for how in ({}, {"ranks": 2}, {"seed": 2}):
+            self.run_ok(*self.OPTIONS, "-seed", how.pop("seed", 1), **how)
+            found.append(self.columns())
+        numpy.testing.assert_array_equal(found[0], found[1])
+        self.assertFalse(numpy.array_equal(found[0], found[2]))
+
+    def test_beside_computed_results(self):
+        s = self.summary(*SMALL, "-quantities", "sticking,trajectory", "-trajectory", "path.csv")
+        self.assertEqual(s["results"], self.summary(*SMALL, "-quantities", "sticking")["results"])
+        self.assertEqual(self.columns()[0][-1], 100)
+
+
+if __name__ == "__main__":
+    unittest.main()

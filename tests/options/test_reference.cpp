@@ -1,0 +1,150 @@
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "../common/temporary.hpp"
+#include "stickslip/options/reference.hpp"
+
+using namespace stickslip;
+using options::read_references;
+using options::Reference;
+
+namespace {
+
+class Folder {
+ public:
+  std::string write(const char* name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+std::vector<Reference> read(const char* name, const std::string& text) {
+  const Folder folder;
+  return read_references(folder.write(name, text));
+}
+
+std::string complaint(const char* name, const std::string& text) {
+  try {
+    (void)read(name, text);
+  } catch (const std::invalid_argument& bad) {
+    return bad.what();
+  }
+  return "nothing";
+}
+
+void check(const Reference& r, const char* quantity, std::optional<double> argument, double value,
+           double low, double high) {
+  CHECK(r.quantity == quantity);
+  CHECK(r.argument == argument);
+  CHECK(r.value == value);
+  CHECK(r.low == Approx(low).epsilon(1e-14));
+  CHECK(r.high == Approx(high).epsilon(1e-14));
+}
+
+const std::string kHeader = "quantity,argument,value,low,high\n";
+
+}  // namespace
+
+TEST_CASE("reference: rows of CSV, scalars and arrays, with and without bounds") {
+  const auto all = read("a.csv", kHeader + "P_stick,,0.25,0.2,0.3\n"
+                                           "S_v, 1.5 , 2e-3,,\n"
+                                           "\"F_slide\",0,1,0.5,1\r\n"
+                                           "E_V,,-1,-2,0");
+  REQUIRE(all.size() == 4);
+  check(all[0], "P_stick", {}, 0.25, 0.2, 0.3);
+  check(all[1], "S_v", 1.5, 2e-3, 2e-3, 2e-3);
+  check(all[2], "F_slide", 0.0, 1, 0.5, 1);
+  check(all[3], "E_V", {}, -1, -2, 0);
+}
+
+TEST_CASE("reference: columns of CSV may come in any order, and with others between") {
+  const auto all = read("a.csv", "high,note,value,low,argument,quantity\n3,by hand,2,1,,E_V2\n");
+  REQUIRE(all.size() == 1);
+  check(all[0], "E_V2", {}, 2, 1, 3);
+}
+
+TEST_CASE("reference: bad rows of CSV are told with their lines") {
+  const std::string good = kHeader + "P_stick,,0.25,0.2,0.3\n";
+  const auto told = [&](const std::string& row) { return complaint("a.csv", good + row + "\n"); };
+  using Catch::Contains;
+  CHECK_THAT(told("E_V2,,abc,,"), Contains("line 3") && Contains("value = abc"));
+  CHECK_THAT(told("E_V2,,1x,,"), Contains("line 3") && Contains("value = 1x"));
+  CHECK_THAT(told("E_V2,,nan,,"), Contains("line 3") && Contains("no finite number"));
+  CHECK_THAT(told("E_V2,,1,inf,"), Contains("line 3") && Contains("low = inf"));
+  CHECK_THAT(told("E_V2,one,1,,"), Contains("line 3") && Contains("argument = one"));
+  CHECK_THAT(told("E_V2,,,,"), Contains("line 3") && Contains("no value"));
+  CHECK_THAT(told(",,1,,"), Contains("line 3") && Contains("no quantity"));
+  CHECK_THAT(told("E_V2,,1,2,3"), Contains("line 3") && Contains("low <= value <= high"));
+  CHECK_THAT(told("E_V2,,1,0,0.5"), Contains("line 3") && Contains("low <= value <= high"));
+  CHECK_THAT(told("E_V2,,1"), Contains("3") && Contains("a.csv"));
+  CHECK_THAT(told("E_V2,,1,0,2,9"), Contains("3") && Contains("a.csv"));
+}
+
+TEST_CASE("reference: CSV without its header, or with nothing below it") {
+  using Catch::Contains;
+  CHECK_THAT(complaint("a.csv", "P_stick,,0.25,0.2,0.3\n"), Contains("no CSV file of references"));
+  CHECK_THAT(complaint("a.csv", "quantity,value\nP_stick,1\n"),
+             Contains("no CSV file of references"));
+  CHECK_THAT(complaint("a.csv", ""), Contains("no CSV file of references"));
+  CHECK_THAT(complaint("a.csv", kHeader), Contains("holds no values"));
+}
+
+TEST_CASE("reference: computed values of JSON count their errors as standard deviations") {
+  const auto all = read("a.json", R"({"results": {
+    "P_stick": {"value": 0.5, "error": 0.01},
+    "S_v": {"omega": [0, 2], "value": [3, 4], "error": [0, 1]}}})");
+  constexpr double normal = 1.959963984540054;
+  REQUIRE(all.size() == 3);
+  check(all[0], "P_stick", {}, 0.5, 0.5 - 0.01 * normal, 0.5 + 0.01 * normal);
+  check(all[1], "S_v", 0.0, 3, 3, 3);
+  check(all[2], "S_v", 2.0, 4, 4 - normal, 4 + normal);
+}
+
+TEST_CASE("reference: simulated values of JSON have intervals, histograms are left out") {
+  const auto all = read("a.json", R"({"results": {
+    "P_stick": {"value": 0.5, "error": 0.2, "ci95": [0.4, 0.7]},
+    "entry_law": {"k": [-1, 0], "value": [0.25, 0.75], "error": [1, 1],
+                  "ci95": [[0, 0.5], [0.5, 1]]},
+    "f_slide": {"time": [1], "value": [2], "error": [1], "ci95": [[1, 3]]},
+    "f_stick_0": {"value": 1, "error": 1, "ci95": [0, 2]}}})");
+  REQUIRE(all.size() == 4);
+  check(all[0], "P_stick", {}, 0.5, 0.4, 0.7);
+  check(all[1], "entry_law", -1.0, 0.25, 0, 0.5);
+  check(all[2], "entry_law", 0.0, 0.75, 0.5, 1);
+  check(all[3], "f_stick_0", {}, 1, 0, 2);  // a scalar, no histogram
+}
+
+TEST_CASE("reference: JSON that is broken, of others, or lacks something") {
+  using Catch::Contains;
+  CHECK_THAT(complaint("a.json", ""), Contains("no JSON summary"));
+  CHECK_THAT(complaint("a.json", "{\"results\": "), Contains("no JSON summary"));
+  CHECK_THAT(complaint("a.json", "{\"values\": {}}"), Contains("no JSON summary"));
+  CHECK_THAT(complaint("a.json", "[1]"), Contains("no JSON summary"));
+  CHECK_THAT(complaint("a.json", R"({"results": {}})"), Contains("holds no values"));
+  CHECK_THAT(complaint("a.json", R"({"results": {"a": {"value": "x", "error": 0}}})"),
+             Contains("no JSON summary"));
+  CHECK_THAT(complaint("a.json", R"({"results": {"a": {"value": 1}}})"),
+             Contains("no JSON summary"));
+  CHECK_THAT(complaint("a.json", R"({"results": {"a": {"value": null, "error": 0}}})"),
+             Contains("no JSON summary"));
+  CHECK_THAT(
+      complaint("a.json", R"({"results": {"a": {"omega": [1], "value": [1, 2], "error": [0]}}})"),
+      Contains("a lacks"));
+  CHECK_THAT(complaint("a.json", R"({"results": {"a": {"value": [1, 2], "error": [0, 0]}}})"),
+             Contains("a lacks"));
+  CHECK_THAT(complaint("a.json", R"({"results": {"a": {"value": 1, "error": 0, "ci95": []}}})"),
+             Contains("lacks") || Contains("no JSON summary"));
+}
+
+TEST_CASE("reference: files of other kinds are refused") {
+  using Catch::Contains;
+  CHECK_THAT(complaint("a.txt", kHeader), Contains(".h5, .json and .csv"));
+  CHECK_THAT(complaint("csv", kHeader), Contains(".h5, .json and .csv"));
+  CHECK_THAT(complaint("a.h5", "no HDF5"), Contains("no readable HDF5 file"));
+  CHECK_THAT(complaint("a.hdf5", ""), Contains("no readable HDF5 file"));
+  const test::TemporaryFolder folder;
+  CHECK_THROWS_WITH(read_references(folder / "none.csv"), Contains("cannot be read"));
+}

@@ -1,0 +1,127 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "stickslip/simulation/comoments.hpp"
+
+using stickslip::simulation::Comoments;
+
+namespace {
+
+using Samples = std::vector<std::vector<double>>;
+
+Samples samples(int count, double offset, std::uint64_t seed = 1) {
+  std::mt19937_64 random(seed);
+  const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  Samples all;
+  for (int n = 0; n < count; ++n) {
+    const double a = uniform(), b = a * a + uniform(), c = -3 * a + b * uniform();
+    all.push_back({offset + a, b, -offset + c});
+  }
+  return all;
+}
+
+Comoments of(const Samples& all, std::size_t begin, std::size_t end) {
+  Comoments c(3);
+  for (std::size_t n = begin; n < end; ++n) c.add(all[n]);
+  return c;
+}
+
+const std::vector<double> kWeight{0.7, -2, 1.5};
+
+/// By two passes in long double.
+struct TwoPass {
+  std::vector<long double> mean = std::vector<long double>(3);
+  long double variance_of_mean = 0;
+
+  explicit TwoPass(const Samples& all) {
+    const auto n = static_cast<long double>(all.size());
+    for (const auto& s : all) {
+      for (std::size_t m = 0; m < 3; ++m) mean[m] += s[m] / n;
+    }
+    for (const auto& s : all) {
+      long double deviation = 0;
+      for (std::size_t m = 0; m < 3; ++m) deviation += kWeight[m] * (s[m] - mean[m]);
+      variance_of_mean += deviation * deviation / (n * (n - 1));
+    }
+  }
+};
+
+void check_against_two_passes(const Comoments& found, const Samples& all, double tolerance) {
+  const TwoPass known(all);
+  CHECK(found.count() == static_cast<double>(all.size()));
+  for (std::size_t m = 0; m < 3; ++m) {
+    CHECK(found.mean(m) == Approx(static_cast<double>(known.mean[m])).epsilon(1e-14));
+  }
+  CHECK(found.variance_of_mean(kWeight) ==
+        Approx(static_cast<double>(known.variance_of_mean)).epsilon(tolerance));
+}
+
+}  // namespace
+
+TEST_CASE("comoments: means and variances as by two passes") {
+  const auto all = samples(1000, 0);
+  check_against_two_passes(of(all, 0, 1000), all, 1e-12);
+}
+
+// Sums of squares would have lost all digits: 1e9^2 against a variance of 1.
+TEST_CASE("comoments: huge offsets do not cancel") {
+  const auto all = samples(1000, 1e9);
+  auto merged = of(all, 0, 400);
+  merged.merge(of(all, 400, 1000));
+  check_against_two_passes(of(all, 0, 1000), all, 1e-6);
+  check_against_two_passes(merged, all, 1e-6);
+}
+
+TEST_CASE("comoments: merging parts is adding their samples") {
+  const auto all = samples(1000, 2);
+  for (std::size_t cut : {0UL, 1UL, 2UL, 500UL, 999UL, 1000UL}) {
+    INFO("cut " << cut);
+    auto merged = of(all, 0, cut);
+    merged.merge(of(all, cut, 1000));
+    check_against_two_passes(merged, all, 1e-12);
+  }
+}
+
+TEST_CASE("comoments: merging into nothing and nothing keeps the bits") {
+  const auto all = samples(10, 1);
+  const auto part = of(all, 0, 10);
+  Comoments empty(3), same = part;
+  empty.merge(part);
+  same.merge(Comoments(3));
+  for (const auto* c : {&empty, &same}) {
+    CHECK(c->count() == 10);
+    for (std::size_t m = 0; m < 3; ++m) CHECK(c->mean(m) == part.mean(m));
+    CHECK(c->variance_of_mean(kWeight) == part.variance_of_mean(kWeight));
+  }
+}
+
+TEST_CASE("comoments: one sample tells nothing of the spread, equal ones tell there is none") {
+  const auto one = samples(1, 0);
+  CHECK(std::isinf(Comoments(3).variance_of_mean(kWeight)));
+  CHECK(std::isinf(of(one, 0, 1).variance_of_mean(kWeight)));
+  CHECK(of({one[0], one[0]}, 0, 2).variance_of_mean(kWeight) == 0);
+}
+
+TEST_CASE("comoments: packed and unpacked they are the same and go on alike") {
+  const auto all = samples(100, 3);
+  const auto first = of(all, 0, 60);
+  std::vector<double> numbers{-1};
+  first.pack(numbers);
+  numbers.push_back(-2);
+  std::span<const double> rest(numbers);
+  rest = rest.subspan(1);
+  Comoments back(3);
+  back.unpack(rest);
+  REQUIRE(rest.size() == 1);
+  CHECK(rest[0] == -2);
+  auto continued = first;
+  for (std::size_t n = 60; n < 100; ++n) {
+    continued.add(all[n]);
+    back.add(all[n]);
+  }
+  std::vector<double> a, b;
+  continued.pack(a);
+  back.pack(b);
+  CHECK(a == b);
+}

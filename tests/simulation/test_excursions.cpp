@@ -1,0 +1,303 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "../common/simulation.hpp"
+#include "stickslip/simulation/excursions.hpp"
+#include "stickslip/simulation/path.hpp"
+
+using namespace stickslip;
+using simulation::Excursion;
+using simulation::RandomStream;
+using simulation::Wanted;
+
+namespace {
+
+const Wanted kAll{true, true, {0, 0.7, 5}, {}, {}};
+
+// With 2/(tau delta^2) a whole number, so that the noise is the urn and its law binomial.
+model::Process process(double mu_s, double mu_d, double tau, double delta, model::Drag drag) {
+  return {{tau, delta, model::full_range(tau, delta)}, {mu_s, mu_d}, drag};
+}
+
+struct Case {
+  const char* name;
+  model::Process process;
+};
+
+std::vector<Case> cases() {
+  return {{"linear drag", process(1, 0.25, 1, 0.5, {1, 0})},
+          {"no drag", process(1, 1, 1, 0.5, {0, 0})},
+          {"off the grid", process(1.1, 1.1, 1, 0.5, {1, 0})},
+          {"k = 0", process(0.2, 0.15, 1, 0.5, {1, 0})},
+          {"strong drag, slow noise", process(1, 0.6, 2, 0.5, {3, 0})}};
+}
+
+std::vector<Excursion> draw(const model::Process& p, const Wanted& wanted, int count,
+                            std::uint64_t seed = 1) {
+  const auto source = simulation::make_source(p, wanted);
+  RandomStream random(seed, 0);
+  std::vector<Excursion> all(static_cast<std::size_t>(count));
+  for (auto& e : all) source->draw(random, e);
+  return all;
+}
+
+/// Mean of f over independent excursions in units of its standard error.
+template <class F>
+double deviation_of_mean(const std::vector<Excursion>& all, F f) {
+  double sum = 0, squares = 0;
+  for (const auto& e : all) {
+    const double value = f(e);
+    sum += value;
+    squares += value * value;
+  }
+  const auto n = static_cast<double>(all.size());
+  return sum / std::sqrt(squares - sum * sum / n);
+}
+
+/// P(X = x_i) of the urn of 2N balls.
+double binomial(int levels, int i) {
+  return std::exp(std::lgamma(2 * levels + 1) - std::lgamma(levels + i + 1) -
+                  std::lgamma(levels - i + 1) - 2 * levels * std::log(2));
+}
+
+/// Mean time from each level |i| <= k until |X| > x_k, by sums over the scale of the chain.
+std::vector<double> mean_stays(const model::NoiseChain& noise, int k) {
+  // d_i = h_i - h_{i+1}: alpha_i d_i = (1 - alpha_i) d_{i-1} + 1/Lambda, d_{-i-1} = -d_i.
+  std::vector<double> stay(2 * static_cast<std::size_t>(k) + 1);
+  double d = 1 / noise.rate() / (noise.up(0) + noise.down(0)), sum = 0;
+  std::vector<double> steps{d};
+  for (int i = 1; i <= k; ++i) {
+    d = (noise.down(i) * d + 1 / noise.rate()) / noise.up(i);
+    steps.push_back(d);
+  }
+  for (int i = k; i >= 0; --i) {
+    sum += steps[static_cast<std::size_t>(i)];
+    stay[static_cast<std::size_t>(k + i)] = stay[static_cast<std::size_t>(k - i)] = sum;
+  }
+  return stay;
+}
+
+/// Probability of leaving |i| <= k downwards.
+std::vector<double> turns(const model::NoiseChain& noise, int k) {
+  // The scale s_{i+1} - s_i = prod (1 - alpha)/alpha, from level -k - 1 to k + 1.
+  std::vector<double> scale{0, 1};
+  double step = 1;
+  for (int i = -k; i <= k; ++i) {
+    step *= noise.down(i) / noise.up(i);
+    scale.push_back(scale.back() + step);
+  }
+  std::vector<double> turn;
+  for (int i = -k; i <= k; ++i) {
+    turn.push_back(1 - scale[static_cast<std::size_t>(i + k + 1)] / scale.back());
+  }
+  return turn;
+}
+
+/// Levels on which the slides of a path end, in the frame of their beginnings.
+std::vector<int> entries_along(const model::Process& p, double horizon) {
+  const auto path = simulation::simulate_path(p, p.static_index() + 1, 0, horizon, 1);
+  std::vector<int> entries;
+  double begun = path.y[0];
+  for (std::size_t n = 1; n + 1 < path.y.size(); ++n) {
+    const double before = path.y[n - 1], now = path.y[n];
+    if (before == 0 && now != 0) begun = now;
+    if (before != 0 && now == 0) {
+      entries.push_back(static_cast<int>(std::lround(begun * path.x[n] / p.noise.delta)));
+    }
+  }
+  return entries;
+}
+
+/// Difference of two frequencies in units of its standard deviation.
+double difference(double count_a, double all_a, double count_b, double all_b) {
+  const double p = (count_a + count_b) / (all_a + all_b);
+  return (count_a / all_a - count_b / all_b) / std::sqrt(p * (1 - p) * (1 / all_a + 1 / all_b));
+}
+
+}  // namespace
+
+TEST_CASE("excursions: every one begins and ends at rest, with what that means") {
+  for (const auto& c : cases()) {
+    INFO(c.name);
+    const int k = c.process.static_index();
+    for (const auto& e : draw(c.process, kAll, 2000)) {
+      REQUIRE(e.slide > 0);
+      REQUIRE(e.stick > 0);
+      REQUIRE(std::abs(e.entry) <= k);
+      REQUIRE(e.jumps >= 1);
+      REQUIRE(e.square > 0);
+      REQUIRE(e.within >= e.stick);
+      REQUIRE(e.within <= (e.slide + e.stick) * (1 + 1e-14));
+      // v^2/2 is back at 0: power put in by the noise, less that of friction and drag.
+      const double lost = c.process.friction.mu_d * e.path + c.process.drag.linear * e.square;
+      REQUIRE(e.product == Approx(lost).epsilon(1e-9).margin(1e-15));
+      REQUIRE(e.transform.size() == 3);
+      REQUIRE(std::abs(e.transform[0]) <= e.path * (1 + 1e-12));
+      REQUIRE(std::abs(e.transform[0].imag()) <= 1e-12 * e.path);
+      REQUIRE(std::abs(e.transform[2]) <= std::abs(e.path) * (1 + 1e-12));
+    }
+  }
+}
+
+// Only at the edge of the static levels, mu_d = mu_s, do bodies turn round at once.
+TEST_CASE("excursions: transform at omega = 0 is the path unless the body was turned round") {
+  int forth = 0, back = 0;
+  for (const auto& e : draw(process(0.2, 0.2, 1, 0.5, {1, 0}), kAll, 2000)) {
+    if (std::abs(e.transform[0].real() - e.path) <= 1e-12 * e.path) {
+      ++forth;
+    } else {
+      ++back;
+    }
+  }
+  CHECK(forth > 500);
+  CHECK(back > 100);
+}
+
+TEST_CASE("excursions: durations are the same whatever is followed, and repeat") {
+  for (const auto& c : cases()) {
+    const auto bare = draw(c.process, {}, 500), full = draw(c.process, kAll, 500),
+               other = draw(c.process, {}, 500, 2);
+    for (std::size_t n = 0; n < bare.size(); ++n) {
+      REQUIRE(bare[n].slide == full[n].slide);
+      REQUIRE(bare[n].stick == full[n].stick);
+      REQUIRE(bare[n].entry == full[n].entry);
+      REQUIRE(bare[n].turned == full[n].turned);
+      REQUIRE(bare[n].slide != other[n].slide);
+    }
+  }
+}
+
+// A cubic term too small to count sends the same scene through the integrator.
+TEST_CASE("excursions: the integrator follows the closed forms jump by jump") {
+  for (auto c : cases()) {
+    INFO(c.name);
+    const auto exact = draw(c.process, kAll, 300);
+    c.process.drag.cubic = 1e-300;
+    const auto integrated = draw(c.process, kAll, 300);
+    for (std::size_t n = 0; n < exact.size(); ++n) {
+      const auto &a = exact[n], &b = integrated[n];
+      REQUIRE(b.jumps == a.jumps);
+      REQUIRE(b.entry == a.entry);
+      REQUIRE(b.slide == Approx(a.slide).epsilon(1e-9));
+      REQUIRE(b.stick == Approx(a.stick).epsilon(1e-9));
+      REQUIRE(b.square == Approx(a.square).epsilon(1e-9));
+      REQUIRE(b.product == Approx(a.product).epsilon(1e-9));
+      for (std::size_t w = 0; w < 3; ++w) {
+        REQUIRE(std::abs(b.transform[w] - a.transform[w]) < 1e-9 * (1 + a.path));
+      }
+    }
+  }
+}
+
+TEST_CASE("excursions: the noise on the way has the binomial law within 4 sigma") {
+  for (const auto& c : cases()) {
+    INFO(c.name);
+    const int levels = c.process.noise.levels, k = c.process.static_index();
+    double within = 0;
+    for (int i = -k; i <= k; ++i) within += binomial(levels, i);
+    const double variance = 1 / c.process.noise.tau;
+    const auto all = draw(c.process, {false, true, {}, {}, {}}, 100000);
+    const auto off_within = [&](const Excursion& e) {
+      return e.within - within * (e.slide + e.stick);
+    };
+    const auto off_variance = [&](const Excursion& e) {
+      return e.noise_square - variance * (e.slide + e.stick);
+    };
+    const auto off_jumps = [&](const Excursion& e) {
+      return e.jumps - c.process.noise.rate() * (e.slide + e.stick);
+    };
+    CHECK(std::abs(deviation_of_mean(all, off_within)) < 4);
+    CHECK(std::abs(deviation_of_mean(all, off_variance)) < 4);
+    CHECK(std::abs(deviation_of_mean(all, off_jumps)) < 4);
+  }
+}
+
+TEST_CASE("excursions: stays and turns follow from the entry by closed sums, within 4 sigma") {
+  for (const auto& c : cases()) {
+    INFO(c.name);
+    const int k = c.process.static_index();
+    const auto stay = mean_stays(c.process.noise, k), turn = turns(c.process.noise, k);
+    const auto all = draw(c.process, {}, 100000);
+    for (int i = -k; i <= k; ++i) {
+      const auto at = static_cast<std::size_t>(i + k);
+      const auto from_here = [i](const Excursion& e) { return e.entry == i ? 1.0 : 0.0; };
+      const auto count =
+          std::accumulate(all.begin(), all.end(), 0.0,
+                          [&](double sum, const Excursion& e) { return sum + from_here(e); });
+      if (count < 100) continue;
+      INFO("from level " << i);
+      CHECK(std::abs(deviation_of_mean(
+                all, [&](const Excursion& e) { return from_here(e) * (e.stick - stay[at]); })) < 4);
+      CHECK(std::abs(deviation_of_mean(all, [&](const Excursion& e) {
+              return from_here(e) * (e.turned - turn[at]);
+            })) < 4);
+    }
+  }
+}
+
+// Where bodies turn round on the way, too: signs on a path are its own.
+TEST_CASE("excursions: slides end where those along a path do, within 4 sigma") {
+  auto all_cases = cases();
+  all_cases.push_back({"turned round", process(0.5, 0.5, 1, 0.5, {1, 0})});
+  for (const auto& c : all_cases) {
+    INFO(c.name);
+    const auto along = entries_along(c.process, 100000);
+    const auto all = draw(c.process, {}, 50000);
+    REQUIRE(along.size() > 5000);
+    for (int i = -c.process.static_index(); i <= c.process.static_index(); ++i) {
+      const auto here = [i](const Excursion& e) { return e.entry == i; };
+      const auto drawn = std::count_if(all.begin(), all.end(), here);
+      const auto seen = std::count(along.begin(), along.end(), i);
+      if (drawn < 20 || drawn == 50000) continue;
+      INFO("level " << i);
+      CHECK(std::abs(difference(static_cast<double>(drawn), 50000, static_cast<double>(seen),
+                                static_cast<double>(along.size()))) < 4);
+    }
+  }
+}
+
+// Another program of the same process, and its laws off by two per cent.
+TEST_CASE("excursions: durations agree with a simulation that shares nothing") {
+  constexpr int count = 200000;
+  for (const auto& c : cases()) {
+    INFO(c.name);
+    const auto& p = c.process;
+    const auto all = draw(p, {}, count);
+    for (double hurry : {1.0, 1.02}) {
+      test::Simulation other(
+          {p.friction.mu_s, p.friction.mu_d, p.noise.tau, p.noise.delta, p.drag.linear, hurry}, 5);
+      const auto known = other.run(count);
+      std::vector<Excursion> pairs(all);
+      for (std::size_t n = 0; n < pairs.size(); ++n) {
+        pairs[n].slide -= known.slide[n];
+        pairs[n].stick -= known.stick[n];
+      }
+      const double slide = deviation_of_mean(pairs, [](const Excursion& e) { return e.slide; });
+      const double stick = deviation_of_mean(pairs, [](const Excursion& e) { return e.stick; });
+      if (hurry == 1) {
+        CHECK(std::abs(slide) < 4);
+        CHECK(std::abs(stick) < 4);
+      } else {
+        CHECK(std::max(std::abs(slide), std::abs(stick)) > 4);
+      }
+    }
+  }
+}
+
+TEST_CASE("excursions: cubic drag balances power in the mean, within 4 sigma") {
+  auto p = process(1, 0.25, 1, 0.5, {0.5, 1});
+  const auto all = draw(p, {true, true, {0, 1}, {}, {}}, 20000);
+  for (const auto& e : all) {
+    REQUIRE(e.slide > 0);
+    // int |v|^4 >= (int v^2)^2/slide, and it is what the other terms leave.
+    const double lost = p.friction.mu_d * e.path + p.drag.linear * e.square;
+    REQUIRE(e.product - lost >= p.drag.cubic * e.square * e.square / e.slide * (1 - 1e-9) - 1e-14);
+    REQUIRE(std::abs(e.transform[0].real()) <= e.path * (1 + 1e-10));
+  }
+  const double rate = p.noise.rate();
+  CHECK(std::abs(deviation_of_mean(
+            all, [&](const Excursion& e) { return e.jumps - rate * (e.slide + e.stick); })) < 4);
+}

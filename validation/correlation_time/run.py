@@ -1,0 +1,46 @@
+"""Correlation time of the velocity against that of the noise.
+
+usage: python3 validation/correlation_time/run.py [--quick] [--program build/stickslip]
+                                                  [--report FOLDER]
+"""
+
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from entry import Entry
+from harness import difference, worse
+
+CURVES = [("linear", mu_d) for mu_d in (1, 0.75, 0.5, 0.25)] + [("none", 1)]
+LIMITS = {("none", 1): 1.35446038, ("linear", 1): 0.247854704305}  # tau -> 0
+
+
+def main():
+    entry = Entry(__doc__, "the figure of correlation times")
+    last = 3 if entry.quick else 6
+    delta = 0.5 if entry.quick else 0.25
+    times, files = {}, []
+    for drag, mu_d in CURVES:
+        for n in range(last + 1):
+            name = f"{drag}_{mu_d:g}_{n}.h5"
+            found = entry.run(output=name, quantities="spectrum", mu_d=mu_d, drag=drag, delta=delta,
+                              tau=2.0**-n, accuracy=1e-4)
+            times[drag, mu_d, n] = found["results"]["t_corr"]["value"]
+            files.append(entry.file(name))
+    entry.drawn("correlation_time.py", "correlation_time.png",
+                f"t_corr = 1/(full width of S_v at half maximum), mu_s = 1, delta = {delta:g}", *files)
+    for file in files:
+        file.unlink()
+    entry.table("t_corr", ("drag", "mu_d", *(f"tau = 2^-{n}" for n in range(last + 1))),
+                [(drag, f"{mu_d:g}", *(times[drag, mu_d, n] for n in range(last + 1)))
+                 for drag, mu_d in CURVES])
+    if not entry.quick:
+        entry.claim("change of t_corr from tau = 1/8 to 1/64, relative", worse(*(
+            difference(times[drag, mu_d, 3], times[drag, mu_d, 6]) for drag, mu_d in CURVES)), 0.06)
+    entry.claim(f"t_corr at tau = 2^-{last} from white noise, mu_d = mu_s, relative", worse(*(
+        difference(times[*curve, last], limit) for curve, limit in LIMITS.items())),
+        0.1 if entry.quick else 0.01)
+    entry.end()
+
+
+main()

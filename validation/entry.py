@@ -1,0 +1,99 @@
+"""One entry of the validation report: a case that prints its tables and verdicts, draws its pictures,
+and leaves both in a folder for the report."""
+
+import html
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+from harness import ROOT, Program, Report, parser
+
+PLOTS = ROOT / "validation" / "plot"
+
+
+class Entry(Report):
+    """What `doc` says in its first line is the title; `paper` names the figure or table."""
+
+    def __init__(self, doc, paper):
+        super().__init__()
+        options = parser(doc)
+        options.add_argument("--report", type=pathlib.Path, metavar="FOLDER",
+                             help="leave pictures and entry.json in this folder")
+        self.arguments = options.parse_args()
+        self.quick = self.arguments.quick
+        self.program = Program(self.arguments.program)
+        self.scratch = tempfile.TemporaryDirectory()
+        self.folder = self.arguments.report or pathlib.Path(self.scratch.name)
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.parts = []
+        self.head = {"title": doc.splitlines()[0].rstrip("."), "paper": paper}
+        self.start = time.monotonic()
+
+    def text(self, words):
+        print(words)
+        self.parts.append({"text": words})
+
+    def table(self, caption, columns, rows):
+        """Cells are texts or numbers; a number is shown with six digits."""
+        cells = [[cell if isinstance(cell, str) else f"{cell:.6g}" for cell in row] for row in rows]
+        widths = [max(map(len, column)) for column in zip(columns, *cells)]
+        print(f"\n{caption}")
+        for row in (columns, *cells):
+            print("  " + "  ".join(cell.rjust(width) for cell, width in zip(row, widths)))
+        self.parts.append({"caption": caption, "columns": list(columns), "rows": cells})
+
+    def file(self, name):
+        return self.folder / name
+
+    def picture(self, name, caption):
+        """`name` is a file in the folder by now."""
+        self.parts.append({"picture": name, "caption": caption})
+
+    def drawn(self, script, name, caption, *files, options=()):
+        """A picture by a script of validation/plot."""
+        words = [sys.executable, str(PLOTS / script), *map(str, options), *map(str, files),
+                 str(self.file(name))]
+        done = subprocess.run(words, capture_output=True, text=True)
+        if done.returncode != 0:
+            sys.exit(f"{' '.join(words)}\n{done.stderr}")
+        self.picture(name, caption)
+
+    def run(self, output=None, **options):
+        """The summary of one run; `output` keeps the HDF5 file of that name too."""
+        if output:
+            options["output"] = self.file(output)
+        return self.program.run(**options)
+
+    def verdict(self, good, text, numbers):
+        super().verdict(good, text, numbers)
+        self.parts.append({"verdict": "holds" if good else "FAILS", "claim": text,
+                           "numbers": numbers})
+
+    def end(self):
+        """Writes the entry; exit status 1 if a claim failed."""
+        self.head |= {"failed": self.failed, "seconds": time.monotonic() - self.start,
+                      "parts": self.parts}
+        self.file("entry.json").write_text(json.dumps(self.head, indent=1))
+        self.scratch.cleanup()
+        sys.exit(1 if self.failed else 0)
+
+
+def deviation(value, error, estimate):
+    """In standard deviations of a simulated result."""
+    low, high = estimate["ci95"]
+    half = high - estimate["value"] if value > estimate["value"] else estimate["value"] - low
+    sigma = ((half / 1.96) ** 2 + error**2) ** 0.5
+    return (value - estimate["value"]) / sigma if sigma > 0 else 0.0
+
+
+def significant(count):
+    """|z| that one of `count` independent values passes by chance with probability 1e-3."""
+    import statistics
+    return statistics.NormalDist().inv_cdf(1 - 1e-3 / (2 * count))
+
+
+def escaped(words):
+    return html.escape(words, quote=False)

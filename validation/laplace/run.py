@@ -1,0 +1,68 @@
+"""Laplace transform of the duration of slides.
+
+usage: python3 validation/laplace/run.py [--quick] [--program build/stickslip] [--report FOLDER]
+"""
+
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "plot"))
+from entry import Entry, deviation, significant
+from harness import difference, worse
+from results import COLOURS, STYLES, plt
+
+MU_D = (0.25, 0.5, 1)
+LAMBDA = "0.01:100:25:log"
+# F_slide(1), F_stick(1) by Chebyshev collocation (validation/dynamics).
+KNOWN = {1: (0.301282642717, 0.179691207960), 0.25: (0.124123808609, 0.221868272518)}
+
+
+def draw(entry, found):
+    figure, panels = plt.subplots(1, 2, figsize=(8.4, 3.5), layout="constrained")
+    for axes, key, label in zip(panels, ("F_slide", "F_stick"),
+                                (r"$F_\mathrm{slide}(\lambda)$", r"$F_\mathrm{stick}(\lambda)$")):
+        for n, mu_d in enumerate(MU_D):
+            known, simulated = (found[mu_d][m][key] for m in (0, 1))
+            axes.plot(known["lambda"], known["value"], color=COLOURS[n], linestyle=STYLES[n],
+                      label=rf"$\mu_d$ = {mu_d:g}")
+            axes.plot(simulated["lambda"], simulated["value"], "o", markersize=3, color=COLOURS[n])
+        axes.set(xscale="log", yscale="log", xlabel=r"$\lambda$  [1/time]", ylabel=label)
+    panels[0].legend()
+    figure.savefig(entry.file("laplace.png"), dpi=150)
+    entry.picture("laplace.png", "Curves: deterministic; dots: simulated. delta = tau = mu_s = 1, "
+                                 "b(v) = -v")
+
+
+def main():
+    entry = Entry(__doc__, "the figure of the Laplace transform of the dynamic duration")
+    found = {}
+    for mu_d in MU_D:
+        scene = {"quantities": "laplace", "mu_d": mu_d, "delta": 1, "lambda": LAMBDA}
+        found[mu_d] = (entry.run(**scene, accuracy=1e-9)["results"],
+                       entry.run(**scene, route="monte_carlo",
+                                 excursions=20000 if entry.quick else 1000000)["results"])
+    draw(entry, found)
+    rows, away, scores = [], [], []
+    for mu_d, digits in KNOWN.items():
+        values = entry.run(quantities="laplace", mu_d=mu_d, delta=1, accuracy=1e-11,
+                           **{"lambda": 1})["results"]
+        for key, digit in zip(("F_slide", "F_stick"), digits):
+            value = values[key]["value"][0]
+            rows.append((f"{mu_d:g}", key, f"{value:.14f}", f"{digit:.12f}"))
+            away.append(difference(value, digit))
+    entry.table("At lambda = 1", ("mu_d", "quantity", "value", "collocation"), rows)
+    entry.claim("F_slide(1), F_stick(1) against collocation, relative", worse(*away), 1e-11)
+    for known, simulated in found.values():
+        for key in ("F_slide", "F_stick"):
+            for n, value in enumerate(known[key]["value"]):
+                one = {name: simulated[key][name][n] for name in ("value", "ci95")}
+                # Where a million excursions see a handful, no interval is normal.
+                if value > 1e-3:
+                    scores.append(deviation(value, known[key]["error"][n], one))
+    entry.claim("largest |z| of simulated transforms above 1e-3", worse(*map(abs, scores)),
+                significant(len(scores)))
+    entry.end()
+
+
+main()

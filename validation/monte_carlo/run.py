@@ -1,0 +1,249 @@
+"""The paper's Monte Carlo figure as a table, beside numbers without statistical error.
+
+usage: python3 validation/monte_carlo/run.py [--quick] [--program build/stickslip]
+                                             [--compiler c++]
+
+Prints the tables, then each claim of README.md with its verdict; exit status 1 if one fails.
+--quick takes 10^5 excursions and delta >= 1/8, and times nothing (a minute instead of a
+quarter of an hour).
+"""
+
+import collections
+import itertools
+import math
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from harness import Program, Report, difference, last_place, parser, worse
+
+QUANTITIES = ("P_stick", "E_V2", "P_X_le_mu_s")
+DELTAS = tuple(2.0**-n for n in range(1, 6))
+FRICTIONS = (1 / 4, 1 / 2, 3 / 4, 1)
+NORMAL = statistics.NormalDist()
+WIDTH = NORMAL.inv_cdf(0.975)  # of a 95 % interval, in standard deviations to each side
+
+# Printed beside the lines "Monte Carlo" of the figure of convergence in p, mu_d = 1/4.
+SIMULATED = {"P_stick": ("0.2898", "0.1972", "0.1565", "0.1380", "0.1302"),
+             "E_V2": ("0.288", "0.301", "0.306", "0.309", "0.3088"),
+             "P_X_le_mu_s": ("0.789", "0.739", "0.711", "0.698")}
+# From the left kernel of the noise's generator, in the figure itself; any mu_d.
+KERNEL = ("0.789886474609376", "0.739564523423343", "0.712010713468334", "0.697578849841333",
+          "0.690192311713429")
+
+Row = collections.namedtuple("Row", "quantity mu_d delta value low high exact paper")
+
+
+def printed(quantity, mu_d, delta):
+    """What the paper prints as simulated, or nothing."""
+    digits = dict(zip(DELTAS, SIMULATED[quantity]))
+    return digits.get(delta, "") if mu_d == 1 / 4 else ""
+
+
+def deviations(row):
+    """How far the simulated value is from the exact one, in its standard deviations."""
+    return WIDTH * (row.value - row.exact) / (row.high - row.value)
+
+
+def off(row, excursions):
+    """Whether the paper's number is further from the exact one than half the width of an interval
+    of 10^6 excursions, as it has, and a unit of its last digit."""
+    half = (row.high - row.value) * math.sqrt(excursions / 10**6)
+    return abs(float(row.paper) - row.exact) > half + last_place(row.paper)
+
+
+def rows_of(program, mu_d, delta, seed, excursions):
+    """One simulated scene and the same by the deterministic route."""
+    scene = {"mu_d": mu_d, "delta": delta}
+    simulated = program.run(route="monte_carlo", excursions=excursions, seed=seed, **scene)
+    exact = program.run(route="excursion", accuracy=1e-8, **scene)["results"]
+    return [Row(key, mu_d, delta, simulated["results"][key]["value"],
+                *simulated["results"][key]["ci95"], exact[key]["value"],
+                printed(key, mu_d, delta)) for key in QUANTITIES]
+
+
+def figure(program, deltas, excursions):
+    """Every point of the figure; a seed for each, so that they are independent."""
+    print(f"mu_s = tau = 1, b(v) = -v; {excursions} excursions; a star: further from the\n"
+          "deterministic value than an interval of 10^6 excursions and the rounding allow\n"
+          "  mu_d  delta  quantity      simulated  95 % interval        deterministic     z  paper")
+    rows = []
+    for seed, (mu_d, delta) in enumerate(itertools.product(FRICTIONS, deltas), start=1):
+        for row in rows_of(program, mu_d, delta, seed, excursions):
+            star = "*" if row.paper and off(row, excursions) else ""
+            print(f"  {mu_d:<5g} 1/{1 / delta:<4g} {row.quantity:<12}  {row.value:.6f}   "
+                  f"{row.low:.6f} - {row.high:.6f}  {row.exact:.10f}  {deviations(row):5.2f}  "
+                  f"{row.paper}{star}".rstrip(), flush=True)
+            rows.append(row)
+    print()
+    return rows
+
+
+def binomial_range(trials, probability, tail):
+    """The counts that are left when both tails of the binomial law are cut off."""
+    law = [math.comb(trials, n) * probability**n * (1 - probability) ** (trials - n)
+           for n in range(trials + 1)]
+    low = next(n for n, below in enumerate(itertools.accumulate(law)) if below > tail)
+    above = next(n for n, over in enumerate(itertools.accumulate(reversed(law))) if over > tail)
+    return low, trials - above
+
+
+def claim_coverage(report, text, inside):
+    """`inside`: whether each of some independent intervals holds the exact value."""
+    low, high = binomial_range(len(inside), 0.95, 1e-3)
+    count = sum(inside)
+    report.verdict(low <= count <= high, text,
+                   f"{count} of {len(inside)}, expected {low} to {high}")
+
+
+def claim_figure(report, rows):
+    for key in QUANTITIES:
+        claim_coverage(report, f"{key}: intervals of the figure that hold the deterministic value",
+                       [row.low <= row.exact <= row.high for row in rows if row.quantity == key])
+    allowed = NORMAL.inv_cdf(1 - 1e-3 / (2 * len(rows)))
+    report.verdict(all(abs(deviations(row)) < allowed for row in rows),
+                   f"no disagreement among {len(rows)} values, family-wise level 1e-3",
+                   f"largest |z| {max(abs(deviations(row)) for row in rows):.2f}, "
+                   f"allowed {allowed:.2f}")
+    kernel = dict(zip(DELTAS, KERNEL))
+    report.claim("P_X_le_mu_s, deterministic, against the paper's left kernel, relative",
+                 worse(*(difference(row.exact, float(kernel[row.delta]))
+                         for row in rows if row.quantity == "P_X_le_mu_s")), 1e-13)
+
+
+def claim_paper(report, rows):
+    """P_stick of the paper at delta = 1/32 is off."""
+    for row in rows:
+        if (row.quantity, row.mu_d, row.delta) != ("P_stick", 1 / 4, 1 / 32):
+            continue
+        slack = last_place(row.paper)
+        inside = row.low - slack <= float(row.paper) <= row.high + slack
+        report.verdict(not inside,
+                       "P_stick of the paper at mu_d = 1/4, delta = 1/32 is outside our interval",
+                       f"{row.paper} against {row.value:.5f} [{row.low:.5f}, {row.high:.5f}], "
+                       f"deterministic {row.exact:.8f}")
+
+
+def coverage(program, report, runs):
+    """Many short runs of one scene: intervals that are too wide show as well."""
+    scene = {"mu_d": 1 / 4, "delta": 1 / 2}
+    exact = program.run(route="excursion", accuracy=1e-8, **scene)["results"]
+    inside = {key: [] for key in QUANTITIES}
+    for seed in range(1, runs + 1):
+        found = program.run(route="monte_carlo", excursions=4000, seed=seed, **scene)["results"]
+        for key in QUANTITIES:
+            low, high = found[key]["ci95"]
+            inside[key].append(low <= exact[key]["value"] <= high)
+    for key in QUANTITIES:
+        claim_coverage(report, f"{key}: intervals of 4000 excursions, mu_d = 1/4, delta = 1/2, "
+                       "that hold it", inside[key])
+
+
+class PlainLoop:
+    """plain_loop.cpp, compiled into a folder."""
+
+    def __init__(self, compiler, folder):
+        self.program, self.folder = folder / "plain_loop", folder
+        source = pathlib.Path(__file__).with_name("plain_loop.cpp")
+        words = [compiler, "-O3", "-std=c++17", "-o", str(self.program), str(source)]
+        try:
+            subprocess.run(words, check=True)
+        except (OSError, subprocess.CalledProcessError) as problem:
+            sys.exit(f"plain_loop.cpp is not compiled: {problem}")
+
+    def run(self, mu_d, delta, excursions, seed, factor=1):
+        """The CSV file it wrote, and nanoseconds for each jump."""
+        words = map(str, (self.program, 1, mu_d, 1, delta, excursions, seed, factor))
+        done = subprocess.run(list(words), capture_output=True, text=True, check=True)
+        file = self.folder / f"reference_{factor}.csv"
+        file.write_text(done.stdout)
+        return file, float(done.stderr.split()[0])
+
+
+def comparison(program, plain, report):
+    """-compare with the law right and with jumps 2 % too fast."""
+    for route in ("excursion", "monte_carlo"):
+        for factor in (1, 1.02):
+            file, _ = plain.run(1 / 4, 1 / 4, 10**6, seed=1, factor=factor)
+            found = program.run(mu_d=1 / 4, delta=1 / 4, route=route, compare=file)["comparison"]
+            largest = max(abs(row["z"]) for row in found["rows"])
+            told = "disagrees" if found["disagrees"] else "agrees"
+            wanted = "agrees" if factor == 1 else "disagrees"
+            report.verdict(told == wanted, f"-compare, -route {route}: plain loop with jumps "
+                           f"{factor:g} times as fast {wanted}",
+                           f"{told}, largest |z| {largest:.1f}")
+
+
+def nanoseconds(program, scene, excursions):
+    """For each jump of the noise, all of sticking, moments and noise_law."""
+    cost = program.run(route="monte_carlo", quantities="sticking,moments,noise_law",
+                       excursions=excursions, **scene)["cost"]["simulation"]
+    return 1e9 * cost["seconds"] / cost["jumps"]
+
+
+def speed(program, plain, report):
+    """Against the plain loop, turn by turn, the best of three."""
+    print("\nNanoseconds a jump, best of three\n  delta  plain loop  program  ratio")
+    ratios = []
+    for delta, excursions in ((1 / 2, 10**6), (1 / 32, 2 * 10**4)):
+        scene = {"mu_d": 1 / 4, "delta": delta}
+        turns = [(plain.run(excursions=excursions, seed=turn, **scene)[1],
+                  nanoseconds(program, scene, excursions)) for turn in range(3)]
+        theirs, ours = map(min, zip(*turns))
+        ratios.append(ours / theirs)
+        print(f"  1/{1 / delta:<4g} {theirs:10.1f}  {ours:7.1f}  {ratios[-1]:5.2f}", flush=True)
+    report.claim("nanoseconds a jump over those of the plain loop", worse(*ratios), 1)
+
+
+def idle_cores(seconds=1):
+    """How many cores nothing uses, as the kernel counts them for a while."""
+    def idle_ticks():
+        return int(pathlib.Path("/proc/stat").read_text().split()[4])
+    before, start = idle_ticks(), time.monotonic()
+    time.sleep(seconds)
+    return (idle_ticks() - before) / os.sysconf("SC_CLK_TCK") / (time.monotonic() - start)
+
+
+def two_ranks(program, report):
+    """Seconds of one rank over those of two."""
+    # Open MPI refuses root unless told otherwise.
+    os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    both = {1: program, 2: Program(program.path, ("mpiexec", "-n", "2"))}
+    free = idle_cores()
+    seconds = {ranks: min(run.run(route="monte_carlo", mu_d=1 / 4, delta=1 / 8, excursions=500_000)
+                          ["cost"]["simulation"]["seconds"] for _ in range(2))
+               for ranks, run in both.items()}
+    free = min(free, idle_cores())
+    ratio = seconds[1] / seconds[2]
+    print(f"\nOne rank {seconds[1]:.2f} s, two ranks {seconds[2]:.2f} s: ratio {ratio:.2f}")
+    if free >= 1.9:
+        report.at_least("seconds of one rank over those of two", ratio, 1.8)
+    else:
+        print(f"no claim on two ranks: {free:.1f} cores were idle, two are needed")
+
+
+def main():
+    options = parser(__doc__)
+    options.add_argument("--compiler", default="c++", help="for plain_loop.cpp")
+    arguments = options.parse_args()
+    program, report, quick = Program(arguments.program), Report(), arguments.quick
+    rows = figure(program, DELTAS[:3] if quick else DELTAS, 10**5 if quick else 10**6)
+    claim_figure(report, rows)
+    claim_paper(report, rows)
+    coverage(program, report, 100 if quick else 400)
+    with tempfile.TemporaryDirectory() as folder:
+        plain = PlainLoop(arguments.compiler, pathlib.Path(folder))
+        comparison(program, plain, report)
+        if not quick:
+            speed(program, plain, report)
+    if not quick:
+        two_ranks(program, report)
+    sys.exit(1 if report.failed else 0)
+
+
+main()

@@ -1,0 +1,58 @@
+"""Power spectral density of the velocity.
+
+usage: python3 validation/spectra/run.py [--quick] [--program build/stickslip] [--report FOLDER]
+"""
+
+import itertools
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from entry import Entry, deviation, significant
+from harness import last_place, worse
+
+KNOWN = {1 / 2: ("1.05184088", "1.03401702", "0.310095661", "1.85013e-4"),
+         1 / 4: ("1.08314710", "1.06555462", "0.330747341", "1.91001e-4")}
+
+
+def main():
+    entry = Entry(__doc__, "the figure of nine panels of spectra")
+    values = (1, 0.5, 0.25)
+    scenes = list(itertools.product((0.25, 0.5, 1), values, values))
+    if entry.quick:
+        scenes = [(mu_d, 1, tau) for mu_d in (0.25, 1) for tau in values]
+    files = []
+    for n, (mu_d, delta, tau) in enumerate(scenes):
+        entry.run(output=f"{n}.h5", quantities="spectrum", mu_d=mu_d, delta=delta, tau=tau,
+                  omega="1e-3:50:120:log", accuracy=1e-5)
+        files.append(entry.file(f"{n}.h5"))
+    entry.drawn("spectra.py", "spectra.png", "S_v against omega; mu_s = 1, b(v) = -v", *files)
+    for file in files:
+        file.unlink()
+
+    worst, rows = 0.0, []
+    for delta, digits in KNOWN.items():
+        found = entry.run(quantities="spectrum", mu_d=0.25, delta=delta, omega="0,0.1,1,10",
+                          accuracy=1e-8)["results"]["S_v"]["value"]
+        worst = worse(worst, *(abs(v - float(d)) / last_place(d) for v, d in zip(found, digits)))
+        rows += [(f"1/{1 / delta:.0f}", omega, f"{v:.12g}", d)
+                 for omega, v, d in zip(("0", "0.1", "1", "10"), found, digits)]
+    entry.table("S_v at mu_d = 1/4, tau = 1", ("delta", "omega", "S_v", "other code"), rows)
+    entry.claim("S_v against known digits, in units of the last one", worst, 0.6)
+
+    scores = []
+    for mu_d, tau in ((0.25, 1), (1, 0.5)):
+        scene = {"quantities": "spectrum", "mu_d": mu_d, "delta": 0.5, "tau": tau,
+                 "omega": "0,0.3,1,3,10"}
+        known = entry.run(**scene, accuracy=1e-7)["results"]["S_v"]
+        simulated = entry.run(**scene, route="monte_carlo",
+                              excursions=20000 if entry.quick else 300000)["results"]["S_v"]
+        for n, value in enumerate(known["value"]):
+            scores.append(deviation(value, known["error"][n],
+                                    {key: simulated[key][n] for key in ("value", "ci95")}))
+    entry.claim("largest |z| of simulated spectra", worse(*map(abs, scores)),
+                significant(len(scores)))
+    entry.end()
+
+
+main()
