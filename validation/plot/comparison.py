@@ -57,8 +57,8 @@ def draw_array(above, below, file, key, rows):
     order = numpy.argsort(rows["argument"])
     at, value, reference = (rows[name][order] for name in ("argument", "value", "reference"))
     above.plot(at, value, color=OURS, linewidth=1.4)
-    above.errorbar(at, reference, yerr=bar_of(rows)[:, order], fmt="o", color=REFERENCE, markersize=2.5, elinewidth=1,
-                   capsize=1.5)
+    above.errorbar(at, reference, yerr=bar_of(rows)[:, order], fmt="o", color=REFERENCE,
+                   markersize=2.5, elinewidth=1, capsize=1.5)
     below.plot(at, -rows["z"][order], "o", color=REFERENCE, markersize=2.5)
     below.axhline(0, color=OURS, linewidth=1)
     below.axhspan(-WIDTH, WIDTH, color="#777777", alpha=0.12, linewidth=0)
