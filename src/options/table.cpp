@@ -164,9 +164,9 @@ Group method_group() {
                 "observed order and Richardson's limit. delta: falling noise steps with mu_s on a "
                 "level and between two, observed order and limit. heuristic: the extrapolation of "
                 "the paper beside converged values. cost: error against time of all methods"),
-          integer("study_steps", "", whole(3, 20), {},
+          integer("study_steps", "", whole(4, 20), {},
                   "length of the series: number of values of p or delta (default 8 and 5)",
-                  "three values tell an order"),
+                  "three values tell an order, a fourth how sure it is"),
           integer("study_repeats", "3", whole(1, 99), {},
                   "repetitions of each run of -study cost, of which the median time is taken",
                   "an odd number is best"),

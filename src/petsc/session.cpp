@@ -23,6 +23,9 @@ void shorten_start_of_single_process() {
   setenv("OMPI_MCA_ess_singleton_isolated", "1", keep_users_choice);
   setenv("OMPI_MCA_btl", "self", keep_users_choice);
   setenv("OMPI_MCA_pml", "ob1", keep_users_choice);
+  // Isolated processes would all use the same session folder, and remove it under one another.
+  setenv("OMPI_MCA_orte_create_session_dirs", "0", keep_users_choice);
+  setenv("OMPI_MCA_sharedfp", "^sm", keep_users_choice);  // needs that folder
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ class CostStudy {
       announce(fmt::format("hp, degree {}", degree));
       const auto resolution = accuracy::hp_resolution(
           request.scene, degree, 0, std::max(std::pow(10.0, -(degree + 3)), 1e-18));
-      const Run run = median_run(repeats_, [&] {
+      Run run = median_run(repeats_, [&] {
         auto [evaluation, step] = accuracy::solve_on(setting_.comm, request, resolution);
         return Run{"hp",
                    {{"degree", degree}, {"layers", resolution.layers}},
@@ -102,6 +102,7 @@ class CostStudy {
                    step.seconds,
                    step.ledger};
       });
+      set_errors(reference_, run.results);
       add(curve, run, degree, error_of(run.results));
     }
     curves_.push_back(std::move(curve));
@@ -112,8 +113,9 @@ class CostStudy {
     for (int n = 0; n < upwind_steps(); ++n) {
       const int points = 4 << n;
       announce(fmt::format("upwind, p = {}", points));
-      const Run run =
+      Run run =
           median_run(repeats_, [&] { return upwind_run(setting_, setting_.request, points); });
+      set_errors(reference_, run.results);
       if (n > 0) add_extrapolated(extrapolated, study_.runs.back(), run, points);
       add(plain, run, points, error_of(run.results));
     }

@@ -47,7 +47,10 @@ Study study_points(const Setting& setting) {
   }
   setting.tell(steps + 1, steps + 1, "hp to compare with");
   const Run converged = converged_run(setting, setting.request, 1e-10);
+  for (auto& run : study.runs) set_errors(converged.results, run.results);
   for (const auto& result : converged.results) {
+    // Closed forms do not come from the grid.
+    if (std::isnan(value_of(study.runs[0].results, result.key))) continue;
     study.tables.push_back(table_of(result.key, study.runs, result.value[0]));
     study.conclusions.push_back(conclusion(study.tables.back(), result));
   }

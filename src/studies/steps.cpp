@@ -96,6 +96,8 @@ class Family {
 
 std::string conclusion(const Table& table) {
   const auto& last = table.rows.back();
+  if (std::isnan(last[4]))
+    return table.name + ": no order is seen, changes are too small or uneven";
   return fmt::format("{}: order {:.2f}, limit {:.10g} +- {:.1e}", table.name, last[3], last[4],
                      last[5]);
 }

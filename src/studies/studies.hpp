@@ -31,6 +31,8 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 [[nodiscard]] quantities::Results scalars(const quantities::Results& results);
 /// Value of the scalar `key`; NaN if there is none.
 [[nodiscard]] double value_of(const quantities::Results& results, const std::string& key);
+/// Sets the errors of the results to their distances from the values of the same name in `known`.
+void set_errors(const quantities::Results& known, quantities::Results& results);
 /// The request with another noise step, and without choices of the discretisation made by hand.
 [[nodiscard]] options::Request with_delta(const options::Request& request, double delta);
 /// Upwind with p points per noise step; noise and velocity are cut where they weigh less than

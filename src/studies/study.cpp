@@ -31,6 +31,13 @@ double value_of(const quantities::Results& results, const std::string& key) {
   return kNone;
 }
 
+void set_errors(const quantities::Results& known, quantities::Results& results) {
+  for (auto& result : results) {
+    const double value = value_of(known, result.key);
+    if (!std::isnan(value)) result.error[0] = std::abs(result.value[0] - value);
+  }
+}
+
 options::Request with_delta(const options::Request& request, double delta) {
   options::Request other = request;
   other.scene.delta = delta;

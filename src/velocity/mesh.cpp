@@ -67,7 +67,7 @@ double killed_layer(const model::Process& process, double lambda) {
 // Widest element that resolves the waves of frequency omega at v. A body that rests after the time
 // s sees the phase exp(i omega s): on a level at a distance a from mu_d the wave length is
 // 2 pi a/omega, and jumps of the noise damp it as exp(-Lambda v/a). Two waves an element are
-// enough at the degrees in use; where Lambda v/a > 20 nothing is left of a wave. Up to 8 Lambda the
+// enough at the degrees in use; where Lambda v/a > 20 nothing is left of a wave. Up to 4 Lambda the
 // damping is so strong that graded elements do, and waves much faster than the noise are small
 // beside the smooth part, so that they are followed up to 40 Lambda only.
 double wave_width(const model::Process& process, double omega, double v) {
@@ -115,7 +115,7 @@ std::vector<double> element_ends(const model::Process& process, const MeshRule& 
     // A remainder much shorter than its neighbour is merged into it.
     ends.push_back(next + 0.3 * step >= rule.v_max ? rule.v_max : next);
   }
-  const bool waves = rule.rates.omega > 8 * process.noise.rate();
+  const bool waves = rule.rates.omega > 4 * process.noise.rate();
   return waves ? cut_for_waves(process, rule.rates.omega, ends) : ends;
 }
 

@@ -1,11 +1,23 @@
 """Results do not depend on the number of ranks."""
 
+import concurrent.futures
 import unittest
 
 import h5py
 import numpy
 
-from stickslip import Case, TWINS
+from stickslip import Case, TWINS, run
+
+
+class Together(Case):
+    def test_single_processes_do_not_disturb_one_another(self):
+        def alone(n):
+            return run("-delta", "0.5", "-quantities", "sticking", "-output", f"{n}.h5",
+                       folder=self.folder)
+
+        with concurrent.futures.ThreadPoolExecutor(8) as pool:
+            for done in pool.map(alone, range(24)):
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
 
 
 class Ranks(Case):

@@ -12,7 +12,7 @@ from entry import Entry, deviation, significant
 from harness import difference, worse
 from results import COLOURS, STYLES, plt, power_of_two
 
-KEYS = {"P_stick": "P_stick", "E_V2": r"$E[V^2]$  [velocity$^2$]",
+KEYS = {"P_stick": r"$P_\mathrm{stick}$", "E_V2": r"$E[V^2]$  [velocity$^2$]",
         "P_X_le_mu_s": r"$P(|X| \leq \mu_s)$"}
 MU_D = (0.25, 0.5, 0.75, 1)
 P_X = {1 / 2: "0.789886474609376", 1 / 4: "0.739564523423343", 1 / 8: "0.712010713468334",
@@ -46,7 +46,8 @@ def draw(entry, found, deltas):
         axes.set_xscale("log", base=2)
         axes.xaxis.set_major_formatter(lambda x, _: power_of_two(x))
         axes.set(xlabel=r"noise step $\delta$  [force]", ylabel=label)
-    panels[1].legend()
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="upper center", ncol=4)
+    figure.suptitle(" ")  # room for the legend
     figure.savefig(entry.file("averages.png"), dpi=150)
     entry.picture("averages.png", "Curves: deterministic values. Bars: simulations with 95 % "
                                   "intervals. mu_s = tau = 1, b(v) = -v. The last panel does not "

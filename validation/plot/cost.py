@@ -5,11 +5,19 @@ usage: python3 cost.py FILE.h5 PICTURE.png
 The file comes from `stickslip -study cost -output FILE.h5`.
 """
 
+import math
+
 from results import COLOURS, STYLES, File, arguments_of, plt
 
 NAMES = {"hp": "hp elements", "upwind": "upwind", "richardson": "upwind, Richardson",
          "monte_carlo": "Monte Carlo"}
 PARAMETERS = {"hp": "degree", "upwind": "p", "richardson": "p", "monte_carlo": "excursions"}
+
+
+def told(parameter, value):
+    if parameter == "excursions":
+        return rf"$10^{{{math.log10(value):.0f}}}$ excursions"
+    return f"{parameter} {value:g}" if parameter == "degree" else f"{parameter} = {value:g}"
 
 
 def draw(file, picture):
@@ -20,9 +28,11 @@ def draw(file, picture):
         seconds, error, parameter = (table[key] for key in ("seconds", "error", PARAMETERS[method]))
         axes.plot(seconds, error, color=COLOURS[n], linestyle=STYLES[n], marker="os^D"[n],
                   markersize=4, label=name)
-        for end in (0, -1):
-            axes.annotate(f"{PARAMETERS[method]} {parameter[end]:g}", (seconds[end], error[end]),
-                          textcoords="offset points", xytext=(5, 5), fontsize=7, color=COLOURS[n])
+        for end, side in ((0, "left"), (-1, "right")):
+            shift = (5, 5) if side == "left" else (-2, -11)
+            axes.annotate(told(PARAMETERS[method], parameter[end]), (seconds[end], error[end]),
+                          textcoords="offset points", xytext=shift, fontsize=7, ha=side,
+                          color=COLOURS[n])
     axes.set(xscale="log", yscale="log", xlabel="time  [s]", ylabel="largest relative error")
     axes.margins(x=0.15)
     axes.legend(loc="lower right")
