@@ -186,7 +186,8 @@ class Search {
     extend();  // a first model is not worth its questions
     grow();
     int barren = 0;  // blocks in a row that did not help
-    while (!model_.full() && barren < questions_.patience && best_.relative_error > questions_.tolerance) {
+    while (!model_.full() && barren < questions_.patience &&
+           best_.relative_error > questions_.tolerance) {
       const double before = best_.relative_error;
       const bool grew = grow();
       barren = grew && best_.relative_error < 0.3 * before ? 0 : barren + 1;

@@ -1,10 +1,12 @@
-/// The process as one would write it in an afternoon: one loop, xoshiro256**, linear drag. It shares
-/// nothing with the program, serves as reference of -compare and as the measure of its speed.
+/// The process as one would write it in an afternoon: one loop, xoshiro256**, linear drag. It
+/// shares nothing with the program, serves as reference of -compare and as the measure of its
+/// speed.
 ///
 ///   plain_loop MU_S MU_D TAU DELTA EXCURSIONS SEED [FACTOR]
 ///
 /// writes CSV (quantity,argument,value,low,high with 95 % intervals) and, on standard error, the
-/// nanoseconds for each jump of the noise. FACTOR speeds the jumps up, for a deliberately wrong law.
+/// nanoseconds for each jump of the noise. FACTOR speeds the jumps up, for a deliberately wrong
+/// law.
 
 #include <chrono>
 #include <cmath>

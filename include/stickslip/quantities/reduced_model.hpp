@@ -83,7 +83,7 @@ struct Questions {
   std::vector<double> shift;      ///< for each value a shift that serves it [1/time]
   bool each_by_its_size = false;  ///< whether `tolerance` is relative to each value, or absolute
   double tolerance = 1e-8;
-  int patience = 4;  ///< blocks of pairs in a row that may fail to help
+  int patience = 4;                    ///< blocks of pairs in a row that may fail to help
   std::vector<double> first_shifts;    ///< [1/time]
   double lowest = 0, highest = 1e300;  ///< range of further shifts
 };
