@@ -94,8 +94,9 @@ void write_comparison(Hdf5File& file, const accuracy::Comparison& comparison) {
   file.attribute("/comparison", "disagrees", comparison.disagrees ? "yes" : "no");
   std::map<std::string, std::vector<Compared>> groups;
   for (const auto& row : comparison.rows) groups[row.reference.quantity].push_back(row);
-  for (const auto& [key, rows] : groups) {
-    const std::string group = "/comparison/" + group_name(key);
+  for (const auto& entry : groups) {
+    const std::vector<Compared>& rows = entry.second;
+    const std::string group = "/comparison/" + group_name(entry.first);
     file.make_group(group);
     const auto write = [&](const char* name, auto get) {
       file.write_array(group + "/" + name, column(rows, get));

@@ -66,14 +66,24 @@ class ReducedFunction {
   exact::TransferFunction near_, far_;
 };
 
+// first, first ratio, first ratio^2, ... below last.
+std::vector<double> geometric(double first, double last, double ratio) {
+  std::vector<double> values;
+  while (first < last) {
+    values.push_back(first);
+    first *= ratio;
+  }
+  return values;
+}
+
 // Frequencies at which a model is judged: those asked for, 0, enough for the half width, and a
 // dense grid up to the largest, where models may agree at single frequencies before they are right.
 std::vector<double> judged(const std::vector<double>& omega, double tau) {
   std::vector<double> all = omega;
   all.push_back(0);
-  for (double w = 0.1; w < 20; w *= 1.5) all.push_back(w / tau);
+  for (double w : geometric(0.1 / tau, 20 / tau, 1.5)) all.push_back(w);
   const double last = omega.empty() ? 0 : *std::max_element(omega.begin(), omega.end());
-  for (double w = 1.3 / tau; w < std::min(last, 100 / tau); w *= 1.1) all.push_back(w);
+  for (double w : geometric(1.3 / tau, std::min(last, 100 / tau), 1.1)) all.push_back(w);
   return all;
 }
 
@@ -107,7 +117,7 @@ Uncertain integral(const ReducedFunction& s, double tau, double relative_error) 
   using Rule = boost::math::quadrature::gauss_kronrod<double, 21>;
   const double tolerance = std::max(1e-12, 0.01 * relative_error);
   double sum = 0, doubt = 0, low = 0;
-  for (double high = 1e-3 / tau; high < 1e6 / tau; high *= std::sqrt(10)) {
+  for (double high : geometric(1e-3 / tau, 1e6 / tau, std::sqrt(10))) {
     double error = 0;
     sum += Rule::integrate(s, low, high, 5, tolerance, &error);
     doubt += error;

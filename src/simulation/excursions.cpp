@@ -45,7 +45,10 @@ class Levels {
     const double most = std::min<double>(process.noise.levels, process.static_index() + 2 + far);
     return static_cast<int>(most);
   }
-  [[nodiscard]] std::size_t at(int i) const { return static_cast<std::size_t>(i + reach_); }
+  [[nodiscard]] std::size_t at(int i) const {
+    const int place = i + reach_;
+    return static_cast<std::size_t>(place);
+  }
 
   int k_, reach_;
   double mean_wait_;

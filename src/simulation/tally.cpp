@@ -65,11 +65,16 @@ Tally::Tally(const Wanted& wanted, int k)
   for (auto& cells : cells_) cells.assign(wanted.edges.size() + 1, 0.0);
 }
 
+std::size_t Tally::place(int level) const {
+  const int above = level + k_;
+  return static_cast<std::size_t>(above);
+}
+
 void Tally::add(const Excursion& e) {
   const std::array<double, Total::totals> sample{e.slide,   e.stick,  e.square,      e.path,
                                                  e.product, e.within, e.noise_square};
   totals_.add(sample);
-  entries_[static_cast<std::size_t>(e.entry + k_)] += 1;
+  entries_[place(e.entry)] += 1;
   jumps_ += e.jumps;
   for (std::size_t n = 0; n < laplace_.size(); ++n) {
     const double f = std::exp(-wanted_.lambda[n] * e.slide),
@@ -150,13 +155,11 @@ Estimate Tally::mean_product() const { return ratio(product); }
 Estimate Tally::within() const { return ratio(Total::within); }
 Estimate Tally::noise_square() const { return ratio(Total::noise_square); }
 
-Estimate Tally::entry(int i) const {
-  return proportion(entries_[static_cast<std::size_t>(i + k_)], excursions());
-}
+Estimate Tally::entry(int i) const { return proportion(entries_[place(i)], excursions()); }
 
 Estimate Tally::entry_of_both(int i, int j, double factor) const {
-  double count = entries_[static_cast<std::size_t>(i + k_)];
-  if (j != i) count += entries_[static_cast<std::size_t>(j + k_)];
+  double count = entries_[place(i)];
+  if (j != i) count += entries_[place(j)];
   // k = 0: one level, left by both ways.
   const double times = i == j ? 2 * factor : factor;
   const Estimate p = proportion(count, excursions());

@@ -59,6 +59,7 @@ class Tally {
 
  private:
   [[nodiscard]] Estimate ratio(std::size_t total) const;
+  [[nodiscard]] std::size_t place(int level) const;  // in entries_
   void count_cells(const Excursion& excursion);
   void add_transforms(const Excursion& excursion);
 
