@@ -81,7 +81,8 @@ routes::SimulationProgress simulation_progress_of(const options::Request& reques
 }
 
 int status_of(const accuracy::Outcome& outcome) {
-  const bool agrees = !outcome.comparison || !outcome.comparison->disagrees;
+  const auto& comparison = outcome.comparison;
+  const bool agrees = !comparison || (!comparison->disagrees && !comparison->rows.empty());
   return static_cast<int>(outcome.reached && agrees ? ExitStatus::done : ExitStatus::not_reached);
 }
 

@@ -99,6 +99,7 @@ std::string comparison_table(const accuracy::Comparison& comparison) {
     if (!shown && n == most / 2) text += "...\n";
   }
   for (const auto& name : comparison.left_out) text += name + ": not computed here\n";
+  if (rows.empty()) return text + "NOTHING was compared; name the quantities of the file\n";
   const auto inside = std::count_if(rows.begin(), rows.end(),
                                     [](const auto& row) { return std::abs(row.z) < 1.96; });
   return text +

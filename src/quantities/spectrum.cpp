@@ -206,14 +206,14 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems, const StationaryLa
   }
   result.spectrum.at_zero = {answers.value[omega.size()], answers.error[omega.size()]};
   const ReducedFunction s(answers.model, turn);
-  // What lies far out in the tail matters to neither of them.
+  // What lies far out in the tail does not matter to the width.
   double bulk_error = 0;
   for (std::size_t n = 0; n < frequencies.size(); ++n) {
     if (frequencies[n] > 10 * turn) continue;
     bulk_error = std::max(bulk_error, answers.error[n] / std::abs(answers.value[n]));
   }
   result.shape.fwhm = full_width(s, noise.tau, bulk_error);
-  result.shape.variance = integral(s, noise.tau, bulk_error);
+  result.shape.variance = integral(s, noise.tau, answers.relative_error);
   result.pairs = answers.pairs;
   result.shifts = answers.shifts;
   return result;

@@ -185,6 +185,12 @@ class Compared(Case):
             self.assertEqual(s["results"]["F_slide"]["lambda"], [0.5, 2])
             self.assertEqual(s["results"]["cdf_stick"]["time"], [0.5, 1, 3])
 
+    def test_nothing_in_common_is_no_agreement(self):
+        (self.folder / "other.csv").write_text("quantity,argument,value,low,high\nS_v,1,0.3,0.2,0.4\n")
+        done = run(*SMALL, "-quantities", "sticking", "-compare", "other.csv", folder=self.folder)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("NOTHING was compared", done.stdout)
+
     def test_a_checkpoint_of_questions_from_another_file(self):
         for value in ("1", "2"):
             (self.folder / f"{value}.csv").write_text(
