@@ -98,7 +98,8 @@ double deviation(const Estimate& found, double known) {
 
 }  // namespace
 
-TEST_CASE("simulation: slides, stays and excursions have the distributions computed", "[slow]") {
+TEST_CASE("simulation: slides, stays and excursions have the distributions computed",
+          "[slow][real]") {
   for (const auto& c : cases()) {
     Solved s(discrete(c.process));
     const auto pilot = Simulation(c.process, 100 + c.seed).run(kCount / 20);
@@ -110,7 +111,7 @@ TEST_CASE("simulation: slides, stays and excursions have the distributions compu
   }
 }
 
-TEST_CASE("simulation: a jump rate off by two per cent is seen", "[slow]") {
+TEST_CASE("simulation: a jump rate off by two per cent is seen", "[slow][real]") {
   auto c = cases()[0];
   Solved s(discrete(c.process));
   const auto pilot = Simulation(c.process, 100 + c.seed).run(kCount / 20);
@@ -123,7 +124,7 @@ TEST_CASE("simulation: a jump rate off by two per cent is seen", "[slow]") {
 
 // After a slide and a stay the next excursion is independent of all before.
 TEST_CASE("simulation: time at rest, means, and the tail of the spectrum within 4 sigma",
-          "[slow]") {
+          "[slow][real]") {
   for (const auto& c : cases()) {
     Solved s(discrete(c.process, 10));
     const auto found = Simulation(c.process, 10 + c.seed).run(kCount / 2);

@@ -299,7 +299,7 @@ bool covers(Request r, const Asked& a, std::uint64_t seed, const Results& known)
 }  // namespace
 
 // 95 expected with a standard deviation of 2.2. Seeds are numbers in a row, each used once.
-TEST_CASE("monte carlo: of 100 intervals 90 to 99 hold the computed value", "[slow]") {
+TEST_CASE("monte carlo: of 100 intervals 90 to 99 hold the computed value", "[slow][real]") {
   std::uint64_t seed = 0;
   int covered = 0, all = 0;
   std::string missed;

@@ -69,7 +69,7 @@ TEST_CASE("studies: the upwind scheme is of order 1, and Richardson's limit is b
 }
 
 // Grazing slides: the order in delta is 2 for E_V2 and 3/2 for P_stick where mu_d = mu_s, else 1.
-TEST_CASE("studies: orders in delta, with mu_s on a level and between two", "[slow]") {
+TEST_CASE("studies: orders in delta, with mu_s on a level and between two", "[slow][real]") {
   struct Case {
     double mu_d;
     const char* key;
@@ -91,7 +91,7 @@ TEST_CASE("studies: orders in delta, with mu_s on a level and between two", "[sl
   }
 }
 
-TEST_CASE("studies: both families have the same limit in delta", "[slow]") {
+TEST_CASE("studies: both families have the same limit in delta", "[slow][real]") {
   const Study study = conducted(request(StudyKind::steps, 0.5, 0.25, 5));
   for (const std::string key : {"P_stick", "E_V2"}) {
     const Table &on = table(study, key + " on a level"),
@@ -102,7 +102,7 @@ TEST_CASE("studies: both families have the same limit in delta", "[slow]") {
   }
 }
 
-TEST_CASE("studies: what accuracy costs", "[slow]") {
+TEST_CASE("studies: what accuracy costs", "[slow][real]") {
   const Study study = conducted(request(StudyKind::cost, 0.25, 0.5, 4));
   const auto hp = column(table(study, "hp"), "error"),
              upwind = column(table(study, "upwind"), "error"),
