@@ -48,7 +48,7 @@ Ladder::Ladder(const options::Request& request)
     : scene_(request.scene), method_(request.method), accuracy_(request.accuracy) {
   first_degree_ = method_.degree.value_or(starting_degree(request));
   rates_ = fastest_rates(request);
-  halves_ = options::on_full_grid(request.route) ? 2 : 1;
+  halves_ = options::on_full_grid(request.route) || !request.scene.symmetric() ? 2 : 1;
   last_ = method_.fixed() ? 1 : free_rungs();
 }
 

@@ -10,6 +10,7 @@
 
 #include "stickslip/accuracy/ladder.hpp"
 #include "stickslip/petsc/memory.hpp"
+#include "stickslip/quantities/sensitivity.hpp"
 #include "stickslip/support/errors.hpp"
 
 namespace stickslip::accuracy {
@@ -26,16 +27,6 @@ double wall_time() {
 }
 
 std::string gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / 1e9); }
-
-void require_memory(MPI_Comm comm, const options::Request& request, const Resolution& resolution) {
-  const double need = predicted_bytes(request.scene, resolution);
-  const double have = petsc::available_bytes(comm);
-  if (need <= have) return;
-  throw NoMemory(fmt::format(
-      "about {:.3g} unknowns would need {} of memory, and {} are free; take a larger -delta, a "
-      "looser -accuracy, fewer -noise_levels or more machines",
-      static_cast<double>(unknowns(request.scene, resolution)), gigabytes(need), gigabytes(have)));
-}
 
 Solved evaluated(MPI_Comm comm, const options::Request& request, const Resolution& resolution) {
   Solved solved;
@@ -229,14 +220,6 @@ bool closed_noise_law(const options::Request& request) {
   return request.wants(Quantity::noise_law) && request.route == options::Route::excursion;
 }
 
-bool needs_system(const options::Request& request) {
-  std::size_t others = request.quantities.size();
-  for (bool closed : {closed_noise_law(request), request.wants(Quantity::trajectory)}) {
-    others -= closed ? 1 : 0;
-  }
-  return others > 0;
-}
-
 Outcome simulate(MPI_Comm comm, const options::Request& request,
                  const routes::SimulationProgress& progress) {
   Outcome outcome;
@@ -250,6 +233,25 @@ Outcome simulate(MPI_Comm comm, const options::Request& request,
 }
 
 }  // namespace
+
+void require_memory(MPI_Comm comm, const options::Request& request, const Resolution& resolution) {
+  const double need = predicted_bytes(request.scene, resolution);
+  const double have = petsc::available_bytes(comm);
+  if (need <= have) return;
+  throw NoMemory(fmt::format(
+      "about {:.3g} unknowns would need {} of memory, and {} are free; take a larger -delta, a "
+      "looser -accuracy, fewer -noise_levels or more machines",
+      static_cast<double>(unknowns(request.scene, resolution)), gigabytes(need), gigabytes(have)));
+}
+
+bool needs_system(const options::Request& request) {
+  std::size_t others = request.quantities.size();
+  for (bool closed : {closed_noise_law(request), request.wants(Quantity::trajectory),
+                      request.wants(Quantity::sensitivity)}) {
+    others -= closed ? 1 : 0;
+  }
+  return others > 0;
+}
 
 Solved solve_on(MPI_Comm comm, const options::Request& request, const Resolution& resolution) {
   require_memory(comm, request, resolution);
@@ -267,6 +269,9 @@ Outcome refine(MPI_Comm comm, const options::Request& request, const Progress& p
   }
   if (closed_noise_law(request)) {
     quantities::append_noise_law(request.scene.meant(), outcome.last.results);
+    if (request.wants(Quantity::sensitivity)) {
+      quantities::append_noise_sensitivity(request.scene.meant(), outcome.last.results);
+    }
   }
   if (request.wants(Quantity::trajectory)) {
     outcome.path = simulation::simulate_path(request.scene.meant(), request.start_level,

@@ -46,7 +46,7 @@ double tilt(const model::Scene& scene) {
 int levels_for(const model::Scene& scene, double tolerance) {
   const int full = scene.full_levels();
   const model::NoiseChain chain{scene.tau, scene.delta, full};
-  const int first = scene.friction.static_index(scene.delta) + 1;
+  const int first = scene.friction.static_index(scene.delta, -std::abs(scene.bias)) + 1;
   const double shift = tilt(scene) * scene.delta;
   double log_weight = 0;  // of level i against level `first`
   int i = first;
@@ -59,7 +59,8 @@ int levels_for(const model::Scene& scene, double tolerance) {
 
 double velocity_end(const model::Scene& scene, int levels, double tolerance) {
   const auto process = scene.process(levels);
-  const double terminal = process.drag.terminal_velocity(process.excess(levels));
+  const double terminal = process.drag.terminal_velocity(
+      process.friction.excess(process.noise.level(levels), std::abs(scene.bias)));
   if (scene.v_max) return std::min(*scene.v_max, terminal);
   const double tail = velocity::tail_velocity(process, tolerance);
   // Holding states cost a little: a cut must save something.

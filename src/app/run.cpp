@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/io/plan_report.hpp"
 #include "stickslip/io/provenance.hpp"
 #include "stickslip/io/report.hpp"
 #include "stickslip/io/study_report.hpp"
@@ -111,6 +112,18 @@ int conduct_study(const options::Request& request, Clock::time_point start, doub
   return 0;
 }
 
+int tell_plan(const options::Request& request) {
+  const MPI_Comm comm = MPI_COMM_WORLD;
+  const auto prediction = accuracy::predict(comm, request);
+  if (petsc::rank(comm) != 0) return 0;
+  if (!request.summary.empty()) {
+    write_text(request.summary, io::plan_summary(comm, request, prediction));
+  }
+  std::fputs(io::plan_table(request, prediction).c_str(), stdout);
+  std::fflush(stdout);
+  return 0;
+}
+
 int compute(const options::Request& request, Clock::time_point start, double start_up) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const bool first_rank = petsc::rank(comm) == 0;
@@ -145,6 +158,7 @@ int run_session(const std::vector<std::string>& words, double start_up) {
   int status = static_cast<int>(ExitStatus::other);
   try {
     const auto request = options::read_request(words);
+    if (request.plan_only) return tell_plan(request);
     if (request.study != options::StudyKind::none) return conduct_study(request, start, start_up);
     return compute(request, start, start_up);
   } catch (const BadInput& failure) {

@@ -17,6 +17,11 @@ using Json = nlohmann::ordered_json;
 
 /// The scene in a line.
 [[nodiscard]] std::string scene_line(const options::Request& request);
+/// The discretisation in v as cells of a table of steps, and their title.
+[[nodiscard]] std::string axis_cells(const accuracy::Resolution& resolution);
+[[nodiscard]] const char* axis_title(options::Scheme scheme);
+
+[[nodiscard]] Json resolution_json(const accuracy::Resolution& resolution);
 [[nodiscard]] Json scene_json(const options::Request& request);
 [[nodiscard]] Json results_json(const quantities::Results& results);
 [[nodiscard]] Json provenance_json(MPI_Comm comm, const options::Request& request);

@@ -13,6 +13,7 @@ Json scene_json(const options::Request& request) {
           {"drag", s.drag_name},
           {"drag_coefficient", s.drag.linear},
           {"drag_cubic", s.drag.cubic},
+          {"bias", s.bias},
           {"noise_levels_meant", s.meant().noise.levels}};
 }
 
@@ -45,6 +46,21 @@ Json seconds_json(const petsc::Ledger& ledger) {
           {"solve_seconds", ledger.solve_seconds}};
 }
 
+Json resolution_json(const accuracy::Resolution& r) {
+  Json json;
+  switch (r.scheme) {
+  case options::Scheme::hp:
+    json = {{"scheme", "hp"}, {"degree", r.degree}, {"layers", r.layers}, {"v_max", r.v_max}};
+    break;
+  case options::Scheme::upwind:
+    json = {{"scheme", "upwind"}, {"p", r.points}, {"v_max", r.v_max}};
+    break;
+  case options::Scheme::none: json = {{"scheme", "none"}}; break;
+  }
+  json["noise_levels"] = r.levels;
+  return json;
+}
+
 namespace {
 
 Json scene_of(const options::Request& request, const accuracy::Outcome& outcome) {
@@ -58,19 +74,8 @@ Json scene_of(const options::Request& request, const accuracy::Outcome& outcome)
 }
 
 Json step_of(const accuracy::Step& step) {
-  const auto& r = step.resolution;
-  Json json;
-  switch (r.scheme) {
-  case options::Scheme::hp:
-    json = {{"scheme", "hp"}, {"degree", r.degree}, {"layers", r.layers}, {"v_max", r.v_max}};
-    break;
-  case options::Scheme::upwind:
-    json = {{"scheme", "upwind"}, {"p", r.points}, {"v_max", r.v_max}};
-    break;
-  case options::Scheme::none: json = {{"scheme", "none"}}; break;
-  }
-  json.update({{"noise_levels", r.levels},
-               {"unknowns", step.ledger.unknowns},
+  Json json = resolution_json(step.resolution);
+  json.update({{"unknowns", step.ledger.unknowns},
                {"nonzeros", step.ledger.nonzeros},
                {"factor_entries", step.ledger.factor_entries},
                {"factor_megabytes", step.ledger.factor_megabytes},

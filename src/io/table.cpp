@@ -12,31 +12,11 @@ std::string scene_line(const options::Request& request) {
   std::string drag = s.drag_name;
   if (s.drag.linear > 0) drag += fmt::format(", c = {:g}", s.drag.linear);
   if (s.drag.cubic > 0) drag += fmt::format(", c3 = {:g}", s.drag.cubic);
-  return fmt::format("mu_s = {:g}   mu_d = {:g}   tau = {:g}   delta = {:g}   drag {}\n",
-                     s.friction.mu_s, s.friction.mu_d, s.tau, s.delta, drag);
+  const std::string bias = s.bias == 0 ? "" : fmt::format("   bias = {:g}", s.bias);
+  return fmt::format("mu_s = {:g}   mu_d = {:g}   tau = {:g}   delta = {:g}   drag {}{}\n",
+                     s.friction.mu_s, s.friction.mu_d, s.tau, s.delta, drag, bias);
 }
 
-namespace {
-
-std::string result_lines(const quantities::Result& r) {
-  if (r.is_scalar()) {
-    const double relative = r.error[0] == 0 ? 0 : r.error[0] / std::abs(r.value[0]);
-    return fmt::format("{:<16} {:>24.17g}  {:>8.1e}  {:>8.1e}  {}\n", r.key, r.value[0], r.error[0],
-                       relative, r.unit);
-  }
-  constexpr std::size_t most = 12;  // the files hold all
-  std::string lines = fmt::format("{} by {}\n", r.key, r.abscissa_name);
-  for (std::size_t n = 0; n < r.value.size(); ++n) {
-    if (r.value.size() > most && n == most / 2) {
-      n = r.value.size() - most / 2;
-      lines += fmt::format("{:>16}\n", "...");
-    }
-    lines += fmt::format("{:>16g} {:>24.17g}  {:>8.1e}\n", r.abscissa[n], r.value[n], r.error[n]);
-  }
-  return lines;
-}
-
-// The discretisation in v.
 std::string axis_cells(const accuracy::Resolution& r) {
   switch (r.scheme) {
   case options::Scheme::hp: return fmt::format("{:>6} {:>6}", r.degree, r.layers);
@@ -53,6 +33,36 @@ const char* axis_title(options::Scheme scheme) {
   case options::Scheme::none: break;
   }
   return "         in v";
+}
+
+namespace {
+
+constexpr std::size_t kKeyWidth = 16;
+
+// Of the longest key.
+std::size_t key_width(const quantities::Results& results) {
+  std::size_t width = kKeyWidth;
+  for (const auto& r : results) width = std::max(width, r.key.size());
+  return width;
+}
+
+std::string result_lines(const quantities::Result& r, std::size_t width) {
+  if (r.is_scalar()) {
+    const double relative = r.error[0] == 0 ? 0 : r.error[0] / std::abs(r.value[0]);
+    return fmt::format("{:<{}} {:>24.17g}  {:>8.1e}  {:>8.1e}  {}\n", r.key, width, r.value[0],
+                       r.error[0], relative, r.unit);
+  }
+  constexpr std::size_t most = 12;  // the files hold all
+  std::string lines = fmt::format("{} by {}\n", r.key, r.abscissa_name);
+  for (std::size_t n = 0; n < r.value.size(); ++n) {
+    if (r.value.size() > most && n == most / 2) {
+      n = r.value.size() - most / 2;
+      lines += fmt::format("{:>{}}\n", "...", width);
+    }
+    lines +=
+        fmt::format("{:>{}g} {:>24.17g}  {:>8.1e}\n", r.abscissa[n], width, r.value[n], r.error[n]);
+  }
+  return lines;
 }
 
 std::string step_line(const accuracy::Step& step) {
@@ -131,11 +141,13 @@ std::string cost_table(const options::Request& request, const accuracy::Outcome&
 std::string table(const options::Request& request, const accuracy::Outcome& outcome,
                   const RunTimes& times) {
   std::string text = scene_line(request);
-  text += fmt::format("\n{:<16} {:>24}  {:>8}  {:>8}\n", "quantity", "value", "error", "relative");
-  for (const auto& result : outcome.last.results) text += result_lines(result);
+  const std::size_t width = key_width(outcome.last.results);
+  text += fmt::format("\n{:<{}} {:>24}  {:>8}  {:>8}\n", "quantity", width, "value", "error",
+                      "relative");
+  for (const auto& result : outcome.last.results) text += result_lines(result, width);
   if (request.wants(options::Quantity::density)) {
-    text += fmt::format("{:<16} {:>24}  {:>8.1e}  of the distribution function of |V|\n", "density",
-                        "in " + request.output, outcome.speed_law_error);
+    text += fmt::format("{:<{}} {:>24}  {:>8.1e}  of the distribution function of |V|\n", "density",
+                        width, "in " + request.output, outcome.speed_law_error);
   }
   if (outcome.path) {
     text += fmt::format("trajectory up to {:g}: {} events\n", request.horizon,

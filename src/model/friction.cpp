@@ -4,8 +4,12 @@
 
 namespace stickslip::model {
 
-int Friction::static_index(double delta) const { return floor_index(mu_s / delta); }
+int Friction::static_index(double delta, double bias) const {
+  return floor_index((mu_s - bias) / delta);
+}
 
-double Friction::excess(double level) const { return snapped_difference(level, mu_d); }
+double Friction::excess(double level, double bias) const {
+  return snapped_difference(level, mu_d - bias);
+}
 
 }  // namespace stickslip::model

@@ -13,6 +13,10 @@ double NoiseChain::up(int i) const {
   return std::clamp((1 - tau * delta * level(i) / 2) / 2, 0.0, 1.0);
 }
 
+double NoiseChain::up_change(int i) const {
+  return std::abs(i) >= levels ? 0 : -delta * level(i) / 4;
+}
+
 int full_range(double tau, double delta) { return floor_index(2 / (tau * delta * delta)); }
 
 double weight_ratio(const NoiseChain& chain, int i) { return chain.up(i - 1) / chain.down(i); }

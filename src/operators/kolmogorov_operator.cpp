@@ -20,13 +20,14 @@ Half other(Half half) { return half == Half::upper ? Half::lower : Half::upper; 
 class KolmogorovOperator::Assembler {
  public:
   Assembler(const model::Process& process, const velocity::Axis& axis, const StateSpace& states,
-            PetscScalar lambda, Rest rest)
-      : process_(process),
-        axis_(axis),
+            PetscScalar lambda, Rest rest, std::optional<Parameter> derivative)
+      : derivative_(derivative),
+        noise_(process.noise),
+        upper_{process, axis},
+        lower_{process.mirrored(), axis.mirrored()},
         states_(states),
         lambda_(lambda),
         rest_(rest),
-        k_(process.static_index()),
         top_(process.noise.levels),
         zero_trace_(axis.trace_at_zero()),
         top_trace_(axis.trace_at_top()) {}
@@ -37,7 +38,7 @@ class KolmogorovOperator::Assembler {
 
   /// u(0+) on a level of a half that leaves v = 0, as global indices and coefficients.
   [[nodiscard]] Functional trace_at_zero(Half half, int level) const {
-    if (states_.has_origin(level)) {
+    if (states_.has_origin(half, level)) {
       return {{states_.index({StateKind::origin, half, level, 0}), 1.0}};
     }
     Functional trace;
@@ -51,6 +52,16 @@ class KolmogorovOperator::Assembler {
   std::vector<Coupling> rest_coupling, exit_coupling;
 
  private:
+  // A half line, seen with its levels and velocities counted along it.
+  struct Side {
+    Side(const model::Process& p, const velocity::Axis& a)
+        : process(p), axis(a), k(p.static_index()) {}
+    model::Process process;
+    const velocity::Axis& axis;
+    int k;  // the highest level that can stick
+  };
+  [[nodiscard]] const Side& side(Half half) const { return half == Half::upper ? upper_ : lower_; }
+
   void append(const State& state) {
     switch (state.kind) {
     case StateKind::node: rates_of_node(state); break;
@@ -62,7 +73,13 @@ class KolmogorovOperator::Assembler {
   }
 
   void rates_of_node(const State& s) {
-    axis_.transport(process_.excess(s.level), s.node, transport_);
+    const Side& here = side(s.half);
+    const double excess = here.process.excess(s.level);
+    if (derivative_) {
+      here.axis.transport_change(excess, speed_change(), s.node, transport_);
+    } else {
+      here.axis.transport(excess, s.node, transport_);
+    }
     for (const auto& e : transport_.entries) rate_to(node(s.half, s.level, e.node), e.value);
     if (transport_.inflow != 0) rate_to_zero(s, transport_.inflow);
     if (transport_.outflow != 0) rate_to(holding(s.half, s.level), transport_.outflow);
@@ -74,18 +91,21 @@ class KolmogorovOperator::Assembler {
     const auto origin = [&](int level) {
       return states_.index({StateKind::origin, s.half, level, 0});
     };
-    rate_to(node(s.half, s.level, 0), axis_.origin_rate(process_.excess(s.level)));
+    const Side& here = side(s.half);
+    rate_to(
+        node(s.half, s.level, 0),
+        here.axis.origin_rate(derivative_ ? speed_change().excess : here.process.excess(s.level)));
     if (s.level < top_) rate_to(origin(s.level + 1), up_rate(s.level));
-    if (s.level - 1 > k_) {
+    if (s.level - 1 > here.k) {
       rate_to(origin(s.level - 1), down_rate(s.level));
     } else {
-      rate_to_rest(noise_level(s.half, k_), down_rate(s.level));
+      rate_to_rest(noise_level(s.half, here.k), down_rate(s.level));
     }
   }
 
   void rates_of_holding(const State& s) {
     if (s.level < top_) rate_to(holding(s.half, s.level + 1), up_rate(s.level));
-    if (states_.has_holding(s.level - 1)) {
+    if (states_.has_holding(s.half, s.level - 1)) {
       rate_to(holding(s.half, s.level - 1), down_rate(s.level));
     } else if (s.level > -top_) {
       for (const auto& e : top_trace_) {
@@ -95,22 +115,23 @@ class KolmogorovOperator::Assembler {
   }
 
   void rates_of_rest(int i) {
-    if (rest_ == Rest::killing_edges && std::abs(i) == k_) {
-      killing_ = process_.noise.rate();  // value 0 there: killed at once
+    const int highest = upper_.k, lowest = -lower_.k;
+    if (rest_ == Rest::killing_edges && (i == highest || i == lowest)) {
+      killing_ = noise_.rate();  // value 0 there: killed at once
       return;
     }
-    if (i < k_) rate_to_rest(i + 1, up_rate(i));
-    if (i == k_) rate_to_exit(Half::upper, up_rate(i));
-    if (i > -k_) rate_to_rest(i - 1, down_rate(i));
-    if (i == -k_) rate_to_exit(Half::lower, down_rate(i));
+    if (i < highest) rate_to_rest(i + 1, up_rate(i));
+    if (i == highest) rate_to_exit(Half::upper, up_rate(i));
+    if (i > lowest) rate_to_rest(i - 1, down_rate(i));
+    if (i == lowest) rate_to_exit(Half::lower, down_rate(i));
   }
 
   // Where a sliding body meets v = 0.
   void rate_to_zero(const State& s, double rate) {
-    if (s.level > k_) {
+    if (s.level > side(s.half).k) {
       // A grid scheme near a turning point: back to the state at v = 0.
       rate_to(states_.index({StateKind::origin, s.half, s.level, 0}), rate);
-    } else if (s.level >= -k_) {
+    } else if (s.level >= -side(other(s.half)).k) {
       rate_to_rest(noise_level(s.half, s.level), rate);
     } else if (states_.folded()) {
       rate_to_trace(trace_at_zero(s.half, -s.level), rate, reflection());
@@ -139,10 +160,10 @@ class KolmogorovOperator::Assembler {
       killing_ += rate;
       exit_coupling.push_back({local_row(), half == Half::upper ? 1 : -1, rate});
     } else if (states_.folded()) {
-      rate_to_trace(trace_at_zero(Half::upper, k_ + 1), rate,
+      rate_to_trace(trace_at_zero(Half::upper, upper_.k + 1), rate,
                     half == Half::upper ? 1 : reflection());
     } else {
-      rate_to_trace(trace_at_zero(half, k_ + 1), rate, 1);
+      rate_to_trace(trace_at_zero(half, side(half).k + 1), rate, 1);
     }
   }
 
@@ -190,18 +211,34 @@ class KolmogorovOperator::Assembler {
   static int noise_level(Half half, int level) { return half == Half::upper ? level : -level; }
   [[nodiscard]] double reflection() const { return states_.symmetry() == Symmetry::odd ? -1 : 1; }
   [[nodiscard]] double up_rate(int level) const {
-    return process_.noise.rate() * process_.noise.up(level);
+    if (!derivative_) return noise_.rate() * noise_.up(level);
+    return jump_change(noise_.up(level), noise_.up_change(level));
   }
   [[nodiscard]] double down_rate(int level) const {
-    return process_.noise.rate() * process_.noise.down(level);
+    if (!derivative_) return noise_.rate() * noise_.down(level);
+    return jump_change(noise_.down(level), noise_.down_change(level));
+  }
+  // Of Lambda times a jump probability.
+  [[nodiscard]] double jump_change(double probability, double change) const {
+    if (*derivative_ != Parameter::tau) return 0;
+    return noise_.rate_change() * probability + noise_.rate() * change;
+  }
+  [[nodiscard]] velocity::SpeedChange speed_change() const {
+    switch (*derivative_) {
+    case Parameter::mu_d: return {-1, 0};
+    case Parameter::tau: return {0, 0};
+    case Parameter::drag_coefficient: return {0, -1};
+    }
+    return {};
   }
 
-  const model::Process& process_;
-  const velocity::Axis& axis_;
+  std::optional<Parameter> derivative_;
+  const model::NoiseChain& noise_;
+  Side upper_, lower_;
   const StateSpace& states_;
   PetscScalar lambda_;
   Rest rest_;
-  int k_, top_;
+  int top_;
   std::vector<velocity::Entry> zero_trace_, top_trace_;
   velocity::TransportRow transport_;
   std::vector<std::pair<PetscInt, PetscScalar>> row_;
@@ -211,14 +248,28 @@ class KolmogorovOperator::Assembler {
 KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const model::Process& process,
                                        const velocity::Axis& axis, PetscScalar lambda,
                                        Symmetry symmetry, Rest rest)
+    : KolmogorovOperator(comm, process, axis, lambda, symmetry, rest, std::nullopt) {}
+
+KolmogorovOperator KolmogorovOperator::derivative(MPI_Comm comm, const model::Process& process,
+                                                  const velocity::Axis& axis, Symmetry symmetry,
+                                                  Parameter theta) {
+  return {comm, process, axis, 0, symmetry, Rest::killing, theta};
+}
+
+KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const model::Process& process,
+                                       const velocity::Axis& axis, PetscScalar lambda,
+                                       Symmetry symmetry, Rest rest,
+                                       std::optional<Parameter> derivative)
     : states_(comm, process, axis, symmetry, rest != Rest::killing),
       process_(process),
       nodes_(axis.nodes().begin(), axis.nodes().end()),
       v_max_(axis.v_max()) {
-  Assembler rows(process, axis, states_, lambda, rest);
+  Assembler rows(process, axis, states_, lambda, rest, derivative);
   rows.assemble();
   trace_upper_ = rows.trace_at_zero(Half::upper, process.static_index() + 1);
-  if (!states_.folded()) trace_lower_ = rows.trace_at_zero(Half::lower, process.static_index() + 1);
+  if (!states_.folded()) {
+    trace_lower_ = rows.trace_at_zero(Half::lower, 1 - process.lowest_static());
+  }
   rest_coupling_ = std::move(rows.rest_coupling);
   exit_coupling_ = std::move(rows.exit_coupling);
 
@@ -253,8 +304,9 @@ petsc::VecHandle KolmogorovOperator::trace_at_exit(Half half) const {
 }
 
 petsc::VecHandle KolmogorovOperator::value_at(const velocity::Axis& axis, int i, double v) const {
-  const int k = process_.static_index();
-  const bool rest = v == 0 && std::abs(i) <= k, below = v < 0 || (v == 0 && i < 0);
+  const int lowest = process_.lowest_static();
+  const bool rest = v == 0 && i >= lowest && i <= process_.static_index();
+  const bool below = v < 0 || (v == 0 && (rest ? i < 0 : i < lowest));
   const bool mirrored = below && states_.folded();
   const double sign = mirrored && states_.symmetry() == Symmetry::odd ? -1 : 1;
   const Half half = below && !mirrored ? Half::lower : Half::upper;
@@ -266,9 +318,9 @@ petsc::VecHandle KolmogorovOperator::value_at(const velocity::Axis& axis, int i,
     if (index >= begin && index < end) check(VecSetValue(g, index, weight, ADD_VALUES));
   };
   if (rest) {
-    const int kept = states_.folded() ? level : i;
+    const int kept = states_.folded() ? std::abs(i) : i;
     if (states_.has_rest(kept)) add({StateKind::rest, Half::upper, kept, 0}, sign);
-  } else if (v == 0 && states_.has_origin(level)) {
+  } else if (v == 0 && states_.has_origin(half, level)) {
     add({StateKind::origin, half, level, 0}, sign);
   } else {
     for (const auto& e : v == 0 ? axis.trace_at_zero() : axis.value_at(std::abs(v))) {
@@ -281,20 +333,20 @@ petsc::VecHandle KolmogorovOperator::value_at(const velocity::Axis& axis, int i,
 }
 
 std::vector<PetscScalar> KolmogorovOperator::entry_rates(Vec nu) const {
-  const int k = process_.static_index();
-  std::vector<PetscScalar> rates(2 * static_cast<std::size_t>(k) + 1, 0.0);
+  const int lowest = process_.lowest_static(), count = process_.static_index() - lowest + 1;
+  std::vector<PetscScalar> rates(static_cast<std::size_t>(count), 0.0);
   const petsc::ReadView local(nu);
-  for (const auto& c : rest_coupling_) rates[k + c.level] += c.rate * local[c.row];
+  for (const auto& c : rest_coupling_) rates[c.level - lowest] += c.rate * local[c.row];
   MPI_Allreduce(MPI_IN_PLACE, rates.data(), static_cast<int>(rates.size()), MPIU_SCALAR, MPIU_SUM,
                 states_.comm());
   return rates;
 }
 
 petsc::VecHandle KolmogorovOperator::from_rest(const std::vector<PetscScalar>& s) const {
-  const int k = process_.static_index();
+  const int lowest = process_.lowest_static();
   petsc::VecHandle f = zeros();
   petsc::WriteView local(f);
-  for (const auto& c : rest_coupling_) local[c.row] += c.rate * s[k + c.level];
+  for (const auto& c : rest_coupling_) local[c.row] += c.rate * s[c.level - lowest];
   return f;
 }
 

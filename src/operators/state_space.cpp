@@ -24,13 +24,13 @@ int first_holding_level(const model::Process& process, const velocity::Axis& axi
   return first;
 }
 
-int lowest_rest_level(Symmetry symmetry, int k) {
+int lowest_rest_level(Symmetry symmetry, const model::Process& process) {
   switch (symmetry) {
   case Symmetry::even: return 0;
   case Symmetry::odd: return 1;  // an odd function vanishes at x = 0 at rest
-  case Symmetry::none: return -k;
+  case Symmetry::none: break;
   }
-  return -k;
+  return process.lowest_static();
 }
 
 void require_countable(double states) {
@@ -41,6 +41,9 @@ void require_countable(double states) {
 
 }  // namespace
 
+StateSpace::Side::Side(const model::Process& process, const velocity::Axis& axis)
+    : k(process.static_index()), first_holding(first_holding_level(process, axis)) {}
+
 StateSpace::StateSpace(MPI_Comm comm, const model::Process& process, const velocity::Axis& axis,
                        Symmetry symmetry, bool with_rest)
     : comm_(comm),
@@ -49,9 +52,9 @@ StateSpace::StateSpace(MPI_Comm comm, const model::Process& process, const veloc
       keeps_origin_(axis.keeps_origin()),
       levels_(process.noise.levels),
       nodes_(axis.size()),
-      k_(process.static_index()),
-      first_holding_(first_holding_level(process, axis)),
-      lowest_rest_(lowest_rest_level(symmetry, k_)),
+      upper_(process, axis),
+      lower_(process.mirrored(), axis),
+      lowest_rest_(lowest_rest_level(symmetry, process)),
       rank_(petsc::rank(comm)) {
   require_countable((2.0 * levels_ + 1) * (2.0 * nodes_ + 3));
   // Shell s goes to the rank in whose equal share of the levels it begins.
@@ -86,14 +89,18 @@ std::vector<int> StateSpace::local_levels() const {
 }
 
 bool StateSpace::has_state(int row, int i) const {
-  if (row == 0) return has_rest(i) || has_origin(folded() ? i : std::abs(i));
+  if (row == 0) {
+    const bool below = !folded() && has_origin(Half::lower, -i);
+    return has_rest(i) || has_origin(Half::upper, i) || below;
+  }
   if (std::abs(row) <= nodes_) return true;
-  return has_holding(row > 0 ? i : -i);
+  return row > 0 ? has_holding(Half::upper, i) : has_holding(Half::lower, -i);
 }
 
 State StateSpace::state_at(int row, int i) const {
   if (row == 0 && has_rest(i)) return {StateKind::rest, Half::upper, i, 0};
-  const Half half = row < 0 || (row == 0 && i < 0) ? Half::lower : Half::upper;
+  const Half half =
+      row < 0 || (row == 0 && !has_origin(Half::upper, i)) ? Half::lower : Half::upper;
   const int level = half == Half::upper ? i : -i;
   if (row == 0) return {StateKind::origin, half, level, 0};
   if (std::abs(row) <= nodes_) return {StateKind::node, half, level, std::abs(row) - 1};
@@ -113,15 +120,17 @@ int StateSpace::position(const Block& block, int row, int i) const {
   const auto below = [&](int level) { return levels_below(block, level); };
   if (row == 0) {
     int before = 0;
-    if (keeps_origin_ && !folded()) before += below(std::min(i, -k_));
-    if (with_rest_) before += below(std::clamp(i, lowest_rest_, k_ + 1)) - below(lowest_rest_);
-    if (keeps_origin_) before += below(std::max(i, k_ + 1)) - below(k_ + 1);
+    const int first = upper_.k + 1;
+    if (keeps_origin_ && !folded()) before += below(std::min(i, -lower_.k));
+    if (with_rest_) before += below(std::clamp(i, lowest_rest_, first)) - below(lowest_rest_);
+    if (keeps_origin_) before += below(std::max(i, first)) - below(first);
     return before;
   }
   if (std::abs(row) <= nodes_) return below(i);
   // Holding states belong to the highest levels of a half: on the lower one, the lowest noise.
-  if (row > 0) return below(std::max(i, first_holding_)) - below(first_holding_);
-  return below(std::min(i, 1 - first_holding_));
+  const int first = upper_.first_holding;
+  if (row > 0) return below(std::max(i, first)) - below(first);
+  return below(std::min(i, 1 - lower_.first_holding));
 }
 
 int StateSpace::count(const Block& block, int row) const {

@@ -8,7 +8,8 @@ namespace stickslip::operators {
 // killing rate grows by down_i times the share of killing at i-1, and its pivot is that killing
 // rate plus the rate of going up.
 StaticChain::StaticChain(const model::NoiseChain& chain, int low, int high, double lambda) {
-  if (high < 0 || high >= chain.levels) throw std::invalid_argument("levels outside the noise");
+  if (high < low - 1 || high >= chain.levels || low <= -chain.levels)
+    throw std::invalid_argument("levels outside the noise");
   if (!(lambda >= 0)) throw std::invalid_argument("negative Laplace parameter");
   up_exit_ = chain.rate() * chain.up(high);
   down_exit_ = chain.rate() * chain.down(low);
@@ -53,6 +54,12 @@ std::vector<double> StaticChain::exit_transform() const {
 std::vector<double> StaticChain::upward_exit_transform() const {
   std::vector<double> leaving(pivot_.size(), 0.0);
   if (!leaving.empty()) leaving.back() = up_exit_;
+  return integral(std::move(leaving));
+}
+
+std::vector<double> StaticChain::downward_exit_transform() const {
+  std::vector<double> leaving(pivot_.size(), 0.0);
+  if (!leaving.empty()) leaving.front() = down_exit_;
   return integral(std::move(leaving));
 }
 

@@ -41,10 +41,11 @@ model::Drag read_drag(const Settings& settings, Request& request) {
 
 // The levels that exist, and that some of them slide.
 void check_noise(const Settings& settings, model::Scene& scene, Problems& problems) {
-  int full = 0, k = 0;
+  int full = 0, highest = 0, lowest = 0;
   try {
     full = scene.full_levels();
-    k = scene.friction.static_index(scene.delta);
+    highest = scene.process(1).static_index();
+    lowest = scene.process(1).lowest_static();
   } catch (const std::out_of_range&) {
     settings.report(problems, "delta", "gives more noise levels than can be counted",
                     "take a larger step");
@@ -68,14 +69,28 @@ void check_noise(const Settings& settings, model::Scene& scene, Problems& proble
                     fmt::format("take at most {}, or full", full));
     return;
   }
-  const int levels = scene.noise_levels.value_or(full);
-  if (k >= levels) {
+  const int levels = scene.noise_levels.value_or(full), k = std::max(highest, -lowest);
+  if (k >= levels && scene.bias == 0) {
     settings.report(problems, "mu_s",
                     fmt::format("is not below the largest noise level {:g}: nothing ever slides",
                                 levels * delta),
                     levels < full ? fmt::format("take -noise_levels above {}", k)
                                   : fmt::format("take -mu_s below {:g}, or smaller -tau or -delta",
                                                 levels * delta));
+  } else if (k >= levels) {
+    settings.report(problems, "bias",
+                    fmt::format("is never overcome by the noise, which reaches {:g}: no body at "
+                                "rest would ever start against it",
+                                levels * delta),
+                    fmt::format("take |bias| below {:g}, or smaller -tau or -delta",
+                                levels * delta - scene.friction.mu_s));
+  } else if (lowest > highest) {
+    settings.report(
+        problems, "mu_s",
+        fmt::format("holds the body on no noise level, which are {:g} apart and shifted "
+                    "by the bias {:g}: nothing ever sticks",
+                    delta, scene.bias),
+        "take a smaller -delta");
   }
 }
 
@@ -86,6 +101,7 @@ model::Scene read_scene(const Settings& settings, Request& request, Problems& pr
   scene.friction = {settings.real("mu_s"), settings.real("mu_d")};
   scene.drag_name = settings.text("drag");
   scene.drag = read_drag(settings, request);
+  scene.bias = settings.real("bias");
   scene.noise_levels = settings.integer("noise_levels");
   if (settings.given("v_max")) scene.v_max = settings.real("v_max");
   if (scene.friction.mu_d > scene.friction.mu_s) {
@@ -93,13 +109,21 @@ model::Scene read_scene(const Settings& settings, Request& request, Problems& pr
                     fmt::format("must be in (0, mu_s], and mu_s = {}", settings.text("mu_s")),
                     "friction cannot grow when the body starts to slide");
   }
+  if (!scene.drag.bounds_velocity() && std::abs(scene.bias) >= scene.friction.mu_d) {
+    settings.report(problems, "bias",
+                    fmt::format("drives a sliding body for ever: without drag only mu_d = {:g} "
+                                "holds it back",
+                                scene.friction.mu_d),
+                    "take a bias smaller than mu_d, or add drag");
+  }
   return scene;
 }
 
 struct Asked {
   const char* name;
   Quantity quantity;
-  std::vector<Route> routes;  // that give it
+  std::vector<Route> routes;            // that give it
+  std::vector<Route> without_symmetry;  // of these, those that need none
 };
 
 const std::vector<Asked>& askable() {
@@ -107,21 +131,28 @@ const std::vector<Asked>& askable() {
   static const std::vector<Asked> all{
       {"sticking",
        Quantity::sticking,
-       {excursion, lambda, hitting, null_vector, fluid_queue, monte_carlo}},
-      {"moments", Quantity::moments, {excursion, lambda, null_vector, fluid_queue, monte_carlo}},
+       {excursion, lambda, hitting, null_vector, fluid_queue, monte_carlo},
+       {excursion, null_vector, monte_carlo}},
+      {"moments",
+       Quantity::moments,
+       {excursion, lambda, null_vector, fluid_queue, monte_carlo},
+       {excursion, null_vector, monte_carlo}},
       {"noise_law",
        Quantity::noise_law,
-       {excursion, lambda, null_vector, fluid_queue, monte_carlo}},
-      {"entry_law", Quantity::entry_law, {excursion, fluid_queue, monte_carlo}},
-      {"density", Quantity::density, {excursion}},
-      {"laplace", Quantity::laplace, {excursion, fluid_queue, monte_carlo}},
-      {"resolvent", Quantity::resolvent, {excursion}},
-      {"relaxation", Quantity::relaxation, {excursion}},
-      {"spectrum", Quantity::spectrum, {excursion, monte_carlo}},
-      {"duration_density", Quantity::duration_density, {excursion, monte_carlo}},
-      {"autocorrelation", Quantity::autocorrelation, {excursion}},
-      {"expectation", Quantity::expectation, {excursion}},
-      {"trajectory", Quantity::trajectory, {excursion, monte_carlo}}};
+       {excursion, lambda, null_vector, fluid_queue, monte_carlo},
+       {excursion, null_vector, monte_carlo}},
+      {"entry_law", Quantity::entry_law, {excursion, fluid_queue, monte_carlo}, {}},
+      {"density", Quantity::density, {excursion}, {}},
+      {"laplace", Quantity::laplace, {excursion, fluid_queue, monte_carlo}, {}},
+      {"F_stick", Quantity::stay_transform, {excursion}, {}},
+      {"resolvent", Quantity::resolvent, {excursion}, {}},
+      {"relaxation", Quantity::relaxation, {excursion}, {}},
+      {"spectrum", Quantity::spectrum, {excursion, monte_carlo}, {excursion, monte_carlo}},
+      {"duration_density", Quantity::duration_density, {excursion, monte_carlo}, {}},
+      {"autocorrelation", Quantity::autocorrelation, {excursion}, {}},
+      {"expectation", Quantity::expectation, {excursion}, {}},
+      {"trajectory", Quantity::trajectory, {excursion, monte_carlo}, {excursion, monte_carlo}},
+      {"sensitivity", Quantity::sensitivity, {excursion}, {}}};
   return all;
 }
 
@@ -178,21 +209,25 @@ std::vector<std::string> quantity_names(const Settings& settings, const Request&
 
 // The quantities named; of others those that the route gives.
 void read_quantities(const Settings& settings, Request& request, Problems& problems) {
+  const bool symmetric = request.scene.symmetric();
   std::vector<std::string> given_by_route, refused;
   const auto names = quantity_names(settings, request);
   for (const auto& asked : askable()) {
-    const bool gives = std::count(asked.routes.begin(), asked.routes.end(), request.route) > 0;
+    const auto& routes = symmetric ? asked.routes : asked.without_symmetry;
+    const bool gives = std::count(routes.begin(), routes.end(), request.route) > 0;
     const bool named = std::count(names.begin(), names.end(), asked.name) > 0;
     if (gives) given_by_route.emplace_back(asked.name);
     if (named && gives) request.quantities.insert(asked.quantity);
     if (named && !gives) refused.emplace_back(asked.name);
   }
   if (refused.empty() || !settings.given("quantities")) return;
-  settings.report(problems, "quantities",
-                  fmt::format("{} cannot be had by -route {}, which gives {}",
-                              enumerate(refused, "and"), settings.text("route"),
-                              enumerate(given_by_route, "and")),
-                  "take -route excursion, or other quantities");
+  settings.report(
+      problems, "quantities",
+      fmt::format("{} cannot be had by -route {}{}, which gives {}", enumerate(refused, "and"),
+                  settings.text("route"), symmetric ? "" : " without symmetry",
+                  given_by_route.empty() ? "nothing" : enumerate(given_by_route, "and")),
+      symmetric ? "take -route excursion, or other quantities"
+                : "take other quantities, or -bias 0 and an odd drag");
 }
 
 void read_observables(const Settings& settings, Request& request, Problems& problems) {
@@ -227,7 +262,9 @@ void read_arguments(const Settings& settings, Request& request, Problems& proble
   request.omega = arguments(settings, request, "omega", "spectrum");
   request.time = arguments(settings, request, "time", "duration_density");
   read_observables(settings, request, problems);
-  const bool transforms = request.wants(Quantity::laplace) || request.wants(Quantity::resolvent);
+  const bool transforms = request.wants(Quantity::laplace) ||
+                          request.wants(Quantity::stay_transform) ||
+                          request.wants(Quantity::resolvent);
   const bool resolvent = request.wants(Quantity::resolvent) || request.wants(Quantity::expectation);
   if (transforms && request.lambda.empty()) {
     settings.report(problems, "quantities", "asks for functions of lambda and no values are given",
@@ -255,6 +292,11 @@ void read_arguments(const Settings& settings, Request& request, Problems& proble
       request.warnings.push_back(fmt::format("-{} has no effect on what is asked for", name));
     }
   };
+  if (request.wants(Quantity::sensitivity) && !request.wants(Quantity::sticking) &&
+      !request.wants(Quantity::moments) && !request.wants(Quantity::noise_law)) {
+    settings.report(problems, "quantities", "asks for derivatives and for nothing to derive",
+                    "add sticking, moments or noise_law");
+  }
   warn_unused("lambda", transforms || by_lambda);
   warn_unused("observable", resolvent);
   warn_unused("time", of_time);
@@ -272,8 +314,8 @@ void read_arguments(const Settings& settings, Request& request, Problems& proble
 // s+, s- or x,v with x on a noise level.
 void read_start(const Settings& settings, Request& request, Problems& problems) {
   const std::string text = settings.text("start");
-  const int exit = request.scene.friction.static_index(request.scene.delta) + 1;
-  request.start_level = text == "s-" ? -exit : exit;
+  const auto process = request.scene.process(1);
+  request.start_level = text == "s-" ? process.lowest_static() - 1 : process.static_index() + 1;
   if (text == "s+" || text == "s-") return;
   const auto numbers = parse_numbers(text);
   if (!numbers || numbers->size() != 2) {
@@ -327,10 +369,15 @@ void check_route(const Settings& settings, const Request& request, Problems& pro
       settings.report(problems, name, "is no choice of -route monte_carlo, which has no grid in v",
                       "leave it out");
     }
-    if (request.wants(Quantity::spectrum) && request.omega.empty()) {
+    const bool by_omega = request.scene.symmetric();
+    if (request.wants(Quantity::spectrum) && request.omega.empty() && by_omega) {
       settings.report(problems, "quantities", "asks for the spectrum and no frequencies are given",
                       "add for example -omega 0:10:41");
     }
+  }
+  if (!request.scene.symmetric() && request.wants(Quantity::spectrum) && !request.omega.empty()) {
+    settings.report(problems, "omega", "has no meaning without symmetry, where spectrum gives S_0",
+                    "leave it out");
   }
   if (request.route != Route::fluid_queue) return;
   if (request.scene.drag.bounds_velocity()) {
@@ -617,6 +664,10 @@ Request read_request(const std::vector<std::string>& argv) {
   check_route(settings, request, problems);
   if (request.route == Route::fluid_queue) request.method.scheme = Scheme::none;
   read_study(settings, request, problems);
+  request.plan_only = settings.flag("plan");
+  if (request.plan_only && request.study != StudyKind::none) {
+    settings.report(problems, "plan", "foretells one run, not a study", "leave -study out");
+  }
   read_output(settings, request, problems);
   for (const auto& group : table()) {
     for (const auto& option : group.options) {

@@ -149,6 +149,9 @@ void Settings::parse(const Option& option, const std::string& value, Problems& p
     break;
   }
   case Kind::text: break;
+  case Kind::flag:
+    if (!value.empty()) check_words(option, value, problems);
+    break;
   case Kind::path:
   case Kind::input:
     if (value.empty()) problems.add(option, value, must, "name the file after the option");

@@ -50,6 +50,10 @@ Option path(std::string name, std::string sentence) {
   return {std::move(name), Kind::path, "", "", {}, {}, std::move(sentence), ""};
 }
 
+Option flag(std::string name, std::string sentence) {
+  return {std::move(name), Kind::flag, "", "no", {}, {"yes", "no"}, std::move(sentence), ""};
+}
+
 Group scene_group() {
   return {
       "Scene",
@@ -75,6 +79,11 @@ Group scene_group() {
                "the drag must not grow with the velocity, it would drive the body"),
           real("drag_cubic", "time/length^2", "0", not_negative(), "c3 in the cubic drag law",
                "the drag must not grow with the velocity, it would drive the body"),
+          real("bias", "force", "0", {-kInfinity, kInfinity, false, false},
+               "constant force added to X, such as the slope of an inclined plane; without "
+               "symmetry both signs of v are kept, and sticking, moments, noise_law, spectrum "
+               "(S_0 about the mean) and trajectory can be asked for",
+               "take for example 0.1"),
           real("v_max", "velocity", "", positive(),
                "cut of the velocity axis; bodies that reach it wait there until the noise falls. "
                "Without it, the largest velocity that matters at -accuracy is taken",
@@ -89,14 +98,15 @@ Group question_group() {
       {
           words(
               "quantities", Kind::list, "sticking,moments,noise_law",
-              {"sticking", "moments", "noise_law", "entry_law", "density", "laplace", "resolvent",
-               "relaxation", "spectrum", "duration_density", "autocorrelation", "expectation",
-               "trajectory"},
+              {"sticking", "moments", "noise_law", "entry_law", "density", "laplace", "F_stick",
+               "resolvent", "relaxation", "spectrum", "duration_density", "autocorrelation",
+               "expectation", "trajectory", "sensitivity"},
               "comma list. sticking: P_stick, P_slide, mean_stick, mean_slide, "
               "mean_excursion. moments: E_V2, E_absV, E_XV, E_V. noise_law: P_X_le_mu_s, "
               "E_X2. entry_law: the level at which sliding ends (an array), f_stick_0. "
               "density: the stationary law as a field (needs -output). laplace: F_slide, "
-              "F_stick, F_excursion on -lambda. resolvent: h_plus, h_minus, w_one and for "
+              "F_stick, F_excursion on -lambda. F_stick: that alone, from the noise at rest. "
+              "resolvent: h_plus, h_minus, w_one and for "
               "each -observable u, w_plus, w_minus, pi, mu on -lambda. relaxation: leading "
               "eigenvalues of -L for even and odd functions. spectrum: S_v on -omega, S_0, "
               "diffusivity = S_0/2, fwhm, t_corr = 1/fwhm, variance_from_spectrum. "
@@ -104,7 +114,11 @@ Group question_group() {
               "f_stick, f_excursion and cdf_slide, cdf_stick, cdf_excursion on -time. "
               "autocorrelation: C_vv = E[V_0 V_t] on -time. expectation: E[f(Z_t)] from -start for "
               "each -observable on -time, and its limit pi(f). trajectory: one simulated path from "
-              "-start up to -horizon, to -output or -trajectory"),
+              "-start up to -horizon, to -output or -trajectory. sensitivity: derivatives of every "
+              "scalar of sticking, moments and noise_law, as far as these are asked for, with "
+              "respect to mu_d, tau (at a fixed number of noise levels) and drag_coefficient, by "
+              "adjoints: dP_stick_dmu_d and so on; between two noise levels nothing depends on "
+              "mu_s"),
           numbers("lambda", "1/time", not_negative(),
                   "values of lambda, as a,b,c or first:last:count or first:last:count:log. With "
                   "-route lambda one value, chosen from -accuracy if it is left out"),
@@ -159,6 +173,9 @@ Group method_group() {
                 "the left null vector of the generator, by SLEPc. fluid_queue: b = 0 without any "
                 "discretisation in v. monte_carlo: simulated excursions, with 95 % confidence "
                 "intervals"),
+          flag("plan",
+               "print what would be assembled, factored and solved, with unknowns, non-zeros, "
+               "memory and time foretold by the analysis phase of MUMPS, and stop"),
           words("study", Kind::choice, "none", {"none", "p", "delta", "heuristic", "cost"},
                 "a series of runs instead of one. p: the upwind scheme on p = 2, 4, ..., its "
                 "observed order and Richardson's limit. delta: falling noise steps with mu_s on a "
@@ -227,6 +244,7 @@ std::string kind_name(Kind kind) {
   case Kind::list: return "list";
   case Kind::numbers: return "numbers";
   case Kind::text: return "text";
+  case Kind::flag: return "flag";
   case Kind::path:
   case Kind::input: return "file";
   }
@@ -281,7 +299,8 @@ std::string allowed_values(const Option& option) {
   case Kind::integer:
     return "a whole number in " + option.range.text() +
            (option.words.empty() ? "" : " or " + enumerate(option.words, "or"));
-  case Kind::choice: return enumerate(option.words, "or");
+  case Kind::choice:
+  case Kind::flag: return enumerate(option.words, "or");
   case Kind::list: return "a comma list of " + enumerate(option.words, "and");
   case Kind::numbers:
     return "numbers in " + option.range.text() +

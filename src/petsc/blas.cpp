@@ -1,10 +1,17 @@
 #include "stickslip/petsc/blas.hpp"
 
 #include <dlfcn.h>
+#include <petscsys.h>
+// After PETSc itself, whose types it uses.
+#include <petscblaslapack.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <system_error>
+#include <vector>
 
 namespace stickslip::petsc {
 namespace {
@@ -39,6 +46,22 @@ void keep_blas_to_one_thread() {
   if (auto set = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))) {
     set(1);
   }
+}
+
+double measured_speed() {
+  constexpr PetscBLASInt n = 192;
+  constexpr int repetitions = 6;
+  const std::vector<PetscScalar> a(n * n, 0.5), b(n * n, 0.25);
+  std::vector<PetscScalar> c(n * n, 0.0);
+  const PetscScalar one = 1, zero = 0;
+  double best = std::numeric_limits<double>::infinity();
+  for (int r = 0; r < repetitions; ++r) {
+    const auto start = std::chrono::steady_clock::now();
+    BLASgemm_("N", "N", &n, &n, &n, &one, a.data(), &n, b.data(), &n, &zero, c.data(), &n);
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+    best = std::min(best, spent.count());
+  }
+  return 2.0 * n * n * n / best;
 }
 
 }  // namespace stickslip::petsc

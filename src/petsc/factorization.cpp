@@ -61,6 +61,11 @@ std::string describe_failure(KSP ksp) {
   return fmt::format("MUMPS stopped with INFOG(1) = {}, INFOG(2) = {}", info1, info2);
 }
 
+// MUMPS counts in millions, negative, what exceeds its integers.
+double entries_counted(PetscInt entries) {
+  return entries < 0 ? -1e6 * static_cast<double>(entries) : static_cast<double>(entries);
+}
+
 void take_magnitudes_of_block(Mat block) {
   MatInfo info{};
   check(MatGetInfo(block, MAT_LOCAL, &info));
@@ -127,7 +132,7 @@ void record_factors(KSP ksp, Ledger& ledger) {
   check(MatMumpsGetInfog(factor, 29, &entries));    // entries of the factors, all ranks
   check(MatMumpsGetInfog(factor, 22, &megabytes));  // memory used, all ranks
   Ledger size;
-  size.factor_entries = entries < 0 ? -1000000LL * entries : entries;  // in millions if negative
+  size.factor_entries = static_cast<std::int64_t>(entries_counted(entries));
   size.factor_megabytes = static_cast<double>(megabytes);
   ledger += size;
 }
@@ -244,6 +249,26 @@ Solution Factorization::solve(Vec b, bool transposed) {
                                  prefix_, s.backward_error, kBackwardErrorLimit));
   }
   return s;
+}
+
+Analysis Factorization::analyse(Mat matrix, const std::string& prefix, Ledger& ledger) {
+  const PhaseTimer timer("analysis", ledger.analysis_seconds);
+  const KspHandle ksp = configured_solver(matrix, prefix);
+  if (!uses_mumps(ksp)) return {};
+  PC pc = nullptr;
+  Mat factor = nullptr;
+  check(KSPGetPC(ksp, &pc));
+  check(PCFactorSetUpMatSolverType(pc));
+  check(PCFactorGetMatrix(pc, &factor));
+  MatFactorInfo info{};
+  check(MatFactorInfoInitialize(&info));
+  check(MatLUFactorSymbolic(factor, matrix, nullptr, nullptr, &info));
+  PetscInt entries = 0, megabytes = 0;
+  PetscReal operations = 0;
+  check(MatMumpsGetInfog(factor, 3, &entries));
+  check(MatMumpsGetInfog(factor, 17, &megabytes));
+  check(MatMumpsGetRinfog(factor, 1, &operations));
+  return {entries_counted(entries), static_cast<double>(megabytes), operations};
 }
 
 void Factorization::probe_options(const std::string& prefix) {

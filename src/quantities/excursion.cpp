@@ -19,9 +19,14 @@ double Excursion::mean_stick() const { return sum(stick_time); }
 double Excursion::mean_excursion() const { return mean_slide() + mean_stick(); }
 
 double Excursion::conservation_defect(const model::Process& process) const {
-  const int n = process.noise.levels, k = process.static_index();
+  const int n = process.noise.levels, k = process.friction.static_index(process.noise.delta);
   double beyond = 0;
   for (int i = k + 1; i <= n; ++i) beyond += slide_time[n + i] + slide_time[n - i];
+  // A bias holds levels beyond mu_s, too.
+  const int lowest = process.lowest_static(), highest = process.static_index();
+  for (int i = lowest; i <= highest; ++i) {
+    if (std::abs(i) > k) beyond += stick_time[i - lowest];
+  }
   const double expected = model::noise_moments(process.noise, k).beyond * mean_excursion();
   return std::abs(beyond / expected - 1) + lost_probability * lost_probability;
 }
@@ -46,7 +51,11 @@ void append_moments(const model::Process& process, const Excursion& excursion, R
   results.push_back(scalar("E_V2", "velocity^2", sum(excursion.slide_square) / total, 0));
   results.push_back(scalar("E_absV", "velocity", sum(excursion.slide_distance) / total, 0));
   results.push_back(scalar("E_XV", "force*velocity", force_times_velocity / total, 0));
-  results.push_back(scalar("E_V", "velocity", 0, 0));
+  const auto& drift = excursion.slide_drift;
+  // A difference of what the two half lines give: exact to the size of E|V|.
+  const double rounding = excursion.conservation_defect(process) * sum(excursion.slide_distance);
+  results.push_back(
+      scalar("E_V", "velocity", sum(drift) / total, drift.empty() ? 0 : rounding / total));
 }
 
 void append_entry_law(const model::Process& process, const Excursion& excursion, Results& results) {
@@ -68,7 +77,8 @@ void append_entry_law(const model::Process& process, const Excursion& excursion,
 }
 
 void append_noise_law(const model::Process& process, Results& results) {
-  const auto moments = model::noise_moments(process.noise, process.static_index());
+  const auto moments =
+      model::noise_moments(process.noise, process.friction.static_index(process.noise.delta));
   // Weights are products of up to N factors, each rounded; the bulk of the law holds about
   // sqrt(N) of them.
   const double rounding =

@@ -14,6 +14,7 @@
 namespace stickslip::quantities {
 namespace {
 
+using operators::Half;
 using operators::KolmogorovOperator;
 using operators::State;
 using operators::StateKind;
@@ -52,12 +53,14 @@ double normalise(const KolmogorovOperator& a, Vec nu) {
   return total - 1;
 }
 
-Excursion excursion_of(const Systems& systems, const KolmogorovOperator& a, Vec nu) {
+// Means over excursions of which nu is the occupation, normalised.
+Excursion excursion_of(const Systems& systems, const KolmogorovOperator& a, Vec nu, double lost) {
   const auto& noise = systems.process().noise;
   const std::size_t levels = 2 * static_cast<std::size_t>(noise.levels) + 1;
+  const bool folded = a.states().folded();
   Excursion e;
-  const double lost = normalise(a, nu);
   for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square}) sums->resize(levels);
+  if (!folded) e.slide_drift.resize(levels);
   const petsc::ReadView local(nu);
   PetscInt at = 0;
   a.states().for_each_local([&](const State& state) {
@@ -66,16 +69,54 @@ Excursion excursion_of(const Systems& systems, const KolmogorovOperator& a, Vec 
     e.slide_time[level] += mass;
     e.slide_distance[level] += mass * v;
     e.slide_square[level] += mass * v * v;
+    if (!folded) e.slide_drift[level] += state.half == Half::upper ? mass * v : -mass * v;
   });
-  // Each level lives on one rank, so that the sums do not depend on the distribution.
-  for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square}) {
+  // The levels i and -i live on one rank, so that the sums do not depend on the distribution.
+  for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square, &e.slide_drift}) {
     sum_over_ranks(systems.comm(), *sums);
   }
   e.entry = real_parts(a.entry_rates(nu));
   e.lost_probability = lost;
-  const int k = systems.process().static_index();
-  e.stick_time = operators::StaticChain(noise, k).occupation(e.entry);
+  e.stick_time = operators::StaticChain::of(systems.process()).occupation(e.entry);
   return e;
+}
+
+/// Occupations over the slides of excursions from one side, and without the last correction.
+struct Occupation {
+  petsc::VecHandle nu, uncorrected;
+  double lost = 0, uncorrected_lost = 0;
+};
+
+Occupation occupation_from(operators::System& system, Half half) {
+  petsc::Solution s = system.factors().solve_transposed(system.a().trace_at_exit(half));
+  petsc::check(VecAYPX(s.correction, -1, s.x));
+  Occupation o{std::move(s.x), std::move(s.correction)};
+  o.lost = normalise(system.a(), o.nu);
+  o.uncorrected_lost = normalise(system.a(), o.uncorrected);
+  return o;
+}
+
+/// Chances that an excursion ends on the other side.
+struct Turns {
+  double falling, rising;  ///< from s+ to s-, from s- to s+
+  /// Share of excursions that start at s+.
+  [[nodiscard]] double share_of_upper() const { return rising / (rising + falling); }
+  [[nodiscard]] double share_of_lower() const { return falling / (rising + falling); }
+};
+
+Turns turns(const Systems& systems, const KolmogorovOperator& a, Vec from_upper, Vec from_lower) {
+  const auto chain = operators::StaticChain::of(systems.process());
+  const auto up = chain.upward_exit_transform(), down = chain.downward_exit_transform();
+  const auto mean = [&](Vec nu, const std::vector<double>& h) {
+    const auto entry = real_parts(a.entry_rates(nu));
+    return std::inner_product(entry.begin(), entry.end(), h.begin(), 0.0);
+  };
+  return {mean(from_upper, down), mean(from_lower, up)};
+}
+
+// upper <- share_of_upper upper + share_of_lower lower.
+void mix(const Turns& turns, Vec upper, Vec lower) {
+  petsc::check(VecAXPBY(upper, turns.share_of_lower(), turns.share_of_upper(), lower));
 }
 
 }  // namespace
@@ -83,13 +124,21 @@ Excursion excursion_of(const Systems& systems, const KolmogorovOperator& a, Vec 
 StationaryLaw::StationaryLaw(Systems& systems)
     : process_(systems.process()),
       axis_(systems.shared_axis()),
-      states_(systems.at(0, Symmetry::even).a().states()) {
-  auto& system = systems.at(0, Symmetry::even);
-  petsc::Solution nu = system.factors().solve_transposed(system.a().trace_at_exit());
-  petsc::check(VecAYPX(nu.correction, -1, nu.x));  // the solution without it
-  excursion_ = excursion_of(systems, system.a(), nu.x);
-  uncorrected_ = excursion_of(systems, system.a(), nu.correction);
-  occupation_ = std::move(nu.x);
+      states_(systems.at(0, operators::symmetry_of(process_)).a().states()) {
+  auto& system = systems.at(0, operators::symmetry_of(process_));
+  Occupation o = occupation_from(system, Half::upper);
+  if (!process_.symmetric()) {
+    const Occupation lower = occupation_from(system, Half::lower);
+    const Turns now = turns(systems, system.a(), o.nu, lower.nu);
+    chance_of_falling_ = now.falling;
+    mix(now, o.nu, lower.nu);
+    mix(turns(systems, system.a(), o.uncorrected, lower.uncorrected), o.uncorrected,
+        lower.uncorrected);
+    o.lost = std::max(std::abs(o.lost), std::abs(lower.lost));
+  }
+  excursion_ = excursion_of(systems, system.a(), o.nu, o.lost);
+  uncorrected_ = excursion_of(systems, system.a(), o.uncorrected, o.uncorrected_lost);
+  occupation_ = std::move(o.nu);
 }
 
 void StationaryLaw::orient(Systems& systems) {

@@ -31,6 +31,7 @@ std::vector<Average> averages(const Setting& setting) {
     add("E_V2", "velocity^2", "v^2");
     add("E_absV", "velocity", "|v|");
     add("E_XV", "force*velocity", "x*v");
+    if (!setting.process.symmetric()) add("E_V", "velocity", "v");
   }
   if (setting.request.wants(Quantity::noise_law)) {
     add("P_X_le_mu_s", "", "|x|<=mu_s");
@@ -42,7 +43,7 @@ std::vector<Average> averages(const Setting& setting) {
 void append_averages(const Setting& setting, const std::vector<Uncertain>& values,
                      quantities::Results& results) {
   const auto all = averages(setting);
-  const int k = setting.process.static_index();
+  const int k = setting.process.friction.static_index(setting.process.noise.delta);
   const double beyond = model::noise_moments(setting.process.noise, k).beyond;
   const double defect = std::abs(values[0].value / beyond - 1);
   for (std::size_t n = 1; n < all.size(); ++n) {
@@ -51,7 +52,7 @@ void append_averages(const Setting& setting, const std::vector<Uncertain>& value
     results.push_back(quantities::scalar(all[n].key, all[n].unit, values[n].value,
                                          values[n].error + defect * share));
   }
-  if (setting.request.wants(Quantity::moments)) {
+  if (setting.request.wants(Quantity::moments) && setting.process.symmetric()) {
     results.push_back(quantities::scalar("E_V", "velocity", 0, 0));  // by symmetry
   }
 }

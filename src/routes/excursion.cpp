@@ -3,11 +3,14 @@
 #include "routes.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/quantities/diffusivity.hpp"
 #include "stickslip/quantities/durations.hpp"
 #include "stickslip/quantities/laplace.hpp"
 #include "stickslip/quantities/resolvent.hpp"
+#include "stickslip/quantities/sensitivity.hpp"
 #include "stickslip/quantities/spectrum.hpp"
 #include "stickslip/quantities/transient.hpp"
+#include "stickslip/routes/plan.hpp"
 
 namespace stickslip::routes {
 namespace {
@@ -19,35 +22,21 @@ using quantities::Results;
 using quantities::StationaryLaw;
 using quantities::Uncertain;
 
-bool needs_law(const Request& request) {
-  for (Quantity q : {Quantity::sticking, Quantity::moments, Quantity::entry_law, Quantity::density,
-                     Quantity::laplace, Quantity::spectrum, Quantity::duration_density,
-                     Quantity::autocorrelation, Quantity::expectation}) {
-    if (request.wants(q)) return true;
-  }
-  return request.scene.v_max.has_value();  // what the cut holds back is judged by the law
-}
-
-Results results_of(const Request& request, const model::Process& process,
-                   const quantities::Excursion& excursion) {
-  Results results;
-  if (request.wants(Quantity::sticking)) quantities::append_sticking(excursion, results);
-  if (request.wants(Quantity::moments)) quantities::append_moments(process, excursion, results);
-  if (request.wants(Quantity::entry_law)) {
-    quantities::append_entry_law(process, excursion, results);
-  }
-  return results;
-}
-
-// Rounding: the effect of the last correction of the solve, and the defect of an exact identity.
-void set_rounding(const StationaryLaw& law, const Results& uncorrected, Results& results) {
+// Appends what `append` makes of the excursion, with rounding for error: the effect of the last
+// correction of the solve, and the defect of an exact identity.
+template <class Append>
+void append_with_rounding(const StationaryLaw& law, Results& results, Append append) {
+  Results corrected, uncorrected;
+  append(law.excursion(), corrected);
+  append(law.uncorrected(), uncorrected);
   const double defect = law.excursion().conservation_defect(law.process());
-  for (std::size_t r = 0; r < results.size(); ++r) {
-    auto& result = results[r];
+  for (std::size_t r = 0; r < corrected.size(); ++r) {
+    auto& result = corrected[r];
     for (std::size_t n = 0; n < result.value.size(); ++n) {
       const double value = result.value[n];
-      result.error[n] = std::abs(value - uncorrected[r].value[n]) + defect * std::abs(value);
+      result.error[n] += std::abs(value - uncorrected[r].value[n]) + defect * std::abs(value);
     }
+    results.push_back(std::move(result));
   }
 }
 
@@ -57,38 +46,6 @@ std::vector<Uncertain> entry_law(const StationaryLaw& law) {
   std::vector<Uncertain> entry;
   for (std::size_t n = 0; n < p.size(); ++n) entry.push_back({p[n], std::abs(p[n] - before[n])});
   return entry;
-}
-
-void append_transforms(operators::Systems& systems, const Setting& setting,
-                       Evaluation& evaluation) {
-  const Request& request = setting.request;
-  std::vector<quantities::DurationTransforms> durations;
-  std::vector<quantities::Resolvent> resolvents;
-  std::vector<Uncertain> entry;
-  if (request.wants(Quantity::laplace)) {
-    entry = entry_law(*evaluation.law);
-    const auto moments = quantities::duration_moments(systems, entry);
-    quantities::append_duration_moments(setting.process, moments, entry, evaluation.results);
-    if (request.lambda.front() != 0) systems.release(0, Symmetry::even);
-  }
-  for (double lambda : request.lambda) {
-    if (request.wants(Quantity::laplace)) {
-      const auto t = quantities::slide_transforms(systems, lambda);
-      durations.push_back(
-          {t.slide, quantities::stick_transform(setting.process, lambda, entry), t.excursion});
-    }
-    if (request.wants(Quantity::resolvent)) {
-      resolvents.push_back(quantities::resolvent(systems, lambda, request.observables));
-    }
-    systems.release(lambda, Symmetry::even);
-  }
-  if (!durations.empty()) {
-    quantities::append_laplace(request.lambda, durations, evaluation.results);
-  }
-  if (!resolvents.empty()) {
-    quantities::append_resolvent(request.lambda, request.observables, resolvents,
-                                 evaluation.results);
-  }
 }
 
 // On several ranks each computes the law for itself, then its share of the frequencies.
@@ -129,64 +86,161 @@ void append_durations(operators::Systems& systems, const Setting& setting, Evalu
   evaluation.checks.emplace_back("excursion_pairs", excursion.pairs);
 }
 
-void append_transients(operators::Systems& systems, const Setting& setting,
-                       Evaluation& evaluation) {
+quantities::TransientMethod transient_method(const Request& request) {
+  return request.transient_solver == options::TransientSolver::krylov
+             ? quantities::TransientMethod::krylov
+             : quantities::TransientMethod::stepping;
+}
+
+void append_function_of_time(const Request& request, const std::string& key,
+                             const std::string& unit, const std::vector<Uncertain>& values,
+                             Results& results) {
+  auto result = quantities::array(key, unit, "time", request.time);
+  for (const auto& value : values) quantities::append_value(result, value);
+  results.push_back(std::move(result));
+}
+
+void append_autocorrelation(operators::Systems& systems, const Setting& setting,
+                            Evaluation& evaluation) {
   const Request& request = setting.request;
-  const double tolerance = 0.1 * request.accuracy;
-  const auto method = request.transient_solver == options::TransientSolver::krylov
-                          ? quantities::TransientMethod::krylov
-                          : quantities::TransientMethod::stepping;
-  const auto append = [&](const std::string& key, const std::string& unit,
-                          const std::vector<Uncertain>& values) {
-    auto result = quantities::array(key, unit, "time", request.time);
-    for (const auto& value : values) quantities::append_value(result, value);
-    evaluation.results.push_back(std::move(result));
-  };
-  if (request.wants(Quantity::autocorrelation)) {
-    append("C_vv", "velocity^2",
-           quantities::autocorrelation(systems, *evaluation.law, request.time, method, tolerance));
-  }
-  if (!request.wants(Quantity::expectation)) return;
+  const auto values = quantities::autocorrelation(
+      systems, *evaluation.law, request.time, transient_method(request), 0.1 * request.accuracy);
+  append_function_of_time(request, "C_vv", "velocity^2", values, evaluation.results);
+}
+
+void append_expectations(operators::Systems& systems, const Setting& setting,
+                         Evaluation& evaluation) {
+  const Request& request = setting.request;
   for (const auto& f : request.observables) {
     const auto expectation =
         quantities::expectation(systems, *evaluation.law, f, {request.start_level, request.start_v},
-                                request.time, method, tolerance);
-    append("E(" + f.name + ")", "", expectation.value);
+                                request.time, transient_method(request), 0.1 * request.accuracy);
+    append_function_of_time(request, "E(" + f.name + ")", "", expectation.value,
+                            evaluation.results);
     evaluation.results.push_back(
         quantities::scalar("stationary(" + f.name + ")", "", expectation.stationary, 0));
   }
 }
 
+/// Carries out the tasks of a plan on one discretisation.
+class Execution {
+ public:
+  explicit Execution(const Setting& setting)
+      : setting_(setting),
+        request_(setting.request),
+        systems_(setting.comm, setting.process, setting.axis, setting.ledger) {}
+
+  Evaluation run() {
+    const Plan plan = plan_of(request_);
+    for (std::size_t n = 0; n < plan.tasks.size(); ++n) {
+      carry_out(plan.tasks[n]);
+      systems_.keep(plan.used_from(n + 1));
+    }
+    append_arrays();
+    return std::move(evaluation_);
+  }
+
+ private:
+  void carry_out(const Task& task) {
+    switch (task.work) {
+    case Work::stationary_law: return find_law();
+    case Work::orientation: return find_entry_law();
+    case Work::sensitivity: return find_sensitivity();
+    case Work::duration_moments: return find_duration_moments();
+    case Work::duration_transforms: return transform_durations(request_.lambda[task.at]);
+    case Work::stay_transforms: return transform_stays();
+    case Work::resolvent:
+      resolvents_.push_back(
+          quantities::resolvent(systems_, request_.lambda[task.at], request_.observables));
+      return;
+    case Work::spectrum: return append_spectrum(systems_, setting_, evaluation_);
+    case Work::spectrum_at_zero: return find_spectrum_at_zero();
+    case Work::durations: return append_durations(systems_, setting_, evaluation_);
+    case Work::autocorrelation: return append_autocorrelation(systems_, setting_, evaluation_);
+    case Work::expectation: return append_expectations(systems_, setting_, evaluation_);
+    case Work::relaxation: return find_modes();
+    }
+  }
+
+  [[nodiscard]] const StationaryLaw& law() const { return *evaluation_.law; }
+  [[nodiscard]] Results& results() { return evaluation_.results; }
+
+  void find_law() {
+    evaluation_.law = std::make_unique<StationaryLaw>(systems_);
+    append_with_rounding(law(), results(), [this](const auto& excursion, Results& found) {
+      if (request_.wants(Quantity::sticking)) quantities::append_sticking(excursion, found);
+      if (!request_.wants(Quantity::moments)) return;
+      quantities::append_moments(setting_.process, excursion, found);
+    });
+  }
+
+  void find_entry_law() {
+    evaluation_.law->orient(systems_);
+    append_with_rounding(law(), results(), [this](const auto& excursion, Results& found) {
+      quantities::append_entry_law(setting_.process, excursion, found);
+    });
+  }
+
+  void find_sensitivity() {
+    const quantities::Sensitivity sensitivity(systems_, law(),
+                                              quantities::parameters_of(request_.scene));
+    if (request_.wants(Quantity::sticking)) sensitivity.append_sticking(results());
+    if (request_.wants(Quantity::moments)) sensitivity.append_moments(results());
+  }
+
+  void find_duration_moments() {
+    const auto entry = entry_law(law());
+    const auto moments = quantities::duration_moments(systems_, entry);
+    quantities::append_duration_moments(setting_.process, moments, entry, results());
+  }
+
+  void transform_durations(double lambda) {
+    const auto t = quantities::slide_transforms(systems_, lambda);
+    const auto stick = quantities::stick_transform(setting_.process, lambda, entry_law(law()));
+    transforms_.push_back({t.slide, stick, t.excursion});
+  }
+
+  void transform_stays() {
+    const auto entry = entry_law(law());
+    auto result = quantities::array("F_stick", "", "lambda", request_.lambda);
+    result.each_by_its_size = true;
+    for (double lambda : request_.lambda) {
+      quantities::append_value(result,
+                               quantities::stick_transform(setting_.process, lambda, entry));
+    }
+    results().push_back(std::move(result));
+  }
+
+  void find_spectrum_at_zero() {
+    const quantities::Spectrum spectrum{quantities::spectrum_at_zero(systems_, law()), {}};
+    quantities::append_spectrum({}, spectrum, results());
+  }
+
+  void find_modes() {
+    evaluation_.even = quantities::relaxation_modes(systems_, Symmetry::even);
+    evaluation_.odd = quantities::relaxation_modes(systems_, Symmetry::odd);
+    quantities::append_relaxation(Symmetry::even, evaluation_.even, results());
+    quantities::append_relaxation(Symmetry::odd, evaluation_.odd, results());
+  }
+
+  // What was found one lambda at a time.
+  void append_arrays() {
+    const auto& lambda = request_.lambda;
+    if (!transforms_.empty()) quantities::append_laplace(lambda, transforms_, results());
+    if (resolvents_.empty()) return;
+    quantities::append_resolvent(lambda, request_.observables, resolvents_, results());
+  }
+
+  const Setting& setting_;
+  const Request& request_;
+  operators::Systems systems_;
+  Evaluation evaluation_;
+  std::vector<quantities::DurationTransforms> transforms_;
+  std::vector<quantities::Resolvent> resolvents_;
+};
+
 }  // namespace
 
-// One set of factors at a time; those for lambda = 0 serve all that needs them first.
-Evaluation by_excursion(const Setting& setting) {
-  const Request& request = setting.request;
-  operators::Systems systems(setting.comm, setting.process, setting.axis, setting.ledger);
-  Evaluation evaluation;
-  if (needs_law(request)) {
-    evaluation.law = std::make_unique<StationaryLaw>(systems);
-    // Moments of durations and lambda = 0 at the head of -lambda use these factors again.
-    const bool again =
-        request.wants(Quantity::laplace) || (!request.lambda.empty() && request.lambda[0] == 0);
-    if (!again) systems.release(0, Symmetry::even);
-    if (request.wants(Quantity::entry_law)) evaluation.law->orient(systems);
-    const auto& law = *evaluation.law;
-    evaluation.results = results_of(request, setting.process, law.excursion());
-    set_rounding(law, results_of(request, setting.process, law.uncorrected()), evaluation.results);
-    if (!(again && request.wants(Quantity::resolvent))) systems.release(0, Symmetry::odd);
-  }
-  append_transforms(systems, setting, evaluation);
-  if (request.wants(Quantity::spectrum)) append_spectrum(systems, setting, evaluation);
-  if (request.wants(Quantity::duration_density)) append_durations(systems, setting, evaluation);
-  append_transients(systems, setting, evaluation);
-  if (request.wants(Quantity::relaxation)) {
-    evaluation.even = quantities::relaxation_modes(systems, Symmetry::even);
-    evaluation.odd = quantities::relaxation_modes(systems, Symmetry::odd);
-    quantities::append_relaxation(Symmetry::even, evaluation.even, evaluation.results);
-    quantities::append_relaxation(Symmetry::odd, evaluation.odd, evaluation.results);
-  }
-  return evaluation;
-}
+Evaluation by_excursion(const Setting& setting) { return Execution(setting).run(); }
 
 }  // namespace stickslip::routes

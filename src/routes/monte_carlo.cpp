@@ -56,6 +56,7 @@ simulation::Wanted wanted_of(const Request& request) {
   simulation::Wanted wanted;
   wanted.moments = request.wants(Quantity::moments);
   wanted.noise = request.wants(Quantity::noise_law);
+  wanted.cycles = !request.scene.symmetric();
   if (request.wants(Quantity::spectrum)) wanted.omega = request.omega;
   if (request.wants(Quantity::laplace)) wanted.lambda = request.lambda;
   if (!request.wants(Quantity::duration_density)) return wanted;
@@ -115,7 +116,11 @@ class Estimates {
     scalar("E_V2", "velocity^2", tally_.mean_square());
     scalar("E_absV", "velocity", tally_.mean_speed());
     scalar("E_XV", "force*velocity", tally_.mean_product());
-    results_.push_back(quantities::scalar("E_V", "velocity", 0, 0));  // by symmetry
+    if (process_.symmetric()) {
+      results_.push_back(quantities::scalar("E_V", "velocity", 0, 0));
+    } else {
+      scalar("E_V", "velocity", tally_.mean_velocity());
+    }
   }
 
   void append_entry_law() {
@@ -158,10 +163,17 @@ class Estimates {
   }
 
   void append_spectrum() {
+    if (!process_.symmetric()) return append_spectrum_at_zero();
     Result s = quantities::array("S_v", "velocity^2*time", "omega", request_.omega);
     s.each_by_its_size = true;
     for (std::size_t n = 0; n < request_.omega.size(); ++n) append_value(s, tally_.spectrum(n));
     results_.push_back(std::move(s));
+  }
+
+  void append_spectrum_at_zero() {
+    const Estimate s = tally_.spectrum_at_zero();
+    scalar("S_0", "velocity^2*time", s);
+    scalar("diffusivity", "velocity^2*time", {s.value / 2, s.low / 2, s.high / 2});
   }
 
   static std::vector<std::pair<std::string, Duration>> names(const std::string& prefix) {
@@ -179,9 +191,9 @@ class Estimates {
 // What fixes the numbers of a simulation, but for how many excursions there are. The questions may
 // come from the file of -compare, so they are taken as understood, not as written.
 std::vector<std::pair<std::string, std::string>> identity(const Request& request) {
-  static const std::vector<std::string> names{"mu_s",  "mu_d",       "tau",
-                                              "delta", "drag",       "drag_coefficient",
-                                              "seed",  "drag_cubic", "noise_levels"};
+  static const std::vector<std::string> names{
+      "mu_s", "mu_d",       "tau",          "delta", "drag", "drag_coefficient",
+      "seed", "drag_cubic", "noise_levels", "bias"};
   std::vector<std::pair<std::string, std::string>> found;
   for (const auto& option : request.resolved) {
     if (std::count(names.begin(), names.end(), option.first) > 0) found.push_back(option);
@@ -234,7 +246,7 @@ class Campaign {
   }
 
  private:
-  [[nodiscard]] double done() const { return tally_.excursions(); }
+  [[nodiscard]] double done() const { return tally_.samples(); }
   [[nodiscard]] static double since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
   }
@@ -242,11 +254,10 @@ class Campaign {
 
   // Every stay begins at most at the edge of the static levels.
   void require_time() const {
-    const operators::StaticChain chain(process_.noise, process_.static_index());
-    const auto stay = chain.integral(
-        std::vector<double>(2 * static_cast<std::size_t>(process_.static_index()) + 1, 1.0));
+    const auto chain = operators::StaticChain::of(process_);
+    const auto stay = chain.integral(std::vector<double>(chain.size(), 1.0));
     constexpr double jump = 15e-9, month = 30 * 86400.0;
-    const double jumps = process_.noise.rate() * stay.back();
+    const double jumps = process_.noise.rate() * std::min(stay.front(), stay.back());
     const double seconds = request_.excursions * jumps * jump / petsc::ranks(comm_);
     if (seconds < month) return;
     throw BadInput(fmt::format(
@@ -299,11 +310,11 @@ class Campaign {
   // The first batch tells how long it will take.
   void predict(const Tally& batch) {
     predicted_ = true;
-    state_.excursions = done() + batch.excursions();
+    state_.excursions = done() + batch.samples();
     state_.jumps = tally_.jumps() + batch.jumps();
     state_.seconds = since(start_);
-    state_.seconds_left = (state_.wanted - state_.excursions) / batch.excursions() *
-                          state_.seconds / petsc::ranks(comm_);
+    state_.seconds_left = (state_.wanted - state_.excursions) / batch.samples() * state_.seconds /
+                          petsc::ranks(comm_);
     if (progress_ && first_rank()) progress_(state_);
     last_report_ = Clock::now();
   }

@@ -56,19 +56,21 @@ double integral(const KolmogorovOperator& a, Vec pi, const model::Observable& f)
   return PetscRealPart(sum);
 }
 
-// By renewal, excursions end at rate Lambda alpha_k pi(x_k, 0, 0) upwards and as often downwards.
+// By renewal, excursions end at the rates Lambda alpha pi of the highest static level upwards and
+// Lambda (1 - alpha) pi of the lowest one downwards.
 Uncertain mean_excursion(const Setting& setting, const KolmogorovOperator& a, Vec pi, Vec before) {
-  const auto& noise = setting.process.noise;
-  const int k = setting.process.static_index();
-  const model::Observable edges{"", [&](double x, double y, double) {
-                                  return y == 0 && std::abs(std::lround(x / noise.delta)) == k
-                                             ? 1.0
-                                             : 0.0;
+  const auto& process = setting.process;
+  const auto& noise = process.noise;
+  const model::Observable exits{"", [&](double x, double y, double) {
+                                  if (y != 0) return 0.0;
+                                  const auto i = static_cast<int>(std::lround(x / noise.delta));
+                                  const bool high = i == process.static_index();
+                                  const bool low = i == process.lowest_static();
+                                  return noise.rate() *
+                                         ((high ? noise.up(i) : 0) + (low ? noise.down(i) : 0));
                                 }};
-  // For k = 0 both exits are from one level.
-  const double rate = (k == 0 ? 2 : 1) * noise.rate() * noise.up(k);
-  const double value = 1 / (rate * integral(a, pi, edges));
-  return {value, std::abs(value - 1 / (rate * integral(a, before, edges)))};
+  const double value = 1 / integral(a, pi, exits);
+  return {value, std::abs(value - 1 / integral(a, before, exits))};
 }
 
 void append_durations(Uncertain excursion, quantities::Results& results) {

@@ -15,20 +15,30 @@ namespace {
 class Levels {
  public:
   explicit Levels(const model::Process& process)
-      : k_(process.static_index()), reach_(reach(process)), mean_wait_(1 / process.noise.rate()) {
+      : lowest_(process.lowest_static()),
+        highest_(process.static_index()),
+        within_(process.friction.static_index(process.noise.delta)),
+        reach_(reach(process)),
+        mean_wait_(1 / process.noise.rate()) {
+    const auto mirrored = process.mirrored();
     for (int i = -reach_; i <= reach_; ++i) {
       level_.push_back(process.noise.level(i));
-      force_.push_back(process.excess(i));
+      upper_force_.push_back(process.excess(i));
+      lower_force_.push_back(mirrored.excess(i));
       // 2^-32 is far below what any number of excursions resolves.
       up_.push_back(static_cast<std::uint64_t>(std::llround(process.noise.up(i) * 0x1p32)));
     }
   }
 
-  [[nodiscard]] int k() const { return k_; }
-  [[nodiscard]] bool rests(int i) const { return std::abs(i) <= k_; }
+  [[nodiscard]] bool rests(int i) const { return lowest_ <= i && i <= highest_; }
+  [[nodiscard]] bool within(int i) const { return std::abs(i) <= within_; }
+  /// The first level beyond those that rest, along a direction of motion.
+  [[nodiscard]] int exit(int sign) const { return 1 + (sign > 0 ? highest_ : -lowest_); }
   [[nodiscard]] double level(int i) const { return level_[at(i)]; }
-  /// Acceleration at v = 0 of a body that moves upwards.
-  [[nodiscard]] double force(int i) const { return force_[at(i)]; }
+  /// Acceleration at v = 0 of a body that moves upwards, by i, or downwards, by -i.
+  [[nodiscard]] double force(int sign, int along) const {
+    return (sign > 0 ? upper_force_ : lower_force_)[at(along)];
+  }
   [[nodiscard]] double wait(RandomStream& random) const {
     return mean_wait_ * random.exponential();
   }
@@ -42,7 +52,8 @@ class Levels {
   // The noise passes 40 standard deviations with probability exp(-800).
   static int reach(const model::Process& process) {
     const double far = 40 / (std::sqrt(process.noise.tau) * process.noise.delta);
-    const double most = std::min<double>(process.noise.levels, process.static_index() + 2 + far);
+    const int edge = std::max(process.static_index(), -process.lowest_static());
+    const double most = std::min<double>(process.noise.levels, edge + 2 + far);
     return static_cast<int>(most);
   }
   [[nodiscard]] std::size_t at(int i) const {
@@ -50,9 +61,9 @@ class Levels {
     return static_cast<std::size_t>(place);
   }
 
-  int k_, reach_;
+  int lowest_, highest_, within_, reach_;
   double mean_wait_;
-  std::vector<double> level_, force_;
+  std::vector<double> level_, upper_force_, lower_force_;
   std::vector<std::uint64_t> up_;  // alpha_i in units of 2^-32
 };
 
@@ -61,30 +72,41 @@ template <class Flow>
 class Source : public ExcursionSource {
  public:
   Source(const model::Process& process, const Wanted& wanted)
-      : levels_(process), flow_(process.drag), wanted_(wanted) {
+      : levels_(process),
+        flow_(process.drag),
+        backward_flow_(process.mirrored().drag),
+        wanted_(wanted),
+        symmetric_(process.symmetric()),
+        start_(process.bias < 0 ? -1 : 1) {
     piece_transform_.resize(wanted.omega.size());
     phase_.resize(wanted.omega.size());
   }
 
   void draw(RandomStream& random, Excursion& e) override {
     e = {.transform = std::move(e.transform)};
+    e.count = 0;
     e.transform.assign(wanted_.omega.size(), 0.0);
     std::fill(phase_.begin(), phase_.end(), 1.0);
-    double wait = levels_.wait(random);
-    slide(random, e, wait);
-    stay(random, e, wait);
+    int sign = start_;
+    do {
+      double wait = levels_.wait(random);
+      slide(random, e, wait, sign);
+      stay(random, e, wait);
+      ++e.count;
+      sign = e.turned ? -1 : 1;
+    } while (!symmetric_ && sign != start_);
   }
 
  private:
   // Until rest; `wait` is the time to the next jump of the noise.
-  void slide(RandomStream& random, Excursion& e, double& wait) {
-    const bool integrals = wanted_.moments || !wanted_.omega.empty();
-    int j = levels_.k() + 1, sign = 1;
+  void slide(RandomStream& random, Excursion& e, double& wait, int sign) {
+    const bool integrals = wanted_.moments || wanted_.cycles || !wanted_.omega.empty();
+    int j = levels_.exit(sign);
     double speed = 0;
     for (;;) {
-      const double force = levels_.force(j);
-      const Piece piece = flow_.move(speed, force, wait, integrals);
-      follow(e, piece, j);
+      const double force = levels_.force(sign, j);
+      const Piece piece = flow(sign).move(speed, force, wait, integrals);
+      follow(e, piece, j, sign);
       if (!wanted_.omega.empty()) follow_transform(e, piece, speed, force, sign);
       speed = piece.end;
       if (!piece.stopped) {
@@ -94,50 +116,55 @@ class Source : public ExcursionSource {
         continue;
       }
       wait -= piece.time;
-      if (levels_.rests(j)) break;
+      if (levels_.rests(sign * j)) break;
       j = -j;  // pushed on the other way
       sign = -sign;
     }
     e.entry = sign * j;
   }
 
-  void follow(Excursion& e, const Piece& piece, int j) const {
+  [[nodiscard]] const Flow& flow(int sign) const { return sign > 0 ? flow_ : backward_flow_; }
+
+  void follow(Excursion& e, const Piece& piece, int j, int sign) const {
     e.slide += piece.time;
     e.path += piece.path;
+    e.drift += sign * piece.path;
     e.square += piece.square;
     const double x = levels_.level(j);
     e.product += x * piece.path;
     if (!wanted_.noise) return;
     e.noise_square += x * x * piece.time;
-    if (levels_.rests(j)) e.within += piece.time;
+    if (levels_.within(j)) e.within += piece.time;
   }
 
   void follow_transform(Excursion& e, const Piece& piece, double speed, double force, int sign) {
-    flow_.transform(speed, force, piece, wanted_.omega, piece_transform_);
+    flow(sign).transform(speed, force, piece, wanted_.omega, piece_transform_);
     for (std::size_t n = 0; n < phase_.size(); ++n) {
       e.transform[n] += static_cast<double>(sign) * phase_[n] * piece_transform_[n];
       phase_[n] *= std::polar(1.0, -wanted_.omega[n] * piece.time);
     }
   }
 
-  // Until |X| > mu_s.
+  // Until the static levels are left.
   void stay(RandomStream& random, Excursion& e, double wait) const {
     int i = e.entry;
     for (;;) {
       e.stick += wait;
       if (wanted_.noise) e.noise_square += levels_.level(i) * levels_.level(i) * wait;
+      if (levels_.within(i)) e.within += wait;
       i = levels_.next(i, random);
       ++e.jumps;
       if (!levels_.rests(i)) break;
       wait = levels_.wait(random);
     }
-    e.within += e.stick;
-    e.turned = i < 0;
+    e.turned = i < e.entry;
   }
 
   Levels levels_;
-  Flow flow_;
+  Flow flow_, backward_flow_;
   Wanted wanted_;
+  bool symmetric_;
+  int start_;  // sign of the motion
   std::vector<std::complex<double>> piece_transform_, phase_;
 };
 

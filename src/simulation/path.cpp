@@ -19,9 +19,12 @@ class Walker {
  public:
   Walker(const model::Process& process, int level, double v, std::uint64_t seed)
       : process_(process),
-        flow_(process.drag),
+        mirrored_(process.mirrored()),
+        flow_(process_.drag),
+        backward_flow_(mirrored_.drag),
         random_(seed, kPathStream),
-        k_(process.static_index()),
+        lowest_(process.lowest_static()),
+        highest_(process.static_index()),
         i_(level),
         speed_(std::abs(v)) {
     if (v != 0) y_ = v > 0 ? 1 : -1;
@@ -50,12 +53,12 @@ class Walker {
   }
 
   void start_if_pushed() {
-    if (y_ == 0 && std::abs(i_) > k_) y_ = i_ > 0 ? 1 : -1;
+    if (y_ == 0 && (i_ < lowest_ || i_ > highest_)) y_ = i_ > highest_ ? 1 : -1;
   }
 
   void move_to(double end) {
     while (y_ != 0 && time_ < end) {
-      const Piece piece = flow_.move(speed_, process_.excess(y_ * i_), end - time_, false);
+      const Piece piece = move_on(end - time_);
       speed_ = piece.end;
       if (!piece.stopped) break;
       time_ += piece.time;
@@ -66,16 +69,21 @@ class Walker {
     time_ = end;
   }
 
+  [[nodiscard]] Piece move_on(double time) const {
+    if (y_ > 0) return flow_.move(speed_, process_.excess(i_), time, false);
+    return backward_flow_.move(speed_, mirrored_.excess(-i_), time, false);
+  }
+
   void jump_once() {
     const double up = process_.noise.up(i_);
     i_ += random_.half_word() * 0x1p-32 < up ? 1 : -1;
     start_if_pushed();
   }
 
-  const model::Process& process_;
-  Flow flow_;
+  model::Process process_, mirrored_;
+  Flow flow_, backward_flow_;
   RandomStream random_;
-  int k_, i_, y_ = 0;
+  int lowest_, highest_, i_, y_ = 0;
   double speed_, time_ = 0;
   Path path_;
 };

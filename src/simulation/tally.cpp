@@ -11,7 +11,34 @@ namespace {
 
 constexpr double kNormal = 1.959963984540054;  // two-sided 95 %
 
-enum Total : std::size_t { slide, stick, square, path, product, within, noise_square, totals };
+// The last two of cycles only.
+enum Total : std::size_t {
+  slide,
+  stick,
+  square,
+  path,
+  product,
+  within,
+  noise_square,
+  count,
+  drift,
+  totals
+};
+
+std::size_t totals_of(const Wanted& wanted) {
+  const Total end = wanted.cycles ? Total::totals : Total::count;
+  return end;
+}
+
+// D, T, D^2, D T, T^2 of spectrum_at_zero().
+enum Displacement : std::size_t {
+  moved,
+  spent,
+  moved_square,
+  moved_spent,
+  spent_square,
+  displacements
+};
 
 // |C|^2, C, D, conj(C) D and T of spectrum().
 enum Transform : std::size_t {
@@ -58,10 +85,11 @@ constexpr std::array kDurations{Duration::slide, Duration::stick, Duration::excu
 Tally::Tally(const Wanted& wanted, int k)
     : k_(k),
       wanted_(wanted),
-      totals_(Total::totals),
+      totals_(totals_of(wanted)),
+      displacement_(wanted.cycles ? std::size_t{Displacement::displacements} : 0),
       laplace_(wanted.lambda.size(), Comoments(kDurations.size())),
       spectrum_(wanted.omega.size(), Comoments(Transform::transforms)),
-      entries_(2 * static_cast<std::size_t>(k) + 1, 0.0) {
+      entries_(wanted.cycles ? 0 : 2 * static_cast<std::size_t>(k) + 1, 0.0) {
   for (auto& cells : cells_) cells.assign(wanted.edges.size() + 1, 0.0);
 }
 
@@ -71,10 +99,15 @@ std::size_t Tally::place(int level) const {
 }
 
 void Tally::add(const Excursion& e) {
-  const std::array<double, Total::totals> sample{e.slide,   e.stick,  e.square,      e.path,
-                                                 e.product, e.within, e.noise_square};
-  totals_.add(sample);
-  entries_[place(e.entry)] += 1;
+  const std::array<double, Total::totals> sample{
+      e.slide, e.stick, e.square, e.path, e.product, e.within, e.noise_square, e.count, e.drift};
+  totals_.add(std::span(sample).first(totals_.size()));
+  if (wanted_.cycles) {
+    const double t = e.slide + e.stick;
+    displacement_.add(std::array{e.drift, t, e.drift * e.drift, e.drift * t, t * t});
+  } else {
+    entries_[place(e.entry)] += 1;
+  }
   jumps_ += e.jumps;
   for (std::size_t n = 0; n < laplace_.size(); ++n) {
     const double f = std::exp(-wanted_.lambda[n] * e.slide),
@@ -107,6 +140,7 @@ void Tally::add_transforms(const Excursion& e) {
 
 void Tally::merge(const Tally& other) {
   totals_.merge(other.totals_);
+  displacement_.merge(other.displacement_);
   jumps_ += other.jumps_;
   for (std::size_t n = 0; n < laplace_.size(); ++n) laplace_[n].merge(other.laplace_[n]);
   for (std::size_t n = 0; n < spectrum_.size(); ++n) spectrum_[n].merge(other.spectrum_[n]);
@@ -145,24 +179,43 @@ Estimate Tally::mean(Duration duration) const {
   std::array<double, Total::totals> weight{};
   weight[slide] = duration == Duration::stick ? 0 : 1;
   weight[stick] = duration == Duration::slide ? 0 : 1;
-  const double value = weight[slide] * totals_.mean(slide) + weight[stick] * totals_.mean(stick);
-  return around(value, totals_.variance_of_mean(weight));
+  const double sum = weight[slide] * totals_.mean(slide) + weight[stick] * totals_.mean(stick);
+  if (!wanted_.cycles) return around(sum, totals_.variance_of_mean(weight));
+  const double number = totals_.mean(count), value = sum / number;
+  weight[count] = -value;
+  return around(value, totals_.variance_of_mean(weight) / (number * number));
 }
 
 Estimate Tally::mean_square() const { return ratio(square); }
 Estimate Tally::mean_speed() const { return ratio(path); }
 Estimate Tally::mean_product() const { return ratio(product); }
+Estimate Tally::mean_velocity() const { return ratio(drift); }
 Estimate Tally::within() const { return ratio(Total::within); }
 Estimate Tally::noise_square() const { return ratio(Total::noise_square); }
 
-Estimate Tally::entry(int i) const { return proportion(entries_[place(i)], excursions()); }
+// With D the displacement and T the duration of a cycle and m = E[D]/E[T], the spread of a long
+// path about its drift grows at the rate S_v(0) = E[(D - m T)^2]/E[T]. The interval is that of the
+// delta method.
+Estimate Tally::spectrum_at_zero() const {
+  const Comoments& d = displacement_;
+  const double mean_time = d.mean(spent), m = d.mean(moved) / mean_time;
+  const double spread =
+      d.mean(moved_square) - 2 * m * d.mean(moved_spent) + m * m * d.mean(spent_square);
+  const double value = spread / mean_time;
+  const double by_m = 2 * (m * d.mean(spent_square) - d.mean(moved_spent)) / mean_time;
+  const std::array<double, Displacement::displacements> weight{by_m, -value - m * by_m, 1, -2 * m,
+                                                               m * m};
+  return around(value, d.variance_of_mean(weight) / (mean_time * mean_time));
+}
+
+Estimate Tally::entry(int i) const { return proportion(entries_[place(i)], samples()); }
 
 Estimate Tally::entry_of_both(int i, int j, double factor) const {
   double count = entries_[place(i)];
   if (j != i) count += entries_[place(j)];
   // k = 0: one level, left by both ways.
   const double times = i == j ? 2 * factor : factor;
-  const Estimate p = proportion(count, excursions());
+  const Estimate p = proportion(count, samples());
   return {times * p.value, times * p.low, times * p.high};
 }
 
@@ -183,7 +236,7 @@ Estimate Tally::probability(Duration duration, double low, double high) const {
   const auto last = std::isfinite(high) ? cells.begin() + cell_from(high) : cells.end();
   double count = 0;
   for (auto cell = first; cell < last; ++cell) count += *cell;
-  return proportion(count, excursions());
+  return proportion(count, samples());
 }
 
 // A path is a sequence of independent excursions r = 0, 1, ... with signs. Let C_r be the transform
@@ -217,6 +270,7 @@ Estimate Tally::spectrum(std::size_t n) const {
 std::vector<double> Tally::pack() const {
   std::vector<double> numbers{jumps_};
   totals_.pack(numbers);
+  displacement_.pack(numbers);
   for (const auto* group : {&laplace_, &spectrum_}) {
     for (const auto& comoments : *group) comoments.pack(numbers);
   }
@@ -232,6 +286,7 @@ void Tally::unpack(std::span<const double> numbers) {
   jumps_ = numbers[0];
   numbers = numbers.subspan(1);
   totals_.unpack(numbers);
+  displacement_.unpack(numbers);
   for (auto* group : {&laplace_, &spectrum_}) {
     for (auto& comoments : *group) comoments.unpack(numbers);
   }

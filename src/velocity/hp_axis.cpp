@@ -84,14 +84,28 @@ HpAxis::HpAxis(std::vector<double> ends, int degree, const model::Drag& drag)
 }
 
 void HpAxis::transport(double excess, int j, TransportRow& row) const {
+  const int element = j / reference_.size;
+  fill(j, std::max(-(excess + drag_at_ends_[element]), 0.0), excess + drag_at_nodes_[j],
+       std::max(excess + drag_at_ends_[element + 1], 0.0), row);
+}
+
+void HpAxis::transport_change(double excess, const SpeedChange& change, int j,
+                              TransportRow& row) const {
+  const int element = j / reference_.size;
+  const bool falls = excess + drag_at_ends_[element] < 0;
+  const bool rises = excess + drag_at_ends_[element + 1] > 0;
+  fill(j, falls ? -change(ends_[element]) : 0, change(nodes_[j]),
+       rises ? change(ends_[element + 1]) : 0, row);
+}
+
+void HpAxis::fill(int j, double down_speed, double speed_here, double up_speed,
+                  TransportRow& row) const {
   const auto& r = reference_;
   const int q = r.size, element = j / q, m = j % q, first = j - m;
   const double length = ends_[element + 1] - ends_[element];
   const double lift = 1 / (r.weight[m] * length);
-  // Speeds with which the flow leaves the element at its lower and its upper end.
-  const double down = std::max(-(excess + drag_at_ends_[element]), 0.0) * r.at_left[m] * lift;
-  const double up = std::max(excess + drag_at_ends_[element + 1], 0.0) * r.at_right[m] * lift;
-  const double speed = (excess + drag_at_nodes_[j]) / length;
+  const double down = down_speed * r.at_left[m] * lift, up = up_speed * r.at_right[m] * lift;
+  const double speed = speed_here / length;
   const bool lowest = element == 0, highest = element == elements() - 1;
 
   row.entries.clear();

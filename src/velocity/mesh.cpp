@@ -11,9 +11,10 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-// Local decay rate of log-density in white noise, -d/dv log exp(-mu_d v + int b) = mu_d - b(v).
+// Local decay rate of log-density in white noise, -d/dv log exp(-mu_d v + int b) = mu_d - b(v). A
+// bias g changes it by -g on one half line and by g on the other; elements serve both.
 double decay_rate(const model::Process& process, double v) {
-  return process.friction.mu_d - process.drag(v);
+  return process.friction.mu_d + std::abs(process.bias) - process.drag(v);
 }
 
 // Where geometric growth stops because an element would span more than `decay` of log-density.
@@ -27,14 +28,20 @@ double graded_end(const model::Process& process, const MeshRule& rule) {
   return bracket.first;
 }
 
-// Distance from mu_d down to the nearest level below it, for levels that can come to rest.
-double gap_below(const model::Process& process) {
+// Distance from mu_d - g down to the nearest level below it, for levels that can come to rest on
+// the upper half line.
+double upper_gap_below(const model::Process& process) {
   const double delta = process.noise.delta;
-  const auto level = static_cast<int>(std::floor(process.friction.mu_d / delta));
+  const auto level = static_cast<int>(std::floor((process.friction.mu_d - process.bias) / delta));
   for (int i = level + 1; i >= level - 1; --i) {
     if (process.excess(i) < 0) return -process.excess(i);
   }
   return delta;
+}
+
+// The smaller one of the two half lines.
+double gap_below(const model::Process& process) {
+  return std::min(upper_gap_below(process), upper_gap_below(process.mirrored()));
 }
 
 // At lambda = 0 two layers can form at v = 0. The kinetic layer around x = mu_d mixes levels delta
@@ -121,14 +128,20 @@ std::vector<double> element_ends(const model::Process& process, const MeshRule& 
 
 double tail_velocity(const model::Process& process, double tolerance) {
   const double drop = -std::log(tolerance) + 5;  // 5: polynomial factors of the moments
-  const double mu_d = process.friction.mu_d;
-  const double without_drag = drop / mu_d;
-  if (!process.drag.bounds_velocity()) return without_drag;
-  const auto left = [&](double v) { return drop - mu_d * v + process.drag.potential(v); };
-  if (!std::isfinite(left(without_drag))) return without_drag;
+  const double slope = process.friction.mu_d - std::abs(process.bias);
+  if (!process.drag.bounds_velocity()) return drop / slope;
+  // A bias beyond mu_d moves the largest density to where drag balances it.
+  const double peak = process.drag.terminal_velocity(-slope);
+  const double highest = -slope * peak + process.drag.potential(peak);
+  const auto left = [&](double v) {
+    return drop + highest - slope * v + process.drag.potential(v);
+  };
+  double far = slope > 0 ? drop / slope : std::max(2 * peak, 1.0);
+  while (slope <= 0 && left(far) > 0) far *= 2;
+  if (!std::isfinite(left(far))) return far;
   std::uintmax_t iterations = 200;
   const auto bracket = boost::math::tools::toms748_solve(
-      left, 0.0, without_drag, boost::math::tools::eps_tolerance<double>(20), iterations);
+      left, peak, far, boost::math::tools::eps_tolerance<double>(20), iterations);
   return bracket.second;
 }
 

@@ -17,12 +17,21 @@ UpwindAxis::UpwindAxis(double spacing, int count, const model::Drag& drag) : spa
 }
 
 void UpwindAxis::transport(double excess, int j, TransportRow& row) const {
-  const double rate = (excess + drag_at_nodes_[j]) / spacing_;
+  const double speed = excess + drag_at_nodes_[j];
+  fill(j, speed, speed / spacing_, row);
+}
+
+void UpwindAxis::transport_change(double excess, const SpeedChange& change, int j,
+                                  TransportRow& row) const {
+  fill(j, excess + drag_at_nodes_[j], change(nodes_[j]) / spacing_, row);
+}
+
+void UpwindAxis::fill(int j, double direction, double rate, TransportRow& row) const {
   row.entries.clear();
   row.inflow = row.outflow = 0;
-  if (rate < 0 && j > 0) row.entries.push_back({j - 1, -rate});
-  if (rate < 0 && j == 0) row.inflow = -rate;
-  if (rate > 0 && j < size() - 1) row.entries.push_back({j + 1, rate});
+  if (direction < 0 && j > 0) row.entries.push_back({j - 1, -rate});
+  if (direction < 0 && j == 0) row.inflow = -rate;
+  if (direction > 0 && j < size() - 1) row.entries.push_back({j + 1, rate});
 }
 
 // Between two nodes; below the first one, where a cell of its own begins, its value.

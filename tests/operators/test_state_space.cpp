@@ -68,7 +68,7 @@ TEST_CASE("state space: all ranks know the index of every state", "[parallel]") 
   for (int l = -6; l <= 6; ++l) {
     for (Half half : {Half::upper, Half::lower}) {
       for (int j = 0; j < 3; ++j) seen.insert(states.index({StateKind::node, half, l, j}));
-      if (states.has_origin(l)) seen.insert(states.index({StateKind::origin, half, l, 0}));
+      if (states.has_origin(half, l)) seen.insert(states.index({StateKind::origin, half, l, 0}));
     }
     if (states.has_rest(l)) seen.insert(states.index({StateKind::rest, Half::upper, l, 0}));
   }

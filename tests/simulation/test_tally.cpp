@@ -108,7 +108,7 @@ double weighted_spectrum(const std::vector<Excursion>& all, const std::vector<do
 
 TEST_CASE("tally: a sample of four by hand") {
   const auto t = of(sample());
-  CHECK(t.excursions() == 4);
+  CHECK(t.samples() == 4);
   CHECK(t.jumps() == 40);
   CHECK(t.sliding().value == Approx(6.5 / 14.5).epsilon(1e-14));
   CHECK(t.sticking().value == Approx(8.0 / 14.5).epsilon(1e-14));

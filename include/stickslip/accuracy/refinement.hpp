@@ -27,6 +27,13 @@ struct Step {
   std::vector<std::pair<std::string, double>> checks;  ///< what the route tells about itself
 };
 
+/// Whether anything asked for takes a discretisation or a simulation; closed forms and paths do
+/// not.
+[[nodiscard]] bool needs_system(const options::Request& request);
+
+/// Throws NoMemory, with what would help, if the predicted need exceeds what is free. Collective.
+void require_memory(MPI_Comm comm, const options::Request& request, const Resolution& resolution);
+
 /// What is asked for on one discretisation.
 struct Solved {
   routes::Evaluation evaluation;  ///< errors are those of the route on this discretisation alone

@@ -25,6 +25,11 @@ struct NoiseChain {
   [[nodiscard]] double up(int i) const;
   /// 1 - alpha_i = alpha_{-i}, without subtraction from 1.
   [[nodiscard]] double down(int i) const { return up(-i); }
+  /// d alpha_i/d tau at fixed N, and that of 1 - alpha_i.
+  [[nodiscard]] double up_change(int i) const;
+  [[nodiscard]] double down_change(int i) const { return up_change(-i); }
+  /// d Lambda/d tau.
+  [[nodiscard]] double rate_change() const { return -2 * rate() / tau; }
 };
 
 /// Largest N for which every alpha_i is a probability: floor(2/(tau delta^2)), safe to rounding.

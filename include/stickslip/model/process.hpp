@@ -7,16 +7,26 @@
 
 namespace stickslip::model {
 
-/// dV/dt = X + b(V) - mu_d Y while Y = sign V is +-1; V = 0 and |X| <= mu_s is the static phase.
+/// dV/dt = X + g + b(V) - mu_d Y while Y = sign V is +-1; V = 0 and |X + g| <= mu_s is the static
+/// phase.
 struct Process {
   NoiseChain noise;
   Friction friction;
   Drag drag;
+  double bias = 0;  ///< g, a constant force
 
-  /// k: levels |i| <= k can stick.
-  [[nodiscard]] int static_index() const { return friction.static_index(noise.delta); }
-  /// x_i - mu_d: the speed of V at v = 0+ on level i.
-  [[nodiscard]] double excess(int i) const { return friction.excess(noise.level(i)); }
+  /// Whether (-X, -Y, -V) has the same law.
+  [[nodiscard]] bool symmetric() const { return bias == 0; }
+  /// The process (-X, -Y, -V): what is true of sliding upwards here is true of sliding downwards
+  /// there.
+  [[nodiscard]] Process mirrored() const { return {noise, friction, drag, -bias}; }
+
+  /// The highest level that can stick; k without bias, where the levels |i| <= k stick.
+  [[nodiscard]] int static_index() const { return friction.static_index(noise.delta, bias); }
+  /// The lowest level that can stick; -k without bias.
+  [[nodiscard]] int lowest_static() const { return -friction.static_index(noise.delta, -bias); }
+  /// x_i + g - mu_d: the speed of V at v = 0+ on level i.
+  [[nodiscard]] double excess(int i) const { return friction.excess(noise.level(i), bias); }
 };
 
 }  // namespace stickslip::model

@@ -14,13 +14,17 @@ struct Scene {
   Friction friction;     ///< mu_s, mu_d [force]
   std::string drag_name = "linear";
   Drag drag;
+  double bias = 0;                  ///< constant force g
   std::optional<int> noise_levels;  ///< N, if fixed by the user
   std::optional<double> v_max;      ///< velocity cut, if fixed by the user [velocity]
 
+  [[nodiscard]] bool symmetric() const { return process(1).symmetric(); }
   /// floor(2/(tau delta^2)), the range that is meant when noise_levels is open.
   [[nodiscard]] int full_levels() const { return full_range(tau, delta); }
   /// The process on `levels` noise levels.
-  [[nodiscard]] Process process(int levels) const { return {{tau, delta, levels}, friction, drag}; }
+  [[nodiscard]] Process process(int levels) const {
+    return {{tau, delta, levels}, friction, drag, bias};
+  }
   /// The process that is meant: on noise_levels if fixed, else on the full range.
   [[nodiscard]] Process meant() const { return process(noise_levels.value_or(full_levels())); }
 };

@@ -4,6 +4,7 @@
 #include <petscmat.h>
 
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -20,15 +21,23 @@ enum class Rest {
   killing_edges    ///< unknowns, but killed on reaching (x_+-k, 0, 0) (R-check of Prop. 4.1)
 };
 
-/// A = lambda - L. On level l of a half, with B_l(v) = x_l - mu_d + b(v),
+/// Parameters of the process by which operators can be differentiated.
+enum class Parameter {
+  mu_d,
+  tau,              ///< at a fixed number of noise levels
+  drag_coefficient  ///< c of the linear part of the drag
+};
+
+/// A = lambda - L. On level l of a half, with B_l(v) = x_l + g - mu_d + b(v) on the upper one and
+/// that of the mirrored process on the lower one,
 ///
 ///   (A u)_l = lambda u_l - B_l u_l' - Lambda (alpha_l u_{l+1} - u_l + (1 - alpha_l) u_{l-1}),
 ///
 /// and where the flow reaches v = 0 the value met there is
-///   |l| <= k:  the static value s,
-///   l < -k:    u(0+) on level -l of the other half, or +- that on the same half when folded.
+///   static l:    the static value s,
+///   l below:     u(0+) on level -l of the other half, or +- that on the same half when folded.
 /// Levels that leave v = 0 need no condition. Static values follow the noise until they leave to
-/// s+- = (+-x_{k+1}, +-1, 0).
+/// s+- = (x, +-1, 0), x the level next to the static ones, x_{+-(k+1)} without bias.
 ///
 /// Diagonals are summed from the off-diagonals of their row in the order of columns, so that with
 /// Rest::kept and lambda = 0 row sums are exactly zero. On an upwind axis the off-diagonals of -A
@@ -39,6 +48,12 @@ class KolmogorovOperator {
   /// Assembles the local rows, with exact preallocation. Collective. O(local nonzeros).
   KolmogorovOperator(MPI_Comm comm, const model::Process& process, const velocity::Axis& axis,
                      PetscScalar lambda, Symmetry symmetry, Rest rest);
+
+  /// dA/dtheta with all members, for Rest::killing: entry_rates and from_rest are those of
+  /// -dA_us/dtheta. Elements and upwind directions stay as they are. Collective.
+  [[nodiscard]] static KolmogorovOperator derivative(MPI_Comm comm, const model::Process& process,
+                                                     const velocity::Axis& axis, Symmetry symmetry,
+                                                     Parameter theta);
 
   [[nodiscard]] const StateSpace& states() const { return states_; }
   [[nodiscard]] Mat matrix() const { return matrix_; }
@@ -51,10 +66,11 @@ class KolmogorovOperator {
   /// the half that is kept. Static states must be kept. Collective.
   [[nodiscard]] petsc::VecHandle value_at(const velocity::Axis& axis, int i, double v) const;
 
-  /// nu -> -nu A_us, index i + k: the rate at which an occupation flows into each static level; the
-  /// same on all ranks. Rest::killing only. Collective.
+  /// nu -> -nu A_us, from the lowest static level up: the rate at which an occupation flows into
+  /// each static level; the same on all ranks. Rest::killing only. Collective.
   [[nodiscard]] std::vector<PetscScalar> entry_rates(Vec nu) const;
-  /// -A_us s, a right-hand side: what static values s, index i + k, send into the sliding states.
+  /// -A_us s, a right-hand side: what static values s, from the lowest level up, send into the
+  /// sliding states.
   /// Rest::killing only. Collective.
   [[nodiscard]] petsc::VecHandle from_rest(const std::vector<PetscScalar>& s) const;
 
@@ -69,6 +85,10 @@ class KolmogorovOperator {
   [[nodiscard]] petsc::VecHandle zeros() const;
 
  private:
+  KolmogorovOperator(MPI_Comm comm, const model::Process& process, const velocity::Axis& axis,
+                     PetscScalar lambda, Symmetry symmetry, Rest rest,
+                     std::optional<Parameter> derivative);
+
   struct Coupling {
     PetscInt row;  // local
     int level;     // static level i, or the side of an exit

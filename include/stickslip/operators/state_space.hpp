@@ -15,13 +15,18 @@ namespace stickslip::operators {
 /// ("folded"), or of no symmetry, for which both halves are kept.
 enum class Symmetry { even, odd, none };
 
+/// The symmetry of densities and constants: even where the process is symmetric.
+[[nodiscard]] inline Symmetry symmetry_of(const model::Process& process) {
+  return process.symmetric() ? Symmetry::even : Symmetry::none;
+}
+
 /// The two half lines of the velocity.
 enum class Half { upper, lower };
 
 /// What a state stands for.
 enum class StateKind {
   node,     ///< sliding at a velocity node
-  origin,   ///< (x_i, +-1, 0) with |x_i| > mu_s: a grid scheme keeps it, its body is about to slide
+  origin,   ///< (x_i, +-1, 0) beyond the static levels: a grid scheme keeps it, about to slide
   holding,  ///< at v_max, waiting for the noise to fall
   rest      ///< static, (x_i, 0, 0)
 };
@@ -63,10 +68,16 @@ class StateSpace {
   /// Noise levels i owned by this rank, rising.
   [[nodiscard]] std::vector<int> local_levels() const;
 
-  [[nodiscard]] bool has_origin(int level) const { return keeps_origin_ && level > k_; }
-  [[nodiscard]] bool has_holding(int level) const { return level >= first_holding_; }
+  [[nodiscard]] bool has_origin(Half half, int level) const {
+    return keeps_origin_ && level > side(half).k;
+  }
+  [[nodiscard]] bool has_holding(Half half, int level) const {
+    return level >= side(half).first_holding;
+  }
   /// Whether the static level i is an unknown of its own.
-  [[nodiscard]] bool has_rest(int i) const { return with_rest_ && i >= lowest_rest_ && i <= k_; }
+  [[nodiscard]] bool has_rest(int i) const {
+    return with_rest_ && i >= lowest_rest_ && i <= upper_.k;
+  }
 
   /// Global index of a state that exists. O(1).
   [[nodiscard]] PetscInt index(const State& state) const;
@@ -83,6 +94,14 @@ class StateSpace {
   }
 
  private:
+  // Levels of a half, counted along it.
+  struct Side {
+    Side(const model::Process& process, const velocity::Axis& axis);
+    int k;              // the highest that can stick
+    int first_holding;  // holding states exist from here on; N + 1 if there are none
+  };
+  [[nodiscard]] const Side& side(Half half) const { return half == Half::upper ? upper_ : lower_; }
+
   // Shells [first, last) of a rank and its first global index.
   struct Block {
     int first, last;
@@ -103,9 +122,9 @@ class StateSpace {
   MPI_Comm comm_;
   Symmetry symmetry_;
   bool with_rest_, keeps_origin_;
-  int levels_, nodes_, k_;
-  int first_holding_;  // holding states exist for levels >= this; N + 1 if there are none
-  int lowest_rest_;    // static states exist for i >= this
+  int levels_, nodes_;
+  Side upper_, lower_;
+  int lowest_rest_;  // static states exist for i >= this
   int rank_;
   std::vector<Block> blocks_;        // by rank
   std::vector<int> owner_of_shell_;  // rank

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "stickslip/model/noise_chain.hpp"
+#include "stickslip/model/process.hpp"
 
 namespace stickslip::operators {
 
@@ -19,6 +20,10 @@ class StaticChain {
   /// The static levels |i| <= k; lambda >= 0 [1/time]; 0 <= k < chain.levels.
   StaticChain(const model::NoiseChain& chain, int k, double lambda = 0)
       : StaticChain(chain, -k, k, lambda) {}
+  /// The static levels of a process, with its bias.
+  [[nodiscard]] static StaticChain of(const model::Process& process, double lambda = 0) {
+    return {process.noise, process.lowest_static(), process.static_index(), lambda};
+  }
 
   /// The levels 1 <= i <= k, killed on reaching 0: where odd functions live, whose differences
   /// between i and -i would cancel. Empty for k = 0.
@@ -33,9 +38,10 @@ class StaticChain {
   /// u with (lambda - Q) u = f: the discounted integral of f over a stay, by its first level.
   [[nodiscard]] std::vector<double> integral(std::vector<double> f) const;
 
-  /// E_i[exp(-lambda T)], T the time of leaving: on both sides, or upwards only.
+  /// E_i[exp(-lambda T)], T the time of leaving: on both sides, or on one of them only.
   [[nodiscard]] std::vector<double> exit_transform() const;
   [[nodiscard]] std::vector<double> upward_exit_transform() const;
+  [[nodiscard]] std::vector<double> downward_exit_transform() const;
 
   /// Rate Lambda alpha_high of leaving upwards from the highest level.
   [[nodiscard]] double exit_rate() const { return up_exit_; }

@@ -1,10 +1,11 @@
 #pragma once
 /// The operators of one discretisation, assembled and factored when first asked for.
 
+#include <compare>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
-#include <tuple>
 
 #include "stickslip/model/process.hpp"
 #include "stickslip/operators/kolmogorov_operator.hpp"
@@ -22,6 +23,11 @@ inline const std::string kSlidePrefix = "slide_";
                                           const velocity::Axis& axis, PetscScalar lambda,
                                           Symmetry symmetry, Rest rest, petsc::Ledger& ledger);
 
+/// The same for its derivative. Collective.
+[[nodiscard]] KolmogorovOperator assemble_derivative(MPI_Comm comm, const model::Process& process,
+                                                     const velocity::Axis& axis, Symmetry symmetry,
+                                                     Parameter theta, petsc::Ledger& ledger);
+
 /// lambda - L with its factors.
 class System {
  public:
@@ -35,6 +41,14 @@ class System {
  private:
   KolmogorovOperator a_;
   petsc::Factorization factors_;
+};
+
+/// lambda - L on functions of one symmetry.
+struct SystemKey {
+  double lambda = 0;
+  Symmetry symmetry = Symmetry::even;
+  Rest rest = Rest::killing;
+  friend auto operator<=>(const SystemKey&, const SystemKey&) = default;
 };
 
 /// One system for each (lambda, symmetry, rest) that is asked for, and none else; each is assembled
@@ -52,6 +66,10 @@ class Systems {
   void release(double lambda, Symmetry symmetry, Rest rest = Rest::killing) {
     systems_.erase({lambda, symmetry, rest});
   }
+  /// Frees all others. Collective.
+  void keep(const std::set<SystemKey>& used) {
+    std::erase_if(systems_, [&used](const auto& entry) { return !used.contains(entry.first); });
+  }
 
   [[nodiscard]] MPI_Comm comm() const { return comm_; }
   [[nodiscard]] const model::Process& process() const { return process_; }
@@ -64,7 +82,7 @@ class Systems {
   model::Process process_;
   std::shared_ptr<const velocity::Axis> axis_;
   petsc::Ledger& ledger_;
-  std::map<std::tuple<double, Symmetry, Rest>, std::unique_ptr<System>> systems_;
+  std::map<SystemKey, std::unique_ptr<System>> systems_;
 };
 
 }  // namespace stickslip::operators

@@ -21,13 +21,15 @@ enum class Quantity {
   entry_law,
   density,
   laplace,
+  stay_transform,
   resolvent,
   relaxation,
   spectrum,
   duration_density,
   autocorrelation,
   expectation,
-  trajectory
+  trajectory,
+  sensitivity
 };
 
 /// Discretisation in v; `none` for the fluid queue, which needs none.
@@ -78,6 +80,7 @@ struct Request {
   std::uint64_t seed = 1;             ///< of whatever is simulated
   double horizon = 100;               ///< end of the trajectory [time]
   std::vector<Reference> references;  ///< of -compare
+  bool plan_only = false;
   StudyKind study = StudyKind::none;
   std::optional<int> study_steps;  ///< length of a series, if fixed by the user
   int study_repeats = 3;           ///< runs of which the median time is taken

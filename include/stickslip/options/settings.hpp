@@ -41,6 +41,7 @@ class Settings {
   [[nodiscard]] std::vector<std::string> list(const std::string& name) const;
   /// The numbers of a list option, empty if it was not given.
   [[nodiscard]] std::vector<double> numbers(const std::string& name) const;
+  [[nodiscard]] bool flag(const std::string& name) const { return text(name) != "no"; }
   /// Reports a problem with the value of `name`.
   void report(Problems& problems, const std::string& name, const std::string& why,
               const std::string& fix) const;

@@ -18,6 +18,7 @@ enum class Kind {
   list,     ///< a comma list of words, each at most once
   numbers,  ///< a,b,c or first:last:count or first:last:count:log
   text,     ///< free text
+  flag,     ///< yes or no; yes if it stands alone
   path,     ///< a file to write
   input,    ///< a file to read
 };

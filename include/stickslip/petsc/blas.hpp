@@ -17,4 +17,8 @@ struct Blas {
 /// factorisations are too small to gain from threads, and ranks share the cores.
 void keep_blas_to_one_thread();
 
+/// Operations a second of a matrix product of the size of the fronts that occur here, measured in
+/// a few milliseconds on the calling process.
+[[nodiscard]] double measured_speed();
+
 }  // namespace stickslip::petsc

@@ -10,6 +10,13 @@
 
 namespace stickslip::petsc {
 
+/// What the analysis phase of MUMPS foretells; zeros for other solvers.
+struct Analysis {
+  double factor_entries = 0;
+  double megabytes = 0;   ///< of all ranks, while factoring
+  double operations = 0;  ///< of the elimination
+};
+
 /// A solution with its last correction; solution - correction is what one solve alone gave, and
 /// the effect of the correction on a functional estimates the rounding error in it.
 struct Solution {
@@ -61,6 +68,9 @@ class Factorization {
   /// Factors again after the values of the matrix, not its pattern, have changed; the analysis is
   /// kept.
   void update();
+
+  /// Orders and analyses `matrix` as the constructor would, and stops there. Collective.
+  [[nodiscard]] static Analysis analyse(Mat matrix, const std::string& prefix, Ledger& ledger);
 
   /// Reads all options of a role once, on a 2 x 2 matrix, so that unknown ones can be told before
   /// any work. Collective on PETSC_COMM_SELF only.

@@ -10,11 +10,14 @@ namespace stickslip::quantities {
 
 /// Means over one excursion, which starts at s+ = (x_{k+1}, +1, 0), slides, sticks and ends at
 /// the next exit. Positions are folded: (x, y, v) stands for (-x, -y, -v) as well, such that y >=
-/// 0. Arrays over noise levels have the index i + N, those over static levels i + k.
+/// 0. Arrays over noise levels have the index i + N, those over static levels i + k. Without
+/// symmetry, the means are over excursions from s+ and from s- in the shares in which they occur,
+/// and static levels are those of the noise, counted from the lowest.
 struct Excursion {
   std::vector<double> slide_time;         ///< time spent sliding on level i [time]
   std::vector<double> slide_distance;     ///< int |V| dt on level i [length]
   std::vector<double> slide_square;       ///< int V^2 dt on level i
+  std::vector<double> slide_drift;        ///< int V dt on level i [length]; empty if folded
   std::vector<double> entry;              ///< probability that sliding ends on folded level i
   std::vector<double> entry_orientation;  ///< the same, counted negative if V < 0 then; or empty
   std::vector<double> stick_time;         ///< time spent sticking on folded level i [time]
@@ -34,7 +37,7 @@ struct Excursion {
 /// P_stick, P_slide, mean_stick, mean_slide, mean_excursion; ratios of positive sums.
 void append_sticking(const Excursion& excursion, Results& results);
 
-/// E_V2, E_absV, E_XV and E_V (0 by symmetry).
+/// E_V2, E_absV, E_XV and E_V (0 where symmetry makes it so).
 void append_moments(const model::Process& process, const Excursion& excursion, Results& results);
 
 /// entry_law: P(X = x_k when the first slide from s+ ends), k = -K ... K, and

@@ -15,9 +15,18 @@ namespace stickslip::quantities {
 ///   nu A(0, even) = g,   entry = -nu A_us,   stick_time (-Q) = entry,
 ///
 /// so that pi = (nu, stick_time)/E[tau_1], symmetrised, and pi(f) is a sum for every f.
+///
+/// Without symmetry, on both half lines: nu+ A(0, none) = g+ and nu- A = g- for excursions from s+
+/// and s-. The sides from which excursions start are a Markov chain; with its stationary shares,
+///
+///   p+/p- = P(s- to s+)/P(s+ to s-) = (entry- . h+)/(entry+ . h-),
+///
+/// h+-(i) the probability that a stay that begins on level i ends upwards or downwards, all sums
+/// positive, nu = p+ nu+ + p- nu- takes the place of the nu above.
 class StationaryLaw {
  public:
-  /// One transposed solve with systems.at(0, even). Collective. Throws NotReached or NoMemory.
+  /// One transposed solve with systems.at(0, even), or two with systems.at(0, none). Collective.
+  /// Throws NotReached or NoMemory.
   explicit StationaryLaw(operators::Systems& systems);
 
   /// Adds Excursion::entry_orientation. It is no even functional: one more transposed solve, with
@@ -33,6 +42,9 @@ class StationaryLaw {
   [[nodiscard]] const Excursion& excursion() const { return excursion_; }
   /// The same before the last correction of the solve: the difference shows rounding.
   [[nodiscard]] const Excursion& uncorrected() const { return uncorrected_; }
+
+  /// Probability that an excursion from s+ ends at s-, as entry+ . h-. Without symmetry only.
+  [[nodiscard]] double chance_of_falling() const { return chance_of_falling_; }
 
   /// nu, distributed as states() says [time]: the time spent in each sliding state.
   [[nodiscard]] Vec occupation() const { return occupation_; }
@@ -61,6 +73,7 @@ class StationaryLaw {
   operators::StateSpace states_;
   petsc::VecHandle occupation_;
   Excursion excursion_, uncorrected_;
+  double chance_of_falling_ = 0;
 };
 
 /// sup |F_1 - F_2| over the cells of axis 2, F the distribution functions of |V| in two

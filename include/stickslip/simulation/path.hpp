@@ -15,7 +15,7 @@ struct Path {
 };
 
 /// The path from level `level` and velocity `v` up to `horizon` [time]. At v = 0 a body on
-/// |X| <= mu_s rests. Local. O(horizon/Lambda) memory.
+/// |X + g| <= mu_s rests. Local. O(horizon/Lambda) memory.
 [[nodiscard]] Path simulate_path(const model::Process& process, int level, double v, double horizon,
                                  std::uint64_t seed);
 

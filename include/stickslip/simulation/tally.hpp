@@ -2,6 +2,7 @@
 /// What is kept of many excursions, and the estimates made from it.
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "stickslip/simulation/comoments.hpp"
@@ -24,21 +25,25 @@ enum class Duration { slide, stick, excursion };
 /// that of the delta method. Local.
 class Tally {
  public:
-  /// `k`: levels |i| <= k can stick.
+  /// `k`: levels |i| <= k can stick. Entries are not counted for cycles.
   Tally(const Wanted& wanted, int k);
 
   void add(const Excursion& excursion);
   void merge(const Tally& other);
 
-  [[nodiscard]] double excursions() const { return totals_.count(); }
+  /// Excursions, or cycles of them.
+  [[nodiscard]] double samples() const { return totals_.count(); }
   [[nodiscard]] double jumps() const { return jumps_; }
 
   [[nodiscard]] Estimate sticking() const;  ///< P_stick
   [[nodiscard]] Estimate sliding() const;   ///< P_slide
   [[nodiscard]] Estimate mean(Duration duration) const;
-  [[nodiscard]] Estimate mean_square() const;   ///< E[V^2]
-  [[nodiscard]] Estimate mean_speed() const;    ///< E[|V|]
-  [[nodiscard]] Estimate mean_product() const;  ///< E[X V]
+  [[nodiscard]] Estimate mean_square() const;    ///< E[V^2]
+  [[nodiscard]] Estimate mean_speed() const;     ///< E[|V|]
+  [[nodiscard]] Estimate mean_product() const;   ///< E[X V]
+  [[nodiscard]] Estimate mean_velocity() const;  ///< E[V]; of cycles
+  /// S_v(0) about E[V], of cycles; see tally.cpp.
+  [[nodiscard]] Estimate spectrum_at_zero() const;
   [[nodiscard]] Estimate within() const;        ///< P(|X| <= mu_s)
   [[nodiscard]] Estimate noise_square() const;  ///< E[X^2]
   /// Probability that a slide comes to rest on level i, by Jeffreys' interval.
@@ -65,7 +70,7 @@ class Tally {
 
   int k_;
   Wanted wanted_;
-  Comoments totals_;
+  Comoments totals_, displacement_;
   std::vector<Comoments> laplace_, spectrum_;
   std::vector<double> entries_;
   std::array<std::vector<double>, 3> cells_;  // counts between edges, by duration

@@ -1,7 +1,9 @@
 #pragma once
 /// A discretised half line v > 0, seen by the operators through a few rows and weights.
 
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace stickslip::velocity {
@@ -22,6 +24,13 @@ struct TransportRow {
   double outflow = 0;          ///< coefficient of the holding state
 };
 
+/// The derivative of the speed B(v) with respect to a parameter: dB(v) = excess + per_speed v.
+struct SpeedChange {
+  double excess = 0;
+  double per_speed = 0;
+  [[nodiscard]] double operator()(double v) const { return excess + per_speed * v; }
+};
+
 /// A velocity discretisation on [0, v_max] for the speeds B(v) = excess + b(v).
 /// Implementations are immutable; all members are local and cost O(size) unless said.
 class Axis {
@@ -39,6 +48,9 @@ class Axis {
 
   /// Row j of T for the speed B(v) = excess + b(v), into the storage of `row`. O(its entries).
   virtual void transport(double excess, int j, TransportRow& row) const = 0;
+  /// Derivative of that row where B changes by dB, upwinded as B is. O(its entries).
+  virtual void transport_change(double excess, const SpeedChange& change, int j,
+                                TransportRow& row) const = 0;
   /// u(0+) as a combination of nodal values; empty when the axis keeps a state of its own at v = 0
   /// on the levels that leave it (`keeps_origin`).
   [[nodiscard]] virtual std::vector<Entry> trace_at_zero() const = 0;
@@ -58,12 +70,20 @@ class Axis {
   /// Whether levels that still accelerate at v_max need a holding state there.
   [[nodiscard]] virtual bool needs_holding() const = 0;
 
+  /// The axis of the lower half line, where speeds are excess - b(-v); this one for an odd b. It
+  /// has the same nodes.
+  [[nodiscard]] const Axis& mirrored() const { return mirrored_ ? *mirrored_ : *this; }
+  void set_mirrored(std::shared_ptr<const Axis> lower) { mirrored_ = std::move(lower); }
+
   [[nodiscard]] int size() const { return static_cast<int>(nodes().size()); }
 
  protected:
   Axis() = default;
   Axis(const Axis&) = default;
   Axis& operator=(const Axis&) = default;
+
+ private:
+  std::shared_ptr<const Axis> mirrored_;
 };
 
 }  // namespace stickslip::velocity

@@ -48,6 +48,8 @@ class HpAxis final : public Axis {
   [[nodiscard]] double v_max() const override { return ends_.back(); }
   [[nodiscard]] std::span<const double> cells() const override { return ends_; }
   void transport(double excess, int j, TransportRow& row) const override;
+  void transport_change(double excess, const SpeedChange& change, int j,
+                        TransportRow& row) const override;
   [[nodiscard]] std::vector<Entry> trace_at_zero() const override;
   [[nodiscard]] std::vector<Entry> trace_at_top() const override;
   [[nodiscard]] std::vector<Entry> value_at(double v) const override;
@@ -60,6 +62,10 @@ class HpAxis final : public Axis {
   [[nodiscard]] int degree() const { return reference_.size - 1; }
 
  private:
+  // The row of a node where B is `speed` and the flow leaves its element with the speeds `down` and
+  // `up`.
+  void fill(int j, double down, double speed, double up, TransportRow& row) const;
+
   ReferenceElement reference_;
   std::vector<double> ends_;
   std::vector<double> nodes_, weights_;

@@ -26,6 +26,8 @@ class UpwindAxis final : public Axis {
   [[nodiscard]] double v_max() const override { return nodes_.back(); }
   [[nodiscard]] std::span<const double> cells() const override { return cells_; }
   void transport(double excess, int j, TransportRow& row) const override;
+  void transport_change(double excess, const SpeedChange& change, int j,
+                        TransportRow& row) const override;
   [[nodiscard]] std::vector<Entry> trace_at_zero() const override { return {}; }
   [[nodiscard]] std::vector<Entry> trace_at_top() const override { return {{size() - 1, 1.0}}; }
   [[nodiscard]] std::vector<Entry> value_at(double v) const override;
@@ -35,6 +37,9 @@ class UpwindAxis final : public Axis {
   [[nodiscard]] bool needs_holding() const override { return false; }
 
  private:
+  // The row of a node where the body moves on at `rate`, upwards or downwards as `direction` says.
+  void fill(int j, double direction, double rate, TransportRow& row) const;
+
   double spacing_;
   std::vector<double> nodes_, weights_, cells_, drag_at_nodes_;
 };

@@ -1,0 +1,63 @@
+#pragma once
+/// Derivatives of stationary scalars with respect to parameters of the process, by adjoints.
+
+#include <string>
+#include <vector>
+
+#include "stickslip/model/scene.hpp"
+#include "stickslip/operators/systems.hpp"
+#include "stickslip/quantities/results.hpp"
+#include "stickslip/quantities/stationary.hpp"
+#include "stickslip/quantities/uncertain.hpp"
+
+namespace stickslip::quantities {
+
+/// mu_d and tau, and drag_coefficient where `drag` is linear or cubic.
+[[nodiscard]] std::vector<operators::Parameter> parameters_of(const model::Scene& scene);
+
+/// Derivatives of means over an excursion, M = nu f + entry . s, for a function f of the sliding
+/// states and static values s. With the adjoint h, A h = f - A_us s,
+///
+///   dM = nu dL (h, s) + entry . ds,
+///
+/// where dL is the derivative of the generator on functions with the static values s: the flow
+/// changes by dB, the jumps by d(Lambda alpha). One plain solve with systems.at(0, even) for each
+/// M, whatever the number of parameters; one assembly for each parameter. Elements and upwind
+/// directions are kept: what that leaves out is an error of the discretisation, and falls with it.
+/// Symmetric processes only.
+class Sensitivity {
+ public:
+  /// Solves for the durations. Collective.
+  Sensitivity(operators::Systems& systems, const StationaryLaw& law,
+              std::vector<operators::Parameter> parameters);
+
+  /// dKEY_dPARAMETER for each KEY of the functions of excursion.hpp with these names. Collective.
+  void append_sticking(Results& results) const;
+  /// Three more solves.
+  void append_moments(Results& results) const;
+
+ private:
+  /// Of one mean, by parameter.
+  using Gradient = std::vector<Uncertain>;
+
+  [[nodiscard]] Gradient slides(const operators::KolmogorovOperator::Observable& f) const;
+  [[nodiscard]] Gradient stays() const;
+  // nu dL (h, s) by parameter.
+  [[nodiscard]] Gradient through(const petsc::Solution& h, const std::vector<PetscScalar>& s) const;
+  // value and mean of an integral over an excursion: the derivative of its ratio to mean_excursion.
+  [[nodiscard]] Gradient ratio(double mean, const Gradient& of_mean) const;
+  void append(const std::string& key, const std::string& unit, const Gradient& gradient,
+              Results& results) const;
+
+  operators::System& system_;
+  const StationaryLaw& law_;
+  std::vector<operators::Parameter> parameters_;
+  std::vector<operators::KolmogorovOperator> changes_;  // dA, by parameter
+  Gradient slide_, stick_;
+};
+
+/// dP_X_le_mu_s_dtau and dE_X2_dtau of the noise alone, at its number of levels, from the closed
+/// law. Local. O(N).
+void append_noise_sensitivity(const model::Process& process, Results& results);
+
+}  // namespace stickslip::quantities

@@ -1,0 +1,115 @@
+#include "stickslip/accuracy/prediction.hpp"
+
+#include <algorithm>
+
+#include "stickslip/accuracy/ladder.hpp"
+#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/petsc/blas.hpp"
+#include "stickslip/petsc/session.hpp"
+
+namespace stickslip::accuracy {
+namespace {
+
+using operators::SystemKey;
+
+// Fitted to runs of hp scenes with delta from 1/2 to 1/64: eliminations of small fronts reach a
+// share of the speed of a matrix product, and pay for each entry besides; a solve reads the
+// factors.
+constexpr double kShareOfSpeed = 0.35, kSecondsPerEntry = 8e-9, kSecondsPerEntrySolved = 2.5e-9;
+constexpr double kSecondsPerNonzero = 1.2e-8;  // of a residual
+constexpr double kFixedSeconds = 1e-3;         // of a factorisation
+
+class Predictor {
+ public:
+  Predictor(MPI_Comm comm, const options::Request& request, const Resolution& resolution)
+      : comm_(comm),
+        process_(request.scene.process(resolution.levels)),
+        axis_(make_axis(request.scene, resolution)) {
+    step_.resolution = resolution;
+    step_.unknowns = unknowns(request.scene, resolution);
+  }
+
+  PredictedStep follow(const routes::Plan& plan) {
+    for (const auto& key : plan.systems()) assemble(key);
+    for (const auto& task : plan.tasks) step_.seconds += seconds_of(task);
+    return step_;
+  }
+
+ private:
+  struct Foretold {
+    double assembly = 0, factorization = 0, solve = 0;  // seconds of one
+  };
+
+  const Foretold& assemble(const SystemKey& key) {
+    const auto known = systems_.find(key);
+    if (known != systems_.end()) return known->second;
+    petsc::Ledger ledger;
+    const auto a =
+        operators::assemble(comm_, process_, *axis_, key.lambda, key.symmetry, key.rest, ledger);
+    const auto analysis =
+        petsc::Factorization::analyse(a.matrix(), operators::kSlidePrefix, ledger);
+    step_.unknowns = std::max<std::int64_t>(step_.unknowns, ledger.unknowns);
+    step_.nonzeros = std::max(step_.nonzeros, ledger.nonzeros);
+    step_.factor_entries = std::max(step_.factor_entries, analysis.factor_entries);
+    step_.megabytes = std::max(step_.megabytes, analysis.megabytes);
+    const int ranks = petsc::ranks(comm_);
+    Foretold f;
+    f.assembly = ledger.assembly_seconds;
+    f.factorization = ledger.analysis_seconds + kFixedSeconds +
+                      (analysis.operations / (kShareOfSpeed * speed_) +
+                       kSecondsPerEntry * analysis.factor_entries) /
+                          ranks;
+    // Each is corrected once, with two residuals and a bound.
+    f.solve = (2 * kSecondsPerEntrySolved * analysis.factor_entries +
+               3 * kSecondsPerNonzero * static_cast<double>(ledger.nonzeros)) /
+              ranks;
+    // The first task that uses it pays for it.
+    step_.seconds += f.assembly + f.factorization;
+    return systems_.emplace(key, f).first->second;
+  }
+
+  double seconds_of(const routes::Task& task) {
+    double seconds = 0;
+    for (const auto& use : task.uses) {
+      seconds += (use.plain + use.transposed) * assemble(use.system).solve;
+    }
+    if (task.derivatives == 0 && !task.adaptive) return seconds;
+    // Operators of its own look like the sliding operator.
+    const Foretold& like = assemble({0, operators::symmetry_of(process_)});
+    return seconds + task.derivatives * like.assembly +
+           task.usual_factorizations * (like.assembly + like.factorization) +
+           task.usual_solves * like.solve;
+  }
+
+  MPI_Comm comm_;
+  model::Process process_;
+  std::shared_ptr<const velocity::Axis> axis_;
+  PredictedStep step_;
+  std::map<SystemKey, Foretold> systems_;
+  double speed_ = petsc::measured_speed();
+};
+
+}  // namespace
+
+Prediction predict(MPI_Comm comm, const options::Request& request) {
+  Prediction prediction;
+  if (!needs_system(request)) return prediction;
+  prediction.plan = routes::plan_of(request);
+  if (request.route == options::Route::monte_carlo) return prediction;
+  const Ladder ladder(request);
+  require_memory(comm, request, ladder.rung(1));
+  for (int n = 0; n <= 1; ++n) {
+    const Resolution resolution = ladder.rung(n);
+    if (prediction.plan.tasks.empty()) {
+      PredictedStep step{resolution, unknowns(request.scene, resolution)};
+      step.megabytes = predicted_bytes(request.scene, resolution) / 1e6;
+      prediction.steps.push_back(step);
+    } else {
+      prediction.steps.push_back(Predictor(comm, request, resolution).follow(prediction.plan));
+    }
+    prediction.seconds += prediction.steps.back().seconds;
+  }
+  return prediction;
+}
+
+}  // namespace stickslip::accuracy

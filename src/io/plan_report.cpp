@@ -1,0 +1,126 @@
+#include "stickslip/io/plan_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "parts.hpp"
+
+namespace stickslip::io {
+namespace {
+
+const char* symmetry_name(operators::Symmetry symmetry) {
+  switch (symmetry) {
+  case operators::Symmetry::even: return "even";
+  case operators::Symmetry::odd: return "odd";
+  case operators::Symmetry::none: break;
+  }
+  return "none";
+}
+
+std::string system_name(const operators::SystemKey& key) {
+  const bool folded = key.symmetry != operators::Symmetry::none;
+  return fmt::format("lambda = {:g}, {}", key.lambda,
+                     folded ? symmetry_name(key.symmetry) : "both half lines");
+}
+
+std::string solves_text(const routes::Use& use) {
+  if (use.plain == 0) return fmt::format("{} transposed", use.transposed);
+  return fmt::format("{} plain", use.plain);
+}
+
+std::string task_lines(const options::Request& request, const routes::Task& task) {
+  std::string text;
+  std::string name = routes::task_name(request, task);
+  const auto line = [&](const std::string& system, const std::string& solves) {
+    text += fmt::format("{:<34} {:<28} {}\n", name, system, solves);
+    name.clear();
+  };
+  for (const auto& use : task.uses) line(system_name(use.system), solves_text(use));
+  if (task.derivatives > 0) line("its derivatives", fmt::format("{} assemblies", task.derivatives));
+  if (task.adaptive) {
+    line("its own, by accuracy", fmt::format("usually {} factorisations, {} solves",
+                                             task.usual_factorizations, task.usual_solves));
+  }
+  return text;
+}
+
+std::string step_line(const accuracy::PredictedStep& step, std::size_t number) {
+  return fmt::format("{:<4} {} {:>7} {:>8.4g} {:>9} {:>10} {:>14.4g} {:>8.0f} {:>9.3g}\n", number,
+                     axis_cells(step.resolution), step.resolution.levels, step.resolution.v_max,
+                     step.unknowns, step.nonzeros, step.factor_entries, step.megabytes,
+                     step.seconds);
+}
+
+Json step_json(const accuracy::PredictedStep& step) {
+  Json json = resolution_json(step.resolution);
+  json["unknowns"] = step.unknowns;
+  json["nonzeros"] = step.nonzeros;
+  json["factor_entries"] = step.factor_entries;
+  json["factor_megabytes"] = step.megabytes;
+  json["seconds"] = step.seconds;
+  return json;
+}
+
+Json task_json(const options::Request& request, const routes::Task& task) {
+  Json json{{"name", routes::task_name(request, task)}, {"systems", Json::array()}};
+  for (const auto& use : task.uses) {
+    json["systems"].push_back({{"lambda", use.system.lambda},
+                               {"symmetry", symmetry_name(use.system.symmetry)},
+                               {"plain_solves", use.plain},
+                               {"transposed_solves", use.transposed}});
+  }
+  json["derivatives"] = task.derivatives;
+  json["adaptive"] = task.adaptive;
+  return json;
+}
+
+}  // namespace
+
+std::string plan_table(const options::Request& request, const accuracy::Prediction& prediction) {
+  std::string text = scene_line(request);
+  const auto& plan = prediction.plan;
+  if (!accuracy::needs_system(request)) {
+    return text + "\nclosed formulas only: no system is assembled, factored or solved\n";
+  }
+  if (request.route == options::Route::monte_carlo) {
+    return text + fmt::format("\n{:g} excursions are simulated; no system is assembled\n",
+                              request.excursions);
+  }
+  text += "\non each discretisation\n";
+  for (const auto& task : plan.tasks) text += task_lines(request, task);
+  if (plan.tasks.empty()) text += "the systems of the route, on both half lines\n";
+  text += fmt::format("in all {}{} assemblies, {} factorisations, {} solves\n\n",
+                      plan.adaptive() ? "at least " : "", plan.assemblies(), plan.factorizations(),
+                      plan.solves());
+  text += fmt::format("step {} {:>7} {:>8} {:>9} {:>10} {:>14} {:>8} {:>9}\n",
+                      axis_title(request.method.scheme), "levels", "v_max", "unknowns", "nonzeros",
+                      "factor entries", "MB", "seconds");
+  for (std::size_t n = 0; n < prediction.steps.size(); ++n) {
+    text += step_line(prediction.steps[n], n);
+  }
+  if (plan.tasks.empty()) return text;
+  return text + fmt::format("about {:.2g} s for these steps; an accuracy that is missed takes "
+                            "more of them\n",
+                            prediction.seconds);
+}
+
+std::string plan_summary(MPI_Comm comm, const options::Request& request,
+                         const accuracy::Prediction& prediction) {
+  Json json;
+  json["scene"] = scene_json(request);
+  auto& plan = json["plan"];
+  plan["tasks"] = Json::array();
+  for (const auto& task : prediction.plan.tasks) plan["tasks"].push_back(task_json(request, task));
+  plan["assemblies"] = prediction.plan.assemblies();
+  plan["factorizations"] = prediction.plan.factorizations();
+  plan["solves"] = prediction.plan.solves();
+  plan["adaptive"] = prediction.plan.adaptive();
+  plan["steps"] = Json::array();
+  for (const auto& step : prediction.steps) plan["steps"].push_back(step_json(step));
+  plan["seconds"] = prediction.seconds;
+  json["provenance"] = provenance_json(comm, request);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace stickslip::io

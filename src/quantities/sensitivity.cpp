@@ -1,0 +1,208 @@
+#include "stickslip/quantities/sensitivity.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "stickslip/model/noise_chain.hpp"
+#include "stickslip/operators/static_chain.hpp"
+#include "stickslip/petsc/check.hpp"
+
+namespace stickslip::quantities {
+namespace {
+
+using operators::KolmogorovOperator;
+using operators::Parameter;
+using operators::Symmetry;
+
+const char* name_of(Parameter parameter) {
+  switch (parameter) {
+  case Parameter::mu_d: return "mu_d";
+  case Parameter::tau: return "tau";
+  case Parameter::drag_coefficient: return "drag_coefficient";
+  }
+  return "";
+}
+
+const char* unit_of(Parameter parameter) {
+  switch (parameter) {
+  case Parameter::mu_d: return "force";
+  case Parameter::tau: return "time";
+  case Parameter::drag_coefficient: return "1/time";
+  }
+  return "";
+}
+
+std::string per(const std::string& unit, const char* parameter_unit) {
+  const std::string below = std::string("(") + parameter_unit + ")";
+  return (unit.empty() ? "1" : unit) + "/" + below;
+}
+
+// D_i = T_i - T_{i+1} > 0 for 0 <= i <= k, of the mean stays T with T_{k+1} = 0: from level i on,
+// up_i D_i = 1 + down_i D_{i-1}, and T is even. Sums of positive terms.
+std::vector<double> falls_of_mean_stay(const model::NoiseChain& noise, int k) {
+  std::vector<double> fall{1 / noise.rate()};
+  for (int i = 1; i <= k; ++i) {
+    fall.push_back((1 / noise.rate() + noise.down(i) * fall.back()) / noise.up(i));
+  }
+  return fall;
+}
+
+// stick_time . (dQ T) for the mean stays T, by tau: with Q T = -1,
+// (dQ T)_i = -(dLambda/Lambda) + Lambda dalpha_i (T_{i+1} - T_{i-1}), where both terms are >= 0.
+double stays_by_tau(const model::Process& process, const std::vector<double>& stick_time) {
+  const auto& noise = process.noise;
+  const int k = process.static_index();
+  const auto fall = falls_of_mean_stay(noise, k);
+  double sum = 0;
+  for (int i = -k; i <= k; ++i) {
+    double change = -noise.rate_change() / noise.rate();
+    const int level = std::abs(i);
+    if (level > 0) {
+      change -= noise.rate() * noise.up_change(level) * (fall[level] + fall[level - 1]);
+    }
+    sum += stick_time[k + i] * change;
+  }
+  return sum;
+}
+
+double product(Vec a, Vec b) {
+  PetscScalar value = 0;
+  petsc::check(VecTDot(a, b, &value));
+  return PetscRealPart(value);
+}
+
+}  // namespace
+
+std::vector<Parameter> parameters_of(const model::Scene& scene) {
+  std::vector<Parameter> parameters{Parameter::mu_d, Parameter::tau};
+  if (scene.drag_name == "linear" || scene.drag_name == "cubic") {
+    parameters.push_back(Parameter::drag_coefficient);
+  }
+  return parameters;
+}
+
+Sensitivity::Sensitivity(operators::Systems& systems, const StationaryLaw& law,
+                         std::vector<Parameter> parameters)
+    : system_(systems.at(0, Symmetry::even)), law_(law), parameters_(std::move(parameters)) {
+  for (Parameter theta : parameters_) {
+    changes_.push_back(operators::assemble_derivative(systems.comm(), systems.process(),
+                                                      systems.axis(), Symmetry::even, theta,
+                                                      systems.ledger()));
+  }
+  slide_ = slides([](double, double, double) { return 1.0; });
+  stick_ = stays();
+}
+
+Sensitivity::Gradient Sensitivity::slides(const KolmogorovOperator::Observable& f) const {
+  const std::vector<PetscScalar> none(law_.excursion().stick_time.size(), 0.0);
+  return through(system_.factors().solve(system_.a().values(f)), none);
+}
+
+Sensitivity::Gradient Sensitivity::stays() const {
+  const auto& process = law_.process();
+  const auto& stick_time = law_.excursion().stick_time;
+  const auto chain = operators::StaticChain::of(process);
+  const auto mean = chain.integral(std::vector<double>(stick_time.size(), 1.0));
+  const std::vector<PetscScalar> s(mean.begin(), mean.end());
+  Gradient gradient = through(system_.factors().solve(system_.a().from_rest(s)), s);
+  for (std::size_t n = 0; n < parameters_.size(); ++n) {
+    if (parameters_[n] != Parameter::tau) continue;
+    gradient[n].value += stays_by_tau(process, stick_time);
+    gradient[n].error += std::abs(stays_by_tau(process, law_.uncorrected().stick_time) -
+                                  stays_by_tau(process, stick_time));
+  }
+  return gradient;
+}
+
+Sensitivity::Gradient Sensitivity::through(const petsc::Solution& h,
+                                           const std::vector<PetscScalar>& s) const {
+  Gradient gradient;
+  for (const auto& change : changes_) {
+    petsc::VecHandle image = change.zeros();
+    const auto flux = [&](Vec function) {
+      petsc::check(MatMult(change.matrix(), function, image));
+      return -product(law_.occupation(), image);
+    };
+    const double moved = product(law_.occupation(), change.from_rest(s));
+    gradient.push_back({flux(h.x) + moved, std::abs(flux(h.correction))});
+  }
+  return gradient;
+}
+
+Sensitivity::Gradient Sensitivity::ratio(double mean, const Gradient& of_mean) const {
+  const double total = law_.excursion().mean_excursion();
+  Gradient gradient;
+  for (std::size_t n = 0; n < of_mean.size(); ++n) {
+    gradient.push_back((1 / total) * (of_mean[n] - (mean / total) * (slide_[n] + stick_[n])));
+  }
+  return gradient;
+}
+
+void Sensitivity::append(const std::string& key, const std::string& unit, const Gradient& gradient,
+                         Results& results) const {
+  for (std::size_t n = 0; n < parameters_.size(); ++n) {
+    results.push_back(scalar("d" + key + "_d" + name_of(parameters_[n]),
+                             per(unit, unit_of(parameters_[n])), gradient[n]));
+  }
+}
+
+void Sensitivity::append_sticking(Results& results) const {
+  const auto& excursion = law_.excursion();
+  const double slide = excursion.mean_slide(), stick = excursion.mean_stick();
+  const double total = excursion.mean_excursion();
+  Gradient sticking, sliding, whole;
+  for (std::size_t n = 0; n < parameters_.size(); ++n) {
+    const Uncertain up = (slide / total) * stick_[n], down = (stick / total) * slide_[n];
+    sticking.push_back((1 / total) * (up - down));
+    sliding.push_back((1 / total) * (down - up));
+    whole.push_back(slide_[n] + stick_[n]);
+  }
+  append("P_stick", "", sticking, results);
+  append("P_slide", "", sliding, results);
+  append("mean_stick", "time", stick_, results);
+  append("mean_slide", "time", slide_, results);
+  append("mean_excursion", "time", whole, results);
+}
+
+void Sensitivity::append_moments(Results& results) const {
+  const auto mean = [this](const KolmogorovOperator::Observable& f) {
+    return product(law_.occupation(), system_.a().values(f));
+  };
+  const auto add = [&](const char* key, const char* unit, const KolmogorovOperator::Observable& f) {
+    append(key, unit, ratio(mean(f), slides(f)), results);
+  };
+  add("E_V2", "velocity^2", [](double, double, double v) { return v * v; });
+  add("E_absV", "velocity", [](double, double, double v) { return std::abs(v); });
+  add("E_XV", "force*velocity", [](double x, double, double v) { return x * v; });
+}
+
+// Weights w_i = prod_{j <= i} alpha_{j-1}/(1 - alpha_j), so that d log w_i/d tau is a sum of
+// negative terms; a mean changes by its covariance with that score.
+void append_noise_sensitivity(const model::Process& process, Results& results) {
+  const auto& noise = process.noise;
+  const int k = process.friction.static_index(noise.delta);
+  const auto law = model::stationary_law(noise);
+  double score = 0;
+  double within = law[noise.levels], within_score = 0, beyond = 0, beyond_score = 0;
+  double square = 0, square_score = 0;
+  for (int i = 1; i <= noise.levels && noise.up(i - 1) > 0; ++i) {
+    score += noise.up_change(i - 1) / noise.up(i - 1) - noise.down_change(i) / noise.down(i);
+    const double p = 2 * law[noise.levels + i], x2 = noise.level(i) * noise.level(i);
+    (i <= k ? within : beyond) += p;
+    (i <= k ? within_score : beyond_score) += p * score;
+    square += p * x2;
+    square_score += p * x2 * score;
+  }
+  const double mean_score = within_score + beyond_score;
+  const double by_within = beyond * within_score - within * beyond_score;
+  const double by_square = square_score - square * mean_score;
+  const double rounding = std::numeric_limits<double>::epsilon() * (4 + std::sqrt(noise.levels));
+  const double size = std::abs(square_score) + std::abs(square * mean_score);
+  results.push_back(
+      scalar("dP_X_le_mu_s_dtau", per("", "time"), by_within,
+             rounding * (std::abs(beyond * within_score) + std::abs(within * beyond_score))));
+  results.push_back(scalar("dE_X2_dtau", per("force^2", "time"), by_square, rounding * size));
+}
+
+}  // namespace stickslip::quantities

@@ -1,0 +1,190 @@
+#include "stickslip/routes/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <numeric>
+
+#include "stickslip/quantities/sensitivity.hpp"
+
+namespace stickslip::routes {
+namespace {
+
+using operators::Symmetry;
+using options::Quantity;
+using options::Request;
+
+// Anything but resolvents, modes and closed forms.
+bool needs_law(const Request& request) {
+  for (Quantity q :
+       {Quantity::sticking, Quantity::moments, Quantity::entry_law, Quantity::density,
+        Quantity::laplace, Quantity::stay_transform, Quantity::spectrum, Quantity::duration_density,
+        Quantity::autocorrelation, Quantity::expectation}) {
+    if (request.wants(q)) return true;
+  }
+  return request.scene.v_max.has_value();  // what the cut holds back is judged by the law
+}
+
+/// Collects the tasks in their order.
+class Planner {
+ public:
+  explicit Planner(const Request& request) : request_(request) {}
+
+  Plan plan() {
+    if (needs_law(request_)) plan_law();
+    if (request_.wants(Quantity::sensitivity)) plan_sensitivity();
+    plan_transforms();
+    if (request_.wants(Quantity::spectrum)) plan_spectrum();
+    const auto observables = static_cast<int>(request_.observables.size());
+    if (request_.wants(Quantity::duration_density)) add_adaptive(Work::durations, 14, 160);
+    if (request_.wants(Quantity::autocorrelation)) add_adaptive(Work::autocorrelation, 6, 36);
+    if (request_.wants(Quantity::expectation)) {
+      add_adaptive(Work::expectation, 6 * observables, 36 * observables);
+    }
+    if (request_.wants(Quantity::relaxation)) add_adaptive(Work::relaxation, 2, 70);
+    return std::move(plan_);
+  }
+
+ private:
+  void add(Task task) { plan_.tasks.push_back(std::move(task)); }
+
+  // With operators of its own, which carry the static states or are projected; the numbers are
+  // those seen in most of thirty scenes, in solves with correction.
+  void add_adaptive(Work work, int factorizations, int solves) {
+    Task task{work};
+    task.adaptive = true;
+    task.usual_factorizations = factorizations;
+    task.usual_solves = solves;
+    add(std::move(task));
+  }
+
+  void plan_law() {
+    const bool symmetric = request_.scene.symmetric();
+    add({Work::stationary_law, 0, {{ground(), 0, symmetric ? 1 : 2}}});
+    if (request_.wants(Quantity::entry_law)) {
+      add({Work::orientation, 0, {{{0, Symmetry::odd}, 0, 1}}});
+    }
+  }
+
+  // Adjoints of mean_slide and mean_stick, which every derivative needs, and of three moments.
+  void plan_sensitivity() {
+    const bool moments = request_.wants(Quantity::moments);
+    if (!moments && !request_.wants(Quantity::sticking)) return;
+    Task task{Work::sensitivity, 0, {{ground(), moments ? 5 : 2, 0}}};
+    task.derivatives = static_cast<int>(quantities::parameters_of(request_.scene).size());
+    add(std::move(task));
+  }
+
+  void plan_transforms() {
+    const bool laplace = request_.wants(Quantity::laplace);
+    if (request_.wants(Quantity::stay_transform) && !laplace) add({Work::stay_transforms});
+    if (laplace) add({Work::duration_moments, 0, {{ground(), 4, 0}}});
+    if (!laplace && !request_.wants(Quantity::resolvent)) return;
+    // Both sectors for the exits, the even one for their discounted time.
+    const int even = 2 + observables_with(&model::Observable::even);
+    const int odd = 1 + observables_with(&model::Observable::odd);
+    for (std::size_t n = 0; n < request_.lambda.size(); ++n) {
+      const double lambda = request_.lambda[n];
+      if (laplace) add({Work::duration_transforms, n, {{{lambda, Symmetry::even}, 2, 0}}});
+      if (!request_.wants(Quantity::resolvent)) continue;
+      add({Work::resolvent,
+           n,
+           {{{lambda, Symmetry::even}, even, 0}, {{lambda, Symmetry::odd}, odd, 0}}});
+    }
+  }
+
+  void plan_spectrum() {
+    if (request_.scene.symmetric()) {
+      add_adaptive(Work::spectrum, 2, 18);
+    } else {
+      add({Work::spectrum_at_zero, 0, {{ground(), 2, 0}}});
+    }
+  }
+
+  // How many observables have a part of that symmetry, as far as a sample of states tells; the
+  // others are not solved for.
+  [[nodiscard]] int observables_with(double (model::Observable::*part)(double, double, double)
+                                         const) const {
+    const auto& f = request_.observables;
+    return static_cast<int>(std::count_if(f.begin(), f.end(), [&](const model::Observable& g) {
+      const auto process = request_.scene.process(1);
+      for (int i = 0; i <= 3 * process.static_index() + 3; ++i) {
+        const double x = process.noise.level(i);
+        if (i <= process.static_index() && (g.*part)(x, 0, 0) != 0) return true;
+        for (double v : {0.01, 0.3, 2.0}) {
+          if ((g.*part)(x, 1, v) != 0 || (g.*part)(-x, 1, v) != 0) return true;
+        }
+      }
+      return false;
+    }));
+  }
+
+  // The system of the stationary law.
+  [[nodiscard]] operators::SystemKey ground() const {
+    return {0, operators::symmetry_of(request_.scene.process(1))};
+  }
+
+  const Request& request_;
+  Plan plan_;
+};
+
+}  // namespace
+
+std::set<operators::SystemKey> Plan::systems() const { return used_from(0); }
+
+std::set<operators::SystemKey> Plan::used_from(std::size_t first) const {
+  std::set<operators::SystemKey> used;
+  for (std::size_t n = first; n < tasks.size(); ++n) {
+    for (const Use& use : tasks[n].uses) used.insert(use.system);
+  }
+  return used;
+}
+
+int Plan::factorizations() const { return static_cast<int>(systems().size()); }
+
+int Plan::assemblies() const {
+  return std::accumulate(tasks.begin(), tasks.end(), factorizations(),
+                         [](int sum, const Task& task) { return sum + task.derivatives; });
+}
+
+int Plan::solves() const {
+  int count = 0;
+  for (const Task& task : tasks) {
+    for (const Use& use : task.uses) count += use.plain + use.transposed;
+  }
+  return count;
+}
+
+bool Plan::adaptive() const {
+  return std::any_of(tasks.begin(), tasks.end(), [](const Task& task) { return task.adaptive; });
+}
+
+Plan plan_of(const Request& request) {
+  if (request.route != options::Route::excursion) return {};
+  return Planner(request).plan();
+}
+
+std::string task_name(const Request& request, const Task& task) {
+  const auto at_lambda = [&](const char* what) {
+    return fmt::format("{} at lambda = {:g}", what, request.lambda[task.at]);
+  };
+  switch (task.work) {
+  case Work::stationary_law: return "stationary law";
+  case Work::orientation: return "entry law";
+  case Work::sensitivity: return "sensitivity";
+  case Work::duration_moments: return "moments of durations";
+  case Work::duration_transforms: return at_lambda("Laplace transforms");
+  case Work::stay_transforms: return "Laplace transforms of stays";
+  case Work::resolvent: return at_lambda("resolvent");
+  case Work::spectrum: return "spectrum";
+  case Work::spectrum_at_zero: return "spectrum at 0";
+  case Work::durations: return "laws of durations";
+  case Work::autocorrelation: return "autocorrelation";
+  case Work::expectation: return "expectations";
+  case Work::relaxation: return "relaxation modes";
+  }
+  return "";
+}
+
+}  // namespace stickslip::routes

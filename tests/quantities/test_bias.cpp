@@ -1,0 +1,148 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+
+#include "../common/near.hpp"
+#include "../common/solved.hpp"
+#include "stickslip/quantities/diffusivity.hpp"
+#include "stickslip/quantities/spectrum.hpp"
+#include "stickslip/routes/evaluation.hpp"
+
+using namespace stickslip;
+using quantities::Results;
+using test::relative_difference;
+using test::scene;
+using test::Solved;
+
+namespace {
+
+// So small that it moves nothing, and yet no symmetry is made use of.
+constexpr double kNothing = 1e-300;
+
+model::Scene biased(model::Scene s, double bias) {
+  s.bias = bias;
+  return s;
+}
+
+const std::vector<model::Scene>& sample_scenes() {
+  static const std::vector<model::Scene> scenes{
+      scene(1, 0.25, 1, 0.25, {1, 0}), scene(1, 1, 1, 0.5, {1, 0}),
+      scene(0.2, 0.15, 1, 0.5, {1, 0}),  // k = 0
+      scene(0.7, 0.4, 2, 0.5, {0.5, 1}), scene(1, 0.5, 1, 0.5, {0, 0})};
+  return scenes;
+}
+
+std::map<std::string, double> scalars(const Solved& solved) {
+  Results results;
+  quantities::append_sticking(solved.law.excursion(), results);
+  quantities::append_moments(solved.law.process(), solved.law.excursion(), results);
+  std::map<std::string, double> values;
+  for (const auto& r : results) values[r.key] = r.value[0];
+  return values;
+}
+
+double spectrum_at_zero(Solved& solved) {
+  return quantities::spectrum_at_zero(solved.systems, solved.law).value;
+}
+
+}  // namespace
+
+TEST_CASE("bias: without one both half lines give what one of them gives", "[parallel]") {
+  for (const auto& s : sample_scenes()) {
+    for (bool hp : {true, false}) {
+      const auto on = [&](const model::Scene& any) {
+        return hp ? test::on_hp(any, 8) : test::on_upwind(any, 4);
+      };
+      const Solved folded(on(s));
+      Solved whole(on(biased(s, kNothing)));
+      REQUIRE_FALSE(whole.law.process().symmetric());
+      const auto one = scalars(folded), both = scalars(whole);
+      INFO("mu_s " << s.friction.mu_s << " delta " << s.delta << " hp " << hp);
+      for (const auto& [key, value] : one) {
+        INFO(key);
+        if (key != "E_V") CHECK(relative_difference(both.at(key), value) < 1e-11);
+      }
+      CHECK(std::abs(both.at("E_V")) < 1e-12 * one.at("E_absV"));
+      CHECK(whole.law.chance_of_falling() > 0);
+      CHECK(whole.law.chance_of_falling() < 1);
+      CHECK(whole.law.excursion().conservation_defect(whole.law.process()) < 1e-10);
+    }
+  }
+}
+
+TEST_CASE("bias: the spectrum at 0 is that of odd functions where there is symmetry") {
+  for (const auto& s : sample_scenes()) {
+    Solved folded(test::on_hp(s, 8)), whole(test::on_hp(biased(s, kNothing), 8));
+    const auto reduced =
+        quantities::reduced_spectrum(folded.systems, folded.law, {}, 1e-12).spectrum.at_zero;
+    CHECK(relative_difference(spectrum_at_zero(whole), reduced.value) < 1e-10);
+  }
+}
+
+TEST_CASE("bias: mirror images mirror") {
+  for (double bias : {0.1, 0.7, 1.6}) {
+    const auto s = scene(1, 0.7, 1, 0.25, {1, 0});
+    Solved up(test::on_hp(biased(s, bias), 7)), down(test::on_hp(biased(s, -bias), 7));
+    const auto rising = scalars(up), falling = scalars(down);
+    for (const auto& [key, value] : rising) {
+      INFO(key);
+      CHECK(relative_difference(falling.at(key), key == "E_V" ? -value : value) < 1e-11);
+    }
+    CHECK(rising.at("E_V") > 0);
+    CHECK(relative_difference(spectrum_at_zero(up), spectrum_at_zero(down)) < 1e-10);
+  }
+}
+
+// Forces balance in the mean: E[X] + g + E[b(V)] = mu_d E[sign V] + the mean of the static force,
+// and only the last is not seen by the law; but power does: d/dt V^2/2 has mean 0.
+TEST_CASE("bias: the power put in is dissipated") {
+  for (double bias : {0.1, 0.5, 1.5}) {
+    const auto s = scene(1, 0.6, 1, 0.25, {0.8, 0});
+    const Solved solved(test::on_hp(biased(s, bias), 10));
+    const auto v = scalars(solved);
+    const double in = v.at("E_XV") + bias * v.at("E_V");
+    const double out = 0.6 * v.at("E_absV") + 0.8 * v.at("E_V2");
+    CHECK(relative_difference(in, out) < 1e-9);
+  }
+}
+
+// The null vector of the whole generator shares only the rates with the excursions.
+TEST_CASE("bias: the excursions agree with the null vector") {
+  for (const auto& base : sample_scenes()) {
+    for (double bias : {0.1, -0.3}) {
+      const auto s = biased(base, bias);
+      const auto d = test::on_upwind(s, 3);
+      options::Request r;
+      r.scene = s;
+      r.quantities = {options::Quantity::sticking, options::Quantity::moments};
+      petsc::Ledger ledger;
+      const auto evaluate = [&](options::Route route) {
+        r.route = route;
+        return routes::evaluate({PETSC_COMM_WORLD, r, d.process, d.axis, ledger}).results;
+      };
+      const auto excursions = evaluate(options::Route::excursion);
+      std::map<std::string, double> found;
+      for (const auto& result : evaluate(options::Route::null_vector)) {
+        found[result.key] = result.value[0];
+      }
+      for (const auto& result : excursions) {
+        INFO(result.key << " bias " << bias);
+        CHECK(relative_difference(found.at(result.key), result.value[0]) < 1e-7);
+      }
+    }
+  }
+}
+
+// White noise and no drag: the density is proportional to exp(g v - mu |v|), and E[V] tends to
+// 2 g/(mu^2 - g^2) as tau falls, with an error of the first order.
+TEST_CASE("bias: the drift in white noise") {
+  const double mu = 1, bias = 0.5, limit = 2 * bias / (mu * mu - bias * bias);
+  std::vector<double> gap;
+  for (double tau : {0.1, 0.05, 0.025}) {
+    const auto s = biased(scene(mu, mu, tau, 1, {0, 0}), bias);
+    gap.push_back(limit - scalars(Solved(test::on_hp(s, 8)))["E_V"]);
+  }
+  CHECK(gap[0] > gap[1]);
+  CHECK(std::abs(2 * gap[2] - gap[1]) < 0.05 * gap[1]);
+  CHECK(gap[2] < 0.02 * limit);
+}

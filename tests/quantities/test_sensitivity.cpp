@@ -1,0 +1,132 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+
+#include "../common/near.hpp"
+#include "../common/solved.hpp"
+#include "stickslip/model/noise_chain.hpp"
+#include "stickslip/quantities/sensitivity.hpp"
+
+using namespace stickslip;
+using operators::Parameter;
+using quantities::Results;
+using test::relative_difference;
+using test::scene;
+using test::Solved;
+
+namespace {
+
+using Values = std::map<std::string, double>;
+
+constexpr int kDegree = 11;
+
+Values by_key(const Results& results) {
+  Values values;
+  for (const auto& r : results) values[r.key] = r.value[0];
+  return values;
+}
+
+Values scalars(const model::Scene& s) {
+  const Solved solved(test::on_hp(s, kDegree));
+  Results results;
+  quantities::append_sticking(solved.law.excursion(), results);
+  quantities::append_moments(solved.law.process(), solved.law.excursion(), results);
+  quantities::append_noise_law(solved.law.process(), results);
+  return by_key(results);
+}
+
+Values derivatives(const model::Scene& s) {
+  Solved solved(test::on_hp(s, kDegree));
+  const quantities::Sensitivity sensitivity(solved.systems, solved.law,
+                                            quantities::parameters_of(s));
+  Results results;
+  sensitivity.append_sticking(results);
+  sensitivity.append_moments(results);
+  quantities::append_noise_sensitivity(solved.law.process(), results);
+  return by_key(results);
+}
+
+model::Scene changed(model::Scene s, const std::string& parameter, double by) {
+  if (parameter == "mu_d") s.friction.mu_d += by;
+  if (parameter == "tau") s.tau += by;
+  if (parameter == "drag_coefficient") s.drag.linear += by;
+  return s;
+}
+
+// Central differences with steps h, h/2, h/4, twice extrapolated: their error is of order h^6.
+Values extrapolated(const model::Scene& s, const std::string& parameter, double h) {
+  std::vector<Values> difference;
+  for (double step : {h, h / 2, h / 4}) {
+    const Values above = scalars(changed(s, parameter, step));
+    const Values below = scalars(changed(s, parameter, -step));
+    Values d;
+    for (const auto& [key, value] : above) d[key] = (value - below.at(key)) / (2 * step);
+    difference.push_back(std::move(d));
+  }
+  Values limit;
+  for (const auto& [key, coarse] : difference[0]) {
+    const double middle = difference[1][key], fine = difference[2][key];
+    const double first = (4 * middle - coarse) / 3, second = (4 * fine - middle) / 3;
+    limit[key] = (16 * second - first) / 15;
+  }
+  return limit;
+}
+
+}  // namespace
+
+TEST_CASE("sensitivity: adjoints agree with extrapolated differences", "[slow][real]") {
+  auto weak = scene(0.6, 0.26, 2.1, 0.25, {1.3, 0});
+  auto strong = scene(1, 0.9, 0.5, 0.5, {0.5, 0.3});
+  auto small = scene(0.2, 0.13, 1, 0.5, {1, 0});  // k = 0
+  auto long_stays = scene(2.6, 0.6, 1, 0.25, {1, 0});
+  strong.drag_name = "cubic";
+  for (auto s : {weak, strong, small, long_stays}) {
+    s.noise_levels = s.full_levels() - 1;  // tau changes no number of levels
+    const Values exact = derivatives(s);
+    for (const auto& [parameter, h] : {std::pair<std::string, double>{"mu_d", 0.004},
+                                       {"tau", 0.02 * s.tau},
+                                       {"drag_coefficient", 0.05 * s.drag.linear}}) {
+      for (const auto& [key, value] : extrapolated(s, parameter, h)) {
+        const auto found = exact.find("d" + key + "_d" + parameter);
+        if (found == exact.end()) {
+          CHECK(std::abs(value) < 1e-8);  // E_V, and the noise by what is not its own
+          continue;
+        }
+        INFO(found->first << " of mu_s " << s.friction.mu_s);
+        CHECK(relative_difference(found->second, value) < 1e-7);
+      }
+    }
+  }
+}
+
+// One system serves the law and all adjoints.
+TEST_CASE("sensitivity: one factorisation, one solve a functional") {
+  const auto s = scene(1, 0.25, 1, 0.5, {1, 0});
+  Solved solved(test::on_hp(s, 4));
+  const auto before = solved.ledger;
+  const quantities::Sensitivity sensitivity(solved.systems, solved.law,
+                                            quantities::parameters_of(s));
+  CHECK(solved.ledger.solves - before.solves == 2);
+  CHECK(solved.ledger.assemblies - before.assemblies == 3);
+  CHECK(solved.ledger.factorizations_real + solved.ledger.factorizations_complex == 1);
+  Results results;
+  sensitivity.append_moments(results);
+  CHECK(solved.ledger.solves - before.solves == 5);
+  CHECK(results.size() == 9);
+}
+
+TEST_CASE("sensitivity: a law without coefficient has no derivative by it") {
+  auto s = scene(1, 0.5, 1, 0.5, {0, 0});
+  s.drag_name = "none";
+  CHECK(quantities::parameters_of(s) == std::vector{Parameter::mu_d, Parameter::tau});
+}
+
+// d E[X^2]/d tau = -1/tau^2 on the full range, where E[X^2] = 1/tau but for tails.
+TEST_CASE("sensitivity: the variance of the noise") {
+  const model::Process process{{0.7, 0.2, 60}, {1, 0.5}, {1, 0}};
+  Results results;
+  quantities::append_noise_sensitivity(process, results);
+  const auto found = by_key(results);
+  CHECK(relative_difference(found.at("dE_X2_dtau"), -1 / 0.49) < 1e-10);
+  CHECK(found.at("dP_X_le_mu_s_dtau") > 0);
+}

@@ -1,0 +1,155 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "../common/scenes.hpp"
+#include "stickslip/accuracy/prediction.hpp"
+#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/routes/plan.hpp"
+
+using namespace stickslip;
+using operators::Symmetry;
+using options::Quantity;
+using options::Request;
+using test::scene;
+
+namespace {
+
+/// Counts on one discretisation.
+struct Counts {
+  int assemblies, factorizations, solves;
+  friend bool operator==(const Counts&, const Counts&) = default;
+};
+
+std::ostream& operator<<(std::ostream& out, const Counts& c) {
+  return out << c.assemblies << " assemblies, " << c.factorizations << " factorisations, "
+             << c.solves << " solves";
+}
+
+struct Case {
+  const char* name;
+  std::set<Quantity> quantities;
+  Counts expected;
+  model::Scene of = scene(1, 0.25, 1, 0.5, {1, 0});
+  std::vector<double> lambda = {};
+  std::vector<const char*> observables = {};
+};
+
+model::Scene inclined() {
+  auto s = scene(1, 0.25, 1, 0.5, {1, 0});
+  s.bias = 0.3;
+  return s;
+}
+
+model::Scene without_drag() {
+  auto s = scene(1, 0.25, 1, 0.5, {0, 0});
+  s.drag_name = "none";
+  return s;
+}
+
+model::Scene cut() {
+  auto s = scene(1, 0.25, 1, 0.5, {1, 0});
+  s.v_max = 3;
+  return s;
+}
+
+const std::vector<Case>& cases() {
+  using enum Quantity;
+  static const std::vector<Case> all{
+      {"noise alone", {noise_law}, {0, 0, 0}},
+      {"noise and its derivatives", {noise_law, sensitivity}, {0, 0, 0}},
+      {"a trajectory", {trajectory}, {0, 0, 0}},
+      {"sticking", {sticking}, {1, 1, 1}},
+      {"sticking and moments", {sticking, moments, noise_law}, {1, 1, 1}},
+      {"with the density", {sticking, moments, noise_law, density}, {1, 1, 1}},
+      {"the entry law asks for odd functions", {sticking, entry_law}, {2, 2, 2}},
+      {"stays alone", {stay_transform}, {1, 1, 1}, cut(), {0.1, 1, 10}},
+      {"transforms of durations", {laplace}, {3, 3, 9}, cut(), {0.5, 2}},
+      {"transforms at 0 share the system of the law", {laplace}, {2, 2, 9}, cut(), {0, 2}},
+      {"a resolvent", {resolvent}, {2, 2, 6}, without_drag(), {0.5}, {"v^2", "x*v", "stick"}},
+      {"transforms and resolvent share systems",
+       {laplace, resolvent},
+       {4, 4, 15},
+       without_drag(),
+       {0, 0.5},
+       {}},
+      {"derivatives", {sticking, sensitivity}, {4, 1, 3}},
+      {"derivatives of moments too", {sticking, moments, sensitivity}, {4, 1, 6}},
+      {"derivatives without drag", {sticking, sensitivity}, {3, 1, 3}, without_drag()},
+      {"a bias", {sticking, moments}, {1, 1, 2}, inclined()},
+      {"a bias and the diffusivity", {moments, spectrum}, {1, 1, 4}, inclined()}};
+  return all;
+}
+
+Request request(const Case& c) {
+  Request r;
+  r.scene = c.of;
+  r.quantities = c.quantities;
+  r.lambda = c.lambda;
+  r.accuracy = 1e-4;
+  for (const char* f : c.observables) {
+    r.observables.push_back(model::parse_observable(f, r.scene.friction));
+  }
+  return r;
+}
+
+}  // namespace
+
+TEST_CASE("plan: what is foretold is what is done") {
+  for (const auto& c : cases()) {
+    INFO(c.name);
+    const Request r = request(c);
+    const auto plan = accuracy::needs_system(r) ? routes::plan_of(r) : routes::Plan{};
+    CHECK_FALSE(plan.adaptive());
+    const Counts foretold{plan.assemblies(), plan.factorizations(), plan.solves()};
+    CHECK(foretold == c.expected);
+    const auto outcome = accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
+    if (c.expected.factorizations == 0) {
+      CHECK(outcome.steps.empty());
+      continue;
+    }
+    REQUIRE(outcome.steps.size() >= 2);
+    for (const auto& step : outcome.steps) {
+      const auto& l = step.ledger;
+      const Counts done{l.assemblies, l.factorizations_real + l.factorizations_complex, l.solves};
+      CHECK(done == c.expected);
+    }
+  }
+}
+
+TEST_CASE("plan: what is adaptive says so, and takes no complex arithmetic") {
+  using enum Quantity;
+  for (Quantity q : {spectrum, duration_density, autocorrelation, expectation, relaxation}) {
+    Request r = request({"", {q}, {}});
+    r.time = {0.5, 2};
+    r.observables.push_back(model::parse_observable("v^2", r.scene.friction));
+    const auto plan = routes::plan_of(r);
+    CHECK(plan.adaptive());
+    CHECK(plan.factorizations() == (q == relaxation ? 0 : 1));
+    const auto outcome = accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
+    const auto& l = outcome.steps.front().ledger;
+    CHECK(l.factorizations_real + l.factorizations_complex >= plan.factorizations() + 1);
+    CHECK(l.solves >= plan.solves());
+    if (!PetscDefined(USE_COMPLEX)) CHECK(l.factorizations_complex == 0);
+  }
+}
+
+TEST_CASE("plan: sizes are those of the run, by the analysis alone") {
+  for (double delta : {0.5, 0.25}) {
+    Request r = request({"", {Quantity::sticking, Quantity::entry_law}, {}});
+    r.scene.delta = delta;
+    const auto prediction = accuracy::predict(PETSC_COMM_WORLD, r);
+    const auto outcome = accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
+    REQUIRE(prediction.steps.size() == 2);
+    for (std::size_t n = 0; n < 2; ++n) {
+      const auto& foretold = prediction.steps[n];
+      const auto& l = outcome.steps[n].ledger;
+      CHECK(foretold.unknowns == l.unknowns);
+      CHECK(foretold.nonzeros == l.nonzeros);
+      CHECK(foretold.factor_entries > 0.5 * static_cast<double>(l.factor_entries));
+      CHECK(foretold.factor_entries < 2 * static_cast<double>(l.factor_entries));
+      CHECK(foretold.megabytes <= 2 * l.factor_megabytes + 2);
+      CHECK(foretold.megabytes >= 0.5 * l.factor_megabytes - 2);
+      CHECK(foretold.seconds > 0);
+    }
+  }
+}
