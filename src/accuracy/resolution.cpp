@@ -33,12 +33,15 @@ int hp_elements(const model::Scene& scene, const Resolution& resolution) {
 
 // Exponential tilt of the law of X, per unit of x, that comes with large velocities: without drag
 // the velocity decays at the rate mu_d and X conditioned on it is shifted by up to twice mu_d
-// (less where mu_d exceeds the noise, of standard deviation 1/sqrt(tau)).
+// (less where mu_d exceeds the noise, of standard deviation 1/sqrt(tau)). Drag that saturates adds
+// to mu_d.
 double tilt(const model::Scene& scene) {
   const double mu_d = scene.friction.mu_d;
   const double drag_time = -scene.drag.slope_at_rest() / (mu_d * mu_d);
+  const double most = 1 / std::sqrt(scene.tau);
+  if (scene.drag.law && !scene.drag.bounds_velocity()) return 2 * scene.tau * most;
   if (drag_time > 1) return 0;
-  return 2 * scene.tau * std::min(mu_d, 1 / std::sqrt(scene.tau));
+  return 2 * scene.tau * std::min(mu_d, most);
 }
 
 }  // namespace

@@ -123,12 +123,13 @@ double tail_velocity(const model::Process& process, double tolerance) {
   const double drop = -std::log(tolerance) + 5;  // 5: polynomial factors of the moments
   const double mu_d = process.friction.mu_d;
   const double without_drag = drop / mu_d;
-  if (!process.drag.bounds_velocity()) return without_drag;
+  if (process.drag.is_none()) return without_drag;
   const auto left = [&](double v) { return drop - mu_d * v + process.drag.potential(v); };
-  if (!std::isfinite(left(without_drag))) return without_drag;
+  const double end = std::min(without_drag, process.drag.reach);
+  if (!std::isfinite(left(end)) || left(end) > 0) return end;
   std::uintmax_t iterations = 200;
   const auto bracket = boost::math::tools::toms748_solve(
-      left, 0.0, without_drag, boost::math::tools::eps_tolerance<double>(20), iterations);
+      left, 0.0, end, boost::math::tools::eps_tolerance<double>(20), iterations);
   return bracket.second;
 }
 
