@@ -89,6 +89,7 @@ bool Drag::bounds_velocity() const {
   for (double v = 1e100; v > 1; v /= 10) {
     const double far = (*this)(v);
     if (std::isnan(far)) continue;
+    if (std::isinf(far)) return far < 0;
     return far < 1.01 * (*this)(std::sqrt(v));
   }
   return false;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -31,6 +32,7 @@ bool is_option_name(const std::string& word) {
 bool is_formula(const std::string& option, const std::string& value) {
   const Option* known = option.starts_with('-') ? find(option.substr(1)) : nullptr;
   if (known == nullptr || known->kind != Kind::text || !is_option_name(value)) return false;
+  if (std::isalpha(static_cast<unsigned char>(value[1])) == 0) return false;
   const auto names = all_names();
   return std::count(names.begin(), names.end(), value) == 0;
 }
