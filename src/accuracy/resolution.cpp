@@ -33,12 +33,26 @@ int hp_elements(const model::Scene& scene, const Resolution& resolution) {
 
 // Exponential tilt of the law of X, per unit of x, that comes with large velocities: without drag
 // the velocity decays at the rate mu_d and X conditioned on it is shifted by up to twice mu_d
-// (less where mu_d exceeds the noise, of standard deviation 1/sqrt(tau)).
+// (less where mu_d exceeds the noise, of standard deviation 1/sqrt(tau)). Drag that saturates adds
+// to mu_d.
 double tilt(const model::Scene& scene) {
   const double mu_d = scene.friction.mu_d;
   const double drag_time = -scene.drag.slope_at_rest() / (mu_d * mu_d);
+  const double most = 1 / std::sqrt(scene.tau);
+  if (scene.drag.law && !scene.drag.bounds_velocity()) return 2 * scene.tau * most;
   if (drag_time > 1) return 0;
-  return 2 * scene.tau * std::min(mu_d, 1 / std::sqrt(scene.tau));
+  return 2 * scene.tau * std::min(mu_d, most);
+}
+
+std::shared_ptr<velocity::Axis> axis_of(const model::Scene& scene, const Resolution& resolution,
+                                        const model::Drag& drag) {
+  if (resolution.scheme == options::Scheme::upwind) {
+    const double spacing = scene.delta / resolution.points;
+    const auto count = static_cast<int>(upwind_nodes(scene, resolution));
+    return std::make_shared<velocity::UpwindAxis>(spacing, count, drag);
+  }
+  const auto ends = velocity::element_ends(scene.process(resolution.levels), mesh_rule(resolution));
+  return std::make_shared<velocity::HpAxis>(ends, resolution.degree, drag);
 }
 
 }  // namespace
@@ -58,9 +72,9 @@ int levels_for(const model::Scene& scene, double tolerance) {
 }
 
 double velocity_end(const model::Scene& scene, int levels, double tolerance) {
-  const auto process = scene.process(levels);
-  const double terminal = process.drag.terminal_velocity(
-      process.friction.excess(process.noise.level(levels), std::abs(scene.bias)));
+  const auto process = scene.process(levels), mirrored = process.mirrored();
+  const double terminal = std::max(process.drag.terminal_velocity(process.excess(levels)),
+                                   mirrored.drag.terminal_velocity(mirrored.excess(levels)));
   if (scene.v_max) return std::min(*scene.v_max, terminal);
   const double tail = velocity::tail_velocity(process, tolerance);
   // Holding states cost a little: a cut must save something.
@@ -100,13 +114,11 @@ Resolution exact_resolution(const model::Scene& scene, double tolerance) {
 std::shared_ptr<const velocity::Axis> make_axis(const model::Scene& scene,
                                                 const Resolution& resolution) {
   if (resolution.scheme == options::Scheme::none) return nullptr;
-  if (resolution.scheme == options::Scheme::upwind) {
-    const double spacing = scene.delta / resolution.points;
-    const auto count = static_cast<int>(upwind_nodes(scene, resolution));
-    return std::make_shared<velocity::UpwindAxis>(spacing, count, scene.drag);
+  auto axis = axis_of(scene, resolution, scene.drag);
+  if (!scene.drag.odd()) {
+    axis->set_mirrored(axis_of(scene, resolution, scene.drag.mirrored()));
   }
-  auto ends = velocity::element_ends(scene.process(resolution.levels), mesh_rule(resolution));
-  return std::make_shared<velocity::HpAxis>(std::move(ends), resolution.degree, scene.drag);
+  return axis;
 }
 
 std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution) {

@@ -176,7 +176,8 @@ int run_session(const std::vector<std::string>& words, double start_up) {
 
 int run(int argc, char** argv) {
   const auto start = Clock::now();
-  const std::vector<std::string> words(argv + 1, argv + argc);
+  std::vector<std::string> words(argv + 1, argv + argc);
+  options::shield_formulas(words);
   const std::string text = text_asked_for(words);
   if (!text.empty()) {
     std::fputs(text.c_str(), stdout);
@@ -184,7 +185,10 @@ int run(int argc, char** argv) {
   }
   try {
     options::check_options_files(words);
-    const petsc::Session session(argc, argv);
+    std::vector<char*> arguments{argv[0]};
+    for (auto& word : words) arguments.push_back(word.data());
+    char** values = arguments.data();
+    const petsc::Session session(argc, values);
     petsc::keep_blas_to_one_thread();
     return run_session(words, seconds_since(start));
   } catch (const Failure& failure) {

@@ -162,7 +162,7 @@ struct Boundary {
 }  // namespace
 
 FluidQueue::FluidQueue(const model::Process& process, double lambda) {
-  if (process.drag.bounds_velocity()) throw std::invalid_argument("a fluid queue has no drag");
+  if (!process.drag.is_none()) throw std::invalid_argument("a fluid queue has no drag");
   const Phases phases(process);
   const Jumps jumps(process, phases, lambda);
   const auto& up = phases.rising;

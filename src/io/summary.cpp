@@ -6,15 +6,20 @@ namespace stickslip::io {
 
 Json scene_json(const options::Request& request) {
   const auto& s = request.scene;
-  return {{"mu_s", s.friction.mu_s},
-          {"mu_d", s.friction.mu_d},
-          {"tau", s.tau},
-          {"delta", s.delta},
-          {"drag", s.drag_name},
-          {"drag_coefficient", s.drag.linear},
-          {"drag_cubic", s.drag.cubic},
-          {"bias", s.bias},
-          {"noise_levels_meant", s.meant().noise.levels}};
+  Json scene{{"mu_s", s.friction.mu_s},
+             {"mu_d", s.friction.mu_d},
+             {"tau", s.tau},
+             {"delta", s.delta},
+             {"drag", s.drag_name}};
+  if (s.drag.law) {
+    scene["drag_expression"] = s.drag_expression;
+  } else {
+    scene["drag_coefficient"] = s.drag.linear;
+    scene["drag_cubic"] = s.drag.cubic;
+  }
+  scene["bias"] = s.bias;
+  scene["noise_levels_meant"] = s.meant().noise.levels;
+  return scene;
 }
 
 Json results_json(const quantities::Results& results) {

@@ -11,6 +11,7 @@ std::string scene_line(const options::Request& request) {
   const auto& s = request.scene;
   std::string drag = s.drag_name;
   if (s.drag.linear > 0) drag += fmt::format(", c = {:g}", s.drag.linear);
+  if (s.drag.law) drag = "b(v) = " + s.drag_expression;
   if (s.drag.cubic > 0) drag += fmt::format(", c3 = {:g}", s.drag.cubic);
   const std::string bias = s.bias == 0 ? "" : fmt::format("   bias = {:g}", s.bias);
   return fmt::format("mu_s = {:g}   mu_d = {:g}   tau = {:g}   delta = {:g}   drag {}{}\n",

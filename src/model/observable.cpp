@@ -1,15 +1,13 @@
 #include "stickslip/model/observable.hpp"
 
 #include <fmt/format.h>
-#include <muParser.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <stdexcept>
-#include <string_view>
 
+#include "stickslip/model/expression.hpp"
 #include "stickslip/model/grid_index.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -18,46 +16,6 @@ namespace {
 
 using Function = std::function<double(double, double, double)>;
 
-// The variables live beside the parser, which keeps their addresses. muParser: small, maintained,
-// packaged, compiles to bytecode.
-struct Expression {
-  explicit Expression(const std::string& text, const Friction& friction) {
-    parser.DefineVar("x", &x);
-    parser.DefineVar("y", &y);
-    parser.DefineVar("v", &v);
-    parser.DefineConst("mu_s", friction.mu_s);
-    parser.DefineConst("mu_d", friction.mu_d);
-    parser.SetExpr(text);
-  }
-  double operator()(double x_value, double y_value, double v_value) {
-    x = x_value;
-    y = y_value;
-    v = v_value;
-    return parser.Eval();
-  }
-
-  /// Number of values, of which muParser gives the last: two for "v, x". Reads the text.
-  [[nodiscard]] int count() {
-    int values = 0;
-    (void)parser.Eval(values);
-    return values;
-  }
-
-  double x = 0, y = 0, v = 0;
-  mu::Parser parser;
-};
-
-// A sign = that is no part of a comparison. muParser assigns, and would overwrite the state.
-bool assigns(std::string_view text) {
-  for (std::size_t n = 0; n < text.size(); ++n) {
-    if (text[n] != '=') continue;
-    if (n > 0 && std::string_view("<>!").find(text[n - 1]) != std::string_view::npos) continue;
-    if (n + 1 == text.size() || text[n + 1] != '=') return true;
-    ++n;
-  }
-  return false;
-}
-
 std::string not_finite(const std::string& text, double value, double x, double y, double v) {
   return fmt::format("{} is {} at x = {:g}, y = {:g}, v = {:g}; it must be finite in every state, "
                      "with y = 0 and v = 0 at rest",
@@ -65,36 +23,27 @@ std::string not_finite(const std::string& text, double value, double x, double y
 }
 
 // Tried at rest, as motion starts and in slow motion, where every scene has states like these.
-void require_finite(const std::string& text, Expression& f, const Friction& friction) {
+void require_finite(const Expression& f, const Friction& friction) {
   const double some_x = friction.mu_s / 2, some_v = 1e-3;
   for (double x : {0.0, some_x, -some_x}) {
     for (double y : {0.0, 1.0, -1.0}) {
       for (double v : {0.0, y * some_v}) {
-        const double value = f(x, y, v);
-        if (!std::isfinite(value)) throw std::invalid_argument(not_finite(text, value, x, y, v));
+        const double value = f({x, y, v});
+        if (std::isfinite(value)) continue;
+        throw std::invalid_argument(not_finite(f.text(), value, x, y, v));
       }
     }
   }
 }
 
 Observable from_expression(const std::string& text, const Friction& friction) {
-  if (assigns(text)) {
-    throw std::invalid_argument(text + " assigns a value; == is the comparison");
-  }
-  try {
-    const auto f = std::make_shared<Expression>(text, friction);
-    if (f->count() > 1) {
-      throw std::invalid_argument(text + " is more than one expression; put a semicolon between");
-    }
-    require_finite(text, *f, friction);
-    return {text, [text, f](double x, double y, double v) {
-              const double value = (*f)(x, y, v);
-              if (std::isfinite(value)) return value;
-              throw Failure(ExitStatus::bad_input, not_finite(text, value, x, y, v));
-            }};
-  } catch (const mu::ParserError& error) {
-    throw std::invalid_argument(error.GetMsg());
-  }
+  const Expression f(text, {"x", "y", "v"}, {{"mu_s", friction.mu_s}, {"mu_d", friction.mu_d}});
+  require_finite(f, friction);
+  return {text, [f](double x, double y, double v) {
+            const double value = f({x, y, v});
+            if (std::isfinite(value)) return value;
+            throw Failure(ExitStatus::bad_input, not_finite(f.text(), value, x, y, v));
+          }};
 }
 
 bool within(double x, double threshold) {

@@ -6,11 +6,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
+#include "stickslip/model/drag_law.hpp"
 #include "stickslip/options/settings.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/eigensolver.hpp"
@@ -26,6 +28,28 @@ bool is_option_name(const std::string& word) {
   return word.size() > 1 && word[0] == '-' && !parse_number(word);
 }
 
+// A formula such as -v*abs(v) where a value is due, which PETSc takes for an option.
+bool is_formula(const std::string& option, const std::string& value) {
+  const Option* known = option.starts_with('-') ? find(option.substr(1)) : nullptr;
+  if (known == nullptr || known->kind != Kind::text || !is_option_name(value)) return false;
+  if (std::isalpha(static_cast<unsigned char>(value[1])) == 0) return false;
+  const auto names = all_names();
+  return std::count(names.begin(), names.end(), value) == 0;
+}
+
+// The same in a line of an options file, in quotes or not: how to write it, empty if all is well.
+std::string better_formula(const std::string& line) {
+  const auto begin = line.find_first_not_of(" \t"), end = line.find_first_of(" \t", begin);
+  const auto start = line.find_first_not_of(" \t", end);
+  if (start == line.npos) return "";
+  const bool quoted = line[start] == '"';
+  const auto first = quoted ? start + 1 : start;
+  const auto parts = split(line.substr(first), quoted ? '"' : '#');
+  const std::string option = line.substr(begin, end - begin);
+  if (line[first] != '-' || !is_formula(option, parts.front())) return "";
+  return fmt::format("{} \" {}\"", option, parts.front());
+}
+
 model::Drag read_drag(const Settings& settings, Request& request) {
   const std::string law = settings.text("drag");
   const auto warn_unused = [&](const std::string& name) {
@@ -33,10 +57,37 @@ model::Drag read_drag(const Settings& settings, Request& request) {
       request.warnings.push_back(fmt::format("-{} has no effect with -drag {}", name, law));
     }
   };
-  if (law == "none") warn_unused("drag_coefficient");
+  const bool none = law == "none" || law == "expression";
+  if (none) warn_unused("drag_coefficient");
   if (law != "cubic") warn_unused("drag_cubic");
-  return {law == "none" ? 0 : settings.real("drag_coefficient"),
+  if (law != "expression") warn_unused("drag_expression");
+  return {none ? 0 : settings.real("drag_coefficient"),
           law == "cubic" ? settings.real("drag_cubic") : 0};
+}
+
+// The largest force that occurs: X passes mu_s by 12 standard deviations with probability e^-72.
+double largest_force(const model::Scene& scene) {
+  const auto process = scene.meant();
+  const double highest = process.noise.level(process.noise.levels);
+  const double seen = scene.friction.mu_s + scene.delta + 12 / std::sqrt(scene.tau);
+  return std::min(highest, seen) + std::abs(scene.bias) - scene.friction.mu_d;
+}
+
+// After check_noise: how fast bodies get depends on the noise.
+void read_drag_law(const Settings& settings, model::Scene& scene, Problems& problems) {
+  if (scene.drag_name != "expression" || !problems.empty()) return;
+  scene.drag_expression = settings.text("drag_expression");
+  if (scene.drag_expression.empty()) {
+    settings.report(problems, "drag", "needs a law in -drag_expression",
+                    "add for example -drag_expression \"-v - 0.1*v*abs(v)\"");
+    return;
+  }
+  try {
+    scene.drag = model::parse_drag(scene.drag_expression, scene.friction, scene.tau,
+                                   largest_force(scene), scene.bias);
+  } catch (const model::UnfitLaw& law) {
+    return settings.report(problems, "drag_expression", law.what(), law.fix());
+  }
 }
 
 // The levels that exist, and that some of them slide.
@@ -109,7 +160,8 @@ model::Scene read_scene(const Settings& settings, Request& request, Problems& pr
                     fmt::format("must be in (0, mu_s], and mu_s = {}", settings.text("mu_s")),
                     "friction cannot grow when the body starts to slide");
   }
-  if (!scene.drag.bounds_velocity() && std::abs(scene.bias) >= scene.friction.mu_d) {
+  const bool no_drag = scene.drag_name != "expression" && scene.drag.is_none();
+  if (no_drag && std::abs(scene.bias) >= scene.friction.mu_d) {
     settings.report(problems, "bias",
                     fmt::format("drives a sliding body for ever: without drag only mu_d = {:g} "
                                 "holds it back",
@@ -380,7 +432,7 @@ void check_route(const Settings& settings, const Request& request, Problems& pro
                     "leave it out");
   }
   if (request.route != Route::fluid_queue) return;
-  if (request.scene.drag.bounds_velocity()) {
+  if (!request.scene.drag.is_none()) {
     settings.report(problems, "route", "needs b = 0: only then is the model a fluid queue",
                     "add -drag none, or take -route excursion");
   }
@@ -645,6 +697,7 @@ Request read_request(const std::vector<std::string>& argv) {
 
   request.scene = read_scene(settings, request, problems);
   check_noise(settings, request.scene, problems);
+  read_drag_law(settings, request.scene, problems);
   request.route = route_named(settings.text("route"));
   read_compared(settings, request, problems);
   read_quantities(settings, request, problems);
@@ -678,6 +731,12 @@ Request read_request(const std::vector<std::string>& argv) {
   return request;
 }
 
+void shield_formulas(std::vector<std::string>& argv) {
+  for (std::size_t n = 1; n < argv.size(); ++n) {
+    if (is_formula(argv[n - 1], argv[n])) argv[n].insert(0, " ");
+  }
+}
+
 void check_options_files(const std::vector<std::string>& argv) {
   Problems problems;
   for (std::size_t n = 0; n < argv.size(); ++n) {
@@ -699,6 +758,10 @@ void check_options_files(const std::vector<std::string>& argv) {
     std::string line;
     for (int number = 1; std::getline(file, line); ++number) {
       const auto first = line.find_first_not_of(" \t\r");
+      if (const auto better = better_formula(line); !better.empty()) {
+        problems.add(fmt::format("{}:{}: the value looks like an option; put a blank before it: {}",
+                                 name, number, better));
+      }
       if (first == line.npos || line[first] == '#' || line[first] == '-') continue;
       problems.add(fmt::format("{}:{}: \"{}\" does not start with -name; put a # before comments",
                                name, number, line.substr(first, 40)));

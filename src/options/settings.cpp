@@ -22,7 +22,8 @@ std::optional<std::string> value_in_database(const std::string& name) {
   std::array<char, 4096> buffer{};
   petsc::check(PetscOptionsGetString(nullptr, nullptr, ("-" + name).c_str(), buffer.data(),
                                      buffer.size(), &found));
-  return std::string(buffer.data());
+  const std::string value = buffer.data();
+  return value.substr(std::min(value.find_first_not_of(' '), value.size()));
 }
 
 std::string unknown_word(const Option& option, const std::string& word) {

@@ -73,12 +73,16 @@ Group scene_group() {
                   "Without it, the full range is meant, and as much of it is kept as -accuracy "
                   "needs",
                   "leave it out to have it chosen from -accuracy"),
-          words("drag", Kind::choice, "linear", {"linear", "none", "cubic"},
-                "drag law b(v): -c v, 0, or -c v - c3 v^3"),
+          words("drag", Kind::choice, "linear", {"linear", "none", "cubic", "expression"},
+                "drag law b(v): -c v, 0, -c v - c3 v^3, or -drag_expression"),
           real("drag_coefficient", "1/time", "1", not_negative(), "c in the drag law",
                "the drag must not grow with the velocity, it would drive the body"),
           real("drag_cubic", "time/length^2", "0", not_negative(), "c3 in the cubic drag law",
                "the drag must not grow with the velocity, it would drive the body"),
+          text("drag_expression", "",
+               "b(v) of -drag expression in v, mu_s, mu_d, tau, such as \"-v - 0.1*v*abs(v)\"; "
+               "0 at rest, falling everywhere with bounded slopes; where it is not odd, both signs "
+               "of v are kept, as with a bias"),
           real("bias", "force", "0", {-kInfinity, kInfinity, false, false},
                "constant force added to X, such as the slope of an inclined plane; without "
                "symmetry both signs of v are kept, and sticking, moments, noise_law, spectrum "

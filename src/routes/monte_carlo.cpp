@@ -191,9 +191,9 @@ class Estimates {
 // What fixes the numbers of a simulation, but for how many excursions there are. The questions may
 // come from the file of -compare, so they are taken as understood, not as written.
 std::vector<std::pair<std::string, std::string>> identity(const Request& request) {
-  static const std::vector<std::string> names{
-      "mu_s", "mu_d",       "tau",          "delta", "drag", "drag_coefficient",
-      "seed", "drag_cubic", "noise_levels", "bias"};
+  std::vector<std::string> names{"mu_s", "mu_d",       "tau",          "delta", "drag",
+                                 "seed", "drag_cubic", "noise_levels", "bias",  "drag_coefficient"};
+  if (request.scene.drag.law) names.emplace_back("drag_expression");
   std::vector<std::pair<std::string, std::string>> found;
   for (const auto& option : request.resolved) {
     if (std::count(names.begin(), names.end(), option.first) > 0) found.push_back(option);

@@ -171,7 +171,7 @@ class Source : public ExcursionSource {
 }  // namespace
 
 std::unique_ptr<ExcursionSource> make_source(const model::Process& process, const Wanted& wanted) {
-  if (process.drag.cubic == 0) return std::make_unique<Source<LinearFlow>>(process, wanted);
+  if (process.drag.is_linear()) return std::make_unique<Source<LinearFlow>>(process, wanted);
   return std::make_unique<Source<GeneralFlow>>(process, wanted);
 }
 

@@ -131,8 +131,7 @@ void GeneralFlow::transform(double speed, double force, const Piece& piece,
   if (omega.empty()) return;
   const double highest = *std::max_element(omega.begin(), omega.end());
   // The drag bends u(t) as fast as waves do.
-  const double fastest = std::max(speed, piece.end);
-  const double decay = drag_.linear + 3 * drag_.cubic * fastest * fastest;
+  const double decay = drag_.steepest(std::max(speed, piece.end));
   const int panels = 1 + static_cast<int>((highest + decay) * piece.time / 3);
   const double half = piece.time / (2 * panels);
   Motion motion(drag_, force, speed);

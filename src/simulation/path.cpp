@@ -92,7 +92,7 @@ class Walker {
 
 Path simulate_path(const model::Process& process, int level, double v, double horizon,
                    std::uint64_t seed) {
-  if (process.drag.cubic == 0) return Walker<LinearFlow>(process, level, v, seed).run(horizon);
+  if (process.drag.is_linear()) return Walker<LinearFlow>(process, level, v, seed).run(horizon);
   return Walker<GeneralFlow>(process, level, v, seed).run(horizon);
 }
 

@@ -14,7 +14,9 @@ constexpr double kPi = 3.14159265358979323846;
 // Local decay rate of log-density in white noise, -d/dv log exp(-mu_d v + int b) = mu_d - b(v). A
 // bias g changes it by -g on one half line and by g on the other; elements serve both.
 double decay_rate(const model::Process& process, double v) {
-  return process.friction.mu_d + std::abs(process.bias) - process.drag(v);
+  const double drag =
+      process.drag.odd() ? -process.drag(v) : std::max(-process.drag(v), process.drag(-v));
+  return process.friction.mu_d + std::abs(process.bias) + drag;
 }
 
 // Where geometric growth stops because an element would span more than `decay` of log-density.
@@ -52,7 +54,8 @@ double gap_below(const model::Process& process) {
 double free_layer(const model::Process& process) {
   const auto& noise = process.noise;
   const double kinetic = 0.3 * noise.delta * noise.delta * noise.delta * noise.tau * noise.tau;
-  const double slope = -process.drag.slope_at_rest();
+  double slope = -process.drag.slope_at_rest();
+  if (!process.drag.odd()) slope = std::max(slope, -process.drag.mirrored().slope_at_rest());
   if (slope == 0) return kinetic;
   const double rest = gap_below(process) / slope;
   if (rest >= kinetic) return kinetic;
@@ -126,23 +129,33 @@ std::vector<double> element_ends(const model::Process& process, const MeshRule& 
   return waves ? cut_for_waves(process, rule.rates.omega, ends) : ends;
 }
 
-double tail_velocity(const model::Process& process, double tolerance) {
+namespace {
+
+// Of the upper half line.
+double upper_tail(const model::Process& process, double tolerance) {
   const double drop = -std::log(tolerance) + 5;  // 5: polynomial factors of the moments
-  const double slope = process.friction.mu_d - std::abs(process.bias);
-  if (!process.drag.bounds_velocity()) return drop / slope;
   // A bias beyond mu_d moves the largest density to where drag balances it.
+  const double slope = process.friction.mu_d - process.bias;
   const double peak = process.drag.terminal_velocity(-slope);
   const double highest = -slope * peak + process.drag.potential(peak);
   const auto left = [&](double v) {
     return drop + highest - slope * v + process.drag.potential(v);
   };
-  double far = slope > 0 ? drop / slope : std::max(2 * peak, 1.0);
-  while (slope <= 0 && left(far) > 0) far *= 2;
-  if (!std::isfinite(left(far))) return far;
+  double end = slope > 0 ? drop / slope : std::max(2 * peak, 1.0);
+  while (slope <= 0 && left(end) > 0 && end < process.drag.reach) end *= 2;
+  end = std::min(end, process.drag.reach);
+  if (process.drag.is_none() || !std::isfinite(left(end)) || left(end) > 0) return end;
   std::uintmax_t iterations = 200;
   const auto bracket = boost::math::tools::toms748_solve(
-      left, peak, far, boost::math::tools::eps_tolerance<double>(20), iterations);
+      left, peak, end, boost::math::tools::eps_tolerance<double>(20), iterations);
   return bracket.second;
+}
+
+}  // namespace
+
+double tail_velocity(const model::Process& process, double tolerance) {
+  const double upper = upper_tail(process, tolerance);
+  return process.symmetric() ? upper : std::max(upper, upper_tail(process.mirrored(), tolerance));
 }
 
 }  // namespace stickslip::velocity

@@ -60,6 +60,46 @@ class Simulated(Case):
             self.assertLessEqual(result["error"], 0.02 * abs(result["value"]), key)
 
 
+class Expressions(Case):
+    """Drag laws given as text."""
+    LAW = (*SMALL, "-drag", "expression", "-drag_expression")
+
+    def test_a_built_in_law_written_out(self):
+        built_in = self.summary(*SMALL, "-drag", "cubic", "-drag_cubic", "1", "-degree", "10")
+        written = self.summary(*self.LAW, "-v - v^3", "-degree", "10")
+        for key, result in built_in["results"].items():
+            self.assert_close(written["results"][key]["value"], result["value"], 1e-13, key)
+
+    def test_simulation_and_upwind_agree_with_elements(self):
+        for law, other in (("-tanh(v)", "-2*tanh(v)"), ("-v - 0.1*v*abs(v)", "-v - v*abs(v)"),
+                           ("-v^5", "-v")):
+            with self.subTest(law=law):
+                elements = self.summary(*self.LAW, law, "-accuracy", "1e-7")
+                (self.folder / "summary.json").rename(self.folder / "elements.json")
+                simulate = ("-route", "monte_carlo", "-excursions", "10000", "-compare",
+                            "elements.json")
+                self.run_ok(*self.LAW, law, *simulate)
+                self.run_ok(*self.LAW, other, *simulate, status=3)
+                upwind = self.summary(*self.LAW, law, "-scheme", "upwind", "-accuracy", "0.05")
+                for key, result in upwind["results"].items():
+                    difference = abs(result["value"] - elements["results"][key]["value"])
+                    self.assertLessEqual(difference, 1.1 * result["error"] + 1e-9, key)
+
+    def test_records_hold_the_law(self):
+        s = self.summary(*self.LAW, "-tanh(v)", "-output", "out.h5")
+        self.assertEqual(s["scene"]["drag_expression"], "-tanh(v)")
+        self.assertNotIn("drag_coefficient", s["scene"])
+        with h5py.File(self.folder / "out.h5") as file:
+            self.assertEqual(file["record/options"].attrs["drag_expression"], "-tanh(v)")
+
+    def test_a_checkpoint_of_another_law(self):
+        options = ("-route", "monte_carlo", "-excursions", "2000", "-checkpoint", "run.checkpoint")
+        self.run_ok(*self.LAW, "-tanh(v)", *options)
+        self.run_ok(*self.LAW, "-tanh(v)", *options)
+        other = self.run_ok(*self.LAW, "-tanh(2*v)", *options, status=2)
+        self.assertIn("-drag_expression -tanh(v), not -tanh(2*v)", other.stderr)
+
+
 class Refusals(Case):
     def refuse(self, *options, told):
         done = run(*options, folder=self.folder)

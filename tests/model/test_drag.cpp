@@ -6,6 +6,15 @@
 
 using stickslip::model::Drag;
 
+namespace {
+
+Drag law(double (*b)(double)) { return {0, 0, b}; }
+
+const Drag kSaturating = law([](double v) { return -std::tanh(v); });
+const Drag kQuadratic = law([](double v) { return -v - 0.1 * v * std::abs(v); });
+
+}  // namespace
+
 TEST_CASE("drag: odd, non-increasing, zero at rest") {
   const Drag drag = GENERATE(Drag{1, 0}, Drag{0, 0}, Drag{0.3, 2}, Drag{0, 1.5});
   CHECK(drag(0) == 0);
@@ -40,4 +49,70 @@ TEST_CASE("terminal velocity: the first point where force and drag balance, or n
       CHECK(force + drag(v * (1 - 1e-12)) > 0);
     }
   }
+}
+
+TEST_CASE("drag laws: slope at rest from one side, on any scale") {
+  CHECK(kQuadratic.slope_at_rest() == Approx(-1).epsilon(1e-10));
+  CHECK(kSaturating.slope_at_rest() == Approx(-1).epsilon(1e-10));
+  const auto steep = law([](double v) { return -std::tanh(1e5 * v); });
+  CHECK(steep.slope_at_rest() == Approx(-1e5).epsilon(1e-8));
+  const auto flat = law([](double v) { return -std::pow(v, 5); });
+  CHECK(std::abs(flat.slope_at_rest()) < 1e-12);
+  CHECK(flat.slope_at_rest() <= 0);
+  const auto both = law([](double v) { return v > 0 ? -v : -3 * v; });
+  CHECK(both.slope_at_rest() == Approx(-1).epsilon(1e-10));
+  CHECK(both.mirrored().slope_at_rest() == Approx(-3).epsilon(1e-10));
+}
+
+TEST_CASE("drag laws: potentials are known integrals") {
+  for (double v : {1e-6, 0.3, 4.0, 30.0}) {
+    INFO(v);
+    CHECK(kQuadratic.potential(v) == Approx(-v * v / 2 - v * v * v / 30).epsilon(1e-13));
+    const double log_cosh = v < 1e-3 ? v * v / 2 : v + std::log1p(std::exp(-2 * v)) - std::log(2);
+    CHECK(kSaturating.potential(v) == Approx(-log_cosh).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("drag laws: terminal velocity, none where drag saturates below the force") {
+  CHECK(kSaturating.terminal_velocity(0.5) == Approx(std::atanh(0.5)).epsilon(1e-14));
+  CHECK(std::isinf(kSaturating.terminal_velocity(1.01)));
+  CHECK_FALSE(kSaturating.bounds_velocity());
+  CHECK(kQuadratic.bounds_velocity());
+  CHECK(law([](double v) { return -std::asinh(v); }).bounds_velocity());
+  CHECK(law([](double v) { return -std::sinh(v); }).bounds_velocity());
+  CHECK(kQuadratic.terminal_velocity(-1) == 0);
+  CHECK(kQuadratic.terminal_velocity(20) == Approx(10).epsilon(1e-14));  // 10 + 0.1 100
+  const auto clipped = law([](double v) { return -std::fmin(v, 2.0); });
+  CHECK(clipped.terminal_velocity(2) == 2);  // the first of many
+}
+
+TEST_CASE("drag laws: the built-in ones written out agree with themselves") {
+  const Drag cubic{0.7, 0.2};
+  const auto written = law([](double v) { return -0.7 * v - 0.2 * v * v * v; });
+  for (double v : {0.01, 0.5, 3.0}) {
+    CHECK(written(v) == Approx(cubic(v)).epsilon(1e-15));
+    CHECK(written.potential(v) == Approx(cubic.potential(v)).epsilon(1e-13));
+    CHECK(written.terminal_velocity(v) == Approx(cubic.terminal_velocity(v)).epsilon(1e-14));
+    CHECK(written.steepest(v) <= cubic.steepest(v));
+    CHECK(written.steepest(v) >= 0.5 * cubic.steepest(v));
+  }
+  CHECK(written.slope_at_rest() == Approx(cubic.slope_at_rest()).epsilon(1e-10));
+  CHECK_FALSE(written.is_linear());
+  CHECK(Drag{0, 0}.is_none());
+  CHECK_FALSE(law([](double) { return 0.0; }).is_none());
+}
+
+TEST_CASE("drag laws: odd or not, and what the mirror shows") {
+  CHECK(kQuadratic.odd());
+  CHECK(Drag{1, 2}.odd());
+  const auto lopsided = law([](double v) { return v > 0 ? -v : -2 * v * (1 - v); });
+  REQUIRE(lopsided.asymmetry());
+  const double v = *lopsided.asymmetry();
+  CHECK(lopsided(v) != -lopsided(-v));
+  const auto mirrored = lopsided.mirrored();
+  for (double u : {-2.0, -0.1, 0.3, 5.0}) {
+    CHECK(mirrored(u) == -lopsided(-u));
+    CHECK(mirrored.mirrored()(u) == lopsided(u));
+  }
+  CHECK(Drag{1, 2}.mirrored()(0.5) == Drag{1, 2}(0.5));
 }

@@ -106,6 +106,47 @@ TEST_CASE("request: no drag means no coefficient, and a useless one is told") {
   CHECK_THAT(r.warnings[0], Catch::Contains("-drag_coefficient"));
 }
 
+TEST_CASE("request: drag as an expression") {
+  const Request r = Given("-drag expression -drag_expression 0-mu_s*v-0.1*v*abs(v)").read();
+  CHECK(r.scene.drag(2) == Approx(-2.4));
+  CHECK(r.scene.drag_expression == "0-mu_s*v-0.1*v*abs(v)");
+  CHECK(r.warnings.empty());
+  const Request unused =
+      Given("-drag expression -drag_expression 0-v -drag_coefficient 2 -drag_cubic 1").read();
+  CHECK(unused.warnings.size() == 2);
+  CHECK(unused.scene.drag(2) == -2);
+  const Request other = Given("-drag_expression 0-2*v").read();
+  REQUIRE(other.warnings.size() == 1);
+  CHECK_THAT(other.warnings[0], Catch::Contains("-drag_expression has no effect"));
+  CHECK(other.scene.drag(2) == -2);
+}
+
+TEST_CASE("request: drag that is no drag is told with place and way out") {
+  const std::string law = "-drag expression -drag_expression ";
+  const std::vector<Refusal> refusals{
+      {"-drag expression", {"-drag = expression", "-drag_expression", "add for example"}},
+      {law + "v*(", {"-drag_expression = v*(", "for example \"-v - 0.1*v*abs(v)\""}},
+      {law + "1-v", {"-drag_expression = 1-v", "is 1 at v = 0", "-mu_d"}},
+      {law + "0.1*v", {"-drag_expression", "grows from", "must not grow", "check the signs"}},
+      {law + "v/(-1-v^2)", {"-drag_expression", "grows from", "is no drag"}},
+      {law + "0-v-sign(v)", {"-drag_expression", "slope", "smooth it"}},
+      {law + "(v>0?1:2)*(0-v)", {"-drag_expression", "must be odd", "abs(v)"}},
+      {law + "0-v -route fluid_queue", {"-route = fluid_queue", "needs b = 0"}}};
+  for (const auto& refusal : refusals) check_refusal(refusal);
+}
+
+TEST_CASE("request: formulas that begin with a sign are no options") {
+  std::vector<std::string> words{
+      "-drag_expression", "-v - v^3", "-observable", "-v", "-start", "-1,0",
+      "-drag_expression", "-mu_s",    "-mu_d",       "-v"};
+  shield_formulas(words);
+  CHECK(words[1] == " -v - v^3");
+  CHECK(words[3] == " -v");
+  CHECK(words[5] == "-1,0");   // PETSc reads numbers
+  CHECK(words[7] == "-mu_s");  // an option: the formula is missing
+  CHECK(words[9] == "-v");
+}
+
 TEST_CASE("request: every refusal names option, value, range and a way out") {
   const std::vector<Refusal> refusals{
       {"-delta -0.5", {"-delta = -0.5", "(0, inf)", "0.125"}},
@@ -258,6 +299,13 @@ TEST_CASE("options files: unreadable files and lines are told with their place")
   } catch (const BadInput& bad) {
     CHECK_THAT(bad.what(), Catch::Contains(name + ":4") && Catch::Contains("mu_d 0.5"));
   }
+  for (const char* formula : {"\"-v - v^3\"", "-v-v^3   # cubic"}) {
+    std::ofstream(name) << "-mu_s 1\n  -drag_expression " << formula << "\n";
+    CHECK_THROWS_WITH(check_options_files({"-options_file", name}),
+                      Catch::Contains(name + ":2") && Catch::Contains("put a blank before it"));
+  }
+  std::ofstream(name) << "-drag_expression \" -v - v^3\"\n-start -1,0\n-observable \"\n";
+  CHECK_NOTHROW(check_options_files({"-options_file", name}));
   std::ofstream(name) << "-mu_s 1\n";
   CHECK_NOTHROW(check_options_files({"-options_file", name}));
   std::remove(name.c_str());

@@ -39,7 +39,7 @@ std::vector<Start> linear_starts() {
 
 std::vector<Start> cubic_starts() {
   std::vector<Start> all;
-  for (const model::Drag drag : {model::Drag{0, 1}, model::Drag{0.5, 0.3}, model::Drag{1, 4}}) {
+  for (const model::Drag& drag : {model::Drag{0, 1}, model::Drag{0.5, 0.3}, model::Drag{1, 4}}) {
     for (double force : {-0.7, 0.0, 2.0}) {
       for (double speed : {0.0, 0.1, 1.5}) {
         for (double time : {1e-3, 0.4, 3.0}) {
@@ -196,7 +196,7 @@ TEST_CASE("flow: cubic drag against Runge-Kutta of tiny steps, stops against int
 // A force of exactly 0, as on the level that equals mu_d, slows a body down but never stops it,
 // however long the noise stays there.
 TEST_CASE("flow: no body stops unless it is pushed back") {
-  for (const model::Drag drag : {model::Drag{1, 0}, model::Drag{5, 0}, model::Drag{1, 1}}) {
+  for (const model::Drag& drag : {model::Drag{1, 0}, model::Drag{5, 0}, model::Drag{1, 1}}) {
     for (double time : {30.0, 45.0, 1000.0}) {
       INFO("time " << time << " drag " << drag.linear << " " << drag.cubic);
       const auto general = GeneralFlow(drag).move(1, 0, time, true);
@@ -222,6 +222,30 @@ TEST_CASE("flow: a body all but at rest stops at once when it is pushed back") {
       CHECK(piece.time >= 0);
       CHECK(piece.time <= 1e-15);
     }
+  }
+}
+
+TEST_CASE("flow: any law gives what the closed forms and the built-in laws give") {
+  for (const auto& s : cubic_starts()) {
+    INFO(s);
+    const model::Drag written{
+        0, 0, [c = s.drag](double v) { return -c.linear * v - c.cubic * v * v * v; }};
+    check_piece(GeneralFlow(written).move(s.speed, s.force, s.time, true),
+                GeneralFlow(s.drag).move(s.speed, s.force, s.time, true), 1e-12);
+    for (double omega : {0.0, 0.7, 60.0}) {
+      std::vector<std::complex<double>> found(1), known(1);
+      const auto piece = GeneralFlow(s.drag).move(s.speed, s.force, s.time, true);
+      GeneralFlow(written).transform(s.speed, s.force, piece, {omega}, found);
+      GeneralFlow(s.drag).transform(s.speed, s.force, piece, {omega}, known);
+      CHECK(std::abs(found[0] - known[0]) <= 1e-10 * piece.path + 1e-15);
+    }
+  }
+  // u' = -tanh(u): sinh(u) decays as exp(-t).
+  const GeneralFlow saturating({0, 0, [](double v) { return -std::tanh(v); }});
+  for (double speed : {0.01, 1.0, 20.0}) {
+    const auto piece = saturating.move(speed, 0, 1.5, true);
+    CHECK(std::sinh(piece.end) == Approx(std::sinh(speed) * std::exp(-1.5)).epsilon(1e-11));
+    CHECK_FALSE(piece.stopped);
   }
 }
 

@@ -53,6 +53,23 @@ TEST_CASE("mesh: the number of layers can be fixed, and moves only what lies nea
   CHECK(more[more.size() - 2] == Approx(natural[natural.size() - 2]).epsilon(1e-14));
 }
 
+TEST_CASE("mesh: a law has the elements and the tail of the coefficients it stands for") {
+  const auto built_in = process(0.5, 1, 0.25, {1, 0.3});
+  auto written = built_in;
+  written.drag = {0, 0, [](double v) { return -v - 0.3 * v * v * v; }, 20};
+  velocity::MeshRule rule;
+  rule.v_max = velocity::tail_velocity(built_in, 1e-12);
+  CHECK(velocity::tail_velocity(written, 1e-12) == Approx(rule.v_max).epsilon(1e-6));
+  const auto ends = velocity::element_ends(built_in, rule),
+             same = velocity::element_ends(written, rule);
+  REQUIRE(ends.size() == same.size());
+  for (std::size_t n = 0; n < ends.size(); ++n) CHECK(same[n] == Approx(ends[n]).epsilon(1e-5));
+  // Drag that saturates adds to friction: the tail is exp(-(mu_d + 1) v).
+  written.drag = {0, 0, [](double v) { return -std::tanh(v); }, 100};
+  const double drop = std::log(1e12) + 5 + std::log(2.0);
+  CHECK(velocity::tail_velocity(written, 1e-12) == Approx(drop / 1.5).epsilon(1e-4));
+}
+
 TEST_CASE("smallest scale: follows a level just below mu_d only where drag outruns the noise") {
   // On the grid: the kinetic layer 0.3 delta^3 tau^2.
   CHECK(velocity::smallest_scale(process(0.25, 1, 0.25, {1, 0})) ==

@@ -79,6 +79,8 @@ class File:
     def drag(self):
         """b(v) in words."""
         law = str(self.options["drag"])
+        if law == "expression":
+            return str(self.options["drag_expression"])
         linear = "v" if self.number("drag_coefficient") == 1 else "c v"
         return {"none": "0", "linear": f"-{linear}"}.get(law, f"-{linear} - c_3 v^3")
 

@@ -1,26 +1,49 @@
 #pragma once
-/// Drag b(v): an odd, non-increasing force with b(0) = 0.
+/// Drag b(v): a non-increasing force with b(0) = 0.
+
+#include <functional>
+#include <limits>
+#include <optional>
 
 namespace stickslip::model {
 
-/// b(v) = -linear v - cubic v^3 with linear, cubic >= 0. Both zero means no drag.
+/// b(v) = -linear v - cubic v^3 with linear, cubic >= 0; both zero means no drag. Or any other law,
+/// see drag_law.hpp; a copy of it shares nothing, and threads need one each.
 struct Drag {
-  double linear = 1;  ///< c [1/time]
-  double cubic = 0;   ///< c3 [time/length^2]
+  double linear = 1;                       ///< c [1/time]
+  double cubic = 0;                        ///< c3 [time/length^2]
+  std::function<double(double)> law = {};  ///< b(v), which then counts instead of the coefficients
+  /// |v| up to which a law is known to be sound: twice the largest terminal velocity, or far in the
+  /// tail.
+  double reach = std::numeric_limits<double>::infinity();
+  bool law_is_odd = true;  ///< b(-v) = -b(v)
 
   /// b(v) [force].
-  [[nodiscard]] double operator()(double v) const { return -(linear + cubic * v * v) * v; }
-  /// b'(0) = -linear.
-  [[nodiscard]] double slope_at_rest() const { return -linear; }
-  /// int_0^v b(s) ds.
-  [[nodiscard]] double potential(double v) const {
-    return -(linear / 2 + cubic * v * v / 4) * v * v;
+  [[nodiscard]] double operator()(double v) const {
+    return law ? law(v) : -(linear + cubic * v * v) * v;
   }
-  /// Whether b tends to -infinity, so that a constant force has a terminal velocity.
-  [[nodiscard]] bool bounds_velocity() const { return linear > 0 || cubic > 0; }
+  /// Whether b(v) = -linear v, 0 included.
+  [[nodiscard]] bool is_linear() const { return !law && cubic == 0; }
+  /// Whether b = 0. No expression counts as that.
+  [[nodiscard]] bool is_none() const { return is_linear() && linear == 0; }
+  /// b'(0+), by extrapolated differences for a law.
+  [[nodiscard]] double slope_at_rest() const;
+  /// Largest -b' on (0, v), for a law an estimate within a factor of about 2.
+  [[nodiscard]] double steepest(double v) const;
+  /// int_0^v b(s) ds, by quadrature for a law.
+  [[nodiscard]] double potential(double v) const;
+  /// Whether b tends to -infinity, so that a constant force has a terminal velocity. Of a law the
+  /// values at very large v decide.
+  [[nodiscard]] bool bounds_velocity() const;
   /// Smallest v >= 0 with force + b(v) <= 0, to rounding and on that side of it; infinity when
   /// there is none.
   [[nodiscard]] double terminal_velocity(double force) const;
+
+  [[nodiscard]] bool odd() const { return !law || law_is_odd; }
+  /// A v > 0 with b(-v) != -b(v) beyond rounding; nothing if b is odd. Samples the law.
+  [[nodiscard]] std::optional<double> asymmetry() const;
+  /// v -> -b(-v), the drag in the mirror.
+  [[nodiscard]] Drag mirrored() const;
 };
 
 }  // namespace stickslip::model

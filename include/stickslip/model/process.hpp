@@ -16,10 +16,10 @@ struct Process {
   double bias = 0;  ///< g, a constant force
 
   /// Whether (-X, -Y, -V) has the same law.
-  [[nodiscard]] bool symmetric() const { return bias == 0; }
+  [[nodiscard]] bool symmetric() const { return bias == 0 && drag.odd(); }
   /// The process (-X, -Y, -V): what is true of sliding upwards here is true of sliding downwards
   /// there.
-  [[nodiscard]] Process mirrored() const { return {noise, friction, drag, -bias}; }
+  [[nodiscard]] Process mirrored() const { return {noise, friction, drag.mirrored(), -bias}; }
 
   /// The highest level that can stick; k without bias, where the levels |i| <= k stick.
   [[nodiscard]] int static_index() const { return friction.static_index(noise.delta, bias); }

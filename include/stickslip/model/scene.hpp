@@ -13,6 +13,7 @@ struct Scene {
   double delta = 0.125;  ///< noise step [force]
   Friction friction;     ///< mu_s, mu_d [force]
   std::string drag_name = "linear";
+  std::string drag_expression;  ///< b(v) as text, of the law "expression"
   Drag drag;
   double bias = 0;                  ///< constant force g
   std::optional<int> noise_levels;  ///< N, if fixed by the user

@@ -105,6 +105,10 @@ struct Request {
 /// range, fix; for an unknown option the nearest known one. Local; the same on every rank.
 [[nodiscard]] Request read_request(const std::vector<std::string>& argv);
 
+/// Puts a blank before formulas that begin with a sign, such as the value of -drag_expression
+/// -v*abs(v), which PETSc would take for an option.
+void shield_formulas(std::vector<std::string>& argv);
+
 /// Tells what is wrong with the options files named in `argv`, before PETSc reads them.
 /// Throws BadInput with file, line and fix.
 void check_options_files(const std::vector<std::string>& argv);

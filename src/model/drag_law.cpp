@@ -1,0 +1,154 @@
+#include "stickslip/model/drag_law.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "stickslip/model/expression.hpp"
+
+namespace stickslip::model {
+namespace {
+
+constexpr double kRounding = 1e-13;
+
+double value_at(const Drag& b, double v) {
+  const double value = b(v);
+  if (std::isfinite(value)) return value;
+  throw UnfitLaw(fmt::format("is {} at v = {:g}; drag must be finite at every velocity that can "
+                             "occur",
+                             std::isnan(value) ? "not a number" : "infinite", v),
+                 "write for example exp(-abs(v)) for exp(abs(v)), or abs(v)^1.5 for v^1.5");
+}
+
+void require_zero_at_rest(const Drag& b, double mu_d) {
+  const double value = value_at(b, 0);
+  if (std::abs(value) <= kRounding * mu_d) return;
+  throw UnfitLaw(fmt::format("is {:g} at v = 0; drag must vanish at rest", value),
+                 "leave constants out: dry friction is -mu_d");
+}
+
+// Where `force` no longer accelerates, with as much again for steps that overshoot; or where
+// exp(-(mu_d - |bias|) v + int b), which bounds the density, is below exp(-51) of its largest
+// value.
+double reach_of(const Drag& b, double force, double mu_d, double bias) {
+  constexpr double drop = 51, ratio = 1.02, far = 1e6;
+  const double slope = mu_d - std::abs(bias);
+  double left = drop;
+  for (double v = 1e-12 / mu_d; v < far / mu_d || slope > 0; v *= ratio) {
+    const double drag = -value_at(b, v);
+    if (force <= drag) return 2 * v;
+    left = std::min(drop, left - (slope + drag) * v * (1 - 1 / ratio));
+    if (left < 0 || slope * v > drop) return v;
+  }
+  throw UnfitLaw(fmt::format("does not hold a body that the bias {:g} drives: it is {:g} at "
+                             "v = {:g}, and friction takes {:g}",
+                             bias, value_at(b, far / mu_d), far / mu_d, mu_d),
+                 "take a smaller bias, or a drag that grows");
+}
+
+std::vector<double> even_places(double reach, int count) {
+  std::vector<double> v;
+  for (int n = 0; n <= count; ++n) v.push_back(reach * n / count);
+  return v;
+}
+
+// Evenly spaced, and in even ratios down to 1e-10 of the reach.
+std::vector<double> places(double reach) {
+  constexpr int even = 2000, ratios = 1000;
+  auto v = even_places(reach, even);
+  for (int n = 1; n < ratios; ++n) v.push_back(reach * std::pow(1e-10, n * 1.0 / ratios));
+  std::sort(v.begin(), v.end());
+  return v;
+}
+
+// The law on one side, seen with v > 0.
+struct Side {
+  const Drag& b;
+  double sign;
+  [[nodiscard]] double operator()(double v) const { return sign * value_at(b, sign * v); }
+};
+
+void require_falling(const Side& b, const std::vector<double>& v, double mu_d) {
+  for (std::size_t n = 1; n < v.size(); ++n) {
+    const double before = b(v[n - 1]), after = b(v[n]);
+    if (after <= before + kRounding * (std::abs(before) + mu_d)) continue;
+    const double low = b.sign * v[n - 1], high = b.sign * v[n];
+    throw UnfitLaw(fmt::format("{} from {:.9g} at v = {:.9g} to {:.9g} at v = {:.9g}; drag must "
+                               "not grow with the velocity, it would drive the body",
+                               b.sign > 0 ? "grows" : "falls", b.sign * before, low, b.sign * after,
+                               high),
+                   "check the signs, as in \"-v - 0.1*v*abs(v)\"; friction that weakens with "
+                   "speed is no drag");
+  }
+}
+
+[[noreturn]] void refuse_slope(const Side& b, double v, double slope) {
+  throw UnfitLaw(fmt::format("has a slope of {:.1e} or more at v = {:.9g}, where it jumps or is "
+                             "infinitely steep; motion needs a bounded slope",
+                             -slope, b.sign * v),
+                 "smooth it, for example v/sqrt(abs(v) + 0.01) for sqrt(abs(v)), or tanh(v/0.01) "
+                 "for sign(v)");
+}
+
+// At rest, where b/v settles unless it grows without bound, as that of v^0.99 does.
+void require_slope_at_rest(const Side& b, double reach) {
+  const double far = 1e-8 * std::min(reach, 1.0), near = far / 100;
+  const double slope = -b(near) / near, before = -b(far) / far;
+  if (slope > 1.02 * before && slope > 1e-6) refuse_slope(b, near, slope);
+}
+
+// Follows the steeper half of an interval 25 times: there a jump or a root betrays itself by a
+// slope far above that of the interval and of the whole.
+void require_bounded_slope(const Side& b, double low, double high, double mean) {
+  double at_low = b(low), at_high = b(high);
+  const double secant = (at_low - at_high) / (high - low);
+  for (int n = 0; n < 25; ++n) {
+    const double middle = (low + high) / 2, value = b(middle);
+    if (at_low - value > value - at_high) {
+      high = middle;
+      at_high = value;
+    } else {
+      low = middle;
+      at_low = value;
+    }
+  }
+  const double slope = (at_low - at_high) / (high - low);
+  if (slope > 1e3 * (std::max(secant, 0.0) + mean)) refuse_slope(b, low, slope);
+}
+
+void require_sound(const Side& b, double reach, double mu_d) {
+  const auto v = places(reach);
+  require_falling(b, even_places(reach, 50), mu_d);  // tells of plain mistakes where they are seen
+  require_falling(b, v, mu_d);
+  require_slope_at_rest(b, reach);
+  const double mean = -b(reach) / reach;
+  for (std::size_t n = 1; n < v.size(); ++n) require_bounded_slope(b, v[n - 1], v[n], mean);
+}
+
+Expression read(const std::string& text, const Friction& friction, double tau) {
+  try {
+    return {text, {"v"}, {{"mu_s", friction.mu_s}, {"mu_d", friction.mu_d}, {"tau", tau}}};
+  } catch (const std::invalid_argument& error) {
+    throw UnfitLaw(error.what(),
+                   "write b in v, mu_s, mu_d and tau, for example \"-v - 0.1*v*abs(v)\"");
+  }
+}
+
+}  // namespace
+
+Drag parse_drag(const std::string& text, const Friction& friction, double tau, double force,
+                double bias) {
+  const Expression b = read(text, friction, tau);
+  Drag drag{0, 0, [b](double v) { return b({v}); }, 0};
+  require_zero_at_rest(drag, friction.mu_d);
+  for (const Drag& side : {drag, drag.mirrored()}) {
+    drag.reach = std::max(drag.reach, reach_of(side, force, friction.mu_d, bias));
+  }
+  for (double sign : {1.0, -1.0}) require_sound({drag, sign}, drag.reach, friction.mu_d);
+  drag.law_is_odd = !drag.asymmetry();
+  return drag;
+}
+
+}  // namespace stickslip::model

@@ -1,0 +1,78 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "stickslip/model/drag_law.hpp"
+
+using stickslip::model::Drag;
+using stickslip::model::parse_drag;
+using stickslip::model::UnfitLaw;
+
+namespace {
+
+Drag read(const std::string& text) { return parse_drag(text, {0.5, 0.25}, 2, 6); }
+
+std::string refusal(const std::string& text) {
+  try {
+    (void)read(text);
+  } catch (const UnfitLaw& unfit) {
+    CHECK_FALSE(unfit.fix().empty());
+    return unfit.what();
+  }
+  return "none";
+}
+
+}  // namespace
+
+TEST_CASE("drag laws: read with the constants of the scene") {
+  const Drag b = read("-v*mu_s - mu_d*v*abs(v) - tau*v^3");
+  CHECK(b(2) == -1 - 1 - 16);
+  CHECK(b(-2) == 18);
+  CHECK(b.odd());
+}
+
+TEST_CASE("drag laws: steep, saturating, slow and one-sided ones are sound") {
+  for (const char* text :
+       {"-v - 0.1*v*abs(v)", "-tanh(v)", "-atan(v)", "-v^5", "-sinh(3*v)", "-1e4*v^3", "0*v",
+        "-tanh(1000*v)", "-v*sqrt(abs(v))", "max(-1, min(1, -v))", "1-exp(v)", "-asinh(v)",
+        "v > 0 ? -v : -3*v", "-v + 1e-4*v^3", "abs(v) < 1 ? -v : -v - 5*(v - sign(v))"}) {
+    INFO(text);
+    CHECK(refusal(text) == "none");
+  }
+}
+
+TEST_CASE("drag laws: sound as far as velocities go, twice the terminal one") {
+  CHECK(read("-v").reach >= 12);
+  CHECK(read("-v").reach <= 12.5);
+  CHECK(read("-tanh(v)").reach >= 51 / 1.25);  // in the tail of exp(-(mu_d + 1) v)
+}
+
+TEST_CASE("drag laws: what is none is refused, with the place") {
+  CHECK_THAT(refusal("-v +"), Catch::Contains("Unexpected end of expression"));
+  CHECK_THAT(refusal("-c*v"), Catch::Contains("\"c\""));
+  CHECK_THAT(refusal("0.5 - v"), Catch::Contains("is 0.5 at v = 0"));
+  CHECK_THAT(refusal("-cosh(v)"), Catch::Contains("is -1 at v = 0"));
+  CHECK_THAT(refusal("v"), Catch::Contains("grows from 0 at v = 0"));
+  CHECK_THAT(refusal("-1/v"), Catch::Contains("infinite at v = 0"));
+  CHECK_THAT(refusal("-v^1.5"), Catch::Contains("not a number at v = "));
+  CHECK_THAT(refusal("-v/(5 - abs(v))"), Catch::Contains("grows from"));
+  // Friction that weakens with speed, beyond v = 1.
+  const auto weakening = refusal("-v/(1 + v^2)");
+  CHECK_THAT(weakening, Catch::Contains("grows from -0.") && Catch::Contains("must not grow"));
+  // On the other side only.
+  CHECK_THAT(refusal("v > 0 ? -v : v"), Catch::Contains("at v = -"));
+  // A dip of 0.1 % at v = 3.
+  CHECK_THAT(refusal("-v - 0.01*exp(-((abs(v) - 3)*200)^2)*sign(v)"),
+             Catch::Contains("at v = 3.0"));
+}
+
+TEST_CASE("drag laws: jumps and infinite slopes are refused, with the place") {
+  CHECK_THAT(refusal("-sqrt(abs(v))*sign(v)"),
+             Catch::Contains("slope") && Catch::Contains("1e-10"));
+  CHECK_THAT(refusal("-sign(v)"), Catch::Contains("slope"));
+  CHECK_THAT(refusal("-v - 0.1*sign(v)"), Catch::Contains("slope"));
+  CHECK_THAT(refusal("-sign(v)*abs(v)^0.98"), Catch::Contains("slope"));
+  CHECK_THAT(refusal("abs(v) < 1 ? -v : -1.1*v"), Catch::Contains("at v = 1,"));
+  CHECK_THAT(refusal("v > -2 ? -v : -v + 0.1"), Catch::Contains("at v = -2,"));
+  CHECK_THAT(refusal("abs(v) < 1 ? -v : -v - sign(v)*(abs(v) - 1)^0.3"),
+             Catch::Contains("at v = 1,"));
+}
