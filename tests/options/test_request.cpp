@@ -130,8 +130,29 @@ TEST_CASE("request: drag that is no drag is told with place and way out") {
       {law + "0.1*v", {"-drag_expression", "grows from", "must not grow", "check the signs"}},
       {law + "v/(-1-v^2)", {"-drag_expression", "grows from", "is no drag"}},
       {law + "0-v-sign(v)", {"-drag_expression", "slope", "smooth it"}},
-      {law + "(v>0?1:2)*(0-v)", {"-drag_expression", "must be odd", "abs(v)"}},
+      {law + "(v>0?1:2)*(0-v) -quantities laplace -lambda 1",
+       {"-quantities = laplace", "without symmetry", "odd drag"}},
+      {law + "0-tanh(v) -bias 3", {"-drag_expression", "the bias 3 drives", "a drag that grows"}},
       {law + "0-v -route fluid_queue", {"-route = fluid_queue", "needs b = 0"}}};
+  for (const auto& refusal : refusals) check_refusal(refusal);
+}
+
+TEST_CASE("request: without symmetry") {
+  CHECK(Given("-bias 0").read().scene.symmetric());
+  CHECK_FALSE(Given("-bias 0.1").read().scene.symmetric());
+  CHECK_FALSE(Given("-drag expression -drag_expression (v>0?1:2)*(0-v)").read().scene.symmetric());
+  const Request down = Given("-bias 0.3 -delta 0.25 -quantities trajectory -trajectory t.csv "
+                             "-start s-")
+                           .read();
+  CHECK(down.start_level == -6);  // x = -1.25 holds, -1.5 does not
+  const std::vector<Refusal> refusals{
+      {"-bias 0.5 -quantities density -output x.h5",
+       {"-quantities", "density", "without symmetry"}},
+      {"-bias 0.5 -route lambda", {"-quantities", "-route lambda", "-bias 0"}},
+      {"-bias 0.5 -quantities spectrum -omega 1", {"-omega = 1", "leave it out"}},
+      {"-bias 1 -drag none", {"-bias = 1", "for ever", "smaller than mu_d"}},
+      {"-bias 8 -delta 0.25", {"-bias = 8", "never overcome", "below 7"}},
+      {"-bias 0.2 -mu_s 0.1 -mu_d 0.1 -delta 0.5", {"-mu_s = 0.1", "nothing ever sticks"}}};
   for (const auto& refusal : refusals) check_refusal(refusal);
 }
 
