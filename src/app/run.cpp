@@ -21,6 +21,7 @@
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/atomic_file.hpp"
 #include "stickslip/support/errors.hpp"
+#include "stickslip/sweeps/report.hpp"
 
 namespace stickslip::app {
 namespace {
@@ -111,6 +112,38 @@ int conduct_study(const options::Request& request, Clock::time_point start, doub
   return 0;
 }
 
+sweeps::SweepProgress sweep_progress_of(const options::Request& request) {
+  if (!request.progress) return {};
+  return [&request, last = Clock::time_point()](const sweeps::State& s) mutable {
+    if (s.status == "reached" && s.done < s.count && seconds_since(last) < 1) return;
+    last = Clock::now();
+    say(fmt::format("{} of {} points; {}: {} after {:.2g} s; about {:.0f} s left", s.done, s.count,
+                    request.sweep->place(s.point), s.status, s.seconds_of_point, s.seconds_left));
+  };
+}
+
+int conduct_sweep(const options::Request& request, Clock::time_point start, double start_up) {
+  const MPI_Comm comm = MPI_COMM_WORLD;
+  const bool first_rank = petsc::rank(comm) == 0;
+  if (first_rank) warn(request);
+  const auto sweep = sweeps::conduct(comm, request, sweep_progress_of(request));
+  int status = sweeps::exit_status(sweep.runs);
+  if (first_rank) {
+    const io::RunTimes times{start_up, start_up + seconds_since(start)};
+    if (!request.summary.empty()) {
+      write_text(request.summary, sweeps::sweep_summary(comm, request, sweep, times));
+    }
+    if (!request.output.empty()) sweeps::write_sweep_hdf5(comm, request, sweep, times);
+    if (!request.sweep_csv.empty()) {
+      write_text(request.sweep_csv, sweeps::sweep_csv(request, sweep));
+    }
+    std::fputs(sweeps::sweep_table(request, sweep, times).c_str(), stdout);
+    std::fflush(stdout);
+  }
+  MPI_Bcast(&status, 1, MPI_INT, 0, comm);
+  return status;
+}
+
 int compute(const options::Request& request, Clock::time_point start, double start_up) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const bool first_rank = petsc::rank(comm) == 0;
@@ -146,6 +179,7 @@ int run_session(const std::vector<std::string>& words, double start_up) {
   try {
     const auto request = options::read_request(words);
     if (request.study != options::StudyKind::none) return conduct_study(request, start, start_up);
+    if (request.sweep) return conduct_sweep(request, start, start_up);
     return compute(request, start, start_up);
   } catch (const BadInput& failure) {
     return tell(failure, rank == 0);

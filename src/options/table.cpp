@@ -182,8 +182,34 @@ Group method_group() {
                "take for example 100"),
           path("checkpoint",
                "go on with the simulation of this file if it exists, and keep it there "
-               "every few seconds; more -excursions later add to it"),
+               "every few seconds; more -excursions later add to it. With a sweep: keep every "
+               "point there as it is finished, and do only what the file does not hold yet"),
       }};
+}
+
+// The values of another option.
+Option sweep_of(const Option& option) {
+  return {"sweep_" + option.name,      Kind::numbers, option.unit, "", option.range, {},
+          "values of -" + option.name, option.fix};
+}
+
+Group sweep_group() {
+  Group group{
+      "Sweep",
+      "A run for each combination of the values given, as a,b,c or first:last:count or "
+      "first:last:count:log; the last option of this list changes fastest. -checkpoint keeps "
+      "what is finished",
+      {}};
+  for (const auto& option : scene_group().options) {
+    const bool number = option.kind == Kind::real || option.kind == Kind::integer;
+    if (number) group.options.push_back(sweep_of(option));
+  }
+  group.options.push_back(
+      integer("sweep_ranks", "1", whole(1, 1e6), {},
+              "ranks that share the work of a point; groups of that many take the points one after "
+              "the other",
+              "one is best while a point fits into the memory of one"));
+  return group;
 }
 
 Group output_group() {
@@ -195,6 +221,9 @@ Group output_group() {
           path("output", "write everything and the fields as HDF5 to this file; with density also "
                          "FILE.xdmf, which ParaView opens"),
           path("study_csv", "write every scalar of every run of a study as CSV to this file"),
+          path("sweep_csv",
+               "write a row for each point of a sweep as CSV to this file: its values, every "
+               "scalar with its error, and how it ended"),
           path("trajectory", "write the trajectory as CSV (time, x, y, v) to this file"),
           {"compare",
            Kind::input,
@@ -254,7 +283,7 @@ std::string Range::text() const {
 
 std::span<const Group> table() {
   static const std::vector<Group> groups{scene_group(), question_group(), method_group(),
-                                         output_group()};
+                                         sweep_group(), output_group()};
   return groups;
 }
 
