@@ -139,6 +139,7 @@ int conduct_sweep(const options::Request& request, Clock::time_point start, doub
     }
     std::fputs(sweeps::sweep_table(request, sweep, times).c_str(), stdout);
     std::fflush(stdout);
+    if (status != 0) say("stickslip: some points fell short; the table says which, and why");
   }
   MPI_Bcast(&status, 1, MPI_INT, 0, comm);
   return status;

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -27,6 +28,10 @@ class LockedFile {
   explicit LockedFile(const std::string& name)
       : name_(name), descriptor_(open(name.c_str(), O_RDWR | O_CREAT | O_APPEND, 0666)) {
     if (descriptor_ < 0) fail("cannot open");
+    struct stat kind {};
+    if (fstat(descriptor_, &kind) != 0 || !S_ISREG(kind.st_mode)) {
+      refuse_record(name, "is no regular file");
+    }
     // Locks of this kind work over NFS; where there are none, O_APPEND has to do.
     struct flock lock {};
     lock.l_type = F_WRLCK;

@@ -75,6 +75,11 @@ std::string title(const options::Sweep& sweep) {
   return fmt::format("sweep of {}: {} points\n", enumerate(axes, "and"), sweep.size());
 }
 
+// Of the column of an axis.
+std::size_t width(const options::SweepAxis& axis) {
+  return std::max<std::size_t>(11, axis.option.size() + 2);
+}
+
 std::string scalar_cells(const Run& run, const std::string& key) {
   const Result* result = find(run, key);
   if (result == nullptr) return fmt::format("  {:>17} {:>8}", "", "");
@@ -84,7 +89,10 @@ std::string scalar_cells(const Run& run, const std::string& key) {
 std::string row(const options::Sweep& sweep, const Run& run,
                 std::span<const Result* const> scalars) {
   std::string text;
-  for (double value : sweep.values(run.point)) text += fmt::format("{:>11.6g}", value);
+  const auto values = sweep.values(run.point);
+  for (std::size_t a = 0; a < values.size(); ++a) {
+    text += fmt::format("{:>{}.6g}", values[a], width(sweep.axes()[a]));
+  }
   for (const Result* scalar : scalars) text += scalar_cells(run, scalar->key);
   if (run.status != Status::reached) text += fmt::format("  {}", status_text(run.status));
   return text + "\n";
@@ -94,7 +102,7 @@ std::string row(const options::Sweep& sweep, const Run& run,
 std::string block(const options::Sweep& sweep, const std::vector<Run>& runs,
                   std::span<const Result* const> scalars) {
   std::string text = "\n";
-  for (const auto& axis : sweep.axes()) text += fmt::format("{:>11.11}", axis.option);
+  for (const auto& axis : sweep.axes()) text += fmt::format("{:>{}}", axis.option, width(axis));
   for (const Result* scalar : scalars) text += fmt::format("  {:>17} {:>8}", scalar->key, "error");
   text += "\n";
   const std::size_t fastest = sweep.axes().back().values.size();
