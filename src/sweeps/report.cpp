@@ -215,14 +215,15 @@ class Grid {
 
 std::string sweep_table(const options::Request& request, const Conducted& conducted,
                         const io::RunTimes& times) {
-  constexpr std::size_t side_by_side = 4;
   const auto& sweep = *request.sweep;
   std::string text = title(sweep) + fixed_options(request);
   const auto kinds = kinds_of_scalars(conducted.runs);
-  for (std::size_t first = 0; first < std::max<std::size_t>(kinds.size(), 1);
-       first += side_by_side) {
-    const std::size_t count = std::min(side_by_side, kinds.size() - first);
-    text += block(sweep, conducted.runs, {kinds.data() + first, count});
+  constexpr std::size_t side_by_side = 4;
+  const std::size_t blocks =
+      std::max<std::size_t>(1, (kinds.size() + side_by_side - 1) / side_by_side);
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::size_t first = kinds.size() * b / blocks, end = kinds.size() * (b + 1) / blocks;
+    text += block(sweep, conducted.runs, {kinds.data() + first, end - first});
   }
   text += "\n";
   for (const Result* kind : kinds_of_results(conducted.runs)) {
