@@ -96,11 +96,12 @@ std::string text_at(const Json& json, const std::string& name) {
     refuse_record(file,
                   fmt::format("belongs to a sweep with {} \"{}\", not \"{}\"", name, found, value));
   }
-  for (const auto& [name, value] : json["run"].items()) {
+  for (const auto& option : json["run"].items()) {
     const bool known = std::any_of(identity.begin(), identity.end(),
-                                   [&](const auto& entry) { return entry.first == name; });
-    if (!known)
-      refuse_record(file, fmt::format("belongs to a sweep with {} {}", name, value.dump()));
+                                   [&](const auto& entry) { return entry.first == option.key(); });
+    if (known) continue;
+    refuse_record(
+        file, fmt::format("belongs to a sweep with {} {}", option.key(), option.value().dump()));
   }
   refuse_record(file, "belongs to another version of the program");
 }
