@@ -171,6 +171,27 @@ int tell(const Failure& failure, bool first_rank) {
   return static_cast<int>(failure.status());
 }
 
+/// The request, or BadInput on all ranks with the message of the first that found any: files may
+/// look different from another machine, or a moment later. Collective.
+options::Request agreed_request(const std::vector<std::string>& words) {
+  options::Request request;
+  std::string problem;
+  try {
+    request = options::read_request(words);
+  } catch (const BadInput& bad) {
+    problem = bad.what();
+  }
+  const int ranks = petsc::ranks(MPI_COMM_WORLD);
+  int first = problem.empty() ? ranks : petsc::rank(MPI_COMM_WORLD);
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  if (first == ranks) return request;
+  auto size = static_cast<int>(problem.size());
+  MPI_Bcast(&size, 1, MPI_INT, first, MPI_COMM_WORLD);
+  problem.resize(static_cast<std::size_t>(size));
+  MPI_Bcast(problem.data(), size, MPI_CHAR, first, MPI_COMM_WORLD);
+  throw BadInput(problem);
+}
+
 /// Runs under a started PETSc. Bad input is found on all ranks alike and ends quietly; any other
 /// error may be known to one rank alone, and ends all of them.
 int run_session(const std::vector<std::string>& words, double start_up) {
@@ -178,7 +199,7 @@ int run_session(const std::vector<std::string>& words, double start_up) {
   const int rank = petsc::rank(MPI_COMM_WORLD);
   int status = static_cast<int>(ExitStatus::other);
   try {
-    const auto request = options::read_request(words);
+    const auto request = agreed_request(words);
     if (request.study != options::StudyKind::none) return conduct_study(request, start, start_up);
     if (request.sweep) return conduct_sweep(request, start, start_up);
     return compute(request, start, start_up);

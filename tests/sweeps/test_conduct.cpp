@@ -116,7 +116,7 @@ TEST_CASE("sweeps: what does not fit in memory stops no other", "[parallel]") {
   if (!first_rank()) return;
   CHECK(sweep.runs[0].status == Status::no_memory);
   CHECK(sweep.runs[0].results.empty());
-  CHECK(sweep.runs[1].results.size() > 0);
+  CHECK_FALSE(sweep.runs[1].results.empty());
   CHECK(exit_status(sweep.runs) == 4);
 }
 
