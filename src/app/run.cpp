@@ -22,6 +22,7 @@
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/atomic_file.hpp"
 #include "stickslip/support/errors.hpp"
+#include "stickslip/sweeps/report.hpp"
 
 namespace stickslip::app {
 namespace {
@@ -124,6 +125,39 @@ int tell_plan(const options::Request& request) {
   return 0;
 }
 
+sweeps::SweepProgress sweep_progress_of(const options::Request& request) {
+  if (!request.progress) return {};
+  return [&request, last = Clock::time_point()](const sweeps::State& s) mutable {
+    if (s.status == "reached" && s.done < s.count && seconds_since(last) < 1) return;
+    last = Clock::now();
+    say(fmt::format("{} of {} points; {}: {} after {:.2g} s; about {:.0f} s left", s.done, s.count,
+                    request.sweep->place(s.point), s.status, s.seconds_of_point, s.seconds_left));
+  };
+}
+
+int conduct_sweep(const options::Request& request, Clock::time_point start, double start_up) {
+  const MPI_Comm comm = MPI_COMM_WORLD;
+  const bool first_rank = petsc::rank(comm) == 0;
+  if (first_rank) warn(request);
+  const auto sweep = sweeps::conduct(comm, request, sweep_progress_of(request));
+  int status = sweeps::exit_status(sweep.runs);
+  if (first_rank) {
+    const io::RunTimes times{start_up, start_up + seconds_since(start)};
+    if (!request.summary.empty()) {
+      write_text(request.summary, sweeps::sweep_summary(comm, request, sweep, times));
+    }
+    if (!request.output.empty()) sweeps::write_sweep_hdf5(comm, request, sweep, times);
+    if (!request.sweep_csv.empty()) {
+      write_text(request.sweep_csv, sweeps::sweep_csv(request, sweep));
+    }
+    std::fputs(sweeps::sweep_table(request, sweep, times).c_str(), stdout);
+    std::fflush(stdout);
+    if (status != 0) say("stickslip: some points fell short; the table says which, and why");
+  }
+  MPI_Bcast(&status, 1, MPI_INT, 0, comm);
+  return status;
+}
+
 int compute(const options::Request& request, Clock::time_point start, double start_up) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const bool first_rank = petsc::rank(comm) == 0;
@@ -150,6 +184,27 @@ int tell(const Failure& failure, bool first_rank) {
   return static_cast<int>(failure.status());
 }
 
+/// The request, or BadInput on all ranks with the message of the first that found any: files may
+/// look different from another machine, or a moment later. Collective.
+options::Request agreed_request(const std::vector<std::string>& words) {
+  options::Request request;
+  std::string problem;
+  try {
+    request = options::read_request(words);
+  } catch (const BadInput& bad) {
+    problem = bad.what();
+  }
+  const int ranks = petsc::ranks(MPI_COMM_WORLD);
+  int first = problem.empty() ? ranks : petsc::rank(MPI_COMM_WORLD);
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  if (first == ranks) return request;
+  auto size = static_cast<int>(problem.size());
+  MPI_Bcast(&size, 1, MPI_INT, first, MPI_COMM_WORLD);
+  problem.resize(static_cast<std::size_t>(size));
+  MPI_Bcast(problem.data(), size, MPI_CHAR, first, MPI_COMM_WORLD);
+  throw BadInput(problem);
+}
+
 /// Runs under a started PETSc. Bad input is found on all ranks alike and ends quietly; any other
 /// error may be known to one rank alone, and ends all of them.
 int run_session(const std::vector<std::string>& words, double start_up) {
@@ -157,9 +212,10 @@ int run_session(const std::vector<std::string>& words, double start_up) {
   const int rank = petsc::rank(MPI_COMM_WORLD);
   int status = static_cast<int>(ExitStatus::other);
   try {
-    const auto request = options::read_request(words);
+    const auto request = agreed_request(words);
     if (request.plan_only) return tell_plan(request);
     if (request.study != options::StudyKind::none) return conduct_study(request, start, start_up);
+    if (request.sweep) return conduct_sweep(request, start, start_up);
     return compute(request, start, start_up);
   } catch (const BadInput& failure) {
     return tell(failure, rank == 0);

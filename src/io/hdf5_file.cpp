@@ -82,8 +82,14 @@ void Hdf5File::make_group(const std::string& path) {
 }
 
 void Hdf5File::write_array(const std::string& path, std::span<const double> values) {
-  const std::array<hsize_t, 1> size{values.size()};
-  const Id space = space_of(size, path);
+  const std::array<std::size_t, 1> size{values.size()};
+  write_array(path, size, values);
+}
+
+void Hdf5File::write_array(const std::string& path, std::span<const std::size_t> sizes,
+                           std::span<const double> values) {
+  const std::vector<hsize_t> counts(sizes.begin(), sizes.end());
+  const Id space = space_of(counts, path);
   const Id data = dataset(id_, path, space);
   if (petsc::rank(comm_) != 0) return;
   require(H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), path);

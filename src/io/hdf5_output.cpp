@@ -4,19 +4,13 @@
 #include <filesystem>
 #include <map>
 
-#include "parts.hpp"
+#include "stickslip/io/parts.hpp"
 #include "stickslip/io/provenance.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/quantities/density.hpp"
 
 namespace stickslip::io {
 namespace {
-
-// A slash would make a group of its own.
-std::string group_name(std::string key) {
-  std::replace(key.begin(), key.end(), '/', ':');
-  return key;
-}
 
 template <class Row, class Get>
 std::vector<double> column(const std::vector<Row>& rows, Get get) {
@@ -28,7 +22,7 @@ std::vector<double> column(const std::vector<Row>& rows, Get get) {
 void write_results(Hdf5File& file, const quantities::Results& results) {
   file.make_group("/results");
   for (const auto& r : results) {
-    const std::string group = "/results/" + group_name(r.key);
+    const std::string group = "/results/" + hdf5_name(r.key);
     file.make_group(group);
     if (!r.unit.empty()) file.attribute(group, "unit", r.unit);
     if (r.is_scalar()) {
@@ -96,7 +90,7 @@ void write_comparison(Hdf5File& file, const accuracy::Comparison& comparison) {
   for (const auto& row : comparison.rows) groups[row.reference.quantity].push_back(row);
   for (const auto& entry : groups) {
     const std::vector<Compared>& rows = entry.second;
-    const std::string group = "/comparison/" + group_name(entry.first);
+    const std::string group = "/comparison/" + hdf5_name(entry.first);
     file.make_group(group);
     const auto write = [&](const char* name, auto get) {
       file.write_array(group + "/" + name, column(rows, get));
@@ -134,13 +128,13 @@ void write_modes(Hdf5File& file, const std::string& parity,
 }
 
 // A rectilinear grid for ParaView and VisIt: v across, x upwards.
-std::string xdmf(const std::string& hdf5_name, const quantities::DensityField& field) {
+std::string xdmf(const std::string& file_name, const quantities::DensityField& field) {
   const auto item = [&](std::size_t rows, std::size_t columns, const char* name) {
     const std::string size =
         columns == 0 ? std::to_string(rows) : fmt::format("{} {}", rows, columns);
     return fmt::format("<DataItem Dimensions=\"{}\" NumberType=\"Float\" Precision=\"8\" "
                        "Format=\"HDF\">{}:/density/{}</DataItem>",
-                       size, hdf5_name, name);
+                       size, file_name, name);
   };
   const std::size_t rows = field.pdf.x().size(), columns = field.pdf.v().size();
   return fmt::format(
@@ -154,6 +148,11 @@ std::string xdmf(const std::string& hdf5_name, const quantities::DensityField& f
 }
 
 }  // namespace
+
+std::string hdf5_name(std::string key) {
+  std::replace(key.begin(), key.end(), '/', ':');
+  return key;
+}
 
 void write_record(Hdf5File& file, MPI_Comm comm, const options::Request& request,
                   const RunTimes& times) {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "parts.hpp"
+#include "stickslip/io/parts.hpp"
 
 namespace stickslip::io {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "parts.hpp"
+#include "stickslip/io/parts.hpp"
 
 namespace stickslip::io {
 namespace {

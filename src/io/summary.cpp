@@ -1,4 +1,4 @@
-#include "parts.hpp"
+#include "stickslip/io/parts.hpp"
 #include "stickslip/io/provenance.hpp"
 #include "stickslip/petsc/memory.hpp"
 
@@ -147,8 +147,8 @@ Json plan_of(const petsc::Ledger& total) {
 
 }  // namespace
 
-std::string summary(MPI_Comm comm, const options::Request& request,
-                    const accuracy::Outcome& outcome, const RunTimes& times) {
+Json run_json(const options::Request& request, const accuracy::Outcome& outcome,
+              const RunTimes& times) {
   Json json;
   json["scene"] = scene_of(request, outcome);
   json["results"] = results_json(outcome.last.results);
@@ -157,6 +157,12 @@ std::string summary(MPI_Comm comm, const options::Request& request,
   if (outcome.comparison) json["comparison"] = comparison_of(*outcome.comparison);
   json["cost"] = cost_of(outcome, times);
   json["plan"] = plan_of(outcome.total);
+  return json;
+}
+
+std::string summary(MPI_Comm comm, const options::Request& request,
+                    const accuracy::Outcome& outcome, const RunTimes& times) {
+  Json json = run_json(request, outcome, times);
   json["provenance"] = provenance_json(comm, request);
   return json.dump(2) + "\n";
 }

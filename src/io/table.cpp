@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "parts.hpp"
+#include "stickslip/io/parts.hpp"
 
 namespace stickslip::io {
 

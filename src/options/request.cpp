@@ -12,6 +12,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "reading.hpp"
 #include "stickslip/model/drag_law.hpp"
 #include "stickslip/options/settings.hpp"
 #include "stickslip/petsc/check.hpp"
@@ -356,7 +357,9 @@ void read_arguments(const Settings& settings, Request& request, Problems& proble
   warn_unused("horizon", request.wants(Quantity::trajectory));
   const bool simulates = request.route == Route::monte_carlo;
   warn_unused("excursions", simulates);
-  warn_unused("checkpoint", simulates);
+  warn_unused("checkpoint", simulates || sweeps(settings));
+  warn_unused("sweep_csv", sweeps(settings));
+  warn_unused("sweep_ranks", sweeps(settings));
   warn_unused("seed", simulates || request.wants(Quantity::trajectory));
   warn_unused("transient_solver", of_time);
   warn_unused("omega", request.wants(Quantity::spectrum));
@@ -535,6 +538,7 @@ void read_output(const Settings& settings, Request& request, Problems& problems)
   check_writable(settings, "output", problems);
   check_writable(settings, "trajectory", problems);
   check_writable(settings, "study_csv", problems);
+  check_writable(settings, "sweep_csv", problems);
   check_writable(settings, "checkpoint", problems);
   request.summary = settings.text("summary");
   request.output = settings.text("output");
@@ -686,15 +690,21 @@ void check_unknown_options(Problems& problems) {
 
 }  // namespace
 
-Request read_request(const std::vector<std::string>& argv) {
-  Problems problems;
-  Request request;
-  const Settings settings = Settings::read(problems);
-  check_stray_words(argv, problems);
-  check_solver_options(problems);
-  check_unknown_options(problems);
-  problems.raise();  // what follows relates values to one another
+std::vector<std::pair<std::string, std::string>> solver_options() {
+  std::vector<std::pair<std::string, std::string>> found;
+  for (const auto& name : given_names()) {
+    const auto& roles = solver_roles();
+    const bool known = std::any_of(roles.begin(), roles.end(), [&name](const SolverRole& role) {
+      return name.starts_with(role.prefix);
+    });
+    if (known) found.emplace_back(name, solver_option("-" + name));
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
 
+Request request_of(const Settings& settings, Problems& problems) {
+  Request request;
   request.scene = read_scene(settings, request, problems);
   check_noise(settings, request.scene, problems);
   read_drag_law(settings, request.scene, problems);
@@ -727,6 +737,18 @@ Request read_request(const std::vector<std::string>& argv) {
       request.resolved.emplace_back(option.name, settings.text(option.name));
     }
   }
+  return request;
+}
+
+Request read_request(const std::vector<std::string>& argv) {
+  Problems problems;
+  const Settings settings = Settings::read(problems);
+  check_stray_words(argv, problems);
+  check_solver_options(problems);
+  check_unknown_options(problems);
+  problems.raise();  // what follows relates values to one another
+  if (sweeps(settings)) return read_sweep(settings);
+  Request request = request_of(settings, problems);
   problems.raise();
   return request;
 }

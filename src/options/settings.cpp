@@ -4,7 +4,6 @@
 #include <petscsys.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -19,10 +18,10 @@ std::optional<std::string> value_in_database(const std::string& name) {
   PetscBool found = PETSC_FALSE;
   petsc::check(PetscOptionsHasName(nullptr, nullptr, ("-" + name).c_str(), &found));
   if (found == PETSC_FALSE) return std::nullopt;
-  std::array<char, 4096> buffer{};
+  std::string buffer(1 << 20, '\0');  // lists can be long, and PETSc cuts what does not fit
   petsc::check(PetscOptionsGetString(nullptr, nullptr, ("-" + name).c_str(), buffer.data(),
                                      buffer.size(), &found));
-  const std::string value = buffer.data();
+  const std::string value = buffer.c_str();
   return value.substr(std::min(value.find_first_not_of(' '), value.size()));
 }
 
@@ -178,6 +177,11 @@ std::vector<std::string> Settings::list(const std::string& name) const {
 std::vector<double> Settings::numbers(const std::string& name) const {
   const auto found = lists_.find(name);
   return found == lists_.end() ? std::vector<double>{} : found->second;
+}
+
+void Settings::set(const std::string& name, double value, Problems& problems) {
+  text_[name] = fmt::format("{}", value);  // reads back to the same bits
+  parse(*find(name), text_[name], problems);
 }
 
 void Settings::report(Problems& problems, const std::string& name, const std::string& why,

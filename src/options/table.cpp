@@ -180,17 +180,6 @@ Group method_group() {
           flag("plan",
                "print what would be assembled, factored and solved, with unknowns, non-zeros, "
                "memory and time foretold by the analysis phase of MUMPS, and stop"),
-          words("study", Kind::choice, "none", {"none", "p", "delta", "heuristic", "cost"},
-                "a series of runs instead of one. p: the upwind scheme on p = 2, 4, ..., its "
-                "observed order and Richardson's limit. delta: falling noise steps with mu_s on a "
-                "level and between two, observed order and limit. heuristic: the extrapolation of "
-                "the paper beside converged values. cost: error against time of all methods"),
-          integer("study_steps", "", whole(4, 20), {},
-                  "length of the series: number of values of p or delta (default 8 and 5)",
-                  "three values tell an order, a fourth how sure it is"),
-          integer("study_repeats", "3", whole(1, 99), {},
-                  "repetitions of each run of -study cost, of which the median time is taken",
-                  "an odd number is best"),
           integer("excursions", "1000000", whole(2, 1e15), {},
                   "number of simulated excursions with -route monte_carlo; with -accuracy it stops "
                   "before that when every interval is small enough",
@@ -203,8 +192,53 @@ Group method_group() {
                "take for example 100"),
           path("checkpoint",
                "go on with the simulation of this file if it exists, and keep it there "
-               "every few seconds; more -excursions later add to it"),
+               "every few seconds; more -excursions later add to it. With a sweep: keep every "
+               "point there as it is finished, and do only what the file does not hold yet"),
       }};
+}
+
+Group study_group() {
+  return {
+      "Study",
+      "A series of runs that looks at the accuracy itself",
+      {
+          words("study", Kind::choice, "none", {"none", "p", "delta", "heuristic", "cost"},
+                "p: the upwind scheme on p = 2, 4, ..., its "
+                "observed order and Richardson's limit. delta: falling noise steps with mu_s on a "
+                "level and between two, observed order and limit. heuristic: the extrapolation of "
+                "the paper beside converged values. cost: error against time of all methods"),
+          integer("study_steps", "", whole(4, 20), {},
+                  "length of the series: number of values of p or delta (default 8 and 5)",
+                  "three values tell an order, a fourth how sure it is"),
+          integer("study_repeats", "3", whole(1, 99), {},
+                  "repetitions of each run of -study cost, of which the median time is taken",
+                  "an odd number is best"),
+      }};
+}
+
+// The values of another option.
+Option sweep_of(const Option& option) {
+  return {"sweep_" + option.name,      Kind::numbers, option.unit, "", option.range, {},
+          "values of -" + option.name, option.fix};
+}
+
+Group sweep_group() {
+  Group group{
+      "Sweep",
+      "A run for each combination of the values given, as a,b,c or first:last:count or "
+      "first:last:count:log; the last option of this list changes fastest. -checkpoint keeps "
+      "what is finished",
+      {}};
+  for (const auto& option : scene_group().options) {
+    const bool number = option.kind == Kind::real || option.kind == Kind::integer;
+    if (number) group.options.push_back(sweep_of(option));
+  }
+  group.options.push_back(
+      integer("sweep_ranks", "1", whole(1, 1e6), {},
+              "ranks that share the work of a point; groups of that many take the points one after "
+              "the other",
+              "one is best while a point fits into the memory of one"));
+  return group;
 }
 
 Group output_group() {
@@ -216,6 +250,9 @@ Group output_group() {
           path("output", "write everything and the fields as HDF5 to this file; with density also "
                          "FILE.xdmf, which ParaView opens"),
           path("study_csv", "write every scalar of every run of a study as CSV to this file"),
+          path("sweep_csv",
+               "write a row for each point of a sweep as CSV to this file: its values, every "
+               "scalar with its error, and how it ended"),
           path("trajectory", "write the trajectory as CSV (time, x, y, v) to this file"),
           {"compare",
            Kind::input,
@@ -276,7 +313,7 @@ std::string Range::text() const {
 
 std::span<const Group> table() {
   static const std::vector<Group> groups{scene_group(), question_group(), method_group(),
-                                         output_group()};
+                                         study_group(), sweep_group(),    output_group()};
   return groups;
 }
 

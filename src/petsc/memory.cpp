@@ -63,15 +63,22 @@ double left_in_address_space() {
 
 }  // namespace
 
+int ranks_on_node() {
+  static const int ranks = [] {
+    MPI_Comm node = MPI_COMM_NULL;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
+    int count = 1;
+    MPI_Comm_size(node, &count);
+    MPI_Comm_free(&node);
+    return count;
+  }();
+  return ranks;
+}
+
 double available_bytes(MPI_Comm comm) {
-  MPI_Comm node = MPI_COMM_NULL;
-  MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
-  int neighbours = 1;
-  MPI_Comm_size(node, &neighbours);
-  MPI_Comm_free(&node);
   const double shared =
       std::min(proc_value("/proc/meminfo", "MemAvailable"), left_in_control_group());
-  double mine = std::max(0.0, std::min(shared / neighbours, left_in_address_space()));
+  double mine = std::max(0.0, std::min(shared / ranks_on_node(), left_in_address_space()));
   // Ranks share the work evenly: the poorest decides.
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);

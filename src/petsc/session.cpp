@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/memory.hpp"
 
 namespace stickslip::petsc {
 namespace {
@@ -41,6 +42,7 @@ Session::Session(int& argc, char**& argv) : arguments_(argv, argv + argc) {
   if (code != 0) throw PetscFailure(code, "PETSc could not start with these arguments");
   collect_error_messages();
   check(PetscLogDefaultBegin());  // the ledger reads event times
+  (void)ranks_on_node();          // all ranks are here
   std::signal(SIGPIPE, SIG_DFL);  // a closed pipe (| head) is no crash
 }
 

@@ -1,12 +1,13 @@
 """Results do not depend on the number of ranks."""
 
 import concurrent.futures
+import subprocess
 import unittest
 
 import h5py
 import numpy
 
-from stickslip import Case, TWINS, run
+from stickslip import BINARIES, Case, TWINS, run
 
 
 class Together(Case):
@@ -18,6 +19,18 @@ class Together(Case):
         with concurrent.futures.ThreadPoolExecutor(8) as pool:
             for done in pool.map(alone, range(24)):
                 self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+
+class OneRankAlone(Case):
+    def test_bad_input_of_one_rank_ends_all(self):
+        """The second rank alone runs in another folder, where the file of -output has no place."""
+        (self.folder / "here" / "place").mkdir(parents=True)
+        options = [str(BINARIES / "stickslip"), "-delta", "0.5", "-output", "place/out.h5"]
+        done = subprocess.run(["mpiexec", "-n", "1", "-wdir", str(self.folder / "here"), *options,
+                               ":", "-n", "1", "-wdir", str(self.folder), *options],
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(done.stderr.count("-output = place/out.h5"), 1)
 
 
 class Ranks(Case):

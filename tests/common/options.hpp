@@ -15,7 +15,10 @@ namespace stickslip::test {
 /// PETSc options for the life of the object.
 class Given {
  public:
-  Given(std::initializer_list<std::pair<std::string, std::string>> options) : options_(options) {
+  Given(std::initializer_list<std::pair<std::string, std::string>> options)
+      : Given(std::vector(options)) {}
+  explicit Given(std::vector<std::pair<std::string, std::string>> options)
+      : options_(std::move(options)) {
     for (const auto& [name, value] : options_) {
       petsc::check(PetscOptionsSetValue(nullptr, name.c_str(), value.c_str()));
     }

@@ -12,7 +12,7 @@ import statistics
 import sys
 
 ROOMS = ("support", "model", "exact", "velocity", "simulation", "petsc", "options", "operators", "quantities",
-         "routes", "accuracy", "studies", "io", "app")
+         "routes", "accuracy", "studies", "io", "sweeps", "app")
 LONGEST, LONG, MEDIAN = 60, 30, 8
 
 

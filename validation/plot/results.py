@@ -28,6 +28,7 @@ ASKED_BY = {  # what computes a dataset
     "trajectory": "-quantities trajectory -horizon 100",
     "comparison": "-compare FILE",
     "study": "-study cost",
+    "sweep": "-sweep_mu_d 0.1:1:10",
 }
 ASKED_BY["f_stick"] = ASKED_BY["f_excursion"] = ASKED_BY["f_slide"]
 

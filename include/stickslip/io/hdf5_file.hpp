@@ -27,6 +27,9 @@ class Hdf5File {
   void make_group(const std::string& path);
   /// A dataset that every rank holds; written by rank 0.
   void write_array(const std::string& path, std::span<const double> values);
+  /// An array with several indices, the last one fastest, that every rank holds.
+  void write_array(const std::string& path, std::span<const std::size_t> sizes,
+                   std::span<const double> values);
   void write_scalar(const std::string& path, double value);
   /// A matrix of which this rank holds whole rows: values row after row, in the order of `rows`.
   void write_rows(const std::string& path, std::size_t row_count, std::size_t columns,

@@ -2,6 +2,7 @@
 /// A validated run: the scene, the questions, the method and where the answers go.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -65,6 +66,8 @@ struct Method {
   [[nodiscard]] bool fixed() const { return degree || layers || points; }
 };
 
+class Sweep;
+
 struct Request {
   model::Scene scene;
   std::set<Quantity> quantities;
@@ -82,16 +85,19 @@ struct Request {
   std::vector<Reference> references;  ///< of -compare
   bool plan_only = false;
   StudyKind study = StudyKind::none;
-  std::optional<int> study_steps;  ///< length of a series, if fixed by the user
-  int study_repeats = 3;           ///< runs of which the median time is taken
+  std::optional<int> study_steps;      ///< length of a series, if fixed by the user
+  int study_repeats = 3;               ///< runs of which the median time is taken
+  std::shared_ptr<const Sweep> sweep;  ///< none for a single run; then this is its first point
+  int sweep_ranks = 1;                 ///< that share a point
   SpectrumSolver spectrum_solver = SpectrumSolver::krylov;
   TransientSolver transient_solver = TransientSolver::krylov;
   Route route = Route::excursion;
   Method method;
   std::string summary, output, trajectory;  ///< file names; empty if not asked for
-  std::string checkpoint;                   ///< of -route monte_carlo
+  std::string checkpoint;                   ///< of -route monte_carlo and of sweeps
   std::string compared;                     ///< file of the references
   std::string study_csv;
+  std::string sweep_csv;
   bool progress = false;
   std::vector<std::string> warnings;
   /// All options of the table as used, name and value, for the record.

@@ -18,6 +18,7 @@ class Problems {
   void add(const Option& option, const std::string& value, const std::string& why,
            const std::string& fix);
   [[nodiscard]] bool empty() const { return messages_.empty(); }
+  [[nodiscard]] const std::vector<std::string>& messages() const { return messages_; }
   /// Throws BadInput with all messages, if there are any.
   void raise() const;
 
@@ -42,6 +43,8 @@ class Settings {
   /// The numbers of a list option, empty if it was not given.
   [[nodiscard]] std::vector<double> numbers(const std::string& name) const;
   [[nodiscard]] bool flag(const std::string& name) const { return text(name) != "no"; }
+  /// Gives the number option `name` another value, checked as if the user had given it.
+  void set(const std::string& name, double value, Problems& problems);
   /// Reports a problem with the value of `name`.
   void report(Problems& problems, const std::string& name, const std::string& why,
               const std::string& fix) const;

@@ -1,5 +1,5 @@
 #pragma once
-/// Parts that reports of runs and of studies share.
+/// Parts that reports of runs, studies and sweeps share.
 
 #include <mpi.h>
 
@@ -24,8 +24,14 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json resolution_json(const accuracy::Resolution& resolution);
 [[nodiscard]] Json scene_json(const options::Request& request);
 [[nodiscard]] Json results_json(const quantities::Results& results);
+/// What one run found and what it cost: scene, results, accuracy, comparison if any, cost, plan.
+[[nodiscard]] Json run_json(const options::Request& request, const accuracy::Outcome& outcome,
+                            const RunTimes& times);
 [[nodiscard]] Json provenance_json(MPI_Comm comm, const options::Request& request);
 [[nodiscard]] Json seconds_json(const petsc::Ledger& ledger);
+/// A key of a result as the name of a group or dataset, where a slash would make a group of its
+/// own.
+[[nodiscard]] std::string hdf5_name(std::string key);
 /// The group /record: provenance, options, seconds.
 void write_record(Hdf5File& file, MPI_Comm comm, const options::Request& request,
                   const RunTimes& times);

@@ -1,0 +1,34 @@
+#pragma once
+/// A finished point of a sweep.
+
+#include <cstddef>
+#include <string>
+
+#include "stickslip/io/parts.hpp"
+#include "stickslip/quantities/results.hpp"
+
+namespace stickslip::sweeps {
+
+/// How a point ended. Results are there for the first two.
+enum class Status { reached, not_reached, failed, no_memory };
+
+/// "reached", "not reached", "failed", "no memory".
+[[nodiscard]] const char* status_text(Status status);
+
+struct Run {
+  std::size_t point = 0;
+  Status status = Status::reached;
+  std::string message;          ///< what fell short; empty if nothing did
+  quantities::Results results;  ///< values that are not finite are NaN
+  io::Json json;                ///< the same and scene, accuracy, cost, plan: an entry of `runs`
+};
+
+/// Computes a point on its own; failures of solvers and of memory become its status. Collective.
+/// Throws what is no stickslip::Failure.
+[[nodiscard]] io::Json compute_run(MPI_Comm comm, const options::Request& request,
+                                   std::size_t point);
+
+/// The run that an entry of `runs` tells of. Throws nlohmann's exceptions if it is none.
+[[nodiscard]] Run read_run(io::Json json);
+
+}  // namespace stickslip::sweeps

@@ -1,0 +1,241 @@
+#include "stickslip/options/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+
+#include "reading.hpp"
+#include "stickslip/petsc/session.hpp"
+
+namespace stickslip::options {
+namespace {
+
+constexpr double kMostPoints = 100000;
+constexpr const char* kSwept = "swept";   // in the place of a value, in records of what was used
+constexpr std::size_t kMostMessages = 8;  // of the points
+
+// The option of the scene that an option sweeps; nullptr for any other option.
+const Option* swept_by(const Option& option) {
+  constexpr std::string_view prefix = "sweep_";
+  return option.name.starts_with(prefix) ? find(option.name.substr(prefix.size())) : nullptr;
+}
+
+std::vector<SweepAxis> read_axes(const Settings& settings, Problems& problems) {
+  std::vector<SweepAxis> axes;
+  for (const auto& group : table()) {
+    for (const auto& option : group.options) {
+      const Option* swept = swept_by(option);
+      if (swept == nullptr || !settings.given(option.name)) continue;
+      axes.push_back({swept->name, swept->unit, settings.numbers(option.name)});
+      auto sorted = axes.back().values;
+      std::sort(sorted.begin(), sorted.end());
+      const auto twin = std::adjacent_find(sorted.begin(), sorted.end());
+      if (twin == sorted.end()) continue;
+      settings.report(problems, option.name, fmt::format("names {:g} twice", *twin),
+                      "name it once");
+    }
+  }
+  return axes;
+}
+
+void check_size(const std::vector<SweepAxis>& axes, Problems& problems) {
+  double points = 1;
+  for (const auto& axis : axes) points *= static_cast<double>(axis.values.size());
+  if (points <= kMostPoints) return;
+  problems.add(fmt::format("-sweep_{}: makes {:.0f} points in all, and {:.0f} are allowed; take "
+                           "fewer values, or several sweeps",
+                           axes.back().option, points, kMostPoints));
+}
+
+// What is about one run alone, or makes a series of its own.
+void check_alone(const Settings& settings, Problems& problems) {
+  if (settings.text("study") != "none") {
+    settings.report(problems, "study", "makes a series of runs of its own",
+                    "leave it out, or the -sweep_ options");
+  }
+  if (settings.flag("plan")) {
+    settings.report(problems, "plan", "foretells one run, not a sweep",
+                    "leave the -sweep_ options out to foretell its scene");
+  }
+  for (const char* name : {"compare", "trajectory"}) {
+    if (!settings.given(name)) continue;
+    settings.report(problems, name, "is a file for one run, not for a sweep",
+                    "leave it out, or the -sweep_ options");
+  }
+  for (const auto& quantity : settings.list("quantities")) {
+    if (quantity != "density" && quantity != "trajectory") continue;
+    settings.report(problems, "quantities",
+                    fmt::format("asks for {}, which a sweep has no place for", quantity),
+                    "run the scenes that you want to look at one by one");
+  }
+}
+
+void check_ranks(const Settings& settings, Problems& problems) {
+  const int ranks = petsc::ranks(PETSC_COMM_WORLD);
+  if (settings.integer("sweep_ranks").value_or(1) <= ranks) return;
+  settings.report(problems, "sweep_ranks", fmt::format("is more than the {} of this run", ranks),
+                  "take fewer, or start more with mpiexec -n");
+}
+
+/// What is wrong with the points, each message once with the places it holds at.
+class PointProblems {
+ public:
+  explicit PointProblems(const Sweep& sweep) : sweep_(sweep) {}
+
+  void add(std::size_t point, const Problems& problems) {
+    for (const auto& message : problems.messages()) {
+      auto [entry, is_new] = places_.try_emplace(message, Places{point, 0});
+      ++entry->second.count;
+      if (is_new) order_.push_back(message);
+    }
+  }
+
+  void report(Problems& problems) const {
+    for (std::size_t n = 0; n < std::min(order_.size(), kMostMessages); ++n) {
+      problems.add(where(places_.at(order_[n])) + order_[n]);
+    }
+    if (order_.size() <= kMostMessages) return;
+    problems.add(fmt::format("and {} more like these", order_.size() - kMostMessages));
+  }
+
+ private:
+  struct Places {
+    std::size_t first, count;
+  };
+
+  [[nodiscard]] std::string where(const Places& places) const {
+    if (places.count == sweep_.size()) return "";
+    const std::string more =
+        places.count > 1 ? fmt::format(" and {} more points", places.count - 1) : "";
+    return fmt::format("at {}{}: ", sweep_.place(places.first), more);
+  }
+
+  const Sweep& sweep_;
+  std::map<std::string, Places> places_;
+  std::vector<std::string> order_;
+};
+
+// A swept option without effect would give the same numbers over and over.
+void check_effects(const Sweep& sweep, const Request& request, Problems& problems) {
+  for (const auto& axis : sweep.axes()) {
+    for (const auto& warning : request.warnings) {
+      if (!warning.starts_with(fmt::format("-{} has no effect", axis.option))) continue;
+      problems.add(fmt::format("-sweep_{}: {}; leave it out", axis.option, warning));
+    }
+  }
+}
+
+void check_points(const Sweep& sweep, Problems& problems) {
+  PointProblems found(sweep);
+  for (std::size_t point = 0; point < sweep.size(); ++point) {
+    Problems own;
+    const Request request = sweep.request(point, own);
+    found.add(point, own);
+    if (point == 0) check_effects(sweep, request, problems);
+  }
+  found.report(problems);
+}
+
+bool is_axis(const std::vector<SweepAxis>& axes, const std::string& name) {
+  return std::any_of(axes.begin(), axes.end(),
+                     [&name](const SweepAxis& axis) { return axis.option == name; });
+}
+
+// Options of the output change no number, and the checkpoint is the file that holds this.
+std::vector<std::pair<std::string, std::string>> identity_of(const Settings& settings,
+                                                             const std::vector<SweepAxis>& axes) {
+  std::vector<std::pair<std::string, std::string>> identity;
+  for (const auto& group : table()) {
+    if (group.title == "Output") continue;
+    for (const auto& option : group.options) {
+      if (option.name == "checkpoint" || option.name == "plan") continue;
+      const bool swept = is_axis(axes, option.name);
+      identity.emplace_back(option.name, swept ? kSwept : settings.text(option.name));
+    }
+  }
+  for (const auto& option : solver_options()) identity.push_back(option);
+  return identity;
+}
+
+}  // namespace
+
+Sweep::Sweep(Settings settings, std::vector<SweepAxis> axes)
+    : settings_(std::move(settings)),
+      axes_(std::move(axes)),
+      identity_(identity_of(settings_, axes_)) {}
+
+std::size_t Sweep::size() const {
+  std::size_t points = 1;
+  for (const auto& axis : axes_) points *= axis.values.size();
+  return points;
+}
+
+std::vector<double> Sweep::values(std::size_t point) const {
+  std::vector<double> values(axes_.size());
+  for (std::size_t a = axes_.size(); a-- > 0;) {
+    const auto& all = axes_[a].values;
+    values[a] = all[point % all.size()];
+    point /= all.size();
+  }
+  return values;
+}
+
+std::string Sweep::place(std::size_t point) const {
+  const auto at = values(point);
+  std::string text;
+  for (std::size_t a = 0; a < at.size(); ++a) {
+    text += fmt::format("{}{} = {:g}", a == 0 ? "" : ", ", axes_[a].option, at[a]);
+  }
+  return text;
+}
+
+Request Sweep::request(std::size_t point, Problems& problems) const {
+  Settings settings = settings_;
+  const auto at = values(point);
+  for (std::size_t a = 0; a < at.size(); ++a) settings.set(axes_[a].option, at[a], problems);
+  Request request;
+  if (problems.empty()) request = request_of(settings, problems);
+  for (std::string* file : {&request.summary, &request.output, &request.checkpoint}) file->clear();
+  return request;
+}
+
+Request Sweep::request(std::size_t point) const {
+  Problems known;
+  return request(point, known);
+}
+
+bool sweeps(const Settings& settings) {
+  for (const auto& group : table()) {
+    for (const auto& option : group.options) {
+      if (swept_by(option) != nullptr && settings.given(option.name)) return true;
+    }
+  }
+  return false;
+}
+
+Request read_sweep(const Settings& settings) {
+  Problems problems;
+  auto axes = read_axes(settings, problems);
+  check_size(axes, problems);
+  check_alone(settings, problems);
+  check_ranks(settings, problems);
+  problems.raise();
+  const auto sweep = std::make_shared<const Sweep>(settings, std::move(axes));
+  check_points(*sweep, problems);
+  problems.raise();
+  Request request = sweep->request(0);
+  request.sweep = sweep;
+  request.summary = settings.text("summary");
+  request.output = settings.text("output");
+  request.checkpoint = settings.text("checkpoint");
+  request.sweep_csv = settings.text("sweep_csv");
+  request.sweep_ranks = settings.integer("sweep_ranks").value_or(1);
+  for (auto& [name, value] : request.resolved) {
+    if (is_axis(sweep->axes(), name)) value = kSwept;
+  }
+  return request;
+}
+
+}  // namespace stickslip::options

@@ -1,0 +1,222 @@
+#include "stickslip/sweeps/conduct.hpp"
+
+#include <petsctime.h>
+
+#include <algorithm>
+#include <exception>
+#include <optional>
+#include <string>
+
+#include "shared_counter.hpp"
+#include "stickslip/io/provenance.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/session.hpp"
+#include "stickslip/support/errors.hpp"
+#include "stickslip/sweeps/record.hpp"
+
+namespace stickslip::sweeps {
+namespace {
+
+using io::Json;
+using options::Request;
+
+constexpr int kTag = 7;  // of the only messages between single ranks
+
+double now() {
+  PetscLogDouble seconds = 0;
+  petsc::check(PetscTime(&seconds));
+  return seconds;
+}
+
+/// Ranks that share a point; those that are too few for a group have none.
+class Group {
+ public:
+  Group(MPI_Comm all, int ranks) : ranks_(ranks) {
+    const int number = petsc::rank(all) / ranks;
+    const bool complete = (number + 1) * ranks <= petsc::ranks(all);
+    MPI_Comm_split(all, complete ? number : MPI_UNDEFINED, 0, &comm_);
+  }
+  ~Group() {
+    if (comm_ != MPI_COMM_NULL && std::uncaught_exceptions() == 0) MPI_Comm_free(&comm_);
+  }
+  Group(const Group&) = delete;
+  Group& operator=(const Group&) = delete;
+
+  [[nodiscard]] bool works() const { return comm_ != MPI_COMM_NULL; }
+  [[nodiscard]] MPI_Comm comm() const { return comm_; }
+  [[nodiscard]] bool leads() const { return works() && petsc::rank(comm_) == 0; }
+  /// What the first rank of the group says.
+  [[nodiscard]] long told(long value) const {
+    if (ranks_ > 1) MPI_Bcast(&value, 1, MPI_LONG, 0, comm_);
+    return value;
+  }
+
+ private:
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  int ranks_;
+};
+
+std::string shared_text(MPI_Comm comm, std::string text) {
+  auto size = static_cast<long>(text.size());
+  MPI_Bcast(&size, 1, MPI_LONG, 0, comm);
+  text.resize(static_cast<std::size_t>(size));
+  MPI_Bcast(text.data(), static_cast<int>(size), MPI_CHAR, 0, comm);
+  return text;
+}
+
+// Everything that may change a number: options, and the program.
+Identity identity_of(MPI_Comm comm, const options::Sweep& sweep) {
+  Identity identity;
+  for (const auto& [name, value] : io::provenance(comm)) {
+    const bool counts = name == "program" || name == "commit" || name == "scalar";
+    if (counts) identity.emplace_back(name, value);
+  }
+  for (const auto& [name, value] : sweep.identity()) identity.emplace_back("-" + name, value);
+  return identity;
+}
+
+Run read_line(const std::string& file, const std::string& line, std::size_t count) {
+  std::optional<Run> run;
+  try {
+    run = read_run(Json::parse(line));
+  } catch (const std::exception&) {
+    refuse_record(file, "is damaged");
+  }
+  if (run->point >= count) refuse_record(file, "is damaged");
+  return std::move(*run);
+}
+
+/// The work of one rank.
+class Worker {
+ public:
+  Worker(MPI_Comm comm, const Request& request, const SweepProgress& progress)
+      : comm_(comm), request_(request), sweep_(*request.sweep), progress_(progress) {}
+
+  Conducted run() {
+    load();
+    compute();
+    return gather();
+  }
+
+ private:
+  [[nodiscard]] bool first_rank() const { return petsc::rank(comm_) == 0; }
+
+  // What the record holds, to rank 0, and to all what is left to do.
+  void load() {
+    std::string problem;
+    std::vector<char> finished(sweep_.size(), 0);
+    if (first_rank() && !request_.checkpoint.empty()) {
+      try {
+        read_finished(finished);
+      } catch (const BadInput& bad) {
+        problem = bad.what();
+      }
+    }
+    problem = shared_text(comm_, problem);
+    if (!problem.empty()) throw BadInput(problem);
+    MPI_Bcast(finished.data(), static_cast<int>(finished.size()), MPI_CHAR, 0, comm_);
+    for (std::size_t point = 0; point < finished.size(); ++point) {
+      if (finished[point] == 0) open_.push_back(point);
+    }
+  }
+
+  void read_finished(std::vector<char>& finished) {
+    const auto& file = request_.checkpoint;
+    for (const auto& line : open_record(file, identity_of(comm_, sweep_))) {
+      Run run = read_line(file, line, sweep_.size());
+      finished[run.point] = run.status == Status::no_memory ? 0 : 1;
+      if (finished[run.point] != 0) resumed_.push_back(std::move(run));
+    }
+  }
+
+  void compute() {
+    const Group group(comm_, request_.sweep_ranks);
+    SharedCounter taken(comm_), done(comm_);
+    start_ = now();
+    while (group.works()) {
+      const auto n = static_cast<std::size_t>(group.told(group.leads() ? taken.next() : 0));
+      if (n >= open_.size()) break;
+      const std::size_t point = open_[n];
+      const Json run = compute_run(group.comm(), sweep_.request(point), point);
+      if (group.leads()) finish(run, done);
+    }
+    MPI_Barrier(comm_);  // the counters live until all are through
+  }
+
+  void finish(const Json& run, SharedCounter& done) {
+    lines_.push_back(run.dump());
+    if (!request_.checkpoint.empty()) append_to_record(request_.checkpoint, lines_.back());
+    const auto here = static_cast<std::size_t>(done.next()) + 1;
+    if (!progress_) return;
+    State state;
+    state.point = run["point"].get<std::size_t>();
+    state.count = sweep_.size();
+    state.done = state.count - open_.size() + here;
+    state.seconds_left =
+        (now() - start_) * static_cast<double>(open_.size() - here) / static_cast<double>(here);
+    state.status = run["status"].get<std::string>();
+    state.seconds_of_point = run["cost"]["seconds"].get<double>();
+    progress_(state);
+  }
+
+  // All runs to rank 0, in the order of the points.
+  Conducted gather() {
+    Conducted all;
+    if (!first_rank()) {
+      send_lines();
+      return all;
+    }
+    all.runs.resize(sweep_.size());
+    for (auto& run : resumed_) all.runs[run.point] = std::move(run);
+    const auto add = [&all](const std::string& line) {
+      Run run = read_run(Json::parse(line));
+      all.runs[run.point] = std::move(run);
+    };
+    for (const auto& line : lines_) add(line);
+    for (std::size_t n = lines_.size(); n < open_.size(); ++n) add(receive_line());
+    all.resumed = sweep_.size() - open_.size();
+    return all;
+  }
+
+  void send_lines() const {
+    for (const auto& line : lines_) {
+      MPI_Send(line.data(), static_cast<int>(line.size()), MPI_CHAR, 0, kTag, comm_);
+    }
+  }
+
+  [[nodiscard]] std::string receive_line() const {
+    MPI_Status status;
+    int size = 0;
+    MPI_Probe(MPI_ANY_SOURCE, kTag, comm_, &status);
+    MPI_Get_count(&status, MPI_CHAR, &size);
+    std::string line(static_cast<std::size_t>(size), ' ');
+    MPI_Recv(line.data(), size, MPI_CHAR, status.MPI_SOURCE, kTag, comm_, MPI_STATUS_IGNORE);
+    return line;
+  }
+
+  MPI_Comm comm_;
+  const Request& request_;
+  const options::Sweep& sweep_;
+  const SweepProgress& progress_;
+  std::vector<Run> resumed_;        // of the record, on rank 0
+  std::vector<std::size_t> open_;   // points left to do, on all ranks
+  std::vector<std::string> lines_;  // finished here
+  double start_ = 0;
+};
+
+}  // namespace
+
+Conducted conduct(MPI_Comm comm, const Request& request, const SweepProgress& progress) {
+  return Worker(comm, request, progress).run();
+}
+
+int exit_status(const std::vector<Run>& runs) {
+  auto worst = ExitStatus::done;
+  for (const auto& run : runs) {
+    if (run.status == Status::no_memory) return static_cast<int>(ExitStatus::no_memory);
+    if (run.status != Status::reached) worst = ExitStatus::not_reached;
+  }
+  return static_cast<int>(worst);
+}
+
+}  // namespace stickslip::sweeps

@@ -1,0 +1,115 @@
+#include "stickslip/sweeps/run.hpp"
+
+#include <petsctime.h>
+
+#include <array>
+#include <limits>
+
+#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/support/errors.hpp"
+
+namespace stickslip::sweeps {
+namespace {
+
+using io::Json;
+
+constexpr std::array kStatuses{Status::reached, Status::not_reached, Status::failed,
+                               Status::no_memory};
+
+Status status_named(const std::string& text) {
+  for (Status status : kStatuses) {
+    if (text == status_text(status)) return status;
+  }
+  throw std::invalid_argument("no status of a run: " + text);
+}
+
+double now() {
+  PetscLogDouble seconds = 0;
+  petsc::check(PetscTime(&seconds));
+  return seconds;
+}
+
+Json head(std::size_t point, Status status, const std::string& message) {
+  Json json{{"point", point}, {"status", status_text(status)}};
+  if (!message.empty()) json["message"] = message;
+  return json;
+}
+
+// JSON has no word for what is not finite.
+double number(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
+std::vector<double> numbers(const Json& json) {
+  if (!json.is_array()) return {number(json)};
+  std::vector<double> values;
+  for (const auto& value : json) values.push_back(number(value));
+  return values;
+}
+
+std::vector<std::pair<double, double>> intervals(const Json& json, bool scalar) {
+  if (scalar) return {{number(json.at(0)), number(json.at(1))}};
+  std::vector<std::pair<double, double>> ends;
+  for (const auto& pair : json) ends.emplace_back(number(pair.at(0)), number(pair.at(1)));
+  return ends;
+}
+
+quantities::Result result_of(const std::string& key, const Json& json) {
+  quantities::Result result;
+  const bool scalar = json.begin().key() == "value";
+  result.key = key;
+  result.unit = json.value("unit", "");
+  if (!scalar) {
+    result.abscissa_name = json.begin().key();
+    result.abscissa = numbers(json.begin().value());
+  }
+  result.value = numbers(json.at("value"));
+  result.error = numbers(json.at("error"));
+  if (json.contains("ci95")) result.ci95 = intervals(json["ci95"], scalar);
+  return result;
+}
+
+}  // namespace
+
+const char* status_text(Status status) {
+  switch (status) {
+  case Status::reached: return "reached";
+  case Status::not_reached: return "not reached";
+  case Status::failed: return "failed";
+  case Status::no_memory: return "no memory";
+  }
+  return "";
+}
+
+Json compute_run(MPI_Comm comm, const options::Request& request, std::size_t point) {
+  const double start = now();
+  try {
+    const auto outcome = accuracy::refine(comm, request, {});
+    Json json =
+        head(point, outcome.reached ? Status::reached : Status::not_reached, outcome.shortfall);
+    json.update(io::run_json(request, outcome, {0, now() - start}));
+    return json;
+  } catch (const Failure& failure) {
+    const bool memory = failure.status() == ExitStatus::no_memory;
+    Json json = head(point, memory ? Status::no_memory : Status::failed, failure.what());
+    json["scene"] = io::scene_json(request);
+    json["results"] = Json::object();
+    json["cost"]["seconds"] = now() - start;
+    return json;
+  }
+}
+
+Run read_run(Json json) {
+  Run run;
+  run.point = json.at("point").get<std::size_t>();
+  run.status = status_named(json.at("status").get<std::string>());
+  run.message = json.value("message", "");
+  for (const auto& [key, result] : json.at("results").items()) {
+    run.results.push_back(result_of(key, result));
+  }
+  run.json = std::move(json);
+  return run;
+}
+
+}  // namespace stickslip::sweeps

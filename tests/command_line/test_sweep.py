@@ -1,0 +1,232 @@
+"""Sweeps: the same bits on any number of ranks and after any interruption, and what they write."""
+
+import csv
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import h5py
+import numpy
+
+from stickslip import BINARIES, Case, SOURCES, run
+
+SMALL = ("-delta", "0.5", "-sweep_mu_d", "0.25,0.5,1", "-sweep_tau", "0.5:1:2")
+MANY = ("-delta", "0.25", "-sweep_mu_d", "0.1:1:6", "-sweep_tau", "0.5:2:8")
+
+
+class Interrupted(Case):
+    def killed_after(self, seconds, *options, ranks=0):
+        """Starts a sweep and kills all its processes; whether that came before its end."""
+        command = [str(BINARIES / "stickslip"), *options]
+        if ranks:
+            command = ["mpiexec", "-n", str(ranks), *command]
+        with subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL, start_new_session=True) as process:
+            try:
+                process.wait(seconds)
+                return False
+            except subprocess.TimeoutExpired:
+                os.killpg(process.pid, signal.SIGKILL)
+                return True
+
+    @staticmethod
+    def points(record):
+        """Finished points in a record."""
+        return max(0, record.read_text().count("\n") - 1) if record.exists() else 0
+
+    def check(self, ranks):
+        moment = random.Random(ranks)
+        whole, pieces, record = (self.folder / name for name in ("whole.csv", "pieces.csv", "kept"))
+        start = time.monotonic()
+        self.run_ok(*MANY, "-sweep_csv", whole, ranks=ranks)
+        seconds = time.monotonic() - start
+        options = (*MANY, "-checkpoint", str(record), "-sweep_csv", str(pieces))
+        kills = 0
+        for _ in range(200):
+            if self.points(record) > 40:
+                break
+            kills += self.killed_after(seconds * moment.uniform(0.1, 0.5), *options, ranks=ranks)
+            self.assertFalse(pieces.exists() and self.points(record) < 48)
+        self.assertGreater(kills, 1)
+        s = self.summary(*options, ranks=ranks)
+        self.assertGreater(s["sweep"]["from_record"], 0)
+        self.assertEqual(pieces.read_bytes(), whole.read_bytes())
+        self.assertEqual([f.name for f in self.folder.iterdir() if ".part" in f.name], [])
+
+    def test_killed_and_continued(self):
+        self.check(0)
+
+    def test_killed_and_continued_on_three_ranks(self):
+        self.check(3)
+
+    def test_times_come_from_the_record(self):
+        options = (*SMALL, "-checkpoint", "kept")
+        first, second = self.summary(*options), self.summary(*options, ranks=2)
+        self.assertEqual(second["sweep"]["from_record"], 6)
+        self.assertEqual(second["runs"], first["runs"])
+
+    def test_a_lost_record_ends_all_ranks(self):
+        place = self.folder / "place"
+        place.mkdir()
+        with subprocess.Popen(["mpiexec", "-n", "3", BINARIES / "stickslip", "-delta", "0.25",
+                               "-sweep_tau", "0.5:2:4000", "-checkpoint", place / "kept"],
+                              stderr=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                              text=True) as process:
+            self.addCleanup(process.kill)
+            end = time.monotonic() + 60
+            while not self.points(place / "kept") and time.monotonic() < end:
+                time.sleep(0.02)
+            shutil.rmtree(place)
+            _, told = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("kept: No such file", told)
+
+
+class Numbers(Case):
+    def test_every_point_equals_a_single_run(self):
+        quantities = ("-quantities", "sticking,moments,laplace,spectrum", "-lambda", "0.5,2",
+                      "-omega", "0,1")
+        s = self.summary(*SMALL, *quantities)
+        self.assertEqual(len(s["runs"]), 6)
+        for entry in s["runs"]:
+            scene = entry["scene"]
+            alone = self.summary("-delta", "0.5", *quantities, "-mu_d", scene["mu_d"], "-tau",
+                                 scene["tau"])
+            self.assertEqual(entry["results"], alone["results"])
+            self.assertEqual(entry["plan"], alone["plan"])
+            self.assertEqual(scene, alone["scene"])
+
+    def test_ranks(self):
+        self.run_ok(*MANY, "-sweep_csv", "one.csv")
+        for ranks in (1, 2, 3):
+            self.run_ok(*MANY, "-sweep_csv", "more.csv", ranks=ranks)
+            self.assertEqual((self.folder / "more.csv").read_bytes(),
+                             (self.folder / "one.csv").read_bytes())
+
+    def test_several_ranks_to_a_point(self):
+        alone = self.summary(*SMALL)["runs"]
+        for ranks in (2, 3, 4):  # of three ranks one has nothing to do
+            for one, other in zip(alone, self.summary(*SMALL, "-sweep_ranks", "2",
+                                                      ranks=ranks)["runs"]):
+                for key, result in one["results"].items():
+                    self.assert_close(other["results"][key]["value"], result["value"], 1e-12, key)
+
+
+class Files(Case):
+    def test_all_tell_the_same(self):
+        done = self.run_ok(*SMALL, "-summary", "s.json", "-output", "s.h5", "-sweep_csv", "s.csv")
+        runs = json.loads((self.folder / "s.json").read_text())["runs"]
+        with open(self.folder / "s.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        with h5py.File(self.folder / "s.h5") as file:
+            sweep = {name: numpy.array(values) for name, values in file["sweep"].items()}
+            self.assertEqual(file["sweep"].attrs["axes"], "mu_d,tau")
+            self.assertEqual(file["sweep/mean_stick"].attrs["unit"], "time")
+            self.assertEqual(file["record/options"].attrs["sweep_mu_d"], "0.25,0.5,1")
+            self.assertIn("commit", file["record"].attrs)
+        numpy.testing.assert_array_equal(sweep["mu_d"], [0.25, 0.5, 1])
+        numpy.testing.assert_array_equal(sweep["tau"], [0.5, 1])
+        for n, (entry, row) in enumerate(zip(runs, rows)):
+            place = numpy.unravel_index(n, (3, 2))
+            self.assertEqual(float(row["mu_d"]), sweep["mu_d"][place[0]])
+            self.assertEqual(entry["scene"]["tau"], sweep["tau"][place[1]])
+            self.assertEqual((row["status"], sweep["status"][place]), ("reached", 0))
+            self.assertEqual(entry["cost"]["seconds"], sweep["seconds"][place])
+            for key, result in entry["results"].items():
+                self.assertEqual(sweep[key][place], result["value"])
+                self.assertEqual(sweep[key + "_error"][place], result["error"])
+                self.assertEqual(float(row[key]), result["value"])
+                self.assertEqual(float(row[key + "_error"]), result["error"])
+                self.assertIn(f"{result['value']:.10g}", done.stdout)
+
+    def test_arrays_of_different_length(self):
+        s = self.summary("-delta", "0.5", "-sweep_mu_s", "1,2", "-quantities", "entry_law,laplace",
+                         "-lambda", "0.5,1,2", "-output", "s.h5")
+        with h5py.File(self.folder / "s.h5") as file:
+            sweep = {name: numpy.array(values) for name, values in file["sweep"].items()}
+        self.assertEqual(sweep["F_slide"].shape, (2, 3))
+        self.assertEqual(sweep["entry_law"].shape, (2, 9))
+        numpy.testing.assert_array_equal(sweep["F_slide_lambda"], [[0.5, 1, 2]] * 2)
+        for n, length in enumerate((5, 9)):
+            law = s["runs"][n]["results"]["entry_law"]
+            for name, values in (("entry_law", law["value"]), ("entry_law_k", law["k"])):
+                numpy.testing.assert_array_equal(sweep[name][n][:length], values)
+                self.assertTrue(numpy.isnan(sweep[name][n][length:]).all())
+
+    def test_progress_on_request(self):
+        self.assertEqual(run(*SMALL).stderr, "")
+        self.assertIn("6 of 6 points; ", run(*SMALL, "-progress", "on").stderr)
+
+    def test_picture(self):
+        script = SOURCES / "validation" / "plot" / "sweep.py"
+        self.run_ok(*SMALL, "-output", "s.h5", "-sweep_csv", "s.csv")
+        for file in ("s.h5", "s.csv"):
+            subprocess.run([sys.executable, script, file, "-o", "pictures"], cwd=self.folder,
+                           check=True)
+            picture = self.folder / "pictures" / "P_stick.png"
+            self.assertTrue(picture.read_bytes().startswith(b"\x89PNG"))
+            shutil.rmtree(self.folder / "pictures")
+
+
+class Ends(Case):
+    def refuse(self, *options, told):
+        before = {f.name: f.read_bytes() for f in self.folder.iterdir()}
+        done = run(*options, "-sweep_csv", "out.csv", folder=self.folder)
+        self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+        self.assertEqual({f.name: f.read_bytes() for f in self.folder.iterdir()}, before)
+        for part in told:
+            self.assertIn(part, done.stderr)
+
+    def test_bad_input(self):
+        self.refuse("-sweep_mu_d", "0.5,2", "-checkpoint", "kept", told=("at mu_d = 2: ",))
+        self.refuse("-sweep_mud", "0.5", told=("did you mean -sweep_mu_d?",))
+        self.refuse("-sweep_tau", "0", told=("-sweep_tau = 0", "(0, inf)"))
+        self.refuse("-sweep_tau", "1,2", "-study", "p", told=("-study = p",))
+        self.refuse("-sweep_tau", "1,2", "-quantities", "density", told=("density",))
+
+    def test_foreign_and_damaged_records(self):
+        kept = self.folder / "kept"
+        self.run_ok(*SMALL, "-checkpoint", kept)
+        good = kept.read_text()
+        for told, *other in (("-accuracy", "-accuracy", "1e-5"),
+                             ("-sweep_tau", "-sweep_tau", "0.5:1:3"),
+                             ('-mu_s "1", not "swept"', "-sweep_mu_s", "1,2"),
+                             ("-slide_mat_mumps_icntl_7", "-slide_mat_mumps_icntl_7", "0")):
+            self.refuse(*SMALL, "-checkpoint", kept, *other, told=("-checkpoint", told))
+        self.refuse(*SMALL, "-checkpoint", kept, "-route", "monte_carlo", told=("-route",))
+        for bad in ("precious", good + "{}\n", good.replace('"reached"', '"well"', 1)):
+            kept.write_text(bad)
+            self.refuse(*SMALL, "-checkpoint", kept, told=("-checkpoint", "remove it"))
+
+    def test_every_rank_knows_a_foreign_record_but_one_speaks(self):
+        (self.folder / "kept").write_text("precious")
+        done = run(*SMALL, "-checkpoint", "kept", ranks=3, folder=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(done.stderr.count("is no record of a sweep"), 1)
+
+    def test_some_points_fall_short(self):
+        options = ("-delta", "0.5", "-accuracy", "1e-4", "-sweep_v_max", "1,3.7", "-sweep_csv",
+                   "s.csv", "-checkpoint", "kept")
+        for kept in (0, 2):
+            s = self.summary(*options, status=3)
+            self.assertEqual(s["sweep"]["from_record"], kept)
+            self.assertEqual([r["status"] for r in s["runs"]], ["not reached", "reached"])
+            self.assertIn("holds back", s["runs"][0]["message"])
+            self.assertIn(",not reached\n", (self.folder / "s.csv").read_text())
+
+    def test_points_without_memory_are_tried_again(self):
+        options = ("-sweep_delta", "4e-5,0.5", "-quantities", "sticking", "-checkpoint", "kept")
+        for kept in (0, 1):
+            s = self.summary(*options, status=4)
+            self.assertEqual(s["sweep"]["from_record"], kept)
+            self.assertEqual([r["status"] for r in s["runs"]], ["no memory", "reached"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,152 @@
+#include "stickslip/sweeps/conduct.hpp"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "../common/options.hpp"
+#include "../common/temporary.hpp"
+#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/petsc/session.hpp"
+#include "stickslip/support/errors.hpp"
+#include "stickslip/sweeps/report.hpp"
+
+using namespace stickslip;
+using namespace stickslip::sweeps;
+using options::Request;
+using test::Given;
+
+namespace {
+
+using Options = std::vector<std::pair<std::string, std::string>>;
+
+Request read(const Options& options) {
+  const Given given(options);
+  return options::read_request({});
+}
+
+Conducted conducted(const Request& request) { return conduct(PETSC_COMM_WORLD, request, {}); }
+
+bool first_rank() { return petsc::rank(PETSC_COMM_WORLD) == 0; }
+
+void check_equal(const quantities::Results& found, const quantities::Results& expected) {
+  REQUIRE(found.size() == expected.size());
+  for (std::size_t r = 0; r < found.size(); ++r) {
+    INFO(expected[r].key);
+    CHECK(found[r].key == expected[r].key);
+    CHECK(found[r].unit == expected[r].unit);
+    CHECK(found[r].abscissa_name == expected[r].abscissa_name);
+    CHECK(found[r].abscissa == expected[r].abscissa);
+    CHECK(found[r].value == expected[r].value);
+    CHECK(found[r].error == expected[r].error);
+    CHECK(found[r].ci95 == expected[r].ci95);
+  }
+}
+
+Run made_by_hand(std::size_t point, double value) {
+  Run run;
+  run.point = point;
+  run.results = {quantities::scalar("E(max(x,v))", "force", value, 0.125)};
+  run.json = {{"point", point}, {"cost", {{"seconds", 1.0}}}};
+  return run;
+}
+
+}  // namespace
+
+TEST_CASE("sweeps: every point has the bits of a run of its own", "[parallel]") {
+  for (const char* quantities : {"sticking,moments,noise_law,entry_law", "laplace,relaxation"}) {
+    const Request request = read({{"-delta", "0.5"},
+                                  {"-sweep_mu_d", "0.25,0.5,1"},
+                                  {"-sweep_tau", "0.5,1"},
+                                  {"-lambda", "0,2"},
+                                  {"-quantities", quantities}});
+    const auto sweep = conducted(request);
+    if (!first_rank()) continue;
+    REQUIRE(sweep.runs.size() == 6);
+    for (std::size_t n = 0; n < 6; ++n) {
+      const auto alone = accuracy::refine(PETSC_COMM_SELF, request.sweep->request(n), {});
+      CHECK(sweep.runs[n].point == n);
+      CHECK(sweep.runs[n].status == Status::reached);
+      check_equal(sweep.runs[n].results, alone.last.results);
+    }
+    CHECK(exit_status(sweep.runs) == 0);
+  }
+}
+
+TEST_CASE("sweeps: simulated points too, with their intervals", "[parallel]") {
+  const Request request = read({{"-delta", "0.5"},
+                                {"-sweep_mu_d", "0.25,0.5"},
+                                {"-route", "monte_carlo"},
+                                {"-excursions", "2000"}});
+  const auto sweep = conducted(request);
+  if (!first_rank()) return;
+  const auto alone = accuracy::refine(PETSC_COMM_SELF, request.sweep->request(1), {});
+  CHECK_FALSE(alone.last.results[0].ci95.empty());
+  check_equal(sweep.runs[1].results, alone.last.results);
+}
+
+TEST_CASE("sweeps: several ranks to a point give the same up to rounding", "[parallel]") {
+  if (petsc::ranks(PETSC_COMM_WORLD) == 1) return;
+  const Request request =
+      read({{"-delta", "0.5"}, {"-sweep_mu_d", "0.25,0.5"}, {"-sweep_ranks", "2"}});
+  const auto sweep = conducted(request);
+  if (!first_rank()) return;
+  for (std::size_t n = 0; n < 2; ++n) {
+    const auto alone = accuracy::refine(PETSC_COMM_SELF, request.sweep->request(n), {});
+    for (std::size_t r = 0; r < alone.last.results.size(); ++r) {
+      CHECK(sweep.runs[n].results[r].value[0] ==
+            Approx(alone.last.results[r].value[0]).epsilon(1e-12));
+    }
+  }
+}
+
+TEST_CASE("sweeps: what falls short keeps its values and stops no other", "[parallel]") {
+  // The velocity cut of 1 holds back more than the accuracy allows.
+  const auto sweep =
+      conducted(read({{"-delta", "0.5"}, {"-accuracy", "1e-4"}, {"-sweep_v_max", "1,3.7"}}));
+  if (!first_rank()) return;
+  CHECK(sweep.runs[0].status == Status::not_reached);
+  CHECK_THAT(sweep.runs[0].message, Catch::Contains("holds back"));
+  CHECK(sweep.runs[0].results[0].value[0] > 0);
+  CHECK(sweep.runs[1].status == Status::reached);
+  CHECK(exit_status(sweep.runs) == 3);
+}
+
+TEST_CASE("sweeps: what does not fit in memory stops no other", "[parallel]") {
+  const auto sweep = conducted(read({{"-sweep_delta", "4e-5,0.5"}, {"-accuracy", "1e-12"}}));
+  if (!first_rank()) return;
+  CHECK(sweep.runs[0].status == Status::no_memory);
+  CHECK(sweep.runs[0].results.empty());
+  CHECK_FALSE(sweep.runs[1].results.empty());
+  CHECK(exit_status(sweep.runs) == 4);
+}
+
+TEST_CASE("sweeps: what the record holds is not computed again") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "record";
+  const auto run = [&] {
+    return conducted(read({{"-delta", "0.5"}, {"-sweep_mu_d", "0.25,0.5"}, {"-checkpoint", file}}));
+  };
+  const auto first = run();
+  CHECK(first.resumed == 0);
+  const auto second = run();
+  CHECK(second.resumed == 2);
+  for (std::size_t n = 0; n < 2; ++n) CHECK(second.runs[n].json == first.runs[n].json);
+  std::ofstream(file, std::ios::app) << "{\"point\":7}\n";
+  CHECK_THROWS_AS(run(), BadInput);
+}
+
+TEST_CASE("sweeps: CSV quotes what holds a comma and leaves gaps where there is no number") {
+  const Request request = read({{"-sweep_mu_d", "0.25,0.5,0.75"}});
+  Conducted sweep;
+  sweep.runs = {made_by_hand(0, 2), made_by_hand(1, std::nan("")), made_by_hand(2, 0)};
+  sweep.runs[2].results.clear();
+  sweep.runs[2].status = Status::failed;
+  CHECK(sweep_csv(request, sweep) == "mu_d,\"E(max(x,v))\",\"E(max(x,v))_error\",status\n"
+                                     "0.25,2,0.125,reached\n"
+                                     "0.5,,0.125,reached\n"
+                                     "0.75,,,failed\n");
+  const std::string table = sweep_table(request, sweep, {});
+  CHECK_THAT(table, Catch::Contains("mu_d = 0.75: failed") &&
+                        Catch::Contains("2 of 3 points reached") &&
+                        !Catch::Contains("mu_d = swept"));
+}
