@@ -1,0 +1,174 @@
+"""Effects one by one: bias, unequal drag, derivatives, sweeps, and what is foretold of their cost.
+
+usage: python3 validation/effects/run.py [--quick] [--program build/stickslip] [--report FOLDER]
+
+--quick simulates 10^5 excursions instead of 10^6, and times nothing.
+"""
+
+import itertools
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from entry import Entry, deviation, significant
+from harness import difference, worse
+
+SCENE = {"mu_s": 1, "mu_d": 0.7, "delta": 0.25}
+BIASES = (0.1, 0.5, 1.5)  # the last beyond mu_s
+ASKED = "sticking,moments,noise_law,spectrum"
+RATCHET = {"mu_s": 0.5, "mu_d": 0.25, "delta": 0.25, "drag": "expression",
+           "drag_expression": "v > 0 ? (0-3)*v : (0-0.5)*v"}
+STEPS = {"mu_d": 0.004, "tau": 0.02, "drag_coefficient": 0.05}
+FORETOLD = (  # scenes whose cost does not depend on how an adaptive solver fares
+    {"delta": 0.125}, {"delta": 0.0625, "mu_d": 0.25}, {"delta": 0.03125, "accuracy": 1e-8},
+    {"delta": 0.0625, "quantities": "sticking,moments,entry_law,laplace", "lambda": "0.1,1,10"},
+    {"delta": 0.125, "quantities": "sticking,moments,sensitivity"},
+    {"delta": 0.125, "bias": 0.3, "quantities": "moments,spectrum"})
+
+
+def scalars(summary):
+    return {key: r for key, r in summary["results"].items() if not isinstance(r["value"], list)}
+
+
+def simulations(entry):
+    """Deterministic values without symmetry beside simulated ones."""
+    excursions = 10**5 if entry.quick else 10**6
+    scenes = [(f"bias {g}", {**SCENE, "bias": g}) for g in BIASES] + [("ratchet", RATCHET)]
+    rows, far = [], []
+    for name, scene in scenes:
+        exact = scalars(entry.run(quantities=ASKED, accuracy=1e-9, **scene))
+        count = excursions // 4 if name == "ratchet" else excursions
+        simulated = scalars(entry.run(quantities=ASKED, route="monte_carlo", excursions=count,
+                                      **scene))
+        for key, s in simulated.items():
+            z = deviation(exact[key]["value"], exact[key]["error"], s)
+            far.append(abs(z))
+            rows.append((name, key, f"{exact[key]['value']:.10g}", s["value"], *s["ci95"], z))
+    entry.table(f"deterministic and simulated ({excursions} cycles; a quarter for the ratchet)",
+                ("scene", "quantity", "value", "simulated", "low", "high", "z"), rows)
+    inside = sum(z < 1.96 for z in far) / len(far)
+    entry.at_least("share of 95 % intervals that hold the deterministic value", inside, 0.85)
+    entry.verdict(max(far) < significant(len(far)), "no |z| beyond what chance explains",
+                  f"largest {max(far):.2f}, allowed {significant(len(far)):.2f}")
+
+
+def drift_in_white_noise(entry):
+    """b = 0: E[V] -> 2 g/(mu^2 - g^2) as tau -> 0."""
+    rows, found = [], []
+    for g in (0.1, 0.5, 0.9):
+        values = [entry.run(drag="none", mu_s=1, mu_d=1, bias=g, tau=tau, delta=1,
+                            quantities="moments", accuracy=1e-9)["results"]["E_V"]["value"]
+                  for tau in (1 / 16, 1 / 32, 1 / 64)]
+        first = [2 * b - a for a, b in itertools.pairwise(values)]
+        limit, expected = (4 * first[1] - first[0]) / 3, 2 * g / (1 - g * g)
+        found.append(difference(limit, expected))
+        rows.append((f"{g}", *values, limit, expected))
+    entry.table("E[V] without drag, mu_d = mu_s = 1", ("bias", "tau = 1/16", "1/32", "1/64",
+                                                      "extrapolated", "2 g/(mu^2 - g^2)"), rows)
+    entry.claim("the drift tends to that in white noise, relative", worse(*found), 1e-3)
+
+
+def without_bias(entry):
+    """10^-300 breaks the symmetry and moves nothing."""
+    folded = scalars(entry.run(quantities="sticking,moments,spectrum", accuracy=1e-11, degree=10,
+                               **SCENE))
+    whole = scalars(entry.run(quantities="sticking,moments,spectrum", degree=10, bias=1e-300,
+                              **SCENE))
+    keys = ("P_stick", "P_slide", "mean_stick", "mean_slide", "E_V2", "E_absV", "E_XV", "S_0")
+    entry.claim("both half lines give at g = 0 what one of them gives, relative",
+                worse(*(difference(whole[k]["value"], folded[k]["value"]) for k in keys)), 1e-11)
+
+
+def pictures(entry):
+    """The drift and the diffusivity as the bias grows."""
+    count = 9 if entry.quick else 41
+    file = entry.file("drift.h5")
+    entry.run(mu_s=1, mu_d=1, delta=0.125, quantities="sticking,moments,spectrum", accuracy=1e-5,
+              sweep_bias=f"0.025:2.025:{count}", output=file)
+    entry.drawn("drift.py", "drift.png", "Drift, diffusivity and sticking under a bias: from creep "
+                "to motion that friction only slows down.", file)
+
+
+def extrapolated(entry, scene, parameter, base, h):
+    """Central differences, extrapolated twice."""
+    differences = []
+    for step in (h, h / 2, h / 4):
+        ends = [scalars(entry.run(**{**scene, parameter: base + s}, accuracy=1e-12))
+                for s in (step, -step)]
+        differences.append({k: (ends[0][k]["value"] - ends[1][k]["value"]) / (2 * step)
+                            for k in ends[0]})
+    coarse, middle, fine = differences
+    return {k: (16 * (4 * fine[k] - middle[k]) - (4 * middle[k] - coarse[k])) / 45 for k in fine}
+
+
+def derivatives(entry):
+    scene = {"mu_s": 1.1, "mu_d": 0.6, "tau": 1, "delta": 0.25, "noise_levels": 31,
+             "drag_coefficient": 1}
+    exact = scalars(entry.run(**scene, quantities="sticking,moments,noise_law,sensitivity",
+                              accuracy=1e-9))
+    rows, far = [], []
+    for parameter, h in STEPS.items():
+        for key, value in extrapolated(entry, scene, parameter, scene[parameter], h).items():
+            name = f"d{key}_d{parameter}"
+            if name in exact:
+                far.append(difference(exact[name]["value"], value))
+                rows.append((name, f"{exact[name]['value']:.12g}", f"{value:.12g}", far[-1]))
+    entry.table("derivatives by adjoints and by extrapolated differences",
+                ("derivative", "adjoint", "differences", "relative difference"), rows)
+    entry.claim("adjoints from extrapolated differences, relative", worse(*far), 1e-7)
+
+
+def costs(entry):
+    """What -plan foretells beside what was spent on the same steps."""
+    rows, off = [], []
+    for scene in FORETOLD:
+        plan = entry.run(**scene, plan="yes")["plan"]["steps"]
+        spent = entry.run(**scene)["cost"]["steps"][:len(plan)]
+        told, real = (sum(s["seconds"] for s in steps) for steps in (plan, spent))
+        memory = plan[-1]["factor_megabytes"] / spent[-1]["factor_megabytes"]
+        off += [max(memory, 1 / memory)]
+        rows.append((" ".join(f"{k} {v}" for k, v in scene.items()), told, real, told / real,
+                     plan[-1]["factor_entries"] / spent[-1]["factor_entries"], memory))
+    entry.table("foretold cost over real cost, two steps", ("scene", "foretold s", "real s",
+                                                            "seconds", "entries", "memory"), rows)
+    entry.claim("memory of the factors, by which factor foretold", worse(*off), 2)
+
+
+def sweep_cost(entry):
+    """100 points in one run and in 100."""
+    mu_d = [f"{n / 10:g}" for n in range(1, 11)]
+    tau = [f"{2 ** (n / 3 - 1):.6g}" for n in range(10)]
+    program = str(entry.program.path)
+    with tempfile.TemporaryDirectory() as folder:
+        start = time.monotonic()
+        subprocess.run([program, "-delta", "0.25", "-sweep_mu_d", ",".join(mu_d), "-sweep_tau",
+                        ",".join(tau), "-sweep_csv", f"{folder}/points.csv"], check=True,
+                       capture_output=True)
+        together = time.monotonic() - start
+        start = time.monotonic()
+        for d, t in itertools.product(mu_d, tau):
+            subprocess.run([program, "-delta", "0.25", "-mu_d", d, "-tau", t], check=True,
+                           capture_output=True)
+        apart = time.monotonic() - start
+    entry.table("100 points (mu_d x tau) at delta = 1/4", ("one sweep s", "100 runs s", "ratio"),
+                [(together, apart, together / apart)])
+    entry.claim("cost of the sweep relative to separate runs", together / apart, 0.6)
+
+
+def main():
+    entry = Entry(__doc__, "beyond the paper")
+    without_bias(entry)
+    simulations(entry)
+    drift_in_white_noise(entry)
+    pictures(entry)
+    derivatives(entry)
+    if not entry.quick:
+        costs(entry)
+        sweep_cost(entry)
+    entry.end()
+
+
+main()
