@@ -139,7 +139,7 @@ double upper_tail(const model::Process& process, double tolerance) {
   const double peak = process.drag.terminal_velocity(-slope);
   const double highest = -slope * peak + process.drag.potential(peak);
   const auto left = [&](double v) {
-    return drop + highest - slope * v + process.drag.potential(v);
+    return drop - highest - slope * v + process.drag.potential(v);
   };
   double end = slope > 0 ? drop / slope : std::max(2 * peak, 1.0);
   while (slope <= 0 && left(end) > 0 && end < process.drag.reach) end *= 2;
