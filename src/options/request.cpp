@@ -273,7 +273,8 @@ void read_quantities(const Settings& settings, Request& request, Problems& probl
     if (named && gives) request.quantities.insert(asked.quantity);
     if (named && !gives) refused.emplace_back(asked.name);
   }
-  if (refused.empty() || !settings.given("quantities")) return;
+  const bool some = !request.quantities.empty() && !settings.given("quantities");
+  if (refused.empty() || some) return;
   settings.report(
       problems, "quantities",
       fmt::format("{} cannot be had by -route {}{}, which gives {}", enumerate(refused, "and"),
