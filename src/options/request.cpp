@@ -195,7 +195,7 @@ const std::vector<Asked>& askable() {
        {excursion, lambda, null_vector, fluid_queue, monte_carlo},
        {excursion, null_vector, monte_carlo}},
       {"entry_law", Quantity::entry_law, {excursion, fluid_queue, monte_carlo}, {}},
-      {"density", Quantity::density, {excursion}, {}},
+      {"density", Quantity::density, {excursion}, {excursion}},
       {"laplace", Quantity::laplace, {excursion, fluid_queue, monte_carlo}, {}},
       {"F_stick", Quantity::stay_transform, {excursion}, {}},
       {"resolvent", Quantity::resolvent, {excursion}, {}},

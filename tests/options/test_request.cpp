@@ -146,8 +146,7 @@ TEST_CASE("request: without symmetry") {
                            .read();
   CHECK(down.start_level == -6);  // x = -1.25 holds, -1.5 does not
   const std::vector<Refusal> refusals{
-      {"-bias 0.5 -quantities density -output x.h5",
-       {"-quantities", "density", "without symmetry"}},
+      {"-bias 0.5 -quantities entry_law", {"-quantities", "entry_law", "without symmetry"}},
       {"-bias 0.5 -route lambda", {"-quantities", "-route lambda", "-bias 0"}},
       {"-bias 0.5 -quantities spectrum -omega 1", {"-omega = 1", "leave it out"}},
       {"-bias 1 -drag none", {"-bias = 1", "for ever", "smaller than mu_d"}},
