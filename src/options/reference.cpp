@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 
-#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -11,6 +10,8 @@
 #define CSV_IO_NO_THREAD  // small files
 // Fast C++ CSV Parser: header only, tells file and line of what is wrong.
 #include <libfccp/csv.h>
+
+#include "stickslip/options/settings.hpp"
 
 namespace stickslip::options {
 namespace {
@@ -163,14 +164,8 @@ std::vector<Reference> read_hdf5(const std::string& file) {
 // A number, or nothing for an empty cell.
 std::optional<double> cell(const std::string& text, const std::string& column, unsigned line) {
   if (text.empty()) return std::nullopt;
-  std::size_t end = 0;
-  double value = std::numeric_limits<double>::quiet_NaN();
-  try {
-    value = std::stod(text, &end);
-  } catch (const std::exception&) {
-    end = 0;
-  }
-  if (end != text.size() || !std::isfinite(value)) {
+  const auto value = parse_number(text);
+  if (!value) {
     throw std::invalid_argument(
         fmt::format("line {}: {} = {} is no finite number", line, column, text));
   }
