@@ -127,11 +127,10 @@ void Tally::count_cells(const Excursion& e) {
 }
 
 void Tally::add_transforms(const Excursion& e) {
-  const double duration = e.slide + e.stick;
+  const double duration = e.slide + e.stick, sign = e.turned ? -1 : 1;
   for (std::size_t n = 0; n < spectrum_.size(); ++n) {
     const auto c = e.transform[n];
-    const auto d =
-        std::polar(e.turned ? -1.0 : 1.0, 0.0) * std::polar(1.0, -wanted_.omega[n] * duration);
+    const auto d = sign * std::polar(1.0, -wanted_.omega[n] * duration);
     const auto cd = std::conj(c) * d;
     spectrum_[n].add(std::array<double, Transform::transforms>{
         std::norm(c), c.real(), c.imag(), d.real(), d.imag(), cd.real(), cd.imag(), duration});
