@@ -278,10 +278,17 @@ std::vector<double> Tally::pack() const {
   return numbers;
 }
 
-void Tally::unpack(std::span<const double> numbers) {
-  if (numbers.size() != pack().size()) {
-    throw std::invalid_argument("a tally of other questions");
+std::size_t Tally::packed_size() const {
+  std::size_t size = 1 + totals_.packed_size() + displacement_.packed_size() + entries_.size();
+  for (const auto* group : {&laplace_, &spectrum_}) {
+    for (const auto& comoments : *group) size += comoments.packed_size();
   }
+  for (const auto& cells : cells_) size += cells.size();
+  return size;
+}
+
+void Tally::unpack(std::span<const double> numbers) {
+  if (numbers.size() != packed_size()) throw std::invalid_argument("a tally of other questions");
   jumps_ = numbers[0];
   numbers = numbers.subspan(1);
   totals_.unpack(numbers);
