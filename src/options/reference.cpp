@@ -12,6 +12,7 @@
 #include <libfccp/csv.h>
 
 #include "stickslip/options/settings.hpp"
+#include "stickslip/support/statistics.hpp"
 
 namespace stickslip::options {
 namespace {
@@ -23,8 +24,6 @@ struct Values {
   std::vector<double> argument, value, error, low, high;  // low, high: simulated ones only
   bool scalar = false;
 };
-
-constexpr double kNormal = 1.959963984540054;
 
 void require_equal_sizes(const std::string& key, const Values& v) {
   const std::size_t n = v.value.size();
@@ -41,7 +40,7 @@ void append(const std::string& key, const Values& v, std::vector<Reference>& all
   if (simulated && !v.scalar && key.starts_with("f_")) return;
   for (std::size_t n = 0; n < v.value.size(); ++n) {
     // A computed error is a bound; as a standard deviation it errs on the safe side.
-    const double half = simulated ? 0 : kNormal * v.error[n];
+    const double half = simulated ? 0 : kNormalQuantile * v.error[n];
     all.push_back({key, v.scalar ? std::nullopt : std::optional(v.argument[n]), v.value[n],
                    simulated ? v.low[n] : v.value[n] - half,
                    simulated ? v.high[n] : v.value[n] + half});

@@ -6,10 +6,10 @@
 #include <complex>
 #include <stdexcept>
 
+#include "stickslip/support/statistics.hpp"
+
 namespace stickslip::simulation {
 namespace {
-
-constexpr double kNormal = 1.959963984540054;  // two-sided 95 %
 
 // The last two of cycles only.
 enum Total : std::size_t {
@@ -54,7 +54,7 @@ enum Transform : std::size_t {
 };
 
 Estimate around(double value, double variance) {
-  const double half = kNormal * std::sqrt(variance);
+  const double half = kNormalQuantile * std::sqrt(variance);
   return {value, value - half, value + half};
 }
 
