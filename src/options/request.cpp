@@ -413,18 +413,25 @@ void read_spectrum_solver(const Settings& settings, Request& request, Problems& 
                   "run stickslip-complex with the same options, or take krylov");
 }
 
+void check_no_grid(const Settings& settings, const Request& request, Problems& problems) {
+  if (request.route != Route::monte_carlo && request.route != Route::fluid_queue) return;
+  for (const char* name : {"scheme", "degree", "layers", "p"}) {
+    if (!settings.given(name)) continue;
+    settings.report(
+        problems, name,
+        fmt::format("is no choice of -route {}, which has no grid in v", settings.text("route")),
+        "leave it out");
+  }
+}
+
 // What only some routes can do.
 void check_route(const Settings& settings, const Request& request, Problems& problems) {
   if (request.route != Route::excursion && request.scene.v_max) {
     settings.report(problems, "v_max", "is no choice of -route " + settings.text("route"),
                     "leave it out, or take -route excursion");
   }
+  check_no_grid(settings, request, problems);
   if (request.route == Route::monte_carlo) {
-    for (const char* name : {"scheme", "degree", "layers", "p"}) {
-      if (!settings.given(name)) continue;
-      settings.report(problems, name, "is no choice of -route monte_carlo, which has no grid in v",
-                      "leave it out");
-    }
     const bool by_omega = request.scene.symmetric();
     if (request.wants(Quantity::spectrum) && request.omega.empty() && by_omega) {
       settings.report(problems, "quantities", "asks for the spectrum and no frequencies are given",
@@ -439,11 +446,6 @@ void check_route(const Settings& settings, const Request& request, Problems& pro
   if (!request.scene.drag.is_none()) {
     settings.report(problems, "route", "needs b = 0: only then is the model a fluid queue",
                     "add -drag none, or take -route excursion");
-  }
-  for (const char* name : {"scheme", "degree", "layers", "p"}) {
-    if (!settings.given(name)) continue;
-    settings.report(problems, name, "is no choice of -route fluid_queue, which has no grid in v",
-                    "leave it out");
   }
 }
 
