@@ -285,9 +285,18 @@ void read_quantities(const Settings& settings, Request& request, Problems& probl
 }
 
 void read_observables(const Settings& settings, Request& request, Problems& problems) {
-  for (const auto& text : split(settings.text("observable"), ';')) {
+  const auto texts = split(settings.text("observable"), ';');
+  if (settings.given("observable") && texts.empty()) {
+    settings.report(problems, "observable", "names no function of the state",
+                    "write for example \"v^2; x*v; stick\"");
+  }
+  for (auto text = texts.begin(); text != texts.end(); ++text) {
+    if (std::find(texts.begin(), text, *text) != text) {
+      settings.report(problems, "observable", "names " + *text + " twice", "name it once");
+      continue;
+    }
     try {
-      request.observables.push_back(model::parse_observable(text, request.scene.friction));
+      request.observables.push_back(model::parse_observable(*text, request.scene.friction));
     } catch (const std::invalid_argument& error) {
       settings.report(problems, "observable", error.what(),
                       "write for example \"v^2; x*v; stick\"");
