@@ -255,6 +255,11 @@ TEST_CASE("request: arguments that are missing or make no sense are told") {
       {"-quantities resolvent -lambda 1 -observable v;x*(",
        {"-observable = v;x*(", "write for example"}},
       {"-quantities resolvent -lambda 1 -observable velocity", {"-observable = velocity"}},
+      {"-quantities resolvent -lambda 1 -observable",
+       {"-observable = ", "names no function of the state", "write for example"}},
+      {"-quantities expectation -time 1 -observable", {"names no function of the state"}},
+      {"-quantities resolvent -lambda 1 -observable v;stick;v",
+       {"-observable = v;stick;v", "names v twice", "name it once"}},
       {"-route lambda -lambda 1e-3,1e-4", {"-lambda = 1e-3,1e-4", "one positive number"}},
       {"-route lambda -lambda 0", {"-lambda = 0", "one positive number", "leave it out"}},
   };

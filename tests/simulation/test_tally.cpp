@@ -247,6 +247,10 @@ TEST_CASE("tally: packed and unpacked it is the same, of other questions it is r
   auto back = of({sample()[0]});
   back.unpack(whole.pack());
   CHECK(back.pack() == whole.pack());
+  CHECK(whole.packed_size() == whole.pack().size());
+  simulation::Wanted cycles = kWanted;
+  cycles.cycles = true;
+  CHECK(Tally(cycles, 2).packed_size() == Tally(cycles, 2).pack().size());
   CHECK(back.spectrum(1).low == whole.spectrum(1).low);
   auto numbers = whole.pack();
   numbers.pop_back();
