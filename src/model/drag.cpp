@@ -86,7 +86,8 @@ double Drag::potential(double v) const {
 // that v, as log v does, is taken to grow for ever.
 bool Drag::bounds_velocity() const {
   if (!law) return linear > 0 || cubic > 0;
-  for (double v = 1e100; v > 1; v /= 10) {
+  for (int digits = 100; digits > 0; --digits) {
+    const double v = std::pow(10.0, digits);
     const double far = (*this)(v);
     if (std::isnan(far)) continue;
     if (std::isinf(far)) return far < 0;
@@ -119,7 +120,9 @@ std::optional<double> Drag::asymmetry() const {
   constexpr double rounding = 1e-12;
   const double far = std::min(reach, 1e6);
   const double size = std::max(std::abs(law(far)), std::abs(law(-far)));
-  for (double v = far; v > 1e-9 * far; v *= 0.97) {
+  constexpr int places = 680;  // down to 1e-9 of it
+  for (int n = 0; n < places; ++n) {
+    const double v = far * std::pow(0.97, n);
     const double sum = std::abs(law(v) + law(-v));
     if (!(sum <= rounding * (std::abs(law(v)) + 1e-3 * size))) return v;
   }

@@ -36,11 +36,13 @@ double reach_of(const Drag& b, double force, double mu_d, double bias) {
   constexpr double drop = 51, ratio = 1.02, far = 1e6;
   const double slope = mu_d - std::abs(bias);
   double left = drop;
-  for (double v = 1e-12 / mu_d; v < far / mu_d || slope > 0; v *= ratio) {
+  double v = 1e-12 / mu_d;
+  while (v < far / mu_d || slope > 0) {
     const double drag = -value_at(b, v);
     if (force <= drag) return 2 * v;
     left = std::min(drop, left - (slope + drag) * v * (1 - 1 / ratio));
     if (left < 0 || slope * v > drop) return v;
+    v *= ratio;
   }
   throw UnfitLaw(fmt::format("does not hold a body that the bias {:g} drives: it is {:g} at "
                              "v = {:g}, and friction takes {:g}",

@@ -1,11 +1,11 @@
 #pragma once
 /// The operators of one discretisation, assembled and factored when first asked for.
 
-#include <compare>
 #include <map>
 #include <memory>
 #include <set>
 #include <string>
+#include <tuple>
 
 #include "stickslip/model/process.hpp"
 #include "stickslip/operators/kolmogorov_operator.hpp"
@@ -48,7 +48,9 @@ struct SystemKey {
   double lambda = 0;
   Symmetry symmetry = Symmetry::even;
   Rest rest = Rest::killing;
-  friend auto operator<=>(const SystemKey&, const SystemKey&) = default;
+  friend bool operator<(const SystemKey& a, const SystemKey& b) {
+    return std::tie(a.lambda, a.symmetry, a.rest) < std::tie(b.lambda, b.symmetry, b.rest);
+  }
 };
 
 /// One system for each (lambda, symmetry, rest) that is asked for, and none else; each is assembled
