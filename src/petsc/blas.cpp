@@ -51,8 +51,9 @@ void keep_blas_to_one_thread() {
 double measured_speed() {
   constexpr PetscBLASInt n = 192;
   constexpr int repetitions = 6;
-  const std::vector<PetscScalar> a(n * n, 0.5), b(n * n, 0.25);
-  std::vector<PetscScalar> c(n * n, 0.0);
+  constexpr std::size_t entries = std::size_t{n} * n;
+  const std::vector<PetscScalar> a(entries, 0.5), b(entries, 0.25);
+  std::vector<PetscScalar> c(entries, 0.0);
   const PetscScalar one = 1, zero = 0;
   double best = std::numeric_limits<double>::infinity();
   for (int r = 0; r < repetitions; ++r) {
