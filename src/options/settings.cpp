@@ -21,7 +21,7 @@ std::optional<std::string> value_in_database(const std::string& name) {
   std::string buffer(1 << 20, '\0');  // lists can be long, and PETSc cuts what does not fit
   petsc::check(PetscOptionsGetString(nullptr, nullptr, ("-" + name).c_str(), buffer.data(),
                                      buffer.size(), &found));
-  const std::string value = buffer.c_str();
+  const std::string value = buffer.substr(0, buffer.find('\0'));
   return value.substr(std::min(value.find_first_not_of(' '), value.size()));
 }
 
