@@ -63,7 +63,7 @@ SCENES = (
           BALANCE + "reference", mu_s=7.75),
     scene("mu_s = 9, delta = 1/5", "mean stay above 1e18, and 1/5 is no double",
           BALANCE, long=True, mu_s=9, delta=0.2),
-    scene("mu_s = 10 deviations", "mean stay above 1e20, delta = 1/8", BALANCE, long=True, mu_s=10,
+    scene("mu_s = 10 deviations", "mean stay 1e23; f_stick(0+) = 1e-37", BALANCE, long=True, misses=True, mu_s=10,
           delta=0.125),
     scene("mu_d = mu_s = 7", "rare slides that end at once; f_stick(0+) = 1e-73", BALANCE, misses=True, mu_s=7, mu_d=7),
     scene("mu_s = 27 deviations", "P_slide below 1e-150: squares underflow", BALANCE, long=True,
