@@ -73,21 +73,30 @@ double killed_layer(const model::Process& process, double lambda) {
   return (counts ? gap : gap + noise.delta) / (rate + lambda);
 }
 
+double end_of_thinnest_waves(const model::Process& process) {
+  return 20 * gap_below(process) / process.noise.rate();
+}
+
 // Widest element that resolves the waves of frequency omega at v. A body that rests after the time
 // s sees the phase exp(i omega s): on a level at a distance a from mu_d the wave length is
 // 2 pi a/omega, and jumps of the noise damp it as exp(-Lambda v/a). Two waves an element are
-// enough at the degrees in use; where Lambda v/a > 20 nothing is left of a wave. Up to 4 Lambda the
+// enough at the degrees in use; where Lambda v/a > 20 nothing is left of a wave, and then the next
+// level, delta further from mu_d, has the shortest ones. Up to 4 Lambda the
 // damping is so strong that graded elements do, and waves much faster than the noise are small
 // beside the smooth part, so that they are followed up to 40 Lambda only.
 double wave_width(const model::Process& process, double omega, double v) {
-  const double rate = process.noise.rate();
-  const double slowest = std::max(gap_below(process), rate * v / 20);
+  const double rate = process.noise.rate(), gap = gap_below(process);
+  const double slowest =
+      v < end_of_thinnest_waves(process) ? gap : std::max(gap + process.noise.delta, rate * v / 20);
   return 4 * std::numbers::pi * slowest / std::min(omega, 40 * rate);
 }
 
-// Cuts elements that are too wide for the waves.
+// Cuts elements that are too wide for the waves. Those of a level very near to mu_d end within the
+// first element: only the part that has them is cut for them.
 std::vector<double> cut_for_waves(const model::Process& process, double omega,
-                                  const std::vector<double>& ends) {
+                                  std::vector<double> ends) {
+  const double thinnest = end_of_thinnest_waves(process);
+  if (thinnest < ends[1]) ends.insert(ends.begin() + 1, thinnest);
   std::vector<double> cut{ends.front()};
   for (std::size_t n = 1; n < ends.size(); ++n) {
     const double start = ends[n - 1], width = ends[n] - start;

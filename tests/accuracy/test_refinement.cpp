@@ -234,6 +234,18 @@ TEST_CASE("refinement: what is zero by symmetry is exactly zero", "[parallel]") 
   CHECK(result(outcome, "E_V").error[0] == 0);
 }
 
+TEST_CASE("refinement: no error is below the rounding of the value") {
+  // Without drag on a full range nothing but rounding changes from one discretisation to the next.
+  Request r = request(1, 0.3, 1, 0.5, {0, 0});
+  r.accuracy = 1e-10;
+  const Outcome outcome = solve(r);
+  for (const auto& found : outcome.last.results) {
+    for (std::size_t e = 0; e < found.value.size(); ++e) {
+      CHECK(found.error[e] >= 4 * 2.2e-16 * std::abs(found.value[e]));
+    }
+  }
+}
+
 TEST_CASE("refinement: only what is asked for is done") {
   Request r = request(1, 0.25, 1, 0.5, {1, 0});
   r.quantities = {Quantity::noise_law};

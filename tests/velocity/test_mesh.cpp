@@ -82,6 +82,20 @@ TEST_CASE("smallest scale: follows a level just below mu_d only where drag outru
         Approx(1e-7).epsilon(1e-6));
 }
 
+TEST_CASE("mesh: waves of a level next to mu_d cost few elements, however near it is") {
+  for (const double gap : {1e-13, 1e-12, 1e-6, 1e-3}) {
+    const auto p = process(1 + gap, 1, 1, {1, 0});
+    auto rule = rule_to(1);
+    const auto calm = velocity::element_ends(p, rule);
+    rule.rates.omega = 1e8;
+    const auto waves = velocity::element_ends(p, rule);
+    CHECK(waves.size() <= calm.size() + 400);
+    // Two wave lengths at 40 times the rate of the jumps, which is 2.
+    CHECK(waves[1] <= 4 * 3.1416 * (p.friction.mu_d - 1) / 80);
+    for (std::size_t e = 1; e < waves.size(); ++e) CHECK(waves[e] > waves[e - 1]);
+  }
+}
+
 TEST_CASE("tail velocity: the white-noise bound on the density has fallen to the tolerance") {
   const auto p = process(0.5, 1, 0.25, {0.3, 0.1});
   const double v = velocity::tail_velocity(p, 1e-10);
