@@ -105,7 +105,9 @@ Sensitivity::Gradient Sensitivity::stays() const {
   const auto chain = operators::StaticChain::of(process);
   const auto mean = chain.integral(std::vector<double>(stick_time.size(), 1.0));
   const std::vector<PetscScalar> s(mean.begin(), mean.end());
-  Gradient gradient = through(system_.factors().solve(system_.a().from_rest(s)), s);
+  // On a single static level all stays are alike, whatever the slides do.
+  Gradient gradient(parameters_.size());
+  if (s.size() > 1) gradient = through(system_.factors().solve(system_.a().from_rest(s)), s);
   for (std::size_t n = 0; n < parameters_.size(); ++n) {
     if (parameters_[n] != Parameter::tau) continue;
     gradient[n].value += stays_by_tau(process, stick_time);

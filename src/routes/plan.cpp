@@ -68,10 +68,12 @@ class Planner {
   }
 
   // Adjoints of mean_slide and mean_stick, which every derivative needs, and of three moments.
+  // With a single static level mean_stick needs none.
   void plan_sensitivity() {
     const bool moments = request_.wants(Quantity::moments);
     if (!moments && !request_.wants(Quantity::sticking)) return;
-    Task task{Work::sensitivity, 0, {{ground(), moments ? 5 : 2, 0}}};
+    const int durations = request_.scene.process(1).static_index() > 0 ? 2 : 1;
+    Task task{Work::sensitivity, 0, {{ground(), durations + (moments ? 3 : 0), 0}}};
     task.derivatives = static_cast<int>(quantities::parameters_of(request_.scene).size());
     add(std::move(task));
   }

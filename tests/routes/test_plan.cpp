@@ -74,6 +74,10 @@ const std::vector<Case>& cases() {
        {}},
       {"derivatives", {sticking, sensitivity}, {4, 1, 3}},
       {"derivatives of moments too", {sticking, moments, sensitivity}, {4, 1, 6}},
+      {"derivatives with one static level",
+       {sticking, sensitivity},
+       {4, 1, 2},
+       scene(0.2, 0.15, 1, 0.5, {1, 0})},
       {"derivatives without drag", {sticking, sensitivity}, {3, 1, 3}, without_drag()},
       {"a bias", {sticking, moments}, {1, 1, 2}, inclined()},
       {"a bias and the diffusivity", {moments, spectrum}, {1, 1, 4}, inclined()}};

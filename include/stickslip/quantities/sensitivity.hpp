@@ -24,7 +24,8 @@ namespace stickslip::quantities {
 /// changes by dB, the jumps by d(Lambda alpha). One plain solve with systems.at(0, even) for each
 /// M, whatever the number of parameters; one assembly for each parameter. Elements and upwind
 /// directions are kept: what that leaves out is an error of the discretisation, and falls with it.
-/// Symmetric processes only.
+/// Symmetric processes only. With a single static level mean_stick takes no solve, and has no
+/// derivative but that by tau.
 class Sensitivity {
  public:
   /// Solves for the durations. Collective.
