@@ -1,21 +1,21 @@
-/// Dry friction with noise in extended precision. Shares nothing with the program: no mesh of elements,
-/// no weak form, no folding; and every number that the program gets from a transposed solve comes from
-/// backward equations here.
+/// Dry friction with noise in extended precision. Shares nothing with the program: no mesh of
+/// elements, no weak form, no folding; and every number that the program gets from a transposed
+/// solve comes from backward equations here.
 ///
-/// On a half line the backward equations (lambda + Lambda) u_i - Lambda (alpha_i u_{i+1} + (1 - alpha_i)
-/// u_{i-1}) - B_i(v) u_i' = f_i have bounded solutions that are analytic, also where a B_i has its root
-/// v_i*: there u_i is fixed by its neighbours, order by order. So the half line is cut into pieces, each a
-/// Taylor series about a root v_i* or about an ordinary point, well inside the distance to all other roots
-/// (complex ones too). From the top down, the levels that move up at v are a function of those that move
-/// down, u_up = Psi u_down + w: Psi is the law of the level at the first return to v. Without drag Psi does not
-/// depend on v and solves a Riccati equation, here by Newton's method. Excursions are then linear
-/// algebra on the levels at v = 0.
+/// On a half line the backward equations (lambda + Lambda) u_i - Lambda (alpha_i u_{i+1} + (1 -
+/// alpha_i) u_{i-1}) - B_i(v) u_i' = f_i have bounded solutions that are analytic, also where a B_i
+/// has its root v_i*: there u_i is fixed by its neighbours, order by order. So the half line is cut
+/// into pieces, each a Taylor series about a root v_i* or about an ordinary point, well inside the
+/// distance to all other roots (complex ones too). From the top down, the levels that move up at v
+/// are a function of those that move down, u_up = Psi u_down + w: Psi is the law of the level at
+/// the first return to v. Without drag Psi does not depend on v and solves a Riccati equation, here
+/// by Newton's method. Excursions are then linear algebra on the levels at v = 0.
 ///
 ///   reference N LO HI MU_D TAU DELTA C_ABOVE C_BELOW CUBIC BIAS SHARE [lambda L]... [omega W]...
 ///
-/// LO, HI: first and last static level. C_ABOVE, C_BELOW: drag coefficients for v > 0 and v < 0 (both 0: no
-/// drag). SHARE: reach of a series over its radius of convergence. Numbers are taken as doubles, exactly.
-/// lambda and omega want a symmetric scene. -DDIGITS=60 at compile time.
+/// LO, HI: first and last static level. C_ABOVE, C_BELOW: drag coefficients for v > 0 and v < 0
+/// (both 0: no drag). SHARE: reach of a series over its radius of convergence. Numbers are taken as
+/// doubles, exactly. lambda and omega want a symmetric scene. -DDIGITS=60 at compile time.
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/cpp_complex.hpp>
@@ -224,11 +224,13 @@ class HalfLine {
     now.w = Matrix<S>(0, static_cast<int>(sources.size()));
     parameters_.assign(cuts_.pieces.size(), {});
     down_.assign(cuts_.pieces.size(), {});
-    for (int j = static_cast<int>(cuts_.pieces.size()) - 1; j >= 0; --j) now = below(j, now, sources);
+    for (int j = static_cast<int>(cuts_.pieces.size()) - 1; j >= 0; --j)
+      now = below(j, now, sources);
     return now;
   }
 
-  /// The solution as series, given its downward levels at v = 0, after first_return with one source.
+  /// The solution as series, given its downward levels at v = 0, after first_return with one
+  /// source.
   std::vector<std::vector<std::vector<S>>> series(const std::vector<S>& down_at_0,
                                                   const std::vector<Source<S>>& sources) {
     std::vector<std::vector<std::vector<S>>> found;
@@ -312,7 +314,8 @@ class HalfLine {
   /// From the top of a piece to its bottom.
   Return<S> below(int j, const Return<S>& above, const std::vector<Source<S>>& sources) {
     const Piece& piece = cuts_.pieces[j];
-    const int n = side_.n, free = piece.own < 0 ? n : n - 1, given = static_cast<int>(sources.size());
+    const int n = side_.n, free = piece.own < 0 ? n : n - 1,
+              given = static_cast<int>(sources.size());
     const bool last = piece.own == n - 1;
     Matrix<S> bottom(n, free + given), top(n, free + given);
     const auto fill = [&](int column, const std::vector<S>& start, const Source<S>* f) {
@@ -369,7 +372,8 @@ class HalfLine {
   const Side& side_;
   S lambda_;
   Cuts cuts_;
-  std::vector<Matrix<S>> parameters_;  // of each piece, by its downward levels at the bottom and sources
+  std::vector<Matrix<S>>
+      parameters_;  // of each piece, by its downward levels at the bottom and sources
   std::vector<std::vector<int>> down_;
 };
 
@@ -428,8 +432,7 @@ std::vector<Real> polynomial_part(const Side& side, int p, const std::function<R
   const int n = side.n;
   const Matrix<Real> t = noise(side, 0);
   std::vector<Real> law(n, Real(1));
-  for (int e = 0; e + 1 < n; ++e)
-    law[e + 1] = law[e] * side.alpha[e] / (1 - side.alpha[e + 1]);
+  for (int e = 0; e + 1 < n; ++e) law[e + 1] = law[e] * side.alpha[e] / (1 - side.alpha[e + 1]);
   Real drift = 0;
   for (int e = 0; e < n; ++e) drift += law[e] * side.force[e];
   std::vector<Real> a(n, Real(0));
@@ -441,7 +444,8 @@ std::vector<Real> polynomial_part(const Side& side, int p, const std::function<R
     Matrix<Real> system = t, right(n, 1);
     for (int e = 0; e < n; ++e)
       right(e, 0) = -(k == p ? weight(e) : Real(0)) - (k + 1) * side.force[e] * a[e];
-    for (int e = 0; e < n; ++e) system(0, e) = e == 0 ? 1 : 0;  // one equation follows from the others
+    for (int e = 0; e < n; ++e)
+      system(0, e) = e == 0 ? 1 : 0;  // one equation follows from the others
     right(0, 0) = 0;
     solve(system, right);
     for (int e = 0; e < n; ++e) a[e] = right(e, 0);
@@ -557,8 +561,8 @@ class Answer {
 
   void laplace(const std::string& text) {
     const Real lambda = std::strtod(text.c_str(), nullptr);
-    const Return<Real> r = scene_.frictionless() ? riccati(above_, lambda)
-                                                 : returned<Real>(above_, lambda, {});
+    const Return<Real> r =
+        scene_.frictionless() ? riccati(above_, lambda) : returned<Real>(above_, lambda, {});
     Return<Real> side = r;
     side.w = Matrix<Real>(static_cast<int>(r.up.size()), 0);
     const Crossing<Real> crossing(scene_, side, side);
@@ -632,14 +636,14 @@ class Answer {
     const auto one = [](int) { return Real(1); };
     const auto level = [&side](int e) { return side.x[e]; };
     if (!scene_.frictionless())
-      return returned<Real>(side, 0, {power<Real>(0, one), power<Real>(1, one),
-                                      power<Real>(2, one), power<Real>(1, level),
-                                      power<Real>(1, one)});
+      return returned<Real>(side, 0,
+                            {power<Real>(0, one), power<Real>(1, one), power<Real>(2, one),
+                             power<Real>(1, level), power<Real>(1, one)});
     Return<Real> r = riccati(side, 0);
     r.w = Matrix<Real>(static_cast<int>(r.up.size()), 5);
-    const std::vector<Real> parts[] = {polynomial_part(side, 0, one), polynomial_part(side, 1, one),
-                                       polynomial_part(side, 2, one), polynomial_part(side, 1, level),
-                                       polynomial_part(side, 1, one)};
+    const std::vector<Real> parts[] = {
+        polynomial_part(side, 0, one), polynomial_part(side, 1, one), polynomial_part(side, 2, one),
+        polynomial_part(side, 1, level), polynomial_part(side, 1, one)};
     for (int q = 0; q < 5; ++q)
       for (int u = 0; u < r.w.rows; ++u) {
         r.w(u, q) = parts[q][r.up[u]];
@@ -665,10 +669,12 @@ int main(int argc, char** argv) {
   }
   const auto number = [&](int n) { return Real(std::strtod(argv[n], nullptr)); };
   const Scene scene{std::atoi(argv[1]), std::atoi(argv[2]), std::atoi(argv[3]), number(4),
-                    number(5), number(6), number(7), number(8), number(9), number(10), number(11)};
+                    number(5),          number(6),          number(7),          number(8),
+                    number(9),          number(10),         number(11)};
   Answer answer(scene);
   answer.stationary();
   for (int n = 12; n + 1 < argc; n += 2)
-    std::strcmp(argv[n], "lambda") == 0 ? answer.laplace(argv[n + 1]) : answer.spectrum(argv[n + 1]);
+    std::strcmp(argv[n], "lambda") == 0 ? answer.laplace(argv[n + 1])
+                                        : answer.spectrum(argv[n + 1]);
   return 0;
 }
