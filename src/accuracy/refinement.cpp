@@ -1,7 +1,6 @@
 #include "stickslip/accuracy/refinement.hpp"
 
 #include <fmt/format.h>
-#include <petsctime.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,16 +19,10 @@ using options::Quantity;
 using quantities::Results;
 using quantities::StationaryLaw;
 
-double wall_time() {
-  PetscLogDouble seconds = 0;
-  (void)PetscTime(&seconds);
-  return seconds;
-}
-
 // Sums of positive terms over levels are rounded even where nothing else is wrong, as for a mean
 // stay that has the same entry law on every discretisation.
-void add_rounding_of_sums(int levels, Results& results) {
-  const double rounding = std::numeric_limits<double>::epsilon() * (4 + std::sqrt(levels));
+void add_rounding_of_sums(const model::NoiseChain& noise, Results& results) {
+  const double rounding = model::rounding_of_sums(noise);
   for (auto& result : results) {
     for (std::size_t e = 0; e < result.value.size(); ++e) {
       result.error[e] = std::max(result.error[e], rounding * std::abs(result.value[e]));
@@ -43,13 +36,13 @@ Solved evaluated(MPI_Comm comm, const options::Request& request, const Resolutio
   Solved solved;
   Step& step = solved.step;
   step.resolution = resolution;
-  const double start = wall_time();
+  const double start = petsc::wall_seconds();
   const auto process = request.scene.process(resolution.levels);
   solved.evaluation =
       routes::evaluate({comm, request, process, make_axis(request.scene, resolution), step.ledger});
-  add_rounding_of_sums(resolution.levels, solved.evaluation.results);
+  add_rounding_of_sums(process.noise, solved.evaluation.results);
   step.checks = std::move(solved.evaluation.checks);
-  step.seconds = wall_time() - start;
+  step.seconds = petsc::wall_seconds() - start;
   return solved;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "stickslip/model/grid_index.hpp"
 
@@ -35,6 +36,10 @@ std::vector<double> stationary_law(const NoiseChain& chain) {
   total += law[n];
   for (double& p : law) p /= total;
   return law;
+}
+
+double rounding_of_sums(const NoiseChain& chain) {
+  return std::numeric_limits<double>::epsilon() * (4 + std::sqrt(chain.levels));
 }
 
 NoiseMoments noise_moments(const NoiseChain& chain, int k) {

@@ -10,12 +10,6 @@
 namespace stickslip::petsc {
 namespace {
 
-double now() {
-  PetscLogDouble seconds = 0;
-  check(PetscTime(&seconds));
-  return seconds;
-}
-
 PetscLogStage stage_named(const char* name) {
   PetscLogStage stage = -1;
   check(PetscLogStageGetId(name, &stage));
@@ -24,6 +18,12 @@ PetscLogStage stage_named(const char* name) {
 }
 
 }  // namespace
+
+double wall_seconds() {
+  PetscLogDouble seconds = 0;
+  check(PetscTime(&seconds));
+  return seconds;
+}
 
 Ledger& Ledger::operator+=(const Ledger& other) {
   assemblies += other.assemblies;
@@ -44,7 +44,8 @@ Ledger& Ledger::operator+=(const Ledger& other) {
   return *this;
 }
 
-PhaseTimer::PhaseTimer(const char* stage, double& seconds) : seconds_(seconds), start_(now()) {
+PhaseTimer::PhaseTimer(const char* stage, double& seconds)
+    : seconds_(seconds), start_(wall_seconds()) {
   check(PetscLogStagePush(stage_named(stage)));
 }
 

@@ -6,11 +6,13 @@
 
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/vectors.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
 using operators::Symmetry;
+using petsc::dot;
 
 /// -L u = V - E[V], with solutions as they are or without their last correction.
 class Poisson {
@@ -58,12 +60,6 @@ class Poisson {
       sum -= stick[n] * mean_ * (stay_[n] + d * (upwards_[n] - 0.5));
     }
     return 2 * sum / law_.excursion().mean_excursion();
-  }
-
-  static double dot(Vec a, Vec b) {
-    PetscScalar product = 0;
-    petsc::check(VecTDot(a, b, &product));
-    return PetscRealPart(product);
   }
 
   operators::System& system_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace stickslip::quantities {
@@ -19,7 +18,7 @@ double Excursion::mean_stick() const { return sum(stick_time); }
 double Excursion::mean_excursion() const { return mean_slide() + mean_stick(); }
 
 double Excursion::conservation_defect(const model::Process& process) const {
-  const int n = process.noise.levels, k = process.friction.static_index(process.noise.delta);
+  const int n = process.noise.levels, k = process.threshold_index();
   double beyond = 0;
   for (int i = k + 1; i <= n; ++i) beyond += slide_time[n + i] + slide_time[n - i];
   // A bias holds levels beyond mu_s, too.
@@ -77,12 +76,8 @@ void append_entry_law(const model::Process& process, const Excursion& excursion,
 }
 
 void append_noise_law(const model::Process& process, Results& results) {
-  const auto moments =
-      model::noise_moments(process.noise, process.friction.static_index(process.noise.delta));
-  // Weights are products of up to N factors, each rounded; the bulk of the law holds about
-  // sqrt(N) of them.
-  const double rounding =
-      std::numeric_limits<double>::epsilon() * (4 + std::sqrt(process.noise.levels));
+  const auto moments = model::noise_moments(process.noise, process.threshold_index());
+  const double rounding = model::rounding_of_sums(process.noise);
   results.push_back(scalar("P_X_le_mu_s", "", moments.within, rounding * moments.within));
   results.push_back(scalar("E_X2", "force^2", moments.variance, rounding * moments.variance));
 }

@@ -1,12 +1,12 @@
 #include "stickslip/quantities/sensitivity.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "stickslip/model/noise_chain.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/vectors.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -15,27 +15,24 @@ using operators::KolmogorovOperator;
 using operators::Parameter;
 using operators::Symmetry;
 
-const char* name_of(Parameter parameter) {
+// Of the option.
+struct Naming {
+  const char *name, *unit;
+};
+
+Naming naming(Parameter parameter) {
   switch (parameter) {
-  case Parameter::mu_d: return "mu_d";
-  case Parameter::tau: return "tau";
-  case Parameter::drag_coefficient: return "drag_coefficient";
+  case Parameter::mu_d: return {"mu_d", "force"};
+  case Parameter::tau: return {"tau", "time"};
+  case Parameter::drag_coefficient: return {"drag_coefficient", "1/time"};
   }
-  return "";
+  return {"", ""};
 }
 
-const char* unit_of(Parameter parameter) {
-  switch (parameter) {
-  case Parameter::mu_d: return "force";
-  case Parameter::tau: return "time";
-  case Parameter::drag_coefficient: return "1/time";
-  }
-  return "";
-}
-
-std::string per(const std::string& unit, const char* parameter_unit) {
-  const std::string below = std::string("(") + parameter_unit + ")";
-  return (unit.empty() ? "1" : unit) + "/" + below;
+Result derivative(const std::string& key, const std::string& unit, Parameter parameter,
+                  Uncertain value) {
+  const auto [name, below] = naming(parameter);
+  return scalar("d" + key + "_d" + name, (unit.empty() ? "1" : unit) + "/(" + below + ")", value);
 }
 
 // D_i = T_i - T_{i+1} > 0 for 0 <= i <= k, of the mean stays T with T_{k+1} = 0: from level i on,
@@ -64,12 +61,6 @@ double stays_by_tau(const model::Process& process, const std::vector<double>& st
     sum += stick_time[k + i] * change;
   }
   return sum;
-}
-
-double product(Vec a, Vec b) {
-  PetscScalar value = 0;
-  petsc::check(VecTDot(a, b, &value));
-  return PetscRealPart(value);
 }
 
 }  // namespace
@@ -110,9 +101,9 @@ Sensitivity::Gradient Sensitivity::stays() const {
   if (s.size() > 1) gradient = through(system_.factors().solve(system_.a().from_rest(s)), s);
   for (std::size_t n = 0; n < parameters_.size(); ++n) {
     if (parameters_[n] != Parameter::tau) continue;
-    gradient[n].value += stays_by_tau(process, stick_time);
-    gradient[n].error += std::abs(stays_by_tau(process, law_.uncorrected().stick_time) -
-                                  stays_by_tau(process, stick_time));
+    const double by_tau = stays_by_tau(process, stick_time);
+    gradient[n].value += by_tau;
+    gradient[n].error += std::abs(stays_by_tau(process, law_.uncorrected().stick_time) - by_tau);
   }
   return gradient;
 }
@@ -124,9 +115,9 @@ Sensitivity::Gradient Sensitivity::through(const petsc::Solution& h,
     petsc::VecHandle image = change.zeros();
     const auto flux = [&](Vec function) {
       petsc::check(MatMult(change.matrix(), function, image));
-      return -product(law_.occupation(), image);
+      return -petsc::dot(law_.occupation(), image);
     };
-    const double moved = product(law_.occupation(), change.from_rest(s));
+    const double moved = petsc::dot(law_.occupation(), change.from_rest(s));
     gradient.push_back({flux(h.x) + moved, std::abs(flux(h.correction))});
   }
   return gradient;
@@ -144,8 +135,7 @@ Sensitivity::Gradient Sensitivity::ratio(double mean, const Gradient& of_mean) c
 void Sensitivity::append(const std::string& key, const std::string& unit, const Gradient& gradient,
                          Results& results) const {
   for (std::size_t n = 0; n < parameters_.size(); ++n) {
-    results.push_back(scalar("d" + key + "_d" + name_of(parameters_[n]),
-                             per(unit, unit_of(parameters_[n])), gradient[n]));
+    results.push_back(derivative(key, unit, parameters_[n], gradient[n]));
   }
 }
 
@@ -169,7 +159,7 @@ void Sensitivity::append_sticking(Results& results) const {
 
 void Sensitivity::append_moments(Results& results) const {
   const auto mean = [this](const KolmogorovOperator::Observable& f) {
-    return product(law_.occupation(), system_.a().values(f));
+    return petsc::dot(law_.occupation(), system_.a().values(f));
   };
   const auto add = [&](const char* key, const char* unit, const KolmogorovOperator::Observable& f) {
     append(key, unit, ratio(mean(f), slides(f)), results);
@@ -183,7 +173,7 @@ void Sensitivity::append_moments(Results& results) const {
 // negative terms; a mean changes by its covariance with that score.
 void append_noise_sensitivity(const model::Process& process, Results& results) {
   const auto& noise = process.noise;
-  const int k = process.friction.static_index(noise.delta);
+  const int k = process.threshold_index();
   const auto law = model::stationary_law(noise);
   double score = 0;
   double within = law[noise.levels], within_score = 0, beyond = 0, beyond_score = 0;
@@ -199,12 +189,12 @@ void append_noise_sensitivity(const model::Process& process, Results& results) {
   const double mean_score = within_score + beyond_score;
   const double by_within = beyond * within_score - within * beyond_score;
   const double by_square = square_score - square * mean_score;
-  const double rounding = std::numeric_limits<double>::epsilon() * (4 + std::sqrt(noise.levels));
+  const double rounding = model::rounding_of_sums(noise);
   const double size = std::abs(square_score) + std::abs(square * mean_score);
+  const double within_size = std::abs(beyond * within_score) + std::abs(within * beyond_score);
   results.push_back(
-      scalar("dP_X_le_mu_s_dtau", per("", "time"), by_within,
-             rounding * (std::abs(beyond * within_score) + std::abs(within * beyond_score))));
-  results.push_back(scalar("dE_X2_dtau", per("force^2", "time"), by_square, rounding * size));
+      derivative("P_X_le_mu_s", "", Parameter::tau, {by_within, rounding * within_size}));
+  results.push_back(derivative("E_X2", "force^2", Parameter::tau, {by_square, rounding * size}));
 }
 
 }  // namespace stickslip::quantities

@@ -6,6 +6,7 @@
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/time_stepper.hpp"
+#include "stickslip/petsc/vectors.hpp"
 #include "stickslip/quantities/time_functions.hpp"
 
 namespace stickslip::quantities {
@@ -15,16 +16,11 @@ using operators::KolmogorovOperator;
 using operators::Rest;
 using operators::Symmetry;
 using petsc::check;
+using petsc::dot;
 
 KolmogorovOperator kept(operators::Systems& systems, Symmetry symmetry) {
   return operators::assemble(systems.comm(), systems.process(), systems.axis(), 0, symmetry,
                              Rest::kept, systems.ledger());
-}
-
-double dot(Vec a, Vec b) {
-  PetscScalar sum = 0;
-  check(VecTDot(a, b, &sum));
-  return PetscRealPart(sum);
 }
 
 std::vector<std::size_t> rising(const std::vector<double>& time) {

@@ -1,14 +1,12 @@
 #include "stickslip/quantities/uncertain.hpp"
 
-#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/vectors.hpp"
 
 namespace stickslip::quantities {
 
 Uncertain value_of(Vec functional, const petsc::Solution& solution) {
-  PetscScalar value = 0, change = 0;
-  petsc::check(VecTDot(functional, solution.x, &value));
-  petsc::check(VecTDot(functional, solution.correction, &change));
-  return {PetscRealPart(value), std::abs(PetscRealPart(change))};
+  return {petsc::dot(functional, solution.x),
+          std::abs(petsc::dot(functional, solution.correction))};
 }
 
 }  // namespace stickslip::quantities

@@ -43,7 +43,7 @@ std::vector<Average> averages(const Setting& setting) {
 void append_averages(const Setting& setting, const std::vector<Uncertain>& values,
                      quantities::Results& results) {
   const auto all = averages(setting);
-  const int k = setting.process.friction.static_index(setting.process.noise.delta);
+  const int k = setting.process.threshold_index();
   const double beyond = model::noise_moments(setting.process.noise, k).beyond;
   const double defect = std::abs(values[0].value / beyond - 1);
   for (std::size_t n = 1; n < all.size(); ++n) {

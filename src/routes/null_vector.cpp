@@ -50,10 +50,7 @@ double relative_residual(Mat transposed, Vec pi) {
 }
 
 double integral(const KolmogorovOperator& a, Vec pi, const model::Observable& f) {
-  const petsc::VecHandle values = a.values(f.value);
-  PetscScalar sum = 0;
-  check(VecTDot(values, pi, &sum));
-  return PetscRealPart(sum);
+  return petsc::dot(a.values(f.value), pi);
 }
 
 // By renewal, excursions end at the rates Lambda alpha pi of the highest static level upwards and

@@ -17,7 +17,7 @@ class Levels {
   explicit Levels(const model::Process& process)
       : lowest_(process.lowest_static()),
         highest_(process.static_index()),
-        within_(process.friction.static_index(process.noise.delta)),
+        within_(process.threshold_index()),
         reach_(reach(process)),
         mean_wait_(1 / process.noise.rate()) {
     const auto mirrored = process.mirrored();

@@ -1,7 +1,5 @@
 #include "stickslip/sweeps/conduct.hpp"
 
-#include <petsctime.h>
-
 #include <algorithm>
 #include <exception>
 #include <optional>
@@ -9,7 +7,7 @@
 
 #include "shared_counter.hpp"
 #include "stickslip/io/provenance.hpp"
-#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/ledger.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/sweeps/record.hpp"
@@ -21,12 +19,6 @@ using io::Json;
 using options::Request;
 
 constexpr int kTag = 7;  // of the only messages between single ranks
-
-double now() {
-  PetscLogDouble seconds = 0;
-  petsc::check(PetscTime(&seconds));
-  return seconds;
-}
 
 /// Ranks that share a point; those that are too few for a group have none.
 class Group {
@@ -132,7 +124,7 @@ class Worker {
   void compute() {
     const Group group(comm_, request_.sweep_ranks);
     SharedCounter taken(comm_), done(comm_);
-    start_ = now();
+    start_ = petsc::wall_seconds();
     while (group.works()) {
       const auto n = static_cast<std::size_t>(group.told(group.leads() ? taken.next() : 0));
       if (n >= open_.size()) break;
@@ -152,8 +144,8 @@ class Worker {
     state.point = run["point"].get<std::size_t>();
     state.count = sweep_.size();
     state.done = state.count - open_.size() + here;
-    state.seconds_left =
-        (now() - start_) * static_cast<double>(open_.size() - here) / static_cast<double>(here);
+    state.seconds_left = (petsc::wall_seconds() - start_) *
+                         static_cast<double>(open_.size() - here) / static_cast<double>(here);
     state.status = run["status"].get<std::string>();
     state.seconds_of_point = run["cost"]["seconds"].get<double>();
     progress_(state);

@@ -1,12 +1,10 @@
 #include "stickslip/sweeps/run.hpp"
 
-#include <petsctime.h>
-
 #include <array>
 #include <limits>
 
 #include "stickslip/accuracy/refinement.hpp"
-#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/ledger.hpp"
 #include "stickslip/support/errors.hpp"
 
 namespace stickslip::sweeps {
@@ -22,12 +20,6 @@ Status status_named(const std::string& text) {
     if (text == status_text(status)) return status;
   }
   throw std::invalid_argument("no status of a run: " + text);
-}
-
-double now() {
-  PetscLogDouble seconds = 0;
-  petsc::check(PetscTime(&seconds));
-  return seconds;
 }
 
 Json head(std::size_t point, Status status, const std::string& message) {
@@ -83,19 +75,19 @@ const char* status_text(Status status) {
 }
 
 Json compute_run(MPI_Comm comm, const options::Request& request, std::size_t point) {
-  const double start = now();
+  const double start = petsc::wall_seconds();
   try {
     const auto outcome = accuracy::refine(comm, request, {});
     Json json =
         head(point, outcome.reached ? Status::reached : Status::not_reached, outcome.shortfall);
-    json.update(io::run_json(request, outcome, {0, now() - start}));
+    json.update(io::run_json(request, outcome, {0, petsc::wall_seconds() - start}));
     return json;
   } catch (const Failure& failure) {
     const bool memory = failure.status() == ExitStatus::no_memory;
     Json json = head(point, memory ? Status::no_memory : Status::failed, failure.what());
     json["scene"] = io::scene_json(request);
     json["results"] = Json::object();
-    json["cost"]["seconds"] = now() - start;
+    json["cost"]["seconds"] = petsc::wall_seconds() - start;
     return json;
   }
 }

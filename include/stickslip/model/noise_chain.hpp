@@ -43,6 +43,10 @@ struct NoiseChain {
 /// that every entry has full relative accuracy down to underflow. O(N).
 [[nodiscard]] std::vector<double> stationary_law(const NoiseChain& chain);
 
+/// Relative rounding of sums of positive terms over levels: weights are products of up to N
+/// factors, each rounded, and the bulk of the law holds about sqrt(N) of them.
+[[nodiscard]] double rounding_of_sums(const NoiseChain& chain);
+
 /// P(|X| <= x_k) and P(|X| > x_k), each a sum of its own terms, and E[X^2]. O(N) time, O(1) space.
 struct NoiseMoments {
   double within;    ///< P(|i| <= k)

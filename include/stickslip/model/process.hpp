@@ -25,6 +25,8 @@ struct Process {
   [[nodiscard]] int static_index() const { return friction.static_index(noise.delta, bias); }
   /// The lowest level that can stick; -k without bias.
   [[nodiscard]] int lowest_static() const { return -friction.static_index(noise.delta, -bias); }
+  /// The highest level with x_i <= mu_s, whatever the bias.
+  [[nodiscard]] int threshold_index() const { return friction.static_index(noise.delta); }
   /// x_i + g - mu_d: the speed of V at v = 0+ on level i.
   [[nodiscard]] double excess(int i) const { return friction.excess(noise.level(i), bias); }
 };

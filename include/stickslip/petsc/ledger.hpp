@@ -35,6 +35,9 @@ struct Ledger {
   }
 };
 
+/// Wall clock [s], of which differences count. Local.
+[[nodiscard]] double wall_seconds();
+
 /// Adds the wall time of a scope to a ledger entry and shows it as a stage of -log_view.
 class PhaseTimer {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-/// Local views of distributed vectors.
+/// Local views of distributed vectors, and their inner product.
 
 #include <span>
 
@@ -42,5 +42,12 @@ class WriteView {
   Vec vec_;
   PetscScalar* data_ = nullptr;
 };
+
+/// Real part of sum_n a_n b_n, without conjugation. Collective.
+[[nodiscard]] inline double dot(Vec a, Vec b) {
+  PetscScalar sum = 0;
+  check(VecTDot(a, b, &sum));
+  return PetscRealPart(sum);
+}
 
 }  // namespace stickslip::petsc
