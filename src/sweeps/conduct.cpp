@@ -12,6 +12,7 @@
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
+#include "stickslip/support/seal.hpp"
 #include "stickslip/sweeps/record.hpp"
 
 namespace stickslip::sweeps {
@@ -77,8 +78,10 @@ Identity identity_of(MPI_Comm comm, const options::Sweep& sweep) {
 
 Run read_line(const std::string& file, const std::string& line, std::size_t count) {
   std::optional<Run> run;
+  const auto entry = unsealed(line);
+  if (!entry) refuse_record(file, "is damaged");
   try {
-    run = read_run(Json::parse(line));
+    run = read_run(Json::parse(*entry));
   } catch (const std::exception&) {
     refuse_record(file, "is damaged");
   }
@@ -122,11 +125,12 @@ class Worker {
 
   void read_finished(std::vector<char>& finished) {
     const auto& file = request_.checkpoint;
-    for (const auto& line : open_record(file, identity_of(comm_, sweep_))) {
+    const auto take = [&](const std::string& line) {
       Run run = read_line(file, line, sweep_.size());
       finished[run.point] = run.status == Status::no_memory ? 0 : 1;
       if (finished[run.point] != 0) resumed_.push_back(std::move(run));
-    }
+    };
+    (void)open_record(file, identity_of(comm_, sweep_), take);
   }
 
   void compute() {
@@ -145,7 +149,7 @@ class Worker {
 
   void finish(const Json& run, SharedCounter& done) {
     lines_.push_back(run.dump());
-    if (!request_.checkpoint.empty()) append_to_record(request_.checkpoint, lines_.back());
+    if (!request_.checkpoint.empty()) append_to_record(request_.checkpoint, sealed(lines_.back()));
     const auto here = static_cast<std::size_t>(done.next()) + 1;
     if (!progress_) return;
     State state;
