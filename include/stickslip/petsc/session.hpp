@@ -24,6 +24,9 @@ class Session {
   std::vector<char*> arguments_;  // PETSc keeps a pointer to them
 };
 
+/// Whether a launcher (mpiexec, srun) has started this process, and waits for it.
+[[nodiscard]] bool under_mpiexec();
+
 /// Rank and size of a communicator.
 [[nodiscard]] int rank(MPI_Comm comm);
 [[nodiscard]] int ranks(MPI_Comm comm);
