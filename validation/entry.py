@@ -1,7 +1,6 @@
 """One entry of the validation report: a case that prints its tables and verdicts, draws its pictures,
 and leaves both in a folder for the report."""
 
-import html
 import json
 import pathlib
 import subprocess
@@ -87,13 +86,3 @@ def deviation(value, error, estimate):
     half = high - estimate["value"] if value > estimate["value"] else estimate["value"] - low
     sigma = ((half / 1.96) ** 2 + error**2) ** 0.5
     return (value - estimate["value"]) / sigma if sigma > 0 else 0.0
-
-
-def significant(count):
-    """|z| that one of `count` independent values passes by chance with probability 1e-3."""
-    import statistics
-    return statistics.NormalDist().inv_cdf(1 - 1e-3 / (2 * count))
-
-
-def escaped(words):
-    return html.escape(words, quote=False)

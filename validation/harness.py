@@ -3,6 +3,7 @@
 import argparse
 import json
 import pathlib
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -62,6 +63,11 @@ def difference(a, b):
 def worse(*values):
     """The largest, or NaN if there is one: max() would lose it."""
     return next((v for v in values if v != v), max(values))
+
+
+def significant(count):
+    """|z| that one of `count` independent values passes by chance with probability 1e-3."""
+    return statistics.NormalDist().inv_cdf(1 - 1e-3 / (2 * count))
 
 
 def last_place(text):

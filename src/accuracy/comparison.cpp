@@ -6,10 +6,12 @@
 #include <limits>
 #include <numeric>
 
+#include "stickslip/support/statistics.hpp"
+
 namespace stickslip::accuracy {
 namespace {
 
-constexpr double kNormal = 1.959963984540054, kFamilyLevel = 1e-3;
+constexpr double kFamilyLevel = 1e-3;
 
 // The entry of `results` that the reference is about.
 std::optional<Compared> counterpart(const options::Reference& reference,
@@ -21,7 +23,8 @@ std::optional<Compared> counterpart(const options::Reference& reference,
       const bool same = result.is_scalar() || std::abs(result.abscissa[n] - *reference.argument) <=
                                                   1e-9 * std::abs(*reference.argument);
       if (!same) continue;
-      const double error = result.ci95.empty() ? result.error[n] : result.error[n] / kNormal;
+      const double error =
+          result.ci95.empty() ? result.error[n] : result.error[n] / kNormalQuantile;
       return Compared{reference, result.value[n], error};
     }
   }
@@ -34,7 +37,7 @@ double deviations(const Compared& c) {
   if (difference == 0) return 0;
   const double half = difference > 0 ? r.high - r.value : r.value - r.low;
   const double rounding = std::numeric_limits<double>::epsilon() * std::abs(c.value);
-  return difference / std::hypot(half / kNormal, c.error, rounding);
+  return difference / std::hypot(half / kNormalQuantile, c.error, rounding);
 }
 
 double chance(double z) {
@@ -58,7 +61,7 @@ void judge(Comparison& comparison) {
     if (rejecting) {
       row.verdict = Verdict::disagrees;
       comparison.disagrees = true;
-    } else if (std::abs(row.z) >= kNormal) {
+    } else if (std::abs(row.z) >= kNormalQuantile) {
       row.verdict = Verdict::by_chance;
     }
   }

@@ -107,7 +107,6 @@ studies::StudyProgress study_progress_of(const options::Request& request, bool f
 int conduct_study(const options::Request& request, Clock::time_point start, double start_up) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const bool first_rank = petsc::rank(comm) == 0;
-  if (first_rank) warn(request);
   const auto study = studies::conduct(comm, request, study_progress_of(request, first_rank));
   const io::RunTimes times{start_up, start_up + seconds_since(start)};
   if (!request.output.empty()) io::write_study_hdf5(comm, request, study, times);
@@ -144,7 +143,6 @@ sweeps::SweepProgress sweep_progress_of(const options::Request& request) {
 int conduct_sweep(const options::Request& request, Clock::time_point start, double start_up) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const bool first_rank = petsc::rank(comm) == 0;
-  if (first_rank) warn(request);
   const auto sweep = sweeps::conduct(comm, request, sweep_progress_of(request));
   int status = sweeps::exit_status(sweep.runs);
   if (first_rank) {
@@ -166,7 +164,6 @@ int conduct_sweep(const options::Request& request, Clock::time_point start, doub
 int compute(const options::Request& request, Clock::time_point start, double start_up) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const bool first_rank = petsc::rank(comm) == 0;
-  if (first_rank) warn(request);
   const auto outcome = accuracy::refine(comm, request, progress_of(request, first_rank),
                                         simulation_progress_of(request));
   const io::RunTimes times{start_up, start_up + seconds_since(start)};
@@ -226,6 +223,7 @@ int run_session(const std::vector<std::string>& words, double start_up) {
   try {
     const auto request = agreed_request(words);
     if (request.plan_only) return tell_plan(request);
+    if (rank == 0) warn(request);
     if (request.study != options::StudyKind::none) return conduct_study(request, start, start_up);
     if (request.sweep) return conduct_sweep(request, start, start_up);
     return compute(request, start, start_up);

@@ -9,6 +9,7 @@
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/support/hdf5_id.hpp"
 
 namespace stickslip::io {
 namespace {
@@ -19,35 +20,25 @@ long shared_tag(MPI_Comm comm) {
   return tag;
 }
 
-// An HDF5 identifier that closes itself; throws when HDF5 refused to give one.
-class Id {
- public:
-  Id(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(id), close_(close) {
-    if (id_ < 0) throw std::runtime_error("HDF5 refused " + what);
-  }
-  ~Id() { close_(id_); }
-  Id(const Id&) = delete;
-  Id& operator=(const Id&) = delete;
-  // NOLINTNEXTLINE(google-explicit-constructor): stands for its identifier in HDF5 calls.
-  operator hid_t() const { return id_; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
+// Throws when HDF5 refused to give an identifier.
+Hdf5Id given(hid_t id, herr_t (*close)(hid_t), const std::string& what) {
+  if (id < 0) throw std::runtime_error("HDF5 refused " + what);
+  return {id, close};
+}
 
 void require(herr_t status, const std::string& what) {
   if (status < 0) throw std::runtime_error("HDF5 could not write " + what);
 }
 
-Id space_of(std::span<const hsize_t> sizes, const std::string& what) {
-  return {H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr), H5Sclose, what};
+Hdf5Id space_of(std::span<const hsize_t> sizes, const std::string& what) {
+  return given(H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr), H5Sclose,
+               what);
 }
 
-Id dataset(hid_t file, const std::string& path, hid_t space) {
-  return {H5Dcreate2(file, path.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT,
-                     H5P_DEFAULT),
-          H5Dclose, path};
+Hdf5Id dataset(hid_t file, const std::string& path, hid_t space) {
+  return given(H5Dcreate2(file, path.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT,
+                          H5P_DEFAULT),
+               H5Dclose, path);
 }
 
 // Adds rows [first, first + count) of a matrix with `columns` columns to the selection of a space.
@@ -58,10 +49,10 @@ void select_rows(hid_t space, H5S_seloper_t how, hsize_t first, hsize_t count, h
 
 void write_attribute(hid_t file, const std::string& path, const std::string& name, hid_t type,
                      const void* value) {
-  const Id object(H5Oopen(file, path.c_str(), H5P_DEFAULT), H5Oclose, path);
-  const Id space(H5Screate(H5S_SCALAR), H5Sclose, name);
-  const Id attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
-                     H5Aclose, name);
+  const Hdf5Id object = given(H5Oopen(file, path.c_str(), H5P_DEFAULT), H5Oclose, path);
+  const Hdf5Id space = given(H5Screate(H5S_SCALAR), H5Sclose, name);
+  const Hdf5Id attribute = given(
+      H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, name);
   require(H5Awrite(attribute, type, value), name);
 }
 
@@ -77,8 +68,8 @@ Hdf5File::Hdf5File(MPI_Comm comm, const std::string& target)
 Hdf5File::~Hdf5File() = default;
 
 void Hdf5File::make_group(const std::string& path) {
-  const Id group(H5Gcreate2(id_, path.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
-                 path);
+  const Hdf5Id group =
+      given(H5Gcreate2(id_, path.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, path);
 }
 
 void Hdf5File::write_array(const std::string& path, std::span<const double> values) {
@@ -89,15 +80,15 @@ void Hdf5File::write_array(const std::string& path, std::span<const double> valu
 void Hdf5File::write_array(const std::string& path, std::span<const std::size_t> sizes,
                            std::span<const double> values) {
   const std::vector<hsize_t> counts(sizes.begin(), sizes.end());
-  const Id space = space_of(counts, path);
-  const Id data = dataset(id_, path, space);
+  const Hdf5Id space = space_of(counts, path);
+  const Hdf5Id data = dataset(id_, path, space);
   if (petsc::rank(comm_) != 0) return;
   require(H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), path);
 }
 
 void Hdf5File::write_scalar(const std::string& path, double value) {
-  const Id space(H5Screate(H5S_SCALAR), H5Sclose, path);
-  const Id data = dataset(id_, path, space);
+  const Hdf5Id space = given(H5Screate(H5S_SCALAR), H5Sclose, path);
+  const Hdf5Id data = dataset(id_, path, space);
   if (petsc::rank(comm_) != 0) return;
   require(H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value), path);
 }
@@ -105,12 +96,12 @@ void Hdf5File::write_scalar(const std::string& path, double value) {
 void Hdf5File::write_rows(const std::string& path, std::size_t row_count, std::size_t columns,
                           std::span<const std::size_t> rows, std::span<const double> values) {
   const std::array<hsize_t, 2> size{row_count, columns};
-  const Id file_space = space_of(size, path);
-  const Id data = dataset(id_, path, file_space);
+  const Hdf5Id file_space = space_of(size, path);
+  const Hdf5Id data = dataset(id_, path, file_space);
   // One row at a time: HDF5 writes a selection in the order of the file, not of `rows`.
   for (std::size_t n = 0; n < rows.size(); ++n) {
     const std::array<hsize_t, 2> one{1, columns};
-    const Id memory_space = space_of(one, path);
+    const Hdf5Id memory_space = space_of(one, path);
     select_rows(file_space, H5S_SELECT_SET, rows[n], 1, columns);
     require(H5Dwrite(data, H5T_NATIVE_DOUBLE, memory_space, file_space, H5P_DEFAULT,
                      values.data() + n * columns),
@@ -120,7 +111,7 @@ void Hdf5File::write_rows(const std::string& path, std::size_t row_count, std::s
 
 void Hdf5File::attribute(const std::string& path, const std::string& name,
                          const std::string& value) {
-  const Id type(H5Tcopy(H5T_C_S1), H5Tclose, name);
+  const Hdf5Id type = given(H5Tcopy(H5T_C_S1), H5Tclose, name);
   require(H5Tset_size(type, H5T_VARIABLE), name);
   require(H5Tset_cset(type, H5T_CSET_UTF8), name);
   const char* text = value.c_str();

@@ -12,13 +12,6 @@
 namespace stickslip::io {
 namespace {
 
-template <class Row, class Get>
-std::vector<double> column(const std::vector<Row>& rows, Get get) {
-  std::vector<double> values;
-  for (const Row& row : rows) values.push_back(get(row));
-  return values;
-}
-
 void write_results(Hdf5File& file, const quantities::Results& results) {
   file.make_group("/results");
   for (const auto& r : results) {

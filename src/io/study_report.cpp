@@ -40,17 +40,15 @@ Json run_json(const options::Request& request, const studies::Run& run) {
 Json table_json(const studies::Table& table) {
   Json json{{"title", table.title}};
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    json[table.columns[c]] = Json::array();
-    for (const auto& row : table.rows) json[table.columns[c]].push_back(row[c]);
+    json[table.columns[c]] = column(table.rows, [c](const auto& row) { return row[c]; });
   }
   return json;
 }
 
-// A slash would make a group of its own, and blanks are awkward to type.
-std::string group_name(std::string name) {
-  std::replace(name.begin(), name.end(), '/', ':');
+// Blanks are awkward to type.
+std::string table_group(std::string name) {
   std::replace(name.begin(), name.end(), ' ', '_');
-  return name;
+  return "/study/" + hdf5_name(name);
 }
 
 }  // namespace
@@ -104,13 +102,12 @@ void write_study_hdf5(MPI_Comm comm, const options::Request& request, const stud
   file.make_group("/study");
   file.attribute("/study", "kind", study.kind);
   for (const auto& table : study.tables) {
-    const std::string group = "/study/" + group_name(table.name);
+    const std::string group = table_group(table.name);
     file.make_group(group);
     file.attribute(group, "title", table.title);
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
-      std::vector<double> column;
-      for (const auto& row : table.rows) column.push_back(row[c]);
-      file.write_array(group + "/" + table.columns[c], column);
+      file.write_array(group + "/" + table.columns[c],
+                       column(table.rows, [c](const auto& row) { return row[c]; }));
     }
   }
   write_record(file, comm, request, times);

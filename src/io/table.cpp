@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "stickslip/io/parts.hpp"
+#include "stickslip/support/statistics.hpp"
 
 namespace stickslip::io {
 
@@ -111,8 +112,8 @@ std::string comparison_table(const accuracy::Comparison& comparison) {
   }
   for (const auto& name : comparison.left_out) text += name + ": not computed here\n";
   if (rows.empty()) return text + "NOTHING was compared; name the quantities of the file\n";
-  const auto inside = std::count_if(rows.begin(), rows.end(),
-                                    [](const auto& row) { return std::abs(row.z) < 1.96; });
+  const auto inside = std::count_if(
+      rows.begin(), rows.end(), [](const auto& row) { return std::abs(row.z) < kNormalQuantile; });
   return text +
          fmt::format("{} of {} values within 1.96 standard deviations; {}\n", inside, rows.size(),
                      comparison.disagrees ? "the disagreement is significant at the level 1e-3"

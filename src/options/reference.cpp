@@ -1,7 +1,6 @@
 #include "stickslip/options/reference.hpp"
 
 #include <fmt/format.h>
-#include <hdf5.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +13,10 @@
 // Fast C++ CSV Parser: header only, tells file and line of what is wrong.
 #include <libfccp/csv.h>
 
+#include "stickslip/options/settings.hpp"
+#include "stickslip/support/hdf5_id.hpp"
 #include "stickslip/support/isolated.hpp"
+#include "stickslip/support/statistics.hpp"
 
 namespace stickslip::options {
 namespace {
@@ -26,8 +28,6 @@ struct Values {
   std::vector<double> argument, value, error, low, high;  // low, high: simulated ones only
   bool scalar = false;
 };
-
-constexpr double kNormal = 1.959963984540054;
 
 void require_equal_sizes(const std::string& key, const Values& v) {
   const std::size_t n = v.value.size();
@@ -60,7 +60,7 @@ void append(const std::string& key, const Values& v, std::vector<Reference>& all
   if (simulated && !v.scalar && key.starts_with("f_")) return;
   for (std::size_t n = 0; n < v.value.size(); ++n) {
     // A computed error is a bound; as a standard deviation it errs on the safe side.
-    const double half = simulated ? 0 : kNormal * v.error[n];
+    const double half = simulated ? 0 : kNormalQuantile * v.error[n];
     all.push_back({key, v.scalar ? std::nullopt : std::optional(v.argument[n]), v.value[n],
                    simulated ? v.low[n] : v.value[n] - half,
                    simulated ? v.high[n] : v.value[n] + half});
@@ -104,23 +104,6 @@ std::vector<Reference> read_json(const std::string& file) {
   return all;
 }
 
-/// An HDF5 object that closes itself.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }  // NOLINT(google-explicit-constructor): stands for the id
-  [[nodiscard]] bool valid() const { return id_ >= 0; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
 std::vector<std::string> names_in(hid_t group) {
   std::vector<std::string> names;
   const auto visit = [](hid_t, const char* name, const H5L_info_t*, void* data) -> herr_t {
@@ -132,9 +115,9 @@ std::vector<std::string> names_in(hid_t group) {
 }
 
 std::vector<double> dataset(hid_t group, const std::string& name, bool* scalar = nullptr) {
-  const Handle data(H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose);
+  const Hdf5Id data(H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!data.valid()) throw std::invalid_argument(name + " is no dataset");
-  const Handle space(H5Dget_space(data), H5Sclose);
+  const Hdf5Id space(H5Dget_space(data), H5Sclose);
   const hssize_t size = H5Sget_simple_extent_npoints(space);
   constexpr hssize_t most = 100000000;
   if (size < 0 || size > most) throw std::invalid_argument(name + " has an absurd size");
@@ -167,14 +150,15 @@ Values values_of(hid_t group) {
 
 std::vector<Reference> read_hdf5(const std::string& file) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // failures are told by exceptions
-  const Handle id(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (!id.valid())
+  const Hdf5Id id(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!id.valid()) {
     throw std::invalid_argument("is no readable HDF5 file, or another program is writing it");
-  const Handle results(H5Gopen2(id, "/results", H5P_DEFAULT), H5Gclose);
+  }
+  const Hdf5Id results(H5Gopen2(id, "/results", H5P_DEFAULT), H5Gclose);
   if (!results.valid()) throw std::invalid_argument("has no group /results");
   std::vector<Reference> all;
   for (const auto& key : names_in(results)) {
-    const Handle group(H5Gopen2(results, key.c_str(), H5P_DEFAULT), H5Gclose);
+    const Hdf5Id group(H5Gopen2(results, key.c_str(), H5P_DEFAULT), H5Gclose);
     if (!group.valid()) throw std::invalid_argument("/results/" + key + " is no group");
     append(key, values_of(group), all);
   }
@@ -221,14 +205,8 @@ std::vector<Reference> read_hdf5_apart(const std::string& file) {
 // A number, or nothing for an empty cell.
 std::optional<double> cell(const std::string& text, const std::string& column, unsigned line) {
   if (text.empty()) return std::nullopt;
-  std::size_t end = 0;
-  double value = std::numeric_limits<double>::quiet_NaN();
-  try {
-    value = std::stod(text, &end);
-  } catch (const std::exception&) {
-    end = 0;
-  }
-  if (end != text.size() || !std::isfinite(value)) {
+  const auto value = parse_number(text);
+  if (!value) {
     throw std::invalid_argument(
         fmt::format("line {}: {} = {} is no finite number", line, column, text));
   }

@@ -195,7 +195,7 @@ const std::vector<Asked>& askable() {
        {excursion, lambda, null_vector, fluid_queue, monte_carlo},
        {excursion, null_vector, monte_carlo}},
       {"entry_law", Quantity::entry_law, {excursion, fluid_queue, monte_carlo}, {}},
-      {"density", Quantity::density, {excursion}, {}},
+      {"density", Quantity::density, {excursion}, {excursion}},
       {"laplace", Quantity::laplace, {excursion, fluid_queue, monte_carlo}, {}},
       {"F_stick", Quantity::stay_transform, {excursion}, {}},
       {"resolvent", Quantity::resolvent, {excursion}, {}},
@@ -273,7 +273,8 @@ void read_quantities(const Settings& settings, Request& request, Problems& probl
     if (named && gives) request.quantities.insert(asked.quantity);
     if (named && !gives) refused.emplace_back(asked.name);
   }
-  if (refused.empty() || !settings.given("quantities")) return;
+  const bool some = !request.quantities.empty() && !settings.given("quantities");
+  if (refused.empty() || some) return;
   settings.report(
       problems, "quantities",
       fmt::format("{} cannot be had by -route {}{}, which gives {}", enumerate(refused, "and"),
@@ -284,9 +285,18 @@ void read_quantities(const Settings& settings, Request& request, Problems& probl
 }
 
 void read_observables(const Settings& settings, Request& request, Problems& problems) {
-  for (const auto& text : split(settings.text("observable"), ';')) {
+  const auto texts = split(settings.text("observable"), ';');
+  if (settings.given("observable") && texts.empty()) {
+    settings.report(problems, "observable", "names no function of the state",
+                    "write for example \"v^2; x*v; stick\"");
+  }
+  for (auto text = texts.begin(); text != texts.end(); ++text) {
+    if (std::find(texts.begin(), text, *text) != text) {
+      settings.report(problems, "observable", "names " + *text + " twice", "name it once");
+      continue;
+    }
     try {
-      request.observables.push_back(model::parse_observable(text, request.scene.friction));
+      request.observables.push_back(model::parse_observable(*text, request.scene.friction));
     } catch (const std::invalid_argument& error) {
       settings.report(problems, "observable", error.what(),
                       "write for example \"v^2; x*v; stick\"");
@@ -412,18 +422,25 @@ void read_spectrum_solver(const Settings& settings, Request& request, Problems& 
                   "run stickslip-complex with the same options, or take krylov");
 }
 
+void check_no_grid(const Settings& settings, const Request& request, Problems& problems) {
+  if (request.route != Route::monte_carlo && request.route != Route::fluid_queue) return;
+  for (const char* name : {"scheme", "degree", "layers", "p"}) {
+    if (!settings.given(name)) continue;
+    settings.report(
+        problems, name,
+        fmt::format("is no choice of -route {}, which has no grid in v", settings.text("route")),
+        "leave it out");
+  }
+}
+
 // What only some routes can do.
 void check_route(const Settings& settings, const Request& request, Problems& problems) {
   if (request.route != Route::excursion && request.scene.v_max) {
     settings.report(problems, "v_max", "is no choice of -route " + settings.text("route"),
                     "leave it out, or take -route excursion");
   }
+  check_no_grid(settings, request, problems);
   if (request.route == Route::monte_carlo) {
-    for (const char* name : {"scheme", "degree", "layers", "p"}) {
-      if (!settings.given(name)) continue;
-      settings.report(problems, name, "is no choice of -route monte_carlo, which has no grid in v",
-                      "leave it out");
-    }
     const bool by_omega = request.scene.symmetric();
     if (request.wants(Quantity::spectrum) && request.omega.empty() && by_omega) {
       settings.report(problems, "quantities", "asks for the spectrum and no frequencies are given",
@@ -438,11 +455,6 @@ void check_route(const Settings& settings, const Request& request, Problems& pro
   if (!request.scene.drag.is_none()) {
     settings.report(problems, "route", "needs b = 0: only then is the model a fluid queue",
                     "add -drag none, or take -route excursion");
-  }
-  for (const char* name : {"scheme", "degree", "layers", "p"}) {
-    if (!settings.given(name)) continue;
-    settings.report(problems, name, "is no choice of -route fluid_queue, which has no grid in v",
-                    "leave it out");
   }
 }
 

@@ -90,7 +90,8 @@ std::optional<std::vector<double>> parse_numbers(const std::string& text) {
 
 std::optional<double> parse_number(const std::string& text) {
   double value = 0;
-  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const bool plus = text.starts_with('+') && !text.starts_with("+-");
+  const char* begin = text.data() + (plus ? 1 : 0);
   const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
     return std::nullopt;

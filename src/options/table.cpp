@@ -85,7 +85,8 @@ Group scene_group() {
                "of v are kept, as with a bias"),
           real("bias", "force", "0", {-kInfinity, kInfinity, false, false},
                "constant force added to X, such as the slope of an inclined plane; without "
-               "symmetry both signs of v are kept, and sticking, moments, noise_law, spectrum "
+               "symmetry both signs of v are kept, and sticking, moments, noise_law, density, "
+               "spectrum "
                "(S_0 about the mean) and trajectory can be asked for",
                "take for example 0.1"),
           real("v_max", "velocity", "", positive(),

@@ -1,49 +1,70 @@
 #include "stickslip/quantities/density.hpp"
 
+#include <mpi.h>
+
 #include "stickslip/petsc/vectors.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
-std::vector<double> atoms(const StationaryLaw& law) {
-  const int n = law.process().noise.levels, k = law.process().static_index();
-  const auto& stick = law.excursion().stick_time;
-  std::vector<double> atom(2 * static_cast<std::size_t>(n) + 1, 0.0);
-  for (int i = -k; i <= k; ++i) {
-    atom[n + i] = (stick[k + i] + stick[k - i]) / (2 * law.excursion().mean_excursion());
-  }
-  return atom;
-}
+using operators::Half;
+using operators::State;
+using operators::StateKind;
 
-// V < 0 on level -i mirrors V > 0 on level i, of which half the folded mass is.
-PhaseField pdf_of(const StationaryLaw& law) {
-  PhaseField pdf(law.process(), law.axis(), law.states());
-  const double scale = 1 / (2 * law.excursion().mean_excursion());
+// Calls visit(half, state, probability) for the local sliding states; what is folded stands for
+// two places, each with half of the mass.
+template <class Visit>
+void for_each_place(const StationaryLaw& law, Visit visit) {
+  const double total = law.excursion().mean_excursion();
   const petsc::ReadView local(law.occupation());
   PetscInt at = 0;
-  law.states().for_each_local([&](const operators::State& state) {
-    const double mass = PetscRealPart(local[at++]) * scale;
-    if (state.kind == operators::StateKind::holding) return;
-    // The node of a state at the origin is 0.
-    pdf.add(state.level, state.node, mass / law.axis().weights()[state.node], 1);
+  law.states().for_each_local([&](const State& state) {
+    const double probability = PetscRealPart(local[at++]) / total;
+    if (!law.states().folded()) return visit(state.half, state, probability);
+    visit(Half::upper, state, probability / 2);
+    visit(Half::lower, state, probability / 2);
   });
-  return pdf;
+}
+
+std::vector<double> atoms(const StationaryLaw& law) {
+  const auto& process = law.process();
+  const int n = process.noise.levels;
+  const int lowest = process.lowest_static(), highest = process.static_index();
+  const auto& stick = law.excursion().stick_time;
+  const double total = law.excursion().mean_excursion();
+  std::vector<double> atom(2 * static_cast<std::size_t>(n) + 1, 0.0);
+  for (int i = lowest; i <= highest; ++i) {
+    atom[n + i] = stick[i - lowest] / total;
+    if (law.states().folded()) {
+      atom[n + i] = (stick[i - lowest] + stick[highest - i]) / (2 * total);
+    }
+  }
+  return atom;
 }
 
 }  // namespace
 
 DensityField density_field(const StationaryLaw& law) {
-  const auto& axis = law.axis();
-  const std::size_t nodes = axis.size();
-  DensityField field{
-      pdf_of(law), atoms(law), marginal_of_noise(law.process(), law.excursion()), {}, 0};
-  const auto speed = law.speed_law();
-  field.cut_mass = speed.at_top;
-  field.velocity_marginal.resize(2 * nodes);
-  for (std::size_t j = 0; j < nodes; ++j) {
-    const double density = speed.mass[j] / (2 * axis.weights()[j]);
-    field.velocity_marginal[nodes + j] = field.velocity_marginal[nodes - 1 - j] = density;
+  const auto weights = law.axis().weights();
+  const int nodes = law.axis().size(), n = law.process().noise.levels;
+  DensityField field{PhaseField(law.process(), law.axis(), law.states()), atoms(law),
+                     std::vector<double>(2 * static_cast<std::size_t>(n) + 1, 0.0),
+                     std::vector<double>(2 * static_cast<std::size_t>(nodes), 0.0),
+                     law.speed_law().at_top};
+  for_each_place(law, [&](Half half, const State& state, double probability) {
+    const bool upper = half == Half::upper;
+    field.noise_marginal[n + (upper ? state.level : -state.level)] += probability;
+    if (state.kind == StateKind::holding) return;
+    // The node of a state at the origin is 0.
+    const double density = probability / weights[state.node];
+    field.pdf.add(half, state.level, state.node, density);
+    field.velocity_marginal[upper ? nodes + state.node : nodes - 1 - state.node] += density;
+  });
+  for (auto* marginal : {&field.noise_marginal, &field.velocity_marginal}) {
+    MPI_Allreduce(MPI_IN_PLACE, marginal->data(), static_cast<int>(marginal->size()), MPI_DOUBLE,
+                  MPI_SUM, law.states().comm());
   }
+  for (std::size_t i = 0; i < field.atom.size(); ++i) field.noise_marginal[i] += field.atom[i];
   return field;
 }
 

@@ -21,10 +21,11 @@ std::size_t PhaseField::row_start(int level) const {
   return static_cast<std::size_t>(place - local_levels_.begin()) * v_.size();
 }
 
-void PhaseField::add(int level, int node, double value, double sign) {
+void PhaseField::add(operators::Half half, int level, int node, double value) {
   const std::size_t nodes = v_.size() / 2;
-  local_rows_[row_start(level) + nodes + node] += value;
-  local_rows_[row_start(-level) + nodes - 1 - node] += sign * value;
+  const bool upper = half == operators::Half::upper;
+  local_rows_[upper ? row_start(level) + nodes + node : row_start(-level) + nodes - 1 - node] +=
+      value;
 }
 
 }  // namespace stickslip::quantities

@@ -8,6 +8,7 @@
 namespace stickslip::quantities {
 namespace {
 
+using operators::Half;
 using operators::State;
 using operators::StateKind;
 using operators::Symmetry;
@@ -76,8 +77,10 @@ RelaxationMode mode_of(const operators::Systems& systems, const operators::State
     auto value = scale * entry(real, imaginary, at++);
     if (real_rate) value = value.real();
     if (state.kind == StateKind::node) {
-      mode.real.add(state.level, state.node, value.real(), sign);
-      mode.imaginary.add(state.level, state.node, value.imag(), sign);
+      for (const auto& [half, factor] : {std::pair{Half::upper, 1.0}, {Half::lower, sign}}) {
+        mode.real.add(half, state.level, state.node, factor * value.real());
+        mode.imaginary.add(half, state.level, state.node, factor * value.imag());
+      }
     } else if (state.kind == StateKind::rest) {
       mode.at_rest[k + state.level] = value;
       mode.at_rest[k - state.level] = sign * value;

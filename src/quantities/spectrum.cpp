@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <numbers>
 
 #include "stickslip/exact/transfer_function.hpp"
 #include "stickslip/petsc/check.hpp"
@@ -25,7 +26,6 @@ using petsc::check;
 // Waves that the noise hardly damps (delta = tau = 1, omega tau above 10) take up to 150 pairs, and
 // many blocks of them that do not help yet; all else is done after 30.
 constexpr int kMostPairs = 240, kPatience = 50;
-constexpr double kPi = 3.14159265358979323846;
 
 // i w; nothing in real arithmetic, where it is not asked for.
 PetscScalar imaginary([[maybe_unused]] double w) {
@@ -124,7 +124,7 @@ Uncertain integral(const ReducedFunction& s, double tau, double relative_error) 
     low = high;
   }
   sum += s(low) * low / 3;
-  return {sum / kPi, (doubt + relative_error * sum) / kPi};
+  return {sum / std::numbers::pi, (doubt + relative_error * sum) / std::numbers::pi};
 }
 
 /// S_v at single frequencies by complex solves.

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numbers>
 
 #include "stickslip/exact/transfer_function.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kPoints = 24;
 
 /// Points and weights of sum Re w F(z) for t = 1, upper half of the contour.
@@ -19,7 +19,7 @@ struct Contour {
   Contour() {
     constexpr double a = 0.5017, b = 0.6407, c = 0.6122, d = 0.2645;
     for (int n = kPoints / 2; n < kPoints; ++n) {
-      const double theta = kPi * (2.0 * n + 1 - kPoints) / kPoints;
+      const double theta = std::numbers::pi * (2.0 * n + 1 - kPoints) / kPoints;
       const double sine = std::sin(b * theta), cotangent = std::cos(b * theta) / sine;
       const std::complex<double> point(a * theta * cotangent - c, d * theta);
       const std::complex<double> slope(a * cotangent - a * b * theta / (sine * sine), d);

@@ -322,7 +322,7 @@ class Campaign {
   // Batches in their order, whoever made them.
   void merge(const std::vector<double>& own, long batches) {
     const int ranks = petsc::ranks(comm_);
-    const auto size = static_cast<long>(tally_.pack().size());
+    const auto size = static_cast<long>(tally_.packed_size());
     std::vector<int> counts, starts;
     int total = 0;
     for (int r = 0; r < ranks; ++r) {

@@ -95,10 +95,13 @@ class Planner {
   }
 
   void plan_spectrum() {
-    if (request_.scene.symmetric()) {
-      add_adaptive(Work::spectrum, 2, 18);
-    } else {
+    if (!request_.scene.symmetric()) {
       add({Work::spectrum_at_zero, 0, {{ground(), 2, 0}}});
+    } else if (request_.spectrum_solver == options::SpectrumSolver::direct) {
+      const int frequencies = static_cast<int>(request_.omega.size()) + 1;  // and 0
+      add_adaptive(Work::spectrum, frequencies + 1, frequencies + 1);       // and the law alone
+    } else {
+      add_adaptive(Work::spectrum, 2, 18);
     }
   }
 

@@ -6,10 +6,10 @@
 #include <complex>
 #include <stdexcept>
 
+#include "stickslip/support/statistics.hpp"
+
 namespace stickslip::simulation {
 namespace {
-
-constexpr double kNormal = 1.959963984540054;  // two-sided 95 %
 
 // The last two of cycles only.
 enum Total : std::size_t {
@@ -54,7 +54,7 @@ enum Transform : std::size_t {
 };
 
 Estimate around(double value, double variance) {
-  const double half = kNormal * std::sqrt(variance);
+  const double half = kNormalQuantile * std::sqrt(variance);
   return {value, value - half, value + half};
 }
 
@@ -127,11 +127,10 @@ void Tally::count_cells(const Excursion& e) {
 }
 
 void Tally::add_transforms(const Excursion& e) {
-  const double duration = e.slide + e.stick;
+  const double duration = e.slide + e.stick, sign = e.turned ? -1 : 1;
   for (std::size_t n = 0; n < spectrum_.size(); ++n) {
     const auto c = e.transform[n];
-    const auto d =
-        std::polar(e.turned ? -1.0 : 1.0, 0.0) * std::polar(1.0, -wanted_.omega[n] * duration);
+    const auto d = sign * std::polar(1.0, -wanted_.omega[n] * duration);
     const auto cd = std::conj(c) * d;
     spectrum_[n].add(std::array<double, Transform::transforms>{
         std::norm(c), c.real(), c.imag(), d.real(), d.imag(), cd.real(), cd.imag(), duration});
@@ -279,10 +278,17 @@ std::vector<double> Tally::pack() const {
   return numbers;
 }
 
-void Tally::unpack(std::span<const double> numbers) {
-  if (numbers.size() != pack().size()) {
-    throw std::invalid_argument("a tally of other questions");
+std::size_t Tally::packed_size() const {
+  std::size_t size = 1 + totals_.packed_size() + displacement_.packed_size() + entries_.size();
+  for (const auto* group : {&laplace_, &spectrum_}) {
+    for (const auto& comoments : *group) size += comoments.packed_size();
   }
+  for (const auto& cells : cells_) size += cells.size();
+  return size;
+}
+
+void Tally::unpack(std::span<const double> numbers) {
+  if (numbers.size() != packed_size()) throw std::invalid_argument("a tally of other questions");
   jumps_ = numbers[0];
   numbers = numbers.subspan(1);
   totals_.unpack(numbers);

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "stickslip/routes/monte_carlo.hpp"
+#include "stickslip/support/statistics.hpp"
 #include "studies.hpp"
 
 namespace stickslip::studies {
@@ -146,7 +147,7 @@ class CostStudy {
       const Run run = median_run(repeats_, [&] { return simulated(request); });
       double error = 0;
       for (const auto& result : run.results) {
-        error = std::max(error, quantities::relative_error(result) / 1.96);
+        error = std::max(error, quantities::relative_error(result) / kNormalQuantile);
       }
       add(curve, run, request.excursions, error);
     }

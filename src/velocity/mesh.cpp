@@ -5,11 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 
 namespace stickslip::velocity {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Local decay rate of log-density in white noise, -d/dv log exp(-mu_d v + int b) = mu_d - b(v). A
 // bias g changes it by -g on one half line and by g on the other; elements serve both.
@@ -83,7 +82,7 @@ double killed_layer(const model::Process& process, double lambda) {
 double wave_width(const model::Process& process, double omega, double v) {
   const double rate = process.noise.rate();
   const double slowest = std::max(gap_below(process), rate * v / 20);
-  return 4 * kPi * slowest / std::min(omega, 40 * rate);
+  return 4 * std::numbers::pi * slowest / std::min(omega, 40 * rate);
 }
 
 // Cuts elements that are too wide for the waves.
@@ -139,7 +138,7 @@ double upper_tail(const model::Process& process, double tolerance) {
   const double peak = process.drag.terminal_velocity(-slope);
   const double highest = -slope * peak + process.drag.potential(peak);
   const auto left = [&](double v) {
-    return drop + highest - slope * v + process.drag.potential(v);
+    return drop - highest - slope * v + process.drag.potential(v);
   };
   double end = slope > 0 ? drop / slope : std::max(2 * peak, 1.0);
   while (slope <= 0 && left(end) > 0 && end < process.drag.reach) end *= 2;

@@ -33,6 +33,9 @@ class Refusals(Case):
         self.refuse("-drag_coefficient", "-1", told=("must not grow",))
         self.refuse("-delta", "0.25", "-noise_levels", "99", told=("at most 32",))
         self.refuse("-delta", "0.25", "-mu_s", "8", told=("nothing ever slides",))
+        resolvent = ("-quantities", "resolvent", "-lambda", "1", "-observable")
+        self.refuse(*resolvent, "", told=("names no function of the state",))
+        self.refuse(*resolvent, "v^2; v; v^2", told=("names v^2 twice", "name it once"))
 
     def test_names(self):
         self.refuse("-detla", "0.5", told=("did you mean -delta?",))

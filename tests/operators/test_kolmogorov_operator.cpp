@@ -396,3 +396,69 @@ TEST_CASE("kolmogorov operator: a value at rest is one entry", "[parallel]") {
     }
   }
 }
+
+TEST_CASE("kolmogorov operator: with a bias rows of the whole process sum to 0", "[parallel]") {
+  auto process = rough_process(9);
+  for (double bias : {0.23, -0.4}) {
+    process.bias = bias;
+    const velocity::UpwindAxis upwind(0.05, 30, process.drag);
+    const velocity::HpAxis hp({0, 0.1, 0.5, 1.4}, 5, process.drag);
+    for (const velocity::Axis* axis :
+         {static_cast<const velocity::Axis*>(&upwind), static_cast<const velocity::Axis*>(&hp)}) {
+      const KolmogorovOperator a(PETSC_COMM_WORLD, process, *axis, 0, Symmetry::none, Rest::kept);
+      CHECK(largest(row_sums(a)) < 1e-14 * largest_entry(a.matrix()));
+    }
+  }
+}
+
+// dA by a difference of A on the same axis: A is linear in mu_d and c, and smooth in tau.
+TEST_CASE("kolmogorov operator: derivatives are limits of differences", "[parallel]") {
+  using operators::Parameter;
+  const auto process = rough_process(9);
+  struct Step {
+    Parameter parameter;
+    model::Process above, below;
+    double width;
+  };
+  const auto changed = [&](double mu_d, double tau, double c) {
+    auto p = process;
+    p.friction.mu_d += mu_d;
+    p.noise.tau += tau;
+    p.drag.linear += c;
+    return p;
+  };
+  const double h = 1e-4;
+  const std::vector<Step> steps{
+      {Parameter::mu_d, changed(h, 0, 0), changed(-h, 0, 0), 2 * h},
+      {Parameter::tau, changed(0, h, 0), changed(0, -h, 0), 2 * h},
+      {Parameter::drag_coefficient, changed(0, 0, h), changed(0, 0, -h), 2 * h}};
+  const auto on = [](const model::Process& p, bool hp) -> std::unique_ptr<velocity::Axis> {
+    if (hp) return std::make_unique<velocity::HpAxis>(std::vector{0.0, 0.1, 0.5, 1.43}, 5, p.drag);
+    return std::make_unique<velocity::UpwindAxis>(0.053, 25, p.drag);
+  };
+  for (const Step& step : steps) {
+    for (bool hp : {true, false}) {
+      const auto axis = on(process, hp), above = on(step.above, hp), below = on(step.below, hp);
+      const auto derivative = KolmogorovOperator::derivative(PETSC_COMM_WORLD, process, *axis,
+                                                             Symmetry::even, step.parameter);
+      const auto at = [](const model::Process& p, const velocity::Axis& on_axis) {
+        return KolmogorovOperator(PETSC_COMM_WORLD, p, on_axis, 0, Symmetry::even, Rest::killing);
+      };
+      const auto upper = at(step.above, *above), lower = at(step.below, *below);
+      const auto x = test_vector(derivative);
+      const auto image = derivative.zeros(), up = derivative.zeros(), down = derivative.zeros();
+      check(MatMult(derivative.matrix(), x, image));
+      check(MatMult(upper.matrix(), x, up));
+      check(MatMult(lower.matrix(), x, down));
+      check(VecAXPY(up, -1, down));
+      check(VecAXPY(image, -1 / step.width, up));
+      CHECK(largest(image) < 1e-5 * largest(up) / step.width);
+      const auto rates = derivative.entry_rates(x), above_rates = upper.entry_rates(x),
+                 below_rates = lower.entry_rates(x);
+      for (std::size_t n = 0; n < rates.size(); ++n) {
+        const auto difference = (above_rates[n] - below_rates[n]) / step.width;
+        CHECK(std::abs(rates[n] - difference) < 1e-6 * (1 + std::abs(difference)));
+      }
+    }
+  }
+}

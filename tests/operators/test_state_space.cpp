@@ -98,3 +98,29 @@ TEST_CASE("state space: too many states are refused before anything is allocated
   const velocity::UpwindAxis axis(0.001, 2000, process.drag);
   CHECK_THROWS_AS(StateSpace(PETSC_COMM_WORLD, process, axis, Symmetry::even, false), NoMemory);
 }
+
+TEST_CASE("state space: with a bias every state has one index, too", "[parallel]") {
+  for (double bias : {0.3, -0.55, 1.1}) {
+    auto process = process_on(8, 0.6, 0.25);
+    process.bias = bias;
+    const velocity::UpwindAxis axis(0.1, 3, process.drag);
+    const StateSpace states(PETSC_COMM_WORLD, process, axis, Symmetry::none, true);
+    PetscInt next = states.local_begin();
+    states.for_each_local([&](const State& state) {
+      REQUIRE(states.index(state) == next);
+      ++next;
+    });
+    CHECK(next - states.local_begin() == states.local_size());
+    PetscInt origins = 0, rests = 0;
+    for (int i = -8; i <= 8; ++i) {
+      const double force = process.noise.level(i) + bias;
+      const bool rest = std::abs(force) <= 0.6 + 1e-12;
+      CHECK(states.has_rest(i) == rest);
+      rests += rest ? 1 : 0;
+      CHECK(states.has_origin(Half::upper, i) == (force > 0.6 + 1e-12));
+      CHECK(states.has_origin(Half::lower, -i) == (force < -0.6 - 1e-12));
+      origins += rest ? 0 : 1;
+    }
+    CHECK(states.global_size() == 2 * 17 * 3 + rests + origins);
+  }
+}

@@ -52,7 +52,7 @@ const std::string kHeader = "quantity,argument,value,low,high\n";
 
 TEST_CASE("reference: rows of CSV, scalars and arrays, with and without bounds") {
   const auto all = read("a.csv", kHeader + "P_stick,,0.25,0.2,0.3\n"
-                                           "S_v, 1.5 , 2e-3,,\n"
+                                           "S_v, 1.5 , +2e-3,,\n"
                                            "\"F_slide\",0,1,0.5,1\r\n"
                                            "E_V,,-1,-2,0");
   REQUIRE(all.size() == 4);
@@ -75,6 +75,9 @@ TEST_CASE("reference: bad rows of CSV are told with their lines") {
   CHECK_THAT(told("E_V2,,abc,,"), Contains("line 3") && Contains("value = abc"));
   CHECK_THAT(told("E_V2,,1x,,"), Contains("line 3") && Contains("value = 1x"));
   CHECK_THAT(told("E_V2,,nan,,"), Contains("line 3") && Contains("no finite number"));
+  for (const std::string text : {"0x10", "+-1", "1e400", "1 2"}) {
+    CHECK_THAT(told("E_V2,," + text + ",,"), Contains("line 3") && Contains("value = " + text));
+  }
   CHECK_THAT(told("E_V2,,1,inf,"), Contains("line 3") && Contains("low = inf"));
   CHECK_THAT(told("E_V2,one,1,,"), Contains("line 3") && Contains("argument = one"));
   CHECK_THAT(told("E_V2,,,,"), Contains("line 3") && Contains("no value"));

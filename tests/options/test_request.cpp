@@ -146,8 +146,7 @@ TEST_CASE("request: without symmetry") {
                            .read();
   CHECK(down.start_level == -6);  // x = -1.25 holds, -1.5 does not
   const std::vector<Refusal> refusals{
-      {"-bias 0.5 -quantities density -output x.h5",
-       {"-quantities", "density", "without symmetry"}},
+      {"-bias 0.5 -quantities entry_law", {"-quantities", "entry_law", "without symmetry"}},
       {"-bias 0.5 -route lambda", {"-quantities", "-route lambda", "-bias 0"}},
       {"-bias 0.5 -quantities spectrum -omega 1", {"-omega = 1", "leave it out"}},
       {"-bias 1 -drag none", {"-bias = 1", "for ever", "smaller than mu_d"}},
@@ -256,6 +255,11 @@ TEST_CASE("request: arguments that are missing or make no sense are told") {
       {"-quantities resolvent -lambda 1 -observable v;x*(",
        {"-observable = v;x*(", "write for example"}},
       {"-quantities resolvent -lambda 1 -observable velocity", {"-observable = velocity"}},
+      {"-quantities resolvent -lambda 1 -observable",
+       {"-observable = ", "names no function of the state", "write for example"}},
+      {"-quantities expectation -time 1 -observable", {"names no function of the state"}},
+      {"-quantities resolvent -lambda 1 -observable v;stick;v",
+       {"-observable = v;stick;v", "names v twice", "name it once"}},
       {"-route lambda -lambda 1e-3,1e-4", {"-lambda = 1e-3,1e-4", "one positive number"}},
       {"-route lambda -lambda 0", {"-lambda = 0", "one positive number", "leave it out"}},
   };

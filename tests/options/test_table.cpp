@@ -78,8 +78,8 @@ TEST_CASE("numbers: decimal and finite, nothing before or after") {
   CHECK(parse_number("0.25") == 0.25);
   CHECK(parse_number("-1e-3") == -1e-3);
   CHECK(parse_number("+2") == 2.0);
-  for (const char* bad :
-       {"", "abc", "2.5xyz", "nan", "inf", "1e400", "1,5", " 1", "1 ", "0x10", "--1", "1e", "+"}) {
+  for (const char* bad : {"", "abc", "2.5xyz", "nan", "inf", "1e400", "1,5", " 1", "1 ", "0x10",
+                          "--1", "+-1", "1e", "+"}) {
     INFO(bad);
     CHECK_FALSE(parse_number(bad));
   }

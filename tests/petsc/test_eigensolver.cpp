@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <functional>
 #include <numbers>
 #include <type_traits>
 
+#include "../common/matrices.hpp"
+#include "../common/options.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/eigensolver.hpp"
 #include "stickslip/petsc/vectors.hpp"
@@ -15,48 +16,13 @@
 
 using namespace stickslip;
 using namespace stickslip::petsc;
+using test::Given;
+using test::matrix;
+using test::Row;
 
 namespace {
 
 constexpr bool kComplex = PetscDefined(USE_COMPLEX);
-
-/// PETSc options for the life of the object.
-class Given {
- public:
-  explicit Given(std::vector<std::pair<std::string, std::string>> options)
-      : options_(std::move(options)) {
-    for (const auto& [name, value] : options_) {
-      check(PetscOptionsSetValue(nullptr, name.c_str(), value.c_str()));
-    }
-  }
-  ~Given() {
-    for (const auto& option : options_) (void)PetscOptionsClearValue(nullptr, option.first.c_str());
-  }
-  Given(const Given&) = delete;
-  Given& operator=(const Given&) = delete;
-
- private:
-  std::vector<std::pair<std::string, std::string>> options_;
-};
-
-using Row = std::vector<std::pair<PetscInt, double>>;  // columns and values
-
-// n x n, row(r) lists the entries of row r.
-MatHandle matrix(PetscInt n, const std::function<Row(PetscInt)>& row) {
-  MatHandle a;
-  check(MatCreate(PETSC_COMM_WORLD, a.out()));
-  check(MatSetSizes(a, PETSC_DECIDE, PETSC_DECIDE, n, n));
-  check(MatSetType(a, MATAIJ));
-  check(MatSetUp(a));
-  PetscInt begin = 0, end = 0;
-  check(MatGetOwnershipRange(a, &begin, &end));
-  for (PetscInt r = begin; r < end; ++r) {
-    for (const auto& [c, value] : row(r)) check(MatSetValue(a, r, c, value, INSERT_VALUES));
-  }
-  check(MatAssemblyBegin(a, MAT_FINAL_ASSEMBLY));
-  check(MatAssemblyEnd(a, MAT_FINAL_ASSEMBLY));
-  return a;
-}
 
 // A walk round a ring, one way: 1 on the diagonal, -1 after it. Eigenvalues 1 - exp(2 pi i m/n).
 MatHandle ring(PetscInt n) {
@@ -144,7 +110,7 @@ TEST_CASE("eigensolver: conjugate pairs of a matrix far from normal", "[parallel
 
 TEST_CASE("eigensolver: residuals are those of its vectors", "[parallel]") {
   const MatHandle a = ring(300);
-  const Given given({{"-loose_eps_tol", "1e-3"}, {"-loose_eps_ncv", "12"}});
+  const Given given{{"-loose_eps_tol", "1e-3"}, {"-loose_eps_ncv", "12"}};
   Ledger ledger;
   const Eigensolver solver(a, "loose_", -0.1, 4, ledger);
   double largest = 0;
@@ -167,10 +133,10 @@ TEST_CASE("eigensolver: what it did is entered in the ledger", "[parallel]") {
 
 TEST_CASE("eigensolver: options of the role override number and target", "[parallel]") {
   const MatHandle a = rotations(20);
-  const Given given({{"-own_eps_nev", "4"},
-                     {"-own_eps_target", "7.1"},
-                     // The default; given here, it also goes with the others.
-                     {"-own_st_mat_mumps_icntl_7", "2"}});
+  const Given given{{"-own_eps_nev", "4"},
+                    {"-own_eps_target", "7.1"},
+                    // The default; given here, it also goes with the others.
+                    {"-own_st_mat_mumps_icntl_7", "2"}};
   Ledger ledger;
   const Eigensolver solver(a, "own_", -0.1, 1, ledger);
   REQUIRE(solver.pairs().size() >= 4);
@@ -181,7 +147,7 @@ TEST_CASE("eigensolver: options of the role override number and target", "[paral
 TEST_CASE("eigensolver: too few eigenvalues are refused, and the options that help are named") {
   // Eigenvalues crowd around the target, and one small Krylov space must do.
   const MatHandle a = ring(300);
-  const Given given({{"-few_eps_max_it", "1"}, {"-few_eps_ncv", "6"}, {"-few_eps_tol", "1e-15"}});
+  const Given given{{"-few_eps_max_it", "1"}, {"-few_eps_ncv", "6"}, {"-few_eps_tol", "1e-15"}};
   Ledger ledger;
   try {
     const Eigensolver solver(a, "few_", -0.1, 4, ledger);
@@ -209,11 +175,11 @@ TEST_CASE("eigensolver: iterate is one step of inverse iteration", "[parallel]")
 TEST_CASE("eigensolver: probing marks the options of a role as known") {
   const std::vector<std::string> known{"eps_tol", "eps_ncv", "st_mat_mumps_icntl_14"};
   const std::vector<std::string> unknown{"eps_tolerance", "st_mat_mumps_icntl_99"};
-  const Given given({{"-probe_eps_tol", "1e-9"},
-                     {"-probe_eps_ncv", "20"},
-                     {"-probe_st_mat_mumps_icntl_14", "30"},
-                     {"-probe_eps_tolerance", "1e-9"},
-                     {"-probe_st_mat_mumps_icntl_99", "1"}});
+  const Given given{{"-probe_eps_tol", "1e-9"},
+                    {"-probe_eps_ncv", "20"},
+                    {"-probe_st_mat_mumps_icntl_14", "30"},
+                    {"-probe_eps_tolerance", "1e-9"},
+                    {"-probe_st_mat_mumps_icntl_99", "1"}};
   Eigensolver::probe_options("probe_");
   const auto used = [](const std::string& name) {
     PetscBool is_used = PETSC_FALSE;
@@ -226,10 +192,10 @@ TEST_CASE("eigensolver: probing marks the options of a role as known") {
 
 TEST_CASE("eigensolver: probing takes any number of eigenvalues and any space") {
   for (const char* number : {"1", "4", "10", "60"}) {
-    const Given given({std::pair{"-many_eps_nev", number}});
+    const Given given{{"-many_eps_nev", number}};
     CHECK_NOTHROW(Eigensolver::probe_options("many_"));
   }
-  const Given given({{"-wide_eps_nev", "5"}, {"-wide_eps_ncv", "7"}});
+  const Given given{{"-wide_eps_nev", "5"}, {"-wide_eps_ncv", "7"}};
   CHECK_NOTHROW(Eigensolver::probe_options("wide_"));
 }
 
@@ -243,7 +209,7 @@ TEST_CASE("eigensolver: one eigenvalue takes few solves, unless a larger space i
   };
   const int few = solves(-1e-8);
   CHECK(few <= 8);
-  const Given given({std::pair{"-one_eps_ncv", "40"}});
+  const Given given{{"-one_eps_ncv", "40"}};
   CHECK(solves(-1e-8) >= 40);
 }
 

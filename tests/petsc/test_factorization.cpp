@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <petscsys.h>
 
+#include "../common/matrices.hpp"
 #include "../common/options.hpp"
 #include "stickslip/petsc/blas.hpp"
 #include "stickslip/petsc/check.hpp"
@@ -16,20 +17,11 @@ namespace {
 
 // Upper bidiagonal with 2 + r on the diagonal and -1 above: A x and A^T x are known by hand.
 MatHandle bidiagonal(PetscInt n) {
-  MatHandle a;
-  check(MatCreate(PETSC_COMM_WORLD, a.out()));
-  check(MatSetSizes(a, PETSC_DECIDE, PETSC_DECIDE, n, n));
-  check(MatSetType(a, MATAIJ));
-  check(MatSetUp(a));
-  PetscInt begin = 0, end = 0;
-  check(MatGetOwnershipRange(a, &begin, &end));
-  for (PetscInt r = begin; r < end; ++r) {
-    check(MatSetValue(a, r, r, 2.0 + static_cast<double>(r), INSERT_VALUES));
-    if (r + 1 < n) check(MatSetValue(a, r, r + 1, -1, INSERT_VALUES));
-  }
-  check(MatAssemblyBegin(a, MAT_FINAL_ASSEMBLY));
-  check(MatAssemblyEnd(a, MAT_FINAL_ASSEMBLY));
-  return a;
+  return test::matrix(n, [n](PetscInt r) {
+    test::Row row{{r, 2 + static_cast<double>(r)}};
+    if (r + 1 < n) row.emplace_back(r + 1, -1);
+    return row;
+  });
 }
 
 double distance_from_one(Vec x) {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "../common/exponential.hpp"
+#include "../common/matrices.hpp"
 #include "../common/options.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/time_stepper.hpp"
@@ -32,22 +33,14 @@ SmallMatrix stiff() {
 
 MatHandle distributed(const SmallMatrix& m) {
   const auto n = static_cast<PetscInt>(m.size());
-  MatHandle a;
-  check(MatCreate(PETSC_COMM_WORLD, a.out()));
-  check(MatSetSizes(a, PETSC_DECIDE, PETSC_DECIDE, n, n));
-  check(MatSetType(a, MATAIJ));
-  check(MatSetUp(a));
-  PetscInt begin = 0, end = 0;
-  check(MatGetOwnershipRange(a, &begin, &end));
-  for (PetscInt r = begin; r < end; ++r) {
+  return test::matrix(n, [&m, n](PetscInt r) {
+    test::Row row;
     for (PetscInt c = 0; c < n; ++c) {
       const auto value = static_cast<double>(m(r, c));
-      if (value != 0 || r == c) check(MatSetValue(a, r, c, value, INSERT_VALUES));
+      if (value != 0 || r == c) row.emplace_back(c, value);
     }
-  }
-  check(MatAssemblyBegin(a, MAT_FINAL_ASSEMBLY));
-  check(MatAssemblyEnd(a, MAT_FINAL_ASSEMBLY));
-  return a;
+    return row;
+  });
 }
 
 double start(PetscInt r) { return 1 + 0.5 * std::sin(2.0 * static_cast<double>(r)); }

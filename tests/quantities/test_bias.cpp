@@ -4,6 +4,8 @@
 
 #include "../common/near.hpp"
 #include "../common/solved.hpp"
+#include "stickslip/model/noise_chain.hpp"
+#include "stickslip/quantities/density.hpp"
 #include "stickslip/quantities/diffusivity.hpp"
 #include "stickslip/quantities/spectrum.hpp"
 #include "stickslip/routes/evaluation.hpp"
@@ -93,8 +95,7 @@ TEST_CASE("bias: mirror images mirror") {
   }
 }
 
-// Forces balance in the mean: E[X] + g + E[b(V)] = mu_d E[sign V] + the mean of the static force,
-// and only the last is not seen by the law; but power does: d/dt V^2/2 has mean 0.
+// d/dt V^2/2 has mean 0.
 TEST_CASE("bias: the power put in is dissipated") {
   for (double bias : {0.1, 0.5, 1.5}) {
     const auto s = scene(1, 0.6, 1, 0.25, {0.8, 0});
@@ -103,6 +104,37 @@ TEST_CASE("bias: the power put in is dissipated") {
     const double in = v.at("E_XV") + bias * v.at("E_V");
     const double out = 0.6 * v.at("E_absV") + 0.8 * v.at("E_V2");
     CHECK(relative_difference(in, out) < 1e-9);
+  }
+}
+
+TEST_CASE("bias: the density integrates to the law and to its drift") {
+  for (double bias : {0.2, -1.4}) {
+    const auto s = biased(scene(1, 0.6, 1, 0.25, {1, 0}), bias);
+    const Solved solved(test::on_hp(s, 8));
+    const auto field = quantities::density_field(solved.law);
+    const auto values = scalars(solved);
+    const auto weights = solved.law.axis().weights();
+    const std::size_t half = field.pdf.v().size() / 2;
+    double sliding = 0, drift = 0, noise = 0, stick = 0;
+    for (std::size_t j = 0; j < half; ++j) {
+      const double above = weights[j] * field.velocity_marginal[half + j];
+      const double below = weights[j] * field.velocity_marginal[half - 1 - j];
+      sliding += above + below;
+      drift += field.pdf.v()[half + j] * (above - below);
+    }
+    for (std::size_t i = 0; i < field.atom.size(); ++i) {
+      stick += field.atom[i];
+      noise += field.noise_marginal[i];
+    }
+    CHECK(stick == Approx(values.at("P_stick")).epsilon(1e-12));
+    CHECK(sliding + stick + field.cut_mass == Approx(1).epsilon(1e-11));
+    CHECK(drift == Approx(values.at("E_V")).epsilon(1e-9));
+    CHECK(noise == Approx(1).epsilon(1e-11));
+    // The law of the noise, level by level.
+    const auto law = model::stationary_law(solved.law.process().noise);
+    for (std::size_t i = 0; i < law.size(); ++i) {
+      CHECK(field.noise_marginal[i] == Approx(law[i]).epsilon(1e-7).margin(1e-12));
+    }
   }
 }
 

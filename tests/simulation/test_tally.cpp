@@ -247,6 +247,10 @@ TEST_CASE("tally: packed and unpacked it is the same, of other questions it is r
   auto back = of({sample()[0]});
   back.unpack(whole.pack());
   CHECK(back.pack() == whole.pack());
+  CHECK(whole.packed_size() == whole.pack().size());
+  simulation::Wanted cycles = kWanted;
+  cycles.cycles = true;
+  CHECK(Tally(cycles, 2).packed_size() == Tally(cycles, 2).pack().size());
   CHECK(back.spectrum(1).low == whole.spectrum(1).low);
   auto numbers = whole.pack();
   numbers.pop_back();
@@ -265,4 +269,43 @@ TEST_CASE("tally: a batch is fixed by seed and number") {
   CHECK(batch(1, 1) != first);
   CHECK(batch(2, 0) != first);
   CHECK(batch(1, 0) == first);
+}
+
+// Cycles by hand: displacements, durations and counts.
+TEST_CASE("tally: drift, durations and spread of cycles") {
+  Wanted wanted;
+  wanted.cycles = true;
+  const std::vector<double> moved{1, -0.5, 2, 0.25, 3}, slide{2, 1, 3, 1, 4},
+      stick{1, 2, 0.5, 1, 1}, number{1, 3, 2, 1, 4};
+  Tally tally(wanted, -2);  // a bias may leave no static level at or above 0
+  double sum = 0, time = 0, excursions = 0;
+  for (std::size_t n = 0; n < moved.size(); ++n) {
+    Excursion e;
+    e.slide = slide[n];
+    e.stick = stick[n];
+    e.drift = moved[n];
+    e.count = number[n];
+    tally.add(e);
+    sum += moved[n];
+    time += slide[n] + stick[n];
+    excursions += number[n];
+  }
+  const double m = sum / time;
+  double square = 0, mean_square = 0;
+  std::vector<double> scaled;
+  for (std::size_t n = 0; n < moved.size(); ++n) {
+    const double t = slide[n] + stick[n], d = moved[n] - m * t;
+    square += d * d;
+    mean_square += d * d / 5;
+  }
+  CHECK(tally.mean_velocity().value == Approx(m).epsilon(1e-13));
+  CHECK(tally.mean(Duration::stick).value == Approx(5.5 / excursions).epsilon(1e-13));
+  CHECK(tally.mean(Duration::excursion).value == Approx(time / excursions).epsilon(1e-13));
+  CHECK(tally.spectrum_at_zero().value == Approx(square / time).epsilon(1e-12));
+  // The delta method for E[V]: the residuals D - m T over the mean duration.
+  const double sigma = std::sqrt(mean_square * 5 / 4 / 5) / (time / 5);
+  check_estimate(tally.mean_velocity(), m, sigma);
+  Tally again(wanted, -2);
+  again.unpack(tally.pack());
+  CHECK(again.spectrum_at_zero().low == tally.spectrum_at_zero().low);
 }

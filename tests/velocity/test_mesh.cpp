@@ -89,3 +89,18 @@ TEST_CASE("tail velocity: the white-noise bound on the density has fallen to the
   CHECK(velocity::tail_velocity(process(0.5, 1, 0.25, {0, 0}), 1e-10) ==
         Approx((std::log(1e10) + 5) / 0.5));
 }
+
+// In white noise log-density is (g - mu_d) v + int b: the tail starts from its peak.
+TEST_CASE("mesh: a bias lengthens the axis, and beyond mu_d moves the peak") {
+  auto p = process(0.5, 1, 0.25, {1, 0});
+  const double drop = std::log(1e12) + 5;
+  for (double bias : {0.2, 0.5, 2.0, -2.0}) {
+    p.bias = bias;
+    const double lead = std::max(std::abs(bias) - 0.5, 0.0), slope = 0.5 - std::abs(bias);
+    const double end = velocity::tail_velocity(p, 1e-12);
+    CHECK(-slope * end - end * end / 2 == Approx(lead * lead / 2 - drop).epsilon(1e-4));
+  }
+  p.drag = {0, 0};
+  p.bias = 0.3;
+  CHECK(velocity::tail_velocity(p, 1e-12) == Approx(drop / 0.2));
+}

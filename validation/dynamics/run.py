@@ -15,6 +15,7 @@ import sys
 import collocation
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import known
 from harness import ROOT, Program, Refused, Report, difference, last_place, parser, worse
 
 
@@ -47,11 +48,9 @@ def direct(program, **scene):
 
 def known_spectrum(programs, report, variance):
     """S_v at four frequencies by both solvers, digits of another code."""
-    known = {1 / 2: ("1.05184088", "1.03401702", "0.310095661", "1.85013e-4"),
-             1 / 4: ("1.08314710", "1.06555462", "0.330747341", "1.91001e-4")}
     print("S_v at omega = 0, 0.1, 1, 10; mu_d = 1/4, mu_s = tau = 1")
     worst = 0.0
-    for delta, digits in known.items():
+    for delta, digits in known.S_V.items():
         scene = {"mu_d": 0.25, "delta": delta, "omega": "0,0.1,1,10", "accuracy": 1e-9}
         by = {"krylov": variance.spectrum(programs["real"], **scene),
               "direct": direct(programs["complex"], **scene)}
@@ -70,23 +69,23 @@ def collocation_spectrum(programs, report, variance, quick):
     high = {30: "1.91750941314e-6", 50: "2.4895403e-7"}
     print("\nS_v at delta = tau = 1, mu_d = 1/4\n  omega        collocation  "
           f"{'krylov':>20}{'direct':>20}")
-    for name, known in (("omega <= 10", low),) if quick else (("omega <= 10", low),
-                                                               ("omega = 30, 50", high)):
-        scene = {"mu_d": 0.25, "delta": 1, "omega": ",".join(map(str, known)), "accuracy": 1e-9}
+    for name, digits in (("omega <= 10", low),) if quick else (("omega <= 10", low),
+                                                                ("omega = 30, 50", high)):
+        scene = {"mu_d": 0.25, "delta": 1, "omega": ",".join(map(str, digits)), "accuracy": 1e-9}
         by = {"krylov": variance.spectrum(programs["real"], **scene),
               "direct": direct(programs["complex"], **scene)}
         values = {solver: found["results"]["S_v"]["value"] for solver, found in by.items()}
-        for row in zip(known, known.values(), *values.values()):
+        for row in zip(digits, digits.values(), *values.values()):
             print("  {:<5g}  {:>17}  {:20.14g}{:20.14g}".format(*row))
         for solver in by:
             report.claim(f"{solver} against collocation, {name}, relative", worse(*(
-                difference(v, float(d)) for v, d in zip(values[solver], known.values()))), 1e-7)
+                difference(v, float(d)) for v, d in zip(values[solver], digits.values()))), 1e-7)
     if not quick:
-        known = low | high
-        anew = collocation.spectrum(1, 0.25, known, degree=100)
+        digits = low | high
+        anew = collocation.spectrum(1, 0.25, digits, degree=100)
         report.claim("the collocation against its recorded digits, in units of the last",
                      worse(*(abs(v - float(d)) / last_place(d)
-                             for v, d in zip(anew, known.values()))), 0.6)
+                             for v, d in zip(anew, digits.values()))), 0.6)
 
 
 def last_seconds(found):
@@ -170,8 +169,9 @@ def slowest_fall(sequences):
 
 def white_noise(programs, report, variance, quick):
     """tau -> 0 at mu_d = mu_s = 1, with and without drag."""
-    limits = {"none": ({w: white_noise_spectrum(w, 1) for w in (0, 0.5, 1, 3)}, 1.35446038),
-              "linear": ({0: 0.466391682733}, 0.247854704305)}
+    limits = {"none": ({w: white_noise_spectrum(w, 1) for w in (0, 0.5, 1, 3)},
+                       known.T_CORR["none"]),
+              "linear": ({0: 0.466391682733}, known.T_CORR["linear"])}
     deltas = (1,) if quick else (1 / 2, 1 / 4)
     print("\nTowards white noise: mu_d = mu_s = 1\n  drag    delta  tau    t_corr    "
           + "".join(f"     S_v({w:g})" for w in limits["none"][0]))
@@ -205,8 +205,7 @@ def laplace(programs, report):
     """F_slide and F_stick at lambda = 1, delta = tau = mu_s = 1."""
     print("\nLaplace transforms of durations at lambda = 1; delta = tau = mu_s = 1")
     worst, rounded = 0.0, 0.0
-    for mu_d, digits in ((1, ("0.301282642717", "0.179691207960")),
-                         (1 / 4, ("0.124123808609", "0.221868272518"))):
+    for mu_d, digits in known.F_1.items():
         found = programs["real"].run(quantities="laplace", delta=1, mu_d=mu_d, accuracy=1e-11,
                                      **{"lambda": 1})["results"]
         values = [found[key]["value"][0] for key in ("F_slide", "F_stick")]
@@ -223,18 +222,12 @@ def laplace(programs, report):
 def sticking_density(programs, report, quick):
     """f_stick(0+) next to Table 1 of the paper."""
     deltas = (1 / 8,) if quick else (1 / 8, 1 / 16, 1 / 32)
-    known = {0.25: ("5.32153", "10.83774", "21.83499"), 0.5: ("2.19755", "4.25902", "8.36837"),
-             0.75: ("0.68153", "1.24353", "2.36272"), 1: ("0.132599", "0.185010", "0.260757")}
-    paper = {0.25: ("5.32/6.73", "10.83/10.51", "21.81/20.94"),
-             0.5: ("2.20/2.78", "4.26/4.10", "8.36/7.98"),
-             0.75: ("0.68/0.89", "1.24/1.17", "2.36/2.27"),
-             1: ("0.17/0.18", "0.41/0.76", "1.12/9.20")}
     print("\nf_stick(0+); in brackets Table 1 of the paper, Kolmogorov/Monte Carlo\n"
           "  mu_d " + "".join(f"  delta = 1/{1 / d:.0f}".ljust(34) for d in deltas).rstrip())
     worst, column = 0.0, 0.0
-    for mu_d, row in known.items():
+    for mu_d, row in known.F_STICK_0.items():
         cells = f"  {mu_d:<5g}"
-        for delta, digits, printed in zip(deltas, row, paper[mu_d]):
+        for delta, digits, printed in zip(deltas, row, known.TABLE_1[mu_d]):
             value = programs["real"].run(quantities="entry_law", mu_d=mu_d, delta=delta,
                                          accuracy=1e-7)["results"]["f_stick_0"]["value"]
             cells += f"  {value:<14.9g} ({printed})".ljust(34)

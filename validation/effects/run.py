@@ -13,8 +13,8 @@ import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from entry import Entry, deviation, significant
-from harness import difference, worse
+from entry import Entry, deviation
+from harness import difference, significant, worse
 
 SCENE = {"mu_s": 1, "mu_d": 0.7, "delta": 0.25}
 BIASES = (0.1, 0.5, 1.5)  # the last beyond mu_s

@@ -8,14 +8,13 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "plot"))
-from entry import Entry, deviation, significant
-from harness import difference, worse
+from entry import Entry, deviation
+from harness import difference, significant, worse
+from known import F_1
 from results import COLOURS, STYLES, plt
 
 MU_D = (0.25, 0.5, 1)
 LAMBDA = "0.01:100:25:log"
-# F_slide(1), F_stick(1) by Chebyshev collocation (validation/dynamics).
-KNOWN = {1: (0.301282642717, 0.179691207960), 0.25: (0.124123808609, 0.221868272518)}
 
 
 def draw(entry, found):
@@ -44,13 +43,13 @@ def main():
                                  excursions=20000 if entry.quick else 1000000)["results"])
     draw(entry, found)
     rows, away, scores = [], [], []
-    for mu_d, digits in KNOWN.items():
+    for mu_d, digits in F_1.items():
         values = entry.run(quantities="laplace", mu_d=mu_d, delta=1, accuracy=1e-11,
                            **{"lambda": 1})["results"]
         for key, digit in zip(("F_slide", "F_stick"), digits):
             value = values[key]["value"][0]
-            rows.append((f"{mu_d:g}", key, f"{value:.14f}", f"{digit:.12f}"))
-            away.append(difference(value, digit))
+            rows.append((f"{mu_d:g}", key, f"{value:.14f}", digit))
+            away.append(difference(value, float(digit)))
     entry.table("At lambda = 1", ("mu_d", "quantity", "value", "collocation"), rows)
     entry.claim("F_slide(1), F_stick(1) against collocation, relative", worse(*away), 1e-11)
     for known, simulated in found.values():

@@ -20,29 +20,20 @@ import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from harness import Program, Report, difference, last_place, parser, worse
+from harness import Program, Report, difference, last_place, parser, significant, worse
+from known import P_X, SIMULATED
 
 QUANTITIES = ("P_stick", "E_V2", "P_X_le_mu_s")
 DELTAS = tuple(2.0**-n for n in range(1, 6))
 FRICTIONS = (1 / 4, 1 / 2, 3 / 4, 1)
-NORMAL = statistics.NormalDist()
-WIDTH = NORMAL.inv_cdf(0.975)  # of a 95 % interval, in standard deviations to each side
-
-# Printed beside the lines "Monte Carlo" of the figure of convergence in p, mu_d = 1/4.
-SIMULATED = {"P_stick": ("0.2898", "0.1972", "0.1565", "0.1380", "0.1302"),
-             "E_V2": ("0.288", "0.301", "0.306", "0.309", "0.3088"),
-             "P_X_le_mu_s": ("0.789", "0.739", "0.711", "0.698")}
-# From the left kernel of the noise's generator, in the figure itself; any mu_d.
-KERNEL = ("0.789886474609376", "0.739564523423343", "0.712010713468334", "0.697578849841333",
-          "0.690192311713429")
+WIDTH = statistics.NormalDist().inv_cdf(0.975)  # half a 95 % interval, in standard deviations
 
 Row = collections.namedtuple("Row", "quantity mu_d delta value low high exact paper")
 
 
 def printed(quantity, mu_d, delta):
     """What the paper prints as simulated, or nothing."""
-    digits = dict(zip(DELTAS, SIMULATED[quantity]))
-    return digits.get(delta, "") if mu_d == 1 / 4 else ""
+    return SIMULATED[quantity].get(delta, "") if mu_d == 1 / 4 else ""
 
 
 def deviations(row):
@@ -105,14 +96,13 @@ def claim_figure(report, rows):
     for key in QUANTITIES:
         claim_coverage(report, f"{key}: intervals of the figure that hold the deterministic value",
                        [row.low <= row.exact <= row.high for row in rows if row.quantity == key])
-    allowed = NORMAL.inv_cdf(1 - 1e-3 / (2 * len(rows)))
+    allowed = significant(len(rows))
     report.verdict(all(abs(deviations(row)) < allowed for row in rows),
                    f"no disagreement among {len(rows)} values, family-wise level 1e-3",
                    f"largest |z| {max(abs(deviations(row)) for row in rows):.2f}, "
                    f"allowed {allowed:.2f}")
-    kernel = dict(zip(DELTAS, KERNEL))
     report.claim("P_X_le_mu_s, deterministic, against the paper's left kernel, relative",
-                 worse(*(difference(row.exact, float(kernel[row.delta]))
+                 worse(*(difference(row.exact, float(P_X[row.delta]))
                          for row in rows if row.quantity == "P_X_le_mu_s")), 1e-13)
 
 

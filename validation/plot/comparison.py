@@ -8,7 +8,7 @@ standard deviations of the difference; each array has a panel of its own, with t
 
 import numpy
 
-from results import COLOURS, File, arguments_of, plt
+from results import COLOURS, File, arguments_of, one_file, plt
 
 OURS, REFERENCE = COLOURS[:2]
 WIDTH = 1.96  # of a 95 % interval, in standard deviations to each side
@@ -116,9 +116,7 @@ def draw(file, picture):
 
 def main():
     arguments = arguments_of(__doc__)
-    if len(arguments.files) != 1:
-        raise SystemExit("one file, please: it holds one comparison")
-    draw(File(arguments.files[0]), arguments.picture)
+    draw(File(one_file(arguments, "it holds one comparison")), arguments.picture)
 
 
 if __name__ == "__main__":

@@ -56,8 +56,10 @@ def draw(law, picture):
     by_x.set(xlabel="forcing $x$  [force]", ylabel="$P(X = x)$")
     by_x.legend(loc="upper left", frameon=False)
     mu_s, mu_d, tau, delta = (law.number(name) for name in ("mu_s", "mu_d", "tau", "delta"))
+    bias = law.number("bias")
+    pushed = f", bias {bias:g}" if bias else ""
     figure.suptitle(rf"$\mu_s$ = {mu_s:g}, $\mu_d$ = {mu_d:g}, $\tau$ = {tau:g}, "
-                    rf"$\delta$ = {power_of_two(delta)}, $b(v) = {law.drag()}$: "
+                    rf"$\delta$ = {power_of_two(delta)}, $b(v) = {law.drag()}${pushed}: "
                     rf"$P_{{stick}}$ = {field['atom'].sum():.4f}")
     figure.savefig(picture, dpi=160)
 

@@ -130,6 +130,13 @@ def files(arguments, scenes):
         return [File(name) for name in names]
 
 
+def one_file(arguments, reason):
+    """The name of the only file; a picture of several makes no sense for that reason."""
+    if len(arguments.files) != 1:
+        sys.exit(f"one file, please: {reason}")
+    return arguments.files[0]
+
+
 def arguments_of(doc, scenes=False):
     """FILE.h5... PICTURE.png, and where the script has scenes of its own --run and --keep."""
     parser = argparse.ArgumentParser(description=doc, usage=argparse.SUPPRESS,

@@ -13,7 +13,7 @@ import pathlib
 import matplotlib
 import numpy
 
-from results import COLOURS, File, arguments_of, plt, power_of_two
+from results import COLOURS, File, arguments_of, one_file, plt, power_of_two
 
 SLIDE, STICK = COLOURS[:2]
 FORCING = COLOURS[4]
@@ -119,9 +119,7 @@ def draw(path, picture):
 
 def main():
     arguments = arguments_of(__doc__)
-    if len(arguments.files) != 1:
-        raise SystemExit("one file, please: one picture holds one path")
-    draw(Path(arguments.files[0]), arguments.picture)
+    draw(Path(one_file(arguments, "one picture holds one path")), arguments.picture)
 
 
 if __name__ == "__main__":

@@ -8,11 +8,9 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from entry import Entry, deviation, significant
-from harness import last_place, worse
-
-KNOWN = {1 / 2: ("1.05184088", "1.03401702", "0.310095661", "1.85013e-4"),
-         1 / 4: ("1.08314710", "1.06555462", "0.330747341", "1.91001e-4")}
+from entry import Entry, deviation
+from harness import last_place, significant, worse
+from known import S_V
 
 
 def main():
@@ -31,7 +29,7 @@ def main():
         file.unlink()
 
     worst, rows = 0.0, []
-    for delta, digits in KNOWN.items():
+    for delta, digits in S_V.items():
         found = entry.run(quantities="spectrum", mu_d=0.25, delta=delta, omega="0,0.1,1,10",
                           accuracy=1e-8)["results"]["S_v"]["value"]
         worst = worse(worst, *(abs(v - float(d)) / last_place(d) for v, d in zip(found, digits)))

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "stickslip/io/hdf5_file.hpp"
 #include "stickslip/io/report.hpp"
@@ -32,6 +33,13 @@ using Json = nlohmann::ordered_json;
 /// A key of a result as the name of a group or dataset, where a slash would make a group of its
 /// own.
 [[nodiscard]] std::string hdf5_name(std::string key);
+/// get(row) for each row.
+template <class Row, class Get>
+[[nodiscard]] std::vector<double> column(const std::vector<Row>& rows, Get get) {
+  std::vector<double> values;
+  for (const Row& row : rows) values.push_back(get(row));
+  return values;
+}
 /// The group /record: provenance, options, seconds.
 void write_record(Hdf5File& file, MPI_Comm comm, const options::Request& request,
                   const RunTimes& times);

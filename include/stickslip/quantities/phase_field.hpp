@@ -1,5 +1,5 @@
 #pragma once
-/// A function on the whole (x, v) grid, made from its folded half.
+/// A function on the whole (x, v) grid.
 
 #include <vector>
 
@@ -11,13 +11,13 @@ namespace stickslip::quantities {
 /// levels are owned by ranks.
 class PhaseField {
  public:
-  /// All zero. `states` must be folded.
+  /// All zero.
   PhaseField(const model::Process& process, const velocity::Axis& axis,
              const operators::StateSpace& states);
 
-  /// Adds to (x_level, v_node) and, times `sign`, to its mirror image (-x_level, -v_node). A level
-  /// of this rank.
-  void add(int level, int node, double value, double sign);
+  /// Adds to the node of a half, levels counted along it: (x_level, v_node) of the upper one,
+  /// (-x_level, -v_node) of the lower one. A level of this rank.
+  void add(operators::Half half, int level, int node, double value);
 
   [[nodiscard]] const std::vector<double>& x() const { return x_; }
   [[nodiscard]] const std::vector<double>& v() const { return v_; }

@@ -26,6 +26,8 @@ class Comoments {
   /// Variance of the mean of sum_n weight_n sample_n; infinite for fewer than two samples.
   [[nodiscard]] double variance_of_mean(std::span<const double> weight) const;
 
+  /// How many numbers pack() appends.
+  [[nodiscard]] std::size_t packed_size() const { return 1 + mean_.size() + product_.size(); }
   /// Appends all to `numbers`; unpack takes it from `at` on and moves it.
   void pack(std::vector<double>& numbers) const;
   void unpack(std::span<const double>& numbers);

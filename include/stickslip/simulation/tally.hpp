@@ -60,6 +60,7 @@ class Tally {
   /// All numbers in a row, and back. `unpack` expects a tally of the same questions, and throws
   /// std::invalid_argument if the size is another.
   [[nodiscard]] std::vector<double> pack() const;
+  [[nodiscard]] std::size_t packed_size() const;
   void unpack(std::span<const double> numbers);
 
  private:

@@ -1,0 +1,9 @@
+#pragma once
+/// Numbers of the normal law.
+
+namespace stickslip {
+
+/// Half the width of a two-sided 95 % interval in standard deviations, printed as 1.96.
+inline constexpr double kNormalQuantile = 1.959963984540054;
+
+}  // namespace stickslip
