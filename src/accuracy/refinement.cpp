@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "stickslip/accuracy/ladder.hpp"
+#include "stickslip/accuracy/laws.hpp"
+#include "stickslip/operators/laws.hpp"
 #include "stickslip/petsc/memory.hpp"
 #include "stickslip/quantities/sensitivity.hpp"
 #include "stickslip/support/errors.hpp"
@@ -145,6 +147,7 @@ class Refiner {
     outcome_.reached = step.estimate <= request_.accuracy;
     if (outcome_.reached) {
       check_cut();
+      check_laws();
       return true;
     }
     // What a finer discretisation still improves is no limit yet.
@@ -184,6 +187,15 @@ class Refiner {
     outcome_.shortfall = fmt::format(
         "-v_max = {:g} holds back {:.1e} of the sliding time; leave it out, or take it larger",
         *request_.scene.v_max, held / sliding);
+  }
+
+  // Errors that are too small betray themselves where results break a law.
+  void check_laws() {
+    const std::string broken = broken_law(outcome_.last.results);
+    if (broken.empty()) return;
+    const int levels = outcome_.steps.back().resolution.levels;
+    outcome_.reached = false;
+    outcome_.shortfall = broken + operators::please_report(request_.scene.process(levels));
   }
 
   // A first-order scheme tells early how many points it would take.

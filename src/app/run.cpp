@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <new>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -19,6 +22,7 @@
 #include "stickslip/options/request.hpp"
 #include "stickslip/options/table.hpp"
 #include "stickslip/petsc/blas.hpp"
+#include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/atomic_file.hpp"
 #include "stickslip/support/errors.hpp"
@@ -36,6 +40,11 @@ double seconds_since(Clock::time_point start) {
 void say(const std::string& text) {
   std::fputs((text + "\n").c_str(), stderr);
   std::fflush(stderr);
+}
+
+void print(const std::string& text) {
+  const bool written = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+  if (!written) throw std::runtime_error("standard output cannot be written");
 }
 
 /// Texts that need neither PETSc nor a scene; empty when none is asked for.
@@ -107,8 +116,7 @@ int conduct_study(const options::Request& request, Clock::time_point start, doub
     write_text(request.summary, io::study_summary(comm, request, study, times));
   }
   if (!request.study_csv.empty()) write_text(request.study_csv, io::study_csv(study));
-  std::fputs(io::study_table(request, study, times).c_str(), stdout);
-  std::fflush(stdout);
+  print(io::study_table(request, study, times));
   return 0;
 }
 
@@ -119,8 +127,7 @@ int tell_plan(const options::Request& request) {
   if (!request.summary.empty()) {
     write_text(request.summary, io::plan_summary(comm, request, prediction));
   }
-  std::fputs(io::plan_table(request, prediction).c_str(), stdout);
-  std::fflush(stdout);
+  print(io::plan_table(request, prediction));
   return 0;
 }
 
@@ -148,8 +155,7 @@ int conduct_sweep(const options::Request& request, Clock::time_point start, doub
     if (!request.sweep_csv.empty()) {
       write_text(request.sweep_csv, sweeps::sweep_csv(request, sweep));
     }
-    std::fputs(sweeps::sweep_table(request, sweep, times).c_str(), stdout);
-    std::fflush(stdout);
+    print(sweeps::sweep_table(request, sweep, times));
     if (status != 0) say("stickslip: some points fell short; the table says which, and why");
   }
   MPI_Bcast(&status, 1, MPI_INT, 0, comm);
@@ -170,8 +176,7 @@ int compute(const options::Request& request, Clock::time_point start, double sta
     if (!request.trajectory.empty() && outcome.path) {
       write_text(request.trajectory, io::trajectory_csv(*outcome.path));
     }
-    std::fputs(io::table(request, outcome, times).c_str(), stdout);
-    std::fflush(stdout);
+    print(io::table(request, outcome, times));
   }
   return status_of(outcome);
 }
@@ -191,15 +196,23 @@ options::Request agreed_request(const std::vector<std::string>& words) {
   } catch (const BadInput& bad) {
     problem = bad.what();
   }
-  const int ranks = petsc::ranks(MPI_COMM_WORLD);
-  int first = problem.empty() ? ranks : petsc::rank(MPI_COMM_WORLD);
-  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
-  if (first == ranks) return request;
-  auto size = static_cast<int>(problem.size());
-  MPI_Bcast(&size, 1, MPI_INT, first, MPI_COMM_WORLD);
-  problem.resize(static_cast<std::size_t>(size));
-  MPI_Bcast(problem.data(), size, MPI_CHAR, first, MPI_COMM_WORLD);
-  throw BadInput(problem);
+  problem = petsc::first_text(MPI_COMM_WORLD, problem);
+  if (!problem.empty()) throw BadInput(problem);
+  return request;
+}
+
+NoMemory out_of_memory() {
+  return NoMemory(
+      "memory ran out; take a larger -delta, a looser -accuracy or more ranks, or raise the limit "
+      "(ulimit -v)");
+}
+
+// Without the ends of MPI and HDF5, which would wait for other ranks, or write once more to a disk
+// that is full.
+[[noreturn]] void end_at_once(int status) {
+  std::fflush(nullptr);
+  if (petsc::under_mpiexec()) MPI_Abort(MPI_COMM_WORLD, status);
+  std::_Exit(status);
 }
 
 /// Runs under a started PETSc. Bad input is found on all ranks alike and ends quietly; any other
@@ -219,11 +232,18 @@ int run_session(const std::vector<std::string>& words, double start_up) {
     return tell(failure, rank == 0);
   } catch (const Failure& failure) {
     status = tell(failure, true);
+  } catch (const std::bad_alloc&) {
+    status = tell(out_of_memory(), true);
+  } catch (const petsc::PetscFailure& failure) {
+    if (failure.code() == PETSC_ERR_MEM) {
+      status = tell(out_of_memory(), true);
+    } else {
+      say(fmt::format("stickslip: {}", failure.what()));
+    }
   } catch (const std::exception& failure) {
     say(fmt::format("stickslip: {}", failure.what()));
   }
-  if (petsc::ranks(MPI_COMM_WORLD) > 1) MPI_Abort(MPI_COMM_WORLD, status);
-  return status;
+  end_at_once(status);
 }
 
 }  // namespace
@@ -234,8 +254,8 @@ int run(int argc, char** argv) {
   options::shield_formulas(words);
   const std::string text = text_asked_for(words);
   if (!text.empty()) {
-    std::fputs(text.c_str(), stdout);
-    return 0;
+    const bool written = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+    return static_cast<int>(written ? ExitStatus::done : ExitStatus::other);
   }
   try {
     options::check_options_files(words);

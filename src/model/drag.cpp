@@ -104,6 +104,7 @@ double Drag::terminal_velocity(double force) const {
   double v = kInfinity;
   if (linear > 0) v = std::fmin(v, force / linear);
   if (cubic > 0) v = std::fmin(v, std::cbrt(force / cubic));
+  if (std::isinf(v)) return v;  // coefficients too small to balance anything
   if (linear > 0 && cubic > 0) {
     while (net(v) > 0) v = std::nextafter(v, kInfinity);
     std::uintmax_t iterations = 200;

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <numeric>
 
+#include "stickslip/operators/laws.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
 
@@ -272,6 +273,11 @@ KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const model::Process& proc
   }
   rest_coupling_ = std::move(rows.rest_coupling);
   exit_coupling_ = std::move(rows.exit_coupling);
+  if (!derivative && symmetry != Symmetry::odd && PetscRealPart(lambda) >= 0) {
+    const bool nothing_killed = rest == Rest::kept && PetscAbsScalar(lambda) == 0;
+    require_generator(comm, {states_.local_begin(), rows.row_start, rows.columns, rows.values},
+                      {axis.keeps_origin(), nothing_killed}, process);
+  }
 
   const PetscInt local = states_.local_size(), global = states_.global_size();
   check(MatCreate(comm, matrix_.out()));

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -12,6 +15,7 @@
 
 #include "stickslip/options/settings.hpp"
 #include "stickslip/support/hdf5_id.hpp"
+#include "stickslip/support/isolated.hpp"
 #include "stickslip/support/statistics.hpp"
 
 namespace stickslip::options {
@@ -34,8 +38,24 @@ void require_equal_sizes(const std::string& key, const Values& v) {
   }
 }
 
+bool finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(),
+                     [](double value) { return std::isfinite(value); });
+}
+
+void require_numbers(const std::string& key, const Values& v) {
+  bool sound = true;
+  for (const auto* values : {&v.argument, &v.value, &v.error, &v.low, &v.high}) {
+    sound = sound && finite(*values);
+  }
+  for (double error : v.error) sound = sound && error >= 0;
+  for (std::size_t n = 0; n < v.low.size(); ++n) sound = sound && v.low[n] <= v.high[n];
+  if (!sound) throw std::invalid_argument(key + " has values or errors that are no numbers");
+}
+
 void append(const std::string& key, const Values& v, std::vector<Reference>& all) {
   require_equal_sizes(key, v);
+  require_numbers(key, v);
   const bool simulated = !v.low.empty();
   if (simulated && !v.scalar && key.starts_with("f_")) return;
   for (std::size_t n = 0; n < v.value.size(); ++n) {
@@ -131,7 +151,9 @@ Values values_of(hid_t group) {
 std::vector<Reference> read_hdf5(const std::string& file) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // failures are told by exceptions
   const Hdf5Id id(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (!id.valid()) throw std::invalid_argument("is no readable HDF5 file");
+  if (!id.valid()) {
+    throw std::invalid_argument("is no readable HDF5 file, or another program is writing it");
+  }
   const Hdf5Id results(H5Gopen2(id, "/results", H5P_DEFAULT), H5Gclose);
   if (!results.valid()) throw std::invalid_argument("has no group /results");
   std::vector<Reference> all;
@@ -141,6 +163,43 @@ std::vector<Reference> read_hdf5(const std::string& file) {
     append(key, values_of(group), all);
   }
   return all;
+}
+
+std::string text_of(const std::vector<Reference>& references) {
+  Json json = Json::array();
+  for (const auto& r : references) {
+    const Json argument = r.argument ? Json(*r.argument) : Json();
+    json.push_back({r.quantity, argument, r.value, r.low, r.high});
+  }
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::vector<Reference> references_of(const std::string& text) {
+  std::vector<Reference> all;
+  for (const auto& r : Json::parse(text)) {
+    const auto argument = r[1].is_null() ? std::nullopt : std::optional(r[1].get<double>());
+    all.push_back({r[0].get<std::string>(), argument, r[2].get<double>(), r[3].get<double>(),
+                   r[4].get<double>()});
+  }
+  return all;
+}
+
+// The HDF5 library can crash, or never end, on damaged files; so another process reads them. A
+// message has a ! before it.
+std::vector<Reference> read_hdf5_apart(const std::string& file) {
+  constexpr unsigned seconds = 60;
+  const auto text = isolated(
+      [&]() -> std::string {
+        try {
+          return text_of(read_hdf5(file));
+        } catch (const std::exception& problem) {
+          return std::string("!") + problem.what();
+        }
+      },
+      seconds);
+  if (!text) throw std::invalid_argument("is so damaged that the HDF5 library cannot read it");
+  if (text->starts_with('!')) throw std::invalid_argument(text->substr(1));
+  return references_of(*text);
 }
 
 // A number, or nothing for an empty cell.
@@ -186,10 +245,13 @@ std::vector<Reference> read_csv(const std::string& file) {
 }  // namespace
 
 std::vector<Reference> read_references(const std::string& file) {
-  if (!std::ifstream(file).good()) throw std::invalid_argument("cannot be read");
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error) || !std::ifstream(file).good()) {
+    throw std::invalid_argument("cannot be read");
+  }
   std::vector<Reference> all;
   if (file.ends_with(".h5") || file.ends_with(".hdf5")) {
-    all = read_hdf5(file);
+    all = read_hdf5_apart(file);
   } else if (file.ends_with(".json")) {
     all = read_json(file);
   } else if (file.ends_with(".csv")) {

@@ -700,6 +700,59 @@ void check_unknown_options(Problems& problems) {
   petsc::check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
 }
 
+// What is wrong with the name of an options file, or with how it comes to be read; empty if all is
+// well. `above` are the files that led to it. It is read twice, here and by PETSc: a pipe would be
+// empty then.
+std::string unfit_file(const std::string& name, const std::vector<std::string>& above) {
+  std::error_code error;
+  if (std::find(above.begin(), above.end(), name) != above.end()) {
+    return "includes itself; take the inner -options_file out";
+  }
+  if (!std::filesystem::is_regular_file(name, error) && std::ifstream(name).good()) {
+    return "is no regular file; write the options to one";
+  }
+  if (std::ifstream(name).good()) return "";
+  return "cannot be read; check the name and that you may read it";
+}
+
+// The file that a line of an options file includes; nothing if it includes none.
+std::optional<std::string> included_file(std::string line) {
+  line.erase(std::min(line.find('#'), line.size()));
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return c == '\t' || c == '\r'; }, ' ');
+  std::vector<std::string> words = split(line, ' ');
+  std::erase(words, "");
+  if (words.empty() || words[0] != "-options_file") return std::nullopt;
+  if (words.size() == 1) return "";
+  std::erase(words[1], '"');
+  return words[1];
+}
+
+void check_line(const std::string& line, const std::string& place, Problems& problems) {
+  const auto first = line.find_first_not_of(" \t\r");
+  if (const auto better = better_formula(line); !better.empty()) {
+    problems.add(fmt::format("{}: the value looks like an option; put a blank before it: {}", place,
+                             better));
+  }
+  if (first == line.npos || line[first] == '#' || line[first] == '-') return;
+  problems.add(fmt::format("{}: \"{}\" does not start with -name; put a # before comments", place,
+                           line.substr(first, 40)));
+}
+
+void check_options_file(const std::string& name, std::vector<std::string> above,
+                        Problems& problems) {
+  const std::string unfit = unfit_file(name, above);
+  if (!unfit.empty()) return problems.add(fmt::format("-options_file {}: {}", name, unfit));
+  if (name.ends_with(".yml") || name.ends_with(".yaml")) return;  // PETSc's YAML reader
+  above.push_back(name);
+  std::ifstream file(name);
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    check_line(line, fmt::format("{}:{}", name, number), problems);
+    if (const auto inner = included_file(line)) check_options_file(*inner, above, problems);
+  }
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> solver_options() {
@@ -779,27 +832,7 @@ void check_options_files(const std::vector<std::string>& argv) {
       problems.add("-options_file: names no file; write -options_file scene.opts");
       break;
     }
-    const std::string& name = argv[n + 1];
-    std::ifstream file(name);
-    std::error_code error;
-    if (!file || std::filesystem::is_directory(name, error)) {
-      problems.add(fmt::format("-options_file {}: cannot be read; check the name and that you may "
-                               "read it",
-                               name));
-      continue;
-    }
-    if (name.ends_with(".yml") || name.ends_with(".yaml")) continue;  // PETSc's YAML reader
-    std::string line;
-    for (int number = 1; std::getline(file, line); ++number) {
-      const auto first = line.find_first_not_of(" \t\r");
-      if (const auto better = better_formula(line); !better.empty()) {
-        problems.add(fmt::format("{}:{}: the value looks like an option; put a blank before it: {}",
-                                 name, number, better));
-      }
-      if (first == line.npos || line[first] == '#' || line[first] == '-') continue;
-      problems.add(fmt::format("{}:{}: \"{}\" does not start with -name; put a # before comments",
-                               name, number, line.substr(first, 40)));
-    }
+    check_options_file(argv[n + 1], {}, problems);
   }
   problems.raise();
 }

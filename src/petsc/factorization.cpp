@@ -4,7 +4,10 @@
 #include <petscsys.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <string>
+#include <utility>
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/support/errors.hpp"
@@ -13,6 +16,7 @@ namespace stickslip::petsc {
 namespace {
 
 constexpr double kBackwardErrorLimit = 1e-12;
+constexpr int kMostCorrections = 2;  // the second only where the first leaves too much
 // Of the largest component of a plain solution: smaller ones need not be right relative to their
 // own size. Where an element is thin or a transform has decayed they are tens of orders smaller,
 // and the factors mix their rows with others; what that does to a functional, the last correction
@@ -49,17 +53,73 @@ KspHandle configured_solver(Mat matrix, const std::string& prefix) {
   return ksp;
 }
 
-std::string describe_failure(KSP ksp) {
+Mat factor_of(KSP ksp) {
   PC pc = nullptr;
-  check(KSPGetPC(ksp, &pc));
-  if (!uses_mumps(ksp)) return "the factorisation failed";
   Mat factor = nullptr;
+  check(KSPGetPC(ksp, &pc));
   check(PCFactorGetMatrix(pc, &factor));
-  PetscInt info1 = 0, info2 = 0;
-  check(MatMumpsGetInfog(factor, 1, &info1));
-  check(MatMumpsGetInfog(factor, 2, &info2));
-  return fmt::format("MUMPS stopped with INFOG(1) = {}, INFOG(2) = {}", info1, info2);
+  return factor;
 }
+
+PetscInt infog(KSP ksp, PetscInt number) {
+  PetscInt value = 0;
+  check(MatMumpsGetInfog(factor_of(ksp), number, &value));
+  return value;
+}
+
+// Of the codes of MUMPS that occur in practice.
+std::string meaning_of(PetscInt info) {
+  switch (info) {
+  case -8:
+  case -9: return "its workspace was too small, also when it was enlarged (ICNTL(14))";
+  case -10: return "the matrix is singular";
+  case -13: return "the system gave it no more memory";
+  case -19: return "the workspace allowed by ICNTL(23) is too small; allow more, or leave it out";
+  case -90: return "it could not write its factors to disk (MUMPS_OOC_TMPDIR)";
+  default: return "see INFOG(1) in its users' guide";
+  }
+}
+
+std::string describe_failure(KSP ksp) {
+  if (!uses_mumps(ksp)) return "no factors, as the matrix may be singular";
+  const PetscInt info1 = infog(ksp, 1), info2 = infog(ksp, 2);
+  return fmt::format("MUMPS stopped with INFOG(1) = {}, INFOG(2) = {}: {}", info1, info2,
+                     meaning_of(info1));
+}
+
+// Pivots against the order that the analysis foresaw can need more workspace than it set aside.
+bool lacks_workspace(KSP ksp) {
+  PC pc = nullptr;
+  PCFailedReason reason = PC_NOERROR;
+  check(KSPGetPC(ksp, &pc));
+  check(PCGetFailedReason(pc, &reason));
+  if (reason == PC_NOERROR || !uses_mumps(ksp)) return false;
+  MatFactorType type = MAT_FACTOR_NONE;
+  check(MatGetFactorType(factor_of(ksp), &type));
+  const PetscInt info = infog(ksp, 1);
+  return type == MAT_FACTOR_LU && (info == -8 || info == -9);
+}
+
+/// A PETSc option for the life of the object; it had a value before, or none.
+class OptionFor {
+ public:
+  OptionFor(std::string name, const std::string& value) : name_(std::move(name)) {
+    check(PetscOptionsGetString(nullptr, nullptr, name_.c_str(), before_.data(), before_.size(),
+                                &given_));
+    check(PetscOptionsSetValue(nullptr, name_.c_str(), value.c_str()));
+  }
+  ~OptionFor() {
+    (void)(given_ == PETSC_TRUE ? PetscOptionsSetValue(nullptr, name_.c_str(), before_.data())
+                                : PetscOptionsClearValue(nullptr, name_.c_str()));
+  }
+  OptionFor(const OptionFor&) = delete;
+  OptionFor& operator=(const OptionFor&) = delete;
+
+ private:
+  std::string name_;
+  std::array<char, 64> before_{};
+  PetscBool given_ = PETSC_FALSE;
+};
 
 // MUMPS counts in millions, negative, what exceeds its integers.
 double entries_counted(PetscInt entries) {
@@ -116,21 +176,15 @@ void require_factored(KSP ksp, const std::string& prefix) {
   if (reason == PC_NOERROR) return;
   const std::string what = describe_failure(ksp);
   if (reason == PC_FACTOR_OUTMEMORY) {
-    throw NoMemory(what + ": the factors need more memory than there is; use a larger -delta, a "
+    throw NoMemory(what + "; the factors need more memory than there is; use a larger -delta, a "
                           "looser -accuracy or more ranks");
   }
-  throw NotReached(fmt::format("{}; the matrix of -{} may be singular", what, prefix));
+  throw NotReached(fmt::format("the solver -{} failed: {}", prefix, what));
 }
 
 void record_factors(KSP ksp, Ledger& ledger) {
   if (!uses_mumps(ksp)) return;
-  PC pc = nullptr;
-  check(KSPGetPC(ksp, &pc));
-  Mat factor = nullptr;
-  check(PCFactorGetMatrix(pc, &factor));
-  PetscInt entries = 0, megabytes = 0;
-  check(MatMumpsGetInfog(factor, 29, &entries));    // entries of the factors, all ranks
-  check(MatMumpsGetInfog(factor, 22, &megabytes));  // memory used, all ranks
+  const PetscInt entries = infog(ksp, 29), megabytes = infog(ksp, 22);  // of all ranks
   Ledger size;
   size.factor_entries = static_cast<std::int64_t>(entries_counted(entries));
   size.factor_megabytes = static_cast<double>(megabytes);
@@ -150,6 +204,18 @@ void Factorization::update() {
   factor();
 }
 
+// MUMPS adds ICNTL(14) per cent to the workspace that its analysis foresees. PETSc does not let it
+// go on after an error, so it begins anew.
+void Factorization::factor_with_more_workspace() {
+  constexpr PetscInt least = 100;
+  PetscInt percent = 0;
+  check(MatMumpsGetIcntl(factor_of(ksp_), 14, &percent));
+  const OptionFor more(fmt::format("-{}mat_mumps_icntl_14", prefix_),
+                       std::to_string(std::max(least, 2 * percent)));
+  ksp_ = configured_solver(matrix_, prefix_);
+  check(KSPSetUp(ksp_));
+}
+
 void Factorization::factor() {
   magnitude_ = magnitudes(matrix_);
   double total = 0;
@@ -157,6 +223,7 @@ void Factorization::factor() {
   {
     const PhaseTimer timer("factorisation", total);
     check(KSPSetUp(ksp_));
+    if (lacks_workspace(ksp_)) factor_with_more_workspace();
     require_factored(ksp_, prefix_);
   }
   const double symbolic = logged_seconds("MatLUFactorSym") - symbolic_before;
@@ -225,26 +292,32 @@ double Factorization::backward_error(Vec residual, Vec b, Vec x, bool transposed
 Solution Factorization::solve(Vec b, bool transposed) {
   const PhaseTimer timer("solve", ledger_.solve_seconds);
   Solution s;
-  VecHandle residual;
-  check(VecDuplicate(b, s.x.out()));
-  check(VecDuplicate(b, s.correction.out()));
-  check(VecDuplicate(b, residual.out()));
+  VecHandle residual, step;
+  for (VecHandle* vector : {&s.x, &s.correction, &residual, &step}) {
+    check(VecDuplicate(b, vector->out()));
+  }
+  check(VecSet(s.correction, 0));
   const auto compute_residual = [&] {
     check(transposed ? MatMultTranspose(matrix_, s.x, residual) : MatMult(matrix_, s.x, residual));
     check(VecAYPX(residual, -1, b));
   };
   apply(b, s.x, transposed);
-  compute_residual();
-  apply(residual, s.correction, transposed);
-  check(VecAXPY(s.x, 1, s.correction));
-  compute_residual();
-  s.backward_error = backward_error(residual, b, s.x, transposed);
   ++ledger_.solves;
-  ++ledger_.corrections;
+  bool sound = false;
+  for (int n = 0; n < kMostCorrections && !sound; ++n) {
+    compute_residual();
+    apply(residual, step, transposed);
+    check(VecAXPY(s.x, 1, step));
+    check(VecAXPY(s.correction, 1, step));
+    compute_residual();
+    s.backward_error = backward_error(residual, b, s.x, transposed);
+    sound = s.backward_error <= kBackwardErrorLimit;
+    ++ledger_.corrections;
+  }
   Ledger seen;
   seen.backward_error = s.backward_error;
   ledger_ += seen;
-  if (!(s.backward_error <= kBackwardErrorLimit)) {
+  if (!sound) {
     throw NotReached(fmt::format("the solver -{} left a backward error of {:.1e} (limit {:.0e})",
                                  prefix_, s.backward_error, kBackwardErrorLimit));
   }

@@ -4,19 +4,13 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <string>
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/memory.hpp"
 
 namespace stickslip::petsc {
 namespace {
-
-bool under_mpiexec() {
-  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "PMI_SIZE"}) {
-    if (std::getenv(name) != nullptr) return true;
-  }
-  return false;
-}
 
 void shorten_start_of_single_process() {
   if (under_mpiexec()) return;
@@ -29,6 +23,18 @@ void shorten_start_of_single_process() {
   setenv("OMPI_MCA_sharedfp", "^sm", keep_users_choice);  // needs that folder
 }
 
+// PETSc's own words, without the chain of its functions.
+[[noreturn]] void refuse_start(PetscErrorCode code) {
+  try {
+    check(code);
+  } catch (const PetscFailure& failure) {
+    const std::string text = failure.what();
+    throw PetscFailure(code, "PETSc cannot start with these options: " +
+                                 text.substr(0, text.find("\n  in ")));
+  }
+  throw PetscFailure(code, "PETSc cannot start");
+}
+
 }  // namespace
 
 Session::Session(int& argc, char**& argv) : arguments_(argv, argv + argc) {
@@ -38,15 +44,23 @@ Session::Session(int& argc, char**& argv) : arguments_(argv, argv + argc) {
   arguments_.push_back(nullptr);
   int count = argc + 1;
   char** values = arguments_.data();
-  const PetscErrorCode code = SlepcInitialize(&count, &values, nullptr, nullptr);
-  if (code != 0) throw PetscFailure(code, "PETSc could not start with these arguments");
   collect_error_messages();
+  const PetscErrorCode code = SlepcInitialize(&count, &values, nullptr, nullptr);
+  if (code != 0) refuse_start(code);
   check(PetscLogDefaultBegin());  // the ledger reads event times
   (void)ranks_on_node();          // all ranks are here
   std::signal(SIGPIPE, SIG_DFL);  // a closed pipe (| head) is no crash
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes is told by the write that fails
 }
 
 Session::~Session() { (void)SlepcFinalize(); }
+
+bool under_mpiexec() {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "PMI_SIZE"}) {
+    if (std::getenv(name) != nullptr) return true;
+  }
+  return false;
+}
 
 int rank(MPI_Comm comm) {
   int value = 0;
@@ -58,6 +72,18 @@ int ranks(MPI_Comm comm) {
   int value = 1;
   MPI_Comm_size(comm, &value);
   return value;
+}
+
+std::string first_text(MPI_Comm comm, std::string text) {
+  const int all = ranks(comm);
+  int first = text.empty() ? all : rank(comm);
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm);
+  if (first == all) return "";
+  auto size = static_cast<int>(text.size());
+  MPI_Bcast(&size, 1, MPI_INT, first, comm);
+  text.resize(static_cast<std::size_t>(size));
+  MPI_Bcast(text.data(), size, MPI_CHAR, first, comm);
+  return text;
 }
 
 }  // namespace stickslip::petsc

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace stickslip::quantities {
 namespace {
@@ -18,6 +19,8 @@ double relative_error(const Result& result) {
   const double size = largest(result.value);
   double relative = 0;
   for (std::size_t n = 0; n < result.value.size(); ++n) {
+    const bool number = !std::isnan(result.value[n]) && !std::isnan(result.error[n]);
+    if (!number) return std::numeric_limits<double>::infinity();
     if (result.error[n] == 0) continue;
     const double own = result.each_by_its_size ? std::abs(result.value[n]) : size;
     relative = std::max(relative, result.error[n] / own);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "stickslip/operators/laws.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
@@ -87,8 +88,10 @@ struct Occupation {
   double lost = 0, uncorrected_lost = 0;
 };
 
-Occupation occupation_from(operators::System& system, Half half) {
+Occupation occupation_from(const Systems& systems, operators::System& system, Half half) {
   petsc::Solution s = system.factors().solve_transposed(system.a().trace_at_exit(half));
+  const bool monotone = systems.axis().keeps_origin();
+  if (monotone) operators::require_occupation(s.x, systems.process());
   petsc::check(VecAYPX(s.correction, -1, s.x));
   Occupation o{std::move(s.x), std::move(s.correction)};
   o.lost = normalise(system.a(), o.nu);
@@ -126,9 +129,9 @@ StationaryLaw::StationaryLaw(Systems& systems)
       axis_(systems.shared_axis()),
       states_(systems.at(0, operators::symmetry_of(process_)).a().states()) {
   auto& system = systems.at(0, operators::symmetry_of(process_));
-  Occupation o = occupation_from(system, Half::upper);
+  Occupation o = occupation_from(systems, system, Half::upper);
   if (!process_.symmetric()) {
-    const Occupation lower = occupation_from(system, Half::lower);
+    const Occupation lower = occupation_from(systems, system, Half::lower);
     const Turns now = turns(systems, system.a(), o.nu, lower.nu);
     chance_of_falling_ = now.falling;
     mix(now, o.nu, lower.nu);

@@ -9,6 +9,7 @@
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/atomic_file.hpp"
 #include "stickslip/support/errors.hpp"
+#include "stickslip/support/seal.hpp"
 
 namespace stickslip::routes {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Names = std::vector<std::pair<std::string, std::string>>;
 
-constexpr const char* kFormat = "stickslip checkpoint 1";
+constexpr const char* kFormat = "stickslip checkpoint 2";
 
 std::string contents_on_all(MPI_Comm comm, const std::string& file) {
   std::string text;
@@ -37,8 +38,10 @@ std::string contents_on_all(MPI_Comm comm, const std::string& file) {
 
 Checkpoint parse(const std::string& file, const std::string& text) {
   Checkpoint checkpoint;
+  const auto object = unsealed(text.substr(0, text.find('\n')));
+  if (!object) refuse(file, "is no checkpoint of this program, or a damaged one");
   try {
-    const Json json = Json::parse(text);
+    const Json json = Json::parse(*object);
     if (json.at("format") != kFormat) refuse(file, "is no checkpoint of this program");
     for (const auto& [name, value] : json.at("run").items()) {
       checkpoint.run.emplace_back(name, value.get<std::string>());
@@ -77,7 +80,7 @@ void write_checkpoint(const std::string& file, const Checkpoint& checkpoint) {
   for (const auto& [name, value] : checkpoint.run) json["run"][name] = value;
   json["rounds"] = checkpoint.rounds;
   json["tally"] = checkpoint.tally;
-  write_text(file, json.dump() + "\n");
+  write_text(file, sealed(json.dump()) + "\n");
 }
 
 }  // namespace stickslip::routes

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
 
 namespace stickslip {
@@ -24,13 +25,26 @@ void flush_to_disk(const std::string& file) {
   if (status != 0) fail("cannot flush", file);
 }
 
+void remove_beginning_with(const std::filesystem::path& start) {
+  std::error_code error;
+  const auto folder = start.has_parent_path() ? start.parent_path() : ".";
+  const std::string name = start.filename();
+  for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end;) {
+    const std::filesystem::path file = at->path();
+    at.increment(error);
+    std::error_code kept;
+    if (file.filename().string().starts_with(name)) std::filesystem::remove(file, kept);
+  }
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(std::string target, long tag)
     : target_(std::move(target)), part_(fmt::format("{}.part{}", target_, tag)) {}
 
+// What writers put beside the part goes with it: MPI leaves a lock where a disk was full.
 AtomicFile::~AtomicFile() {
-  if (!committed_) (void)std::remove(part_.c_str());
+  if (!committed_) remove_beginning_with(part_);
 }
 
 void AtomicFile::commit() {

@@ -1,6 +1,10 @@
 #include "stickslip/sweeps/conduct.hpp"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <optional>
 #include <string>
@@ -10,6 +14,7 @@
 #include "stickslip/petsc/ledger.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
+#include "stickslip/support/seal.hpp"
 #include "stickslip/sweeps/record.hpp"
 
 namespace stickslip::sweeps {
@@ -18,7 +23,8 @@ namespace {
 using io::Json;
 using options::Request;
 
-constexpr int kTag = 7;  // of the only messages between single ranks
+constexpr int kTag = 7;           // of the only messages between single ranks
+constexpr double kPatience = 60;  // seconds between ranks that fail alike
 
 /// Ranks that share a point; those that are too few for a group have none.
 class Group {
@@ -42,19 +48,31 @@ class Group {
     if (ranks_ > 1) MPI_Bcast(&value, 1, MPI_LONG, 0, comm_);
     return value;
   }
+  /// Ends a point. A rank that fails where the others do not would wait for them, and they for it,
+  /// for ever: it throws after kPatience, which ends all ranks.
+  void end_alike(const Json& json) const {
+    if (ranks_ == 1) return;
+    const Run run = read_run(json);
+    const bool failed = run.status == Status::failed || run.status == Status::no_memory;
+    std::array<int, 2> extremes{failed ? 1 : 0, failed ? -1 : 0};
+    MPI_Request all = MPI_REQUEST_NULL;
+    MPI_Iallreduce(MPI_IN_PLACE, extremes.data(), 2, MPI_INT, MPI_MAX, comm_, &all);
+    const double start = petsc::wall_seconds();
+    bool alone = false;
+    for (int done = 0; done == 0 && !alone;) {
+      MPI_Test(&all, &done, MPI_STATUS_IGNORE);
+      if (done == 0 && failed) usleep(1000);
+      alone = done == 0 && failed && petsc::wall_seconds() - start > kPatience;
+    }
+    if (!alone && extremes[0] == -extremes[1]) return;
+    throw std::runtime_error(
+        fmt::format("point {}: one rank failed alone; {}", run.point, run.message));
+  }
 
  private:
   MPI_Comm comm_ = MPI_COMM_NULL;
   int ranks_;
 };
-
-std::string shared_text(MPI_Comm comm, std::string text) {
-  auto size = static_cast<long>(text.size());
-  MPI_Bcast(&size, 1, MPI_LONG, 0, comm);
-  text.resize(static_cast<std::size_t>(size));
-  MPI_Bcast(text.data(), static_cast<int>(size), MPI_CHAR, 0, comm);
-  return text;
-}
 
 // Everything that may change a number: options, and the program.
 Identity identity_of(MPI_Comm comm, const options::Sweep& sweep) {
@@ -69,8 +87,10 @@ Identity identity_of(MPI_Comm comm, const options::Sweep& sweep) {
 
 Run read_line(const std::string& file, const std::string& line, std::size_t count) {
   std::optional<Run> run;
+  const auto entry = unsealed(line);
+  if (!entry) refuse_record(file, "is damaged");
   try {
-    run = read_run(Json::parse(line));
+    run = read_run(Json::parse(*entry));
   } catch (const std::exception&) {
     refuse_record(file, "is damaged");
   }
@@ -104,7 +124,7 @@ class Worker {
         problem = bad.what();
       }
     }
-    problem = shared_text(comm_, problem);
+    problem = petsc::first_text(comm_, problem);
     if (!problem.empty()) throw BadInput(problem);
     MPI_Bcast(finished.data(), static_cast<int>(finished.size()), MPI_CHAR, 0, comm_);
     for (std::size_t point = 0; point < finished.size(); ++point) {
@@ -114,11 +134,12 @@ class Worker {
 
   void read_finished(std::vector<char>& finished) {
     const auto& file = request_.checkpoint;
-    for (const auto& line : open_record(file, identity_of(comm_, sweep_))) {
+    const auto take = [&](const std::string& line) {
       Run run = read_line(file, line, sweep_.size());
       finished[run.point] = run.status == Status::no_memory ? 0 : 1;
       if (finished[run.point] != 0) resumed_.push_back(std::move(run));
-    }
+    };
+    (void)open_record(file, identity_of(comm_, sweep_), take);
   }
 
   void compute() {
@@ -130,6 +151,7 @@ class Worker {
       if (n >= open_.size()) break;
       const std::size_t point = open_[n];
       const Json run = compute_run(group.comm(), sweep_.request(point), point);
+      group.end_alike(run);
       if (group.leads()) finish(run, done);
     }
     MPI_Barrier(comm_);  // the counters live until all are through
@@ -137,7 +159,7 @@ class Worker {
 
   void finish(const Json& run, SharedCounter& done) {
     lines_.push_back(run.dump());
-    if (!request_.checkpoint.empty()) append_to_record(request_.checkpoint, lines_.back());
+    if (!request_.checkpoint.empty()) append_to_record(request_.checkpoint, sealed(lines_.back()));
     const auto here = static_cast<std::size_t>(done.next()) + 1;
     if (!progress_) return;
     State state;

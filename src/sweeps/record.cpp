@@ -57,11 +57,16 @@ class LockedFile {
     if (ftruncate(descriptor_, static_cast<off_t>(size)) != 0) fail("cannot write");
   }
 
+  // Whole or not at all: what a full disk has taken of it is removed.
   void append(const std::string& text) const {
+    const off_t before = lseek(descriptor_, 0, SEEK_END);
+    errno = 0;
     const ssize_t written = write(descriptor_, text.data(), text.size());
-    if (written != static_cast<ssize_t>(text.size()) || fsync(descriptor_) != 0) {
-      fail("cannot write");
-    }
+    if (written == static_cast<ssize_t>(text.size()) && fsync(descriptor_) == 0) return;
+    const int reason = errno == 0 ? ENOSPC : errno;
+    const bool removed = before >= 0 && ftruncate(descriptor_, before) == 0;
+    errno = reason;
+    fail(removed ? "cannot write" : "cannot write, nor remove the last line of,");
   }
 
  private:
@@ -112,7 +117,8 @@ void refuse_record(const std::string& file, const std::string& why) {
   throw BadInput(fmt::format("-checkpoint = {}: {}; name another file, or remove it", file, why));
 }
 
-std::vector<std::string> open_record(const std::string& file, const Identity& identity) {
+std::vector<std::string> open_record(const std::string& file, const Identity& identity,
+                                     const Inspect& inspect) {
   const LockedFile record(file);
   const std::string text = record.read_all(), header = header_of(identity);
   if (header.starts_with(text)) {  // new, or killed before the first line was whole
@@ -122,9 +128,10 @@ std::vector<std::string> open_record(const std::string& file, const Identity& id
   }
   if (!text.starts_with(header)) refuse_other(file, text.substr(0, text.find('\n')), identity);
   const std::size_t whole = text.rfind('\n') + 1;
-  if (whole < text.size()) record.cut(whole);
   std::vector<std::string> lines = split(text.substr(header.size(), whole - header.size()), '\n');
   if (!lines.empty()) lines.pop_back();  // behind the last end of line
+  if (inspect) std::for_each(lines.begin(), lines.end(), inspect);
+  if (whole < text.size()) record.cut(whole);
   return lines;
 }
 

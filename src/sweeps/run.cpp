@@ -2,6 +2,7 @@
 
 #include <array>
 #include <limits>
+#include <stdexcept>
 
 #include "stickslip/accuracy/refinement.hpp"
 #include "stickslip/petsc/ledger.hpp"
@@ -47,8 +48,16 @@ std::vector<std::pair<double, double>> intervals(const Json& json, bool scalar) 
   return ends;
 }
 
+void require_equal_sizes(const quantities::Result& r) {
+  const std::size_t size = r.is_scalar() ? 1 : r.abscissa.size();
+  const bool intervals = r.ci95.empty() || r.ci95.size() == size;
+  if (intervals && r.value.size() == size && r.error.size() == size) return;
+  throw std::invalid_argument("values, errors and arguments differ in number: " + r.key);
+}
+
 quantities::Result result_of(const std::string& key, const Json& json) {
   quantities::Result result;
+  if (!json.is_object() || json.empty()) throw std::invalid_argument("no result: " + key);
   const bool scalar = json.begin().key() == "value";
   result.key = key;
   result.unit = json.value("unit", "");
@@ -59,6 +68,7 @@ quantities::Result result_of(const std::string& key, const Json& json) {
   result.value = numbers(json.at("value"));
   result.error = numbers(json.at("error"));
   if (json.contains("ci95")) result.ci95 = intervals(json["ci95"], scalar);
+  require_equal_sizes(result);
   return result;
 }
 
@@ -100,6 +110,8 @@ Run read_run(Json json) {
   for (const auto& [key, result] : json.at("results").items()) {
     run.results.push_back(result_of(key, result));
   }
+  (void)json.at("scene");
+  (void)json.at("cost").at("seconds").get<double>();
   run.json = std::move(json);
   return run;
 }

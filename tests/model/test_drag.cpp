@@ -116,3 +116,8 @@ TEST_CASE("drag laws: odd or not, and what the mirror shows") {
   }
   CHECK(Drag{1, 2}.mirrored()(0.5) == Drag{1, 2}(0.5));
 }
+
+TEST_CASE("drag: coefficients too small to balance a force let it drive for ever") {
+  CHECK(std::isinf(Drag{1e-310, 1e-310, {}}.terminal_velocity(1)));
+  CHECK(std::isinf(Drag{1e-320, 0, {}}.terminal_velocity(1)));
+}

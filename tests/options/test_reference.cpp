@@ -1,3 +1,5 @@
+#include <hdf5.h>
+
 #include <catch2/catch.hpp>
 #include <fstream>
 
@@ -150,4 +152,32 @@ TEST_CASE("reference: files of other kinds are refused") {
   CHECK_THAT(complaint("a.hdf5", ""), Contains("no readable HDF5 file"));
   const test::TemporaryFolder folder;
   CHECK_THROWS_WITH(read_references(folder / "none.csv"), Contains("cannot be read"));
+}
+
+TEST_CASE("reference: values that are no numbers are refused") {
+  using Catch::Contains;
+  const auto json = [](const std::string& result) {
+    return complaint("a.json", R"({"results": {"a": )" + result + "}}");
+  };
+  CHECK(json(R"({"value": 1, "error": 0.5})") == "nothing");
+  CHECK_THAT(json(R"({"value": 1, "error": -0.5})"), Contains("a has values or errors"));
+  CHECK_THAT(json(R"({"value": 1, "error": 0, "ci95": [2, 1]})"), Contains("a has values"));
+  CHECK_THAT(json(R"({"value": 1, "error": null})"), Contains("no JSON summary"));
+}
+
+// A chunk of the file's own structure points outside, at which the library has crashed.
+TEST_CASE("reference: damaged HDF5 ends nothing but the reading") {
+  const test::TemporaryFolder folder;
+  const std::string sound = folder / "sound.h5", damaged = folder / "damaged.h5";
+  const hid_t file = H5Fcreate(sound.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t results = H5Gcreate2(file, "/results", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  H5Gclose(results);
+  H5Fclose(file);
+  const std::string whole = test::content(sound);
+  for (std::size_t n = 0; n < whole.size(); n += 7) {
+    std::string other = whole;
+    other[n] = static_cast<char>(0xff);
+    std::ofstream(damaged, std::ios::binary) << other;
+    CHECK_THROWS_AS(read_references(damaged), std::invalid_argument);
+  }
 }

@@ -338,3 +338,20 @@ TEST_CASE("options files: unreadable files and lines are told with their place")
   CHECK_THROWS_AS(check_options_files({"-options_file"}), BadInput);
   CHECK_THROWS_AS(check_options_files({"-options_file", "/"}), BadInput);
 }
+
+TEST_CASE("options files: one that includes itself, or is no file, is told") {
+  using Catch::Contains;
+  const test::TemporaryFolder folder;
+  const std::string outer = folder / "outer.opts", inner = folder / "inner.opts";
+  const auto check = [&] { check_options_files({"-options_file", outer}); };
+  std::ofstream(outer) << "-mu_d 0.5\n\t-options_file \"" << inner << "\" # more\n";
+  CHECK_THROWS_WITH(check(), Contains("inner.opts: cannot be read"));
+  std::ofstream(inner) << "-delta 0.5\n";
+  CHECK_NOTHROW(check());
+  std::ofstream(inner) << "-delta 0.5\n-options_file " << outer << "\r\n";
+  CHECK_THROWS_WITH(check(), Contains("outer.opts: includes itself"));
+  std::ofstream(inner) << "-options_file\n";
+  CHECK_THROWS_WITH(check(), Contains("cannot be read"));
+  CHECK_THROWS_WITH(check_options_files({"-options_file", "/dev/null"}),
+                    Contains("no regular file"));
+}

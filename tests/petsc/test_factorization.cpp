@@ -2,6 +2,7 @@
 #include <petscsys.h>
 
 #include "../common/matrices.hpp"
+#include "../common/options.hpp"
 #include "stickslip/petsc/blas.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/factorization.hpp"
@@ -70,6 +71,73 @@ TEST_CASE("factorization: a singular matrix is refused, whatever the package rep
   Ledger ledger;
   const auto solve = [&] { return Factorization(a, "test_", ledger).solve(b); };
   CHECK_THROWS_AS(solve(), NotReached);
+}
+
+namespace {
+
+// [0 B; B^T 0] with B bidiagonal as above: without a search for large diagonals no pivot is where
+// the analysis expects one.
+MatHandle saddle(PetscInt half) {
+  MatHandle a;
+  check(MatCreate(PETSC_COMM_WORLD, a.out()));
+  check(MatSetSizes(a, PETSC_DECIDE, PETSC_DECIDE, 2 * half, 2 * half));
+  check(MatSetType(a, MATAIJ));
+  check(MatSetUp(a));
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(a, &begin, &end));
+  for (PetscInt r = begin; r < end; ++r) {
+    const bool upper = r < half;
+    const PetscInt other = upper ? r + half : r - half, step = upper ? 1 : -1;
+    const bool inside = upper ? r + 1 < half : r > half;
+    check(MatSetValue(a, r, r, 0, INSERT_VALUES));
+    check(MatSetValue(a, r, other, 3, INSERT_VALUES));
+    if (inside) check(MatSetValue(a, r, other + step, -1, INSERT_VALUES));
+  }
+  check(MatAssemblyBegin(a, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(a, MAT_FINAL_ASSEMBLY));
+  return a;
+}
+
+test::Given tight_workspace() {
+  return {{"-tight_mat_mumps_icntl_6", "0"},
+          {"-tight_mat_mumps_icntl_8", "0"},
+          {"-tight_mat_mumps_icntl_14", "-95"}};
+}
+
+std::string complaint(Mat a, const std::string& prefix) {
+  Ledger ledger;
+  try {
+    const Factorization factors(a, prefix, ledger);
+  } catch (const Failure& failure) {
+    return failure.what();
+  }
+  return "nothing";
+}
+
+}  // namespace
+
+TEST_CASE("factorization: MUMPS gets more workspace once when it runs out of it", "[parallel]") {
+  const test::Given tight = tight_workspace();
+  const MatHandle a = saddle(400);
+  Ledger ledger;
+  Factorization factors(a, "tight_", ledger);
+  VecHandle one, b;
+  check(MatCreateVecs(a, one.out(), b.out()));
+  check(VecSet(one, 1));
+  check(MatMult(a, one, b));
+  CHECK(distance_from_one(factors.solve(b).x) < 1e-12);
+  check(MatMultTranspose(a, one, b));
+  CHECK(distance_from_one(factors.solve_transposed(b).x) < 1e-12);
+}
+
+TEST_CASE("factorization: a failure is told with what MUMPS means by it") {
+  const test::Given little({{"-little_mat_mumps_icntl_23", "1"}});
+  CHECK_THAT(complaint(saddle(40000), "little_"),
+             Catch::Contains("INFOG(1) = -19") && Catch::Contains("ICNTL(23) is too small"));
+  MatHandle zero = bidiagonal(4);
+  check(MatZeroEntries(zero));
+  CHECK_THAT(complaint(zero, "zero_"),
+             Catch::Contains("INFOG(1) = -10") && Catch::Contains("singular"));
 }
 
 TEST_CASE("factorization: options of the role override its defaults") {

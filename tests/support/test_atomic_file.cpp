@@ -38,3 +38,15 @@ TEST_CASE("atomic file: a place that cannot be written is told") {
   CHECK_THROWS_WITH(write_text("/no/such/folder/file", "text"),
                     Catch::Contains("/no/such/folder/file"));
 }
+
+TEST_CASE("atomic file: what stands beside the part goes with it, and nothing else") {
+  const test::TemporaryFolder folder;
+  const std::string target = folder / "out.h5";
+  std::ofstream(folder / "out.h5.part8") << "of another run";
+  {
+    const AtomicFile file(target, 7);
+    std::ofstream(file.part()) << "half";
+    std::ofstream(file.part() + "-1.lock") << "lock";
+  }
+  CHECK(folder.entries() == 1);
+}

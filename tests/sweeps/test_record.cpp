@@ -85,3 +85,16 @@ TEST_CASE("record: what is no record is refused, and stays as it is") {
   CHECK_THROWS_AS(open_record("/dev/null", kRun), BadInput);
   CHECK_THROWS_AS(append_to_record(folder / "no/such/record", "line"), std::runtime_error);
 }
+
+TEST_CASE("record: lines are inspected before anything is cut off") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "record";
+  (void)open_record(file, kRun);
+  append_to_record(file, "bad");
+  std::ofstream(file, std::ios::app) << "cut off";
+  const std::string before = test::content(file);
+  const auto refuse = [](const std::string& line) { throw BadInput(line); };
+  CHECK_THROWS_AS(open_record(file, kRun, refuse), BadInput);
+  CHECK(test::content(file) == before);
+  CHECK(open_record(file, kRun) == Lines{"bad"});
+}

@@ -17,8 +17,8 @@ struct Analysis {
   double operations = 0;  ///< of the elimination
 };
 
-/// A solution with its last correction; solution - correction is what one solve alone gave, and
-/// the effect of the correction on a functional estimates the rounding error in it.
+/// A solution with its corrections summed up; solution - correction is what one solve alone gave,
+/// and the effect of the correction on a functional estimates the rounding error in it.
 struct Solution {
   VecHandle x;
   VecHandle correction;
@@ -47,12 +47,14 @@ void record_factors(KSP ksp, Ledger& ledger);
 /// -slide_pc_factor_mat_solver_type klu.
 ///
 /// A direct solver reports success on a singular matrix too, so each solve computes its residual
-/// and makes one step of iterative refinement. All members are collective.
+/// and makes one step of iterative refinement, a second one where the backward error is above
+/// 1e-12 still. All members are collective.
 class Factorization {
  public:
   /// Analyses and factors `matrix` (kept by reference count). `prefix` without the dash, with the
   /// trailing underscore. Times and counts go to `ledger`, which must outlive this object.
-  /// Throws NoMemory when the factors do not fit, NotReached when the factorisation fails.
+  /// Where MUMPS runs out of the workspace that it set aside (INFOG(1) = -8, -9), it is given more
+  /// once. Throws NoMemory when the factors do not fit, NotReached when the factorisation fails.
   Factorization(Mat matrix, const std::string& prefix, Ledger& ledger);
 
   /// A x = b. Throws NotReached when the backward error stays above 1e-12.
@@ -78,6 +80,7 @@ class Factorization {
 
  private:
   void factor();
+  void factor_with_more_workspace();
   [[nodiscard]] Solution solve(Vec b, bool transposed);
   void apply(Vec b, Vec x, bool transposed);
   [[nodiscard]] double backward_error(Vec residual, Vec b, Vec x, bool transposed) const;

@@ -3,6 +3,7 @@
 
 #include <petscsys.h>
 
+#include <string>
 #include <vector>
 
 namespace stickslip::petsc {
@@ -24,8 +25,15 @@ class Session {
   std::vector<char*> arguments_;  // PETSc keeps a pointer to them
 };
 
+/// Whether a launcher (mpiexec, srun) has started this process, and waits for it.
+[[nodiscard]] bool under_mpiexec();
+
 /// Rank and size of a communicator.
 [[nodiscard]] int rank(MPI_Comm comm);
 [[nodiscard]] int ranks(MPI_Comm comm);
+
+/// The text of the lowest rank that has one, so that what one rank alone finds ends all ranks
+/// alike; empty if none has. Collective.
+[[nodiscard]] std::string first_text(MPI_Comm comm, std::string text);
 
 }  // namespace stickslip::petsc

@@ -36,7 +36,7 @@ using Results = std::vector<Result>;
   return {std::move(key), std::move(unit), std::move(abscissa_name), std::move(abscissa), {}, {}};
 }
 
-/// Largest error relative to the size of the values.
+/// Largest error relative to the size of the values; infinite where one is not a number.
 [[nodiscard]] double relative_error(const Result& result);
 
 }  // namespace stickslip::quantities

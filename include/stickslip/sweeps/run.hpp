@@ -28,7 +28,7 @@ struct Run {
 [[nodiscard]] io::Json compute_run(MPI_Comm comm, const options::Request& request,
                                    std::size_t point);
 
-/// The run that an entry of `runs` tells of. Throws nlohmann's exceptions if it is none.
+/// The run that an entry of `runs` tells of. Throws std::exception, nlohmann's too, if it is none.
 [[nodiscard]] Run read_run(io::Json json);
 
 }  // namespace stickslip::sweeps

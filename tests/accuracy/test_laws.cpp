@@ -1,0 +1,57 @@
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "stickslip/accuracy/laws.hpp"
+
+using namespace stickslip;
+using accuracy::broken_law;
+using quantities::Result;
+
+namespace {
+
+Result transform(std::vector<double> values, double error = 0) {
+  const std::vector<double> errors(values.size(), error);
+  return {"F_slide", "", "lambda", {2, 0.5, 1}, std::move(values), errors};
+}
+
+}  // namespace
+
+TEST_CASE("laws: sound results pass") {
+  CHECK(broken_law({}).empty());
+  CHECK(broken_law({quantities::scalar("P_stick", "", 1, 0),
+                    quantities::scalar("E_XV", "", -3, 0),
+                    transform({0.2, 0.6, 0.4}),
+                    {"cdf_slide", "", "time", {1, 2, 3}, {0, 0.5, 1}, {0, 0, 0}}})
+            .empty());
+  CHECK(broken_law({transform({1 / 3., 1 / 3., 1 / 3.})}).empty());
+}
+
+TEST_CASE("laws: errors excuse what they cover") {
+  CHECK(broken_law({transform({0.41, 0.6, 0.4}, 0.006)}).empty());
+  CHECK(broken_law({quantities::scalar("P_slide", "", 1.01, 0.02)}).empty());
+}
+
+TEST_CASE("laws: every violation is told with its place") {
+  CHECK(broken_law({transform({0.41, 0.6, 0.4})}) ==
+        "F_slide rises from 0.4 at lambda = 1 to 0.41 at lambda = 2");
+  CHECK(broken_law({transform({0.2, 1.5, 0.4})}) == "F_slide is 1.5 at lambda = 0.5");
+  CHECK(broken_law({quantities::scalar("P_stick", "", -0.1, 0.01)}) == "P_stick is -0.1");
+  CHECK(broken_law({{"cdf_stick", "", "time", {1, 2}, {0.5, 0.4}, {0, 0}}}) ==
+        "cdf_stick falls from 0.5 at time = 1 to 0.4 at time = 2");
+  CHECK(broken_law({quantities::scalar("E_V2", "", -1, 0)}) == "E_V2 is -1");
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK(broken_law({quantities::scalar("mean_slide", "", nan, 0)}) == "mean_slide is nan");
+}
+
+TEST_CASE("laws: simulated results scatter, and are left alone") {
+  Result simulated = transform({0.41, 0.6, 0.4});
+  simulated.ci95.assign(3, {0, 1});
+  CHECK(broken_law({simulated}).empty());
+}
+
+TEST_CASE("results: what is not a number has no finite error") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK_FALSE(quantities::relative_error(quantities::scalar("a", "", nan, 0)) < 1e300);
+  CHECK_FALSE(quantities::relative_error(quantities::scalar("a", "", 1, nan)) < 1e300);
+  CHECK(quantities::relative_error(quantities::scalar("a", "", 0, 0)) == 0);
+}

@@ -1,0 +1,227 @@
+"""Faults of the machine: processes killed, disks full, folders read-only, memory short.
+
+What was complete stays and is readable; nothing half written is left; nothing hangs; the exit
+status says what it was.
+"""
+
+import json
+import os
+import random
+import resource
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+import h5py
+
+from stickslip import BINARIES, Case, run
+
+SMALL = ("-mu_d", "0.25", "-delta", "0.25")
+SIMULATE = (*SMALL, "-route", "monte_carlo", "-excursions", "2e6", "-seed", "3", "-quantities",
+            "sticking,moments")
+LONG = (*SMALL, "-route", "monte_carlo", "-excursions", "1e7")
+DENSITY = (*SMALL, "-quantities", "sticking,density")
+
+
+class Faults(Case):
+    def names(self):
+        return sorted(file.name for file in self.folder.iterdir())
+
+    def start(self, *options, ranks=0, **how):
+        command = [str(BINARIES / "stickslip"), *map(str, options)]
+        if ranks:
+            command = ["mpiexec", "-n", str(ranks), *command]
+        process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True, **how)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
+
+    def limited(self, kind, amount, *options):
+        """A run under a resource limit."""
+        process = self.start(*options,
+                             preexec_fn=lambda: resource.setrlimit(kind, (amount, amount)))
+        _, told = process.communicate(timeout=120)
+        return process.returncode, told
+
+
+class Killed(Faults):
+    def test_a_study_leaves_old_files_and_repeats_its_numbers(self):
+        options = ("-study", "p", "-delta", "0.5", "-study_steps", "6", "-study_csv", "study.csv",
+                   "-output", "study.h5")
+        self.run_ok(*options)
+        numbers = self.values_of_study()
+        moment = random.Random(1)
+        for _ in range(4):
+            for name in ("study.csv", "study.h5"):
+                (self.folder / name).write_text("old")
+            process = self.start(*options)
+            time.sleep(moment.uniform(0.01, 0.15))
+            process.kill()
+            process.communicate()
+            if process.returncode == -signal.SIGKILL:
+                self.assertEqual((self.folder / "study.csv").read_text(), "old")
+        self.run_ok(*options)
+        self.assertEqual(self.values_of_study(), numbers)
+
+    def values_of_study(self):
+        with h5py.File(self.folder / "study.h5") as file:
+            found = {}
+            file.visititems(lambda name, item: found.update(
+                {name: item[()].tobytes()} if isinstance(item, h5py.Dataset) and
+                "seconds" not in name else {}))
+        return found
+
+    def test_a_simulation_killed_again_and_again(self):
+        whole = self.summary(*SIMULATE)["results"]
+        moment, file, kills = random.Random(2), self.folder / "kept", 0
+        for _ in range(6):
+            process = self.start(*SIMULATE, "-checkpoint", file)
+            end = time.monotonic() + moment.uniform(0.5, 5)
+            while process.poll() is None and time.monotonic() < end:
+                time.sleep(0.02)
+            kills += process.poll() is None
+            process.kill()
+            process.communicate()
+            if file.exists():
+                self.assertGreaterEqual(json.loads(file.read_text())["rounds"], 0)
+        self.assertGreater(kills, 0)
+        self.assertEqual(self.summary(*SIMULATE, "-checkpoint", file)["results"], whole)
+
+    def test_one_rank_of_two(self):
+        """mpiexec ends the other one; the files stay as they were."""
+        (self.folder / "old.json").write_text("old")
+        process = self.start(*LONG, "-summary", "old.json", ranks=2)
+        rank = self.child_of(process.pid)
+        time.sleep(1)
+        os.kill(rank, signal.SIGKILL)
+        process.communicate(timeout=60)
+        self.assertNotEqual(process.returncode, 0)
+        self.assertEqual((self.folder / "old.json").read_text(), "old")
+        self.assertEqual(self.names(), ["old.json"])
+
+    def child_of(self, parent):
+        for _ in range(600):
+            found = subprocess.run(["ps", "--ppid", str(parent), "-o", "pid=,comm="],
+                                   capture_output=True, text=True).stdout.split("\n")
+            ranks = [line.split()[0] for line in found if "stickslip" in line]
+            if len(ranks) == 2:
+                return int(ranks[1])
+            time.sleep(0.05)
+        self.fail("mpiexec started nothing")
+
+
+class Disks(Faults):
+    def check_too_large(self, status, told, *kept):
+        self.assertEqual(status, 1, told)
+        self.assertIn("stickslip: ", told)
+        self.assertEqual(self.names(), sorted(kept))
+        for name in kept:
+            self.assertEqual((self.folder / name).read_text(), "old")
+
+    def test_no_room(self):
+        """A limit of file sizes, which needs no rights, behaves as a full disk does."""
+        for option, name in (("-output", "o.h5"), ("-summary", "s.json")):
+            (self.folder / name).write_text("old")
+            status, told = self.limited(resource.RLIMIT_FSIZE, 2000, *DENSITY[:-2], option, name)
+            self.check_too_large(status, told, name)
+            (self.folder / name).unlink()
+        (self.folder / "o.h5").write_text("old")
+        self.check_too_large(*self.limited(resource.RLIMIT_FSIZE, 10000, *DENSITY, "-output",
+                                           "o.h5"), "o.h5")
+
+    def test_a_sweep_keeps_what_fitted(self):
+        options = ("-delta", "0.5", "-sweep_mu_d", "0.1:1:8", "-checkpoint", "kept")
+        status, told = self.limited(resource.RLIMIT_FSIZE, 9000, *options)
+        self.assertEqual(status, 1, told)
+        self.assertIn("cannot write kept", told)
+        self.assertTrue((self.folder / "kept").read_text().endswith("}\n"))
+        held = self.summary(*options)["sweep"]["from_record"]
+        self.assertGreater(held, 0)
+        self.assertLess(held, 8)
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full")
+    def test_standard_output_to_a_full_disk(self):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([BINARIES / "stickslip", *SMALL, "-summary", "s.json"],
+                                  cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True,
+                                  timeout=60)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("standard output", done.stderr)
+        self.assertIn("results", json.loads((self.folder / "s.json").read_text()))
+
+    def test_a_folder_that_cannot_be_written(self):
+        if os.geteuid() == 0:
+            place = "/proc/self"  # root writes anywhere else
+        else:
+            place = tempfile.mkdtemp(dir=self.folder)
+            os.chmod(place, 0o500)
+        for option in ("-summary", "-output"):
+            done = run(*SMALL, option, f"{place}/file.h5")
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(option, done.stderr)
+
+    def test_files_open_elsewhere(self):
+        """The old file lives on for who reads it; one that is being written is no reference."""
+        self.run_ok(*SMALL, "-output", "o.h5")
+        with h5py.File(self.folder / "o.h5") as reader:
+            old = reader["results/P_stick/value"][()]
+            self.run_ok("-mu_d", "0.5", "-delta", "0.25", "-output", "o.h5")
+            self.assertEqual(reader["results/P_stick/value"][()], old)
+        with h5py.File(self.folder / "o.h5") as file:
+            self.assertNotEqual(file["results/P_stick/value"][()], old)
+        with h5py.File(self.folder / "o.h5", "r+"):
+            done = run(*SMALL, "-compare", "o.h5", folder=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("another program is writing it", done.stderr)
+
+
+class Memory(Faults):
+    def test_limits(self):
+        """Told before it is allocated, or when it runs out; never by a crash."""
+        for megabytes in (400, 600, 800):
+            status, told = self.limited(resource.RLIMIT_AS, megabytes << 20, "-mu_d", "0.25",
+                                        "-delta", "0.03125", "-accuracy", "1e-10", "-summary",
+                                        "s.json")
+            self.assertIn(status, (3, 4), told)
+            self.assertNotIn("Segmentation", told)
+            if status == 4:
+                self.assertIn("memory", told)
+                self.assertEqual(self.names(), [])
+
+    def test_workspace_of_mumps(self):
+        usual = self.summary(*SMALL)["results"]
+        tight = self.summary(*SMALL, "-slide_mat_mumps_icntl_14", "-90")["results"]
+        for key, result in usual.items():
+            self.assert_close(tight[key]["value"], result["value"], 1e-12, key)
+        done = run("-mu_d", "0.25", "-delta", "0.0625", "-slide_mat_mumps_icntl_23", "1")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("ICNTL(23) is too small", done.stderr)
+
+
+class OneRank(Faults):
+    def test_a_checkpoint_that_cannot_be_written_ends_all(self):
+        """Rank 0 alone writes; the folder vanishes under it."""
+        place = self.folder / "place"
+        place.mkdir()
+        process = self.start(*LONG, "-checkpoint", place / "kept", ranks=2)
+        time.sleep(1.5)
+        for file in place.iterdir():
+            file.unlink()
+        place.rmdir()
+        _, told = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 1, told)
+        self.assertIn("kept", told)
+
+    def test_no_room_on_two_ranks(self):
+        process = self.start(*DENSITY, "-output", "o.h5", ranks=2, preexec_fn=lambda:
+                             resource.setrlimit(resource.RLIMIT_FSIZE, (10000, 10000)))
+        _, told = process.communicate(timeout=60)
+        self.assertNotEqual(process.returncode, 0, told)
+        self.assertFalse((self.folder / "o.h5").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
