@@ -46,6 +46,17 @@ class Faults(Case):
         _, told = process.communicate(timeout=120)
         return process.returncode, told
 
+    def ranks_of(self, parent):
+        """Process numbers of both ranks, once they run."""
+        for _ in range(600):
+            found = subprocess.run(["ps", "--ppid", str(parent), "-o", "pid=,comm="],
+                                   capture_output=True, text=True).stdout.split("\n")
+            ranks = [int(line.split()[0]) for line in found if "stickslip" in line]
+            if len(ranks) == 2:
+                return ranks
+            time.sleep(0.05)
+        self.fail("mpiexec started nothing")
+
 
 class Killed(Faults):
     def test_a_study_leaves_old_files_and_repeats_its_numbers(self):
@@ -94,23 +105,13 @@ class Killed(Faults):
         """mpiexec ends the other one; the files stay as they were."""
         (self.folder / "old.json").write_text("old")
         process = self.start(*LONG, "-summary", "old.json", ranks=2)
-        rank = self.child_of(process.pid)
+        rank = self.ranks_of(process.pid)[1]
         time.sleep(1)
         os.kill(rank, signal.SIGKILL)
         process.communicate(timeout=60)
         self.assertNotEqual(process.returncode, 0)
         self.assertEqual((self.folder / "old.json").read_text(), "old")
         self.assertEqual(self.names(), ["old.json"])
-
-    def child_of(self, parent):
-        for _ in range(600):
-            found = subprocess.run(["ps", "--ppid", str(parent), "-o", "pid=,comm="],
-                                   capture_output=True, text=True).stdout.split("\n")
-            ranks = [line.split()[0] for line in found if "stickslip" in line]
-            if len(ranks) == 2:
-                return int(ranks[1])
-            time.sleep(0.05)
-        self.fail("mpiexec started nothing")
 
 
 class Disks(Faults):
@@ -216,11 +217,23 @@ class OneRank(Faults):
         self.assertIn("kept", told)
 
     def test_no_room_on_two_ranks(self):
-        process = self.start(*DENSITY, "-output", "o.h5", ranks=2, preexec_fn=lambda:
-                             resource.setrlimit(resource.RLIMIT_FSIZE, (10000, 10000)))
+        process = self.start("-mu_d", "0.25", "-delta", "0.015625", "-accuracy", "1e-9",
+                             "-quantities", "sticking,density", "-output", "o.h5", ranks=2)
+        for rank in self.ranks_of(process.pid):  # mpiexec itself keeps its room
+            resource.prlimit(rank, resource.RLIMIT_FSIZE, (10000, 10000))
         _, told = process.communicate(timeout=60)
         self.assertNotEqual(process.returncode, 0, told)
         self.assertFalse((self.folder / "o.h5").exists())
+
+    def test_out_of_memory(self):
+        """Points that two ranks share: one that can no longer allocate ends both."""
+        process = self.start("-mu_d", "0.25", "-delta", "0.015625", "-accuracy", "1e-10",
+                             "-sweep_tau", "0.5,1", "-sweep_ranks", "2", ranks=2)
+        rank = self.ranks_of(process.pid)[1]
+        time.sleep(0.5)
+        resource.prlimit(rank, resource.RLIMIT_AS, (1 << 20, 1 << 20))
+        _, told = process.communicate(timeout=100)
+        self.assertNotEqual(process.returncode, 0, told)
 
 
 if __name__ == "__main__":
