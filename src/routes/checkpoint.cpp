@@ -25,11 +25,7 @@ std::string contents_on_all(MPI_Comm comm, const std::string& file) {
     std::ifstream stream(file, std::ios::binary);
     text.assign(std::istreambuf_iterator<char>(stream), {});
   }
-  auto size = static_cast<long>(text.size());
-  MPI_Bcast(&size, 1, MPI_LONG, 0, comm);
-  text.resize(static_cast<std::size_t>(size));
-  MPI_Bcast(text.data(), static_cast<int>(size), MPI_CHAR, 0, comm);
-  return text;
+  return petsc::first_text(comm, text);
 }
 
 [[noreturn]] void refuse(const std::string& file, const std::string& why) {
@@ -46,7 +42,9 @@ Checkpoint parse(const std::string& file, const std::string& text) {
     for (const auto& [name, value] : json.at("run").items()) {
       checkpoint.run.emplace_back(name, value.get<std::string>());
     }
-    checkpoint.rounds = json.at("rounds").get<long>();
+    const Json& rounds = json.at("rounds");
+    if (!rounds.is_number_integer()) refuse(file, "is damaged");
+    checkpoint.rounds = rounds.get<long>();
     checkpoint.tally = json.at("tally").get<std::vector<double>>();
   } catch (const Json::exception&) {
     refuse(file, "is no checkpoint, or a damaged one");

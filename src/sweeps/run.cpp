@@ -104,7 +104,9 @@ Json compute_run(MPI_Comm comm, const options::Request& request, std::size_t poi
 
 Run read_run(Json json) {
   Run run;
-  run.point = json.at("point").get<std::size_t>();
+  const Json& point = json.at("point");
+  if (!point.is_number_unsigned()) throw std::invalid_argument("no number of a point");
+  run.point = point.get<std::size_t>();
   run.status = status_named(json.at("status").get<std::string>());
   run.message = json.value("message", "");
   for (const auto& [key, result] : json.at("results").items()) {

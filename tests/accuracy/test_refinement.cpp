@@ -56,7 +56,7 @@ double at_points(Request r, int points, const char* key) {
 // Values computed independently of this program: by matrix-analytic solution of the equivalent
 // fluid queue for b = 0, by other discretisations and 12-digit agreement between them for b = -v;
 // P_slide at mu_s = 6 by exact rational arithmetic for the static chain.
-TEST_CASE("refinement: known values to nine digits at accuracy 1e-10", "[slow]") {
+TEST_CASE("refinement: known values to nine digits at accuracy 1e-10", "[slow][real]") {
   struct Case {
     double mu_s, mu_d, delta;
     model::Drag drag;
@@ -120,7 +120,7 @@ TEST_CASE("refinement: known values to nine digits at accuracy 1e-10", "[slow]")
 }
 
 // Six digits, table 1 of the paper with its last row put right.
-TEST_CASE("refinement: densities of sticking times at 0+", "[slow]") {
+TEST_CASE("refinement: densities of sticking times at 0+", "[slow][real]") {
   struct Case {
     double mu_d, delta, known;
   };
@@ -137,7 +137,7 @@ TEST_CASE("refinement: densities of sticking times at 0+", "[slow]") {
   }
 }
 
-TEST_CASE("refinement: hp errors fall tenfold and more with two degrees", "[slow]") {
+TEST_CASE("refinement: hp errors fall tenfold and more with two degrees", "[slow][real]") {
   for (const auto& r : {request(1, 0.25, 1, 1.0 / 4, {1, 0}), request(1, 0.25, 1, 1.0 / 16, {1, 0}),
                         request(1, 1, 1, 1.0 / 4, {0, 0})}) {
     const double reference = at_degree(r, 15, "P_stick");
@@ -151,7 +151,7 @@ TEST_CASE("refinement: hp errors fall tenfold and more with two degrees", "[slow
   }
 }
 
-TEST_CASE("refinement: upwind is of first order in 1/p", "[slow]") {
+TEST_CASE("refinement: upwind is of first order in 1/p", "[slow][real]") {
   const Request r = request(1, 0.25, 1, 1.0 / 2, {1, 0});
   Request fine = r;
   fine.accuracy = 1e-12;
@@ -167,7 +167,7 @@ TEST_CASE("refinement: upwind is of first order in 1/p", "[slow]") {
   }
 }
 
-TEST_CASE("refinement: estimates of fixed upwind grids cover their errors", "[slow]") {
+TEST_CASE("refinement: estimates of fixed upwind grids cover their errors", "[slow][real]") {
   Request r = request(1, 0.25, 1, 1.0 / 2, {1, 0});
   Request fine = r;
   fine.accuracy = 1e-11;
@@ -187,7 +187,7 @@ TEST_CASE("refinement: estimates of fixed upwind grids cover their errors", "[sl
 }
 
 // Scenes at random over what the model allows; the truth is a run four digits more accurate.
-TEST_CASE("refinement: error estimates are honest and not far off", "[slow]") {
+TEST_CASE("refinement: error estimates are honest and not far off", "[slow][real]") {
   std::mt19937 random(20260131);
   const auto uniform = [&](double a, double b) {
     return std::uniform_real_distribution<double>(a, b)(random);

@@ -1,7 +1,7 @@
 """Faults of the machine: processes killed, disks full, folders read-only, memory short.
 
 What was complete stays and is readable; nothing half written is left; nothing hangs; the exit
-status says what it was.
+status says what it was. The first line of each test is "fault: what must be seen".
 """
 
 import json
@@ -60,6 +60,7 @@ class Faults(Case):
 
 class Killed(Faults):
     def test_a_study_leaves_old_files_and_repeats_its_numbers(self):
+        """kill -9 at 4 moments of a study: old files stay, the next one gives the same bits"""
         options = ("-study", "p", "-delta", "0.5", "-study_steps", "6", "-study_csv", "study.csv",
                    "-output", "study.h5")
         self.run_ok(*options)
@@ -86,6 +87,7 @@ class Killed(Faults):
         return found
 
     def test_a_simulation_killed_again_and_again(self):
+        """kill -9 at 6 moments of a simulation: whole rounds are kept, the end has the same bits"""
         whole = self.summary(*SIMULATE)["results"]
         moment, file, kills = random.Random(2), self.folder / "kept", 0
         for _ in range(6):
@@ -102,7 +104,7 @@ class Killed(Faults):
         self.assertEqual(self.summary(*SIMULATE, "-checkpoint", file)["results"], whole)
 
     def test_one_rank_of_two(self):
-        """mpiexec ends the other one; the files stay as they were."""
+        """kill -9 of one rank of two: the other ends, old files stay"""
         (self.folder / "old.json").write_text("old")
         process = self.start(*LONG, "-summary", "old.json", ranks=2)
         rank = self.ranks_of(process.pid)[1]
@@ -123,7 +125,8 @@ class Disks(Faults):
             self.assertEqual((self.folder / name).read_text(), "old")
 
     def test_no_room(self):
-        """A limit of file sizes, which needs no rights, behaves as a full disk does."""
+        """no room for the field, the summary: status 1, the old file stays, no half one"""
+        # A limit of file sizes, which needs no rights, behaves as a full disk does.
         for option, name in (("-output", "o.h5"), ("-summary", "s.json")):
             (self.folder / name).write_text("old")
             status, told = self.limited(resource.RLIMIT_FSIZE, 2000, *DENSITY[:-2], option, name)
@@ -134,6 +137,7 @@ class Disks(Faults):
                                            "o.h5"), "o.h5")
 
     def test_a_sweep_keeps_what_fitted(self):
+        """no room for the record of a sweep: status 1, the points that fitted are kept"""
         options = ("-delta", "0.5", "-sweep_mu_d", "0.1:1:8", "-checkpoint", "kept")
         status, told = self.limited(resource.RLIMIT_FSIZE, 9000, *options)
         self.assertEqual(status, 1, told)
@@ -145,6 +149,7 @@ class Disks(Faults):
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full")
     def test_standard_output_to_a_full_disk(self):
+        """no room for standard output: status 1, the files are there"""
         with open("/dev/full", "w") as full:
             done = subprocess.run([BINARIES / "stickslip", *SMALL, "-summary", "s.json"],
                                   cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True,
@@ -154,6 +159,7 @@ class Disks(Faults):
         self.assertIn("results", json.loads((self.folder / "s.json").read_text()))
 
     def test_a_folder_that_cannot_be_written(self):
+        """read-only folder: status 2 before anything is computed"""
         if os.geteuid() == 0:
             place = "/proc/self"  # root writes anywhere else
         else:
@@ -165,7 +171,7 @@ class Disks(Faults):
             self.assertIn(option, done.stderr)
 
     def test_files_open_elsewhere(self):
-        """The old file lives on for who reads it; one that is being written is no reference."""
+        """output open elsewhere: its reader keeps the old one; one being written is refused"""
         self.run_ok(*SMALL, "-output", "o.h5")
         with h5py.File(self.folder / "o.h5") as reader:
             old = reader["results/P_stick/value"][()]
@@ -181,7 +187,7 @@ class Disks(Faults):
 
 class Memory(Faults):
     def test_limits(self):
-        """Told before it is allocated, or when it runs out; never by a crash."""
+        """ulimit -v of 400, 600, 800 MB: told before it is allocated or when it runs out, status 4"""
         for megabytes in (400, 600, 800):
             status, told = self.limited(resource.RLIMIT_AS, megabytes << 20, "-mu_d", "0.25",
                                         "-delta", "0.03125", "-accuracy", "1e-10", "-summary",
@@ -193,6 +199,7 @@ class Memory(Faults):
                 self.assertEqual(self.names(), [])
 
     def test_workspace_of_mumps(self):
+        """workspace of MUMPS too small: enlarged once, same numbers; a limit of yours is explained"""
         usual = self.summary(*SMALL)["results"]
         tight = self.summary(*SMALL, "-slide_mat_mumps_icntl_14", "-90")["results"]
         for key, result in usual.items():
@@ -204,7 +211,7 @@ class Memory(Faults):
 
 class OneRank(Faults):
     def test_a_checkpoint_that_cannot_be_written_ends_all(self):
-        """Rank 0 alone writes; the folder vanishes under it."""
+        """folder of a checkpoint vanishes under rank 0 of two: its message, status 1, all end"""
         place = self.folder / "place"
         place.mkdir()
         process = self.start(*LONG, "-checkpoint", place / "kept", ranks=2)
@@ -217,6 +224,7 @@ class OneRank(Faults):
         self.assertIn("kept", told)
 
     def test_no_room_on_two_ranks(self):
+        """no room for the field of two ranks: all end, no half file"""
         process = self.start("-mu_d", "0.25", "-delta", "0.015625", "-accuracy", "1e-9",
                              "-quantities", "sticking,density", "-output", "o.h5", ranks=2)
         for rank in self.ranks_of(process.pid):  # mpiexec itself keeps its room
@@ -226,7 +234,7 @@ class OneRank(Faults):
         self.assertFalse((self.folder / "o.h5").exists())
 
     def test_out_of_memory(self):
-        """Points that two ranks share: one that can no longer allocate ends both."""
+        """one of two ranks that share the points of a sweep cannot allocate: both end or go on"""
         process = self.start("-mu_d", "0.25", "-delta", "0.015625", "-accuracy", "1e-10",
                              "-sweep_tau", "0.5,1", "-sweep_ranks", "2", ranks=2)
         rank = self.ranks_of(process.pid)[1]

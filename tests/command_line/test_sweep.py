@@ -60,9 +60,11 @@ class Interrupted(Case):
         self.assertEqual([f.name for f in self.folder.iterdir() if ".part" in f.name], [])
 
     def test_killed_and_continued(self):
+        """kill -9 at random moments of a sweep: finished points are kept, the same CSV in the end"""
         self.check(0)
 
     def test_killed_and_continued_on_three_ranks(self):
+        """kill -9 at random moments of a sweep on three ranks: the same"""
         self.check(3)
 
     def test_times_come_from_the_record(self):
@@ -72,6 +74,7 @@ class Interrupted(Case):
         self.assertEqual(second["runs"], first["runs"])
 
     def test_a_lost_record_ends_all_ranks(self):
+        """folder of a record vanishes under three ranks: a message, status 1, all end"""
         place = self.folder / "place"
         place.mkdir()
         with subprocess.Popen(["mpiexec", "-n", "3", BINARIES / "stickslip", "-delta", "0.25",

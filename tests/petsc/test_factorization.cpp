@@ -55,6 +55,33 @@ TEST_CASE("factorization: plain and transposed solves, counted", "[parallel]") {
   CHECK(ledger.factor_entries > 0);
 }
 
+TEST_CASE("factorization: a second step of refinement where one is not enough", "[parallel]") {
+  const MatHandle a = bidiagonal(50);
+  VecHandle one, b;
+  check(MatCreateVecs(a, one.out(), b.out()));
+  check(VecSet(one, 1));
+  check(MatMult(a, one, b));
+  const auto iterated_to = [](const char* tolerance) {
+    return test::Given({{"-rough_ksp_type", "gmres"},
+                        {"-rough_pc_type", "jacobi"},
+                        {"-rough_ksp_rtol", tolerance}});
+  };
+  {
+    const test::Given fair = iterated_to("1e-5");
+    Ledger ledger;
+    Factorization solver(a, "rough_", ledger);
+    const Solution s = solver.solve(b);
+    CHECK(ledger.corrections == 2);
+    CHECK(s.backward_error < 1e-12);
+    check(VecAXPY(s.x, -1, s.correction));  // what one solve alone gave
+    CHECK(distance_from_one(s.x) > 1e-9);
+  }
+  const test::Given poor = iterated_to("1e-2");
+  Ledger ledger;
+  Factorization solver(a, "rough_", ledger);
+  CHECK_THROWS_WITH(solver.solve(b), Catch::Contains("-rough_ left a backward error"));
+}
+
 TEST_CASE("factorization: a singular matrix is refused, whatever the package reports") {
   MatHandle a = bidiagonal(4);
   PetscInt begin = 0, end = 0;
