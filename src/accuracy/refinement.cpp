@@ -18,6 +18,7 @@ namespace stickslip::accuracy {
 namespace {
 
 using options::Quantity;
+using quantities::Result;
 using quantities::Results;
 using quantities::StationaryLaw;
 
@@ -29,6 +30,36 @@ void add_rounding_of_sums(const model::NoiseChain& noise, Results& results) {
     for (std::size_t e = 0; e < result.value.size(); ++e) {
       result.error[e] = std::max(result.error[e], rounding * std::abs(result.value[e]));
     }
+  }
+}
+
+// A change from grid to grid that passes through zero hides an error, which the other means under
+// the same law show: their relative errors are alike within a decade or two. Of 144 scenes with six
+// drags at accuracy 1e-4, 27 had a mean with more error than estimate (up to 1700 times) before.
+constexpr double kShareOfLargest = 0.05;
+// A mean that changes less does not depend on the grid, as the stay at a single static level.
+constexpr double kUnchanged = 1e-13;
+
+void share_errors(Results& results) {
+  const auto is_mean = [](const Result& r) {
+    return r.is_scalar() && (r.key.starts_with("mean_") || r.key.starts_with("E_"));
+  };
+  double largest = 0, sliding = 0;
+  for (const auto& r : results) {
+    // The drift may vanish.
+    if (is_mean(r) && r.key != "E_V") largest = std::max(largest, quantities::relative_error(r));
+    if (r.key == "P_slide") sliding = r.value[0];
+  }
+  const double shared = kShareOfLargest * largest;
+  for (auto& r : results) {
+    if (!r.is_scalar()) continue;
+    double& error = r.error[0];
+    const double size = std::abs(r.value[0]);
+    const bool dependent = error > kUnchanged * size;
+    if (is_mean(r) && dependent) error = std::max(error, shared * size);
+    // P_slide / P_stick is the ratio of two means.
+    const bool probability = r.key == "P_stick" || r.key == "P_slide";
+    if (probability && dependent) error = std::max(error, shared * sliding * (1 - sliding));
   }
 }
 
@@ -120,6 +151,7 @@ class Refiner {
       }
     }
     changes_ = std::move(changes);
+    share_errors(results);
   }
 
   // The density's own measure: how far the distribution function of |V| moved. It converges

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "stickslip/velocity/hp_axis.hpp"
 #include "stickslip/velocity/mesh.hpp"
@@ -16,7 +17,7 @@ velocity::MeshRule mesh_rule(const Resolution& resolution) {
   velocity::MeshRule rule;
   rule.v_max = resolution.v_max;
   rule.layers = resolution.layers;
-  rule.rates.omega = resolution.omega;
+  rule.rates = resolution.rates;
   return rule;
 }
 
@@ -26,9 +27,9 @@ double upwind_nodes(const model::Scene& scene, const Resolution& resolution) {
   return std::max(1.0, std::ceil(ratio * (1 - 1e-12)));
 }
 
-int hp_elements(const model::Scene& scene, const Resolution& resolution) {
-  const auto process = scene.process(resolution.levels);
-  return static_cast<int>(velocity::element_ends(process, mesh_rule(resolution)).size()) - 1;
+std::vector<int> hp_degrees(const model::Scene& scene, const Resolution& resolution) {
+  return velocity::element_degrees(scene.process(resolution.levels), mesh_rule(resolution),
+                                   resolution.degree);
 }
 
 // Exponential tilt of the law of X, per unit of x, that comes with large velocities: without drag
@@ -52,7 +53,7 @@ std::shared_ptr<velocity::Axis> axis_of(const model::Scene& scene, const Resolut
     return std::make_shared<velocity::UpwindAxis>(spacing, count, drag);
   }
   const auto ends = velocity::element_ends(scene.process(resolution.levels), mesh_rule(resolution));
-  return std::make_shared<velocity::HpAxis>(ends, resolution.degree, drag);
+  return std::make_shared<velocity::HpAxis>(ends, hp_degrees(scene, resolution), drag);
 }
 
 }  // namespace
@@ -86,12 +87,10 @@ Resolution hp_resolution(const model::Scene& scene, int degree, int layers, doub
   Resolution r;
   r.scheme = options::Scheme::hp;
   r.degree = degree;
-  r.omega = rates.omega;
+  r.rates = rates;
   r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
   r.v_max = velocity_end(scene, r.levels, tolerance);
-  velocity::MeshRule rule = mesh_rule(r);
-  rule.rates = rates;
-  r.layers = layers > 0 ? layers : velocity::natural_layers(scene.process(r.levels), rule);
+  r.layers = layers > 0 ? layers : velocity::natural_layers(scene.process(r.levels), mesh_rule(r));
   return r;
 }
 
@@ -124,7 +123,8 @@ std::shared_ptr<const velocity::Axis> make_axis(const model::Scene& scene,
 std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution) {
   double nodes = 1;
   if (resolution.scheme == options::Scheme::hp) {
-    nodes = hp_elements(scene, resolution) * (resolution.degree + 1.0);
+    const auto degrees = hp_degrees(scene, resolution);
+    nodes = std::accumulate(degrees.begin(), degrees.end(), static_cast<double>(degrees.size()));
   } else if (resolution.scheme == options::Scheme::upwind) {
     nodes = upwind_nodes(scene, resolution);
   }

@@ -154,7 +154,7 @@ Group method_group() {
                 "discretisation in v: hp discontinuous Galerkin elements, or the first-order "
                 "upwind differences of the paper"),
           integer("degree", "", whole(1, 24), {},
-                  "polynomial degree of the hp elements; fixing it switches refinement off",
+                  "largest polynomial degree of the hp elements; fixing it switches refinement off",
                   "leave it out to have it chosen from -accuracy"),
           integer("layers", "", whole(1, 200), {},
                   "elements graded towards v = 0; fixing it switches refinement off",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/special_functions/legendre.hpp>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -68,15 +69,24 @@ std::vector<double> ReferenceElement::integral(double t) const {
 }
 
 HpAxis::HpAxis(std::vector<double> ends, int degree, const model::Drag& drag)
-    : reference_(degree), ends_(std::move(ends)) {
+    : HpAxis(ends, std::vector<int>(ends.empty() ? 0 : ends.size() - 1, degree), drag) {}
+
+HpAxis::HpAxis(std::vector<double> ends, const std::vector<int>& degrees, const model::Drag& drag)
+    : ends_(std::move(ends)) {
   if (ends_.size() < 2 || ends_.front() != 0 || !std::is_sorted(ends_.begin(), ends_.end())) {
     throw std::invalid_argument("element ends must rise from 0");
   }
+  if (degrees.size() + 1 != ends_.size()) throw std::invalid_argument("one degree an element");
+  std::map<int, std::shared_ptr<const ReferenceElement>> references;
   for (int e = 0; e < elements(); ++e) {
+    auto& reference = references[degrees[e]];
+    if (!reference) reference = std::make_shared<const ReferenceElement>(degrees[e]);
     const double length = ends_[e + 1] - ends_[e];
-    for (int m = 0; m < reference_.size; ++m) {
-      nodes_.push_back(ends_[e] + length * reference_.node[m]);
-      weights_.push_back(length * reference_.weight[m]);
+    elements_.push_back({reference, static_cast<int>(nodes_.size()), length});
+    for (int m = 0; m < reference->size; ++m) {
+      nodes_.push_back(ends_[e] + length * reference->node[m]);
+      weights_.push_back(length * reference->weight[m]);
+      element_of_.push_back(e);
     }
   }
   for (double v : nodes_) drag_at_nodes_.push_back(drag(v));
@@ -84,14 +94,14 @@ HpAxis::HpAxis(std::vector<double> ends, int degree, const model::Drag& drag)
 }
 
 void HpAxis::transport(double excess, int j, TransportRow& row) const {
-  const int element = j / reference_.size;
+  const int element = element_of_[j];
   fill(j, std::max(-(excess + drag_at_ends_[element]), 0.0), excess + drag_at_nodes_[j],
        std::max(excess + drag_at_ends_[element + 1], 0.0), row);
 }
 
 void HpAxis::transport_change(double excess, const SpeedChange& change, int j,
                               TransportRow& row) const {
-  const int element = j / reference_.size;
+  const int element = element_of_[j];
   const bool falls = excess + drag_at_ends_[element] < 0;
   const bool rises = excess + drag_at_ends_[element + 1] > 0;
   fill(j, falls ? -change(ends_[element]) : 0, change(nodes_[j]),
@@ -100,65 +110,69 @@ void HpAxis::transport_change(double excess, const SpeedChange& change, int j,
 
 void HpAxis::fill(int j, double down_speed, double speed_here, double up_speed,
                   TransportRow& row) const {
-  const auto& r = reference_;
-  const int q = r.size, element = j / q, m = j % q, first = j - m;
-  const double length = ends_[element + 1] - ends_[element];
+  const int element = element_of_[j];
+  const auto& [reference, first, length] = elements_[element];
+  const auto& r = *reference;
+  const int q = r.size, m = j - first;
   const double lift = 1 / (r.weight[m] * length);
   const double down = down_speed * r.at_left[m] * lift, up = up_speed * r.at_right[m] * lift;
   const double speed = speed_here / length;
   const bool lowest = element == 0, highest = element == elements() - 1;
 
   row.entries.clear();
-  if (down != 0 && !lowest) {
-    for (int n = 0; n < q; ++n) row.entries.push_back({first - q + n, down * r.at_right[n]});
-  }
+  if (down != 0 && !lowest) append(element - 1, down, &ReferenceElement::at_right, row);
   for (int n = 0; n < q; ++n) {
     if (n == m) continue;
     const double value = speed * r.derivative[m * q + n] - down * r.at_left[n] - up * r.at_right[n];
     row.entries.push_back({first + n, value});
   }
-  if (up != 0 && !highest) {
-    for (int n = 0; n < q; ++n) row.entries.push_back({first + q + n, up * r.at_left[n]});
-  }
+  if (up != 0 && !highest) append(element + 1, up, &ReferenceElement::at_left, row);
   row.inflow = lowest ? down : 0;
   row.outflow = highest ? up : 0;
 }
 
-std::vector<Entry> HpAxis::trace_at_zero() const {
-  std::vector<Entry> trace;
-  for (int n = 0; n < reference_.size; ++n) trace.push_back({n, reference_.at_left[n]});
-  return trace;
+void HpAxis::append(int element, double factor, Trace trace, TransportRow& row) const {
+  for (const auto& [node, value] : at_end(element, trace)) {
+    row.entries.push_back({node, factor * value});
+  }
 }
 
+std::vector<Entry> HpAxis::at_end(int element, Trace trace) const {
+  return entries(element, (*elements_[element].reference).*trace);
+}
+
+std::vector<Entry> HpAxis::entries(int element, std::span<const double> values) const {
+  std::vector<Entry> all;
+  for (int n = elements_[element].first; const double value : values) all.push_back({n++, value});
+  return all;
+}
+
+std::vector<Entry> HpAxis::trace_at_zero() const { return at_end(0, &ReferenceElement::at_left); }
+
 std::vector<Entry> HpAxis::trace_at_top() const {
-  std::vector<Entry> trace;
-  const int first = (elements() - 1) * reference_.size;
-  for (int n = 0; n < reference_.size; ++n) trace.push_back({first + n, reference_.at_right[n]});
-  return trace;
+  return at_end(elements() - 1, &ReferenceElement::at_right);
 }
 
 std::vector<Entry> HpAxis::value_at(double v) const {
   const auto above = std::upper_bound(ends_.begin() + 1, ends_.end() - 1, v);
-  const int element = static_cast<int>(above - ends_.begin()) - 1;
-  const auto basis = reference_.basis((v - ends_[element]) / (ends_[element + 1] - ends_[element]));
-  std::vector<Entry> value;
-  for (int n = 0; n < reference_.size; ++n) {
-    value.push_back({element * reference_.size + n, basis[n]});
-  }
-  return value;
+  const int e = static_cast<int>(above - ends_.begin()) - 1;
+  const auto& [reference, first, length] = elements_[e];
+  return entries(e, reference->basis((v - ends_[e]) / length));
 }
 
 double HpAxis::mass_below(std::span<const double> mass, double v) const {
-  const int q = reference_.size;
   double below = 0;
   for (int e = 0; e < elements() && ends_[e] < v; ++e) {
-    const auto element = mass.subspan(static_cast<std::size_t>(e) * q, q);
+    const auto& [reference, first, length] = elements_[e];
+    const auto element = mass.subspan(static_cast<std::size_t>(first), reference->size);
     if (v >= ends_[e + 1]) {
       below = std::accumulate(element.begin(), element.end(), below);
       continue;
     }
-    const auto part = reference_.integral((v - ends_[e]) / (ends_[e + 1] - ends_[e]));
-    for (int n = 0; n < q; ++n) below += element[n] / reference_.weight[n] * part[n];
+    const auto part = reference->integral((v - ends_[e]) / length);
+    for (int n = 0; n < reference->size; ++n) {
+      below += element[n] / reference->weight[n] * part[n];
+    }
   }
   return below;
 }

@@ -73,6 +73,10 @@ double killed_layer(const model::Process& process, double lambda) {
   return (counts ? gap : gap + noise.delta) / (rate + lambda);
 }
 
+bool has_waves(const model::Process& process, const MeshRule& rule) {
+  return rule.rates.omega > 4 * process.noise.rate();
+}
+
 double end_of_thinnest_waves(const model::Process& process) {
   return 20 * gap_below(process) / process.noise.rate();
 }
@@ -133,8 +137,25 @@ std::vector<double> element_ends(const model::Process& process, const MeshRule& 
     // A remainder much shorter than its neighbour is merged into it.
     ends.push_back(next + 0.3 * step >= rule.v_max ? rule.v_max : next);
   }
-  const bool waves = rule.rates.omega > 4 * process.noise.rate();
-  return waves ? cut_for_waves(process, rule.rates.omega, ends) : ends;
+  return has_waves(process, rule) ? cut_for_waves(process, rule.rates.omega, ends) : ends;
+}
+
+// An element at v holds a share of what is asked for that falls like v^0.8 to v (levels that it
+// concerns times how far the solution is from constant there), half a digit from one element to the
+// next, and a degree is worth a digit. One degree for two elements changed no error of seven scenes
+// in which one for one made them 10 to 1000 times larger; factors have half the entries. With
+// less than degree 2 the first rungs were wrong by more than they said (mu_d = 0.9). Waves are
+// as steep in every element, and what ends within 1/lambda before the noise changes comes from
+// small v.
+std::vector<int> element_degrees(const model::Process& process, const MeshRule& rule, int degree) {
+  const int layers = rule.layers > 0 ? rule.layers : natural_layers(process, rule);
+  std::vector<int> degrees(element_ends(process, rule).size() - 1, degree);
+  const bool early = rule.rates.lambda * process.noise.tau > 1;
+  if (early || has_waves(process, rule)) return degrees;
+  for (int e = 0; e < std::min(layers, static_cast<int>(degrees.size())); ++e) {
+    degrees[e] = std::max(std::min(2, degree), degree - (layers - 1 - e) / 2);
+  }
+  return degrees;
 }
 
 namespace {

@@ -113,7 +113,8 @@ TEST_CASE("laplace: without drag hp agrees with the fluid queue") {
     double delta, mu_d;
   };
   for (const auto& c : {Case{0.5, 1}, Case{0.25, 1}, Case{0.25, 0.25}, Case{0.125, 0.5}}) {
-    const auto d = test::on_hp(scene(1, c.mu_d, 1, c.delta, {0, 0}), 9, 1e-11);
+    const auto s = scene(1, c.mu_d, 1, c.delta, {0, 0});
+    const auto d = test::discretise(s, accuracy::hp_resolution(s, 9, 0, 1e-11, {30, 0}));
     Durations durations(d);
     for (double lambda : {1.0, 30.0}) {
       const auto found = durations.at(lambda), known = exact_transforms(d.process, lambda);
@@ -131,7 +132,7 @@ TEST_CASE("laplace: transforms of large lambda have the accuracy of their own si
   const double lambda = 1e4;
   for (const auto& s : {scene(1, 0.25, 1, 0.25, {0, 0}), scene(1, 1, 1, 0.5, {1, 0})}) {
     const auto on_layers = [&](int degree) {
-      return test::discretise(s, accuracy::hp_resolution(s, degree, 16, 1e-12));
+      return test::discretise(s, accuracy::hp_resolution(s, degree, 16, 1e-12, {lambda, 0}));
     };
     const auto fine = on_layers(12);
     const auto found = Durations(on_layers(10)).at(lambda), finer = Durations(fine).at(lambda);

@@ -53,6 +53,23 @@ TEST_CASE("mesh: the number of layers can be fixed, and moves only what lies nea
   CHECK(more[more.size() - 2] == Approx(natural[natural.size() - 2]).epsilon(1e-14));
 }
 
+TEST_CASE("mesh: degrees fall by one in two layers towards v = 0, and only there") {
+  const auto p = process(0.25, 1, 0.25, {1, 0});
+  auto rule = rule_to(7, 8);
+  CHECK(velocity::element_ends(p, rule).size() == 11);
+  CHECK(velocity::element_degrees(p, rule, 9) == std::vector{6, 6, 7, 7, 8, 8, 9, 9, 9, 9});
+  CHECK(velocity::element_degrees(p, rule, 4) == std::vector{2, 2, 2, 2, 3, 3, 4, 4, 4, 4});
+  CHECK(velocity::element_degrees(p, rule, 1) == std::vector(10, 1));
+  CHECK(velocity::element_degrees(p, rule, 0) == std::vector(10, 0));
+  rule.rates.lambda = 0.9;
+  CHECK(velocity::element_degrees(p, rule, 9).front() == 6);
+  rule.rates.lambda = 1.1;
+  CHECK(velocity::element_degrees(p, rule, 9) == std::vector(10, 9));
+  rule.rates = {0, 5 * p.noise.rate()};
+  const auto cut = velocity::element_ends(p, rule).size() - 1;
+  CHECK(velocity::element_degrees(p, rule, 9) == std::vector(cut, 9));
+}
+
 TEST_CASE("mesh: a law has the elements and the tail of the coefficients it stands for") {
   const auto built_in = process(0.5, 1, 0.25, {1, 0.3});
   auto written = built_in;

@@ -13,13 +13,13 @@ namespace stickslip::accuracy {
 
 struct Resolution {
   options::Scheme scheme = options::Scheme::hp;
-  int degree = 0;    ///< hp: polynomial degree
-  int layers = 0;    ///< hp: elements graded towards v = 0
-  double omega = 0;  ///< hp: frequency whose waves the elements resolve [1/time]
-  int points = 0;    ///< upwind: nodes per noise step
-  int levels = 0;    ///< N, noise levels on each side of 0
-  double v_max = 0;  ///< end of the velocity axis [velocity]
-  int halves = 1;    ///< 1: folded by symmetry, v > 0 only; 2: both signs of v
+  int degree = 0;         ///< hp: largest polynomial degree of an element
+  int layers = 0;         ///< hp: elements graded towards v = 0
+  velocity::Rates rates;  ///< hp: fastest rates that the elements resolve
+  int points = 0;         ///< upwind: nodes per noise step
+  int levels = 0;         ///< N, noise levels on each side of 0
+  double v_max = 0;       ///< end of the velocity axis [velocity]
+  int halves = 1;         ///< 1: folded by symmetry, v > 0 only; 2: both signs of v
   options::Factors factors = options::Factors::in_memory;
 };
 

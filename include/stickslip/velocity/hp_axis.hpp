@@ -1,6 +1,7 @@
 #pragma once
 /// hp discontinuous Galerkin discretisation of the half line.
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -29,18 +30,21 @@ struct ReferenceElement {
   std::vector<double> barycentric_;
 };
 
-/// Elements shared by all noise levels, polynomials of one degree, Lagrange basis on the
-/// Gauss-Legendre nodes of each element. With u = sum_n u_n l_n and q-point quadrature (exact for
-/// linear drag), testing B u' with l_m and dividing by w_m gives on the element [a, b]
+/// Elements shared by all noise levels, polynomials of a degree of its own on each, Lagrange basis
+/// on the Gauss-Legendre nodes of each element. With u = sum_n u_n l_n and q-point quadrature
+/// (exact for linear drag), testing B u' with l_m and dividing by w_m gives on the element [a, b]
 ///
 ///   (T u)_m = B(v_m) sum_n l_n'(v_m) u_n
 ///           + max(B(b), 0) l_m(b)/w_m (u(b+) - u(b-)) + max(-B(a), 0) l_m(a)/w_m (u(a-) - u(a+)),
 ///
 /// the jumps entering where the flow leaves the element. Errors of functionals fall exponentially
-/// with the degree.
+/// with the degrees.
 class HpAxis final : public Axis {
  public:
-  /// `ends`: element ends from 0 to v_max, rising. `degree` >= 0.
+  /// `ends`: element ends from 0 to v_max, rising. `degrees`: of each element, >= 0. Throws
+  /// std::invalid_argument if they are not.
+  HpAxis(std::vector<double> ends, const std::vector<int>& degrees, const model::Drag& drag);
+  /// The same degree everywhere.
   HpAxis(std::vector<double> ends, int degree, const model::Drag& drag);
 
   [[nodiscard]] std::span<const double> nodes() const override { return nodes_; }
@@ -59,15 +63,27 @@ class HpAxis final : public Axis {
   [[nodiscard]] bool needs_holding() const override { return true; }
 
   [[nodiscard]] int elements() const { return static_cast<int>(ends_.size()) - 1; }
-  [[nodiscard]] int degree() const { return reference_.size - 1; }
 
  private:
+  struct Element {
+    std::shared_ptr<const ReferenceElement> reference;
+    int first;  // of its nodes
+    double length;
+  };
+  using Trace = std::vector<double> ReferenceElement::*;
+
   // The row of a node where B is `speed` and the flow leaves its element with the speeds `down` and
   // `up`.
   void fill(int j, double down, double speed, double up, TransportRow& row) const;
 
-  ReferenceElement reference_;
+  // `factor` times the value of the element at one of its ends, as part of a row.
+  void append(int element, double factor, Trace trace, TransportRow& row) const;
+  [[nodiscard]] std::vector<Entry> at_end(int element, Trace trace) const;
+  [[nodiscard]] std::vector<Entry> entries(int element, std::span<const double> values) const;
+
   std::vector<double> ends_;
+  std::vector<Element> elements_;
+  std::vector<int> element_of_;  // by node
   std::vector<double> nodes_, weights_;
   std::vector<double> drag_at_nodes_, drag_at_ends_;
 };

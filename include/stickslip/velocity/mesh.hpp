@@ -32,6 +32,11 @@ struct MeshRule {
 /// Element ends 0 = e_0 < e_1 < ... < e_E = v_max.
 [[nodiscard]] std::vector<double> element_ends(const model::Process& process, const MeshRule& rule);
 
+/// Polynomial degree of each of these elements, at most `degree`: what happens at v concerns levels
+/// within about v^(1/3) of mu_d alone, so that elements nearer to v = 0 need fewer digits.
+[[nodiscard]] std::vector<int> element_degrees(const model::Process& process, const MeshRule& rule,
+                                               int degree);
+
 /// Velocity beyond which the stationary density is below `tolerance`, from its white-noise bound
 /// exp(-(mu_d - |bias|) v + int_0^v b): coloured noise and discrete levels only shorten the tail.
 /// Without drag the bias must be smaller than mu_d.
