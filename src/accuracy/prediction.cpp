@@ -52,6 +52,7 @@ class Predictor {
     step_.nonzeros = std::max(step_.nonzeros, ledger.nonzeros);
     step_.factor_entries = std::max(step_.factor_entries, analysis.factor_entries);
     step_.megabytes = std::max(step_.megabytes, analysis.megabytes);
+    step_.operations += analysis.operations;
     const int ranks = petsc::ranks(comm_);
     Foretold f;
     f.assembly = ledger.assembly_seconds;

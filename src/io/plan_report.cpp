@@ -58,6 +58,7 @@ Json step_json(const accuracy::PredictedStep& step) {
   json["nonzeros"] = step.nonzeros;
   json["factor_entries"] = step.factor_entries;
   json["factor_megabytes"] = step.megabytes;
+  json["factor_operations"] = step.operations;
   json["seconds"] = step.seconds;
   return json;
 }

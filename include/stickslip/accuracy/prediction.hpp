@@ -18,6 +18,7 @@ struct PredictedStep {
   std::int64_t nonzeros = 0;
   double factor_entries = 0;  ///< of the largest factorisation, by MUMPS's analysis
   double megabytes = 0;       ///< of the same
+  double operations = 0;      ///< of all factorisations, by the same analysis
   double seconds = 0;
 };
 
