@@ -35,7 +35,8 @@ double largest(const std::vector<double>& values) {
 velocity::Rates fastest_rates(const options::Request& request) {
   using options::Quantity;
   velocity::Rates rates;
-  if (request.wants(Quantity::laplace) || request.wants(Quantity::resolvent)) {
+  if (request.wants(Quantity::laplace) || request.wants(Quantity::resolvent) ||
+      request.route == options::Route::lambda) {
     rates.lambda = largest(request.lambda);
   }
   if (request.wants(Quantity::spectrum)) rates.omega = largest(request.omega);

@@ -44,11 +44,11 @@ void share_errors(Results& results) {
   const auto is_mean = [](const Result& r) {
     return r.is_scalar() && (r.key.starts_with("mean_") || r.key.starts_with("E_"));
   };
-  double largest = 0, sliding = 0;
+  double largest = 0, odds = 1;  // P_stick P_slide
   for (const auto& r : results) {
     // The drift may vanish.
     if (is_mean(r) && r.key != "E_V") largest = std::max(largest, quantities::relative_error(r));
-    if (r.key == "P_slide") sliding = r.value[0];
+    if (r.key == "P_stick" || r.key == "P_slide") odds *= r.value[0];
   }
   const double shared = kShareOfLargest * largest;
   for (auto& r : results) {
@@ -59,7 +59,7 @@ void share_errors(Results& results) {
     if (is_mean(r) && dependent) error = std::max(error, shared * size);
     // P_slide / P_stick is the ratio of two means.
     const bool probability = r.key == "P_stick" || r.key == "P_slide";
-    if (probability && dependent) error = std::max(error, shared * sliding * (1 - sliding));
+    if (probability && dependent) error = std::max(error, shared * odds);
   }
 }
 
@@ -186,10 +186,14 @@ class Refiner {
     const bool falls = rounding < 0.5 * std::exchange(last_rounding_, rounding);
     if (rounding <= request_.accuracy || falls) return false;
     const bool by_lambda = request_.route == options::Route::lambda;
+    const double least = std::max(rounding, step.estimate);
+    const std::string looser = least < 0.05
+                                   ? fmt::format("take {}-accuracy {:.0e}",
+                                                 by_lambda ? "another -lambda or " : "", 2 * least)
+                                   : "no digit of it is left: leave it out";
     outcome_.shortfall = fmt::format(
-        "{} {} to {:.1e}; take {}-accuracy {:.0e}",
-        by_lambda ? "lambda > 0 or rounding limits" : "rounding limits", step.limiting_key,
-        rounding, by_lambda ? "another -lambda or " : "", 2 * rounding);
+        "{} {} to {:.1e}; {}", by_lambda ? "lambda > 0 or rounding limits" : "rounding limits",
+        step.limiting_key, least, looser);
     return true;
   }
 

@@ -42,9 +42,12 @@ void say(const std::string& text) {
   std::fflush(stderr);
 }
 
+bool printed(const std::string& text) {
+  return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+}
+
 void print(const std::string& text) {
-  const bool written = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
-  if (!written) throw std::runtime_error("standard output cannot be written");
+  if (!printed(text)) throw std::runtime_error("standard output cannot be written");
 }
 
 /// Texts that need neither PETSc nor a scene; empty when none is asked for.
@@ -254,8 +257,7 @@ int run(int argc, char** argv) {
   options::shield_formulas(words);
   const std::string text = text_asked_for(words);
   if (!text.empty()) {
-    const bool written = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
-    return static_cast<int>(written ? ExitStatus::done : ExitStatus::other);
+    return static_cast<int>(printed(text) ? ExitStatus::done : ExitStatus::other);
   }
   try {
     options::check_options_files(words);

@@ -190,7 +190,7 @@ class Memory(Faults):
         """ulimit -v of 400, 600, 800 MB: told before it is allocated or when it runs out, status 4"""
         for megabytes in (400, 600, 800):
             status, told = self.limited(resource.RLIMIT_AS, megabytes << 20, "-mu_d", "0.25",
-                                        "-delta", "0.03125", "-accuracy", "1e-10", "-summary",
+                                        "-delta", "0.015625", "-accuracy", "1e-10", "-summary",
                                         "s.json")
             self.assertIn(status, (3, 4), told)
             self.assertNotIn("Segmentation", told)
