@@ -21,13 +21,16 @@ MANY = ("-delta", "0.25", "-sweep_mu_d", "0.1:1:6", "-sweep_tau", "0.5:2:8")
 
 
 class Interrupted(Case):
-    def killed_after(self, seconds, *options, ranks=0):
-        """Starts a sweep and kills all its processes; whether that came before its end."""
+    def killed_at(self, count, seconds, record, *options, ranks=0):
+        """Starts a sweep and kills all its processes, `seconds` after the record holds so many
+        points; whether that came before its end."""
         command = [str(BINARIES / "stickslip"), *options]
         if ranks:
             command = ["mpiexec", "-n", str(ranks), *command]
         with subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL,
                               stderr=subprocess.DEVNULL, start_new_session=True) as process:
+            while process.poll() is None and self.points(record) < count:
+                time.sleep(0.001)
             try:
                 process.wait(seconds)
                 return False
@@ -43,15 +46,12 @@ class Interrupted(Case):
     def check(self, ranks):
         moment = random.Random(ranks)
         whole, pieces, record = (self.folder / name for name in ("whole.csv", "pieces.csv", "kept"))
-        start = time.monotonic()
         self.run_ok(*MANY, "-sweep_csv", whole, ranks=ranks)
-        seconds = time.monotonic() - start
         options = (*MANY, "-checkpoint", str(record), "-sweep_csv", str(pieces))
         kills = 0
-        for _ in range(200):
-            if self.points(record) > 40:
-                break
-            kills += self.killed_after(seconds * moment.uniform(0.1, 0.5), *options, ranks=ranks)
+        while self.points(record) < 36:
+            kills += self.killed_at(self.points(record) + moment.randrange(9),
+                                    moment.uniform(0.001, 0.1), record, *options, ranks=ranks)
             self.assertFalse(pieces.exists() and self.points(record) < 48)
         self.assertGreater(kills, 1)
         s = self.summary(*options, ranks=ranks)
