@@ -11,6 +11,17 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 
 
+# Open MPI refuses root, and more ranks than cores, unless told otherwise.
+MPI_PERMISSIONS = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+                   "OMPI_MCA_rmaps_base_oversubscribe": "1"}
+
+
+def words_of(options):
+    """Words of a command line; the value None makes a flag of an option."""
+    return [word for name, value in options.items()
+            for word in (["-" + name] if value is None else ["-" + name, str(value)])]
+
+
 class Refused(Exception):
     """The program found the scene or the request invalid."""
 
@@ -23,9 +34,7 @@ class Program:
         """The summary of one run; underscores of PETSc's solver prefixes stay as they are."""
         with tempfile.TemporaryDirectory() as folder:
             summary = pathlib.Path(folder) / "summary.json"
-            words = [*self.launcher, str(self.path), "-summary", str(summary)]
-            for name, value in options.items():
-                words += ["-" + name, str(value)]
+            words = [*self.launcher, str(self.path), "-summary", str(summary), *words_of(options)]
             try:
                 done = subprocess.run(words, capture_output=True, text=True)
             except OSError as problem:

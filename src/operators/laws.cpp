@@ -16,12 +16,12 @@ constexpr double kNegligible = 1e-9;
 
 // Off-diagonals and their sum in one pass; the diagonal was summed in the same order.
 struct Row {
-  double diagonal = 0, others = 0, largest = -1;  // largest off-diagonal: at most 0 if monotone
+  double diagonal = 0, others = 0;
+  double largest = -HUGE_VAL;  // off-diagonal: at most 0 if monotone
 };
 
 Row read_row(const LocalRows& rows, PetscInt r) {
   Row row;
-  row.largest = -HUGE_VAL;
   for (PetscInt n = rows.row_start[r]; n < rows.row_start[r + 1]; ++n) {
     const double value = PetscRealPart(rows.values[n]);
     if (rows.columns[n] == rows.first + r) {

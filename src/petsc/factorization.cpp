@@ -305,7 +305,7 @@ Solution Factorization::solve(Vec b, bool transposed) {
   ++ledger_.solves;
   bool sound = false;
   for (int n = 0; n < kMostCorrections && !sound; ++n) {
-    compute_residual();
+    compute_residual();  // again, as backward_error overwrites it
     apply(residual, step, transposed);
     check(VecAXPY(s.x, 1, step));
     check(VecAXPY(s.correction, 1, step));

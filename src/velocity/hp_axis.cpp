@@ -68,7 +68,7 @@ std::vector<double> ReferenceElement::integral(double t) const {
   return value;
 }
 
-HpAxis::HpAxis(std::vector<double> ends, int degree, const model::Drag& drag)
+HpAxis::HpAxis(const std::vector<double>& ends, int degree, const model::Drag& drag)
     : HpAxis(ends, std::vector<int>(ends.empty() ? 0 : ends.size() - 1, degree), drag) {}
 
 HpAxis::HpAxis(std::vector<double> ends, const std::vector<int>& degrees, const model::Drag& drag)

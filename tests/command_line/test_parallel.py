@@ -46,9 +46,7 @@ class Ranks(Case):
         results, field = self.solve(*options, **how)
         for ranks in (1, 2, 3):
             others, other_field = self.solve(*options, ranks=ranks, **how)
-            for key, result in results.items():
-                numpy.testing.assert_allclose(others[key]["value"], result["value"], rtol=1e-12,
-                                              atol=0, err_msg=f"{key} on {ranks} ranks")
+            self.assert_same(others, results, ranks)
             numpy.testing.assert_allclose(other_field, field, rtol=1e-9, atol=1e-12)
 
     def test_hp(self):
@@ -66,19 +64,21 @@ class Ranks(Case):
     # rounding, and with it the number of ranks, decides within the error.
     WITHIN_ERROR = ("relaxation_", "f_slide", "f_stick", "f_excursion", "cdf_", "C_vv", "E(")
 
+    def assert_same(self, many, one, ranks):
+        self.assertEqual(many.keys(), one.keys())
+        for key, result in one.items():
+            value, other = (numpy.atleast_1d(r["value"]) for r in (result, many[key]))
+            allowed = 1e-12 * numpy.abs(value)
+            if key.startswith(self.WITHIN_ERROR) and key != "f_stick_0":
+                error = numpy.atleast_1d(result["error"])
+                allowed = numpy.maximum(allowed, 3 * numpy.max(error))
+            away = numpy.abs(other - value) - allowed
+            self.assertLessEqual(numpy.max(away), 0, f"{key} on {ranks} ranks: {other} {value}")
+
     def compare_all(self, *options, ranks):
         one = self.summary(*options)["results"]
         for number in ranks:
-            many = self.summary(*options, ranks=number)["results"]
-            self.assertEqual(many.keys(), one.keys())
-            for key, result in one.items():
-                value, other = (numpy.atleast_1d(r["value"]) for r in (result, many[key]))
-                allowed = 1e-12 * numpy.abs(value)
-                if key.startswith(self.WITHIN_ERROR) and key != "f_stick_0":
-                    error = numpy.atleast_1d(result["error"])
-                    allowed = numpy.maximum(allowed, 3 * numpy.max(error))
-                away = numpy.abs(other - value) - allowed
-                self.assertLessEqual(numpy.max(away), 0, f"{key} on {number} ranks: {other} {value}")
+            self.assert_same(self.summary(*options, ranks=number)["results"], one, number)
 
     def test_every_quantity(self):
         scene = ("-mu_d", "0.25", "-delta", "0.25", "-observable", "v^2; x*v", "-start", "s+")

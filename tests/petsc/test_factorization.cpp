@@ -24,6 +24,17 @@ MatHandle bidiagonal(PetscInt n) {
   });
 }
 
+enum class Side { right, left };
+
+// A 1 or A^T 1.
+VecHandle image_of_one(Mat a, Side side) {
+  VecHandle one, image;
+  check(MatCreateVecs(a, one.out(), image.out()));
+  check(VecSet(one, 1));
+  check(side == Side::right ? MatMult(a, one, image) : MatMultTranspose(a, one, image));
+  return image;
+}
+
 double distance_from_one(Vec x) {
   check(VecShift(x, -1));
   PetscReal norm = 0;
@@ -37,13 +48,8 @@ TEST_CASE("factorization: plain and transposed solves, counted", "[parallel]") {
   const MatHandle a = bidiagonal(20);
   Ledger ledger;
   Factorization factors(a, "test_", ledger);
-  VecHandle one, b;
-  check(MatCreateVecs(a, one.out(), b.out()));
-  check(VecSet(one, 1));
-  check(MatMult(a, one, b));
-  CHECK(distance_from_one(factors.solve(b).x) < 1e-14);
-  check(MatMultTranspose(a, one, b));
-  const auto transposed = factors.solve_transposed(b);
+  CHECK(distance_from_one(factors.solve(image_of_one(a, Side::right)).x) < 1e-14);
+  const auto transposed = factors.solve_transposed(image_of_one(a, Side::left));
   CHECK(transposed.backward_error < 1e-15);
   CHECK(distance_from_one(transposed.x) < 1e-14);
 
@@ -57,10 +63,7 @@ TEST_CASE("factorization: plain and transposed solves, counted", "[parallel]") {
 
 TEST_CASE("factorization: a second step of refinement where one is not enough", "[parallel]") {
   const MatHandle a = bidiagonal(50);
-  VecHandle one, b;
-  check(MatCreateVecs(a, one.out(), b.out()));
-  check(VecSet(one, 1));
-  check(MatMult(a, one, b));
+  const VecHandle b = image_of_one(a, Side::right);
   const auto iterated_to = [](const char* tolerance) {
     return test::Given({{"-rough_ksp_type", "gmres"},
                         {"-rough_pc_type", "jacobi"},
@@ -148,13 +151,8 @@ TEST_CASE("factorization: MUMPS gets more workspace once when it runs out of it"
   const MatHandle a = saddle(400);
   Ledger ledger;
   Factorization factors(a, "tight_", ledger);
-  VecHandle one, b;
-  check(MatCreateVecs(a, one.out(), b.out()));
-  check(VecSet(one, 1));
-  check(MatMult(a, one, b));
-  CHECK(distance_from_one(factors.solve(b).x) < 1e-12);
-  check(MatMultTranspose(a, one, b));
-  CHECK(distance_from_one(factors.solve_transposed(b).x) < 1e-12);
+  CHECK(distance_from_one(factors.solve(image_of_one(a, Side::right)).x) < 1e-12);
+  CHECK(distance_from_one(factors.solve_transposed(image_of_one(a, Side::left)).x) < 1e-12);
 }
 
 TEST_CASE("factorization: a failure is told with what MUMPS means by it") {
@@ -171,12 +169,8 @@ TEST_CASE("factorization: options of the role override its defaults") {
   check(PetscOptionsSetValue(nullptr, "-own_pc_factor_mat_solver_type", "petsc"));
   const MatHandle a = bidiagonal(6);
   Ledger ledger;
-  VecHandle one, b;
-  check(MatCreateVecs(a, one.out(), b.out()));
-  check(VecSet(one, 1));
-  check(MatMult(a, one, b));
   Factorization factors(a, "own_", ledger);
-  CHECK(distance_from_one(factors.solve(b).x) < 1e-14);
+  CHECK(distance_from_one(factors.solve(image_of_one(a, Side::right)).x) < 1e-14);
   CHECK(ledger.factor_entries == 0);  // MUMPS's count; another package ran
   check(PetscOptionsClearValue(nullptr, "-own_pc_factor_mat_solver_type"));
 }

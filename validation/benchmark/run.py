@@ -28,7 +28,7 @@ import numpy
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from entry import Entry
-from harness import difference, worse
+from harness import MPI_PERMISSIONS, difference, words_of, worse
 
 LAMBDA = 1e-6  # of the paper's method
 EXCURSIONS = 100_000
@@ -49,13 +49,11 @@ class Cost:
 
 def cost_of(words, environment=None):
     """Cost without values, and what the process printed."""
-    # Open MPI refuses root unless told otherwise.
-    permission = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     words = [str(word) for word in words]
     with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as told:
         start = time.monotonic()
         process = subprocess.Popen(words, stdout=out, stderr=told,
-                                   env={**os.environ, **permission, **(environment or {})})
+                                   env={**os.environ, **MPI_PERMISSIONS, **(environment or {})})
         _, status, usage = os.wait4(process.pid, 0)
         seconds = time.monotonic() - start
         process.returncode = os.waitstatus_to_exitcode(status)
@@ -77,9 +75,7 @@ class Ours:
     def __call__(self):
         with tempfile.TemporaryDirectory() as folder:
             summary = pathlib.Path(folder) / "summary.json"
-            words = [*self.launcher, self.program, "-summary", summary]
-            for name, value in self.options.items():
-                words += ["-" + name, value] if value is not None else ["-" + name]
+            words = [*self.launcher, self.program, "-summary", summary, *words_of(self.options)]
             cost, _ = cost_of(words, self.environment)
             cost.values = json.loads(summary.read_text())
         return cost
@@ -186,7 +182,7 @@ def beside_others(entry, rounds):
                                faster)
                 entry.at_least(f"error of {full} over ours", errors[full] / errors["this program"],
                                1e4)
-    return runs, errors
+    return runs
 
 
 def at_small_delta(entry, rounds):
@@ -295,7 +291,7 @@ def main():
         os.environ[threads] = "1"
     entry = Entry(__doc__, "beyond the paper")
     rounds = 1 if entry.quick else 3
-    beside, _ = beside_others(entry, rounds)
+    beside = beside_others(entry, rounds)
     groups = [other_limits(entry, 3 * rounds), beside, at_small_delta(entry, rounds),
               growth(entry, rounds)]
     drawn(entry, groups)

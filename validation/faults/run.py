@@ -15,7 +15,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from entry import Entry
-from harness import ROOT
+from harness import MPI_PERMISSIONS, ROOT
 
 QUICK = ("test_faults.Disks", "test_faults.Memory", "test_faults.OneRank",
          "test_parallel.OneRankAlone.test_bad_input_of_one_rank_ends_all")
@@ -49,9 +49,7 @@ class Timed(unittest.TestResult):
 
 def faults(entry):
     os.environ |= {"STICKSLIP_BINARIES": str(entry.program.path.resolve().parent),
-                   # Open MPI refuses root and more ranks than cores unless told otherwise.
-                   "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-                   "OMPI_MCA_rmaps_base_oversubscribe": "1"}
+                   **MPI_PERMISSIONS}
     sys.path.insert(0, str(ROOT / "tests" / "command_line"))
     result = Timed()
     names = QUICK if entry.quick else QUICK + LONG

@@ -10,6 +10,7 @@ import subprocess
 import tempfile
 
 from entry import deviation
+from harness import words_of
 from reference_arguments import words
 from scenes import BASE
 
@@ -308,8 +309,7 @@ def direct(f):
     with tempfile.TemporaryDirectory() as folder:
         summary = pathlib.Path(folder) / "direct.json"
         options = {**f.options, "quantities": "spectrum", "spectrum_solver": "direct", "summary": summary}
-        words = [str(twin)] + [str(w) for name, value in options.items() for w in ("-" + name, value)]
-        subprocess.run(words, capture_output=True, text=True, check=True)
+        subprocess.run([str(twin), *words_of(options)], capture_output=True, text=True, check=True)
         other = json.loads(summary.read_text())["results"]["S_v"]
     for (omega, value, error), x, e in zip(f.column("S_v"), other["value"], other["error"]):
         yield same(f"S_v({omega:g})", (value, error), (x, e))

@@ -13,7 +13,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from entry import Entry
-from harness import worse
+from harness import words_of, worse
 from properties import BALANCES, FACTOR, PROPERTIES, Found, stored
 from scenes import BASE, REFUSED, SCENES
 
@@ -51,8 +51,7 @@ def refused(entry):
     """Exit status and message of scenes that cannot be."""
     rows, wrong = [], 0
     for name, options, status, word in REFUSED:
-        words = [str(entry.program.path)]
-        words += [str(w) for key, value in {**BASE, **options}.items() for w in ("-" + key, value)]
+        words = [str(entry.program.path), *words_of({**BASE, **options})]
         done = subprocess.run(words, capture_output=True, text=True)
         wrong += done.returncode != status or word not in done.stderr
         rows.append((name, str(done.returncode), done.stderr.strip().replace("stickslip: ", "")))

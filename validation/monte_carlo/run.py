@@ -20,7 +20,8 @@ import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from harness import Program, Report, difference, last_place, parser, significant, worse
+from harness import (MPI_PERMISSIONS, Program, Report, difference, last_place, parser, significant,
+                     worse)
 from known import P_X, SIMULATED
 
 QUANTITIES = ("P_stick", "E_V2", "P_X_le_mu_s")
@@ -201,8 +202,7 @@ def idle_cores(seconds=1):
 
 def two_ranks(program, report):
     """Seconds of one rank over those of two."""
-    # Open MPI refuses root unless told otherwise.
-    os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    os.environ |= MPI_PERMISSIONS
     both = {1: program, 2: Program(program.path, ("mpiexec", "-n", "2"))}
     free = idle_cores()
     seconds = {ranks: min(run.run(route="monte_carlo", mu_d=1 / 4, delta=1 / 8, excursions=500_000)

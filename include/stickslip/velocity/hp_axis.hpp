@@ -45,7 +45,7 @@ class HpAxis final : public Axis {
   /// std::invalid_argument if they are not.
   HpAxis(std::vector<double> ends, const std::vector<int>& degrees, const model::Drag& drag);
   /// The same degree everywhere.
-  HpAxis(std::vector<double> ends, int degree, const model::Drag& drag);
+  HpAxis(const std::vector<double>& ends, int degree, const model::Drag& drag);
 
   [[nodiscard]] std::span<const double> nodes() const override { return nodes_; }
   [[nodiscard]] std::span<const double> weights() const override { return weights_; }
