@@ -46,8 +46,8 @@ class Predictor {
     petsc::Ledger ledger;
     const auto a =
         operators::assemble(comm_, process_, *axis_, key.lambda, key.symmetry, key.rest, ledger);
-    const auto analysis =
-        petsc::Factorization::analyse(a.matrix(), operators::kSlidePrefix, ledger);
+    const auto analysis = petsc::Factorization::analyse(a.matrix(), operators::kSlidePrefix, ledger,
+                                                        a.states().chain());
     step_.unknowns = std::max<std::int64_t>(step_.unknowns, ledger.unknowns);
     step_.nonzeros = std::max(step_.nonzeros, ledger.nonzeros);
     step_.factor_entries = std::max(step_.factor_entries, analysis.factor_entries);

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
+#include <tuple>
 
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
@@ -150,6 +151,37 @@ PetscInt StateSpace::row_offset(const Block& block, int row) const {
 
 PetscInt StateSpace::size(const Block& block) const {
   return row_offset(block, last_row()) + count(block, last_row());
+}
+
+petsc::Chain StateSpace::chain() const {
+  struct Entry {
+    std::tuple<int, int, Half, int> key;  // shell, part of it, half, order there
+    PetscInt row;
+  };
+  std::vector<Entry> entries;
+  entries.reserve(static_cast<std::size_t>(local_size_));
+  for_each_local([&](const State& s) {
+    const int height = s.kind == StateKind::node      ? s.node + 1
+                       : s.kind == StateKind::holding ? nodes_ + 1
+                                                      : 0;
+    const bool falls = s.level < 0;
+    int part = falls ? 0 : 2;
+    if (s.kind == StateKind::rest) part = 1;
+    entries.push_back({{std::abs(s.level), part, s.half, falls ? -height : height},
+                       static_cast<PetscInt>(entries.size())});
+  });
+  std::sort(entries.begin(), entries.end(),
+            [](const Entry& a, const Entry& b) { return a.key < b.key; });
+  petsc::Chain chain;
+  chain.narrow = !keeps_origin_;
+  for (std::size_t n = 0; n < entries.size(); ++n) {
+    if (n > 0 && std::get<0>(entries[n].key) != std::get<0>(entries[n - 1].key)) {
+      chain.start.push_back(static_cast<int>(n));
+    }
+    chain.rows.push_back(entries[n].row);
+  }
+  if (!entries.empty()) chain.start.push_back(static_cast<int>(entries.size()));
+  return chain;
 }
 
 PetscInt StateSpace::index(const State& state) const {

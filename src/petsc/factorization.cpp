@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <set>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -24,6 +26,14 @@ constexpr int kMostCorrections = 2;  // the second only where the first leaves t
 constexpr double kNegligible = 1e-13;
 constexpr bool kComplex = PetscDefined(USE_COMPLEX);
 
+constexpr const char* kLevels = "levels";
+
+// Options that were set here, not by the user.
+std::set<std::string>& own_defaults() {
+  static std::set<std::string> names;
+  return names;
+}
+
 // A default that any option of the user overrides.
 void set_default(const std::string& option, const char* value) {
   PetscBool given = PETSC_FALSE;
@@ -31,6 +41,63 @@ void set_default(const std::string& option, const char* value) {
   if (given == PETSC_TRUE) return;
   check(PetscOptionsSetValue(nullptr, option.c_str(), value));
   check(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &given));  // counts as used
+  own_defaults().insert(option);
+}
+
+// Whether the options choose a preconditioner or something about its matrices.
+bool user_chooses(const std::string& prefix) {
+  char* text = nullptr;
+  check(PetscOptionsGetAll(nullptr, &text));
+  std::istringstream words(text);
+  check(PetscFree(text));
+  for (std::string word; words >> word;) {
+    const bool chooses =
+        word.starts_with("-" + prefix + "pc_") || word.starts_with("-" + prefix + "mat_");
+    if (chooses && !own_defaults().contains(word)) return true;
+  }
+  return false;
+}
+
+// PETSc's preconditioner of the type "shell" is filled in when its matrix is known.
+PetscErrorCode create_levels(PC pc) {
+  PetscFunctionBegin;
+  PetscCall(PCSetType(pc, PCSHELL));
+  PetscCall(PCShellSetName(pc, kLevels));
+  PetscFunctionReturn(0);
+}
+
+bool uses_levels(KSP ksp) {
+  PC pc = nullptr;
+  PetscBool shell = PETSC_FALSE;
+  check(KSPGetPC(ksp, &pc));
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCSHELL, &shell));
+  return shell == PETSC_TRUE;
+}
+
+PetscErrorCode apply_levels(PC pc, Vec b, Vec x) {
+  PetscFunctionBegin;
+  void* levels = nullptr;
+  PetscCall(PCShellGetContext(pc, &levels));
+  static_cast<LevelElimination*>(levels)->solve(b, x, false);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode apply_levels_transposed(PC pc, Vec b, Vec x) {
+  PetscFunctionBegin;
+  void* levels = nullptr;
+  PetscCall(PCShellGetContext(pc, &levels));
+  static_cast<LevelElimination*>(levels)->solve(b, x, true);
+  PetscFunctionReturn(0);
+}
+
+std::unique_ptr<LevelElimination> attached_levels(KSP ksp, Mat matrix, Chain chain) {
+  auto levels = std::make_unique<LevelElimination>(matrix, std::move(chain));
+  PC pc = nullptr;
+  check(KSPGetPC(ksp, &pc));
+  check(PCShellSetContext(pc, levels.get()));
+  check(PCShellSetApply(pc, apply_levels));
+  check(PCShellSetApplyTranspose(pc, apply_levels_transposed));
+  return levels;
 }
 
 bool uses_mumps(KSP ksp) {
@@ -41,13 +108,19 @@ bool uses_mumps(KSP ksp) {
   return type != nullptr && std::strcmp(type, MATSOLVERMUMPS) == 0;
 }
 
-KspHandle configured_solver(Mat matrix, const std::string& prefix) {
+KspHandle configured_solver(Mat matrix, const std::string& prefix, bool narrow_chain) {
   MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(matrix));
   KspHandle ksp;
   check(KSPCreate(comm, ksp.out()));
   check(KSPSetOptionsPrefix(ksp, prefix.c_str()));
   check(KSPSetOperators(ksp, matrix, matrix));
   set_direct_solver(ksp);
+  check(PCRegister(kLevels, create_levels));
+  if (narrow_chain && !user_chooses(prefix)) {
+    PC pc = nullptr;
+    check(KSPGetPC(ksp, &pc));
+    check(PCSetType(pc, kLevels));
+  }
   check(KSPSetFromOptions(ksp));
   set_default_ordering(ksp);
   return ksp;
@@ -121,6 +194,13 @@ class OptionFor {
   PetscBool given_ = PETSC_FALSE;
 };
 
+void require_chain(const std::optional<Chain>& chain, const std::string& prefix) {
+  if (chain) return;
+  throw BadInput(fmt::format("-{}pc_type {}: the unknowns of this solver form no chain of levels; "
+                             "leave it out",
+                             prefix, kLevels));
+}
+
 // MUMPS counts in millions, negative, what exceeds its integers.
 double entries_counted(PetscInt entries) {
   return entries < 0 ? -1e6 * static_cast<double>(entries) : static_cast<double>(entries);
@@ -191,11 +271,17 @@ void record_factors(KSP ksp, Ledger& ledger) {
   ledger += size;
 }
 
-Factorization::Factorization(Mat matrix, const std::string& prefix, Ledger& ledger)
+Factorization::Factorization(Mat matrix, const std::string& prefix, Ledger& ledger,
+                             std::optional<Chain> chain)
     : prefix_(prefix), ledger_(ledger) {
   check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
   matrix_ = MatHandle(matrix);
-  ksp_ = configured_solver(matrix, prefix);
+  ksp_ = configured_solver(matrix, prefix, chain && chain->narrow);
+  if (uses_levels(ksp_)) {
+    require_chain(chain, prefix);
+    const PhaseTimer timer("analysis", ledger_.analysis_seconds);
+    levels_ = attached_levels(ksp_, matrix, std::move(*chain));
+  }
   factor();
 }
 
@@ -212,12 +298,26 @@ void Factorization::factor_with_more_workspace() {
   check(MatMumpsGetIcntl(factor_of(ksp_), 14, &percent));
   const OptionFor more(fmt::format("-{}mat_mumps_icntl_14", prefix_),
                        std::to_string(std::max(least, 2 * percent)));
-  ksp_ = configured_solver(matrix_, prefix_);
+  ksp_ = configured_solver(matrix_, prefix_, false);
   check(KSPSetUp(ksp_));
 }
 
 void Factorization::factor() {
   magnitude_ = magnitudes(matrix_);
+  if (levels_) {
+    const PhaseTimer timer("factorisation", ledger_.factorization_seconds);
+    levels_->factor();
+    Ledger size;
+    size.factor_entries = static_cast<std::int64_t>(levels_->entries());
+    size.factor_megabytes = levels_->bytes() / 1e6;
+    ledger_ += size;
+  } else {
+    factor_by_petsc();
+  }
+  ++(kComplex ? ledger_.factorizations_complex : ledger_.factorizations_real);
+}
+
+void Factorization::factor_by_petsc() {
   double total = 0;
   const double symbolic_before = logged_seconds("MatLUFactorSym");
   {
@@ -229,7 +329,6 @@ void Factorization::factor() {
   const double symbolic = logged_seconds("MatLUFactorSym") - symbolic_before;
   ledger_.analysis_seconds += symbolic;
   ledger_.factorization_seconds += total - symbolic;
-  ++(kComplex ? ledger_.factorizations_complex : ledger_.factorizations_real);
   record_factors(ksp_, ledger_);
 }
 
@@ -324,9 +423,15 @@ Solution Factorization::solve(Vec b, bool transposed) {
   return s;
 }
 
-Analysis Factorization::analyse(Mat matrix, const std::string& prefix, Ledger& ledger) {
+Analysis Factorization::analyse(Mat matrix, const std::string& prefix, Ledger& ledger,
+                                std::optional<Chain> chain) {
   const PhaseTimer timer("analysis", ledger.analysis_seconds);
-  const KspHandle ksp = configured_solver(matrix, prefix);
+  const KspHandle ksp = configured_solver(matrix, prefix, chain && chain->narrow);
+  if (uses_levels(ksp)) {
+    require_chain(chain, prefix);
+    const LevelElimination levels(matrix, std::move(*chain));
+    return {levels.entries(), levels.bytes() / 1e6, levels.operations()};
+  }
   if (!uses_mumps(ksp)) return {};
   PC pc = nullptr;
   Mat factor = nullptr;
@@ -353,7 +458,7 @@ void Factorization::probe_options(const std::string& prefix) {
   for (PetscInt i = 0; i < 2; ++i) check(MatSetValue(unit, i, i, 1, INSERT_VALUES));
   check(MatAssemblyBegin(unit, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(unit, MAT_FINAL_ASSEMBLY));
-  const KspHandle ksp = configured_solver(unit, prefix);
+  const KspHandle ksp = configured_solver(unit, prefix, false);
   check(KSPSetUp(ksp));
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "stickslip/model/process.hpp"
+#include "stickslip/petsc/level_elimination.hpp"
 #include "stickslip/velocity/axis.hpp"
 
 namespace stickslip::operators {
@@ -81,6 +82,11 @@ class StateSpace {
 
   /// Global index of a state that exists. O(1).
   [[nodiscard]] PetscInt index(const State& state) const;
+
+  /// The local states by shells, which jumps of the noise couple with the next ones alone: in each
+  /// those that fall towards v = 0, fast ones first, then states at rest, then those that rise.
+  /// Narrow on an hp axis. O(local states).
+  [[nodiscard]] petsc::Chain chain() const;
 
   /// Calls visit(state) for the local states in the order of their indices.
   template <class Visit>

@@ -33,7 +33,7 @@ class System {
  public:
   /// Collective. Throws NoMemory or NotReached.
   System(KolmogorovOperator a, petsc::Ledger& ledger)
-      : a_(std::move(a)), factors_(a_.matrix(), kSlidePrefix, ledger) {}
+      : a_(std::move(a)), factors_(a_.matrix(), kSlidePrefix, ledger, a_.states().chain()) {}
 
   [[nodiscard]] const KolmogorovOperator& a() const { return a_; }
   [[nodiscard]] petsc::Factorization& factors() { return factors_; }

@@ -3,14 +3,17 @@
 
 #include <petscmat.h>
 
+#include <memory>
+#include <optional>
 #include <string>
 
 #include "stickslip/petsc/handle.hpp"
 #include "stickslip/petsc/ledger.hpp"
+#include "stickslip/petsc/level_elimination.hpp"
 
 namespace stickslip::petsc {
 
-/// What the analysis phase of MUMPS foretells; zeros for other solvers.
+/// What the analysis of an elimination by levels or by MUMPS foretells; zeros for other solvers.
 struct Analysis {
   double factor_entries = 0;
   double megabytes = 0;   ///< of all ranks, while factoring
@@ -41,10 +44,12 @@ void require_factored(KSP ksp, const std::string& prefix);
 /// Memory and entries of the factors of a KSP, as MUMPS counts them; nothing for other solvers.
 void record_factors(KSP ksp, Ledger& ledger);
 
-/// KSP of type preonly around an LU factorisation by MUMPS with the ordering AMF. MUMPS would
-/// choose PORD here (METIS is not in Debian's build), which costs 10 to 30 times more on these
-/// matrices. Every choice is a PETSc option under the prefix, e.g. -slide_mat_mumps_icntl_7 0 or
-/// -slide_pc_factor_mat_solver_type klu.
+/// KSP of type preonly around a direct solver: for a narrow chain of blocks the preconditioner
+/// "levels", which is LevelElimination, and else an LU factorisation by MUMPS with the ordering
+/// AMF (MUMPS would choose PORD, as METIS is not in Debian's build, which costs 10 to 30 times more
+/// on these matrices). Every choice is a PETSc option under the prefix, e.g. -slide_pc_type lu or
+/// -slide_pc_factor_mat_solver_type klu; with any such option that is not about levels, LU is the
+/// default.
 ///
 /// A direct solver reports success on a singular matrix too, so each solve computes its residual
 /// and makes one step of iterative refinement, a second one where the backward error is above
@@ -52,10 +57,12 @@ void record_factors(KSP ksp, Ledger& ledger);
 class Factorization {
  public:
   /// Analyses and factors `matrix` (kept by reference count). `prefix` without the dash, with the
-  /// trailing underscore. Times and counts go to `ledger`, which must outlive this object.
+  /// trailing underscore. Times and counts go to `ledger`, which must outlive this object. Without
+  /// `chain` there is no elimination by levels.
   /// Where MUMPS runs out of the workspace that it set aside (INFOG(1) = -8, -9), it is given more
   /// once. Throws NoMemory when the factors do not fit, NotReached when the factorisation fails.
-  Factorization(Mat matrix, const std::string& prefix, Ledger& ledger);
+  Factorization(Mat matrix, const std::string& prefix, Ledger& ledger,
+                std::optional<Chain> chain = std::nullopt);
 
   /// A x = b. Throws NotReached when the backward error stays above 1e-12.
   [[nodiscard]] Solution solve(Vec b) { return solve(b, false); }
@@ -72,7 +79,8 @@ class Factorization {
   void update();
 
   /// Orders and analyses `matrix` as the constructor would, and stops there. Collective.
-  [[nodiscard]] static Analysis analyse(Mat matrix, const std::string& prefix, Ledger& ledger);
+  [[nodiscard]] static Analysis analyse(Mat matrix, const std::string& prefix, Ledger& ledger,
+                                        std::optional<Chain> chain = std::nullopt);
 
   /// Reads all options of a role once, on a 2 x 2 matrix, so that unknown ones can be told before
   /// any work. Collective on PETSC_COMM_SELF only.
@@ -80,13 +88,15 @@ class Factorization {
 
  private:
   void factor();
+  void factor_by_petsc();
   void factor_with_more_workspace();
   [[nodiscard]] Solution solve(Vec b, bool transposed);
   void apply(Vec b, Vec x, bool transposed);
   [[nodiscard]] double backward_error(Vec residual, Vec b, Vec x, bool transposed) const;
 
   MatHandle matrix_;
-  MatHandle magnitude_;  // |a_ij|, for backward errors
+  MatHandle magnitude_;                       // |a_ij|, for backward errors
+  std::unique_ptr<LevelElimination> levels_;  // null: PETSc's preconditioner does it all
   KspHandle ksp_;
   std::string prefix_;
   Ledger& ledger_;

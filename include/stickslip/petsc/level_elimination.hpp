@@ -1,0 +1,112 @@
+#pragma once
+/// Direct solution of systems whose unknowns form a chain of blocks.
+
+#include <petscmat.h>
+
+#include <cstdlib>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "stickslip/petsc/dense_inverse.hpp"
+#include "stickslip/petsc/handle.hpp"
+
+namespace stickslip::petsc {
+
+/// The local rows of a matrix, arranged as blocks that couple with the block before and the block
+/// after alone; the blocks of a rank come between those of the ranks before and after it. Within a
+/// block, rows should come before those that they depend on wherever that is possible.
+struct Chain {
+  std::vector<PetscInt> rows;  ///< local rows, block by block
+  std::vector<int> start{0};   ///< of each block in `rows`, and their end
+  bool narrow = false;         ///< blocks are so small that dense ones are faster than sparse
+  [[nodiscard]] int blocks() const { return static_cast<int>(start.size()) - 1; }
+  [[nodiscard]] int size(int block) const { return start[block + 1] - start[block]; }
+};
+
+/// Block elimination from the last block to the first: with A_s the diagonal blocks, D_s (E_s) the
+/// coupling of block s to block s + 1 (s - 1),
+///
+///   S_s = A_s - D_s S_{s+1}^-1 E_{s+1},
+///
+/// the inverses S_s^-1 being kept. For a generator, S_s is that of the process watched while in
+/// block s, killed on leaving inwards. Where what flows out of block s comes back further down in
+/// its order, S_s is block upper triangular; the analysis finds the blocks, and no zero below them
+/// is stored or computed with. The blocks of several ranks are eliminated one rank after the other:
+/// a rank holds its share of the factors, and computes the same bits as one rank alone would.
+class LevelElimination {
+ public:
+  /// Analysis of the matrix (kept by reference count) for arranged rows. Collective. O(nonzeros).
+  LevelElimination(Mat matrix, Chain chain);
+
+  /// Reads the values of the matrix and eliminates. Collective. Throws NotReached for a singular
+  /// block, std::bad_alloc when memory ends.
+  void factor();
+
+  /// x = A^-1 b, or A^-T b without conjugation. Collective. Two passes over the factors.
+  void solve(Vec b, Vec x, bool transposed);
+
+  /// Of all ranks: entries of the factors, bytes while factoring, operations of the elimination.
+  [[nodiscard]] double entries() const { return entries_; }
+  [[nodiscard]] double bytes() const { return bytes_; }
+  [[nodiscard]] double operations() const { return operations_; }
+
+ private:
+  // Entries of a sparse coupling: one run stands for rows row ... row + length - 1 with one entry
+  // each, in columns that rise alike.
+  struct Run {
+    int row, column, length;
+    std::size_t first;  // in values
+  };
+  struct Coupling {
+    std::vector<Run> runs;
+    std::vector<PetscScalar> values;
+    void add(int row, int column, PetscScalar value);
+    void clear();
+    // y -= C x, y -= C^T x
+    void subtract(const PetscScalar* x, PetscScalar* y) const;
+    void subtract_transposed(const PetscScalar* x, PetscScalar* y) const;
+  };
+  // Diagonal block with its couplings; the inverse as panels, one for each row of blocks.
+  struct Level {
+    int size = 0;
+    std::vector<int> cuts;
+    Coupling outwards, inwards;  // D, E
+    PetscScalar* panels = nullptr;
+    [[nodiscard]] std::size_t entries() const;
+    void apply(const PetscScalar* x, PetscScalar* y) const;
+    void apply_transposed(const PetscScalar* x, PetscScalar* y) const;
+  };
+
+  struct Place {
+    int block, position;  // block -1: of the rank before; blocks(): of the rank after
+  };
+  void exchange_borders();
+  [[nodiscard]] Place place_of(PetscInt column) const;
+  void find_cuts();
+  void read_block(int s, std::vector<PetscScalar>& dense);
+  static void subtract_return(const Level& level, const std::vector<PetscScalar>& back,
+                              std::vector<PetscScalar>& dense);
+  static void store(Level& level, const std::vector<PetscScalar>& inverse);
+  static void multiply_inwards(const Level& level, const std::vector<PetscScalar>& inverse,
+                               int columns, std::vector<PetscScalar>& product);
+  [[nodiscard]] bool has_outer() const { return outer_rank_ != MPI_PROC_NULL; }
+  [[nodiscard]] bool has_inner() const { return inner_rank_ != MPI_PROC_NULL; }
+
+  MatHandle matrix_;
+  Chain chain_;
+  MPI_Comm comm_;
+  PetscInt first_row_ = 0;
+  int inner_rank_ = MPI_PROC_NULL, outer_rank_ = MPI_PROC_NULL;
+  std::vector<Place> local_places_;                                    // of local rows
+  std::vector<std::pair<PetscInt, int>> inner_border_, outer_border_;  // global row, position
+  std::vector<Level> levels_;
+  struct Free {
+    void operator()(PetscScalar* array) const { std::free(array); }
+  };
+  std::unique_ptr<PetscScalar[], Free> panels_;  // of all levels, one after the other
+  DenseInverse invert_;
+  double entries_ = 0, bytes_ = 0, operations_ = 0;
+};
+
+}  // namespace stickslip::petsc

@@ -1,0 +1,421 @@
+#include "stickslip/petsc/level_elimination.hpp"
+
+#include <petscsys.h>
+#include <sys/mman.h>
+// After PETSc itself, whose types it uses.
+#include <petscblaslapack.h>
+
+#include <algorithm>
+#include <array>
+#include <new>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/session.hpp"
+#include "stickslip/petsc/vectors.hpp"
+
+namespace stickslip::petsc {
+namespace {
+
+using Scalars = std::vector<PetscScalar>;
+
+// Least rows of a block of the triangles: below, products are too small to be fast.
+constexpr int kLeastBlock = 4;
+
+// A row of the matrix for the life of the object.
+class RowView {
+ public:
+  RowView(Mat matrix, PetscInt row) : matrix_(matrix), row_(row) {
+    check(MatGetRow(matrix_, row_, &count_, &columns_, &values_));
+  }
+  ~RowView() { (void)MatRestoreRow(matrix_, row_, &count_, &columns_, &values_); }
+  RowView(const RowView&) = delete;
+  RowView& operator=(const RowView&) = delete;
+
+  template <class Visit>
+  void for_each(Visit visit) const {
+    for (PetscInt n = 0; n < count_; ++n) visit(columns_[n], values_[n]);
+  }
+
+ private:
+  Mat matrix_;
+  PetscInt row_, count_ = 0;
+  const PetscInt* columns_ = nullptr;
+  const PetscScalar* values_ = nullptr;
+};
+
+// Uninitialised, in large pages where the system has them on request: the first touch of small ones
+// takes as long as a third of an elimination.
+PetscScalar* large_array(std::size_t count) {
+  constexpr std::size_t page = std::size_t{1} << 21;
+  const std::size_t bytes = (count * sizeof(PetscScalar) / page + 1) * page;
+  void* array = std::aligned_alloc(page, bytes);
+  if (array == nullptr) throw std::bad_alloc();
+  (void)madvise(array, bytes, MADV_HUGEPAGE);  // without them it is slower, not wrong
+  return static_cast<PetscScalar*>(array);
+}
+
+// y <- a x + keep y or a^T x + keep y for a by columns.
+void apply_panel(const char* how, const PetscScalar* a, int rows, int columns, const PetscScalar* x,
+                 double keep, PetscScalar* y) {
+  const PetscBLASInt m = rows, n = columns, one = 1;
+  const PetscScalar factor = 1, beta = keep;
+  BLASgemv_(how, &m, &n, &factor, a, &m, x, &one, &beta, y, &one);
+}
+
+template <class T>
+MPI_Datatype mpi_type();
+template <>
+MPI_Datatype mpi_type<PetscScalar>() {
+  return MPIU_SCALAR;
+}
+template <>
+MPI_Datatype mpi_type<int>() {
+  return MPI_INT;
+}
+
+template <class T>
+void send(const std::vector<T>& data, int to, MPI_Comm comm) {
+  MPI_Send(data.data(), static_cast<int>(data.size()), mpi_type<T>(), to, 0, comm);
+}
+
+template <class T>
+std::vector<T> receive(std::size_t count, int from, MPI_Comm comm) {
+  std::vector<T> data(count);
+  MPI_Recv(data.data(), static_cast<int>(count), mpi_type<T>(), from, 0, comm, MPI_STATUS_IGNORE);
+  return data;
+}
+
+}  // namespace
+
+void LevelElimination::Coupling::add(int row, int column, PetscScalar value) {
+  const bool extends = !runs.empty() && runs.back().row + runs.back().length == row &&
+                       runs.back().column + runs.back().length == column;
+  if (!extends) runs.push_back({row, column, 0, values.size()});
+  ++runs.back().length;
+  values.push_back(value);
+}
+
+void LevelElimination::Coupling::clear() {
+  runs.clear();
+  values.clear();
+}
+
+void LevelElimination::Coupling::subtract(const PetscScalar* x, PetscScalar* y) const {
+  for (const Run& run : runs) {
+    for (int n = 0; n < run.length; ++n) {
+      y[run.row + n] -= values[run.first + n] * x[run.column + n];
+    }
+  }
+}
+
+void LevelElimination::Coupling::subtract_transposed(const PetscScalar* x, PetscScalar* y) const {
+  for (const Run& run : runs) {
+    for (int n = 0; n < run.length; ++n) {
+      y[run.column + n] -= values[run.first + n] * x[run.row + n];
+    }
+  }
+}
+
+std::size_t LevelElimination::Level::entries() const {
+  std::size_t sum = 0;
+  for (std::size_t b = 0; b + 1 < cuts.size(); ++b) {
+    sum += static_cast<std::size_t>(cuts[b + 1] - cuts[b]) * (size - cuts[b]);
+  }
+  return sum;
+}
+
+void LevelElimination::Level::apply(const PetscScalar* x, PetscScalar* y) const {
+  const PetscScalar* panel = panels;
+  for (std::size_t b = 0; b + 1 < cuts.size(); ++b) {
+    const int rows = cuts[b + 1] - cuts[b], columns = size - cuts[b];
+    apply_panel("N", panel, rows, columns, x + cuts[b], 0, y + cuts[b]);
+    panel += static_cast<std::ptrdiff_t>(rows) * columns;
+  }
+}
+
+void LevelElimination::Level::apply_transposed(const PetscScalar* x, PetscScalar* y) const {
+  std::fill(y, y + size, 0.0);
+  const PetscScalar* panel = panels;
+  for (std::size_t b = 0; b + 1 < cuts.size(); ++b) {
+    const int rows = cuts[b + 1] - cuts[b], columns = size - cuts[b];
+    apply_panel("T", panel, rows, columns, x + cuts[b], 1, y + cuts[b]);
+    panel += static_cast<std::ptrdiff_t>(rows) * columns;
+  }
+}
+
+LevelElimination::LevelElimination(Mat matrix, Chain chain)
+    : chain_(std::move(chain)), comm_(PetscObjectComm(reinterpret_cast<PetscObject>(matrix))) {
+  check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
+  matrix_ = MatHandle(matrix);
+  check(MatGetOwnershipRange(matrix_, &first_row_, nullptr));
+  local_places_.resize(chain_.rows.size());
+  levels_.resize(static_cast<std::size_t>(chain_.blocks()));
+  for (int s = 0; s < chain_.blocks(); ++s) {
+    levels_[s].size = chain_.size(s);
+    for (int p = 0; p < chain_.size(s); ++p)
+      local_places_[chain_.rows[chain_.start[s] + p]] = {s, p};
+  }
+  exchange_borders();
+  find_cuts();
+  std::array<double, 3> sums{};
+  int largest = 0;
+  for (const Level& level : levels_) {
+    sums[0] += static_cast<double>(level.entries());
+    sums[1] += DenseInverse::operations(level.cuts);
+    largest = std::max(largest, level.size);
+  }
+  // With a dense block, its work space, and what returns from the block before.
+  sums[2] = sizeof(PetscScalar) * (sums[0] + 3.0 * largest * largest);
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM,
+                comm_);
+  entries_ = sums[0];
+  operations_ = sums[1];
+  bytes_ = sums[2];
+}
+
+// Global rows of the blocks next to those of this rank, with their positions.
+void LevelElimination::exchange_borders() {
+  const int ranks = petsc::ranks(comm_), here = petsc::rank(comm_);
+  std::vector<int> blocks(static_cast<std::size_t>(ranks));
+  const int own = chain_.blocks();
+  MPI_Allgather(&own, 1, MPI_INT, blocks.data(), 1, MPI_INT, comm_);
+  if (own == 0) return;
+  for (int r = 0; r < here; ++r) {
+    if (blocks[r] > 0) inner_rank_ = r;
+  }
+  for (int r = ranks - 1; r > here; --r) {
+    if (blocks[r] > 0) outer_rank_ = r;
+  }
+  const auto rows_of = [&](int s) {
+    std::vector<PetscInt> rows(chain_.rows.begin() + chain_.start[s],
+                               chain_.rows.begin() + chain_.start[s + 1]);
+    for (PetscInt& row : rows) row += first_row_;
+    return rows;
+  };
+  const auto exchange = [&](const std::vector<PetscInt>& ours, int to, int from) {
+    int count = static_cast<int>(ours.size()), others = 0;
+    MPI_Sendrecv(&count, 1, MPI_INT, to, 0, &others, 1, MPI_INT, from, 0, comm_, MPI_STATUS_IGNORE);
+    std::vector<PetscInt> rows(static_cast<std::size_t>(others));
+    MPI_Sendrecv(ours.data(), count, MPIU_INT, to, 0, rows.data(), others, MPIU_INT, from, 0, comm_,
+                 MPI_STATUS_IGNORE);
+    std::vector<std::pair<PetscInt, int>> border;
+    for (int p = 0; p < others; ++p) border.emplace_back(rows[p], p);
+    std::sort(border.begin(), border.end());
+    return border;
+  };
+  outer_border_ = exchange(rows_of(0), inner_rank_, outer_rank_);
+  inner_border_ = exchange(rows_of(own - 1), outer_rank_, inner_rank_);
+}
+
+LevelElimination::Place LevelElimination::place_of(PetscInt column) const {
+  const PetscInt local = column - first_row_;
+  if (local >= 0 && local < static_cast<PetscInt>(local_places_.size()))
+    return local_places_[local];
+  const bool inner = local < 0;
+  const auto& border = inner ? inner_border_ : outer_border_;
+  const auto found = std::lower_bound(border.begin(), border.end(), std::pair{column, 0});
+  if (found == border.end() || found->first != column) {
+    throw std::logic_error("the blocks are no chain");
+  }
+  return {inner ? -1 : chain_.blocks(), found->second};
+}
+
+// A cut at c is possible where no row from c on leads to a position before c, neither within the
+// block nor on a way through the blocks that are eliminated before it.
+void LevelElimination::find_cuts() {
+  if (levels_.empty()) return;
+  const int outer_size = static_cast<int>(outer_border_.size());
+  // Least position in this block to which a position in the block after returns.
+  std::vector<int> returns;
+  if (has_outer()) returns = receive<int>(static_cast<std::size_t>(outer_size), outer_rank_, comm_);
+  for (int s = chain_.blocks() - 1; s >= 0; --s) {
+    Level& level = levels_[s];
+    const int inner_size = s > 0 ? levels_[s - 1].size : static_cast<int>(inner_border_.size());
+    std::vector<int> least(static_cast<std::size_t>(level.size)), leaves(least.size(), inner_size);
+    for (int p = 0; p < level.size; ++p) {
+      least[p] = p;
+      const RowView row(matrix_, first_row_ + chain_.rows[chain_.start[s] + p]);
+      row.for_each([&](PetscInt column, PetscScalar) {
+        const Place to = place_of(column);
+        if (to.block == s) least[p] = std::min(least[p], to.position);
+        if (to.block == s + 1) least[p] = std::min(least[p], returns[to.position]);
+        if (to.block == s - 1) leaves[p] = std::min(leaves[p], to.position);
+      });
+    }
+    level.cuts.assign(1, level.size);
+    int lowest = level.size;  // of what the rows from p on lead to
+    for (int p = level.size - 1; p > 0; --p) {
+      lowest = std::min(lowest, least[p]);
+      const bool possible = lowest >= p && p >= kLeastBlock;
+      if (possible && level.cuts.back() - p >= kLeastBlock) level.cuts.push_back(p);
+    }
+    level.cuts.push_back(0);
+    std::reverse(level.cuts.begin(), level.cuts.end());
+    // All of a block of rows leads on to all that comes after its beginning.
+    returns.assign(static_cast<std::size_t>(level.size), inner_size);
+    int block = static_cast<int>(level.cuts.size()) - 2, first = inner_size;
+    for (int p = level.size - 1; p >= 0; --p) {
+      first = std::min(first, leaves[p]);
+      if (p > level.cuts[block]) continue;
+      std::fill(returns.begin() + level.cuts[block], returns.begin() + level.cuts[block + 1],
+                first);
+      --block;
+    }
+  }
+  if (has_inner()) send(returns, inner_rank_, comm_);
+}
+
+// The diagonal block into `dense`, the rest of its rows into the couplings.
+void LevelElimination::read_block(int s, Scalars& dense) {
+  Level& level = levels_[s];
+  const std::ptrdiff_t size = level.size;
+  dense.assign(static_cast<std::size_t>(size * size), 0.0);
+  level.outwards.clear();
+  level.inwards.clear();
+  for (int p = 0; p < level.size; ++p) {
+    const RowView row(matrix_, first_row_ + chain_.rows[chain_.start[s] + p]);
+    row.for_each([&](PetscInt column, PetscScalar value) {
+      const Place to = place_of(column);
+      if (to.block == s)
+        dense[p + size * to.position] = value;
+      else if (to.block == s + 1)
+        level.outwards.add(p, to.position, value);
+      else if (to.block == s - 1)
+        level.inwards.add(p, to.position, value);
+      else
+        throw std::logic_error("the blocks are no chain");
+    });
+  }
+}
+
+// dense -= D W.
+void LevelElimination::subtract_return(const Level& level, const Scalars& back, Scalars& dense) {
+  const std::ptrdiff_t size = level.size, outer = static_cast<std::ptrdiff_t>(back.size()) / size;
+  for (std::ptrdiff_t c = 0; c < size; ++c) {
+    level.outwards.subtract(back.data() + outer * c, dense.data() + size * c);
+  }
+}
+
+// W = S^-1 E, by columns.
+void LevelElimination::multiply_inwards(const Level& level, const Scalars& inverse, int columns,
+                                        Scalars& product) {
+  const std::ptrdiff_t size = level.size;
+  product.assign(static_cast<std::size_t>(size * columns), 0.0);
+  std::vector<int> height(static_cast<std::size_t>(size));  // of each column of the inverse
+  for (std::size_t b = 0; b + 1 < level.cuts.size(); ++b) {
+    std::fill(height.begin() + level.cuts[b], height.begin() + level.cuts[b + 1],
+              level.cuts[b + 1]);
+  }
+  for (const Run& run : level.inwards.runs) {
+    for (int n = 0; n < run.length; ++n) {
+      const PetscScalar factor = level.inwards.values[run.first + n];
+      const PetscScalar* from = inverse.data() + size * (run.row + n);
+      PetscScalar* to = product.data() + size * (run.column + n);
+      for (int r = 0; r < height[run.row + n]; ++r) to[r] += factor * from[r];
+    }
+  }
+}
+
+void LevelElimination::store(Level& level, const Scalars& inverse) {
+  const std::ptrdiff_t size = level.size;
+  PetscScalar* to = level.panels;
+  for (std::size_t b = 0; b + 1 < level.cuts.size(); ++b) {
+    for (int c = level.cuts[b]; c < level.size; ++c) {
+      const PetscScalar* column = inverse.data() + size * c;
+      to = std::copy(column + level.cuts[b], column + level.cuts[b + 1], to);
+    }
+  }
+}
+
+void LevelElimination::factor() {
+  if (levels_.empty()) return;
+  if (!panels_) {
+    const auto add = [](std::size_t sum, const Level& level) { return sum + level.entries(); };
+    panels_.reset(
+        large_array(std::accumulate(levels_.begin(), levels_.end(), std::size_t{0}, add)));
+    PetscScalar* next = panels_.get();
+    for (Level& level : levels_) next = (level.panels = next) + level.entries();
+  }
+  Scalars dense, back;  // back: S^-1 E of the block after
+  if (has_outer()) {
+    back = receive<PetscScalar>(outer_border_.size() * levels_.back().size, outer_rank_, comm_);
+  }
+  for (int s = chain_.blocks() - 1; s >= 0; --s) {
+    Level& level = levels_[s];
+    read_block(s, dense);
+    if (!back.empty()) subtract_return(level, back, dense);
+    invert_(dense.data(), level.cuts);
+    store(level, dense);
+    const int inner_size = s > 0 ? levels_[s - 1].size : static_cast<int>(inner_border_.size());
+    multiply_inwards(level, dense, inner_size, back);
+  }
+  if (has_inner()) send(back, inner_rank_, comm_);
+}
+
+void LevelElimination::solve(Vec b, Vec x, bool transposed) {
+  if (levels_.empty()) return;
+  const int last = chain_.blocks() - 1;
+  const auto rows = [this](int s) { return chain_.rows.data() + chain_.start[s]; };
+  const auto inverse = [transposed](const Level& level, const Scalars& from, Scalars& to) {
+    to.resize(from.size());
+    transposed ? level.apply_transposed(from.data(), to.data())
+               : level.apply(from.data(), to.data());
+  };
+  std::vector<Scalars> z(levels_.size());
+  {
+    const ReadView right(b);
+    Scalars y, passed;  // plain: z of the block after; transposed: what it sends
+    const std::size_t border = transposed ? levels_[last].size : outer_border_.size();
+    if (has_outer()) passed = receive<PetscScalar>(border, outer_rank_, comm_);
+    for (int s = last; s >= 0; --s) {
+      const Level& level = levels_[s];
+      y.resize(static_cast<std::size_t>(level.size));
+      for (int p = 0; p < level.size; ++p) y[p] = right[rows(s)[p]];
+      if (!passed.empty() && transposed) {
+        for (int p = 0; p < level.size; ++p) y[p] += passed[p];
+      } else if (!passed.empty()) {
+        level.outwards.subtract(passed.data(), y.data());
+      }
+      inverse(level, y, z[s]);
+      if (transposed) {
+        const std::size_t inner = s > 0 ? levels_[s - 1].size : inner_border_.size();
+        passed.assign(inner, 0.0);
+        level.inwards.subtract_transposed(z[s].data(), passed.data());
+      } else {
+        passed = z[s];
+      }
+    }
+    if (has_inner()) send(passed, inner_rank_, comm_);
+  }
+  WriteView left(x);
+  Scalars passed, y, step;
+  const std::size_t border = transposed ? levels_[0].size : inner_border_.size();
+  if (has_inner()) passed = receive<PetscScalar>(border, inner_rank_, comm_);
+  for (int s = 0; s <= last; ++s) {
+    const Level& level = levels_[s];
+    if (!passed.empty()) {
+      if (transposed) {
+        y = std::move(passed);
+      } else {
+        y.assign(static_cast<std::size_t>(level.size), 0.0);
+        level.inwards.subtract(passed.data(), y.data());
+      }
+      inverse(level, y, step);
+      for (int p = 0; p < level.size; ++p) z[s][p] += step[p];
+    }
+    for (int p = 0; p < level.size; ++p) left[rows(s)[p]] = z[s][p];
+    if (transposed) {
+      const std::size_t outer = s < last ? levels_[s + 1].size : outer_border_.size();
+      passed.assign(outer, 0.0);
+      level.outwards.subtract_transposed(z[s].data(), passed.data());
+    } else {
+      passed = z[s];
+    }
+  }
+  if (has_outer()) send(passed, outer_rank_, comm_);
+}
+
+}  // namespace stickslip::petsc

@@ -1,0 +1,151 @@
+#include <catch2/catch.hpp>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include "../common/options.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/factorization.hpp"
+#include "stickslip/petsc/level_elimination.hpp"
+#include "stickslip/petsc/session.hpp"
+#include "stickslip/petsc/vectors.hpp"
+#include "stickslip/support/errors.hpp"
+
+using namespace stickslip;
+using namespace stickslip::petsc;
+
+namespace {
+
+struct Example {
+  MatHandle matrix;
+  Chain chain;
+};
+
+// Blocks of 3 to 6 rows, dealt out to the ranks in order and numbered backwards within each. Rows
+// lead to later ones of their block, and to those of the same number in the neighbours.
+Example example(int blocks) {
+  const int ranks = petsc::ranks(PETSC_COMM_WORLD), rank = petsc::rank(PETSC_COMM_WORLD);
+  const auto size = [](int s) { return 3 + s % 4; };
+  const auto owner = [=](int s) { return s * ranks / blocks; };
+  std::vector<PetscInt> begin(static_cast<std::size_t>(blocks) + 1, 0);  // of each block
+  for (int s = 0; s < blocks; ++s) begin[s + 1] = begin[s] + size(s);
+  Example result;
+  PetscInt local = 0, first = begin[blocks];
+  for (int s = 0; s < blocks; ++s) {
+    if (owner(s) != rank) continue;
+    first = std::min(first, begin[s]);
+    for (int p = 0; p < size(s); ++p) result.chain.rows.push_back(begin[s + 1] - 1 - p - first);
+    result.chain.start.push_back(static_cast<int>(result.chain.rows.size()));
+    local += size(s);
+  }
+  result.chain.narrow = true;
+  check(MatCreate(PETSC_COMM_WORLD, result.matrix.out()));
+  check(MatSetSizes(result.matrix, local, local, PETSC_DETERMINE, PETSC_DETERMINE));
+  check(MatSetType(result.matrix, MATAIJ));
+  check(MatSetUp(result.matrix));
+  check(MatSetOption(result.matrix, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
+  const auto row_of = [&](int s, int p) { return begin[s + 1] - 1 - p; };
+  for (int s = 0; s < blocks; ++s) {
+    if (owner(s) != rank) continue;
+    for (int p = 0; p < size(s); ++p) {
+      const auto set = [&](int t, int q, double value) {
+        if (t < 0 || t >= blocks || q >= size(t)) return;
+        check(MatSetValue(result.matrix, row_of(s, p), row_of(t, q), value, INSERT_VALUES));
+      };
+      set(s, p, 4 + 0.1 * s);
+      for (int q = p + 1; q < size(s); ++q) set(s, q, -1.0 / (1 + q));
+      if (s % 3 == 0 && p > 0) set(s, p - 1, -0.5);  // no triangle
+      set(s + 1, p, -0.7 - 0.1 * p);
+      set(s - 1, p, -0.9);
+      if (p == 0) set(s + 1, 2, -0.3);  // a second entry in the same coupling
+    }
+  }
+  check(MatAssemblyBegin(result.matrix, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(result.matrix, MAT_FINAL_ASSEMBLY));
+  return result;
+}
+
+double distance(Vec a, Vec b) {
+  check(VecAXPY(a, -1, b));
+  PetscReal norm = 0;
+  check(VecNorm(a, NORM_INFINITY, &norm));
+  return norm;
+}
+
+}  // namespace
+
+TEST_CASE("level elimination: plain and transposed solves", "[parallel]") {
+  for (int blocks : {1, 2, 7, 20}) {
+    const Example e = example(blocks);
+    LevelElimination levels(e.matrix, e.chain);
+    levels.factor();
+    VecHandle x, b, found;
+    check(MatCreateVecs(e.matrix, x.out(), b.out()));
+    check(VecDuplicate(x, found.out()));
+    check(VecSetRandom(x, nullptr));
+    for (bool transposed : {false, true}) {
+      check(transposed ? MatMultTranspose(e.matrix, x, b) : MatMult(e.matrix, x, b));
+      levels.solve(b, found, transposed);
+      INFO(blocks << " blocks, transposed " << transposed);
+      CHECK(distance(found, x) < 1e-13);
+    }
+  }
+}
+
+TEST_CASE("level elimination: new values of the same pattern", "[parallel]") {
+  const Example e = example(9);
+  Ledger ledger;
+  Factorization factors(e.matrix, "test_", ledger, e.chain);
+  check(MatScale(e.matrix, 2));
+  factors.update();
+  VecHandle x, b;
+  check(MatCreateVecs(e.matrix, x.out(), b.out()));
+  check(VecSet(x, 1));
+  check(MatMult(e.matrix, x, b));
+  const Solution s = factors.solve(b);
+  CHECK(s.backward_error < 1e-15);
+  CHECK(distance(s.x, x) < 1e-13);
+}
+
+TEST_CASE("level elimination: zeros below the blocks are not kept", "[parallel]") {
+  const Example e = example(40);
+  const LevelElimination levels(e.matrix, e.chain);
+  double full = 0;
+  for (int s = 0; s < 40; ++s) full += (3 + s % 4) * (3 + s % 4);
+  CHECK(levels.entries() <= full);
+  CHECK(levels.bytes() >= sizeof(PetscScalar) * levels.entries());
+  CHECK(levels.operations() > 0);
+}
+
+TEST_CASE("level elimination: is the choice for narrow chains unless options name another",
+          "[parallel]") {
+  const Example e = example(6);
+  const auto entries = [&e](const char* prefix, Chain chain) {
+    Ledger ledger;
+    const Factorization factors(e.matrix, prefix, ledger, std::move(chain));
+    return ledger.factor_entries;
+  };
+  const auto levels = static_cast<std::int64_t>(LevelElimination(e.matrix, e.chain).entries());
+  Chain wide = e.chain;
+  wide.narrow = false;
+  CHECK(entries("plain_", e.chain) == levels);
+  CHECK(entries("plain_", wide) != levels);
+  const test::Given given({{"-chosen_pc_type", "lu"}, {"-wide_pc_type", "levels"}});
+  CHECK(entries("chosen_", e.chain) != levels);
+  CHECK(entries("wide_", wide) == levels);
+}
+
+TEST_CASE("level elimination: is refused without a chain") {
+  const test::Given given({{"-none_pc_type", "levels"}});
+  const Example e = example(3);
+  Ledger ledger;
+  CHECK_THROWS_AS(Factorization(e.matrix, "none_", ledger), BadInput);
+}
+
+TEST_CASE("level elimination: rows that couple further than to the next block are told") {
+  Example e = example(4);
+  e.chain.start = {0, 3, 7, 8, static_cast<int>(e.chain.rows.size())};
+  std::swap(e.chain.rows.front(), e.chain.rows.back());
+  CHECK_THROWS_AS(LevelElimination(e.matrix, e.chain).factor(), std::logic_error);
+}
