@@ -6,6 +6,7 @@
 
 #include "stickslip/operators/laws.hpp"
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
 
 namespace stickslip::operators {
@@ -279,15 +280,18 @@ KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const model::Process& proc
                       {axis.keeps_origin(), nothing_killed}, process);
   }
 
-  const PetscInt local = states_.local_size(), global = states_.global_size();
-  check(MatCreate(comm, matrix_.out()));
-  check(MatSetSizes(matrix_, local, local, global, global));
-  check(MatSetType(matrix_, MATAIJ));
-  check(MatSeqAIJSetPreallocationCSR(matrix_, rows.row_start.data(), rows.columns.data(),
-                                     rows.values.data()));
-  check(MatMPIAIJSetPreallocationCSR(matrix_, rows.row_start.data(), rows.columns.data(),
-                                     rows.values.data()));
   nonzeros_ = rows.row_start.back();
+  const PetscInt local = states_.local_size(), global = states_.global_size();
+  if (petsc::ranks(comm) == 1) {
+    row_start_ = std::move(rows.row_start);
+    columns_ = std::move(rows.columns);
+    values_ = std::move(rows.values);
+    check(MatCreateSeqAIJWithArrays(comm, local, local, row_start_.data(), columns_.data(),
+                                    values_.data(), matrix_.out()));
+  } else {
+    check(MatCreateMPIAIJWithArrays(comm, local, local, global, global, rows.row_start.data(),
+                                    rows.columns.data(), rows.values.data(), matrix_.out()));
+  }
   MPI_Allreduce(MPI_IN_PLACE, &nonzeros_, 1, MPIU_INT64, MPI_SUM, comm);
 }
 

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <numeric>
 #include <set>
 #include <sstream>
 #include <string>
 #include <utility>
 
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/vectors.hpp"
 #include "stickslip/support/errors.hpp"
 
 namespace stickslip::petsc {
@@ -232,6 +234,32 @@ MatHandle magnitudes(Mat matrix) {
   return copy;
 }
 
+VecHandle magnitude_sums(Mat matrix) {
+  VecHandle sums;
+  check(MatCreateVecs(matrix, nullptr, sums.out()));
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(matrix, &begin, &end));
+  WriteView local(sums);
+  for (PetscInt r = begin; r < end; ++r) {
+    PetscInt count = 0;
+    const PetscScalar* values = nullptr;
+    check(MatGetRow(matrix, r, &count, nullptr, &values));
+    local[r - begin] =
+        std::accumulate(values, values + count, 0.0,
+                        [](double sum, PetscScalar value) { return sum + PetscAbsScalar(value); });
+    check(MatRestoreRow(matrix, r, &count, nullptr, &values));
+  }
+  return sums;
+}
+
+VecHandle absolute(Vec x) {
+  VecHandle size;
+  check(VecDuplicate(x, size.out()));
+  check(VecCopy(x, size));
+  check(VecAbs(size));
+  return size;
+}
+
 }  // namespace
 
 void set_direct_solver(KSP ksp) {
@@ -303,7 +331,8 @@ void Factorization::factor_with_more_workspace() {
 }
 
 void Factorization::factor() {
-  magnitude_ = magnitudes(matrix_);
+  magnitude_ = {};
+  magnitude_sums_ = {};
   if (levels_) {
     const PhaseTimer timer("factorisation", ledger_.factorization_seconds);
     levels_->factor();
@@ -361,31 +390,28 @@ void Factorization::apply(Vec b, Vec x, bool transposed) {
 // bad row; |A| |x| does not. A plain solution is of one size: the largest component counts (Oettli
 // and Prager). A transposed one is an occupation, time spent in each state: |A|^T |x| counts
 // visits, falls off by tens of orders of magnitude, and its sum is what functionals see.
-double Factorization::backward_error(Vec residual, Vec b, Vec x, bool transposed) const {
-  VecHandle size, bound, b_size;
-  check(VecDuplicate(x, size.out()));
-  check(VecDuplicate(b, bound.out()));
-  check(VecDuplicate(b, b_size.out()));
-  check(VecCopy(x, size));
-  check(VecAbs(size));
-  if (!transposed) {
-    PetscReal largest = 0;
-    check(VecNorm(x, NORM_INFINITY, &largest));
-    check(VecShift(size, kNegligible * largest));
-  }
-  check(VecCopy(b, b_size));
-  check(VecAbs(b_size));
-  check(transposed ? MatMultTransposeAdd(magnitude_, size, b_size, bound)
-                   : MatMultAdd(magnitude_, size, b_size, bound));
-  PetscReal error = 0, scale = 1;
-  if (transposed) {
-    check(VecNorm(residual, NORM_1, &error));
-    check(VecNorm(bound, NORM_1, &scale));
-  } else {
-    check(VecPointwiseDivide(residual, residual, bound));  // 0/0 counts as 0 in PETSc
-    check(VecNorm(residual, NORM_INFINITY, &error));
-  }
-  return error / scale;
+double Factorization::backward_error(Vec residual, Vec b, Vec x) {
+  if (magnitude_ == nullptr) magnitude_ = magnitudes(matrix_);
+  const VecHandle size = absolute(x), bound = absolute(b);
+  PetscReal largest = 0, error = 0;
+  check(VecNorm(x, NORM_INFINITY, &largest));
+  check(VecShift(size, kNegligible * largest));
+  check(MatMultAdd(magnitude_, size, bound, bound));
+  check(VecPointwiseDivide(residual, residual, bound));  // 0/0 counts as 0 in PETSc
+  check(VecNorm(residual, NORM_INFINITY, &error));
+  return error;
+}
+
+// The sum of |A|^T |x| takes the sums of the rows of |A| alone.
+double Factorization::backward_error_transposed(Vec residual, Vec b, Vec x) {
+  if (magnitude_sums_ == nullptr) magnitude_sums_ = magnitude_sums(matrix_);
+  const VecHandle size = absolute(x);
+  PetscScalar visits = 0;
+  PetscReal error = 0, b_size = 0;
+  check(VecTDot(magnitude_sums_, size, &visits));
+  check(VecNorm(b, NORM_1, &b_size));
+  check(VecNorm(residual, NORM_1, &error));
+  return error / (PetscRealPart(visits) + b_size);
 }
 
 Solution Factorization::solve(Vec b, bool transposed) {
@@ -404,12 +430,13 @@ Solution Factorization::solve(Vec b, bool transposed) {
   ++ledger_.solves;
   bool sound = false;
   for (int n = 0; n < kMostCorrections && !sound; ++n) {
-    compute_residual();  // again, as backward_error overwrites it
+    compute_residual();  // again, as backward_error may overwrite it
     apply(residual, step, transposed);
     check(VecAXPY(s.x, 1, step));
     check(VecAXPY(s.correction, 1, step));
     compute_residual();
-    s.backward_error = backward_error(residual, b, s.x, transposed);
+    s.backward_error =
+        transposed ? backward_error_transposed(residual, b, s.x) : backward_error(residual, b, s.x);
     sound = s.backward_error <= kBackwardErrorLimit;
     ++ledger_.corrections;
   }

@@ -1,13 +1,11 @@
 #include "stickslip/petsc/level_elimination.hpp"
 
 #include <petscsys.h>
-#include <sys/mman.h>
 // After PETSc itself, whose types it uses.
 #include <petscblaslapack.h>
 
 #include <algorithm>
 #include <array>
-#include <new>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -45,17 +43,6 @@ class RowView {
   const PetscInt* columns_ = nullptr;
   const PetscScalar* values_ = nullptr;
 };
-
-// Uninitialised, in large pages where the system has them on request: the first touch of small ones
-// takes as long as a third of an elimination.
-PetscScalar* large_array(std::size_t count) {
-  constexpr std::size_t page = std::size_t{1} << 21;
-  const std::size_t bytes = (count * sizeof(PetscScalar) / page + 1) * page;
-  void* array = std::aligned_alloc(page, bytes);
-  if (array == nullptr) throw std::bad_alloc();
-  (void)madvise(array, bytes, MADV_HUGEPAGE);  // without them it is slower, not wrong
-  return static_cast<PetscScalar*>(array);
-}
 
 // y <- a x + keep y or a^T x + keep y for a by columns.
 void apply_panel(const char* how, const PetscScalar* a, int rows, int columns, const PetscScalar* x,
@@ -128,7 +115,7 @@ std::size_t LevelElimination::Level::entries() const {
 }
 
 void LevelElimination::Level::apply(const PetscScalar* x, PetscScalar* y) const {
-  const PetscScalar* panel = panels;
+  const PetscScalar* panel = panels.get();
   for (std::size_t b = 0; b + 1 < cuts.size(); ++b) {
     const int rows = cuts[b + 1] - cuts[b], columns = size - cuts[b];
     apply_panel("N", panel, rows, columns, x + cuts[b], 0, y + cuts[b]);
@@ -138,7 +125,7 @@ void LevelElimination::Level::apply(const PetscScalar* x, PetscScalar* y) const 
 
 void LevelElimination::Level::apply_transposed(const PetscScalar* x, PetscScalar* y) const {
   std::fill(y, y + size, 0.0);
-  const PetscScalar* panel = panels;
+  const PetscScalar* panel = panels.get();
   for (std::size_t b = 0; b + 1 < cuts.size(); ++b) {
     const int rows = cuts[b + 1] - cuts[b], columns = size - cuts[b];
     apply_panel("T", panel, rows, columns, x + cuts[b], 1, y + cuts[b]);
@@ -321,7 +308,10 @@ void LevelElimination::multiply_inwards(const Level& level, const Scalars& inver
 
 void LevelElimination::store(Level& level, const Scalars& inverse) {
   const std::ptrdiff_t size = level.size;
-  PetscScalar* to = level.panels;
+  if (!level.panels) {
+    level.panels = std::make_unique_for_overwrite<PetscScalar[]>(level.entries());
+  }
+  PetscScalar* to = level.panels.get();
   for (std::size_t b = 0; b + 1 < level.cuts.size(); ++b) {
     for (int c = level.cuts[b]; c < level.size; ++c) {
       const PetscScalar* column = inverse.data() + size * c;
@@ -332,13 +322,6 @@ void LevelElimination::store(Level& level, const Scalars& inverse) {
 
 void LevelElimination::factor() {
   if (levels_.empty()) return;
-  if (!panels_) {
-    const auto add = [](std::size_t sum, const Level& level) { return sum + level.entries(); };
-    panels_.reset(
-        large_array(std::accumulate(levels_.begin(), levels_.end(), std::size_t{0}, add)));
-    PetscScalar* next = panels_.get();
-    for (Level& level : levels_) next = (level.panels = next) + level.entries();
-  }
   Scalars dense, back;  // back: S^-1 E of the block after
   if (has_outer()) {
     back = receive<PetscScalar>(outer_border_.size() * levels_.back().size, outer_rank_, comm_);

@@ -45,7 +45,7 @@ enum class Parameter {
 /// the paper's section 5.
 class KolmogorovOperator {
  public:
-  /// Assembles the local rows, with exact preallocation. Collective. O(local nonzeros).
+  /// Assembles the local rows. The matrix lives as long as the operator. Collective. O(local nonzeros).
   KolmogorovOperator(MPI_Comm comm, const model::Process& process, const velocity::Axis& axis,
                      PetscScalar lambda, Symmetry symmetry, Rest rest);
 
@@ -104,6 +104,9 @@ class KolmogorovOperator {
   Functional trace_upper_, trace_lower_;
   std::vector<Coupling> rest_coupling_;  // -A_us
   std::vector<Coupling> exit_coupling_;  // level +1 upwards, -1 downwards
+  // On one rank the matrix lives in these; several ranks split their rows and need copies.
+  std::vector<PetscInt> row_start_, columns_;
+  std::vector<PetscScalar> values_;
   petsc::MatHandle matrix_;
   PetscInt64 nonzeros_ = 0;
 };

@@ -92,10 +92,13 @@ class Factorization {
   void factor_with_more_workspace();
   [[nodiscard]] Solution solve(Vec b, bool transposed);
   void apply(Vec b, Vec x, bool transposed);
-  [[nodiscard]] double backward_error(Vec residual, Vec b, Vec x, bool transposed) const;
+  [[nodiscard]] double backward_error(Vec residual, Vec b, Vec x);
+  [[nodiscard]] double backward_error_transposed(Vec residual, Vec b, Vec x);
 
   MatHandle matrix_;
-  MatHandle magnitude_;                       // |a_ij|, for backward errors
+  // |a_ij| and the sums of its rows, when first needed.
+  MatHandle magnitude_;
+  VecHandle magnitude_sums_;
   std::unique_ptr<LevelElimination> levels_;  // null: PETSc's preconditioner does it all
   KspHandle ksp_;
   std::string prefix_;

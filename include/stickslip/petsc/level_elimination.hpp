@@ -3,7 +3,6 @@
 
 #include <petscmat.h>
 
-#include <cstdlib>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -72,7 +71,7 @@ class LevelElimination {
     int size = 0;
     std::vector<int> cuts;
     Coupling outwards, inwards;  // D, E
-    PetscScalar* panels = nullptr;
+    std::unique_ptr<PetscScalar[]> panels;
     [[nodiscard]] std::size_t entries() const;
     void apply(const PetscScalar* x, PetscScalar* y) const;
     void apply_transposed(const PetscScalar* x, PetscScalar* y) const;
@@ -101,10 +100,6 @@ class LevelElimination {
   std::vector<Place> local_places_;                                    // of local rows
   std::vector<std::pair<PetscInt, int>> inner_border_, outer_border_;  // global row, position
   std::vector<Level> levels_;
-  struct Free {
-    void operator()(PetscScalar* array) const { std::free(array); }
-  };
-  std::unique_ptr<PetscScalar[], Free> panels_;  // of all levels, one after the other
   DenseInverse invert_;
   double entries_ = 0, bytes_ = 0, operations_ = 0;
 };
