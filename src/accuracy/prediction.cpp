@@ -12,12 +12,17 @@ namespace {
 
 using operators::SystemKey;
 
-// Fitted to runs of hp scenes with delta from 1/2 to 1/64: eliminations of small fronts reach a
-// share of the speed of a matrix product, and pay for each entry besides; a solve reads the
-// factors.
-constexpr double kShareOfSpeed = 0.35, kSecondsPerEntry = 8e-9, kSecondsPerEntrySolved = 2.5e-9;
-constexpr double kSecondsPerNonzero = 1.2e-8;  // of a residual
-constexpr double kFixedSeconds = 1e-3;         // of a factorisation
+// Fitted to runs of hp scenes with delta from 1/2 to 1/256: eliminations reach a share of the speed
+// of a matrix product, and pay for each entry besides, for which memory has to be found; a solve
+// reads the factors.
+struct Speed {
+  double share, per_entry, per_entry_solved;
+  bool on_all_ranks;  // or on one after the other
+};
+constexpr Speed kByLevels{0.8, 1e-8, 1.5e-9, false};
+constexpr Speed kByMumps{0.35, 8e-9, 2.5e-9, true};
+constexpr double kSecondsPerNonzero = 5e-9;  // of a residual
+constexpr double kFixedSeconds = 5e-4;       // of a factorisation
 
 class Predictor {
  public:
@@ -53,17 +58,17 @@ class Predictor {
     step_.factor_entries = std::max(step_.factor_entries, analysis.factor_entries);
     step_.megabytes = std::max(step_.megabytes, analysis.megabytes);
     step_.operations += analysis.operations;
-    const int ranks = petsc::ranks(comm_);
+    const Speed& speed = analysis.by_levels ? kByLevels : kByMumps;
+    const int ranks = petsc::ranks(comm_), sharing = speed.on_all_ranks ? ranks : 1;
     Foretold f;
     f.assembly = ledger.assembly_seconds;
-    f.factorization = ledger.analysis_seconds + kFixedSeconds +
-                      (analysis.operations / (kShareOfSpeed * speed_) +
-                       kSecondsPerEntry * analysis.factor_entries) /
-                          ranks;
+    f.factorization =
+        ledger.analysis_seconds + kFixedSeconds +
+        (analysis.operations / (speed.share * speed_) + speed.per_entry * analysis.factor_entries) /
+            sharing;
     // Each is corrected once, with two residuals and a bound.
-    f.solve = (2 * kSecondsPerEntrySolved * analysis.factor_entries +
-               3 * kSecondsPerNonzero * static_cast<double>(ledger.nonzeros)) /
-              ranks;
+    f.solve = 2 * speed.per_entry_solved * analysis.factor_entries / sharing +
+              3 * kSecondsPerNonzero * static_cast<double>(ledger.nonzeros) / ranks;
     // The first task that uses it pays for it.
     step_.seconds += f.assembly + f.factorization;
     return systems_.emplace(key, f).first->second;

@@ -180,7 +180,7 @@ Group method_group() {
                 "intervals"),
           flag("plan",
                "print what would be assembled, factored and solved, with unknowns, non-zeros, "
-               "memory and time foretold by the analysis phase of MUMPS, and stop"),
+               "memory and time foretold by the analysis phase of the solver, and stop"),
           integer("excursions", "1000000", whole(2, 1e15), {},
                   "number of simulated excursions with -route monte_carlo; with -accuracy it stops "
                   "before that when every interval is small enough",
@@ -378,7 +378,7 @@ std::string help_text() {
       "  -help, -version    print this text, or the versions, and stop\n"
       "  -reference         print the reference page in Markdown and stop\n"
       "  -slide_...         PETSc options of the solver for the sliding operator, for example\n"
-      "                     -slide_mat_mumps_icntl_7 2 or -slide_ksp_view\n"
+      "                     -slide_pc_type lu (by MUMPS, not by levels) or -slide_ksp_view\n"
       "  -null_..., -relax_...  SLEPc options of the eigensolvers of -route null_vector and of\n"
       "                     relaxation, for example -relax_eps_nev 10 or -null_eps_view\n"
       "  -log_view, ...     PETSc's own options\n\n"

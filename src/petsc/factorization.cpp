@@ -46,20 +46,6 @@ void set_default(const std::string& option, const char* value) {
   own_defaults().insert(option);
 }
 
-// Whether the options choose a preconditioner or something about its matrices.
-bool user_chooses(const std::string& prefix) {
-  char* text = nullptr;
-  check(PetscOptionsGetAll(nullptr, &text));
-  std::istringstream words(text);
-  check(PetscFree(text));
-  for (std::string word; words >> word;) {
-    const bool chooses =
-        word.starts_with("-" + prefix + "pc_") || word.starts_with("-" + prefix + "mat_");
-    if (chooses && !own_defaults().contains(word)) return true;
-  }
-  return false;
-}
-
 // PETSc's preconditioner of the type "shell" is filled in when its matrix is known.
 PetscErrorCode create_levels(PC pc) {
   PetscFunctionBegin;
@@ -118,7 +104,7 @@ KspHandle configured_solver(Mat matrix, const std::string& prefix, bool narrow_c
   check(KSPSetOperators(ksp, matrix, matrix));
   set_direct_solver(ksp);
   check(PCRegister(kLevels, create_levels));
-  if (narrow_chain && !user_chooses(prefix)) {
+  if (narrow_chain && !chooses_solver(prefix)) {
     PC pc = nullptr;
     check(KSPGetPC(ksp, &pc));
     check(PCSetType(pc, kLevels));
@@ -261,6 +247,19 @@ VecHandle absolute(Vec x) {
 }
 
 }  // namespace
+
+bool chooses_solver(const std::string& prefix) {
+  char* text = nullptr;
+  check(PetscOptionsGetAll(nullptr, &text));
+  std::istringstream words(text);
+  check(PetscFree(text));
+  for (std::string word; words >> word;) {
+    const bool chooses =
+        word.starts_with("-" + prefix + "pc_") || word.starts_with("-" + prefix + "mat_");
+    if (chooses && !own_defaults().contains(word)) return true;
+  }
+  return false;
+}
 
 void set_direct_solver(KSP ksp) {
   check(KSPSetType(ksp, KSPPREONLY));
@@ -457,7 +456,7 @@ Analysis Factorization::analyse(Mat matrix, const std::string& prefix, Ledger& l
   if (uses_levels(ksp)) {
     require_chain(chain, prefix);
     const LevelElimination levels(matrix, std::move(*chain));
-    return {levels.entries(), levels.bytes() / 1e6, levels.operations()};
+    return {true, levels.entries(), levels.bytes() / 1e6, levels.operations()};
   }
   if (!uses_mumps(ksp)) return {};
   PC pc = nullptr;
@@ -473,7 +472,7 @@ Analysis Factorization::analyse(Mat matrix, const std::string& prefix, Ledger& l
   check(MatMumpsGetInfog(factor, 3, &entries));
   check(MatMumpsGetInfog(factor, 17, &megabytes));
   check(MatMumpsGetRinfog(factor, 1, &operations));
-  return {entries_counted(entries), static_cast<double>(megabytes), operations};
+  return {false, entries_counted(entries), static_cast<double>(megabytes), operations};
 }
 
 void Factorization::probe_options(const std::string& prefix) {

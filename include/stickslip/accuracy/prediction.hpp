@@ -16,7 +16,7 @@ struct PredictedStep {
   Resolution resolution;
   std::int64_t unknowns = 0;  ///< of the largest system
   std::int64_t nonzeros = 0;
-  double factor_entries = 0;  ///< of the largest factorisation, by MUMPS's analysis
+  double factor_entries = 0;  ///< of the largest factorisation, by the solver's analysis
   double megabytes = 0;       ///< of the same
   double operations = 0;      ///< of all factorisations, by the same analysis
   double seconds = 0;
@@ -28,7 +28,7 @@ struct Prediction {
   double seconds = 0;                ///< of all of them and of what is not refined
 };
 
-/// Assembles each system of the first steps and has MUMPS analyse it; nothing is factored or
+/// Assembles each system of the first steps and has the solver analyse it; nothing is factored or
 /// solved. Times follow from the operations and entries counted by that analysis, with the speed of
 /// a matrix product measured now, and were found within a factor 2 of real ones; a run may need
 /// one or two steps more than foretold. Routes other than excursion: the sizes only, with seconds

@@ -20,7 +20,7 @@ struct Resolution {
   int levels = 0;         ///< N, noise levels on each side of 0
   double v_max = 0;       ///< end of the velocity axis [velocity]
   int halves = 1;         ///< 1: folded by symmetry, v > 0 only; 2: both signs of v
-  options::Factors factors = options::Factors::in_memory;
+  options::Factors factors = options::Factors::own;
 };
 
 /// Noise levels on each side of 0 whose tail beyond weighs less than `tolerance` against the level
@@ -52,8 +52,8 @@ struct Resolution {
 /// its phases.
 [[nodiscard]] std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution);
 
-/// Memory that assembly and factorisation take, all ranks together [bytes]; fitted to MUMPS's
-/// counts (notes in resolution.cpp), within a factor 2. Incomplete factors are taken for ILU(12).
+/// Memory that assembly and factorisation take, all ranks together [bytes]; fitted to counts (notes
+/// in resolution.cpp), within a factor 2. Incomplete factors are taken for ILU(12).
 [[nodiscard]] double predicted_bytes(const model::Scene& scene, const Resolution& resolution);
 
 /// Arithmetic of the factorisation up to a common factor, to scale measured times with.

@@ -45,7 +45,8 @@ enum class Parameter {
 /// the paper's section 5.
 class KolmogorovOperator {
  public:
-  /// Assembles the local rows. The matrix lives as long as the operator. Collective. O(local nonzeros).
+  /// Assembles the local rows. The matrix lives as long as the operator. Collective. O(local
+  /// nonzeros).
   KolmogorovOperator(MPI_Comm comm, const model::Process& process, const velocity::Axis& axis,
                      PetscScalar lambda, Symmetry symmetry, Rest rest);
 

@@ -36,8 +36,9 @@ enum class Quantity {
 /// Discretisation in v; `none` for the fluid queue, which needs none.
 enum class Scheme { hp, upwind, none };
 
-/// Where the factors of the sliding operator go; the PETSc options of -slide_ decide.
-enum class Factors { in_memory, on_disk, incomplete };
+/// What factors the sliding operator, and where they go; the PETSc options of -slide_ decide.
+/// `own`: by levels on an hp axis, else by MUMPS in memory.
+enum class Factors { own, levels, in_memory, on_disk, incomplete };
 
 /// By which system of equations.
 enum class Route { excursion, lambda, hitting, null_vector, fluid_queue, monte_carlo };
@@ -61,7 +62,7 @@ struct Method {
   Scheme scheme = Scheme::hp;
   std::optional<int> degree, layers;  ///< hp
   std::optional<int> points;          ///< upwind, per noise step
-  Factors factors = Factors::in_memory;
+  Factors factors = Factors::own;
 
   [[nodiscard]] bool fixed() const { return degree || layers || points; }
 };

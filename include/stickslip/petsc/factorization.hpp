@@ -15,6 +15,7 @@ namespace stickslip::petsc {
 
 /// What the analysis of an elimination by levels or by MUMPS foretells; zeros for other solvers.
 struct Analysis {
+  bool by_levels = false;
   double factor_entries = 0;
   double megabytes = 0;   ///< of all ranks, while factoring
   double operations = 0;  ///< of the elimination
@@ -30,6 +31,9 @@ struct Solution {
   /// transposed one.
   double backward_error = 0;
 };
+
+/// Whether options under the prefix say something about the preconditioner or its matrices.
+[[nodiscard]] bool chooses_solver(const std::string& prefix);
 
 /// Makes a KSP a direct solver, preonly around an LU factorisation by MUMPS; to be called before
 /// its options are read.
