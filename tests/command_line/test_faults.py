@@ -187,8 +187,8 @@ class Disks(Faults):
 
 class Memory(Faults):
     def test_limits(self):
-        """ulimit -v of 400, 600, 800 MB: told before it is allocated or when it runs out, status 4"""
-        for megabytes in (400, 600, 800):
+        """ulimit -v of 400, 500, 600 MB: told before it is allocated or when it runs out, status 4"""
+        for megabytes in (400, 500, 600):
             status, told = self.limited(resource.RLIMIT_AS, megabytes << 20, "-mu_d", "0.25",
                                         "-delta", "0.015625", "-accuracy", "1e-10", "-summary",
                                         "s.json")
