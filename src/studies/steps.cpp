@@ -1,46 +1,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/tools/roots.hpp>
-#include <cstdint>
+#include <span>
 
+#include "stickslip/studies/limit.hpp"
 #include "studies.hpp"
 
 namespace stickslip::studies {
 namespace {
-
-/// A value and the noise step it belongs to.
-struct Sample {
-  double delta, value, error;
-};
-
-// d^q - e^q.
-double gap(double d, double e, double q) { return std::pow(d, q) - std::pow(e, q); }
-
-// q with (a - b)/(b - c) = (d_a^q - d_b^q)/(d_b^q - d_c^q), as for u + C d^q; NaN if there is none.
-double observed_order(const Sample& a, const Sample& b, const Sample& c) {
-  const double ratio = (a.value - b.value) / (b.value - c.value);
-  const auto defect = [&](double q) {
-    return std::log(gap(a.delta, b.delta, q) / gap(b.delta, c.delta, q)) - std::log(ratio);
-  };
-  constexpr double low = 0.05, high = 8;
-  if (!(ratio > 0) || defect(low) * defect(high) > 0) return kNone;
-  std::uintmax_t iterations = 100;
-  const auto root = boost::math::tools::toms748_solve(
-      defect, low, high, boost::math::tools::eps_tolerance<double>(40), iterations);
-  return root.first;
-}
-
-double limit(const Sample& b, const Sample& c, double order) {
-  const double share = std::pow(c.delta, order) / gap(b.delta, c.delta, order);
-  return c.value - (b.value - c.value) * share;
-}
 
 /// One family of steps, with mu_s at the same place between the levels.
 class Family {
  public:
   Family(const Setting& setting, double offset, std::string name)
       : setting_(setting), name_(std::move(name)) {
+    const auto& friction = setting.request.scene.friction;
+    grazing_ = friction.mu_d == friction.mu_s;
     const double mu_s = setting.request.scene.friction.mu_s;
     const double first = std::max(1.0, std::round(mu_s / setting.request.scene.delta - offset));
     const int steps = setting.request.study_steps.value_or(5);
@@ -65,13 +40,11 @@ class Family {
                 {"delta", "value", "error", "order", "limit", "limit_error"},
                 {}};
     const auto s = samples(key);
-    double before = kNone;
     for (std::size_t n = 0; n < s.size(); ++n) {
-      const double order = n >= 2 ? observed_order(s[n - 2], s[n - 1], s[n]) : kNone;
-      const double extrapolated = n >= 2 ? limit(s[n - 1], s[n], order) : kNone;
-      table.rows.push_back({s[n].delta, s[n].value, s[n].error, order, extrapolated,
-                            std::abs(extrapolated - before)});
-      before = extrapolated;
+      const auto known = std::span(s).first(n + 1);
+      const double order = observed_order(known);
+      const Limit limit = limit_of(known, order, grazing_);
+      table.rows.push_back({s[n].delta, s[n].value, s[n].error, order, limit.value, limit.error});
     }
     return table;
   }
@@ -90,6 +63,7 @@ class Family {
 
   const Setting& setting_;
   std::string name_;
+  bool grazing_ = false;  // mu_d = mu_s
   std::vector<double> deltas_;
   std::vector<Run> runs_;
 };
