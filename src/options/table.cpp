@@ -206,7 +206,8 @@ Group study_group() {
           words("study", Kind::choice, "none", {"none", "p", "delta", "heuristic", "cost"},
                 "p: the upwind scheme on p = 2, 4, ..., its "
                 "observed order and Richardson's limit. delta: falling noise steps with mu_s on a "
-                "level and between two, observed order and limit. heuristic: the extrapolation of "
+                "level and between two, observed order and repeated Richardson's limit. heuristic: "
+                "the extrapolation of "
                 "the paper beside converged values. cost: error against time of all methods"),
           integer("study_steps", "", whole(4, 20), {},
                   "length of the series: number of values of p or delta (default 8 and 5)",

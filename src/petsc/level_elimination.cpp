@@ -142,8 +142,9 @@ LevelElimination::LevelElimination(Mat matrix, Chain chain)
   levels_.resize(static_cast<std::size_t>(chain_.blocks()));
   for (int s = 0; s < chain_.blocks(); ++s) {
     levels_[s].size = chain_.size(s);
-    for (int p = 0; p < chain_.size(s); ++p)
+    for (int p = 0; p < chain_.size(s); ++p) {
       local_places_[chain_.rows[chain_.start[s] + p]] = {s, p};
+    }
   }
   exchange_borders();
   find_cuts();
@@ -199,8 +200,8 @@ void LevelElimination::exchange_borders() {
 
 LevelElimination::Place LevelElimination::place_of(PetscInt column) const {
   const PetscInt local = column - first_row_;
-  if (local >= 0 && local < static_cast<PetscInt>(local_places_.size()))
-    return local_places_[local];
+  const bool here = local >= 0 && local < static_cast<PetscInt>(local_places_.size());
+  if (here) return local_places_[local];
   const bool inner = local < 0;
   const auto& border = inner ? inner_border_ : outer_border_;
   const auto found = std::lower_bound(border.begin(), border.end(), std::pair{column, 0});
@@ -266,14 +267,15 @@ void LevelElimination::read_block(int s, Scalars& dense) {
     const RowView row(matrix_, first_row_ + chain_.rows[chain_.start[s] + p]);
     row.for_each([&](PetscInt column, PetscScalar value) {
       const Place to = place_of(column);
-      if (to.block == s)
+      if (to.block == s) {
         dense[p + size * to.position] = value;
-      else if (to.block == s + 1)
+      } else if (to.block == s + 1) {
         level.outwards.add(p, to.position, value);
-      else if (to.block == s - 1)
+      } else if (to.block == s - 1) {
         level.inwards.add(p, to.position, value);
-      else
+      } else {
         throw std::logic_error("the blocks are no chain");
+      }
     });
   }
 }

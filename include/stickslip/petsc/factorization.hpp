@@ -7,19 +7,12 @@
 #include <optional>
 #include <string>
 
+#include "stickslip/petsc/direct_solver.hpp"
 #include "stickslip/petsc/handle.hpp"
 #include "stickslip/petsc/ledger.hpp"
 #include "stickslip/petsc/level_elimination.hpp"
 
 namespace stickslip::petsc {
-
-/// What the analysis of an elimination by levels or by MUMPS foretells; zeros for other solvers.
-struct Analysis {
-  bool by_levels = false;
-  double factor_entries = 0;
-  double megabytes = 0;   ///< of all ranks, while factoring
-  double operations = 0;  ///< of the elimination
-};
 
 /// A solution with its corrections summed up; solution - correction is what one solve alone gave,
 /// and the effect of the correction on a functional estimates the rounding error in it.
@@ -32,29 +25,6 @@ struct Solution {
   double backward_error = 0;
 };
 
-/// Whether options under the prefix say something about the preconditioner or its matrices.
-[[nodiscard]] bool chooses_solver(const std::string& prefix);
-
-/// Makes a KSP a direct solver, preonly around an LU factorisation by MUMPS; to be called before
-/// its options are read.
-void set_direct_solver(KSP ksp);
-
-/// The ordering AMF where MUMPS is used and the options say nothing else; to be called after.
-void set_default_ordering(KSP ksp);
-
-/// Throws NoMemory or NotReached when the factorisation of a KSP has failed.
-void require_factored(KSP ksp, const std::string& prefix);
-
-/// Memory and entries of the factors of a KSP, as MUMPS counts them; nothing for other solvers.
-void record_factors(KSP ksp, Ledger& ledger);
-
-/// KSP of type preonly around a direct solver: for a narrow chain of blocks the preconditioner
-/// "levels", which is LevelElimination, and else an LU factorisation by MUMPS with the ordering
-/// AMF (MUMPS would choose PORD, as METIS is not in Debian's build, which costs 10 to 30 times more
-/// on these matrices). Every choice is a PETSc option under the prefix, e.g. -slide_pc_type lu or
-/// -slide_pc_factor_mat_solver_type klu; with any such option that is not about levels, LU is the
-/// default.
-///
 /// A direct solver reports success on a singular matrix too, so each solve computes its residual
 /// and makes one step of iterative refinement, a second one where the backward error is above
 /// 1e-12 still. All members are collective.
@@ -93,7 +63,6 @@ class Factorization {
  private:
   void factor();
   void factor_by_petsc();
-  void factor_with_more_workspace();
   [[nodiscard]] Solution solve(Vec b, bool transposed);
   void apply(Vec b, Vec x, bool transposed);
   [[nodiscard]] double backward_error(Vec residual, Vec b, Vec x);

@@ -31,8 +31,8 @@ struct Chain {
 /// the inverses S_s^-1 being kept. For a generator, S_s is that of the process watched while in
 /// block s, killed on leaving inwards. Where what flows out of block s comes back further down in
 /// its order, S_s is block upper triangular; the analysis finds the blocks, and no zero below them
-/// is stored or computed with. The blocks of several ranks are eliminated one rank after the other:
-/// a rank holds its share of the factors, and computes the same bits as one rank alone would.
+/// is stored or computed with. The blocks of several ranks are eliminated one rank after the other,
+/// each of which holds its share of the factors.
 class LevelElimination {
  public:
   /// Analysis of the matrix (kept by reference count) for arranged rows. Collective. O(nonzeros).
