@@ -155,19 +155,20 @@ PetscInt StateSpace::size(const Block& block) const {
 
 petsc::Chain StateSpace::chain() const {
   struct Entry {
-    std::tuple<int, int, Half, int> key;  // shell, part of it, half, order there
+    std::tuple<int, int, int, int> key;  // shell, arm, part of it, order there
     PetscInt row;
   };
   std::vector<Entry> entries;
   entries.reserve(static_cast<std::size_t>(local_size_));
   for_each_local([&](const State& s) {
-    const int height = s.kind == StateKind::node      ? s.node + 1
-                       : s.kind == StateKind::holding ? nodes_ + 1
-                                                      : 0;
+    int height = 0;
+    if (s.kind == StateKind::node) height = s.node + 1;
+    if (s.kind == StateKind::holding) height = nodes_ + 1;
     const bool falls = s.level < 0;
-    int part = falls ? 0 : 2;
-    if (s.kind == StateKind::rest) part = 1;
-    entries.push_back({{std::abs(s.level), part, s.half, falls ? -height : height},
+    const int part = s.kind == StateKind::rest ? 1 : (falls ? 0 : 2);
+    const int noise = s.half == Half::upper ? s.level : -s.level;
+    const int arm = !folded() && noise < 0 ? 1 : 0;
+    entries.push_back({{std::abs(s.level), arm, part, falls ? -height : height},
                        static_cast<PetscInt>(entries.size())});
   });
   std::sort(entries.begin(), entries.end(),

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 
 #include "stickslip/support/errors.hpp"
 
@@ -14,51 +15,65 @@ namespace {
 
 constexpr int kLeaf = 16;
 
-// The cut nearest to the middle of the range; cuts.size() > 2.
-std::size_t middle(std::span<const int> cuts) {
-  const int centre = (cuts.front() + cuts.back()) / 2;
-  std::size_t best = 1;
-  for (std::size_t c = 2; c + 1 < cuts.size(); ++c) {
-    if (std::abs(cuts[c] - centre) < std::abs(cuts[best] - centre)) best = c;
-  }
-  return best;
-}
-
 double block_operations(double n) { return 2 * n * n * n; }
 
 }  // namespace
 
+std::size_t Triangle::entries() const {
+  std::size_t sum = 0;
+  for (int b = 0; b < blocks(); ++b) sum += static_cast<std::size_t>(rows(b)) * columns(b);
+  return sum;
+}
+
+int DenseInverse::Part::reach() const {
+  return *std::max_element(whole.reach.begin() + first, whole.reach.begin() + last);
+}
+
+// The block whose beginning is nearest to the middle of the rows; first + 1 < last.
+int DenseInverse::Part::middle() const {
+  const int centre = (begin() + end()) / 2;
+  int best = first + 1;
+  for (int b = first + 2; b < last; ++b) {
+    if (std::abs(whole.cuts[b] - centre) < std::abs(whole.cuts[best] - centre)) best = b;
+  }
+  return best;
+}
+
 // Work space of all levels of the recursion: n^2/2 for the first, a quarter of it for the next.
-void DenseInverse::operator()(PetscScalar* a, std::span<const int> cuts) {
-  const int n = cuts.back();
+void DenseInverse::operator()(PetscScalar* a, const Triangle& triangle) {
+  const int n = triangle.cuts.back();
   const auto needed = static_cast<std::size_t>(n) * n;
   if (space_.size() < needed) space_.resize(needed);
   used_ = 0;
-  invert_triangle({a, n, n, n}, cuts);
+  invert_triangle({a, n, n, n}, {triangle, 0, triangle.blocks()});
 }
 
 // (A B; 0 C)^-1 = (A^-1 -A^-1 B C^-1; 0 C^-1).
-void DenseInverse::invert_triangle(const Block& a, std::span<const int> cuts) {
-  if (cuts.size() == 2) {
+void DenseInverse::invert_triangle(const Block& a, const Part& part) {
+  if (part.first + 1 == part.last) {
     invert_block(a);
     return;
   }
-  const std::size_t cut = middle(cuts);
-  const int begin = cuts.front(), upper = cuts[cut] - begin, lower = cuts.back() - cuts[cut];
-  const auto above = cuts.subspan(0, cut + 1), below = cuts.subspan(cut);
-  const Block first = a.part(0, 0, upper, upper), last = a.part(upper, upper, lower, lower),
-              corner = a.part(0, upper, upper, lower);
+  const auto& [cuts, reach] = part.whole;
+  const Part above{part.whole, part.first, part.middle()}, below{part.whole, above.last, part.last};
+  const int begin = above.begin(), centre = below.begin();
+  const int end = std::min(above.reach(), part.end());
+  const int upper = centre - begin, lower = below.end() - centre, width = end - centre;
+  const Block first = a.part(0, 0, upper, upper), last = a.part(upper, upper, lower, lower);
   invert_triangle(first, above);
   invert_triangle(last, below);
+  if (width <= 0) return;
+  const Block corner = a.part(0, upper, upper, width);
   const std::size_t before = used_;
-  const Block product = take(upper, lower);
-  for (std::size_t b = 0; b + 1 < above.size(); ++b) {
-    const int row = above[b] - begin, rows = above[b + 1] - above[b];
-    multiply(1, first.part(row, row, rows, upper - row), corner.part(row, 0, upper - row, lower), 0,
-             product.part(row, 0, rows, lower));
+  const Block product = take(upper, width);
+  for (int b = above.first; b < above.last; ++b) {
+    const int row = cuts[b] - begin, rows = part.whole.rows(b);
+    const int inner = std::min(reach[b], centre) - cuts[b];
+    multiply(1, first.part(row, row, rows, inner), corner.part(row, 0, inner, width), 0,
+             product.part(row, 0, rows, width));
   }
-  for (std::size_t b = 0; b + 1 < below.size(); ++b) {
-    const int column = below[b] - below[0], columns = below[b + 1] - below[b];
+  for (int b = below.first; b < below.last && cuts[b] < end; ++b) {
+    const int column = cuts[b] - centre, columns = part.whole.rows(b);
     multiply(-1, product.part(0, 0, upper, column + columns),
              last.part(0, column, column + columns, columns), 0,
              corner.part(0, column, upper, columns));
@@ -115,17 +130,22 @@ void DenseInverse::multiply(double factor, const Block& a, const Block& b, doubl
   BLASgemm_("N", "N", &m, &n, &k, &alpha, a.data, &lda, b.data, &ldb, &beta, c.data, &ldc);
 }
 
-double DenseInverse::operations(std::span<const int> cuts) {
-  if (cuts.size() == 2) return block_operations(cuts[1] - cuts[0]);
-  const std::size_t cut = middle(cuts);
-  const auto above = cuts.subspan(0, cut + 1), below = cuts.subspan(cut);
-  const double upper = above.back() - above.front(), lower = below.back() - below.front();
+double DenseInverse::operations(const Triangle& triangle) {
+  return operations(Part{triangle, 0, triangle.blocks()});
+}
+
+double DenseInverse::operations(const Part& part) {
+  if (part.first + 1 == part.last) return block_operations(part.end() - part.begin());
+  const auto& [cuts, reach] = part.whole;
+  const Part above{part.whole, part.first, part.middle()}, below{part.whole, above.last, part.last};
+  const int centre = below.begin(), end = std::min(above.reach(), part.end());
   double sum = operations(above) + operations(below);
-  for (std::size_t b = 0; b + 1 < above.size(); ++b) {
-    sum += 2.0 * (above[b + 1] - above[b]) * (above.back() - above[b]) * lower;
+  for (int b = above.first; b < above.last; ++b) {
+    const double inner = std::min(reach[b], centre) - cuts[b];
+    sum += 2.0 * part.whole.rows(b) * inner * std::max(end - centre, 0);
   }
-  for (std::size_t b = 0; b + 1 < below.size(); ++b) {
-    sum += 2.0 * (below[b + 1] - below[b]) * (below[b + 1] - below[0]) * upper;
+  for (int b = below.first; b < below.last && cuts[b] < end; ++b) {
+    sum += 2.0 * part.whole.rows(b) * (cuts[b + 1] - centre) * (centre - above.begin());
   }
   return sum;
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -75,6 +76,51 @@ std::vector<T> receive(std::size_t count, int from, MPI_Comm comm) {
   return data;
 }
 
+/// Positions first ... last; none if first > last.
+struct Extent {
+  int first = std::numeric_limits<int>::max(), last = -1;
+  void include(const Extent& other) {
+    first = std::min(first, other.first);
+    last = std::max(last, other.last);
+  }
+};
+
+void send_extents(const std::vector<Extent>& extents, int to, MPI_Comm comm) {
+  std::vector<int> ends;
+  for (const auto& [first, last] : extents) ends.insert(ends.end(), {first, last});
+  send(ends, to, comm);
+}
+
+std::vector<Extent> received_extents(std::size_t count, int from, MPI_Comm comm) {
+  const auto ends = receive<int>(2 * count, from, comm);
+  std::vector<Extent> extents;
+  for (std::size_t n = 0; n < count; ++n) extents.push_back({ends[2 * n], ends[2 * n + 1]});
+  return extents;
+}
+
+// The finest one that holds all that rows lead to.
+Triangle triangle_of(const std::vector<Extent>& leads) {
+  const int size = static_cast<int>(leads.size());
+  std::vector<int> cuts{size};
+  int lowest = size;  // of what the rows from p on lead to
+  for (int p = size - 1; p > 0; --p) {
+    lowest = std::min(lowest, leads[p].first);
+    const bool large = p >= kLeastBlock && cuts.back() - p >= kLeastBlock;
+    if (lowest >= p && large) cuts.push_back(p);
+  }
+  cuts.push_back(0);
+  std::reverse(cuts.begin(), cuts.end());
+  const int blocks = static_cast<int>(cuts.size()) - 1;
+  std::vector<int> reach(static_cast<std::size_t>(blocks));
+  for (int b = blocks - 1; b >= 0; --b) {
+    int end = cuts[b + 1];
+    for (int p = cuts[b]; p < cuts[b + 1]; ++p) end = std::max(end, leads[p].last + 1);
+    for (int c = b + 1; c < blocks && cuts[c] < end; ++c) end = std::max(end, reach[c]);
+    reach[b] = end;
+  }
+  return {cuts, reach};
+}
+
 }  // namespace
 
 void LevelElimination::Coupling::add(int row, int column, PetscScalar value) {
@@ -106,19 +152,11 @@ void LevelElimination::Coupling::subtract_transposed(const PetscScalar* x, Petsc
   }
 }
 
-std::size_t LevelElimination::Level::entries() const {
-  std::size_t sum = 0;
-  for (std::size_t b = 0; b + 1 < cuts.size(); ++b) {
-    sum += static_cast<std::size_t>(cuts[b + 1] - cuts[b]) * (size - cuts[b]);
-  }
-  return sum;
-}
-
 void LevelElimination::Level::apply(const PetscScalar* x, PetscScalar* y) const {
   const PetscScalar* panel = panels.get();
-  for (std::size_t b = 0; b + 1 < cuts.size(); ++b) {
-    const int rows = cuts[b + 1] - cuts[b], columns = size - cuts[b];
-    apply_panel("N", panel, rows, columns, x + cuts[b], 0, y + cuts[b]);
+  for (int b = 0; b < triangle.blocks(); ++b) {
+    const int rows = triangle.rows(b), columns = triangle.columns(b), begin = triangle.cuts[b];
+    apply_panel("N", panel, rows, columns, x + begin, 0, y + begin);
     panel += static_cast<std::ptrdiff_t>(rows) * columns;
   }
 }
@@ -126,9 +164,9 @@ void LevelElimination::Level::apply(const PetscScalar* x, PetscScalar* y) const 
 void LevelElimination::Level::apply_transposed(const PetscScalar* x, PetscScalar* y) const {
   std::fill(y, y + size, 0.0);
   const PetscScalar* panel = panels.get();
-  for (std::size_t b = 0; b + 1 < cuts.size(); ++b) {
-    const int rows = cuts[b + 1] - cuts[b], columns = size - cuts[b];
-    apply_panel("T", panel, rows, columns, x + cuts[b], 1, y + cuts[b]);
+  for (int b = 0; b < triangle.blocks(); ++b) {
+    const int rows = triangle.rows(b), columns = triangle.columns(b), begin = triangle.cuts[b];
+    apply_panel("T", panel, rows, columns, x + begin, 1, y + begin);
     panel += static_cast<std::ptrdiff_t>(rows) * columns;
   }
 }
@@ -147,12 +185,12 @@ LevelElimination::LevelElimination(Mat matrix, Chain chain)
     }
   }
   exchange_borders();
-  find_cuts();
+  find_triangles();
   std::array<double, 3> sums{};
   int largest = 0;
   for (const Level& level : levels_) {
-    sums[0] += static_cast<double>(level.entries());
-    sums[1] += DenseInverse::operations(level.cuts);
+    sums[0] += static_cast<double>(level.triangle.entries());
+    sums[1] += DenseInverse::operations(level.triangle);
     largest = std::max(largest, level.size);
   }
   // With a dense block, its work space, and what returns from the block before.
@@ -213,47 +251,36 @@ LevelElimination::Place LevelElimination::place_of(PetscInt column) const {
 
 // A cut at c is possible where no row from c on leads to a position before c, neither within the
 // block nor on a way through the blocks that are eliminated before it.
-void LevelElimination::find_cuts() {
+void LevelElimination::find_triangles() {
   if (levels_.empty()) return;
-  const int outer_size = static_cast<int>(outer_border_.size());
-  // Least position in this block to which a position in the block after returns.
-  std::vector<int> returns;
-  if (has_outer()) returns = receive<int>(static_cast<std::size_t>(outer_size), outer_rank_, comm_);
+  // Positions in this block to which one in the block after returns.
+  std::vector<Extent> returns;
+  if (has_outer()) returns = received_extents(outer_border_.size(), outer_rank_, comm_);
   for (int s = chain_.blocks() - 1; s >= 0; --s) {
     Level& level = levels_[s];
-    const int inner_size = s > 0 ? levels_[s - 1].size : static_cast<int>(inner_border_.size());
-    std::vector<int> least(static_cast<std::size_t>(level.size)), leaves(least.size(), inner_size);
+    const auto size = static_cast<std::size_t>(level.size);
+    std::vector<Extent> leads(size), leaves(size);  // within the block; to the block before
     for (int p = 0; p < level.size; ++p) {
-      least[p] = p;
+      leads[p].include({p, p});
       const RowView row(matrix_, first_row_ + chain_.rows[chain_.start[s] + p]);
       row.for_each([&](PetscInt column, PetscScalar) {
         const Place to = place_of(column);
-        if (to.block == s) least[p] = std::min(least[p], to.position);
-        if (to.block == s + 1) least[p] = std::min(least[p], returns[to.position]);
-        if (to.block == s - 1) leaves[p] = std::min(leaves[p], to.position);
+        if (to.block == s) leads[p].include({to.position, to.position});
+        if (to.block == s + 1) leads[p].include(returns[to.position]);
+        if (to.block == s - 1) leaves[p].include({to.position, to.position});
       });
     }
-    level.cuts.assign(1, level.size);
-    int lowest = level.size;  // of what the rows from p on lead to
-    for (int p = level.size - 1; p > 0; --p) {
-      lowest = std::min(lowest, least[p]);
-      const bool possible = lowest >= p && p >= kLeastBlock;
-      if (possible && level.cuts.back() - p >= kLeastBlock) level.cuts.push_back(p);
-    }
-    level.cuts.push_back(0);
-    std::reverse(level.cuts.begin(), level.cuts.end());
-    // All of a block of rows leads on to all that comes after its beginning.
-    returns.assign(static_cast<std::size_t>(level.size), inner_size);
-    int block = static_cast<int>(level.cuts.size()) - 2, first = inner_size;
-    for (int p = level.size - 1; p >= 0; --p) {
-      first = std::min(first, leaves[p]);
-      if (p > level.cuts[block]) continue;
-      std::fill(returns.begin() + level.cuts[block], returns.begin() + level.cuts[block + 1],
-                first);
-      --block;
+    level.triangle = triangle_of(leads);
+    const auto& [cuts, reach] = level.triangle;
+    returns.assign(size, {});
+    for (int b = 0; b < level.triangle.blocks(); ++b) {
+      // All of a block of rows leads on to all of its columns.
+      Extent all;
+      for (int p = cuts[b]; p < reach[b]; ++p) all.include(leaves[p]);
+      std::fill(returns.begin() + cuts[b], returns.begin() + cuts[b + 1], all);
     }
   }
-  if (has_inner()) send(returns, inner_rank_, comm_);
+  if (has_inner()) send_extents(returns, inner_rank_, comm_);
 }
 
 // The diagonal block into `dense`, the rest of its rows into the couplings.
@@ -293,31 +320,34 @@ void LevelElimination::multiply_inwards(const Level& level, const Scalars& inver
                                         Scalars& product) {
   const std::ptrdiff_t size = level.size;
   product.assign(static_cast<std::size_t>(size * columns), 0.0);
-  std::vector<int> height(static_cast<std::size_t>(size));  // of each column of the inverse
-  for (std::size_t b = 0; b + 1 < level.cuts.size(); ++b) {
-    std::fill(height.begin() + level.cuts[b], height.begin() + level.cuts[b + 1],
-              level.cuts[b + 1]);
+  // Rows of each column of the inverse.
+  std::vector<Extent> rows(static_cast<std::size_t>(size));
+  const auto& [cuts, reach] = level.triangle;
+  for (int b = 0; b < level.triangle.blocks(); ++b) {
+    for (int c = cuts[b]; c < reach[b]; ++c) rows[c].include({cuts[b], cuts[b + 1] - 1});
   }
   for (const Run& run : level.inwards.runs) {
     for (int n = 0; n < run.length; ++n) {
       const PetscScalar factor = level.inwards.values[run.first + n];
       const PetscScalar* from = inverse.data() + size * (run.row + n);
       PetscScalar* to = product.data() + size * (run.column + n);
-      for (int r = 0; r < height[run.row + n]; ++r) to[r] += factor * from[r];
+      const auto [first, last] = rows[run.row + n];
+      for (int r = first; r <= last; ++r) to[r] += factor * from[r];
     }
   }
 }
 
 void LevelElimination::store(Level& level, const Scalars& inverse) {
   const std::ptrdiff_t size = level.size;
+  const auto& [cuts, reach] = level.triangle;
   if (!level.panels) {
-    level.panels = std::make_unique_for_overwrite<PetscScalar[]>(level.entries());
+    level.panels = std::make_unique_for_overwrite<PetscScalar[]>(level.triangle.entries());
   }
   PetscScalar* to = level.panels.get();
-  for (std::size_t b = 0; b + 1 < level.cuts.size(); ++b) {
-    for (int c = level.cuts[b]; c < level.size; ++c) {
+  for (int b = 0; b < level.triangle.blocks(); ++b) {
+    for (int c = cuts[b]; c < reach[b]; ++c) {
       const PetscScalar* column = inverse.data() + size * c;
-      to = std::copy(column + level.cuts[b], column + level.cuts[b + 1], to);
+      to = std::copy(column + cuts[b], column + cuts[b + 1], to);
     }
   }
 }
@@ -332,7 +362,7 @@ void LevelElimination::factor() {
     Level& level = levels_[s];
     read_block(s, dense);
     if (!back.empty()) subtract_return(level, back, dense);
-    invert_(dense.data(), level.cuts);
+    invert_(dense.data(), level.triangle);
     store(level, dense);
     const int inner_size = s > 0 ? levels_[s - 1].size : static_cast<int>(inner_border_.size());
     multiply_inwards(level, dense, inner_size, back);

@@ -84,7 +84,8 @@ class StateSpace {
   [[nodiscard]] PetscInt index(const State& state) const;
 
   /// The local states by shells, which jumps of the noise couple with the next ones alone: in each
-  /// those that fall towards v = 0, fast ones first, then states at rest, then those that rise.
+  /// those that fall towards v = 0, fast ones first, then states at rest, then those that rise;
+  /// unfolded, all of level i before all of level -i, which meet at level 0 only.
   /// Narrow on an hp axis. O(local states).
   [[nodiscard]] petsc::Chain chain() const;
 

@@ -30,9 +30,9 @@ struct Chain {
 ///
 /// the inverses S_s^-1 being kept. For a generator, S_s is that of the process watched while in
 /// block s, killed on leaving inwards. Where what flows out of block s comes back further down in
-/// its order, S_s is block upper triangular; the analysis finds the blocks, and no zero below them
-/// is stored or computed with. The blocks of several ranks are eliminated one rank after the other,
-/// each of which holds its share of the factors.
+/// its order, S_s is block upper triangular; the analysis finds the blocks and how far their rows
+/// reach, and no other zero is stored or computed with. The blocks of several ranks are eliminated
+/// one rank after the other, each of which holds its share of the factors.
 class LevelElimination {
  public:
   /// Analysis of the matrix (kept by reference count) for arranged rows. Collective. O(nonzeros).
@@ -69,10 +69,9 @@ class LevelElimination {
   // Diagonal block with its couplings; the inverse as panels, one for each row of blocks.
   struct Level {
     int size = 0;
-    std::vector<int> cuts;
+    Triangle triangle;
     Coupling outwards, inwards;  // D, E
     std::unique_ptr<PetscScalar[]> panels;
-    [[nodiscard]] std::size_t entries() const;
     void apply(const PetscScalar* x, PetscScalar* y) const;
     void apply_transposed(const PetscScalar* x, PetscScalar* y) const;
   };
@@ -82,7 +81,7 @@ class LevelElimination {
   };
   void exchange_borders();
   [[nodiscard]] Place place_of(PetscInt column) const;
-  void find_cuts();
+  void find_triangles();
   void read_block(int s, std::vector<PetscScalar>& dense);
   static void subtract_return(const Level& level, const std::vector<PetscScalar>& back,
                               std::vector<PetscScalar>& dense);
