@@ -136,9 +136,9 @@ std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution) {
 // Entries of the factors: by levels, 1.05 to 1.08 n n_v were counted on hp axes for delta = 1/4 ...
 // 1/256 (n unknowns, n_v of them on a level), 0.6 to 0.8 where both halves are kept, and 2 on other
 // axes, where nothing is triangular; by MUMPS 2.7 to 3.2 n n_v. The upwind matrix is a
-// two-dimensional grid to MUMPS, where the shorter side m decides: 4.5 n m^0.52 entries were counted
-// for m = 65 ... 257. MUMPS takes 9 to 12 bytes a real entry; the matrix, its magnitudes and MUMPS's
-// copy come on top.
+// two-dimensional grid to MUMPS, where the shorter side m decides: 4.5 n m^0.52 entries were
+// counted for m = 65 ... 257. MUMPS takes 9 to 12 bytes a real entry; the matrix, its magnitudes
+// and MUMPS's copy come on top.
 double predicted_bytes(const model::Scene& scene, const Resolution& resolution) {
   const auto n = static_cast<double>(unknowns(scene, resolution));
   const double levels = 2.0 * resolution.levels + 1;

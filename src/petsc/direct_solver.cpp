@@ -43,19 +43,12 @@ PetscErrorCode create_levels(PC pc) {
   PetscFunctionReturn(0);
 }
 
+template <bool transposed>
 PetscErrorCode apply_levels(PC pc, Vec b, Vec x) {
   PetscFunctionBegin;
   void* levels = nullptr;
   PetscCall(PCShellGetContext(pc, &levels));
-  static_cast<LevelElimination*>(levels)->solve(b, x, false);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode apply_levels_transposed(PC pc, Vec b, Vec x) {
-  PetscFunctionBegin;
-  void* levels = nullptr;
-  PetscCall(PCShellGetContext(pc, &levels));
-  static_cast<LevelElimination*>(levels)->solve(b, x, true);
+  static_cast<LevelElimination*>(levels)->solve(b, x, transposed);
   PetscFunctionReturn(0);
 }
 
@@ -217,8 +210,8 @@ std::unique_ptr<LevelElimination> attach_levels(KSP ksp, Mat matrix, std::option
   }
   auto levels = std::make_unique<LevelElimination>(matrix, std::move(*chain));
   check(PCShellSetContext(pc, levels.get()));
-  check(PCShellSetApply(pc, apply_levels));
-  check(PCShellSetApplyTranspose(pc, apply_levels_transposed));
+  check(PCShellSetApply(pc, apply_levels<false>));
+  check(PCShellSetApplyTranspose(pc, apply_levels<true>));
   return levels;
 }
 
