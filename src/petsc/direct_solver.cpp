@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <new>
 #include <set>
 #include <sstream>
 #include <string>
@@ -35,21 +36,27 @@ void set_default(const std::string& option, const char* value) {
   own_defaults().insert(option);
 }
 
+// Called by PETSc: errors go back as codes, exceptions may not pass through it.
+
 // PETSc's preconditioner of the type "shell" is filled in when its matrix is known.
 PetscErrorCode create_levels(PC pc) {
-  PetscFunctionBegin;
-  PetscCall(PCSetType(pc, PCSHELL));
-  PetscCall(PCShellSetName(pc, kLevels));
-  PetscFunctionReturn(0);
+  const PetscErrorCode code = PCSetType(pc, PCSHELL);
+  return code == 0 ? PCShellSetName(pc, kLevels) : code;
 }
 
 template <bool transposed>
 PetscErrorCode apply_levels(PC pc, Vec b, Vec x) {
-  PetscFunctionBegin;
   void* levels = nullptr;
-  PetscCall(PCShellGetContext(pc, &levels));
-  static_cast<LevelElimination*>(levels)->solve(b, x, transposed);
-  PetscFunctionReturn(0);
+  const PetscErrorCode code = PCShellGetContext(pc, &levels);
+  if (code != 0) return code;
+  try {
+    static_cast<const LevelElimination*>(levels)->solve(b, x, transposed);
+  } catch (const PetscFailure& failure) {
+    return failure.code();
+  } catch (const std::bad_alloc&) {
+    return PETSC_ERR_MEM;
+  }
+  return 0;
 }
 
 bool uses_mumps(KSP ksp) {

@@ -370,43 +370,52 @@ void LevelElimination::factor() {
   if (has_inner()) send(back, inner_rank_, comm_);
 }
 
-void LevelElimination::solve(Vec b, Vec x, bool transposed) {
+void LevelElimination::solve(Vec b, Vec x, bool transposed) const {
   if (levels_.empty()) return;
+  auto z = pass_inwards(b, transposed);
+  pass_outwards(z, x, transposed);
+}
+
+void LevelElimination::Level::apply(const Scalars& x, Scalars& y, bool transposed) const {
+  y.resize(x.size());
+  transposed ? apply_transposed(x.data(), y.data()) : apply(x.data(), y.data());
+}
+
+// z_s = S_s^-1 (b_s - D_s z_{s+1}), or z_s = S_s^-T (b_s - E_{s+1}^T z_{s+1}), whose last term is
+// made where E_{s+1} is.
+std::vector<Scalars> LevelElimination::pass_inwards(Vec b, bool transposed) const {
   const int last = chain_.blocks() - 1;
-  const auto rows = [this](int s) { return chain_.rows.data() + chain_.start[s]; };
-  const auto inverse = [transposed](const Level& level, const Scalars& from, Scalars& to) {
-    to.resize(from.size());
-    transposed ? level.apply_transposed(from.data(), to.data())
-               : level.apply(from.data(), to.data());
-  };
   std::vector<Scalars> z(levels_.size());
-  {
-    const ReadView right(b);
-    Scalars y, passed;  // plain: z of the block after; transposed: what it sends
-    const std::size_t border = transposed ? levels_[last].size : outer_border_.size();
-    if (has_outer()) passed = receive<PetscScalar>(border, outer_rank_, comm_);
-    for (int s = last; s >= 0; --s) {
-      const Level& level = levels_[s];
-      y.resize(static_cast<std::size_t>(level.size));
-      for (int p = 0; p < level.size; ++p) y[p] = right[rows(s)[p]];
-      if (!passed.empty() && transposed) {
-        for (int p = 0; p < level.size; ++p) y[p] += passed[p];
-      } else if (!passed.empty()) {
-        level.outwards.subtract(passed.data(), y.data());
-      }
-      inverse(level, y, z[s]);
-      if (transposed) {
-        const std::size_t inner = s > 0 ? levels_[s - 1].size : inner_border_.size();
-        passed.assign(inner, 0.0);
-        level.inwards.subtract_transposed(z[s].data(), passed.data());
-      } else {
-        passed = z[s];
-      }
+  const ReadView right(b);
+  Scalars y, passed;
+  const std::size_t border = transposed ? levels_[last].size : outer_border_.size();
+  if (has_outer()) passed = receive<PetscScalar>(border, outer_rank_, comm_);
+  for (int s = last; s >= 0; --s) {
+    const Level& level = levels_[s];
+    y.resize(static_cast<std::size_t>(level.size));
+    for (int p = 0; p < level.size; ++p) y[p] = right[chain_.rows[chain_.start[s] + p]];
+    if (!passed.empty() && transposed) {
+      for (int p = 0; p < level.size; ++p) y[p] += passed[p];
+    } else if (!passed.empty()) {
+      level.outwards.subtract(passed.data(), y.data());
     }
-    if (has_inner()) send(passed, inner_rank_, comm_);
+    level.apply(y, z[s], transposed);
+    if (transposed) {
+      passed.assign(s > 0 ? levels_[s - 1].size : inner_border_.size(), 0.0);
+      level.inwards.subtract_transposed(z[s].data(), passed.data());
+    } else {
+      passed = z[s];
+    }
   }
+  if (has_inner()) send(passed, inner_rank_, comm_);
+  return z;
+}
+
+// x_s = z_s - S_s^-1 E_s x_{s-1}, or x_s = z_s - S_s^-T D_{s-1}^T x_{s-1}.
+void LevelElimination::pass_outwards(std::vector<Scalars>& z, Vec x, bool transposed) const {
+  const int last = chain_.blocks() - 1;
   WriteView left(x);
-  Scalars passed, y, step;
+  Scalars y, step, passed;
   const std::size_t border = transposed ? levels_[0].size : inner_border_.size();
   if (has_inner()) passed = receive<PetscScalar>(border, inner_rank_, comm_);
   for (int s = 0; s <= last; ++s) {
@@ -418,13 +427,12 @@ void LevelElimination::solve(Vec b, Vec x, bool transposed) {
         y.assign(static_cast<std::size_t>(level.size), 0.0);
         level.inwards.subtract(passed.data(), y.data());
       }
-      inverse(level, y, step);
+      level.apply(y, step, transposed);
       for (int p = 0; p < level.size; ++p) z[s][p] += step[p];
     }
-    for (int p = 0; p < level.size; ++p) left[rows(s)[p]] = z[s][p];
+    for (int p = 0; p < level.size; ++p) left[chain_.rows[chain_.start[s] + p]] = z[s][p];
     if (transposed) {
-      const std::size_t outer = s < last ? levels_[s + 1].size : outer_border_.size();
-      passed.assign(outer, 0.0);
+      passed.assign(s < last ? levels_[s + 1].size : outer_border_.size(), 0.0);
       level.outwards.subtract_transposed(z[s].data(), passed.data());
     } else {
       passed = z[s];

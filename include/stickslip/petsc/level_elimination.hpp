@@ -43,7 +43,7 @@ class LevelElimination {
   void factor();
 
   /// x = A^-1 b, or A^-T b without conjugation. Collective. Two passes over the factors.
-  void solve(Vec b, Vec x, bool transposed);
+  void solve(Vec b, Vec x, bool transposed) const;
 
   /// Of all ranks: entries of the factors, bytes while factoring, operations of the elimination.
   [[nodiscard]] double entries() const { return entries_; }
@@ -72,6 +72,8 @@ class LevelElimination {
     Triangle triangle;
     Coupling outwards, inwards;  // D, E
     std::unique_ptr<PetscScalar[]> panels;
+    void apply(const std::vector<PetscScalar>& x, std::vector<PetscScalar>& y,
+               bool transposed) const;
     void apply(const PetscScalar* x, PetscScalar* y) const;
     void apply_transposed(const PetscScalar* x, PetscScalar* y) const;
   };
@@ -88,6 +90,8 @@ class LevelElimination {
   static void store(Level& level, const std::vector<PetscScalar>& inverse);
   static void multiply_inwards(const Level& level, const std::vector<PetscScalar>& inverse,
                                int columns, std::vector<PetscScalar>& product);
+  [[nodiscard]] std::vector<std::vector<PetscScalar>> pass_inwards(Vec b, bool transposed) const;
+  void pass_outwards(std::vector<std::vector<PetscScalar>>& z, Vec x, bool transposed) const;
   [[nodiscard]] bool has_outer() const { return outer_rank_ != MPI_PROC_NULL; }
   [[nodiscard]] bool has_inner() const { return inner_rank_ != MPI_PROC_NULL; }
 
