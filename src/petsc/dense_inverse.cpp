@@ -112,7 +112,8 @@ void DenseInverse::invert_leaf(const Block& a) {
   work_.resize(size);
   LAPACKgetrf_(&n, &n, a.data, &stride, pivots.data(), &info);
   if (info == 0) LAPACKgetri_(&n, a.data, &stride, pivots.data(), work_.data(), &size, &info);
-  if (info != 0) throw NotReached("a block is singular");
+  if (info == 0) return;
+  throw NotReached("a block of the elimination is singular; -slide_pc_type lu exchanges more rows");
 }
 
 DenseInverse::Block DenseInverse::take(int rows, int columns) {

@@ -211,8 +211,10 @@ Solution Factorization::solve(Vec b, bool transposed) {
   seen.backward_error = s.backward_error;
   ledger_ += seen;
   if (!sound) {
-    throw NotReached(fmt::format("the solver -{} left a backward error of {:.1e} (limit {:.0e})",
-                                 prefix_, s.backward_error, kBackwardErrorLimit));
+    throw NotReached(
+        fmt::format("the solver -{} left a backward error of {:.1e} (limit {:.0e}){}", prefix_,
+                    s.backward_error, kBackwardErrorLimit,
+                    levels_ ? fmt::format("; -{}pc_type lu exchanges more rows", prefix_) : ""));
   }
   return s;
 }
