@@ -39,11 +39,15 @@ int DenseInverse::Part::middle() const {
   return best;
 }
 
-// Work space of all levels of the recursion: n^2/2 for the first, a quarter of it for the next.
-void DenseInverse::operator()(PetscScalar* a, const Triangle& triangle) {
-  const int n = triangle.cuts.back();
+// For all levels of the recursion: n^2/2 for the first, a quarter of it for the next.
+void DenseInverse::reserve(int n) {
   const auto needed = static_cast<std::size_t>(n) * n;
   if (space_.size() < needed) space_.resize(needed);
+}
+
+void DenseInverse::operator()(PetscScalar* a, const Triangle& triangle) {
+  const int n = triangle.cuts.back();
+  reserve(n);
   used_ = 0;
   invert_triangle({a, n, n, n}, {triangle, 0, triangle.blocks()});
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <new>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
+#include "stickslip/support/errors.hpp"
 
 namespace stickslip::petsc {
 namespace {
@@ -340,9 +342,6 @@ void LevelElimination::multiply_inwards(const Level& level, const Scalars& inver
 void LevelElimination::store(Level& level, const Scalars& inverse) {
   const std::ptrdiff_t size = level.size;
   const auto& [cuts, reach] = level.triangle;
-  if (!level.panels) {
-    level.panels = std::make_unique_for_overwrite<PetscScalar[]>(level.triangle.entries());
-  }
   PetscScalar* to = level.panels.get();
   for (int b = 0; b < level.triangle.blocks(); ++b) {
     for (int c = cuts[b]; c < reach[b]; ++c) {
@@ -352,9 +351,33 @@ void LevelElimination::store(Level& level, const Scalars& inverse) {
   }
 }
 
+// All large memory, on all ranks or on none: a rank that fails later would leave others waiting.
+void LevelElimination::reserve(Scalars& dense, Scalars& back) {
+  std::size_t largest = std::max(inner_border_.size(), outer_border_.size());
+  for (const Level& level : levels_) largest = std::max<std::size_t>(largest, level.size);
+  int failed = 0;
+  try {
+    dense.reserve(largest * largest);
+    back.reserve(largest * largest);
+    invert_.reserve(static_cast<int>(largest));
+    for (Level& level : levels_) {
+      if (level.panels) continue;
+      level.panels = std::make_unique_for_overwrite<PetscScalar[]>(level.triangle.entries());
+    }
+  } catch (const std::bad_alloc&) {
+    failed = 1;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, comm_);
+  if (failed == 0) return;
+  for (Level& level : levels_) level.panels.reset();
+  throw NoMemory("the factors need more memory than there is; use a larger -delta, a looser "
+                 "-accuracy or more ranks");
+}
+
 void LevelElimination::factor() {
-  if (levels_.empty()) return;
   Scalars dense, back;  // back: S^-1 E of the block after
+  reserve(dense, back);
+  if (levels_.empty()) return;
   if (has_outer()) {
     back = receive<PetscScalar>(outer_border_.size() * levels_.back().size, outer_rank_, comm_);
   }

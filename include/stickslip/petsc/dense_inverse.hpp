@@ -29,6 +29,9 @@ class DenseInverse {
   /// for many. Throws NotReached if a block is singular.
   void operator()(PetscScalar* a, const Triangle& triangle);
 
+  /// Work space for matrices of up to n rows, so that none is allocated later.
+  void reserve(int n);
+
   /// Floating point operations that it takes.
   [[nodiscard]] static double operations(const Triangle& triangle);
 

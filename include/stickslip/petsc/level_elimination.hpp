@@ -39,7 +39,7 @@ class LevelElimination {
   LevelElimination(Mat matrix, Chain chain);
 
   /// Reads the values of the matrix and eliminates. Collective. Throws NotReached for a singular
-  /// block, std::bad_alloc when memory ends.
+  /// block, NoMemory when the factors do not fit.
   void factor();
 
   /// x = A^-1 b, or A^-T b without conjugation. Collective. Two passes over the factors.
@@ -87,6 +87,7 @@ class LevelElimination {
   void read_block(int s, std::vector<PetscScalar>& dense);
   static void subtract_return(const Level& level, const std::vector<PetscScalar>& back,
                               std::vector<PetscScalar>& dense);
+  void reserve(std::vector<PetscScalar>& dense, std::vector<PetscScalar>& back);
   static void store(Level& level, const std::vector<PetscScalar>& inverse);
   static void multiply_inwards(const Level& level, const std::vector<PetscScalar>& inverse,
                                int columns, std::vector<PetscScalar>& product);
