@@ -113,9 +113,9 @@ void DenseInverse::invert_leaf(const Block& a) {
   PetscBLASInt n = a.rows, stride = a.stride, info = 0;
   std::array<PetscBLASInt, kLeaf> pivots{};
   constexpr PetscBLASInt size = kLeaf * kLeaf;
-  work_.resize(size);
+  std::array<PetscScalar, size> work;
   LAPACKgetrf_(&n, &n, a.data, &stride, pivots.data(), &info);
-  if (info == 0) LAPACKgetri_(&n, a.data, &stride, pivots.data(), work_.data(), &size, &info);
+  if (info == 0) LAPACKgetri_(&n, a.data, &stride, pivots.data(), work.data(), &size, &info);
   if (info == 0) return;
   throw NotReached("a block of the elimination is singular; -slide_pc_type lu exchanges more rows");
 }

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/memory.hpp"
 #include "stickslip/support/errors.hpp"
 
 namespace stickslip::petsc {
@@ -59,19 +60,27 @@ PetscErrorCode apply_levels(PC pc, Vec b, Vec x) {
   return 0;
 }
 
-bool uses_mumps(KSP ksp) {
+PC preconditioner_of(KSP ksp) {
   PC pc = nullptr;
   check(KSPGetPC(ksp, &pc));
+  return pc;
+}
+
+PCFailedReason failure_of(KSP ksp) {
+  PCFailedReason reason = PC_NOERROR;
+  check(PCGetFailedReason(preconditioner_of(ksp), &reason));
+  return reason;
+}
+
+bool uses_mumps(KSP ksp) {
   MatSolverType type = nullptr;
-  check(PCFactorGetMatSolverType(pc, &type));
+  check(PCFactorGetMatSolverType(preconditioner_of(ksp), &type));
   return type != nullptr && std::strcmp(type, MATSOLVERMUMPS) == 0;
 }
 
 Mat factor_of(KSP ksp) {
-  PC pc = nullptr;
   Mat factor = nullptr;
-  check(KSPGetPC(ksp, &pc));
-  check(PCFactorGetMatrix(pc, &factor));
+  check(PCFactorGetMatrix(preconditioner_of(ksp), &factor));
   return factor;
 }
 
@@ -144,8 +153,7 @@ bool chooses_solver(const std::string& prefix) {
 
 void set_direct_solver(KSP ksp) {
   check(KSPSetType(ksp, KSPPREONLY));
-  PC pc = nullptr;
-  check(KSPGetPC(ksp, &pc));
+  PC pc = preconditioner_of(ksp);
   check(PCSetType(pc, PCLU));
   check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
 }
@@ -157,15 +165,11 @@ void set_default_ordering(KSP ksp) {
 }
 
 void require_factored(KSP ksp, const std::string& prefix) {
-  PC pc = nullptr;
-  check(KSPGetPC(ksp, &pc));
-  PCFailedReason reason = PC_NOERROR;
-  check(PCGetFailedReason(pc, &reason));
+  const PCFailedReason reason = failure_of(ksp);
   if (reason == PC_NOERROR) return;
   const std::string what = describe_failure(ksp);
   if (reason == PC_FACTOR_OUTMEMORY) {
-    throw NoMemory(what + "; the factors need more memory than there is; use a larger -delta, a "
-                          "looser -accuracy or more ranks");
+    throw NoMemory(fmt::format("{}; {}", what, kFactorsTooLarge));
   }
   throw NotReached(fmt::format("the solver -{} failed: {}", prefix, what));
 }
@@ -187,28 +191,21 @@ KspHandle direct_solver(Mat matrix, const std::string& prefix, bool narrow_chain
   check(KSPSetOperators(ksp, matrix, matrix));
   set_direct_solver(ksp);
   check(PCRegister(kLevels, create_levels));
-  if (narrow_chain && !chooses_solver(prefix)) {
-    PC pc = nullptr;
-    check(KSPGetPC(ksp, &pc));
-    check(PCSetType(pc, kLevels));
-  }
+  if (narrow_chain && !chooses_solver(prefix)) check(PCSetType(preconditioner_of(ksp), kLevels));
   check(KSPSetFromOptions(ksp));
   set_default_ordering(ksp);
   return ksp;
 }
 
 bool uses_levels(KSP ksp) {
-  PC pc = nullptr;
+  PC pc = preconditioner_of(ksp);
   PetscBool shell = PETSC_FALSE;
-  check(KSPGetPC(ksp, &pc));
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCSHELL, &shell));
   return shell == PETSC_TRUE;
 }
 
 std::unique_ptr<LevelElimination> attach_levels(KSP ksp, Mat matrix, std::optional<Chain> chain) {
-  PC pc = nullptr;
   const char* prefix = nullptr;
-  check(KSPGetPC(ksp, &pc));
   check(KSPGetOptionsPrefix(ksp, &prefix));
   if (!chain) {
     throw BadInput(fmt::format("-{}pc_type {}: the unknowns of this solver form no chain of "
@@ -216,19 +213,15 @@ std::unique_ptr<LevelElimination> attach_levels(KSP ksp, Mat matrix, std::option
                                prefix, kLevels));
   }
   auto levels = std::make_unique<LevelElimination>(matrix, std::move(*chain));
+  PC pc = preconditioner_of(ksp);
   check(PCShellSetContext(pc, levels.get()));
   check(PCShellSetApply(pc, apply_levels<false>));
   check(PCShellSetApplyTranspose(pc, apply_levels<true>));
   return levels;
 }
 
-// Pivots against the order that the analysis foresaw can need more workspace than it set aside.
 bool lacks_workspace(KSP ksp) {
-  PC pc = nullptr;
-  PCFailedReason reason = PC_NOERROR;
-  check(KSPGetPC(ksp, &pc));
-  check(PCGetFailedReason(pc, &reason));
-  if (reason == PC_NOERROR || !uses_mumps(ksp)) return false;
+  if (failure_of(ksp) == PC_NOERROR || !uses_mumps(ksp)) return false;
   MatFactorType type = MAT_FACTOR_NONE;
   check(MatGetFactorType(factor_of(ksp), &type));
   const PetscInt info = infog(ksp, 1);
@@ -254,11 +247,8 @@ Analysis analyse(KSP ksp, Mat matrix, std::optional<Chain> chain) {
     return {true, levels->entries(), levels->bytes() / 1e6, levels->operations()};
   }
   if (!uses_mumps(ksp)) return {};
-  PC pc = nullptr;
-  Mat factor = nullptr;
-  check(KSPGetPC(ksp, &pc));
-  check(PCFactorSetUpMatSolverType(pc));
-  check(PCFactorGetMatrix(pc, &factor));
+  check(PCFactorSetUpMatSolverType(preconditioner_of(ksp)));
+  Mat factor = factor_of(ksp);
   MatFactorInfo info{};
   check(MatFactorInfoInitialize(&info));
   check(MatLUFactorSymbolic(factor, matrix, nullptr, nullptr, &info));

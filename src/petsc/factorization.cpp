@@ -4,7 +4,6 @@
 #include <petscsys.h>
 
 #include <algorithm>
-#include <numeric>
 #include <string>
 #include <utility>
 
@@ -58,13 +57,10 @@ VecHandle magnitude_sums(Mat matrix) {
   check(MatGetOwnershipRange(matrix, &begin, &end));
   WriteView local(sums);
   for (PetscInt r = begin; r < end; ++r) {
-    PetscInt count = 0;
-    const PetscScalar* values = nullptr;
-    check(MatGetRow(matrix, r, &count, nullptr, &values));
-    local[r - begin] =
-        std::accumulate(values, values + count, 0.0,
-                        [](double sum, PetscScalar value) { return sum + PetscAbsScalar(value); });
-    check(MatRestoreRow(matrix, r, &count, nullptr, &values));
+    double sum = 0;
+    RowView(matrix, r).for_each(
+        [&sum](PetscInt, PetscScalar value) { sum += PetscAbsScalar(value); });
+    local[r - begin] = sum;
   }
   return sums;
 }

@@ -8,11 +8,11 @@
 #include <array>
 #include <limits>
 #include <new>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/memory.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/support/errors.hpp"
@@ -25,34 +25,12 @@ using Scalars = std::vector<PetscScalar>;
 // Least rows of a block of the triangles: below, products are too small to be fast.
 constexpr int kLeastBlock = 4;
 
-// A row of the matrix for the life of the object.
-class RowView {
- public:
-  RowView(Mat matrix, PetscInt row) : matrix_(matrix), row_(row) {
-    check(MatGetRow(matrix_, row_, &count_, &columns_, &values_));
-  }
-  ~RowView() { (void)MatRestoreRow(matrix_, row_, &count_, &columns_, &values_); }
-  RowView(const RowView&) = delete;
-  RowView& operator=(const RowView&) = delete;
-
-  template <class Visit>
-  void for_each(Visit visit) const {
-    for (PetscInt n = 0; n < count_; ++n) visit(columns_[n], values_[n]);
-  }
-
- private:
-  Mat matrix_;
-  PetscInt row_, count_ = 0;
-  const PetscInt* columns_ = nullptr;
-  const PetscScalar* values_ = nullptr;
-};
-
-// y <- a x + keep y or a^T x + keep y for a by columns.
-void apply_panel(const char* how, const PetscScalar* a, int rows, int columns, const PetscScalar* x,
-                 double keep, PetscScalar* y) {
-  const PetscBLASInt m = rows, n = columns, one = 1;
-  const PetscScalar factor = 1, beta = keep;
-  BLASgemv_(how, &m, &n, &factor, a, &m, x, &one, &beta, y, &one);
+// y += a x or a^T x for a by columns.
+void add_product(const PetscScalar* a, int rows, int columns, bool transposed, const PetscScalar* x,
+                 PetscScalar* y) {
+  const PetscBLASInt m = rows, n = columns, step = 1;
+  const PetscScalar one = 1;
+  BLASgemv_(transposed ? "T" : "N", &m, &n, &one, a, &m, x, &step, &one, y, &step);
 }
 
 template <class T>
@@ -138,39 +116,27 @@ void LevelElimination::Coupling::clear() {
   values.clear();
 }
 
-void LevelElimination::Coupling::subtract(const PetscScalar* x, PetscScalar* y) const {
+void LevelElimination::Coupling::subtract(const PetscScalar* x, PetscScalar* y,
+                                          bool transposed) const {
   for (const Run& run : runs) {
-    for (int n = 0; n < run.length; ++n) {
-      y[run.row + n] -= values[run.first + n] * x[run.column + n];
-    }
+    const int to = transposed ? run.column : run.row, from = transposed ? run.row : run.column;
+    for (int n = 0; n < run.length; ++n) y[to + n] -= values[run.first + n] * x[from + n];
   }
 }
 
-void LevelElimination::Coupling::subtract_transposed(const PetscScalar* x, PetscScalar* y) const {
-  for (const Run& run : runs) {
-    for (int n = 0; n < run.length; ++n) {
-      y[run.column + n] -= values[run.first + n] * x[run.row + n];
-    }
-  }
-}
-
-void LevelElimination::Level::apply(const PetscScalar* x, PetscScalar* y) const {
+void LevelElimination::Level::apply(const Scalars& x, Scalars& y, bool transposed) const {
+  y.assign(x.size(), 0.0);
   const PetscScalar* panel = panels.get();
   for (int b = 0; b < triangle.blocks(); ++b) {
     const int rows = triangle.rows(b), columns = triangle.columns(b), begin = triangle.cuts[b];
-    apply_panel("N", panel, rows, columns, x + begin, 0, y + begin);
+    add_product(panel, rows, columns, transposed, x.data() + begin, y.data() + begin);
     panel += static_cast<std::ptrdiff_t>(rows) * columns;
   }
 }
 
-void LevelElimination::Level::apply_transposed(const PetscScalar* x, PetscScalar* y) const {
-  std::fill(y, y + size, 0.0);
-  const PetscScalar* panel = panels.get();
-  for (int b = 0; b < triangle.blocks(); ++b) {
-    const int rows = triangle.rows(b), columns = triangle.columns(b), begin = triangle.cuts[b];
-    apply_panel("T", panel, rows, columns, x + begin, 1, y + begin);
-    panel += static_cast<std::ptrdiff_t>(rows) * columns;
-  }
+std::size_t LevelElimination::size_of(int block) const {
+  if (block < 0) return inner_border_.size();
+  return block < chain_.blocks() ? levels_[block].size : outer_border_.size();
 }
 
 LevelElimination::LevelElimination(Mat matrix, Chain chain)
@@ -257,7 +223,7 @@ void LevelElimination::find_triangles() {
   if (levels_.empty()) return;
   // Positions in this block to which one in the block after returns.
   std::vector<Extent> returns;
-  if (has_outer()) returns = received_extents(outer_border_.size(), outer_rank_, comm_);
+  if (has_outer()) returns = received_extents(size_of(chain_.blocks()), outer_rank_, comm_);
   for (int s = chain_.blocks() - 1; s >= 0; --s) {
     Level& level = levels_[s];
     const auto size = static_cast<std::size_t>(level.size);
@@ -318,10 +284,10 @@ void LevelElimination::subtract_return(const Level& level, const Scalars& back, 
 }
 
 // W = S^-1 E, by columns.
-void LevelElimination::multiply_inwards(const Level& level, const Scalars& inverse, int columns,
-                                        Scalars& product) {
+void LevelElimination::multiply_inwards(const Level& level, const Scalars& inverse,
+                                        std::size_t columns, Scalars& product) {
   const std::ptrdiff_t size = level.size;
-  product.assign(static_cast<std::size_t>(size * columns), 0.0);
+  product.assign(size * columns, 0.0);
   // Rows of each column of the inverse.
   std::vector<Extent> rows(static_cast<std::size_t>(size));
   const auto& [cuts, reach] = level.triangle;
@@ -353,8 +319,8 @@ void LevelElimination::store(Level& level, const Scalars& inverse) {
 
 // All large memory, on all ranks or on none: a rank that fails later would leave others waiting.
 void LevelElimination::reserve(Scalars& dense, Scalars& back) {
-  std::size_t largest = std::max(inner_border_.size(), outer_border_.size());
-  for (const Level& level : levels_) largest = std::max<std::size_t>(largest, level.size);
+  std::size_t largest = 0;
+  for (int s = -1; s <= chain_.blocks(); ++s) largest = std::max(largest, size_of(s));
   int failed = 0;
   try {
     dense.reserve(largest * largest);
@@ -370,25 +336,24 @@ void LevelElimination::reserve(Scalars& dense, Scalars& back) {
   MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, comm_);
   if (failed == 0) return;
   for (Level& level : levels_) level.panels.reset();
-  throw NoMemory("the factors need more memory than there is; use a larger -delta, a looser "
-                 "-accuracy or more ranks");
+  throw NoMemory(kFactorsTooLarge);
 }
 
 void LevelElimination::factor() {
   Scalars dense, back;  // back: S^-1 E of the block after
   reserve(dense, back);
   if (levels_.empty()) return;
+  const int last = chain_.blocks() - 1;
   if (has_outer()) {
-    back = receive<PetscScalar>(outer_border_.size() * levels_.back().size, outer_rank_, comm_);
+    back = receive<PetscScalar>(size_of(last + 1) * size_of(last), outer_rank_, comm_);
   }
-  for (int s = chain_.blocks() - 1; s >= 0; --s) {
+  for (int s = last; s >= 0; --s) {
     Level& level = levels_[s];
     read_block(s, dense);
     if (!back.empty()) subtract_return(level, back, dense);
     invert_(dense.data(), level.triangle);
     store(level, dense);
-    const int inner_size = s > 0 ? levels_[s - 1].size : static_cast<int>(inner_border_.size());
-    multiply_inwards(level, dense, inner_size, back);
+    multiply_inwards(level, dense, size_of(s - 1), back);
   }
   if (has_inner()) send(back, inner_rank_, comm_);
 }
@@ -399,11 +364,6 @@ void LevelElimination::solve(Vec b, Vec x, bool transposed) const {
   pass_outwards(z, x, transposed);
 }
 
-void LevelElimination::Level::apply(const Scalars& x, Scalars& y, bool transposed) const {
-  y.resize(x.size());
-  transposed ? apply_transposed(x.data(), y.data()) : apply(x.data(), y.data());
-}
-
 // z_s = S_s^-1 (b_s - D_s z_{s+1}), or z_s = S_s^-T (b_s - E_{s+1}^T z_{s+1}), whose last term is
 // made where E_{s+1} is.
 std::vector<Scalars> LevelElimination::pass_inwards(Vec b, bool transposed) const {
@@ -411,7 +371,7 @@ std::vector<Scalars> LevelElimination::pass_inwards(Vec b, bool transposed) cons
   std::vector<Scalars> z(levels_.size());
   const ReadView right(b);
   Scalars y, passed;
-  const std::size_t border = transposed ? levels_[last].size : outer_border_.size();
+  const std::size_t border = size_of(transposed ? last : last + 1);
   if (has_outer()) passed = receive<PetscScalar>(border, outer_rank_, comm_);
   for (int s = last; s >= 0; --s) {
     const Level& level = levels_[s];
@@ -424,8 +384,8 @@ std::vector<Scalars> LevelElimination::pass_inwards(Vec b, bool transposed) cons
     }
     level.apply(y, z[s], transposed);
     if (transposed) {
-      passed.assign(s > 0 ? levels_[s - 1].size : inner_border_.size(), 0.0);
-      level.inwards.subtract_transposed(z[s].data(), passed.data());
+      passed.assign(size_of(s - 1), 0.0);
+      level.inwards.subtract(z[s].data(), passed.data(), transposed);
     } else {
       passed = z[s];
     }
@@ -439,7 +399,7 @@ void LevelElimination::pass_outwards(std::vector<Scalars>& z, Vec x, bool transp
   const int last = chain_.blocks() - 1;
   WriteView left(x);
   Scalars y, step, passed;
-  const std::size_t border = transposed ? levels_[0].size : inner_border_.size();
+  const std::size_t border = size_of(transposed ? 0 : -1);
   if (has_inner()) passed = receive<PetscScalar>(border, inner_rank_, comm_);
   for (int s = 0; s <= last; ++s) {
     const Level& level = levels_[s];
@@ -455,8 +415,8 @@ void LevelElimination::pass_outwards(std::vector<Scalars>& z, Vec x, bool transp
     }
     for (int p = 0; p < level.size; ++p) left[chain_.rows[chain_.start[s] + p]] = z[s][p];
     if (transposed) {
-      passed.assign(s < last ? levels_[s + 1].size : outer_border_.size(), 0.0);
-      level.outwards.subtract_transposed(z[s].data(), passed.data());
+      passed.assign(size_of(s + 1), 0.0);
+      level.outwards.subtract(z[s].data(), passed.data(), transposed);
     } else {
       passed = z[s];
     }

@@ -1,11 +1,8 @@
 #include "stickslip/studies/limit.hpp"
 
-#include <algorithm>
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <vector>
 
 #include "stickslip/exact/dense.hpp"
 #include "studies.hpp"

@@ -63,7 +63,6 @@ class DenseInverse {
 
   std::vector<PetscScalar> space_;
   std::size_t used_ = 0;
-  std::vector<PetscScalar> work_;  // of LAPACK
 };
 
 }  // namespace stickslip::petsc

@@ -62,9 +62,8 @@ class LevelElimination {
     std::vector<PetscScalar> values;
     void add(int row, int column, PetscScalar value);
     void clear();
-    // y -= C x, y -= C^T x
-    void subtract(const PetscScalar* x, PetscScalar* y) const;
-    void subtract_transposed(const PetscScalar* x, PetscScalar* y) const;
+    // y -= C x or C^T x
+    void subtract(const PetscScalar* x, PetscScalar* y, bool transposed = false) const;
   };
   // Diagonal block with its couplings; the inverse as panels, one for each row of blocks.
   struct Level {
@@ -72,15 +71,16 @@ class LevelElimination {
     Triangle triangle;
     Coupling outwards, inwards;  // D, E
     std::unique_ptr<PetscScalar[]> panels;
+    // y = S^-1 x or S^-T x
     void apply(const std::vector<PetscScalar>& x, std::vector<PetscScalar>& y,
                bool transposed) const;
-    void apply(const PetscScalar* x, PetscScalar* y) const;
-    void apply_transposed(const PetscScalar* x, PetscScalar* y) const;
   };
 
   struct Place {
     int block, position;  // block -1: of the rank before; blocks(): of the rank after
   };
+  // Of a block by its number in a Place.
+  [[nodiscard]] std::size_t size_of(int block) const;
   void exchange_borders();
   [[nodiscard]] Place place_of(PetscInt column) const;
   void find_triangles();
@@ -90,7 +90,7 @@ class LevelElimination {
   void reserve(std::vector<PetscScalar>& dense, std::vector<PetscScalar>& back);
   static void store(Level& level, const std::vector<PetscScalar>& inverse);
   static void multiply_inwards(const Level& level, const std::vector<PetscScalar>& inverse,
-                               int columns, std::vector<PetscScalar>& product);
+                               std::size_t columns, std::vector<PetscScalar>& product);
   [[nodiscard]] std::vector<std::vector<PetscScalar>> pass_inwards(Vec b, bool transposed) const;
   void pass_outwards(std::vector<std::vector<PetscScalar>>& z, Vec x, bool transposed) const;
   [[nodiscard]] bool has_outer() const { return outer_rank_ != MPI_PROC_NULL; }

@@ -5,6 +5,11 @@
 
 namespace stickslip::petsc {
 
+/// What is said when there is no room for them.
+inline constexpr const char* kFactorsTooLarge =
+    "the factors need more memory than there is; use a larger -delta, a looser -accuracy or more "
+    "ranks";
+
 /// Bytes that all ranks of `comm` together can still allocate: what the machines have free, what
 /// control groups and the address-space limit (ulimit -v) leave. A machine's memory counts as
 /// shared evenly by all ranks on it, those outside `comm` too. Collective.

@@ -1,5 +1,5 @@
 #pragma once
-/// Local views of distributed vectors, and their inner product.
+/// Local views of distributed vectors and matrices, and the inner product of vectors.
 
 #include <span>
 
@@ -41,6 +41,29 @@ class WriteView {
  private:
   Vec vec_;
   PetscScalar* data_ = nullptr;
+};
+
+/// Read access to a local row of a Mat for the life of the view. Not collective.
+class RowView {
+ public:
+  RowView(Mat matrix, PetscInt row) : matrix_(matrix), row_(row) {
+    check(MatGetRow(matrix_, row_, &count_, &columns_, &values_));
+  }
+  ~RowView() { (void)MatRestoreRow(matrix_, row_, &count_, &columns_, &values_); }
+  RowView(const RowView&) = delete;
+  RowView& operator=(const RowView&) = delete;
+
+  /// Calls visit(column, value) for each entry.
+  template <class Visit>
+  void for_each(Visit visit) const {
+    for (PetscInt n = 0; n < count_; ++n) visit(columns_[n], values_[n]);
+  }
+
+ private:
+  Mat matrix_;
+  PetscInt row_, count_ = 0;
+  const PetscInt* columns_ = nullptr;
+  const PetscScalar* values_ = nullptr;
 };
 
 /// Real part of sum_n a_n b_n, without conjugation. Collective.
