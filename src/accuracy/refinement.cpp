@@ -104,7 +104,8 @@ class Refiner {
 
  private:
   [[nodiscard]] bool fits(const Resolution& resolution) const {
-    return predicted_bytes(request_.scene, resolution) <= petsc::available_bytes(comm_);
+    const double need = predicted_bytes(request_.scene, resolution);
+    return need <= petsc::available_bytes(comm_, need);
   }
 
   void solve(int n) {
@@ -289,7 +290,7 @@ Outcome simulate(MPI_Comm comm, const options::Request& request,
 
 void require_memory(MPI_Comm comm, const options::Request& request, const Resolution& resolution) {
   const double need = predicted_bytes(request.scene, resolution);
-  const double have = petsc::available_bytes(comm);
+  const double have = petsc::available_bytes(comm, need);
   if (need <= have) return;
   throw NoMemory(fmt::format(
       "about {:.3g} unknowns would need {} of memory, and {} are free; take a larger -delta, a "

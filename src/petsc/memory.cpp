@@ -1,5 +1,6 @@
 #include "stickslip/petsc/memory.hpp"
 
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -61,6 +62,17 @@ double left_in_address_space() {
   return static_cast<double>(limit.rlim_cur) - proc_value("/proc/self/status", "VmSize");
 }
 
+double available_now(MPI_Comm comm) {
+  const double shared =
+      std::min(proc_value("/proc/meminfo", "MemAvailable"), left_in_control_group());
+  double mine = std::max(0.0, std::min(shared / ranks_on_node(), left_in_address_space()));
+  // Ranks share the work evenly: the poorest decides.
+  int ranks = 1;
+  MPI_Comm_size(comm, &ranks);
+  MPI_Allreduce(MPI_IN_PLACE, &mine, 1, MPI_DOUBLE, MPI_MIN, comm);
+  return mine * ranks;
+}
+
 }  // namespace
 
 int ranks_on_node() {
@@ -75,15 +87,12 @@ int ranks_on_node() {
   return ranks;
 }
 
-double available_bytes(MPI_Comm comm) {
-  const double shared =
-      std::min(proc_value("/proc/meminfo", "MemAvailable"), left_in_control_group());
-  double mine = std::max(0.0, std::min(shared / ranks_on_node(), left_in_address_space()));
-  // Ranks share the work evenly: the poorest decides.
-  int ranks = 1;
-  MPI_Comm_size(comm, &ranks);
-  MPI_Allreduce(MPI_IN_PLACE, &mine, 1, MPI_DOUBLE, MPI_MIN, comm);
-  return mine * ranks;
+double available_bytes(MPI_Comm comm, double wanted) {
+  const double found = available_now(comm);
+  // Only in need: pages given back cost time when they are touched again.
+  if (found >= wanted) return found;
+  (void)malloc_trim(0);
+  return available_now(comm);
 }
 
 double peak_resident_bytes() {

@@ -42,6 +42,7 @@ class CostStudy {
   }
 
   Study conduct() {
+    require_upwind_memory(setting_, setting_.request, kFirstPoints << (upwind_steps() - 1));
     count_ = 1 + kLastDegree - kFirstDegree + 1 + upwind_steps() + kSimulations;
     reference_ = reference();
     hp();
@@ -52,7 +53,7 @@ class CostStudy {
   }
 
  private:
-  static constexpr int kFirstDegree = 2, kLastDegree = 12, kSimulations = 6;
+  static constexpr int kFirstDegree = 2, kLastDegree = 12, kSimulations = 6, kFirstPoints = 4;
 
   [[nodiscard]] int upwind_steps() const { return setting_.request.study_steps.value_or(7); }
   void announce(const std::string& what) { setting_.tell(++number_, count_, what); }
@@ -112,7 +113,7 @@ class CostStudy {
   void upwind() {
     Curve plain{"upwind", "p", {}}, extrapolated{"richardson", "p", {}};
     for (int n = 0; n < upwind_steps(); ++n) {
-      const int points = 4 << n;
+      const int points = kFirstPoints << n;
       announce(fmt::format("upwind, p = {}", points));
       Run run =
           median_run(repeats_, [&] { return upwind_run(setting_, setting_.request, points); });

@@ -39,18 +39,17 @@ class Grid {
 
   void run() {
     int number = 0, count = 2;
-    each([&](int, int) { ++count; });
+    each([&](int k, int l) {
+      require_upwind_memory(setting_, request(l), 1 << k, kTail);
+      ++count;
+    });
     each([&](int k, int l) {
       setting_.tell(++number, count, fmt::format("p = {}, delta = 1/{}", 1 << k, 1 << l));
-      // Extrapolation itself is right to a few digits.
-      constexpr double tail = 1e-6;
-      runs_[{k, l}] =
-          upwind_run(setting_, with_delta(setting_.request, std::ldexp(1, -l)), 1 << k, tail);
+      runs_[{k, l}] = upwind_run(setting_, request(l), 1 << k, kTail);
     });
     for (int l : {5, 6}) {
       setting_.tell(++number, count, fmt::format("hp, delta = 1/{}", 1 << l));
-      converged_[l] =
-          converged_run(setting_, with_delta(setting_.request, std::ldexp(1, -l)), 1e-9);
+      converged_[l] = converged_run(setting_, request(l), 1e-9);
     }
   }
 
@@ -82,6 +81,13 @@ class Grid {
   [[nodiscard]] const quantities::Results& finest() const { return converged_.at(6).results; }
 
  private:
+  // Extrapolation itself is right to a few digits.
+  static constexpr double kTail = 1e-6;
+
+  [[nodiscard]] options::Request request(int l) const {
+    return with_delta(setting_.request, std::ldexp(1, -l));
+  }
+
   template <class Action>
   static void each(Action action) {
     for (int l = 1; l <= kMostSteps; ++l) {

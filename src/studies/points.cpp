@@ -41,6 +41,7 @@ Study study_points(const Setting& setting) {
   Study study;
   study.kind = "p";
   const int steps = setting.request.study_steps.value_or(8);
+  require_upwind_memory(setting, setting.request, 1 << steps);
   for (int n = 1; n <= steps; ++n) {
     setting.tell(n, steps + 1, fmt::format("p = {}", 1 << n));
     study.runs.push_back(upwind_run(setting, setting.request, 1 << n));

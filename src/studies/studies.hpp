@@ -35,10 +35,15 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 void set_errors(const quantities::Results& known, quantities::Results& results);
 /// The request with another noise step, and without choices of the discretisation made by hand.
 [[nodiscard]] options::Request with_delta(const options::Request& request, double delta);
-/// Upwind with p points per noise step; noise and velocity are cut where they weigh less than
-/// `tail`, by default far less than the error of the scheme, which is about 1/p.
+/// Noise and velocity of upwind runs are cut where they weigh less: far less than the error of the
+/// scheme, which is about 1/p.
+constexpr double kUpwindTail = 1e-9;
+/// Upwind with p points per noise step.
 [[nodiscard]] Run upwind_run(const Setting& setting, const options::Request& request, int points,
-                             double tail = 1e-9);
+                             double tail = kUpwindTail);
+/// Throws NoMemory if that run would not fit: no study computes for long only to end there.
+void require_upwind_memory(const Setting& setting, const options::Request& request, int points,
+                           double tail = kUpwindTail);
 /// Refined hp.
 [[nodiscard]] Run converged_run(const Setting& setting, const options::Request& request,
                                 double accuracy);

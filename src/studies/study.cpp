@@ -1,5 +1,8 @@
 #include "stickslip/studies/study.hpp"
 
+#include <fmt/format.h>
+
+#include "stickslip/support/errors.hpp"
 #include "studies.hpp"
 
 namespace stickslip::studies {
@@ -46,10 +49,32 @@ options::Request with_delta(const options::Request& request, double delta) {
   return other;
 }
 
-Run upwind_run(const Setting& setting, const options::Request& request, int points, double tail) {
+namespace {
+
+options::Request upwind_request(const options::Request& request) {
   options::Request upwind = request;
   upwind.method = {};
   upwind.method.scheme = options::Scheme::upwind;
+  return upwind;
+}
+
+}  // namespace
+
+void require_upwind_memory(const Setting& setting, const options::Request& request, int points,
+                           double tail) {
+  const auto upwind = upwind_request(request);
+  try {
+    accuracy::require_memory(setting.comm, upwind,
+                             accuracy::upwind_resolution(upwind.scene, points, tail));
+  } catch (const NoMemory& lack) {
+    const bool fixed = request.study == options::StudyKind::heuristic;
+    throw NoMemory(fmt::format("upwind with p = {}, delta = {:g}: {}{}", points, upwind.scene.delta,
+                               lack.what(), fixed ? "" : ", or fewer -study_steps"));
+  }
+}
+
+Run upwind_run(const Setting& setting, const options::Request& request, int points, double tail) {
+  const auto upwind = upwind_request(request);
   const auto resolution = accuracy::upwind_resolution(upwind.scene, points, tail);
   auto [evaluation, step] = accuracy::solve_on(setting.comm, upwind, resolution);
   return {"upwind",

@@ -1,6 +1,11 @@
 #include <catch2/catch.hpp>
 #include <petscsys.h>
 
+#include <array>
+#include <limits>
+#include <memory>
+#include <vector>
+
 #include "../common/matrices.hpp"
 #include "../common/options.hpp"
 #include "stickslip/petsc/blas.hpp"
@@ -33,6 +38,12 @@ VecHandle image_of_one(Mat a, Side side) {
   check(VecSet(one, 1));
   check(side == Side::right ? MatMult(a, one, image) : MatMultTranspose(a, one, image));
   return image;
+}
+
+double resident_bytes() {
+  PetscLogDouble bytes = 0;
+  check(PetscMemoryGetCurrentUsage(&bytes));
+  return bytes;
 }
 
 double distance_from_one(Vec x) {
@@ -190,6 +201,18 @@ TEST_CASE("factorization: probing marks the options of a role as known") {
 
 TEST_CASE("blas and memory: something is known about both", "[parallel]") {
   CHECK_FALSE(loaded_blas().library.empty());
-  CHECK(available_bytes(PETSC_COMM_WORLD) > 1e6);
+  CHECK(available_bytes(PETSC_COMM_WORLD, 0) > 1e6);
   CHECK(peak_resident_bytes() > 1e6);
+}
+
+// Slow ones do not run under sanitizers, whose allocator keeps what is freed.
+TEST_CASE("memory that was freed can be had again", "[slow]") {
+  // Small pieces below one that is kept: the C library cannot shrink its heap by itself.
+  std::vector<std::unique_ptr<std::array<char, 1000>>> pieces(200'000);
+  for (auto& piece : pieces) piece = std::make_unique<std::array<char, 1000>>();
+  const auto kept = std::make_unique<std::array<char, 1000>>();
+  pieces.clear();
+  const double resident = resident_bytes();
+  CHECK(available_bytes(PETSC_COMM_WORLD, std::numeric_limits<double>::infinity()) > 1e6);
+  CHECK(resident_bytes() < resident - 1e8);
 }

@@ -12,8 +12,9 @@ inline constexpr const char* kFactorsTooLarge =
 
 /// Bytes that all ranks of `comm` together can still allocate: what the machines have free, what
 /// control groups and the address-space limit (ulimit -v) leave. A machine's memory counts as
-/// shared evenly by all ranks on it, those outside `comm` too. Collective.
-[[nodiscard]] double available_bytes(MPI_Comm comm);
+/// shared evenly by all ranks on it, those outside `comm` too. If that is less than `wanted`, the C
+/// library first gives back what it keeps of freed memory. Collective.
+[[nodiscard]] double available_bytes(MPI_Comm comm, double wanted);
 
 /// Ranks of this run on this machine. The first call is collective on MPI_COMM_WORLD; Session makes
 /// it.
