@@ -60,23 +60,29 @@ class Faults(Case):
 
 class Killed(Faults):
     def test_a_study_leaves_old_files_and_repeats_its_numbers(self):
-        """kill -9 at 4 moments of a study: old files stay, the next one gives the same bits"""
-        options = ("-study", "p", "-delta", "0.5", "-study_steps", "6", "-study_csv", "study.csv",
+        """kill -9 at 8 moments of a study: files are old or whole, the next gives the same bits"""
+        options = ("-study", "p", "-delta", "0.5", "-study_steps", "10", "-study_csv", "study.csv",
                    "-output", "study.h5")
         self.run_ok(*options)
-        numbers = self.values_of_study()
-        moment = random.Random(1)
-        for _ in range(4):
+        numbers, lines = self.values_of_study(), self.lines_of_study()
+        moment, kills = random.Random(1), 0
+        for _ in range(8):
             for name in ("study.csv", "study.h5"):
                 (self.folder / name).write_text("old")
             process = self.start(*options)
-            time.sleep(moment.uniform(0.01, 0.15))
+            time.sleep(moment.uniform(0.01, 0.6))
             process.kill()
             process.communicate()
-            if process.returncode == -signal.SIGKILL:
-                self.assertEqual((self.folder / "study.csv").read_text(), "old")
+            kills += process.returncode == -signal.SIGKILL
+            self.assertIn(self.lines_of_study(), (lines, 1))
+            if (self.folder / "study.h5").read_bytes() != b"old":
+                self.assertEqual(self.values_of_study(), numbers)
+        self.assertGreater(kills, 0)
         self.run_ok(*options)
         self.assertEqual(self.values_of_study(), numbers)
+
+    def lines_of_study(self):
+        return len((self.folder / "study.csv").read_text().splitlines())
 
     def values_of_study(self):
         with h5py.File(self.folder / "study.h5") as file:
