@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stickslip/routes/plan.hpp"
+
 namespace stickslip::accuracy {
 namespace {
 
@@ -46,7 +48,12 @@ velocity::Rates fastest_rates(const options::Request& request) {
 }  // namespace
 
 Ladder::Ladder(const options::Request& request)
-    : scene_(request.scene), method_(request.method), accuracy_(request.accuracy) {
+    : scene_(request.scene),
+      method_(request.method),
+      accuracy_(request.accuracy),
+      prefers_iteration_([request](std::int64_t unknowns) {
+        return routes::prefers_iteration(request, unknowns);
+      }) {
   first_degree_ = method_.degree.value_or(starting_degree(request));
   rates_ = fastest_rates(request);
   halves_ = options::on_full_grid(request.route) || !request.scene.symmetric() ? 2 : 1;
@@ -88,6 +95,10 @@ Resolution Ladder::rung(int n) const {
   }
   r.halves = halves_;
   r.factors = method_.factors;
+  const bool hp = method_.scheme == options::Scheme::hp;
+  if (hp && r.factors == options::Factors::own && prefers_iteration_(unknowns(scene_, r))) {
+    r.factors = options::Factors::p_multigrid;
+  }
   return r;
 }
 

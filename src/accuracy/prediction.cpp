@@ -21,6 +21,9 @@ struct Speed {
 };
 constexpr Speed kByLevels{0.8, 1e-8, 1.5e-9, false};
 constexpr Speed kByMumps{0.35, 8e-9, 2.5e-9, true};
+// An iteration pays for each unknown; fitted for delta = 1/128 ... 1/512 and degrees 7 ... 11. Of
+// it the coarse problem, solved by one rank after the other, takes a share.
+constexpr double kIteratedSetUp = 3e-7, kIteratedSolve = 1.7e-6, kCoarseShare = 0.3;
 constexpr double kSecondsPerNonzero = 5e-9;  // of a residual
 constexpr double kFixedSeconds = 5e-4;       // of a factorisation
 
@@ -49,29 +52,43 @@ class Predictor {
     const auto known = systems_.find(key);
     if (known != systems_.end()) return known->second;
     petsc::Ledger ledger;
-    const auto a =
-        operators::assemble(comm_, process_, *axis_, key.lambda, key.symmetry, key.rest, ledger);
-    const auto analysis = petsc::Factorization::analyse(a.matrix(), operators::kSlidePrefix, ledger,
-                                                        a.states().chain());
+    operators::Systems systems(comm_, process_, axis_, ledger);
+    if (step_.resolution.factors == options::Factors::p_multigrid) systems.prefer_iteration();
+    const auto analysis = systems.analyse(key);
     step_.unknowns = std::max<std::int64_t>(step_.unknowns, ledger.unknowns);
     step_.nonzeros = std::max(step_.nonzeros, ledger.nonzeros);
     step_.factor_entries = std::max(step_.factor_entries, analysis.factor_entries);
     step_.megabytes = std::max(step_.megabytes, analysis.megabytes);
     step_.operations += analysis.operations;
-    const Speed& speed = analysis.by_levels ? kByLevels : kByMumps;
-    const int ranks = petsc::ranks(comm_), sharing = speed.on_all_ranks ? ranks : 1;
-    Foretold f;
+    Foretold f = analysis.solver == petsc::Solver::p_multigrid
+                     ? iterated(static_cast<double>(ledger.unknowns))
+                     : factored(analysis, static_cast<double>(ledger.nonzeros));
     f.assembly = ledger.assembly_seconds;
-    f.factorization =
-        ledger.analysis_seconds + kFixedSeconds +
-        (analysis.operations / (speed.share * speed_) + speed.per_entry * analysis.factor_entries) /
-            sharing;
-    // Each is corrected once, with two residuals and a bound.
-    f.solve = 2 * speed.per_entry_solved * analysis.factor_entries / sharing +
-              3 * kSecondsPerNonzero * static_cast<double>(ledger.nonzeros) / ranks;
+    f.factorization += ledger.analysis_seconds;
     // The first task that uses it pays for it.
     step_.seconds += f.assembly + f.factorization;
     return systems_.emplace(key, f).first->second;
+  }
+
+  [[nodiscard]] Foretold factored(const petsc::Analysis& analysis, double nonzeros) const {
+    const Speed& speed = analysis.solver == petsc::Solver::levels ? kByLevels : kByMumps;
+    const int ranks = petsc::ranks(comm_), sharing = speed.on_all_ranks ? ranks : 1;
+    Foretold f;
+    f.factorization = kFixedSeconds + (analysis.operations / (speed.share * speed_) +
+                                       speed.per_entry * analysis.factor_entries) /
+                                          sharing;
+    // Each is corrected once, with two residuals and a bound.
+    f.solve = 2 * speed.per_entry_solved * analysis.factor_entries / sharing +
+              3 * kSecondsPerNonzero * nonzeros / ranks;
+    return f;
+  }
+
+  [[nodiscard]] Foretold iterated(double unknowns) const {
+    const double share = kCoarseShare + (1 - kCoarseShare) / petsc::ranks(comm_);
+    Foretold f;
+    f.factorization = kFixedSeconds + kIteratedSetUp * unknowns * share;
+    f.solve = kIteratedSolve * unknowns * share;
+    return f;
   }
 
   double seconds_of(const routes::Task& task) {

@@ -32,9 +32,17 @@ class KolmogorovOperator::Assembler {
         rest_(rest),
         top_(process.noise.levels),
         zero_trace_(axis.trace_at_zero()),
-        top_trace_(axis.trace_at_top()) {}
+        top_trace_(axis.trace_at_top()),
+        lines_(2 * (2 * static_cast<std::size_t>(top_) + 1)) {
+    for (int level = -top_; level <= top_; ++level) {
+      for (Half half : states.halves()) {
+        lines_[place_of_line(half, level)] = states.nodes_of(half, level);
+      }
+    }
+  }
 
   void assemble() {
+    reserve();
     states_.for_each_local([this](const State& state) { append(state); });
   }
 
@@ -63,6 +71,19 @@ class KolmogorovOperator::Assembler {
     int k;  // the highest level that can stick
   };
   [[nodiscard]] const Side& side(Half half) const { return half == Half::upper ? upper_ : lower_; }
+
+  // What rows on a level where all speeds are positive, and jumps, take: little more than there is.
+  void reserve() {
+    std::size_t entries = 0;
+    for (int j = 0; j < upper_.axis.size(); ++j) {
+      upper_.axis.transport(upper_.process.excess(top_), j, transport_);
+      entries += transport_.entries.size() + 3;
+    }
+    entries *= states_.halves().size() * states_.local_levels().size();
+    columns.reserve(entries);
+    values.reserve(entries);
+    row_start.reserve(static_cast<std::size_t>(states_.local_size()) + 1);
+  }
 
   void append(const State& state) {
     switch (state.kind) {
@@ -205,7 +226,11 @@ class KolmogorovOperator::Assembler {
 
   [[nodiscard]] PetscInt local_row() const { return static_cast<PetscInt>(row_start.size()) - 1; }
   [[nodiscard]] PetscInt node(Half half, int level, int j) const {
-    return states_.index({StateKind::node, half, level, j});
+    const auto& [first, stride] = lines_[place_of_line(half, level)];
+    return first + j * stride;
+  }
+  [[nodiscard]] std::size_t place_of_line(Half half, int level) const {
+    return 2 * static_cast<std::size_t>(top_ + level) + (half == Half::upper ? 0 : 1);
   }
   [[nodiscard]] PetscInt holding(Half half, int level) const {
     return states_.index({StateKind::holding, half, level, 0});
@@ -242,6 +267,7 @@ class KolmogorovOperator::Assembler {
   Rest rest_;
   int top_;
   std::vector<velocity::Entry> zero_trace_, top_trace_;
+  std::vector<StateSpace::NodeLine> lines_;  // by level and half
   velocity::TransportRow transport_;
   std::vector<std::pair<PetscInt, PetscScalar>> row_;
   double killing_ = 0;  // row sum of A - lambda
@@ -282,17 +308,42 @@ KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const model::Process& proc
 
   nonzeros_ = rows.row_start.back();
   const PetscInt local = states_.local_size(), global = states_.global_size();
+  row_start_ = std::move(rows.row_start);
+  columns_ = std::move(rows.columns);
+  values_ = std::move(rows.values);
   if (petsc::ranks(comm) == 1) {
-    row_start_ = std::move(rows.row_start);
-    columns_ = std::move(rows.columns);
-    values_ = std::move(rows.values);
     check(MatCreateSeqAIJWithArrays(comm, local, local, row_start_.data(), columns_.data(),
                                     values_.data(), matrix_.out()));
   } else {
-    check(MatCreateMPIAIJWithArrays(comm, local, local, global, global, rows.row_start.data(),
-                                    rows.columns.data(), rows.values.data(), matrix_.out()));
+    split();
+    check(MatCreateMPIAIJWithSplitArrays(
+        comm, local, local, global, global, row_start_.data(), columns_.data(), values_.data(),
+        other_start_.data(), other_columns_.data(), other_values_.data(), matrix_.out()));
   }
   MPI_Allreduce(MPI_IN_PLACE, &nonzeros_, 1, MPIU_INT64, MPI_SUM, comm);
+}
+
+// Entries in columns of other ranks into arrays of their own, which PETSc wants apart; few, as only
+// jumps lead there.
+void KolmogorovOperator::split() {
+  const PetscInt begin = states_.local_begin(), local = states_.local_size();
+  other_start_.assign(1, 0);
+  PetscInt kept = 0, next = 0;
+  for (PetscInt r = 0; r < local; ++r) {
+    const PetscInt end = row_start_[r + 1];
+    for (; next < end; ++next) {
+      const PetscInt column = columns_[next] - begin;
+      if (column >= 0 && column < local) {
+        columns_[kept] = column;
+        values_[kept++] = values_[next];
+      } else {
+        other_columns_.push_back(columns_[next]);
+        other_values_.push_back(values_[next]);
+      }
+    }
+    row_start_[r + 1] = kept;
+    other_start_.push_back(static_cast<PetscInt>(other_columns_.size()));
+  }
 }
 
 petsc::VecHandle KolmogorovOperator::zeros() const {

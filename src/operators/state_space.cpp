@@ -174,7 +174,6 @@ petsc::Chain StateSpace::chain() const {
   std::sort(entries.begin(), entries.end(),
             [](const Entry& a, const Entry& b) { return a.key < b.key; });
   petsc::Chain chain;
-  chain.narrow = !keeps_origin_;
   for (std::size_t n = 0; n < entries.size(); ++n) {
     if (n > 0 && std::get<0>(entries[n].key) != std::get<0>(entries[n - 1].key)) {
       chain.start.push_back(static_cast<int>(n));
@@ -183,6 +182,15 @@ petsc::Chain StateSpace::chain() const {
   }
   if (!entries.empty()) chain.start.push_back(static_cast<int>(entries.size()));
   return chain;
+}
+
+petsc::Structure StateSpace::structure() const {
+  return {[this] { return chain(); }, !keeps_origin_};
+}
+
+StateSpace::NodeLine StateSpace::nodes_of(Half half, int level) const {
+  const PetscInt first = index({StateKind::node, half, level, 0});
+  return {first, nodes_ > 1 ? index({StateKind::node, half, level, 1}) - first : 0};
 }
 
 PetscInt StateSpace::index(const State& state) const {

@@ -470,6 +470,7 @@ Factors read_factors() {
   if (!petsc::chooses_solver("slide_")) return Factors::own;
   const std::string pc = solver_option("-slide_pc_type");
   if (pc == "levels") return Factors::levels;
+  if (pc == "p_multigrid") return Factors::p_multigrid;
   if (!pc.empty() && pc != "lu" && pc != "cholesky") return Factors::incomplete;
   const bool on_disk = solver_option("-slide_mat_mumps_icntl_22") == "1";
   return on_disk ? Factors::on_disk : Factors::in_memory;

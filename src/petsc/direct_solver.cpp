@@ -20,6 +20,7 @@ namespace stickslip::petsc {
 namespace {
 
 constexpr const char* kLevels = "levels";
+constexpr const char* kPMultigrid = "p_multigrid";
 
 // Options that were set here, not by the user.
 std::set<std::string>& own_defaults() {
@@ -40,18 +41,21 @@ void set_default(const std::string& option, const char* value) {
 // Called by PETSc: errors go back as codes, exceptions may not pass through it.
 
 // PETSc's preconditioner of the type "shell" is filled in when its matrix is known.
-PetscErrorCode create_levels(PC pc) {
+PetscErrorCode create_shell(PC pc, const char* name) {
   const PetscErrorCode code = PCSetType(pc, PCSHELL);
-  return code == 0 ? PCShellSetName(pc, kLevels) : code;
+  return code == 0 ? PCShellSetName(pc, name) : code;
 }
 
+PetscErrorCode create_levels(PC pc) { return create_shell(pc, kLevels); }
+PetscErrorCode create_p_multigrid(PC pc) { return create_shell(pc, kPMultigrid); }
+
 template <bool transposed>
-PetscErrorCode apply_levels(PC pc, Vec b, Vec x) {
-  void* levels = nullptr;
-  const PetscErrorCode code = PCShellGetContext(pc, &levels);
+PetscErrorCode apply(PC pc, Vec b, Vec x) {
+  void* own = nullptr;
+  const PetscErrorCode code = PCShellGetContext(pc, &own);
   if (code != 0) return code;
   try {
-    static_cast<const LevelElimination*>(levels)->solve(b, x, transposed);
+    static_cast<const Preconditioner*>(own)->apply(b, x, transposed);
   } catch (const PetscFailure& failure) {
     return failure.code();
   } catch (const std::bad_alloc&) {
@@ -136,6 +140,17 @@ double entries_counted(PetscInt entries) {
   return entries < 0 ? -1e6 * static_cast<double>(entries) : static_cast<double>(entries);
 }
 
+// Backward errors, which a solve looks at, end some digits below the residuals that rule here.
+void set_p_multigrid(KSP ksp) {
+  constexpr double tolerance = 1e-11;
+  constexpr PetscInt most = 60;
+  check(KSPSetType(ksp, KSPGMRES));
+  check(KSPGMRESSetRestart(ksp, most));
+  check(KSPSetPCSide(ksp, PC_RIGHT));
+  check(KSPSetTolerances(ksp, tolerance, PETSC_DEFAULT, PETSC_DEFAULT, most));
+  check(PCSetType(preconditioner_of(ksp), kPMultigrid));
+}
+
 }  // namespace
 
 bool chooses_solver(const std::string& prefix) {
@@ -183,7 +198,16 @@ void record_factors(KSP ksp, Ledger& ledger) {
   ledger += size;
 }
 
-KspHandle direct_solver(Mat matrix, const std::string& prefix, bool narrow_chain) {
+Solver chosen_solver(const std::string& prefix, Solver preferred) {
+  if (!chooses_solver(prefix)) return preferred;
+  std::array<char, 64> type{};
+  check(PetscOptionsGetString(nullptr, nullptr, fmt::format("-{}pc_type", prefix).c_str(),
+                              type.data(), type.size(), nullptr));
+  if (std::strcmp(type.data(), kLevels) == 0) return Solver::levels;
+  return std::strcmp(type.data(), kPMultigrid) == 0 ? Solver::p_multigrid : Solver::lu;
+}
+
+KspHandle linear_solver(Mat matrix, const std::string& prefix, Solver preferred) {
   MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(matrix));
   KspHandle ksp;
   check(KSPCreate(comm, ksp.out()));
@@ -191,33 +215,31 @@ KspHandle direct_solver(Mat matrix, const std::string& prefix, bool narrow_chain
   check(KSPSetOperators(ksp, matrix, matrix));
   set_direct_solver(ksp);
   check(PCRegister(kLevels, create_levels));
-  if (narrow_chain && !chooses_solver(prefix)) check(PCSetType(preconditioner_of(ksp), kLevels));
+  check(PCRegister(kPMultigrid, create_p_multigrid));
+  const Solver solver = chosen_solver(prefix, preferred);
+  if (solver == Solver::levels) check(PCSetType(preconditioner_of(ksp), kLevels));
+  if (solver == Solver::p_multigrid) set_p_multigrid(ksp);
   check(KSPSetFromOptions(ksp));
   set_default_ordering(ksp);
   return ksp;
 }
 
-bool uses_levels(KSP ksp) {
+Solver kind_of(KSP ksp) {
   PC pc = preconditioner_of(ksp);
   PetscBool shell = PETSC_FALSE;
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCSHELL, &shell));
-  return shell == PETSC_TRUE;
+  if (shell == PETSC_FALSE) return Solver::lu;
+  const char* name = nullptr;
+  check(PCShellGetName(pc, &name));
+  return std::strcmp(name, kLevels) == 0 ? Solver::levels : Solver::p_multigrid;
 }
 
-std::unique_ptr<LevelElimination> attach_levels(KSP ksp, Mat matrix, std::optional<Chain> chain) {
-  const char* prefix = nullptr;
-  check(KSPGetOptionsPrefix(ksp, &prefix));
-  if (!chain) {
-    throw BadInput(fmt::format("-{}pc_type {}: the unknowns of this solver form no chain of "
-                               "levels; leave it out",
-                               prefix, kLevels));
-  }
-  auto levels = std::make_unique<LevelElimination>(matrix, std::move(*chain));
+void attach(KSP ksp, const Preconditioner& preconditioner) {
   PC pc = preconditioner_of(ksp);
-  check(PCShellSetContext(pc, levels.get()));
-  check(PCShellSetApply(pc, apply_levels<false>));
-  check(PCShellSetApplyTranspose(pc, apply_levels<true>));
-  return levels;
+  // PETSc's interface knows no const.
+  check(PCShellSetContext(pc, const_cast<Preconditioner*>(&preconditioner)));
+  check(PCShellSetApply(pc, apply<false>));
+  check(PCShellSetApplyTranspose(pc, apply<true>));
 }
 
 bool lacks_workspace(KSP ksp) {
@@ -236,16 +258,12 @@ KspHandle with_more_workspace(KSP ksp, Mat matrix, const std::string& prefix) {
   check(MatMumpsGetIcntl(factor_of(ksp), 14, &percent));
   const OptionFor more(fmt::format("-{}mat_mumps_icntl_14", prefix),
                        std::to_string(std::max(least, 2 * percent)));
-  KspHandle again = direct_solver(matrix, prefix, false);
+  KspHandle again = linear_solver(matrix, prefix, Solver::lu);
   check(KSPSetUp(again));
   return again;
 }
 
-Analysis analyse(KSP ksp, Mat matrix, std::optional<Chain> chain) {
-  if (uses_levels(ksp)) {
-    const auto levels = attach_levels(ksp, matrix, std::move(chain));
-    return {true, levels->entries(), levels->bytes() / 1e6, levels->operations()};
-  }
+Analysis analyse(KSP ksp, Mat matrix) {
   if (!uses_mumps(ksp)) return {};
   check(PCFactorSetUpMatSolverType(preconditioner_of(ksp)));
   Mat factor = factor_of(ksp);
@@ -257,7 +275,7 @@ Analysis analyse(KSP ksp, Mat matrix, std::optional<Chain> chain) {
   check(MatMumpsGetInfog(factor, 3, &entries));
   check(MatMumpsGetInfog(factor, 17, &megabytes));
   check(MatMumpsGetRinfog(factor, 1, &operations));
-  return {false, entries_counted(entries), static_cast<double>(megabytes), operations};
+  return {Solver::lu, entries_counted(entries), static_cast<double>(megabytes), operations};
 }
 
 }  // namespace stickslip::petsc

@@ -65,6 +65,27 @@ VecHandle magnitude_sums(Mat matrix) {
   return sums;
 }
 
+// What the solver of a KSP calls; null for PETSc's own.
+std::unique_ptr<Preconditioner> own_preconditioner(KSP ksp, Mat matrix, Structure structure) {
+  std::unique_ptr<Preconditioner> own;
+  const Solver solver = kind_of(ksp);
+  if (solver == Solver::lu) return own;
+  const char* prefix = nullptr;
+  check(KSPGetOptionsPrefix(ksp, &prefix));
+  if (solver == Solver::p_multigrid) {
+    own = std::move(structure.multigrid);
+  } else if (structure.chain) {
+    own = std::make_unique<LevelElimination>(matrix, structure.chain());
+  }
+  if (!own) {
+    throw BadInput(fmt::format("-{}pc_type: this solver has no {}; leave it out", prefix,
+                               solver == Solver::levels ? "chain of levels to eliminate"
+                                                        : "elements of several degrees"));
+  }
+  attach(ksp, *own);
+  return own;
+}
+
 VecHandle absolute(Vec x) {
   VecHandle size;
   check(VecDuplicate(x, size.out()));
@@ -75,15 +96,25 @@ VecHandle absolute(Vec x) {
 
 }  // namespace
 
+Solver Structure::preferred() const {
+  if (multigrid) return Solver::p_multigrid;
+  return chain && narrow ? Solver::levels : Solver::lu;
+}
+
 Factorization::Factorization(Mat matrix, const std::string& prefix, Ledger& ledger,
-                             std::optional<Chain> chain)
+                             Structure structure)
     : prefix_(prefix), ledger_(ledger) {
   check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
   matrix_ = MatHandle(matrix);
-  ksp_ = direct_solver(matrix, prefix, chain && chain->narrow);
-  if (uses_levels(ksp_)) {
+  use(std::move(structure));
+}
+
+void Factorization::use(Structure structure) {
+  chain_ = structure.chain;
+  ksp_ = linear_solver(matrix_, prefix_, structure.preferred());
+  {
     const PhaseTimer timer("analysis", ledger_.analysis_seconds);
-    levels_ = attach_levels(ksp_, matrix, std::move(chain));
+    own_ = own_preconditioner(ksp_, matrix_, std::move(structure));
   }
   factor();
 }
@@ -96,12 +127,12 @@ void Factorization::update() {
 void Factorization::factor() {
   magnitude_ = {};
   magnitude_sums_ = {};
-  if (levels_) {
+  if (own_) {
     const PhaseTimer timer("factorisation", ledger_.factorization_seconds);
-    levels_->factor();
+    own_->factor();
     Ledger size;
-    size.factor_entries = static_cast<std::int64_t>(levels_->entries());
-    size.factor_megabytes = levels_->bytes() / 1e6;
+    size.factor_entries = static_cast<std::int64_t>(own_->entries());
+    size.factor_megabytes = own_->bytes() / 1e6;
     ledger_ += size;
   } else {
     factor_by_petsc();
@@ -149,6 +180,12 @@ void Factorization::apply(Vec b, Vec x, bool transposed) {
   }
 }
 
+// What a preconditioner leaves of an error that is small already does not matter.
+void Factorization::correct(Vec residual, Vec step, bool transposed) {
+  if (own_) return own_->apply(residual, step, transposed);
+  apply(residual, step, transposed);
+}
+
 // The rows of A differ by many orders of magnitude, so that norms of the whole matrix would hide a
 // bad row; |A| |x| does not. A plain solution is of one size: the largest component counts (Oettli
 // and Prager). A transposed one is an occupation, time spent in each state: |A|^T |x| counts
@@ -178,6 +215,19 @@ double Factorization::backward_error_transposed(Vec residual, Vec b, Vec x) {
 }
 
 Solution Factorization::solve(Vec b, bool transposed) {
+  const bool replaceable =
+      kind_of(ksp_) == Solver::p_multigrid && chain_ && !chooses_solver(prefix_);
+  if (!replaceable) return solve_by_ksp(b, transposed);
+  try {
+    return solve_by_ksp(b, transposed);
+  } catch (const NotReached&) {
+    own_.reset();  // its memory first
+    use({chain_, true});
+    return solve_by_ksp(b, transposed);
+  }
+}
+
+Solution Factorization::solve_by_ksp(Vec b, bool transposed) {
   const PhaseTimer timer("solve", ledger_.solve_seconds);
   Solution s;
   VecHandle residual, step;
@@ -194,7 +244,7 @@ Solution Factorization::solve(Vec b, bool transposed) {
   bool sound = false;
   for (int n = 0; n < kMostCorrections && !sound; ++n) {
     compute_residual();  // again, as backward_error may overwrite it
-    apply(residual, step, transposed);
+    correct(residual, step, transposed);
     check(VecAXPY(s.x, 1, step));
     check(VecAXPY(s.correction, 1, step));
     compute_residual();
@@ -210,16 +260,18 @@ Solution Factorization::solve(Vec b, bool transposed) {
     throw NotReached(
         fmt::format("the solver -{} left a backward error of {:.1e} (limit {:.0e}){}", prefix_,
                     s.backward_error, kBackwardErrorLimit,
-                    levels_ ? fmt::format("; -{}pc_type lu exchanges more rows", prefix_) : ""));
+                    own_ ? fmt::format("; -{}pc_type lu exchanges more rows", prefix_) : ""));
   }
   return s;
 }
 
 Analysis Factorization::analyse(Mat matrix, const std::string& prefix, Ledger& ledger,
-                                std::optional<Chain> chain) {
+                                Structure structure) {
   const PhaseTimer timer("analysis", ledger.analysis_seconds);
-  const KspHandle ksp = direct_solver(matrix, prefix, chain && chain->narrow);
-  return petsc::analyse(ksp, matrix, std::move(chain));
+  const KspHandle ksp = linear_solver(matrix, prefix, structure.preferred());
+  const auto own = own_preconditioner(ksp, matrix, std::move(structure));
+  if (!own) return petsc::analyse(ksp, matrix);
+  return {kind_of(ksp), own->entries(), own->bytes() / 1e6, own->operations()};
 }
 
 void Factorization::probe_options(const std::string& prefix) {
@@ -231,8 +283,10 @@ void Factorization::probe_options(const std::string& prefix) {
   for (PetscInt i = 0; i < 2; ++i) check(MatSetValue(unit, i, i, 1, INSERT_VALUES));
   check(MatAssemblyBegin(unit, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(unit, MAT_FINAL_ASSEMBLY));
-  const KspHandle ksp = direct_solver(unit, prefix, false);
-  check(KSPSetUp(ksp));
+  for (Solver solver : {Solver::lu, Solver::p_multigrid}) {
+    const KspHandle ksp = linear_solver(unit, prefix, solver);
+    check(KSPSetUp(ksp));
+  }
 }
 
 }  // namespace stickslip::petsc

@@ -13,7 +13,6 @@
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/memory.hpp"
-#include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -23,7 +22,7 @@ namespace {
 using Scalars = std::vector<PetscScalar>;
 
 // Least rows of a block of the triangles: below, products are too small to be fast.
-constexpr int kLeastBlock = 4;
+constexpr int kLeastBlock = 8;
 
 // y += a x or a^T x for a by columns.
 void add_product(const PetscScalar* a, int rows, int columns, bool transposed, const PetscScalar* x,
@@ -31,29 +30,6 @@ void add_product(const PetscScalar* a, int rows, int columns, bool transposed, c
   const PetscBLASInt m = rows, n = columns, step = 1;
   const PetscScalar one = 1;
   BLASgemv_(transposed ? "T" : "N", &m, &n, &one, a, &m, x, &step, &one, y, &step);
-}
-
-template <class T>
-MPI_Datatype mpi_type();
-template <>
-MPI_Datatype mpi_type<PetscScalar>() {
-  return MPIU_SCALAR;
-}
-template <>
-MPI_Datatype mpi_type<int>() {
-  return MPI_INT;
-}
-
-template <class T>
-void send(const std::vector<T>& data, int to, MPI_Comm comm) {
-  MPI_Send(data.data(), static_cast<int>(data.size()), mpi_type<T>(), to, 0, comm);
-}
-
-template <class T>
-std::vector<T> receive(std::size_t count, int from, MPI_Comm comm) {
-  std::vector<T> data(count);
-  MPI_Recv(data.data(), static_cast<int>(count), mpi_type<T>(), from, 0, comm, MPI_STATUS_IGNORE);
-  return data;
 }
 
 /// Positions first ... last; none if first > last.
@@ -172,17 +148,9 @@ LevelElimination::LevelElimination(Mat matrix, Chain chain)
 
 // Global rows of the blocks next to those of this rank, with their positions.
 void LevelElimination::exchange_borders() {
-  const int ranks = petsc::ranks(comm_), here = petsc::rank(comm_);
-  std::vector<int> blocks(static_cast<std::size_t>(ranks));
   const int own = chain_.blocks();
-  MPI_Allgather(&own, 1, MPI_INT, blocks.data(), 1, MPI_INT, comm_);
+  ranks_ = neighbours(comm_, own);
   if (own == 0) return;
-  for (int r = 0; r < here; ++r) {
-    if (blocks[r] > 0) inner_rank_ = r;
-  }
-  for (int r = ranks - 1; r > here; --r) {
-    if (blocks[r] > 0) outer_rank_ = r;
-  }
   const auto rows_of = [&](int s) {
     std::vector<PetscInt> rows(chain_.rows.begin() + chain_.start[s],
                                chain_.rows.begin() + chain_.start[s + 1]);
@@ -200,8 +168,8 @@ void LevelElimination::exchange_borders() {
     std::sort(border.begin(), border.end());
     return border;
   };
-  outer_border_ = exchange(rows_of(0), inner_rank_, outer_rank_);
-  inner_border_ = exchange(rows_of(own - 1), outer_rank_, inner_rank_);
+  outer_border_ = exchange(rows_of(0), ranks_.inner, ranks_.outer);
+  inner_border_ = exchange(rows_of(own - 1), ranks_.outer, ranks_.inner);
 }
 
 LevelElimination::Place LevelElimination::place_of(PetscInt column) const {
@@ -223,7 +191,7 @@ void LevelElimination::find_triangles() {
   if (levels_.empty()) return;
   // Positions in this block to which one in the block after returns.
   std::vector<Extent> returns;
-  if (has_outer()) returns = received_extents(size_of(chain_.blocks()), outer_rank_, comm_);
+  if (ranks_.has_outer()) returns = received_extents(size_of(chain_.blocks()), ranks_.outer, comm_);
   for (int s = chain_.blocks() - 1; s >= 0; --s) {
     Level& level = levels_[s];
     const auto size = static_cast<std::size_t>(level.size);
@@ -248,7 +216,7 @@ void LevelElimination::find_triangles() {
       std::fill(returns.begin() + cuts[b], returns.begin() + cuts[b + 1], all);
     }
   }
-  if (has_inner()) send_extents(returns, inner_rank_, comm_);
+  if (ranks_.has_inner()) send_extents(returns, ranks_.inner, comm_);
 }
 
 // The diagonal block into `dense`, the rest of its rows into the couplings.
@@ -344,8 +312,8 @@ void LevelElimination::factor() {
   reserve(dense, back);
   if (levels_.empty()) return;
   const int last = chain_.blocks() - 1;
-  if (has_outer()) {
-    back = receive<PetscScalar>(size_of(last + 1) * size_of(last), outer_rank_, comm_);
+  if (ranks_.has_outer()) {
+    back = receive<PetscScalar>(size_of(last + 1) * size_of(last), ranks_.outer, comm_);
   }
   for (int s = last; s >= 0; --s) {
     Level& level = levels_[s];
@@ -355,10 +323,10 @@ void LevelElimination::factor() {
     store(level, dense);
     multiply_inwards(level, dense, size_of(s - 1), back);
   }
-  if (has_inner()) send(back, inner_rank_, comm_);
+  if (ranks_.has_inner()) send(back, ranks_.inner, comm_);
 }
 
-void LevelElimination::solve(Vec b, Vec x, bool transposed) const {
+void LevelElimination::apply(Vec b, Vec x, bool transposed) const {
   if (levels_.empty()) return;
   auto z = pass_inwards(b, transposed);
   pass_outwards(z, x, transposed);
@@ -372,7 +340,7 @@ std::vector<Scalars> LevelElimination::pass_inwards(Vec b, bool transposed) cons
   const ReadView right(b);
   Scalars y, passed;
   const std::size_t border = size_of(transposed ? last : last + 1);
-  if (has_outer()) passed = receive<PetscScalar>(border, outer_rank_, comm_);
+  if (ranks_.has_outer()) passed = receive<PetscScalar>(border, ranks_.outer, comm_);
   for (int s = last; s >= 0; --s) {
     const Level& level = levels_[s];
     y.resize(static_cast<std::size_t>(level.size));
@@ -390,7 +358,7 @@ std::vector<Scalars> LevelElimination::pass_inwards(Vec b, bool transposed) cons
       passed = z[s];
     }
   }
-  if (has_inner()) send(passed, inner_rank_, comm_);
+  if (ranks_.has_inner()) send(passed, ranks_.inner, comm_);
   return z;
 }
 
@@ -400,7 +368,7 @@ void LevelElimination::pass_outwards(std::vector<Scalars>& z, Vec x, bool transp
   WriteView left(x);
   Scalars y, step, passed;
   const std::size_t border = size_of(transposed ? 0 : -1);
-  if (has_inner()) passed = receive<PetscScalar>(border, inner_rank_, comm_);
+  if (ranks_.has_inner()) passed = receive<PetscScalar>(border, ranks_.inner, comm_);
   for (int s = 0; s <= last; ++s) {
     const Level& level = levels_[s];
     if (!passed.empty()) {
@@ -421,7 +389,7 @@ void LevelElimination::pass_outwards(std::vector<Scalars>& z, Vec x, bool transp
       passed = z[s];
     }
   }
-  if (has_outer()) send(passed, outer_rank_, comm_);
+  if (ranks_.has_outer()) send(passed, ranks_.outer, comm_);
 }
 
 }  // namespace stickslip::petsc

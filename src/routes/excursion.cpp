@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdint>
 
 #include "routes.hpp"
 #include "stickslip/operators/systems.hpp"
@@ -132,6 +133,7 @@ class Execution {
 
   Evaluation run() {
     const Plan plan = plan_of(request_);
+    if (prefers_iteration(request_, unknowns())) systems_.prefer_iteration();
     for (std::size_t n = 0; n < plan.tasks.size(); ++n) {
       carry_out(plan.tasks[n]);
       systems_.keep(plan.used_from(n + 1));
@@ -141,6 +143,12 @@ class Execution {
   }
 
  private:
+  [[nodiscard]] std::int64_t unknowns() const {
+    const auto& process = setting_.process;
+    const std::int64_t levels = 2LL * process.noise.levels + 1;
+    return levels * setting_.axis->size() * (process.symmetric() ? 1 : 2);
+  }
+
   void carry_out(const Task& task) {
     switch (task.work) {
     case Work::stationary_law: return find_law();

@@ -72,7 +72,7 @@ HpAxis::HpAxis(const std::vector<double>& ends, int degree, const model::Drag& d
     : HpAxis(ends, std::vector<int>(ends.empty() ? 0 : ends.size() - 1, degree), drag) {}
 
 HpAxis::HpAxis(std::vector<double> ends, const std::vector<int>& degrees, const model::Drag& drag)
-    : ends_(std::move(ends)) {
+    : ends_(std::move(ends)), drag_(drag) {
   if (ends_.size() < 2 || ends_.front() != 0 || !std::is_sorted(ends_.begin(), ends_.end())) {
     throw std::invalid_argument("element ends must rise from 0");
   }
@@ -91,6 +91,18 @@ HpAxis::HpAxis(std::vector<double> ends, const std::vector<int>& degrees, const 
   }
   for (double v : nodes_) drag_at_nodes_.push_back(drag(v));
   for (double v : ends_) drag_at_ends_.push_back(drag(v));
+}
+
+std::shared_ptr<HpAxis> HpAxis::coarsened(int degree) const {
+  std::vector<int> degrees;
+  for (const Element& element : elements_) {
+    degrees.push_back(std::min(element.reference->size - 1, degree));
+  }
+  auto coarse = std::make_shared<HpAxis>(ends_, degrees, drag_);
+  if (&mirrored() != this) {
+    coarse->set_mirrored(dynamic_cast<const HpAxis&>(mirrored()).coarsened(degree));
+  }
+  return coarse;
 }
 
 void HpAxis::transport(double excess, int j, TransportRow& row) const {

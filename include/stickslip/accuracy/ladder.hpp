@@ -1,6 +1,9 @@
 #pragma once
 /// Discretisations in the order in which refinement tries them.
 
+#include <cstdint>
+#include <functional>
+
 #include "stickslip/accuracy/resolution.hpp"
 #include "stickslip/options/request.hpp"
 
@@ -34,6 +37,7 @@ class Ladder {
   model::Scene scene_;
   options::Method method_;
   double accuracy_;
+  std::function<bool(std::int64_t)> prefers_iteration_;
   int first_degree_ = 0;   // of rung 1
   velocity::Rates rates_;  // of the equations to be solved
   int halves_ = 1;

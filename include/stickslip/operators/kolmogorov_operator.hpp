@@ -90,6 +90,8 @@ class KolmogorovOperator {
                      PetscScalar lambda, Symmetry symmetry, Rest rest,
                      std::optional<Parameter> derivative);
 
+  void split();
+
   struct Coupling {
     PetscInt row;  // local
     int level;     // static level i, or the side of an exit
@@ -105,9 +107,9 @@ class KolmogorovOperator {
   Functional trace_upper_, trace_lower_;
   std::vector<Coupling> rest_coupling_;  // -A_us
   std::vector<Coupling> exit_coupling_;  // level +1 upwards, -1 downwards
-  // On one rank the matrix lives in these; several ranks split their rows and need copies.
-  std::vector<PetscInt> row_start_, columns_;
-  std::vector<PetscScalar> values_;
+  // The matrix lives in these: local columns, and those of other ranks.
+  std::vector<PetscInt> row_start_, columns_, other_start_, other_columns_;
+  std::vector<PetscScalar> values_, other_values_;
   petsc::MatHandle matrix_;
   PetscInt64 nonzeros_ = 0;
 };

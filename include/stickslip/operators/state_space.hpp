@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "stickslip/model/process.hpp"
-#include "stickslip/petsc/level_elimination.hpp"
+#include "stickslip/petsc/factorization.hpp"
 #include "stickslip/velocity/axis.hpp"
 
 namespace stickslip::operators {
@@ -83,11 +83,20 @@ class StateSpace {
   /// Global index of a state that exists. O(1).
   [[nodiscard]] PetscInt index(const State& state) const;
 
+  /// Where the nodes of a level lie: node j has the index first + j stride.
+  struct NodeLine {
+    PetscInt first, stride;
+  };
+  /// O(1).
+  [[nodiscard]] NodeLine nodes_of(Half half, int level) const;
+
   /// The local states by shells, which jumps of the noise couple with the next ones alone: in each
   /// those that fall towards v = 0, fast ones first, then states at rest, then those that rise;
   /// unfolded, all of level i before all of level -i, which meet at level 0 only.
-  /// Narrow on an hp axis. O(local states).
+  /// O(local states log(local states)).
   [[nodiscard]] petsc::Chain chain() const;
+  /// For this chain, which is narrow on an hp axis; refers to this object.
+  [[nodiscard]] petsc::Structure structure() const;
 
   /// Calls visit(state) for the local states in the order of their indices.
   template <class Visit>

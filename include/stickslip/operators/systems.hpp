@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -12,6 +13,7 @@
 #include "stickslip/petsc/factorization.hpp"
 #include "stickslip/petsc/ledger.hpp"
 #include "stickslip/velocity/axis.hpp"
+#include "stickslip/velocity/hp_axis.hpp"
 
 namespace stickslip::operators {
 
@@ -28,18 +30,29 @@ inline const std::string kSlidePrefix = "slide_";
                                                      const velocity::Axis& axis, Symmetry symmetry,
                                                      Parameter theta, petsc::Ledger& ledger);
 
-/// lambda - L with its factors.
+/// What a system is made of.
+struct Operators {
+  KolmogorovOperator a;
+  std::optional<KolmogorovOperator> coarse = {};  ///< the same on lower degrees, for p-multigrid
+  std::shared_ptr<const velocity::HpAxis> axis = {}, coarse_axis = {};  ///< of these, if so
+
+  /// Refers to this object. Collective.
+  [[nodiscard]] petsc::Structure structure(petsc::Ledger& ledger) const;
+};
+
+/// lambda - L with its solver.
 class System {
  public:
   /// Collective. Throws NoMemory or NotReached.
-  System(KolmogorovOperator a, petsc::Ledger& ledger)
-      : a_(std::move(a)), factors_(a_.matrix(), kSlidePrefix, ledger, a_.states().chain()) {}
+  System(Operators operators, petsc::Ledger& ledger)
+      : operators_(std::move(operators)),
+        factors_(a().matrix(), kSlidePrefix, ledger, operators_.structure(ledger)) {}
 
-  [[nodiscard]] const KolmogorovOperator& a() const { return a_; }
+  [[nodiscard]] const KolmogorovOperator& a() const { return operators_.a; }
   [[nodiscard]] petsc::Factorization& factors() { return factors_; }
 
  private:
-  KolmogorovOperator a_;
+  Operators operators_;
   petsc::Factorization factors_;
 };
 
@@ -62,8 +75,13 @@ class Systems {
           petsc::Ledger& ledger)
       : comm_(comm), process_(process), axis_(std::move(axis)), ledger_(ledger) {}
 
+  /// Prefers p-multigrid where the axis has a degree to lower: for few solves with large systems.
+  void prefer_iteration() { preferred_ = petsc::Solver::p_multigrid; }
+
   /// Collective at first use of a key.
   [[nodiscard]] System& at(double lambda, Symmetry symmetry, Rest rest = Rest::killing);
+  /// Assembles and analyses as that would, and keeps nothing. Collective.
+  [[nodiscard]] petsc::Analysis analyse(const SystemKey& key);
   /// Frees a system that is not needed any more. Collective.
   void release(double lambda, Symmetry symmetry, Rest rest = Rest::killing) {
     systems_.erase({lambda, symmetry, rest});
@@ -80,10 +98,13 @@ class Systems {
   [[nodiscard]] petsc::Ledger& ledger() { return ledger_; }
 
  private:
+  [[nodiscard]] Operators operators(const SystemKey& key);
+
   MPI_Comm comm_;
   model::Process process_;
   std::shared_ptr<const velocity::Axis> axis_;
   petsc::Ledger& ledger_;
+  petsc::Solver preferred_ = petsc::Solver::levels;
   std::map<SystemKey, std::unique_ptr<System>> systems_;
 };
 

@@ -37,8 +37,8 @@ enum class Quantity {
 enum class Scheme { hp, upwind, none };
 
 /// What factors the sliding operator, and where they go; the PETSc options of -slide_ decide.
-/// `own`: by levels on an hp axis, else by MUMPS in memory.
-enum class Factors { own, levels, in_memory, on_disk, incomplete };
+/// `own`: by levels on an hp axis, else by MUMPS in memory. `p_multigrid`: those of low degree.
+enum class Factors { own, levels, p_multigrid, in_memory, on_disk, incomplete };
 
 /// By which system of equations.
 enum class Route { excursion, lambda, hitting, null_vector, fluid_queue, monte_carlo };

@@ -3,14 +3,15 @@
 
 #include <petscmat.h>
 
+#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "stickslip/petsc/direct_solver.hpp"
 #include "stickslip/petsc/handle.hpp"
 #include "stickslip/petsc/ledger.hpp"
 #include "stickslip/petsc/level_elimination.hpp"
+#include "stickslip/petsc/p_multigrid.hpp"
 
 namespace stickslip::petsc {
 
@@ -25,18 +26,26 @@ struct Solution {
   double backward_error = 0;
 };
 
+/// What is known of a matrix besides its entries.
+struct Structure {
+  std::function<Chain()> chain = {};  ///< for an elimination by levels, asked when it comes to that
+  bool narrow = false;  ///< blocks of the chain are so small that dense ones beat sparse ones
+  std::unique_ptr<PMultigrid> multigrid = nullptr;  ///< for iteration, preferred where there is one
+
+  [[nodiscard]] Solver preferred() const;
+};
+
 /// A direct solver reports success on a singular matrix too, so each solve computes its residual
 /// and makes one step of iterative refinement, a second one where the backward error is above
-/// 1e-12 still. All members are collective.
+/// 1e-12 still; where iteration by p-multigrid, which nobody asked for, does not come to that, an
+/// elimination takes its place. All members are collective.
 class Factorization {
  public:
   /// Analyses and factors `matrix` (kept by reference count). `prefix` without the dash, with the
-  /// trailing underscore. Times and counts go to `ledger`, which must outlive this object. Without
-  /// `chain` there is no elimination by levels.
+  /// trailing underscore. Times and counts go to `ledger`, which must outlive this object.
   /// Where MUMPS runs out of the workspace that it set aside (INFOG(1) = -8, -9), it is given more
   /// once. Throws NoMemory when the factors do not fit, NotReached when the factorisation fails.
-  Factorization(Mat matrix, const std::string& prefix, Ledger& ledger,
-                std::optional<Chain> chain = std::nullopt);
+  Factorization(Mat matrix, const std::string& prefix, Ledger& ledger, Structure structure = {});
 
   /// A x = b. Throws NotReached when the backward error stays above 1e-12.
   [[nodiscard]] Solution solve(Vec b) { return solve(b, false); }
@@ -54,7 +63,7 @@ class Factorization {
 
   /// Orders and analyses `matrix` as the constructor would, and stops there. Collective.
   [[nodiscard]] static Analysis analyse(Mat matrix, const std::string& prefix, Ledger& ledger,
-                                        std::optional<Chain> chain = std::nullopt);
+                                        Structure structure = {});
 
   /// Reads all options of a role once, on a 2 x 2 matrix, so that unknown ones can be told before
   /// any work. Collective on PETSC_COMM_SELF only.
@@ -64,7 +73,10 @@ class Factorization {
   void factor();
   void factor_by_petsc();
   [[nodiscard]] Solution solve(Vec b, bool transposed);
+  [[nodiscard]] Solution solve_by_ksp(Vec b, bool transposed);
+  void use(Structure structure);
   void apply(Vec b, Vec x, bool transposed);
+  void correct(Vec residual, Vec step, bool transposed);
   [[nodiscard]] double backward_error(Vec residual, Vec b, Vec x);
   [[nodiscard]] double backward_error_transposed(Vec residual, Vec b, Vec x);
 
@@ -72,8 +84,9 @@ class Factorization {
   // |a_ij| and the sums of its rows, when first needed.
   MatHandle magnitude_;
   VecHandle magnitude_sums_;
-  std::unique_ptr<LevelElimination> levels_;  // null: PETSc's preconditioner does it all
+  std::unique_ptr<Preconditioner> own_;  // null: PETSc's preconditioner does it all
   KspHandle ksp_;
+  std::function<Chain()> chain_;
   std::string prefix_;
   Ledger& ledger_;
 };

@@ -9,6 +9,8 @@
 
 #include "stickslip/petsc/dense_inverse.hpp"
 #include "stickslip/petsc/handle.hpp"
+#include "stickslip/petsc/neighbours.hpp"
+#include "stickslip/petsc/preconditioner.hpp"
 
 namespace stickslip::petsc {
 
@@ -18,7 +20,6 @@ namespace stickslip::petsc {
 struct Chain {
   std::vector<PetscInt> rows;  ///< local rows, block by block
   std::vector<int> start{0};   ///< of each block in `rows`, and their end
-  bool narrow = false;         ///< blocks are so small that dense ones are faster than sparse
   [[nodiscard]] int blocks() const { return static_cast<int>(start.size()) - 1; }
   [[nodiscard]] int size(int block) const { return start[block + 1] - start[block]; }
 };
@@ -33,22 +34,21 @@ struct Chain {
 /// its order, S_s is block upper triangular; the analysis finds the blocks and how far their rows
 /// reach, and no other zero is stored or computed with. The blocks of several ranks are eliminated
 /// one rank after the other, each of which holds its share of the factors.
-class LevelElimination {
+class LevelElimination final : public Preconditioner {
  public:
   /// Analysis of the matrix (kept by reference count) for arranged rows. Collective. O(nonzeros).
   LevelElimination(Mat matrix, Chain chain);
 
   /// Reads the values of the matrix and eliminates. Collective. Throws NotReached for a singular
   /// block, NoMemory when the factors do not fit.
-  void factor();
+  void factor() override;
 
   /// x = A^-1 b, or A^-T b without conjugation. Collective. Two passes over the factors.
-  void solve(Vec b, Vec x, bool transposed) const;
+  void apply(Vec b, Vec x, bool transposed) const override;
 
-  /// Of all ranks: entries of the factors, bytes while factoring, operations of the elimination.
-  [[nodiscard]] double entries() const { return entries_; }
-  [[nodiscard]] double bytes() const { return bytes_; }
-  [[nodiscard]] double operations() const { return operations_; }
+  [[nodiscard]] double entries() const override { return entries_; }
+  [[nodiscard]] double bytes() const override { return bytes_; }
+  [[nodiscard]] double operations() const override { return operations_; }
 
  private:
   // Entries of a sparse coupling: one run stands for rows row ... row + length - 1 with one entry
@@ -93,14 +93,12 @@ class LevelElimination {
                                std::size_t columns, std::vector<PetscScalar>& product);
   [[nodiscard]] std::vector<std::vector<PetscScalar>> pass_inwards(Vec b, bool transposed) const;
   void pass_outwards(std::vector<std::vector<PetscScalar>>& z, Vec x, bool transposed) const;
-  [[nodiscard]] bool has_outer() const { return outer_rank_ != MPI_PROC_NULL; }
-  [[nodiscard]] bool has_inner() const { return inner_rank_ != MPI_PROC_NULL; }
 
   MatHandle matrix_;
   Chain chain_;
   MPI_Comm comm_;
   PetscInt first_row_ = 0;
-  int inner_rank_ = MPI_PROC_NULL, outer_rank_ = MPI_PROC_NULL;
+  Neighbours ranks_;
   std::vector<Place> local_places_;                                    // of local rows
   std::vector<std::pair<PetscInt, int>> inner_border_, outer_border_;  // global row, position
   std::vector<Level> levels_;

@@ -21,6 +21,7 @@ class ReadView {
 
   [[nodiscard]] const PetscScalar& operator[](PetscInt i) const { return data_[i]; }
   [[nodiscard]] PetscInt size() const { return size_; }
+  [[nodiscard]] const PetscScalar* data() const { return data_; }
 
  private:
   Vec vec_;
@@ -37,6 +38,7 @@ class WriteView {
   WriteView& operator=(const WriteView&) = delete;
 
   [[nodiscard]] PetscScalar& operator[](PetscInt i) { return data_[i]; }
+  [[nodiscard]] PetscScalar* data() { return data_; }
 
  private:
   Vec vec_;

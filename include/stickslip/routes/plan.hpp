@@ -1,6 +1,7 @@
 #pragma once
 /// What is assembled, factored and solved on each discretisation, derived from the request.
 
+#include <cstdint>
 #include <set>
 #include <string>
 #include <vector>
@@ -64,6 +65,10 @@ struct Plan {
 /// The least set of work for the quantities asked for. Routes other than excursion do one thing
 /// each, and their plan is empty. Local.
 [[nodiscard]] Plan plan_of(const options::Request& request);
+
+/// Whether systems with so many unknowns are better solved by iteration than by elimination: they
+/// are large, and their right-hand sides few. Local.
+[[nodiscard]] bool prefers_iteration(const options::Request& request, std::int64_t unknowns);
 
 /// "stationary law", "resolvent at lambda = 0.5".
 [[nodiscard]] std::string task_name(const options::Request& request, const Task& task);

@@ -62,14 +62,18 @@ class HpAxis final : public Axis {
   [[nodiscard]] double origin_rate(double) const override { return 0; }
   [[nodiscard]] bool needs_holding() const override { return true; }
 
-  [[nodiscard]] int elements() const { return static_cast<int>(ends_.size()) - 1; }
-
- private:
   struct Element {
     std::shared_ptr<const ReferenceElement> reference;
-    int first;  // of its nodes
+    int first;  ///< of its nodes
     double length;
   };
+  [[nodiscard]] int elements() const { return static_cast<int>(ends_.size()) - 1; }
+  [[nodiscard]] const Element& element(int e) const { return elements_[e]; }
+
+  /// The same elements with degrees up to `degree`, here and on the lower half line.
+  [[nodiscard]] std::shared_ptr<HpAxis> coarsened(int degree) const;
+
+ private:
   using Trace = std::vector<double> ReferenceElement::*;
 
   // The row of a node where B is `speed` and the flow leaves its element with the speeds `down` and
@@ -85,6 +89,7 @@ class HpAxis final : public Axis {
   std::vector<Element> elements_;
   std::vector<int> element_of_;  // by node
   std::vector<double> nodes_, weights_;
+  model::Drag drag_;
   std::vector<double> drag_at_nodes_, drag_at_ends_;
 };
 

@@ -1,0 +1,30 @@
+#pragma once
+/// Preconditioners of our own, which PETSc calls as those of type "shell".
+
+#include <petscvec.h>
+
+namespace stickslip::petsc {
+
+/// An approximate, or exact, inverse of a matrix.
+class Preconditioner {
+ public:
+  virtual ~Preconditioner() = default;
+  Preconditioner(const Preconditioner&) = delete;
+  Preconditioner& operator=(const Preconditioner&) = delete;
+
+  /// Reads the values of the matrix and prepares. Collective. Throws NotReached where the matrix is
+  /// singular, NoMemory when the factors do not fit.
+  virtual void factor() = 0;
+  /// x = M^-1 b, or M^-T b without conjugation. Collective.
+  virtual void apply(Vec b, Vec x, bool transposed) const = 0;
+
+  /// Of all ranks: entries of the factors, bytes while factoring, operations of factoring.
+  [[nodiscard]] virtual double entries() const = 0;
+  [[nodiscard]] virtual double bytes() const = 0;
+  [[nodiscard]] virtual double operations() const = 0;
+
+ protected:
+  Preconditioner() = default;
+};
+
+}  // namespace stickslip::petsc

@@ -1,0 +1,397 @@
+#include "stickslip/petsc/p_multigrid.hpp"
+
+#include <petscsys.h>
+// After PETSc itself, whose types it uses.
+#include <petscblaslapack.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/vectors.hpp"
+#include "stickslip/support/errors.hpp"
+
+namespace stickslip::petsc {
+namespace {
+
+using Scalars = std::vector<PetscScalar>;
+
+// Of the rate of jumps: keeps transport invertible where it ends within an element.
+constexpr double kShift = 1e-6;
+
+// C = factor A B + keep C by columns, each as it is or transposed: C is m x n, the inner size k.
+void product(const char* how, int m, int n, int k, double factor, const PetscScalar* a,
+             int stride_a, const PetscScalar* b, int stride_b, double keep, PetscScalar* c,
+             int stride_c) {
+  const PetscBLASInt rows = m, columns = n, inner = k, lda = stride_a, ldb = stride_b,
+                     ldc = stride_c;
+  const PetscScalar alpha = factor, beta = keep;
+  BLASgemm_(how, how + 1, &rows, &columns, &inner, &alpha, a, &lda, b, &ldb, &beta, c, &ldc);
+}
+
+// y = a x, or a^T x, for a small square matrix by columns.
+void multiply(const PetscScalar* a, int size, bool transposed, const PetscScalar* x,
+              PetscScalar* y) {
+  if (transposed) {
+    for (int c = 0; c < size; ++c) {
+      PetscScalar sum = 0;
+      for (int r = 0; r < size; ++r) sum += a[r + c * size] * x[r];
+      y[c] = sum;
+    }
+    return;
+  }
+  std::fill(y, y + size, 0.0);
+  for (int c = 0; c < size; ++c) {
+    for (int r = 0; r < size; ++r) y[r] += a[r + c * size] * x[c];
+  }
+}
+
+// In place.
+void invert(PetscScalar* a, int size, Scalars& work, std::vector<PetscBLASInt>& pivots) {
+  PetscBLASInt n = size, info = 0;
+  const auto length = static_cast<PetscBLASInt>(work.size());
+  LAPACKgetrf_(&n, &n, a, &n, pivots.data(), &info);
+  if (info == 0) LAPACKgetri_(&n, a, &n, pivots.data(), work.data(), &length, &info);
+  if (info != 0) throw NotReached("a pivot of the high modes is singular");
+}
+
+std::size_t square(int n) { return static_cast<std::size_t>(n) * n; }
+
+}  // namespace
+
+PMultigrid::PMultigrid(Mat matrix, Mat coarse, Chain chain, Hierarchy hierarchy)
+    : hierarchy_(std::move(hierarchy)),
+      comm_(PetscObjectComm(reinterpret_cast<PetscObject>(matrix))),
+      ranks_(neighbours(comm_, hierarchy_.levels)),
+      coarse_(coarse, std::move(chain)),
+      stacks_(hierarchy_.strips.size()) {
+  check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
+  matrix_ = MatHandle(matrix);
+  check(MatGetOwnershipRange(matrix_, &first_row_, &end_row_));
+  check(MatCreateVecs(coarse, coarse_x_.out(), coarse_b_.out()));
+  check(MatCreateVecs(matrix_, nullptr, residual_.out()));
+  double sums[] = {0, 0};
+  for (const Strip& strip : hierarchy_.strips) {
+    const double high = strip.modes->high(), all = strip.modes->nodes;
+    sums[0] += hierarchy_.levels * high * high;
+    sums[1] += hierarchy_.levels * (4 * all * all * all + 2 * high * high * high);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm_);
+  entries_ = sums[0] + coarse_.entries();
+  bytes_ = sizeof(PetscScalar) * sums[0] + coarse_.bytes();
+  operations_ = sums[1] + coarse_.operations();
+}
+
+std::array<PMultigrid::Arm, 2> PMultigrid::arms() const {
+  const int centre = hierarchy_.centre ? 1 : 0;
+  return {Arm{0, 0, hierarchy_.below, 1},
+          Arm{1, hierarchy_.levels - 1, hierarchy_.below + centre - 1, -1}};
+}
+
+PetscScalar PMultigrid::outwards(const Stack& stack, const Arm& arm, int level) {
+  return arm.number == 0 ? stack.down[level] : stack.up[level];
+}
+
+PetscScalar PMultigrid::inwards(const Stack& stack, const Arm& arm, int level) {
+  return arm.number == 0 ? stack.up[level] : stack.down[level];
+}
+
+// Jumps leave the velocity as it is, at the same rate on all nodes: those of the first node tell
+// all. What lies on other ranks comes before (inwards) or after the local columns.
+void PMultigrid::read_couplings(const Strip& strip, Stack& stack) const {
+  const int levels = hierarchy_.levels;
+  stack.up.assign(static_cast<std::size_t>(levels), 0.0);
+  stack.down.assign(static_cast<std::size_t>(levels), 0.0);
+  const auto [below, above] = arms();
+  for (int a = 0; a < levels; ++a) {
+    const PetscInt row = first_row_ + strip.first + a;
+    const bool lower = a<below.end, upper = a> above.end;
+    const bool next_up = a + 1 < levels && !(lower && a + 1 == below.end && !hierarchy_.centre);
+    const bool next_down = a > 0 && !(upper && a - 1 == above.end && !hierarchy_.centre);
+    RowView(matrix_, row).for_each([&](PetscInt column, PetscScalar value) {
+      const bool inner = column < first_row_, outer = column >= end_row_;
+      if ((next_up && column == row + 1) || (lower && inner) || (upper && outer)) {
+        stack.up[a] += value;
+      } else if ((next_down && column == row - 1) || (upper && inner) || (lower && outer)) {
+        stack.down[a] += value;
+      } else if (hierarchy_.centre && levels == 1 && outer) {
+        // Level 0 alone: the columns of level -1 come first.
+        (stack.down[a] == 0.0 ? stack.down : stack.up)[a] += value;
+      }
+    });
+  }
+}
+
+// The matrix on the nodes of the strip, without what joins it to other elements and levels: entry
+// (m, n) of level a at m + q (a + levels n).
+Scalars PMultigrid::transport(const Strip& strip) const {
+  const int levels = hierarchy_.levels, q = strip.modes->nodes;
+  Scalars values(square(q) * levels, 0.0);
+  for (int m = 0; m < q; ++m) {
+    for (int a = 0; a < levels; ++a) {
+      const PetscInt row = strip.first + m * levels + a;
+      RowView(matrix_, first_row_ + row).for_each([&](PetscInt column, PetscScalar value) {
+        const PetscInt offset = column - first_row_ - strip.first - a;
+        if (offset < 0 || offset % levels != 0 || offset / levels >= q) return;
+        if (column < first_row_ || column >= end_row_) return;
+        values[m + q * (a + static_cast<std::size_t>(levels) * (offset / levels))] = value;
+      });
+    }
+  }
+  return values;
+}
+
+// S + J_aa of all levels into the pivots.
+void PMultigrid::complement(const Strip& strip, Stack& stack) const {
+  const ElementModes& modes = *strip.modes;
+  const int levels = hierarchy_.levels, q = modes.nodes, c = modes.coarse_nodes, h = modes.high();
+  // Into the basis (coarse, high), from the left and from the right.
+  const Scalars nodal = transport(strip);
+  Scalars half(nodal.size()), modal(nodal.size());
+  const int many = levels * q;
+  product("NN", c, many, q, 1, modes.restriction.data(), c, nodal.data(), q, 0, half.data(), q);
+  product("NN", h, many, q, 1, modes.to_high.data(), h, nodal.data(), q, 0, half.data() + c, q);
+  const std::size_t column = static_cast<std::size_t>(levels) * q;
+  product("NN", many, c, q, 1, half.data(), many, modes.prolong.data(), q, 0, modal.data(), many);
+  product("NN", many, h, q, 1, half.data(), many, modes.from_high.data(), q, 0,
+          modal.data() + column * c, many);
+  stack.pivots.resize(square(h) * levels);
+  Scalars low(square(c)), right(static_cast<std::size_t>(c) * h);
+  std::vector<PetscBLASInt> exchanges(static_cast<std::size_t>(c));
+  for (int a = 0; a < levels; ++a) {
+    const PetscScalar* block = modal.data() + static_cast<std::size_t>(q) * a;
+    const PetscScalar jumps = -(1 - kShift) * (stack.up[a] + stack.down[a]);
+    for (int n = 0; n < c; ++n) {
+      std::copy_n(block + column * n, c, low.data() + static_cast<std::ptrdiff_t>(c) * n);
+      low[n + static_cast<std::ptrdiff_t>(c) * n] -= jumps;
+    }
+    PetscScalar* s = stack.pivots.data() + square(h) * a;
+    for (int n = 0; n < h; ++n) {
+      const PetscScalar* from = block + column * (c + n);
+      std::copy_n(from, c, right.data() + static_cast<std::ptrdiff_t>(c) * n);
+      std::copy_n(from + c, h, s + static_cast<std::ptrdiff_t>(h) * n);
+    }
+    const PetscBLASInt size = c, count = h;
+    PetscBLASInt info = 0;
+    LAPACKgetrf_(&size, &size, low.data(), &size, exchanges.data(), &info);
+    if (info != 0) throw NotReached("transport of the lower modes is singular");
+    LAPACKgetrs_("N", &size, &count, low.data(), &size, exchanges.data(), right.data(), &size,
+                 &info);
+    product("NN", h, h, c, -1, block + c, many, right.data(), c, 1, s, h);
+  }
+}
+
+// Pivots from the outermost level inwards, inverted.
+void PMultigrid::eliminate(const Strip& strip, Stack& stack) {
+  const int h = strip.modes->high();
+  const std::size_t entries = square(h);
+  Scalars work(entries);
+  std::vector<PetscBLASInt> exchanges(static_cast<std::size_t>(h));
+  Scalars passed;  // of both arms: the last pivot and its coupling inwards
+  if (ranks_.has_outer()) {
+    passed = receive<PetscScalar>(2 * (entries + 1), ranks_.outer, comm_);
+    for (int k : {0, 1}) stack.from_outer[k] = passed[(k + 1) * (entries + 1) - 1];
+  }
+  Scalars next(2 * (entries + 1), 0.0);
+  const auto pivot = [&](int level) { return stack.pivots.data() + entries * level; };
+  const auto subtract = [&](int level, PetscScalar factor, const PetscScalar* outer) {
+    for (std::size_t n = 0; n < entries; ++n) pivot(level)[n] -= factor * outer[n];
+  };
+  for (const Arm& arm : arms()) {
+    const PetscScalar* outer =
+        passed.empty() ? nullptr : passed.data() + arm.number * (entries + 1);
+    PetscScalar back = stack.from_outer[arm.number];
+    for (int a = arm.begin; a != arm.end; a += arm.step) {
+      if (outer != nullptr) subtract(a, outwards(stack, arm, a) * back, outer);
+      invert(pivot(a), h, work, exchanges);
+      outer = pivot(a);
+      back = inwards(stack, arm, a);
+    }
+    if (hierarchy_.centre && outer != nullptr) {
+      subtract(hierarchy_.below, outwards(stack, arm, hierarchy_.below) * back, outer);
+    }
+    if (outer == nullptr) continue;
+    PetscScalar* to = next.data() + arm.number * (entries + 1);
+    std::copy_n(outer, entries, to);
+    to[entries] = back;
+  }
+  if (hierarchy_.centre) invert(pivot(hierarchy_.below), h, work, exchanges);
+  if (ranks_.has_inner()) send(next, ranks_.inner, comm_);
+}
+
+// What a transposed solve needs of the couplings of the rank before.
+void PMultigrid::exchange_inner_couplings() {
+  if (ranks_.has_inner()) {
+    const auto all = receive<PetscScalar>(2 * stacks_.size(), ranks_.inner, comm_);
+    for (std::size_t n = 0; n < stacks_.size(); ++n) {
+      stacks_[n].from_inner = {all[2 * n], all[2 * n + 1]};
+    }
+  }
+  if (!ranks_.has_outer()) return;
+  Scalars all;
+  for (const Stack& stack : stacks_) {
+    for (const Arm& arm : arms()) {
+      const int last = arm.begin == arm.end ? hierarchy_.below : arm.begin;
+      all.push_back(stack.up.empty() ? 0.0 : outwards(stack, arm, last));
+    }
+  }
+  send(all, ranks_.outer, comm_);
+}
+
+void PMultigrid::factor() {
+  coarse_.factor();
+  if (hierarchy_.levels == 0) return;
+  for (std::size_t n = 0; n < stacks_.size(); ++n) {
+    const Strip& strip = hierarchy_.strips[n];
+    if (strip.modes->high() == 0) continue;
+    read_couplings(strip, stacks_[n]);
+    complement(strip, stacks_[n]);
+    eliminate(strip, stacks_[n]);
+  }
+  exchange_inner_couplings();
+}
+
+void PMultigrid::apply(Vec b, Vec x, bool transposed) const {
+  {
+    const ReadView right(b);
+    WriteView left(x);
+    solve_coarse(right.data(), left.data(), transposed);
+  }
+  check(transposed ? MatMultTranspose(matrix_, x, residual_) : MatMult(matrix_, x, residual_));
+  check(VecAYPX(residual_, -1, b));
+  const ReadView right(residual_);
+  WriteView left(x);
+  add_high(right.data(), left.data(), transposed);
+}
+
+void PMultigrid::solve_coarse(const PetscScalar* b, PetscScalar* x, bool transposed) const {
+  const int levels = hierarchy_.levels;
+  {
+    WriteView coarse(coarse_b_);
+    for (const Strip& strip : hierarchy_.strips) {
+      const auto& m = *strip.modes;
+      const int q = m.nodes, c = m.coarse_nodes;
+      PetscScalar* to = coarse.data() + strip.coarse_first;
+      if (transposed) {
+        product("NN", levels, c, q, 1, b + strip.first, levels, m.prolong.data(), q, 0, to, levels);
+      } else {
+        product("NT", levels, c, q, 1, b + strip.first, levels, m.restriction.data(), c, 0, to,
+                levels);
+      }
+    }
+    for (const auto& [fine, own] : hierarchy_.others) coarse[own] = b[fine];
+  }
+  coarse_.apply(coarse_b_, coarse_x_, transposed);
+  const ReadView coarse(coarse_x_);
+  for (const Strip& strip : hierarchy_.strips) {
+    const auto& m = *strip.modes;
+    const int q = m.nodes, c = m.coarse_nodes;
+    const PetscScalar* from = coarse.data() + strip.coarse_first;
+    if (transposed) {
+      product("NN", levels, q, c, 1, from, levels, m.restriction.data(), c, 0, x + strip.first,
+              levels);
+    } else {
+      product("NT", levels, q, c, 1, from, levels, m.prolong.data(), q, 0, x + strip.first, levels);
+    }
+  }
+  for (const auto& [fine, own] : hierarchy_.others) x[fine] = coarse[own];
+}
+
+// Strip after strip, so that ranks work on different ones at the same time.
+void PMultigrid::add_high(const PetscScalar* r, PetscScalar* x, bool transposed) const {
+  const int levels = hierarchy_.levels;
+  if (levels == 0) return;
+  std::vector<Scalars> y(stacks_.size());
+  for (std::size_t n = 0; n < stacks_.size(); ++n) {
+    const Strip& strip = hierarchy_.strips[n];
+    const auto& m = *strip.modes;
+    const int q = m.nodes, h = m.high();
+    if (h == 0) continue;
+    y[n].resize(static_cast<std::size_t>(h) * levels);
+    if (transposed) {
+      product("TT", h, levels, q, 1, m.from_high.data(), q, r + strip.first, levels, 0, y[n].data(),
+              h);
+    } else {
+      product("NT", h, levels, q, 1, m.to_high.data(), h, r + strip.first, levels, 0, y[n].data(),
+              h);
+    }
+    pass_inwards(strip, stacks_[n], y[n], transposed);
+  }
+  for (std::size_t n = 0; n < stacks_.size(); ++n) {
+    const Strip& strip = hierarchy_.strips[n];
+    const auto& m = *strip.modes;
+    const int q = m.nodes, h = m.high();
+    if (h == 0) continue;
+    pass_outwards(strip, stacks_[n], y[n], transposed);
+    if (transposed) {
+      product("TN", levels, q, h, 1, y[n].data(), h, m.to_high.data(), h, 1, x + strip.first,
+              levels);
+    } else {
+      product("TT", levels, q, h, 1, y[n].data(), h, m.from_high.data(), q, 1, x + strip.first,
+              levels);
+    }
+  }
+}
+
+// y_a <- z_a = P_a (y_a - c z_outer), P the inverse pivots.
+void PMultigrid::pass_inwards(const Strip& strip, const Stack& stack, Scalars& y,
+                              bool transposed) const {
+  const int h = strip.modes->high();
+  Scalars passed, next(2 * static_cast<std::size_t>(h), 0.0), sum(static_cast<std::size_t>(h));
+  if (ranks_.has_outer()) {
+    passed = receive<PetscScalar>(2 * static_cast<std::size_t>(h), ranks_.outer, comm_);
+  }
+  const auto at = [&](int level) { return y.data() + static_cast<std::ptrdiff_t>(h) * level; };
+  const auto add = [&](int level, PetscScalar factor, const PetscScalar* outer) {
+    for (int n = 0; n < h; ++n) at(level)[n] -= factor * outer[n];
+  };
+  const auto finish = [&](int level) {
+    multiply(stack.pivots.data() + square(h) * level, h, transposed, at(level), sum.data());
+    std::copy(sum.begin(), sum.end(), at(level));
+  };
+  for (const Arm& arm : arms()) {
+    const PetscScalar* outer = passed.empty() ? nullptr : passed.data() + arm.number * h;
+    PetscScalar back = stack.from_outer[arm.number];
+    const auto subtract = [&](int level) {
+      if (outer != nullptr) add(level, transposed ? back : outwards(stack, arm, level), outer);
+    };
+    for (int a = arm.begin; a != arm.end; a += arm.step) {
+      subtract(a);
+      finish(a);
+      outer = at(a);
+      back = inwards(stack, arm, a);
+    }
+    if (hierarchy_.centre) subtract(hierarchy_.below);
+    if (outer != nullptr) std::copy_n(outer, h, next.data() + arm.number * h);
+  }
+  if (hierarchy_.centre) finish(hierarchy_.below);
+  if (ranks_.has_inner()) send(next, ranks_.inner, comm_);
+}
+
+// z_a <- x_a = z_a - P_a c x_inner.
+void PMultigrid::pass_outwards(const Strip& strip, const Stack& stack, Scalars& z,
+                               bool transposed) const {
+  const int h = strip.modes->high();
+  Scalars passed, next, step(static_cast<std::size_t>(h));
+  if (ranks_.has_inner()) {
+    passed = receive<PetscScalar>(2 * static_cast<std::size_t>(h), ranks_.inner, comm_);
+  }
+  const auto at = [&](int level) { return z.data() + static_cast<std::ptrdiff_t>(h) * level; };
+  for (const Arm& arm : arms()) {
+    const PetscScalar* inner =
+        hierarchy_.centre ? at(hierarchy_.below) : passed.data() + arm.number * h;
+    PetscScalar here =
+        hierarchy_.centre ? outwards(stack, arm, hierarchy_.below) : stack.from_inner[arm.number];
+    for (int a = arm.end - arm.step; a != arm.begin - arm.step; a -= arm.step) {
+      multiply(stack.pivots.data() + square(h) * a, h, transposed, inner, step.data());
+      const PetscScalar factor = transposed ? here : inwards(stack, arm, a);
+      for (int n = 0; n < h; ++n) at(a)[n] -= factor * step[n];
+      inner = at(a);
+      here = outwards(stack, arm, a);
+    }
+    next.insert(next.end(), inner, inner + h);
+  }
+  if (ranks_.has_outer()) send(next, ranks_.outer, comm_);
+}
+
+}  // namespace stickslip::petsc
