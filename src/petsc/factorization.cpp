@@ -175,8 +175,8 @@ void Factorization::apply(Vec b, Vec x, bool transposed) {
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check(KSPGetConvergedReason(ksp_, &reason));
   if (reason < 0) {
-    throw NotReached(
-        fmt::format("the solver -{} stopped: {}", prefix_, KSPConvergedReasons[reason]));
+    throw NotReached(fmt::format("the solver -{} stopped: {}{}", prefix_,
+                                 KSPConvergedReasons[reason], advice()));
   }
 }
 
@@ -257,12 +257,19 @@ Solution Factorization::solve_by_ksp(Vec b, bool transposed) {
   seen.backward_error = s.backward_error;
   ledger_ += seen;
   if (!sound) {
-    throw NotReached(
-        fmt::format("the solver -{} left a backward error of {:.1e} (limit {:.0e}){}", prefix_,
-                    s.backward_error, kBackwardErrorLimit,
-                    own_ ? fmt::format("; -{}pc_type lu exchanges more rows", prefix_) : ""));
+    throw NotReached(fmt::format("the solver -{} left a backward error of {:.1e} (limit {:.0e}){}",
+                                 prefix_, s.backward_error, kBackwardErrorLimit, advice()));
   }
   return s;
+}
+
+std::string Factorization::advice() const {
+  switch (kind_of(ksp_)) {
+  case Solver::levels: return fmt::format("; -{}pc_type lu exchanges more rows", prefix_);
+  case Solver::p_multigrid: return fmt::format("; leave -{}pc_type p_multigrid out", prefix_);
+  case Solver::lu: break;
+  }
+  return "";
 }
 
 Analysis Factorization::analyse(Mat matrix, const std::string& prefix, Ledger& ledger,

@@ -53,6 +53,10 @@ class Ranks(Case):
         for twin in TWINS:
             self.compare(*self.OPTIONS, twin=twin)
 
+    def test_p_multigrid(self):
+        for twin in TWINS:
+            self.compare(*self.OPTIONS, "-slide_pc_type", "p_multigrid", twin=twin)
+
     def test_upwind(self):
         not_reached = 3  # a fixed grid of first order: compared all the same
         self.compare(*self.OPTIONS, "-scheme", "upwind", "-p", "16", status=not_reached)
