@@ -68,8 +68,8 @@ std::string please_report(const model::Process& process) {
 
 void require_generator(MPI_Comm comm, const LocalRows& rows, Promise promise,
                        const model::Process& process) {
-  const std::string broken = petsc::first_text(comm, broken_promise(rows, promise));
-  if (!broken.empty()) throw NotReached(broken + please_report(process));
+  const std::string broken = broken_promise(rows, promise);
+  petsc::require_everywhere(comm, broken.empty() ? "" : broken + please_report(process));
 }
 
 void require_occupation(Vec nu, const model::Process& process) {

@@ -106,7 +106,21 @@ Factorization::Factorization(Mat matrix, const std::string& prefix, Ledger& ledg
     : prefix_(prefix), ledger_(ledger) {
   check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
   matrix_ = MatHandle(matrix);
-  use(std::move(structure));
+  try {
+    use(std::move(structure));
+  } catch (const NotReached&) {
+    if (!replaceable()) throw;
+    eliminate_instead();
+  }
+}
+
+bool Factorization::replaceable() const {
+  return kind_of(ksp_) == Solver::p_multigrid && chain_ && !chooses_solver(prefix_);
+}
+
+void Factorization::eliminate_instead() {
+  own_.reset();  // its memory first
+  use({chain_, true});
 }
 
 void Factorization::use(Structure structure) {
@@ -215,14 +229,11 @@ double Factorization::backward_error_transposed(Vec residual, Vec b, Vec x) {
 }
 
 Solution Factorization::solve(Vec b, bool transposed) {
-  const bool replaceable =
-      kind_of(ksp_) == Solver::p_multigrid && chain_ && !chooses_solver(prefix_);
-  if (!replaceable) return solve_by_ksp(b, transposed);
   try {
     return solve_by_ksp(b, transposed);
   } catch (const NotReached&) {
-    own_.reset();  // its memory first
-    use({chain_, true});
+    if (!replaceable()) throw;
+    eliminate_instead();
     return solve_by_ksp(b, transposed);
   }
 }

@@ -7,12 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <new>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/memory.hpp"
+#include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -285,12 +286,11 @@ void LevelElimination::store(Level& level, const Scalars& inverse) {
   }
 }
 
-// All large memory, on all ranks or on none: a rank that fails later would leave others waiting.
+// All large memory.
 void LevelElimination::reserve(Scalars& dense, Scalars& back) {
   std::size_t largest = 0;
   for (int s = -1; s <= chain_.blocks(); ++s) largest = std::max(largest, size_of(s));
-  int failed = 0;
-  try {
+  take_together(comm_, [&] {
     dense.reserve(largest * largest);
     back.reserve(largest * largest);
     invert_.reserve(static_cast<int>(largest));
@@ -298,20 +298,14 @@ void LevelElimination::reserve(Scalars& dense, Scalars& back) {
       if (level.panels) continue;
       level.panels = std::make_unique_for_overwrite<PetscScalar[]>(level.triangle.entries());
     }
-  } catch (const std::bad_alloc&) {
-    failed = 1;
-  }
-  MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, comm_);
-  if (failed == 0) return;
-  for (Level& level : levels_) level.panels.reset();
-  throw NoMemory(kFactorsTooLarge);
+  });
 }
 
 void LevelElimination::factor() {
   Scalars dense, back;  // back: S^-1 E of the block after
   reserve(dense, back);
-  if (levels_.empty()) return;
   const int last = chain_.blocks() - 1;
+  std::string failure;  // on this rank; the others learn of it when all are through
   if (ranks_.has_outer()) {
     back = receive<PetscScalar>(size_of(last + 1) * size_of(last), ranks_.outer, comm_);
   }
@@ -319,11 +313,16 @@ void LevelElimination::factor() {
     Level& level = levels_[s];
     read_block(s, dense);
     if (!back.empty()) subtract_return(level, back, dense);
-    invert_(dense.data(), level.triangle);
+    try {
+      invert_(dense.data(), level.triangle);
+    } catch (const NotReached& singular) {
+      failure = singular.what();
+    }
     store(level, dense);
     multiply_inwards(level, dense, size_of(s - 1), back);
   }
   if (ranks_.has_inner()) send(back, ranks_.inner, comm_);
+  require_everywhere(comm_, failure);
 }
 
 void LevelElimination::apply(Vec b, Vec x, bool transposed) const {

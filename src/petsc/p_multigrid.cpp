@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/memory.hpp"
+#include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -46,13 +48,13 @@ void multiply(const PetscScalar* a, int size, bool transposed, const PetscScalar
   }
 }
 
-// In place.
-void invert(PetscScalar* a, int size, Scalars& work, std::vector<PetscBLASInt>& pivots) {
+// In place; whether that was possible.
+bool invert(PetscScalar* a, int size, Scalars& work, std::vector<PetscBLASInt>& pivots) {
   PetscBLASInt n = size, info = 0;
   const auto length = static_cast<PetscBLASInt>(work.size());
   LAPACKgetrf_(&n, &n, a, &n, pivots.data(), &info);
   if (info == 0) LAPACKgetri_(&n, a, &n, pivots.data(), work.data(), &length, &info);
-  if (info != 0) throw NotReached("a pivot of the high modes is singular");
+  return info == 0;
 }
 
 std::size_t square(int n) { return static_cast<std::size_t>(n) * n; }
@@ -70,13 +72,13 @@ PMultigrid::PMultigrid(Mat matrix, Mat coarse, Chain chain, Hierarchy hierarchy)
   check(MatGetOwnershipRange(matrix_, &first_row_, &end_row_));
   check(MatCreateVecs(coarse, coarse_x_.out(), coarse_b_.out()));
   check(MatCreateVecs(matrix_, nullptr, residual_.out()));
-  double sums[] = {0, 0};
+  std::array<double, 2> sums{};
   for (const Strip& strip : hierarchy_.strips) {
     const double high = strip.modes->high(), all = strip.modes->nodes;
     sums[0] += hierarchy_.levels * high * high;
     sums[1] += hierarchy_.levels * (4 * all * all * all + 2 * high * high * high);
   }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm_);
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_DOUBLE, MPI_SUM, comm_);
   entries_ = sums[0] + coarse_.entries();
   bytes_ = sizeof(PetscScalar) * sums[0] + coarse_.bytes();
   operations_ = sums[1] + coarse_.operations();
@@ -100,8 +102,8 @@ PetscScalar PMultigrid::inwards(const Stack& stack, const Arm& arm, int level) {
 // all. What lies on other ranks comes before (inwards) or after the local columns.
 void PMultigrid::read_couplings(const Strip& strip, Stack& stack) const {
   const int levels = hierarchy_.levels;
-  stack.up.assign(static_cast<std::size_t>(levels), 0.0);
-  stack.down.assign(static_cast<std::size_t>(levels), 0.0);
+  std::fill(stack.up.begin(), stack.up.end(), 0.0);
+  std::fill(stack.down.begin(), stack.down.end(), 0.0);
   const auto [below, above] = arms();
   for (int a = 0; a < levels; ++a) {
     const PetscInt row = first_row_ + strip.first + a;
@@ -124,9 +126,9 @@ void PMultigrid::read_couplings(const Strip& strip, Stack& stack) const {
 
 // The matrix on the nodes of the strip, without what joins it to other elements and levels: entry
 // (m, n) of level a at m + q (a + levels n).
-Scalars PMultigrid::transport(const Strip& strip) const {
+void PMultigrid::read_transport(const Strip& strip, Scalars& values) const {
   const int levels = hierarchy_.levels, q = strip.modes->nodes;
-  Scalars values(square(q) * levels, 0.0);
+  values.assign(square(q) * levels, 0.0);
   for (int m = 0; m < q; ++m) {
     for (int a = 0; a < levels; ++a) {
       const PetscInt row = strip.first + m * levels + a;
@@ -138,16 +140,17 @@ Scalars PMultigrid::transport(const Strip& strip) const {
       });
     }
   }
-  return values;
 }
 
 // S + J_aa of all levels into the pivots.
-void PMultigrid::complement(const Strip& strip, Stack& stack) const {
+bool PMultigrid::complement(const Strip& strip, Stack& stack, Blocks& blocks) const {
   const ElementModes& modes = *strip.modes;
   const int levels = hierarchy_.levels, q = modes.nodes, c = modes.coarse_nodes, h = modes.high();
   // Into the basis (coarse, high), from the left and from the right.
-  const Scalars nodal = transport(strip);
-  Scalars half(nodal.size()), modal(nodal.size());
+  auto& [nodal, half, modal] = blocks;
+  read_transport(strip, nodal);
+  half.resize(nodal.size());
+  modal.resize(nodal.size());
   const int many = levels * q;
   product("NN", c, many, q, 1, modes.restriction.data(), c, nodal.data(), q, 0, half.data(), q);
   product("NN", h, many, q, 1, modes.to_high.data(), h, nodal.data(), q, 0, half.data() + c, q);
@@ -155,9 +158,9 @@ void PMultigrid::complement(const Strip& strip, Stack& stack) const {
   product("NN", many, c, q, 1, half.data(), many, modes.prolong.data(), q, 0, modal.data(), many);
   product("NN", many, h, q, 1, half.data(), many, modes.from_high.data(), q, 0,
           modal.data() + column * c, many);
-  stack.pivots.resize(square(h) * levels);
   Scalars low(square(c)), right(static_cast<std::size_t>(c) * h);
   std::vector<PetscBLASInt> exchanges(static_cast<std::size_t>(c));
+  bool sound = true;
   for (int a = 0; a < levels; ++a) {
     const PetscScalar* block = modal.data() + static_cast<std::size_t>(q) * a;
     const PetscScalar jumps = -(1 - kShift) * (stack.up[a] + stack.down[a]);
@@ -174,15 +177,16 @@ void PMultigrid::complement(const Strip& strip, Stack& stack) const {
     const PetscBLASInt size = c, count = h;
     PetscBLASInt info = 0;
     LAPACKgetrf_(&size, &size, low.data(), &size, exchanges.data(), &info);
-    if (info != 0) throw NotReached("transport of the lower modes is singular");
+    sound = sound && info == 0;
     LAPACKgetrs_("N", &size, &count, low.data(), &size, exchanges.data(), right.data(), &size,
                  &info);
     product("NN", h, h, c, -1, block + c, many, right.data(), c, 1, s, h);
   }
+  return sound;
 }
 
 // Pivots from the outermost level inwards, inverted.
-void PMultigrid::eliminate(const Strip& strip, Stack& stack) {
+bool PMultigrid::eliminate(const Strip& strip, Stack& stack) {
   const int h = strip.modes->high();
   const std::size_t entries = square(h);
   Scalars work(entries);
@@ -193,6 +197,7 @@ void PMultigrid::eliminate(const Strip& strip, Stack& stack) {
     for (int k : {0, 1}) stack.from_outer[k] = passed[(k + 1) * (entries + 1) - 1];
   }
   Scalars next(2 * (entries + 1), 0.0);
+  bool sound = true;
   const auto pivot = [&](int level) { return stack.pivots.data() + entries * level; };
   const auto subtract = [&](int level, PetscScalar factor, const PetscScalar* outer) {
     for (std::size_t n = 0; n < entries; ++n) pivot(level)[n] -= factor * outer[n];
@@ -203,7 +208,7 @@ void PMultigrid::eliminate(const Strip& strip, Stack& stack) {
     PetscScalar back = stack.from_outer[arm.number];
     for (int a = arm.begin; a != arm.end; a += arm.step) {
       if (outer != nullptr) subtract(a, outwards(stack, arm, a) * back, outer);
-      invert(pivot(a), h, work, exchanges);
+      sound = invert(pivot(a), h, work, exchanges) && sound;
       outer = pivot(a);
       back = inwards(stack, arm, a);
     }
@@ -215,8 +220,9 @@ void PMultigrid::eliminate(const Strip& strip, Stack& stack) {
     std::copy_n(outer, entries, to);
     to[entries] = back;
   }
-  if (hierarchy_.centre) invert(pivot(hierarchy_.below), h, work, exchanges);
+  if (hierarchy_.centre) sound = invert(pivot(hierarchy_.below), h, work, exchanges) && sound;
   if (ranks_.has_inner()) send(next, ranks_.inner, comm_);
+  return sound;
 }
 
 // What a transposed solve needs of the couplings of the rank before.
@@ -232,23 +238,44 @@ void PMultigrid::exchange_inner_couplings() {
   for (const Stack& stack : stacks_) {
     for (const Arm& arm : arms()) {
       const int last = arm.begin == arm.end ? hierarchy_.below : arm.begin;
-      all.push_back(stack.up.empty() ? 0.0 : outwards(stack, arm, last));
+      all.push_back(outwards(stack, arm, last));
     }
   }
   send(all, ranks_.outer, comm_);
 }
 
+// All large memory.
+void PMultigrid::reserve(Blocks& blocks) {
+  const auto levels = static_cast<std::size_t>(hierarchy_.levels);
+  high_.resize(stacks_.size());
+  take_together(comm_, [&] {
+    for (std::size_t n = 0; n < stacks_.size(); ++n) {
+      const ElementModes& modes = *hierarchy_.strips[n].modes;
+      stacks_[n].up.resize(levels);
+      stacks_[n].down.resize(levels);
+      stacks_[n].pivots.resize(square(modes.high()) * levels);
+      high_[n].resize(modes.high() * levels);
+      for (Scalars* basis : {&blocks.nodal, &blocks.half, &blocks.modal}) {
+        basis->reserve(square(modes.nodes) * levels);
+      }
+    }
+  });
+}
+
 void PMultigrid::factor() {
   coarse_.factor();
-  if (hierarchy_.levels == 0) return;
+  Blocks blocks;
+  reserve(blocks);
+  bool sound = true;  // on this rank; the others learn of it when all are through
   for (std::size_t n = 0; n < stacks_.size(); ++n) {
     const Strip& strip = hierarchy_.strips[n];
     if (strip.modes->high() == 0) continue;
     read_couplings(strip, stacks_[n]);
-    complement(strip, stacks_[n]);
-    eliminate(strip, stacks_[n]);
+    sound = complement(strip, stacks_[n], blocks) && sound;
+    sound = eliminate(strip, stacks_[n]) && sound;
   }
   exchange_inner_couplings();
+  require_everywhere(comm_, sound ? "" : "a block of the high modes of p-multigrid is singular");
 }
 
 void PMultigrid::apply(Vec b, Vec x, bool transposed) const {
@@ -301,33 +328,31 @@ void PMultigrid::solve_coarse(const PetscScalar* b, PetscScalar* x, bool transpo
 void PMultigrid::add_high(const PetscScalar* r, PetscScalar* x, bool transposed) const {
   const int levels = hierarchy_.levels;
   if (levels == 0) return;
-  std::vector<Scalars> y(stacks_.size());
   for (std::size_t n = 0; n < stacks_.size(); ++n) {
     const Strip& strip = hierarchy_.strips[n];
     const auto& m = *strip.modes;
     const int q = m.nodes, h = m.high();
     if (h == 0) continue;
-    y[n].resize(static_cast<std::size_t>(h) * levels);
     if (transposed) {
-      product("TT", h, levels, q, 1, m.from_high.data(), q, r + strip.first, levels, 0, y[n].data(),
-              h);
+      product("TT", h, levels, q, 1, m.from_high.data(), q, r + strip.first, levels, 0,
+              high_[n].data(), h);
     } else {
-      product("NT", h, levels, q, 1, m.to_high.data(), h, r + strip.first, levels, 0, y[n].data(),
-              h);
+      product("NT", h, levels, q, 1, m.to_high.data(), h, r + strip.first, levels, 0,
+              high_[n].data(), h);
     }
-    pass_inwards(strip, stacks_[n], y[n], transposed);
+    pass_inwards(strip, stacks_[n], high_[n], transposed);
   }
   for (std::size_t n = 0; n < stacks_.size(); ++n) {
     const Strip& strip = hierarchy_.strips[n];
     const auto& m = *strip.modes;
     const int q = m.nodes, h = m.high();
     if (h == 0) continue;
-    pass_outwards(strip, stacks_[n], y[n], transposed);
+    pass_outwards(strip, stacks_[n], high_[n], transposed);
     if (transposed) {
-      product("TN", levels, q, h, 1, y[n].data(), h, m.to_high.data(), h, 1, x + strip.first,
+      product("TN", levels, q, h, 1, high_[n].data(), h, m.to_high.data(), h, 1, x + strip.first,
               levels);
     } else {
-      product("TT", levels, q, h, 1, y[n].data(), h, m.from_high.data(), q, 1, x + strip.first,
+      product("TT", levels, q, h, 1, high_[n].data(), h, m.from_high.data(), q, 1, x + strip.first,
               levels);
     }
   }

@@ -8,6 +8,7 @@
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/memory.hpp"
+#include "stickslip/support/errors.hpp"
 
 namespace stickslip::petsc {
 namespace {
@@ -84,6 +85,11 @@ std::string first_text(MPI_Comm comm, std::string text) {
   text.resize(static_cast<std::size_t>(size));
   MPI_Bcast(text.data(), size, MPI_CHAR, first, comm);
   return text;
+}
+
+void require_everywhere(MPI_Comm comm, const std::string& failure) {
+  const std::string first = first_text(comm, failure);
+  if (!first.empty()) throw NotReached(first);
 }
 
 }  // namespace stickslip::petsc

@@ -170,9 +170,9 @@ Plan plan_of(const Request& request) {
   return Planner(request).plan();
 }
 
-// For one right-hand side both take the same time at about 130 000 unknowns (delta = 1/64); at
-// 600 000 (1/256) iteration takes two thirds of the time and half of the memory. Without drag it
-// needs twice the iterations, and with a right-hand side more an elimination has paid off.
+// For one right-hand side both take the same time at about 130 000 unknowns (delta = 1/64); above,
+// iteration takes half of the memory, up to a third less time, and more ranks share it. Without drag
+// it needs twice the iterations, and with a right-hand side more an elimination has paid off.
 bool prefers_iteration(const Request& request, std::int64_t unknowns) {
   constexpr std::int64_t least = 150'000;
   constexpr int most_solves = 2;

@@ -137,6 +137,18 @@ TEST_CASE("level elimination: is the choice for narrow chains unless options nam
   CHECK(entries("wide_", false) == levels);
 }
 
+TEST_CASE("level elimination: a singular block ends all ranks alike", "[parallel]") {
+  Example e = example(9);
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(e.matrix, &begin, &end));
+  // Of the last rank alone, the first row in its order.
+  const bool last = petsc::rank(PETSC_COMM_WORLD) == petsc::ranks(PETSC_COMM_WORLD) - 1;
+  const PetscInt row = begin + e.chain.rows.front();
+  check(MatZeroRows(e.matrix, last ? 1 : 0, &row, 0, nullptr, nullptr));
+  LevelElimination levels(e.matrix, e.chain);
+  CHECK_THROWS_AS(levels.factor(), NotReached);
+}
+
 TEST_CASE("level elimination: is refused without a chain") {
   const test::Given given({{"-none_pc_type", "levels"}});
   const Example e = example(3);

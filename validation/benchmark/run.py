@@ -252,9 +252,10 @@ def growth(entry, rounds):
     for what, at, bound in (("time", 1, 2.0), ("memory", 2, 1.6)):
         power = math.log2(rows[-1][at] / rows[0][at]) / steps
         entry.claim(f"power of 1/delta with which {what} grows", power, bound)
+    scene = {"delta": 2.0**-finest, "accuracy": 1e-8}
     runs = Rounds(f"delta = 2^-{finest}", {
-        ranks: Ours(entry, ranks=n, delta=2.0**-finest, accuracy=1e-8)
-        for n, ranks in ((1, "one rank"), (2, "two ranks"))}, rounds)
+        "one rank": Ours(entry, **scene), "two ranks": Ours(entry, ranks=2, **scene),
+        "elimination": Ours(entry, **scene, slide_pc_type="levels")}, rounds)
     entry.table(f"delta = 2^-{finest}", COLUMNS, runs.rows("one rank"))
     if not entry.quick:
         entry.at_least("seconds of one rank over those of two",

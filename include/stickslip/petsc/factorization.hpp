@@ -75,6 +75,8 @@ class Factorization {
   [[nodiscard]] Solution solve(Vec b, bool transposed);
   [[nodiscard]] Solution solve_by_ksp(Vec b, bool transposed);
   void use(Structure structure);
+  [[nodiscard]] bool replaceable() const;
+  void eliminate_instead();
   [[nodiscard]] std::string advice() const;
   void apply(Vec b, Vec x, bool transposed);
   void correct(Vec residual, Vec step, bool transposed);

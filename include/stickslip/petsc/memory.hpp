@@ -3,6 +3,8 @@
 
 #include <mpi.h>
 
+#include <functional>
+
 namespace stickslip::petsc {
 
 /// What is said when there is no room for them.
@@ -15,6 +17,10 @@ inline constexpr const char* kFactorsTooLarge =
 /// shared evenly by all ranks on it, those outside `comm` too. If that is less than `wanted`, the C
 /// library first gives back what it keeps of freed memory. Collective.
 [[nodiscard]] double available_bytes(MPI_Comm comm, double wanted);
+
+/// Calls `take`, which allocates factors. Where it fails on one rank it throws NoMemory on all: a
+/// rank that failed alone would leave the others waiting. Collective.
+void take_together(MPI_Comm comm, const std::function<void()>& take);
 
 /// Ranks of this run on this machine. The first call is collective on MPI_COMM_WORLD; Session makes
 /// it.

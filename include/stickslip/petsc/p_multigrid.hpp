@@ -85,10 +85,16 @@ class PMultigrid final : public Preconditioner {
   [[nodiscard]] static PetscScalar outwards(const Stack& stack, const Arm& arm, int level);
   [[nodiscard]] static PetscScalar inwards(const Stack& stack, const Arm& arm, int level);
 
+  // Blocks of an element on all levels, in three bases.
+  struct Blocks {
+    Scalars nodal, half, modal;
+  };
+  void reserve(Blocks& blocks);
   void read_couplings(const Strip& strip, Stack& stack) const;
-  [[nodiscard]] Scalars transport(const Strip& strip) const;
-  void complement(const Strip& strip, Stack& stack) const;
-  void eliminate(const Strip& strip, Stack& stack);
+  void read_transport(const Strip& strip, Scalars& values) const;
+  // Whether no block was singular.
+  [[nodiscard]] bool complement(const Strip& strip, Stack& stack, Blocks& blocks) const;
+  [[nodiscard]] bool eliminate(const Strip& strip, Stack& stack);
   void exchange_inner_couplings();
   void solve_coarse(const PetscScalar* b, PetscScalar* x, bool transposed) const;
   void add_high(const PetscScalar* r, PetscScalar* x, bool transposed) const;
@@ -103,6 +109,7 @@ class PMultigrid final : public Preconditioner {
   LevelElimination coarse_;
   VecHandle coarse_b_, coarse_x_, residual_;
   std::vector<Stack> stacks_;
+  mutable std::vector<Scalars> high_;  // by strip, the high modes in work
   double entries_ = 0, bytes_ = 0, operations_ = 0;
 };
 

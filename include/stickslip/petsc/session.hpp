@@ -36,4 +36,7 @@ class Session {
 /// alike; empty if none has. Collective.
 [[nodiscard]] std::string first_text(MPI_Comm comm, std::string text);
 
+/// Throws NotReached on all ranks, with the first of the texts, if any rank has one. Collective.
+void require_everywhere(MPI_Comm comm, const std::string& failure);
+
 }  // namespace stickslip::petsc
