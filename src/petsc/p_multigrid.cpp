@@ -57,6 +57,12 @@ bool invert(PetscScalar* a, int size, Scalars& work, std::vector<PetscBLASInt>& 
   return info == 0;
 }
 
+// The half of what is passed for both arms.
+template <class Both>
+auto* of_arm(Both& both, int arm) {
+  return both.data() + (arm == 0 ? 0 : both.size() / 2);
+}
+
 std::size_t square(int n) { return static_cast<std::size_t>(n) * n; }
 
 }  // namespace
@@ -194,7 +200,7 @@ bool PMultigrid::eliminate(const Strip& strip, Stack& stack) {
   Scalars passed;  // of both arms: the last pivot and its coupling inwards
   if (ranks_.has_outer()) {
     passed = receive<PetscScalar>(2 * (entries + 1), ranks_.outer, comm_);
-    for (int k : {0, 1}) stack.from_outer[k] = passed[(k + 1) * (entries + 1) - 1];
+    for (int k : {0, 1}) stack.from_outer[k] = of_arm(passed, k)[entries];
   }
   Scalars next(2 * (entries + 1), 0.0);
   bool sound = true;
@@ -203,8 +209,7 @@ bool PMultigrid::eliminate(const Strip& strip, Stack& stack) {
     for (std::size_t n = 0; n < entries; ++n) pivot(level)[n] -= factor * outer[n];
   };
   for (const Arm& arm : arms()) {
-    const PetscScalar* outer =
-        passed.empty() ? nullptr : passed.data() + arm.number * (entries + 1);
+    const PetscScalar* outer = passed.empty() ? nullptr : of_arm(passed, arm.number);
     PetscScalar back = stack.from_outer[arm.number];
     for (int a = arm.begin; a != arm.end; a += arm.step) {
       if (outer != nullptr) subtract(a, outwards(stack, arm, a) * back, outer);
@@ -216,7 +221,7 @@ bool PMultigrid::eliminate(const Strip& strip, Stack& stack) {
       subtract(hierarchy_.below, outwards(stack, arm, hierarchy_.below) * back, outer);
     }
     if (outer == nullptr) continue;
-    PetscScalar* to = next.data() + arm.number * (entries + 1);
+    PetscScalar* to = of_arm(next, arm.number);
     std::copy_n(outer, entries, to);
     to[entries] = back;
   }
@@ -375,7 +380,7 @@ void PMultigrid::pass_inwards(const Strip& strip, const Stack& stack, Scalars& y
     std::copy(sum.begin(), sum.end(), at(level));
   };
   for (const Arm& arm : arms()) {
-    const PetscScalar* outer = passed.empty() ? nullptr : passed.data() + arm.number * h;
+    const PetscScalar* outer = passed.empty() ? nullptr : of_arm(passed, arm.number);
     PetscScalar back = stack.from_outer[arm.number];
     const auto subtract = [&](int level) {
       if (outer != nullptr) add(level, transposed ? back : outwards(stack, arm, level), outer);
@@ -387,7 +392,7 @@ void PMultigrid::pass_inwards(const Strip& strip, const Stack& stack, Scalars& y
       back = inwards(stack, arm, a);
     }
     if (hierarchy_.centre) subtract(hierarchy_.below);
-    if (outer != nullptr) std::copy_n(outer, h, next.data() + arm.number * h);
+    if (outer != nullptr) std::copy_n(outer, h, of_arm(next, arm.number));
   }
   if (hierarchy_.centre) finish(hierarchy_.below);
   if (ranks_.has_inner()) send(next, ranks_.inner, comm_);
@@ -404,7 +409,7 @@ void PMultigrid::pass_outwards(const Strip& strip, const Stack& stack, Scalars& 
   const auto at = [&](int level) { return z.data() + static_cast<std::ptrdiff_t>(h) * level; };
   for (const Arm& arm : arms()) {
     const PetscScalar* inner =
-        hierarchy_.centre ? at(hierarchy_.below) : passed.data() + arm.number * h;
+        hierarchy_.centre ? at(hierarchy_.below) : of_arm(passed, arm.number);
     PetscScalar here =
         hierarchy_.centre ? outwards(stack, arm, hierarchy_.below) : stack.from_inner[arm.number];
     for (int a = arm.end - arm.step; a != arm.begin - arm.step; a -= arm.step) {
