@@ -113,7 +113,8 @@ void PMultigrid::read_couplings(const Strip& strip, Stack& stack) const {
   const auto [below, above] = arms();
   for (int a = 0; a < levels; ++a) {
     const PetscInt row = first_row_ + strip.first + a;
-    const bool lower = a<below.end, upper = a> above.end;
+    const bool lower = a < below.end;
+    const bool upper = a > above.end;
     const bool next_up = a + 1 < levels && !(lower && a + 1 == below.end && !hierarchy_.centre);
     const bool next_down = a > 0 && !(upper && a - 1 == above.end && !hierarchy_.centre);
     RowView(matrix_, row).for_each([&](PetscInt column, PetscScalar value) {
