@@ -13,6 +13,9 @@
 #include <system_error>
 #include <vector>
 
+#include "stickslip/petsc/memory.hpp"
+#include "stickslip/support/errors.hpp"
+
 namespace stickslip::petsc {
 namespace {
 
@@ -23,7 +26,22 @@ bool names_optimised(const std::string& path) {
   return false;
 }
 
+// OpenBLAS takes 128 MB at a time.
+constexpr double kBlasSpace = 140e6;
+
 }  // namespace
+
+void take_blas_space() {
+  const double left = left_in_address_space();
+  if (left < kBlasSpace) {
+    throw NoMemory(
+        "the limit of the address space (ulimit -v) leaves no memory for linear algebra; "
+        "raise it");
+  }
+  PetscScalar one = 1;
+  PetscBLASInt size = 1, pivot = 0, info = 0;
+  LAPACKgetrf_(&size, &size, &one, &size, &pivot, &info);
+}
 
 Blas loaded_blas() {
   void* dgemm = dlsym(RTLD_DEFAULT, "dgemm_");

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "stickslip/petsc/check.hpp"
-#include "stickslip/petsc/direct_solver.hpp"
+#include "stickslip/petsc/linear_solver.hpp"
 #include "stickslip/support/errors.hpp"
 
 namespace stickslip::petsc {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "stickslip/petsc/check.hpp"
-#include "stickslip/petsc/direct_solver.hpp"
+#include "stickslip/petsc/linear_solver.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -264,13 +264,13 @@ Solution Factorization::solve_by_ksp(Vec b, bool transposed) {
     sound = s.backward_error <= kBackwardErrorLimit;
     ++ledger_.corrections;
   }
-  Ledger seen;
-  seen.backward_error = s.backward_error;
-  ledger_ += seen;
   if (!sound) {
     throw NotReached(fmt::format("the solver -{} left a backward error of {:.1e} (limit {:.0e}){}",
                                  prefix_, s.backward_error, kBackwardErrorLimit, advice()));
   }
+  Ledger seen;
+  seen.backward_error = s.backward_error;
+  ledger_ += seen;
   return s;
 }
 

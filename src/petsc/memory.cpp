@@ -59,12 +59,6 @@ double left_in_control_group() {
   return limit - number_in(folder + "memory.current") + cached;
 }
 
-double left_in_address_space() {
-  rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnlimited;
-  return static_cast<double>(limit.rlim_cur) - proc_value("/proc/self/status", "VmSize");
-}
-
 double available_now(MPI_Comm comm) {
   const double shared =
       std::min(proc_value("/proc/meminfo", "MemAvailable"), left_in_control_group());
@@ -77,6 +71,12 @@ double available_now(MPI_Comm comm) {
 }
 
 }  // namespace
+
+double left_in_address_space() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnlimited;
+  return static_cast<double>(limit.rlim_cur) - proc_value("/proc/self/status", "VmSize");
+}
 
 int ranks_on_node() {
   static const int ranks = [] {

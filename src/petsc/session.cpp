@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "stickslip/petsc/blas.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/memory.hpp"
 #include "stickslip/support/errors.hpp"
@@ -50,6 +51,7 @@ Session::Session(int& argc, char**& argv) : arguments_(argv, argv + argc) {
   if (code != 0) refuse_start(code);
   check(PetscLogDefaultBegin());  // the ledger reads event times
   (void)ranks_on_node();          // all ranks are here
+  take_blas_space();
   std::signal(SIGPIPE, SIG_DFL);  // a closed pipe (| head) is no crash
   std::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes is told by the write that fails
 }

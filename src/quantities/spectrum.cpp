@@ -155,8 +155,8 @@ class DirectSpectrum {
     check(MatShift(a_.matrix(), imaginary(omega - omega_)));
     omega_ = omega;
     if (factors_ == nullptr) {
-      factors_ = std::make_unique<petsc::Factorization>(
-          a_.matrix(), operators::kSlidePrefix, ledger_, a_.states().structure());
+      factors_ = std::make_unique<petsc::Factorization>(a_.matrix(), operators::kSlidePrefix,
+                                                        ledger_, a_.states().structure());
     } else {
       factors_->update();
     }

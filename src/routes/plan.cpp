@@ -171,8 +171,8 @@ Plan plan_of(const Request& request) {
 }
 
 // For one right-hand side both take the same time at about 130 000 unknowns (delta = 1/64); above,
-// iteration takes half of the memory, up to a third less time, and more ranks share it. Without drag
-// it needs twice the iterations, and with a right-hand side more an elimination has paid off.
+// iteration takes half of the memory, up to a third less time, and more ranks share it. Without
+// drag it needs twice the iterations, and with a right-hand side more an elimination has paid off.
 bool prefers_iteration(const Request& request, std::int64_t unknowns) {
   constexpr std::int64_t least = 150'000;
   constexpr int most_solves = 2;

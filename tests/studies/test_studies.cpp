@@ -5,6 +5,7 @@
 #include "stickslip/io/study_report.hpp"
 #include "stickslip/studies/extrapolation.hpp"
 #include "stickslip/studies/study.hpp"
+#include "stickslip/support/errors.hpp"
 
 using namespace stickslip;
 using options::Quantity;
@@ -155,4 +156,14 @@ TEST_CASE("studies: reports name every run and leave gaps where there is no numb
   const std::string json = io::study_summary(PETSC_COMM_WORLD, r, study, {});
   CHECK(json.find("\"runs\"") != std::string::npos);
   CHECK(json.find("null") != std::string::npos);
+}
+
+TEST_CASE("studies: one whose largest run would not fit is refused before the first") {
+  for (StudyKind kind : {StudyKind::points, StudyKind::cost}) {
+    int runs = 0;
+    const auto count = [&runs](int, int, const std::string&) { ++runs; };
+    const Request r = request(kind, 0.25, 1.0 / 64, 20);
+    CHECK_THROWS_AS(studies::conduct(PETSC_COMM_WORLD, r, count), NoMemory);
+    CHECK(runs == 0);
+  }
 }

@@ -173,6 +173,6 @@ REFUSED = (
     ("tau = 0", {"tau": 0}, 2, "tau"),
     ("delta too large for a chain", {"delta": 2}, 2, "delta"),
     ("drag that grows", {"drag": "expression", "drag_expression": "v"}, 2, "drag_expression"),
-    ("delta = 2^-12", {"delta": 2.0**-12}, 4, "memory"),
+    ("delta = 2^-12, upwind", {"delta": 2.0**-12, "scheme": "upwind", "p": 64}, 4, "memory"),
     ("bias beyond static levels", {"bias": 20}, 2, "bias"),
 )

@@ -17,6 +17,10 @@ struct Blas {
 /// factorisations are too small to gain from threads, and ranks share the cores.
 void keep_blas_to_one_thread();
 
+/// Makes OpenBLAS take its work space now: at its first use it would try for ever where there is
+/// none. Throws NoMemory if a limit of the address space leaves too little.
+void take_blas_space();
+
 /// Operations a second of a matrix product of the size of the fronts that occur here, measured in
 /// a few milliseconds on the calling process.
 [[nodiscard]] double measured_speed();

@@ -7,10 +7,10 @@
 #include <memory>
 #include <string>
 
-#include "stickslip/petsc/direct_solver.hpp"
 #include "stickslip/petsc/handle.hpp"
 #include "stickslip/petsc/ledger.hpp"
 #include "stickslip/petsc/level_elimination.hpp"
+#include "stickslip/petsc/linear_solver.hpp"
 #include "stickslip/petsc/p_multigrid.hpp"
 
 namespace stickslip::petsc {

@@ -18,6 +18,9 @@ inline constexpr const char* kFactorsTooLarge =
 /// library first gives back what it keeps of freed memory. Collective.
 [[nodiscard]] double available_bytes(MPI_Comm comm, double wanted);
 
+/// Bytes that the limit of the address space (ulimit -v) leaves this process; infinity without one.
+[[nodiscard]] double left_in_address_space();
+
 /// Calls `take`, which allocates factors. Where it fails on one rank it throws NoMemory on all: a
 /// rank that failed alone would leave the others waiting. Collective.
 void take_together(MPI_Comm comm, const std::function<void()>& take);

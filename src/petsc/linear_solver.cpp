@@ -1,4 +1,4 @@
-#include "stickslip/petsc/direct_solver.hpp"
+#include "stickslip/petsc/linear_solver.hpp"
 
 #include <fmt/format.h>
 #include <petscsys.h>
