@@ -18,6 +18,7 @@
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/eigensolver.hpp"
 #include "stickslip/petsc/factorization.hpp"
+#include "stickslip/petsc/linear_solver.hpp"
 #include "stickslip/petsc/time_stepper.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/text.hpp"
@@ -468,9 +469,12 @@ std::string solver_option(const std::string& name) {
 
 Factors read_factors() {
   if (!petsc::chooses_solver("slide_")) return Factors::own;
+  switch (petsc::chosen_solver("slide_", petsc::Solver::lu)) {
+  case petsc::Solver::levels: return Factors::levels;
+  case petsc::Solver::p_multigrid: return Factors::p_multigrid;
+  case petsc::Solver::lu: break;
+  }
   const std::string pc = solver_option("-slide_pc_type");
-  if (pc == "levels") return Factors::levels;
-  if (pc == "p_multigrid") return Factors::p_multigrid;
   if (!pc.empty() && pc != "lu" && pc != "cholesky") return Factors::incomplete;
   const bool on_disk = solver_option("-slide_mat_mumps_icntl_22") == "1";
   return on_disk ? Factors::on_disk : Factors::in_memory;

@@ -1,13 +1,10 @@
 #include "stickslip/petsc/dense_inverse.hpp"
 
-#include <petscsys.h>
-// After PETSc itself, whose types it uses.
-#include <petscblaslapack.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 
+#include "stickslip/petsc/dense.hpp"
 #include "stickslip/support/errors.hpp"
 
 namespace stickslip::petsc {
@@ -110,13 +107,9 @@ void DenseInverse::invert_block(const Block& a) {
 }
 
 void DenseInverse::invert_leaf(const Block& a) {
-  PetscBLASInt n = a.rows, stride = a.stride, info = 0;
   std::array<PetscBLASInt, kLeaf> pivots{};
-  constexpr PetscBLASInt size = kLeaf * kLeaf;
-  std::array<PetscScalar, size> work;
-  LAPACKgetrf_(&n, &n, a.data, &stride, pivots.data(), &info);
-  if (info == 0) LAPACKgetri_(&n, a.data, &stride, pivots.data(), work.data(), &size, &info);
-  if (info == 0) return;
+  std::array<PetscScalar, static_cast<std::size_t>(kLeaf) * kLeaf> work;
+  if (invert(a.data, a.rows, a.stride, pivots, work)) return;
   throw NotReached("a block of the elimination is singular; -slide_pc_type lu exchanges more rows");
 }
 
@@ -129,10 +122,8 @@ DenseInverse::Block DenseInverse::take(int rows, int columns) {
 // c <- factor a b + keep c.
 void DenseInverse::multiply(double factor, const Block& a, const Block& b, double keep,
                             const Block& c) {
-  const PetscBLASInt m = c.rows, n = c.columns, k = a.columns;
-  const PetscBLASInt lda = a.stride, ldb = b.stride, ldc = c.stride;
-  const PetscScalar alpha = factor, beta = keep;
-  BLASgemm_("N", "N", &m, &n, &k, &alpha, a.data, &lda, b.data, &ldb, &beta, c.data, &ldc);
+  petsc::product("NN", c.rows, c.columns, a.columns, factor, a.data, a.stride, b.data, b.stride,
+                 keep, c.data, c.stride);
 }
 
 double DenseInverse::operations(const Triangle& triangle) {

@@ -142,9 +142,7 @@ LevelElimination::LevelElimination(Mat matrix, Chain chain)
   sums[2] = sizeof(PetscScalar) * (sums[0] + 3.0 * largest * largest);
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM,
                 comm_);
-  entries_ = sums[0];
-  operations_ = sums[1];
-  bytes_ = sums[2];
+  set_cost(sums[0], sums[2], sums[1]);
 }
 
 // Global rows of the blocks next to those of this rank, with their positions.

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string>
 
+#include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
 
 namespace stickslip::petsc {
@@ -64,10 +65,8 @@ double available_now(MPI_Comm comm) {
       std::min(proc_value("/proc/meminfo", "MemAvailable"), left_in_control_group());
   double mine = std::max(0.0, std::min(shared / ranks_on_node(), left_in_address_space()));
   // Ranks share the work evenly: the poorest decides.
-  int ranks = 1;
-  MPI_Comm_size(comm, &ranks);
   MPI_Allreduce(MPI_IN_PLACE, &mine, 1, MPI_DOUBLE, MPI_MIN, comm);
-  return mine * ranks;
+  return mine * ranks(comm);
 }
 
 }  // namespace

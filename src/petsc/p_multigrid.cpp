@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/dense.hpp"
 #include "stickslip/petsc/memory.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
@@ -20,16 +21,6 @@ using Scalars = std::vector<PetscScalar>;
 
 // Of the rate of jumps: keeps transport invertible where it ends within an element.
 constexpr double kShift = 1e-6;
-
-// C = factor A B + keep C by columns, each as it is or transposed: C is m x n, the inner size k.
-void product(const char* how, int m, int n, int k, double factor, const PetscScalar* a,
-             int stride_a, const PetscScalar* b, int stride_b, double keep, PetscScalar* c,
-             int stride_c) {
-  const PetscBLASInt rows = m, columns = n, inner = k, lda = stride_a, ldb = stride_b,
-                     ldc = stride_c;
-  const PetscScalar alpha = factor, beta = keep;
-  BLASgemm_(how, how + 1, &rows, &columns, &inner, &alpha, a, &lda, b, &ldb, &beta, c, &ldc);
-}
 
 // y = a x, or a^T x, for a small square matrix by columns.
 void multiply(const PetscScalar* a, int size, bool transposed, const PetscScalar* x,
@@ -46,15 +37,6 @@ void multiply(const PetscScalar* a, int size, bool transposed, const PetscScalar
   for (int c = 0; c < size; ++c) {
     for (int r = 0; r < size; ++r) y[r] += a[r + c * size] * x[c];
   }
-}
-
-// In place; whether that was possible.
-bool invert(PetscScalar* a, int size, Scalars& work, std::vector<PetscBLASInt>& pivots) {
-  PetscBLASInt n = size, info = 0;
-  const auto length = static_cast<PetscBLASInt>(work.size());
-  LAPACKgetrf_(&n, &n, a, &n, pivots.data(), &info);
-  if (info == 0) LAPACKgetri_(&n, a, &n, pivots.data(), work.data(), &length, &info);
-  return info == 0;
 }
 
 // The half of what is passed for both arms.
@@ -85,9 +67,8 @@ PMultigrid::PMultigrid(Mat matrix, Mat coarse, Chain chain, Hierarchy hierarchy)
     sums[1] += hierarchy_.levels * (4 * all * all * all + 2 * high * high * high);
   }
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_DOUBLE, MPI_SUM, comm_);
-  entries_ = sums[0] + coarse_.entries();
-  bytes_ = sizeof(PetscScalar) * sums[0] + coarse_.bytes();
-  operations_ = sums[1] + coarse_.operations();
+  set_cost(sums[0] + coarse_.entries(), sizeof(PetscScalar) * sums[0] + coarse_.bytes(),
+           sums[1] + coarse_.operations());
 }
 
 std::array<PMultigrid::Arm, 2> PMultigrid::arms() const {
@@ -214,7 +195,7 @@ bool PMultigrid::eliminate(const Strip& strip, Stack& stack) {
     PetscScalar back = stack.from_outer[arm.number];
     for (int a = arm.begin; a != arm.end; a += arm.step) {
       if (outer != nullptr) subtract(a, outwards(stack, arm, a) * back, outer);
-      sound = invert(pivot(a), h, work, exchanges) && sound;
+      sound = invert(pivot(a), h, h, exchanges, work) && sound;
       outer = pivot(a);
       back = inwards(stack, arm, a);
     }
@@ -226,7 +207,7 @@ bool PMultigrid::eliminate(const Strip& strip, Stack& stack) {
     std::copy_n(outer, entries, to);
     to[entries] = back;
   }
-  if (hierarchy_.centre) sound = invert(pivot(hierarchy_.below), h, work, exchanges) && sound;
+  if (hierarchy_.centre) sound = invert(pivot(hierarchy_.below), h, h, exchanges, work) && sound;
   if (ranks_.has_inner()) send(next, ranks_.inner, comm_);
   return sound;
 }

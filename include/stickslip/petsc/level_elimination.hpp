@@ -46,10 +46,6 @@ class LevelElimination final : public Preconditioner {
   /// x = A^-1 b, or A^-T b without conjugation. Collective. Two passes over the factors.
   void apply(Vec b, Vec x, bool transposed) const override;
 
-  [[nodiscard]] double entries() const override { return entries_; }
-  [[nodiscard]] double bytes() const override { return bytes_; }
-  [[nodiscard]] double operations() const override { return operations_; }
-
  private:
   // Entries of a sparse coupling: one run stands for rows row ... row + length - 1 with one entry
   // each, in columns that rise alike.
@@ -103,7 +99,6 @@ class LevelElimination final : public Preconditioner {
   std::vector<std::pair<PetscInt, int>> inner_border_, outer_border_;  // global row, position
   std::vector<Level> levels_;
   DenseInverse invert_;
-  double entries_ = 0, bytes_ = 0, operations_ = 0;
 };
 
 }  // namespace stickslip::petsc

@@ -65,9 +65,6 @@ class PMultigrid final : public Preconditioner {
 
   void factor() override;
   void apply(Vec b, Vec x, bool transposed) const override;
-  [[nodiscard]] double entries() const override { return entries_; }
-  [[nodiscard]] double bytes() const override { return bytes_; }
-  [[nodiscard]] double operations() const override { return operations_; }
 
  private:
   using Scalars = std::vector<PetscScalar>;
@@ -110,7 +107,6 @@ class PMultigrid final : public Preconditioner {
   VecHandle coarse_b_, coarse_x_, residual_;
   std::vector<Stack> stacks_;
   mutable std::vector<Scalars> high_;  // by strip, the high modes in work
-  double entries_ = 0, bytes_ = 0, operations_ = 0;
 };
 
 }  // namespace stickslip::petsc

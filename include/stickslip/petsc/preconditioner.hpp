@@ -19,12 +19,21 @@ class Preconditioner {
   virtual void apply(Vec b, Vec x, bool transposed) const = 0;
 
   /// Of all ranks: entries of the factors, bytes while factoring, operations of factoring.
-  [[nodiscard]] virtual double entries() const = 0;
-  [[nodiscard]] virtual double bytes() const = 0;
-  [[nodiscard]] virtual double operations() const = 0;
+  [[nodiscard]] double entries() const { return entries_; }
+  [[nodiscard]] double bytes() const { return bytes_; }
+  [[nodiscard]] double operations() const { return operations_; }
 
  protected:
   Preconditioner() = default;
+  // The same of all ranks, when the analysis knows.
+  void set_cost(double entries, double bytes, double operations) {
+    entries_ = entries;
+    bytes_ = bytes;
+    operations_ = operations;
+  }
+
+ private:
+  double entries_ = 0, bytes_ = 0, operations_ = 0;
 };
 
 }  // namespace stickslip::petsc

@@ -1,0 +1,21 @@
+#pragma once
+/// Operations on dense blocks by columns, which may be parts of larger ones.
+
+#include <petscsys.h>
+
+#include <span>
+
+namespace stickslip::petsc {
+
+/// C <- factor A B + keep C with C m x n and the inner size k. `how` is "NN", or has T for a matrix
+/// that is taken transposed; each matrix is followed by its stride.
+void product(const char* how, int m, int n, int k, double factor, const PetscScalar* a,
+             int stride_a, const PetscScalar* b, int stride_b, double keep, PetscScalar* c,
+             int stride_c);
+
+/// Inverts an n x n block in place; false if it is singular. Of the work spaces `pivots` has n
+/// entries at least, `work` n, better n^2.
+[[nodiscard]] bool invert(PetscScalar* a, int n, int stride, std::span<PetscBLASInt> pivots,
+                          std::span<PetscScalar> work);
+
+}  // namespace stickslip::petsc
