@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stickslip/routes/evaluation.hpp"
 #include "stickslip/routes/plan.hpp"
 
 namespace stickslip::accuracy {
@@ -57,6 +58,7 @@ Ladder::Ladder(const options::Request& request)
   first_degree_ = method_.degree.value_or(starting_degree(request));
   rates_ = fastest_rates(request);
   halves_ = options::on_full_grid(request.route) || !request.scene.symmetric() ? 2 : 1;
+  nests_ = routes::can_nest(request) && !method_.fixed();
   last_ = method_.fixed() ? 1 : free_rungs();
 }
 
@@ -81,7 +83,8 @@ double Ladder::tail_tolerance(int n) const {
   if (method_.scheme == options::Scheme::upwind) return 1e-3 * std::min(accuracy_, 1e-6);
   if (method_.scheme == options::Scheme::none)
     return std::max(accuracy_ * std::pow(1e-2, n), 1e-18);
-  return std::max(std::pow(10.0, -(degree(n) + 3)), 1e-18);
+  const int finest = nests_ ? n - n % 3 + 1 : n;  // the third one seldom is needed
+  return std::max(std::pow(10.0, -(degree(finest) + 3)), 1e-18);
 }
 
 Resolution Ladder::rung(int n) const {
@@ -95,6 +98,7 @@ Resolution Ladder::rung(int n) const {
   }
   r.halves = halves_;
   r.factors = method_.factors;
+  r.nested = is_nested(n);
   const bool hp = method_.scheme == options::Scheme::hp;
   if (hp && r.factors == options::Factors::own && prefers_iteration_(unknowns(scene_, r))) {
     r.factors = options::Factors::p_multigrid;

@@ -26,6 +26,11 @@ constexpr Speed kByMumps{0.35, 8e-9, 2.5e-9, true};
 constexpr double kIteratedSetUp = 3e-7, kIteratedSolve = 1.7e-6, kCoarseShare = 0.3;
 constexpr double kSecondsPerNonzero = 5e-9;  // of a residual
 constexpr double kFixedSeconds = 5e-4;       // of a factorisation
+// A nested step pays for each unknown, for two solutions through the factors of the step before,
+// and for seven residuals; where it iterates, its guess saves a third.
+constexpr double kNestedSetUp = 2.5e-7;
+constexpr int kNestedSolutions = 2, kNestedResiduals = 7;
+constexpr double kLeftByGuess = 0.7;
 
 class Predictor {
  public:
@@ -37,7 +42,8 @@ class Predictor {
     step_.unknowns = unknowns(request.scene, resolution);
   }
 
-  PredictedStep follow(const routes::Plan& plan) {
+  PredictedStep follow(const routes::Plan& plan, const std::vector<PredictedStep>& before) {
+    if (step_.resolution.shares_factors()) return follow_nested(before.back());
     for (const auto& key : plan.systems()) assemble(key);
     for (const auto& task : plan.tasks) step_.seconds += seconds_of(task);
     return step_;
@@ -47,6 +53,21 @@ class Predictor {
   struct Foretold {
     double assembly = 0, factorization = 0, solve = 0;  // seconds of one
   };
+
+  PredictedStep follow_nested(const PredictedStep& base) {
+    petsc::Ledger ledger;
+    const auto a = operators::assemble(comm_, process_, *axis_, 0, operators::symmetry_of(process_),
+                                       operators::Rest::killing, ledger);
+    step_.unknowns = ledger.unknowns;
+    step_.nonzeros = ledger.nonzeros;
+    const int ranks = petsc::ranks(comm_);
+    const double parallel =
+        kNestedSetUp * static_cast<double>(ledger.unknowns) +
+        kNestedResiduals * kSecondsPerNonzero * static_cast<double>(ledger.nonzeros);
+    step_.seconds =
+        ledger.assembly_seconds + parallel / ranks + kNestedSolutions * base.seconds_per_solution;
+    return step_;
+  }
 
   const Foretold& assemble(const SystemKey& key) {
     const auto known = systems_.find(key);
@@ -70,7 +91,7 @@ class Predictor {
     return systems_.emplace(key, f).first->second;
   }
 
-  [[nodiscard]] Foretold factored(const petsc::Analysis& analysis, double nonzeros) const {
+  [[nodiscard]] Foretold factored(const petsc::Analysis& analysis, double nonzeros) {
     const Speed& speed = analysis.solver == petsc::Solver::levels ? kByLevels : kByMumps;
     const int ranks = petsc::ranks(comm_), sharing = speed.on_all_ranks ? ranks : 1;
     Foretold f;
@@ -78,8 +99,9 @@ class Predictor {
                                        speed.per_entry * analysis.factor_entries) /
                                           sharing;
     // Each is corrected once, with two residuals and a bound.
-    f.solve = 2 * speed.per_entry_solved * analysis.factor_entries / sharing +
-              3 * kSecondsPerNonzero * nonzeros / ranks;
+    const double one = speed.per_entry_solved * analysis.factor_entries / sharing;
+    step_.seconds_per_solution = std::max(step_.seconds_per_solution, one);
+    f.solve = 2 * one + 3 * kSecondsPerNonzero * nonzeros / ranks;
     return f;
   }
 
@@ -87,7 +109,7 @@ class Predictor {
     const double share = kCoarseShare + (1 - kCoarseShare) / petsc::ranks(comm_);
     Foretold f;
     f.factorization = kFixedSeconds + kIteratedSetUp * unknowns * share;
-    f.solve = kIteratedSolve * unknowns * share;
+    f.solve = kIteratedSolve * unknowns * share * (step_.resolution.nested ? kLeftByGuess : 1);
     return f;
   }
 
@@ -128,7 +150,8 @@ Prediction predict(MPI_Comm comm, const options::Request& request) {
       step.megabytes = predicted_bytes(request.scene, resolution) / 1e6;
       prediction.steps.push_back(step);
     } else {
-      prediction.steps.push_back(Predictor(comm, request, resolution).follow(prediction.plan));
+      prediction.steps.push_back(
+          Predictor(comm, request, resolution).follow(prediction.plan, prediction.steps));
     }
     prediction.seconds += prediction.steps.back().seconds;
   }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include "stickslip/accuracy/ladder.hpp"
@@ -65,19 +67,42 @@ void share_errors(Results& results) {
 
 std::string gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / 1e9); }
 
-Solved evaluated(MPI_Comm comm, const options::Request& request, const Resolution& resolution) {
+routes::Setting setting_of(MPI_Comm comm, const options::Request& request,
+                           const Resolution& resolution, petsc::Ledger& ledger) {
+  return {comm, request, request.scene.process(resolution.levels),
+          make_axis(request.scene, resolution), ledger};
+}
+
+/// A step, which `evaluate` makes of its setting.
+template <class Evaluate>
+Solved stepped(MPI_Comm comm, const options::Request& request, const Resolution& resolution,
+               Evaluate evaluate) {
   Solved solved;
   Step& step = solved.step;
   step.resolution = resolution;
   const double start = petsc::wall_seconds();
-  const auto process = request.scene.process(resolution.levels);
-  solved.evaluation =
-      routes::evaluate({comm, request, process, make_axis(request.scene, resolution), step.ledger});
-  add_rounding_of_sums(process.noise, solved.evaluation.results);
+  const auto setting = setting_of(comm, request, resolution, step.ledger);
+  solved.evaluation = evaluate(setting);
+  add_rounding_of_sums(setting.process.noise, solved.evaluation.results);
   step.checks = std::move(solved.evaluation.checks);
   step.seconds = petsc::wall_seconds() - start;
   return solved;
 }
+
+Solved evaluated(MPI_Comm comm, const options::Request& request, const Resolution& resolution) {
+  return stepped(comm, request, resolution, routes::evaluate);
+}
+
+/// A discretisation whose factors serve the next ones.
+struct Base {
+  Resolution of;
+  petsc::Ledger ledger;  // of the factors, which go on counting
+  std::optional<routes::NestedEvaluation> evaluation;
+};
+
+// Of the tolerance of noise range and velocity cut: what they hide was at most 2.3 times it without
+// drag, and a tenth of it with drag, in scenes for which they were widened alone.
+constexpr double kErrorPerTolerance = 5;
 
 class Refiner {
  public:
@@ -104,20 +129,49 @@ class Refiner {
 
  private:
   [[nodiscard]] bool fits(const Resolution& resolution) const {
-    const double need = predicted_bytes(request_.scene, resolution);
+    double need = predicted_bytes(request_.scene, resolution);
+    if (base_ && resolution.shares_factors()) need -= predicted_bytes(request_.scene, base_->of);
     return need <= petsc::available_bytes(comm_, need);
   }
 
   void solve(int n) {
     const Resolution resolution = ladder_.rung(n);
     if (progress_) progress_(n, resolution, expected_seconds(resolution));
-    auto [evaluation, step] = evaluated(comm_, request_, resolution);
-    remember_rounding(evaluation.results);
+    auto [evaluation, step] = solved_on(n, resolution);
+    if (step.resolution.nested) {
+      add_truncation(n, evaluation.results);
+    } else {
+      remember_rounding(evaluation.results);
+    }
     if (n >= 1) add_discretisation(n, evaluation.results);
     if (request_.wants(Quantity::density)) follow_speed_law(*evaluation.law);
     outcome_.last = std::move(evaluation);
     outcome_.total += step.ledger;
     outcome_.steps.push_back(std::move(step));
+  }
+
+  [[nodiscard]] Solved solved_on(int n, Resolution resolution) {
+    if (resolution.nested && base_) {
+      try {
+        return stepped(comm_, request_, resolution, [this](const routes::Setting& setting) {
+          return base_->evaluation->finer(setting);
+        });
+      } catch (const NotReached&) {
+        // By itself, then.
+      }
+    }
+    resolution.nested = false;
+    base_.reset();
+    if (n == ladder_.last() || !ladder_.rung(n + 1).nested) {
+      return evaluated(comm_, request_, resolution);
+    }
+    base_ = std::make_unique<Base>(Base{resolution, {}, {}});
+    return stepped(comm_, request_, resolution, [this](const routes::Setting& s) {
+      base_->evaluation.emplace(
+          routes::Setting{s.comm, s.request, s.process, s.axis, base_->ledger});
+      s.ledger += base_->ledger;
+      return base_->evaluation->coarse();
+    });
   }
 
   [[nodiscard]] double expected_seconds(const Resolution& next) const {
@@ -131,6 +185,16 @@ class Refiner {
   void remember_rounding(const Results& results) {
     rounding_.clear();
     for (const auto& result : results) rounding_.push_back(quantities::relative_error(result));
+  }
+
+  // Nested rungs are cut where the one before is, so that no change shows it.
+  void add_truncation(int n, Results& results) const {
+    const double relative = kErrorPerTolerance * ladder_.tail_tolerance(n);
+    for (auto& result : results) {
+      for (std::size_t e = 0; e < result.value.size(); ++e) {
+        result.error[e] += relative * std::abs(result.value[e]);
+      }
+    }
   }
 
   void add_discretisation(int n, Results& results) {
@@ -210,8 +274,12 @@ class Refiner {
     if (n + more > ladder_.last() || 0.1 * request_.accuracy < 1e-14) return 0;
     double seconds = 0;
     for (const Step& step : steps) seconds += step.seconds;
-    return seconds * relative_work(request_.scene, ladder_.rung(n + more)) /
-           relative_work(request_.scene, ladder_.rung(n));
+    const auto work = [this](int rung) {
+      Resolution alone = ladder_.rung(rung);
+      alone.nested = false;
+      return relative_work(request_.scene, alone);
+    };
+    return seconds * work(n + more) / work(n);
   }
 
   // A velocity cut made by hand is no part of the model: what it holds back is an error.
@@ -262,7 +330,8 @@ class Refiner {
   const Progress& progress_;
   Ladder ladder_;
   Outcome outcome_;
-  std::vector<double> rounding_;                                    // relative, of each result
+  std::unique_ptr<Base> base_;    // of the next rungs that are nested
+  std::vector<double> rounding_;  // relative, of each result
   double last_rounding_ = std::numeric_limits<double>::infinity();  // of the limiting result
   std::vector<std::vector<double>> changes_;  // of the last step, by result and entry
   std::shared_ptr<const velocity::Axis> coarse_axis_;

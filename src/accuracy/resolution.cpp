@@ -150,6 +150,12 @@ double predicted_bytes(const model::Scene& scene, const Resolution& resolution) 
   }
   const bool upwind = resolution.scheme == options::Scheme::upwind;
   const double row = upwind ? 4 : 2.0 * resolution.degree + 4;  // entries of a row of the matrix
+  if (resolution.shares_factors()) {
+    Resolution base = resolution;
+    base.nested = false;
+    --base.degree;
+    return predicted_bytes(scene, base) + scalars * (150 + 14 * row) * n;
+  }
   const double factors =
       upwind ? 12 * 4.5 * n * std::pow(std::min(levels, nodes), 0.52) : 10 * 3.0 * n * nodes;
   const bool by_levels = resolution.factors == options::Factors::levels ||
@@ -174,7 +180,9 @@ double relative_work(const model::Scene& scene, const Resolution& resolution) {
   const double levels = 2.0 * resolution.levels + 1;
   if (resolution.scheme == options::Scheme::none) return n * n * n;
   const double band = std::min(levels, n / levels);
-  return resolution.scheme == options::Scheme::upwind ? n * band : n * (n / levels) * band;
+  if (resolution.scheme == options::Scheme::upwind) return n * band;
+  constexpr double share_of_nested = 0.4;
+  return n * (n / levels) * band * (resolution.shares_factors() ? share_of_nested : 1);
 }
 
 }  // namespace stickslip::accuracy

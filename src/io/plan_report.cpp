@@ -46,10 +46,11 @@ std::string task_lines(const options::Request& request, const routes::Task& task
 }
 
 std::string step_line(const accuracy::PredictedStep& step, std::size_t number) {
-  return fmt::format("{:<4} {} {:>7} {:>8.4g} {:>9} {:>10} {:>14.4g} {:>8.0f} {:>9.3g}\n", number,
+  const std::string factors =
+      step.resolution.shares_factors() ? "those above" : fmt::format("{:.4g}", step.factor_entries);
+  return fmt::format("{:<4} {} {:>7} {:>8.4g} {:>9} {:>10} {:>14} {:>8.0f} {:>9.3g}\n", number,
                      axis_cells(step.resolution), step.resolution.levels, step.resolution.v_max,
-                     step.unknowns, step.nonzeros, step.factor_entries, step.megabytes,
-                     step.seconds);
+                     step.unknowns, step.nonzeros, factors, step.megabytes, step.seconds);
 }
 
 Json step_json(const accuracy::PredictedStep& step) {

@@ -55,7 +55,11 @@ Json resolution_json(const accuracy::Resolution& r) {
   Json json;
   switch (r.scheme) {
   case options::Scheme::hp:
-    json = {{"scheme", "hp"}, {"degree", r.degree}, {"layers", r.layers}, {"v_max", r.v_max}};
+    json = {{"scheme", "hp"},
+            {"degree", r.degree},
+            {"layers", r.layers},
+            {"v_max", r.v_max},
+            {"nested", r.nested}};
     break;
   case options::Scheme::upwind:
     json = {{"scheme", "upwind"}, {"p", r.points}, {"v_max", r.v_max}};

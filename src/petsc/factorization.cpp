@@ -181,7 +181,15 @@ void Factorization::solve_transposed_once(Vec b, Vec x) {
   ++ledger_.solves;
 }
 
-void Factorization::apply(Vec b, Vec x, bool transposed) {
+bool Factorization::iterates() const {
+  PetscBool preconditions_only = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(static_cast<KSP>(ksp_)), KSPPREONLY,
+                               &preconditions_only));
+  return preconditions_only == PETSC_FALSE;
+}
+
+void Factorization::apply(Vec b, Vec x, bool transposed, bool from_guess) {
+  check(KSPSetInitialGuessNonzero(ksp_, from_guess ? PETSC_TRUE : PETSC_FALSE));
   check(transposed ? KSPSolveTranspose(ksp_, b, x) : KSPSolve(ksp_, b, x));
   PetscInt iterations = 0;
   check(KSPGetIterationNumber(ksp_, &iterations));
@@ -194,10 +202,9 @@ void Factorization::apply(Vec b, Vec x, bool transposed) {
   }
 }
 
-// What a preconditioner leaves of an error that is small already does not matter.
-void Factorization::correct(Vec residual, Vec step, bool transposed) {
-  if (own_) return own_->apply(residual, step, transposed);
-  apply(residual, step, transposed);
+void Factorization::precondition(Vec b, Vec x, bool transposed) {
+  if (own_) return own_->apply(b, x, transposed);
+  apply(b, x, transposed);
 }
 
 // The rows of A differ by many orders of magnitude, so that norms of the whole matrix would hide a
@@ -228,17 +235,17 @@ double Factorization::backward_error_transposed(Vec residual, Vec b, Vec x) {
   return error / (PetscRealPart(visits) + b_size);
 }
 
-Solution Factorization::solve(Vec b, bool transposed) {
+Solution Factorization::solve(Vec b, bool transposed, Vec guess) {
   try {
-    return solve_by_ksp(b, transposed);
+    return solve_by_ksp(b, transposed, guess);
   } catch (const NotReached&) {
     if (!replaceable()) throw;
     eliminate_instead();
-    return solve_by_ksp(b, transposed);
+    return solve_by_ksp(b, transposed, guess);
   }
 }
 
-Solution Factorization::solve_by_ksp(Vec b, bool transposed) {
+Solution Factorization::solve_by_ksp(Vec b, bool transposed, Vec guess) {
   const PhaseTimer timer("solve", ledger_.solve_seconds);
   Solution s;
   VecHandle residual, step;
@@ -250,12 +257,14 @@ Solution Factorization::solve_by_ksp(Vec b, bool transposed) {
     check(transposed ? MatMultTranspose(matrix_, s.x, residual) : MatMult(matrix_, s.x, residual));
     check(VecAYPX(residual, -1, b));
   };
-  apply(b, s.x, transposed);
+  const bool from_guess = guess != nullptr && iterates();
+  if (from_guess) check(VecCopy(guess, s.x));
+  apply(b, s.x, transposed, from_guess);
   ++ledger_.solves;
   bool sound = false;
   for (int n = 0; n < kMostCorrections && !sound; ++n) {
     compute_residual();  // again, as backward_error may overwrite it
-    correct(residual, step, transposed);
+    precondition(residual, step, transposed);
     check(VecAXPY(s.x, 1, step));
     check(VecAXPY(s.correction, 1, step));
     compute_residual();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "stickslip/operators/hierarchy.hpp"
 #include "stickslip/operators/laws.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
@@ -54,9 +55,14 @@ double normalise(const KolmogorovOperator& a, Vec nu) {
   return total - 1;
 }
 
+const velocity::HpAxis& hp(const velocity::Axis& axis) {
+  return dynamic_cast<const velocity::HpAxis&>(axis);
+}
+
 // Means over excursions of which nu is the occupation, normalised.
-Excursion excursion_of(const Systems& systems, const KolmogorovOperator& a, Vec nu, double lost) {
-  const auto& noise = systems.process().noise;
+Excursion excursion_of(const model::Process& process, const velocity::Axis& axis,
+                       const KolmogorovOperator& a, Vec nu, double lost) {
+  const auto& noise = process.noise;
   const std::size_t levels = 2 * static_cast<std::size_t>(noise.levels) + 1;
   const bool folded = a.states().folded();
   Excursion e;
@@ -65,7 +71,7 @@ Excursion excursion_of(const Systems& systems, const KolmogorovOperator& a, Vec 
   const petsc::ReadView local(nu);
   PetscInt at = 0;
   a.states().for_each_local([&](const State& state) {
-    const double mass = PetscRealPart(local[at++]), v = speed(state, systems.axis());
+    const double mass = PetscRealPart(local[at++]), v = speed(state, axis);
     const std::size_t level = noise.levels + state.level;
     e.slide_time[level] += mass;
     e.slide_distance[level] += mass * v;
@@ -74,11 +80,11 @@ Excursion excursion_of(const Systems& systems, const KolmogorovOperator& a, Vec 
   });
   // The levels i and -i live on one rank, so that the sums do not depend on the distribution.
   for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square, &e.slide_drift}) {
-    sum_over_ranks(systems.comm(), *sums);
+    sum_over_ranks(a.states().comm(), *sums);
   }
   e.entry = real_parts(a.entry_rates(nu));
   e.lost_probability = lost;
-  e.stick_time = operators::StaticChain::of(systems.process()).occupation(e.entry);
+  e.stick_time = operators::StaticChain::of(process).occupation(e.entry);
   return e;
 }
 
@@ -88,14 +94,11 @@ struct Occupation {
   double lost = 0, uncorrected_lost = 0;
 };
 
-Occupation occupation_from(const Systems& systems, operators::System& system, Half half) {
-  petsc::Solution s = system.factors().solve_transposed(system.a().trace_at_exit(half));
-  const bool monotone = systems.axis().keeps_origin();
-  if (monotone) operators::require_occupation(s.x, systems.process());
+Occupation normalised(const KolmogorovOperator& a, petsc::Solution s) {
   petsc::check(VecAYPX(s.correction, -1, s.x));
   Occupation o{std::move(s.x), std::move(s.correction)};
-  o.lost = normalise(system.a(), o.nu);
-  o.uncorrected_lost = normalise(system.a(), o.uncorrected);
+  o.lost = normalise(a, o.nu);
+  o.uncorrected_lost = normalise(a, o.uncorrected);
   return o;
 }
 
@@ -107,8 +110,9 @@ struct Turns {
   [[nodiscard]] double share_of_lower() const { return falling / (rising + falling); }
 };
 
-Turns turns(const Systems& systems, const KolmogorovOperator& a, Vec from_upper, Vec from_lower) {
-  const auto chain = operators::StaticChain::of(systems.process());
+Turns turns(const model::Process& process, const KolmogorovOperator& a, Vec from_upper,
+            Vec from_lower) {
+  const auto chain = operators::StaticChain::of(process);
   const auto up = chain.upward_exit_transform(), down = chain.downward_exit_transform();
   const auto mean = [&](Vec nu, const std::vector<double>& h) {
     const auto entry = real_parts(a.entry_rates(nu));
@@ -125,23 +129,59 @@ void mix(const Turns& turns, Vec upper, Vec lower) {
 }  // namespace
 
 StationaryLaw::StationaryLaw(Systems& systems)
-    : process_(systems.process()),
-      axis_(systems.shared_axis()),
-      states_(systems.at(0, operators::symmetry_of(process_)).a().states()) {
-  auto& system = systems.at(0, operators::symmetry_of(process_));
-  Occupation o = occupation_from(systems, system, Half::upper);
+    : StationaryLaw(systems, [](Half) { return petsc::VecHandle(); }) {}
+
+StationaryLaw::StationaryLaw(Systems& fine, const StationaryLaw& lower)
+    : StationaryLaw(fine, [&](Half side) {
+        return lower.prolonged(fine.at(0, operators::symmetry_of(fine.process())).a(), fine.axis(),
+                               side);
+      }) {}
+
+StationaryLaw::StationaryLaw(Systems& systems, const Guess& guess)
+    : StationaryLaw(systems.process(), systems.shared_axis(),
+                    systems.at(0, operators::symmetry_of(systems.process())).a(),
+                    [&](Vec g, Half side) {
+                      auto& system = systems.at(0, operators::symmetry_of(systems.process()));
+                      auto s = system.factors().solve_transposed(g, guess(side));
+                      const bool monotone = systems.axis().keeps_origin();
+                      if (monotone) operators::require_occupation(s.x, systems.process());
+                      return s;
+                    }) {}
+
+StationaryLaw::StationaryLaw(operators::NestedSystem& fine, const StationaryLaw& lower)
+    : StationaryLaw(fine.process(), fine.axis(), fine.a(), [&](Vec g, Half side) {
+        return fine.solve_transposed(g, lower.prolonged(fine.a(), *fine.axis(), side));
+      }) {}
+
+StationaryLaw::StationaryLaw(const model::Process& process,
+                             std::shared_ptr<const velocity::Axis> axis,
+                             const KolmogorovOperator& a, const Solve& solve)
+    : process_(process), axis_(std::move(axis)), states_(a.states()) {
+  Occupation o = normalised(a, solve(a.trace_at_exit(), Half::upper));
   if (!process_.symmetric()) {
-    const Occupation lower = occupation_from(systems, system, Half::lower);
-    const Turns now = turns(systems, system.a(), o.nu, lower.nu);
+    Occupation lower = normalised(a, solve(a.trace_at_exit(Half::lower), Half::lower));
+    const Turns now = turns(process_, a, o.nu, lower.nu);
     chance_of_falling_ = now.falling;
+    petsc::check(VecDuplicate(o.nu, from_upper_.out()));
+    petsc::check(VecCopy(o.nu, from_upper_));
     mix(now, o.nu, lower.nu);
-    mix(turns(systems, system.a(), o.uncorrected, lower.uncorrected), o.uncorrected,
-        lower.uncorrected);
+    mix(turns(process_, a, o.uncorrected, lower.uncorrected), o.uncorrected, lower.uncorrected);
     o.lost = std::max(std::abs(o.lost), std::abs(lower.lost));
+    from_lower_ = std::move(lower.nu);
   }
-  excursion_ = excursion_of(systems, system.a(), o.nu, o.lost);
-  uncorrected_ = excursion_of(systems, system.a(), o.uncorrected, o.uncorrected_lost);
+  excursion_ = excursion_of(process_, *axis_, a, o.nu, o.lost);
+  uncorrected_ = excursion_of(process_, *axis_, a, o.uncorrected, o.uncorrected_lost);
   occupation_ = std::move(o.nu);
+}
+
+petsc::VecHandle StationaryLaw::prolonged(const KolmogorovOperator& a, const velocity::Axis& axis,
+                                          Half side) const {
+  Vec own = occupation_;
+  if (!process_.symmetric()) own = side == Half::upper ? from_upper_ : from_lower_;
+  const auto hierarchy = operators::hierarchy(a.states(), hp(axis), states_, hp(*axis_));
+  petsc::VecHandle higher = a.zeros();
+  petsc::prolong(hierarchy, own, higher, true);
+  return higher;
 }
 
 void StationaryLaw::orient(Systems& systems) {

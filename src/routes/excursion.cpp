@@ -41,6 +41,25 @@ void append_with_rounding(const StationaryLaw& law, Results& results, Append app
   }
 }
 
+void append_law(const Request& request, const StationaryLaw& law, Results& results) {
+  append_with_rounding(law, results, [&](const auto& excursion, Results& found) {
+    if (request.wants(Quantity::sticking)) quantities::append_sticking(excursion, found);
+    if (!request.wants(Quantity::moments)) return;
+    quantities::append_moments(law.process(), excursion, found);
+  });
+}
+
+Evaluation evaluation_of(const Request& request, std::shared_ptr<StationaryLaw> law) {
+  Evaluation made;
+  append_law(request, *law, made.results);
+  made.law = std::move(law);
+  return made;
+}
+
+std::shared_ptr<const velocity::HpAxis> hp_axis(const std::shared_ptr<const velocity::Axis>& axis) {
+  return std::dynamic_pointer_cast<const velocity::HpAxis>(axis);
+}
+
 std::vector<Uncertain> entry_law(const StationaryLaw& law) {
   const auto& p = law.excursion().entry;
   const auto& before = law.uncorrected().entry;
@@ -123,6 +142,13 @@ void append_expectations(operators::Systems& systems, const Setting& setting,
   }
 }
 
+void choose_solver(operators::Systems& systems, const Setting& setting) {
+  const auto& process = setting.process;
+  const std::int64_t levels = 2LL * process.noise.levels + 1;
+  const std::int64_t unknowns = levels * setting.axis->size() * (process.symmetric() ? 1 : 2);
+  if (prefers_iteration(setting.request, unknowns)) systems.prefer_iteration();
+}
+
 /// Carries out the tasks of a plan on one discretisation.
 class Execution {
  public:
@@ -133,7 +159,7 @@ class Execution {
 
   Evaluation run() {
     const Plan plan = plan_of(request_);
-    if (prefers_iteration(request_, unknowns())) systems_.prefer_iteration();
+    choose_solver(systems_, setting_);
     for (std::size_t n = 0; n < plan.tasks.size(); ++n) {
       carry_out(plan.tasks[n]);
       systems_.keep(plan.used_from(n + 1));
@@ -143,12 +169,6 @@ class Execution {
   }
 
  private:
-  [[nodiscard]] std::int64_t unknowns() const {
-    const auto& process = setting_.process;
-    const std::int64_t levels = 2LL * process.noise.levels + 1;
-    return levels * setting_.axis->size() * (process.symmetric() ? 1 : 2);
-  }
-
   void carry_out(const Task& task) {
     switch (task.work) {
     case Work::stationary_law: return find_law();
@@ -174,12 +194,8 @@ class Execution {
   [[nodiscard]] Results& results() { return evaluation_.results; }
 
   void find_law() {
-    evaluation_.law = std::make_unique<StationaryLaw>(systems_);
-    append_with_rounding(law(), results(), [this](const auto& excursion, Results& found) {
-      if (request_.wants(Quantity::sticking)) quantities::append_sticking(excursion, found);
-      if (!request_.wants(Quantity::moments)) return;
-      quantities::append_moments(setting_.process, excursion, found);
-    });
+    evaluation_.law = std::make_shared<StationaryLaw>(systems_);
+    append_law(request_, law(), results());
   }
 
   void find_entry_law() {
@@ -250,5 +266,62 @@ class Execution {
 }  // namespace
 
 Evaluation by_excursion(const Setting& setting) { return Execution(setting).run(); }
+
+bool can_nest(const Request& request) {
+  if (request.route != options::Route::excursion) return false;
+  if (request.method.scheme != options::Scheme::hp) return false;
+  const auto tasks = plan_of(request).tasks;
+  return tasks.size() == 1 && tasks.front().work == Work::stationary_law;
+}
+
+namespace {
+
+// Of two cycles each; seldom more than two are needed. All together cost less than a factorisation.
+constexpr int kMostRounds = 6;
+
+// Whether what the cycles leave does not matter beside what the higher degrees changed, or at all.
+bool settled(const Request& request, const Results& lower, const Results& found) {
+  for (std::size_t r = 0; r < found.size(); ++r) {
+    if (!found[r].is_scalar()) continue;
+    const double value = found[r].value[0], change = std::abs(value - lower[r].value[0]);
+    const double harmless = std::max(0.1 * request.accuracy * std::abs(value), 0.2 * change);
+    if (found[r].error[0] > harmless) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+NestedEvaluation::NestedEvaluation(const Setting& coarse)
+    : request_(coarse.request), systems_(coarse.comm, coarse.process, coarse.axis, coarse.ledger) {
+  choose_solver(systems_, coarse);
+  law_ = std::make_shared<StationaryLaw>(systems_);
+  const auto symmetry = operators::symmetry_of(coarse.process);
+  iterates_ = systems_.at(0, symmetry).factors().iterates();
+  // A preconditioner for the finer one is cheaper than cycles around iterations.
+  if (iterates_) systems_.release(0, symmetry);
+}
+
+Evaluation NestedEvaluation::coarse() const { return evaluation_of(request_, law_); }
+
+Evaluation NestedEvaluation::finer(const Setting& setting) {
+  if (iterates_) {
+    operators::Systems finer(setting.comm, setting.process, setting.axis, setting.ledger);
+    choose_solver(finer, setting);
+    law_ = std::make_shared<StationaryLaw>(finer, *law_);
+  } else {
+    auto& system = systems_.at(0, operators::symmetry_of(setting.process));
+    operators::NestedSystem nested(setting.process, hp_axis(setting.axis), system,
+                                   *hp_axis(systems_.shared_axis()), setting.ledger);
+    const Evaluation lower = evaluation_of(request_, law_);
+    setting.ledger.solves += setting.process.symmetric() ? 1 : 2;
+    for (int n = 0; n < kMostRounds; ++n) {
+      law_ = std::make_shared<StationaryLaw>(nested, *law_);
+      Evaluation found = evaluation_of(request_, law_);
+      if (settled(request_, lower.results, found.results)) return found;
+    }
+  }
+  return evaluation_of(request_, law_);
+}
 
 }  // namespace stickslip::routes

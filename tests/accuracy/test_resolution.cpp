@@ -62,8 +62,9 @@ TEST_CASE("resolution: what the user fixes stays fixed") {
 TEST_CASE("ladder: every rung is finer in every respect") {
   options::Request request;
   request.scene = scene(1, 0.25, 1, 0.125);
-  request.quantities = {options::Quantity::sticking};
   request.scene.drag = {0.01, 0};
+  const auto quantity = GENERATE(options::Quantity::sticking, options::Quantity::entry_law);
+  request.quantities = {quantity};
   const accuracy::Ladder ladder(request);
   REQUIRE(ladder.last() > 3);
   for (int n = 1; n <= ladder.last(); ++n) {
@@ -72,6 +73,13 @@ TEST_CASE("ladder: every rung is finer in every respect") {
     CHECK(fine.levels >= coarse.levels);
     CHECK(fine.v_max >= coarse.v_max);
     CHECK(ladder.tail_tolerance(n) <= ladder.tail_tolerance(n - 1));
+    // What follows from the stationary law alone is computed in threes on the same elements.
+    CHECK(fine.nested == (quantity == options::Quantity::sticking && n % 3 != 0));
+    if (fine.nested) {
+      CHECK(fine.levels == coarse.levels);
+      CHECK(fine.v_max == coarse.v_max);
+      CHECK(fine.layers == coarse.layers);
+    }
   }
 }
 

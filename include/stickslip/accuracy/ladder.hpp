@@ -12,6 +12,10 @@ namespace stickslip::accuracy {
 /// Rung 0 is only there to be compared with; each further rung is finer in every respect (degree
 /// or points, noise range, velocity cut), so that the change from one rung to the next shows the
 /// error of the coarser one, whatever its cause.
+///
+/// Where the stationary law is all that is asked for, rungs come in threes with the same elements,
+/// noise range and velocity cut, so that the second and third one, which is seldom needed, can be
+/// solved through the factors of the first; what the cuts hide is then judged by their tolerance.
 class Ladder {
  public:
   explicit Ladder(const options::Request& request);
@@ -31,6 +35,7 @@ class Ladder {
 
  private:
   [[nodiscard]] int free_rungs() const;
+  [[nodiscard]] bool is_nested(int n) const { return nests_ && n % 3 != 0; }
   [[nodiscard]] int degree(int n) const;
   [[nodiscard]] int points(int n) const;
 
@@ -41,6 +46,7 @@ class Ladder {
   int first_degree_ = 0;   // of rung 1
   velocity::Rates rates_;  // of the equations to be solved
   int halves_ = 1;
+  bool nests_ = false;
   int last_;
 };
 

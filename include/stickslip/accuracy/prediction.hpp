@@ -20,6 +20,7 @@ struct PredictedStep {
   double megabytes = 0;       ///< of the same
   double operations = 0;      ///< of all factorisations, by the same analysis
   double seconds = 0;
+  double seconds_per_solution = 0;  ///< of one solution through the factors
 };
 
 struct Prediction {

@@ -21,6 +21,14 @@ struct Resolution {
   double v_max = 0;       ///< end of the velocity axis [velocity]
   int halves = 1;         ///< 1: folded by symmetry, v > 0 only; 2: both signs of v
   options::Factors factors = options::Factors::own;
+  bool nested = false;  ///< on the elements and levels of the discretisation before
+
+  /// Whether it is solved through the factors of the one before; iterations start from its solution
+  /// instead.
+  [[nodiscard]] bool shares_factors() const {
+    return nested && factors != options::Factors::p_multigrid &&
+           factors != options::Factors::incomplete;
+  }
 };
 
 /// Noise levels on each side of 0 whose tail beyond weighs less than `tolerance` against the level

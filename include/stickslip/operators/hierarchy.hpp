@@ -2,7 +2,7 @@
 /// A fine discretisation as one of lower degree and high modes.
 
 #include "stickslip/operators/state_space.hpp"
-#include "stickslip/petsc/p_multigrid.hpp"
+#include "stickslip/petsc/high_modes.hpp"
 #include "stickslip/velocity/hp_axis.hpp"
 
 namespace stickslip::operators {

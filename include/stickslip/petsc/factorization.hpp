@@ -48,14 +48,22 @@ class Factorization {
   Factorization(Mat matrix, const std::string& prefix, Ledger& ledger, Structure structure = {});
 
   /// A x = b. Throws NotReached when the backward error stays above 1e-12.
-  [[nodiscard]] Solution solve(Vec b) { return solve(b, false); }
-  /// A^T x = b (no conjugation).
-  [[nodiscard]] Solution solve_transposed(Vec b) { return solve(b, true); }
+  [[nodiscard]] Solution solve(Vec b) { return solve(b, false, nullptr); }
+  /// A^T x = b (no conjugation). A guess saves iterations where there are any.
+  [[nodiscard]] Solution solve_transposed(Vec b, Vec guess = nullptr) {
+    return solve(b, true, guess);
+  }
+  /// Whether solutions are found by iteration.
+  [[nodiscard]] bool iterates() const;
 
   /// A x = b and A^T x = b without the residual and its correction, for directions that need not be
   /// exact.
   void solve_once(Vec b, Vec x);
   void solve_transposed_once(Vec b, Vec x);
+
+  /// A x = b or A^T x = b roughly, for errors that are small already: exactly by factors, to about
+  /// a digit where they serve an iteration. Collective.
+  void precondition(Vec b, Vec x, bool transposed);
 
   /// Factors again after the values of the matrix, not its pattern, have changed; the analysis is
   /// kept.
@@ -72,14 +80,13 @@ class Factorization {
  private:
   void factor();
   void factor_by_petsc();
-  [[nodiscard]] Solution solve(Vec b, bool transposed);
-  [[nodiscard]] Solution solve_by_ksp(Vec b, bool transposed);
+  [[nodiscard]] Solution solve(Vec b, bool transposed, Vec guess);
+  [[nodiscard]] Solution solve_by_ksp(Vec b, bool transposed, Vec guess);
   void use(Structure structure);
   [[nodiscard]] bool replaceable() const;
   void eliminate_instead();
   [[nodiscard]] std::string advice() const;
-  void apply(Vec b, Vec x, bool transposed);
-  void correct(Vec residual, Vec step, bool transposed);
+  void apply(Vec b, Vec x, bool transposed, bool from_guess = false);
   [[nodiscard]] double backward_error(Vec residual, Vec b, Vec x);
   [[nodiscard]] double backward_error_transposed(Vec residual, Vec b, Vec x);
 

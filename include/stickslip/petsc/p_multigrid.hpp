@@ -3,60 +3,18 @@
 
 #include <petscmat.h>
 
-#include <array>
-#include <memory>
-#include <utility>
-#include <vector>
-
 #include "stickslip/petsc/handle.hpp"
+#include "stickslip/petsc/high_modes.hpp"
 #include "stickslip/petsc/level_elimination.hpp"
-#include "stickslip/petsc/neighbours.hpp"
 #include "stickslip/petsc/preconditioner.hpp"
 
 namespace stickslip::petsc {
 
-/// Polynomials on an element with q nodes as those of lower degree, by their values at c nodes, and
-/// q - c high modes; matrices by columns. (prolong, from_high) and (restrict; to_high) are inverse
-/// to each other.
-struct ElementModes {
-  int nodes = 0, coarse_nodes = 0;       ///< q, c
-  std::vector<PetscScalar> prolong;      ///< q x c
-  std::vector<PetscScalar> restriction;  ///< c x q
-  std::vector<PetscScalar> from_high;    ///< q x (q - c)
-  std::vector<PetscScalar> to_high;      ///< (q - c) x q
-  [[nodiscard]] int high() const { return nodes - coarse_nodes; }
-};
-
-/// One element on all local levels: the values of its nodes lie one after the other by level, node
-/// by node, in the fine vector and in the coarse one.
-struct Strip {
-  std::shared_ptr<const ElementModes> modes;
-  PetscInt first = 0, coarse_first = 0;  ///< local rows of the first node on the first level
-};
-
-/// How a fine discretisation contains a coarse one. Levels -N ... N form a chain; this rank owns
-/// shells {i, -i} of them, the first rank the innermost.
-struct Hierarchy {
-  int levels = 0;       ///< local ones, rising
-  int below = 0;        ///< those of them below level 0
-  bool centre = false;  ///< whether level 0 is here
-  std::vector<Strip> strips;
-  std::vector<std::pair<PetscInt, PetscInt>> others;  ///< fine and coarse rows of other states
-};
-
-/// Preconditioner that solves the coarse problem exactly and then the high modes of each element,
-/// coupled over all levels but not from element to element:
+/// Preconditioner that solves the coarse problem exactly and then the high modes of each element:
 ///
 ///   x = P A_c^-1 R b,   x += H (S + J)^-1 H' (b - A x),
 ///
-/// P, R and H, H' being the changes of basis of ElementModes, J the jumps between levels, and S the
-/// Schur complement of the lower modes in the transport T on one element,
-///
-///   S = T_hh - T_hc (T_cc + e)^-1 T_ch,   e = 1e-6 of the rate of jumps.
-///
-/// For transport at constant speed S is that of the whole axis, as inflow at the end of an element
-/// makes a constant there, which has no high modes; T_hh alone would be half of it. An iteration
-/// leaves a fifth to a tenth of the error whatever the levels, degrees and noise.
+/// in the notation of HighModes. In GMRES an iteration leaves a fifth to a tenth of the error.
 class PMultigrid final : public Preconditioner {
  public:
   /// `coarse` is the matrix of the coarse discretisation with its chain of blocks. Both matrices
@@ -67,46 +25,10 @@ class PMultigrid final : public Preconditioner {
   void apply(Vec b, Vec x, bool transposed) const override;
 
  private:
-  using Scalars = std::vector<PetscScalar>;
-  // The chain of the high modes of an element: couplings to the levels above and below, inverse
-  // pivots, and the couplings of the levels of other ranks to those here, by arm.
-  struct Stack {
-    Scalars up, down, pivots;
-    std::array<PetscScalar, 2> from_outer{}, from_inner{};
-  };
-  // Levels below 0 or above it, from the outermost local one inwards.
-  struct Arm {
-    int number, begin, end, step;
-  };
-  [[nodiscard]] std::array<Arm, 2> arms() const;
-  [[nodiscard]] static PetscScalar outwards(const Stack& stack, const Arm& arm, int level);
-  [[nodiscard]] static PetscScalar inwards(const Stack& stack, const Arm& arm, int level);
-
-  // Blocks of an element on all levels, in three bases.
-  struct Blocks {
-    Scalars nodal, half, modal;
-  };
-  void reserve(Blocks& blocks);
-  void read_couplings(const Strip& strip, Stack& stack) const;
-  void read_transport(const Strip& strip, Scalars& values) const;
-  // Whether no block was singular.
-  [[nodiscard]] bool complement(const Strip& strip, Stack& stack, Blocks& blocks) const;
-  [[nodiscard]] bool eliminate(const Strip& strip, Stack& stack);
-  void exchange_inner_couplings();
-  void solve_coarse(const PetscScalar* b, PetscScalar* x, bool transposed) const;
-  void add_high(const PetscScalar* r, PetscScalar* x, bool transposed) const;
-  void pass_inwards(const Strip& strip, const Stack& stack, Scalars& y, bool transposed) const;
-  void pass_outwards(const Strip& strip, const Stack& stack, Scalars& z, bool transposed) const;
-
   MatHandle matrix_;
-  Hierarchy hierarchy_;
-  MPI_Comm comm_;
-  Neighbours ranks_;
-  PetscInt first_row_ = 0, end_row_ = 0;
   LevelElimination coarse_;
+  HighModes high_;
   VecHandle coarse_b_, coarse_x_, residual_;
-  std::vector<Stack> stacks_;
-  mutable std::vector<Scalars> high_;  // by strip, the high modes in work
 };
 
 }  // namespace stickslip::petsc

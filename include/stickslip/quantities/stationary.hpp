@@ -1,9 +1,11 @@
 #pragma once
 /// The stationary law from one transposed solve with the sliding operator.
 
+#include <functional>
 #include <memory>
 #include <vector>
 
+#include "stickslip/operators/nested_system.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/quantities/excursion.hpp"
 #include "stickslip/velocity/axis.hpp"
@@ -28,6 +30,14 @@ class StationaryLaw {
   /// One transposed solve with systems.at(0, even), or two with systems.at(0, none). Collective.
   /// Throws NotReached or NoMemory.
   explicit StationaryLaw(operators::Systems& systems);
+
+  /// The same from a law on the same elements with lower degrees as a guess, which saves iterations
+  /// if there are any.
+  StationaryLaw(operators::Systems& fine, const StationaryLaw& lower);
+
+  /// By a nested system, from a law on lower degrees. uncorrected() is that before the last cycle:
+  /// the difference bounds what is left. Collective. Throws NotReached.
+  StationaryLaw(operators::NestedSystem& fine, const StationaryLaw& lower);
 
   /// Adds Excursion::entry_orientation. It is no even functional: one more transposed solve, with
   /// systems.at(0, odd). Collective.
@@ -68,10 +78,20 @@ class StationaryLaw {
   [[nodiscard]] SpeedLaw speed_law() const;
 
  private:
+  // nu A = g for excursions from one side.
+  using Solve = std::function<petsc::Solution(Vec g, operators::Half side)>;
+  using Guess = std::function<petsc::VecHandle(operators::Half side)>;
+  StationaryLaw(operators::Systems& systems, const Guess& guess);
+  StationaryLaw(const model::Process& process, std::shared_ptr<const velocity::Axis> axis,
+                const operators::KolmogorovOperator& a, const Solve& solve);
+  // The occupation from one side, on higher degrees.
+  [[nodiscard]] petsc::VecHandle prolonged(const operators::KolmogorovOperator& a,
+                                           const velocity::Axis& axis, operators::Half side) const;
+
   model::Process process_;
   std::shared_ptr<const velocity::Axis> axis_;
   operators::StateSpace states_;
-  petsc::VecHandle occupation_;
+  petsc::VecHandle occupation_, from_upper_, from_lower_;  // the last two without symmetry only
   Excursion excursion_, uncorrected_;
   double chance_of_falling_ = 0;
 };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "stickslip/model/process.hpp"
+#include "stickslip/operators/systems.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/petsc/ledger.hpp"
 #include "stickslip/quantities/relaxation.hpp"
@@ -30,12 +31,37 @@ struct Evaluation {
   quantities::Results results;
   /// What the route tells about itself, by name, such as the lambda it used.
   std::vector<std::pair<std::string, double>> checks;
-  std::unique_ptr<quantities::StationaryLaw> law;     ///< excursion route, if it was needed
+  std::shared_ptr<quantities::StationaryLaw> law;     ///< excursion route, if it was needed
   std::vector<quantities::RelaxationMode> even, odd;  ///< modes, if asked for
 };
 
 /// Assembles, factors and solves what the request needs and nothing else. Collective. Throws
 /// NotReached or NoMemory.
 [[nodiscard]] Evaluation evaluate(const Setting& setting);
+
+/// Whether all that is asked for follows from the stationary law on an hp axis, so that a nested
+/// evaluation gives it. Local.
+[[nodiscard]] bool can_nest(const options::Request& request);
+
+/// The same on a discretisation and then on finer ones with the same elements and levels and higher
+/// degrees, each from the law found before: through the factors of the first one, if it has any, in
+/// a quarter of the time of a direct evaluation.
+class NestedEvaluation {
+ public:
+  /// Factors and solves on the coarse discretisation. The request and the ledger must outlive this
+  /// object. Collective. Throws as evaluate().
+  explicit NestedEvaluation(const Setting& coarse);
+
+  [[nodiscard]] Evaluation coarse() const;
+  /// Errors of the route include what the cycles of a NestedSystem leave. Collective. Throws
+  /// NotReached, for one if they do not converge, or NoMemory.
+  [[nodiscard]] Evaluation finer(const Setting& setting);
+
+ private:
+  const options::Request& request_;
+  operators::Systems systems_;
+  std::shared_ptr<quantities::StationaryLaw> law_;
+  bool iterates_;
+};
 
 }  // namespace stickslip::routes

@@ -1,0 +1,407 @@
+#include "stickslip/petsc/high_modes.hpp"
+
+#include <petscsys.h>
+// After PETSc itself, whose types it uses.
+#include <petscblaslapack.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/dense.hpp"
+#include "stickslip/petsc/memory.hpp"
+#include "stickslip/petsc/session.hpp"
+#include "stickslip/petsc/vectors.hpp"
+#include "stickslip/support/errors.hpp"
+
+namespace stickslip::petsc {
+namespace {
+
+using Scalars = std::vector<PetscScalar>;
+
+// Of the rate of jumps: keeps transport invertible where it ends within an element.
+constexpr double kShift = 1e-6;
+
+// y = a x, or a^T x, for a small square matrix by columns.
+void multiply(const PetscScalar* a, int size, bool transposed, const PetscScalar* x,
+              PetscScalar* y) {
+  if (transposed) {
+    for (int c = 0; c < size; ++c) {
+      PetscScalar sum = 0;
+      for (int r = 0; r < size; ++r) sum += a[r + c * size] * x[r];
+      y[c] = sum;
+    }
+    return;
+  }
+  std::fill(y, y + size, 0.0);
+  for (int c = 0; c < size; ++c) {
+    for (int r = 0; r < size; ++r) y[r] += a[r + c * size] * x[c];
+  }
+}
+
+// The half of what is passed for both arms.
+template <class Both>
+auto* of_arm(Both& both, int arm) {
+  return both.data() + (arm == 0 ? 0 : both.size() / 2);
+}
+
+std::size_t square(int n) { return static_cast<std::size_t>(n) * n; }
+
+}  // namespace
+
+void restrict_to_coarse(const Hierarchy& hierarchy, Vec b, Vec c, bool transposed) {
+  const int levels = hierarchy.levels;
+  WriteView to(c);
+  const ReadView from(b);
+  for (const Strip& strip : hierarchy.strips) {
+    const auto& m = *strip.modes;
+    const PetscScalar* fine = from.data() + strip.first;
+    PetscScalar* own = to.data() + strip.coarse_first;
+    const int q = m.nodes, low = m.coarse_nodes;
+    if (transposed) {
+      product("NN", levels, low, q, 1, fine, levels, m.prolong.data(), q, 0, own, levels);
+    } else {
+      product("NT", levels, low, q, 1, fine, levels, m.restriction.data(), low, 0, own, levels);
+    }
+  }
+  for (const auto& [fine, own] : hierarchy.others) to[own] = from[fine];
+}
+
+void prolong(const Hierarchy& hierarchy, Vec c, Vec x, bool transposed) {
+  const int levels = hierarchy.levels;
+  const ReadView from(c);
+  WriteView to(x);
+  for (const Strip& strip : hierarchy.strips) {
+    const auto& m = *strip.modes;
+    const PetscScalar* own = from.data() + strip.coarse_first;
+    PetscScalar* fine = to.data() + strip.first;
+    const int q = m.nodes, low = m.coarse_nodes;
+    if (transposed) {
+      product("NN", levels, q, low, 1, own, levels, m.restriction.data(), low, 0, fine, levels);
+    } else {
+      product("NT", levels, q, low, 1, own, levels, m.prolong.data(), q, 0, fine, levels);
+    }
+  }
+  for (const auto& [fine, own] : hierarchy.others) to[fine] = from[own];
+}
+
+HighModes::HighModes(Mat matrix, Hierarchy hierarchy)
+    : hierarchy_(std::move(hierarchy)),
+      comm_(PetscObjectComm(reinterpret_cast<PetscObject>(matrix))),
+      ranks_(neighbours(comm_, hierarchy_.levels)),
+      stacks_(hierarchy_.strips.size()) {
+  check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
+  matrix_ = MatHandle(matrix);
+  check(MatGetOwnershipRange(matrix_, &first_row_, &end_row_));
+}
+
+double HighModes::entries() const {
+  double sum = 0;
+  for (const Strip& strip : hierarchy_.strips) sum += square(strip.modes->high());
+  return hierarchy_.levels * sum;
+}
+
+double HighModes::operations() const {
+  double sum = 0;
+  for (const Strip& strip : hierarchy_.strips) {
+    const double high = strip.modes->high(), all = strip.modes->nodes;
+    sum += 4 * all * all * all + 2 * high * high * high;
+  }
+  return hierarchy_.levels * sum;
+}
+
+std::array<HighModes::Arm, 2> HighModes::arms() const {
+  const int centre = hierarchy_.centre ? 1 : 0;
+  return {Arm{0, 0, hierarchy_.below, 1},
+          Arm{1, hierarchy_.levels - 1, hierarchy_.below + centre - 1, -1}};
+}
+
+PetscScalar HighModes::outwards(const Stack& stack, const Arm& arm, int level) {
+  return arm.number == 0 ? stack.down[level] : stack.up[level];
+}
+
+PetscScalar HighModes::inwards(const Stack& stack, const Arm& arm, int level) {
+  return arm.number == 0 ? stack.up[level] : stack.down[level];
+}
+
+// Jumps leave the velocity as it is, at the same rate on all nodes: those of the first node tell
+// all. What lies on other ranks comes before (inwards) or after the local columns.
+void HighModes::read_couplings(const Strip& strip, Stack& stack) const {
+  const int levels = hierarchy_.levels;
+  std::fill(stack.up.begin(), stack.up.end(), 0.0);
+  std::fill(stack.down.begin(), stack.down.end(), 0.0);
+  const auto [below, above] = arms();
+  for (int a = 0; a < levels; ++a) {
+    const PetscInt row = first_row_ + strip.first + a;
+    const bool lower = a < below.end;
+    const bool upper = a > above.end;
+    const bool next_up = a + 1 < levels && !(lower && a + 1 == below.end && !hierarchy_.centre);
+    const bool next_down = a > 0 && !(upper && a - 1 == above.end && !hierarchy_.centre);
+    RowView(matrix_, row).for_each([&](PetscInt column, PetscScalar value) {
+      const bool inner = column < first_row_, outer = column >= end_row_;
+      if ((next_up && column == row + 1) || (lower && inner) || (upper && outer)) {
+        stack.up[a] += value;
+      } else if ((next_down && column == row - 1) || (upper && inner) || (lower && outer)) {
+        stack.down[a] += value;
+      } else if (hierarchy_.centre && levels == 1 && outer) {
+        // Level 0 alone: the columns of level -1 come first.
+        (stack.down[a] == 0.0 ? stack.down : stack.up)[a] += value;
+      }
+    });
+  }
+}
+
+// The matrix on the nodes of the strip, without what joins it to other elements and levels: entry
+// (m, n) of level a at m + q (a + levels n).
+void HighModes::read_transport(const Strip& strip, Scalars& values) const {
+  const int levels = hierarchy_.levels, q = strip.modes->nodes;
+  values.assign(square(q) * levels, 0.0);
+  for (int m = 0; m < q; ++m) {
+    for (int a = 0; a < levels; ++a) {
+      const PetscInt row = strip.first + m * levels + a;
+      RowView(matrix_, first_row_ + row).for_each([&](PetscInt column, PetscScalar value) {
+        const PetscInt offset = column - first_row_ - strip.first - a;
+        if (offset < 0 || offset % levels != 0 || offset / levels >= q) return;
+        if (column < first_row_ || column >= end_row_) return;
+        values[m + q * (a + static_cast<std::size_t>(levels) * (offset / levels))] = value;
+      });
+    }
+  }
+}
+
+// S + J_aa of all levels into the pivots.
+bool HighModes::complement(const Strip& strip, Stack& stack, Blocks& blocks) const {
+  const ElementModes& modes = *strip.modes;
+  const int levels = hierarchy_.levels, q = modes.nodes, c = modes.coarse_nodes, h = modes.high();
+  // Into the basis (coarse, high), from the left and from the right.
+  auto& [nodal, half, modal] = blocks;
+  read_transport(strip, nodal);
+  half.resize(nodal.size());
+  modal.resize(nodal.size());
+  const int many = levels * q;
+  product("NN", c, many, q, 1, modes.restriction.data(), c, nodal.data(), q, 0, half.data(), q);
+  product("NN", h, many, q, 1, modes.to_high.data(), h, nodal.data(), q, 0, half.data() + c, q);
+  const std::size_t column = static_cast<std::size_t>(levels) * q;
+  product("NN", many, c, q, 1, half.data(), many, modes.prolong.data(), q, 0, modal.data(), many);
+  product("NN", many, h, q, 1, half.data(), many, modes.from_high.data(), q, 0,
+          modal.data() + column * c, many);
+  Scalars low(square(c)), right(static_cast<std::size_t>(c) * h);
+  std::vector<PetscBLASInt> exchanges(static_cast<std::size_t>(c));
+  bool sound = true;
+  for (int a = 0; a < levels; ++a) {
+    const PetscScalar* block = modal.data() + static_cast<std::size_t>(q) * a;
+    const PetscScalar jumps = -(1 - kShift) * (stack.up[a] + stack.down[a]);
+    for (int n = 0; n < c; ++n) {
+      std::copy_n(block + column * n, c, low.data() + static_cast<std::ptrdiff_t>(c) * n);
+      low[n + static_cast<std::ptrdiff_t>(c) * n] -= jumps;
+    }
+    PetscScalar* s = stack.pivots.data() + square(h) * a;
+    for (int n = 0; n < h; ++n) {
+      const PetscScalar* from = block + column * (c + n);
+      std::copy_n(from, c, right.data() + static_cast<std::ptrdiff_t>(c) * n);
+      std::copy_n(from + c, h, s + static_cast<std::ptrdiff_t>(h) * n);
+    }
+    const PetscBLASInt size = c, count = h;
+    PetscBLASInt info = 0;
+    LAPACKgetrf_(&size, &size, low.data(), &size, exchanges.data(), &info);
+    sound = sound && info == 0;
+    LAPACKgetrs_("N", &size, &count, low.data(), &size, exchanges.data(), right.data(), &size,
+                 &info);
+    product("NN", h, h, c, -1, block + c, many, right.data(), c, 1, s, h);
+  }
+  return sound;
+}
+
+// Pivots from the outermost level inwards, inverted.
+bool HighModes::eliminate(const Strip& strip, Stack& stack) {
+  const int h = strip.modes->high();
+  const std::size_t entries = square(h);
+  Scalars work(entries);
+  std::vector<PetscBLASInt> exchanges(static_cast<std::size_t>(h));
+  Scalars passed;  // of both arms: the last pivot and its coupling inwards
+  if (ranks_.has_outer()) {
+    passed = receive<PetscScalar>(2 * (entries + 1), ranks_.outer, comm_);
+    for (int k : {0, 1}) stack.from_outer[k] = of_arm(passed, k)[entries];
+  }
+  Scalars next(2 * (entries + 1), 0.0);
+  bool sound = true;
+  const auto pivot = [&](int level) { return stack.pivots.data() + entries * level; };
+  const auto subtract = [&](int level, PetscScalar factor, const PetscScalar* outer) {
+    for (std::size_t n = 0; n < entries; ++n) pivot(level)[n] -= factor * outer[n];
+  };
+  for (const Arm& arm : arms()) {
+    const PetscScalar* outer = passed.empty() ? nullptr : of_arm(passed, arm.number);
+    PetscScalar back = stack.from_outer[arm.number];
+    for (int a = arm.begin; a != arm.end; a += arm.step) {
+      if (outer != nullptr) subtract(a, outwards(stack, arm, a) * back, outer);
+      sound = invert(pivot(a), h, h, exchanges, work) && sound;
+      outer = pivot(a);
+      back = inwards(stack, arm, a);
+    }
+    if (hierarchy_.centre && outer != nullptr) {
+      subtract(hierarchy_.below, outwards(stack, arm, hierarchy_.below) * back, outer);
+    }
+    if (outer == nullptr) continue;
+    PetscScalar* to = of_arm(next, arm.number);
+    std::copy_n(outer, entries, to);
+    to[entries] = back;
+  }
+  if (hierarchy_.centre) sound = invert(pivot(hierarchy_.below), h, h, exchanges, work) && sound;
+  if (ranks_.has_inner()) send(next, ranks_.inner, comm_);
+  return sound;
+}
+
+// What a transposed solve needs of the couplings of the rank before.
+void HighModes::exchange_inner_couplings() {
+  if (ranks_.has_inner()) {
+    const auto all = receive<PetscScalar>(2 * stacks_.size(), ranks_.inner, comm_);
+    for (std::size_t n = 0; n < stacks_.size(); ++n) {
+      stacks_[n].from_inner = {all[2 * n], all[2 * n + 1]};
+    }
+  }
+  if (!ranks_.has_outer()) return;
+  Scalars all;
+  for (const Stack& stack : stacks_) {
+    for (const Arm& arm : arms()) {
+      const int last = arm.begin == arm.end ? hierarchy_.below : arm.begin;
+      all.push_back(outwards(stack, arm, last));
+    }
+  }
+  send(all, ranks_.outer, comm_);
+}
+
+// All large memory.
+void HighModes::reserve(Blocks& blocks) {
+  const auto levels = static_cast<std::size_t>(hierarchy_.levels);
+  high_.resize(stacks_.size());
+  take_together(comm_, [&] {
+    for (std::size_t n = 0; n < stacks_.size(); ++n) {
+      const ElementModes& modes = *hierarchy_.strips[n].modes;
+      stacks_[n].up.resize(levels);
+      stacks_[n].down.resize(levels);
+      stacks_[n].pivots.resize(square(modes.high()) * levels);
+      high_[n].resize(modes.high() * levels);
+      for (Scalars* basis : {&blocks.nodal, &blocks.half, &blocks.modal}) {
+        basis->reserve(square(modes.nodes) * levels);
+      }
+    }
+  });
+}
+
+void HighModes::factor() {
+  Blocks blocks;
+  reserve(blocks);
+  bool sound = true;  // on this rank; the others learn of it when all are through
+  for (std::size_t n = 0; n < stacks_.size(); ++n) {
+    const Strip& strip = hierarchy_.strips[n];
+    if (strip.modes->high() == 0) continue;
+    read_couplings(strip, stacks_[n]);
+    sound = complement(strip, stacks_[n], blocks) && sound;
+    sound = eliminate(strip, stacks_[n]) && sound;
+  }
+  exchange_inner_couplings();
+  require_everywhere(comm_, sound ? "" : "a block of the high modes of p-multigrid is singular");
+}
+
+void HighModes::add(Vec r, Vec x, bool transposed) const {
+  const ReadView right(r);
+  WriteView left(x);
+  add(right.data(), left.data(), transposed);
+}
+
+// Strip after strip, so that ranks work on different ones at the same time.
+void HighModes::add(const PetscScalar* r, PetscScalar* x, bool transposed) const {
+  const int levels = hierarchy_.levels;
+  if (levels == 0) return;
+  for (std::size_t n = 0; n < stacks_.size(); ++n) {
+    const Strip& strip = hierarchy_.strips[n];
+    const auto& m = *strip.modes;
+    const int q = m.nodes, h = m.high();
+    if (h == 0) continue;
+    if (transposed) {
+      product("TT", h, levels, q, 1, m.from_high.data(), q, r + strip.first, levels, 0,
+              high_[n].data(), h);
+    } else {
+      product("NT", h, levels, q, 1, m.to_high.data(), h, r + strip.first, levels, 0,
+              high_[n].data(), h);
+    }
+    pass_inwards(strip, stacks_[n], high_[n], transposed);
+  }
+  for (std::size_t n = 0; n < stacks_.size(); ++n) {
+    const Strip& strip = hierarchy_.strips[n];
+    const auto& m = *strip.modes;
+    const int q = m.nodes, h = m.high();
+    if (h == 0) continue;
+    pass_outwards(strip, stacks_[n], high_[n], transposed);
+    if (transposed) {
+      product("TN", levels, q, h, 1, high_[n].data(), h, m.to_high.data(), h, 1, x + strip.first,
+              levels);
+    } else {
+      product("TT", levels, q, h, 1, high_[n].data(), h, m.from_high.data(), q, 1, x + strip.first,
+              levels);
+    }
+  }
+}
+
+// y_a <- z_a = P_a (y_a - c z_outer), P the inverse pivots.
+void HighModes::pass_inwards(const Strip& strip, const Stack& stack, Scalars& y,
+                             bool transposed) const {
+  const int h = strip.modes->high();
+  Scalars passed, next(2 * static_cast<std::size_t>(h), 0.0), sum(static_cast<std::size_t>(h));
+  if (ranks_.has_outer()) {
+    passed = receive<PetscScalar>(2 * static_cast<std::size_t>(h), ranks_.outer, comm_);
+  }
+  const auto at = [&](int level) { return y.data() + static_cast<std::ptrdiff_t>(h) * level; };
+  const auto add = [&](int level, PetscScalar factor, const PetscScalar* outer) {
+    for (int n = 0; n < h; ++n) at(level)[n] -= factor * outer[n];
+  };
+  const auto finish = [&](int level) {
+    multiply(stack.pivots.data() + square(h) * level, h, transposed, at(level), sum.data());
+    std::copy(sum.begin(), sum.end(), at(level));
+  };
+  for (const Arm& arm : arms()) {
+    const PetscScalar* outer = passed.empty() ? nullptr : of_arm(passed, arm.number);
+    PetscScalar back = stack.from_outer[arm.number];
+    const auto subtract = [&](int level) {
+      if (outer != nullptr) add(level, transposed ? back : outwards(stack, arm, level), outer);
+    };
+    for (int a = arm.begin; a != arm.end; a += arm.step) {
+      subtract(a);
+      finish(a);
+      outer = at(a);
+      back = inwards(stack, arm, a);
+    }
+    if (hierarchy_.centre) subtract(hierarchy_.below);
+    if (outer != nullptr) std::copy_n(outer, h, of_arm(next, arm.number));
+  }
+  if (hierarchy_.centre) finish(hierarchy_.below);
+  if (ranks_.has_inner()) send(next, ranks_.inner, comm_);
+}
+
+// z_a <- x_a = z_a - P_a c x_inner.
+void HighModes::pass_outwards(const Strip& strip, const Stack& stack, Scalars& z,
+                              bool transposed) const {
+  const int h = strip.modes->high();
+  Scalars passed, next, step(static_cast<std::size_t>(h));
+  if (ranks_.has_inner()) {
+    passed = receive<PetscScalar>(2 * static_cast<std::size_t>(h), ranks_.inner, comm_);
+  }
+  const auto at = [&](int level) { return z.data() + static_cast<std::ptrdiff_t>(h) * level; };
+  for (const Arm& arm : arms()) {
+    const PetscScalar* inner =
+        hierarchy_.centre ? at(hierarchy_.below) : of_arm(passed, arm.number);
+    PetscScalar here =
+        hierarchy_.centre ? outwards(stack, arm, hierarchy_.below) : stack.from_inner[arm.number];
+    for (int a = arm.end - arm.step; a != arm.begin - arm.step; a -= arm.step) {
+      multiply(stack.pivots.data() + square(h) * a, h, transposed, inner, step.data());
+      const PetscScalar factor = transposed ? here : inwards(stack, arm, a);
+      for (int n = 0; n < h; ++n) at(a)[n] -= factor * step[n];
+      inner = at(a);
+      here = outwards(stack, arm, a);
+    }
+    next.insert(next.end(), inner, inner + h);
+  }
+  if (ranks_.has_outer()) send(next, ranks_.outer, comm_);
+}
+
+}  // namespace stickslip::petsc
