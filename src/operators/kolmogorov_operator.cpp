@@ -201,24 +201,25 @@ class KolmogorovOperator::Assembler {
   }
 
   void finish_row(PetscInt diagonal) {
+    row_.emplace_back(diagonal, 0.0);  // keeps its place in the order
     std::sort(row_.begin(), row_.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
-    const auto begin = static_cast<std::ptrdiff_t>(columns.size());
-    for (const auto& [column, rate] : row_) {
-      if (column == diagonal) continue;  // back to itself
-      if (static_cast<std::ptrdiff_t>(columns.size()) > begin && columns.back() == column) {
-        values.back() += rate;
-      } else {
-        columns.push_back(column);
-        values.push_back(rate);
-      }
-    }
     // Summed as a reader of the row would sum it: with it the row adds up to exactly zero.
-    const PetscScalar leaving =
-        -std::accumulate(values.begin() + begin, values.end(), PetscScalar(0));
-    const auto place = std::lower_bound(columns.begin() + begin, columns.end(), diagonal);
-    values.insert(values.begin() + (place - columns.begin()), lambda_ + leaving + killing_);
-    columns.insert(place, diagonal);
+    PetscScalar sum = 0;
+    std::size_t place = 0;
+    for (auto next = row_.begin(); next != row_.end();) {
+      const PetscInt column = next->first;
+      PetscScalar rate = 0;
+      for (; next != row_.end() && next->first == column; ++next) rate += next->second;
+      if (column == diagonal) {
+        place = columns.size();  // and nothing goes back to itself
+      } else {
+        sum += rate;
+      }
+      columns.push_back(column);
+      values.push_back(rate);
+    }
+    values[place] = lambda_ - sum + killing_;
     row_start.push_back(static_cast<PetscInt>(columns.size()));
     row_.clear();
     killing_ = 0;

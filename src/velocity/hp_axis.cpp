@@ -144,8 +144,9 @@ void HpAxis::fill(int j, double down_speed, double speed_here, double up_speed,
 }
 
 void HpAxis::append(int element, double factor, Trace trace, TransportRow& row) const {
-  for (const auto& [node, value] : at_end(element, trace)) {
-    row.entries.push_back({node, factor * value});
+  int node = elements_[element].first;
+  for (const double value : (*elements_[element].reference).*trace) {
+    row.entries.push_back({node++, factor * value});
   }
 }
 
