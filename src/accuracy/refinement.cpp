@@ -67,12 +67,6 @@ void share_errors(Results& results) {
 
 std::string gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / 1e9); }
 
-routes::Setting setting_of(MPI_Comm comm, const options::Request& request,
-                           const Resolution& resolution, petsc::Ledger& ledger) {
-  return {comm, request, request.scene.process(resolution.levels),
-          make_axis(request.scene, resolution), ledger};
-}
-
 /// A step, which `evaluate` makes of its setting.
 template <class Evaluate>
 Solved stepped(MPI_Comm comm, const options::Request& request, const Resolution& resolution,
@@ -81,7 +75,8 @@ Solved stepped(MPI_Comm comm, const options::Request& request, const Resolution&
   Step& step = solved.step;
   step.resolution = resolution;
   const double start = petsc::wall_seconds();
-  const auto setting = setting_of(comm, request, resolution, step.ledger);
+  const routes::Setting setting{comm, request, request.scene.process(resolution.levels),
+                                make_axis(request.scene, resolution), step.ledger};
   solved.evaluation = evaluate(setting);
   add_rounding_of_sums(setting.process.noise, solved.evaluation.results);
   step.checks = std::move(solved.evaluation.checks);

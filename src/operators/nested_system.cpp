@@ -1,5 +1,6 @@
 #include "stickslip/operators/nested_system.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "stickslip/operators/hierarchy.hpp"
@@ -21,7 +22,8 @@ NestedSystem::NestedSystem(const model::Process& process,
       ledger_(ledger),
       a_(assemble(coarse.a().states().comm(), process, *axis_, 0, coarse.a().states().symmetry(),
                   Rest::killing, ledger)),
-      high_(a_.matrix(), hierarchy(a_.states(), *axis_, coarse.a().states(), coarse_axis)) {
+      high_(a_.matrix(), hierarchy(a_.states(), *axis_, coarse.a().states(), coarse_axis)),
+      measure_(a_.matrix()) {
   const petsc::PhaseTimer timer("factorisation", ledger.factorization_seconds);
   high_.factor();
 }
@@ -48,6 +50,9 @@ petsc::Solution NestedSystem::solve_transposed(Vec g, Vec guess) {
     petsc::check(VecAYPX(s.correction, -1, s.x));
     ++ledger_.corrections;
   }
+  compute_residual(g, s.x, residual);
+  s.backward_error = measure_.transposed(residual, g, s.x);
+  ledger_.backward_error = std::max(ledger_.backward_error, s.backward_error);
   return s;
 }
 

@@ -17,53 +17,7 @@ namespace {
 
 constexpr double kBackwardErrorLimit = 1e-12;
 constexpr int kMostCorrections = 2;  // the second only where the first leaves too much
-// Of the largest component of a plain solution: smaller ones need not be right relative to their
-// own size. Where an element is thin or a transform has decayed they are tens of orders smaller,
-// and the factors mix their rows with others; what that does to a functional, the last correction
-// tells.
-constexpr double kNegligible = 1e-13;
 constexpr bool kComplex = PetscDefined(USE_COMPLEX);
-
-void take_magnitudes_of_block(Mat block) {
-  MatInfo info{};
-  check(MatGetInfo(block, MAT_LOCAL, &info));
-  PetscScalar* values = nullptr;
-  check(MatSeqAIJGetArray(block, &values));
-  const auto count = static_cast<std::ptrdiff_t>(info.nz_used);
-  std::transform(values, values + count, values, [](PetscScalar a) { return PetscAbsScalar(a); });
-  check(MatSeqAIJRestoreArray(block, &values));
-}
-
-MatHandle magnitudes(Mat matrix) {
-  MatHandle copy;
-  check(MatDuplicate(matrix, MAT_COPY_VALUES, copy.out()));
-  PetscBool sequential = PETSC_FALSE;
-  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix), MATSEQAIJ, &sequential));
-  if (sequential == PETSC_TRUE) {
-    take_magnitudes_of_block(copy);
-  } else {
-    Mat diagonal = nullptr, off_diagonal = nullptr;
-    check(MatMPIAIJGetSeqAIJ(copy, &diagonal, &off_diagonal, nullptr));
-    take_magnitudes_of_block(diagonal);
-    take_magnitudes_of_block(off_diagonal);
-  }
-  return copy;
-}
-
-VecHandle magnitude_sums(Mat matrix) {
-  VecHandle sums;
-  check(MatCreateVecs(matrix, nullptr, sums.out()));
-  PetscInt begin = 0, end = 0;
-  check(MatGetOwnershipRange(matrix, &begin, &end));
-  WriteView local(sums);
-  for (PetscInt r = begin; r < end; ++r) {
-    double sum = 0;
-    RowView(matrix, r).for_each(
-        [&sum](PetscInt, PetscScalar value) { sum += PetscAbsScalar(value); });
-    local[r - begin] = sum;
-  }
-  return sums;
-}
 
 // What the solver of a KSP calls; null for PETSc's own.
 std::unique_ptr<Preconditioner> own_preconditioner(KSP ksp, Mat matrix, Structure structure) {
@@ -86,14 +40,6 @@ std::unique_ptr<Preconditioner> own_preconditioner(KSP ksp, Mat matrix, Structur
   return own;
 }
 
-VecHandle absolute(Vec x) {
-  VecHandle size;
-  check(VecDuplicate(x, size.out()));
-  check(VecCopy(x, size));
-  check(VecAbs(size));
-  return size;
-}
-
 }  // namespace
 
 Solver Structure::preferred() const {
@@ -103,7 +49,7 @@ Solver Structure::preferred() const {
 
 Factorization::Factorization(Mat matrix, const std::string& prefix, Ledger& ledger,
                              Structure structure)
-    : prefix_(prefix), ledger_(ledger) {
+    : measure_(matrix), prefix_(prefix), ledger_(ledger) {
   check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
   matrix_ = MatHandle(matrix);
   try {
@@ -139,8 +85,7 @@ void Factorization::update() {
 }
 
 void Factorization::factor() {
-  magnitude_ = {};
-  magnitude_sums_ = {};
+  measure_.forget();
   if (own_) {
     const PhaseTimer timer("factorisation", ledger_.factorization_seconds);
     own_->factor();
@@ -207,34 +152,6 @@ void Factorization::precondition(Vec b, Vec x, bool transposed) {
   apply(b, x, transposed);
 }
 
-// The rows of A differ by many orders of magnitude, so that norms of the whole matrix would hide a
-// bad row; |A| |x| does not. A plain solution is of one size: the largest component counts (Oettli
-// and Prager). A transposed one is an occupation, time spent in each state: |A|^T |x| counts
-// visits, falls off by tens of orders of magnitude, and its sum is what functionals see.
-double Factorization::backward_error(Vec residual, Vec b, Vec x) {
-  if (magnitude_ == nullptr) magnitude_ = magnitudes(matrix_);
-  const VecHandle size = absolute(x), bound = absolute(b);
-  PetscReal largest = 0, error = 0;
-  check(VecNorm(x, NORM_INFINITY, &largest));
-  check(VecShift(size, kNegligible * largest));
-  check(MatMultAdd(magnitude_, size, bound, bound));
-  check(VecPointwiseDivide(residual, residual, bound));  // 0/0 counts as 0 in PETSc
-  check(VecNorm(residual, NORM_INFINITY, &error));
-  return error;
-}
-
-// The sum of |A|^T |x| takes the sums of the rows of |A| alone.
-double Factorization::backward_error_transposed(Vec residual, Vec b, Vec x) {
-  if (magnitude_sums_ == nullptr) magnitude_sums_ = magnitude_sums(matrix_);
-  const VecHandle size = absolute(x);
-  PetscScalar visits = 0;
-  PetscReal error = 0, b_size = 0;
-  check(VecTDot(magnitude_sums_, size, &visits));
-  check(VecNorm(b, NORM_1, &b_size));
-  check(VecNorm(residual, NORM_1, &error));
-  return error / (PetscRealPart(visits) + b_size);
-}
-
 Solution Factorization::solve(Vec b, bool transposed, Vec guess) {
   try {
     return solve_by_ksp(b, transposed, guess);
@@ -269,7 +186,7 @@ Solution Factorization::solve_by_ksp(Vec b, bool transposed, Vec guess) {
     check(VecAXPY(s.correction, 1, step));
     compute_residual();
     s.backward_error =
-        transposed ? backward_error_transposed(residual, b, s.x) : backward_error(residual, b, s.x);
+        transposed ? measure_.transposed(residual, b, s.x) : measure_.plain(residual, b, s.x);
     sound = s.backward_error <= kBackwardErrorLimit;
     ++ledger_.corrections;
   }

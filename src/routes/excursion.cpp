@@ -316,6 +316,7 @@ Evaluation NestedEvaluation::finer(const Setting& setting) {
     const Evaluation lower = evaluation_of(request_, law_);
     setting.ledger.solves += setting.process.symmetric() ? 1 : 2;
     for (int n = 0; n < kMostRounds; ++n) {
+      setting.ledger.backward_error = 0;  // that of the last round counts
       law_ = std::make_shared<StationaryLaw>(nested, *law_);
       Evaluation found = evaluation_of(request_, law_);
       if (settled(request_, lower.results, found.results)) return found;

@@ -28,8 +28,7 @@ class NestedSystem {
   [[nodiscard]] const std::shared_ptr<const velocity::HpAxis>& axis() const { return axis_; }
 
   /// nu A = g from a solution on lower degrees, or a better one, by two cycles, which count as
-  /// corrections. The correction is that of the last one, and larger than what is left; no backward
-  /// error. Collective.
+  /// corrections. The correction is that of the last one, and larger than what is left. Collective.
   [[nodiscard]] petsc::Solution solve_transposed(Vec g, Vec guess);
 
  private:
@@ -41,6 +40,7 @@ class NestedSystem {
   petsc::Ledger& ledger_;
   KolmogorovOperator a_;
   petsc::HighModes high_;
+  petsc::BackwardError measure_;
 };
 
 }  // namespace stickslip::operators

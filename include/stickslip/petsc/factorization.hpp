@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "stickslip/petsc/backward_error.hpp"
 #include "stickslip/petsc/handle.hpp"
 #include "stickslip/petsc/ledger.hpp"
 #include "stickslip/petsc/level_elimination.hpp"
@@ -20,10 +21,7 @@ namespace stickslip::petsc {
 struct Solution {
   VecHandle x;
   VecHandle correction;
-  /// Of the corrected x, with r = b - A x: max_i |r|_i / (|A| |x| + |b|)_i for a plain solve, to
-  /// |x| added 1e-13 of its largest component; sum_i |r|_i / sum_i (|A|^T |x| + |b|)_i for a
-  /// transposed one.
-  double backward_error = 0;
+  double backward_error = 0;  ///< of the corrected x; see BackwardError
 };
 
 /// What is known of a matrix besides its entries.
@@ -87,13 +85,9 @@ class Factorization {
   void eliminate_instead();
   [[nodiscard]] std::string advice() const;
   void apply(Vec b, Vec x, bool transposed, bool from_guess = false);
-  [[nodiscard]] double backward_error(Vec residual, Vec b, Vec x);
-  [[nodiscard]] double backward_error_transposed(Vec residual, Vec b, Vec x);
 
   MatHandle matrix_;
-  // |a_ij| and the sums of its rows, when first needed.
-  MatHandle magnitude_;
-  VecHandle magnitude_sums_;
+  BackwardError measure_;
   std::unique_ptr<Preconditioner> own_;  // null: PETSc's preconditioner does it all
   KspHandle ksp_;
   std::function<Chain()> chain_;
