@@ -196,8 +196,8 @@ class Memory(Faults):
         """ulimit -v of 400, 500, 600 MB: told before it is allocated or when it runs out, status 4"""
         for megabytes in (400, 500, 600):
             status, told = self.limited(resource.RLIMIT_AS, megabytes << 20, "-mu_d", "0.25",
-                                        "-delta", "0.015625", "-accuracy", "1e-10", "-summary",
-                                        "s.json")
+                                        "-delta", "0.0078125", "-accuracy", "1e-10",
+                                        "-slide_pc_type", "levels", "-summary", "s.json")
             self.assertIn(status, (3, 4), told)
             self.assertNotIn("Segmentation", told)
             if status == 4:
