@@ -47,41 +47,35 @@ auto* of_arm(Both& both, int arm) {
 
 std::size_t square(int n) { return static_cast<std::size_t>(n) * n; }
 
+// Between the coarse nodes of each element and its fine ones, upwards or downwards.
+void transfer(const Hierarchy& hierarchy, const PetscScalar* from, PetscScalar* to, bool upwards,
+              bool transposed) {
+  const int levels = hierarchy.levels;
+  for (const Strip& strip : hierarchy.strips) {
+    const auto& m = *strip.modes;
+    const bool prolongs = upwards != transposed;
+    const auto& matrix = prolongs ? m.prolong : m.restriction;
+    const PetscInt fine = strip.first, coarse = strip.coarse_first;
+    product(transposed ? "NN" : "NT", levels, upwards ? m.nodes : m.coarse_nodes,
+            upwards ? m.coarse_nodes : m.nodes, 1, from + (upwards ? coarse : fine), levels,
+            matrix.data(), prolongs ? m.nodes : m.coarse_nodes, 0, to + (upwards ? fine : coarse),
+            levels);
+  }
+}
+
 }  // namespace
 
 void restrict_to_coarse(const Hierarchy& hierarchy, Vec b, Vec c, bool transposed) {
-  const int levels = hierarchy.levels;
-  WriteView to(c);
   const ReadView from(b);
-  for (const Strip& strip : hierarchy.strips) {
-    const auto& m = *strip.modes;
-    const PetscScalar* fine = from.data() + strip.first;
-    PetscScalar* own = to.data() + strip.coarse_first;
-    const int q = m.nodes, low = m.coarse_nodes;
-    if (transposed) {
-      product("NN", levels, low, q, 1, fine, levels, m.prolong.data(), q, 0, own, levels);
-    } else {
-      product("NT", levels, low, q, 1, fine, levels, m.restriction.data(), low, 0, own, levels);
-    }
-  }
+  WriteView to(c);
+  transfer(hierarchy, from.data(), to.data(), false, transposed);
   for (const auto& [fine, own] : hierarchy.others) to[own] = from[fine];
 }
 
 void prolong(const Hierarchy& hierarchy, Vec c, Vec x, bool transposed) {
-  const int levels = hierarchy.levels;
   const ReadView from(c);
   WriteView to(x);
-  for (const Strip& strip : hierarchy.strips) {
-    const auto& m = *strip.modes;
-    const PetscScalar* own = from.data() + strip.coarse_first;
-    PetscScalar* fine = to.data() + strip.first;
-    const int q = m.nodes, low = m.coarse_nodes;
-    if (transposed) {
-      product("NN", levels, q, low, 1, own, levels, m.restriction.data(), low, 0, fine, levels);
-    } else {
-      product("NT", levels, q, low, 1, own, levels, m.prolong.data(), q, 0, fine, levels);
-    }
-  }
+  transfer(hierarchy, from.data(), to.data(), true, transposed);
   for (const auto& [fine, own] : hierarchy.others) to[fine] = from[own];
 }
 
