@@ -45,7 +45,7 @@ struct Evaluation {
 
 /// The same on a discretisation and then on finer ones with the same elements and levels and higher
 /// degrees, each from the law found before: through the factors of the first one, if it has any, in
-/// a quarter of the time of a direct evaluation.
+/// less than half of its time.
 class NestedEvaluation {
  public:
   /// Factors and solves on the coarse discretisation. The request and the ledger must outlive this
