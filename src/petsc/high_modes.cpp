@@ -91,7 +91,9 @@ HighModes::HighModes(Mat matrix, Hierarchy hierarchy)
 
 double HighModes::entries() const {
   double sum = 0;
-  for (const Strip& strip : hierarchy_.strips) sum += square(strip.modes->high());
+  for (const Strip& strip : hierarchy_.strips) {
+    sum += static_cast<double>(square(strip.modes->high()));
+  }
   return hierarchy_.levels * sum;
 }
 
