@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stickslip/routes/evaluation.hpp"
 #include "stickslip/routes/plan.hpp"
 
 namespace stickslip::accuracy {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include "stickslip/accuracy/ladder.hpp"
@@ -90,9 +89,11 @@ Solved evaluated(MPI_Comm comm, const options::Request& request, const Resolutio
 
 /// A discretisation whose factors serve the next ones.
 struct Base {
+  Base(const Resolution& resolution, const routes::Setting& s)
+      : of(resolution), evaluation({s.comm, s.request, s.process, s.axis, ledger}) {}
   Resolution of;
   petsc::Ledger ledger;  // of the factors, which go on counting
-  std::optional<routes::NestedEvaluation> evaluation;
+  routes::NestedEvaluation evaluation;
 };
 
 // Of the tolerance of noise range and velocity cut: what they hide was at most 2.3 times it without
@@ -149,7 +150,7 @@ class Refiner {
     if (resolution.nested && base_) {
       try {
         return stepped(comm_, request_, resolution, [this](const routes::Setting& setting) {
-          return base_->evaluation->finer(setting);
+          return base_->evaluation.finer(setting);
         });
       } catch (const NotReached&) {
         // By itself, then.
@@ -160,12 +161,10 @@ class Refiner {
     if (n == ladder_.last() || !ladder_.rung(n + 1).nested) {
       return evaluated(comm_, request_, resolution);
     }
-    base_ = std::make_unique<Base>(Base{resolution, {}, {}});
-    return stepped(comm_, request_, resolution, [this](const routes::Setting& s) {
-      base_->evaluation.emplace(
-          routes::Setting{s.comm, s.request, s.process, s.axis, base_->ledger});
-      s.ledger += base_->ledger;
-      return base_->evaluation->coarse();
+    return stepped(comm_, request_, resolution, [&](const routes::Setting& setting) {
+      base_ = std::make_unique<Base>(resolution, setting);
+      setting.ledger += base_->ledger;
+      return base_->evaluation.coarse();
     });
   }
 

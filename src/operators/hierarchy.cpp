@@ -6,6 +6,8 @@
 #include <map>
 #include <tuple>
 
+#include "stickslip/velocity/hp_axis.hpp"
+
 namespace stickslip::operators {
 namespace {
 
@@ -45,8 +47,10 @@ std::shared_ptr<const ElementModes> modes_between(const ReferenceElement& fine,
 
 }  // namespace
 
-petsc::Hierarchy hierarchy(const StateSpace& fine, const velocity::HpAxis& axis,
-                           const StateSpace& coarse, const velocity::HpAxis& coarse_axis) {
+petsc::Hierarchy hierarchy(const StateSpace& fine, const velocity::Axis& axis,
+                           const StateSpace& coarse, const velocity::Axis& coarse_axis) {
+  const auto& elements = dynamic_cast<const velocity::HpAxis&>(axis);
+  const auto& coarse_elements = dynamic_cast<const velocity::HpAxis&>(coarse_axis);
   petsc::Hierarchy hierarchy;
   const std::vector<int> levels = fine.local_levels();
   if (levels.empty()) return hierarchy;
@@ -62,9 +66,9 @@ petsc::Hierarchy hierarchy(const StateSpace& fine, const velocity::HpAxis& axis,
       const int node = falling ? from + size - 1 : from;
       return states.index({StateKind::node, half, level, node}) - states.local_begin();
     };
-    for (int e = 0; e < axis.elements(); ++e) {
-      const auto& [reference, node, length] = axis.element(e);
-      const auto& [coarse_reference, coarse_node, same_length] = coarse_axis.element(e);
+    for (int e = 0; e < elements.elements(); ++e) {
+      const auto& [reference, node, length] = elements.element(e);
+      const auto& [coarse_reference, coarse_node, same_length] = coarse_elements.element(e);
       const int q = reference->size, c = coarse_reference->size;
       auto& modes = known[{q, c, falling}];
       if (!modes) modes = modes_between(*reference, *coarse_reference, falling);

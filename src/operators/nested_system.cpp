@@ -13,16 +13,16 @@ constexpr int kCycles = 2;
 
 }  // namespace
 
-NestedSystem::NestedSystem(const model::Process& process,
-                           std::shared_ptr<const velocity::HpAxis> axis, System& coarse,
-                           const velocity::HpAxis& coarse_axis, petsc::Ledger& ledger)
-    : process_(process),
+NestedSystem::NestedSystem(Systems& coarse, std::shared_ptr<const velocity::Axis> axis,
+                           petsc::Ledger& ledger)
+    : process_(coarse.process()),
       axis_(std::move(axis)),
-      coarse_(coarse),
+      coarse_(coarse.at(0, symmetry_of(process_))),
       ledger_(ledger),
-      a_(assemble(coarse.a().states().comm(), process, *axis_, 0, coarse.a().states().symmetry(),
-                  Rest::killing, ledger)),
-      high_(a_.matrix(), hierarchy(a_.states(), *axis_, coarse.a().states(), coarse_axis)),
+      a_(assemble(coarse.comm(), process_, *axis_, 0, symmetry_of(process_), Rest::killing,
+                  ledger)),
+      high_(a_.matrix(), coarse_.a().matrix(),
+            hierarchy(a_.states(), *axis_, coarse_.a().states(), coarse.axis())),
       measure_(a_.matrix()) {
   const petsc::PhaseTimer timer("factorisation", ledger.factorization_seconds);
   high_.factor();
@@ -31,23 +31,17 @@ NestedSystem::NestedSystem(const model::Process& process,
 petsc::Solution NestedSystem::solve_transposed(Vec g, Vec guess) {
   const petsc::PhaseTimer timer("solve", ledger_.solve_seconds);
   petsc::Solution s{a_.zeros(), a_.zeros()};
-  const petsc::VecHandle residual = a_.zeros(), fine_step = a_.zeros(), step = coarse_.a().zeros(),
-                         right = coarse_.a().zeros();
-  const auto add_high_modes = [&] {
-    compute_residual(g, s.x, residual);
-    high_.add(residual, s.x, true);
+  const petsc::VecHandle residual = a_.zeros();
+  const auto solve_coarse = [this](Vec b, Vec x, bool transposed) {
+    coarse_.factors().precondition(b, x, transposed);
   };
   petsc::check(VecCopy(guess, s.x));
-  add_high_modes();
+  compute_residual(g, s.x, residual);
+  high_.add(residual, s.x, true);
   for (int n = 0; n < kCycles; ++n) {
-    petsc::check(VecCopy(s.x, s.correction));
     compute_residual(g, s.x, residual);
-    petsc::restrict_to_coarse(high_.hierarchy(), residual, right, true);
-    coarse_.factors().precondition(right, step, true);
-    petsc::prolong(high_.hierarchy(), step, fine_step, true);
-    petsc::check(VecAXPY(s.x, 1, fine_step));
-    add_high_modes();
-    petsc::check(VecAYPX(s.correction, -1, s.x));
+    high_.cycle(solve_coarse, residual, s.correction, true);
+    petsc::check(VecAXPY(s.x, 1, s.correction));
     ++ledger_.corrections;
   }
   compute_residual(g, s.x, residual);

@@ -79,7 +79,7 @@ void prolong(const Hierarchy& hierarchy, Vec c, Vec x, bool transposed) {
   for (const auto& [fine, own] : hierarchy.others) to[fine] = from[own];
 }
 
-HighModes::HighModes(Mat matrix, Hierarchy hierarchy)
+HighModes::HighModes(Mat matrix, Mat coarse, Hierarchy hierarchy)
     : hierarchy_(std::move(hierarchy)),
       comm_(PetscObjectComm(reinterpret_cast<PetscObject>(matrix))),
       ranks_(neighbours(comm_, hierarchy_.levels)),
@@ -87,6 +87,8 @@ HighModes::HighModes(Mat matrix, Hierarchy hierarchy)
   check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
   matrix_ = MatHandle(matrix);
   check(MatGetOwnershipRange(matrix_, &first_row_, &end_row_));
+  check(MatCreateVecs(coarse, coarse_x_.out(), coarse_b_.out()));
+  check(MatCreateVecs(matrix_, nullptr, residual_.out()));
 }
 
 double HighModes::entries() const {
@@ -297,6 +299,15 @@ void HighModes::factor() {
   }
   exchange_inner_couplings();
   require_everywhere(comm_, sound ? "" : "a block of the high modes of p-multigrid is singular");
+}
+
+void HighModes::cycle(const CoarseSolve& solve, Vec b, Vec x, bool transposed) const {
+  restrict_to_coarse(hierarchy_, b, coarse_b_, transposed);
+  solve(coarse_b_, coarse_x_, transposed);
+  prolong(hierarchy_, coarse_x_, x, transposed);
+  check(transposed ? MatMultTranspose(matrix_, x, residual_) : MatMult(matrix_, x, residual_));
+  check(VecAYPX(residual_, -1, b));
+  add(residual_, x, transposed);
 }
 
 void HighModes::add(Vec r, Vec x, bool transposed) const {

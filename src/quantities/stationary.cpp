@@ -55,10 +55,6 @@ double normalise(const KolmogorovOperator& a, Vec nu) {
   return total - 1;
 }
 
-const velocity::HpAxis& hp(const velocity::Axis& axis) {
-  return dynamic_cast<const velocity::HpAxis&>(axis);
-}
-
 // Means over excursions of which nu is the occupation, normalised.
 Excursion excursion_of(const model::Process& process, const velocity::Axis& axis,
                        const KolmogorovOperator& a, Vec nu, double lost) {
@@ -128,21 +124,14 @@ void mix(const Turns& turns, Vec upper, Vec lower) {
 
 }  // namespace
 
-StationaryLaw::StationaryLaw(Systems& systems)
-    : StationaryLaw(systems, [](Half) { return petsc::VecHandle(); }) {}
-
-StationaryLaw::StationaryLaw(Systems& fine, const StationaryLaw& lower)
-    : StationaryLaw(fine, [&](Half side) {
-        return lower.prolonged(fine.at(0, operators::symmetry_of(fine.process())).a(), fine.axis(),
-                               side);
-      }) {}
-
-StationaryLaw::StationaryLaw(Systems& systems, const Guess& guess)
+StationaryLaw::StationaryLaw(Systems& systems, const StationaryLaw* lower)
     : StationaryLaw(systems.process(), systems.shared_axis(),
                     systems.at(0, operators::symmetry_of(systems.process())).a(),
                     [&](Vec g, Half side) {
                       auto& system = systems.at(0, operators::symmetry_of(systems.process()));
-                      auto s = system.factors().solve_transposed(g, guess(side));
+                      petsc::VecHandle guess;
+                      if (lower) guess = lower->prolonged(system.a(), systems.axis(), side);
+                      auto s = system.factors().solve_transposed(g, guess);
                       const bool monotone = systems.axis().keeps_origin();
                       if (monotone) operators::require_occupation(s.x, systems.process());
                       return s;
@@ -178,7 +167,7 @@ petsc::VecHandle StationaryLaw::prolonged(const KolmogorovOperator& a, const vel
                                           Half side) const {
   Vec own = occupation_;
   if (!process_.symmetric()) own = side == Half::upper ? from_upper_ : from_lower_;
-  const auto hierarchy = operators::hierarchy(a.states(), hp(axis), states_, hp(*axis_));
+  const auto hierarchy = operators::hierarchy(a.states(), axis, states_, *axis_);
   petsc::VecHandle higher = a.zeros();
   petsc::prolong(hierarchy, own, higher, true);
   return higher;

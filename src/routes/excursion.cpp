@@ -56,8 +56,18 @@ Evaluation evaluation_of(const Request& request, std::shared_ptr<StationaryLaw> 
   return made;
 }
 
-std::shared_ptr<const velocity::HpAxis> hp_axis(const std::shared_ptr<const velocity::Axis>& axis) {
-  return std::dynamic_pointer_cast<const velocity::HpAxis>(axis);
+// Of two cycles each; seldom more than two are needed. All together cost less than a factorisation.
+constexpr int kMostRounds = 6;
+
+// Whether what the cycles leave does not matter beside what the higher degrees changed, or at all.
+bool settled(const Request& request, const Results& lower, const Results& found) {
+  for (std::size_t r = 0; r < found.size(); ++r) {
+    if (!found[r].is_scalar()) continue;
+    const double value = found[r].value[0], change = std::abs(value - lower[r].value[0]);
+    const double harmless = std::max(0.1 * request.accuracy * std::abs(value), 0.2 * change);
+    if (found[r].error[0] > harmless) return false;
+  }
+  return true;
 }
 
 std::vector<Uncertain> entry_law(const StationaryLaw& law) {
@@ -267,31 +277,6 @@ class Execution {
 
 Evaluation by_excursion(const Setting& setting) { return Execution(setting).run(); }
 
-bool can_nest(const Request& request) {
-  if (request.route != options::Route::excursion) return false;
-  if (request.method.scheme != options::Scheme::hp) return false;
-  const auto tasks = plan_of(request).tasks;
-  return tasks.size() == 1 && tasks.front().work == Work::stationary_law;
-}
-
-namespace {
-
-// Of two cycles each; seldom more than two are needed. All together cost less than a factorisation.
-constexpr int kMostRounds = 6;
-
-// Whether what the cycles leave does not matter beside what the higher degrees changed, or at all.
-bool settled(const Request& request, const Results& lower, const Results& found) {
-  for (std::size_t r = 0; r < found.size(); ++r) {
-    if (!found[r].is_scalar()) continue;
-    const double value = found[r].value[0], change = std::abs(value - lower[r].value[0]);
-    const double harmless = std::max(0.1 * request.accuracy * std::abs(value), 0.2 * change);
-    if (found[r].error[0] > harmless) return false;
-  }
-  return true;
-}
-
-}  // namespace
-
 NestedEvaluation::NestedEvaluation(const Setting& coarse)
     : request_(coarse.request), systems_(coarse.comm, coarse.process, coarse.axis, coarse.ledger) {
   choose_solver(systems_, coarse);
@@ -308,21 +293,20 @@ Evaluation NestedEvaluation::finer(const Setting& setting) {
   if (iterates_) {
     operators::Systems finer(setting.comm, setting.process, setting.axis, setting.ledger);
     choose_solver(finer, setting);
-    law_ = std::make_shared<StationaryLaw>(finer, *law_);
-  } else {
-    auto& system = systems_.at(0, operators::symmetry_of(setting.process));
-    operators::NestedSystem nested(setting.process, hp_axis(setting.axis), system,
-                                   *hp_axis(systems_.shared_axis()), setting.ledger);
-    const Evaluation lower = evaluation_of(request_, law_);
-    setting.ledger.solves += setting.process.symmetric() ? 1 : 2;
-    for (int n = 0; n < kMostRounds; ++n) {
-      setting.ledger.backward_error = 0;  // that of the last round counts
-      law_ = std::make_shared<StationaryLaw>(nested, *law_);
-      Evaluation found = evaluation_of(request_, law_);
-      if (settled(request_, lower.results, found.results)) return found;
-    }
+    law_ = std::make_shared<StationaryLaw>(finer, law_.get());
+    return evaluation_of(request_, law_);
   }
-  return evaluation_of(request_, law_);
+  operators::NestedSystem nested(systems_, setting.axis, setting.ledger);
+  const Evaluation lower = evaluation_of(request_, law_);
+  setting.ledger.solves += setting.process.symmetric() ? 1 : 2;
+  Evaluation found;
+  for (int n = 0; n < kMostRounds; ++n) {
+    setting.ledger.backward_error = 0;  // that of the last round counts
+    law_ = std::make_shared<StationaryLaw>(nested, *law_);
+    found = evaluation_of(request_, law_);
+    if (settled(request_, lower.results, found.results)) break;
+  }
+  return found;
 }
 
 }  // namespace stickslip::routes

@@ -184,6 +184,12 @@ bool prefers_iteration(const Request& request, std::int64_t unknowns) {
   });
 }
 
+bool can_nest(const Request& request) {
+  if (request.method.scheme != options::Scheme::hp) return false;
+  const auto tasks = plan_of(request).tasks;
+  return tasks.size() == 1 && tasks.front().work == Work::stationary_law;
+}
+
 std::string task_name(const Request& request, const Task& task) {
   const auto at_lambda = [&](const char* what) {
     return fmt::format("{} at lambda = {:g}", what, request.lambda[task.at]);

@@ -18,14 +18,14 @@ namespace stickslip::operators {
 /// a tenth. Nothing is factored but blocks of high modes.
 class NestedSystem {
  public:
-  /// Assembles on `axis` the operator of `coarse`, which is on `coarse_axis` and must outlive this
-  /// object. Collective. Throws NoMemory, or NotReached if a block of high modes is singular.
-  NestedSystem(const model::Process& process, std::shared_ptr<const velocity::HpAxis> axis,
-               System& coarse, const velocity::HpAxis& coarse_axis, petsc::Ledger& ledger);
+  /// Over coarse.at(0, symmetry_of(process)), assembled on `axis`, an hp axis with the elements of
+  /// that of `coarse`, which must outlive this object. Collective. Throws NoMemory, or NotReached
+  /// if a block of high modes is singular.
+  NestedSystem(Systems& coarse, std::shared_ptr<const velocity::Axis> axis, petsc::Ledger& ledger);
 
   [[nodiscard]] const KolmogorovOperator& a() const { return a_; }
   [[nodiscard]] const model::Process& process() const { return process_; }
-  [[nodiscard]] const std::shared_ptr<const velocity::HpAxis>& axis() const { return axis_; }
+  [[nodiscard]] const std::shared_ptr<const velocity::Axis>& axis() const { return axis_; }
 
   /// nu A = g from a solution on lower degrees, or a better one, by two cycles, which count as
   /// corrections. The correction is that of the last one, and larger than what is left. Collective.
@@ -34,8 +34,8 @@ class NestedSystem {
  private:
   void compute_residual(Vec g, Vec nu, Vec residual) const;
 
-  model::Process process_;
-  std::shared_ptr<const velocity::HpAxis> axis_;
+  const model::Process& process_;
+  std::shared_ptr<const velocity::Axis> axis_;
   System& coarse_;
   petsc::Ledger& ledger_;
   KolmogorovOperator a_;

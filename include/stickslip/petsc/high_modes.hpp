@@ -5,6 +5,7 @@
 #include <petscmat.h>
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -64,16 +65,21 @@ void prolong(const Hierarchy& hierarchy, Vec c, Vec x, bool transposed);
 /// degrees and noise.
 class HighModes {
  public:
-  /// `matrix` is kept by reference count. Collective.
-  HighModes(Mat matrix, Hierarchy hierarchy);
+  /// Of `matrix`, kept by reference count, over `coarse`, of which only the layout counts.
+  /// Collective.
+  HighModes(Mat matrix, Mat coarse, Hierarchy hierarchy);
 
   /// Reads the matrix and eliminates. Collective. Throws NotReached if a block is singular,
   /// NoMemory.
   void factor();
 
-  [[nodiscard]] const Hierarchy& hierarchy() const { return hierarchy_; }
   /// x += H (S + J)^-1 H' r. Collective.
   void add(Vec r, Vec x, bool transposed) const;
+
+  /// What solves A_c x = b, or A_c^T x = b.
+  using CoarseSolve = std::function<void(Vec b, Vec x, bool transposed)>;
+  /// x = P A_c^-1 R b, then x += H (S + J)^-1 H' (b - A x). Collective.
+  void cycle(const CoarseSolve& solve, Vec b, Vec x, bool transposed) const;
 
   /// Entries and operations of this rank.
   [[nodiscard]] double entries() const;
@@ -111,6 +117,7 @@ class HighModes {
   void pass_outwards(const Strip& strip, const Stack& stack, Scalars& z, bool transposed) const;
 
   MatHandle matrix_;
+  VecHandle coarse_b_, coarse_x_, residual_;
   Hierarchy hierarchy_;
   MPI_Comm comm_;
   Neighbours ranks_;

@@ -3,18 +3,14 @@
 
 #include <petscmat.h>
 
-#include "stickslip/petsc/handle.hpp"
 #include "stickslip/petsc/high_modes.hpp"
 #include "stickslip/petsc/level_elimination.hpp"
 #include "stickslip/petsc/preconditioner.hpp"
 
 namespace stickslip::petsc {
 
-/// Preconditioner that solves the coarse problem exactly and then the high modes of each element:
-///
-///   x = P A_c^-1 R b,   x += H (S + J)^-1 H' (b - A x),
-///
-/// in the notation of HighModes. In GMRES an iteration leaves a fifth to a tenth of the error.
+/// Preconditioner that solves the coarse problem exactly and then the high modes of each element,
+/// in a cycle of HighModes. In GMRES an iteration leaves a fifth to a tenth of the error.
 class PMultigrid final : public Preconditioner {
  public:
   /// `coarse` is the matrix of the coarse discretisation with its chain of blocks. Both matrices
@@ -25,10 +21,8 @@ class PMultigrid final : public Preconditioner {
   void apply(Vec b, Vec x, bool transposed) const override;
 
  private:
-  MatHandle matrix_;
   LevelElimination coarse_;
   HighModes high_;
-  VecHandle coarse_b_, coarse_x_, residual_;
 };
 
 }  // namespace stickslip::petsc

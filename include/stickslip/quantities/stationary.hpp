@@ -29,11 +29,9 @@ class StationaryLaw {
  public:
   /// One transposed solve with systems.at(0, even), or two with systems.at(0, none). Collective.
   /// Throws NotReached or NoMemory.
-  explicit StationaryLaw(operators::Systems& systems);
-
-  /// The same from a law on the same elements with lower degrees as a guess, which saves iterations
-  /// if there are any.
-  StationaryLaw(operators::Systems& fine, const StationaryLaw& lower);
+  /// A law on the same elements with lower degrees serves as a guess, which saves iterations if
+  /// there are any.
+  explicit StationaryLaw(operators::Systems& systems, const StationaryLaw* lower = nullptr);
 
   /// By a nested system, from a law on lower degrees. uncorrected() is that before the last cycle:
   /// the difference bounds what is left. Collective. Throws NotReached.
@@ -80,8 +78,6 @@ class StationaryLaw {
  private:
   // nu A = g for excursions from one side.
   using Solve = std::function<petsc::Solution(Vec g, operators::Half side)>;
-  using Guess = std::function<petsc::VecHandle(operators::Half side)>;
-  StationaryLaw(operators::Systems& systems, const Guess& guess);
   StationaryLaw(const model::Process& process, std::shared_ptr<const velocity::Axis> axis,
                 const operators::KolmogorovOperator& a, const Solve& solve);
   // The occupation from one side, on higher degrees.

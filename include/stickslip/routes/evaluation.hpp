@@ -39,10 +39,6 @@ struct Evaluation {
 /// NotReached or NoMemory.
 [[nodiscard]] Evaluation evaluate(const Setting& setting);
 
-/// Whether all that is asked for follows from the stationary law on an hp axis, so that a nested
-/// evaluation gives it. Local.
-[[nodiscard]] bool can_nest(const options::Request& request);
-
 /// The same on a discretisation and then on finer ones with the same elements and levels and higher
 /// degrees, each from the law found before: through the factors of the first one, if it has any, in
 /// less than half of its time.

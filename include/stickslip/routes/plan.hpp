@@ -70,6 +70,10 @@ struct Plan {
 /// are large, and their right-hand sides few. Local.
 [[nodiscard]] bool prefers_iteration(const options::Request& request, std::int64_t unknowns);
 
+/// Whether all that is asked for follows from the stationary law on an hp axis, so that a nested
+/// evaluation gives it. Local.
+[[nodiscard]] bool can_nest(const options::Request& request);
+
 /// "stationary law", "resolvent at lambda = 0.5".
 [[nodiscard]] std::string task_name(const options::Request& request, const Task& task);
 
