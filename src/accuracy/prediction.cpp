@@ -23,13 +23,13 @@ constexpr Speed kByLevels{0.8, 1e-8, 1.5e-9, false};
 constexpr Speed kByMumps{0.35, 8e-9, 2.5e-9, true};
 // An iteration pays for each unknown; fitted for delta = 1/128 ... 1/512 and degrees 7 ... 11. Of
 // it the coarse problem, solved by one rank after the other, takes a share.
-constexpr double kIteratedSetUp = 3e-7, kIteratedSolve = 1.7e-6, kCoarseShare = 0.3;
+constexpr double kIteratedSetUp = 5e-7, kIteratedSolve = 1.6e-6, kCoarseShare = 0.4;
 constexpr double kSecondsPerNonzero = 5e-9;  // of a residual
 constexpr double kFixedSeconds = 5e-4;       // of a factorisation
-// A nested step pays for each unknown, for two solutions through the factors of the step before,
-// and for seven residuals; where it iterates, its guess saves a third.
-constexpr double kNestedSetUp = 2.5e-7;
-constexpr int kNestedSolutions = 2, kNestedResiduals = 7;
+// A nested step pays for each unknown, and for two solutions through the factors of the step
+// before; where it iterates, its guess saves a third.
+constexpr double kNestedWork = 3e-7;
+constexpr int kNestedSolutions = 2;
 constexpr double kLeftByGuess = 0.7;
 
 class Predictor {
@@ -57,15 +57,13 @@ class Predictor {
   PredictedStep follow_nested(const PredictedStep& base) {
     petsc::Ledger ledger;
     const auto a = operators::assemble(comm_, process_, *axis_, 0, operators::symmetry_of(process_),
-                                       operators::Rest::killing, ledger);
+                                       operators::Rest::killing, ledger,
+                                       operators::Form::by_elements);
     step_.unknowns = ledger.unknowns;
     step_.nonzeros = ledger.nonzeros;
-    const int ranks = petsc::ranks(comm_);
-    const double parallel =
-        kNestedSetUp * static_cast<double>(ledger.unknowns) +
-        kNestedResiduals * kSecondsPerNonzero * static_cast<double>(ledger.nonzeros);
-    step_.seconds =
-        ledger.assembly_seconds + parallel / ranks + kNestedSolutions * base.seconds_per_solution;
+    const double parallel = kNestedWork * static_cast<double>(ledger.unknowns);
+    step_.seconds = ledger.assembly_seconds + parallel / petsc::ranks(comm_) +
+                    kNestedSolutions * base.seconds_per_solution;
     return step_;
   }
 

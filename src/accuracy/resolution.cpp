@@ -154,7 +154,7 @@ double predicted_bytes(const model::Scene& scene, const Resolution& resolution) 
     Resolution base = resolution;
     base.nested = false;
     --base.degree;
-    return predicted_bytes(scene, base) + scalars * (150 + 14 * row) * n;
+    return predicted_bytes(scene, base) + scalars * 200 * n;
   }
   const double factors =
       upwind ? 12 * 4.5 * n * std::pow(std::min(levels, nodes), 0.52) : 10 * 3.0 * n * nodes;
@@ -165,7 +165,7 @@ double predicted_bytes(const model::Scene& scene, const Resolution& resolution) 
     return scalars * (8 * entries * n * nodes + 40 * row * n);
   }
   switch (resolution.factors) {
-  case options::Factors::p_multigrid: return scalars * (500 + 14 * row) * n;
+  case options::Factors::p_multigrid: return scalars * 550 * n;
   case options::Factors::own:
   case options::Factors::levels:
   case options::Factors::in_memory: return scalars * (factors + 60 * row * n);

@@ -61,18 +61,14 @@ petsc::Hierarchy hierarchy(const StateSpace& fine, const velocity::Axis& axis,
   std::map<std::tuple<int, int, bool>, std::shared_ptr<const ElementModes>> known;
   for (Half half : fine.halves()) {
     const bool falling = half == Half::lower;
-    const auto first = [&](const StateSpace& states, int from, int size) {
-      const int level = falling ? -levels.front() : levels.front();
-      const int node = falling ? from + size - 1 : from;
-      return states.index({StateKind::node, half, level, node}) - states.local_begin();
-    };
     for (int e = 0; e < elements.elements(); ++e) {
       const auto& [reference, node, length] = elements.element(e);
       const auto& [coarse_reference, coarse_node, same_length] = coarse_elements.element(e);
       const int q = reference->size, c = coarse_reference->size;
       auto& modes = known[{q, c, falling}];
       if (!modes) modes = modes_between(*reference, *coarse_reference, falling);
-      hierarchy.strips.push_back({modes, first(fine, node, q), first(coarse, coarse_node, c)});
+      hierarchy.strips.push_back(
+          {modes, fine.strip(half, node, q), coarse.strip(half, coarse_node, c)});
     }
   }
   PetscInt row = 0;

@@ -5,8 +5,10 @@
 #include <numeric>
 
 #include "stickslip/operators/laws.hpp"
+#include "stickslip/operators/transport.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/petsc/split_matrix.hpp"
 #include "stickslip/petsc/vectors.hpp"
 
 namespace stickslip::operators {
@@ -22,8 +24,9 @@ Half other(Half half) { return half == Half::upper ? Half::lower : Half::upper; 
 class KolmogorovOperator::Assembler {
  public:
   Assembler(const model::Process& process, const velocity::Axis& axis, const StateSpace& states,
-            PetscScalar lambda, Rest rest, std::optional<Parameter> derivative)
-      : derivative_(derivative),
+            PetscScalar lambda, Rest rest, Form form, std::optional<Parameter> derivative)
+      : by_elements_(form == Form::by_elements),
+        derivative_(derivative),
         noise_(process.noise),
         upper_{process, axis},
         lower_{process.mirrored(), axis.mirrored()},
@@ -76,8 +79,10 @@ class KolmogorovOperator::Assembler {
   void reserve() {
     std::size_t entries = 0;
     for (int j = 0; j < upper_.axis.size(); ++j) {
+      entries += 3;
+      if (by_elements_) continue;
       upper_.axis.transport(upper_.process.excess(top_), j, transport_);
-      entries += transport_.entries.size() + 3;
+      entries += transport_.entries.size();
     }
     entries *= states_.halves().size() * states_.local_levels().size();
     columns.reserve(entries);
@@ -96,6 +101,17 @@ class KolmogorovOperator::Assembler {
   }
 
   void rates_of_node(const State& s) {
+    if (!by_elements_ || at_an_end(s.node)) rates_of_transport(s);
+    if (s.level < top_) rate_to(node(s.half, s.level + 1, s.node), up_rate(s.level));
+    if (s.level > -top_) rate_to(node(s.half, s.level - 1, s.node), down_rate(s.level));
+  }
+
+  // Whether a node lies in the first or last element.
+  [[nodiscard]] bool at_an_end(int node) const {
+    return node <= zero_trace_.back().node || node >= top_trace_.front().node;
+  }
+
+  void rates_of_transport(const State& s) {
     const Side& here = side(s.half);
     const double excess = here.process.excess(s.level);
     if (derivative_) {
@@ -103,11 +119,14 @@ class KolmogorovOperator::Assembler {
     } else {
       here.axis.transport(excess, s.node, transport_);
     }
-    for (const auto& e : transport_.entries) rate_to(node(s.half, s.level, e.node), e.value);
+    if (by_elements_) {
+      // Transport has what leaves, and lacks where it goes.
+      killing_ -= transport_.inflow + transport_.outflow;
+    } else {
+      for (const auto& e : transport_.entries) rate_to(node(s.half, s.level, e.node), e.value);
+    }
     if (transport_.inflow != 0) rate_to_zero(s, transport_.inflow);
     if (transport_.outflow != 0) rate_to(holding(s.half, s.level), transport_.outflow);
-    if (s.level < top_) rate_to(node(s.half, s.level + 1, s.node), up_rate(s.level));
-    if (s.level > -top_) rate_to(node(s.half, s.level - 1, s.node), down_rate(s.level));
   }
 
   void rates_of_origin(const State& s) {
@@ -260,6 +279,7 @@ class KolmogorovOperator::Assembler {
     return {};
   }
 
+  bool by_elements_;
   std::optional<Parameter> derivative_;
   const model::NoiseChain& noise_;
   Side upper_, lower_;
@@ -276,24 +296,24 @@ class KolmogorovOperator::Assembler {
 
 KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const model::Process& process,
                                        const velocity::Axis& axis, PetscScalar lambda,
-                                       Symmetry symmetry, Rest rest)
-    : KolmogorovOperator(comm, process, axis, lambda, symmetry, rest, std::nullopt) {}
+                                       Symmetry symmetry, Rest rest, Form form)
+    : KolmogorovOperator(comm, process, axis, lambda, symmetry, rest, form, std::nullopt) {}
 
 KolmogorovOperator KolmogorovOperator::derivative(MPI_Comm comm, const model::Process& process,
                                                   const velocity::Axis& axis, Symmetry symmetry,
                                                   Parameter theta) {
-  return {comm, process, axis, 0, symmetry, Rest::killing, theta};
+  return {comm, process, axis, 0, symmetry, Rest::killing, Form::assembled, theta};
 }
 
 KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const model::Process& process,
                                        const velocity::Axis& axis, PetscScalar lambda,
-                                       Symmetry symmetry, Rest rest,
+                                       Symmetry symmetry, Rest rest, Form form,
                                        std::optional<Parameter> derivative)
     : states_(comm, process, axis, symmetry, rest != Rest::killing),
       process_(process),
       nodes_(axis.nodes().begin(), axis.nodes().end()),
       v_max_(axis.v_max()) {
-  Assembler rows(process, axis, states_, lambda, rest, derivative);
+  Assembler rows(process, axis, states_, lambda, rest, form, derivative);
   rows.assemble();
   trace_upper_ = rows.trace_at_zero(Half::upper, process.static_index() + 1);
   if (!states_.folded()) {
@@ -301,32 +321,45 @@ KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const model::Process& proc
   }
   rest_coupling_ = std::move(rows.rest_coupling);
   exit_coupling_ = std::move(rows.exit_coupling);
-  if (!derivative && symmetry != Symmetry::odd && PetscRealPart(lambda) >= 0) {
+  const bool whole = form == Form::assembled && !derivative;
+  if (whole && symmetry != Symmetry::odd && PetscRealPart(lambda) >= 0) {
     const bool nothing_killed = rest == Rest::kept && PetscAbsScalar(lambda) == 0;
     require_generator(comm, {states_.local_begin(), rows.row_start, rows.columns, rows.values},
                       {axis.keeps_origin(), nothing_killed}, process);
   }
 
   nonzeros_ = rows.row_start.back();
-  const PetscInt local = states_.local_size(), global = states_.global_size();
   row_start_ = std::move(rows.row_start);
   columns_ = std::move(rows.columns);
   values_ = std::move(rows.values);
-  if (petsc::ranks(comm) == 1) {
-    check(MatCreateSeqAIJWithArrays(comm, local, local, row_start_.data(), columns_.data(),
-                                    values_.data(), matrix_.out()));
-  } else {
-    split();
-    check(MatCreateMPIAIJWithSplitArrays(
-        comm, local, local, global, global, row_start_.data(), columns_.data(), values_.data(),
-        other_start_.data(), other_columns_.data(), other_values_.data(), matrix_.out()));
+  matrix_ = stored();
+  if (form == Form::by_elements) {
+    auto within = transport(states_, process, dynamic_cast<const velocity::HpAxis&>(axis));
+    nonzeros_ += within.entries() - states_.local_nodes();  // diagonals are in both
+    matrix_ = petsc::SplitMatrix::make(std::move(matrix_), std::move(within));
   }
   MPI_Allreduce(MPI_IN_PLACE, &nonzeros_, 1, MPIU_INT64, MPI_SUM, comm);
 }
 
+petsc::MatHandle KolmogorovOperator::stored() {
+  const PetscInt local = states_.local_size(), global = states_.global_size();
+  MPI_Comm comm = states_.comm();
+  petsc::MatHandle matrix;
+  if (petsc::ranks(comm) == 1) {
+    check(MatCreateSeqAIJWithArrays(comm, local, local, row_start_.data(), columns_.data(),
+                                    values_.data(), matrix.out()));
+  } else {
+    separate_others();
+    check(MatCreateMPIAIJWithSplitArrays(
+        comm, local, local, global, global, row_start_.data(), columns_.data(), values_.data(),
+        other_start_.data(), other_columns_.data(), other_values_.data(), matrix.out()));
+  }
+  return matrix;
+}
+
 // Entries in columns of other ranks into arrays of their own, which PETSc wants apart; few, as only
 // jumps lead there.
-void KolmogorovOperator::split() {
+void KolmogorovOperator::separate_others() {
   const PetscInt begin = states_.local_begin(), local = states_.local_size();
   other_start_.assign(1, 0);
   PetscInt kept = 0, next = 0;

@@ -19,8 +19,8 @@ NestedSystem::NestedSystem(Systems& coarse, std::shared_ptr<const velocity::Axis
       axis_(std::move(axis)),
       coarse_(coarse.at(0, symmetry_of(process_))),
       ledger_(ledger),
-      a_(assemble(coarse.comm(), process_, *axis_, 0, symmetry_of(process_), Rest::killing,
-                  ledger)),
+      a_(assemble(coarse.comm(), process_, *axis_, 0, symmetry_of(process_), Rest::killing, ledger,
+                  Form::by_elements)),
       high_(a_.matrix(), coarse_.a().matrix(),
             hierarchy(a_.states(), *axis_, coarse_.a().states(), coarse.axis())),
       measure_(a_.matrix()) {

@@ -89,6 +89,11 @@ std::vector<int> StateSpace::local_levels() const {
   return levels;
 }
 
+PetscInt StateSpace::local_nodes() const {
+  const auto lines = static_cast<PetscInt>(halves().size()) * nodes_;
+  return lines * levels_below(blocks_[rank_], levels_ + 1);
+}
+
 bool StateSpace::has_state(int row, int i) const {
   if (row == 0) {
     const bool below = !folded() && has_origin(Half::lower, -i);
@@ -191,6 +196,12 @@ petsc::Structure StateSpace::structure() const {
 StateSpace::NodeLine StateSpace::nodes_of(Half half, int level) const {
   const PetscInt first = index({StateKind::node, half, level, 0});
   return {first, nodes_ > 1 ? index({StateKind::node, half, level, 1}) - first : 0};
+}
+
+PetscInt StateSpace::strip(Half half, int from, int size) const {
+  const Block& block = blocks_[rank_];
+  const int row = half == Half::upper ? from + 1 : -(from + size);
+  return row_offset(block, row);
 }
 
 PetscInt StateSpace::index(const State& state) const {

@@ -26,9 +26,10 @@ KolmogorovOperator entered(petsc::Ledger& ledger, Make make) {
 
 KolmogorovOperator assemble(MPI_Comm comm, const model::Process& process,
                             const velocity::Axis& axis, PetscScalar lambda, Symmetry symmetry,
-                            Rest rest, petsc::Ledger& ledger) {
-  return entered(ledger,
-                 [&] { return KolmogorovOperator(comm, process, axis, lambda, symmetry, rest); });
+                            Rest rest, petsc::Ledger& ledger, Form form) {
+  return entered(ledger, [&] {
+    return KolmogorovOperator(comm, process, axis, lambda, symmetry, rest, form);
+  });
 }
 
 KolmogorovOperator assemble_derivative(MPI_Comm comm, const model::Process& process,
@@ -38,25 +39,32 @@ KolmogorovOperator assemble_derivative(MPI_Comm comm, const model::Process& proc
       ledger, [&] { return KolmogorovOperator::derivative(comm, process, axis, symmetry, theta); });
 }
 
-petsc::Structure Operators::structure(petsc::Ledger& ledger) const {
+petsc::Structure Operators::structure(petsc::Ledger& ledger) {
   const petsc::PhaseTimer timer("analysis", ledger.analysis_seconds);
   petsc::Structure structure = a.states().structure();
   if (!coarse) return structure;
   structure.multigrid = std::make_unique<petsc::PMultigrid>(
       a.matrix(), coarse->matrix(), coarse->states().chain(),
       hierarchy(a.states(), *axis, coarse->states(), *coarse_axis));
+  structure.assembled = [this] { return assembled.emplace(assemble()).matrix(); };
   return structure;
 }
 
 Operators Systems::operators(const SystemKey& key) {
   const auto& [lambda, symmetry, rest] = key;
-  Operators result{assemble(comm_, process_, *axis_, lambda, symmetry, rest, ledger_)};
-  if (petsc::chosen_solver(kSlidePrefix, preferred_) != petsc::Solver::p_multigrid) return result;
-  result.axis = std::dynamic_pointer_cast<const velocity::HpAxis>(axis_);
-  if (!result.axis) return result;
+  const auto made = [this, key](Form form) {
+    return assemble(comm_, process_, *axis_, key.lambda, key.symmetry, key.rest, ledger_, form);
+  };
+  const bool iterates =
+      petsc::chosen_solver(kSlidePrefix, preferred_) == petsc::Solver::p_multigrid;
+  const auto axis = std::dynamic_pointer_cast<const velocity::HpAxis>(axis_);
+  if (!iterates || !axis) return {made(Form::assembled)};
+  Operators result{made(Form::by_elements)};
+  result.axis = axis;
+  result.assemble = [made] { return made(Form::assembled); };
   // A part of the solver, not one of the operators asked for.
   const petsc::PhaseTimer timer("assembly", ledger_.assembly_seconds);
-  result.coarse_axis = result.axis->coarsened(kCoarseDegree);
+  result.coarse_axis = axis->coarsened(kCoarseDegree);
   result.coarse.emplace(comm_, process_, *result.coarse_axis, lambda, symmetry, rest);
   return result;
 }
@@ -69,7 +77,7 @@ System& Systems::at(double lambda, Symmetry symmetry, Rest rest) {
 }
 
 petsc::Analysis Systems::analyse(const SystemKey& key) {
-  const Operators made = operators(key);
+  Operators made = operators(key);
   return petsc::Factorization::analyse(made.a.matrix(), kSlidePrefix, ledger_,
                                        made.structure(ledger_));
 }

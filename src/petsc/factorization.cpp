@@ -50,8 +50,7 @@ Solver Structure::preferred() const {
 Factorization::Factorization(Mat matrix, const std::string& prefix, Ledger& ledger,
                              Structure structure)
     : measure_(matrix), prefix_(prefix), ledger_(ledger) {
-  check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
-  matrix_ = MatHandle(matrix);
+  keep(matrix);
   try {
     use(std::move(structure));
   } catch (const NotReached&) {
@@ -60,17 +59,25 @@ Factorization::Factorization(Mat matrix, const std::string& prefix, Ledger& ledg
   }
 }
 
+void Factorization::keep(Mat matrix) {
+  check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
+  matrix_ = MatHandle(matrix);
+  measure_ = BackwardError(matrix);
+}
+
 bool Factorization::replaceable() const {
   return kind_of(ksp_) == Solver::p_multigrid && chain_ && !chooses_solver(prefix_);
 }
 
 void Factorization::eliminate_instead() {
   own_.reset();  // its memory first
+  if (assembled_) keep(assembled_());
   use({chain_, true});
 }
 
 void Factorization::use(Structure structure) {
   chain_ = structure.chain;
+  assembled_ = structure.assembled;
   ksp_ = linear_solver(matrix_, prefix_, structure.preferred());
   {
     const PhaseTimer timer("analysis", ledger_.analysis_seconds);

@@ -5,6 +5,7 @@
 #include <petscblaslapack.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "stickslip/petsc/check.hpp"
@@ -47,6 +48,24 @@ auto* of_arm(Both& both, int arm) {
 
 std::size_t square(int n) { return static_cast<std::size_t>(n) * n; }
 
+const SplitMatrix& parts_of(Mat matrix) {
+  const SplitMatrix* split = SplitMatrix::of(matrix);
+  if (split == nullptr) throw std::logic_error("high modes are those of a split matrix");
+  return *split;
+}
+
+// A matrix on the nodes of an element in the basis of its coarse values and high modes.
+Scalars in_modes(const ElementModes& modes, const Scalars& nodal) {
+  const int q = modes.nodes, c = modes.coarse_nodes, h = modes.high();
+  Scalars half(nodal.size()), modal(nodal.size());
+  product("NN", c, q, q, 1, modes.restriction.data(), c, nodal.data(), q, 0, half.data(), q);
+  product("NN", h, q, q, 1, modes.to_high.data(), h, nodal.data(), q, 0, half.data() + c, q);
+  product("NN", q, c, q, 1, half.data(), q, modes.prolong.data(), q, 0, modal.data(), q);
+  product("NN", q, h, q, 1, half.data(), q, modes.from_high.data(), q, 0,
+          modal.data() + static_cast<std::ptrdiff_t>(q) * c, q);
+  return modal;
+}
+
 // Between the coarse nodes of each element and its fine ones, upwards or downwards.
 void transfer(const Hierarchy& hierarchy, const PetscScalar* from, PetscScalar* to, bool upwards,
               bool transposed) {
@@ -80,7 +99,8 @@ void prolong(const Hierarchy& hierarchy, Vec c, Vec x, bool transposed) {
 }
 
 HighModes::HighModes(Mat matrix, Mat coarse, Hierarchy hierarchy)
-    : hierarchy_(std::move(hierarchy)),
+    : parts_(parts_of(matrix)),
+      hierarchy_(std::move(hierarchy)),
       comm_(PetscObjectComm(reinterpret_cast<PetscObject>(matrix))),
       ranks_(neighbours(comm_, hierarchy_.levels)),
       stacks_(hierarchy_.strips.size()) {
@@ -102,8 +122,8 @@ double HighModes::entries() const {
 double HighModes::operations() const {
   double sum = 0;
   for (const Strip& strip : hierarchy_.strips) {
-    const double high = strip.modes->high(), all = strip.modes->nodes;
-    sum += 4 * all * all * all + 2 * high * high * high;
+    const double high = strip.modes->high(), low = strip.modes->coarse_nodes, all = high + low;
+    sum += 8 * all * all + 2 * low * high * all + 2 * high * high * high;
   }
   return hierarchy_.levels * sum;
 }
@@ -122,7 +142,7 @@ PetscScalar HighModes::inwards(const Stack& stack, const Arm& arm, int level) {
   return arm.number == 0 ? stack.up[level] : stack.down[level];
 }
 
-// Jumps leave the velocity as it is, at the same rate on all nodes: those of the first node tell
+// Jumps leave the velocity as it is, at the same rate on all nodes: the row of the first node tells
 // all. What lies on other ranks comes before (inwards) or after the local columns.
 void HighModes::read_couplings(const Strip& strip, Stack& stack) const {
   const int levels = hierarchy_.levels;
@@ -135,7 +155,8 @@ void HighModes::read_couplings(const Strip& strip, Stack& stack) const {
     const bool upper = a > above.end;
     const bool next_up = a + 1 < levels && !(lower && a + 1 == below.end && !hierarchy_.centre);
     const bool next_down = a > 0 && !(upper && a - 1 == above.end && !hierarchy_.centre);
-    RowView(matrix_, row).for_each([&](PetscInt column, PetscScalar value) {
+    RowView(parts_.sparse(), row).for_each([&](PetscInt column, PetscScalar value) {
+      if (column == row) stack.diagonal[a] = value;
       const bool inner = column < first_row_, outer = column >= end_row_;
       if ((next_up && column == row + 1) || (lower && inner) || (upper && outer)) {
         stack.up[a] += value;
@@ -149,63 +170,37 @@ void HighModes::read_couplings(const Strip& strip, Stack& stack) const {
   }
 }
 
-// The matrix on the nodes of the strip, without what joins it to other elements and levels: entry
-// (m, n) of level a at m + q (a + levels n).
-void HighModes::read_transport(const Strip& strip, Scalars& values) const {
-  const int levels = hierarchy_.levels, q = strip.modes->nodes;
-  values.assign(square(q) * levels, 0.0);
-  for (int m = 0; m < q; ++m) {
-    for (int a = 0; a < levels; ++a) {
-      const PetscInt row = strip.first + m * levels + a;
-      RowView(matrix_, first_row_ + row).for_each([&](PetscInt column, PetscScalar value) {
-        const PetscInt offset = column - first_row_ - strip.first - a;
-        if (offset < 0 || offset % levels != 0 || offset / levels >= q) return;
-        if (column < first_row_ || column >= end_row_) return;
-        values[m + q * (a + static_cast<std::size_t>(levels) * (offset / levels))] = value;
-      });
-    }
-  }
-}
-
-// S + J_aa of all levels into the pivots.
-bool HighModes::complement(const Strip& strip, Stack& stack, Blocks& blocks) const {
-  const ElementModes& modes = *strip.modes;
-  const int levels = hierarchy_.levels, q = modes.nodes, c = modes.coarse_nodes, h = modes.high();
-  // Into the basis (coarse, high), from the left and from the right.
-  auto& [nodal, half, modal] = blocks;
-  read_transport(strip, nodal);
-  half.resize(nodal.size());
-  modal.resize(nodal.size());
-  const int many = levels * q;
-  product("NN", c, many, q, 1, modes.restriction.data(), c, nodal.data(), q, 0, half.data(), q);
-  product("NN", h, many, q, 1, modes.to_high.data(), h, nodal.data(), q, 0, half.data() + c, q);
-  const std::size_t column = static_cast<std::size_t>(levels) * q;
-  product("NN", many, c, q, 1, half.data(), many, modes.prolong.data(), q, 0, modal.data(), many);
-  product("NN", many, h, q, 1, half.data(), many, modes.from_high.data(), q, 0,
-          modal.data() + column * c, many);
-  Scalars low(square(c)), right(static_cast<std::size_t>(c) * h);
+// S + J_aa of all levels into the pivots. Here A is that of the element alone: the diagonal of the
+// sparse part less transport.
+bool HighModes::complement(std::size_t n, Stack& stack) const {
+  const ElementModes& modes = *hierarchy_.strips[n].modes;
+  const Transport& transport = parts_.transport();
+  const int q = modes.nodes, c = modes.coarse_nodes, h = modes.high();
+  const auto nodal = transport.terms(n);
+  const Scalars by_excess = in_modes(modes, nodal.by_excess),
+                constant = in_modes(modes, nodal.constant), by_up = in_modes(modes, nodal.by_up),
+                by_down = in_modes(modes, nodal.by_down);
+  Scalars block(square(q));
   std::vector<PetscBLASInt> exchanges(static_cast<std::size_t>(c));
   bool sound = true;
-  for (int a = 0; a < levels; ++a) {
-    const PetscScalar* block = modal.data() + static_cast<std::size_t>(q) * a;
+  for (int a = 0; a < hierarchy_.levels; ++a) {
+    const auto [excess, up, down] = transport.speeds(n, a);
+    for (std::size_t k = 0; k < block.size(); ++k) {
+      block[k] = -(excess * by_excess[k] + constant[k] + up * by_up[k] + down * by_down[k]);
+    }
+    // Of the jumps, coarse values keep the shift alone.
     const PetscScalar jumps = -(1 - kShift) * (stack.up[a] + stack.down[a]);
-    for (int n = 0; n < c; ++n) {
-      std::copy_n(block + column * n, c, low.data() + static_cast<std::ptrdiff_t>(c) * n);
-      low[n + static_cast<std::ptrdiff_t>(c) * n] -= jumps;
-    }
+    for (int k = 0; k < q; ++k) block[k + q * k] += stack.diagonal[a] - (k < c ? jumps : 0.0);
+    PetscScalar* right = block.data() + static_cast<std::ptrdiff_t>(q) * c;
     PetscScalar* s = stack.pivots.data() + square(h) * a;
-    for (int n = 0; n < h; ++n) {
-      const PetscScalar* from = block + column * (c + n);
-      std::copy_n(from, c, right.data() + static_cast<std::ptrdiff_t>(c) * n);
-      std::copy_n(from + c, h, s + static_cast<std::ptrdiff_t>(h) * n);
-    }
-    const PetscBLASInt size = c, count = h;
+    for (int k = 0; k < h; ++k) std::copy_n(right + c + q * k, h, s + h * k);
+    const PetscBLASInt size = c, count = h, stride = q;
     PetscBLASInt info = 0;
-    LAPACKgetrf_(&size, &size, low.data(), &size, exchanges.data(), &info);
+    LAPACKgetrf_(&size, &size, block.data(), &stride, exchanges.data(), &info);
     sound = sound && info == 0;
-    LAPACKgetrs_("N", &size, &count, low.data(), &size, exchanges.data(), right.data(), &size,
+    LAPACKgetrs_("N", &size, &count, block.data(), &stride, exchanges.data(), right, &stride,
                  &info);
-    product("NN", h, h, c, -1, block + c, many, right.data(), c, 1, s, h);
+    product("NN", h, h, c, -1, block.data() + c, q, right, q, 1, s, h);
   }
   return sound;
 }
@@ -269,7 +264,7 @@ void HighModes::exchange_inner_couplings() {
 }
 
 // All large memory.
-void HighModes::reserve(Blocks& blocks) {
+void HighModes::reserve() {
   const auto levels = static_cast<std::size_t>(hierarchy_.levels);
   high_.resize(stacks_.size());
   take_together(comm_, [&] {
@@ -277,24 +272,21 @@ void HighModes::reserve(Blocks& blocks) {
       const ElementModes& modes = *hierarchy_.strips[n].modes;
       stacks_[n].up.resize(levels);
       stacks_[n].down.resize(levels);
+      stacks_[n].diagonal.resize(levels);
       stacks_[n].pivots.resize(square(modes.high()) * levels);
       high_[n].resize(modes.high() * levels);
-      for (Scalars* basis : {&blocks.nodal, &blocks.half, &blocks.modal}) {
-        basis->reserve(square(modes.nodes) * levels);
-      }
     }
   });
 }
 
 void HighModes::factor() {
-  Blocks blocks;
-  reserve(blocks);
+  reserve();
   bool sound = true;  // on this rank; the others learn of it when all are through
   for (std::size_t n = 0; n < stacks_.size(); ++n) {
     const Strip& strip = hierarchy_.strips[n];
     if (strip.modes->high() == 0) continue;
     read_couplings(strip, stacks_[n]);
-    sound = complement(strip, stacks_[n], blocks) && sound;
+    sound = complement(n, stacks_[n]) && sound;
     sound = eliminate(strip, stacks_[n]) && sound;
   }
   exchange_inner_couplings();

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <new>
 #include <set>
 #include <sstream>
 #include <string>
@@ -38,7 +37,7 @@ void set_default(const std::string& option, const char* value) {
   own_defaults().insert(option);
 }
 
-// Called by PETSc: errors go back as codes, exceptions may not pass through it.
+// Called by PETSc.
 
 // PETSc's preconditioner of the type "shell" is filled in when its matrix is known.
 PetscErrorCode create_shell(PC pc, const char* name) {
@@ -51,17 +50,11 @@ PetscErrorCode create_p_multigrid(PC pc) { return create_shell(pc, kPMultigrid);
 
 template <bool transposed>
 PetscErrorCode apply(PC pc, Vec b, Vec x) {
-  void* own = nullptr;
-  const PetscErrorCode code = PCShellGetContext(pc, &own);
-  if (code != 0) return code;
-  try {
+  return guarded([&] {
+    void* own = nullptr;
+    check(PCShellGetContext(pc, &own));
     static_cast<const Preconditioner*>(own)->apply(b, x, transposed);
-  } catch (const PetscFailure& failure) {
-    return failure.code();
-  } catch (const std::bad_alloc&) {
-    return PETSC_ERR_MEM;
-  }
-  return 0;
+  });
 }
 
 PC preconditioner_of(KSP ksp) {

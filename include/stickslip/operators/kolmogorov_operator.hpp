@@ -21,6 +21,12 @@ enum class Rest {
   killing_edges    ///< unknowns, but killed on reaching (x_+-k, 0, 0) (R-check of Prop. 4.1)
 };
 
+/// How an operator is stored.
+enum class Form {
+  assembled,   ///< all entries, in an AIJ matrix
+  by_elements  ///< a petsc::SplitMatrix: jumps and ends of the axis stored, transport applied
+};
+
 /// Parameters of the process by which operators can be differentiated.
 enum class Parameter {
   mu_d,
@@ -45,10 +51,10 @@ enum class Parameter {
 /// the paper's section 5.
 class KolmogorovOperator {
  public:
-  /// Assembles the local rows. The matrix lives as long as the operator. Collective. O(local
-  /// nonzeros).
+  /// Assembles the local rows. The matrix lives as long as the operator. By elements on hp axes
+  /// only. Collective. O(local nonzeros); by elements O(local states).
   KolmogorovOperator(MPI_Comm comm, const model::Process& process, const velocity::Axis& axis,
-                     PetscScalar lambda, Symmetry symmetry, Rest rest);
+                     PetscScalar lambda, Symmetry symmetry, Rest rest, Form form = Form::assembled);
 
   /// dA/dtheta with all members, for Rest::killing: entry_rates and from_rest are those of
   /// -dA_us/dtheta. Elements and upwind directions stay as they are. Collective.
@@ -58,6 +64,7 @@ class KolmogorovOperator {
 
   [[nodiscard]] const StateSpace& states() const { return states_; }
   [[nodiscard]] Mat matrix() const { return matrix_; }
+  /// Of the assembled matrix, whether or not all are stored.
   [[nodiscard]] PetscInt64 nonzeros() const { return nonzeros_; }
 
   /// The functional u -> u(s+) (upper) or u(s-) (lower; unfolded only) as a vector. Collective.
@@ -87,10 +94,12 @@ class KolmogorovOperator {
 
  private:
   KolmogorovOperator(MPI_Comm comm, const model::Process& process, const velocity::Axis& axis,
-                     PetscScalar lambda, Symmetry symmetry, Rest rest,
+                     PetscScalar lambda, Symmetry symmetry, Rest rest, Form form,
                      std::optional<Parameter> derivative);
 
-  void split();
+  // The AIJ matrix of the rows.
+  [[nodiscard]] petsc::MatHandle stored();
+  void separate_others();
 
   struct Coupling {
     PetscInt row;  // local

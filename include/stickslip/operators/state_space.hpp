@@ -64,6 +64,8 @@ class StateSpace {
 
   [[nodiscard]] PetscInt global_size() const { return global_size_; }
   [[nodiscard]] PetscInt local_size() const { return local_size_; }
+  /// Those of them that are nodes.
+  [[nodiscard]] PetscInt local_nodes() const;
   /// First global index of this rank.
   [[nodiscard]] PetscInt local_begin() const { return blocks_[rank_].begin; }
   /// Noise levels i owned by this rank, rising.
@@ -89,6 +91,11 @@ class StateSpace {
   };
   /// O(1).
   [[nodiscard]] NodeLine nodes_of(Half half, int level) const;
+
+  /// Where the nodes from ... from + size - 1 of a half begin in the local rows, in which they
+  /// follow one another from low to high velocity, each on all local levels. Not for ranks without
+  /// levels.
+  [[nodiscard]] PetscInt strip(Half half, int from, int size) const;
 
   /// The local states by shells, which jumps of the noise couple with the next ones alone: in each
   /// those that fall towards v = 0, fast ones first, then states at rest, then those that rise;

@@ -1,6 +1,7 @@
 #pragma once
 /// The operators of one discretisation, assembled and factored when first asked for.
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -23,7 +24,8 @@ inline const std::string kSlidePrefix = "slide_";
 /// Assembles an operator and enters it in the ledger. Collective.
 [[nodiscard]] KolmogorovOperator assemble(MPI_Comm comm, const model::Process& process,
                                           const velocity::Axis& axis, PetscScalar lambda,
-                                          Symmetry symmetry, Rest rest, petsc::Ledger& ledger);
+                                          Symmetry symmetry, Rest rest, petsc::Ledger& ledger,
+                                          Form form = Form::assembled);
 
 /// The same for its derivative. Collective.
 [[nodiscard]] KolmogorovOperator assemble_derivative(MPI_Comm comm, const model::Process& process,
@@ -35,9 +37,12 @@ struct Operators {
   KolmogorovOperator a;
   std::optional<KolmogorovOperator> coarse = {};  ///< the same on lower degrees, for p-multigrid
   std::shared_ptr<const velocity::HpAxis> axis = {}, coarse_axis = {};  ///< of these, if so
+  /// A with all entries, for p-multigrid, which has it by elements; made when it comes to that.
+  std::function<KolmogorovOperator()> assemble = {};
+  std::optional<KolmogorovOperator> assembled = {};
 
   /// Refers to this object. Collective.
-  [[nodiscard]] petsc::Structure structure(petsc::Ledger& ledger) const;
+  [[nodiscard]] petsc::Structure structure(petsc::Ledger& ledger);
 };
 
 /// lambda - L with its solver.

@@ -29,6 +29,8 @@ struct Structure {
   std::function<Chain()> chain = {};  ///< for an elimination by levels, asked when it comes to that
   bool narrow = false;  ///< blocks of the chain are so small that dense ones beat sparse ones
   std::unique_ptr<PMultigrid> multigrid = nullptr;  ///< for iteration, preferred where there is one
+  /// The matrix with all entries, where one for iteration lacks them; collective.
+  std::function<Mat()> assembled = {};
 
   [[nodiscard]] Solver preferred() const;
 };
@@ -76,6 +78,7 @@ class Factorization {
   static void probe_options(const std::string& prefix);
 
  private:
+  void keep(Mat matrix);
   void factor();
   void factor_by_petsc();
   [[nodiscard]] Solution solve(Vec b, bool transposed, Vec guess);
@@ -91,6 +94,7 @@ class Factorization {
   std::unique_ptr<Preconditioner> own_;  // null: PETSc's preconditioner does it all
   KspHandle ksp_;
   std::function<Chain()> chain_;
+  std::function<Mat()> assembled_;
   std::string prefix_;
   Ledger& ledger_;
 };

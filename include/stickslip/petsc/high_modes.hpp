@@ -12,6 +12,7 @@
 
 #include "stickslip/petsc/handle.hpp"
 #include "stickslip/petsc/neighbours.hpp"
+#include "stickslip/petsc/split_matrix.hpp"
 
 namespace stickslip::petsc {
 
@@ -65,8 +66,8 @@ void prolong(const Hierarchy& hierarchy, Vec c, Vec x, bool transposed);
 /// degrees and noise.
 class HighModes {
  public:
-  /// Of `matrix`, kept by reference count, over `coarse`, of which only the layout counts.
-  /// Collective.
+  /// Of a SplitMatrix, kept by reference count, whose strips are those of the hierarchy, over
+  /// `coarse`, of which only the layout counts. Collective.
   HighModes(Mat matrix, Mat coarse, Hierarchy hierarchy);
 
   /// Reads the matrix and eliminates. Collective. Throws NotReached if a block is singular,
@@ -87,10 +88,10 @@ class HighModes {
 
  private:
   using Scalars = std::vector<PetscScalar>;
-  // The chain of the high modes of an element: couplings to the levels above and below, inverse
-  // pivots, and the couplings of the levels of other ranks to those here, by arm.
+  // The chain of the high modes of an element: couplings to the levels above and below, diagonals
+  // of S, inverse pivots, and the couplings of the levels of other ranks to those here, by arm.
   struct Stack {
-    Scalars up, down, pivots;
+    Scalars up, down, diagonal, pivots;
     std::array<PetscScalar, 2> from_outer{}, from_inner{};
   };
   // Levels below 0 or above it, from the outermost local one inwards.
@@ -101,15 +102,10 @@ class HighModes {
   [[nodiscard]] static PetscScalar outwards(const Stack& stack, const Arm& arm, int level);
   [[nodiscard]] static PetscScalar inwards(const Stack& stack, const Arm& arm, int level);
 
-  // Blocks of an element on all levels, in three bases.
-  struct Blocks {
-    Scalars nodal, half, modal;
-  };
-  void reserve(Blocks& blocks);
+  void reserve();
   void read_couplings(const Strip& strip, Stack& stack) const;
-  void read_transport(const Strip& strip, Scalars& values) const;
   // Whether no block was singular.
-  [[nodiscard]] bool complement(const Strip& strip, Stack& stack, Blocks& blocks) const;
+  [[nodiscard]] bool complement(std::size_t n, Stack& stack) const;
   [[nodiscard]] bool eliminate(const Strip& strip, Stack& stack);
   void exchange_inner_couplings();
   void add(const PetscScalar* r, PetscScalar* x, bool transposed) const;
@@ -117,6 +113,7 @@ class HighModes {
   void pass_outwards(const Strip& strip, const Stack& stack, Scalars& z, bool transposed) const;
 
   MatHandle matrix_;
+  const SplitMatrix& parts_;
   VecHandle coarse_b_, coarse_x_, residual_;
   Hierarchy hierarchy_;
   MPI_Comm comm_;

@@ -32,16 +32,21 @@ class ReadView {
 /// Write access to the local part of a Vec for the life of the view. Not collective.
 class WriteView {
  public:
-  explicit WriteView(Vec vec) : vec_(vec) { check(VecGetArray(vec_, &data_)); }
+  explicit WriteView(Vec vec) : vec_(vec) {
+    check(VecGetLocalSize(vec_, &size_));
+    check(VecGetArray(vec_, &data_));
+  }
   ~WriteView() { (void)VecRestoreArray(vec_, &data_); }
   WriteView(const WriteView&) = delete;
   WriteView& operator=(const WriteView&) = delete;
 
   [[nodiscard]] PetscScalar& operator[](PetscInt i) { return data_[i]; }
+  [[nodiscard]] PetscInt size() const { return size_; }
   [[nodiscard]] PetscScalar* data() { return data_; }
 
  private:
   Vec vec_;
+  PetscInt size_ = 0;
   PetscScalar* data_ = nullptr;
 };
 
