@@ -23,7 +23,7 @@ namespace {
 using Scalars = std::vector<PetscScalar>;
 
 // Least rows of a block of the triangles: below, products are too small to be fast.
-constexpr int kLeastBlock = 4;
+constexpr int kLeastBlock = 12;
 
 // y += a x or a^T x for a by columns.
 void add_product(const PetscScalar* a, int rows, int columns, bool transposed, const PetscScalar* x,

@@ -135,7 +135,7 @@ double entries_counted(PetscInt entries) {
 
 // Backward errors, which a solve looks at, end some digits below the residuals that rule here.
 void set_p_multigrid(KSP ksp) {
-  constexpr double tolerance = 1e-11;
+  constexpr double tolerance = 1e-12;
   constexpr PetscInt most = 60;
   check(KSPSetType(ksp, KSPGMRES));
   check(KSPGMRESSetRestart(ksp, most));

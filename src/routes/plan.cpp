@@ -176,7 +176,8 @@ Plan plan_of(const Request& request) {
 bool prefers_iteration(const Request& request, std::int64_t unknowns) {
   constexpr std::int64_t least = 150'000;
   constexpr int most_solves = 2;
-  if (unknowns < least || request.scene.drag.is_none()) return false;
+  constexpr double finest = 1e-10;  // what the tolerance of the iteration is good for
+  if (unknowns < least || request.accuracy < finest || request.scene.drag.is_none()) return false;
   const auto few = [](const Use& use) { return use.plain == 0 && use.transposed <= most_solves; };
   const auto tasks = plan_of(request).tasks;
   return !tasks.empty() && std::all_of(tasks.begin(), tasks.end(), [&few](const Task& task) {

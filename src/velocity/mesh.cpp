@@ -73,6 +73,16 @@ double killed_layer(const model::Process& process, double lambda) {
   return (counts ? gap : gap + noise.delta) / (rate + lambda);
 }
 
+// Speed that a body which leaves v = 0 has when the noise might turn it back: at the excess g it
+// does so after the time g^2 tau^2/2. On the half line where that is less.
+double speed_of_leaving(const model::Process& process) {
+  const auto cubed = [](const model::Process& half) {
+    return std::pow(half.excess(half.static_index() + 1), 3);
+  };
+  const double tau = process.noise.tau;
+  return 0.3 * tau * tau * std::min(cubed(process), cubed(process.mirrored()));
+}
+
 bool has_waves(const model::Process& process, const MeshRule& rule) {
   return rule.rates.omega > 4 * process.noise.rate();
 }
@@ -143,17 +153,28 @@ std::vector<double> element_ends(const model::Process& process, const MeshRule& 
 // An element at v holds a share of what is asked for that falls like v^0.8 to v (levels that it
 // concerns times how far the solution is from constant there), half a digit from one element to the
 // next, and a degree is worth a digit. One degree for two elements changed no error of seven scenes
-// in which one for one made them 10 to 1000 times larger; factors have half the entries. With
+// in which one for one made them 10 to 1000 times larger; factors have half the entries. That is
+// so for bodies that come to rest. Those that leave it pass all speeds above `speed_of_leaving`,
+// where they might turn back, so that errors there multiply: at mu_d = mu_s and delta = 1/256 they
+// were 1e4 times larger with degrees falling by eight, and as small as ever with two. With
 // less than degree 2 the first rungs were wrong by more than they said (mu_d = 0.9). Waves are
 // as steep in every element, and what ends within 1/lambda before the noise changes comes from
 // small v.
 std::vector<int> element_degrees(const model::Process& process, const MeshRule& rule, int degree) {
+  constexpr int most_where_left = 2;  // degrees less
   const int layers = rule.layers > 0 ? rule.layers : natural_layers(process, rule);
-  std::vector<int> degrees(element_ends(process, rule).size() - 1, degree);
+  const auto ends = element_ends(process, rule);
+  std::vector<int> degrees(ends.size() - 1, degree);
   const bool early = rule.rates.lambda * process.noise.tau > 1;
   if (early || has_waves(process, rule)) return degrees;
-  for (int e = 0; e < std::min(layers, static_cast<int>(degrees.size())); ++e) {
-    degrees[e] = std::max(std::min(2, degree), degree - (layers - 1 - e) / 2);
+  const double leaving = speed_of_leaving(process);
+  const int graded = std::min(layers, static_cast<int>(degrees.size()));
+  const auto slow = std::count_if(ends.begin() + 1, ends.begin() + 1 + graded,
+                                  [leaving](double end) { return end < leaving; });
+  for (int e = 0; e < graded; ++e) {
+    const int below_leaving = std::max(static_cast<int>(slow) - e, 0);
+    const int less = std::min((layers - 1 - e) / 2, most_where_left + below_leaving / 2);
+    degrees[e] = std::max(std::min(2, degree), degree - less);
   }
   return degrees;
 }

@@ -131,6 +131,6 @@ TEST_CASE("nested system: an iteration starts from the law on lower degrees", "[
     const StationaryLaw before(coarse);
     const StationaryLaw direct(fine), found(again, &before);
     CHECK(distance(means(found), means(direct)) < 1e-11);
-    CHECK(warm.iterations < 0.8 * cold.iterations);
+    CHECK(warm.iterations < 0.85 * cold.iterations);
   }
 }

@@ -70,6 +70,27 @@ TEST_CASE("mesh: degrees fall by one in two layers towards v = 0, and only there
   CHECK(velocity::element_degrees(p, rule, 9) == std::vector(cut, 9));
 }
 
+TEST_CASE("mesh: degrees fall by two at most where bodies that leave v = 0 might turn back") {
+  const auto fall = [](const model::Process& p, double leaving) {
+    const auto ends = velocity::element_ends(p, rule_to(7));
+    const auto degrees = velocity::element_degrees(p, rule_to(7), 9);
+    int above = 0, below = 0;
+    for (std::size_t e = 0; e < degrees.size(); ++e) {
+      int& most = ends[e + 1] >= leaving ? above : below;
+      most = std::max(most, 9 - degrees[e]);
+    }
+    return std::pair{above, below};
+  };
+  const double delta = 1.0 / 64;
+  const auto leaving = [delta](double mu_d) { return 0.3 * std::pow(1 + delta - mu_d, 3); };
+  for (double mu_d : {1.0, 0.9, 0.5}) {
+    INFO("mu_d " << mu_d);
+    const auto [above, below] = fall(process(mu_d, 1, delta, {1, 0}), leaving(mu_d));
+    CHECK(above <= 2);
+    CHECK(below >= (mu_d < 1 ? 3 : 0));
+  }
+}
+
 TEST_CASE("mesh: a law has the elements and the tail of the coefficients it stands for") {
   const auto built_in = process(0.5, 1, 0.25, {1, 0.3});
   auto written = built_in;

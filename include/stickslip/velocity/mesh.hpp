@@ -33,7 +33,8 @@ struct MeshRule {
 [[nodiscard]] std::vector<double> element_ends(const model::Process& process, const MeshRule& rule);
 
 /// Polynomial degree of each of these elements, at most `degree`: what happens at v concerns levels
-/// within about v^(1/3) of mu_d alone, so that elements nearer to v = 0 need fewer digits.
+/// within about v^(1/3) of mu_d alone, so that elements nearer to v = 0 need fewer digits; but not
+/// more than two where bodies that have just left v = 0 might turn back.
 [[nodiscard]] std::vector<int> element_degrees(const model::Process& process, const MeshRule& rule,
                                                int degree);
 
