@@ -56,9 +56,9 @@ class Predictor {
 
   PredictedStep follow_nested(const PredictedStep& base) {
     petsc::Ledger ledger;
-    const auto a = operators::assemble(comm_, process_, *axis_, 0, operators::symmetry_of(process_),
-                                       operators::Rest::killing, ledger,
-                                       operators::Form::by_elements);
+    const auto a =
+        operators::assemble(comm_, process_, *axis_, 0, operators::symmetry_of(process_),
+                            operators::Rest::killing, ledger, operators::Form::by_elements);
     step_.unknowns = ledger.unknowns;
     step_.nonzeros = ledger.nonzeros;
     const double parallel = kNestedWork * static_cast<double>(ledger.unknowns);

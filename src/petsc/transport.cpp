@@ -46,7 +46,8 @@ Transport Transport::sizes() const {
 
 void Transport::subtract(const PetscScalar* x, PetscScalar* y, bool transposed) const {
   if (levels_ == 0) return;
-  transposed ? subtract_transposed(x, y) : subtract_plain(x, y);
+  if (transposed) return subtract_transposed(x, y);
+  subtract_plain(x, y);
 }
 
 const double* Transport::speed_at(const TransportStrip& s, int node) const {

@@ -18,8 +18,8 @@ namespace stickslip::operators {
 /// a tenth. Nothing is factored but blocks of high modes.
 class NestedSystem {
  public:
-  /// Over coarse.at(0, symmetry_of(process)), assembled on `axis`, an hp axis with the elements of
-  /// that of `coarse`, which must outlive this object. Collective. Throws NoMemory, or NotReached
+  /// Over coarse.at(0, symmetry_of(process)), on `axis`, an hp axis with the elements of that of
+  /// `coarse`, which must outlive this object. Collective. Throws NoMemory, or NotReached
   /// if a block of high modes is singular.
   NestedSystem(Systems& coarse, std::shared_ptr<const velocity::Axis> axis, petsc::Ledger& ledger);
 

@@ -10,7 +10,7 @@ namespace stickslip::petsc {
 
 /// A = S - T with a sparse S, the jumps between levels and what happens at the ends of the axis,
 /// and a transport T within each level, as a Mat of type "shell" that can be multiplied with, plain
-/// and transposed: a sixth of the memory of an assembled one, and a fraction of its time.
+/// and transposed: a sixth of the memory of an assembled one, and half of its time.
 class SplitMatrix {
  public:
   /// The Mat owns both. T acts on the local rows of S. Collective.
@@ -20,6 +20,7 @@ class SplitMatrix {
 
   [[nodiscard]] Mat sparse() const { return sparse_; }
   [[nodiscard]] const Transport& transport() const { return transport_; }
+
   /// y = A x, or A^T x. Collective.
   void multiply(Vec x, Vec y, bool transposed) const;
 

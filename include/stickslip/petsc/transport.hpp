@@ -25,9 +25,9 @@ struct TransportStrip {
   std::shared_ptr<const TransportElement> element;
   PetscInt first = 0;  ///< local row of the first node on the first level
   double length = 0;
-  std::vector<double> drag;                     ///< at the nodes
-  double drag_at_inner = 0, drag_at_outer = 0;  ///< at a and b
-  int inner = -1, outer = -1;  ///< strips on the other side of a and b, -1 for none
+  std::vector<double> drag;                           ///< at the nodes
+  double drag_at_inner = 0, drag_at_outer = 0;        ///< at a and b
+  int inner = -1, outer = -1;                         ///< strips beyond a and b, -1 for none
   std::shared_ptr<const std::vector<double>> excess;  ///< by local level
 };
 
@@ -40,7 +40,7 @@ struct TransportStrip {
 /// of each degree; a product takes 2 q operations for each value. Nothing here is collective.
 class Transport {
  public:
-  /// `levels`: local ones. Strips with an inner or outer one have this rank's.
+  /// `levels`: local ones. A rank has all strips, each on its own levels.
   Transport(int levels, std::vector<TransportStrip> strips);
 
   /// y -= T x, or T^T x.
@@ -71,8 +71,6 @@ class Transport {
 
   /// Entries of T that an assembly would store.
   [[nodiscard]] PetscInt64 entries() const;
-
-  [[nodiscard]] const std::vector<TransportStrip>& strips() const { return strips_; }
 
  private:
   void subtract_plain(const PetscScalar* x, PetscScalar* y) const;
