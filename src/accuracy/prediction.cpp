@@ -27,10 +27,10 @@ constexpr double kIteratedSetUp = 5e-7, kIteratedSolve = 1.6e-6, kCoarseShare = 
 constexpr double kSecondsPerNonzero = 5e-9;  // of a residual
 constexpr double kFixedSeconds = 5e-4;       // of a factorisation
 // A nested step pays for each unknown, and for two solutions through the factors of the step
-// before; where it iterates, its guess saves a third.
+// before; where it iterates, its guess saves a fifth.
 constexpr double kNestedWork = 3e-7;
 constexpr int kNestedSolutions = 2;
-constexpr double kLeftByGuess = 0.7;
+constexpr double kLeftByGuess = 0.8;
 
 class Predictor {
  public:
