@@ -221,10 +221,10 @@ class OneRank(Faults):
         place = self.folder / "place"
         place.mkdir()
         process = self.start(*LONG, "-checkpoint", place / "kept", ranks=2)
-        time.sleep(1.5)
-        for file in place.iterdir():
-            file.unlink()
-        place.rmdir()
+        end = time.monotonic() + 60
+        while not (place / "kept").exists() and time.monotonic() < end:
+            time.sleep(0.02)
+        place.rename(self.folder / "moved")
         _, told = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 1, told)
         self.assertIn("kept", told)
