@@ -193,7 +193,7 @@ bool HighModes::complement(std::size_t n, Stack& stack) const {
     for (int k = 0; k < q; ++k) block[k + q * k] += stack.diagonal[a] - (k < c ? jumps : 0.0);
     PetscScalar* right = block.data() + static_cast<std::ptrdiff_t>(q) * c;
     PetscScalar* s = stack.pivots.data() + square(h) * a;
-    for (int k = 0; k < h; ++k) std::copy_n(right + c + q * k, h, s + h * k);
+    for (std::ptrdiff_t k = 0; k < h; ++k) std::copy_n(right + c + q * k, h, s + h * k);
     const PetscBLASInt size = c, count = h, stride = q;
     PetscBLASInt info = 0;
     LAPACKgetrf_(&size, &size, block.data(), &stride, exchanges.data(), &info);
