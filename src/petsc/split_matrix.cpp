@@ -28,8 +28,9 @@ PetscErrorCode destroy(Mat matrix) {
   return guarded([&] { delete &context(matrix); });
 }
 
-void set_operation(Mat matrix, MatOperation operation, void (*function)()) {
-  check(MatShellSetOperation(matrix, operation, function));
+template <class Function>
+void set_operation(Mat matrix, MatOperation operation, Function function) {
+  check(MatShellSetOperation(matrix, operation, reinterpret_cast<void (*)()>(function)));
 }
 
 void take_magnitudes_of_block(Mat block) {
@@ -53,9 +54,9 @@ MatHandle SplitMatrix::make(MatHandle sparse, Transport transport) {
   MatHandle matrix;
   check(MatCreateShell(comm, local, local, global, global, own.get(), matrix.out()));
   (void)own.release();  // to the matrix
-  set_operation(matrix, MATOP_DESTROY, reinterpret_cast<void (*)()>(destroy));
-  set_operation(matrix, MATOP_MULT, reinterpret_cast<void (*)()>(multiplied<false>));
-  set_operation(matrix, MATOP_MULT_TRANSPOSE, reinterpret_cast<void (*)()>(multiplied<true>));
+  set_operation(matrix, MATOP_DESTROY, destroy);
+  set_operation(matrix, MATOP_MULT, multiplied<false>);
+  set_operation(matrix, MATOP_MULT_TRANSPOSE, multiplied<true>);
   return matrix;
 }
 

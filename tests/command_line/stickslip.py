@@ -5,6 +5,7 @@ import os
 import pathlib
 import subprocess
 import tempfile
+import time
 import unittest
 
 BINARIES = pathlib.Path(os.environ["STICKSLIP_BINARIES"])
@@ -43,6 +44,15 @@ class Case(unittest.TestCase):
         file = self.folder / "summary.json"
         self.run_ok(*options, "-summary", file, **how)
         return json.loads(file.read_text())
+
+    def wait_for_file(self, file, process):
+        """Until a process wrote it; a failure if it ends first, or takes two minutes."""
+        end = time.monotonic() + 120
+        while not file.exists():
+            if process.poll() is not None or time.monotonic() > end:
+                process.kill()
+                self.fail(f"{file.name} was not written")
+            time.sleep(0.02)
 
     def assert_close(self, found, expected, tolerance, message=None):
         self.assertLessEqual(relative_difference(found, expected), tolerance, message)

@@ -221,9 +221,7 @@ class OneRank(Faults):
         place = self.folder / "place"
         place.mkdir()
         process = self.start(*LONG, "-checkpoint", place / "kept", ranks=2)
-        end = time.monotonic() + 60
-        while not (place / "kept").exists() and time.monotonic() < end:
-            time.sleep(0.02)
+        self.wait_for_file(place / "kept", process)
         place.rename(self.folder / "moved")
         _, told = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 1, told)

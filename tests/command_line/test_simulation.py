@@ -4,7 +4,6 @@ import csv
 import json
 import signal
 import subprocess
-import time
 import unittest
 
 import h5py
@@ -144,9 +143,7 @@ class Checkpoints(Case):
         with subprocess.Popen([*map(str, command)], stdout=subprocess.DEVNULL,
                               cwd=self.folder) as process:
             self.addCleanup(process.kill)
-            end = time.monotonic() + 120
-            while not file.exists() and process.poll() is None and time.monotonic() < end:
-                time.sleep(0.02)
+            self.wait_for_file(file, process)
             process.send_signal(signal.SIGKILL)
             return process.wait()
 

@@ -82,9 +82,7 @@ class Interrupted(Case):
                               stderr=subprocess.PIPE, stdout=subprocess.DEVNULL,
                               text=True) as process:
             self.addCleanup(process.kill)
-            end = time.monotonic() + 60
-            while not self.points(place / "kept") and time.monotonic() < end:
-                time.sleep(0.02)
+            self.wait_for_file(place / "kept", process)
             place.rename(self.folder / "moved")  # at once, unlike removing file by file
             _, told = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 1)

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include "../common/options.hpp"
 #include "../common/scenes.hpp"
 #include "stickslip/operators/hierarchy.hpp"
 #include "stickslip/operators/nested_system.hpp"
@@ -121,6 +122,8 @@ TEST_CASE("nested system: the last cycle shows what is left in means", "[paralle
 }
 
 TEST_CASE("nested system: an iteration starts from the law on lower degrees", "[parallel]") {
+  // The fewer digits, the larger the share that a guess has already.
+  const test::Given residual({{"-slide_ksp_rtol", "1e-11"}});
   for (const auto& scene : {scenes()[0], scenes()[5]}) {
     const auto d = degrees(scene, 6, 7);
     petsc::Ledger ledger, cold, warm;
@@ -131,6 +134,6 @@ TEST_CASE("nested system: an iteration starts from the law on lower degrees", "[
     const StationaryLaw before(coarse);
     const StationaryLaw direct(fine), found(again, &before);
     CHECK(distance(means(found), means(direct)) < 1e-11);
-    CHECK(warm.iterations < 0.85 * cold.iterations);
+    CHECK(warm.iterations < 0.8 * cold.iterations);
   }
 }

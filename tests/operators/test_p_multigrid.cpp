@@ -4,6 +4,7 @@
 
 #include "../common/options.hpp"
 #include "../common/scenes.hpp"
+#include "../common/systems.hpp"
 #include "stickslip/operators/hierarchy.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/check.hpp"
@@ -18,16 +19,6 @@ using operators::Systems;
 using petsc::check;
 
 namespace {
-
-model::Scene with_bias(model::Scene scene, double bias) {
-  scene.bias = bias;
-  return scene;
-}
-
-model::Scene with_levels(model::Scene scene, int levels) {
-  scene.noise_levels = levels;
-  return scene;
-}
 
 petsc::VecHandle like(Vec x) {
   petsc::VecHandle y;
@@ -94,30 +85,11 @@ petsc::VecHandle restricted(const Pair& p, Vec fine) {
   return coarse;
 }
 
-struct Case {
-  model::Scene scene;
-  Symmetry symmetry;
-  Rest rest;
-};
-
-std::vector<Case> cases() {
-  const auto plain = test::scene(1, 0.25, 1, 0.25, {1, 0});
-  return {{plain, Symmetry::even, Rest::killing},
-          {plain, Symmetry::odd, Rest::killing},
-          {plain, Symmetry::even, Rest::killed_on_exit},
-          {plain, Symmetry::none, Rest::killing},
-          {with_bias(plain, 0.4), Symmetry::none, Rest::killing},
-          {with_bias(plain, 1.4), Symmetry::none, Rest::killing_edges},
-          {with_levels(test::scene(0.3, 0.2, 1, 0.5, {1, 0}), 1), Symmetry::even, Rest::killing},
-          {with_levels(test::scene(0.3, 0.2, 1, 0.5, {1, 0}), 2), Symmetry::none, Rest::killing},
-          {test::scene(0.1, 0.1, 1, 0.125, {1, 3}), Symmetry::even, Rest::killing},
-          {test::scene(1, 1, 0.1, 0.5, {0, 0}), Symmetry::even, Rest::killing}};
-}
-
 }  // namespace
 
 TEST_CASE("p-multigrid: high modes and coarse values are bases dual to each other") {
-  const Pair p = pair(test::on_hp(cases()[0].scene, 6), Symmetry::none, Rest::killing);
+  const Pair p =
+      pair(test::on_hp(test::killed_systems()[0].scene, 6), Symmetry::none, Rest::killing);
   for (const auto& strip : p.hierarchy.strips) {
     const auto& m = *strip.modes;
     const int q = m.nodes, c = m.coarse_nodes, h = m.high();
@@ -143,7 +115,7 @@ TEST_CASE("p-multigrid: high modes and coarse values are bases dual to each othe
 // The quadrature of the elements is exact for linear drag.
 TEST_CASE("p-multigrid: the operator on lower degrees is the projection of the fine one",
           "[parallel]") {
-  for (const auto& [scene, symmetry, rest] : cases()) {
+  for (const auto& [scene, symmetry, rest] : test::killed_systems()) {
     if (!scene.drag.is_linear()) continue;
     const Pair p = pair(test::on_hp(scene, 5), symmetry, rest);
     const auto x = p.coarse.values([](double f, double y, double v) {
@@ -158,7 +130,7 @@ TEST_CASE("p-multigrid: the operator on lower degrees is the projection of the f
 }
 
 TEST_CASE("p-multigrid: solves as an elimination does, in few iterations", "[parallel]") {
-  for (const auto& [scene, symmetry, rest] : cases()) {
+  for (const auto& [scene, symmetry, rest] : test::killed_systems()) {
     const auto d = test::on_hp(scene, 7, 1e-10);
     petsc::Ledger ledger, direct_ledger;
     Systems systems(PETSC_COMM_WORLD, d.process, d.axis, ledger);
@@ -192,7 +164,7 @@ TEST_CASE("p-multigrid: factors are a small part of those of an elimination", "[
 }
 
 TEST_CASE("p-multigrid: an elimination takes its place where it does not converge", "[parallel]") {
-  const auto d = test::on_hp(cases()[0].scene, 7);
+  const auto d = test::on_hp(test::killed_systems()[0].scene, 7);
   const auto solved = [&](petsc::Ledger& ledger) {
     Systems systems(PETSC_COMM_WORLD, d.process, d.axis, ledger);
     systems.prefer_iteration();
@@ -216,7 +188,7 @@ TEST_CASE("p-multigrid: an elimination takes its place where it does not converg
 
 TEST_CASE("p-multigrid: is refused without elements") {
   const test::Given asked({{"-slide_pc_type", "p_multigrid"}});
-  const auto d = test::on_upwind(cases()[0].scene, 4);
+  const auto d = test::on_upwind(test::killed_systems()[0].scene, 4);
   petsc::Ledger ledger;
   Systems systems(PETSC_COMM_WORLD, d.process, d.axis, ledger);
   CHECK_THROWS_AS(systems.at(0, Symmetry::even), BadInput);

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "../common/scenes.hpp"
+#include "../common/systems.hpp"
 #include "stickslip/operators/kolmogorov_operator.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/split_matrix.hpp"
@@ -18,36 +18,21 @@ using petsc::check;
 
 namespace {
 
-struct Case {
-  model::Scene scene;
-  Symmetry symmetry;
-  Rest rest;
-};
-
-std::vector<Case> cases() {
-  const auto plain = test::scene(1, 0.25, 1, 0.25, {1, 0});
-  auto biased = plain, narrow = test::scene(0.3, 0.2, 1, 0.5, {1, 0});
-  biased.bias = 0.4;
-  narrow.noise_levels = 1;
-  return {{plain, Symmetry::even, Rest::killing},
-          {plain, Symmetry::odd, Rest::kept},
-          {plain, Symmetry::none, Rest::kept},
-          {plain, Symmetry::even, Rest::killed_on_exit},
-          {biased, Symmetry::none, Rest::killing},
-          {biased, Symmetry::none, Rest::killing_edges},
-          {narrow, Symmetry::even, Rest::killing},
-          {test::scene(0.1, 0.1, 1, 0.125, {1, 3}), Symmetry::even, Rest::killing},
-          {test::scene(1, 0.5, 1, 0.25, {0, 0}), Symmetry::even, Rest::killing}};
+std::vector<test::System> systems() {
+  auto all = test::killed_systems();
+  all.push_back({all[0].scene, Symmetry::odd, Rest::kept});
+  all.push_back({all[4].scene, Symmetry::none, Rest::kept});
+  return all;
 }
 
 struct Forms {
   KolmogorovOperator whole, split;
 };
 
-Forms forms(const Case& c, int degree) {
-  const auto d = test::on_hp(c.scene, degree);
+Forms forms(const test::System& s, int degree) {
+  const auto d = test::on_hp(s.scene, degree);
   const auto made = [&](Form form) {
-    return KolmogorovOperator(PETSC_COMM_WORLD, d.process, *d.axis, 0.3, c.symmetry, c.rest, form);
+    return KolmogorovOperator(PETSC_COMM_WORLD, d.process, *d.axis, 0.3, s.symmetry, s.rest, form);
   };
   return {made(Form::assembled), made(Form::by_elements)};
 }
@@ -79,10 +64,10 @@ double distance(Vec a, Vec b, Vec scale) {
 }  // namespace
 
 TEST_CASE("split matrix: products are those of the assembled matrix", "[parallel]") {
-  for (const Case& c : cases()) {
+  for (const test::System& s : systems()) {
     for (int degree : {0, 1, 6}) {
-      const Forms f = forms(c, degree);
-      INFO("mu_d " << c.scene.friction.mu_d << ", delta " << c.scene.delta << ", degree "
+      const Forms f = forms(s, degree);
+      INFO("mu_d " << s.scene.friction.mu_d << ", delta " << s.scene.delta << ", degree "
                    << degree);
       const auto x = some_vector(f.whole);
       const auto size = petsc::magnitudes(f.whole.matrix());
@@ -100,8 +85,8 @@ TEST_CASE("split matrix: products are those of the assembled matrix", "[parallel
 }
 
 TEST_CASE("split matrix: magnitudes are a bound, and not much larger", "[parallel]") {
-  for (const Case& c : cases()) {
-    const Forms f = forms(c, 5);
+  for (const test::System& s : systems()) {
+    const Forms f = forms(s, 5);
     petsc::VecHandle x = some_vector(f.whole);
     check(VecAbs(x));
     const auto compare = [](Vec bound, Vec sharp) {
@@ -125,7 +110,7 @@ TEST_CASE("split matrix: magnitudes are a bound, and not much larger", "[paralle
 }
 
 TEST_CASE("split matrix: only such ones are taken for one") {
-  const Forms f = forms(cases()[0], 2);
+  const Forms f = forms(systems()[0], 2);
   CHECK(petsc::SplitMatrix::of(f.whole.matrix()) == nullptr);
   CHECK(petsc::SplitMatrix::of(f.split.matrix()) != nullptr);
 }

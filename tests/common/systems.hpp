@@ -1,0 +1,39 @@
+#pragma once
+/// Systems of every kind that is killed at rest.
+
+#include <vector>
+
+#include "scenes.hpp"
+#include "stickslip/operators/kolmogorov_operator.hpp"
+
+namespace stickslip::test {
+
+struct System {
+  model::Scene scene;
+  operators::Symmetry symmetry;
+  operators::Rest rest;
+};
+
+inline std::vector<System> killed_systems() {
+  using operators::Rest;
+  using operators::Symmetry;
+  const auto plain = scene(1, 0.25, 1, 0.25, {1, 0});
+  auto biased = plain, driven = plain;
+  auto three_levels = scene(0.3, 0.2, 1, 0.5, {1, 0}), five_levels = three_levels;
+  biased.bias = 0.4;
+  driven.bias = 1.4;
+  three_levels.noise_levels = 1;
+  five_levels.noise_levels = 2;
+  return {{plain, Symmetry::even, Rest::killing},
+          {plain, Symmetry::odd, Rest::killing},
+          {plain, Symmetry::even, Rest::killed_on_exit},
+          {plain, Symmetry::none, Rest::killing},
+          {biased, Symmetry::none, Rest::killing},
+          {driven, Symmetry::none, Rest::killing_edges},
+          {three_levels, Symmetry::even, Rest::killing},
+          {five_levels, Symmetry::none, Rest::killing},
+          {scene(0.1, 0.1, 1, 0.125, {1, 3}), Symmetry::even, Rest::killing},
+          {scene(1, 1, 0.1, 0.5, {0, 0}), Symmetry::even, Rest::killing}};
+}
+
+}  // namespace stickslip::test
