@@ -24,6 +24,7 @@ constexpr Speed kByMumps{0.35, 8e-9, 2.5e-9, true};
 // An iteration pays for each unknown; fitted for delta = 1/128 ... 1/512 and degrees 7 ... 11. Of
 // it the coarse problem, solved by one rank after the other, takes a share.
 constexpr double kIteratedSetUp = 5e-7, kIteratedSolve = 1.6e-6, kCoarseShare = 0.4;
+constexpr double kSharedSetUp = 0.5;         // of that of a first step
 constexpr double kSecondsPerNonzero = 5e-9;  // of a residual
 constexpr double kFixedSeconds = 5e-4;       // of a factorisation
 // A nested step pays for each unknown, and for two solutions through the factors of the step
@@ -106,8 +107,10 @@ class Predictor {
   [[nodiscard]] Foretold iterated(double unknowns) const {
     const double share = kCoarseShare + (1 - kCoarseShare) / petsc::ranks(comm_);
     Foretold f;
-    f.factorization = kFixedSeconds + kIteratedSetUp * unknowns * share;
-    f.solve = kIteratedSolve * unknowns * share * (step_.resolution.nested ? kLeftByGuess : 1);
+    const bool nested = step_.resolution.nested;
+    f.factorization =
+        kFixedSeconds + kIteratedSetUp * unknowns * share * (nested ? kSharedSetUp : 1);
+    f.solve = kIteratedSolve * unknowns * share * (nested ? kLeftByGuess : 1);
     return f;
   }
 

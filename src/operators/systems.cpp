@@ -1,5 +1,8 @@
 #include "stickslip/operators/systems.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "stickslip/operators/hierarchy.hpp"
 
 namespace stickslip::operators {
@@ -11,9 +14,18 @@ namespace {
 constexpr int kCoarseDegree = 1;
 
 template <class Make>
+auto timed(const char* phase, double& seconds, Make make) {
+  const petsc::PhaseTimer timer(phase, seconds);
+  return make();
+}
+
+bool same_nodes(const velocity::Axis& a, const velocity::Axis& b) {
+  return std::ranges::equal(a.nodes(), b.nodes()) && std::ranges::equal(a.cells(), b.cells());
+}
+
+template <class Make>
 KolmogorovOperator entered(petsc::Ledger& ledger, Make make) {
-  const petsc::PhaseTimer timer("assembly", ledger.assembly_seconds);
-  KolmogorovOperator a = make();
+  KolmogorovOperator a = timed("assembly", ledger.assembly_seconds, make);
   petsc::Ledger made;
   made.assemblies = 1;
   made.unknowns = a.states().global_size();
@@ -39,19 +51,32 @@ KolmogorovOperator assemble_derivative(MPI_Comm comm, const model::Process& proc
       ledger, [&] { return KolmogorovOperator::derivative(comm, process, axis, symmetry, theta); });
 }
 
+CoarseSystem::CoarseSystem(MPI_Comm comm, const model::Process& process,
+                           std::shared_ptr<const velocity::HpAxis> coarse_axis,
+                           const SystemKey& which, petsc::Ledger& ledger)
+    : key(which),
+      axis(std::move(coarse_axis)),
+      a(timed("assembly", ledger.assembly_seconds,
+              [&] {
+                return KolmogorovOperator(comm, process, *axis, key.lambda, key.symmetry, key.rest);
+              })),
+      elimination(timed("analysis", ledger.analysis_seconds,
+                        [&] { return petsc::LevelElimination(a.matrix(), a.states().chain()); })) {}
+
 petsc::Structure Operators::structure(petsc::Ledger& ledger) {
   const petsc::PhaseTimer timer("analysis", ledger.analysis_seconds);
   petsc::Structure structure = a.states().structure();
   if (!coarse) return structure;
+  auto levels = hierarchy(a.states(), *axis, coarse->a.states(), *coarse->axis);
+  auto* elimination = &coarse->elimination;
   structure.multigrid = std::make_unique<petsc::PMultigrid>(
-      a.matrix(), coarse->matrix(), coarse->states().chain(),
-      hierarchy(a.states(), *axis, coarse->states(), *coarse_axis));
+      a.matrix(), std::shared_ptr<petsc::LevelElimination>(std::move(coarse), elimination),
+      std::move(levels));
   structure.assembled = [this] { return assembled.emplace(assemble()).matrix(); };
   return structure;
 }
 
 Operators Systems::operators(const SystemKey& key) {
-  const auto& [lambda, symmetry, rest] = key;
   const auto made = [this, key](Form form) {
     return assemble(comm_, process_, *axis_, key.lambda, key.symmetry, key.rest, ledger_, form);
   };
@@ -62,11 +87,26 @@ Operators Systems::operators(const SystemKey& key) {
   Operators result{made(Form::by_elements)};
   result.axis = axis;
   result.assemble = [made] { return made(Form::assembled); };
-  // A part of the solver, not one of the operators asked for.
-  const petsc::PhaseTimer timer("assembly", ledger_.assembly_seconds);
-  result.coarse_axis = axis->coarsened(kCoarseDegree);
-  result.coarse.emplace(comm_, process_, *result.coarse_axis, lambda, symmetry, rest);
+  result.coarse = coarse_for(key, *axis);
   return result;
+}
+
+std::shared_ptr<CoarseSystem> Systems::coarse_for(const SystemKey& key,
+                                                  const velocity::HpAxis& axis) {
+  auto coarse_axis = axis.coarsened(kCoarseDegree);
+  std::shared_ptr<CoarseSystem> found;
+  if (offered_ && offered_->key == key && same_nodes(*offered_->axis, *coarse_axis)) {
+    found = std::move(offered_);
+  } else {
+    found = std::make_shared<CoarseSystem>(comm_, process_, std::move(coarse_axis), key, ledger_);
+  }
+  coarse_[key] = found;
+  return found;
+}
+
+std::shared_ptr<CoarseSystem> Systems::coarse(const SystemKey& key) const {
+  const auto found = coarse_.find(key);
+  return found == coarse_.end() ? nullptr : found->second.lock();
 }
 
 System& Systems::at(double lambda, Symmetry symmetry, Rest rest) {

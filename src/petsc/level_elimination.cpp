@@ -300,6 +300,7 @@ void LevelElimination::reserve(Scalars& dense, Scalars& back) {
 }
 
 void LevelElimination::factor() {
+  factored_ = false;
   Scalars dense, back;  // back: S^-1 E of the block after
   reserve(dense, back);
   const int last = chain_.blocks() - 1;
@@ -321,6 +322,7 @@ void LevelElimination::factor() {
   }
   if (ranks_.has_inner()) send(back, ranks_.inner, comm_);
   require_everywhere(comm_, failure);
+  factored_ = true;
 }
 
 void LevelElimination::apply(Vec b, Vec x, bool transposed) const {

@@ -283,8 +283,10 @@ NestedEvaluation::NestedEvaluation(const Setting& coarse)
   law_ = std::make_shared<StationaryLaw>(systems_);
   const auto symmetry = operators::symmetry_of(coarse.process);
   iterates_ = systems_.at(0, symmetry).factors().iterates();
+  if (!iterates_) return;
   // A preconditioner for the finer one is cheaper than cycles around iterations.
-  if (iterates_) systems_.release(0, symmetry);
+  coarse_ = systems_.coarse({0, symmetry});
+  systems_.release(0, symmetry);
 }
 
 Evaluation NestedEvaluation::coarse() const { return evaluation_of(request_, law_); }
@@ -293,7 +295,9 @@ Evaluation NestedEvaluation::finer(const Setting& setting) {
   if (iterates_) {
     operators::Systems finer(setting.comm, setting.process, setting.axis, setting.ledger);
     choose_solver(finer, setting);
+    finer.offer(std::move(coarse_));
     law_ = std::make_shared<StationaryLaw>(finer, law_.get());
+    coarse_ = finer.coarse({0, operators::symmetry_of(setting.process)});
     return evaluation_of(request_, law_);
   }
   operators::NestedSystem nested(systems_, setting.axis, setting.ledger);

@@ -170,11 +170,11 @@ Plan plan_of(const Request& request) {
   return Planner(request).plan();
 }
 
-// For one right-hand side both take the same time at about 130 000 unknowns (delta = 1/64); above,
-// iteration takes half of the memory, up to a third less time, and more ranks share it. Without
+// For one right-hand side both take the same time below about 100 000 unknowns (delta = 1/64);
+// above, iteration takes half of the memory, up to a third less time, and more ranks share it. Without
 // drag it needs twice the iterations, and with a right-hand side more an elimination has paid off.
 bool prefers_iteration(const Request& request, std::int64_t unknowns) {
-  constexpr std::int64_t least = 150'000;
+  constexpr std::int64_t least = 100'000;
   constexpr int most_solves = 2;
   constexpr double finest = 1e-10;  // what the tolerance of the iteration is good for
   if (unknowns < least || request.accuracy < finest || request.scene.drag.is_none()) return false;

@@ -38,6 +38,18 @@ inline Discrete on_hp(const model::Scene& s, int degree, double tolerance = 1e-1
   return discretise(s, accuracy::hp_resolution(s, degree, 0, tolerance));
 }
 
+/// The same elements and levels with two degrees.
+struct TwoDegrees {
+  Discrete coarse, fine;
+};
+
+inline TwoDegrees on_two_degrees(const model::Scene& s, int low, int high) {
+  auto resolution = accuracy::hp_resolution(s, low, 0, 1e-12);
+  const Discrete coarse = discretise(s, resolution);
+  resolution.degree = high;
+  return {coarse, discretise(s, resolution)};
+}
+
 /// Upwind with `points` nodes per noise step.
 inline Discrete on_upwind(const model::Scene& s, int points, double tolerance = 1e-8) {
   return discretise(s, accuracy::upwind_resolution(s, points, tolerance));

@@ -17,18 +17,6 @@ using quantities::StationaryLaw;
 
 namespace {
 
-// The same elements and levels with other degrees.
-struct Degrees {
-  test::Discrete coarse, fine;
-};
-
-Degrees degrees(const model::Scene& scene, int low, int high) {
-  auto resolution = accuracy::hp_resolution(scene, low, 0, 1e-12);
-  const auto coarse = test::discretise(scene, resolution);
-  resolution.degree = high;
-  return {coarse, test::discretise(scene, resolution)};
-}
-
 std::vector<model::Scene> scenes() {
   auto biased = test::scene(1, 0.25, 1, 0.25, {1, 0});
   biased.bias = 0.4;
@@ -78,7 +66,7 @@ TEST_CASE("nested system: two cycles leave little, and less than the last one ch
   for (const auto& scene : scenes()) {
     for (int low : {3, 5, 8}) {
       INFO("mu_d " << scene.friction.mu_d << ", tau " << scene.tau << ", degree " << low);
-      const auto d = degrees(scene, low, low + 1);
+      const auto d = test::on_two_degrees(scene, low, low + 1);
       petsc::Ledger ledger, nested_ledger;
       Systems coarse(PETSC_COMM_WORLD, d.coarse.process, d.coarse.axis, ledger);
       Systems fine(PETSC_COMM_WORLD, d.fine.process, d.fine.axis, ledger);
@@ -107,7 +95,7 @@ TEST_CASE("nested system: the last cycle shows what is left in means", "[paralle
   for (const auto& scene : scenes()) {
     for (int low : {4, 7}) {
       INFO("mu_d " << scene.friction.mu_d << ", tau " << scene.tau << ", degree " << low);
-      const auto d = degrees(scene, low, low + 1);
+      const auto d = test::on_two_degrees(scene, low, low + 1);
       petsc::Ledger ledger;
       Systems coarse(PETSC_COMM_WORLD, d.coarse.process, d.coarse.axis, ledger);
       Systems fine(PETSC_COMM_WORLD, d.fine.process, d.fine.axis, ledger);
@@ -125,7 +113,7 @@ TEST_CASE("nested system: an iteration starts from the law on lower degrees", "[
   // The fewer digits, the larger the share that a guess has already.
   const test::Given residual({{"-slide_ksp_rtol", "1e-11"}});
   for (const auto& scene : {scenes()[0], scenes()[5]}) {
-    const auto d = degrees(scene, 6, 7);
+    const auto d = test::on_two_degrees(scene, 6, 7);
     petsc::Ledger ledger, cold, warm;
     Systems coarse(PETSC_COMM_WORLD, d.coarse.process, d.coarse.axis, ledger);
     Systems fine(PETSC_COMM_WORLD, d.fine.process, d.fine.axis, cold);

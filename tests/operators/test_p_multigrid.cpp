@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "../common/options.hpp"
@@ -183,6 +184,54 @@ TEST_CASE("p-multigrid: an elimination takes its place where it does not converg
     const test::Given asked({{"-slide_pc_type", "p_multigrid"}});
     petsc::Ledger again;
     CHECK_THROWS_AS(solved(again), NotReached);
+  }
+}
+
+TEST_CASE("p-multigrid: higher degrees take the coarse system of lower ones", "[parallel]") {
+  for (const auto& [scene, symmetry, rest] : test::killed_systems()) {
+    const auto d = test::on_two_degrees(scene, 6, 7);
+    const operators::SystemKey key{0.3, symmetry, rest};
+    petsc::Ledger ledger;
+    Systems lower(PETSC_COMM_WORLD, d.coarse.process, d.coarse.axis, ledger),
+        higher(PETSC_COMM_WORLD, d.fine.process, d.fine.axis, ledger),
+        alone(PETSC_COMM_WORLD, d.fine.process, d.fine.axis, ledger);
+    for (Systems* systems : {&lower, &higher, &alone}) systems->prefer_iteration();
+    const auto solved = [&key](Systems& systems) {
+      auto& system = systems.at(key.lambda, key.symmetry, key.rest);
+      return system.factors().solve(system.a().values([](double, double, double) { return 1; })).x;
+    };
+    solved(lower);
+    auto coarse = lower.coarse(key);
+    const auto* shared = coarse.get();
+    lower.release(key.lambda, key.symmetry, key.rest);
+    higher.offer(std::move(coarse));
+    CHECK(distance(solved(higher), solved(alone)) < 1e-12);
+    CHECK(higher.coarse(key).get() == shared);
+    CHECK(lower.coarse(key).get() == shared);
+    higher.release(key.lambda, key.symmetry, key.rest);
+    CHECK(lower.coarse(key) == nullptr);
+  }
+}
+
+TEST_CASE("p-multigrid: a coarse system of other elements or another key is not taken") {
+  const auto scene = test::killed_systems()[0].scene;
+  const auto d = test::on_hp(scene, 7), longer = test::on_hp(scene, 7, 1e-6);
+  const operators::SystemKey key{0.3, Symmetry::even, Rest::killing};
+  petsc::Ledger ledger;
+  const auto offered = [&](const test::Discrete& of, double lambda) {
+    Systems systems(PETSC_COMM_WORLD, of.process, of.axis, ledger);
+    systems.prefer_iteration();
+    (void)systems.at(lambda, key.symmetry, key.rest);
+    return systems.coarse({lambda, key.symmetry, key.rest});
+  };
+  for (const auto& other : {offered(longer, key.lambda), offered(d, 0.4)}) {
+    REQUIRE(other != nullptr);
+    Systems systems(PETSC_COMM_WORLD, d.process, d.axis, ledger);
+    systems.prefer_iteration();
+    systems.offer(other);
+    (void)systems.at(key.lambda, key.symmetry, key.rest);
+    CHECK(systems.coarse(key) != nullptr);
+    CHECK(systems.coarse(key) != other);
   }
 }
 

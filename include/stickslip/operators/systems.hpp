@@ -32,16 +32,40 @@ inline const std::string kSlidePrefix = "slide_";
                                                      const velocity::Axis& axis, Symmetry symmetry,
                                                      Parameter theta, petsc::Ledger& ledger);
 
+/// lambda - L on functions of one symmetry.
+struct SystemKey {
+  double lambda = 0;
+  Symmetry symmetry = Symmetry::even;
+  Rest rest = Rest::killing;
+  friend bool operator<(const SystemKey& a, const SystemKey& b) {
+    return std::tie(a.lambda, a.symmetry, a.rest) < std::tie(b.lambda, b.symmetry, b.rest);
+  }
+  friend bool operator==(const SystemKey&, const SystemKey&) = default;
+};
+
+/// A system on the lowest degrees, for p-multigrid on any higher ones of the same elements.
+struct CoarseSystem {
+  /// Assembles and analyses; what first uses it factors it. Collective.
+  CoarseSystem(MPI_Comm comm, const model::Process& process,
+               std::shared_ptr<const velocity::HpAxis> axis, const SystemKey& key,
+               petsc::Ledger& ledger);
+
+  SystemKey key;
+  std::shared_ptr<const velocity::HpAxis> axis;
+  KolmogorovOperator a;
+  petsc::LevelElimination elimination;
+};
+
 /// What a system is made of.
 struct Operators {
   KolmogorovOperator a;
-  std::optional<KolmogorovOperator> coarse = {};  ///< the same on lower degrees, for p-multigrid
-  std::shared_ptr<const velocity::HpAxis> axis = {}, coarse_axis = {};  ///< of these, if so
+  std::shared_ptr<CoarseSystem> coarse = {};          ///< for p-multigrid
+  std::shared_ptr<const velocity::HpAxis> axis = {};  ///< of A, if so
   /// A with all entries, for p-multigrid, which has it by elements; made when it comes to that.
   std::function<KolmogorovOperator()> assemble = {};
   std::optional<KolmogorovOperator> assembled = {};
 
-  /// Refers to this object. Collective.
+  /// Refers to this object, and takes the coarse system from it. Collective.
   [[nodiscard]] petsc::Structure structure(petsc::Ledger& ledger);
 };
 
@@ -61,16 +85,6 @@ class System {
   petsc::Factorization factors_;
 };
 
-/// lambda - L on functions of one symmetry.
-struct SystemKey {
-  double lambda = 0;
-  Symmetry symmetry = Symmetry::even;
-  Rest rest = Rest::killing;
-  friend bool operator<(const SystemKey& a, const SystemKey& b) {
-    return std::tie(a.lambda, a.symmetry, a.rest) < std::tie(b.lambda, b.symmetry, b.rest);
-  }
-};
-
 /// One system for each (lambda, symmetry, rest) that is asked for, and none else; each is assembled
 /// and factored once and serves every solve, plain, transposed or with several right-hand sides.
 class Systems {
@@ -82,6 +96,12 @@ class Systems {
 
   /// Prefers p-multigrid where the axis has a degree to lower: for few solves with large systems.
   void prefer_iteration() { preferred_ = petsc::Solver::p_multigrid; }
+
+  /// The coarse system of one that iterates, as long as that exists; null for others. Local.
+  [[nodiscard]] std::shared_ptr<CoarseSystem> coarse(const SystemKey& key) const;
+  /// Offers a coarse system of the same process to the first one of its key that iterates, which
+  /// takes it if it has the same elements. Local.
+  void offer(std::shared_ptr<CoarseSystem> coarse) { offered_ = std::move(coarse); }
 
   /// Collective at first use of a key.
   [[nodiscard]] System& at(double lambda, Symmetry symmetry, Rest rest = Rest::killing);
@@ -104,6 +124,8 @@ class Systems {
 
  private:
   [[nodiscard]] Operators operators(const SystemKey& key);
+  [[nodiscard]] std::shared_ptr<CoarseSystem> coarse_for(const SystemKey& key,
+                                                         const velocity::HpAxis& axis);
 
   MPI_Comm comm_;
   model::Process process_;
@@ -111,6 +133,8 @@ class Systems {
   petsc::Ledger& ledger_;
   petsc::Solver preferred_ = petsc::Solver::levels;
   std::map<SystemKey, std::unique_ptr<System>> systems_;
+  std::map<SystemKey, std::weak_ptr<CoarseSystem>> coarse_;  // which solvers own
+  std::shared_ptr<CoarseSystem> offered_;
 };
 
 }  // namespace stickslip::operators

@@ -42,6 +42,9 @@ class LevelElimination final : public Preconditioner {
   /// Reads the values of the matrix and eliminates. Collective. Throws NotReached for a singular
   /// block, NoMemory when the factors do not fit.
   void factor() override;
+  [[nodiscard]] bool factored() const { return factored_; }
+
+  [[nodiscard]] Mat matrix() const { return matrix_; }
 
   /// x = A^-1 b, or A^-T b without conjugation. Collective. Two passes over the factors.
   void apply(Vec b, Vec x, bool transposed) const override;
@@ -99,6 +102,7 @@ class LevelElimination final : public Preconditioner {
   std::vector<std::pair<PetscInt, int>> inner_border_, outer_border_;  // global row, position
   std::vector<Level> levels_;
   DenseInverse invert_;
+  bool factored_ = false;
 };
 
 }  // namespace stickslip::petsc

@@ -3,6 +3,8 @@
 
 #include <petscmat.h>
 
+#include <memory>
+
 #include "stickslip/petsc/high_modes.hpp"
 #include "stickslip/petsc/level_elimination.hpp"
 #include "stickslip/petsc/preconditioner.hpp"
@@ -13,15 +15,16 @@ namespace stickslip::petsc {
 /// in a cycle of HighModes. In GMRES an iteration leaves a fifth to a tenth of the error.
 class PMultigrid final : public Preconditioner {
  public:
-  /// `coarse` is the matrix of the coarse discretisation with its chain of blocks. Both matrices
-  /// are kept by reference count. Collective.
-  PMultigrid(Mat matrix, Mat coarse, Chain chain, Hierarchy hierarchy);
+  /// `coarse` is for the matrix of the coarse discretisation, which other preconditioners may use as
+  /// well; `matrix` is kept by reference count. Collective.
+  PMultigrid(Mat matrix, std::shared_ptr<LevelElimination> coarse, Hierarchy hierarchy);
 
+  /// Factors the coarse matrix too unless that is done.
   void factor() override;
   void apply(Vec b, Vec x, bool transposed) const override;
 
  private:
-  LevelElimination coarse_;
+  std::shared_ptr<LevelElimination> coarse_;
   HighModes high_;
 };
 

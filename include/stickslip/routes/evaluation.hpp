@@ -41,7 +41,7 @@ struct Evaluation {
 
 /// The same on a discretisation and then on finer ones with the same elements and levels and higher
 /// degrees, each from the law found before: through the factors of the first one, if it has any, in
-/// less than half of its time.
+/// less than half of its time; by iteration with the same coarse factors otherwise.
 class NestedEvaluation {
  public:
   /// Factors and solves on the coarse discretisation. The request and the ledger must outlive this
@@ -58,6 +58,7 @@ class NestedEvaluation {
   operators::Systems systems_;
   std::shared_ptr<quantities::StationaryLaw> law_;
   bool iterates_;
+  std::shared_ptr<operators::CoarseSystem> coarse_;  // of the last step, if it iterated
 };
 
 }  // namespace stickslip::routes
