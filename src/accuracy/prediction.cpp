@@ -28,10 +28,10 @@ constexpr double kSharedSetUp = 0.5;         // of that of a first step
 constexpr double kSecondsPerNonzero = 5e-9;  // of a residual
 constexpr double kFixedSeconds = 5e-4;       // of a factorisation
 // A nested step pays for each unknown, and for two solutions through the factors of the step
-// before; where it iterates, its guess saves a fifth.
+// before; where it iterates, its guess saves a third.
 constexpr double kNestedWork = 3e-7;
 constexpr int kNestedSolutions = 2;
-constexpr double kLeftByGuess = 0.8;
+constexpr double kLeftByGuess = 0.7;
 
 class Predictor {
  public:

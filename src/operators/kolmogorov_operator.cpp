@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <numeric>
+#include <utility>
 
 #include "stickslip/operators/laws.hpp"
 #include "stickslip/operators/transport.hpp"
@@ -79,8 +80,8 @@ class KolmogorovOperator::Assembler {
   void reserve() {
     std::size_t entries = 0;
     for (int j = 0; j < upper_.axis.size(); ++j) {
+      if (by_elements_ && !at_an_end(j)) continue;
       entries += 3;
-      if (by_elements_) continue;
       upper_.axis.transport(upper_.process.excess(top_), j, transport_);
       entries += transport_.entries.size();
     }
@@ -97,13 +98,22 @@ class KolmogorovOperator::Assembler {
     case StateKind::holding: rates_of_holding(state); break;
     case StateKind::rest: rates_of_rest(state.level); break;
     }
-    finish_row(states_.index(state));
+    if (by_elements_ && state.kind == StateKind::node) {
+      finish_couplings();  // jumps and transport have the diagonal
+      killing_ = 0;
+    } else {
+      finish_row(states_.index(state));
+    }
   }
 
   void rates_of_node(const State& s) {
     if (!by_elements_ || at_an_end(s.node)) rates_of_transport(s);
-    if (s.level < top_) rate_to(node(s.half, s.level + 1, s.node), up_rate(s.level));
-    if (s.level > -top_) rate_to(node(s.half, s.level - 1, s.node), down_rate(s.level));
+    const auto jump_to = [&](int level, double rate) {
+      const bool applied = by_elements_ && states_.owns(level);
+      if (!applied) rate_to(node(s.half, level, s.node), rate);
+    };
+    if (s.level < top_) jump_to(s.level + 1, up_rate(s.level));
+    if (s.level > -top_) jump_to(s.level - 1, down_rate(s.level));
   }
 
   // Whether a node lies in the first or last element.
@@ -119,10 +129,7 @@ class KolmogorovOperator::Assembler {
     } else {
       here.axis.transport(excess, s.node, transport_);
     }
-    if (by_elements_) {
-      // Transport has what leaves, and lacks where it goes.
-      killing_ -= transport_.inflow + transport_.outflow;
-    } else {
+    if (!by_elements_) {
       for (const auto& e : transport_.entries) rate_to(node(s.half, s.level, e.node), e.value);
     }
     if (transport_.inflow != 0) rate_to_zero(s, transport_.inflow);
@@ -219,29 +226,36 @@ class KolmogorovOperator::Assembler {
     row_.emplace_back(column, -sign * rate);
   }
 
-  void finish_row(PetscInt diagonal) {
-    row_.emplace_back(diagonal, 0.0);  // keeps its place in the order
+  // The couplings of the row to the arrays, in the order of columns, each once.
+  void finish_couplings() {
     std::sort(row_.begin(), row_.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
-    // Summed as a reader of the row would sum it: with it the row adds up to exactly zero.
-    PetscScalar sum = 0;
-    std::size_t place = 0;
     for (auto next = row_.begin(); next != row_.end();) {
       const PetscInt column = next->first;
       PetscScalar rate = 0;
       for (; next != row_.end() && next->first == column; ++next) rate += next->second;
-      if (column == diagonal) {
-        place = columns.size();  // and nothing goes back to itself
-      } else {
-        sum += rate;
-      }
       columns.push_back(column);
       values.push_back(rate);
     }
-    values[place] = lambda_ - sum + killing_;
     row_start.push_back(static_cast<PetscInt>(columns.size()));
     row_.clear();
-    killing_ = 0;
+  }
+
+  void finish_row(PetscInt diagonal) {
+    row_.emplace_back(diagonal, 0.0);  // keeps its place in the order
+    const std::size_t begin = columns.size();
+    finish_couplings();
+    // Summed as a reader of the row would sum it: with it the row adds up to exactly zero.
+    PetscScalar sum = 0;
+    std::size_t place = begin;
+    for (std::size_t n = begin; n < columns.size(); ++n) {
+      if (columns[n] == diagonal) {
+        place = n;  // and nothing goes back to itself
+      } else {
+        sum += values[n];
+      }
+    }
+    values[place] = lambda_ - sum + std::exchange(killing_, 0.0);
   }
 
   [[nodiscard]] PetscInt local_row() const { return static_cast<PetscInt>(row_start.size()) - 1; }
@@ -334,9 +348,10 @@ KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const model::Process& proc
   values_ = std::move(rows.values);
   matrix_ = stored();
   if (form == Form::by_elements) {
+    auto between = jumps(states_, process, axis, lambda);
     auto within = transport(states_, process, dynamic_cast<const velocity::HpAxis&>(axis));
-    nonzeros_ += within.entries() - states_.local_nodes();  // diagonals are in both
-    matrix_ = petsc::SplitMatrix::make(std::move(matrix_), std::move(within));
+    nonzeros_ += between.entries() + within.entries();
+    matrix_ = petsc::SplitMatrix::make(std::move(matrix_), std::move(between), std::move(within));
   }
   MPI_Allreduce(MPI_IN_PLACE, &nonzeros_, 1, MPIU_INT64, MPI_SUM, comm);
 }

@@ -89,11 +89,6 @@ std::vector<int> StateSpace::local_levels() const {
   return levels;
 }
 
-PetscInt StateSpace::local_nodes() const {
-  const auto lines = static_cast<PetscInt>(halves().size()) * nodes_;
-  return lines * levels_below(blocks_[rank_], levels_ + 1);
-}
-
 bool StateSpace::has_state(int row, int i) const {
   if (row == 0) {
     const bool below = !folded() && has_origin(Half::lower, -i);

@@ -73,4 +73,29 @@ petsc::Transport transport(const StateSpace& states, const model::Process& proce
   return {static_cast<int>(levels.size()), std::move(strips)};
 }
 
+// Rates are those of the noise on both halves, whose levels are listed alike.
+petsc::Jumps jumps(const StateSpace& states, const model::Process& process,
+                   const velocity::Axis& axis, PetscScalar lambda) {
+  const auto& noise = process.noise;
+  const auto up = [&noise](int i) { return noise.rate() * noise.up(i); };
+  const auto down = [&noise](int i) { return noise.rate() * noise.down(i); };
+  petsc::LevelJumps by_level;
+  by_level.killing = lambda;
+  for (int i : states.local_levels()) {
+    const bool top = i == noise.levels, bottom = i == -noise.levels;
+    if (i > 0 && !states.owns(0) && by_level.gap == 0) by_level.gap = by_level.levels();
+    by_level.to_above.push_back(top ? 0 : up(i));
+    by_level.to_below.push_back(bottom ? 0 : down(i));
+    by_level.from_above.push_back(top ? 0 : down(i + 1));
+    by_level.from_below.push_back(bottom ? 0 : up(i - 1));
+  }
+  std::vector<petsc::Jumps::Nodes> nodes;
+  if (by_level.levels() > 0) {
+    for (Half half : states.halves()) {
+      nodes.push_back({states.strip(half, 0, axis.size()), axis.size()});
+    }
+  }
+  return {std::move(by_level), std::move(nodes)};
+}
+
 }  // namespace stickslip::operators

@@ -102,11 +102,9 @@ HighModes::HighModes(Mat matrix, Mat coarse, Hierarchy hierarchy)
     : parts_(parts_of(matrix)),
       hierarchy_(std::move(hierarchy)),
       comm_(PetscObjectComm(reinterpret_cast<PetscObject>(matrix))),
-      ranks_(neighbours(comm_, hierarchy_.levels)),
-      stacks_(hierarchy_.strips.size()) {
+      ranks_(neighbours(comm_, hierarchy_.levels)) {
   check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
   matrix_ = MatHandle(matrix);
-  check(MatGetOwnershipRange(matrix_, &first_row_, &end_row_));
   check(MatCreateVecs(coarse, coarse_x_.out(), coarse_b_.out()));
   check(MatCreateVecs(matrix_, nullptr, residual_.out()));
 }
@@ -130,51 +128,18 @@ double HighModes::operations() const {
 
 std::array<HighModes::Arm, 2> HighModes::arms() const {
   const int centre = hierarchy_.centre ? 1 : 0;
-  return {Arm{0, 0, hierarchy_.below, 1},
-          Arm{1, hierarchy_.levels - 1, hierarchy_.below + centre - 1, -1}};
+  const auto& [killing, to_above, to_below, from_above, from_below, gap] =
+      parts_.jumps().by_level();
+  return {Arm{0, 0, hierarchy_.below, 1, to_below, from_below, to_above, from_above},
+          Arm{1, hierarchy_.levels - 1, hierarchy_.below + centre - 1, -1, to_above, from_above,
+              to_below, from_below}};
 }
 
-PetscScalar HighModes::outwards(const Stack& stack, const Arm& arm, int level) {
-  return arm.number == 0 ? stack.down[level] : stack.up[level];
-}
-
-PetscScalar HighModes::inwards(const Stack& stack, const Arm& arm, int level) {
-  return arm.number == 0 ? stack.up[level] : stack.down[level];
-}
-
-// Jumps leave the velocity as it is, at the same rate on all nodes: the row of the first node tells
-// all. What lies on other ranks comes before (inwards) or after the local columns.
-void HighModes::read_couplings(const Strip& strip, Stack& stack) const {
-  const int levels = hierarchy_.levels;
-  std::fill(stack.up.begin(), stack.up.end(), 0.0);
-  std::fill(stack.down.begin(), stack.down.end(), 0.0);
-  const auto [below, above] = arms();
-  for (int a = 0; a < levels; ++a) {
-    const PetscInt row = first_row_ + strip.first + a;
-    const bool lower = a < below.end;
-    const bool upper = a > above.end;
-    const bool next_up = a + 1 < levels && !(lower && a + 1 == below.end && !hierarchy_.centre);
-    const bool next_down = a > 0 && !(upper && a - 1 == above.end && !hierarchy_.centre);
-    RowView(parts_.sparse(), row).for_each([&](PetscInt column, PetscScalar value) {
-      if (column == row) stack.diagonal[a] = value;
-      const bool inner = column < first_row_, outer = column >= end_row_;
-      if ((next_up && column == row + 1) || (lower && inner) || (upper && outer)) {
-        stack.up[a] += value;
-      } else if ((next_down && column == row - 1) || (upper && inner) || (lower && outer)) {
-        stack.down[a] += value;
-      } else if (hierarchy_.centre && levels == 1 && outer) {
-        // Level 0 alone: the columns of level -1 come first.
-        (stack.down[a] == 0.0 ? stack.down : stack.up)[a] += value;
-      }
-    });
-  }
-}
-
-// S + J_aa of all levels into the pivots. Here A is that of the element alone: the diagonal of the
-// sparse part less transport.
-bool HighModes::complement(std::size_t n, Stack& stack) const {
+// S + J_aa of all levels into the pivots.
+bool HighModes::complement(std::size_t n) {
   const ElementModes& modes = *hierarchy_.strips[n].modes;
   const Transport& transport = parts_.transport();
+  const LevelJumps& jumps = parts_.jumps().by_level();
   const int q = modes.nodes, c = modes.coarse_nodes, h = modes.high();
   const auto nodal = transport.terms(n);
   const Scalars by_excess = in_modes(modes, nodal.by_excess),
@@ -189,10 +154,11 @@ bool HighModes::complement(std::size_t n, Stack& stack) const {
       block[k] = -(excess * by_excess[k] + constant[k] + up * by_up[k] + down * by_down[k]);
     }
     // Of the jumps, coarse values keep the shift alone.
-    const PetscScalar jumps = -(1 - kShift) * (stack.up[a] + stack.down[a]);
-    for (int k = 0; k < q; ++k) block[k + q * k] += stack.diagonal[a] - (k < c ? jumps : 0.0);
+    for (int k = 0; k < q; ++k) {
+      block[k + q * k] += jumps.killing + (k < c ? kShift : 1) * jumps.rate(a);
+    }
     PetscScalar* right = block.data() + static_cast<std::ptrdiff_t>(q) * c;
-    PetscScalar* s = stack.pivots.data() + square(h) * a;
+    PetscScalar* s = pivots_[n].data() + square(h) * a;
     for (std::ptrdiff_t k = 0; k < h; ++k) std::copy_n(right + c + q * k, h, s + h * k);
     const PetscBLASInt size = c, count = h, stride = q;
     PetscBLASInt info = 0;
@@ -206,75 +172,45 @@ bool HighModes::complement(std::size_t n, Stack& stack) const {
 }
 
 // Pivots from the outermost level inwards, inverted.
-bool HighModes::eliminate(const Strip& strip, Stack& stack) {
-  const int h = strip.modes->high();
+bool HighModes::eliminate(std::size_t n) {
+  const int h = hierarchy_.strips[n].modes->high();
   const std::size_t entries = square(h);
-  Scalars work(entries);
+  Scalars work(entries), passed, next(2 * entries, 0.0);  // passed: the last pivots of both arms
   std::vector<PetscBLASInt> exchanges(static_cast<std::size_t>(h));
-  Scalars passed;  // of both arms: the last pivot and its coupling inwards
-  if (ranks_.has_outer()) {
-    passed = receive<PetscScalar>(2 * (entries + 1), ranks_.outer, comm_);
-    for (int k : {0, 1}) stack.from_outer[k] = of_arm(passed, k)[entries];
-  }
-  Scalars next(2 * (entries + 1), 0.0);
+  if (ranks_.has_outer()) passed = receive<PetscScalar>(2 * entries, ranks_.outer, comm_);
   bool sound = true;
-  const auto pivot = [&](int level) { return stack.pivots.data() + entries * level; };
-  const auto subtract = [&](int level, PetscScalar factor, const PetscScalar* outer) {
-    for (std::size_t n = 0; n < entries; ++n) pivot(level)[n] -= factor * outer[n];
-  };
+  const auto pivot = [&](int level) { return pivots_[n].data() + entries * level; };
   for (const Arm& arm : arms()) {
     const PetscScalar* outer = passed.empty() ? nullptr : of_arm(passed, arm.number);
-    PetscScalar back = stack.from_outer[arm.number];
+    const auto subtract = [&](int level) {
+      if (outer == nullptr) return;
+      const double factor = arm.to_outer[level] * arm.from_outer[level];
+      for (std::size_t k = 0; k < entries; ++k) pivot(level)[k] -= factor * outer[k];
+    };
     for (int a = arm.begin; a != arm.end; a += arm.step) {
-      if (outer != nullptr) subtract(a, outwards(stack, arm, a) * back, outer);
+      subtract(a);
       sound = invert(pivot(a), h, h, exchanges, work) && sound;
       outer = pivot(a);
-      back = inwards(stack, arm, a);
     }
-    if (hierarchy_.centre && outer != nullptr) {
-      subtract(hierarchy_.below, outwards(stack, arm, hierarchy_.below) * back, outer);
-    }
-    if (outer == nullptr) continue;
-    PetscScalar* to = of_arm(next, arm.number);
-    std::copy_n(outer, entries, to);
-    to[entries] = back;
+    if (hierarchy_.centre) subtract(hierarchy_.below);
+    if (outer != nullptr) std::copy_n(outer, entries, of_arm(next, arm.number));
   }
   if (hierarchy_.centre) sound = invert(pivot(hierarchy_.below), h, h, exchanges, work) && sound;
   if (ranks_.has_inner()) send(next, ranks_.inner, comm_);
   return sound;
 }
 
-// What a transposed solve needs of the couplings of the rank before.
-void HighModes::exchange_inner_couplings() {
-  if (ranks_.has_inner()) {
-    const auto all = receive<PetscScalar>(2 * stacks_.size(), ranks_.inner, comm_);
-    for (std::size_t n = 0; n < stacks_.size(); ++n) {
-      stacks_[n].from_inner = {all[2 * n], all[2 * n + 1]};
-    }
-  }
-  if (!ranks_.has_outer()) return;
-  Scalars all;
-  for (const Stack& stack : stacks_) {
-    for (const Arm& arm : arms()) {
-      const int last = arm.begin == arm.end ? hierarchy_.below : arm.begin;
-      all.push_back(outwards(stack, arm, last));
-    }
-  }
-  send(all, ranks_.outer, comm_);
-}
-
 // All large memory.
 void HighModes::reserve() {
   const auto levels = static_cast<std::size_t>(hierarchy_.levels);
-  high_.resize(stacks_.size());
+  const std::size_t strips = hierarchy_.strips.size();
+  pivots_.resize(strips);
+  high_.resize(strips);
   take_together(comm_, [&] {
-    for (std::size_t n = 0; n < stacks_.size(); ++n) {
-      const ElementModes& modes = *hierarchy_.strips[n].modes;
-      stacks_[n].up.resize(levels);
-      stacks_[n].down.resize(levels);
-      stacks_[n].diagonal.resize(levels);
-      stacks_[n].pivots.resize(square(modes.high()) * levels);
-      high_[n].resize(modes.high() * levels);
+    for (std::size_t n = 0; n < strips; ++n) {
+      const int h = hierarchy_.strips[n].modes->high();
+      pivots_[n].resize(square(h) * levels);
+      high_[n].resize(h * levels);
     }
   });
 }
@@ -282,14 +218,11 @@ void HighModes::reserve() {
 void HighModes::factor() {
   reserve();
   bool sound = true;  // on this rank; the others learn of it when all are through
-  for (std::size_t n = 0; n < stacks_.size(); ++n) {
-    const Strip& strip = hierarchy_.strips[n];
-    if (strip.modes->high() == 0) continue;
-    read_couplings(strip, stacks_[n]);
-    sound = complement(n, stacks_[n]) && sound;
-    sound = eliminate(strip, stacks_[n]) && sound;
+  for (std::size_t n = 0; n < pivots_.size(); ++n) {
+    if (hierarchy_.strips[n].modes->high() == 0) continue;
+    sound = complement(n) && sound;
+    sound = eliminate(n) && sound;
   }
-  exchange_inner_couplings();
   require_everywhere(comm_, sound ? "" : "a block of the high modes of p-multigrid is singular");
 }
 
@@ -312,7 +245,7 @@ void HighModes::add(Vec r, Vec x, bool transposed) const {
 void HighModes::add(const PetscScalar* r, PetscScalar* x, bool transposed) const {
   const int levels = hierarchy_.levels;
   if (levels == 0) return;
-  for (std::size_t n = 0; n < stacks_.size(); ++n) {
+  for (std::size_t n = 0; n < pivots_.size(); ++n) {
     const Strip& strip = hierarchy_.strips[n];
     const auto& m = *strip.modes;
     const int q = m.nodes, h = m.high();
@@ -324,14 +257,14 @@ void HighModes::add(const PetscScalar* r, PetscScalar* x, bool transposed) const
       product("NT", h, levels, q, 1, m.to_high.data(), h, r + strip.first, levels, 0,
               high_[n].data(), h);
     }
-    pass_inwards(strip, stacks_[n], high_[n], transposed);
+    pass_inwards(n, transposed);
   }
-  for (std::size_t n = 0; n < stacks_.size(); ++n) {
+  for (std::size_t n = 0; n < pivots_.size(); ++n) {
     const Strip& strip = hierarchy_.strips[n];
     const auto& m = *strip.modes;
     const int q = m.nodes, h = m.high();
     if (h == 0) continue;
-    pass_outwards(strip, stacks_[n], high_[n], transposed);
+    pass_outwards(n, transposed);
     if (transposed) {
       product("TN", levels, q, h, 1, high_[n].data(), h, m.to_high.data(), h, 1, x + strip.first,
               levels);
@@ -342,61 +275,58 @@ void HighModes::add(const PetscScalar* r, PetscScalar* x, bool transposed) const
   }
 }
 
-// y_a <- z_a = P_a (y_a - c z_outer), P the inverse pivots.
-void HighModes::pass_inwards(const Strip& strip, const Stack& stack, Scalars& y,
-                             bool transposed) const {
-  const int h = strip.modes->high();
+// y_a <- z_a = P_a (y_a + r z_outer), P the inverse pivots, r the rate to the level outside; in a
+// transposed system, from there.
+void HighModes::pass_inwards(std::size_t n, bool transposed) const {
+  const int h = hierarchy_.strips[n].modes->high();
   Scalars passed, next(2 * static_cast<std::size_t>(h), 0.0), sum(static_cast<std::size_t>(h));
   if (ranks_.has_outer()) {
     passed = receive<PetscScalar>(2 * static_cast<std::size_t>(h), ranks_.outer, comm_);
   }
-  const auto at = [&](int level) { return y.data() + static_cast<std::ptrdiff_t>(h) * level; };
-  const auto add = [&](int level, PetscScalar factor, const PetscScalar* outer) {
-    for (int n = 0; n < h; ++n) at(level)[n] -= factor * outer[n];
+  const auto at = [&](int level) {
+    return high_[n].data() + static_cast<std::ptrdiff_t>(h) * level;
   };
   const auto finish = [&](int level) {
-    multiply(stack.pivots.data() + square(h) * level, h, transposed, at(level), sum.data());
+    multiply(pivots_[n].data() + square(h) * level, h, transposed, at(level), sum.data());
     std::copy(sum.begin(), sum.end(), at(level));
   };
   for (const Arm& arm : arms()) {
     const PetscScalar* outer = passed.empty() ? nullptr : of_arm(passed, arm.number);
-    PetscScalar back = stack.from_outer[arm.number];
-    const auto subtract = [&](int level) {
-      if (outer != nullptr) add(level, transposed ? back : outwards(stack, arm, level), outer);
+    const auto& rate = transposed ? arm.from_outer : arm.to_outer;
+    const auto add_outer = [&](int level) {
+      if (outer == nullptr) return;
+      for (int k = 0; k < h; ++k) at(level)[k] += rate[level] * outer[k];
     };
     for (int a = arm.begin; a != arm.end; a += arm.step) {
-      subtract(a);
+      add_outer(a);
       finish(a);
       outer = at(a);
-      back = inwards(stack, arm, a);
     }
-    if (hierarchy_.centre) subtract(hierarchy_.below);
+    if (hierarchy_.centre) add_outer(hierarchy_.below);
     if (outer != nullptr) std::copy_n(outer, h, of_arm(next, arm.number));
   }
   if (hierarchy_.centre) finish(hierarchy_.below);
   if (ranks_.has_inner()) send(next, ranks_.inner, comm_);
 }
 
-// z_a <- x_a = z_a - P_a c x_inner.
-void HighModes::pass_outwards(const Strip& strip, const Stack& stack, Scalars& z,
-                              bool transposed) const {
-  const int h = strip.modes->high();
+// z_a <- x_a = z_a + P_a r x_inner, r the rate to the level inside, or from there.
+void HighModes::pass_outwards(std::size_t n, bool transposed) const {
+  const int h = hierarchy_.strips[n].modes->high();
   Scalars passed, next, step(static_cast<std::size_t>(h));
   if (ranks_.has_inner()) {
     passed = receive<PetscScalar>(2 * static_cast<std::size_t>(h), ranks_.inner, comm_);
   }
-  const auto at = [&](int level) { return z.data() + static_cast<std::ptrdiff_t>(h) * level; };
+  const auto at = [&](int level) {
+    return high_[n].data() + static_cast<std::ptrdiff_t>(h) * level;
+  };
   for (const Arm& arm : arms()) {
     const PetscScalar* inner =
         hierarchy_.centre ? at(hierarchy_.below) : of_arm(passed, arm.number);
-    PetscScalar here =
-        hierarchy_.centre ? outwards(stack, arm, hierarchy_.below) : stack.from_inner[arm.number];
+    const auto& rate = transposed ? arm.from_inner : arm.to_inner;
     for (int a = arm.end - arm.step; a != arm.begin - arm.step; a -= arm.step) {
-      multiply(stack.pivots.data() + square(h) * a, h, transposed, inner, step.data());
-      const PetscScalar factor = transposed ? here : inwards(stack, arm, a);
-      for (int n = 0; n < h; ++n) at(a)[n] -= factor * step[n];
+      multiply(pivots_[n].data() + square(h) * a, h, transposed, inner, step.data());
+      for (int k = 0; k < h; ++k) at(a)[k] += rate[a] * step[k];
       inner = at(a);
-      here = outwards(stack, arm, a);
     }
     next.insert(next.end(), inner, inner + h);
   }

@@ -45,12 +45,13 @@ void take_magnitudes_of_block(Mat block) {
 
 }  // namespace
 
-MatHandle SplitMatrix::make(MatHandle sparse, Transport transport) {
+MatHandle SplitMatrix::make(MatHandle sparse, Jumps jumps, Transport transport) {
   PetscInt local = 0, global = 0;
   check(MatGetLocalSize(sparse, &local, nullptr));
   check(MatGetSize(sparse, &global, nullptr));
   MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(static_cast<Mat>(sparse)));
-  std::unique_ptr<SplitMatrix> own(new SplitMatrix(std::move(sparse), std::move(transport)));
+  std::unique_ptr<SplitMatrix> own(
+      new SplitMatrix(std::move(sparse), std::move(jumps), std::move(transport)));
   MatHandle matrix;
   check(MatCreateShell(comm, local, local, global, global, own.get(), matrix.out()));
   (void)own.release();  // to the matrix
@@ -70,12 +71,14 @@ void SplitMatrix::multiply(Vec x, Vec y, bool transposed) const {
   check(transposed ? MatMultTranspose(sparse_, x, y) : MatMult(sparse_, x, y));
   const ReadView from(x);
   WriteView to(y);
+  jumps_.add(from.data(), to.data(), transposed);
   transport_.subtract(from.data(), to.data(), transposed);
 }
 
 MatHandle magnitudes(Mat matrix) {
   if (const SplitMatrix* split = SplitMatrix::of(matrix)) {
-    return SplitMatrix::make(magnitudes(split->sparse()), split->transport().sizes());
+    return SplitMatrix::make(magnitudes(split->sparse()), split->jumps().sizes(),
+                             split->transport().sizes());
   }
   MatHandle copy;
   check(MatDuplicate(matrix, MAT_COPY_VALUES, copy.out()));
@@ -97,6 +100,7 @@ VecHandle magnitude_sums(Mat matrix) {
     VecHandle sums = magnitude_sums(split->sparse());
     WriteView local(sums);
     const std::vector<PetscScalar> ones(static_cast<std::size_t>(local.size()), 1.0);
+    split->jumps().sizes().add(ones.data(), local.data(), false);
     split->transport().sizes().subtract(ones.data(), local.data(), false);
     return sums;
   }

@@ -24,7 +24,7 @@ enum class Rest {
 /// How an operator is stored.
 enum class Form {
   assembled,   ///< all entries, in an AIJ matrix
-  by_elements  ///< a petsc::SplitMatrix: jumps and ends of the axis stored, transport applied
+  by_elements  ///< a petsc::SplitMatrix: transport and jumps applied, ends of the axis stored
 };
 
 /// Parameters of the process by which operators can be differentiated.

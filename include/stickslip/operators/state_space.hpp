@@ -3,6 +3,7 @@
 
 #include <petscsys.h>
 
+#include <cstdlib>
 #include <span>
 #include <vector>
 
@@ -64,10 +65,10 @@ class StateSpace {
 
   [[nodiscard]] PetscInt global_size() const { return global_size_; }
   [[nodiscard]] PetscInt local_size() const { return local_size_; }
-  /// Those of them that are nodes.
-  [[nodiscard]] PetscInt local_nodes() const;
   /// First global index of this rank.
   [[nodiscard]] PetscInt local_begin() const { return blocks_[rank_].begin; }
+  /// Whether this rank owns the levels i and -i.
+  [[nodiscard]] bool owns(int level) const { return owner_of_shell_[std::abs(level)] == rank_; }
   /// Noise levels i owned by this rank, rising.
   [[nodiscard]] std::vector<int> local_levels() const;
 

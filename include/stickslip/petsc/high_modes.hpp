@@ -88,29 +88,21 @@ class HighModes {
 
  private:
   using Scalars = std::vector<PetscScalar>;
-  // The chain of the high modes of an element: couplings to the levels above and below, diagonals
-  // of S, inverse pivots, and the couplings of the levels of other ranks to those here, by arm.
-  struct Stack {
-    Scalars up, down, diagonal, pivots;
-    std::array<PetscScalar, 2> from_outer{}, from_inner{};
-  };
   // Levels below 0 or above it, from the outermost local one inwards.
   struct Arm {
     int number, begin, end, step;
+    // Rates at which a level is left for the one outside or inside of it, and reached from it.
+    const std::vector<double>&to_outer, &from_outer, &to_inner, &from_inner;
   };
   [[nodiscard]] std::array<Arm, 2> arms() const;
-  [[nodiscard]] static PetscScalar outwards(const Stack& stack, const Arm& arm, int level);
-  [[nodiscard]] static PetscScalar inwards(const Stack& stack, const Arm& arm, int level);
 
   void reserve();
-  void read_couplings(const Strip& strip, Stack& stack) const;
   // Whether no block was singular.
-  [[nodiscard]] bool complement(std::size_t n, Stack& stack) const;
-  [[nodiscard]] bool eliminate(const Strip& strip, Stack& stack);
-  void exchange_inner_couplings();
+  [[nodiscard]] bool complement(std::size_t n);
+  [[nodiscard]] bool eliminate(std::size_t n);
   void add(const PetscScalar* r, PetscScalar* x, bool transposed) const;
-  void pass_inwards(const Strip& strip, const Stack& stack, Scalars& y, bool transposed) const;
-  void pass_outwards(const Strip& strip, const Stack& stack, Scalars& z, bool transposed) const;
+  void pass_inwards(std::size_t n, bool transposed) const;
+  void pass_outwards(std::size_t n, bool transposed) const;
 
   MatHandle matrix_;
   const SplitMatrix& parts_;
@@ -118,8 +110,7 @@ class HighModes {
   Hierarchy hierarchy_;
   MPI_Comm comm_;
   Neighbours ranks_;
-  PetscInt first_row_ = 0, end_row_ = 0;
-  std::vector<Stack> stacks_;
+  std::vector<Scalars> pivots_;        // by strip, those of its levels inverted
   mutable std::vector<Scalars> high_;  // by strip, the high modes in work
 };
 
