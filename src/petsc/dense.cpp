@@ -4,6 +4,9 @@
 // After PETSc itself, whose types it uses.
 #include <petscblaslapack.h>
 
+#include <algorithm>
+#include <utility>
+
 namespace stickslip::petsc {
 
 void product(const char* how, int m, int n, int k, double factor, const PetscScalar* a,
@@ -15,13 +18,33 @@ void product(const char* how, int m, int n, int k, double factor, const PetscSca
   BLASgemm_(how, how + 1, &rows, &columns, &inner, &alpha, a, &lda, b, &ldb, &beta, c, &ldc);
 }
 
-bool invert(PetscScalar* a, int n, int stride, std::span<PetscBLASInt> pivots,
-            std::span<PetscScalar> work) {
-  const PetscBLASInt size = n, lda = stride, length = static_cast<PetscBLASInt>(work.size());
-  PetscBLASInt info = 0;
-  LAPACKgetrf_(&size, &size, a, &lda, pivots.data(), &info);
-  if (info == 0) LAPACKgetri_(&size, a, &lda, pivots.data(), work.data(), &length, &info);
-  return info == 0;
+// Gauss-Jordan: column k of the inverse takes the place of column k.
+bool invert(PetscScalar* a, int n, int stride, std::span<int> exchanges) {
+  const auto column = [&](int c) { return a + static_cast<std::ptrdiff_t>(stride) * c; };
+  for (int k = 0; k < n; ++k) {
+    PetscScalar* own = column(k);
+    int largest = k;
+    for (int r = k + 1; r < n; ++r) {
+      if (PetscAbsScalar(own[r]) > PetscAbsScalar(own[largest])) largest = r;
+    }
+    if (own[largest] == 0.0) return false;
+    exchanges[k] = largest;
+    for (int c = 0; c < n && largest != k; ++c) std::swap(column(c)[k], column(c)[largest]);
+    const PetscScalar inverse = 1.0 / own[k];
+    for (int c = 0; c < n; ++c) {
+      if (c == k) continue;
+      PetscScalar* other = column(c);
+      const PetscScalar factor = other[k] * inverse;
+      for (int r = 0; r < n; ++r) other[r] -= factor * own[r];
+      other[k] = factor;
+    }
+    for (int r = 0; r < n; ++r) own[r] *= -inverse;
+    own[k] = inverse;
+  }
+  for (int k = n - 1; k >= 0; --k) {
+    if (exchanges[k] != k) std::swap_ranges(column(k), column(k) + n, column(exchanges[k]));
+  }
+  return true;
 }
 
 }  // namespace stickslip::petsc

@@ -107,9 +107,8 @@ void DenseInverse::invert_block(const Block& a) {
 }
 
 void DenseInverse::invert_leaf(const Block& a) {
-  std::array<PetscBLASInt, kLeaf> pivots{};
-  std::array<PetscScalar, static_cast<std::size_t>(kLeaf) * kLeaf> work;
-  if (invert(a.data, a.rows, a.stride, pivots, work)) return;
+  std::array<int, kLeaf> exchanges{};
+  if (invert(a.data, a.rows, a.stride, exchanges)) return;
   throw NotReached("a block of the elimination is singular; -slide_pc_type lu exchanges more rows");
 }
 

@@ -1,9 +1,5 @@
 #include "stickslip/petsc/high_modes.hpp"
 
-#include <petscsys.h>
-// After PETSc itself, whose types it uses.
-#include <petscblaslapack.h>
-
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
@@ -145,8 +141,8 @@ bool HighModes::complement(std::size_t n) {
   const Scalars by_excess = in_modes(modes, nodal.by_excess),
                 constant = in_modes(modes, nodal.constant), by_up = in_modes(modes, nodal.by_up),
                 by_down = in_modes(modes, nodal.by_down);
-  Scalars block(square(q));
-  std::vector<PetscBLASInt> exchanges(static_cast<std::size_t>(c));
+  Scalars block(square(q)), solved(static_cast<std::size_t>(c) * h);
+  std::vector<int> exchanges(static_cast<std::size_t>(c));
   bool sound = true;
   for (int a = 0; a < hierarchy_.levels; ++a) {
     const auto [excess, up, down] = transport.speeds(n, a);
@@ -157,16 +153,12 @@ bool HighModes::complement(std::size_t n) {
     for (int k = 0; k < q; ++k) {
       block[k + q * k] += jumps.killing + (k < c ? kShift : 1) * jumps.rate(a);
     }
-    PetscScalar* right = block.data() + static_cast<std::ptrdiff_t>(q) * c;
+    const PetscScalar* right = block.data() + static_cast<std::ptrdiff_t>(q) * c;
     PetscScalar* s = pivots_[n].data() + square(h) * a;
     for (std::ptrdiff_t k = 0; k < h; ++k) std::copy_n(right + c + q * k, h, s + h * k);
-    const PetscBLASInt size = c, count = h, stride = q;
-    PetscBLASInt info = 0;
-    LAPACKgetrf_(&size, &size, block.data(), &stride, exchanges.data(), &info);
-    sound = sound && info == 0;
-    LAPACKgetrs_("N", &size, &count, block.data(), &stride, exchanges.data(), right, &stride,
-                 &info);
-    product("NN", h, h, c, -1, block.data() + c, q, right, q, 1, s, h);
+    sound = invert(block.data(), c, q, exchanges) && sound;
+    product("NN", c, h, c, 1, block.data(), q, right, q, 0, solved.data(), c);
+    product("NN", h, h, c, -1, block.data() + c, q, solved.data(), c, 1, s, h);
   }
   return sound;
 }
@@ -175,8 +167,8 @@ bool HighModes::complement(std::size_t n) {
 bool HighModes::eliminate(std::size_t n) {
   const int h = hierarchy_.strips[n].modes->high();
   const std::size_t entries = square(h);
-  Scalars work(entries), passed, next(2 * entries, 0.0);  // passed: the last pivots of both arms
-  std::vector<PetscBLASInt> exchanges(static_cast<std::size_t>(h));
+  Scalars passed, next(2 * entries, 0.0);  // passed: the last pivots of both arms
+  std::vector<int> exchanges(static_cast<std::size_t>(h));
   if (ranks_.has_outer()) passed = receive<PetscScalar>(2 * entries, ranks_.outer, comm_);
   bool sound = true;
   const auto pivot = [&](int level) { return pivots_[n].data() + entries * level; };
@@ -189,13 +181,13 @@ bool HighModes::eliminate(std::size_t n) {
     };
     for (int a = arm.begin; a != arm.end; a += arm.step) {
       subtract(a);
-      sound = invert(pivot(a), h, h, exchanges, work) && sound;
+      sound = invert(pivot(a), h, h, exchanges) && sound;
       outer = pivot(a);
     }
     if (hierarchy_.centre) subtract(hierarchy_.below);
     if (outer != nullptr) std::copy_n(outer, entries, of_arm(next, arm.number));
   }
-  if (hierarchy_.centre) sound = invert(pivot(hierarchy_.below), h, h, exchanges, work) && sound;
+  if (hierarchy_.centre) sound = invert(pivot(hierarchy_.below), h, h, exchanges) && sound;
   if (ranks_.has_inner()) send(next, ranks_.inner, comm_);
   return sound;
 }

@@ -2,6 +2,7 @@
 #include <random>
 #include <vector>
 
+#include "stickslip/petsc/dense.hpp"
 #include "stickslip/petsc/dense_inverse.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -64,6 +65,32 @@ TEST_CASE("dense inverse: full and block triangular, smaller and larger than a l
         }
       }
     }
+  }
+}
+
+TEST_CASE("dense inverse: small blocks of larger matrices, with exchanges of rows") {
+  for (int n = 1; n <= 16; ++n) {
+    const int stride = n + 3;
+    const auto size = static_cast<std::size_t>(stride) * n;
+    std::mt19937 random(n);
+    std::normal_distribution<double> entry;
+    std::vector<PetscScalar> whole(size);
+    for (auto& value : whole) value = entry(random);
+    if (n > 1) whole[0] = 0;
+    auto result = whole;
+    std::vector<int> exchanges(n);
+    REQUIRE(petsc::invert(result.data(), n, stride, exchanges));
+    std::vector<PetscScalar> a, inverse;
+    for (int c = 0; c < n; ++c) {
+      for (int r = 0; r < stride; ++r) {
+        const int at = r + stride * c;
+        if (r >= n) CHECK(result[at] == whole[at]);
+        if (r < n) a.push_back(whole[at]);
+        if (r < n) inverse.push_back(result[at]);
+      }
+    }
+    CHECK(distance_from_unit(a, inverse, n) < 1e-12);
+    CHECK(distance_from_unit(inverse, a, n) < 1e-12);
   }
 }
 
