@@ -165,7 +165,7 @@ double predicted_bytes(const model::Scene& scene, const Resolution& resolution) 
     return scalars * (8 * entries * n * nodes + 40 * row * n);
   }
   switch (resolution.factors) {
-  case options::Factors::p_multigrid: return scalars * 650 * n;
+  case options::Factors::p_multigrid: return scalars * 500 * n;
   case options::Factors::own:
   case options::Factors::levels:
   case options::Factors::in_memory: return scalars * (factors + 60 * row * n);

@@ -129,8 +129,8 @@ std::string cost_table(const options::Request& request, const accuracy::Outcome&
       "assembly", "analysis", "factor", "solve", "total s", "largest relative error");
   for (const auto& step : outcome.steps) text += step_line(step);
   if (outcome.total.iterations > 0) {
-    text += fmt::format("{} iterations in {} solves\n", outcome.total.iterations,
-                        outcome.total.solves + outcome.total.corrections);
+    text += fmt::format("{} iterations in {} solves and {} corrections\n", outcome.total.iterations,
+                        outcome.total.solves, outcome.total.corrections);
   }
   for (const auto& [name, value] : outcome.steps.back().checks) {
     text += fmt::format("{} = {:.4g}\n", name, value);
