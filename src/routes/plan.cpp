@@ -170,9 +170,9 @@ Plan plan_of(const Request& request) {
   return Planner(request).plan();
 }
 
-// Up to 200 000 unknowns both take the same time, over all scenes (0.7 to 1.5 times in single ones);
-// iteration takes half of the memory, above also less time, and more ranks share it. Without drag
-// it needs twice the iterations, and with a right-hand side more an elimination has paid off.
+// Up to 200 000 unknowns both take the same time, over all scenes (0.7 to 2 times in single
+// ones); iteration takes half of the memory, above also less time, and more ranks share it. Without
+// drag it needs twice the iterations, and with a right-hand side more an elimination has paid off.
 bool prefers_iteration(const Request& request, std::int64_t unknowns) {
   constexpr std::int64_t least = 100'000;
   constexpr int most_solves = 2;

@@ -14,8 +14,8 @@ void product(const char* how, int m, int n, int k, double factor, const PetscSca
              int stride_c);
 
 /// Inverts a small n x n block in place with exchanges of rows; false if it is singular.
-/// `exchanges`: work space of n entries. 2 n^3 operations. LAPACK takes 12 times as long at n = 2, 3
-/// times at 8, 1.5 at 16.
+/// `exchanges`: work space of n entries. 2 n^3 operations. LAPACK takes 12 times as long at n = 2,
+/// 3 times at 8, 1.5 at 16.
 [[nodiscard]] bool invert(PetscScalar* a, int n, int stride, std::span<int> exchanges);
 
 }  // namespace stickslip::petsc

@@ -15,8 +15,8 @@ namespace stickslip::petsc {
 /// in a cycle of HighModes. In GMRES an iteration leaves a fifth to a tenth of the error.
 class PMultigrid final : public Preconditioner {
  public:
-  /// `coarse` is for the matrix of the coarse discretisation, which other preconditioners may use as
-  /// well; `matrix` is kept by reference count. Collective.
+  /// `coarse` is for the matrix of the coarse discretisation, which other preconditioners may use
+  /// as well; `matrix` is kept by reference count. Collective.
   PMultigrid(Mat matrix, std::shared_ptr<LevelElimination> coarse, Hierarchy hierarchy);
 
   /// Factors the coarse matrix too unless that is done.
