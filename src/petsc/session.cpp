@@ -23,6 +23,8 @@ void shorten_start_of_single_process() {
   // Isolated processes would all use the same session folder, and remove it under one another.
   setenv("OMPI_MCA_orte_create_session_dirs", "0", keep_users_choice);
   setenv("OMPI_MCA_sharedfp", "^sm", keep_users_choice);  // needs that folder
+  // hwloc would look for ten X displays: seconds each where "localhost" has no address.
+  setenv("HWLOC_COMPONENTS", "-gl", keep_users_choice);
 }
 
 // PETSc's own words, without the chain of its functions.
