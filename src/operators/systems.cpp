@@ -94,19 +94,10 @@ Operators Systems::operators(const SystemKey& key) {
 std::shared_ptr<CoarseSystem> Systems::coarse_for(const SystemKey& key,
                                                   const velocity::HpAxis& axis) {
   auto coarse_axis = axis.coarsened(kCoarseDegree);
-  std::shared_ptr<CoarseSystem> found;
   if (offered_ && offered_->key == key && same_nodes(*offered_->axis, *coarse_axis)) {
-    found = std::move(offered_);
-  } else {
-    found = std::make_shared<CoarseSystem>(comm_, process_, std::move(coarse_axis), key, ledger_);
+    return std::move(offered_);
   }
-  coarse_[key] = found;
-  return found;
-}
-
-std::shared_ptr<CoarseSystem> Systems::coarse(const SystemKey& key) const {
-  const auto found = coarse_.find(key);
-  return found == coarse_.end() ? nullptr : found->second.lock();
+  return std::make_shared<CoarseSystem>(comm_, process_, std::move(coarse_axis), key, ledger_);
 }
 
 System& Systems::at(double lambda, Symmetry symmetry, Rest rest) {

@@ -81,16 +81,18 @@ petsc::Jumps jumps(const StateSpace& states, const model::Process& process,
   const auto down = [&noise](int i) { return noise.rate() * noise.down(i); };
   petsc::LevelJumps by_level;
   by_level.killing = lambda;
-  for (int i : states.local_levels()) {
+  const std::vector<int> levels = states.local_levels();
+  for (std::size_t a = 0; a < levels.size(); ++a) {
+    const int i = levels[a];
     const bool top = i == noise.levels, bottom = i == -noise.levels;
-    if (i > 0 && !states.owns(0) && by_level.gap == 0) by_level.gap = by_level.levels();
+    if (a > 0 && i != levels[a - 1] + 1) by_level.gap = static_cast<int>(a);
     by_level.to_above.push_back(top ? 0 : up(i));
     by_level.to_below.push_back(bottom ? 0 : down(i));
     by_level.from_above.push_back(top ? 0 : down(i + 1));
     by_level.from_below.push_back(bottom ? 0 : up(i - 1));
   }
   std::vector<petsc::Jumps::Nodes> nodes;
-  if (by_level.levels() > 0) {
+  if (!levels.empty()) {
     for (Half half : states.halves()) {
       nodes.push_back({states.strip(half, 0, axis.size()), axis.size()});
     }

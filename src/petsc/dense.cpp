@@ -9,6 +9,10 @@
 
 namespace stickslip::petsc {
 
+void take_sizes(std::span<PetscScalar> values) {
+  for (PetscScalar& value : values) value = PetscAbsScalar(value);
+}
+
 void product(const char* how, int m, int n, int k, double factor, const PetscScalar* a,
              int stride_a, const PetscScalar* b, int stride_b, double keep, PetscScalar* c,
              int stride_c) {

@@ -1,16 +1,10 @@
 #include "stickslip/petsc/jumps.hpp"
 
-#include <algorithm>
 #include <utility>
 
+#include "stickslip/petsc/dense.hpp"
+
 namespace stickslip::petsc {
-namespace {
-
-void take_sizes(std::vector<PetscScalar>& values) {
-  for (PetscScalar& value : values) value = PetscAbsScalar(value);
-}
-
-}  // namespace
 
 Jumps::Jumps(LevelJumps jumps, std::vector<Nodes> nodes)
     : jumps_(std::move(jumps)), nodes_(std::move(nodes)) {

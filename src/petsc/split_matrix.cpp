@@ -1,11 +1,11 @@
 #include "stickslip/petsc/split_matrix.hpp"
 
-#include <algorithm>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/dense.hpp"
 #include "stickslip/petsc/vectors.hpp"
 
 namespace stickslip::petsc {
@@ -38,8 +38,7 @@ void take_magnitudes_of_block(Mat block) {
   check(MatGetInfo(block, MAT_LOCAL, &info));
   PetscScalar* values = nullptr;
   check(MatSeqAIJGetArray(block, &values));
-  const auto count = static_cast<std::ptrdiff_t>(info.nz_used);
-  std::transform(values, values + count, values, [](PetscScalar a) { return PetscAbsScalar(a); });
+  take_sizes({values, static_cast<std::size_t>(info.nz_used)});
   check(MatSeqAIJRestoreArray(block, &values));
 }
 

@@ -12,10 +12,6 @@ namespace {
 
 using Scalars = std::vector<PetscScalar>;
 
-void take_sizes(Scalars& values) {
-  for (PetscScalar& value : values) value = PetscAbsScalar(value);
-}
-
 }  // namespace
 
 Transport::Transport(int levels, std::vector<TransportStrip> strips)

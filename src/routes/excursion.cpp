@@ -282,10 +282,11 @@ NestedEvaluation::NestedEvaluation(const Setting& coarse)
   choose_solver(systems_, coarse);
   law_ = std::make_shared<StationaryLaw>(systems_);
   const auto symmetry = operators::symmetry_of(coarse.process);
-  iterates_ = systems_.at(0, symmetry).factors().iterates();
+  auto& system = systems_.at(0, symmetry);
+  iterates_ = system.factors().iterates();
   if (!iterates_) return;
   // A preconditioner for the finer one is cheaper than cycles around iterations.
-  coarse_ = systems_.coarse({0, symmetry});
+  coarse_ = system.coarse();
   systems_.release(0, symmetry);
 }
 
@@ -297,7 +298,7 @@ Evaluation NestedEvaluation::finer(const Setting& setting) {
     choose_solver(finer, setting);
     finer.offer(std::move(coarse_));
     law_ = std::make_shared<StationaryLaw>(finer, law_.get());
-    coarse_ = finer.coarse({0, operators::symmetry_of(setting.process)});
+    coarse_ = finer.at(0, operators::symmetry_of(setting.process)).coarse();
     return evaluation_of(request_, law_);
   }
   operators::NestedSystem nested(systems_, setting.axis, setting.ledger);

@@ -21,6 +21,7 @@ namespace {
 std::vector<test::System> systems() {
   auto all = test::killed_systems();
   all.push_back({all[0].scene, Symmetry::odd, Rest::kept});
+  all.push_back({all[3].scene, Symmetry::none, Rest::kept});
   all.push_back({all[4].scene, Symmetry::none, Rest::kept});
   return all;
 }

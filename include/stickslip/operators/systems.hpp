@@ -1,13 +1,13 @@
 #pragma once
 /// The operators of one discretisation, assembled and factored when first asked for.
 
+#include <compare>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
-#include <tuple>
 
 #include "stickslip/model/process.hpp"
 #include "stickslip/operators/kolmogorov_operator.hpp"
@@ -37,10 +37,7 @@ struct SystemKey {
   double lambda = 0;
   Symmetry symmetry = Symmetry::even;
   Rest rest = Rest::killing;
-  friend bool operator<(const SystemKey& a, const SystemKey& b) {
-    return std::tie(a.lambda, a.symmetry, a.rest) < std::tie(b.lambda, b.symmetry, b.rest);
-  }
-  friend bool operator==(const SystemKey&, const SystemKey&) = default;
+  friend auto operator<=>(const SystemKey&, const SystemKey&) = default;
 };
 
 /// A system on the lowest degrees, for p-multigrid on any higher ones of the same elements.
@@ -75,13 +72,17 @@ class System {
   /// Collective. Throws NoMemory or NotReached.
   System(Operators operators, petsc::Ledger& ledger)
       : operators_(std::move(operators)),
+        coarse_(operators_.coarse),
         factors_(a().matrix(), kSlidePrefix, ledger, operators_.structure(ledger)) {}
 
   [[nodiscard]] const KolmogorovOperator& a() const { return operators_.a; }
   [[nodiscard]] petsc::Factorization& factors() { return factors_; }
+  /// Of one that iterates, as long as it does; null for others.
+  [[nodiscard]] std::shared_ptr<CoarseSystem> coarse() const { return coarse_.lock(); }
 
  private:
   Operators operators_;
+  std::weak_ptr<CoarseSystem> coarse_;  // which the solver owns
   petsc::Factorization factors_;
 };
 
@@ -97,8 +98,6 @@ class Systems {
   /// Prefers p-multigrid where the axis has a degree to lower: for few solves with large systems.
   void prefer_iteration() { preferred_ = petsc::Solver::p_multigrid; }
 
-  /// The coarse system of one that iterates, as long as that exists; null for others. Local.
-  [[nodiscard]] std::shared_ptr<CoarseSystem> coarse(const SystemKey& key) const;
   /// Offers a coarse system of the same process to the first one of its key that iterates, which
   /// takes it if it has the same elements. Local.
   void offer(std::shared_ptr<CoarseSystem> coarse) { offered_ = std::move(coarse); }
@@ -133,7 +132,6 @@ class Systems {
   petsc::Ledger& ledger_;
   petsc::Solver preferred_ = petsc::Solver::levels;
   std::map<SystemKey, std::unique_ptr<System>> systems_;
-  std::map<SystemKey, std::weak_ptr<CoarseSystem>> coarse_;  // which solvers own
   std::shared_ptr<CoarseSystem> offered_;
 };
 

@@ -1,11 +1,15 @@
 #pragma once
-/// Operations on dense blocks by columns, which may be parts of larger ones.
+/// Operations on lists of scalars, and on dense blocks by columns, which may be parts of larger
+/// ones.
 
 #include <petscsys.h>
 
 #include <span>
 
 namespace stickslip::petsc {
+
+/// Each value becomes its absolute value.
+void take_sizes(std::span<PetscScalar> values);
 
 /// C <- factor A B + keep C with C m x n and the inner size k. `how` is "NN", or has T for a matrix
 /// that is taken transposed; each matrix is followed by its stride.
