@@ -1,13 +1,13 @@
 #pragma once
 /// The operators of one discretisation, assembled and factored when first asked for.
 
-#include <compare>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 
 #include "stickslip/model/process.hpp"
 #include "stickslip/operators/kolmogorov_operator.hpp"
@@ -37,7 +37,10 @@ struct SystemKey {
   double lambda = 0;
   Symmetry symmetry = Symmetry::even;
   Rest rest = Rest::killing;
-  friend auto operator<=>(const SystemKey&, const SystemKey&) = default;
+  friend bool operator<(const SystemKey& a, const SystemKey& b) {
+    return std::tie(a.lambda, a.symmetry, a.rest) < std::tie(b.lambda, b.symmetry, b.rest);
+  }
+  friend bool operator==(const SystemKey&, const SystemKey&) = default;
 };
 
 /// A system on the lowest degrees, for p-multigrid on any higher ones of the same elements.
