@@ -1,11 +1,13 @@
 #include "stickslip/accuracy/prediction.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "stickslip/accuracy/ladder.hpp"
 #include "stickslip/accuracy/refinement.hpp"
 #include "stickslip/petsc/blas.hpp"
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/routes/evaluation.hpp"
 
 namespace stickslip::accuracy {
 namespace {
@@ -37,6 +39,7 @@ class Predictor {
  public:
   Predictor(MPI_Comm comm, const options::Request& request, const Resolution& resolution)
       : comm_(comm),
+        request_(request),
         process_(request.scene.process(resolution.levels)),
         axis_(make_axis(request.scene, resolution)) {
     step_.resolution = resolution;
@@ -55,11 +58,13 @@ class Predictor {
     double assembly = 0, factorization = 0, solve = 0;  // seconds of one
   };
 
+  [[nodiscard]] routes::Setting setting(petsc::Ledger& ledger) const {
+    return {comm_, request_, process_, axis_, ledger};
+  }
+
   PredictedStep follow_nested(const PredictedStep& base) {
     petsc::Ledger ledger;
-    const auto a =
-        operators::assemble(comm_, process_, *axis_, 0, operators::symmetry_of(process_),
-                            operators::Rest::killing, ledger, operators::Form::by_elements);
+    routes::assemble_by_elements(setting(ledger));
     step_.unknowns = ledger.unknowns;
     step_.nonzeros = ledger.nonzeros;
     const double parallel = kNestedWork * static_cast<double>(ledger.unknowns);
@@ -72,9 +77,8 @@ class Predictor {
     const auto known = systems_.find(key);
     if (known != systems_.end()) return known->second;
     petsc::Ledger ledger;
-    operators::Systems systems(comm_, process_, axis_, ledger);
-    if (step_.resolution.factors == options::Factors::p_multigrid) systems.prefer_iteration();
-    const auto analysis = systems.analyse(key);
+    const bool iterates = step_.resolution.factors == options::Factors::p_multigrid;
+    const auto analysis = routes::analyse(setting(ledger), key, iterates);
     step_.unknowns = std::max<std::int64_t>(step_.unknowns, ledger.unknowns);
     step_.nonzeros = std::max(step_.nonzeros, ledger.nonzeros);
     step_.factor_entries = std::max(step_.factor_entries, analysis.factor_entries);
@@ -128,6 +132,7 @@ class Predictor {
   }
 
   MPI_Comm comm_;
+  const options::Request& request_;
   model::Process process_;
   std::shared_ptr<const velocity::Axis> axis_;
   PredictedStep step_;

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "stickslip/accuracy/ladder.hpp"
 #include "stickslip/accuracy/laws.hpp"
-#include "stickslip/operators/laws.hpp"
 #include "stickslip/petsc/memory.hpp"
-#include "stickslip/quantities/sensitivity.hpp"
+#include "stickslip/quantities/excursion.hpp"
 #include "stickslip/support/errors.hpp"
 
 namespace stickslip::accuracy {
@@ -106,24 +106,30 @@ class Refiner {
       : comm_(comm), request_(request), progress_(progress), ladder_(request) {}
 
   Outcome run() {
+    climb();
+    if (request_.wants(Quantity::density)) outcome_.density = quantities::density_field(*law_);
+    return std::move(outcome_);
+  }
+
+ private:
+  void climb() {
     require_memory(comm_, request_, ladder_.rung(1));
     for (int n = 0; n <= ladder_.last(); ++n) {
       if (n >= 2 && !fits(ladder_.rung(n))) return short_of_memory(n);
       solve(n);
-      if (n >= 1 && finished()) {
+      if (n == 0) continue;
+      if (finished()) {
         if (outcome_.reached) outcome_.next_digit_seconds = next_digit(n);
-        return std::move(outcome_);
+        return;
       }
-      if (n >= 1 && ladder_.first_order() && hopeless(n)) return std::move(outcome_);
+      if (ladder_.first_order() && hopeless(n)) return;
     }
     outcome_.shortfall = request_.method.fixed()
                              ? "the discretisation is fixed by hand; leave -degree, -layers and -p "
                                "out to have it refined"
                              : "no finer discretisation is tried";
-    return std::move(outcome_);
   }
 
- private:
   [[nodiscard]] bool fits(const Resolution& resolution) const {
     double need = predicted_bytes(request_.scene, resolution);
     if (base_ && resolution.shares_factors()) need -= predicted_bytes(request_.scene, base_->of);
@@ -140,8 +146,10 @@ class Refiner {
       remember_rounding(evaluation.results);
     }
     if (n >= 1) add_discretisation(n, evaluation.results);
-    if (request_.wants(Quantity::density)) follow_speed_law(*evaluation.law);
-    outcome_.last = std::move(evaluation);
+    outcome_.results = std::move(evaluation.results);
+    outcome_.even = std::move(evaluation.even);
+    outcome_.odd = std::move(evaluation.odd);
+    follow(std::move(evaluation.law));
     outcome_.total += step.ledger;
     outcome_.steps.push_back(std::move(step));
   }
@@ -196,7 +204,7 @@ class Refiner {
     std::vector<std::vector<double>> changes(results.size());
     for (std::size_t r = 0; r < results.size(); ++r) {
       auto& result = results[r];
-      const auto& coarse = outcome_.last.results[r].value;
+      const auto& coarse = outcome_.results[r].value;
       for (std::size_t e = 0; e < result.value.size(); ++e) {
         // A mode that the coarser grid did not find is all change.
         const double before = e < coarse.size() ? coarse[e] : 0;
@@ -213,26 +221,25 @@ class Refiner {
     share_errors(results);
   }
 
-  // The density's own measure: how far the distribution function of |V| moved. It converges
-  // slowly (the density has corners), so the whole change is taken for the error.
-  void follow_speed_law(const StationaryLaw& law) {
-    auto now = law.speed_law();
-    if (coarse_axis_) {
-      outcome_.speed_law_error =
-          quantities::speed_law_distance(*coarse_axis_, coarse_law_, law.axis(), now);
-    }
-    coarse_law_ = std::move(now);
-    coarse_axis_ = law.shared_axis();
+  // Whoever asks for the density, or cuts the velocity by hand, asks for the distribution of |V|.
+  // How far its distribution function moved is the density's own measure. It converges slowly (the
+  // density has corners), so the whole change is taken for the error.
+  void follow(std::shared_ptr<const StationaryLaw> law) {
+    if (!law || (!request_.wants(Quantity::density) && !request_.scene.v_max)) return;
+    auto now = quantities::speed_distribution(*law);
+    if (speed_) outcome_.speed_error = quantities::distance(*speed_, now);
+    speed_ = std::move(now);
+    law_ = std::move(law);
   }
 
   [[nodiscard]] bool finished() {
     Step& step = outcome_.steps.back();
     double rounding = 0;
-    for (std::size_t r = 0; r < outcome_.last.results.size(); ++r) {
-      const double error = quantities::relative_error(outcome_.last.results[r]);
+    for (std::size_t r = 0; r < outcome_.results.size(); ++r) {
+      const double error = quantities::relative_error(outcome_.results[r]);
       if (error <= step.estimate) continue;
       step.estimate = error;
-      step.limiting_key = outcome_.last.results[r].key;
+      step.limiting_key = outcome_.results[r].key;
       rounding = rounding_[r];
     }
     outcome_.reached = step.estimate <= request_.accuracy;
@@ -278,9 +285,8 @@ class Refiner {
 
   // A velocity cut made by hand is no part of the model: what it holds back is an error.
   void check_cut() {
-    if (!request_.scene.v_max) return;
-    const auto law = outcome_.last.law->speed_law();
-    const double held = law.at_top, sliding = 1 - law.at_rest;
+    if (!request_.scene.v_max || !speed_) return;
+    const double held = speed_->at_top, sliding = 1 - speed_->at_rest;
     if (held <= request_.accuracy * sliding) return;
     outcome_.reached = false;
     outcome_.shortfall = fmt::format(
@@ -290,11 +296,11 @@ class Refiner {
 
   // Errors that are too small betray themselves where results break a law.
   void check_laws() {
-    const std::string broken = broken_law(outcome_.last.results);
+    const std::string broken = broken_law(outcome_.results);
     if (broken.empty()) return;
     const int levels = outcome_.steps.back().resolution.levels;
     outcome_.reached = false;
-    outcome_.shortfall = broken + operators::please_report(request_.scene.process(levels));
+    outcome_.shortfall = broken + model::please_report(request_.scene.process(levels));
   }
 
   // A first-order scheme tells early how many points it would take.
@@ -313,10 +319,9 @@ class Refiner {
     return true;
   }
 
-  Outcome short_of_memory(int n) {
+  void short_of_memory(int n) {
     outcome_.shortfall = fmt::format("the next refinement would need {} of memory",
                                      gigabytes(predicted_bytes(request_.scene, ladder_.rung(n))));
-    return std::move(outcome_);
   }
 
   MPI_Comm comm_;
@@ -328,8 +333,8 @@ class Refiner {
   std::vector<double> rounding_;  // relative, of each result
   double last_rounding_ = std::numeric_limits<double>::infinity();  // of the limiting result
   std::vector<std::vector<double>> changes_;  // of the last step, by result and entry
-  std::shared_ptr<const velocity::Axis> coarse_axis_;
-  StationaryLaw::SpeedLaw coarse_law_;
+  std::shared_ptr<const StationaryLaw> law_;  // of the last step, if needed
+  std::optional<quantities::SpeedDistribution> speed_;
 };
 
 // The law of the noise has a closed form; routes that check the model compute it all the same.
@@ -337,11 +342,11 @@ bool closed_noise_law(const options::Request& request) {
   return request.wants(Quantity::noise_law) && request.route == options::Route::excursion;
 }
 
-Outcome simulate(MPI_Comm comm, const options::Request& request,
-                 const routes::SimulationProgress& progress) {
+Outcome by_simulation(MPI_Comm comm, const options::Request& request,
+                      const monte_carlo::SimulationProgress& progress) {
   Outcome outcome;
-  auto simulated = routes::monte_carlo(comm, request, progress);
-  outcome.last.results = std::move(simulated.results);
+  auto simulated = monte_carlo::simulate(comm, request, progress);
+  outcome.results = std::move(simulated.results);
   outcome.reached = simulated.reached;
   outcome.shortfall = simulated.shortfall;
   outcome.next_digit_seconds = 100 * simulated.state.seconds;
@@ -376,18 +381,18 @@ Solved solve_on(MPI_Comm comm, const options::Request& request, const Resolution
 }
 
 Outcome refine(MPI_Comm comm, const options::Request& request, const Progress& progress,
-               const routes::SimulationProgress& simulation_progress) {
+               const monte_carlo::SimulationProgress& simulation_progress) {
   Outcome outcome;
   outcome.reached = true;
   if (needs_system(request)) {
     outcome = request.route == options::Route::monte_carlo
-                  ? simulate(comm, request, simulation_progress)
+                  ? by_simulation(comm, request, simulation_progress)
                   : Refiner(comm, request, progress).run();
   }
   if (closed_noise_law(request)) {
-    quantities::append_noise_law(request.scene.meant(), outcome.last.results);
+    quantities::append_noise_law(request.scene.meant(), outcome.results);
     if (request.wants(Quantity::sensitivity)) {
-      quantities::append_noise_sensitivity(request.scene.meant(), outcome.last.results);
+      quantities::append_noise_sensitivity(request.scene.meant(), outcome.results);
     }
   }
   if (request.wants(Quantity::trajectory)) {
@@ -395,7 +400,7 @@ Outcome refine(MPI_Comm comm, const options::Request& request, const Progress& p
                                              request.start_v, request.horizon, request.seed);
   }
   if (!request.references.empty()) {
-    outcome.comparison = compare(request.compared, request.references, outcome.last.results);
+    outcome.comparison = compare(request.compared, request.references, outcome.results);
   }
   return outcome;
 }

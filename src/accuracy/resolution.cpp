@@ -1,11 +1,10 @@
 #include "stickslip/accuracy/resolution.hpp"
 
-#include <petscsys.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "stickslip/petsc/session.hpp"
 #include "stickslip/velocity/hp_axis.hpp"
 #include "stickslip/velocity/mesh.hpp"
 #include "stickslip/velocity/upwind_axis.hpp"
@@ -143,7 +142,7 @@ double predicted_bytes(const model::Scene& scene, const Resolution& resolution) 
   const auto n = static_cast<double>(unknowns(scene, resolution));
   const double levels = 2.0 * resolution.levels + 1;
   const double nodes = n / levels;
-  const double scalars = PetscDefined(USE_COMPLEX) ? 2 : 1;
+  const double scalars = petsc::complex_scalars() ? 2 : 1;
   if (resolution.scheme == options::Scheme::none) {
     constexpr double dense_matrices = 30;
     return 8 * dense_matrices * n * n;

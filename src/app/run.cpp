@@ -83,9 +83,9 @@ accuracy::Progress progress_of(const options::Request& request, bool first_rank)
   };
 }
 
-routes::SimulationProgress simulation_progress_of(const options::Request& request) {
+monte_carlo::SimulationProgress simulation_progress_of(const options::Request& request) {
   if (!request.progress) return {};
-  return [](const routes::SimulationState& s) {
+  return [](const monte_carlo::SimulationState& s) {
     const double share = 100 * s.excursions / s.wanted;
     say(fmt::format(
         "simulated {:.3g} of {:.3g} excursions ({:.0f} %), {:.2g} jumps/s, about {:.0f} "

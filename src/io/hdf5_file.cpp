@@ -4,15 +4,17 @@
 #include <unistd.h>
 
 #include <array>
+#include <exception>
 #include <stdexcept>
 #include <utility>
 
-#include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/hdf5_id.hpp"
 
 namespace stickslip::io {
 namespace {
+
+static_assert(sizeof(hid_t) == sizeof(std::int64_t));
 
 long shared_tag(MPI_Comm comm) {
   long tag = getpid();
@@ -60,12 +62,18 @@ void write_attribute(hid_t file, const std::string& path, const std::string& nam
 
 Hdf5File::Hdf5File(MPI_Comm comm, const std::string& target)
     : comm_(comm), file_(target, shared_tag(comm)) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // failures are told by exceptions
-  petsc::check(PetscViewerHDF5Open(comm, file_.part().c_str(), FILE_MODE_WRITE, viewer_.out()));
-  petsc::check(PetscViewerHDF5GetFileId(viewer_, &id_));
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // failures are reported by exceptions
+  const Hdf5Id access = given(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "a list of properties");
+  require(H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL), file_.part());
+  id_ = H5Fcreate(file_.part().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  if (id_ < 0) throw std::runtime_error("cannot create " + file_.part());
 }
 
-Hdf5File::~Hdf5File() = default;
+Hdf5File::~Hdf5File() {
+  // Collective: where one rank unwinds alone, the others would be waited for.
+  const bool alone = std::uncaught_exceptions() > 0 && petsc::ranks(comm_) > 1;
+  if (id_ >= 0 && !alone) (void)H5Fclose(id_);
+}
 
 void Hdf5File::make_group(const std::string& path) {
   const Hdf5Id group =
@@ -124,7 +132,7 @@ void Hdf5File::attribute(const std::string& path, const std::string& name, doubl
 
 void Hdf5File::commit() {
   require(H5Fflush(id_, H5F_SCOPE_GLOBAL), file_.part());
-  viewer_ = petsc::ViewerHandle();
+  require(H5Fclose(std::exchange(id_, -1)), file_.part());
   if (petsc::rank(comm_) == 0) file_.commit();
   MPI_Barrier(comm_);
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 
+#include "stickslip/io/hdf5_file.hpp"
 #include "stickslip/io/parts.hpp"
 #include "stickslip/io/provenance.hpp"
 #include "stickslip/petsc/session.hpp"
@@ -161,22 +162,20 @@ void write_record(Hdf5File& file, MPI_Comm comm, const options::Request& request
 void write_hdf5(MPI_Comm comm, const options::Request& request, const accuracy::Outcome& outcome,
                 const RunTimes& times) {
   Hdf5File file(comm, request.output);
-  write_results(file, outcome.last.results);
+  write_results(file, outcome.results);
   write_record(file, comm, request, times);
   file.attribute("/record", "accuracy_reached", outcome.reached ? "yes" : "no");
-  write_modes(file, "even", outcome.last.even);
-  write_modes(file, "odd", outcome.last.odd);
+  write_modes(file, "even", outcome.even);
+  write_modes(file, "odd", outcome.odd);
   if (outcome.path) write_path(file, *outcome.path);
   if (outcome.comparison) write_comparison(file, *outcome.comparison);
-  if (!request.wants(options::Quantity::density)) return file.commit();
-  const auto field = quantities::density_field(*outcome.last.law);
-  write_density(file, field, outcome.speed_law_error);
+  if (outcome.density) write_density(file, *outcome.density, outcome.speed_error);
   file.commit();
-  if (petsc::rank(comm) != 0) return;
+  if (!outcome.density || petsc::rank(comm) != 0) return;
   const std::filesystem::path name = request.output;
   std::filesystem::path beside = name;
   beside.replace_extension(".xdmf");
-  write_text(beside.string(), xdmf(name.filename().string(), field));
+  write_text(beside.string(), xdmf(name.filename().string(), *outcome.density));
 }
 
 }  // namespace stickslip::io

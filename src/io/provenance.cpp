@@ -2,7 +2,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <petscmat.h>
+#include <petscsys.h>
 #include <slepcversion.h>
 #include <unistd.h>
 
@@ -45,14 +45,14 @@ std::string slepc_version() {
   return fmt::format("{}.{}.{}", SLEPC_VERSION_MAJOR, SLEPC_VERSION_MINOR, SLEPC_VERSION_SUBMINOR);
 }
 
-constexpr const char* kScalar = PetscDefined(USE_COMPLEX) ? "complex" : "real";
+const char* scalar_type() { return petsc::complex_scalars() ? "complex" : "real"; }
 
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> provenance(MPI_Comm comm) {
   return {{"program", "stickslip " + std::string(kVersion)},
           {"commit", kCommit},
-          {"scalar", kScalar},
+          {"scalar", scalar_type()},
           {"petsc", petsc_version()},
           {"slepc", slepc_version()},
           {"mpi", mpi_library()},
@@ -65,7 +65,7 @@ std::vector<std::pair<std::string, std::string>> provenance(MPI_Comm comm) {
 
 std::string version_text() {
   return fmt::format("stickslip {} ({}, {} scalars)\nPETSc {}, SLEPc {}, BLAS {}\n", kVersion,
-                     kCommit, kScalar, petsc_version(), slepc_version(),
+                     kCommit, scalar_type(), petsc_version(), slepc_version(),
                      petsc::loaded_blas().library);
 }
 

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "stickslip/io/hdf5_file.hpp"
 #include "stickslip/io/parts.hpp"
 
 namespace stickslip::io {

@@ -1,3 +1,5 @@
+#include <nlohmann/json.hpp>
+
 #include "stickslip/io/parts.hpp"
 #include "stickslip/io/provenance.hpp"
 #include "stickslip/petsc/memory.hpp"
@@ -99,7 +101,7 @@ Json step_of(const accuracy::Step& step) {
   return json;
 }
 
-Json simulation_of(const routes::Simulated& simulated) {
+Json simulation_of(const monte_carlo::Simulated& simulated) {
   const auto& s = simulated.state;
   return {{"excursions", s.excursions},
           {"continued_from", simulated.continued_from},
@@ -155,7 +157,7 @@ Json run_json(const options::Request& request, const accuracy::Outcome& outcome,
               const RunTimes& times) {
   Json json;
   json["scene"] = scene_of(request, outcome);
-  json["results"] = results_json(outcome.last.results);
+  json["results"] = results_json(outcome.results);
   json["accuracy"] = {{"asked", request.accuracy}, {"reached", outcome.reached}};
   if (!outcome.reached) json["accuracy"]["shortfall"] = outcome.shortfall;
   if (outcome.comparison) json["comparison"] = comparison_of(*outcome.comparison);

@@ -80,7 +80,7 @@ std::string step_line(const accuracy::Step& step) {
   return line + "\n";
 }
 
-std::string simulation_lines(const routes::Simulated& simulated) {
+std::string simulation_lines(const monte_carlo::Simulated& simulated) {
   const auto& s = simulated.state;
   std::string text = fmt::format("{:.8g} excursions, ", s.excursions);
   if (simulated.continued_from > 0) {
@@ -143,13 +143,13 @@ std::string cost_table(const options::Request& request, const accuracy::Outcome&
 std::string table(const options::Request& request, const accuracy::Outcome& outcome,
                   const RunTimes& times) {
   std::string text = scene_line(request);
-  const std::size_t width = key_width(outcome.last.results);
+  const std::size_t width = key_width(outcome.results);
   text += fmt::format("\n{:<{}} {:>24}  {:>8}  {:>8}\n", "quantity", width, "value", "error",
                       "relative");
-  for (const auto& result : outcome.last.results) text += result_lines(result, width);
+  for (const auto& result : outcome.results) text += result_lines(result, width);
   if (request.wants(options::Quantity::density)) {
     text += fmt::format("{:<{}} {:>24}  {:>8.1e}  of the distribution function of |V|\n", "density",
-                        width, "in " + request.output, outcome.speed_law_error);
+                        width, "in " + request.output, outcome.speed_error);
   }
   if (outcome.path) {
     text += fmt::format("trajectory up to {:g}: {} events\n", request.horizon,

@@ -57,19 +57,10 @@ std::string broken_promise(const LocalRows& rows, Promise promise) {
 
 }  // namespace
 
-std::string please_report(const model::Process& process) {
-  std::string drag = fmt::format("drag {} and {}", process.drag.linear, process.drag.cubic);
-  if (process.drag.law) drag = "the law of -drag_expression";
-  return fmt::format("; this should not happen: please report it with the scene mu_s = {}, mu_d = "
-                     "{}, tau = {}, delta = {}, noise_levels = {}, {}, bias = {}",
-                     process.friction.mu_s, process.friction.mu_d, process.noise.tau,
-                     process.noise.delta, process.noise.levels, drag, process.bias);
-}
-
 void require_generator(MPI_Comm comm, const LocalRows& rows, Promise promise,
                        const model::Process& process) {
   const std::string broken = broken_promise(rows, promise);
-  petsc::require_everywhere(comm, broken.empty() ? "" : broken + please_report(process));
+  petsc::require_everywhere(comm, broken.empty() ? "" : broken + model::please_report(process));
 }
 
 void require_occupation(Vec nu, const model::Process& process) {
@@ -79,7 +70,7 @@ void require_occupation(Vec nu, const model::Process& process) {
   if (smallest >= -kNegligible * largest) return;
   throw NotReached(fmt::format("an occupation reaches from {:.2g} to {:.2g} and must not be "
                                "negative{}",
-                               smallest, largest, please_report(process)));
+                               smallest, largest, model::please_report(process)));
 }
 
 }  // namespace stickslip::operators

@@ -16,10 +16,8 @@
 #include "stickslip/model/drag_law.hpp"
 #include "stickslip/options/settings.hpp"
 #include "stickslip/petsc/check.hpp"
-#include "stickslip/petsc/eigensolver.hpp"
-#include "stickslip/petsc/factorization.hpp"
-#include "stickslip/petsc/linear_solver.hpp"
-#include "stickslip/petsc/time_stepper.hpp"
+#include "stickslip/petsc/session.hpp"
+#include "stickslip/petsc/solver_choice.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/text.hpp"
 
@@ -418,7 +416,7 @@ void read_horizon(const Settings& settings, Request& request, Problems& problems
 void read_spectrum_solver(const Settings& settings, Request& request, Problems& problems) {
   if (settings.text("spectrum_solver") != "direct") return;
   request.spectrum_solver = SpectrumSolver::direct;
-  if (PetscDefined(USE_COMPLEX)) return;
+  if (petsc::complex_scalars()) return;
   settings.report(problems, "spectrum_solver", "needs complex scalars",
                   "run stickslip-complex with the same options, or take krylov");
 }
@@ -636,10 +634,10 @@ const std::vector<SolverRole>& solver_roles() {
   static const std::vector<std::string> ts{"ts_view", "ts_view_pre", "ts_adapt_view", "snes_view",
                                            "ksp_view"};
   static const std::vector<SolverRole> roles{
-      {"slide_", petsc::Factorization::probe_options, "ksp_view", ksp},
-      {"null_", petsc::Eigensolver::probe_options, "eps_view", eps},
-      {"relax_", petsc::Eigensolver::probe_options, "eps_view", eps},
-      {"backward_", petsc::TimeStepper::probe_options, "ts_view", ts}};
+      {"slide_", petsc::probe_linear_solver, "ksp_view", ksp},
+      {"null_", petsc::probe_eigensolver, "eps_view", eps},
+      {"relax_", petsc::probe_eigensolver, "eps_view", eps},
+      {"backward_", petsc::probe_time_stepper, "ts_view", ts}};
   return roles;
 }
 

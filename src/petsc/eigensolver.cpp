@@ -4,6 +4,7 @@
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/linear_solver.hpp"
+#include "stickslip/petsc/solver_choice.hpp"
 #include "stickslip/support/errors.hpp"
 
 namespace stickslip::petsc {
@@ -107,7 +108,7 @@ void Eigensolver::iterate(Vec x) {
   check(VecCopy(y, x));
 }
 
-void Eigensolver::probe_options(const std::string& prefix) {
+void probe_eigensolver(const std::string& prefix) {
   constexpr PetscInt size = 100;
   MatHandle diagonal;
   check(MatCreateAIJ(PETSC_COMM_SELF, size, size, size, size, 1, nullptr, 0, nullptr,

@@ -225,7 +225,7 @@ Analysis Factorization::analyse(Mat matrix, const std::string& prefix, Ledger& l
   return {kind_of(ksp), own->entries(), own->bytes() / 1e6, own->operations()};
 }
 
-void Factorization::probe_options(const std::string& prefix) {
+void probe_linear_solver(const std::string& prefix) {
   MatHandle unit;
   check(MatCreate(PETSC_COMM_SELF, unit.out()));
   check(MatSetSizes(unit, 2, 2, 2, 2));

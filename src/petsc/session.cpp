@@ -60,6 +60,8 @@ Session::Session(int& argc, char**& argv) : arguments_(argv, argv + argc) {
 
 Session::~Session() { (void)SlepcFinalize(); }
 
+bool complex_scalars() { return PetscDefined(USE_COMPLEX); }
+
 bool under_mpiexec() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "PMI_SIZE"}) {
     if (std::getenv(name) != nullptr) return true;
@@ -77,6 +79,11 @@ int ranks(MPI_Comm comm) {
   int value = 1;
   MPI_Comm_size(comm, &value);
   return value;
+}
+
+void sum_over_ranks(MPI_Comm comm, std::vector<double>& values) {
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
+                comm);
 }
 
 std::string first_text(MPI_Comm comm, std::string text) {

@@ -95,7 +95,7 @@ int TimeStepper::steps() const {
   return static_cast<int>(steps);
 }
 
-void TimeStepper::probe_options(const std::string& prefix) {
+void probe_time_stepper(const std::string& prefix) {
   MatHandle unit;
   check(MatCreateAIJ(PETSC_COMM_SELF, 2, 2, 2, 2, 1, nullptr, 0, nullptr, unit.out()));
   for (PetscInt i = 0; i < 2; ++i) check(MatSetValue(unit, i, i, 1, INSERT_VALUES));

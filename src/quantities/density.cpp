@@ -1,8 +1,11 @@
 #include "stickslip/quantities/density.hpp"
 
-#include <mpi.h>
+#include <algorithm>
+#include <cmath>
 
+#include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
+#include "stickslip/quantities/stationary.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -50,7 +53,7 @@ DensityField density_field(const StationaryLaw& law) {
   DensityField field{PhaseField(law.process(), law.axis(), law.states()), atoms(law),
                      std::vector<double>(2 * static_cast<std::size_t>(n) + 1, 0.0),
                      std::vector<double>(2 * static_cast<std::size_t>(nodes), 0.0),
-                     law.speed_law().at_top};
+                     speed_distribution(law).at_top};
   for_each_place(law, [&](Half half, const State& state, double probability) {
     const bool upper = half == Half::upper;
     field.noise_marginal[n + (upper ? state.level : -state.level)] += probability;
@@ -61,11 +64,38 @@ DensityField density_field(const StationaryLaw& law) {
     field.velocity_marginal[upper ? nodes + state.node : nodes - 1 - state.node] += density;
   });
   for (auto* marginal : {&field.noise_marginal, &field.velocity_marginal}) {
-    MPI_Allreduce(MPI_IN_PLACE, marginal->data(), static_cast<int>(marginal->size()), MPI_DOUBLE,
-                  MPI_SUM, law.states().comm());
+    petsc::sum_over_ranks(law.states().comm(), *marginal);
   }
   for (std::size_t i = 0; i < field.atom.size(); ++i) field.noise_marginal[i] += field.atom[i];
   return field;
+}
+
+SpeedDistribution speed_distribution(const StationaryLaw& law) {
+  const double total = law.excursion().mean_excursion();
+  const std::size_t nodes = law.axis().size();
+  std::vector<double> sums(nodes + 2, 0.0);  // of the nodes, the origin and the holding states
+  const petsc::ReadView local(law.occupation());
+  PetscInt at = 0;
+  law.states().for_each_local([&](const State& state) {
+    std::size_t place = static_cast<std::size_t>(state.node);
+    if (state.kind != StateKind::node) place = nodes + (state.kind == StateKind::holding ? 1 : 0);
+    sums[place] += PetscRealPart(local[at++]) / total;
+  });
+  petsc::sum_over_ranks(law.states().comm(), sums);
+  return {law.shared_axis(),
+          {sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(nodes)},
+          sums[nodes] + law.excursion().mean_stick() / total,
+          sums[nodes + 1]};
+}
+
+double distance(const SpeedDistribution& a, const SpeedDistribution& b) {
+  double largest = std::abs(a.at_rest - b.at_rest);
+  for (double v : b.axis->cells()) {
+    const double below_a = a.at_rest + a.axis->mass_below(a.mass, v);
+    const double below_b = b.at_rest + b.axis->mass_below(b.mass, v);
+    largest = std::max(largest, std::abs(below_a - below_b));
+  }
+  return largest;
 }
 
 }  // namespace stickslip::quantities

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "stickslip/operators/state_space.hpp"
+
 namespace stickslip::quantities {
 
 PhaseField::PhaseField(const model::Process& process, const velocity::Axis& axis,

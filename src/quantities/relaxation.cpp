@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/eigensolver.hpp"
 #include "stickslip/petsc/vectors.hpp"
 

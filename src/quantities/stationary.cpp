@@ -10,6 +10,7 @@
 #include "stickslip/operators/laws.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -27,11 +28,6 @@ std::vector<double> real_parts(const std::vector<PetscScalar>& values) {
   std::vector<double> parts;
   for (const auto& value : values) parts.push_back(PetscRealPart(value));
   return parts;
-}
-
-void sum_over_ranks(MPI_Comm comm, std::vector<double>& values) {
-  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
-                comm);
 }
 
 double speed(const State& state, const velocity::Axis& axis) {
@@ -76,7 +72,7 @@ Excursion excursion_of(const model::Process& process, const velocity::Axis& axis
   });
   // The levels i and -i live on one rank, so that the sums do not depend on the distribution.
   for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square, &e.slide_drift}) {
-    sum_over_ranks(a.states().comm(), *sums);
+    petsc::sum_over_ranks(a.states().comm(), *sums);
   }
   e.entry = real_parts(a.entry_rates(nu));
   e.lost_probability = lost;
@@ -215,34 +211,6 @@ petsc::VecHandle StationaryLaw::weight_on(const KolmogorovOperator& a) const {
   petsc::check(VecNorm(weight, NORM_INFINITY, &largest));
   petsc::check(VecShift(weight, 1e-12 * largest));
   return weight;
-}
-
-StationaryLaw::SpeedLaw StationaryLaw::speed_law() const {
-  const double total = excursion_.mean_excursion();
-  const std::size_t nodes = axis_->size();
-  std::vector<double> sums(nodes + 2, 0.0);  // of the nodes, the origin and the holding states
-  const petsc::ReadView local(occupation_);
-  PetscInt at = 0;
-  states_.for_each_local([&](const State& state) {
-    std::size_t place = static_cast<std::size_t>(state.node);
-    if (state.kind != StateKind::node) place = nodes + (state.kind == StateKind::holding ? 1 : 0);
-    sums[place] += PetscRealPart(local[at++]) / total;
-  });
-  sum_over_ranks(states_.comm(), sums);
-  return {{sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(nodes)},
-          sums[nodes] + excursion_.mean_stick() / total,
-          sums[nodes + 1]};
-}
-
-double speed_law_distance(const velocity::Axis& axis_1, const StationaryLaw::SpeedLaw& law_1,
-                          const velocity::Axis& axis_2, const StationaryLaw::SpeedLaw& law_2) {
-  double distance = std::abs(law_1.at_rest - law_2.at_rest);
-  for (double v : axis_2.cells()) {
-    const double below_1 = law_1.at_rest + axis_1.mass_below(law_1.mass, v);
-    const double below_2 = law_2.at_rest + axis_2.mass_below(law_2.mass, v);
-    distance = std::max(distance, std::abs(below_1 - below_2));
-  }
-  return distance;
 }
 
 }  // namespace stickslip::quantities

@@ -10,6 +10,7 @@
 #include "stickslip/quantities/resolvent.hpp"
 #include "stickslip/quantities/sensitivity.hpp"
 #include "stickslip/quantities/spectrum.hpp"
+#include "stickslip/quantities/stationary.hpp"
 #include "stickslip/quantities/transient.hpp"
 #include "stickslip/routes/plan.hpp"
 
@@ -277,41 +278,76 @@ class Execution {
 
 Evaluation by_excursion(const Setting& setting) { return Execution(setting).run(); }
 
-NestedEvaluation::NestedEvaluation(const Setting& coarse)
-    : request_(coarse.request), systems_(coarse.comm, coarse.process, coarse.axis, coarse.ledger) {
-  choose_solver(systems_, coarse);
-  law_ = std::make_shared<StationaryLaw>(systems_);
-  const auto symmetry = operators::symmetry_of(coarse.process);
-  auto& system = systems_.at(0, symmetry);
-  iterates_ = system.factors().iterates();
-  if (!iterates_) return;
-  // A preconditioner for the finer one is cheaper than cycles around iterations.
-  coarse_ = system.coarse();
-  systems_.release(0, symmetry);
-}
+/// The systems of the first discretisation, and the law and coarse system of the last one.
+class NestedEvaluation::Systems {
+ public:
+  explicit Systems(const Setting& coarse)
+      : request_(coarse.request),
+        systems_(coarse.comm, coarse.process, coarse.axis, coarse.ledger) {
+    choose_solver(systems_, coarse);
+    law_ = std::make_shared<StationaryLaw>(systems_);
+    const auto symmetry = operators::symmetry_of(coarse.process);
+    auto& system = systems_.at(0, symmetry);
+    iterates_ = system.factors().iterates();
+    if (!iterates_) return;
+    // A preconditioner for the finer one is cheaper than cycles around iterations.
+    coarse_ = system.coarse();
+    systems_.release(0, symmetry);
+  }
 
-Evaluation NestedEvaluation::coarse() const { return evaluation_of(request_, law_); }
+  [[nodiscard]] Evaluation evaluation() const { return evaluation_of(request_, law_); }
+  [[nodiscard]] Evaluation finer(const Setting& setting) {
+    return iterates_ ? by_iteration(setting) : by_cycles(setting);
+  }
 
-Evaluation NestedEvaluation::finer(const Setting& setting) {
-  if (iterates_) {
+ private:
+  [[nodiscard]] Evaluation by_iteration(const Setting& setting) {
     operators::Systems finer(setting.comm, setting.process, setting.axis, setting.ledger);
     choose_solver(finer, setting);
     finer.offer(std::move(coarse_));
     law_ = std::make_shared<StationaryLaw>(finer, law_.get());
     coarse_ = finer.at(0, operators::symmetry_of(setting.process)).coarse();
-    return evaluation_of(request_, law_);
+    return evaluation();
   }
-  operators::NestedSystem nested(systems_, setting.axis, setting.ledger);
-  const Evaluation lower = evaluation_of(request_, law_);
-  setting.ledger.solves += setting.process.symmetric() ? 1 : 2;
-  Evaluation found;
-  for (int n = 0; n < kMostRounds; ++n) {
-    setting.ledger.backward_error = 0;  // that of the last round counts
-    law_ = std::make_shared<StationaryLaw>(nested, *law_);
-    found = evaluation_of(request_, law_);
-    if (settled(request_, lower.results, found.results)) break;
+
+  [[nodiscard]] Evaluation by_cycles(const Setting& setting) {
+    operators::NestedSystem nested(systems_, setting.axis, setting.ledger);
+    const Evaluation lower = evaluation();
+    setting.ledger.solves += setting.process.symmetric() ? 1 : 2;
+    Evaluation found;
+    for (int n = 0; n < kMostRounds; ++n) {
+      setting.ledger.backward_error = 0;  // that of the last round counts
+      law_ = std::make_shared<StationaryLaw>(nested, *law_);
+      found = evaluation();
+      if (settled(request_, lower.results, found.results)) break;
+    }
+    return found;
   }
-  return found;
+
+  const Request& request_;
+  operators::Systems systems_;
+  std::shared_ptr<StationaryLaw> law_;
+  bool iterates_ = false;
+  std::shared_ptr<operators::CoarseSystem> coarse_;  // of the last step, if it iterated
+};
+
+petsc::Analysis analyse(const Setting& setting, const operators::SystemKey& key, bool iterates) {
+  operators::Systems systems(setting.comm, setting.process, setting.axis, setting.ledger);
+  if (iterates) systems.prefer_iteration();
+  return systems.analyse(key);
 }
+
+void assemble_by_elements(const Setting& setting) {
+  (void)operators::assemble(setting.comm, setting.process, *setting.axis, 0,
+                            operators::symmetry_of(setting.process), operators::Rest::killing,
+                            setting.ledger, operators::Form::by_elements);
+}
+
+NestedEvaluation::NestedEvaluation(const Setting& coarse)
+    : systems_(std::make_unique<Systems>(coarse)) {}
+NestedEvaluation::~NestedEvaluation() = default;
+
+Evaluation NestedEvaluation::coarse() const { return systems_->evaluation(); }
+Evaluation NestedEvaluation::finer(const Setting& setting) { return systems_->finer(setting); }
 
 }  // namespace stickslip::routes

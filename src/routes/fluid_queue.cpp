@@ -6,6 +6,7 @@
 
 #include "routes.hpp"
 #include "stickslip/operators/static_chain.hpp"
+#include "stickslip/quantities/excursion.hpp"
 #include "stickslip/quantities/laplace.hpp"
 #include "stickslip/support/errors.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "stickslip/routes/monte_carlo.hpp"
+#include "stickslip/monte_carlo/simulate.hpp"
 #include "stickslip/support/statistics.hpp"
 #include "studies.hpp"
 
@@ -47,7 +47,7 @@ class CostStudy {
     reference_ = reference();
     hp();
     upwind();
-    monte_carlo();
+    simulations();
     for (const Curve& curve : curves_) tell(curve);
     return std::move(study_);
   }
@@ -137,7 +137,7 @@ class CostStudy {
   }
 
   // The error is the standard deviation that the interval tells: a single one is a matter of luck.
-  void monte_carlo() {
+  void simulations() {
     Curve curve{"monte_carlo", "excursions", {}};
     options::Request request = setting_.request;
     request.accuracy_given = false;
@@ -156,7 +156,7 @@ class CostStudy {
   }
 
   [[nodiscard]] Run simulated(const options::Request& request) const {
-    auto simulation = routes::monte_carlo(setting_.comm, request, {});
+    auto simulation = monte_carlo::simulate(setting_.comm, request, {});
     return {"monte_carlo",
             {{"excursions", request.excursions}},
             scalars(simulation.results),

@@ -93,7 +93,7 @@ Run converged_run(const Setting& setting, const options::Request& request, doubl
   for (const auto& step : outcome.steps) seconds += step.seconds;
   return {"hp",
           {{"delta", hp.scene.delta}, {"accuracy", accuracy}},
-          scalars(outcome.last.results),
+          scalars(outcome.results),
           seconds,
           outcome.total};
 }

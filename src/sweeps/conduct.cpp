@@ -20,7 +20,6 @@
 namespace stickslip::sweeps {
 namespace {
 
-using io::Json;
 using options::Request;
 
 constexpr int kTag = 7;           // of the only messages between single ranks
@@ -50,9 +49,8 @@ class Group {
   }
   /// Ends a point. A rank that fails where the others do not would wait for them, and they for it,
   /// for ever: it throws after kPatience, which ends all ranks.
-  void end_alike(const Json& json) const {
+  void end_alike(const Run& run) const {
     if (ranks_ == 1) return;
-    const Run run = read_run(json);
     const bool failed = run.status == Status::failed || run.status == Status::no_memory;
     std::array<int, 2> extremes{failed ? 1 : 0, failed ? -1 : 0};
     MPI_Request all = MPI_REQUEST_NULL;
@@ -91,7 +89,7 @@ Run read_line(const std::string& file, const std::string& line, std::size_t coun
   const auto entry = unsealed(line);
   if (!entry) refuse_record(file, "is damaged");
   try {
-    run = read_run(Json::parse(*entry));
+    run = read_run(*entry);
   } catch (const std::exception&) {
     refuse_record(file, "is damaged");
   }
@@ -151,26 +149,26 @@ class Worker {
       const auto n = static_cast<std::size_t>(group.told(group.leads() ? taken.next() : 0));
       if (n >= open_.size()) break;
       const std::size_t point = open_[n];
-      const Json run = compute_run(group.comm(), sweep_.request(point), point);
+      const Run run = compute_run(group.comm(), sweep_.request(point), point);
       group.end_alike(run);
       if (group.leads()) finish(run, done);
     }
     MPI_Barrier(comm_);  // the counters live until all are through
   }
 
-  void finish(const Json& run, SharedCounter& done) {
-    lines_.push_back(run.dump());
+  void finish(const Run& run, SharedCounter& done) {
+    lines_.push_back(run.entry);
     if (!request_.checkpoint.empty()) append_to_record(request_.checkpoint, sealed(lines_.back()));
     const auto here = static_cast<std::size_t>(done.next()) + 1;
     if (!progress_) return;
     State state;
-    state.point = run["point"].get<std::size_t>();
+    state.point = run.point;
     state.count = sweep_.size();
     state.done = state.count - open_.size() + here;
     state.seconds_left = (petsc::wall_seconds() - start_) *
                          static_cast<double>(open_.size() - here) / static_cast<double>(here);
-    state.status = run["status"].get<std::string>();
-    state.seconds_of_point = run["cost"]["seconds"].get<double>();
+    state.status = status_text(run.status);
+    state.seconds_of_point = run.seconds;
     progress_(state);
   }
 
@@ -184,7 +182,7 @@ class Worker {
     all.runs.resize(sweep_.size());
     for (auto& run : resumed_) all.runs[run.point] = std::move(run);
     const auto add = [&all](const std::string& line) {
-      Run run = read_run(Json::parse(line));
+      Run run = read_run(line);
       all.runs[run.point] = std::move(run);
     };
     for (const auto& line : lines_) add(line);

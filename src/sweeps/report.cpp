@@ -6,8 +6,10 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <span>
 
+#include "stickslip/io/hdf5_file.hpp"
 #include "stickslip/io/parts.hpp"
 #include "stickslip/support/text.hpp"
 
@@ -262,7 +264,7 @@ std::string sweep_summary(MPI_Comm comm, const options::Request& request,
   json["sweep"]["points"] = conducted.runs.size();
   json["sweep"]["from_record"] = conducted.resumed;
   json["runs"] = Json::array();
-  for (const auto& run : conducted.runs) json["runs"].push_back(run.json);
+  for (const auto& run : conducted.runs) json["runs"].push_back(Json::parse(run.entry));
   json["cost"] = {{"seconds", times.total}, {"start_up_seconds", times.start_up}};
   json["provenance"] = io::provenance_json(comm, request);
   return json.dump(2) + "\n";
@@ -278,8 +280,7 @@ void write_sweep_hdf5(MPI_Comm comm, const options::Request& request, const Cond
   grid.write_numbers_of_runs("/sweep/status",
                              [](const Run& run) { return static_cast<double>(run.status); });
   file.attribute("/sweep/status", "meaning", "0 reached, 1 not reached, 2 failed, 3 no memory");
-  grid.write_numbers_of_runs(
-      "/sweep/seconds", [](const Run& run) { return run.json["cost"]["seconds"].get<double>(); });
+  grid.write_numbers_of_runs("/sweep/seconds", [](const Run& run) { return run.seconds; });
   io::write_record(file, comm, request, times);
   file.commit();
 }

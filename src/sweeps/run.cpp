@@ -2,9 +2,11 @@
 
 #include <array>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/io/parts.hpp"
 #include "stickslip/petsc/ledger.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -72,19 +74,7 @@ quantities::Result result_of(const std::string& key, const Json& json) {
   return result;
 }
 
-}  // namespace
-
-const char* status_text(Status status) {
-  switch (status) {
-  case Status::reached: return "reached";
-  case Status::not_reached: return "not reached";
-  case Status::failed: return "failed";
-  case Status::no_memory: return "no memory";
-  }
-  return "";
-}
-
-Json compute_run(MPI_Comm comm, const options::Request& request, std::size_t point) {
+Json entry_of(MPI_Comm comm, const options::Request& request, std::size_t point) {
   const double start = petsc::wall_seconds();
   try {
     const auto outcome = accuracy::refine(comm, request, {});
@@ -102,7 +92,24 @@ Json compute_run(MPI_Comm comm, const options::Request& request, std::size_t poi
   }
 }
 
-Run read_run(Json json) {
+}  // namespace
+
+const char* status_text(Status status) {
+  switch (status) {
+  case Status::reached: return "reached";
+  case Status::not_reached: return "not reached";
+  case Status::failed: return "failed";
+  case Status::no_memory: return "no memory";
+  }
+  return "";
+}
+
+Run compute_run(MPI_Comm comm, const options::Request& request, std::size_t point) {
+  return read_run(entry_of(comm, request, point).dump());
+}
+
+Run read_run(std::string entry) {
+  const Json json = Json::parse(entry);
   Run run;
   const Json& point = json.at("point");
   if (!point.is_number_unsigned()) throw std::invalid_argument("no number of a point");
@@ -113,8 +120,8 @@ Run read_run(Json json) {
     run.results.push_back(result_of(key, result));
   }
   (void)json.at("scene");
-  (void)json.at("cost").at("seconds").get<double>();
-  run.json = std::move(json);
+  run.seconds = json.at("cost").at("seconds").get<double>();
+  run.entry = std::move(entry);
   return run;
 }
 

@@ -28,7 +28,7 @@ Request request(double mu_s, double mu_d, double tau, double delta, model::Drag 
 Outcome solve(const Request& r) { return accuracy::refine(PETSC_COMM_WORLD, r, {}, {}); }
 
 const quantities::Result& result(const Outcome& outcome, const std::string& key) {
-  for (const auto& r : outcome.last.results) {
+  for (const auto& r : outcome.results) {
     if (r.key == key) return r;
   }
   throw std::invalid_argument(key);
@@ -210,7 +210,7 @@ TEST_CASE("refinement: error estimates are honest and not far off", "[slow][real
     r.accuracy *= 1e-4;
     const Outcome truth = solve(r);
     if (!truth.reached) continue;  // a density at 0+ of 1e-40, say
-    for (const auto& known : truth.last.results) {
+    for (const auto& known : truth.results) {
       if (!known.is_scalar() || known.value[0] == 0) continue;
       const auto& found = result(outcome, known.key);
       const double error = std::abs(found.value[0] - known.value[0]);
@@ -239,7 +239,7 @@ TEST_CASE("refinement: no error is below the rounding of the value") {
   Request r = request(1, 0.3, 1, 0.5, {0, 0});
   r.accuracy = 1e-10;
   const Outcome outcome = solve(r);
-  for (const auto& found : outcome.last.results) {
+  for (const auto& found : outcome.results) {
     for (std::size_t e = 0; e < found.value.size(); ++e) {
       CHECK(found.error[e] >= 4 * 2.2e-16 * std::abs(found.value[e]));
     }
@@ -251,7 +251,7 @@ TEST_CASE("refinement: only what is asked for is done") {
   r.quantities = {Quantity::noise_law};
   const Outcome noise = solve(r);
   CHECK(noise.total.assemblies == 0);
-  CHECK(noise.last.results.size() == 2);
+  CHECK(noise.results.size() == 2);
   CHECK(noise.reached);
 
   const auto factorizations = [](const Outcome& o) {

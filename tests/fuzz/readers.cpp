@@ -23,10 +23,10 @@
 #include "mutation.hpp"
 #include "stickslip/model/drag_law.hpp"
 #include "stickslip/model/observable.hpp"
+#include "stickslip/monte_carlo/simulate.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
-#include "stickslip/routes/monte_carlo.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/seal.hpp"
 #include "stickslip/support/text.hpp"
@@ -185,7 +185,7 @@ class Corpus {
   std::string checkpoint() const {
     options::Request request = simulation();
     request.checkpoint = folder_ / "seed.checkpoint";
-    (void)routes::monte_carlo(PETSC_COMM_SELF, request, {});
+    (void)monte_carlo::simulate(PETSC_COMM_SELF, request, {});
     return test::content(request.checkpoint);
   }
   static options::Request simulation() {
@@ -281,7 +281,7 @@ void report(const std::string& file) {
   static const options::Request request = Corpus::sweep();
   sweeps::Conducted conducted;
   try {
-    conducted.runs.push_back(sweeps::read_run(Json::parse(test::content(file))));
+    conducted.runs.push_back(sweeps::read_run(test::content(file)));
   } catch (const std::exception& refusal) {
     throw BadInput(refusal.what());
   }
@@ -308,7 +308,7 @@ void go_on_with(options::Request request, const std::string& file) {
     if (request.sweep) {
       (void)sweeps::conduct(PETSC_COMM_SELF, request, {});
     } else {
-      (void)routes::monte_carlo(PETSC_COMM_SELF, request, {});
+      (void)monte_carlo::simulate(PETSC_COMM_SELF, request, {});
     }
   });
 }

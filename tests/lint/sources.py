@@ -1,9 +1,10 @@
 """Rules that the compiler does not check.
 
-1. A room includes only rooms that come before it.
-2. Every call of PETSc, SLEPc is checked: inside check(...), assigned, returned or cast to void.
-3. Functions are short: median at most 8 lines, nine in ten at most 30, none above 60.
-4. The sources name neither folders of one machine nor who works on them.
+1. A module includes only modules that come before it.
+2. Modules that are compiled once, for both scalar types, see nothing that depends on the type.
+3. Every call of PETSc, SLEPc is checked: inside check(...), assigned, returned or cast to void.
+4. Functions are short: median at most 8 lines, nine in ten at most 30, none above 60.
+5. The sources name neither folders of one machine nor who works on them.
 """
 
 import pathlib
@@ -11,8 +12,9 @@ import re
 import statistics
 import sys
 
-ROOMS = ("support", "model", "exact", "velocity", "simulation", "petsc", "options", "operators", "quantities",
-         "routes", "accuracy", "studies", "io", "sweeps", "app")
+MODULES = ("support", "model", "exact", "velocity", "simulation", "petsc", "options", "operators",
+           "quantities", "routes", "monte_carlo", "accuracy", "studies", "io", "sweeps", "app")
+SCALAR_MODULES = ("petsc", "operators", "quantities", "routes")
 LONGEST, LONG, MEDIAN = 60, 30, 8
 
 
@@ -22,18 +24,42 @@ def source_files(root, *folders):
             yield from sorted((root / folder).rglob(ending))
 
 
-def room_of(path, root):
+def module_of(path, root):
     parts = path.relative_to(root).parts
     return parts[2] if parts[0] == "include" else parts[1]
 
 
-def check_rooms(root):
+def check_order(root):
     for path in source_files(root, "include", "src"):
-        own = ROOMS.index(room_of(path, root))
+        own = MODULES.index(module_of(path, root))
         for line in path.read_text().splitlines():
             found = re.match(r'#include "stickslip/(\w+)/', line)
-            if found and ROOMS.index(found.group(1)) > own:
+            if found and MODULES.index(found.group(1)) > own:
                 yield f"{path}: {line} points upwards"
+
+
+DEPENDS_ON_SCALARS = re.compile(r"#include <(petsc(vec|mat|ksp|ts)|slepc(?!version)\w*)\.h>"
+                                r"|\b(PetscScalar|PetscReal|Vec|Mat|USE_COMPLEX)\b")
+
+
+def included_headers(path, root):
+    for name in re.findall(r'#include "(stickslip/[^"]+)"', path.read_text()):
+        if (root / "include" / name).exists():  # version.hpp is generated
+            yield root / "include" / name
+
+
+def check_scalars(root):
+    for path in source_files(root, "src"):
+        if module_of(path, root) in SCALAR_MODULES:
+            continue
+        seen, left = {path}, [path]
+        while left:
+            header = left.pop()
+            if DEPENDS_ON_SCALARS.search(without_comments(header.read_text())):
+                yield f"{path}: compiled once, and sees the scalar type in {header}"
+            new = set(included_headers(header, root)) - seen
+            seen |= new
+            left += new
 
 
 def without_comments(text):
@@ -100,7 +126,7 @@ def check_words(root):
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    complaints = [text for rule in (check_rooms, check_petsc_calls, check_function_lengths,
+    complaints = [text for rule in (check_order, check_scalars, check_petsc_calls, check_function_lengths,
                                     check_words) for text in rule(root)]
     print("\n".join(complaints) or "sources follow the rules")
     sys.exit(1 if complaints else 0)

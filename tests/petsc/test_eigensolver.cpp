@@ -11,6 +11,7 @@
 #include "../common/options.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/eigensolver.hpp"
+#include "stickslip/petsc/solver_choice.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -180,7 +181,7 @@ TEST_CASE("eigensolver: probing marks the options of a role as known") {
                     {"-probe_st_mat_mumps_icntl_14", "30"},
                     {"-probe_eps_tolerance", "1e-9"},
                     {"-probe_st_mat_mumps_icntl_99", "1"}};
-  Eigensolver::probe_options("probe_");
+  probe_eigensolver("probe_");
   const auto used = [](const std::string& name) {
     PetscBool is_used = PETSC_FALSE;
     check(PetscOptionsUsed(nullptr, ("probe_" + name).c_str(), &is_used));
@@ -193,10 +194,10 @@ TEST_CASE("eigensolver: probing marks the options of a role as known") {
 TEST_CASE("eigensolver: probing takes any number of eigenvalues and any space") {
   for (const char* number : {"1", "4", "10", "60"}) {
     const Given given{{"-many_eps_nev", number}};
-    CHECK_NOTHROW(Eigensolver::probe_options("many_"));
+    CHECK_NOTHROW(probe_eigensolver("many_"));
   }
   const Given given{{"-wide_eps_nev", "5"}, {"-wide_eps_ncv", "7"}};
-  CHECK_NOTHROW(Eigensolver::probe_options("wide_"));
+  CHECK_NOTHROW(probe_eigensolver("wide_"));
 }
 
 // A Krylov space of four is enough for one eigenvalue next to the target.

@@ -189,7 +189,7 @@ TEST_CASE("factorization: options of the role override its defaults") {
 TEST_CASE("factorization: probing marks the options of a role as known") {
   check(PetscOptionsSetValue(nullptr, "-probe_mat_mumps_icntl_14", "30"));
   check(PetscOptionsSetValue(nullptr, "-probe_mat_mumps_icntl_99", "1"));
-  Factorization::probe_options("probe_");
+  probe_linear_solver("probe_");
   PetscBool used = PETSC_FALSE;
   check(PetscOptionsUsed(nullptr, "probe_mat_mumps_icntl_14", &used));
   CHECK(used == PETSC_TRUE);

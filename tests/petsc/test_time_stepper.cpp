@@ -216,7 +216,7 @@ TEST_CASE("time stepper: probing marks the options of a role as known") {
                     {"-probe_ts_adapt_type", "basic"},   {"-probe_ksp_type", "preonly"},
                     {"-probe_mat_mumps_icntl_14", "30"}, {"-probe_ts_max_step", "7"},
                     {"-probe_ts_rtoll", "1e-9"},         {"-probe_mat_mumps_icntl_99", "1"}};
-  TimeStepper::probe_options("probe_");
+  probe_time_stepper("probe_");
   const auto used = [](const std::string& name) {
     PetscBool is_used = PETSC_FALSE;
     check(PetscOptionsUsed(nullptr, ("probe_" + name).c_str(), &is_used));

@@ -5,9 +5,11 @@
 #include <cmath>
 
 #include "../common/scenes.hpp"
+#include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/quantities/density.hpp"
 #include "stickslip/quantities/relaxation.hpp"
+#include "stickslip/quantities/stationary.hpp"
 
 using namespace stickslip;
 using operators::Symmetry;

@@ -185,10 +185,9 @@ TEST_CASE("density: distribution functions of two discretisations approach each 
   const auto coarse = solve(s, accuracy::hp_resolution(s, 3, 0, 1e-6));
   const auto middle = solve(s, accuracy::hp_resolution(s, 6, 0, 1e-9));
   const auto fine = solve(s, accuracy::hp_resolution(s, 9, 0, 1e-12));
-  const double first = quantities::speed_law_distance(coarse.axis(), coarse.speed_law(),
-                                                      fine.axis(), fine.speed_law());
-  const double second = quantities::speed_law_distance(middle.axis(), middle.speed_law(),
-                                                       fine.axis(), fine.speed_law());
+  const auto finest = quantities::speed_distribution(fine);
+  const double first = quantities::distance(quantities::speed_distribution(coarse), finest);
+  const double second = quantities::distance(quantities::speed_distribution(middle), finest);
   CHECK(second < first / 2);
   CHECK(second > 0);
 }

@@ -46,7 +46,8 @@ Run made_by_hand(std::size_t point, double value) {
   Run run;
   run.point = point;
   run.results = {quantities::scalar("E(max(x,v))", "force", value, 0.125)};
-  run.json = {{"point", point}, {"cost", {{"seconds", 1.0}}}};
+  run.seconds = 1;
+  run.entry = "{}";
   return run;
 }
 
@@ -66,7 +67,7 @@ TEST_CASE("sweeps: every point has the bits of a run of its own", "[parallel]") 
       const auto alone = accuracy::refine(PETSC_COMM_SELF, request.sweep->request(n), {});
       CHECK(sweep.runs[n].point == n);
       CHECK(sweep.runs[n].status == Status::reached);
-      check_equal(sweep.runs[n].results, alone.last.results);
+      check_equal(sweep.runs[n].results, alone.results);
     }
     CHECK(exit_status(sweep.runs) == 0);
   }
@@ -80,8 +81,8 @@ TEST_CASE("sweeps: simulated points too, with their intervals", "[parallel]") {
   const auto sweep = conducted(request);
   if (!first_rank()) return;
   const auto alone = accuracy::refine(PETSC_COMM_SELF, request.sweep->request(1), {});
-  CHECK_FALSE(alone.last.results[0].ci95.empty());
-  check_equal(sweep.runs[1].results, alone.last.results);
+  CHECK_FALSE(alone.results[0].ci95.empty());
+  check_equal(sweep.runs[1].results, alone.results);
 }
 
 TEST_CASE("sweeps: several ranks to a point give the same up to rounding", "[parallel]") {
@@ -92,9 +93,8 @@ TEST_CASE("sweeps: several ranks to a point give the same up to rounding", "[par
   if (!first_rank()) return;
   for (std::size_t n = 0; n < 2; ++n) {
     const auto alone = accuracy::refine(PETSC_COMM_SELF, request.sweep->request(n), {});
-    for (std::size_t r = 0; r < alone.last.results.size(); ++r) {
-      CHECK(sweep.runs[n].results[r].value[0] ==
-            Approx(alone.last.results[r].value[0]).epsilon(1e-12));
+    for (std::size_t r = 0; r < alone.results.size(); ++r) {
+      CHECK(sweep.runs[n].results[r].value[0] == Approx(alone.results[r].value[0]).epsilon(1e-12));
     }
   }
 }
@@ -130,7 +130,7 @@ TEST_CASE("sweeps: what the record holds is not computed again") {
   CHECK(first.resumed == 0);
   const auto second = run();
   CHECK(second.resumed == 2);
-  for (std::size_t n = 0; n < 2; ++n) CHECK(second.runs[n].json == first.runs[n].json);
+  for (std::size_t n = 0; n < 2; ++n) CHECK(second.runs[n].entry == first.runs[n].entry);
   std::ofstream(file, std::ios::app) << "{\"point\":7}\n";
   CHECK_THROWS_AS(run(), BadInput);
 }

@@ -9,10 +9,12 @@
 
 #include "stickslip/accuracy/comparison.hpp"
 #include "stickslip/accuracy/resolution.hpp"
+#include "stickslip/monte_carlo/simulate.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/petsc/ledger.hpp"
+#include "stickslip/quantities/density.hpp"
+#include "stickslip/quantities/relaxation.hpp"
 #include "stickslip/routes/evaluation.hpp"
-#include "stickslip/routes/monte_carlo.hpp"
 #include "stickslip/simulation/path.hpp"
 
 namespace stickslip::accuracy {
@@ -46,17 +48,19 @@ struct Solved {
                               const Resolution& resolution);
 
 struct Outcome {
-  /// Of the last step: values with their error estimates, and the law and modes for fields.
-  routes::Evaluation last;
-  bool reached = false;           ///< whether all estimates are within the accuracy
-  std::string shortfall;          ///< why not, and what would help
+  /// Values of the last step, with their error estimates.
+  quantities::Results results;
+  std::vector<quantities::RelaxationMode> even, odd;  ///< modes, if asked for
+  std::optional<quantities::DensityField> density;    ///< if asked for
+  double speed_error = 0;  ///< of the distribution function of |V|, if the density is asked for
+  bool reached = false;    ///< whether all estimates are within the accuracy
+  std::string shortfall;   ///< why not, and what would help
   double next_digit_seconds = 0;  ///< predicted time of a run at a tenth of the error; 0: unknown
   std::vector<Step> steps;
   petsc::Ledger total;
-  double speed_law_error = 0;                   ///< of the distribution function of |V|
-  std::optional<routes::Simulated> simulation;  ///< of -route monte_carlo
-  std::optional<simulation::Path> path;         ///< of trajectory
-  std::optional<Comparison> comparison;         ///< of -compare
+  std::optional<monte_carlo::Simulated> simulation;  ///< of -route monte_carlo
+  std::optional<simulation::Path> path;              ///< of trajectory
+  std::optional<Comparison> comparison;              ///< of -compare
 };
 
 /// Called before each step with its number, its resolution and the seconds it is expected to take
@@ -74,6 +78,6 @@ using Progress = std::function<void(int, const Resolution&, double)>;
 /// before anything is allocated that would not fit, NotReached when a solver fails.
 [[nodiscard]] Outcome refine(MPI_Comm comm, const options::Request& request,
                              const Progress& progress,
-                             const routes::SimulationProgress& simulation_progress = {});
+                             const monte_carlo::SimulationProgress& simulation_progress = {});
 
 }  // namespace stickslip::accuracy

@@ -1,21 +1,20 @@
 #pragma once
-/// A parallel HDF5 file through PETSc's viewer, with datasets of plain doubles.
+/// A parallel HDF5 file with datasets of plain doubles.
 
-#include <hdf5.h>
 #include <mpi.h>
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "stickslip/petsc/handle.hpp"
 #include "stickslip/support/atomic_file.hpp"
 
 namespace stickslip::io {
 
-/// The viewer opens the file for all ranks; datasets are written with the HDF5 library itself,
-/// because the viewer of a complex PETSc would store every number as a pair, and the two twins
-/// should write the same file. All members are collective with equal arguments, but for rows.
+/// Written with the HDF5 library itself: PETSc's viewer would store every number of the complex
+/// program as a pair, and both programs write the same file. All members are collective with equal
+/// arguments, but for rows.
 class Hdf5File {
  public:
   /// Creates the file beside `target`; commit() moves it there.
@@ -43,8 +42,7 @@ class Hdf5File {
  private:
   MPI_Comm comm_;
   AtomicFile file_;
-  petsc::ViewerHandle viewer_;
-  hid_t id_ = -1;
+  std::int64_t id_;  // of HDF5, whose headers stay out of this one
 };
 
 }  // namespace stickslip::io

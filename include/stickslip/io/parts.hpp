@@ -3,17 +3,18 @@
 
 #include <mpi.h>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-#include "stickslip/io/hdf5_file.hpp"
 #include "stickslip/io/report.hpp"
 
 namespace stickslip::io {
 
+class Hdf5File;
+
 // JSON for Modern C++: the common header-only writer; numbers are written so that they read back
-// to the same bits.
+// to the same bits. It takes seconds to compile: sources that make JSON include it, headers do not.
 using Json = nlohmann::ordered_json;
 
 /// The scene in a line.

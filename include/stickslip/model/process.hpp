@@ -1,6 +1,8 @@
 #pragma once
 /// The piecewise deterministic process (X, Y, V) with everything that fixes its law.
 
+#include <string>
+
 #include "stickslip/model/drag.hpp"
 #include "stickslip/model/friction.hpp"
 #include "stickslip/model/noise_chain.hpp"
@@ -30,5 +32,8 @@ struct Process {
   /// x_i + g - mu_d: the speed of V at v = 0+ on level i.
   [[nodiscard]] double excess(int i) const { return friction.excess(noise.level(i), bias); }
 };
+
+/// "; this should not happen: please report it with the scene mu_s = ...".
+[[nodiscard]] std::string please_report(const Process& process);
 
 }  // namespace stickslip::model

@@ -13,25 +13,10 @@
 
 namespace stickslip::operators {
 
-/// The part of the static states in an operator.
-enum class Rest {
-  killing,         ///< no unknowns: the process is killed on reaching them, A_us is kept apart
-  kept,            ///< unknowns like all others: the whole process
-  killed_on_exit,  ///< unknowns; the process is killed on leaving them (L' of Prop. 3.1)
-  killing_edges    ///< unknowns, but killed on reaching (x_+-k, 0, 0) (R-check of Prop. 4.1)
-};
-
 /// How an operator is stored.
 enum class Form {
   assembled,   ///< all entries, in an AIJ matrix
   by_elements  ///< a petsc::SplitMatrix: transport and jumps applied, ends of the axis stored
-};
-
-/// Parameters of the process by which operators can be differentiated.
-enum class Parameter {
-  mu_d,
-  tau,              ///< at a fixed number of noise levels
-  drag_coefficient  ///< c of the linear part of the drag
 };
 
 /// A = lambda - L. On level l of a half, with B_l(v) = x_l + g - mu_d + b(v) on the upper one and

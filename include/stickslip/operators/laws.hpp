@@ -5,7 +5,6 @@
 #include <petscvec.h>
 
 #include <span>
-#include <string>
 
 #include "stickslip/model/process.hpp"
 
@@ -32,8 +31,5 @@ void require_generator(MPI_Comm comm, const LocalRows& rows, Promise promise,
 /// Throws NotReached, with the scene to report, if an occupation has entries below zero by more
 /// than rounding, 1e-9 of the largest one: on a monotone axis there are none. Collective. O(size).
 void require_occupation(Vec nu, const model::Process& process);
-
-/// "; this should not happen, please report it with the scene mu_s = ...".
-[[nodiscard]] std::string please_report(const model::Process& process);
 
 }  // namespace stickslip::operators

@@ -7,23 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "stickslip/model/process.hpp"
+#include "stickslip/operators/system_key.hpp"
 #include "stickslip/petsc/factorization.hpp"
 #include "stickslip/velocity/axis.hpp"
 
 namespace stickslip::operators {
-
-/// Functions under (x, y, v) -> (-x, -y, -v): even or odd, for which the half y = +1 is enough
-/// ("folded"), or of no symmetry, for which both halves are kept.
-enum class Symmetry { even, odd, none };
-
-/// The symmetry of densities and constants: even where the process is symmetric.
-[[nodiscard]] inline Symmetry symmetry_of(const model::Process& process) {
-  return process.symmetric() ? Symmetry::even : Symmetry::none;
-}
-
-/// The two half lines of the velocity.
-enum class Half { upper, lower };
 
 /// What a state stands for.
 enum class StateKind {

@@ -7,7 +7,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <tuple>
 
 #include "stickslip/model/process.hpp"
 #include "stickslip/operators/kolmogorov_operator.hpp"
@@ -31,17 +30,6 @@ inline const std::string kSlidePrefix = "slide_";
 [[nodiscard]] KolmogorovOperator assemble_derivative(MPI_Comm comm, const model::Process& process,
                                                      const velocity::Axis& axis, Symmetry symmetry,
                                                      Parameter theta, petsc::Ledger& ledger);
-
-/// lambda - L on functions of one symmetry.
-struct SystemKey {
-  double lambda = 0;
-  Symmetry symmetry = Symmetry::even;
-  Rest rest = Rest::killing;
-  friend bool operator<(const SystemKey& a, const SystemKey& b) {
-    return std::tie(a.lambda, a.symmetry, a.rest) < std::tie(b.lambda, b.symmetry, b.rest);
-  }
-  friend bool operator==(const SystemKey&, const SystemKey&) = default;
-};
 
 /// A system on the lowest degrees, for p-multigrid on any higher ones of the same elements.
 struct CoarseSystem {

@@ -36,9 +36,6 @@ class Eigensolver {
   /// One step of inverse iteration, x <- (A - target)^-1 x: what it changes shows rounding.
   void iterate(Vec x);
 
-  /// Reads all options of a role once, on a small matrix; see Factorization::probe_options.
-  static void probe_options(const std::string& prefix);
-
  private:
   void collect_pairs();
 

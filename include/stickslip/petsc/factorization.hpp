@@ -73,10 +73,6 @@ class Factorization {
   [[nodiscard]] static Analysis analyse(Mat matrix, const std::string& prefix, Ledger& ledger,
                                         Structure structure = {});
 
-  /// Reads all options of a role once, on a 2 x 2 matrix, so that unknown ones can be told before
-  /// any work. Collective on PETSC_COMM_SELF only.
-  static void probe_options(const std::string& prefix);
-
  private:
   void keep(Mat matrix);
   void factor();

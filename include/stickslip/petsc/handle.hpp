@@ -2,7 +2,6 @@
 /// Ownership of PETSc objects.
 
 #include <petscksp.h>
-#include <petscviewerhdf5.h>
 #include <slepcbv.h>
 #include <slepceps.h>
 
@@ -62,6 +61,5 @@ using MatHandle = Handle<Mat, MatDestroy>;
 using KspHandle = Handle<KSP, KSPDestroy>;
 using BvHandle = Handle<BV, BVDestroy>;
 using EpsHandle = Handle<EPS, EPSDestroy>;
-using ViewerHandle = Handle<PetscViewer, PetscViewerDestroy>;
 
 }  // namespace stickslip::petsc

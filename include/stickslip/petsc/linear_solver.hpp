@@ -8,11 +8,9 @@
 #include "stickslip/petsc/handle.hpp"
 #include "stickslip/petsc/ledger.hpp"
 #include "stickslip/petsc/preconditioner.hpp"
+#include "stickslip/petsc/solver_choice.hpp"
 
 namespace stickslip::petsc {
-
-/// Whether options under the prefix say something about the preconditioner or its matrices.
-[[nodiscard]] bool chooses_solver(const std::string& prefix);
 
 /// Makes a KSP a direct solver, preonly around an LU factorisation by MUMPS; to be called before
 /// its options are read.
@@ -26,16 +24,6 @@ void require_factored(KSP ksp, const std::string& prefix);
 
 /// Memory and entries of the factors of a KSP, as MUMPS counts them; nothing for other solvers.
 void record_factors(KSP ksp, Ledger& ledger);
-
-/// By what a system is solved.
-enum class Solver {
-  lu,          ///< any of PETSc's preconditioners; by default an LU factorisation by MUMPS
-  levels,      ///< LevelElimination
-  p_multigrid  ///< GMRES with PMultigrid
-};
-
-/// What the options under the prefix choose, and `preferred` where they say nothing. Local.
-[[nodiscard]] Solver chosen_solver(const std::string& prefix, Solver preferred);
 
 /// KSP for one of these: of type preonly around the preconditioner "levels"; of type gmres around
 /// "p_multigrid"; else preonly around an LU factorisation by MUMPS with the ordering AMF (MUMPS
@@ -55,14 +43,6 @@ void attach(KSP ksp, const Preconditioner& preconditioner);
 [[nodiscard]] bool lacks_workspace(KSP ksp);
 /// The same solver set up anew, with twice the workspace at least. Collective.
 [[nodiscard]] KspHandle with_more_workspace(KSP ksp, Mat matrix, const std::string& prefix);
-
-/// What an analysis foretells; zeros for solvers that tell nothing.
-struct Analysis {
-  Solver solver = Solver::lu;
-  double factor_entries = 0;
-  double megabytes = 0;   ///< of all ranks, while factoring
-  double operations = 0;  ///< of factoring
-};
 
 /// Orders and analyses `matrix` as MUMPS would, and stops there; zeros for other solvers.
 /// Collective.

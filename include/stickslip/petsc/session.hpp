@@ -1,7 +1,7 @@
 #pragma once
 /// Start and end of MPI, PETSc and SLEPc.
 
-#include <petscsys.h>
+#include <mpi.h>
 
 #include <string>
 #include <vector>
@@ -25,12 +25,18 @@ class Session {
   std::vector<char*> arguments_;  // PETSc keeps a pointer to them
 };
 
+/// Whether PETSc computes with complex scalars.
+[[nodiscard]] bool complex_scalars();
+
 /// Whether a launcher (mpiexec, srun) has started this process, and waits for it.
 [[nodiscard]] bool under_mpiexec();
 
 /// Rank and size of a communicator.
 [[nodiscard]] int rank(MPI_Comm comm);
 [[nodiscard]] int ranks(MPI_Comm comm);
+
+/// Adds the values of all ranks up, entry by entry. Collective.
+void sum_over_ranks(MPI_Comm comm, std::vector<double>& values);
 
 /// The text of the lowest rank that has one, so that what one rank alone finds ends all ranks
 /// alike; empty if none has. Collective.

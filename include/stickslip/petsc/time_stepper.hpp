@@ -8,6 +8,7 @@
 
 #include "stickslip/petsc/handle.hpp"
 #include "stickslip/petsc/ledger.hpp"
+#include "stickslip/petsc/solver_choice.hpp"
 
 namespace stickslip::petsc {
 
@@ -35,10 +36,9 @@ class TimeStepper {
     double shift;
   };
 
-  /// Reads all options of a role once, on a small matrix; see Factorization::probe_options.
-  static void probe_options(const std::string& prefix);
-
  private:
+  friend void probe_time_stepper(const std::string& prefix);
+
   MatHandle a_, shifted_;
   std::unique_ptr<Jacobian> jacobian_;
   VecHandle u_;

@@ -1,12 +1,15 @@
 #pragma once
-/// The stationary law as a field over (x, v).
+/// The stationary law as a field over (x, v), and the distribution of |V|.
 
+#include <memory>
 #include <vector>
 
 #include "stickslip/quantities/phase_field.hpp"
-#include "stickslip/quantities/stationary.hpp"
+#include "stickslip/velocity/axis.hpp"
 
 namespace stickslip::quantities {
+
+class StationaryLaw;
 
 /// pi on the whole grid. Marginals and atoms are on all ranks.
 struct DensityField {
@@ -19,5 +22,19 @@ struct DensityField {
 
 /// Collective. The state at v = 0 of a grid scheme is counted with the first node.
 [[nodiscard]] DensityField density_field(const StationaryLaw& law);
+
+/// The stationary distribution of |V| as point masses, the same on all ranks.
+struct SpeedDistribution {
+  std::shared_ptr<const velocity::Axis> axis;
+  std::vector<double> mass;  ///< of the velocity nodes
+  double at_rest = 0;        ///< P_stick, and the origin states of a grid scheme
+  double at_top = 0;         ///< holding states: what the velocity cut keeps back
+};
+
+/// Collective.
+[[nodiscard]] SpeedDistribution speed_distribution(const StationaryLaw& law);
+
+/// sup |F_1 - F_2| over the cells of the axis of `b`, F the distribution functions.
+[[nodiscard]] double distance(const SpeedDistribution& a, const SpeedDistribution& b);
 
 }  // namespace stickslip::quantities

@@ -47,6 +47,9 @@ void append_entry_law(const model::Process& process, const Excursion& excursion,
 /// P_X_le_mu_s and E_X2 of the noise alone, from its closed law.
 void append_noise_law(const model::Process& process, Results& results);
 
+/// dP_X_le_mu_s_dtau and dE_X2_dtau, at the number of levels of the process. Local. O(N).
+void append_noise_sensitivity(const model::Process& process, Results& results);
+
 /// The stationary law of X as the excursion sees it, summed over the grid; index i + N.
 [[nodiscard]] std::vector<double> marginal_of_noise(const model::Process& process,
                                                     const Excursion& excursion);

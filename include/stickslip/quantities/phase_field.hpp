@@ -3,7 +3,12 @@
 
 #include <vector>
 
-#include "stickslip/operators/state_space.hpp"
+#include "stickslip/operators/system_key.hpp"
+#include "stickslip/velocity/axis.hpp"
+
+namespace stickslip::operators {
+class StateSpace;
+}
 
 namespace stickslip::quantities {
 

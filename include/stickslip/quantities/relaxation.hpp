@@ -5,9 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "stickslip/operators/systems.hpp"
+#include "stickslip/operators/system_key.hpp"
 #include "stickslip/quantities/phase_field.hpp"
 #include "stickslip/quantities/results.hpp"
+
+namespace stickslip::operators {
+class Systems;
+}
 
 namespace stickslip::quantities {
 

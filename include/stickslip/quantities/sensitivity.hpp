@@ -57,8 +57,4 @@ class Sensitivity {
   Gradient slide_, stick_;
 };
 
-/// dP_X_le_mu_s_dtau and dE_X2_dtau of the noise alone, at its number of levels, from the closed
-/// law. Local. O(N).
-void append_noise_sensitivity(const model::Process& process, Results& results);
-
 }  // namespace stickslip::quantities

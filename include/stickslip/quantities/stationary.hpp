@@ -66,15 +66,6 @@ class StationaryLaw {
   /// c with c f = E[V f(X, Y, V)] for odd f on an odd operator. Collective.
   [[nodiscard]] petsc::VecHandle weighted_velocity(const operators::KolmogorovOperator& a) const;
 
-  /// The law of |V| as point masses, the same on all ranks.
-  struct SpeedLaw {
-    std::vector<double> mass;  ///< of the velocity nodes
-    double at_rest;            ///< P_stick, and the origin states of a grid scheme
-    double at_top;             ///< holding states: what the velocity cut keeps back
-  };
-  /// Collective.
-  [[nodiscard]] SpeedLaw speed_law() const;
-
  private:
   // nu A = g for excursions from one side.
   using Solve = std::function<petsc::Solution(Vec g, operators::Half side)>;
@@ -91,12 +82,5 @@ class StationaryLaw {
   Excursion excursion_, uncorrected_;
   double chance_of_falling_ = 0;
 };
-
-/// sup |F_1 - F_2| over the cells of axis 2, F the distribution functions of |V| in two
-/// discretisations.
-[[nodiscard]] double speed_law_distance(const velocity::Axis& axis_1,
-                                        const StationaryLaw::SpeedLaw& law_1,
-                                        const velocity::Axis& axis_2,
-                                        const StationaryLaw::SpeedLaw& law_2);
 
 }  // namespace stickslip::quantities

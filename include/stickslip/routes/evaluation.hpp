@@ -1,19 +1,25 @@
 #pragma once
 /// All that is asked for, on one discretisation, by the route asked for.
 
+#include <mpi.h>
+
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "stickslip/model/process.hpp"
-#include "stickslip/operators/systems.hpp"
+#include "stickslip/operators/system_key.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/petsc/ledger.hpp"
+#include "stickslip/petsc/solver_choice.hpp"
 #include "stickslip/quantities/relaxation.hpp"
 #include "stickslip/quantities/results.hpp"
-#include "stickslip/quantities/stationary.hpp"
 #include "stickslip/velocity/axis.hpp"
+
+namespace stickslip::quantities {
+class StationaryLaw;
+}
 
 namespace stickslip::routes {
 
@@ -39,6 +45,15 @@ struct Evaluation {
 /// NotReached or NoMemory.
 [[nodiscard]] Evaluation evaluate(const Setting& setting);
 
+/// Assembles the system of a key, for iteration if `iterates`, and has its solver analyse it;
+/// nothing is factored. Sizes and times go to the ledger. Collective. Throws NoMemory.
+[[nodiscard]] petsc::Analysis analyse(const Setting& setting, const operators::SystemKey& key,
+                                      bool iterates);
+
+/// Assembles the system of the stationary law without its transport and jumps, as nested
+/// evaluations do, and enters it in the ledger. Collective.
+void assemble_by_elements(const Setting& setting);
+
 /// The same on a discretisation and then on finer ones with the same elements and levels and higher
 /// degrees, each from the law found before: through the factors of the first one, if it has any, in
 /// less than half of its time; by iteration with the same coarse factors otherwise.
@@ -47,6 +62,9 @@ class NestedEvaluation {
   /// Factors and solves on the coarse discretisation. The request and the ledger must outlive this
   /// object. Collective. Throws as evaluate().
   explicit NestedEvaluation(const Setting& coarse);
+  ~NestedEvaluation();
+  NestedEvaluation(const NestedEvaluation&) = delete;
+  NestedEvaluation& operator=(const NestedEvaluation&) = delete;
 
   [[nodiscard]] Evaluation coarse() const;
   /// Errors of the route include what the cycles of a NestedSystem leave. Collective. Throws
@@ -54,11 +72,8 @@ class NestedEvaluation {
   [[nodiscard]] Evaluation finer(const Setting& setting);
 
  private:
-  const options::Request& request_;
-  operators::Systems systems_;
-  std::shared_ptr<quantities::StationaryLaw> law_;
-  bool iterates_;
-  std::shared_ptr<operators::CoarseSystem> coarse_;  // of the last step, if it iterated
+  class Systems;
+  std::unique_ptr<Systems> systems_;
 };
 
 }  // namespace stickslip::routes

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "stickslip/operators/systems.hpp"
+#include "stickslip/operators/system_key.hpp"
 #include "stickslip/options/request.hpp"
 
 namespace stickslip::routes {

@@ -1,10 +1,12 @@
 #pragma once
 /// A finished point of a sweep.
 
+#include <mpi.h>
+
 #include <cstddef>
 #include <string>
 
-#include "stickslip/io/parts.hpp"
+#include "stickslip/options/request.hpp"
 #include "stickslip/quantities/results.hpp"
 
 namespace stickslip::sweeps {
@@ -20,15 +22,16 @@ struct Run {
   Status status = Status::reached;
   std::string message;          ///< what fell short; empty if nothing did
   quantities::Results results;  ///< values that are not finite are NaN
-  io::Json json;                ///< the same and scene, accuracy, cost, plan: an entry of `runs`
+  double seconds = 0;           ///< that it took
+  std::string entry;            ///< the same and scene, accuracy, cost, plan: an entry of `runs`
 };
 
 /// Computes a point on its own; failures of solvers and of memory become its status. Collective.
 /// Throws what is no stickslip::Failure.
-[[nodiscard]] io::Json compute_run(MPI_Comm comm, const options::Request& request,
-                                   std::size_t point);
+[[nodiscard]] Run compute_run(MPI_Comm comm, const options::Request& request, std::size_t point);
 
-/// The run that an entry of `runs` tells of. Throws std::exception, nlohmann's too, if it is none.
-[[nodiscard]] Run read_run(io::Json json);
+/// The run of an entry of `runs`, JSON in one line. Throws std::exception, nlohmann's too, if it is
+/// none.
+[[nodiscard]] Run read_run(std::string entry);
 
 }  // namespace stickslip::sweeps

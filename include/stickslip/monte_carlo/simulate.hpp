@@ -9,7 +9,7 @@
 #include "stickslip/options/request.hpp"
 #include "stickslip/quantities/results.hpp"
 
-namespace stickslip::routes {
+namespace stickslip::monte_carlo {
 
 /// How far a simulation is.
 struct SimulationState {
@@ -36,7 +36,7 @@ struct Simulated {
 /// excursions alone. With request.checkpoint the tally is read from that file if it exists, and
 /// written to it every few seconds. Collective. Throws BadInput when the checkpoint belongs to
 /// another run or is damaged, and when it would take more than a month.
-[[nodiscard]] Simulated monte_carlo(MPI_Comm comm, const options::Request& request,
-                                    const SimulationProgress& progress);
+[[nodiscard]] Simulated simulate(MPI_Comm comm, const options::Request& request,
+                                 const SimulationProgress& progress);
 
-}  // namespace stickslip::routes
+}  // namespace stickslip::monte_carlo

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace stickslip::routes {
+namespace stickslip::monte_carlo {
 
 struct Checkpoint {
   /// Name and value of every option that fixes the numbers.
@@ -26,4 +26,4 @@ read_checkpoint(MPI_Comm comm, const std::string& file,
 /// Writes it to `file`, whole or not at all. By one process.
 void write_checkpoint(const std::string& file, const Checkpoint& checkpoint);
 
-}  // namespace stickslip::routes
+}  // namespace stickslip::monte_carlo

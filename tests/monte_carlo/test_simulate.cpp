@@ -6,8 +6,8 @@
 #include "../common/scenes.hpp"
 #include "../common/temporary.hpp"
 #include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/monte_carlo/simulate.hpp"
 #include "stickslip/petsc/session.hpp"
-#include "stickslip/routes/monte_carlo.hpp"
 #include "stickslip/support/errors.hpp"
 
 using namespace stickslip;
@@ -38,8 +38,8 @@ Request request(const model::Scene& s, double excursions) {
 
 model::Scene small() { return scene(1, 0.25, 1, 0.5, {1, 0}); }
 
-routes::Simulated simulate(const Request& r, MPI_Comm comm = PETSC_COMM_WORLD) {
-  return routes::monte_carlo(comm, r, {});
+monte_carlo::Simulated simulate(const Request& r, MPI_Comm comm = PETSC_COMM_WORLD) {
+  return monte_carlo::simulate(comm, r, {});
 }
 
 /// All numbers in a row, to be compared bit for bit.
@@ -145,9 +145,9 @@ TEST_CASE("monte carlo: tells what is lacking when the accuracy is not met") {
 
 TEST_CASE("monte carlo: progress is told at once, and how much is left") {
   const auto r = request(small(), 3 * kRound);
-  std::vector<routes::SimulationState> told;
-  (void)routes::monte_carlo(PETSC_COMM_WORLD, r,
-                            [&](const routes::SimulationState& s) { told.push_back(s); });
+  std::vector<monte_carlo::SimulationState> told;
+  (void)monte_carlo::simulate(PETSC_COMM_WORLD, r,
+                              [&](const monte_carlo::SimulationState& s) { told.push_back(s); });
   REQUIRE_FALSE(told.empty());
   CHECK(told[0].excursions > 0);
   CHECK(told[0].wanted == 3 * kRound);
@@ -284,7 +284,7 @@ Results computed(Request r) {
   r.accuracy = 1e-8;
   const auto outcome = accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
   REQUIRE(outcome.reached);
-  return outcome.last.results;
+  return outcome.results;
 }
 
 /// Whether the interval of one value, from a run of its own, holds the computed one.

@@ -1,4 +1,4 @@
-#include "stickslip/routes/monte_carlo.hpp"
+#include "stickslip/monte_carlo/simulate.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "stickslip/simulation/tally.hpp"
 #include "stickslip/support/errors.hpp"
 
-namespace stickslip::routes {
+namespace stickslip::monte_carlo {
 namespace {
 
 using options::Quantity;
@@ -409,8 +409,8 @@ class Campaign {
 
 }  // namespace
 
-Simulated monte_carlo(MPI_Comm comm, const Request& request, const SimulationProgress& progress) {
+Simulated simulate(MPI_Comm comm, const Request& request, const SimulationProgress& progress) {
   return Campaign(comm, request, progress).run();
 }
 
-}  // namespace stickslip::routes
+}  // namespace stickslip::monte_carlo

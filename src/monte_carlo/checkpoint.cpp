@@ -11,7 +11,7 @@
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/seal.hpp"
 
-namespace stickslip::routes {
+namespace stickslip::monte_carlo {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -81,4 +81,4 @@ void write_checkpoint(const std::string& file, const Checkpoint& checkpoint) {
   write_text(file, sealed(json.dump()) + "\n");
 }
 
-}  // namespace stickslip::routes
+}  // namespace stickslip::monte_carlo

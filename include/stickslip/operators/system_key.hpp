@@ -1,0 +1,48 @@
+#pragma once
+/// What an operator is of: the part that plans and reports need, independent of the scalar type.
+
+#include <tuple>
+
+#include "stickslip/model/process.hpp"
+
+namespace stickslip::operators {
+
+/// Functions under (x, y, v) -> (-x, -y, -v): even or odd, for which the half y = +1 is enough
+/// ("folded"), or of no symmetry, for which both halves are kept.
+enum class Symmetry { even, odd, none };
+
+/// The symmetry of densities and constants: even where the process is symmetric.
+[[nodiscard]] inline Symmetry symmetry_of(const model::Process& process) {
+  return process.symmetric() ? Symmetry::even : Symmetry::none;
+}
+
+/// The two half lines of the velocity.
+enum class Half { upper, lower };
+
+/// The part of the static states in an operator.
+enum class Rest {
+  killing,         ///< no unknowns: the process is killed on reaching them, A_us is kept apart
+  kept,            ///< unknowns like all others: the whole process
+  killed_on_exit,  ///< unknowns; the process is killed on leaving them (L' of Prop. 3.1)
+  killing_edges    ///< unknowns, but killed on reaching (x_+-k, 0, 0) (R-check of Prop. 4.1)
+};
+
+/// Parameters of the process by which operators can be differentiated.
+enum class Parameter {
+  mu_d,
+  tau,              ///< at a fixed number of noise levels
+  drag_coefficient  ///< c of the linear part of the drag
+};
+
+/// lambda - L on functions of one symmetry.
+struct SystemKey {
+  double lambda = 0;
+  Symmetry symmetry = Symmetry::even;
+  Rest rest = Rest::killing;
+  friend bool operator<(const SystemKey& a, const SystemKey& b) {
+    return std::tie(a.lambda, a.symmetry, a.rest) < std::tie(b.lambda, b.symmetry, b.rest);
+  }
+  friend bool operator==(const SystemKey&, const SystemKey&) = default;
+};
+
+}  // namespace stickslip::operators

@@ -1,0 +1,35 @@
+#pragma once
+/// Which solver the options choose, and what its analysis predicts: plain data for plans.
+
+#include <string>
+
+namespace stickslip::petsc {
+
+/// By what a system is solved.
+enum class Solver {
+  lu,          ///< any of PETSc's preconditioners; by default an LU factorisation by MUMPS
+  levels,      ///< LevelElimination
+  p_multigrid  ///< GMRES with PMultigrid
+};
+
+/// Whether options under the prefix say something about the preconditioner or its matrices.
+[[nodiscard]] bool chooses_solver(const std::string& prefix);
+
+/// What the options under the prefix choose, and `preferred` where they say nothing. Local.
+[[nodiscard]] Solver chosen_solver(const std::string& prefix, Solver preferred);
+
+/// What an analysis predicts; zeros for solvers that report nothing.
+struct Analysis {
+  Solver solver = Solver::lu;
+  double factor_entries = 0;
+  double megabytes = 0;   ///< of all ranks, while factoring
+  double operations = 0;  ///< of factoring
+};
+
+/// Each reads all options of a role once, on a small matrix, so that unknown ones can be reported
+/// before any work. Collective on PETSC_COMM_SELF only.
+void probe_linear_solver(const std::string& prefix);
+void probe_eigensolver(const std::string& prefix);
+void probe_time_stepper(const std::string& prefix);
+
+}  // namespace stickslip::petsc
