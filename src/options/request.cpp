@@ -22,6 +22,7 @@
 #include "stickslip/petsc/time_stepper.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/text.hpp"
+#include "stickslip/velocity/mesh.hpp"
 
 namespace stickslip::options {
 namespace {
@@ -302,6 +303,53 @@ void read_observables(const Settings& settings, Request& request, Problems& prob
       settings.report(problems, "observable", error.what(),
                       "write for example \"v^2; x*v; stick\"");
     }
+  }
+}
+
+// Up to 17 levels evenly, and those next to the numbers of f.
+std::vector<double> probed_levels(const model::Scene& scene, const model::Observable& f) {
+  const auto noise = scene.meant().noise;
+  const double seen = (largest_force(scene) + scene.friction.mu_d) / scene.delta;
+  const int highest = std::min<int>(noise.levels, static_cast<int>(std::min(seen, 1e9)));
+  constexpr int half = 8;
+  std::set<int> levels;
+  for (int n = -half; n <= half; ++n) levels.insert(static_cast<int>(highest * (n * 1.0 / half)));
+  for (double number : f.numbers) {
+    const double near = std::min<double>(number / scene.delta, highest - 1);
+    for (double level : {std::floor(near), std::ceil(near)}) {
+      for (int sign : {1, -1}) levels.insert(sign * static_cast<int>(level));
+    }
+  }
+  std::vector<double> x;
+  for (int level : levels) x.push_back(noise.level(level));
+  std::sort(x.begin(), x.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  return x;
+}
+
+// |v| beyond which nothing counts.
+double largest_speed(const model::Scene& scene) {
+  constexpr double rounding = 1e-16;
+  const double force = largest_force(scene);
+  double speed =
+      std::max(scene.drag.terminal_velocity(force), scene.drag.mirrored().terminal_velocity(force));
+  speed = std::min(speed, velocity::tail_velocity(scene.meant(), rounding));
+  return std::min(speed, scene.v_max.value_or(speed));
+}
+
+// Where f jumps within an element, its polynomials are wrong by more than refinement sees. At v = 0
+// elements end, and x has a level on each of its values.
+void check_observables(const Settings& settings, const Request& request, Problems& problems) {
+  const bool used = request.wants(Quantity::resolvent) || request.wants(Quantity::expectation);
+  if (!used || request.method.scheme != Scheme::hp || !problems.empty()) return;
+  const double speed = largest_speed(request.scene);
+  for (const auto& f : request.observables) {
+    const auto jump = model::velocity_jump(f, probed_levels(request.scene, f), speed);
+    if (!jump) continue;
+    settings.report(problems, "observable",
+                    fmt::format("{} jumps at v = {:.9g} (seen at x = {:g}); -scheme hp takes "
+                                "functions that are continuous in v except at v = 0",
+                                f.name, jump->v, jump->x),
+                    "take -scheme upwind, or a smooth step such as tanh((v - 0.5)/0.2)");
   }
 }
 
@@ -796,6 +844,7 @@ Request request_of(const Settings& settings, Problems& problems) {
   request.seed = static_cast<std::uint64_t>(settings.real("seed"));
   read_horizon(settings, request, problems);
   request.method = read_method(settings, problems);
+  check_observables(settings, request, problems);
   check_route(settings, request, problems);
   if (request.route == Route::fluid_queue) request.method.scheme = Scheme::none;
   read_study(settings, request, problems);

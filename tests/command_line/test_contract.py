@@ -43,6 +43,19 @@ class Refusals(Case):
         self.refuse("-slide_mat_mumps_icntl_77", "3", told=("-slide_mat_mumps_icntl_77",))
         self.refuse("scene.opts", told=("belongs to no option",))
 
+    def test_observables_that_jump_in_v(self):
+        asks = ("-mu_d", "0.5", "-delta", "0.25", "-lambda", "0", "-time", "1", "-observable")
+        for quantity in ("resolvent", "expectation"):
+            self.refuse(*asks, "v^2; abs(v)>0.5", "-quantities", quantity,
+                        told=("-observable = v^2; abs(v)>0.5", "abs(v)>0.5 jumps at v = 0.5",
+                              "-scheme upwind"))
+        self.refuse(*asks, "x==1.25 && v<-3", "-quantities", "resolvent", told=("v = -3",))
+        for smooth in ("tanh(50*v)", "x>0.5", "v>0", "(x>0.5)*abs(v)", "v>50"):
+            self.run_ok(*asks, smooth, "-quantities", "resolvent", "-accuracy", "1e-3")
+        upwind = self.summary(*asks, "abs(v)>0.5", "-quantities", "resolvent", "-scheme", "upwind",
+                              "-p", "16", status=3)["results"]["pi(abs(v)>0.5)"]
+        self.assertLess(abs(upwind["value"][0] - 0.198608934333), upwind["error"][0])
+
     def test_files(self):
         self.refuse("-options_file", "/no/such/file", told=("cannot be read",))
         self.refuse("-output", "/no/such/folder/x.h5", told=("-output", "does not exist"))
