@@ -220,9 +220,11 @@ Route route_named(const std::string& name) {
   return Route::excursion;
 }
 
-// The quantity that gives a result of that name; empty if none does.
-std::string quantity_of(const std::string& key) {
-  static const std::vector<std::pair<std::string, std::vector<std::string>>> keys{
+using KeysOfQuantities = std::vector<std::pair<std::string, std::vector<std::string>>>;
+
+// The results that a reference asks for by its name.
+const KeysOfQuantities& asking_keys() {
+  static const KeysOfQuantities keys{
       {"sticking", {"P_stick", "P_slide", "mean_stick", "mean_slide", "mean_excursion"}},
       {"moments", {"E_V2", "E_absV", "E_XV", "E_V"}},
       {"noise_law", {"P_X_le_mu_s", "E_X2"}},
@@ -232,10 +234,66 @@ std::string quantity_of(const std::string& key) {
        {"f_slide", "f_stick", "f_excursion", "cdf_slide", "cdf_stick", "cdf_excursion"}},
       {"spectrum", {"S_v", "S_0", "fwhm", "t_corr"}},
       {"autocorrelation", {"C_vv"}}};
-  for (const auto& [quantity, names] : keys) {
+  return keys;
+}
+
+// The quantity that gives a result of that name; empty if none does.
+std::string quantity_of(const std::string& key) {
+  for (const auto& [quantity, names] : asking_keys()) {
     if (std::count(names.begin(), names.end(), key) > 0) return quantity;
   }
   return "";
+}
+
+// Names of all results but derivatives and those of observables.
+std::vector<std::string> plain_keys() {
+  std::vector<std::string> keys{"diffusivity",
+                                "variance_from_spectrum",
+                                "var_slide",
+                                "var_stick",
+                                "var_excursion",
+                                "f_slide_0",
+                                "h_plus",
+                                "h_minus",
+                                "w_one",
+                                "relaxation_even",
+                                "relaxation_odd",
+                                "relaxation_even_frequency",
+                                "relaxation_odd_frequency"};
+  for (const auto& [quantity, names] : asking_keys()) {
+    keys.insert(keys.end(), names.begin(), names.end());
+  }
+  return keys;
+}
+
+// Whether it looks like pi(v^2) or dP_stick_dmu_d.
+bool is_composed_key(const std::string& key) {
+  const auto open = key.find('(');
+  if (open != key.npos && key.ends_with(')')) {
+    static const std::set<std::string> of{"u", "w_plus", "w_minus", "pi", "mu", "E", "stationary"};
+    return of.contains(key.substr(0, open));
+  }
+  for (const char* parameter : {"_dmu_d", "_dtau", "_ddrag_coefficient"}) {
+    if (!key.starts_with('d') || !key.ends_with(parameter)) continue;
+    const std::size_t ends = 1 + std::string_view(parameter).size();
+    if (key.size() > ends && !quantity_of(key.substr(1, key.size() - ends)).empty()) return true;
+  }
+  return false;
+}
+
+// A misspelled name would be left out, and the rest agree.
+void check_keys(const Settings& settings, const Request& request, Problems& problems) {
+  const auto keys = plain_keys();
+  std::set<std::string> told;
+  for (const auto& reference : request.references) {
+    const std::string& key = reference.quantity;
+    const bool known = std::count(keys.begin(), keys.end(), key) > 0 || is_composed_key(key);
+    if (known || !told.insert(key).second) continue;
+    const std::string near = nearest_word(key, keys);
+    settings.report(problems, "compare", fmt::format("names {}, which is no result", key),
+                    near.empty() ? "-help tells the results of each of -quantities"
+                                 : fmt::format("did you mean {}?", near));
+  }
 }
 
 void read_compared(const Settings& settings, Request& request, Problems& problems) {
@@ -248,6 +306,7 @@ void read_compared(const Settings& settings, Request& request, Problems& problem
                     "name a file written by -output or -summary, or CSV with the columns "
                     "quantity,argument,value,low,high");
   }
+  check_keys(settings, request, problems);
 }
 
 // Those named; else those of the file to compare with; else the default ones.

@@ -56,6 +56,29 @@ class Refusals(Case):
                               "-p", "16", status=3)["results"]["pi(abs(v)>0.5)"]
         self.assertLess(abs(upwind["value"][0] - 0.198608934333), upwind["error"][0])
 
+    def test_references_of_unknown_results(self):
+        header = "quantity,argument,value,low,high\n"
+        file = self.folder / "a.csv"
+        for key, told in (("P_stik", "did you mean P_stick?"), ("zzzzzz", "-help"),
+                          ("q(v^2)", "q(v^2)"), ("dP_stik_dtau", "dP_stik_dtau"), ("d_dtau", "d_dtau")):
+            file.write_text(header + f"P_slide,,0.8,0,1\n{key},,0.2,0,1\n")
+            self.refuse(*SMALL, "-compare", file, told=(f"names {key}, which is no result", told))
+        file.write_text(header + "P_stick,,0.2,0,1\nvar_slide,,0.2,0,1\n")
+        s = self.summary(*SMALL, "-compare", file)
+        self.assertEqual(s["comparison"]["left_out"], ["var_slide"])
+
+    def test_every_result_can_be_compared(self):
+        every = ("sticking,moments,noise_law,entry_law,laplace,resolvent,relaxation,spectrum,"
+                 "duration_density,autocorrelation,expectation,sensitivity")
+        every = (*SMALL, "-quantities", every, "-lambda", "1", "-omega", "1", "-time", "1",
+                 "-observable", "v^2; x*v", "-accuracy", "1e-3")
+        asymmetric = (*SMALL, "-bias", "0.1", "-quantities", "sticking,moments,spectrum",
+                      "-accuracy", "1e-3")
+        for asks in (every, asymmetric):
+            self.run_ok(*asks, "-summary", "all.json")
+            s = self.summary(*asks, "-compare", "all.json")
+            self.assertEqual(s["comparison"]["left_out"], [])
+
     def test_files(self):
         self.refuse("-options_file", "/no/such/file", told=("cannot be read",))
         self.refuse("-output", "/no/such/folder/x.h5", told=("-output", "does not exist"))
