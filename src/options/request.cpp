@@ -8,6 +8,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -732,6 +733,7 @@ struct SolverRole {
   std::string show;  // option that shows what the solver uses, without the prefix
   // Options that are read when something is solved, not before.
   std::vector<std::string> read_later;
+  std::vector<std::string> common;  // others that users give
 };
 
 const std::vector<SolverRole>& solver_roles() {
@@ -743,10 +745,27 @@ const std::vector<SolverRole>& solver_roles() {
   static const std::vector<std::string> ts{"ts_view", "ts_view_pre", "ts_adapt_view", "snes_view",
                                            "ksp_view"};
   static const std::vector<SolverRole> roles{
-      {"slide_", petsc::Factorization::probe_options, "ksp_view", ksp},
-      {"null_", petsc::Eigensolver::probe_options, "eps_view", eps},
-      {"relax_", petsc::Eigensolver::probe_options, "eps_view", eps},
-      {"backward_", petsc::TimeStepper::probe_options, "ts_view", ts}};
+      {"slide_",
+       petsc::Factorization::probe_options,
+       "ksp_view",
+       ksp,
+       {"pc_type", "pc_factor_mat_solver_type", "pc_factor_levels", "sub_pc_type",
+        "sub_pc_factor_levels", "ksp_type", "ksp_rtol", "ksp_max_it", "ksp_monitor"}},
+      {"null_",
+       petsc::Eigensolver::probe_options,
+       "eps_view",
+       eps,
+       {"eps_type", "eps_tol", "eps_nev", "eps_ncv", "eps_max_it", "eps_monitor"}},
+      {"relax_",
+       petsc::Eigensolver::probe_options,
+       "eps_view",
+       eps,
+       {"eps_type", "eps_tol", "eps_nev", "eps_ncv", "eps_max_it", "eps_monitor"}},
+      {"backward_",
+       petsc::TimeStepper::probe_options,
+       "ts_view",
+       ts,
+       {"ts_type", "ts_max_steps", "ts_monitor", "ts_rtol", "ts_atol"}}};
   return roles;
 }
 
@@ -759,13 +778,22 @@ bool is_read_later(const std::string& name) {
   });
 }
 
+// The option of a role that the user may have meant, without the dash; empty if there is none.
+std::string nearest_option(const SolverRole& role, const std::string& name) {
+  auto names = role.read_later;
+  names.insert(names.end(), role.common.begin(), role.common.end());
+  const std::string near = nearest_word(name.substr(std::strlen(role.prefix)), names);
+  return near.empty() ? "" : role.prefix + near;
+}
+
 std::string unknown_option(const std::string& name) {
   for (const auto& role : solver_roles()) {
-    if (name.starts_with(role.prefix)) {
-      return fmt::format("-{}: the solver of this role knows no such option; -{}{} shows what it "
-                         "uses",
-                         name, role.prefix, role.show);
-    }
+    if (!name.starts_with(role.prefix)) continue;
+    const std::string near = nearest_option(role, name);
+    return fmt::format("-{}: the solver of this role knows no such option; {}-{}{} shows what it "
+                       "uses",
+                       name, near.empty() ? "" : fmt::format("did you mean -{}? ", near),
+                       role.prefix, role.show);
   }
   const auto names = all_names();
   const std::string near = nearest_word("-" + name, names);
@@ -785,6 +813,42 @@ std::vector<std::string> given_names() {
   return names;
 }
 
+// Of the types that PETSc has, those that work from options alone and apply transposes. Others,
+// such as shell and mg, need a program that sets them up, and crash without.
+const std::vector<std::pair<std::string, std::vector<std::string>>>& solver_types() {
+  static const std::vector<std::pair<std::string, std::vector<std::string>>> types{
+      {"slide_pc_type",
+       {"levels", "p_multigrid", "lu", "cholesky", "qr", "svd", "redundant", "ksp", "ilu", "icc",
+        "asm", "gasm", "bjacobi", "jacobi", "pbjacobi", "gamg", "hypre", "none"}},
+      {"slide_ksp_type",
+       {"preonly", "gmres", "fgmres", "lgmres", "dgmres", "pgmres", "pipefgmres", "gcr", "bcgs",
+        "bcgsl", "ibcgs", "fbcgs", "fbcgsr", "cgs", "qmrcgs", "tfqmr", "tcqmr", "pipebcgs"}}};
+  return types;
+}
+
+bool check_solver_types(Problems& problems) {
+  bool known = true;
+  for (const auto& [name, types] : solver_types()) {
+    const std::string type = solver_option("-" + name);
+    if (type.empty() || std::count(types.begin(), types.end(), type) > 0) continue;
+    known = false;
+    const std::string near = nearest_word(type, types);
+    problems.add(fmt::format("-{} = {}: must be {}{}", name, type, enumerate(types, "or"),
+                             near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  }
+  return known;
+}
+
+// The option of a role whose value a message names; the prefix alone if there is none.
+std::string blamed_option(const SolverRole& role, const std::string& message) {
+  for (const auto& name : given_names()) {
+    const std::string value = solver_option("-" + name);
+    const bool named = !value.empty() && message.find(" " + value) != message.npos;
+    if (named && name.starts_with(role.prefix)) return fmt::format("-{} = {}", name, value);
+  }
+  return fmt::format("-{}...", role.prefix);
+}
+
 // What the solver of a role says to its options, tried on a tiny matrix.
 void check_solver_options(Problems& problems) {
   const auto names = given_names();
@@ -796,8 +860,8 @@ void check_solver_options(Problems& problems) {
     try {
       role.probe_options(role.prefix);
     } catch (const petsc::PetscFailure& failure) {
-      const std::string text = failure.what();
-      problems.add(fmt::format("-{}...: {}", role.prefix, text.substr(0, text.find('\n'))));
+      const std::string text = failure.what(), message = text.substr(0, text.find('\n'));
+      problems.add(fmt::format("{}: {}", blamed_option(role, message), message));
     }
   }
 }
@@ -924,6 +988,8 @@ Request read_request(const std::vector<std::string>& argv) {
   Problems problems;
   const Settings settings = Settings::read(problems);
   check_stray_words(argv, problems);
+  // Solvers of other types are not tried, so that no option of theirs would count as known.
+  if (!check_solver_types(problems)) problems.raise();
   check_solver_options(problems);
   check_unknown_options(problems);
   problems.raise();  // what follows relates values to one another

@@ -43,6 +43,22 @@ class Refusals(Case):
         self.refuse("-slide_mat_mumps_icntl_77", "3", told=("-slide_mat_mumps_icntl_77",))
         self.refuse("scene.opts", told=("belongs to no option",))
 
+    def test_solvers(self):
+        for pc in ("shell", "mg", "eisenstat", "ml", "hmg", "foo"):
+            self.refuse(*SMALL, "-slide_pc_type", pc,
+                        told=(f"-slide_pc_type = {pc}: must be levels, p_multigrid, lu",))
+        self.refuse(*SMALL, "-slide_pc_type", "iluu", told=("did you mean ilu?",))
+        self.refuse(*SMALL, "-slide_ksp_type", "gmre", told=("-slide_ksp_type = gmre: must be preonly",
+                                                              "did you mean gmres?"))
+        self.refuse(*SMALL, "-slide_pc_typ", "lu", told=("-slide_pc_typ:", "did you mean -slide_pc_type?"))
+        self.refuse(*SMALL, "-relax_eps_tpye", "x", told=("did you mean -relax_eps_type?",))
+        self.refuse(*SMALL, "-backward_ts_type", "foo", told=("-backward_ts_type = foo:",))
+        self.refuse(*SMALL, "-slide_pc_factor_mat_solver_type", "foo",
+                    told=("-slide_pc_factor_mat_solver_type = foo:",))
+        for pc in ("levels", "p_multigrid", "lu", "qr", "redundant"):
+            self.run_ok(*SMALL, "-slide_pc_type", pc, "-accuracy", "1e-3")
+        self.run_ok(*SMALL, "-slide_ksp_type", "gmres", "-accuracy", "1e-3")
+
     def test_observables_that_jump_in_v(self):
         asks = ("-mu_d", "0.5", "-delta", "0.25", "-lambda", "0", "-time", "1", "-observable")
         for quantity in ("resolvent", "expectation"):
