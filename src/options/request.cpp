@@ -54,7 +54,7 @@ std::string better_formula(const std::string& line) {
   return fmt::format("{} \" {}\"", option, parts.front());
 }
 
-model::Drag read_drag(const Settings& settings, Request& request) {
+model::Drag read_drag(const Settings& settings, Request& request, Problems& problems) {
   const std::string law = settings.text("drag");
   const auto warn_unused = [&](const std::string& name) {
     if (settings.given(name)) {
@@ -64,7 +64,11 @@ model::Drag read_drag(const Settings& settings, Request& request) {
   const bool none = law == "none" || law == "expression";
   if (none) warn_unused("drag_coefficient");
   if (law != "cubic") warn_unused("drag_cubic");
-  if (law != "expression") warn_unused("drag_expression");
+  if (law != "expression" && settings.given("drag_expression")) {
+    settings.report(problems, "drag_expression",
+                    fmt::format("is not the drag, which is that of -drag {}", law),
+                    "add -drag expression, or leave it out");
+  }
   return {none ? 0 : settings.real("drag_coefficient"),
           law == "cubic" ? settings.real("drag_cubic") : 0};
 }
@@ -155,7 +159,7 @@ model::Scene read_scene(const Settings& settings, Request& request, Problems& pr
   scene.delta = settings.real("delta");
   scene.friction = {settings.real("mu_s"), settings.real("mu_d")};
   scene.drag_name = settings.text("drag");
-  scene.drag = read_drag(settings, request);
+  scene.drag = read_drag(settings, request, problems);
   scene.bias = settings.real("bias");
   scene.noise_levels = settings.integer("noise_levels");
   if (settings.given("v_max")) scene.v_max = settings.real("v_max");
@@ -688,11 +692,13 @@ void check_stray_words(const std::vector<std::string>& argv, Problems& problems)
   for (std::size_t n = 0; n < argv.size(); ++n) {
     const bool is_value = n > 0 && is_option_name(argv[n - 1]);
     if (is_option_name(argv[n]) || is_value) continue;
+    const bool in_list = argv[n].starts_with(',') || (n > 0 && argv[n - 1].ends_with(','));
     std::error_code error;
     const bool is_file = std::filesystem::is_regular_file(argv[n], error);
     problems.add(fmt::format("{}: belongs to no option; {}", argv[n],
-                             is_file ? "did you mean -options_file " + argv[n] + "?"
-                                     : "options look like -name value"));
+                             in_list   ? "lists have no spaces, as in a,b"
+                             : is_file ? "did you mean -options_file " + argv[n] + "?"
+                                       : "options look like -name value"));
   }
 }
 
