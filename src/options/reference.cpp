@@ -92,7 +92,7 @@ std::vector<Reference> read_json(const std::string& file) {
       v.error = numbers(result.at("error"));
       v.scalar = result.at("value").is_number();
       if (result.contains("ci95")) read_intervals(result["ci95"], v);
-      for (const char* name : {"lambda", "omega", "time", "k", "n"}) {
+      for (const char* name : {"lambda", "omega", "time", "k", "n", "mode"}) {
         if (result.contains(name)) v.argument = numbers(result[name]);
       }
       append(key, v, all);

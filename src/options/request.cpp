@@ -8,6 +8,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -20,6 +21,7 @@
 #include "stickslip/petsc/solver_choice.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/text.hpp"
+#include "stickslip/velocity/mesh.hpp"
 
 namespace stickslip::options {
 namespace {
@@ -50,7 +52,7 @@ std::string better_formula(const std::string& line) {
   return fmt::format("{} \" {}\"", option, parts.front());
 }
 
-model::Drag read_drag(const Settings& settings, Request& request) {
+model::Drag read_drag(const Settings& settings, Request& request, Problems& problems) {
   const std::string law = settings.text("drag");
   const auto warn_unused = [&](const std::string& name) {
     if (settings.given(name)) {
@@ -60,7 +62,11 @@ model::Drag read_drag(const Settings& settings, Request& request) {
   const bool none = law == "none" || law == "expression";
   if (none) warn_unused("drag_coefficient");
   if (law != "cubic") warn_unused("drag_cubic");
-  if (law != "expression") warn_unused("drag_expression");
+  if (law != "expression" && settings.given("drag_expression")) {
+    settings.report(problems, "drag_expression",
+                    fmt::format("is not the drag, which is that of -drag {}", law),
+                    "add -drag expression, or leave it out");
+  }
   return {none ? 0 : settings.real("drag_coefficient"),
           law == "cubic" ? settings.real("drag_cubic") : 0};
 }
@@ -151,7 +157,7 @@ model::Scene read_scene(const Settings& settings, Request& request, Problems& pr
   scene.delta = settings.real("delta");
   scene.friction = {settings.real("mu_s"), settings.real("mu_d")};
   scene.drag_name = settings.text("drag");
-  scene.drag = read_drag(settings, request);
+  scene.drag = read_drag(settings, request, problems);
   scene.bias = settings.real("bias");
   scene.noise_levels = settings.integer("noise_levels");
   if (settings.given("v_max")) scene.v_max = settings.real("v_max");
@@ -217,9 +223,11 @@ Route route_named(const std::string& name) {
   return Route::excursion;
 }
 
-// The quantity that gives a result of that name; empty if none does.
-std::string quantity_of(const std::string& key) {
-  static const std::vector<std::pair<std::string, std::vector<std::string>>> keys{
+using KeysOfQuantities = std::vector<std::pair<std::string, std::vector<std::string>>>;
+
+// The results that a reference asks for by its name.
+const KeysOfQuantities& asking_keys() {
+  static const KeysOfQuantities keys{
       {"sticking", {"P_stick", "P_slide", "mean_stick", "mean_slide", "mean_excursion"}},
       {"moments", {"E_V2", "E_absV", "E_XV", "E_V"}},
       {"noise_law", {"P_X_le_mu_s", "E_X2"}},
@@ -229,10 +237,66 @@ std::string quantity_of(const std::string& key) {
        {"f_slide", "f_stick", "f_excursion", "cdf_slide", "cdf_stick", "cdf_excursion"}},
       {"spectrum", {"S_v", "S_0", "fwhm", "t_corr"}},
       {"autocorrelation", {"C_vv"}}};
-  for (const auto& [quantity, names] : keys) {
+  return keys;
+}
+
+// The quantity that gives a result of that name; empty if none does.
+std::string quantity_of(const std::string& key) {
+  for (const auto& [quantity, names] : asking_keys()) {
     if (std::count(names.begin(), names.end(), key) > 0) return quantity;
   }
   return "";
+}
+
+// Names of all results but derivatives and those of observables.
+std::vector<std::string> plain_keys() {
+  std::vector<std::string> keys{"diffusivity",
+                                "variance_from_spectrum",
+                                "var_slide",
+                                "var_stick",
+                                "var_excursion",
+                                "f_slide_0",
+                                "h_plus",
+                                "h_minus",
+                                "w_one",
+                                "relaxation_even",
+                                "relaxation_odd",
+                                "relaxation_even_frequency",
+                                "relaxation_odd_frequency"};
+  for (const auto& [quantity, names] : asking_keys()) {
+    keys.insert(keys.end(), names.begin(), names.end());
+  }
+  return keys;
+}
+
+// Whether it looks like pi(v^2) or dP_stick_dmu_d.
+bool is_composed_key(const std::string& key) {
+  const auto open = key.find('(');
+  if (open != key.npos && key.ends_with(')')) {
+    static const std::set<std::string> of{"u", "w_plus", "w_minus", "pi", "mu", "E", "stationary"};
+    return of.contains(key.substr(0, open));
+  }
+  for (const char* parameter : {"_dmu_d", "_dtau", "_ddrag_coefficient"}) {
+    if (!key.starts_with('d') || !key.ends_with(parameter)) continue;
+    const std::size_t ends = 1 + std::string_view(parameter).size();
+    if (key.size() > ends && !quantity_of(key.substr(1, key.size() - ends)).empty()) return true;
+  }
+  return false;
+}
+
+// A misspelled name would be left out, and the rest agree.
+void check_keys(const Settings& settings, const Request& request, Problems& problems) {
+  const auto keys = plain_keys();
+  std::set<std::string> told;
+  for (const auto& reference : request.references) {
+    const std::string& key = reference.quantity;
+    const bool known = std::count(keys.begin(), keys.end(), key) > 0 || is_composed_key(key);
+    if (known || !told.insert(key).second) continue;
+    const std::string near = nearest_word(key, keys);
+    settings.report(problems, "compare", fmt::format("names {}, which is no result", key),
+                    near.empty() ? "-help tells the results of each of -quantities"
+                                 : fmt::format("did you mean {}?", near));
+  }
 }
 
 void read_compared(const Settings& settings, Request& request, Problems& problems) {
@@ -245,6 +309,7 @@ void read_compared(const Settings& settings, Request& request, Problems& problem
                     "name a file written by -output or -summary, or CSV with the columns "
                     "quantity,argument,value,low,high");
   }
+  check_keys(settings, request, problems);
 }
 
 // Those named; else those of the file to compare with; else the default ones.
@@ -300,6 +365,53 @@ void read_observables(const Settings& settings, Request& request, Problems& prob
       settings.report(problems, "observable", error.what(),
                       "write for example \"v^2; x*v; stick\"");
     }
+  }
+}
+
+// Up to 17 levels evenly, and those next to the numbers of f.
+std::vector<double> probed_levels(const model::Scene& scene, const model::Observable& f) {
+  const auto noise = scene.meant().noise;
+  const double seen = (largest_force(scene) + scene.friction.mu_d) / scene.delta;
+  const int highest = std::min<int>(noise.levels, static_cast<int>(std::min(seen, 1e9)));
+  constexpr int half = 8;
+  std::set<int> levels;
+  for (int n = -half; n <= half; ++n) levels.insert(static_cast<int>(highest * (n * 1.0 / half)));
+  for (double number : f.numbers) {
+    const double near = std::min<double>(number / scene.delta, highest - 1);
+    for (double level : {std::floor(near), std::ceil(near)}) {
+      for (int sign : {1, -1}) levels.insert(sign * static_cast<int>(level));
+    }
+  }
+  std::vector<double> x;
+  for (int level : levels) x.push_back(noise.level(level));
+  std::sort(x.begin(), x.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  return x;
+}
+
+// |v| beyond which nothing counts.
+double largest_speed(const model::Scene& scene) {
+  constexpr double rounding = 1e-16;
+  const double force = largest_force(scene);
+  double speed =
+      std::max(scene.drag.terminal_velocity(force), scene.drag.mirrored().terminal_velocity(force));
+  speed = std::min(speed, velocity::tail_velocity(scene.meant(), rounding));
+  return std::min(speed, scene.v_max.value_or(speed));
+}
+
+// Where f jumps within an element, its polynomials are wrong by more than refinement sees. At v = 0
+// elements end, and x has a level on each of its values.
+void check_observables(const Settings& settings, const Request& request, Problems& problems) {
+  const bool used = request.wants(Quantity::resolvent) || request.wants(Quantity::expectation);
+  if (!used || request.method.scheme != Scheme::hp || !problems.empty()) return;
+  const double speed = largest_speed(request.scene);
+  for (const auto& f : request.observables) {
+    const auto jump = model::velocity_jump(f, probed_levels(request.scene, f), speed);
+    if (!jump) continue;
+    settings.report(problems, "observable",
+                    fmt::format("{} jumps at v = {:.9g} (seen at x = {:g}); -scheme hp takes "
+                                "functions that are continuous in v except at v = 0",
+                                f.name, jump->v, jump->x),
+                    "take -scheme upwind, or a smooth step such as tanh((v - 0.5)/0.2)");
   }
 }
 
@@ -578,11 +690,13 @@ void check_stray_words(const std::vector<std::string>& argv, Problems& problems)
   for (std::size_t n = 0; n < argv.size(); ++n) {
     const bool is_value = n > 0 && is_option_name(argv[n - 1]);
     if (is_option_name(argv[n]) || is_value) continue;
+    const bool in_list = argv[n].starts_with(',') || (n > 0 && argv[n - 1].ends_with(','));
     std::error_code error;
     const bool is_file = std::filesystem::is_regular_file(argv[n], error);
     problems.add(fmt::format("{}: belongs to no option; {}", argv[n],
-                             is_file ? "did you mean -options_file " + argv[n] + "?"
-                                     : "options look like -name value"));
+                             in_list   ? "lists have no spaces, as in a,b"
+                             : is_file ? "did you mean -options_file " + argv[n] + "?"
+                                       : "options look like -name value"));
   }
 }
 
@@ -623,6 +737,7 @@ struct SolverRole {
   std::string show;  // option that shows what the solver uses, without the prefix
   // Options that are read when something is solved, not before.
   std::vector<std::string> read_later;
+  std::vector<std::string> common;  // others that users give
 };
 
 const std::vector<SolverRole>& solver_roles() {
@@ -634,10 +749,27 @@ const std::vector<SolverRole>& solver_roles() {
   static const std::vector<std::string> ts{"ts_view", "ts_view_pre", "ts_adapt_view", "snes_view",
                                            "ksp_view"};
   static const std::vector<SolverRole> roles{
-      {"slide_", petsc::probe_linear_solver, "ksp_view", ksp},
-      {"null_", petsc::probe_eigensolver, "eps_view", eps},
-      {"relax_", petsc::probe_eigensolver, "eps_view", eps},
-      {"backward_", petsc::probe_time_stepper, "ts_view", ts}};
+      {"slide_",
+       petsc::probe_linear_solver,
+       "ksp_view",
+       ksp,
+       {"pc_type", "pc_factor_mat_solver_type", "pc_factor_levels", "sub_pc_type",
+        "sub_pc_factor_levels", "ksp_type", "ksp_rtol", "ksp_max_it", "ksp_monitor"}},
+      {"null_",
+       petsc::probe_eigensolver,
+       "eps_view",
+       eps,
+       {"eps_type", "eps_tol", "eps_nev", "eps_ncv", "eps_max_it", "eps_monitor"}},
+      {"relax_",
+       petsc::probe_eigensolver,
+       "eps_view",
+       eps,
+       {"eps_type", "eps_tol", "eps_nev", "eps_ncv", "eps_max_it", "eps_monitor"}},
+      {"backward_",
+       petsc::probe_time_stepper,
+       "ts_view",
+       ts,
+       {"ts_type", "ts_max_steps", "ts_monitor", "ts_rtol", "ts_atol"}}};
   return roles;
 }
 
@@ -650,13 +782,22 @@ bool is_read_later(const std::string& name) {
   });
 }
 
+// The option of a role that the user may have meant, without the dash; empty if there is none.
+std::string nearest_option(const SolverRole& role, const std::string& name) {
+  auto names = role.read_later;
+  names.insert(names.end(), role.common.begin(), role.common.end());
+  const std::string near = nearest_word(name.substr(std::strlen(role.prefix)), names);
+  return near.empty() ? "" : role.prefix + near;
+}
+
 std::string unknown_option(const std::string& name) {
   for (const auto& role : solver_roles()) {
-    if (name.starts_with(role.prefix)) {
-      return fmt::format("-{}: the solver of this role knows no such option; -{}{} shows what it "
-                         "uses",
-                         name, role.prefix, role.show);
-    }
+    if (!name.starts_with(role.prefix)) continue;
+    const std::string near = nearest_option(role, name);
+    return fmt::format("-{}: the solver of this role knows no such option; {}-{}{} shows what it "
+                       "uses",
+                       name, near.empty() ? "" : fmt::format("did you mean -{}? ", near),
+                       role.prefix, role.show);
   }
   const auto names = all_names();
   const std::string near = nearest_word("-" + name, names);
@@ -676,6 +817,42 @@ std::vector<std::string> given_names() {
   return names;
 }
 
+// Of the types that PETSc has, those that work from options alone and apply transposes. Others,
+// such as shell and mg, need a program that sets them up, and crash without.
+const std::vector<std::pair<std::string, std::vector<std::string>>>& solver_types() {
+  static const std::vector<std::pair<std::string, std::vector<std::string>>> types{
+      {"slide_pc_type",
+       {"levels", "p_multigrid", "lu", "cholesky", "qr", "svd", "redundant", "ksp", "ilu", "icc",
+        "asm", "gasm", "bjacobi", "jacobi", "pbjacobi", "gamg", "hypre", "none"}},
+      {"slide_ksp_type",
+       {"preonly", "gmres", "fgmres", "lgmres", "dgmres", "pgmres", "pipefgmres", "gcr", "bcgs",
+        "bcgsl", "ibcgs", "fbcgs", "fbcgsr", "cgs", "qmrcgs", "tfqmr", "tcqmr", "pipebcgs"}}};
+  return types;
+}
+
+bool check_solver_types(Problems& problems) {
+  bool known = true;
+  for (const auto& [name, types] : solver_types()) {
+    const std::string type = solver_option("-" + name);
+    if (type.empty() || std::count(types.begin(), types.end(), type) > 0) continue;
+    known = false;
+    const std::string near = nearest_word(type, types);
+    problems.add(fmt::format("-{} = {}: must be {}{}", name, type, enumerate(types, "or"),
+                             near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  }
+  return known;
+}
+
+// The option of a role whose value a message names; the prefix alone if there is none.
+std::string blamed_option(const SolverRole& role, const std::string& message) {
+  for (const auto& name : given_names()) {
+    const std::string value = solver_option("-" + name);
+    const bool named = !value.empty() && message.find(" " + value) != message.npos;
+    if (named && name.starts_with(role.prefix)) return fmt::format("-{} = {}", name, value);
+  }
+  return fmt::format("-{}...", role.prefix);
+}
+
 // What the solver of a role says to its options, tried on a tiny matrix.
 void check_solver_options(Problems& problems) {
   const auto names = given_names();
@@ -687,8 +864,8 @@ void check_solver_options(Problems& problems) {
     try {
       role.probe_options(role.prefix);
     } catch (const petsc::PetscFailure& failure) {
-      const std::string text = failure.what();
-      problems.add(fmt::format("-{}...: {}", role.prefix, text.substr(0, text.find('\n'))));
+      const std::string text = failure.what(), message = text.substr(0, text.find('\n'));
+      problems.add(fmt::format("{}: {}", blamed_option(role, message), message));
     }
   }
 }
@@ -794,6 +971,7 @@ Request request_of(const Settings& settings, Problems& problems) {
   request.seed = static_cast<std::uint64_t>(settings.real("seed"));
   read_horizon(settings, request, problems);
   request.method = read_method(settings, problems);
+  check_observables(settings, request, problems);
   check_route(settings, request, problems);
   if (request.route == Route::fluid_queue) request.method.scheme = Scheme::none;
   read_study(settings, request, problems);
@@ -814,6 +992,8 @@ Request read_request(const std::vector<std::string>& argv) {
   Problems problems;
   const Settings settings = Settings::read(problems);
   check_stray_words(argv, problems);
+  // Solvers of other types are not tried, so that no option of theirs would count as known.
+  if (!check_solver_types(problems)) problems.raise();
   check_solver_options(problems);
   check_unknown_options(problems);
   problems.raise();  // what follows relates values to one another

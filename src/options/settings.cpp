@@ -125,6 +125,10 @@ Settings Settings::read(Problems& problems) {
 }
 
 void Settings::parse(const Option& option, const std::string& value, Problems& problems) {
+  const bool is_list = option.kind == Kind::list || option.kind == Kind::numbers;
+  if (is_list && value.ends_with(',')) {
+    return problems.add(option, value, "ends with a comma", "lists have no spaces, as in a,b");
+  }
   const std::string must = "must be " + allowed_values(option);
   switch (option.kind) {
   case Kind::real:

@@ -138,7 +138,7 @@ Group question_group() {
                "functions of the state for resolvent and expectation, separated by semicolons: 1, "
                "x, v, v^2, "
                "|v|, stick, slide, |x|<=mu_s, or expressions in x, y, v, mu_s, mu_d such as "
-               "\"x*v; abs(v)^3\""),
+               "\"x*v; abs(v)^3\"; with -scheme hp continuous in v except at v = 0"),
           real("accuracy", "", "1e-6", {1e-15, 0.1, true, true},
                "relative error wanted for every scalar asked for, at the given delta",
                "double precision allows down to about 1e-12, scene by scene"),

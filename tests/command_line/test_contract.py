@@ -43,6 +43,58 @@ class Refusals(Case):
         self.refuse("-slide_mat_mumps_icntl_77", "3", told=("-slide_mat_mumps_icntl_77",))
         self.refuse("scene.opts", told=("belongs to no option",))
 
+    def test_solvers(self):
+        for pc in ("shell", "mg", "eisenstat", "ml", "hmg", "foo"):
+            self.refuse(*SMALL, "-slide_pc_type", pc,
+                        told=(f"-slide_pc_type = {pc}: must be levels, p_multigrid, lu",))
+        self.refuse(*SMALL, "-slide_pc_type", "iluu", told=("did you mean ilu?",))
+        self.refuse(*SMALL, "-slide_ksp_type", "gmre", told=("-slide_ksp_type = gmre: must be preonly",
+                                                              "did you mean gmres?"))
+        self.refuse(*SMALL, "-slide_pc_typ", "lu", told=("-slide_pc_typ:", "did you mean -slide_pc_type?"))
+        self.refuse(*SMALL, "-relax_eps_tpye", "x", told=("did you mean -relax_eps_type?",))
+        self.refuse(*SMALL, "-backward_ts_type", "foo", told=("-backward_ts_type = foo:",))
+        self.refuse(*SMALL, "-slide_pc_factor_mat_solver_type", "foo",
+                    told=("-slide_pc_factor_mat_solver_type = foo:",))
+        for pc in ("levels", "p_multigrid", "lu", "qr", "redundant"):
+            self.run_ok(*SMALL, "-slide_pc_type", pc, "-accuracy", "1e-3")
+        self.run_ok(*SMALL, "-slide_ksp_type", "gmres", "-accuracy", "1e-3")
+
+    def test_observables_that_jump_in_v(self):
+        asks = ("-mu_d", "0.5", "-delta", "0.25", "-lambda", "0", "-time", "1", "-observable")
+        for quantity in ("resolvent", "expectation"):
+            self.refuse(*asks, "v^2; abs(v)>0.5", "-quantities", quantity,
+                        told=("-observable = v^2; abs(v)>0.5", "abs(v)>0.5 jumps at v = 0.5",
+                              "-scheme upwind"))
+        self.refuse(*asks, "x==1.25 && v<-3", "-quantities", "resolvent", told=("v = -3",))
+        for smooth in ("tanh(50*v)", "x>0.5", "v>0", "(x>0.5)*abs(v)", "v>50"):
+            self.run_ok(*asks, smooth, "-quantities", "resolvent", "-accuracy", "1e-3")
+        upwind = self.summary(*asks, "abs(v)>0.5", "-quantities", "resolvent", "-scheme", "upwind",
+                              "-p", "16", status=3)["results"]["pi(abs(v)>0.5)"]
+        self.assertLess(abs(upwind["value"][0] - 0.198608934333), upwind["error"][0])
+
+    def test_references_of_unknown_results(self):
+        header = "quantity,argument,value,low,high\n"
+        file = self.folder / "a.csv"
+        for key, told in (("P_stik", "did you mean P_stick?"), ("zzzzzz", "-help"),
+                          ("q(v^2)", "q(v^2)"), ("dP_stik_dtau", "dP_stik_dtau"), ("d_dtau", "d_dtau")):
+            file.write_text(header + f"P_slide,,0.8,0,1\n{key},,0.2,0,1\n")
+            self.refuse(*SMALL, "-compare", file, told=(f"names {key}, which is no result", told))
+        file.write_text(header + "P_stick,,0.2,0,1\nvar_slide,,0.2,0,1\n")
+        s = self.summary(*SMALL, "-compare", file)
+        self.assertEqual(s["comparison"]["left_out"], ["var_slide"])
+
+    def test_every_result_can_be_compared(self):
+        every = ("sticking,moments,noise_law,entry_law,laplace,resolvent,relaxation,spectrum,"
+                 "duration_density,autocorrelation,expectation,sensitivity")
+        every = (*SMALL, "-quantities", every, "-lambda", "1", "-omega", "1", "-time", "1",
+                 "-observable", "v^2; x*v", "-accuracy", "1e-3")
+        asymmetric = (*SMALL, "-bias", "0.1", "-quantities", "sticking,moments,spectrum",
+                      "-accuracy", "1e-3")
+        for asks in (every, asymmetric):
+            self.run_ok(*asks, "-summary", "all.json")
+            s = self.summary(*asks, "-compare", "all.json")
+            self.assertEqual(s["comparison"]["left_out"], [])
+
     def test_files(self):
         self.refuse("-options_file", "/no/such/file", told=("cannot be read",))
         self.refuse("-output", "/no/such/folder/x.h5", told=("-output", "does not exist"))

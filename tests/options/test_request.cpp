@@ -115,10 +115,10 @@ TEST_CASE("request: drag as an expression") {
       Given("-drag expression -drag_expression 0-v -drag_coefficient 2 -drag_cubic 1").read();
   CHECK(unused.warnings.size() == 2);
   CHECK(unused.scene.drag(2) == -2);
-  const Request other = Given("-drag_expression 0-2*v").read();
-  REQUIRE(other.warnings.size() == 1);
-  CHECK_THAT(other.warnings[0], Catch::Contains("-drag_expression has no effect"));
-  CHECK(other.scene.drag(2) == -2);
+  for (const char* other : {"", "-drag linear ", "-drag none "}) {
+    check_refusal({other + std::string("-drag_expression 0-2*v"),
+                   {"-drag_expression = 0-2*v", "is not the drag", "add -drag expression"}});
+  }
 }
 
 TEST_CASE("request: drag that is no drag is told with place and way out") {
@@ -312,6 +312,17 @@ TEST_CASE("request: all problems are told at once") {
 
 TEST_CASE("request: words that belong to no option are told") {
   CHECK_THAT(complaint("-delta 0.5 scene.opts"), Catch::Contains("scene.opts: belongs to no"));
+}
+
+TEST_CASE("request: lists with spaces are told as such") {
+  const std::vector<Refusal> refusals{
+      {"-quantities sticking, moments",
+       {"-quantities = sticking,: ends with a comma; lists have no spaces",
+        "moments: belongs to no option; lists have no spaces"}},
+      {"-quantities sticking , moments", {",: belongs to no option; lists have no spaces"}},
+      {"-quantities sticking ,moments", {",moments: belongs to no option; lists have no spaces"}},
+      {"-quantities laplace -lambda 1, 2", {"-lambda = 1,: ends with a comma; lists have no"}}};
+  for (const auto& refusal : refusals) check_refusal(refusal);
 }
 
 TEST_CASE("options files: unreadable files and lines are told with their place") {

@@ -2,6 +2,7 @@
 /// Functions f(x, y, v) of the state, by name or as an expression.
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace stickslip::model {
 struct Observable {
   std::string name;  ///< as given by the user
   std::function<double(double x, double y, double v)> value;
+  std::vector<double> numbers = {};  ///< that stand in an expression, mu_s and mu_d included
 
   [[nodiscard]] double operator()(double x, double y, double v) const { return value(x, y, v); }
   /// (f(x, y, v) + f(-x, -y, -v))/2 and the odd counterpart.
@@ -34,5 +36,18 @@ struct Observable {
 /// motion. Where an expression is not finite in another state, its value throws Failure of bad
 /// input.
 [[nodiscard]] Observable parse_observable(const std::string& text, const Friction& friction);
+
+/// A state at which an observable jumps in v, to the precision of v.
+struct Jump {
+  double x, y, v;
+};
+
+/// Where f(x, sign v, v) jumps in v, found on the given levels x and those v, 0 < |v| <= reach,
+/// that 2000 places on each side and places around the numbers of f show; nothing if it is
+/// continuous there. Jumps at v = 0 do not count. A steep function that doubles resolve does not
+/// jump, a kink neither. Narrow windows are found if their ends are numbers of f or levels, sums or
+/// differences of two of these.
+[[nodiscard]] std::optional<Jump> velocity_jump(const Observable& f, const std::vector<double>& x,
+                                                double reach);
 
 }  // namespace stickslip::model
