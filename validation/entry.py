@@ -36,13 +36,15 @@ class Entry(Report):
         self.parts.append({"text": words})
 
     def table(self, caption, columns, rows):
-        """Cells are texts or numbers; a number is shown with six digits."""
+        """Cells are texts or numbers; a number is shown with six digits. Empty columns are left out."""
         cells = [[cell if isinstance(cell, str) else f"{cell:.6g}" for cell in row] for row in rows]
+        filled = [n for n in range(len(columns)) if not cells or any(row[n] for row in cells)]
+        columns, *cells = ([row[n] for n in filled] for row in (columns, *cells))
         widths = [max(map(len, column)) for column in zip(columns, *cells)]
         print(f"\n{caption}")
         for row in (columns, *cells):
             print("  " + "  ".join(cell.rjust(width) for cell, width in zip(row, widths)))
-        self.parts.append({"caption": caption, "columns": list(columns), "rows": cells})
+        self.parts.append({"caption": caption, "columns": columns, "rows": cells})
 
     def file(self, name):
         return self.folder / name

@@ -7,6 +7,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import zlib
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 
@@ -22,6 +23,18 @@ def words_of(options):
             for word in (["-" + name] if value is None else ["-" + name, str(value)])]
 
 
+def seed_of(options):
+    """Seed of what these options simulate: every scene has its own, the same one each time. Files are no
+    part of a scene."""
+    scene = {name: value for name, value in options.items() if not isinstance(value, pathlib.Path)}
+    return zlib.crc32(" ".join(words_of(scene)).encode())
+
+
+def simulates(options):
+    return (options.get("route") == "monte_carlo"
+            or "trajectory" in options.get("quantities", "").split(","))
+
+
 class Refused(Exception):
     """The program found the scene or the request invalid."""
 
@@ -31,7 +44,10 @@ class Program:
         self.path, self.launcher = path, launcher
 
     def run(self, **options):
-        """The summary of one run; underscores of PETSc's solver prefixes stay as they are."""
+        """The summary of one run; underscores of PETSc's solver prefixes stay as they are. What is
+        simulated without a seed has that of seed_of."""
+        if simulates(options):
+            options = {"seed": seed_of(options), **options}
         with tempfile.TemporaryDirectory() as folder:
             summary = pathlib.Path(folder) / "summary.json"
             words = [*self.launcher, str(self.path), "-summary", str(summary), *words_of(options)]

@@ -62,14 +62,20 @@ def generator(grid, mu_d):
     return scipy.sparse.csc_matrix(entries, shape=(grid.x.size, grid.x.size))
 
 
-def averages(delta, mu_d, p, decay):
+def grid_functions(delta, mu_d, p, decay):
+    """The grid, and lambda u on all of it by quantity."""
     grid = Grid(delta, p)
     system = decay * scipy.sparse.identity(grid.x.size, format="csc") - generator(grid, mu_d)
     factors = scipy.sparse.linalg.splu(system)
     functions = {"P_stick": grid.static, "E_V2": grid.v**2,
                  "P_X_le_mu_s": abs(grid.i) <= grid.k}
-    return {name: decay * factors.solve(f.astype(float).ravel())[grid.exit_state()]
-            for name, f in functions.items()}
+    return grid, {name: decay * factors.solve(f.astype(float).ravel())
+                  for name, f in functions.items()}
+
+
+def averages(delta, mu_d, p, decay):
+    grid, found = grid_functions(delta, mu_d, p, decay)
+    return {name: u[grid.exit_state()] for name, u in found.items()}
 
 
 def main():

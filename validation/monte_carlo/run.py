@@ -49,10 +49,10 @@ def off(row, excursions):
     return abs(float(row.paper) - row.exact) > half + last_place(row.paper)
 
 
-def rows_of(program, mu_d, delta, seed, excursions):
+def rows_of(program, mu_d, delta, excursions):
     """One simulated scene and the same by the deterministic route."""
     scene = {"mu_d": mu_d, "delta": delta}
-    simulated = program.run(route="monte_carlo", excursions=excursions, seed=seed, **scene)
+    simulated = program.run(route="monte_carlo", excursions=excursions, **scene)
     exact = program.run(route="excursion", accuracy=1e-8, **scene)["results"]
     return [Row(key, mu_d, delta, simulated["results"][key]["value"],
                 *simulated["results"][key]["ci95"], exact[key]["value"],
@@ -60,13 +60,13 @@ def rows_of(program, mu_d, delta, seed, excursions):
 
 
 def figure(program, deltas, excursions):
-    """Every point of the figure; a seed for each, so that they are independent."""
+    """Every point of the figure; each has a seed of its own, so that they are independent."""
     print(f"mu_s = tau = 1, b(v) = -v; {excursions} excursions; a star: further from the\n"
           "deterministic value than an interval of 10^6 excursions and the rounding allow\n"
           "  mu_d  delta  quantity      simulated  95 % interval        deterministic     z  paper")
     rows = []
-    for seed, (mu_d, delta) in enumerate(itertools.product(FRICTIONS, deltas), start=1):
-        for row in rows_of(program, mu_d, delta, seed, excursions):
+    for mu_d, delta in itertools.product(FRICTIONS, deltas):
+        for row in rows_of(program, mu_d, delta, excursions):
             star = "*" if row.paper and off(row, excursions) else ""
             print(f"  {mu_d:<5g} 1/{1 / delta:<4g} {row.quantity:<12}  {row.value:.6f}   "
                   f"{row.low:.6f} - {row.high:.6f}  {row.exact:.10f}  {deviations(row):5.2f}  "

@@ -14,7 +14,7 @@ import h5py
 entry = Entry(__doc__, "the figures of paths in the introduction")
 for mu_d in (1, 0.25):
     name = f"path_{mu_d:g}"
-    entry.run(output=name + ".h5", quantities="trajectory", mu_d=mu_d, delta=0.25, horizon=20, seed=4)
+    entry.run(output=name + ".h5", quantities="trajectory", mu_d=mu_d, delta=0.25, horizon=20)
     entry.drawn("trajectory.py", name + ".png",
                 f"One path, mu_s = 1, mu_d = {mu_d:g}, delta = 1/4, tau = 1, b(v) = -v",
                 entry.file(name + ".h5"))
