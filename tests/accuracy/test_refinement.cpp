@@ -361,7 +361,8 @@ TEST_CASE("refinement: estimates are made of the last changes, and of what the r
     int steps;
   };
   const auto c =
-      GENERATE(Case{{}, {0.1, 3}, 1e-6, 4}, Case{{options::Scheme::hp, 4, {}, {}}, {1, 0}, 1e-5, 2},
+      GENERATE(Case{{}, {0.1, 3}, 1e-5, 3}, Case{{}, {0.1, 3}, 1e-6, 4},
+               Case{{}, {0.1, 3}, 1e-7, 4}, Case{{options::Scheme::hp, 4, {}, {}}, {1, 0}, 1e-5, 2},
                Case{{options::Scheme::upwind, {}, {}, 16}, {1, 0}, 1e-5, 2});
   Request r = request(1, 0.25, c.drag.cubic > 0 ? 4 : 1, c.drag.cubic > 0 ? 0.25 : 0.5, c.drag);
   r.accuracy = c.accuracy;
