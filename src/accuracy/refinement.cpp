@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "stickslip/accuracy/estimates.hpp"
 #include "stickslip/accuracy/ladder.hpp"
 #include "stickslip/accuracy/laws.hpp"
 #include "stickslip/petsc/memory.hpp"
@@ -19,50 +20,8 @@ namespace stickslip::accuracy {
 namespace {
 
 using options::Quantity;
-using quantities::Result;
 using quantities::Results;
 using quantities::StationaryLaw;
-
-// Sums of positive terms over levels are rounded even where nothing else is wrong, as for a mean
-// stay that has the same entry law on every discretisation.
-void add_rounding_of_sums(const model::NoiseChain& noise, Results& results) {
-  const double rounding = model::rounding_of_sums(noise);
-  for (auto& result : results) {
-    for (std::size_t e = 0; e < result.value.size(); ++e) {
-      result.error[e] = std::max(result.error[e], rounding * std::abs(result.value[e]));
-    }
-  }
-}
-
-// A change from grid to grid that passes through zero hides an error, which the other means under
-// the same law show: their relative errors are alike within a decade or two. Of 144 scenes with six
-// drags at accuracy 1e-4, 27 had a mean with more error than estimate (up to 1700 times) before.
-constexpr double kShareOfLargest = 0.05;
-// A mean that changes less does not depend on the grid, as the stay at a single static level.
-constexpr double kUnchanged = 1e-13;
-
-void share_errors(Results& results) {
-  const auto is_mean = [](const Result& r) {
-    return r.is_scalar() && (r.key.starts_with("mean_") || r.key.starts_with("E_"));
-  };
-  double largest = 0, odds = 1;  // P_stick P_slide
-  for (const auto& r : results) {
-    // The drift may vanish.
-    if (is_mean(r) && r.key != "E_V") largest = std::max(largest, quantities::relative_error(r));
-    if (r.key == "P_stick" || r.key == "P_slide") odds *= r.value[0];
-  }
-  const double shared = kShareOfLargest * largest;
-  for (auto& r : results) {
-    if (!r.is_scalar()) continue;
-    double& error = r.error[0];
-    const double size = std::abs(r.value[0]);
-    const bool dependent = error > kUnchanged * size;
-    if (is_mean(r) && dependent) error = std::max(error, shared * size);
-    // P_slide / P_stick is the ratio of two means.
-    const bool probability = r.key == "P_stick" || r.key == "P_slide";
-    if (probability && dependent) error = std::max(error, shared * odds);
-  }
-}
 
 std::string gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / 1e9); }
 
@@ -77,7 +36,7 @@ Solved stepped(MPI_Comm comm, const options::Request& request, const Resolution&
   const routes::Setting setting{comm, request, request.scene.process(resolution.levels),
                                 make_axis(request.scene, resolution), step.ledger};
   solved.evaluation = evaluate(setting);
-  add_rounding_of_sums(setting.process.noise, solved.evaluation.results);
+  require_rounding(model::rounding_of_sums(setting.process.noise), solved.evaluation.results);
   step.checks = std::move(solved.evaluation.checks);
   step.seconds = petsc::wall_seconds() - start;
   return solved;
@@ -95,10 +54,6 @@ struct Base {
   petsc::Ledger ledger;  // of the factors, which go on counting
   routes::NestedEvaluation evaluation;
 };
-
-// Of the tolerance of noise range and velocity cut: what they hide was at most 2.3 times it without
-// drag, and a tenth of it with drag, in scenes for which they were widened alone.
-constexpr double kErrorPerTolerance = 5;
 
 class Refiner {
  public:
@@ -140,11 +95,9 @@ class Refiner {
     const Resolution resolution = ladder_.rung(n);
     if (progress_) progress_(n, resolution, expected_seconds(resolution));
     auto [evaluation, step] = solved_on(n, resolution);
-    if (step.resolution.nested) {
-      add_truncation(n, evaluation.results);
-    } else {
-      remember_rounding(evaluation.results);
-    }
+    if (!step.resolution.nested) remember_rounding(evaluation.results);
+    // Truncated where the one before is, also when it had to be solved by itself.
+    if (resolution.nested) add_truncation(ladder_.tail_tolerance(n), evaluation.results);
     if (n >= 1) add_discretisation(n, evaluation.results);
     outcome_.results = std::move(evaluation.results);
     outcome_.even = std::move(evaluation.even);
@@ -189,36 +142,9 @@ class Refiner {
     for (const auto& result : results) rounding_.push_back(quantities::relative_error(result));
   }
 
-  // Nested rungs are cut where the one before is, so that no change shows it.
-  void add_truncation(int n, Results& results) const {
-    const double relative = kErrorPerTolerance * ladder_.tail_tolerance(n);
-    for (auto& result : results) {
-      for (std::size_t e = 0; e < result.value.size(); ++e) {
-        result.error[e] += relative * std::abs(result.value[e]);
-      }
-    }
-  }
-
   void add_discretisation(int n, Results& results) {
-    const double factor = ladder_.error_per_change(n);
-    std::vector<std::vector<double>> changes(results.size());
-    for (std::size_t r = 0; r < results.size(); ++r) {
-      auto& result = results[r];
-      const auto& coarse = outcome_.results[r].value;
-      for (std::size_t e = 0; e < result.value.size(); ++e) {
-        // A mode that the coarser grid did not find is all change.
-        const double before = e < coarse.size() ? coarse[e] : 0;
-        const double change = std::abs(result.value[e] - before);
-        double error = factor * change;
-        if (n >= 2 && e < changes_[r].size()) {
-          error = std::max(error, ladder_.error_per_earlier_change() * changes_[r][e]);
-        }
-        result.error[e] += error;
-        changes[r].push_back(change);
-      }
-    }
-    changes_ = std::move(changes);
-    share_errors(results);
+    const ErrorPerChange factor{ladder_.error_per_change(n), ladder_.error_per_earlier_change()};
+    changes_ = accuracy::add_discretisation(factor, outcome_.results, changes_, results);
   }
 
   // Whoever asks for the density, or cuts the velocity by hand, asks for the distribution of |V|.
@@ -332,8 +258,8 @@ class Refiner {
   std::unique_ptr<Base> base_;    // of the next rungs that are nested
   std::vector<double> rounding_;  // relative, of each result
   double last_rounding_ = std::numeric_limits<double>::infinity();  // of the limiting result
-  std::vector<std::vector<double>> changes_;  // of the last step, by result and entry
-  std::shared_ptr<const StationaryLaw> law_;  // of the last step, if needed
+  Changes changes_;                                                 // of the last step
+  std::shared_ptr<const StationaryLaw> law_;                        // of the last step, if needed
   std::optional<quantities::SpeedDistribution> speed_;
 };
 

@@ -87,8 +87,10 @@ std::vector<double> judged(const std::vector<double>& omega, double tau) {
   return all;
 }
 
+using Density = std::function<double(double)>;
+
 // First omega at which S falls to half of S(0); NaN if there is none.
-double half_width(const ReducedFunction& s, double tau) {
+double half_width(const Density& s, double tau) {
   const double half = s(0) / 2;
   constexpr double step = 1.05, most = 1e9;
   double low = 0, high = 1e-3 / tau;
@@ -104,7 +106,7 @@ double half_width(const ReducedFunction& s, double tau) {
   return (bracket.first + bracket.second) / 2;
 }
 
-Uncertain full_width(const ReducedFunction& s, double tau, double relative_error) {
+Uncertain full_width(const Density& s, double tau, double relative_error) {
   const double half = half_width(s, tau);
   const double step = 1e-4 * half;
   const double slope = (s(half + step) - s(half - step)) / (2 * step);
@@ -113,7 +115,7 @@ Uncertain full_width(const ReducedFunction& s, double tau, double relative_error
 }
 
 // (1/pi) int_0^inf S: decade by decade, and C/omega^4 beyond.
-Uncertain integral(const ReducedFunction& s, double tau, double relative_error) {
+Uncertain integral(const Density& s, double tau, double relative_error) {
   using Rule = boost::math::quadrature::gauss_kronrod<double, 21>;
   const double tolerance = std::max(1e-12, 0.01 * relative_error);
   double sum = 0, doubt = 0, low = 0;
@@ -171,6 +173,10 @@ class DirectSpectrum {
 
 }  // namespace
 
+SpectrumShape shape_of(const Density& s, double tau, double bulk_error, double error) {
+  return {full_width(s, tau, bulk_error), integral(s, tau, error)};
+}
+
 ReducedSpectrum reduced_spectrum(operators::Systems& systems, const StationaryLaw& law,
                                  const std::vector<double>& omega, double tolerance) {
   const auto& noise = systems.process().noise;
@@ -212,8 +218,7 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems, const StationaryLa
     if (frequencies[n] > 10 * turn) continue;
     bulk_error = std::max(bulk_error, answers.error[n] / std::abs(answers.value[n]));
   }
-  result.shape.fwhm = full_width(s, noise.tau, bulk_error);
-  result.shape.variance = integral(s, noise.tau, answers.relative_error);
+  result.shape = shape_of(s, noise.tau, bulk_error, answers.relative_error);
   result.pairs = answers.pairs;
   result.shifts = answers.shifts;
   return result;

@@ -43,6 +43,38 @@ TEST_CASE("laws: every violation is told with its place") {
   CHECK(broken_law({quantities::scalar("mean_slide", "", nan, 0)}) == "mean_slide is nan");
 }
 
+TEST_CASE("laws: an error excuses its own size, and 1e-10, and no more") {
+  const auto passes = [](const char* key, double value, double error) {
+    return broken_law({quantities::scalar(key, "", value, error)}).empty();
+  };
+  for (const char* key : {"P_stick", "F_slide", "cdf_slide"}) {
+    CHECK(passes(key, 1.0099, 0.01));
+    CHECK_FALSE(passes(key, 1.0101, 0.01));
+  }
+  for (const char* key : {"P_stick", "F_stick", "cdf_stick", "mean_slide", "E_V2", "E_X2", "S_0"}) {
+    CHECK(passes(key, -0.0099, 0.01));
+    CHECK_FALSE(passes(key, -0.0101, 0.01));
+    CHECK(passes(key, -0.9e-10, 0));
+    CHECK_FALSE(passes(key, -1.1e-10, 0));
+  }
+  for (const char* key : {"mean_slide", "E_V2", "E_X2", "S_0", "f_stick_0"}) {
+    CHECK(passes(key, 1e6, 0));
+  }
+  for (const char* key : {"E_XV", "E_V", "u(v)"}) CHECK(passes(key, -1, 0));
+}
+
+TEST_CASE("laws: two values in the wrong order are excused by both their errors") {
+  const auto passes = [](double rise, double first, double second) {
+    return broken_law({{"F_stick", "", "lambda", {1, 2}, {0.5, 0.5 + rise}, {first, second}}})
+        .empty();
+  };
+  CHECK(passes(0.0109, 0.01, 0.001));
+  CHECK(passes(0.0109, 0.001, 0.01));
+  CHECK_FALSE(passes(0.0111, 0.01, 0.001));
+  CHECK(passes(0.9e-10, 0, 0));
+  CHECK_FALSE(passes(1.1e-10, 0, 0));
+}
+
 TEST_CASE("laws: simulated results scatter, and are left alone") {
   Result simulated = transform({0.41, 0.6, 0.4});
   simulated.ci95.assign(3, {0, 1});

@@ -1,9 +1,13 @@
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <random>
 
 #include "../common/near.hpp"
+#include "stickslip/accuracy/estimates.hpp"
+#include "stickslip/accuracy/ladder.hpp"
 #include "stickslip/accuracy/refinement.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -36,6 +40,44 @@ const quantities::Result& result(const Outcome& outcome, const std::string& key)
 
 double value(const Outcome& outcome, const std::string& key) {
   return result(outcome, key).value[0];
+}
+
+quantities::Results solved_alone(const Request& r, int step) {
+  const auto resolution = accuracy::Ladder(r).rung(step);
+  return accuracy::solve_on(PETSC_COMM_WORLD, r, resolution).evaluation.results;
+}
+
+// Error estimates of a step from the values of this step and those before, solved one by one.
+quantities::Results estimated(const Request& r, int step) {
+  auto found = solved_alone(r, step);
+  const auto before = solved_alone(r, step - 1);
+  const auto first = step > 1 ? solved_alone(r, step - 2) : before;
+  const accuracy::Ladder ladder(r);
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    for (std::size_t e = 0; e < found[n].value.size(); ++e) {
+      const double last = std::abs(found[n].value[e] - before[n].value[e]);
+      const double earlier = std::abs(before[n].value[e] - first[n].value[e]);
+      found[n].error[e] += std::max(ladder.error_per_change(step) * last,
+                                    ladder.error_per_earlier_change() * earlier);
+    }
+  }
+  accuracy::share_errors(found);
+  return found;
+}
+
+// Times a step takes from the times of those before.
+std::vector<double> expected_seconds(const Request& r, Outcome& outcome) {
+  std::vector<double> expected;
+  outcome = accuracy::refine(
+      PETSC_COMM_WORLD, r,
+      [&](int, const accuracy::Resolution&, double seconds) { expected.push_back(seconds); }, {});
+  return expected;
+}
+
+double work(const Request& r, int step) {
+  auto resolution = accuracy::Ladder(r).rung(step);
+  resolution.nested = false;
+  return accuracy::relative_work(r.scene, resolution);
 }
 
 // The value of one hand-made discretisation.
@@ -298,7 +340,10 @@ TEST_CASE("refinement: the upwind scheme says early what an accuracy would take"
   const Outcome outcome = solve(r);
   CHECK_FALSE(outcome.reached);
   CHECK(outcome.steps.size() < 6);
-  CHECK_THAT(outcome.shortfall, Catch::Contains("p = "));
+  const auto& step = outcome.steps.back();
+  const double needed = step.resolution.points * step.estimate / r.accuracy;
+  CHECK_THAT(outcome.shortfall, Catch::Contains(fmt::format("p = {:.1e}", needed)) &&
+                                    Catch::Contains(fmt::format("{:.0e}", 2 * step.estimate)));
 }
 
 TEST_CASE("refinement: refuses what cannot fit before allocating it") {
@@ -306,4 +351,168 @@ TEST_CASE("refinement: refuses what cannot fit before allocating it") {
   r.method.scheme = options::Scheme::upwind;
   r.method.points = 5000000;
   CHECK_THROWS_AS(solve(r), NoMemory);
+}
+
+TEST_CASE("refinement: estimates are made of the last changes, and of what the route says") {
+  struct Case {
+    options::Method method;
+    model::Drag drag;
+    double accuracy;
+    int steps;
+  };
+  const auto c =
+      GENERATE(Case{{}, {0.1, 3}, 1e-5, 3}, Case{{}, {0.1, 3}, 1e-6, 4},
+               Case{{}, {0.1, 3}, 1e-7, 4}, Case{{options::Scheme::hp, 4, {}, {}}, {1, 0}, 1e-5, 2},
+               Case{{options::Scheme::upwind, {}, {}, 16}, {1, 0}, 1e-5, 2});
+  Request r = request(1, 0.25, c.drag.cubic > 0 ? 4 : 1, c.drag.cubic > 0 ? 0.25 : 0.5, c.drag);
+  r.accuracy = c.accuracy;
+  r.method = c.method;
+  const Outcome outcome = solve(r);
+  const int last = static_cast<int>(outcome.steps.size()) - 1;
+  CHECK(last + 1 == c.steps);
+  const auto expected = estimated(r, last);
+  double largest = 0;
+  std::string key;
+  REQUIRE(expected.size() == outcome.last.results.size());
+  for (std::size_t n = 0; n < expected.size(); ++n) {
+    const auto& found = outcome.last.results[n];
+    for (std::size_t e = 0; e < found.value.size(); ++e) {
+      INFO(found.key << " number " << e);
+      CHECK(found.error[e] == Approx(expected[n].error[e]).epsilon(1e-6).margin(1e-14));
+    }
+    if (quantities::relative_error(expected[n]) <= largest) continue;
+    largest = quantities::relative_error(expected[n]);
+    key = found.key;
+  }
+  CHECK(outcome.steps.back().estimate == Approx(largest).epsilon(1e-6));
+  CHECK(outcome.steps.back().limiting_key == key);
+  CHECK(outcome.reached == (largest <= r.accuracy));
+}
+
+// At so high degrees the truncation rules; nested cycles leave a part of the change.
+TEST_CASE("refinement: nested steps state what the truncation that they share may hide") {
+  Request r = request(1, 0.9, 1, 0.5, {1, 0});
+  r.quantities = {Quantity::sticking, Quantity::moments};
+  r.accuracy = 1e-8;
+  const Outcome outcome = solve(r);
+  const int last = static_cast<int>(outcome.steps.size()) - 1;
+  REQUIRE(outcome.steps.back().resolution.nested);
+  const double truncation = 5 * accuracy::Ladder(r).tail_tolerance(last);
+  const auto without = estimated(r, last);
+  for (std::size_t n = 0; n < without.size(); ++n) {
+    const auto& found = outcome.last.results[n];
+    if (found.value[0] == 0) continue;  // E_V
+    INFO(found.key);
+    const double hidden = (found.error[0] - without[n].error[0]) / std::abs(found.value[0]);
+    CHECK(hidden > 0.9 * truncation);
+    CHECK(hidden < 1.5 * truncation);
+  }
+}
+
+TEST_CASE("refinement: an accuracy is reached at its estimate, and not below") {
+  Request r = request(1, 0.25, 1, 0.5, {1, 0});
+  r.method.degree = 4;
+  const double estimate = solve(r).steps.back().estimate;
+  r.accuracy = 1.001 * estimate;
+  CHECK(solve(r).reached);
+  r.accuracy = 0.999 * estimate;
+  CHECK_FALSE(solve(r).reached);
+}
+
+TEST_CASE("refinement: the density is judged by the distribution of |V|", "[parallel]") {
+  Request r = request(1, 0.25, 1, 0.5, {1, 0});
+  r.quantities = {Quantity::density};
+  r.method.degree = 4;
+  const accuracy::Ladder ladder(r);
+  const auto at = [&](int step) {
+    return accuracy::solve_on(PETSC_COMM_WORLD, r, ladder.rung(step)).evaluation.law;
+  };
+  const auto coarse = at(0), fine = at(1);
+  const double distance = quantities::speed_law_distance(coarse->axis(), coarse->speed_law(),
+                                                         fine->axis(), fine->speed_law());
+  CHECK(solve(r).speed_law_error == Approx(distance).epsilon(1e-9));
+  CHECK(distance > 1e-6);
+}
+
+TEST_CASE("refinement: a velocity cut by hand is an error of the time spent at it") {
+  Request r = request(1, 0.25, 1, 0.5, {1, 0});
+  r.quantities = {Quantity::sticking};
+  r.scene.v_max = 1;
+  r.method.degree = 5;
+  r.accuracy = 0.5;
+  const Outcome outcome = solve(r);
+  CHECK(outcome.reached);
+  const auto law = outcome.last.law->speed_law();
+  const double share = law.at_top / (1 - law.at_rest);
+  CHECK(share > 0.01);
+  r.accuracy = 1.02 * share;
+  CHECK(solve(r).reached);
+  r.accuracy = 0.98 * share;
+  const Outcome held = solve(r);
+  CHECK_FALSE(held.reached);
+  CHECK_THAT(held.shortfall, Catch::Contains(fmt::format("holds back {:.1e}", share)));
+}
+
+TEST_CASE("refinement: a digit more takes the steps by which estimates fall") {
+  const bool hp = GENERATE(true, false);
+  Request r = hp ? request(1, 0.25, 4, 0.25, {0.1, 3}) : request(1, 0.25, 1, 0.5, {1, 0});
+  r.quantities = {Quantity::sticking, Quantity::moments};
+  r.accuracy = hp ? 1e-6 : 0.05;
+  if (hp) r.quantities.insert(Quantity::entry_law);
+  if (!hp) r.method.scheme = options::Scheme::upwind;
+  const Outcome outcome = solve(r);
+  REQUIRE(outcome.reached);
+  const int last = static_cast<int>(outcome.steps.size()) - 1;
+  REQUIRE(last >= (hp ? 2 : 1));
+  double seconds = 0;
+  for (const auto& step : outcome.steps) seconds += step.seconds;
+  int more = 4;  // 2^4 > 10, of first order
+  if (hp) {
+    const double ratio = outcome.steps[last - 1].estimate / outcome.steps[last].estimate;
+    for (more = 1; std::pow(ratio, more) < 10;) ++more;
+    CHECK(more <= 3);
+  }
+  const double expected = seconds * work(r, last + more) / work(r, last);
+  CHECK(outcome.next_digit_seconds == Approx(expected).epsilon(1e-12));
+}
+
+TEST_CASE("refinement: a step is expected to take the time of the last one, by its work") {
+  Request r = request(1, 0.25, 1, 0.25, {1, 0});
+  r.accuracy = 1e-5;
+  Outcome outcome;
+  const auto expected = expected_seconds(r, outcome);
+  REQUIRE(expected.size() == outcome.steps.size());
+  CHECK(expected[0] == 0);
+  for (int n = 1; n < static_cast<int>(expected.size()); ++n) {
+    CHECK(expected[n] ==
+          Approx(outcome.steps[n - 1].seconds * work(r, n) / work(r, n - 1)).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("refinement: the ledger of a run is that of its steps") {
+  Request r = request(1, 0.25, 1, 0.5, {1, 0});
+  r.quantities = {Quantity::sticking, Quantity::moments};
+  const Outcome outcome = solve(r);
+  petsc::Ledger sum;
+  for (const auto& step : outcome.steps) sum += step.ledger;
+  CHECK(outcome.total.solves == sum.solves);
+  CHECK(outcome.total.corrections == sum.corrections);
+  CHECK(outcome.total.factorization_seconds == sum.factorization_seconds);
+  CHECK(outcome.total.backward_error == sum.backward_error);
+}
+
+TEST_CASE("refinement: closed forms and paths need no system, all else does") {
+  const auto needs = [](std::set<Quantity> quantities, options::Route route) {
+    Request r;
+    r.quantities = std::move(quantities);
+    r.route = route;
+    return accuracy::needs_system(r);
+  };
+  using enum Quantity;
+  using options::Route;
+  CHECK_FALSE(needs({noise_law}, Route::excursion));
+  CHECK(needs({noise_law}, Route::null_vector));
+  CHECK_FALSE(needs({noise_law, trajectory, sensitivity}, Route::excursion));
+  CHECK(needs({sticking}, Route::excursion));
+  CHECK(needs({noise_law, trajectory, sensitivity, moments}, Route::excursion));
 }

@@ -99,6 +99,116 @@ TEST_CASE("ladder: a discretisation fixed by hand has one companion and no more"
   CHECK(one_point.error_per_change(1) >= 2);
 }
 
+// Of errors that fall as C/p the estimate is 1.5 to 2 times too large, more where p is small.
+TEST_CASE("ladder: first-order changes are extrapolated, with a margin") {
+  options::Request request;
+  request.scene = scene(1, 0.25, 1, 0.25);
+  request.method.scheme = options::Scheme::upwind;
+  const accuracy::Ladder ladder(request);
+  for (int n = 1; n < 6; ++n) {
+    const double coarse = 1.0 / ladder.rung(n - 1).points, fine = 1.0 / ladder.rung(n).points;
+    const double estimate = ladder.error_per_change(n) * (coarse - fine);
+    CHECK(estimate == Approx(1.5 * (1 + 2 * fine) * fine));
+  }
+  CHECK(ladder.error_per_earlier_change() == 0);
+  CHECK(ladder.first_order());
+  CHECK(ladder.last() == 20);
+  for (int points : {7, 32}) {
+    request.method.points = points;
+    const accuracy::Ladder fixed(request);
+    const double coarse = 1.0 / fixed.rung(0).points, fine = 1.0 / fixed.rung(1).points;
+    CHECK(fixed.error_per_change(1) * (coarse - fine) == Approx(1.5 * (1 + 2 * fine) * fine));
+  }
+}
+
+TEST_CASE("ladder: an hp change counts whole, and three per cent of the one before") {
+  options::Request request;
+  request.scene = scene(1, 0.25, 1, 0.25);
+  const accuracy::Ladder ladder(request);
+  CHECK(ladder.error_per_change(1) == 1);
+  CHECK(ladder.error_per_earlier_change() == 0.03);
+  CHECK_FALSE(ladder.first_order());
+}
+
+TEST_CASE("ladder: the first estimate is expected at the accuracy, within degrees 3 to 19") {
+  options::Request request;
+  request.scene = scene(1, 0.25, 1, 0.25);
+  const auto first = [&](double accuracy, options::Quantity quantity) {
+    request.accuracy = accuracy;
+    request.quantities = {quantity};
+    return accuracy::Ladder(request).rung(1).degree;
+  };
+  // Errors are 10^-d at degree d, and the estimate is that of a degree less; ten times that for
+  // densities at 0+.
+  CHECK(first(1e-6, options::Quantity::sticking) == 7);
+  CHECK(first(1e-6, options::Quantity::entry_law) == 8);
+  CHECK(first(3e-7, options::Quantity::sticking) == 8);
+  CHECK(first(0.1, options::Quantity::sticking) == 3);
+  CHECK(first(1e-30, options::Quantity::sticking) == 19);
+  request.accuracy = 1e-6;
+  const accuracy::Ladder ladder(request);
+  CHECK(ladder.rung(ladder.last()).degree == 19);
+}
+
+TEST_CASE("ladder: truncation is allowed a part of what the discretisation leaves") {
+  options::Request request;
+  request.scene = scene(1, 0.25, 1, 0.25);
+  request.quantities = {options::Quantity::entry_law};
+  request.accuracy = 1e-6;
+  const accuracy::Ladder hp(request);
+  for (int n = 0; n < 4; ++n) {
+    const double expected = std::pow(10.0, -hp.rung(n).degree);
+    CHECK(hp.tail_tolerance(n) == Approx(1e-3 * expected));
+  }
+  // Three steps on the same elements take what the second of them needs.
+  request.quantities = {options::Quantity::sticking};
+  const accuracy::Ladder nested(request);
+  for (int n : {0, 1, 2}) {
+    CHECK(nested.tail_tolerance(n) == Approx(std::pow(10.0, -(nested.rung(1).degree + 3))));
+    CHECK(nested.tail_tolerance(n + 3) == Approx(std::pow(10.0, -(nested.rung(4).degree + 3))));
+  }
+  request.method.scheme = options::Scheme::upwind;
+  CHECK(accuracy::Ladder(request).tail_tolerance(1) == Approx(1e-9));
+  request.accuracy = 1e-3;
+  CHECK(accuracy::Ladder(request).tail_tolerance(3) == Approx(1e-9));
+  request.accuracy = 1e-8;
+  CHECK(accuracy::Ladder(request).tail_tolerance(3) == Approx(1e-11));
+  request.method.scheme = options::Scheme::none;
+  CHECK(accuracy::Ladder(request).tail_tolerance(0) == Approx(1e-8));
+  CHECK(accuracy::Ladder(request).tail_tolerance(2) == Approx(1e-12));
+  CHECK(accuracy::Ladder(request).tail_tolerance(20) == Approx(1e-18));
+}
+
+TEST_CASE("ladder: both signs of v where there is no symmetry, or none is used") {
+  options::Request request;
+  request.scene = scene(1, 0.25, 1, 0.25);
+  CHECK(accuracy::Ladder(request).rung(1).halves == 1);
+  request.route = options::Route::null_vector;
+  CHECK(accuracy::Ladder(request).rung(1).halves == 2);
+  request.route = options::Route::excursion;
+  request.scene.bias = 0.2;
+  CHECK(accuracy::Ladder(request).rung(1).halves == 2);
+}
+
+TEST_CASE("ladder: elements resolve the fastest rate of what is asked for, and no other") {
+  using enum options::Quantity;
+  options::Request request;
+  request.scene = scene(1, 0.25, 1, 0.25);
+  request.lambda = {3, 700, 2};
+  request.omega = {1, 90, 5};
+  const auto rates = [&](std::set<options::Quantity> quantities) {
+    request.quantities = std::move(quantities);
+    const auto found = accuracy::Ladder(request).rung(1).rates;
+    return std::pair{found.lambda, found.omega};
+  };
+  CHECK(rates({sticking}) == std::pair{0.0, 0.0});
+  CHECK(rates({laplace}) == std::pair{700.0, 0.0});
+  CHECK(rates({resolvent}) == std::pair{700.0, 0.0});
+  CHECK(rates({spectrum}) == std::pair{0.0, 90.0});
+  request.route = options::Route::lambda;
+  CHECK(rates({sticking}) == std::pair{700.0, 0.0});
+}
+
 TEST_CASE("memory: predicted within a factor 2.5 of what MUMPS counts", "[slow]") {
   struct Case {
     double delta;

@@ -281,6 +281,29 @@ TEST_CASE("spectrum: the white-noise limit", "[parallel]") {
   }
 }
 
+// S = a/(1 + (omega/w)^4): half of S(0) at w, where S falls at the rate a/w; the variance is
+// (1/pi) a w pi/(2 sqrt 2). The wide one has a part of 1e-5 beyond the last panel.
+TEST_CASE("spectrum: width and variance of a known one, with the errors of its values") {
+  constexpr double a = 3, tau = 0.5;
+  for (const double width : {0.7 / tau, 1e4 / tau}) {
+    const auto s = [=](double omega) { return a / (1 + std::pow(omega / width, 4)); };
+    const auto shape = quantities::shape_of(s, tau, 1e-4, 1e-3);
+    INFO("width " << width);
+    CHECK(shape.fwhm.value == Approx(2 * width).epsilon(1e-12));
+    // Two values with a relative error of 1e-4 each move the half width by 1e-4 w.
+    CHECK(shape.fwhm.error == Approx(2e-4 * width).epsilon(1e-6));
+    const double variance = a * width / (2 * std::sqrt(2));
+    CHECK(shape.variance.value == Approx(variance).epsilon(1e-10));
+    CHECK(shape.variance.error >= 1e-3 * variance);
+    CHECK(shape.variance.error < 1.01e-3 * variance);
+  }
+}
+
+TEST_CASE("spectrum: one that never falls to half has no width") {
+  const auto shape = quantities::shape_of([](double) { return 1.0; }, 1, 0, 0);
+  CHECK(std::isnan(shape.fwhm.value));
+}
+
 TEST_CASE("spectrum: named results") {
   const quantities::Spectrum spectrum{{2, 0.1}, {{1, 0.01}, {0.5, 0.02}}};
   quantities::Results results;

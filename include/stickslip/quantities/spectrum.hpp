@@ -1,6 +1,7 @@
 #pragma once
 /// Power spectral density of the velocity.
 
+#include <functional>
 #include <vector>
 
 #include "stickslip/operators/systems.hpp"
@@ -30,6 +31,11 @@ struct SpectrumShape {
       fwhm;  ///< full width at half of S_v(0) [1/time]; not a number if S_v never falls so far
   Uncertain variance;  ///< (1/2 pi) int S_v d omega, which is E[V^2]
 };
+
+/// Of an even spectrum S(omega) that falls as omega^-4 beyond 1e5/tau and has relative errors
+/// `bulk_error` at 0 and at half width, `error` everywhere. Local.
+[[nodiscard]] SpectrumShape shape_of(const std::function<double(double)>& s, double tau,
+                                     double bulk_error, double error);
 
 struct ReducedSpectrum {
   Spectrum spectrum;
