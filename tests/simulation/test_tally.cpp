@@ -274,6 +274,14 @@ TEST_CASE("tally: a batch is fixed by seed and number") {
   CHECK(batch(1, 1) != first);
   CHECK(batch(2, 0) != first);
   CHECK(batch(1, 0) == first);
+  Tally by_hand(kWanted, p.static_index());
+  simulation::RandomStream random(1, 7);
+  Excursion e;
+  for (int n = 0; n < 20; ++n) {
+    source->draw(random, e);
+    by_hand.add(e);
+  }
+  CHECK(batch(1, 7) == by_hand.pack());
 }
 
 namespace {
