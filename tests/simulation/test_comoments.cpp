@@ -96,6 +96,27 @@ TEST_CASE("comoments: merging into nothing and nothing keeps the bits") {
   }
 }
 
+TEST_CASE("comoments: nothing merged into nothing is nothing, and goes on") {
+  const auto all = samples(10, 1);
+  Comoments nothing(3);
+  nothing.merge(Comoments(3));
+  CHECK(nothing.count() == 0);
+  for (const auto& s : all) nothing.add(s);
+  check_against_two_passes(nothing, all, 1e-12);
+}
+
+// In exact arithmetic the combination is 0; its variance must not round to less.
+TEST_CASE("comoments: no variance is negative") {
+  for (int n = 1; n <= 300; ++n) {
+    const double factor = 0.1 * n;
+    Comoments c(2);
+    for (double a : {0.3, 0.7, 1.1, 1.9}) c.add(std::vector{a, factor * a});
+    const double variance = c.variance_of_mean(std::vector{factor, -1.0});
+    CHECK(variance >= 0);
+    CHECK(variance <= 1e-14 * factor * factor);
+  }
+}
+
 TEST_CASE("comoments: one sample tells nothing of the spread, equal ones tell there is none") {
   const auto one = samples(1, 0);
   CHECK(std::isinf(Comoments(3).variance_of_mean(kWeight)));

@@ -6,6 +6,7 @@
 
 #include "../common/simulation.hpp"
 #include "stickslip/simulation/excursions.hpp"
+#include "stickslip/simulation/flow.hpp"
 #include "stickslip/simulation/path.hpp"
 
 using namespace stickslip;
@@ -111,6 +112,47 @@ std::vector<int> entries_along(const model::Process& p, double horizon) {
   return entries;
 }
 
+/// Durations, displacements and numbers of excursions of the cycles of a path, which begin where a
+/// body at rest is pushed to the side `start`.
+std::vector<Excursion> cycles_along(const model::Process& p, int start, double horizon) {
+  const int level = start > 0 ? p.static_index() + 1 : p.lowest_static() - 1;
+  const auto path = simulation::simulate_path(p, level, 0, horizon, 3);
+  Excursion none;
+  none.count = 0;
+  std::vector<Excursion> cycles{none};
+  for (std::size_t n = 0; n + 1 < path.time.size(); ++n) {
+    const bool starts = path.y[n] != 0 && (n == 0 || path.y[n - 1] == 0);
+    if (starts && path.y[n] == start && n > 0) cycles.push_back(none);
+    auto& e = cycles.back();
+    e.count += starts;
+    const double time = path.time[n + 1] - path.time[n];
+    (path.y[n] == 0 ? e.stick : e.slide) += time;
+    if (path.y[n] == 0) continue;
+    const auto half = path.y[n] > 0 ? p : p.mirrored();
+    const double force =
+        half.excess(static_cast<int>(std::lround(path.y[n] * path.x[n] / p.noise.delta)));
+    const auto piece =
+        simulation::GeneralFlow(half.drag).move(std::abs(path.v[n]), force, time, true);
+    e.drift += path.y[n] * piece.path;
+  }
+  cycles.pop_back();
+  return cycles;
+}
+
+/// Difference of two means in units of its standard deviation.
+template <class F>
+double difference_of_means(const std::vector<Excursion>& a, const std::vector<Excursion>& b, F f) {
+  double mean = 0, variance = 0;
+  for (const auto* all : {&a, &b}) {
+    const auto n = static_cast<double>(all->size());
+    double sum = 0, squares = 0;
+    for (const auto& e : *all) sum += f(e), squares += f(e) * f(e);
+    mean += (all == &a ? 1 : -1) * sum / n;
+    variance += (squares - sum * sum / n) / (n * (n - 1));
+  }
+  return mean / std::sqrt(variance);
+}
+
 /// Difference of two frequencies in units of its standard deviation.
 double difference(double count_a, double all_a, double count_b, double all_b) {
   const double p = (count_a + count_b) / (all_a + all_b);
@@ -138,6 +180,21 @@ TEST_CASE("excursions: every one begins and ends at rest, with what that means")
       REQUIRE(std::abs(e.transform[0]) <= e.path * (1 + 1e-12));
       REQUIRE(std::abs(e.transform[0].imag()) <= 1e-12 * e.path);
       REQUIRE(std::abs(e.transform[2]) <= std::abs(e.path) * (1 + 1e-12));
+    }
+  }
+}
+
+// -Im/omega -> int t v dt as omega -> 0.
+TEST_CASE("excursions: transforms put the motion between the start and the end of the slide") {
+  constexpr double omega = 1e-4;
+  for (const auto& c : {cases()[0], cases()[1], cases()[4]}) {
+    INFO(c.name);
+    for (const auto& e : draw(c.process, {true, false, {omega}, {}, {}}, 500)) {
+      const bool turned = e.transform[0].real() < 0.999 * e.path;  // round on the way
+      if (turned) continue;
+      const double middle = -e.transform[0].imag() / (omega * e.path);
+      REQUIRE(middle > 0);
+      REQUIRE(middle < e.slide);
     }
   }
 }
@@ -256,6 +313,80 @@ TEST_CASE("excursions: slides end where those along a path do, within 4 sigma") 
       CHECK(std::abs(difference(static_cast<double>(drawn), 50000, static_cast<double>(seen),
                                 static_cast<double>(along.size()))) < 4);
     }
+  }
+}
+
+namespace {
+
+std::vector<Case> cases_without_symmetry() {
+  auto up = process(1, 0.25, 1, 0.5, {1, 0}), down = up, law = up, turned = up;
+  up.bias = 0.3;
+  down.bias = -0.6;
+  law.drag = {0, 0, [](double v) { return v > 0 ? -v : -3 * v; }, 1e6, false};
+  turned = process(0.5, 0.5, 1, 0.5, {1, 0});
+  turned.bias = -0.1;
+  auto hard = up;  // rests on positive levels alone
+  hard.bias = -1.6;
+  return {{"pushed up", up},
+          {"pushed down", down},
+          {"pushed hard", hard},
+          {"drag law", law},
+          {"turned round", turned}};
+}
+
+}  // namespace
+
+// v^2/2 is back at 0 after each cycle: power of the noise and of the bias, less that of friction.
+TEST_CASE("excursions: a cycle without symmetry conserves energy") {
+  for (const auto& c : cases_without_symmetry()) {
+    if (!c.process.drag.is_linear()) continue;
+    INFO(c.name);
+    Wanted wanted = kAll;
+    wanted.cycles = true;
+    int several = 0;
+    for (const auto& e : draw(c.process, wanted, 2000)) {
+      const double lost = c.process.friction.mu_d * e.path + c.process.drag.linear * e.square;
+      REQUIRE(e.product + c.process.bias * e.drift ==
+              Approx(lost).epsilon(1e-9).margin(1e-14 + 1e-9 * e.path));
+      REQUIRE(std::abs(e.transform[0] - e.drift) <= 1e-11 * e.path);
+      REQUIRE(std::abs(e.drift) <= e.path * (1 + 1e-12));
+      several += e.count > 1;
+    }
+    CHECK(several > 50);
+  }
+}
+
+TEST_CASE("excursions: cycles without symmetry are those along a path, within 4 sigma") {
+  for (const auto& c : cases_without_symmetry()) {
+    INFO(c.name);
+    const auto along = cycles_along(c.process, c.process.bias < 0 ? -1 : 1, 20000);
+    Wanted wanted;
+    wanted.cycles = true;
+    const auto drawn = draw(c.process, wanted, 10000);
+    REQUIRE(along.size() > 300);
+    CHECK(std::abs(difference_of_means(along, drawn, [](const auto& e) { return e.slide; })) < 4);
+    CHECK(std::abs(difference_of_means(along, drawn, [](const auto& e) { return e.stick; })) < 4);
+    CHECK(std::abs(difference_of_means(along, drawn, [](const auto& e) { return e.drift; })) < 4);
+    CHECK(std::abs(difference_of_means(along, drawn, [](const auto& e) { return e.count; })) < 4);
+  }
+}
+
+TEST_CASE("excursions: the noise keeps its law in cycles, whatever the bias, within 4 sigma") {
+  for (const auto& c : cases_without_symmetry()) {
+    INFO(c.name);
+    const int levels = c.process.noise.levels, k = c.process.threshold_index();
+    double within = 0;
+    for (int i = -k; i <= k; ++i) within += binomial(levels, i);
+    Wanted wanted;
+    wanted.noise = wanted.cycles = true;
+    const auto all = draw(c.process, wanted, 10000);
+    const auto off = [&](double mean, double Excursion::*total) {
+      return std::abs(deviation_of_mean(
+          all, [&](const Excursion& e) { return e.*total - mean * (e.slide + e.stick); }));
+    };
+    CHECK(off(within, &Excursion::within) < 4);
+    CHECK(off(1 / c.process.noise.tau, &Excursion::noise_square) < 4);
+    CHECK(off(c.process.noise.rate(), &Excursion::jumps) < 4);
   }
 }
 

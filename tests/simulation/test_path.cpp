@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -13,16 +14,29 @@ model::Process process(double mu_s, double mu_d, double tau, double delta, model
   return {{tau, delta, model::full_range(tau, delta)}, {mu_s, mu_d}, drag};
 }
 
+model::Process biased(double bias, model::Drag drag) {
+  auto p = process(1, 0.25, 1, 0.5, std::move(drag));
+  p.bias = bias;
+  return p;
+}
+
 std::vector<model::Process> processes() {
-  return {process(1, 0.25, 1, 0.5, {1, 0}), process(1, 1, 1, 0.5, {0, 0}),
-          process(0.2, 0.15, 1, 0.5, {1, 0}), process(0.2, 0.2, 2, 0.25, {0.3, 0.5})};
+  const model::Drag stronger_below{0, 0, [](double v) { return v > 0 ? -v : -2 * v; }, 1e6, false};
+  return {process(1, 0.25, 1, 0.5, {1, 0}),
+          process(1, 1, 1, 0.5, {0, 0}),
+          process(0.2, 0.15, 1, 0.5, {1, 0}),
+          process(0.2, 0.2, 2, 0.25, {0.3, 0.5}),
+          biased(0.3, {1, 0}),
+          biased(-0.6, {0.5, 0.25}),
+          biased(0, stronger_below),
+          biased(-0.2, stronger_below)};
 }
 
 // v after `time` with the force of this piece, by Runge-Kutta steps of order 4.
 double flow(const model::Process& p, double x, double y, double v, double time) {
   constexpr int steps = 200;
   const double h = time / steps;
-  const auto rate = [&](double u) { return x - p.friction.mu_d * y + p.drag(u); };
+  const auto rate = [&](double u) { return x + p.bias - p.friction.mu_d * y + p.drag(u); };
   for (int n = 0; n < steps; ++n) {
     const double a = rate(v), b = rate(v + h / 2 * a), c = rate(v + h / 2 * b), d = rate(v + h * c);
     v += h / 6 * (a + 2 * b + 2 * c + d);
@@ -44,9 +58,10 @@ void check_state(const model::Process& p, double x, double y, double v) {
   REQUIRE((y == 0 || y == 1 || y == -1));
   REQUIRE(v * y >= 0);
   if (y == 0) REQUIRE(v == 0);
-  if (y == 0) REQUIRE(std::abs(x) <= p.friction.mu_s);
-  if (v == 0 && std::abs(x) <= p.friction.mu_s) REQUIRE(y == 0);
-  if (v == 0 && std::abs(x) > p.friction.mu_s) REQUIRE(y * x > 0);
+  const double force = x + p.bias;
+  if (y == 0) REQUIRE(std::abs(force) <= p.friction.mu_s);
+  if (v == 0 && std::abs(force) <= p.friction.mu_s) REQUIRE(y == 0);
+  if (v == 0 && std::abs(force) > p.friction.mu_s) REQUIRE(y * force > 0);
 }
 
 }  // namespace
@@ -62,6 +77,7 @@ TEST_CASE("path: every state is one of the process and follows from the one befo
       if (n + 1 < path.time.size()) check_step(p, path, n);
     }
     CHECK(rests > 10);
+    for (double sign : {1.0, -1.0}) CHECK(std::count(path.y.begin(), path.y.end(), sign) > 10);
   }
 }
 

@@ -104,6 +104,27 @@ double weighted_spectrum(const std::vector<Excursion>& all, const std::vector<do
   return (power + 2 * (cd * c / (1.0 - d)).real()) / time;
 }
 
+/// The value at even weights on n samples, and the variance by what each sample adds to it.
+void check_influence(const Estimate& found, std::size_t n,
+                     const std::function<double(const std::vector<double>&)>& of_weights) {
+  constexpr double step = 1e-6;
+  const auto count = static_cast<double>(n);
+  const std::vector<double> even(n, 1 / count);
+  double variance = 0;
+  for (std::size_t m = 0; m < n; ++m) {
+    auto more = even, less = even;
+    for (auto& x : more) x *= 1 - step;
+    for (auto& x : less) x *= 1 + step;
+    more[m] += step;
+    less[m] -= step;
+    const double influence = (of_weights(more) - of_weights(less)) / (2 * step);
+    variance += influence * influence / (count * (count - 1));
+  }
+  CHECK(found.value == Approx(of_weights(even)).epsilon(1e-12));
+  CHECK(found.high - found.value == Approx(kNormal * std::sqrt(variance)).epsilon(1e-7));
+  CHECK(found.value - found.low == Approx(kNormal * std::sqrt(variance)).epsilon(1e-7));
+}
+
 }  // namespace
 
 TEST_CASE("tally: a sample of four by hand") {
@@ -176,29 +197,13 @@ TEST_CASE("tally: entries are proportions in [0, 1] that hold their value") {
   CHECK(always.low > 0);
 }
 
-// The variance of an estimator by what each sample adds to it.
 TEST_CASE("tally: spectrum and its interval") {
   const auto all = sample();
   const auto t = of(all);
-  const double n = 4, step = 1e-6;
   for (std::size_t w = 0; w < 2; ++w) {
-    const std::vector<double> even(4, 1 / n);
-    const double value = weighted_spectrum(all, even, w);
-    double variance = 0;
-    for (std::size_t m = 0; m < 4; ++m) {
-      auto more = even, less = even;
-      for (auto& x : more) x *= 1 - step;
-      for (auto& x : less) x *= 1 + step;
-      more[m] += step;
-      less[m] -= step;
-      const double influence =
-          (weighted_spectrum(all, more, w) - weighted_spectrum(all, less, w)) / (2 * step);
-      variance += influence * influence / (n * (n - 1));
-    }
-    const auto found = t.spectrum(w);
-    CHECK(found.value == Approx(value).epsilon(1e-12));
-    CHECK(found.high - found.value == Approx(kNormal * std::sqrt(variance)).epsilon(1e-7));
-    CHECK(found.value - found.low == Approx(kNormal * std::sqrt(variance)).epsilon(1e-7));
+    check_influence(t.spectrum(w), 4, [&](const std::vector<double>& weight) {
+      return weighted_spectrum(all, weight, w);
+    });
   }
 }
 
@@ -269,43 +274,92 @@ TEST_CASE("tally: a batch is fixed by seed and number") {
   CHECK(batch(1, 1) != first);
   CHECK(batch(2, 0) != first);
   CHECK(batch(1, 0) == first);
+  Tally by_hand(kWanted, p.static_index());
+  simulation::RandomStream random(1, 7);
+  Excursion e;
+  for (int n = 0; n < 20; ++n) {
+    source->draw(random, e);
+    by_hand.add(e);
+  }
+  CHECK(batch(1, 7) == by_hand.pack());
 }
 
-// Cycles by hand: displacements, durations and counts.
-TEST_CASE("tally: drift, durations and spread of cycles") {
-  Wanted wanted;
-  wanted.cycles = true;
+namespace {
+
+const Wanted kCycles{true, true, {}, {}, {}, true};
+
+std::vector<Excursion> cycles() {
   const std::vector<double> moved{1, -0.5, 2, 0.25, 3}, slide{2, 1, 3, 1, 4},
       stick{1, 2, 0.5, 1, 1}, number{1, 3, 2, 1, 4};
-  Tally tally(wanted, -2);  // a bias may leave no static level at or above 0
-  double sum = 0, time = 0, excursions = 0;
-  for (std::size_t n = 0; n < moved.size(); ++n) {
-    Excursion e;
-    e.slide = slide[n];
-    e.stick = stick[n];
-    e.drift = moved[n];
-    e.count = number[n];
-    tally.add(e);
-    sum += moved[n];
-    time += slide[n] + stick[n];
-    excursions += number[n];
+  std::vector<Excursion> all(moved.size());
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    all[n].slide = slide[n];
+    all[n].stick = stick[n];
+    all[n].drift = moved[n];
+    all[n].count = number[n];
+    all[n].jumps = 3;
   }
-  const double m = sum / time;
-  double square = 0, mean_square = 0;
-  std::vector<double> scaled;
-  for (std::size_t n = 0; n < moved.size(); ++n) {
-    const double t = slide[n] + stick[n], d = moved[n] - m * t;
-    square += d * d;
-    mean_square += d * d / 5;
+  return all;
+}
+
+// A bias may leave no static level at or above 0.
+Tally of_cycles(const std::vector<Excursion>& all) {
+  Tally tally(kCycles, -2);
+  for (const auto& e : all) tally.add(e);
+  return tally;
+}
+
+using Weights = std::vector<double>;
+
+double weighted(const std::vector<Excursion>& all, const Weights& weight, const Value& f) {
+  double sum = 0;
+  for (std::size_t n = 0; n < all.size(); ++n) sum += weight[n] * f(all[n]);
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("tally: drift of cycles is a stationary mean") {
+  const auto all = cycles();
+  check_ratio(of_cycles(all).mean_velocity(), all, [](const Excursion& e) { return e.drift; });
+}
+
+TEST_CASE("tally: mean durations in cycles are those of one excursion") {
+  const auto all = cycles();
+  const auto t = of_cycles(all);
+  const std::vector<std::pair<Duration, Value>> durations{
+      {Duration::slide, [](const Excursion& e) { return e.slide; }},
+      {Duration::stick, [](const Excursion& e) { return e.stick; }},
+      {Duration::excursion, duration}};
+  const Value number = [](const Excursion& e) { return e.count; };
+  for (const auto& [which, f] : durations) {
+    check_influence(t.mean(which), all.size(), [&, f = f](const Weights& weight) {
+      return weighted(all, weight, f) / weighted(all, weight, number);
+    });
   }
-  CHECK(tally.mean_velocity().value == Approx(m).epsilon(1e-13));
-  CHECK(tally.mean(Duration::stick).value == Approx(5.5 / excursions).epsilon(1e-13));
-  CHECK(tally.mean(Duration::excursion).value == Approx(time / excursions).epsilon(1e-13));
-  CHECK(tally.spectrum_at_zero().value == Approx(square / time).epsilon(1e-12));
-  // The delta method for E[V]: the residuals D - m T over the mean duration.
-  const double sigma = std::sqrt(mean_square * 5 / 4 / 5) / (time / 5);
-  check_estimate(tally.mean_velocity(), m, sigma);
-  Tally again(wanted, -2);
-  again.unpack(tally.pack());
-  CHECK(again.spectrum_at_zero().low == tally.spectrum_at_zero().low);
+  CHECK(t.mean(Duration::stick).value == Approx(5.5 / 11).epsilon(1e-13));
+}
+
+TEST_CASE("tally: the spread of cycles about their drift grows at the rate S_v(0)") {
+  const auto all = cycles();
+  check_influence(of_cycles(all).spectrum_at_zero(), all.size(), [&](const Weights& weight) {
+    const double time = weighted(all, weight, duration);
+    const double m = weighted(all, weight, [](const Excursion& e) { return e.drift; }) / time;
+    const auto square = [m](const Excursion& e) { return std::pow(e.drift - m * duration(e), 2); };
+    return weighted(all, weight, square) / time;
+  });
+}
+
+TEST_CASE("tally: merged and packed cycles are the whole") {
+  const auto all = cycles();
+  auto merged = of_cycles({all[0], all[1]});
+  merged.merge(of_cycles({all[2], all[3], all[4]}));
+  const auto whole = of_cycles(all);
+  const auto a = merged.pack(), b = whole.pack();
+  REQUIRE(a.size() == b.size());
+  for (std::size_t n = 0; n < a.size(); ++n) CHECK(a[n] == Approx(b[n]).epsilon(1e-13));
+  CHECK(merged.spectrum_at_zero().high == Approx(whole.spectrum_at_zero().high).epsilon(1e-12));
+  auto again = of_cycles({});
+  again.unpack(b);
+  CHECK(again.pack() == b);
 }

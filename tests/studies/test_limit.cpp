@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "stickslip/studies/limit.hpp"
@@ -50,6 +51,44 @@ TEST_CASE("limit: an unforeseen order stands for itself, and none gives no limit
   CHECK(std::isnan(observed_order(uneven)));
   CHECK(std::isnan(limit_of(uneven, observed_order(uneven), false).value));
   CHECK(std::isnan(observed_order(samples_of([](double d) { return d; }, 2))));
+}
+
+// On a straight line, two samples at delta and delta/2 extrapolate to 2 v(delta/2) - v(delta).
+TEST_CASE("limit: errors of the samples count by the size of their weights") {
+  const std::vector<Sample> line{{0.5, 1.5, 1e-3}, {0.25, 1.25, 1e-3}, {0.125, 1.125, 2e-3}};
+  const Limit limit = limit_of(line, 1, false);
+  CHECK(limit.value == Approx(1).epsilon(1e-12));
+  CHECK(limit.error == Approx(2 * 2e-3 + 1e-3).epsilon(1e-9));
+}
+
+// Two samples at delta and delta/2, and the two before: 1 + delta + delta^2.
+TEST_CASE("limit: the error holds the change that the last sample makes") {
+  const std::vector<Sample> curve{{0.5, 1.75, 0}, {0.25, 1.3125, 0}, {0.125, 1.140625, 0}};
+  const Limit limit = limit_of(curve, 1, false);
+  const double now = 2 * 1.140625 - 1.3125, before = 2 * 1.3125 - 1.75;
+  CHECK(limit.value == Approx(now).epsilon(1e-12));
+  CHECK(limit.error == Approx(now - before).epsilon(1e-12));
+}
+
+TEST_CASE("limit: by an observed order, the error is the change from one limit to the next") {
+  const auto samples = samples_of([](double d) { return 1 + d * d * d * (1 + d); }, 5);
+  const Limit limit = limit_of(samples, observed_order(samples), false);
+  const auto shorter = std::span(samples).first(4);
+  const Limit before = limit_of(shorter, observed_order(shorter), false);
+  CHECK(std::abs(limit.value - 1) < 1e-5);
+  CHECK(limit.error == Approx(std::abs(limit.value - before.value)).epsilon(1e-12));
+  CHECK(limit.error > std::abs(limit.value - 1));
+}
+
+TEST_CASE("limit: changes of opposite signs have no order, and steep ones have") {
+  const std::vector<Sample> alternating{{0.5, 1, 0}, {0.25, 2, 0}, {0.125, 1.5, 0}};
+  CHECK(std::isnan(observed_order(alternating)));
+  for (double power : {0.5, 1.0, 2.0, 3.5, 6.0}) {
+    const std::vector<Sample> pure{{0.5, std::pow(0.5, power), 0},
+                                   {0.25, std::pow(0.25, power), 0},
+                                   {0.1, std::pow(0.1, power), 0}};
+    CHECK(observed_order(pure) == Approx(power).epsilon(1e-9));
+  }
 }
 
 TEST_CASE("limit: errors of the samples remain") {

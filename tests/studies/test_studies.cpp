@@ -1,9 +1,14 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <stdexcept>
 
+#include "stickslip/exact/dense.hpp"
 #include "stickslip/io/study_report.hpp"
 #include "stickslip/studies/extrapolation.hpp"
+#include "stickslip/studies/limit.hpp"
 #include "stickslip/studies/study.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -69,6 +74,74 @@ TEST_CASE("studies: the upwind scheme is of order 1, and Richardson's limit is b
   CHECK(study.runs.back().method == "hp");
 }
 
+TEST_CASE("studies: the table of p holds differences of its values, and errors against hp") {
+  const Study study = conducted(request(StudyKind::points, 0.25, 0.5, 4));
+  const auto& hp = study.runs.back();
+  for (std::size_t r = 0; r < hp.results.size(); ++r) {
+    const double limit = hp.results[r].value[0];
+    const Table& t = table(study, hp.results[r].key);
+    const auto value = column(t, "value"), kappa = column(t, "kappa"),
+               richardson = column(t, "richardson"), error = column(t, "error"),
+               richardson_error = column(t, "richardson_error");
+    INFO(t.name);
+    CHECK(column(t, "p") == std::vector<double>{2, 4, 8, 16});
+    for (std::size_t n = 0; n < 4; ++n) {
+      const auto& of_run = study.runs[n].results[r];
+      CHECK(value[n] == of_run.value[0]);
+      CHECK(of_run.error[0] == std::abs(value[n] - limit));
+      CHECK(error[n] == Approx(std::abs(value[n] - limit) / limit));
+      if (n > 0) CHECK(richardson[n] == Approx(value[n] + (value[n] - value[n - 1])));
+      if (n > 0) CHECK(richardson_error[n] == Approx(std::abs(richardson[n] - limit) / limit));
+      if (n == 0 || n == 3) continue;
+      const double before = value[n] - value[n - 1], after = value[n + 1] - value[n];
+      CHECK(kappa[n] == Approx(std::log2(std::abs(before / after))));
+    }
+    CHECK_THAT(study.conclusions[r],
+               Catch::Contains(
+                   fmt::format(": order {:.3f}; Richardson {:.10g} +- {:.1e}; hp {:.12g}", kappa[2],
+                               richardson[3], std::abs(richardson[3] - richardson[2]), limit)));
+  }
+}
+
+TEST_CASE("studies: without -study_steps there are eight values of p") {
+  Request r = request(StudyKind::points, 0.25, 1, 8);
+  r.study_steps.reset();
+  CHECK(conducted(r).runs.size() == 9);
+}
+
+TEST_CASE("studies: steps put mu_s on a level or in the middle, and extrapolate what they found") {
+  for (double mu_d : {1.0, 0.5}) {
+    Request r = request(StudyKind::steps, mu_d, 0.45, 3);
+    r.accuracy = 1e-6;
+    const Study study = conducted(r);
+    REQUIRE(study.runs.size() == 6);
+    const std::vector<double> places{2, 4, 8, 2.5, 4.5, 8.5};  // mu_s/delta, nearest to 1/0.45
+    for (std::size_t n = 0; n < 6; ++n) {
+      CHECK(1 / study.runs[n].parameters[0].second == Approx(places[n]).epsilon(1e-14));
+      CHECK(study.runs[n].parameters[1].second == 1e-9);
+    }
+    for (std::size_t family : {0U, 3U}) {
+      const Table& t = table(study, family == 0 ? "P_stick on a level" : "P_stick between levels");
+      std::vector<studies::Sample> samples;
+      for (std::size_t n = 0; n < 3; ++n) {
+        const auto& run = study.runs[family + n];
+        samples.push_back(
+            {run.parameters[0].second, run.results[0].value[0], run.results[0].error[0]});
+        CHECK(t.rows[n][1] == samples[n].value);
+        CHECK(t.rows[n][2] == samples[n].error);
+        CHECK(samples[n].error > 0);
+        const double order = studies::observed_order(samples);
+        const auto limit = studies::limit_of(samples, order, mu_d == 1);
+        CHECK(std::isnan(t.rows[n][3]) == (n < 2));
+        if (std::isnan(order)) continue;
+        CHECK(t.rows[n][3] == order);
+        CHECK(t.rows[n][4] == limit.value);
+        CHECK(t.rows[n][5] == limit.error);
+      }
+    }
+  }
+}
+
 // Grazing slides: the order in delta is 2 for E_V2 and 3/2 for P_stick where mu_d = mu_s, else 1.
 TEST_CASE("studies: orders in delta, with mu_s on a level and between two", "[slow][real]") {
   struct Case {
@@ -103,8 +176,18 @@ TEST_CASE("studies: both families have the same limit in delta", "[slow][real]")
   }
 }
 
+namespace {
+
+/// Of some seconds, and needed twice.
+const Study& costs() {
+  static const Study study = conducted(request(StudyKind::cost, 0.25, 0.5, 4));
+  return study;
+}
+
+}  // namespace
+
 TEST_CASE("studies: what accuracy costs", "[slow][real]") {
-  const Study study = conducted(request(StudyKind::cost, 0.25, 0.5, 4));
+  const Study& study = costs();
   const auto hp = column(table(study, "hp"), "error"),
              upwind = column(table(study, "upwind"), "error"),
              extrapolated = column(table(study, "richardson"), "error"),
@@ -115,10 +198,109 @@ TEST_CASE("studies: what accuracy costs", "[slow][real]") {
   CHECK(extrapolated.back() < upwind.back());
   // Four times the excursions, half the error.
   CHECK(simulated.back() < 0.6 * simulated[simulated.size() - 2]);
-  for (const auto& t : study.tables) {
-    for (double seconds : column(t, "seconds")) CHECK(seconds > 0);
-  }
   CHECK(study.conclusions.size() == 4);
+}
+
+namespace {
+
+/// The results of the runs of one method.
+std::vector<const studies::Run*> runs_of(const Study& study, const std::string& method) {
+  std::vector<const studies::Run*> runs;
+  for (const auto& run : study.runs) {
+    if (run.method == method) runs.push_back(&run);
+  }
+  return runs;
+}
+
+double largest_error(const quantities::Results& results, const quantities::Results& known) {
+  double largest = 0;
+  for (std::size_t n = 0; n < results.size(); ++n) {
+    REQUIRE(results[n].key == known[n].key);
+    largest = std::max(largest, std::abs(results[n].value[0] / known[n].value[0] - 1));
+  }
+  return largest;
+}
+
+/// log10 of the time against digits: the regression line through points with errors above 1e-12.
+std::string price(const Table& t) {
+  std::vector<double> x, y;
+  const auto error = column(t, "error"), seconds = column(t, "seconds");
+  for (std::size_t n = 0; n < error.size(); ++n) {
+    if (error[n] <= 1e-12) continue;
+    x.push_back(-std::log10(error[n]));
+    y.push_back(std::log10(seconds[n]));
+  }
+  exact::Matrix normal(2, 2), right(2, 1);
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    normal(0, 0) += 1;
+    normal(0, 1) += x[n];
+    normal(1, 0) += x[n];
+    normal(1, 1) += x[n] * x[n];
+    right(0, 0) += y[n];
+    right(1, 0) += x[n] * y[n];
+  }
+  const auto line = exact::LuFactors(normal).solve(right);
+  const auto at = [&](double digits) { return std::pow(10, line(0, 0) + line(1, 0) * digits); };
+  return fmt::format("{}: one more digit costs {:.3g} times the time; 1e-6 takes about {:.2g} s, "
+                     "1e-9 about {:.2g} s",
+                     t.name, std::pow(10, line(1, 0)), at(6), at(9));
+}
+
+}  // namespace
+
+TEST_CASE("studies: errors and prices of each method follow from its runs", "[slow][real]") {
+  const Study& study = costs();
+  const auto hp = runs_of(study, "hp"), upwind = runs_of(study, "upwind"),
+             simulated = runs_of(study, "monte_carlo");
+  const auto& known = hp.back()->results;  // right to 1e-11
+  const auto hp_error = column(table(study, "hp"), "error");
+  for (std::size_t n = 0; n < 4; ++n) {
+    CHECK(hp_error[n] == Approx(largest_error(hp[n]->results, known)).epsilon(1e-4));
+  }
+  const Table& richardson = table(study, "richardson");
+  REQUIRE(richardson.rows.size() == 3);
+  for (std::size_t n = 0; n < 3; ++n) {
+    auto extrapolated = upwind[n + 1]->results;
+    for (std::size_t r = 0; r < extrapolated.size(); ++r) {
+      extrapolated[r].value[0] += extrapolated[r].value[0] - upwind[n]->results[r].value[0];
+    }
+    CHECK(column(richardson, "error")[n] ==
+          Approx(largest_error(extrapolated, known)).epsilon(1e-4));
+    CHECK(column(richardson, "seconds")[n] == upwind[n]->seconds + upwind[n + 1]->seconds);
+    CHECK(column(richardson, "solve")[n] ==
+          upwind[n]->ledger.solve_seconds + upwind[n + 1]->ledger.solve_seconds);
+  }
+  const Table& monte_carlo = table(study, "monte_carlo");
+  for (std::size_t n = 0; n < simulated.size(); ++n) {
+    double half = 0;
+    for (const auto& r : simulated[n]->results) {
+      half = std::max(half, (r.ci95[0].second - r.ci95[0].first) / 2 / std::abs(r.value[0]));
+    }
+    CHECK(column(monte_carlo, "error")[n] == Approx(half / 1.959963984540054).epsilon(0.02));
+    CHECK(column(monte_carlo, "excursions")[n] == 1000 * std::pow(4, n));
+  }
+  for (std::size_t n = 0; n < study.tables.size(); ++n) {
+    if (study.conclusions[n].find("too few") != std::string::npos) continue;
+    CHECK(study.conclusions[n] == price(study.tables[n]));
+  }
+}
+
+TEST_CASE("studies: the extrapolation of the paper is the mean of both directions") {
+  std::map<studies::Place, double> values;
+  for (int l = 1; l <= studies::kMostSteps; ++l) {
+    for (int k = 1; k <= studies::kMostPoints; ++k) {
+      if (studies::is_computed({k, l})) values[{k, l}] = 1.0 / (k * k + 3 * l);
+    }
+  }
+  const auto known = values;
+  studies::extrapolate(values);
+  // a + R (a - b), R = (a - b)/(b - c), at the first place that is open: p = 2^7, delta = 2^-5.
+  const auto on = [&](studies::Place a, studies::Place b, studies::Place c) {
+    const double last = known.at(a) - known.at(b), before = known.at(b) - known.at(c);
+    return known.at(a) + last * last / before;
+  };
+  CHECK(values.at({7, 5}) ==
+        Approx((on({7, 4}, {7, 3}, {7, 2}) + on({6, 5}, {5, 5}, {4, 5})) / 2).epsilon(1e-13));
 }
 
 TEST_CASE("studies: the extrapolation of the paper goes on with geometric changes") {
