@@ -373,9 +373,9 @@ TEST_CASE("refinement: estimates are made of the last changes, and of what the r
   const auto expected = estimated(r, last);
   double largest = 0;
   std::string key;
-  REQUIRE(expected.size() == outcome.last.results.size());
+  REQUIRE(expected.size() == outcome.results.size());
   for (std::size_t n = 0; n < expected.size(); ++n) {
-    const auto& found = outcome.last.results[n];
+    const auto& found = outcome.results[n];
     for (std::size_t e = 0; e < found.value.size(); ++e) {
       INFO(found.key << " number " << e);
       CHECK(found.error[e] == Approx(expected[n].error[e]).epsilon(1e-6).margin(1e-14));
@@ -400,7 +400,7 @@ TEST_CASE("refinement: nested steps state what the truncation that they share ma
   const double truncation = 5 * accuracy::Ladder(r).tail_tolerance(last);
   const auto without = estimated(r, last);
   for (std::size_t n = 0; n < without.size(); ++n) {
-    const auto& found = outcome.last.results[n];
+    const auto& found = outcome.results[n];
     if (found.value[0] == 0) continue;  // E_V
     INFO(found.key);
     const double hidden = (found.error[0] - without[n].error[0]) / std::abs(found.value[0]);
@@ -428,9 +428,9 @@ TEST_CASE("refinement: the density is judged by the distribution of |V|", "[para
     return accuracy::solve_on(PETSC_COMM_WORLD, r, ladder.rung(step)).evaluation.law;
   };
   const auto coarse = at(0), fine = at(1);
-  const double distance = quantities::speed_law_distance(coarse->axis(), coarse->speed_law(),
-                                                         fine->axis(), fine->speed_law());
-  CHECK(solve(r).speed_law_error == Approx(distance).epsilon(1e-9));
+  const double distance = quantities::distance(quantities::speed_distribution(*coarse),
+                                               quantities::speed_distribution(*fine));
+  CHECK(solve(r).speed_error == Approx(distance).epsilon(1e-9));
   CHECK(distance > 1e-6);
 }
 
@@ -442,8 +442,9 @@ TEST_CASE("refinement: a velocity cut by hand is an error of the time spent at i
   r.accuracy = 0.5;
   const Outcome outcome = solve(r);
   CHECK(outcome.reached);
-  const auto law = outcome.last.law->speed_law();
-  const double share = law.at_top / (1 - law.at_rest);
+  const auto solved = accuracy::solve_on(PETSC_COMM_WORLD, r, outcome.steps.back().resolution);
+  const auto speed = quantities::speed_distribution(*solved.evaluation.law);
+  const double share = speed.at_top / (1 - speed.at_rest);
   CHECK(share > 0.01);
   r.accuracy = 1.02 * share;
   CHECK(solve(r).reached);

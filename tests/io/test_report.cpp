@@ -50,7 +50,7 @@ quantities::Results results() {
 
 accuracy::Outcome outcome() {
   accuracy::Outcome o;
-  o.last.results = results();
+  o.results = results();
   o.shortfall = "too little";
   o.next_digit_seconds = 17;
   o.steps = {step(0), step(1)};
@@ -240,7 +240,7 @@ TEST_CASE("table: values with their errors, absolute and relative") {
 
 TEST_CASE("table: steps with their sizes and seconds, the first to compare with") {
   auto o = outcome();
-  o.last.results.clear();
+  o.results.clear();
   const std::string text = io::table(request(), o, {});
   const Words sizes{"8", "5", "40", "7.5", "1001", "20002", "12"};
   Words first = sizes, second = sizes;
@@ -256,7 +256,7 @@ TEST_CASE("table: steps with their sizes and seconds, the first to compare with"
 
 TEST_CASE("table: of a long array the first and the last six") {
   auto o = outcome();
-  auto& r = o.last.results[2];
+  auto& r = o.results[2];
   r.ci95.clear();
   for (int size : {12, 13}) {
     r.abscissa.clear();
