@@ -4,6 +4,7 @@
 #include "stickslip/accuracy/ladder.hpp"
 #include "stickslip/accuracy/resolution.hpp"
 #include "stickslip/operators/systems.hpp"
+#include "stickslip/petsc/session.hpp"
 #include "stickslip/velocity/axis.hpp"
 
 using namespace stickslip;
@@ -224,7 +225,7 @@ TEST_CASE("memory: predicted within a factor 2.5 of what MUMPS counts", "[slow]"
                                accuracy::make_axis(s, resolution), ledger);
     (void)systems.at(0, operators::Symmetry::even);
     const double predicted = accuracy::predicted_bytes(s, resolution);
-    const double scalars = sizeof(PetscScalar) / 8.0;
+    const double scalars = petsc::complex_scalars() ? 2 : 1;
     const double counted =
         1e6 * ledger.factor_megabytes + 50.0 * scalars * static_cast<double>(ledger.nonzeros);
     INFO("delta " << c.delta << " degree " << c.degree << " p " << c.points);
