@@ -112,6 +112,13 @@ class Statuses(Case):
     def test_done(self):
         self.assertEqual(run(*SMALL).returncode, 0)
 
+    def test_where_double_precision_ends(self):
+        scene = ("-mu_d", "0.5")
+        self.run_ok(*scene, "-accuracy", "1e-14")
+        self.assertIn("rounding limits", self.run_ok(*scene, "-accuracy", "1e-15", status=3).stdout)
+        told = self.run_ok("-accuracy", "1e-16", status=2).stderr
+        self.assertIn("double precision allows down to about 1e-14", told)
+
     def test_accuracy_not_reached_still_writes(self):
         file = self.folder / "s.json"
         done = run(*SMALL, "-degree", "3", "-accuracy", "1e-12", "-summary", file)
