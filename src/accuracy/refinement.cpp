@@ -46,6 +46,23 @@ Solved evaluated(MPI_Comm comm, const options::Request& request, const Resolutio
   return stepped(comm, request, resolution, routes::evaluate);
 }
 
+// Beyond the levels and the axis of the first discretisation there is nothing but extrapolation.
+void require_start_within(const options::Request& request, const Resolution& first) {
+  if (!request.wants(Quantity::expectation)) return;
+  const double delta = request.scene.delta, x = request.start_level * delta, v = request.start_v;
+  const auto refuse = [&](const char* what, double largest, const char* more) {
+    throw BadInput(fmt::format("-start = {:g},{:g}: starts beyond the largest {} on which the mean "
+                               "is computed at -accuracy {:g}; take |{}| at most {:g}, or {}",
+                               x, v, what, request.accuracy, what, largest, more));
+  };
+  if (std::abs(request.start_level) > first.levels) {
+    refuse("x", first.levels * delta, "-noise_levels full");
+  }
+  if (std::abs(v) > first.v_max) {
+    refuse("v", first.v_max, "-quantities trajectory, which starts anywhere");
+  }
+}
+
 /// A discretisation whose factors serve the next ones.
 struct Base {
   Base(const Resolution& resolution, const routes::Setting& s)
@@ -68,6 +85,7 @@ class Refiner {
 
  private:
   void climb() {
+    require_start_within(request_, ladder_.rung(0));
     require_memory(comm_, request_, ladder_.rung(1));
     for (int n = 0; n <= ladder_.last(); ++n) {
       if (n >= 2 && !fits(ladder_.rung(n))) return short_of_memory(n);

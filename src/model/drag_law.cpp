@@ -29,16 +29,23 @@ void require_zero_at_rest(const Drag& b, double mu_d) {
                  "leave constants out: dry friction is -mu_d");
 }
 
+// The law on one side, seen with v > 0.
+struct Side {
+  const Drag& b;
+  double sign;
+  [[nodiscard]] double operator()(double v) const { return sign * value_at(b, sign * v); }
+};
+
 // Where `force` no longer accelerates, with as much again for steps that overshoot; or where
 // exp(-(mu_d - |bias|) v + int b), which bounds the density, is below exp(-51) of its largest
 // value.
-double reach_of(const Drag& b, double force, double mu_d, double bias) {
+double reach_of(const Side& b, double force, double mu_d, double bias) {
   constexpr double drop = 51, ratio = 1.02, far = 1e6;
   const double slope = mu_d - std::abs(bias);
   double left = drop;
   double v = 1e-12 / mu_d;
   while (v < far / mu_d || slope > 0) {
-    const double drag = -value_at(b, v);
+    const double drag = -b(v);
     if (force <= drag) return 2 * v;
     left = std::min(drop, left - (slope + drag) * v * (1 - 1 / ratio));
     if (left < 0 || slope * v > drop) return v;
@@ -46,7 +53,7 @@ double reach_of(const Drag& b, double force, double mu_d, double bias) {
   }
   throw UnfitLaw(fmt::format("does not hold a body that the bias {:g} drives: it is {:g} at "
                              "v = {:g}, and friction takes {:g}",
-                             bias, value_at(b, far / mu_d), far / mu_d, mu_d),
+                             bias, b.sign * b(far / mu_d) + 0.0, b.sign * far / mu_d, mu_d),
                  "take a smaller bias, or a drag that grows");
 }
 
@@ -65,18 +72,11 @@ std::vector<double> places(double reach) {
   return v;
 }
 
-// The law on one side, seen with v > 0.
-struct Side {
-  const Drag& b;
-  double sign;
-  [[nodiscard]] double operator()(double v) const { return sign * value_at(b, sign * v); }
-};
-
 void require_falling(const Side& b, const std::vector<double>& v, double mu_d) {
   for (std::size_t n = 1; n < v.size(); ++n) {
     const double before = b(v[n - 1]), after = b(v[n]);
     if (after <= before + kRounding * (std::abs(before) + mu_d)) continue;
-    const double low = b.sign * v[n - 1], high = b.sign * v[n];
+    const double low = b.sign * v[n - 1] + 0.0, high = b.sign * v[n];  // 0, not -0
     throw UnfitLaw(fmt::format("{} from {:.9g} at v = {:.9g} to {:.9g} at v = {:.9g}; drag must "
                                "not grow with the velocity, it would drive the body",
                                b.sign > 0 ? "grows" : "falls", b.sign * before, low, b.sign * after,
@@ -145,8 +145,8 @@ Drag parse_drag(const std::string& text, const Friction& friction, double tau, d
   const Expression b = read(text, friction, tau);
   Drag drag{0, 0, [b](double v) { return b({v}); }, 0};
   require_zero_at_rest(drag, friction.mu_d);
-  for (const Drag& side : {drag, drag.mirrored()}) {
-    drag.reach = std::max(drag.reach, reach_of(side, force, friction.mu_d, bias));
+  for (double sign : {1.0, -1.0}) {
+    drag.reach = std::max(drag.reach, reach_of({drag, sign}, force, friction.mu_d, bias));
   }
   for (double sign : {1.0, -1.0}) require_sound({drag, sign}, drag.reach, friction.mu_d);
   drag.law_is_odd = !drag.asymmetry();

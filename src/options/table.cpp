@@ -141,7 +141,7 @@ Group question_group() {
                "\"x*v; abs(v)^3\"; with -scheme hp continuous in v except at v = 0"),
           real("accuracy", "", "1e-6", {1e-15, 0.1, true, true},
                "relative error wanted for every scalar asked for, at the given delta",
-               "double precision allows down to about 1e-12, scene by scene"),
+               "double precision allows down to about 1e-14, case by case"),
       }};
 }
 

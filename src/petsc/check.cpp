@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <exception>
 #include <utility>
 
 namespace stickslip::petsc {
@@ -11,6 +12,14 @@ std::string& pending_text() {
   static std::string text;
   return text;
 }
+
+std::exception_ptr& kept_exception() {
+  static std::exception_ptr exception;
+  return exception;
+}
+
+// Of errors by exceptions; PETSc itself has none of that number.
+constexpr PetscErrorCode kException = PETSC_ERR_MAX_VALUE + 1;
 
 PetscErrorCode append_message(MPI_Comm, int line, const char* function, const char* file,
                               PetscErrorCode code, PetscErrorType type, const char* message,
@@ -28,8 +37,15 @@ PetscErrorCode append_message(MPI_Comm, int line, const char* function, const ch
 void check(PetscErrorCode code) {
   if (code == 0) return;
   std::string text = std::exchange(pending_text(), {});
+  const auto exception = std::exchange(kept_exception(), nullptr);
+  if (code == kException && exception) std::rethrow_exception(exception);
   if (text.empty()) text = fmt::format("PETSc error {}", code);
   throw PetscFailure(code, text);
+}
+
+PetscErrorCode keep_exception() noexcept {
+  kept_exception() = std::current_exception();
+  return kException;
 }
 
 void collect_error_messages() { check(PetscPushErrorHandler(append_message, nullptr)); }

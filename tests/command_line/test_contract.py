@@ -95,6 +95,20 @@ class Refusals(Case):
             s = self.summary(*asks, "-compare", "all.json")
             self.assertEqual(s["comparison"]["left_out"], [])
 
+    def test_starts_off_the_grid(self):
+        asks = ("-mu_d", "0.25", "-delta", "0.25", "-quantities", "expectation", "-observable",
+                "v^2", "-time", "1", "-start")
+        for start in ("1.25,100", "1.25,-100", "0,7.2"):
+            for scheme in (("-scheme", "hp"), ("-scheme", "upwind", "-p", "16")):
+                self.refuse(*asks, start, *scheme,
+                            told=(f"-start = {start}: starts beyond the largest v", "take |v| at most"))
+        self.refuse(*asks, "8,0", told=("-start = 8,0: starts beyond the largest x",
+                                        "take |x| at most 6.75, or -noise_levels full"))
+        self.run_ok(*asks, "8,0", "-noise_levels", "full", "-accuracy", "0.1")
+        self.run_ok(*asks, "1.25,5", "-accuracy", "1e-4")
+        trajectory = (*SMALL, "-quantities", "trajectory", "-trajectory", "t.csv", "-horizon", "1")
+        self.run_ok(*trajectory, "-start", "1,100")
+
     def test_files(self):
         self.refuse("-options_file", "/no/such/file", told=("cannot be read",))
         self.refuse("-output", "/no/such/folder/x.h5", told=("-output", "does not exist"))
@@ -111,6 +125,13 @@ class Refusals(Case):
 class Statuses(Case):
     def test_done(self):
         self.assertEqual(run(*SMALL).returncode, 0)
+
+    def test_where_double_precision_ends(self):
+        scene = ("-mu_d", "0.5")
+        self.run_ok(*scene, "-accuracy", "1e-14")
+        self.assertIn("rounding limits", self.run_ok(*scene, "-accuracy", "1e-15", status=3).stdout)
+        told = self.run_ok("-accuracy", "1e-16", status=2).stderr
+        self.assertIn("double precision allows down to about 1e-14", told)
 
     def test_accuracy_not_reached_still_writes(self):
         file = self.folder / "s.json"

@@ -9,17 +9,22 @@ using stickslip::model::UnfitLaw;
 
 namespace {
 
-Drag read(const std::string& text) { return parse_drag(text, {0.5, 0.25}, 2, 6); }
+Drag read(const std::string& text, double bias = 0) {
+  return parse_drag(text, {0.5, 0.25}, 2, 6, bias);
+}
 
-std::string refusal(const std::string& text) {
+std::string refusal(const std::string& text, double bias = 0) {
   try {
-    (void)read(text);
+    (void)read(text, bias);
   } catch (const UnfitLaw& unfit) {
     CHECK_FALSE(unfit.fix().empty());
     return unfit.what();
   }
   return "none";
 }
+
+// Under a bias that friction does not balance.
+std::string driven(const std::string& text) { return refusal(text, 2); }
 
 }  // namespace
 
@@ -60,6 +65,11 @@ TEST_CASE("drag laws: what is none is refused, with the place") {
   CHECK_THAT(weakening, Catch::Contains("grows from -0.") && Catch::Contains("must not grow"));
   // On the other side only.
   CHECK_THAT(refusal("v > 0 ? -v : v"), Catch::Contains("at v = -"));
+  for (const char* one_sided : {"v < -3 ? sqrt(-5 - v) : -v", "v < -3 ? 1/0*v : -v"}) {
+    CHECK_THAT(refusal(one_sided), Catch::Contains("at v = -3"));
+  }
+  CHECK_THAT(driven("v < 0 ? 0 : -v"), Catch::Contains("it is 0 at v = -"));
+  CHECK_THAT(driven("v > 0 ? 0 : -v"), Catch::Contains("it is 0 at v = 4e+06"));
   // A dip of 0.1 % at v = 3.
   CHECK_THAT(refusal("-v - 0.01*exp(-((abs(v) - 3)*200)^2)*sign(v)"),
              Catch::Contains("at v = 3.0"));

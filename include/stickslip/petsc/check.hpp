@@ -3,7 +3,6 @@
 
 #include <petscsys.h>
 
-#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -20,19 +19,23 @@ class PetscFailure : public std::runtime_error {
   PetscErrorCode code_;
 };
 
-/// Throws PetscFailure unless `code` is 0. PetscErrorCode is a plain int in this build of PETSc, so
-/// that a call without check(...) would compile and lose its error; the lint looks for those.
+/// Throws PetscFailure unless `code` is 0, or what a guarded function threw. PetscErrorCode is a
+/// plain int in this build of PETSc, so that a call without check(...) would compile and lose its
+/// error; the lint looks for those.
 void check(PetscErrorCode code);
 
-/// Runs f, which PETSc called: exceptions may not pass through PETSc, errors go back as codes.
+/// Keeps the exception in flight for the check(...) around the call of PETSc that led to it, and
+/// returns the code that PETSc is to hand on. Called in a catch block.
+[[nodiscard]] PetscErrorCode keep_exception() noexcept;
+
+/// Runs f, which PETSc called: no exception may pass through PETSc's frames. It goes on from the
+/// check(...) around them, as it was thrown.
 template <class F>
-[[nodiscard]] PetscErrorCode guarded(F f) {
+[[nodiscard]] PetscErrorCode guarded(F f) noexcept {
   try {
     f();
-  } catch (const PetscFailure& failure) {
-    return failure.code();
-  } catch (const std::bad_alloc&) {
-    return PETSC_ERR_MEM;
+  } catch (...) {
+    return keep_exception();
   }
   return 0;
 }
