@@ -26,7 +26,7 @@ class Entry(Report):
         self.quick = self.arguments.quick
         self.program = Program(self.arguments.program)
         self.scratch = tempfile.TemporaryDirectory()
-        self.folder = self.arguments.report or pathlib.Path(self.scratch.name)
+        self.folder = (self.arguments.report or pathlib.Path(self.scratch.name)).resolve()
         self.folder.mkdir(parents=True, exist_ok=True)
         self.parts = []
         self.head = {"title": doc.splitlines()[0].rstrip("."), "paper": paper}
