@@ -1,6 +1,7 @@
 """Pictures of what the program wrote, and what the report is made with."""
 
 import contextlib
+import importlib.util
 import io
 import pathlib
 import subprocess
@@ -8,7 +9,7 @@ import sys
 import unittest
 from unittest import mock
 
-from stickslip import SOURCES, Case
+from stickslip import BINARIES, SOURCES, Case
 
 sys.path.insert(0, str(SOURCES / "validation"))
 import entry
@@ -107,6 +108,41 @@ class Report(unittest.TestCase):
             made.table("caption", ("a", "b", "c"), [("1", "", 2.0), ("", "", 3.0)])
         self.assertEqual((made.parts[0]["columns"], made.parts[0]["rows"]),
                          (["a", "c"], [["1", "2"], ["", "3"]]))
+
+
+def case(name):
+    """The module of a case of validation/ that can be imported."""
+    spec = importlib.util.spec_from_file_location(name, SOURCES / "validation" / name / "run.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+class Faults(unittest.TestCase):
+    """The case of the report that shows them; ctest runs the faults themselves without it."""
+
+    def test_it_names_tests_that_there_are(self):
+        faults, loader = case("faults"), unittest.TestLoader()
+        loader.loadTestsFromNames(faults.QUICK + faults.LONG)
+        self.assertEqual(loader.errors, [])
+
+    def test_a_fault_that_is_not_seen_fails(self):
+        class Lost(unittest.TestCase):
+            def runTest(self):
+                """disk full: nothing half written"""
+                self.fail("half written")
+
+        result = case("faults").Timed()
+        with contextlib.redirect_stderr(io.StringIO()):
+            Lost().run(result)
+        self.assertEqual(result.rows[0][:3], ("disk full", "nothing half written", "FAILS"))
+
+    def test_damaged_input_is_counted(self):
+        shown = mock.Mock()
+        with mock.patch.dict("os.environ", STICKSLIP_BINARIES=str(BINARIES)):
+            case("faults").fuzz_runs(shown, 3)
+        self.assertRegex(shown.text.call_args.args[0], "runs")
+        self.assertEqual(shown.claim.call_args.args[1:], (0, 0.5))
 
 
 if __name__ == "__main__":
