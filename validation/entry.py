@@ -8,8 +8,9 @@ import sys
 import tempfile
 import time
 
-from harness import ROOT, Program, Report, parser
+from harness import ROOT, Program, Report, parser, significant, worse
 
+MOST = 0.5  # the largest relative deviation that any claim allows
 PLOTS = ROOT / "validation" / "plot"
 
 
@@ -25,7 +26,7 @@ class Entry(Report):
         self.quick = self.arguments.quick
         self.program = Program(self.arguments.program)
         self.scratch = tempfile.TemporaryDirectory()
-        self.folder = self.arguments.report or pathlib.Path(self.scratch.name)
+        self.folder = (self.arguments.report or pathlib.Path(self.scratch.name)).resolve()
         self.folder.mkdir(parents=True, exist_ok=True)
         self.parts = []
         self.head = {"title": doc.splitlines()[0].rstrip("."), "paper": paper}
@@ -73,6 +74,15 @@ class Entry(Report):
         self.parts.append({"verdict": "holds" if good else "FAILS", "claim": text,
                            "numbers": numbers})
 
+    def simulated(self, text, known):
+        """Claims for values with their errors and simulated results: all agree, and so narrow are the
+        intervals that a value off by MOST would have been noticed."""
+        allowed = significant(len(known))
+        self.claim(f"largest |z| of {text}", worse(*(abs(deviation(*one)) for one in known)), allowed)
+        self.claim(f"deviation that goes unnoticed in {text}, relative", worse(*(
+            allowed * spread(value, error, estimate) / abs(value)
+            for value, error, estimate in known)), MOST)
+
     def end(self):
         """Writes the entry; exit status 1 if a claim failed."""
         self.head |= {"failed": self.failed, "seconds": time.monotonic() - self.start,
@@ -82,9 +92,14 @@ class Entry(Report):
         sys.exit(1 if self.failed else 0)
 
 
-def deviation(value, error, estimate):
-    """In standard deviations of a simulated result."""
+def spread(value, error, estimate):
+    """Standard deviation of a simulated result on the side of `value`, which has an error of its own."""
     low, high = estimate["ci95"]
     half = high - estimate["value"] if value > estimate["value"] else estimate["value"] - low
-    sigma = ((half / 1.96) ** 2 + error**2) ** 0.5
+    return ((half / 1.96) ** 2 + error**2) ** 0.5
+
+
+def deviation(value, error, estimate):
+    """In standard deviations of a simulated result."""
+    sigma = spread(value, error, estimate)
     return (value - estimate["value"]) / sigma if sigma > 0 else 0.0

@@ -7,8 +7,8 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from entry import Entry, deviation
-from harness import difference, last_place, significant, worse
+from entry import Entry
+from harness import difference, last_place, worse
 from known import F_STICK_0, TABLE_1
 
 MU_D = (0.25, 0.5, 0.75, 1)
@@ -34,14 +34,16 @@ def pictures(entry):
 
 def table_of_the_paper(entry):
     deltas = (1 / 8, 1 / 16) if entry.quick else (1 / 8, 1 / 16, 1 / 32)
-    rows, digits, column, scores = [], 0.0, 0.0, []
+    rows, digits, column, beside = [], 0.0, 0.0, []
     for mu_d in MU_D:
         for delta, known, printed in zip(deltas, F_STICK_0[mu_d], TABLE_1[mu_d]):
             scene = {"quantities": "entry_law", "mu_d": mu_d, "delta": delta}
             ours = entry.run(**scene, accuracy=1e-7)["results"]["f_stick_0"]
-            simulated = entry.run(**scene, route="monte_carlo", excursions=20000 if entry.quick
-                                  else 100000)["results"]["f_stick_0"]
-            scores.append(deviation(ours["value"], ours["error"], simulated))
+            # At mu_d = mu_s hardly any sticking phase begins next to an exit, where it may end at once.
+            excursions = (20000 if entry.quick else 100000) * (10 if mu_d == 1 else 1)
+            simulated = entry.run(**scene, route="monte_carlo",
+                                  excursions=excursions)["results"]["f_stick_0"]
+            beside.append((ours["value"], ours["error"], simulated))
             low, high = simulated["ci95"]
             rows.append((f"{mu_d:g}", f"1/{1 / delta:.0f}", f"{ours['value']:.8g}",
                          f"[{low:.4g}, {high:.4g}]", printed))
@@ -53,7 +55,7 @@ def table_of_the_paper(entry):
     entry.text(REASON)
     entry.claim("f_stick(0+) against known digits, in units of the last one", digits, 0.6)
     entry.claim("the paper's Kolmogorov column, mu_d < mu_s, relative", column, 5e-3)
-    entry.claim("largest |z| of simulations", worse(*map(abs, scores)), significant(len(scores)))
+    entry.simulated("simulations", beside)
 
 
 def main():

@@ -12,14 +12,17 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from entry import Entry
+from entry import MOST, Entry
 from harness import words_of, worse
 from properties import BALANCES, FACTOR, PROPERTIES, Found, stored
 from scenes import BASE, REFUSED, SCENES
 
 
 def ratio(row):
-    _, apart, allowed, _ = row
+    """Of the deviation to what is allowed; a comparison that allows more than MOST of the size fails."""
+    _, apart, allowed, size = row
+    if allowed > MOST * abs(size or 1):
+        return float("inf")
     return apart / allowed if allowed > 0 else (0.0 if apart == 0 else float("inf"))
 
 

@@ -5,7 +5,7 @@ usage: python3 sweep.py FILE.h5|FILE.csv [-o FOLDER]
 Files come from `stickslip -sweep_mu_d 0.1:1:10 [-sweep_tau 0.5:2:4] -output FILE.h5` or
 `-sweep_csv FILE.csv`. One option is an axis, error estimates are bars; of two options the second is
 the axis and the first one tells curves apart, up to five values, or makes a map of more. Further
-options stay at their first value. Points that fell short are marked by crosses.
+options stay at their first value. Points that fell short are marked by crosses. Prints the pictures' names.
 """
 
 import argparse
@@ -136,6 +136,7 @@ def main():
     for key in sweep.scalars:
         name = re.sub(r"[^\w.+-]", "_", key)  # keys of observables hold anything
         draw(sweep, key, arguments.folder / f"{name}.png")
+        print(arguments.folder / f"{name}.png")
 
 
 if __name__ == "__main__":
