@@ -280,8 +280,10 @@ TEST_CASE("studies: errors and prices of each method follow from its runs", "[sl
     CHECK(column(monte_carlo, "excursions")[n] == 1000 * std::pow(4, n));
   }
   for (std::size_t n = 0; n < study.tables.size(); ++n) {
-    if (study.conclusions[n].find("too few") != std::string::npos) continue;
-    CHECK(study.conclusions[n] == price(study.tables[n]));
+    const auto error = column(study.tables[n], "error");
+    const auto used = std::count_if(error.begin(), error.end(), [](double e) { return e > 1e-12; });
+    const std::string too_few = study.tables[n].name + ": too few points";
+    CHECK(study.conclusions[n] == (used < 3 ? too_few : price(study.tables[n])));
   }
 }
 
