@@ -69,3 +69,10 @@ TEST_CASE("dense: singular values of singular and of empty matrices") {
   CHECK(s.value[2] < 1e-15);
   CHECK(SingularValues(Matrix(0, 0)).value.empty());
 }
+
+TEST_CASE("dense: the largest entry counts by its size") {
+  Matrix m(2, 2);
+  m(0, 1) = -5;
+  m(1, 0) = 3;
+  CHECK(m.largest() == 5);
+}

@@ -84,3 +84,26 @@ TEST_CASE("fluid queue: the transform falls from 1 with the mean slide as its sl
 TEST_CASE("fluid queue: drag is refused") {
   CHECK_THROWS_AS(FluidQueue({{1, 0.5, 8}, {1, 1}, {1, 0}}), std::invalid_argument);
 }
+
+// Of x, x v and x v^2 over a slide from x_{k+1}; restarts at v = 0 change the sign of x alone, and
+// x v and x v^2 begin and end at 0. Q x = -x/tau.
+TEST_CASE("fluid queue: moments follow one another through the equations of motion") {
+  for (double mu_d : {1.0, 0.3, 0.25}) {
+    const auto process = without_drag(0.25, mu_d);
+    const FluidQueue queue(process);
+    double first = 0, second = 0, size = 0;
+    for (int i = -32; i <= 32; ++i) {
+      const double x = process.noise.level(i), speed = x - mu_d;
+      const auto at = static_cast<std::size_t>(32 + i);
+      first += x * speed * queue.time()[at] - x * queue.distance()[at];
+      second += 2 * x * speed * queue.distance()[at] - x * queue.square()[at];
+      size += std::abs(x) * queue.square()[at];
+    }
+    CHECK(std::abs(first) < 1e-10 * sum(queue.distance()));
+    CHECK(std::abs(second) < 1e-10 * size);
+  }
+}
+
+TEST_CASE("fluid queue: the residual is that of rounding, no less") {
+  CHECK(FluidQueue(without_drag(0.25, 0.3)).residual() > 1e-18);
+}

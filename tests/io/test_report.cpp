@@ -10,6 +10,8 @@
 #include "../common/temporary.hpp"
 #include "stickslip/io/plan_report.hpp"
 #include "stickslip/io/study_report.hpp"
+#include "stickslip/options/reference.hpp"
+#include "stickslip/support/atomic_file.hpp"
 #include "stickslip/support/hdf5_id.hpp"
 
 using namespace stickslip;
@@ -340,6 +342,32 @@ TEST_CASE("HDF5: results, intervals, comparison and path at their paths") {
   CHECK(at("/trajectory/x") == Numbers{-1.5, 2});
   CHECK(at("/trajectory/y") == Numbers{0, 1});
   CHECK(at("/trajectory/v") == Numbers{0, 0.25});
+}
+
+// Without an interval, errors are standard deviations.
+TEST_CASE("reports: references read from a summary and from HDF5 are what was written") {
+  const test::TemporaryFolder folder;
+  auto r = request();
+  r.output = folder / "out.h5";
+  const std::string json = folder / "out.json";
+  io::write_hdf5(PETSC_COMM_SELF, r, outcome(), {0.5, 4});
+  write_text(json, io::summary(PETSC_COMM_SELF, r, outcome(), {0.5, 4}));
+  const double half = 1.959963984540054 * 0.5;
+  const std::vector<options::Reference> written{{"E_V2", {}, -4, -4 - half, -4 + half},
+                                                {"P_stick", {}, 0.25, 0.2, 0.3},
+                                                {"S_v", 0.5, 3, 2.5, 3.25},
+                                                {"S_v", 2.0, 5, 4.75, 5.5}};
+  for (const auto& file : {r.output, json}) {
+    const auto read = options::read_references(file);
+    REQUIRE(read.size() == written.size());
+    for (std::size_t n = 0; n < read.size(); ++n) {
+      CHECK(read[n].quantity == written[n].quantity);
+      CHECK(read[n].argument == written[n].argument);
+      CHECK(read[n].value == written[n].value);
+      CHECK(read[n].low == Approx(written[n].low).epsilon(1e-14));
+      CHECK(read[n].high == Approx(written[n].high).epsilon(1e-14));
+    }
+  }
 }
 
 TEST_CASE("study reports: CSV, JSON and HDF5 hold the same numbers") {

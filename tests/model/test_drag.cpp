@@ -121,3 +121,39 @@ TEST_CASE("drag: coefficients too small to balance a force let it drive for ever
   CHECK(std::isinf(Drag{1e-310, 1e-310, {}}.terminal_velocity(1)));
   CHECK(std::isinf(Drag{1e-320, 0, {}}.terminal_velocity(1)));
 }
+
+// Differences of exp(v) - 1 lose digits as v falls: only extrapolation reaches 1e-11.
+TEST_CASE("drag laws: slope at rest of a law that loses digits near 0") {
+  CHECK(law([](double v) { return 1 - std::exp(v); }).slope_at_rest() == Approx(-1).epsilon(1e-11));
+}
+
+TEST_CASE("drag laws: the steepest slope is found wherever it is") {
+  const auto steep = law([](double v) { return -std::tanh(1e5 * v); });
+  CHECK(steep.steepest(1) >= 0.5e5);
+  CHECK(steep.steepest(1) <= 1e5);
+}
+
+TEST_CASE("drag laws: one that is odd but for a narrow band is not odd") {
+  const auto band = law([](double v) { return v > 1 && v < 1.2 ? -v - 0.1 : -v; });
+  REQUIRE(band.asymmetry());
+  CHECK(*band.asymmetry() > 1);
+  CHECK(*band.asymmetry() < 1.2);
+  CHECK(law([](double v) { return v > 1 && v < 1.2 ? -v - 1e-7 : -v; }).asymmetry());
+}
+
+TEST_CASE("drag laws: the mirror of one that is not odd is not odd either") {
+  auto lopsided = law([](double v) { return v > 0 ? -v : -2 * v; });
+  lopsided.law_is_odd = false;
+  CHECK_FALSE(lopsided.mirrored().odd());
+  lopsided.reach = 7;
+  CHECK(lopsided.mirrored().reach == 7);
+}
+
+TEST_CASE("terminal velocity: on the side where nothing accelerates any more, for any force") {
+  for (int n = 1; n <= 2000; ++n) {
+    const double force = 0.37 * n;
+    for (const Drag& drag : {Drag{0.3, 0}, Drag{0, 0.7}, Drag{0.3, 0.7}}) {
+      REQUIRE(force + drag(drag.terminal_velocity(force)) <= 0);
+    }
+  }
+}

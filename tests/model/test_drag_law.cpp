@@ -86,3 +86,30 @@ TEST_CASE("drag laws: jumps and infinite slopes are refused, with the place") {
   CHECK_THAT(refusal("abs(v) < 1 ? -v : -v - sign(v)*(abs(v) - 1)^0.3"),
              Catch::Contains("at v = 1,"));
 }
+
+// Where (mu_d - |bias|) v + drag has cost 51 in the logarithm of the density.
+TEST_CASE("drag laws: known to be sound as far as the density reaches") {
+  const auto reach = [](const char* text, double bias) {
+    return parse_drag(text, {1, 0.5}, 1, 1000, bias).reach;
+  };
+  CHECK(reach("-1e-9*v", 0) == Approx(51 / 0.5).epsilon(0.03));
+  for (double bias : {0.25, -0.25}) {
+    CHECK(reach("-1e-9*v", bias) == Approx(51 / 0.25).epsilon(0.03));
+  }
+  // Beyond mu_d the density rises to v = 10 before it falls.
+  CHECK(reach("-v", 10.5) == Approx(10 + std::sqrt(102.0)).epsilon(0.03));
+  CHECK(reach("-v", -10.5) == Approx(10 + std::sqrt(102.0)).epsilon(0.03));
+}
+
+TEST_CASE("drag laws: the side with less drag decides how far they are tried") {
+  for (const char* text : {"v > 0 ? -v : -0.1*v", "v > 0 ? -0.1*v : -v"}) {
+    const Drag b = parse_drag(text, {1, 0.01}, 1, 0.5);
+    CHECK(b.reach == Approx(2 * 5).epsilon(0.05));
+    CHECK_FALSE(b.odd());
+  }
+}
+
+TEST_CASE("drag laws: what is left at rest is held against dry friction") {
+  CHECK_THROWS_AS(parse_drag("1e-15 - v", {1, 1e-3}, 1, 6), UnfitLaw);
+  CHECK_NOTHROW(parse_drag("1e-17 - v", {1, 1e-3}, 1, 6));
+}

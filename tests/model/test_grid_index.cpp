@@ -50,3 +50,9 @@ TEST_CASE("static index: x_k <= mu_s < x_{k+1}") {
   CHECK(Friction{1, 1}.static_index(0.3) == 3);
   CHECK(Friction{0.05, 0.05}.static_index(0.1) == 0);
 }
+
+TEST_CASE("floor index: below zero, too, the largest integer that is not larger") {
+  CHECK(floor_index(-0.5) == -1);
+  CHECK(floor_index(-1.5) == -2);
+  CHECK(floor_index(-0.3 / 0.1) == -3);
+}

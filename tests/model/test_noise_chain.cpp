@@ -1,5 +1,6 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <catch2/catch.hpp>
+#include <limits>
 #include <numeric>
 
 #include "../common/near.hpp"
@@ -78,4 +79,30 @@ TEST_CASE("noise moments: far tails keep their relative accuracy") {
     const double beyond = 2 * boost::math::cdf(boost::math::complement(urn, 32 + k));
     CHECK(relative_difference(noise_moments(chain, k).beyond, beyond) < 1e-13);
   }
+}
+
+TEST_CASE("noise chain: a range cut short ends where it is cut") {
+  const NoiseChain chain{1, 0.25, 10};
+  CHECK(chain.up(10) == 0);
+  CHECK(chain.up(-10) == 1);
+  CHECK(chain.up(9) > 0);
+  CHECK(chain.up(-9) < 1);
+}
+
+TEST_CASE("noise chain: derivatives with respect to tau are differences at fixed levels") {
+  const double h = 1e-5;
+  const NoiseChain chain{1.5, 0.25, 10}, more{1.5 + h, 0.25, 10}, less{1.5 - h, 0.25, 10};
+  for (int i = -10; i <= 10; ++i) {
+    const double up = (more.up(i) - less.up(i)) / (2 * h);
+    CHECK(chain.up_change(i) == Approx(up).epsilon(1e-9).margin(1e-11));
+    CHECK(chain.down_change(i) == Approx(-up).epsilon(1e-9).margin(1e-11));
+  }
+  CHECK(chain.rate_change() == Approx((more.rate() - less.rate()) / (2 * h)).epsilon(1e-9));
+}
+
+// N = 100: a bulk of ten levels, and four operations beside it.
+TEST_CASE("noise chain: rounding of sums grows with the width of the law") {
+  const double unit = std::numeric_limits<double>::epsilon();
+  CHECK(rounding_of_sums({1, 0.1, 100}) == Approx(14 * unit));
+  CHECK(rounding_of_sums({1, 1, 1}) == Approx(5 * unit));
 }

@@ -35,6 +35,7 @@ TEST_CASE("observables: names") {
   CHECK(at("slide", 0, -1, -1) == 1);
   CHECK(at("|x|<=mu_s", -3 * 0.1, 1, 0) == 1);  // 0.30000000000000004
   CHECK(at("|x|<=mu_s", 0.300001, 1, 0) == 0);
+  CHECK(at("|x|<=mu_s", -0.300001, 1, 0) == 0);
   for (const auto& name : observable_names()) CHECK_NOTHROW(parse_observable(name, kFriction));
 }
 

@@ -7,6 +7,7 @@ least `--least` of every 30 defects are found.
 
 import argparse
 import math
+import os
 import pathlib
 import re
 import shutil
@@ -77,9 +78,10 @@ class Build:
     """A copy of the sources with a build folder of its own."""
 
     def __init__(self, scratch, options):
-        self.source, self.build = scratch / "source", scratch / "build"
+        self.source, self.build = scratch, scratch / "build"
         self.options = options
         copy_sources(self.source)
+        os.environ.setdefault("CCACHE_BASEDIR", str(scratch))
         launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
         subprocess.run(["cmake", "--log-level=WARNING", "-S", self.source, "-B", self.build, "-G",
                         "Ninja", "-DCMAKE_BUILD_TYPE=Release", *launcher], check=True,

@@ -54,12 +54,16 @@ TEST_CASE("reference: rows of CSV, scalars and arrays, with and without bounds")
   const auto all = read("a.csv", kHeader + "P_stick,,0.25,0.2,0.3\n"
                                            "S_v, 1.5 , +2e-3,,\n"
                                            "\"F_slide\",0,1,0.5,1\r\n"
-                                           "E_V,,-1,-2,0");
-  REQUIRE(all.size() == 4);
+                                           "E_V,,-1,-2,0\n"
+                                           "E_V2,,1,0.5,\n"
+                                           "E_XV,,1,,2");
+  REQUIRE(all.size() == 6);
   check(all[0], "P_stick", {}, 0.25, 0.2, 0.3);
   check(all[1], "S_v", 1.5, 2e-3, 2e-3, 2e-3);
   check(all[2], "F_slide", 0.0, 1, 0.5, 1);
   check(all[3], "E_V", {}, -1, -2, 0);
+  check(all[4], "E_V2", {}, 1, 0.5, 1);
+  check(all[5], "E_XV", {}, 1, 1, 2);
 }
 
 TEST_CASE("reference: columns of CSV may come in any order, and with others between") {
@@ -120,6 +124,17 @@ TEST_CASE("reference: simulated values of JSON have intervals, histograms are le
   check(all[1], "entry_law", -1.0, 0.25, 0, 0.5);
   check(all[2], "entry_law", 0.0, 0.75, 0.5, 1);
   check(all[3], "f_stick_0", {}, 1, 0, 2);  // a scalar, no histogram
+}
+
+TEST_CASE("reference: arguments of JSON by any of their names, and intervals of no width") {
+  for (const std::string name : {"lambda", "omega", "time", "k", "n"}) {
+    const auto all = read("a.json", R"({"results": {"a": {")" + name +
+                                        R"(": [2, 4], "value": [3, 5], "error": [0, 0]}}})");
+    REQUIRE(all.size() == 2);
+    check(all[1], "a", 4.0, 5, 5, 5);
+  }
+  check(read("a.json", R"({"results": {"a": {"value": 1, "error": 0, "ci95": [1, 1]}}})")[0], "a",
+        {}, 1, 1, 1);
 }
 
 TEST_CASE("reference: JSON that is broken, of others, or lacks something") {

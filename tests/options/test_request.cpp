@@ -366,3 +366,76 @@ TEST_CASE("options files: one that includes itself, or is no file, is told") {
   CHECK_THROWS_WITH(check_options_files({"-options_file", "/dev/null"}),
                     Contains("no regular file"));
 }
+
+TEST_CASE("request: what is simulated, and how well, arrives where it belongs") {
+  const Request r = Given("-route monte_carlo -seed 7 -excursions 5000 -accuracy 1e-3").read();
+  CHECK(r.seed == 7);
+  CHECK(r.excursions == 5000);
+  CHECK(r.accuracy_given);
+  CHECK(r.warnings.empty());
+  const Request usual = Given("").read();
+  CHECK_FALSE(usual.accuracy_given);
+  CHECK(usual.study_repeats == 3);
+  CHECK(usual.sweep_ranks == 1);
+  CHECK(Given("-seed 7").read().warnings.size() == 1);
+}
+
+TEST_CASE("request: a cubic coefficient counts with cubic drag only") {
+  const Request r = Given("-drag linear -drag_cubic 3").read();
+  CHECK(r.scene.drag.cubic == 0);
+  CHECK(r.warnings.size() == 1);
+}
+
+TEST_CASE("request: starts lie on noise levels, with any velocity") {
+  const std::string path = "-quantities trajectory -trajectory t.csv -start ";
+  CHECK(Given(path + "s+").read().start_level == 9);  // x = 1 holds at delta = 1/8
+  CHECK(Given(path + "s-").read().start_level == -9);
+  const Request r = Given(path + "-0.5,0.25").read();
+  CHECK(r.start_level == -4);
+  CHECK(r.start_v == 0.25);
+  check_refusal({path + "0.3,0", {"-start = 0.3,0", "0.125 apart", "take x = 0.25"}});
+  check_refusal({path + "-99,0", {"up to 16", "take x = -16"}});
+}
+
+// Lambda = 128 at delta = 1/8.
+TEST_CASE("request: a path that memory cannot keep is refused with the longest that it can") {
+  const std::string path = "-quantities trajectory -trajectory t.csv -horizon ";
+  CHECK_NOTHROW(Given(path + "390000").read());
+  check_refusal({path + "400000", {"-horizon = 400000", "5.1e+07 jumps", "at most 3.91e+05"}});
+}
+
+TEST_CASE("request: bounds of the noise and of the bias belong to what is allowed, or not") {
+  CHECK_NOTHROW(Given("-delta 0.25 -noise_levels 32").read());
+  check_refusal({"-delta 0.25 -noise_levels 33", {"at most 32"}});
+  CHECK_NOTHROW(Given("-delta 0.25 -noise_levels 5").read());
+  CHECK_NOTHROW(Given("-mu_s 0.1 -mu_d 0.1 -delta 0.5").read());  // rests on x = 0 alone
+  CHECK_NOTHROW(Given("-bias -0.99 -drag none").read());
+  check_refusal({"-bias -1 -drag none", {"-bias = -1", "for ever"}});
+}
+
+// A law is tried up to twice the terminal velocity of mu_s + delta + 12 deviations + |bias| - mu_d.
+TEST_CASE("request: a drag law is tried with the largest force that occurs") {
+  const std::string law = "-drag expression -drag_expression 0-10*v -mu_d 0.5 ";
+  CHECK(Given(law).read().scene.drag.reach == Approx(2 * 12.625 / 10).epsilon(0.021));
+  for (const std::string bias : {"3", "-3"}) {
+    CHECK(Given(law + "-bias " + bias).read().scene.drag.reach ==
+          Approx(2 * 15.625 / 10).epsilon(0.021));
+  }
+  CHECK(Given(law + "-noise_levels 16").read().scene.drag.reach ==
+        Approx(2 * 1.5 / 10).epsilon(0.021));
+}
+
+TEST_CASE("request: arguments come from the file to compare with, each once") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "known.csv";
+  std::ofstream(file) << "quantity,argument,value,low,high\n"
+                         "F_stick,0.5,1,,\nF_slide,0.5,1,,\nF_excursion,2,1,,\n"
+                         "S_v,3,1,,\nf_slide,4,1,,\ncdf_stick,5,1,,\nP_stick,,1,,\n";
+  const Request r = Given("-compare " + file).read();
+  CHECK(r.lambda == std::vector<double>{0.5, 2});
+  CHECK(r.omega == std::vector<double>{3});
+  CHECK(r.time == std::vector<double>{4, 5});
+  CHECK(r.quantities == std::set{Quantity::sticking, Quantity::laplace, Quantity::spectrum,
+                                 Quantity::duration_density});
+  CHECK(Given("-lambda 7 -compare " + file).read().lambda == std::vector<double>{7});
+}

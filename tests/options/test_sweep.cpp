@@ -119,7 +119,11 @@ TEST_CASE(
 }
 
 TEST_CASE("sweep: files belong to the whole, and its own options are useless without it") {
-  const Request r = read({{"-sweep_tau", "1,2"}, {"-summary", "s.json"}, {"-checkpoint", "c"}});
+  const Request r = read({{"-sweep_tau", "1,2"},
+                          {"-summary", "s.json"},
+                          {"-checkpoint", "c"},
+                          {"-sweep_csv", "s.csv"}});
+  CHECK(r.sweep_csv == "s.csv");
   CHECK(r.summary == "s.json");
   CHECK(r.checkpoint == "c");
   CHECK(r.warnings.empty());

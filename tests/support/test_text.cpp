@@ -35,3 +35,15 @@ TEST_CASE("wrap: no line beyond the width, no word lost") {
   }
   CHECK(unwrapped == text);
 }
+
+TEST_CASE("wrap: lines are filled to the width, and indented after the first") {
+  CHECK(wrap("aa bb cc", 5, 3) == "aa bb\n   cc");
+  CHECK(wrap("aa bb cc dd ee", 6, 4) == "aa bb\n    cc dd\n    ee");
+  CHECK(wrap("aaaaaaaa b", 4, 1) == "aaaaaaaa\n b");
+}
+
+TEST_CASE("nearest word: as many slips as a third of the letters, no more") {
+  const std::vector<std::string> names{"-horizon"};
+  CHECK(nearest_word("-horixyn", names) == "-horizon");
+  CHECK(nearest_word("-hoxxyn", names).empty());
+}

@@ -6,6 +6,7 @@
 #include "../common/options.hpp"
 #include "../common/temporary.hpp"
 #include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/petsc/ledger.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/sweeps/report.hpp"
@@ -133,6 +134,63 @@ TEST_CASE("sweeps: what the record holds is not computed again") {
   for (std::size_t n = 0; n < 2; ++n) CHECK(second.runs[n].entry == first.runs[n].entry);
   std::ofstream(file, std::ios::app) << "{\"point\":7}\n";
   CHECK_THROWS_AS(run(), BadInput);
+}
+
+TEST_CASE("sweeps: points that lacked memory are tried again, those that fell short are not") {
+  const test::TemporaryFolder folder;
+  const auto resumed = [&](const Options& options) {
+    auto all = options;
+    all.emplace_back("-checkpoint", folder / options[0].second.c_str());
+    (void)conducted(read(all));
+    return conducted(read(all)).resumed;
+  };
+  CHECK(resumed({{"-sweep_delta", "4e-5,0.5"}, {"-accuracy", "1e-12"}}) == 1);
+  CHECK(resumed({{"-sweep_v_max", "1,3.7"}, {"-delta", "0.5"}, {"-accuracy", "1e-4"}}) == 2);
+}
+
+TEST_CASE("sweeps: the status of the whole is that of the worst point") {
+  const auto status = [](std::vector<Status> all) {
+    std::vector<Run> runs(all.size());
+    for (std::size_t n = 0; n < all.size(); ++n) runs[n].status = all[n];
+    return exit_status(runs);
+  };
+  CHECK(status({Status::reached, Status::reached}) == 0);
+  CHECK(status({Status::reached, Status::not_reached}) == 3);
+  CHECK(status({Status::failed, Status::reached}) == 3);
+  CHECK(status({Status::failed, Status::no_memory, Status::reached}) == 4);
+}
+
+TEST_CASE("sweeps: progress counts points of the record, and predicts by those done here") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "record";
+  const auto states = [&file] {
+    const Request request =
+        read({{"-delta", "0.5"}, {"-sweep_mu_d", "0.25,0.5,0.75"}, {"-checkpoint", file}});
+    const double start = petsc::wall_seconds();
+    std::vector<std::pair<State, double>> all;
+    (void)conduct(PETSC_COMM_WORLD, request,
+                  [&](const State& s) { all.emplace_back(s, petsc::wall_seconds() - start); });
+    return all;
+  };
+  const auto all = states();
+  REQUIRE(all.size() == 3);
+  double spent = 0;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const auto& [state, elapsed] = all[n];
+    CHECK(state.point == n);
+    CHECK(state.done == n + 1);
+    CHECK(state.count == 3);
+    CHECK(state.status == "reached");
+    spent += state.seconds_of_point;
+    const double share = (2.0 - static_cast<double>(n)) / static_cast<double>(n + 1);
+    CHECK(state.seconds_left >= share * spent);
+    CHECK(state.seconds_left <= share * elapsed);
+  }
+  const std::string text = test::content(file);
+  std::ofstream(file) << text.substr(0, text.rfind('\n', text.size() - 2) + 1);
+  const auto rest = states();
+  REQUIRE(rest.size() == 1);
+  CHECK(rest[0].first.done == 3);
 }
 
 TEST_CASE("sweeps: CSV quotes what holds a comma and leaves gaps where there is no number") {

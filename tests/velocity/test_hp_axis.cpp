@@ -157,3 +157,62 @@ TEST_CASE("hp axis: a value takes the nodes of its own element, a node itself") 
     CHECK(e.value == Approx(e.node == 6 ? 1 : 0).margin(1e-12));
   }
 }
+
+namespace {
+
+// Drag three times as large downwards.
+model::Drag one_sided() {
+  model::Drag drag{0, 0, [](double v) { return v > 0 ? -v : -3 * v; }, 100};
+  drag.law_is_odd = false;
+  return drag;
+}
+
+}  // namespace
+
+// B + h dB with dB = 1 + 0.5 v is the row of excess + h and drag -(1 - 0.5 h) v.
+TEST_CASE("hp transport: the derivative of a row is the difference of rows") {
+  const double h = 1e-6;
+  const std::vector<double> ends{0, 0.5, 1.5};
+  const auto axis = [&](double by) { return HpAxis(ends, 3, {1 - 0.5 * by, 0}); };
+  const HpAxis here = axis(0), more = axis(h), less = axis(-h);
+  velocity::TransportRow row, plus, minus;
+  for (double excess : {-0.7, 0.2, 0.9, 2.0}) {
+    for (int j = 0; j < here.size(); ++j) {
+      here.transport_change(excess, {1, 0.5}, j, row);
+      more.transport(excess + h, j, plus);
+      less.transport(excess - h, j, minus);
+      std::vector<double> change(here.size(), 0.0);
+      for (const auto& e : plus.entries) change[e.node] += e.value / (2 * h);
+      for (const auto& e : minus.entries) change[e.node] -= e.value / (2 * h);
+      for (const auto& e : row.entries) change[e.node] -= e.value;
+      for (double left : change) CHECK(std::abs(left) < 1e-7);
+      CHECK(row.inflow == Approx((plus.inflow - minus.inflow) / (2 * h)).margin(1e-7));
+      CHECK(row.outflow == Approx((plus.outflow - minus.outflow) / (2 * h)).margin(1e-7));
+    }
+  }
+}
+
+TEST_CASE("hp axis: coarsened, both half lines keep their elements and drag at lower degrees") {
+  HpAxis axis({0, 0.25, 1, 2}, {2, 5, 8}, one_sided());
+  axis.set_mirrored(std::make_shared<HpAxis>(std::vector<double>{0, 0.25, 1, 2},
+                                             std::vector{2, 5, 8}, one_sided().mirrored()));
+  const auto coarse = axis.coarsened(4);
+  const HpAxis above({0, 0.25, 1, 2}, {2, 4, 4}, one_sided()),
+      below({0, 0.25, 1, 2}, {2, 4, 4}, one_sided().mirrored());
+  CHECK(&coarse->mirrored() != coarse.get());
+  velocity::TransportRow found, expected;
+  for (const auto& [a, b] :
+       {std::pair<const velocity::Axis*, const velocity::Axis*>{coarse.get(), &above},
+        {&coarse->mirrored(), &below}}) {
+    REQUIRE(a->size() == b->size());
+    for (int j = 0; j < a->size(); ++j) {
+      CHECK(a->nodes()[j] == b->nodes()[j]);
+      a->transport(0.3, j, found);
+      b->transport(0.3, j, expected);
+      REQUIRE(found.entries.size() == expected.entries.size());
+      for (std::size_t n = 0; n < found.entries.size(); ++n) {
+        CHECK(found.entries[n].value == expected.entries[n].value);
+      }
+    }
+  }
+}

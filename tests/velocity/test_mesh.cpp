@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -155,4 +156,146 @@ TEST_CASE("mesh: a bias lengthens the axis, and beyond mu_d moves the peak") {
   p.drag = {0, 0};
   p.bias = 0.3;
   CHECK(velocity::tail_velocity(p, 1e-12) == Approx(drop / 0.2));
+}
+
+namespace {
+
+model::Process with_bias(model::Process p, double bias) {
+  p.bias = bias;
+  return p;
+}
+
+// Drag three times as large downwards.
+model::Drag one_sided() {
+  model::Drag drag{0, 0, [](double v) { return v > 0 ? -v : -3 * v; }, 100};
+  drag.law_is_odd = false;
+  return drag;
+}
+
+}  // namespace
+
+TEST_CASE("mesh: elements serve both signs of v, with the bias against or along") {
+  for (const auto& p :
+       {with_bias(process(0.25, 1, 0.25, {1, 0}), 2.0),
+        with_bias(process(0.25, 1, 0.25, {0.1, 0}), -1.0), process(0.25, 1, 0.25, one_sided())}) {
+    const auto rule = rule_to(20);
+    const auto ends = velocity::element_ends(p, rule);
+    for (std::size_t e = 1; e + 1 < ends.size(); ++e) {
+      const double drag = std::max(-p.drag(ends[e]), p.drag(-ends[e]));
+      const double rate = p.friction.mu_d + std::abs(p.bias) + drag;
+      CHECK(rate * (ends[e + 1] - ends[e]) <= 1.31 * rule.decay);
+    }
+  }
+}
+
+TEST_CASE("mesh: no last element is a sliver") {
+  const auto p = process(0.25, 1, 0.25, {1, 0});
+  for (double v_max = 5; v_max < 12; v_max += 0.1) {
+    const auto ends = velocity::element_ends(p, rule_to(v_max));
+    const double before = ends[ends.size() - 2];
+    const double step = 8 / (0.25 + ends[ends.size() - 3]);
+    INFO("v_max " << v_max);
+    CHECK(v_max - before >= 0.29 * std::min(step, before));
+  }
+}
+
+TEST_CASE("mesh: the first element is as small as the smallest scale, and no layer is wasted") {
+  for (const auto& p : {process(0.25, 1, 0.25, {1, 0}), process(0.5, 2, 0.125, {1, 0}),
+                        process(0.9, 0.5, 0.25, {0, 1})}) {
+    for (double lambda : {0.0, 100.0}) {
+      auto rule = rule_to(7);
+      rule.rates.lambda = lambda;
+      const double scale = velocity::smallest_scale(p, lambda);
+      const double first = velocity::element_ends(p, rule)[1];
+      CHECK(first <= scale * (1 + 1e-12));
+      CHECK(first > 0.3 * scale * (1 - 1e-12));
+    }
+  }
+}
+
+TEST_CASE("mesh: below the speed of leaving, degrees fall by one in two elements beyond two") {
+  const auto p = process(0.9, 1, 1.0 / 64, {1, 0});
+  const auto rule = rule_to(7, 14);
+  const auto ends = velocity::element_ends(p, rule);
+  const double leaving = 0.3 * std::pow(0.1 + 1.0 / 64, 3);
+  REQUIRE(ends[7] < leaving);
+  REQUIRE(ends[8] > leaving);
+  const std::vector expected{7, 7, 8, 8, 9, 9, 10, 10, 10, 10, 11, 11, 12, 12};
+  auto degrees = velocity::element_degrees(p, rule, 12);
+  degrees.resize(14);
+  CHECK(degrees == expected);
+  // A bias brings one of the two sides nearer to the edge of rest.
+  const auto other = with_bias(process(0.9, 1, 1.0 / 64, {1, 0}), 1.0 / 128),
+             mirrored = with_bias(other, -1.0 / 128);
+  CHECK(velocity::element_degrees(other, rule, 12) ==
+        velocity::element_degrees(mirrored, rule, 12));
+}
+
+// Lambda = 32/tau^2 at delta = 1/4.
+TEST_CASE("smallest scale: the kinetic layer grows with tau, resting ones fall with lambda") {
+  CHECK(velocity::smallest_scale(process(0.25, 2, 0.25, {1, 0})) ==
+        Approx(0.3 * std::pow(0.25, 3) * 4));
+  // A level 1e-3 below mu_d, drag 10: (1 + v/s)^(-3.2) is seen from the kinetic layer on.
+  CHECK(velocity::smallest_scale(process(0.251, 1, 0.25, {10, 0})) == Approx(1e-4));
+  // On the grid the nearest level is delta below mu_d.
+  const auto on_grid = process(0.25, 1, 0.25, {1, 0});
+  CHECK(velocity::smallest_scale(on_grid, 100) == Approx(0.25 / (32 + 100)));
+  CHECK(velocity::smallest_scale(on_grid, 1e-3) == velocity::smallest_scale(on_grid));
+  // Near a level its share counts from (lambda/Lambda)(gap/delta) = 1e-3 on.
+  const auto near = process(0.2525, 1, 0.25, {0, 0});
+  CHECK(velocity::smallest_scale(near, 4) == Approx(0.0025 / 36));
+  CHECK(velocity::smallest_scale(near, 100) == Approx(0.0025 / 132));
+  CHECK(velocity::smallest_scale(near, 3) == velocity::smallest_scale(near));
+}
+
+TEST_CASE("smallest scale: of two half lines the finer one") {
+  for (double bias : {0.1, -0.1}) {
+    // Levels below mu_d -+ bias: 0.2 below 0.2, and 0.15 below 0.4.
+    const auto p = with_bias(process(0.3, 1, 0.25, {1, 0}), bias);
+    CHECK(velocity::smallest_scale(p, 1e4) == Approx(0.15 / 10032));
+  }
+}
+
+// On a level a below mu_d waves are 2 pi a/omega long, and none is left at v = 20 a/Lambda.
+TEST_CASE("mesh: every element has two waves at most, and none is cut in vain") {
+  const auto p = process(0.3, 1, 0.25, {1, 0});
+  const double rate = p.noise.rate(), gap = 0.05;
+  for (double omega : {5 * rate, 20 * rate, 1000 * rate}) {
+    auto rule = rule_to(3);
+    const auto calm = velocity::element_ends(p, rule);
+    rule.rates.omega = omega;
+    const auto waves = velocity::element_ends(p, rule);
+    const auto widest = [&](double v) {
+      const double distance = v < 20 * gap / rate ? gap : std::max(gap + 0.25, rate * v / 20);
+      return 4 * std::acos(-1.0) * distance / std::min(omega, 40 * rate);
+    };
+    REQUIRE(calm[1] < 20 * gap / rate);
+    std::size_t count = 1;
+    for (std::size_t e = 1; e < calm.size(); ++e) {
+      const double pieces = (calm[e] - calm[e - 1]) / widest(calm[e - 1]);
+      count += static_cast<std::size_t>(std::ceil(pieces - 1e-9));
+    }
+    CHECK(waves.size() == count);
+    for (double end : calm) CHECK(std::count(waves.begin(), waves.end(), end) == 1);
+  }
+}
+
+TEST_CASE("tail velocity: that of the half line with the longer tail, and no further than a law") {
+  for (double bias : {0.2, -0.2}) {
+    auto p = with_bias(process(0.5, 1, 0.25, {0, 0}), bias);
+    CHECK(velocity::tail_velocity(p, 1e-10) == Approx((std::log(1e10) + 5) / 0.3));
+  }
+  auto p = process(0.5, 1, 0.25, one_sided());
+  const double drop = std::log(1e10) + 5, v = velocity::tail_velocity(p, 1e-10);
+  CHECK(0.5 * v + v * v / 2 == Approx(drop).epsilon(1e-4));
+  p.drag.reach = 2;
+  CHECK(velocity::tail_velocity(p, 1e-10) == 2);
+}
+
+TEST_CASE("tail velocity: at its end the density is below the tolerance, not above") {
+  for (double mu_d : {0.3, 0.5, 0.9}) {
+    const auto p = process(mu_d, 1, 0.25, {0.3, 0.1});
+    const double v = velocity::tail_velocity(p, 1e-10);
+    CHECK(mu_d * v - p.drag.potential(v) >= (std::log(1e10) + 5) * (1 - 1e-15));
+  }
 }

@@ -81,3 +81,35 @@ TEST_CASE("upwind axis: below the first node, its value") {
   REQUIRE(one.value_at(0.1).size() == 1);
   CHECK(one.value_at(0.1)[0].value == 1);
 }
+
+// B + h dB with dB = 1 + 0.5 v is the row of excess + h and drag -(1 - 0.5 h) v.
+TEST_CASE("upwind transport: the derivative of a row is the difference of rows") {
+  const double h = 1e-6;
+  const UpwindAxis axis(0.1, 20, model::Drag{1, 0}), more(0.1, 20, model::Drag{1 - 0.5 * h, 0});
+  velocity::TransportRow row, here, changed;
+  for (double excess : {-0.55, 0.55, 3.0}) {
+    for (int j = 0; j < axis.size(); ++j) {
+      axis.transport_change(excess, {1, 0.5}, j, row);
+      axis.transport(excess, j, here);
+      more.transport(excess + h, j, changed);
+      REQUIRE(row.entries.size() == here.entries.size());
+      for (std::size_t n = 0; n < row.entries.size(); ++n) {
+        CHECK(row.entries[n].node == here.entries[n].node);
+        const double change = changed.entries[n].value - here.entries[n].value;
+        CHECK(row.entries[n].value == Approx(change / h).epsilon(1e-6));
+      }
+      CHECK(row.inflow == Approx((changed.inflow - here.inflow) / h).epsilon(1e-6));
+    }
+  }
+  // Also where a speed falls that is upwards.
+  axis.transport_change(3, {-1, 0}, 2, row);
+  REQUIRE(row.entries.size() == 1);
+  CHECK(row.entries[0].node == 3);
+  CHECK(row.entries[0].value == Approx(-10));
+}
+
+TEST_CASE("upwind axis: cells lie around the nodes") {
+  const UpwindAxis axis(0.5, 3, model::Drag{1, 0});
+  const auto cells = axis.cells();
+  CHECK(std::vector(cells.begin(), cells.end()) == std::vector<double>{0, 0.75, 1.25, 1.75});
+}
