@@ -87,6 +87,7 @@ TEST_CASE("factorization: a second step of refinement where one is not enough", 
     const Solution s = solver.solve(b);
     CHECK(ledger.corrections == 2);
     CHECK(s.backward_error < 1e-12);
+    CHECK(ledger.backward_error == s.backward_error);
     check(VecAXPY(s.x, -1, s.correction));  // what one solve alone gave
     CHECK(distance_from_one(s.x) > 1e-9);
   }
@@ -94,6 +95,21 @@ TEST_CASE("factorization: a second step of refinement where one is not enough", 
   Ledger ledger;
   Factorization solver(a, "rough_", ledger);
   CHECK_THROWS_WITH(solver.solve(b), Catch::Contains("-rough_ left a backward error"));
+}
+
+TEST_CASE("factorization: an iteration that stops early ends every kind of solve", "[parallel]") {
+  const test::Given short_of({{"-short_ksp_type", "gmres"},
+                              {"-short_pc_type", "jacobi"},
+                              {"-short_ksp_rtol", "1e-14"},
+                              {"-short_ksp_max_it", "3"}});
+  const MatHandle a = bidiagonal(50);
+  const VecHandle b = image_of_one(a, Side::right), x = image_of_one(a, Side::right);
+  Ledger ledger;
+  Factorization solver(a, "short_", ledger);
+  const auto stopped = Catch::Contains("-short_ stopped: DIVERGED_ITS");
+  CHECK_THROWS_WITH(solver.solve(b), stopped);
+  CHECK_THROWS_WITH(solver.solve_once(b, x), stopped);
+  CHECK_THROWS_WITH(solver.solve_transposed_once(b, x), stopped);
 }
 
 TEST_CASE("factorization: a singular matrix is refused, whatever the package reports") {
