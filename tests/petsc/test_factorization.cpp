@@ -1,7 +1,10 @@
 #include <catch2/catch.hpp>
 #include <petscsys.h>
+#include <sys/resource.h>
 
 #include <array>
+#include <cmath>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -12,6 +15,7 @@
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/factorization.hpp"
 #include "stickslip/petsc/memory.hpp"
+#include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -38,6 +42,15 @@ VecHandle image_of_one(Mat a, Side side) {
   check(VecSet(one, 1));
   check(side == Side::right ? MatMult(a, one, image) : MatMultTranspose(a, one, image));
   return image;
+}
+
+double kilobytes_in_use() {
+  std::ifstream status("/proc/self/status");
+  double value = 0;
+  for (std::string name; status >> name;) {
+    if (name == "VmSize:" && status >> value) break;
+  }
+  return value;
 }
 
 double resident_bytes() {
@@ -219,6 +232,26 @@ TEST_CASE("blas and memory: something is known about both", "[parallel]") {
   CHECK_FALSE(loaded_blas().library.empty());
   CHECK(available_bytes(PETSC_COMM_WORLD, 0) > 1e6);
   CHECK(peak_resident_bytes() > 1e6);
+}
+
+TEST_CASE("memory: all ranks have what each has", "[parallel]") {
+  const double alone = available_bytes(PETSC_COMM_SELF, 0);
+  const double together = available_bytes(PETSC_COMM_WORLD, 0);
+  CHECK(together == Approx(petsc::ranks(PETSC_COMM_WORLD) * alone).epsilon(0.1));
+}
+
+TEST_CASE("memory: of a limited address space what is not in use is left") {
+  rlimit before{};
+  REQUIRE(getrlimit(RLIMIT_AS, &before) == 0);
+  const double used = 1024 * kilobytes_in_use();
+  rlimit limited = before;
+  limited.rlim_cur = static_cast<rlim_t>(used + 3e9);
+  REQUIRE(setrlimit(RLIMIT_AS, &limited) == 0);
+  const double left = left_in_address_space();
+  const double available = available_bytes(PETSC_COMM_SELF, 0);
+  REQUIRE(setrlimit(RLIMIT_AS, &before) == 0);
+  CHECK(std::abs(left - 3e9) < 2e6);
+  CHECK(available <= left + 2e6);
 }
 
 // Slow ones do not run under sanitizers, whose allocator keeps what is freed.
