@@ -204,3 +204,54 @@ TEST_CASE("rounding: nested cycles end when they leave a fifth of the change, or
     CHECK(ledger.backward_error < 1e-6);
   }
 }
+
+TEST_CASE("rounding: hitting times say how far their solves were corrected") {
+  auto r = request(plain(), {Quantity::sticking});
+  r.route = Route::hitting;
+  const auto d = test::on_hp(r.scene, 5, 1e-8);
+  const auto rough = rough_solves();
+  for (const auto& found : evaluate(r, d).results) {
+    INFO(found.key);
+    CHECK(found.error[0] > 1e-9 * found.value[0]);
+    CHECK(found.error[0] < 1e-4 * found.value[0]);
+  }
+}
+
+// A step of inverse iteration more makes a rough vector a good one, and shows how rough it was.
+TEST_CASE("rounding: the null vector says what its last iteration changed") {
+  using enum Quantity;
+  auto r = request(plain(), {sticking, moments, noise_law});
+  const auto d = test::on_upwind(r.scene, 2, 1e-5);
+  const auto known = evaluate(r, d).results;
+  r.route = Route::null_vector;
+  const test::Given rough({{"-null_eps_tol", "0.5"}, {"-null_eps_target", "-0.01"}});
+  const auto found = evaluate(r, d);
+  for (const auto& each : found.results) {
+    if (each.value[0] == 0) continue;  // E_V
+    INFO(each.key);
+    CHECK(each.error[0] > 1e-13 * std::abs(each.value[0]));
+  }
+  for (const auto& exact : known) {
+    if (exact.key.starts_with("P_X") || exact.key == "E_X2") continue;
+    INFO(exact.key);
+    CHECK(std::abs(value(found.results, exact.key) - exact.value[0]) <=
+          error(found.results, exact.key));
+  }
+}
+
+TEST_CASE("rounding: reduced models take a tenth of the accuracy at most") {
+  using enum Quantity;
+  auto r = request(plain(), {sticking, moments, spectrum, autocorrelation});
+  r.omega = {0.3, 2};
+  r.time = {0.2, 1};
+  const auto d = test::on_hp(r.scene, 5, 1e-8);
+  for (double accuracy : {1e-3, 1e-6}) {
+    r.accuracy = accuracy;
+    const auto found = evaluate(r, d).results;
+    INFO("accuracy " << accuracy);
+    CHECK(quantities::relative_error(result(found, "S_v")) <= 0.1 * accuracy);
+    for (double each : result(found, "C_vv").error) {
+      CHECK(each <= 0.1 * accuracy * value(found, "E_V2"));
+    }
+  }
+}
