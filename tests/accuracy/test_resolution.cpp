@@ -1,8 +1,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../common/options.hpp"
 #include "stickslip/accuracy/ladder.hpp"
 #include "stickslip/accuracy/resolution.hpp"
+#include "stickslip/model/drag_law.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/velocity/axis.hpp"
@@ -43,6 +45,44 @@ TEST_CASE("noise range: beyond mu_s by as much as the tolerance asks, within the
   }
 }
 
+// What lies beyond level N weighs, against the level from which the body starts, as in the closed
+// distribution of the noise, times (N/first)^2 for second moments, times exp(tilt x).
+TEST_CASE("noise range: the first level whose weight with second moments is below the tolerance") {
+  struct Case {
+    double mu_d, tau, delta;
+    model::Drag drag;
+    double bias, tilt;
+  };
+  const auto saturating = model::parse_drag("-v/(1 + abs(v))", {1, 0.25}, 1, 8);
+  for (const auto& c :
+       {Case{0.25, 1, 0.125, {1, 0}, 0, 0},              // drag rules
+        Case{0.25, 1, 0.125, {0, 0}, 0, 2 * 0.25},       // 2 tau mu_d
+        Case{3, 1, 0.125, {0, 0}, 0, 2},                  // at most 2 sqrt(tau)
+        Case{1, 2, 0.125, {0, 0}, 0, 2 * std::sqrt(2)},  // the same
+        Case{1, 1, 0.125, {0.9, 0}, 0, 2},               // weak against mu_d^2
+        Case{1, 1, 0.125, {1.1, 0}, 0, 0},               // and not
+        Case{0.25, 1, 0.125, saturating, 0, 2}, Case{0.25, 1, 0.125, {1, 0}, -0.4, 0}}) {
+    auto s = scene(1, c.mu_d, c.tau, c.delta);
+    s.drag = c.drag;
+    s.bias = c.bias;
+    // With a bias bodies start from the farther edge, at |x| = mu_s + |g|.
+    const int first = static_cast<int>(std::floor((1 + std::abs(c.bias)) / c.delta + 1e-9)) + 1;
+    const auto law = model::stationary_law(s.process(s.full_levels()).noise);
+    const auto weight = [&](int i) {
+      const double share = law[s.full_levels() + i] / law[s.full_levels() + first];
+      const double square = static_cast<double>(i) / first;
+      return share * square * square * std::exp(c.tilt * c.delta * (i - first));
+    };
+    for (double tolerance : {1e-3, 1e-9}) {
+      const int levels = levels_for(s, tolerance);
+      INFO("mu_d " << c.mu_d << " tau " << c.tau << " tilt " << c.tilt << " bias " << c.bias);
+      REQUIRE(levels < s.full_levels());
+      CHECK(weight(levels) <= tolerance);
+      CHECK(weight(levels - 1) > tolerance);
+    }
+  }
+}
+
 TEST_CASE("velocity end: terminal velocity, or where the tail allows a cut") {
   auto s = scene(1, 0.25, 1, 0.25);
   CHECK(accuracy::velocity_end(s, 32, 1e-12) == 7.75);
@@ -50,6 +90,87 @@ TEST_CASE("velocity end: terminal velocity, or where the tail allows a cut") {
   CHECK(accuracy::velocity_end(s, 32, 1e-12) < 120);
   s.v_max = 3;
   CHECK(accuracy::velocity_end(s, 32, 1e-12) == 3);
+}
+
+TEST_CASE("velocity end: of both signs the faster one counts") {
+  auto s = scene(1, 0.25, 1, 0.25);
+  for (double bias : {0.4, -0.4}) {
+    s.bias = bias;
+    CHECK(accuracy::velocity_end(s, 32, 1e-12) == Approx(8 + 0.4 - 0.25));
+  }
+}
+
+TEST_CASE("resolution: unknowns are levels times nodes, on each half line") {
+  const auto s = scene(1, 0.25, 1, 0.25);
+  accuracy::Resolution upwind;
+  upwind.scheme = options::Scheme::upwind;
+  upwind.levels = 5;
+  upwind.points = 4;
+  upwind.v_max = 3.125;  // 50 nodes
+  CHECK(accuracy::unknowns(s, upwind) == 11 * 50);
+  upwind.v_max = 3.13;
+  CHECK(accuracy::unknowns(s, upwind) == 11 * 51);
+  CHECK(accuracy::make_axis(s, upwind)->size() == 51);
+  upwind.halves = 2;
+  CHECK(accuracy::unknowns(s, upwind) == 2 * 11 * 51);
+  const auto hp = hp_resolution(s, 7, 0, 1e-6);
+  CHECK(accuracy::unknowns(s, hp) == (2 * hp.levels + 1) * accuracy::make_axis(s, hp)->size());
+  const auto exact = accuracy::exact_resolution(s, 1e-6);
+  CHECK(accuracy::unknowns(s, exact) == 2 * exact.levels + 1);
+}
+
+TEST_CASE("resolution: the work of a band, and less through the factors of a step before") {
+  const auto s = scene(1, 0.25, 1, 0.25);
+  auto hp = hp_resolution(s, 7, 0, 1e-6);
+  const double levels = 2.0 * hp.levels + 1;
+  const double nodes = accuracy::make_axis(s, hp)->size(), n = levels * nodes;
+  CHECK(accuracy::relative_work(s, hp) == Approx(n * nodes * std::min(levels, nodes)));
+  hp.nested = true;
+  CHECK(accuracy::relative_work(s, hp) == Approx(0.4 * n * nodes * std::min(levels, nodes)));
+  const auto upwind = accuracy::upwind_resolution(s, 2, 1e-6);
+  const double all = static_cast<double>(accuracy::unknowns(s, upwind));
+  const double rows = 2.0 * upwind.levels + 1;
+  CHECK(accuracy::relative_work(s, upwind) == Approx(all * std::min(rows, all / rows)));
+  CHECK(accuracy::relative_work(s, accuracy::exact_resolution(s, 1e-6)) ==
+        Approx(std::pow(2.0 * accuracy::exact_resolution(s, 1e-6).levels + 1, 3)));
+}
+
+TEST_CASE("resolution: the axis of the other sign has the drag of the other sign") {
+  auto s = scene(1, 0.25, 1, 0.25);
+  s.drag = model::parse_drag("-(1 + 0.3*tanh(v))*v", s.friction, 1, 8);
+  s.noise_levels = 8;
+  for (const auto& resolution :
+       {accuracy::upwind_resolution(s, 2, 1e-6), hp_resolution(s, 4, 0, 1e-6)}) {
+    const auto axis = accuracy::make_axis(s, resolution);
+    velocity::TransportRow upper, lower;
+    axis->transport(0.1, axis->size() / 2, upper);
+    axis->mirrored().transport(0.1, axis->size() / 2, lower);
+    double up = 0, down = 0;
+    for (const auto& e : upper.entries) up += std::abs(e.value);
+    for (const auto& e : lower.entries) down += std::abs(e.value);
+    CHECK(up > 1.05 * down);  // faster with more drag
+  }
+}
+
+// Triangles of level pairs, 2 n_v nodes each, take (2 n_v)^2/2 entries for 2 n_v unknowns: n n_v in
+// all. The matrix and dense blocks in work come on top.
+TEST_CASE("memory: elimination by levels is predicted as half of its dense blocks") {
+  for (int inverse : {16, 64}) {
+    const auto s = scene(1, 0.25, 1, 1.0 / inverse);
+    const auto resolution = hp_resolution(s, 9, 0, 1e-8);
+    const double n = static_cast<double>(accuracy::unknowns(s, resolution));
+    const double nodes = n / (2.0 * resolution.levels + 1);
+    const double triangles = sizeof(PetscScalar) * n * nodes;
+    CHECK(accuracy::predicted_bytes(s, resolution) > 1.05 * triangles);
+    CHECK(accuracy::predicted_bytes(s, resolution) <
+          1.2 * triangles + sizeof(PetscScalar) * 200 * n);
+    auto nested = resolution, lower = resolution;
+    nested.nested = true;
+    --lower.degree;
+    const double more = accuracy::predicted_bytes(s, nested) - accuracy::predicted_bytes(s, lower);
+    CHECK(more > 0);
+    CHECK(more < 0.2 * accuracy::predicted_bytes(s, resolution));
+  }
 }
 
 TEST_CASE("resolution: what the user fixes stays fixed") {
@@ -210,7 +331,9 @@ TEST_CASE("ladder: elements resolve the fastest rate of what is asked for, and n
   CHECK(rates({sticking}) == std::pair{700.0, 0.0});
 }
 
+// By MUMPS alone, whose count is its own; its analysis is enough for memory, factors tell entries.
 TEST_CASE("memory: predicted within a factor 2.5 of what MUMPS counts", "[slow]") {
+  const test::Given mumps({{"-slide_pc_type", "lu"}});
   struct Case {
     double delta;
     int degree, points;
@@ -218,8 +341,9 @@ TEST_CASE("memory: predicted within a factor 2.5 of what MUMPS counts", "[slow]"
   for (const auto& c : {Case{0.25, 9, 0}, Case{1.0 / 16, 5, 0}, Case{1.0 / 16, 11, 0},
                         Case{1.0 / 64, 7, 0}, Case{0.25, 0, 128}, Case{1.0 / 16, 0, 16}}) {
     const auto s = scene(1, 0.25, 1, c.delta);
-    const auto resolution = c.points > 0 ? accuracy::upwind_resolution(s, c.points, 1e-8)
-                                         : hp_resolution(s, c.degree, 0, 1e-8);
+    auto resolution = c.points > 0 ? accuracy::upwind_resolution(s, c.points, 1e-8)
+                                   : hp_resolution(s, c.degree, 0, 1e-8);
+    resolution.factors = options::Factors::in_memory;
     petsc::Ledger ledger;
     operators::Systems systems(PETSC_COMM_WORLD, s.process(resolution.levels),
                                accuracy::make_axis(s, resolution), ledger);

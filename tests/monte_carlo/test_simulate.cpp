@@ -114,6 +114,44 @@ TEST_CASE("monte carlo: only what is asked for, with the arguments asked for") {
   CHECK(simulate(r).results.size() == 5);
 }
 
+// The same excursions, asked for the edges of the cells.
+TEST_CASE("monte carlo: densities are those of cells up to the middle between times") {
+  auto r = request(small(), 5000);
+  r.quantities = {Quantity::duration_density};
+  r.time = {4, 1, 2};
+  const auto density = simulate(r).results;
+  r.time = {0.5, 1.5, 3, 5};
+  const auto edges = simulate(r).results;
+  r.time = {2};
+  const auto alone = simulate(r).results;
+  r.time = {1.9, 2.1};
+  const auto around = simulate(r).results;
+  for (const std::string name : {"slide", "stick", "excursion"}) {
+    INFO(name);
+    const auto& f = result(density, "f_" + name).value;
+    const auto& c = result(edges, "cdf_" + name).value;
+    CHECK(f[0] == Approx((c[3] - c[2]) / 2));
+    CHECK(f[1] == Approx((c[1] - c[0]) / 1));
+    CHECK(f[2] == Approx((c[2] - c[1]) / 1.5));
+    const auto& one = result(around, "cdf_" + name).value;
+    CHECK(result(alone, "f_" + name).value[0] == Approx((one[1] - one[0]) / 0.2));
+  }
+}
+
+TEST_CASE("monte carlo: half of S_v(0) is the diffusivity, with half its interval") {
+  auto s = small();
+  s.bias = 0.3;
+  auto r = request(s, 2000);
+  r.quantities = {Quantity::spectrum};
+  const auto found = simulate(r).results;
+  const auto& whole = result(found, "S_0");
+  const auto& half = result(found, "diffusivity");
+  CHECK(half.value[0] == whole.value[0] / 2);
+  CHECK(half.error[0] == Approx(whole.error[0] / 2));
+  CHECK(half.ci95[0].first == whole.ci95[0].first / 2);
+  CHECK(half.ci95[0].second == whole.ci95[0].second / 2);
+}
+
 TEST_CASE("monte carlo: stops when the accuracy is met", "[parallel]") {
   auto r = request(small(), 1e7);
   r.quantities = {Quantity::sticking, Quantity::moments};
@@ -141,6 +179,20 @@ TEST_CASE("monte carlo: tells what is lacking when the accuracy is not met") {
   CHECK_THAT(found.shortfall, Catch::Contains("it would take about -excursions"));
   r.accuracy_given = false;
   CHECK(simulate(r).reached);
+}
+
+TEST_CASE("monte carlo: an accuracy is met by the widest interval, and not below") {
+  auto r = request(small(), 1000);
+  r.quantities = {Quantity::sticking};
+  double widest = 0;
+  for (const auto& each : simulate(r).results) {
+    widest = std::max(widest, quantities::relative_error(each));
+  }
+  r.accuracy_given = true;
+  r.accuracy = 1.001 * widest;
+  CHECK(simulate(r).reached);
+  r.accuracy = 0.999 * widest;
+  CHECK_FALSE(simulate(r).reached);
 }
 
 TEST_CASE("monte carlo: progress is told at once, and how much is left") {

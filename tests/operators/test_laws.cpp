@@ -48,6 +48,17 @@ TEST_CASE("laws: a negative rate, a wrong row sum and what is no number are told
   CHECK_THROWS_AS(rows.require({true, false}), NotReached);
 }
 
+TEST_CASE("laws: row sums may be off by a rounding of 1e-12 of the diagonal") {
+  Rows rows;
+  for (double sign : {1.0, -1.0}) {
+    rows.values = {-2, 5 + sign * 0.9 * 5e-12, -3, -4, 4};
+    CHECK_NOTHROW(rows.require({true, true}));
+    rows.values[1] = 5 + sign * 1.1 * 5e-12;
+    CHECK_THROWS_WITH(rows.require({false, true}), Catch::Contains("row sum"));
+  }
+  CHECK_THROWS_WITH(rows.require({true, false}), Catch::Contains("killing rate"));
+}
+
 TEST_CASE("laws: an occupation below zero is told", "[parallel]") {
   petsc::VecHandle nu;
   petsc::check(VecCreateMPI(PETSC_COMM_WORLD, PETSC_DECIDE, 10, nu.out()));
@@ -58,8 +69,10 @@ TEST_CASE("laws: an occupation below zero is told", "[parallel]") {
     petsc::check(VecAssemblyEnd(nu));
   };
   CHECK_NOTHROW(require_occupation(nu, scene));
-  put(-1e-13);
+  put(-0.9e-9);
   CHECK_NOTHROW(require_occupation(nu, scene));
+  put(-1.1e-9);
+  CHECK_THROWS_AS(require_occupation(nu, scene), NotReached);
   put(-1e-3);
   CHECK_THROWS_WITH(require_occupation(nu, scene),
                     Catch::Contains("from -0.001 to 1") && Catch::Contains("delta = 0.5"));

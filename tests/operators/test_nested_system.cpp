@@ -87,6 +87,9 @@ TEST_CASE("nested system: two cycles leave little, and less than the last one ch
       CHECK(left < norm(found.correction));
       CHECK(nested_ledger.factorizations_real + nested_ledger.factorizations_complex == 0);
       CHECK(nested_ledger.assemblies == 1);
+      CHECK(nested_ledger.corrections == 2);
+      CHECK(found.backward_error > 0);
+      CHECK(nested_ledger.backward_error == found.backward_error);
     }
   }
 }

@@ -1,7 +1,10 @@
 #include <catch2/catch.hpp>
 #include <petscsys.h>
+#include <sys/resource.h>
 
 #include <array>
+#include <cmath>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -12,6 +15,7 @@
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/factorization.hpp"
 #include "stickslip/petsc/memory.hpp"
+#include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -38,6 +42,15 @@ VecHandle image_of_one(Mat a, Side side) {
   check(VecSet(one, 1));
   check(side == Side::right ? MatMult(a, one, image) : MatMultTranspose(a, one, image));
   return image;
+}
+
+double kilobytes_in_use() {
+  std::ifstream status("/proc/self/status");
+  double value = 0;
+  for (std::string name; status >> name;) {
+    if (name == "VmSize:" && status >> value) break;
+  }
+  return value;
 }
 
 double resident_bytes() {
@@ -69,7 +82,8 @@ TEST_CASE("factorization: plain and transposed solves, counted", "[parallel]") {
   CHECK(ledger.factorizations_complex == (complex ? 1 : 0));
   CHECK(ledger.solves == 2);
   CHECK(ledger.corrections == 2);
-  CHECK(ledger.factor_entries > 0);
+  CHECK(ledger.factor_entries >= 2 * 20 - 1);  // those of the matrix; no more than a dense one
+  CHECK(ledger.factor_entries <= 20 * 20);
 }
 
 TEST_CASE("factorization: a second step of refinement where one is not enough", "[parallel]") {
@@ -87,6 +101,7 @@ TEST_CASE("factorization: a second step of refinement where one is not enough", 
     const Solution s = solver.solve(b);
     CHECK(ledger.corrections == 2);
     CHECK(s.backward_error < 1e-12);
+    CHECK(ledger.backward_error == s.backward_error);
     check(VecAXPY(s.x, -1, s.correction));  // what one solve alone gave
     CHECK(distance_from_one(s.x) > 1e-9);
   }
@@ -94,6 +109,21 @@ TEST_CASE("factorization: a second step of refinement where one is not enough", 
   Ledger ledger;
   Factorization solver(a, "rough_", ledger);
   CHECK_THROWS_WITH(solver.solve(b), Catch::Contains("-rough_ left a backward error"));
+}
+
+TEST_CASE("factorization: an iteration that stops early ends every kind of solve", "[parallel]") {
+  const test::Given short_of({{"-short_ksp_type", "gmres"},
+                              {"-short_pc_type", "jacobi"},
+                              {"-short_ksp_rtol", "1e-14"},
+                              {"-short_ksp_max_it", "3"}});
+  const MatHandle a = bidiagonal(50);
+  const VecHandle b = image_of_one(a, Side::right), x = image_of_one(a, Side::right);
+  Ledger ledger;
+  Factorization solver(a, "short_", ledger);
+  const auto stopped = Catch::Contains("-short_ stopped: DIVERGED_ITS");
+  CHECK_THROWS_WITH(solver.solve(b), stopped);
+  CHECK_THROWS_WITH(solver.solve_once(b, x), stopped);
+  CHECK_THROWS_WITH(solver.solve_transposed_once(b, x), stopped);
 }
 
 TEST_CASE("factorization: a singular matrix is refused, whatever the package reports") {
@@ -203,6 +233,26 @@ TEST_CASE("blas and memory: something is known about both", "[parallel]") {
   CHECK_FALSE(loaded_blas().library.empty());
   CHECK(available_bytes(PETSC_COMM_WORLD, 0) > 1e6);
   CHECK(peak_resident_bytes() > 1e6);
+}
+
+TEST_CASE("memory: all ranks have what each has", "[parallel]") {
+  const double alone = available_bytes(PETSC_COMM_SELF, 0);
+  const double together = available_bytes(PETSC_COMM_WORLD, 0);
+  CHECK(together == Approx(petsc::ranks(PETSC_COMM_WORLD) * alone).epsilon(0.1));
+}
+
+TEST_CASE("memory: of a limited address space what is not in use is left") {
+  rlimit before{};
+  REQUIRE(getrlimit(RLIMIT_AS, &before) == 0);
+  const double used = 1024 * kilobytes_in_use();
+  rlimit limited = before;
+  limited.rlim_cur = static_cast<rlim_t>(used + 3e9);
+  REQUIRE(setrlimit(RLIMIT_AS, &limited) == 0);
+  const double left = left_in_address_space();
+  const double available = available_bytes(PETSC_COMM_SELF, 0);
+  REQUIRE(setrlimit(RLIMIT_AS, &before) == 0);
+  CHECK(std::abs(left - 3e9) < 2e6);
+  CHECK(available <= left + 2e6);
 }
 
 // Slow ones do not run under sanitizers, whose allocator keeps what is freed.

@@ -55,9 +55,9 @@ TEST_CASE("ledger: of sizes and backward errors the largest counts, whichever ca
   large.backward_error = 9;
   small.unknowns = small.nonzeros = small.factor_entries = 1;
   small.factor_megabytes = small.backward_error = 1;
-  for (Ledger sum : {small, large}) {
-    sum += small;
-    sum += large;
+  for (const auto& [first, second] : {std::pair{small, large}, {large, small}}) {
+    Ledger sum = first;
+    sum += second;
     CHECK(sum.unknowns == 5);
     CHECK(sum.nonzeros == 6);
     CHECK(sum.factor_entries == 7);

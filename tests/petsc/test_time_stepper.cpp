@@ -147,14 +147,12 @@ TEST_CASE("time stepper: constants of a generator stay constant", "[parallel]") 
   CHECK(distance(u, std::vector<double>(kSize, 1.0)) < 1e-12);
 }
 
-TEST_CASE("time stepper: times and counts go to the ledger", "[parallel]") {
+// Each step of ARKIMEX5, fully implicit, has eight stages, each of one linear system.
+TEST_CASE("time stepper: linear systems are counted in the ledger", "[parallel]") {
   Run run("test_", 1e-6);
-  const double start = wall_seconds();
   run.stepper.advance(1);
-  const double elapsed = wall_seconds() - start;
-  CHECK(run.ledger.iterations > 0);
-  CHECK(run.ledger.solve_seconds <= elapsed);
-  CHECK(run.ledger.solve_seconds > 0.1 * elapsed);
+  CHECK(run.ledger.iterations >= run.stepper.steps());
+  CHECK(run.ledger.iterations <= 10 * run.stepper.steps());
 }
 
 // Backward Euler with fixed steps is known in closed form: (1 + h A)^-n u.

@@ -415,6 +415,30 @@ TEST_CASE("durations: means are those of the stationary law, and moments are pos
   }
 }
 
+// log F(lambda) = -mean lambda + variance lambda^2/2 - ...: second differences from 0 on, with the
+// term of third order extrapolated away.
+TEST_CASE("durations: variances are what transforms say at small lambda") {
+  const auto d = test::on_hp(scene(1, 0.25, 1, 0.5, {1, 0}), 8);
+  Solved s(d);
+  const auto m = quantities::duration_moments(s.systems, s.entry());
+  const auto logs = [&](double lambda) {
+    const auto t = quantities::slide_transforms(s.systems, lambda);
+    const double stick = quantities::stick_transform(d.process, lambda, s.entry()).value;
+    s.systems.release(lambda, Symmetry::even);
+    return std::vector<double>{std::log(t.slide.value), std::log(stick),
+                               std::log(t.excursion.value)};
+  };
+  const double h = 1e-3;
+  const auto half = logs(h / 2), one = logs(h), two = logs(2 * h);
+  const std::vector<Uncertain> variances{m.var_slide, m.var_stick, m.var_excursion};
+  for (std::size_t n = 0; n < 3; ++n) {
+    const double coarse = (two[n] - 2 * one[n]) / (h * h);
+    const double fine = 4 * (one[n] - 2 * half[n]) / (h * h);
+    INFO(kNames[n]);
+    CHECK(relative_difference(2 * fine - coarse, variances[n].value) < 1e-3);
+  }
+}
+
 TEST_CASE("durations: named results, means only where there are none yet") {
   const auto process = process_with(1.1, 1.1);
   const quantities::DurationMoments m{{1, 0.1}, {2, 0.1}, {3, 0.1}, {4, 0.1}, {5, 0.1}, {6, 0.1}};

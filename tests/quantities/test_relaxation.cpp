@@ -234,4 +234,9 @@ TEST_CASE("relaxation: of conjugate rates the one that turns forwards") {
   CHECK(modes[2].rate.imag() == Approx(0.70907858).epsilon(1e-7));
   CHECK(modes[2].spread == 0);
   CHECK(modes[3].rate.imag() == 0);
+  quantities::Results results;
+  quantities::append_relaxation(Symmetry::even, modes, results);
+  CHECK(modes[2].residual > 0);
+  for (const auto& found : results) CHECK(found.error[2] == modes[2].residual);
+  CHECK(results[1].error[3] == 0);  // no frequency, and no error of one
 }

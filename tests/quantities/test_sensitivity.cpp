@@ -140,3 +140,17 @@ TEST_CASE("sensitivity: the variance of the noise") {
   CHECK(relative_difference(found.at("dE_X2_dtau"), -1 / 0.49) < 1e-10);
   CHECK(found.at("dP_X_le_mu_s_dtau") > 0);
 }
+
+TEST_CASE("sensitivity: closed forms of the noise have the rounding of their sums") {
+  const auto process = test::on_full_noise(scene(1, 0.25, 1, 0.25, {1, 0})).meant();
+  Results results;
+  quantities::append_noise_sensitivity(process, results);
+  REQUIRE(results.size() == 2);
+  const double rounding = model::rounding_of_sums(process.noise);
+  for (const auto& r : results) {
+    INFO(r.key);
+    // Differences of sums that are some times larger.
+    CHECK(r.error[0] >= rounding * std::abs(r.value[0]));
+    CHECK(r.error[0] < 1e4 * rounding);
+  }
+}

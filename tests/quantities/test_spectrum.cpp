@@ -265,6 +265,28 @@ TEST_CASE("spectrum: its integral is the variance, and half of S_v(0) is met at 
   }
 }
 
+TEST_CASE("spectrum: errors of values, width and variance cover what better models say") {
+  const auto all = small_samples();
+  for (std::size_t sample : {0, 3}) {
+    const auto& [name, d] = all[sample];
+    Solved s(d);
+    const std::vector<double> omega{0.3, 4};
+    const auto rough = reduced(s, omega, 1e-2), fine = reduced(s, omega, 1e-9);
+    const auto covers = [](Uncertain one, Uncertain better) {
+      CHECK(one.error > 1e-12 * one.value);
+      CHECK(one.error < 0.1 * one.value);
+      CHECK(std::abs(one.value - better.value) < 10 * one.error);
+    };
+    INFO(name);
+    covers(rough.shape.fwhm, fine.shape.fwhm);
+    covers(rough.shape.variance, fine.shape.variance);
+    covers(rough.spectrum.at_zero, fine.spectrum.at_zero);
+    for (std::size_t n = 0; n < omega.size(); ++n) {
+      covers(rough.spectrum.value[n], fine.spectrum.value[n]);
+    }
+  }
+}
+
 // b = -v, mu = 1, tau -> 0: closed forms, met as tau, so that two small tau tell the limit.
 TEST_CASE("spectrum: the white-noise limit", "[parallel]") {
   const auto at = [](double tau) {

@@ -255,6 +255,9 @@ TEST_CASE("transient: what is expected of f scales with f") {
         for (std::size_t n = 0; n < time.size(); ++n) {
           INFO(text << " time " << time[n]);
           CHECK(relative_difference(other[n].value, factor * one[n].value) < 1e-6);
+          // Of the size of 1e-6 of f, and not of rounding.
+          CHECK(other[n].error < 1e-3 * factor);
+          CHECK(other[n].error > 1e-17 * factor);
         }
       }
     }

@@ -1,0 +1,94 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "stickslip/model/noise_chain.hpp"
+#include "stickslip/quantities/excursion.hpp"
+
+using namespace stickslip;
+using quantities::Excursion;
+using quantities::Results;
+
+namespace {
+
+// Levels -3 ... 3 of half a unit, of which -2 ... 2 lie within mu_s; a bias moves what sticks.
+model::Process process(double bias = 0) { return {{1, 0.5, 3}, {1.1, 0.25}, {1, 0}, bias}; }
+
+Excursion by_hand() {
+  Excursion e;
+  e.slide_time = {1, 2, 3, 4, 5, 6, 7};
+  e.slide_distance = {0.5, 0.25, 0.125, 1, 2, 3, 4};
+  e.slide_square = {1, 1, 1, 1, 1, 1, 2};
+  e.stick_time = {10, 20, 30, 20, 10};
+  return e;
+}
+
+// Of levels beyond +-2.
+double beyond() { return model::noise_moments(process().noise, 2).beyond; }
+
+double value(const Results& results, const std::string& key) {
+  for (const auto& r : results) {
+    if (r.key == key) return r.value[0];
+  }
+  throw std::invalid_argument(key);
+}
+
+}  // namespace
+
+TEST_CASE("excursion: the time beyond mu_s is held against its known share") {
+  Excursion e = by_hand();  // 118 in all, 1 + 7 of it beyond
+  CHECK(e.conservation_defect(process()) == Approx(std::abs(8 / (118 * beyond()) - 1)));
+  e.lost_probability = -0.1;  // counts by its square
+  CHECK(e.conservation_defect(process()) == Approx(std::abs(8 / (118 * beyond()) - 1) + 0.01));
+  // Exactly met.
+  e.lost_probability = 0;
+  e.slide_time = {0, 0, 0, 0, 0, 0, 90 * beyond() / (1 - beyond())};
+  CHECK(e.conservation_defect(process()) < 1e-14);
+}
+
+TEST_CASE("excursion: with a bias stays beyond mu_s count, too") {
+  const auto inclined = process(0.5);  // levels -3 ... 1 stick
+  REQUIRE(inclined.lowest_static() == -3);
+  REQUIRE(inclined.static_index() == 1);
+  const Excursion e = by_hand();
+  CHECK(e.conservation_defect(inclined) == Approx(std::abs((8 + 10) / (118 * beyond()) - 1)));
+  const auto declined = process(-0.5);  // -1 ... 3
+  REQUIRE(declined.static_index() == 3);
+  CHECK(e.conservation_defect(declined) == Approx(std::abs((8 + 10) / (118 * beyond()) - 1)));
+}
+
+TEST_CASE("excursion: ratios of sums, by hand") {
+  Excursion e = by_hand();
+  Results results;
+  quantities::append_sticking(e, results);
+  quantities::append_moments(process(), e, results);
+  CHECK(value(results, "P_stick") == Approx(90.0 / 118));
+  CHECK(value(results, "P_slide") == Approx(28.0 / 118));
+  CHECK(value(results, "mean_stick") == 90);
+  CHECK(value(results, "mean_slide") == 28);
+  CHECK(value(results, "mean_excursion") == 118);
+  CHECK(value(results, "E_V2") == Approx(8.0 / 118));
+  CHECK(value(results, "E_absV") == Approx(10.875 / 118));
+  // sum_i x_i |V|: -1.5 0.5 - 0.25 - 0.5 0.125 + 0.5 2 + 3 + 1.5 4
+  CHECK(value(results, "E_XV") == Approx((-0.75 - 0.25 - 0.0625 + 1 + 3 + 6) / 118));
+}
+
+TEST_CASE("excursion: a drift is a difference, exact to the size of E|V|") {
+  Excursion e = by_hand();
+  Results folded, both;
+  quantities::append_moments(process(), e, folded);
+  CHECK(folded.back().value[0] == 0);
+  CHECK(folded.back().error[0] == 0);
+  e.slide_drift = {0.5, 0, 0, 0, 0, 0, -1};
+  quantities::append_moments(process(), e, both);
+  CHECK(both.back().value[0] == Approx(-0.5 / 118));
+  CHECK(both.back().error[0] == Approx(e.conservation_defect(process()) * 10.875 / 118));
+}
+
+TEST_CASE("excursion: closed forms of the noise have the rounding of its sums") {
+  Results results;
+  quantities::append_noise_law(process(), results);
+  const double rounding = model::rounding_of_sums(process().noise);
+  CHECK(rounding >= std::numeric_limits<double>::epsilon());
+  for (const auto& r : results) CHECK(r.error[0] == Approx(rounding * r.value[0]));
+}
