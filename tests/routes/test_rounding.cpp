@@ -7,6 +7,7 @@
 #include "../common/near.hpp"
 #include "../common/options.hpp"
 #include "../common/scenes.hpp"
+#include "stickslip/quantities/stationary.hpp"
 #include "stickslip/routes/evaluation.hpp"
 
 using namespace stickslip;
