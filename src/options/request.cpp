@@ -1,56 +1,23 @@
 #include "stickslip/options/request.hpp"
 
 #include <fmt/format.h>
-#include <petscsys.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 
 #include "reading.hpp"
 #include "stickslip/model/drag_law.hpp"
 #include "stickslip/options/settings.hpp"
-#include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
-#include "stickslip/petsc/solver_choice.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/text.hpp"
 #include "stickslip/velocity/mesh.hpp"
 
 namespace stickslip::options {
 namespace {
-
-bool is_option_name(const std::string& word) {
-  return word.size() > 1 && word[0] == '-' && !parse_number(word);
-}
-
-// A formula such as -v*abs(v) where a value is due, which PETSc takes for an option.
-bool is_formula(const std::string& option, const std::string& value) {
-  const Option* known = option.starts_with('-') ? find(option.substr(1)) : nullptr;
-  if (known == nullptr || known->kind != Kind::text || !is_option_name(value)) return false;
-  if (std::isalpha(static_cast<unsigned char>(value[1])) == 0) return false;
-  const auto names = all_names();
-  return std::count(names.begin(), names.end(), value) == 0;
-}
-
-// The same in a line of an options file, in quotes or not: how to write it, empty if all is well.
-std::string better_formula(const std::string& line) {
-  const auto begin = line.find_first_not_of(" \t"), end = line.find_first_of(" \t", begin);
-  const auto start = line.find_first_not_of(" \t", end);
-  if (start == line.npos) return "";
-  const bool quoted = line[start] == '"';
-  const auto first = quoted ? start + 1 : start;
-  const auto parts = split(line.substr(first), quoted ? '"' : '#');
-  const std::string option = line.substr(begin, end - begin);
-  if (line[first] != '-' || !is_formula(option, parts.front())) return "";
-  return fmt::format("{} \" {}\"", option, parts.front());
-}
 
 model::Drag read_drag(const Settings& settings, Request& request, Problems& problems) {
   const std::string law = settings.text("drag");
@@ -569,27 +536,6 @@ void check_route(const Settings& settings, const Request& request, Problems& pro
   }
 }
 
-std::string solver_option(const std::string& name) {
-  std::array<char, 256> text{};
-  PetscBool given = PETSC_FALSE;
-  petsc::check(
-      PetscOptionsGetString(nullptr, nullptr, name.c_str(), text.data(), text.size(), &given));
-  return given == PETSC_TRUE ? text.data() : "";
-}
-
-Factors read_factors() {
-  if (!petsc::chooses_solver("slide_")) return Factors::own;
-  switch (petsc::chosen_solver("slide_", petsc::Solver::lu)) {
-  case petsc::Solver::levels: return Factors::levels;
-  case petsc::Solver::p_multigrid: return Factors::p_multigrid;
-  case petsc::Solver::lu: break;
-  }
-  const std::string pc = solver_option("-slide_pc_type");
-  if (!pc.empty() && pc != "lu" && pc != "cholesky") return Factors::incomplete;
-  const bool on_disk = solver_option("-slide_mat_mumps_icntl_22") == "1";
-  return on_disk ? Factors::on_disk : Factors::in_memory;
-}
-
 Method read_method(const Settings& settings, Problems& problems) {
   Method method;
   method.scheme = settings.text("scheme") == "upwind" ? Scheme::upwind : Scheme::hp;
@@ -685,270 +631,7 @@ void read_output(const Settings& settings, Request& request, Problems& problems)
   }
 }
 
-// Words on the line that are neither an option nor the value of one; PETSc would ignore them.
-void check_stray_words(const std::vector<std::string>& argv, Problems& problems) {
-  for (std::size_t n = 0; n < argv.size(); ++n) {
-    const bool is_value = n > 0 && is_option_name(argv[n - 1]);
-    if (is_option_name(argv[n]) || is_value) continue;
-    const bool in_list = argv[n].starts_with(',') || (n > 0 && argv[n - 1].ends_with(','));
-    std::error_code error;
-    const bool is_file = std::filesystem::is_regular_file(argv[n], error);
-    problems.add(fmt::format("{}: belongs to no option; {}", argv[n],
-                             in_list   ? "lists have no spaces, as in a,b"
-                             : is_file ? "did you mean -options_file " + argv[n] + "?"
-                                       : "options look like -name value"));
-  }
-}
-
-// Options of PETSc itself that it reads later, or reads and does not count as used.
-bool belongs_to_petsc(const std::string& name) {
-  static const std::vector<std::string> exact{"options_left",
-                                              "options_view",
-                                              "citations",
-                                              "skip_petscrc",
-                                              "log_view",
-                                              "log_view_memory",
-                                              "malloc_dump",
-                                              "malloc_debug",
-                                              "malloc",
-                                              "malloc_view",
-                                              "memory_view",
-                                              "objects_dump",
-                                              "info",
-                                              "options_file",
-                                              "no_signal_handler",
-                                              "nox",
-                                              "log",
-                                              "log_trace",
-                                              "log_summary",
-                                              "on_error_abort",
-                                              "fp_trap",
-                                              "debug",
-                                              "start_in_debugger",
-                                              "on_error_attach_debugger",
-                                              "viewfromoptions"};
-  return std::find(exact.begin(), exact.end(), name) != exact.end();
-}
-
-/// A role of a solver, whose PETSc options carry a prefix.
-struct SolverRole {
-  const char* prefix;
-  void (*probe_options)(const std::string& prefix);
-  std::string show;  // option that shows what the solver uses, without the prefix
-  // Options that are read when something is solved, not before.
-  std::vector<std::string> read_later;
-  std::vector<std::string> common;  // others that users give
-};
-
-const std::vector<SolverRole>& solver_roles() {
-  static const std::vector<std::string> ksp{"ksp_view", "ksp_view_pre", "ksp_converged_reason",
-                                            "ksp_converged_rate", "ksp_view_final_residual"};
-  static const std::vector<std::string> eps{
-      "eps_view",           "eps_view_pre",       "eps_view_values",    "eps_converged_reason",
-      "eps_error_relative", "eps_error_absolute", "eps_error_backward", "eps_view_vectors"};
-  static const std::vector<std::string> ts{"ts_view", "ts_view_pre", "ts_adapt_view", "snes_view",
-                                           "ksp_view"};
-  static const std::vector<SolverRole> roles{
-      {"slide_",
-       petsc::probe_linear_solver,
-       "ksp_view",
-       ksp,
-       {"pc_type", "pc_factor_mat_solver_type", "pc_factor_levels", "sub_pc_type",
-        "sub_pc_factor_levels", "ksp_type", "ksp_rtol", "ksp_max_it", "ksp_monitor"}},
-      {"null_",
-       petsc::probe_eigensolver,
-       "eps_view",
-       eps,
-       {"eps_type", "eps_tol", "eps_nev", "eps_ncv", "eps_max_it", "eps_monitor"}},
-      {"relax_",
-       petsc::probe_eigensolver,
-       "eps_view",
-       eps,
-       {"eps_type", "eps_tol", "eps_nev", "eps_ncv", "eps_max_it", "eps_monitor"}},
-      {"backward_",
-       petsc::probe_time_stepper,
-       "ts_view",
-       ts,
-       {"ts_type", "ts_max_steps", "ts_monitor", "ts_rtol", "ts_atol"}}};
-  return roles;
-}
-
-bool is_read_later(const std::string& name) {
-  const auto& roles = solver_roles();
-  return std::any_of(roles.begin(), roles.end(), [&name](const SolverRole& role) {
-    const auto& later = role.read_later;
-    return std::any_of(later.begin(), later.end(),
-                       [&](const std::string& option) { return name == role.prefix + option; });
-  });
-}
-
-// The option of a role that the user may have meant, without the dash; empty if there is none.
-std::string nearest_option(const SolverRole& role, const std::string& name) {
-  auto names = role.read_later;
-  names.insert(names.end(), role.common.begin(), role.common.end());
-  const std::string near = nearest_word(name.substr(std::strlen(role.prefix)), names);
-  return near.empty() ? "" : role.prefix + near;
-}
-
-std::string unknown_option(const std::string& name) {
-  for (const auto& role : solver_roles()) {
-    if (!name.starts_with(role.prefix)) continue;
-    const std::string near = nearest_option(role, name);
-    return fmt::format("-{}: the solver of this role knows no such option; {}-{}{} shows what it "
-                       "uses",
-                       name, near.empty() ? "" : fmt::format("did you mean -{}? ", near),
-                       role.prefix, role.show);
-  }
-  const auto names = all_names();
-  const std::string near = nearest_word("-" + name, names);
-  return fmt::format("-{}: unknown option; {}", name,
-                     near.empty() ? "-help lists all" : "did you mean " + near + "?");
-}
-
-// Names of all options in the database, without the dash.
-std::vector<std::string> given_names() {
-  std::vector<std::string> names;
-  char* all = nullptr;
-  petsc::check(PetscOptionsGetAll(nullptr, &all));
-  for (const auto& word : split(all, ' ')) {
-    if (is_option_name(word)) names.push_back(word.substr(1));
-  }
-  petsc::check(PetscFree(all));
-  return names;
-}
-
-// Of the types that PETSc has, those that work from options alone and apply transposes. Others,
-// such as shell and mg, need a program that sets them up, and crash without.
-const std::vector<std::pair<std::string, std::vector<std::string>>>& solver_types() {
-  static const std::vector<std::pair<std::string, std::vector<std::string>>> types{
-      {"slide_pc_type",
-       {"levels", "p_multigrid", "lu", "cholesky", "qr", "svd", "redundant", "ksp", "ilu", "icc",
-        "asm", "gasm", "bjacobi", "jacobi", "pbjacobi", "gamg", "hypre", "none"}},
-      {"slide_ksp_type",
-       {"preonly", "gmres", "fgmres", "lgmres", "dgmres", "pgmres", "pipefgmres", "gcr", "bcgs",
-        "bcgsl", "ibcgs", "fbcgs", "fbcgsr", "cgs", "qmrcgs", "tfqmr", "tcqmr", "pipebcgs"}}};
-  return types;
-}
-
-bool check_solver_types(Problems& problems) {
-  bool known = true;
-  for (const auto& [name, types] : solver_types()) {
-    const std::string type = solver_option("-" + name);
-    if (type.empty() || std::count(types.begin(), types.end(), type) > 0) continue;
-    known = false;
-    const std::string near = nearest_word(type, types);
-    problems.add(fmt::format("-{} = {}: must be {}{}", name, type, enumerate(types, "or"),
-                             near.empty() ? "" : fmt::format("; did you mean {}?", near)));
-  }
-  return known;
-}
-
-// The option of a role whose value a message names; the prefix alone if there is none.
-std::string blamed_option(const SolverRole& role, const std::string& message) {
-  for (const auto& name : given_names()) {
-    const std::string value = solver_option("-" + name);
-    const bool named = !value.empty() && message.find(" " + value) != message.npos;
-    if (named && name.starts_with(role.prefix)) return fmt::format("-{} = {}", name, value);
-  }
-  return fmt::format("-{}...", role.prefix);
-}
-
-// What the solver of a role says to its options, tried on a tiny matrix.
-void check_solver_options(Problems& problems) {
-  const auto names = given_names();
-  for (const auto& role : solver_roles()) {
-    const bool used = std::any_of(names.begin(), names.end(), [&role](const std::string& name) {
-      return name.starts_with(role.prefix);
-    });
-    if (!used) continue;
-    try {
-      role.probe_options(role.prefix);
-    } catch (const petsc::PetscFailure& failure) {
-      const std::string text = failure.what(), message = text.substr(0, text.find('\n'));
-      problems.add(fmt::format("{}: {}", blamed_option(role, message), message));
-    }
-  }
-}
-
-void check_unknown_options(Problems& problems) {
-  PetscInt count = 0;
-  char** names = nullptr;
-  char** values = nullptr;
-  petsc::check(PetscOptionsLeftGet(nullptr, &count, &names, &values));
-  for (PetscInt n = 0; n < count; ++n) {
-    if (!belongs_to_petsc(names[n]) && !is_read_later(names[n]))
-      problems.add(unknown_option(names[n]));
-  }
-  petsc::check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
-}
-
-// What is wrong with the name of an options file, or with how it comes to be read; empty if all is
-// well. `above` are the files that led to it. It is read twice, here and by PETSc: a pipe would be
-// empty then.
-std::string unfit_file(const std::string& name, const std::vector<std::string>& above) {
-  std::error_code error;
-  if (std::find(above.begin(), above.end(), name) != above.end()) {
-    return "includes itself; take the inner -options_file out";
-  }
-  if (!std::filesystem::is_regular_file(name, error) && std::ifstream(name).good()) {
-    return "is no regular file; write the options to one";
-  }
-  if (std::ifstream(name).good()) return "";
-  return "cannot be read; check the name and that you may read it";
-}
-
-// The file that a line of an options file includes; nothing if it includes none.
-std::optional<std::string> included_file(std::string line) {
-  line.erase(std::min(line.find('#'), line.size()));
-  std::replace_if(
-      line.begin(), line.end(), [](char c) { return c == '\t' || c == '\r'; }, ' ');
-  std::vector<std::string> words = split(line, ' ');
-  std::erase(words, "");
-  if (words.empty() || words[0] != "-options_file") return std::nullopt;
-  if (words.size() == 1) return "";
-  std::erase(words[1], '"');
-  return words[1];
-}
-
-void check_line(const std::string& line, const std::string& place, Problems& problems) {
-  const auto first = line.find_first_not_of(" \t\r");
-  if (const auto better = better_formula(line); !better.empty()) {
-    problems.add(fmt::format("{}: the value looks like an option; put a blank before it: {}", place,
-                             better));
-  }
-  if (first == line.npos || line[first] == '#' || line[first] == '-') return;
-  problems.add(fmt::format("{}: \"{}\" does not start with -name; put a # before comments", place,
-                           line.substr(first, 40)));
-}
-
-void check_options_file(const std::string& name, std::vector<std::string> above,
-                        Problems& problems) {
-  const std::string unfit = unfit_file(name, above);
-  if (!unfit.empty()) return problems.add(fmt::format("-options_file {}: {}", name, unfit));
-  if (name.ends_with(".yml") || name.ends_with(".yaml")) return;  // PETSc's YAML reader
-  above.push_back(name);
-  std::ifstream file(name);
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    check_line(line, fmt::format("{}:{}", name, number), problems);
-    if (const auto inner = included_file(line)) check_options_file(*inner, above, problems);
-  }
-}
-
 }  // namespace
-
-std::vector<std::pair<std::string, std::string>> solver_options() {
-  std::vector<std::pair<std::string, std::string>> found;
-  for (const auto& name : given_names()) {
-    const auto& roles = solver_roles();
-    const bool known = std::any_of(roles.begin(), roles.end(), [&name](const SolverRole& role) {
-      return name.starts_with(role.prefix);
-    });
-    if (known) found.emplace_back(name, solver_option("-" + name));
-  }
-  std::sort(found.begin(), found.end());
-  return found;
-}
 
 Request request_of(const Settings& settings, Problems& problems) {
   Request request;
@@ -1001,25 +684,6 @@ Request read_request(const std::vector<std::string>& argv) {
   Request request = request_of(settings, problems);
   problems.raise();
   return request;
-}
-
-void shield_formulas(std::vector<std::string>& argv) {
-  for (std::size_t n = 1; n < argv.size(); ++n) {
-    if (is_formula(argv[n - 1], argv[n])) argv[n].insert(0, " ");
-  }
-}
-
-void check_options_files(const std::vector<std::string>& argv) {
-  Problems problems;
-  for (std::size_t n = 0; n < argv.size(); ++n) {
-    if (argv[n] != "-options_file") continue;
-    if (n + 1 == argv.size()) {
-      problems.add("-options_file: names no file; write -options_file scene.opts");
-      break;
-    }
-    check_options_file(argv[n + 1], {}, problems);
-  }
-  problems.raise();
 }
 
 }  // namespace stickslip::options
