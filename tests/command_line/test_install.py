@@ -11,9 +11,16 @@ class Install(Case):
     def setUp(self):
         super().setUp()
         self.prefix = self.folder / "prefix"
+        self.keep(BINARIES / "install_manifest.txt")
         done = subprocess.run(["cmake", "--install", BINARIES, "--prefix", self.prefix],
                               capture_output=True, text=True, env={**os.environ, "DESTDIR": ""})
         self.assertEqual(done.returncode, 0, done.stderr)
+
+    def keep(self, manifest):
+        """Whoever installed from this folder removes by the manifest, which each install rewrites."""
+        before = manifest.read_bytes() if manifest.exists() else None
+        self.addCleanup(lambda: manifest.unlink(missing_ok=True) if before is None
+                        else manifest.write_bytes(before))
 
     def installed(self, folder):
         return {file.name for file in (self.prefix / folder).iterdir()}
