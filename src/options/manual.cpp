@@ -108,10 +108,10 @@ std::string examples() {
 }
 
 std::string files() {
-  return entry("\\fIshare/stickslip/options\\fR", "Options files to start from.") +
-         entry("\\fIshare/doc/stickslip\\fR",
+  return entry("\\fIPREFIX/share/stickslip/options\\fR", "Options files to start from.") +
+         entry("\\fIPREFIX/share/doc/stickslip\\fR",
                "Tutorial, method, format of the output, and other pages.") +
-         entry("\\fIshare/stickslip/plot\\fR", "Scripts that draw what was computed.");
+         entry("\\fIPREFIX/share/stickslip/plot\\fR", "Scripts that draw what was computed.");
 }
 
 constexpr const char* kCompletionHead =

@@ -1,5 +1,10 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "stickslip/options/manual.hpp"
 #include "stickslip/options/table.hpp"
@@ -46,7 +51,9 @@ TEST_CASE("manual page: every option with its form, unit, range and default") {
       const auto text = line_after(page, head.substr(1));
       CHECK_THAT(text, Catch::Contains(roff(option.sentence)));
       CHECK_THAT(text, Catch::Contains(roff(allowed_values(option))));
-      if (!option.unit.empty()) CHECK_THAT(text, Catch::Contains("[" + roff(option.unit) + "]"));
+      if (!option.unit.empty()) {
+        CHECK_THAT(text, Catch::Contains(fmt::format("[{}]", roff(option.unit))));
+      }
       if (!option.initial.empty()) {
         CHECK_THAT(text, Catch::Contains("default " + roff(option.initial) + "."));
       }
