@@ -19,6 +19,7 @@
 #include "stickslip/io/provenance.hpp"
 #include "stickslip/io/report.hpp"
 #include "stickslip/io/study_report.hpp"
+#include "stickslip/options/manual.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/options/table.hpp"
 #include "stickslip/petsc/blas.hpp"
@@ -58,6 +59,8 @@ std::string text_asked_for(const std::vector<std::string>& words) {
   if (asked("-help") || asked("--help") || asked("-h")) return options::help_text();
   if (asked("-version") || asked("--version")) return io::version_text();
   if (asked("-reference")) return options::reference_page();
+  if (asked("-man_page")) return options::man_page(io::version_number());
+  if (asked("-completion")) return options::completion();
   return "";
 }
 

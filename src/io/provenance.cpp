@@ -63,6 +63,8 @@ std::vector<std::pair<std::string, std::string>> provenance(MPI_Comm comm) {
           {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))}};
 }
 
+std::string version_number() { return kVersion; }
+
 std::string version_text() {
   return fmt::format("stickslip {} ({}, {} scalars)\nPETSc {}, SLEPc {}, BLAS {}\n", kVersion,
                      kCommit, scalar_type(), petsc_version(), slepc_version(),

@@ -279,26 +279,23 @@ std::string number(double value) {
   return fmt::format("{:g}", value);
 }
 
-std::string kind_name(Kind kind) {
-  switch (kind) {
-  case Kind::real: return "number";
-  case Kind::integer: return "integer";
-  case Kind::choice: return "word";
-  case Kind::list: return "list";
-  case Kind::numbers: return "numbers";
-  case Kind::text: return "text";
-  case Kind::flag: return "flag";
-  case Kind::path:
-  case Kind::input: return "file";
-  }
-  return "";
-}
-
 // A cell of a Markdown table, where a bar would end it.
 std::string cell(const std::string& text) {
   std::string escaped;
   for (char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
   return escaped.empty() ? " " : escaped;
+}
+
+std::string other_help() {
+  std::string text = "\nOther:\n";
+  for (const auto& other : other_options()) {
+    text += fmt::format("  {:<18} {}\n", other.name, wrap(other.sentence, 76, 21));
+  }
+  std::string meanings;
+  for (const auto& [status, meaning] : exit_meanings()) {
+    meanings += fmt::format("{}{} {}", meanings.empty() ? "" : "; ", status, meaning);
+  }
+  return text + fmt::format("\n{}.\n", wrap("Exit status: " + meanings, 88, 0));
 }
 
 }  // namespace
@@ -319,6 +316,35 @@ std::span<const Group> table() {
   return groups;
 }
 
+std::span<const OtherOption> other_options() {
+  static const std::vector<OtherOption> others{
+      {"-options_file", "read options from a file, one -name value a line, # for comments"},
+      {"-help", "print all options and stop"},
+      {"-version", "print the versions of the program and its libraries and stop"},
+      {"-reference", "print the reference page in Markdown and stop"},
+      {"-man_page", "print the manual page in roff and stop"},
+      {"-completion", "print the completion of the command line for bash and stop"},
+      {"-slide_...",
+       "PETSc options of the solver for the sliding operator, for example -slide_ksp_view, or "
+       "-slide_pc_type with levels, p_multigrid or lu (by MUMPS)"},
+      {"-null_..., -relax_...",
+       "SLEPc options of the eigensolvers of -route null_vector and of relaxation, for example "
+       "-relax_eps_nev 10 or -null_eps_view"},
+      {"-log_view, ...", "PETSc's own options"},
+  };
+  return others;
+}
+
+std::span<const ExitMeaning> exit_meanings() {
+  static const std::vector<ExitMeaning> meanings{
+      {0, "done"},
+      {1, "other error"},
+      {2, "bad input"},
+      {3, "accuracy not reached or a solver failed (what was reached is still written)"},
+      {4, "would not fit in memory"}};
+  return meanings;
+}
+
 const Option* find(std::string_view name) {
   for (const auto& group : table()) {
     for (const auto& option : group.options) {
@@ -329,11 +355,29 @@ const Option* find(std::string_view name) {
 }
 
 std::vector<std::string> all_names() {
-  std::vector<std::string> names{"-help", "-version", "-reference", "-options_file"};
+  std::vector<std::string> names;
+  for (const auto& other : other_options()) {
+    if (other.name.find("...") == std::string::npos) names.push_back(other.name);
+  }
   for (const auto& group : table()) {
     for (const auto& option : group.options) names.push_back("-" + option.name);
   }
   return names;
+}
+
+std::string kind_name(Kind kind) {
+  switch (kind) {
+  case Kind::real: return "number";
+  case Kind::integer: return "integer";
+  case Kind::choice: return "word";
+  case Kind::list: return "list";
+  case Kind::numbers: return "numbers";
+  case Kind::text: return "text";
+  case Kind::flag: return "flag";
+  case Kind::path:
+  case Kind::input: return "file";
+  }
+  return "";
 }
 
 std::string allowed_values(const Option& option) {
@@ -373,20 +417,7 @@ std::string help_text() {
                76, 21));
     }
   }
-  text +=
-      "\nOther:\n"
-      "  -options_file      read options from a file, one -name value a line, # for comments\n"
-      "  -help, -version    print this text, or the versions, and stop\n"
-      "  -reference         print the reference page in Markdown and stop\n"
-      "  -slide_...         PETSc options of the solver for the sliding operator, for example\n"
-      "                     -slide_ksp_view, or -slide_pc_type with levels, p_multigrid or lu\n"
-      "                     (by MUMPS)\n"
-      "  -null_..., -relax_...  SLEPc options of the eigensolvers of -route null_vector and of\n"
-      "                     relaxation, for example -relax_eps_nev 10 or -null_eps_view\n"
-      "  -log_view, ...     PETSc's own options\n\n"
-      "Exit status: 0 done; 1 other error; 2 bad input; 3 accuracy not reached or a solver\n"
-      "failed (what was reached is still written); 4 would not fit in memory.\n";
-  return text;
+  return text + other_help();
 }
 
 std::string reference_page() {

@@ -10,7 +10,8 @@ import unittest
 
 BINARIES = pathlib.Path(os.environ["STICKSLIP_BINARIES"])
 SOURCES = pathlib.Path(__file__).resolve().parents[2]
-TWINS = ("stickslip", "stickslip-complex")
+VARIANTS = os.environ.get("STICKSLIP_VARIANTS", "real,complex").split(",")
+TWINS = ("stickslip", "stickslip-complex") if "complex" in VARIANTS else ("stickslip",)
 
 
 def run(*options, twin="stickslip", ranks=0, folder=None, environment=None):

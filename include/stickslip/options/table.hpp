@@ -52,14 +52,34 @@ struct Group {
   std::vector<Option> options;
 };
 
+/// What is no option of the table: texts that end the run, and families of PETSc's own options.
+struct OtherOption {
+  std::string name;  ///< with its dash; with dots, a family
+  std::string sentence;
+};
+
+struct ExitMeaning {
+  int status;
+  std::string meaning;
+};
+
 /// All options by group, in the order of the help text.
 [[nodiscard]] std::span<const Group> table();
+
+/// Options outside the table, in the order of the help text.
+[[nodiscard]] std::span<const OtherOption> other_options();
+
+/// Every exit status.
+[[nodiscard]] std::span<const ExitMeaning> exit_meanings();
 
 /// The option of that name (without dash), or nullptr.
 [[nodiscard]] const Option* find(std::string_view name);
 
 /// Names with their dash, for suggestions.
 [[nodiscard]] std::vector<std::string> all_names();
+
+/// "number", "word", "file", ...: what stands after the name.
+[[nodiscard]] std::string kind_name(Kind kind);
 
 /// "a real number in (0, inf)", "one of linear, none or cubic", ...
 [[nodiscard]] std::string allowed_values(const Option& option);

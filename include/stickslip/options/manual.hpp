@@ -1,0 +1,20 @@
+#pragma once
+/// The manual page and the completion of the command line, made from the table of options.
+
+#include <string>
+#include <string_view>
+
+namespace stickslip::options {
+
+/// `text` as one line of running text in roff: no character acts as a command, and dashes can be
+/// copied from the page.
+[[nodiscard]] std::string roff(std::string_view text);
+
+/// The manual page of section 1 in roff, for the program's version. It bears no date, so that the
+/// same sources give the same page.
+[[nodiscard]] std::string man_page(std::string_view version);
+
+/// A script that lets bash complete names of options, their words, and files.
+[[nodiscard]] std::string completion();
+
+}  // namespace stickslip::options

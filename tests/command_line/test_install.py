@@ -1,0 +1,61 @@
+"""What `cmake --install` puts under a prefix works from there."""
+
+import os
+import subprocess
+import unittest
+
+from stickslip import BINARIES, Case, TWINS
+
+
+class Install(Case):
+    def setUp(self):
+        super().setUp()
+        self.prefix = self.folder / "prefix"
+        self.keep(BINARIES / "install_manifest.txt")
+        done = subprocess.run(["cmake", "--install", BINARIES, "--prefix", self.prefix],
+                              capture_output=True, text=True, env={**os.environ, "DESTDIR": ""})
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def keep(self, manifest):
+        """Whoever installed from this folder removes by the manifest, which each install rewrites."""
+        before = manifest.read_bytes() if manifest.exists() else None
+        self.addCleanup(lambda: manifest.unlink(missing_ok=True) if before is None
+                        else manifest.write_bytes(before))
+
+    def installed(self, folder):
+        return {file.name for file in (self.prefix / folder).iterdir()}
+
+    def test_programs_with_page_and_completion(self):
+        self.assertEqual(self.installed("bin"), set(TWINS))
+        self.assertEqual(self.installed("share/man/man1"), {f"{name}.1" for name in TWINS})
+        self.assertEqual(self.installed("share/bash-completion/completions"), set(TWINS))
+        for name in TWINS:
+            for option, file in (("-man_page", f"man/man1/{name}.1"),
+                                 ("-completion", f"bash-completion/completions/{name}")):
+                printed = subprocess.run([self.prefix / "bin" / name, option],
+                                         capture_output=True, text=True, check=True).stdout
+                self.assertEqual((self.prefix / "share" / file).read_text(), printed)
+
+    def test_installed_program_runs_an_installed_file(self):
+        scene = self.prefix / "share/stickslip/options/quickstart.opts"
+        for name in TWINS:
+            done = subprocess.run([self.prefix / "bin" / name, "-options_file", scene],
+                                  cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(done.stdout, r"P_stick +0\.156486168")
+
+    def test_pages_and_scripts_are_there(self):
+        self.assertIn("tutorial.md", self.installed("share/doc/stickslip"))
+        self.assertIn("copyright", self.installed("share/doc/stickslip"))
+        self.assertIn("density.py", self.installed("share/stickslip/plot"))
+        self.assertIn("paper", self.installed("share/stickslip/options"))
+
+    def test_the_manifest_names_every_file(self):
+        """So that removing what it names removes all."""
+        listed = (BINARIES / "install_manifest.txt").read_text().split("\n")
+        files = {str(file) for file in self.prefix.rglob("*") if not file.is_dir()}
+        self.assertEqual(set(filter(None, listed)), files)
+
+
+if __name__ == "__main__":
+    unittest.main()
