@@ -118,6 +118,13 @@ TEST_CASE(
              Catch::StartsWith("at mu_d = 2, tau = 0.5 and 2 more points: "));
 }
 
+TEST_CASE("sweep: of many different complaints eight are told, and how many more there are") {
+  const std::string told = complaint({{"-sweep_mu_d", "2:11:10"}});
+  CHECK_THAT(told, Catch::Contains("-mu_d = 9:") && Catch::EndsWith("\nand 2 more like these"));
+  CHECK(told.find("-mu_d = 10:") == told.npos);
+  CHECK(complaint({{"-sweep_mu_d", "2:9:8"}}).find("more like these") == told.npos);
+}
+
 TEST_CASE("sweep: files belong to the whole, and its own options are useless without it") {
   const Request r = read({{"-sweep_tau", "1,2"},
                           {"-summary", "s.json"},

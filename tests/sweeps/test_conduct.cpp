@@ -1,6 +1,10 @@
 #include "stickslip/sweeps/conduct.hpp"
 
+#include <hdf5.h>
+
+#include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <fstream>
 
 #include "../common/options.hpp"
@@ -9,6 +13,7 @@
 #include "stickslip/petsc/ledger.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
+#include "stickslip/support/hdf5_id.hpp"
 #include "stickslip/sweeps/report.hpp"
 
 using namespace stickslip;
@@ -207,4 +212,43 @@ TEST_CASE("sweeps: CSV quotes what holds a comma and leaves gaps where there is 
   CHECK_THAT(table, Catch::Contains("mu_d = 0.75: failed") &&
                         Catch::Contains("2 of 3 points reached") &&
                         !Catch::Contains("mu_d = swept"));
+}
+
+TEST_CASE("sweeps: ten points that fell short are told of, and how many more there are") {
+  for (const auto& [count, more] : {std::pair{10, ""}, {12, "and 2 more like these\n"}}) {
+    const Request request = read({{"-sweep_mu_d", "0.1:0.9:" + std::to_string(count)}});
+    Conducted sweep;
+    for (int n = 0; n < count; ++n) {
+      sweep.runs.push_back(made_by_hand(static_cast<std::size_t>(n), 2));
+      sweep.runs.back().status = Status::failed;
+      sweep.runs.back().message = "why" + std::to_string(n);
+    }
+    const std::string table = sweep_table(request, sweep, {});
+    CHECK_THAT(table, Catch::Contains("why9\n") && Catch::Contains(more));
+    CHECK((table.find("more like these") != table.npos) == (count == 12));
+    CHECK(table.find("why10") == table.npos);
+  }
+}
+
+TEST_CASE("sweeps: HDF5 keeps both ends of intervals, and gaps where a point has no number") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "out.h5";
+  const Request request = read({{"-sweep_mu_d", "0.25,0.5"}, {"-output", file}});
+  Conducted sweep;
+  sweep.runs = {made_by_hand(0, 2), made_by_hand(1, 3)};
+  sweep.runs[0].results[0].ci95 = {{1.5, 2.75}};
+  sweep.runs[1].results.clear();
+  write_sweep_hdf5(PETSC_COMM_SELF, request, sweep, {});
+  const Hdf5Id id(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const auto first_and_second = [&](const std::string& name) {
+    const Hdf5Id data(H5Dopen2(id, ("/sweep/E(max(x,v))" + name).c_str(), H5P_DEFAULT), H5Dclose);
+    std::array<double, 2> values{};
+    REQUIRE(H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
+    return values;
+  };
+  CHECK(first_and_second("")[0] == 2);
+  CHECK(first_and_second("_error")[0] == 0.125);
+  CHECK(first_and_second("_low")[0] == 1.5);
+  CHECK(first_and_second("_high")[0] == 2.75);
+  CHECK(std::isnan(first_and_second("")[1]));
 }
