@@ -21,9 +21,9 @@
 
 #include "../common/temporary.hpp"
 #include "mutation.hpp"
+#include "stickslip/io/hdf5_file.hpp"
 #include "stickslip/model/drag_law.hpp"
 #include "stickslip/model/observable.hpp"
-#include "stickslip/io/hdf5_file.hpp"
 #include "stickslip/monte_carlo/simulate.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/petsc/check.hpp"
