@@ -43,13 +43,14 @@ DEPENDS_ON_SCALARS = re.compile(r"#include <(petsc(vec|mat|ksp|ts)|slepc(?!versi
 
 
 def included_headers(path, root):
-    for name in re.findall(r'#include "(stickslip/[^"]+)"', path.read_text()):
-        if (root / "include" / name).exists():  # version.hpp is generated
-            yield root / "include" / name
+    for name in re.findall(r'#include "([^"]+)"', path.read_text()):
+        for folder in (root / "include", path.parent):
+            if (folder / name).exists():  # version.hpp is generated
+                yield (folder / name).resolve()
 
 
 def check_scalars(root):
-    for path in source_files(root, "src"):
+    for path in source_files(root, "src", *(f"tests/{module}" for module in MODULES)):
         if module_of(path, root) in SCALAR_MODULES:
             continue
         seen, left = {path}, [path]
@@ -125,7 +126,7 @@ def check_words(root):
 
 
 def main():
-    root = pathlib.Path(sys.argv[1])
+    root = pathlib.Path(sys.argv[1]).resolve()
     complaints = [text for rule in (check_order, check_scalars, check_petsc_calls, check_function_lengths,
                                     check_words) for text in rule(root)]
     print("\n".join(complaints) or "sources follow the rules")
