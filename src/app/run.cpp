@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <mpi.h>
+#include <petscsys.h>
 #include <sys/stat.h>
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 #include "stickslip/options/sweep.hpp"
 
 #include <fmt/format.h>
+#include <petscsys.h>
 
 #include <algorithm>
 #include <map>

@@ -219,6 +219,12 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems, const StationaryLa
     bulk_error = std::max(bulk_error, answers.error[n] / std::abs(answers.value[n]));
   }
   result.shape = shape_of(s, noise.tau, bulk_error, answers.relative_error);
+  // What the integral leaves of c v = E[V^2], known to rounding here, the model has not seen.
+  PetscScalar variance = 0;
+  check(VecTDot(c, b, &variance));
+  auto& integrated = result.shape.variance;
+  integrated.error =
+      std::max(integrated.error, std::abs(integrated.value - PetscRealPart(variance)));
   result.pairs = answers.pairs;
   result.shifts = answers.shifts;
   return result;
