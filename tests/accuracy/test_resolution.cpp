@@ -56,7 +56,7 @@ TEST_CASE("noise range: the first level whose weight with second moments is belo
   for (const auto& c :
        {Case{0.25, 1, 0.125, {1, 0}, 0, 0},              // drag rules
         Case{0.25, 1, 0.125, {0, 0}, 0, 2 * 0.25},       // 2 tau mu_d
-        Case{3, 1, 0.125, {0, 0}, 0, 2},                  // at most 2 sqrt(tau)
+        Case{3, 1, 0.125, {0, 0}, 0, 2},                 // at most 2 sqrt(tau)
         Case{1, 2, 0.125, {0, 0}, 0, 2 * std::sqrt(2)},  // the same
         Case{1, 1, 0.125, {0.9, 0}, 0, 2},               // weak against mu_d^2
         Case{1, 1, 0.125, {1.1, 0}, 0, 0},               // and not
