@@ -151,6 +151,8 @@ TEST_CASE("plan: sizes are those of the run, by the analysis alone") {
       const auto& l = outcome.steps[n].ledger;
       CHECK(foretold.unknowns == l.unknowns);
       CHECK(foretold.nonzeros == l.nonzeros);
+      CHECK(l.nonzeros > 3 * l.unknowns);  // a diagonal, two jumps and transport
+      CHECK(l.nonzeros < 40 * l.unknowns);
       CHECK(foretold.factor_entries > 0.5 * static_cast<double>(l.factor_entries));
       CHECK(foretold.factor_entries < 2 * static_cast<double>(l.factor_entries));
       CHECK(foretold.megabytes <= 2 * l.factor_megabytes + 2);
