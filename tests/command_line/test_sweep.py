@@ -169,7 +169,7 @@ class Files(Case):
         self.run_ok(*SMALL, "-output", "s.h5", "-sweep_csv", "s.csv")
         for file in ("s.h5", "s.csv"):
             subprocess.run([sys.executable, script, file, "-o", "pictures"], cwd=self.folder,
-                           check=True)
+                           check=True, capture_output=True)
             picture = self.folder / "pictures" / "P_stick.png"
             self.assertTrue(picture.read_bytes().startswith(b"\x89PNG"))
             shutil.rmtree(self.folder / "pictures")
