@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -25,7 +26,9 @@ void flush_to_disk(const std::string& file) {
   if (status != 0) fail("cannot flush", file);
 }
 
-void remove_beginning_with(const std::filesystem::path& start) {
+// The part, and what writers put beside it: "name.part12" and "name.part12.lock", but no
+// "name.part123", which belongs to another run.
+void remove_with_companions(const std::filesystem::path& start) {
   std::error_code error;
   const auto folder = start.has_parent_path() ? start.parent_path() : ".";
   const std::string name = start.filename();
@@ -33,7 +36,10 @@ void remove_beginning_with(const std::filesystem::path& start) {
     const std::filesystem::path file = at->path();
     at.increment(error);
     std::error_code kept;
-    if (file.filename().string().starts_with(name)) std::filesystem::remove(file, kept);
+    const std::string found = file.filename().string();
+    const bool ours = found.starts_with(name) &&
+                      (found.size() == name.size() || std::isdigit(found[name.size()]) == 0);
+    if (ours) std::filesystem::remove(file, kept);
   }
 }
 
@@ -42,9 +48,9 @@ void remove_beginning_with(const std::filesystem::path& start) {
 AtomicFile::AtomicFile(std::string target, long tag)
     : target_(std::move(target)), part_(fmt::format("{}.part{}", target_, tag)) {}
 
-// What writers put beside the part goes with it: MPI leaves a lock where a disk was full.
+// MPI leaves a lock beside the part where a disk was full.
 AtomicFile::~AtomicFile() {
-  if (!committed_) remove_beginning_with(part_);
+  if (!committed_) remove_with_companions(part_);
 }
 
 void AtomicFile::commit() {

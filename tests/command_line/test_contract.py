@@ -265,6 +265,14 @@ class Hdf5(Case):
             self.assertAlmostEqual(d["marginal_x"].sum(), 1, 12)
             self.assertIn("out.h5:/density/pdf", (self.folder / "out.xdmf").read_text())
 
+    def test_rows_of_the_density_are_those_of_x(self):
+        self.summary(*SMALL, "-bias", "0.4", "-quantities", "density", "-output", "out.h5")
+        with h5py.File(self.folder / "out.h5") as file:
+            d = {name: numpy.array(file["density"][name]) for name in file["density"]}
+        sliding = numpy.trapezoid if hasattr(numpy, "trapezoid") else numpy.trapz
+        of_rows = sliding(d["pdf"], d["v"], axis=1)
+        numpy.testing.assert_allclose(of_rows, d["marginal_x"] - d["atom"], atol=0.02)
+
     def test_an_old_file_is_replaced_whole(self):
         (self.folder / "out.h5").write_text("old")
         self.run_ok(*self.OPTIONS, "-output", "out.h5")

@@ -50,3 +50,12 @@ TEST_CASE("atomic file: what stands beside the part goes with it, and nothing el
   }
   CHECK(folder.entries() == 1);
 }
+
+TEST_CASE("atomic file: parts of a run whose number begins alike stay") {
+  const TemporaryFolder folder;
+  const auto target = folder / "result";
+  const AtomicFile other(target, 123);
+  std::ofstream(other.part()) << "at work";
+  { const AtomicFile file(target, 12); }
+  CHECK(content(other.part()) == "at work");
+}
