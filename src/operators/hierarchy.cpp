@@ -1,7 +1,6 @@
 #include "stickslip/operators/hierarchy.hpp"
 
 #include <algorithm>
-#include <boost/math/special_functions/legendre.hpp>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -37,7 +36,8 @@ std::shared_ptr<const ElementModes> modes_between(const ReferenceElement& fine,
       modes->restriction[column + c * row] = value[n] * weight / coarse.weight[n];
     }
     for (int k = c; k < q; ++k) {
-      const double mode = std::sqrt(2.0 * k + 1) * boost::math::legendre_p(k, 2 * t - 1);
+      const double mode =
+          std::sqrt(2.0 * k + 1) * std::legendre(static_cast<unsigned>(k), 2 * t - 1);
       modes->from_high[row + q * (k - c)] = mode;
       modes->to_high[k - c + (q - c) * row] = mode * weight;
     }
