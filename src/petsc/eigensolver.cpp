@@ -44,8 +44,8 @@ EpsHandle configured_eigensolver(Mat matrix, const std::string& prefix, double t
   check(EPSGetST(eps, &st));
   check(STSetType(st, STSINVERT));
   set_direct_solver(solver_of(eps));
-  // Each rank would solve the small projected problem by itself, to other last bits where its memory
-  // lies otherwise, and one that finds it converged would leave the others waiting.
+  // Each rank would solve the small projected problem by itself, to other last bits where its
+  // memory lies otherwise, and one that finds it converged would leave the others waiting.
   DS projected = nullptr;
   check(EPSGetDS(eps, &projected));
   check(DSSetParallel(projected, DS_PARALLEL_SYNCHRONIZED));
