@@ -10,10 +10,6 @@ namespace {
 using quantities::Result;
 using quantities::Results;
 
-// What noise range and velocity axis hide was at most 2.3 times their tolerance without drag, and a
-// tenth of it with drag, in scenes for which they were widened alone.
-constexpr double kErrorPerTolerance = 5;
-
 // Relative errors of means are alike within a decade or two. Of 144 scenes with six drags at
 // accuracy 1e-4, 27 had a mean with more error than estimate (up to 1700 times) before.
 constexpr double kShareOfLargest = 0.05;
@@ -33,14 +29,6 @@ void require_rounding(double rounding, Results& results) {
   for (auto& result : results) {
     for (std::size_t e = 0; e < result.value.size(); ++e) {
       result.error[e] = std::max(result.error[e], rounding * std::abs(result.value[e]));
-    }
-  }
-}
-
-void add_truncation(double tolerance, Results& results) {
-  for (auto& result : results) {
-    for (std::size_t e = 0; e < result.value.size(); ++e) {
-      result.error[e] += kErrorPerTolerance * tolerance * std::abs(result.value[e]);
     }
   }
 }

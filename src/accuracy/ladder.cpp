@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stickslip/routes/plan.hpp"
-
 namespace stickslip::accuracy {
 namespace {
 
@@ -16,6 +14,7 @@ constexpr double kErrorPerChange = 1;
 // An error that changes sign makes one change vanish by accident, but not the one before.
 constexpr double kErrorPerEarlierChange = 0.03;
 constexpr int kHighestDegree = 19;
+constexpr int kDegreesLessInNoise = 1;
 
 // First-order differences: the change from p/2 to p is the error at p up to what the order differs
 // from 1 (0.86 to 1.01 was seen for p >= 64; a few points are far from any order).
@@ -48,16 +47,11 @@ velocity::Rates fastest_rates(const options::Request& request) {
 }  // namespace
 
 Ladder::Ladder(const options::Request& request)
-    : scene_(request.scene),
-      method_(request.method),
-      accuracy_(request.accuracy),
-      prefers_iteration_([request](std::int64_t unknowns) {
-        return routes::prefers_iteration(request, unknowns);
-      }) {
+    : scene_(request.scene), method_(request.method), accuracy_(request.accuracy) {
   first_degree_ = method_.degree.value_or(starting_degree(request));
   rates_ = fastest_rates(request);
   halves_ = options::on_full_grid(request.route) || !request.scene.symmetric() ? 2 : 1;
-  nests_ = routes::can_nest(request) && !method_.fixed();
+  all_levels_ = options::on_full_grid(request.route) || method_.noise_degree == 0;
   last_ = method_.fixed() ? 1 : free_rungs();
 }
 
@@ -82,26 +76,35 @@ double Ladder::tail_tolerance(int n) const {
   if (method_.scheme == options::Scheme::upwind) return 1e-3 * std::min(accuracy_, 1e-6);
   if (method_.scheme == options::Scheme::none)
     return std::max(accuracy_ * std::pow(1e-2, n), 1e-18);
-  const int finest = nests_ ? n - n % 3 + 1 : n;  // the third one seldom is needed
-  return std::max(std::pow(10.0, -(degree(finest) + 3)), 1e-18);
+  return std::max(std::pow(10.0, -(degree(n) + 3)), 1e-18);
 }
 
-Resolution Ladder::rung(int n) const {
+noise::Grouping Ladder::grouping(int n) const {
+  noise::Grouping grouping;
+  if (all_levels_) return grouping;
+  grouping.grading = method_.noise_grading;
+  grouping.degree = std::max(2, method_.noise_degree ? *method_.noise_degree + n - 1
+                                                     : degree(n) - kDegreesLessInNoise);
+  return grouping;
+}
+
+const Resolution& Ladder::rung(int n) const {
+  const auto known = rungs_.find(n);
+  return known != rungs_.end() ? known->second : rungs_.emplace(n, made(n)).first->second;
+}
+
+Resolution Ladder::made(int n) const {
   Resolution r;
   switch (method_.scheme) {
   case options::Scheme::hp:
-    r = hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n), rates_);
+    r = hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n), rates_,
+                      grouping(n));
     break;
   case options::Scheme::upwind: r = upwind_resolution(scene_, points(n), tail_tolerance(n)); break;
   case options::Scheme::none: r = exact_resolution(scene_, tail_tolerance(n)); break;
   }
   r.halves = halves_;
   r.factors = method_.factors;
-  r.nested = is_nested(n);
-  const bool hp = method_.scheme == options::Scheme::hp;
-  if (hp && r.factors == options::Factors::own && prefers_iteration_(unknowns(scene_, r))) {
-    r.factors = options::Factors::p_multigrid;
-  }
   return r;
 }
 

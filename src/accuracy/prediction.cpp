@@ -21,33 +21,20 @@ struct Speed {
   double share, per_entry, per_entry_solved;
   bool on_all_ranks;  // or on one after the other
 };
-constexpr Speed kByLevels{0.8, 1e-8, 1.5e-9, false};
+constexpr Speed kByElements{0.8, 1e-8, 1.5e-9, false};
 constexpr Speed kByMumps{0.35, 8e-9, 2.5e-9, true};
-// An iteration pays for each unknown; fitted for delta = 1/128 ... 1/512 and degrees 7 ... 11. Of
-// it the coarse problem, solved by one rank after the other, takes a share.
-constexpr double kIteratedSetUp = 5e-7, kIteratedSolve = 1.6e-6, kCoarseShare = 0.4;
-constexpr double kSharedSetUp = 0.5;         // of that of a first step
 constexpr double kSecondsPerNonzero = 5e-9;  // of a residual
 constexpr double kFixedSeconds = 5e-4;       // of a factorisation
-// A nested step pays for each unknown, and for two solutions through the factors of the step
-// before; where it iterates, its guess saves a third.
-constexpr double kNestedWork = 3e-7;
-constexpr int kNestedSolutions = 2;
-constexpr double kLeftByGuess = 0.7;
 
 class Predictor {
  public:
   Predictor(MPI_Comm comm, const options::Request& request, const Resolution& resolution)
-      : comm_(comm),
-        request_(request),
-        process_(request.scene.process(resolution.levels)),
-        axis_(make_axis(request.scene, resolution)) {
+      : comm_(comm), request_(request), discretisation_(discretise(request.scene, resolution)) {
     step_.resolution = resolution;
     step_.unknowns = unknowns(request.scene, resolution);
   }
 
-  PredictedStep follow(const routes::Plan& plan, const std::vector<PredictedStep>& before) {
-    if (step_.resolution.shares_factors()) return follow_nested(before.back());
+  PredictedStep follow(const routes::Plan& plan) {
     for (const auto& key : plan.systems()) assemble(key);
     for (const auto& task : plan.tasks) step_.seconds += seconds_of(task);
     return step_;
@@ -59,34 +46,20 @@ class Predictor {
   };
 
   [[nodiscard]] routes::Setting setting(petsc::Ledger& ledger) const {
-    return {comm_, request_, process_, axis_, ledger};
-  }
-
-  PredictedStep follow_nested(const PredictedStep& base) {
-    petsc::Ledger ledger;
-    routes::assemble_by_elements(setting(ledger));
-    step_.unknowns = ledger.unknowns;
-    step_.nonzeros = ledger.nonzeros;
-    const double parallel = kNestedWork * static_cast<double>(ledger.unknowns);
-    step_.seconds = ledger.assembly_seconds + parallel / petsc::ranks(comm_) +
-                    kNestedSolutions * base.seconds_per_solution;
-    return step_;
+    return {comm_, request_, discretisation_, ledger};
   }
 
   const Foretold& assemble(const SystemKey& key) {
     const auto known = systems_.find(key);
     if (known != systems_.end()) return known->second;
     petsc::Ledger ledger;
-    const bool iterates = step_.resolution.factors == options::Factors::p_multigrid;
-    const auto analysis = routes::analyse(setting(ledger), key, iterates);
+    const auto analysis = routes::analyse(setting(ledger), key);
     step_.unknowns = std::max<std::int64_t>(step_.unknowns, ledger.unknowns);
     step_.nonzeros = std::max(step_.nonzeros, ledger.nonzeros);
     step_.factor_entries = std::max(step_.factor_entries, analysis.factor_entries);
     step_.megabytes = std::max(step_.megabytes, analysis.megabytes);
     step_.operations += analysis.operations;
-    Foretold f = analysis.solver == petsc::Solver::p_multigrid
-                     ? iterated(static_cast<double>(ledger.unknowns))
-                     : factored(analysis, static_cast<double>(ledger.nonzeros));
+    Foretold f = factored(analysis, static_cast<double>(ledger.nonzeros));
     f.assembly = ledger.assembly_seconds;
     f.factorization += ledger.analysis_seconds;
     // The first task that uses it pays for it.
@@ -95,7 +68,7 @@ class Predictor {
   }
 
   [[nodiscard]] Foretold factored(const petsc::Analysis& analysis, double nonzeros) {
-    const Speed& speed = analysis.solver == petsc::Solver::levels ? kByLevels : kByMumps;
+    const Speed& speed = analysis.solver == petsc::Solver::elements ? kByElements : kByMumps;
     const int ranks = petsc::ranks(comm_), sharing = speed.on_all_ranks ? ranks : 1;
     Foretold f;
     f.factorization = kFixedSeconds + (analysis.operations / (speed.share * speed_) +
@@ -108,16 +81,6 @@ class Predictor {
     return f;
   }
 
-  [[nodiscard]] Foretold iterated(double unknowns) const {
-    const double share = kCoarseShare + (1 - kCoarseShare) / petsc::ranks(comm_);
-    Foretold f;
-    const bool nested = step_.resolution.nested;
-    f.factorization =
-        kFixedSeconds + kIteratedSetUp * unknowns * share * (nested ? kSharedSetUp : 1);
-    f.solve = kIteratedSolve * unknowns * share * (nested ? kLeftByGuess : 1);
-    return f;
-  }
-
   double seconds_of(const routes::Task& task) {
     double seconds = 0;
     for (const auto& use : task.uses) {
@@ -125,7 +88,7 @@ class Predictor {
     }
     if (task.derivatives == 0 && !task.adaptive) return seconds;
     // Operators of its own look like the sliding operator.
-    const Foretold& like = assemble({0, operators::symmetry_of(process_)});
+    const Foretold& like = assemble({0, operators::symmetry_of(discretisation_.process)});
     return seconds + task.derivatives * like.assembly +
            task.usual_factorizations * (like.assembly + like.factorization) +
            task.usual_solves * like.solve;
@@ -133,8 +96,7 @@ class Predictor {
 
   MPI_Comm comm_;
   const options::Request& request_;
-  model::Process process_;
-  std::shared_ptr<const velocity::Axis> axis_;
+  operators::Discretisation discretisation_;
   PredictedStep step_;
   std::map<SystemKey, Foretold> systems_;
   double speed_ = petsc::measured_speed();
@@ -150,14 +112,13 @@ Prediction predict(MPI_Comm comm, const options::Request& request) {
   const Ladder ladder(request);
   require_memory(comm, request, ladder.rung(1));
   for (int n = 0; n <= 1; ++n) {
-    const Resolution resolution = ladder.rung(n);
+    const Resolution& resolution = ladder.rung(n);
     if (prediction.plan.tasks.empty()) {
       PredictedStep step{resolution, unknowns(request.scene, resolution)};
       step.megabytes = predicted_bytes(request.scene, resolution) / 1e6;
       prediction.steps.push_back(step);
     } else {
-      prediction.steps.push_back(
-          Predictor(comm, request, resolution).follow(prediction.plan, prediction.steps));
+      prediction.steps.push_back(Predictor(comm, request, resolution).follow(prediction.plan));
     }
     prediction.seconds += prediction.steps.back().seconds;
   }

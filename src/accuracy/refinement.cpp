@@ -25,25 +25,18 @@ using quantities::StationaryLaw;
 
 std::string gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / 1e9); }
 
-/// A step, which `evaluate` makes of its setting.
-template <class Evaluate>
-Solved stepped(MPI_Comm comm, const options::Request& request, const Resolution& resolution,
-               Evaluate evaluate) {
+Solved evaluated(MPI_Comm comm, const options::Request& request, const Resolution& resolution) {
   Solved solved;
   Step& step = solved.step;
   step.resolution = resolution;
   const double start = petsc::wall_seconds();
-  const routes::Setting setting{comm, request, request.scene.process(resolution.levels),
-                                make_axis(request.scene, resolution), step.ledger};
-  solved.evaluation = evaluate(setting);
-  require_rounding(model::rounding_of_sums(setting.process.noise), solved.evaluation.results);
+  const routes::Setting setting{comm, request, discretise(request.scene, resolution), step.ledger};
+  solved.evaluation = routes::evaluate(setting);
+  require_rounding(model::rounding_of_sums(setting.discretisation.process.noise),
+                   solved.evaluation.results);
   step.checks = std::move(solved.evaluation.checks);
   step.seconds = petsc::wall_seconds() - start;
   return solved;
-}
-
-Solved evaluated(MPI_Comm comm, const options::Request& request, const Resolution& resolution) {
-  return stepped(comm, request, resolution, routes::evaluate);
 }
 
 // Beyond the levels and the axis of the first discretisation there is nothing but extrapolation.
@@ -62,15 +55,6 @@ void require_start_within(const options::Request& request, const Resolution& fir
     refuse("v", first.v_max, "-quantities trajectory, which starts anywhere");
   }
 }
-
-/// A discretisation whose factors serve the next ones.
-struct Base {
-  Base(const Resolution& resolution, const routes::Setting& s)
-      : of(resolution), evaluation({s.comm, s.request, s.process, s.axis, ledger}) {}
-  Resolution of;
-  petsc::Ledger ledger;  // of the factors, which go on counting
-  routes::NestedEvaluation evaluation;
-};
 
 class Refiner {
  public:
@@ -104,18 +88,15 @@ class Refiner {
   }
 
   [[nodiscard]] bool fits(const Resolution& resolution) const {
-    double need = predicted_bytes(request_.scene, resolution);
-    if (base_ && resolution.shares_factors()) need -= predicted_bytes(request_.scene, base_->of);
+    const double need = predicted_bytes(request_.scene, resolution);
     return need <= petsc::available_bytes(comm_, need);
   }
 
   void solve(int n) {
-    const Resolution resolution = ladder_.rung(n);
+    const Resolution& resolution = ladder_.rung(n);
     if (progress_) progress_(n, resolution, expected_seconds(resolution));
-    auto [evaluation, step] = solved_on(n, resolution);
-    if (!step.resolution.nested) remember_rounding(evaluation.results);
-    // Truncated where the one before is, also when it had to be solved by itself.
-    if (resolution.nested) add_truncation(ladder_.tail_tolerance(n), evaluation.results);
+    auto [evaluation, step] = evaluated(comm_, request_, resolution);
+    remember_rounding(evaluation.results);
     if (n >= 1) add_discretisation(n, evaluation.results);
     outcome_.results = std::move(evaluation.results);
     outcome_.even = std::move(evaluation.even);
@@ -123,28 +104,6 @@ class Refiner {
     follow(std::move(evaluation.law));
     outcome_.total += step.ledger;
     outcome_.steps.push_back(std::move(step));
-  }
-
-  [[nodiscard]] Solved solved_on(int n, Resolution resolution) {
-    if (resolution.nested && base_) {
-      try {
-        return stepped(comm_, request_, resolution, [this](const routes::Setting& setting) {
-          return base_->evaluation.finer(setting);
-        });
-      } catch (const NotReached&) {
-        // By itself, then.
-      }
-    }
-    resolution.nested = false;
-    base_.reset();
-    if (n == ladder_.last() || !ladder_.rung(n + 1).nested) {
-      return evaluated(comm_, request_, resolution);
-    }
-    return stepped(comm_, request_, resolution, [&](const routes::Setting& setting) {
-      base_ = std::make_unique<Base>(resolution, setting);
-      setting.ledger += base_->ledger;
-      return base_->evaluation.coarse();
-    });
   }
 
   [[nodiscard]] double expected_seconds(const Resolution& next) const {
@@ -220,9 +179,7 @@ class Refiner {
     double seconds = 0;
     for (const Step& step : steps) seconds += step.seconds;
     const auto work = [this](int rung) {
-      Resolution alone = ladder_.rung(rung);
-      alone.nested = false;
-      return relative_work(request_.scene, alone);
+      return relative_work(request_.scene, ladder_.rung(rung));
     };
     return seconds * work(n + more) / work(n);
   }
@@ -273,8 +230,7 @@ class Refiner {
   const Progress& progress_;
   Ladder ladder_;
   Outcome outcome_;
-  std::unique_ptr<Base> base_;    // of the next rungs that are nested
-  std::vector<double> rounding_;  // relative, of each result
+  std::vector<double> rounding_;                                    // relative, of each result
   double last_rounding_ = std::numeric_limits<double>::infinity();  // of the limiting result
   Changes changes_;                                                 // of the last step
   std::shared_ptr<const StationaryLaw> law_;                        // of the last step, if needed

@@ -1,10 +1,14 @@
 #include "stickslip/accuracy/resolution.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "stickslip/petsc/memory.hpp"
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/support/errors.hpp"
 #include "stickslip/velocity/hp_axis.hpp"
 #include "stickslip/velocity/mesh.hpp"
 #include "stickslip/velocity/upwind_axis.hpp"
@@ -44,6 +48,14 @@ double tilt(const model::Scene& scene) {
   return 2 * scene.tau * std::min(mu_d, most);
 }
 
+bool by_elements(const Resolution& r) {
+  if (r.scheme != options::Scheme::hp) return false;
+  const bool own = r.factors == options::Factors::own &&
+                   r.noise_nodes() <= operators::kMostNodesByElements &&
+                   petsc::ranks(PETSC_COMM_WORLD) == 1;
+  return own || r.factors == options::Factors::elements;
+}
+
 std::shared_ptr<velocity::Axis> axis_of(const model::Scene& scene, const Resolution& resolution,
                                         const model::Drag& drag) {
   if (resolution.scheme == options::Scheme::upwind) {
@@ -53,6 +65,20 @@ std::shared_ptr<velocity::Axis> axis_of(const model::Scene& scene, const Resolut
   }
   const auto ends = velocity::element_ends(scene.process(resolution.levels), mesh_rule(resolution));
   return std::make_shared<velocity::HpAxis>(ends, hp_degrees(scene, resolution), drag);
+}
+
+// Groups keep what stands for each of their levels.
+std::shared_ptr<const noise::Nodes> grouped(const model::Process& process,
+                                            const noise::Grouping& grouping) {
+  if (grouping.degree == 0) return nullptr;
+  const double levels = 2.0 * process.noise.levels + 1;
+  const double need = 24 * levels * (grouping.degree + 2);
+  if (need > petsc::available_bytes(PETSC_COMM_SELF, need)) {
+    throw NoMemory(fmt::format("{:.3g} noise levels would need {:.2g} GB of memory; take fewer "
+                               "-noise_levels or a larger -delta",
+                               levels, need / 1e9));
+  }
+  return std::make_shared<noise::Nodes>(process, grouping);
 }
 
 }  // namespace
@@ -82,7 +108,7 @@ double velocity_end(const model::Scene& scene, int levels, double tolerance) {
 }
 
 Resolution hp_resolution(const model::Scene& scene, int degree, int layers, double tolerance,
-                         const velocity::Rates& rates) {
+                         const velocity::Rates& rates, const noise::Grouping& grouping) {
   Resolution r;
   r.scheme = options::Scheme::hp;
   r.degree = degree;
@@ -90,6 +116,8 @@ Resolution hp_resolution(const model::Scene& scene, int degree, int layers, doub
   r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
   r.v_max = velocity_end(scene, r.levels, tolerance);
   r.layers = layers > 0 ? layers : velocity::natural_layers(scene.process(r.levels), mesh_rule(r));
+  r.grouping = grouping;
+  r.noise = grouped(scene.process(r.levels), grouping);
   return r;
 }
 
@@ -109,14 +137,13 @@ Resolution exact_resolution(const model::Scene& scene, double tolerance) {
   return r;
 }
 
-std::shared_ptr<const velocity::Axis> make_axis(const model::Scene& scene,
-                                                const Resolution& resolution) {
-  if (resolution.scheme == options::Scheme::none) return nullptr;
-  auto axis = axis_of(scene, resolution, scene.drag);
-  if (!scene.drag.odd()) {
-    axis->set_mirrored(axis_of(scene, resolution, scene.drag.mirrored()));
+operators::Discretisation discretise(const model::Scene& scene, const Resolution& resolution) {
+  std::shared_ptr<velocity::Axis> axis;
+  if (resolution.scheme != options::Scheme::none) {
+    axis = axis_of(scene, resolution, scene.drag);
+    if (!scene.drag.odd()) axis->set_mirrored(axis_of(scene, resolution, scene.drag.mirrored()));
   }
-  return axis;
+  return {scene.process(resolution.levels), std::move(axis), resolution.noise};
 }
 
 std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution) {
@@ -127,46 +154,38 @@ std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution) {
   } else if (resolution.scheme == options::Scheme::upwind) {
     nodes = upwind_nodes(scene, resolution);
   }
-  const double total = (2.0 * resolution.levels + 1) * nodes * resolution.halves;
+  const double total = static_cast<double>(resolution.noise_nodes()) * nodes * resolution.halves;
   constexpr double most = 9e18;
   return static_cast<std::int64_t>(std::min(total, most));
 }
 
-// Entries of the factors: by levels, 1.05 to 1.08 n n_v were counted on hp axes for delta = 1/4 ...
-// 1/256 (n unknowns, n_v of them on a level), 0.6 to 0.8 where both halves are kept, and 2 on other
-// axes, where nothing is triangular; by MUMPS 2.7 to 3.2 n n_v. The upwind matrix is a
+// Entries of the factors: by elements what ElementElimination counts, about; by MUMPS 2.7 to 3.2 n
+// n_v (n unknowns, n_v of them on a noise node) on hp axes with all levels. The upwind matrix is a
 // two-dimensional grid to MUMPS, where the shorter side m decides: 4.5 n m^0.52 entries were
 // counted for m = 65 ... 257. MUMPS takes 9 to 12 bytes a real entry; the matrix, its magnitudes
 // and MUMPS's copy come on top.
 double predicted_bytes(const model::Scene& scene, const Resolution& resolution) {
   const auto n = static_cast<double>(unknowns(scene, resolution));
-  const double levels = 2.0 * resolution.levels + 1;
-  const double nodes = n / levels;
+  const auto noise = static_cast<double>(resolution.noise_nodes());
+  const double nodes = n / noise;
   const double scalars = petsc::complex_scalars() ? 2 : 1;
   if (resolution.scheme == options::Scheme::none) {
     constexpr double dense_matrices = 30;
     return 8 * dense_matrices * n * n;
   }
   const bool upwind = resolution.scheme == options::Scheme::upwind;
-  const double row = upwind ? 4 : 2.0 * resolution.degree + 4;  // entries of a row of the matrix
-  if (resolution.shares_factors()) {
-    Resolution base = resolution;
-    base.nested = false;
-    --base.degree;
-    return predicted_bytes(scene, base) + scalars * 200 * n;
-  }
+  const double degree = resolution.degree;
+  const double row = upwind ? 4 : degree + 2.0 * resolution.grouping.degree + 6;
   const double factors =
-      upwind ? 12 * 4.5 * n * std::pow(std::min(levels, nodes), 0.52) : 10 * 3.0 * n * nodes;
-  const bool by_levels = resolution.factors == options::Factors::levels ||
-                         (resolution.factors == options::Factors::own && !upwind);
-  if (by_levels) {
-    const double entries = upwind ? 2.0 : (resolution.halves == 2 ? 0.8 : 1.1);
-    return scalars * (8 * entries * n * nodes + 40 * row * n);
+      upwind ? 12 * 4.5 * n * std::pow(std::min(noise, nodes), 0.52) : 10 * 3.0 * n * nodes;
+  if (by_elements(resolution)) {
+    const double elements = nodes / std::max(1.0, degree - 1);
+    const double inside = (resolution.grouping.degree + 4) * degree * n;
+    return scalars * (8 * (1.4 * elements * noise * noise + inside) + 40 * row * n);
   }
   switch (resolution.factors) {
-  case options::Factors::p_multigrid: return scalars * 500 * n;
   case options::Factors::own:
-  case options::Factors::levels:
+  case options::Factors::elements:
   case options::Factors::in_memory: return scalars * (factors + 60 * row * n);
   case options::Factors::on_disk: return scalars * (0.3 * factors + 60 * row * n);
   case options::Factors::incomplete: break;
@@ -176,12 +195,11 @@ double predicted_bytes(const model::Scene& scene, const Resolution& resolution) 
 
 double relative_work(const model::Scene& scene, const Resolution& resolution) {
   const auto n = static_cast<double>(unknowns(scene, resolution));
-  const double levels = 2.0 * resolution.levels + 1;
+  const auto noise = static_cast<double>(resolution.noise_nodes());
   if (resolution.scheme == options::Scheme::none) return n * n * n;
-  const double band = std::min(levels, n / levels);
+  const double nodes = n / noise, band = std::min(noise, nodes);
   if (resolution.scheme == options::Scheme::upwind) return n * band;
-  constexpr double share_of_nested = 0.4;
-  return n * (n / levels) * band * (resolution.shares_factors() ? share_of_nested : 1);
+  return by_elements(resolution) ? n * noise * noise / resolution.degree : n * nodes * band;
 }
 
 }  // namespace stickslip::accuracy

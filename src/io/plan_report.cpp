@@ -47,11 +47,10 @@ std::string task_lines(const options::Request& request, const routes::Task& task
 }
 
 std::string step_line(const accuracy::PredictedStep& step, std::size_t number) {
-  const std::string factors =
-      step.resolution.shares_factors() ? "those above" : fmt::format("{:.4g}", step.factor_entries);
-  return fmt::format("{:<4} {} {:>7} {:>8.4g} {:>9} {:>10} {:>14} {:>8.0f} {:>9.3g}\n", number,
-                     axis_cells(step.resolution), step.resolution.levels, step.resolution.v_max,
-                     step.unknowns, step.nonzeros, factors, step.megabytes, step.seconds);
+  return fmt::format("{:<4} {} {:>7} {:>6} {:>8.4g} {:>9} {:>10} {:>14.4g} {:>8.0f} {:>9.3g}\n",
+                     number, axis_cells(step.resolution), step.resolution.levels,
+                     step.resolution.noise_nodes(), step.resolution.v_max, step.unknowns,
+                     step.nonzeros, step.factor_entries, step.megabytes, step.seconds);
 }
 
 Json step_json(const accuracy::PredictedStep& step) {
@@ -96,9 +95,9 @@ std::string plan_table(const options::Request& request, const accuracy::Predicti
   text += fmt::format("in all {}{} assemblies, {} factorisations, {} solves\n\n",
                       plan.adaptive() ? "at least " : "", plan.assemblies(), plan.factorizations(),
                       plan.solves());
-  text += fmt::format("step {} {:>7} {:>8} {:>9} {:>10} {:>14} {:>8} {:>9}\n",
-                      axis_title(request.method.scheme), "levels", "v_max", "unknowns", "nonzeros",
-                      "factor entries", "MB", "seconds");
+  text += fmt::format("step {} {:>7} {:>6} {:>8} {:>9} {:>10} {:>14} {:>8} {:>9}\n",
+                      axis_title(request.method.scheme), "levels", "nodes", "v_max", "unknowns",
+                      "nonzeros", "factor entries", "MB", "seconds");
   for (std::size_t n = 0; n < prediction.steps.size(); ++n) {
     text += step_line(prediction.steps[n], n);
   }

@@ -60,8 +60,8 @@ Json resolution_json(const accuracy::Resolution& r) {
     json = {{"scheme", "hp"},
             {"degree", r.degree},
             {"layers", r.layers},
-            {"v_max", r.v_max},
-            {"nested", r.nested}};
+            {"noise_degree", r.grouping.degree},
+            {"v_max", r.v_max}};
     break;
   case options::Scheme::upwind:
     json = {{"scheme", "upwind"}, {"p", r.points}, {"v_max", r.v_max}};
@@ -69,6 +69,7 @@ Json resolution_json(const accuracy::Resolution& r) {
   case options::Scheme::none: json = {{"scheme", "none"}}; break;
   }
   json["noise_levels"] = r.levels;
+  json["noise_nodes"] = r.noise_nodes();
   return json;
 }
 

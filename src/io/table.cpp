@@ -70,11 +70,12 @@ std::string result_lines(const quantities::Result& r, std::size_t width) {
 std::string step_line(const accuracy::Step& step) {
   const auto& r = step.resolution;
   const auto& l = step.ledger;
-  std::string line = fmt::format("{} {:>7} {:>8.4g} {:>9} {:>10} {:>8.0f} {:>9.3f} {:>9.3f} "
-                                 "{:>9.3f} {:>9.3f} {:>9.3f}",
-                                 axis_cells(r), r.levels, r.v_max, l.unknowns, l.nonzeros,
-                                 l.factor_megabytes, l.assembly_seconds, l.analysis_seconds,
-                                 l.factorization_seconds, l.solve_seconds, step.seconds);
+  std::string line =
+      fmt::format("{} {:>7} {:>6} {:>8.4g} {:>9} {:>10} {:>8.0f} {:>9.3f} "
+                  "{:>9.3f} {:>9.3f} {:>9.3f} {:>9.3f}",
+                  axis_cells(r), r.levels, r.noise_nodes(), r.v_max, l.unknowns, l.nonzeros,
+                  l.factor_megabytes, l.assembly_seconds, l.analysis_seconds,
+                  l.factorization_seconds, l.solve_seconds, step.seconds);
   line += step.limiting_key.empty() ? "  to compare with"
                                     : fmt::format("  {:.1e} {}", step.estimate, step.limiting_key);
   return line + "\n";
@@ -124,8 +125,8 @@ std::string cost_table(const options::Request& request, const accuracy::Outcome&
   if (outcome.simulation) return simulation_lines(*outcome.simulation);
   if (outcome.steps.empty()) return "no system was assembled: closed formulas only\n";
   std::string text = fmt::format(
-      "{} {:>7} {:>8} {:>9} {:>10} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9}  {}\n",
-      axis_title(request.method.scheme), "levels", "v_max", "unknowns", "nonzeros", "MB",
+      "{} {:>7} {:>6} {:>8} {:>9} {:>10} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9}  {}\n",
+      axis_title(request.method.scheme), "levels", "nodes", "v_max", "unknowns", "nonzeros", "MB",
       "assembly", "analysis", "factor", "solve", "total s", "largest relative error");
   for (const auto& step : outcome.steps) text += step_line(step);
   if (outcome.total.iterations > 0) {

@@ -6,10 +6,8 @@
 #include <utility>
 
 #include "stickslip/operators/laws.hpp"
-#include "stickslip/operators/transport.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
-#include "stickslip/petsc/split_matrix.hpp"
 #include "stickslip/petsc/vectors.hpp"
 
 namespace stickslip::operators {
@@ -24,24 +22,21 @@ Half other(Half half) { return half == Half::upper ? Half::lower : Half::upper; 
 /// Collects the rates out of one state at a time and appends its row to the local CSR arrays.
 class KolmogorovOperator::Assembler {
  public:
-  Assembler(const model::Process& process, const velocity::Axis& axis, const StateSpace& states,
-            PetscScalar lambda, Rest rest, Form form, std::optional<Parameter> derivative)
-      : by_elements_(form == Form::by_elements),
-        derivative_(derivative),
-        noise_(process.noise),
-        upper_{process, axis},
-        lower_{process.mirrored(), axis.mirrored()},
+  Assembler(const Discretisation& discretisation, const StateSpace& states, PetscScalar lambda,
+            Rest rest, std::optional<Parameter> derivative)
+      : derivative_(derivative),
+        noise_(*discretisation.noise),
+        chain_(discretisation.process.noise),
+        upper_{discretisation.process, *discretisation.axis},
+        lower_{discretisation.process.mirrored(), discretisation.axis->mirrored()},
         states_(states),
         lambda_(lambda),
         rest_(rest),
-        top_(process.noise.levels),
-        zero_trace_(axis.trace_at_zero()),
-        top_trace_(axis.trace_at_top()),
-        lines_(2 * (2 * static_cast<std::size_t>(top_) + 1)) {
-    for (int level = -top_; level <= top_; ++level) {
-      for (Half half : states.halves()) {
-        lines_[place_of_line(half, level)] = states.nodes_of(half, level);
-      }
+        zero_trace_(discretisation.axis->trace_at_zero()),
+        top_trace_(discretisation.axis->trace_at_top()),
+        lines_(2 * static_cast<std::size_t>(noise_.count())) {
+    for (int n = -noise_.half(); n <= noise_.half(); ++n) {
+      for (Half half : states.halves()) lines_[place_of_line(half, n)] = states.nodes_of(half, n);
     }
   }
 
@@ -50,14 +45,19 @@ class KolmogorovOperator::Assembler {
     states_.for_each_local([this](const State& state) { append(state); });
   }
 
-  /// u(0+) on a level of a half that leaves v = 0, as global indices and coefficients.
-  [[nodiscard]] Functional trace_at_zero(Half half, int level) const {
-    if (states_.has_origin(half, level)) {
-      return {{states_.index({StateKind::origin, half, level, 0}), 1.0}};
+  /// u(0+) on a noise node of a half that leaves v = 0, as global indices and coefficients.
+  [[nodiscard]] Functional trace_at_zero(Half half, int n) const {
+    if (states_.has_origin(half, n)) {
+      return {{states_.index({StateKind::origin, half, n, 0}), 1.0}};
     }
     Functional trace;
-    for (const auto& e : zero_trace_) trace.emplace_back(node(half, level, e.node), e.value);
+    for (const auto& e : zero_trace_) trace.emplace_back(node(half, n, e.node), e.value);
     return trace;
+  }
+
+  /// The same at s+ or s-: the level next to those at rest is a node.
+  [[nodiscard]] Functional trace_at_exit(Half half) const {
+    return trace_at_zero(half, states_.last_static(half) + 1);
   }
 
   std::vector<PetscInt> row_start{0};
@@ -66,26 +66,24 @@ class KolmogorovOperator::Assembler {
   std::vector<Coupling> rest_coupling, exit_coupling;
 
  private:
-  // A half line, seen with its levels and velocities counted along it.
+  // A half line, seen with its noise and velocities counted along it.
   struct Side {
-    Side(const model::Process& p, const velocity::Axis& a)
-        : process(p), axis(a), k(p.static_index()) {}
     model::Process process;
     const velocity::Axis& axis;
-    int k;  // the highest level that can stick
   };
   [[nodiscard]] const Side& side(Half half) const { return half == Half::upper ? upper_ : lower_; }
 
-  // What rows on a level where all speeds are positive, and jumps, take: little more than there is.
+  // What rows on a node where all speeds are positive, and jumps, take: little more than there is.
   void reserve() {
     std::size_t entries = 0;
     for (int j = 0; j < upper_.axis.size(); ++j) {
-      if (by_elements_ && !at_an_end(j)) continue;
-      entries += 3;
-      upper_.axis.transport(upper_.process.excess(top_), j, transport_);
-      entries += transport_.entries.size();
+      upper_.axis.transport(upper_.process.excess_at(noise_.x(noise_.half())), j, transport_);
+      entries += transport_.entries.size() + 1;
     }
-    entries *= states_.halves().size() * states_.local_levels().size();
+    const std::vector<int>& local = states_.local_noise();
+    entries *= local.size();
+    for (int n : local) entries += noise_.jumps(n).size() * upper_.axis.nodes().size();
+    entries *= states_.halves().size();
     columns.reserve(entries);
     values.reserve(entries);
     row_start.reserve(static_cast<std::size_t>(states_.local_size()) + 1);
@@ -96,77 +94,68 @@ class KolmogorovOperator::Assembler {
     case StateKind::node: rates_of_node(state); break;
     case StateKind::origin: rates_of_origin(state); break;
     case StateKind::holding: rates_of_holding(state); break;
-    case StateKind::rest: rates_of_rest(state.level); break;
+    case StateKind::rest: rates_of_rest(state.noise); break;
     }
-    if (by_elements_ && state.kind == StateKind::node) {
-      finish_couplings();  // jumps and transport have the diagonal
-      killing_ = 0;
-    } else {
-      finish_row(states_.index(state));
+    finish_row(states_.index(state));
+  }
+
+  // Calls visit(node, rate) for the jumps from a noise node, which are alike on both halves.
+  template <class Visit>
+  void for_each_jump(int n, Visit visit) const {
+    if (!derivative_) {
+      for (const auto& [to, rate] : noise_.jumps(n)) visit(to, rate);
+    } else if (*derivative_ == Parameter::tau) {
+      if (changes_of_ != n) {
+        changes_ = noise_.jumps_by_tau(n);
+        changes_of_ = n;
+      }
+      for (const auto& [to, rate] : changes_) visit(to, rate);
     }
   }
 
   void rates_of_node(const State& s) {
-    if (!by_elements_ || at_an_end(s.node)) rates_of_transport(s);
-    const auto jump_to = [&](int level, double rate) {
-      const bool applied = by_elements_ && states_.owns(level);
-      if (!applied) rate_to(node(s.half, level, s.node), rate);
-    };
-    if (s.level < top_) jump_to(s.level + 1, up_rate(s.level));
-    if (s.level > -top_) jump_to(s.level - 1, down_rate(s.level));
-  }
-
-  // Whether a node lies in the first or last element.
-  [[nodiscard]] bool at_an_end(int node) const {
-    return node <= zero_trace_.back().node || node >= top_trace_.front().node;
+    rates_of_transport(s);
+    for_each_jump(s.noise, [&](int to, double rate) { rate_to(node(s.half, to, s.node), rate); });
   }
 
   void rates_of_transport(const State& s) {
     const Side& here = side(s.half);
-    const double excess = here.process.excess(s.level);
+    const double excess = here.process.excess_at(noise_.x(s.noise));
     if (derivative_) {
       here.axis.transport_change(excess, speed_change(), s.node, transport_);
     } else {
       here.axis.transport(excess, s.node, transport_);
     }
-    if (!by_elements_) {
-      for (const auto& e : transport_.entries) rate_to(node(s.half, s.level, e.node), e.value);
-    }
+    for (const auto& e : transport_.entries) rate_to(node(s.half, s.noise, e.node), e.value);
     if (transport_.inflow != 0) rate_to_zero(s, transport_.inflow);
-    if (transport_.outflow != 0) rate_to(holding(s.half, s.level), transport_.outflow);
+    if (transport_.outflow != 0) rate_to(holding(s.half, s.noise), transport_.outflow);
   }
 
   void rates_of_origin(const State& s) {
-    const auto origin = [&](int level) {
-      return states_.index({StateKind::origin, s.half, level, 0});
-    };
     const Side& here = side(s.half);
-    rate_to(
-        node(s.half, s.level, 0),
-        here.axis.origin_rate(derivative_ ? speed_change().excess : here.process.excess(s.level)));
-    if (s.level < top_) rate_to(origin(s.level + 1), up_rate(s.level));
-    if (s.level - 1 > here.k) {
-      rate_to(origin(s.level - 1), down_rate(s.level));
-    } else {
-      rate_to_rest(noise_level(s.half, here.k), down_rate(s.level));
-    }
+    const double excess = here.process.excess_at(noise_.x(s.noise));
+    rate_to(node(s.half, s.noise, 0),
+            here.axis.origin_rate(derivative_ ? speed_change().excess : excess));
+    for_each_jump(s.noise, [&](int to, double rate) {
+      if (states_.has_origin(s.half, to)) {
+        rate_to(states_.index({StateKind::origin, s.half, to, 0}), rate);
+      } else {
+        rate_to_rest(s.half, to, rate);
+      }
+    });
   }
 
   void rates_of_holding(const State& s) {
-    if (s.level < top_) rate_to(holding(s.half, s.level + 1), up_rate(s.level));
-    if (states_.has_holding(s.half, s.level - 1)) {
-      rate_to(holding(s.half, s.level - 1), down_rate(s.level));
-    } else if (s.level > -top_) {
-      for (const auto& e : top_trace_) {
-        rate_to(node(s.half, s.level - 1, e.node), down_rate(s.level) * e.value);
-      }
-    }
+    for_each_jump(s.noise, [&](int to, double rate) {
+      if (states_.has_holding(s.half, to)) return rate_to(holding(s.half, to), rate);
+      for (const auto& e : top_trace_) rate_to(node(s.half, to, e.node), rate * e.value);
+    });
   }
 
   void rates_of_rest(int i) {
-    const int highest = upper_.k, lowest = -lower_.k;
+    const int highest = upper_.process.static_index(), lowest = upper_.process.lowest_static();
     if (rest_ == Rest::killing_edges && (i == highest || i == lowest)) {
-      killing_ = noise_.rate();  // value 0 there: killed at once
+      killing_ = chain_.rate();  // value 0 there: killed at once
       return;
     }
     if (i < highest) rate_to_rest(i + 1, up_rate(i));
@@ -177,15 +166,24 @@ class KolmogorovOperator::Assembler {
 
   // Where a sliding body meets v = 0.
   void rate_to_zero(const State& s, double rate) {
-    if (s.level > side(s.half).k) {
+    if (s.noise > states_.last_static(s.half)) {
       // A grid scheme near a turning point: back to the state at v = 0.
-      rate_to(states_.index({StateKind::origin, s.half, s.level, 0}), rate);
-    } else if (s.level >= -side(other(s.half)).k) {
-      rate_to_rest(noise_level(s.half, s.level), rate);
+      rate_to(states_.index({StateKind::origin, s.half, s.noise, 0}), rate);
+    } else if (s.noise >= -states_.last_static(other(s.half))) {
+      rate_to_rest(s.half, s.noise, rate);
     } else if (states_.folded()) {
-      rate_to_trace(trace_at_zero(s.half, -s.level), rate, reflection());
+      rate_to_trace(trace_at_zero(s.half, -s.noise), rate, reflection());
     } else {
-      rate_to_trace(trace_at_zero(other(s.half), -s.level), rate, 1);
+      rate_to_trace(trace_at_zero(other(s.half), -s.noise), rate, 1);
+    }
+  }
+
+  // To rest on the levels for which a node stands, in the shares of T.
+  void rate_to_rest(Half half, int n, double rate) {
+    const noise::Nodes::Group& group = noise_.group_of(n);
+    for (int i = group.first; i <= group.last; ++i) {
+      const double share = group.row(group.weight, i)[n - group.begin];
+      rate_to_rest(half == Half::upper ? i : -i, rate * share);
     }
   }
 
@@ -209,10 +207,9 @@ class KolmogorovOperator::Assembler {
       killing_ += rate;
       exit_coupling.push_back({local_row(), half == Half::upper ? 1 : -1, rate});
     } else if (states_.folded()) {
-      rate_to_trace(trace_at_zero(Half::upper, upper_.k + 1), rate,
-                    half == Half::upper ? 1 : reflection());
+      rate_to_trace(trace_at_exit(Half::upper), rate, half == Half::upper ? 1 : reflection());
     } else {
-      rate_to_trace(trace_at_zero(half, side(half).k + 1), rate, 1);
+      rate_to_trace(trace_at_exit(half), rate, 1);
     }
   }
 
@@ -227,9 +224,11 @@ class KolmogorovOperator::Assembler {
   }
 
   // The couplings of the row to the arrays, in the order of columns, each once.
-  void finish_couplings() {
+  void finish_row(PetscInt diagonal) {
+    row_.emplace_back(diagonal, 0.0);  // keeps its place in the order
     std::sort(row_.begin(), row_.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
+    const std::size_t begin = columns.size();
     for (auto next = row_.begin(); next != row_.end();) {
       const PetscInt column = next->first;
       PetscScalar rate = 0;
@@ -239,12 +238,6 @@ class KolmogorovOperator::Assembler {
     }
     row_start.push_back(static_cast<PetscInt>(columns.size()));
     row_.clear();
-  }
-
-  void finish_row(PetscInt diagonal) {
-    row_.emplace_back(diagonal, 0.0);  // keeps its place in the order
-    const std::size_t begin = columns.size();
-    finish_couplings();
     // Summed as a reader of the row would sum it: with it the row adds up to exactly zero.
     PetscScalar sum = 0;
     std::size_t place = begin;
@@ -259,31 +252,19 @@ class KolmogorovOperator::Assembler {
   }
 
   [[nodiscard]] PetscInt local_row() const { return static_cast<PetscInt>(row_start.size()) - 1; }
-  [[nodiscard]] PetscInt node(Half half, int level, int j) const {
-    const auto& [first, stride] = lines_[place_of_line(half, level)];
+  [[nodiscard]] PetscInt node(Half half, int n, int j) const {
+    const auto& [first, stride] = lines_[place_of_line(half, n)];
     return first + j * stride;
   }
-  [[nodiscard]] std::size_t place_of_line(Half half, int level) const {
-    return 2 * static_cast<std::size_t>(top_ + level) + (half == Half::upper ? 0 : 1);
+  [[nodiscard]] std::size_t place_of_line(Half half, int n) const {
+    return 2 * static_cast<std::size_t>(noise_.half() + n) + (half == Half::upper ? 0 : 1);
   }
-  [[nodiscard]] PetscInt holding(Half half, int level) const {
-    return states_.index({StateKind::holding, half, level, 0});
+  [[nodiscard]] PetscInt holding(Half half, int n) const {
+    return states_.index({StateKind::holding, half, n, 0});
   }
-  static int noise_level(Half half, int level) { return half == Half::upper ? level : -level; }
   [[nodiscard]] double reflection() const { return states_.symmetry() == Symmetry::odd ? -1 : 1; }
-  [[nodiscard]] double up_rate(int level) const {
-    if (!derivative_) return noise_.rate() * noise_.up(level);
-    return jump_change(noise_.up(level), noise_.up_change(level));
-  }
-  [[nodiscard]] double down_rate(int level) const {
-    if (!derivative_) return noise_.rate() * noise_.down(level);
-    return jump_change(noise_.down(level), noise_.down_change(level));
-  }
-  // Of Lambda times a jump probability.
-  [[nodiscard]] double jump_change(double probability, double change) const {
-    if (*derivative_ != Parameter::tau) return 0;
-    return noise_.rate_change() * probability + noise_.rate() * change;
-  }
+  [[nodiscard]] double up_rate(int level) const { return chain_.rate() * chain_.up(level); }
+  [[nodiscard]] double down_rate(int level) const { return chain_.rate() * chain_.down(level); }
   [[nodiscard]] velocity::SpeedChange speed_change() const {
     switch (*derivative_) {
     case Parameter::mu_d: return {-1, 0};
@@ -293,66 +274,55 @@ class KolmogorovOperator::Assembler {
     return {};
   }
 
-  bool by_elements_;
   std::optional<Parameter> derivative_;
-  const model::NoiseChain& noise_;
+  const noise::Nodes& noise_;
+  const model::NoiseChain& chain_;
   Side upper_, lower_;
   const StateSpace& states_;
   PetscScalar lambda_;
   Rest rest_;
-  int top_;
   std::vector<velocity::Entry> zero_trace_, top_trace_;
-  std::vector<StateSpace::NodeLine> lines_;  // by level and half
+  std::vector<StateSpace::NodeLine> lines_;  // by noise node and half
+  // Derivatives of the jumps from the noise node that was asked for last.
+  mutable std::vector<noise::Nodes::Rate> changes_;
+  mutable std::optional<int> changes_of_;
   velocity::TransportRow transport_;
   std::vector<std::pair<PetscInt, PetscScalar>> row_;
   double killing_ = 0;  // row sum of A - lambda
 };
 
-KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const model::Process& process,
-                                       const velocity::Axis& axis, PetscScalar lambda,
-                                       Symmetry symmetry, Rest rest, Form form)
-    : KolmogorovOperator(comm, process, axis, lambda, symmetry, rest, form, std::nullopt) {}
+KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation,
+                                       PetscScalar lambda, Symmetry symmetry, Rest rest)
+    : KolmogorovOperator(comm, discretisation, lambda, symmetry, rest, std::nullopt) {}
 
-KolmogorovOperator KolmogorovOperator::derivative(MPI_Comm comm, const model::Process& process,
-                                                  const velocity::Axis& axis, Symmetry symmetry,
-                                                  Parameter theta) {
-  return {comm, process, axis, 0, symmetry, Rest::killing, Form::assembled, theta};
+KolmogorovOperator KolmogorovOperator::derivative(MPI_Comm comm,
+                                                  const Discretisation& discretisation,
+                                                  Symmetry symmetry, Parameter theta) {
+  return {comm, discretisation, 0, symmetry, Rest::killing, theta};
 }
 
-KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const model::Process& process,
-                                       const velocity::Axis& axis, PetscScalar lambda,
-                                       Symmetry symmetry, Rest rest, Form form,
+KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation,
+                                       PetscScalar lambda, Symmetry symmetry, Rest rest,
                                        std::optional<Parameter> derivative)
-    : states_(comm, process, axis, symmetry, rest != Rest::killing),
-      process_(process),
-      nodes_(axis.nodes().begin(), axis.nodes().end()),
-      v_max_(axis.v_max()) {
-  Assembler rows(process, axis, states_, lambda, rest, form, derivative);
+    : discretisation_(discretisation),
+      states_(comm, discretisation, symmetry, rest != Rest::killing) {
+  Assembler rows(discretisation, states_, lambda, rest, derivative);
   rows.assemble();
-  trace_upper_ = rows.trace_at_zero(Half::upper, process.static_index() + 1);
-  if (!states_.folded()) {
-    trace_lower_ = rows.trace_at_zero(Half::lower, 1 - process.lowest_static());
-  }
+  trace_upper_ = rows.trace_at_exit(Half::upper);
+  if (!states_.folded()) trace_lower_ = rows.trace_at_exit(Half::lower);
   rest_coupling_ = std::move(rows.rest_coupling);
   exit_coupling_ = std::move(rows.exit_coupling);
-  const bool whole = form == Form::assembled && !derivative;
-  if (whole && symmetry != Symmetry::odd && PetscRealPart(lambda) >= 0) {
+  if (!derivative && symmetry != Symmetry::odd && PetscRealPart(lambda) >= 0) {
     const bool nothing_killed = rest == Rest::kept && PetscAbsScalar(lambda) == 0;
     require_generator(comm, {states_.local_begin(), rows.row_start, rows.columns, rows.values},
-                      {axis.keeps_origin(), nothing_killed}, process);
+                      {discretisation.axis->keeps_origin(), nothing_killed},
+                      discretisation.process);
   }
-
   nonzeros_ = rows.row_start.back();
   row_start_ = std::move(rows.row_start);
   columns_ = std::move(rows.columns);
   values_ = std::move(rows.values);
   matrix_ = stored();
-  if (form == Form::by_elements) {
-    auto between = jumps(states_, process, axis, lambda);
-    auto within = transport(states_, process, dynamic_cast<const velocity::HpAxis&>(axis));
-    nonzeros_ += between.entries() + within.entries();
-    matrix_ = petsc::SplitMatrix::make(std::move(matrix_), std::move(between), std::move(within));
-  }
   MPI_Allreduce(MPI_IN_PLACE, &nonzeros_, 1, MPIU_INT64, MPI_SUM, comm);
 }
 
@@ -413,29 +383,36 @@ petsc::VecHandle KolmogorovOperator::trace_at_exit(Half half) const {
   return g;
 }
 
-petsc::VecHandle KolmogorovOperator::value_at(const velocity::Axis& axis, int i, double v) const {
-  const int lowest = process_.lowest_static();
-  const bool rest = v == 0 && i >= lowest && i <= process_.static_index();
+petsc::VecHandle KolmogorovOperator::value_at(int i, double v) const {
+  const auto& [process, noise, axis] = discretisation_;
+  const int lowest = process.lowest_static();
+  const bool rest = v == 0 && i >= lowest && i <= process.static_index();
   const bool below = v < 0 || (v == 0 && (rest ? i < 0 : i < lowest));
   const bool mirrored = below && states_.folded();
   const double sign = mirrored && states_.symmetry() == Symmetry::odd ? -1 : 1;
   const Half half = below && !mirrored ? Half::lower : Half::upper;
-  const int level = below ? -i : i;
   petsc::VecHandle g = zeros();
   const PetscInt begin = states_.local_begin(), end = begin + states_.local_size();
   const auto add = [&](const State& state, double weight) {
     const PetscInt index = states_.index(state);
     if (index >= begin && index < end) check(VecSetValue(g, index, weight, ADD_VALUES));
   };
+  // A level as a combination of noise nodes, of those as combinations of velocity nodes.
+  const auto& group = noise->group_at(below ? -i : i);
+  const auto shares = group.row(group.value, below ? -i : i);
+  for (int l = 0; !rest && l < group.count; ++l) {
+    const int n = group.begin + l;
+    if (v == 0 && states_.has_origin(half, n)) {
+      add({StateKind::origin, half, n, 0}, sign);
+      continue;
+    }
+    for (const auto& e : v == 0 ? axis->trace_at_zero() : axis->value_at(std::abs(v))) {
+      add({StateKind::node, half, n, e.node}, sign * shares[l] * e.value);
+    }
+  }
   if (rest) {
     const int kept = states_.folded() ? std::abs(i) : i;
     if (states_.has_rest(kept)) add({StateKind::rest, Half::upper, kept, 0}, sign);
-  } else if (v == 0 && states_.has_origin(half, level)) {
-    add({StateKind::origin, half, level, 0}, sign);
-  } else {
-    for (const auto& e : v == 0 ? axis.trace_at_zero() : axis.value_at(std::abs(v))) {
-      add({StateKind::node, half, level, e.node}, sign * e.value);
-    }
   }
   check(VecAssemblyBegin(g));
   check(VecAssemblyEnd(g));
@@ -443,7 +420,8 @@ petsc::VecHandle KolmogorovOperator::value_at(const velocity::Axis& axis, int i,
 }
 
 std::vector<PetscScalar> KolmogorovOperator::entry_rates(Vec nu) const {
-  const int lowest = process_.lowest_static(), count = process_.static_index() - lowest + 1;
+  const int lowest = discretisation_.process.lowest_static(),
+            count = discretisation_.process.static_index() - lowest + 1;
   std::vector<PetscScalar> rates(static_cast<std::size_t>(count), 0.0);
   const petsc::ReadView local(nu);
   for (const auto& c : rest_coupling_) rates[c.level - lowest] += c.rate * local[c.row];
@@ -453,7 +431,7 @@ std::vector<PetscScalar> KolmogorovOperator::entry_rates(Vec nu) const {
 }
 
 petsc::VecHandle KolmogorovOperator::from_rest(const std::vector<PetscScalar>& s) const {
-  const int lowest = process_.lowest_static();
+  const int lowest = discretisation_.process.lowest_static();
   petsc::VecHandle f = zeros();
   petsc::WriteView local(f);
   for (const auto& c : rest_coupling_) local[c.row] += c.rate * s[c.level - lowest];
@@ -473,14 +451,19 @@ petsc::VecHandle KolmogorovOperator::exit_rates(Half half) const {
 petsc::VecHandle KolmogorovOperator::values(const Observable& f) const {
   petsc::VecHandle result = zeros();
   petsc::WriteView local(result);
+  const auto& [process, noise, axis] = discretisation_;
   PetscInt at = 0;
   states_.for_each_local([&](const State& s) {
     const double sign = s.half == Half::upper ? 1 : -1;
-    const double x = sign * process_.noise.level(s.level);
+    if (s.kind == StateKind::rest) {
+      local[at++] = f(process.noise.level(s.noise), 0, 0);
+      return;
+    }
     double v = 0;
-    if (s.kind == StateKind::node) v = sign * nodes_[s.node];
-    if (s.kind == StateKind::holding) v = sign * v_max_;
-    local[at++] = f(x, s.kind == StateKind::rest ? 0 : sign, v);
+    if (s.kind == StateKind::node) v = sign * axis->nodes()[s.node];
+    if (s.kind == StateKind::holding) v = sign * axis->v_max();
+    local[at++] =
+        noise->projected(s.noise, [&](int i) { return f(sign * process.noise.level(i), sign, v); });
   });
   return result;
 }

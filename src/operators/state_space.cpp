@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
-#include <tuple>
 
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
@@ -16,12 +15,12 @@
 namespace stickslip::operators {
 namespace {
 
-int first_holding_level(const model::Process& process, const velocity::Axis& axis) {
-  const int n = process.noise.levels;
-  if (!axis.needs_holding()) return n + 1;
+int first_holding_node(const model::Process& process, const noise::Nodes& noise,
+                       const velocity::Axis& axis) {
+  int first = noise.half() + 1;
+  if (!axis.needs_holding()) return first;
   const double drag = process.drag(axis.v_max());
-  int first = n + 1;
-  while (first > -n && process.excess(first - 1) + drag > 0) --first;
+  while (first > -noise.half() && process.excess_at(noise.x(first - 1)) + drag > 0) --first;
   return first;
 }
 
@@ -40,39 +39,63 @@ void require_countable(double states) {
                              8 * sizeof(PetscInt)));
 }
 
+// Of {-(last-1) ... -first, first ... last-1}, those below n.
+int below_in_shells(int first, int last, int n) {
+  if (last == first) return 0;
+  const int negative = std::clamp(n - (1 - last), 0, last - std::max(first, 1));
+  return negative + std::clamp(n - first, 0, last - first);
+}
+
 }  // namespace
 
-StateSpace::Side::Side(const model::Process& process, const velocity::Axis& axis)
-    : k(process.static_index()), first_holding(first_holding_level(process, axis)) {}
+StateSpace::Side::Side(const model::Process& process, const noise::Nodes& noise,
+                       const velocity::Axis& axis)
+    : last_static(noise.last_up_to(process.static_index())),
+      first_holding(first_holding_node(process, noise, axis)) {}
 
-StateSpace::StateSpace(MPI_Comm comm, const model::Process& process, const velocity::Axis& axis,
-                       Symmetry symmetry, bool with_rest)
+StateSpace::StateSpace(MPI_Comm comm, const Discretisation& discretisation, Symmetry symmetry,
+                       bool with_rest)
     : comm_(comm),
       symmetry_(symmetry),
       with_rest_(with_rest),
-      keeps_origin_(axis.keeps_origin()),
-      levels_(process.noise.levels),
-      nodes_(axis.size()),
-      upper_(process, axis),
-      lower_(process.mirrored(), axis),
-      lowest_rest_(lowest_rest_level(symmetry, process)),
+      keeps_origin_(discretisation.axis->keeps_origin()),
+      half_(discretisation.noise->half()),
+      nodes_(discretisation.axis->size()),
+      upper_(discretisation.process, *discretisation.noise, *discretisation.axis),
+      lower_(discretisation.process.mirrored(), *discretisation.noise, *discretisation.axis),
+      lowest_rest_(lowest_rest_level(symmetry, discretisation.process)),
+      highest_rest_(discretisation.process.static_index()),
       rank_(petsc::rank(comm)) {
-  require_countable((2.0 * levels_ + 1) * (2.0 * nodes_ + 3));
-  // Shell s goes to the rank in whose equal share of the levels it begins.
-  const std::int64_t ranks = petsc::ranks(comm), all = 2LL * levels_ + 1;
-  for (int shell = 0; shell <= levels_; ++shell) {
-    const std::int64_t before = shell == 0 ? 0 : 2LL * shell - 1;
+  const int levels = discretisation.process.noise.levels;
+  require_countable((2.0 * half_ + 1) * (2.0 * nodes_ + 2) + 2.0 * levels + 1);
+  distribute(*discretisation.noise, levels);
+  const Block& block = blocks_[rank_];
+  for (int n = 1 - block.last; n < block.last; ++n) {
+    if (std::abs(n) >= block.first) local_noise_.push_back(n);
+  }
+  local_size_ = size(block);
+}
+
+// A group goes to the rank in whose equal share of the nodes it begins, and takes its levels along.
+void StateSpace::distribute(const noise::Nodes& noise, int levels) {
+  const std::int64_t ranks = petsc::ranks(comm_), all = noise.count();
+  for (int shell = 0; shell <= half_; ++shell) {
+    const int innermost = noise.group_of(shell).begin;
+    const std::int64_t before = innermost == 0 ? 0 : 2LL * innermost - 1;
     owner_of_shell_.push_back(static_cast<int>(before * ranks / all));
   }
-  int first = 0;
+  int first = 0, rest = 0;
   for (int r = 0; r < ranks; ++r) {
-    int last = first;
-    while (last <= levels_ && owner_of_shell_[last] == r) ++last;
-    blocks_.push_back({first, last, global_size_});
+    int last = first, last_rest = rest;
+    while (last <= half_ && owner_of_shell_[last] == r) ++last;
+    while (last_rest <= levels && noise.group_at(last_rest).begin < last) {
+      last_rest = noise.group_at(last_rest).last + 1;
+    }
+    blocks_.push_back({first, last, rest, last_rest, global_size_});
     global_size_ += size(blocks_.back());
     first = last;
+    rest = last_rest;
   }
-  local_size_ = size(blocks_[rank_]);
 }
 
 std::span<const Half> StateSpace::halves() const {
@@ -80,66 +103,78 @@ std::span<const Half> StateSpace::halves() const {
   return folded() ? std::span<const Half>(both).subspan(1) : std::span<const Half>(both);
 }
 
-std::vector<int> StateSpace::local_levels() const {
-  const Block& block = blocks_[rank_];
-  std::vector<int> levels;
-  for (int i = 1 - block.last; i < block.last; ++i) {
-    if (std::abs(i) >= block.first) levels.push_back(i);
-  }
-  return levels;
-}
-
-bool StateSpace::has_state(int row, int i) const {
-  if (row == 0) {
-    const bool below = !folded() && has_origin(Half::lower, -i);
-    return has_rest(i) || has_origin(Half::upper, i) || below;
-  }
+// Away from v = 0.
+bool StateSpace::has_state(int row, int n) const {
   if (std::abs(row) <= nodes_) return true;
-  return row > 0 ? has_holding(Half::upper, i) : has_holding(Half::lower, -i);
+  return row > 0 ? has_holding(Half::upper, n) : has_holding(Half::lower, -n);
 }
 
-State StateSpace::state_at(int row, int i) const {
-  if (row == 0 && has_rest(i)) return {StateKind::rest, Half::upper, i, 0};
-  const Half half =
-      row < 0 || (row == 0 && !has_origin(Half::upper, i)) ? Half::lower : Half::upper;
-  const int level = half == Half::upper ? i : -i;
-  if (row == 0) return {StateKind::origin, half, level, 0};
-  if (std::abs(row) <= nodes_) return {StateKind::node, half, level, std::abs(row) - 1};
-  return {StateKind::holding, half, level, 0};
+State StateSpace::state_at(int row, int n) const {
+  const Half half = row < 0 ? Half::lower : Half::upper;
+  const int along = row < 0 ? -n : n;
+  if (std::abs(row) <= nodes_) return {StateKind::node, half, along, std::abs(row) - 1};
+  return {StateKind::holding, half, along, 0};
 }
 
-// Number of levels of a rank below noise level i: they are -(last-1) ... -first, first ... last-1.
-int StateSpace::levels_below(const Block& block, int i) const {
-  const int lowest = 1 - block.last;
-  const int negative = std::clamp(i - lowest, 0, block.last - std::max(block.first, 1));
-  const int others = std::clamp(i - block.first, 0, block.last - block.first);
-  return block.last == block.first ? 0 : negative + others;
+int StateSpace::owner_of_rest(int level) const {
+  const auto after =
+      std::partition_point(blocks_.begin(), blocks_.end(), [level](const Block& block) {
+        return block.last_rest <= std::abs(level);
+      });
+  return static_cast<int>(after - blocks_.begin());
 }
 
-// Number of states of a row on levels below noise level i.
-int StateSpace::position(const Block& block, int row, int i) const {
-  const auto below = [&](int level) { return levels_below(block, level); };
-  if (row == 0) {
-    int before = 0;
-    const int first = upper_.k + 1;
-    if (keeps_origin_ && !folded()) before += below(std::min(i, -lower_.k));
-    if (with_rest_) before += below(std::clamp(i, lowest_rest_, first)) - below(lowest_rest_);
-    if (keeps_origin_) before += below(std::max(i, first)) - below(first);
-    return before;
+int StateSpace::nodes_below(const Block& block, int n) {
+  return below_in_shells(block.first, block.last, n);
+}
+
+// States at rest of a rank below a level.
+int StateSpace::rest_below(const Block& block, int level) const {
+  if (!with_rest_ || highest_rest_ < lowest_rest_) return 0;
+  const auto below = [&block](int i) {
+    return below_in_shells(block.first_rest, block.last_rest, i);
+  };
+  return below(std::clamp(level, lowest_rest_, highest_rest_ + 1)) - below(lowest_rest_);
+}
+
+// Number of states of a row of a rank before a state: at v = 0 origins of the lower half, states at
+// rest, origins of the upper half.
+int StateSpace::position(const Block& block, int row, const State& state) const {
+  const auto below = [&](int n) { return nodes_below(block, n); };
+  const int n = state.half == Half::upper ? state.noise : -state.noise;
+  const int first_lower = -lower_.last_static, first_upper = upper_.last_static + 1;
+  const int lower_origins = keeps_origin_ && !folded() ? below(first_lower) : 0;
+  switch (state.kind) {
+  case StateKind::node: return below(n);
+  case StateKind::holding:
+    // The highest nodes of a half: on the lower one, the lowest of the noise.
+    return row > 0 ? below(n) - below(upper_.first_holding) : below(n);
+  case StateKind::rest: return lower_origins + rest_below(block, state.noise);
+  case StateKind::origin: break;
   }
-  if (std::abs(row) <= nodes_) return below(i);
-  // Holding states belong to the highest levels of a half: on the lower one, the lowest noise.
-  const int first = upper_.first_holding;
-  if (row > 0) return below(std::max(i, first)) - below(first);
-  return below(std::min(i, 1 - lower_.first_holding));
+  if (state.half == Half::lower) return below(n);
+  const int rest = rest_below(block, highest_rest_ + 1);
+  return lower_origins + rest + below(n) - below(first_upper);
+}
+
+int StateSpace::size_at_zero(const Block& block) const {
+  int count = rest_below(block, highest_rest_ + 1);
+  if (!keeps_origin_) return count;
+  const int all = nodes_below(block, half_ + 1);
+  if (!folded()) count += nodes_below(block, -lower_.last_static);
+  return count + all - nodes_below(block, upper_.last_static + 1);
 }
 
 int StateSpace::count(const Block& block, int row) const {
-  return position(block, row, levels_ + 1);
+  const int all = nodes_below(block, half_ + 1);
+  if (row == 0) return size_at_zero(block);
+  if (std::abs(row) <= nodes_) return all;
+  if (row > 0) return all - nodes_below(block, upper_.first_holding);
+  return nodes_below(block, 1 - lower_.first_holding);
 }
 
 PetscInt StateSpace::row_offset(const Block& block, int row) const {
-  const PetscInt node_row = levels_below(block, levels_ + 1);
+  const PetscInt node_row = nodes_below(block, half_ + 1);
   PetscInt offset = 0;
   if (!folded()) {
     if (row > -last_row()) offset += count(block, -last_row());
@@ -153,60 +188,20 @@ PetscInt StateSpace::size(const Block& block) const {
   return row_offset(block, last_row()) + count(block, last_row());
 }
 
-petsc::Chain StateSpace::chain() const {
-  struct Entry {
-    std::tuple<int, int, int, int> key;  // shell, arm, part of it, order there
-    PetscInt row;
-  };
-  std::vector<Entry> entries;
-  entries.reserve(static_cast<std::size_t>(local_size_));
-  for_each_local([&](const State& s) {
-    int height = 0;
-    if (s.kind == StateKind::node) height = s.node + 1;
-    if (s.kind == StateKind::holding) height = nodes_ + 1;
-    const bool falls = s.level < 0;
-    const int part = s.kind == StateKind::rest ? 1 : (falls ? 0 : 2);
-    const int noise = s.half == Half::upper ? s.level : -s.level;
-    const int arm = !folded() && noise < 0 ? 1 : 0;
-    entries.push_back({{std::abs(s.level), arm, part, falls ? -height : height},
-                       static_cast<PetscInt>(entries.size())});
-  });
-  std::sort(entries.begin(), entries.end(),
-            [](const Entry& a, const Entry& b) { return a.key < b.key; });
-  petsc::Chain chain;
-  for (std::size_t n = 0; n < entries.size(); ++n) {
-    if (n > 0 && std::get<0>(entries[n].key) != std::get<0>(entries[n - 1].key)) {
-      chain.start.push_back(static_cast<int>(n));
-    }
-    chain.rows.push_back(entries[n].row);
-  }
-  if (!entries.empty()) chain.start.push_back(static_cast<int>(entries.size()));
-  return chain;
-}
-
-petsc::Structure StateSpace::structure() const {
-  return {[this] { return chain(); }, !keeps_origin_};
-}
-
-StateSpace::NodeLine StateSpace::nodes_of(Half half, int level) const {
-  const PetscInt first = index({StateKind::node, half, level, 0});
-  return {first, nodes_ > 1 ? index({StateKind::node, half, level, 1}) - first : 0};
-}
-
-PetscInt StateSpace::strip(Half half, int from, int size) const {
-  const Block& block = blocks_[rank_];
-  const int row = half == Half::upper ? from + 1 : -(from + size);
-  return row_offset(block, row);
+StateSpace::NodeLine StateSpace::nodes_of(Half half, int noise) const {
+  const PetscInt first = index({StateKind::node, half, noise, 0});
+  return {first, nodes_ > 1 ? index({StateKind::node, half, noise, 1}) - first : 0};
 }
 
 PetscInt StateSpace::index(const State& state) const {
   const int sign = state.half == Half::upper ? 1 : -1;
-  const int i = state.kind == StateKind::rest ? state.level : sign * state.level;
-  const Block& block = blocks_[owner_of_shell_[std::abs(i)]];
+  const int owner = state.kind == StateKind::rest ? owner_of_rest(state.noise)
+                                                  : owner_of_shell_[std::abs(state.noise)];
+  const Block& block = blocks_[owner];
   int row = 0;
   if (state.kind == StateKind::node) row = sign * (state.node + 1);
   if (state.kind == StateKind::holding) row = sign * last_row();
-  return block.begin + row_offset(block, row) + position(block, row, i);
+  return block.begin + row_offset(block, row) + position(block, row, state);
 }
 
 }  // namespace stickslip::operators

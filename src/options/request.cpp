@@ -502,7 +502,7 @@ void read_spectrum_solver(const Settings& settings, Request& request, Problems& 
 
 void check_no_grid(const Settings& settings, const Request& request, Problems& problems) {
   if (request.route != Route::monte_carlo && request.route != Route::fluid_queue) return;
-  for (const char* name : {"scheme", "degree", "layers", "p"}) {
+  for (const char* name : {"scheme", "degree", "layers", "noise_degree", "noise_grading", "p"}) {
     if (!settings.given(name)) continue;
     settings.report(
         problems, name,
@@ -542,9 +542,11 @@ Method read_method(const Settings& settings, Problems& problems) {
   method.degree = settings.integer("degree");
   method.layers = settings.integer("layers");
   method.points = settings.integer("p");
+  method.noise_degree = settings.integer("noise_degree");
+  method.noise_grading = settings.real("noise_grading");
   method.factors = read_factors();
   const bool hp = method.scheme == Scheme::hp;
-  for (const char* name : {"degree", "layers"}) {
+  for (const char* name : {"degree", "layers", "noise_degree", "noise_grading"}) {
     if (!hp && settings.given(name)) {
       settings.report(problems, name, "belongs to -scheme hp", "leave it out, or take -scheme hp");
     }
@@ -576,8 +578,8 @@ void read_study(const Settings& settings, Request& request, Problems& problems) 
     }
     return;
   }
-  for (const char* name : {"route", "scheme", "degree", "layers", "p", "v_max", "compare",
-                           "checkpoint", "noise_levels"}) {
+  for (const char* name : {"route", "scheme", "degree", "layers", "noise_degree", "noise_grading",
+                           "p", "v_max", "compare", "checkpoint", "noise_levels"}) {
     if (!settings.given(name)) continue;
     settings.report(problems, name, "is chosen by -study itself", "leave it out");
   }

@@ -143,8 +143,8 @@ std::vector<std::string> given_names() {
 const std::vector<std::pair<std::string, std::vector<std::string>>>& solver_types() {
   static const std::vector<std::pair<std::string, std::vector<std::string>>> types{
       {"slide_pc_type",
-       {"levels", "p_multigrid", "lu", "cholesky", "qr", "svd", "redundant", "ksp", "ilu", "icc",
-        "asm", "gasm", "bjacobi", "jacobi", "pbjacobi", "gamg", "hypre", "none"}},
+       {"elements", "lu", "cholesky", "qr", "svd", "redundant", "ksp", "ilu", "icc", "asm", "gasm",
+        "bjacobi", "jacobi", "pbjacobi", "gamg", "hypre", "none"}},
       {"slide_ksp_type",
        {"preonly", "gmres", "fgmres", "lgmres", "dgmres", "pgmres", "pipefgmres", "gcr", "bcgs",
         "bcgsl", "ibcgs", "fbcgs", "fbcgsr", "cgs", "qmrcgs", "tfqmr", "tcqmr", "pipebcgs"}}};
@@ -207,8 +207,7 @@ void check_unknown_options(Problems& problems) {
 Factors read_factors() {
   if (!petsc::chooses_solver("slide_")) return Factors::own;
   switch (petsc::chosen_solver("slide_", petsc::Solver::lu)) {
-  case petsc::Solver::levels: return Factors::levels;
-  case petsc::Solver::p_multigrid: return Factors::p_multigrid;
+  case petsc::Solver::elements: return Factors::elements;
   case petsc::Solver::lu: break;
   }
   const std::string pc = solver_option("-slide_pc_type");

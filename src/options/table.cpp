@@ -159,6 +159,14 @@ Group method_group() {
           integer("layers", "", whole(1, 200), {},
                   "elements graded towards v = 0; fixing it switches refinement off",
                   "leave it out to have it chosen from the scene"),
+          integer("noise_degree", "", whole(0, 20), {},
+                  "degree of the polynomials in x that stand for groups of noise levels; 0: every "
+                  "level is a node. Fixing it above 0 switches refinement off",
+                  "leave it out to have it chosen from -accuracy"),
+          real("noise_grading", "", "2", {0, 100, false, true},
+               "levels of a group for each level of distance from mu_d and mu_s, towards which "
+               "groups shrink",
+               "2 suits most scenes"),
           integer("p", "", whole(1, 1e7), {},
                   "points of the upwind scheme per noise step; fixing it switches refinement "
                   "off",
@@ -326,7 +334,7 @@ std::span<const OtherOption> other_options() {
       {"-completion", "print the completion of the command line for bash and stop"},
       {"-slide_...",
        "PETSc options of the solver for the sliding operator, for example -slide_ksp_view, or "
-       "-slide_pc_type with levels, p_multigrid or lu (by MUMPS)"},
+       "-slide_pc_type with elements or lu (by MUMPS)"},
       {"-null_..., -relax_...",
        "SLEPc options of the eigensolvers of -route null_vector and of relaxation, for example "
        "-relax_eps_nev 10 or -null_eps_view"},

@@ -1,7 +1,7 @@
 #include "stickslip/petsc/backward_error.hpp"
 
 #include "stickslip/petsc/check.hpp"
-#include "stickslip/petsc/split_matrix.hpp"
+#include "stickslip/petsc/vectors.hpp"
 
 namespace stickslip::petsc {
 namespace {
@@ -11,6 +11,49 @@ namespace {
 // and the factors mix their rows with others; what that does to a functional, the last correction
 // tells.
 constexpr double kNegligible = 1e-13;
+
+void take_magnitudes_of_block(Mat block) {
+  MatInfo info{};
+  check(MatGetInfo(block, MAT_LOCAL, &info));
+  PetscScalar* values = nullptr;
+  check(MatSeqAIJGetArray(block, &values));
+  for (PetscInt n = 0; n < static_cast<PetscInt>(info.nz_used); ++n) {
+    values[n] = PetscAbsScalar(values[n]);
+  }
+  check(MatSeqAIJRestoreArray(block, &values));
+}
+
+MatHandle magnitudes(Mat matrix) {
+  MatHandle copy;
+  check(MatDuplicate(matrix, MAT_COPY_VALUES, copy.out()));
+  PetscBool sequential = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix), MATSEQAIJ, &sequential));
+  if (sequential == PETSC_TRUE) {
+    take_magnitudes_of_block(copy);
+  } else {
+    Mat diagonal = nullptr, off_diagonal = nullptr;
+    check(MatMPIAIJGetSeqAIJ(copy, &diagonal, &off_diagonal, nullptr));
+    take_magnitudes_of_block(diagonal);
+    take_magnitudes_of_block(off_diagonal);
+  }
+  return copy;
+}
+
+// Of the rows.
+VecHandle magnitude_sums(Mat matrix) {
+  VecHandle sums;
+  check(MatCreateVecs(matrix, nullptr, sums.out()));
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(matrix, &begin, &end));
+  WriteView local(sums);
+  for (PetscInt r = begin; r < end; ++r) {
+    double sum = 0;
+    RowView(matrix, r).for_each(
+        [&sum](PetscInt, PetscScalar value) { sum += PetscAbsScalar(value); });
+    local[r - begin] = sum;
+  }
+  return sums;
+}
 
 VecHandle absolute(Vec x) {
   VecHandle size;

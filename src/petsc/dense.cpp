@@ -4,51 +4,55 @@
 // After PETSc itself, whose types it uses.
 #include <petscblaslapack.h>
 
-#include <algorithm>
 #include <utility>
+
+#include "stickslip/support/errors.hpp"
 
 namespace stickslip::petsc {
 
-void take_sizes(std::span<PetscScalar> values) {
-  for (PetscScalar& value : values) value = PetscAbsScalar(value);
+void add_product(PetscScalar factor, const DenseMatrix& a, const DenseMatrix& b, int columns,
+                 DenseMatrix& c) {
+  const PetscBLASInt m = a.rows(), n = columns, k = a.columns(), ldb = b.rows(), ldc = c.rows();
+  if (m == 0 || n == 0 || k == 0) return;
+  const PetscScalar one = 1;
+  BLASgemm_("N", "N", &m, &n, &k, &factor, a.data(), &m, b.data(), &ldb, &one, c.data(), &ldc);
 }
 
-void product(const char* how, int m, int n, int k, double factor, const PetscScalar* a,
-             int stride_a, const PetscScalar* b, int stride_b, double keep, PetscScalar* c,
-             int stride_c) {
-  const PetscBLASInt rows = m, columns = n, inner = k, lda = stride_a, ldb = stride_b,
-                     ldc = stride_c;
-  const PetscScalar alpha = factor, beta = keep;
-  BLASgemm_(how, how + 1, &rows, &columns, &inner, &alpha, a, &lda, b, &ldb, &beta, c, &ldc);
+DenseMatrix operator*(const DenseMatrix& a, const DenseMatrix& b) {
+  DenseMatrix c(a.rows(), b.columns());
+  add_product(1, a, b, b.columns(), c);
+  return c;
 }
 
-// Gauss-Jordan: column k of the inverse takes the place of column k.
-bool invert(PetscScalar* a, int n, int stride, std::span<int> exchanges) {
-  const auto column = [&](int c) { return a + static_cast<std::ptrdiff_t>(stride) * c; };
-  for (int k = 0; k < n; ++k) {
-    PetscScalar* own = column(k);
-    int largest = k;
-    for (int r = k + 1; r < n; ++r) {
-      if (PetscAbsScalar(own[r]) > PetscAbsScalar(own[largest])) largest = r;
-    }
-    if (own[largest] == 0.0) return false;
-    exchanges[k] = largest;
-    for (int c = 0; c < n && largest != k; ++c) std::swap(column(c)[k], column(c)[largest]);
-    const PetscScalar inverse = 1.0 / own[k];
-    for (int c = 0; c < n; ++c) {
-      if (c == k) continue;
-      PetscScalar* other = column(c);
-      const PetscScalar factor = other[k] * inverse;
-      for (int r = 0; r < n; ++r) other[r] -= factor * own[r];
-      other[k] = factor;
-    }
-    for (int r = 0; r < n; ++r) own[r] *= -inverse;
-    own[k] = inverse;
-  }
-  for (int k = n - 1; k >= 0; --k) {
-    if (exchanges[k] != k) std::swap_ranges(column(k), column(k) + n, column(exchanges[k]));
-  }
-  return true;
+void add_product(const DenseMatrix& a, const Scalars& x, Scalars& y, bool transposed) {
+  const PetscBLASInt m = a.rows(), n = a.columns(), step = 1;
+  if (m == 0 || n == 0) return;
+  const PetscScalar one = 1;
+  BLASgemv_(transposed ? "T" : "N", &m, &n, &one, a.data(), &m, x.data(), &step, &one, y.data(),
+            &step);
+}
+
+DenseFactors::DenseFactors(DenseMatrix a)
+    : lu_(std::move(a)), pivots_(static_cast<std::size_t>(lu_.rows())) {
+  const PetscBLASInt n = lu_.rows();
+  if (n == 0) return;
+  PetscBLASInt info = 0;
+  LAPACKgetrf_(&n, &n, lu_.data(), &n, pivots_.data(), &info);
+  if (info != 0) throw NotReached("the factorisation met a singular block");
+}
+
+void DenseFactors::solve(DenseMatrix& b) const {
+  const PetscBLASInt n = size(), columns = b.columns();
+  if (n == 0 || columns == 0) return;
+  PetscBLASInt info = 0;
+  LAPACKgetrs_("N", &n, &columns, lu_.data(), &n, pivots_.data(), b.data(), &n, &info);
+}
+
+void DenseFactors::solve(PetscScalar* x, bool transposed) const {
+  const PetscBLASInt n = size(), columns = 1;
+  if (n == 0) return;
+  PetscBLASInt info = 0;
+  LAPACKgetrs_(transposed ? "T" : "N", &n, &columns, lu_.data(), &n, pivots_.data(), x, &n, &info);
 }
 
 }  // namespace stickslip::petsc

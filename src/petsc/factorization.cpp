@@ -20,82 +20,45 @@ constexpr int kMostCorrections = 2;  // the second only where the first leaves t
 constexpr bool kComplex = PetscDefined(USE_COMPLEX);
 
 // What the solver of a KSP calls; null for PETSc's own.
-std::unique_ptr<Preconditioner> own_preconditioner(KSP ksp, Mat matrix, Structure structure) {
-  std::unique_ptr<Preconditioner> own;
-  const Solver solver = kind_of(ksp);
-  if (solver == Solver::lu) return own;
-  const char* prefix = nullptr;
-  check(KSPGetOptionsPrefix(ksp, &prefix));
-  if (solver == Solver::p_multigrid) {
-    own = std::move(structure.multigrid);
-  } else if (structure.chain) {
-    own = std::make_unique<LevelElimination>(matrix, structure.chain());
+std::unique_ptr<Preconditioner> own_preconditioner(KSP ksp, const Structure& structure) {
+  if (kind_of(ksp) == Solver::lu) return nullptr;
+  if (!structure.elimination) {
+    const char* prefix = nullptr;
+    check(KSPGetOptionsPrefix(ksp, &prefix));
+    throw BadInput(fmt::format("-{}pc_type: this solver eliminates elements of an hp "
+                               "discretisation, on one rank; leave it out",
+                               prefix));
   }
-  if (!own) {
-    throw BadInput(fmt::format("-{}pc_type: this solver has no {}; leave it out", prefix,
-                               solver == Solver::levels ? "chain of levels to eliminate"
-                                                        : "elements of several degrees"));
-  }
+  auto own = structure.elimination();
   attach(ksp, *own);
   return own;
 }
 
 }  // namespace
 
-Solver Structure::preferred() const {
-  if (multigrid) return Solver::p_multigrid;
-  return chain && narrow ? Solver::levels : Solver::lu;
-}
-
 Factorization::Factorization(Mat matrix, const std::string& prefix, Ledger& ledger,
-                             Structure structure)
+                             const Structure& structure)
     : measure_(matrix), prefix_(prefix), ledger_(ledger) {
-  keep(matrix);
-  try {
-    use(std::move(structure));
-  } catch (const NotReached&) {
-    if (!replaceable()) throw;
-    eliminate_instead();
-  }
-}
-
-void Factorization::keep(Mat matrix) {
   check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
   matrix_ = MatHandle(matrix);
-  measure_ = BackwardError(matrix);
-}
-
-bool Factorization::replaceable() const {
-  return kind_of(ksp_) == Solver::p_multigrid && chain_ && !chooses_solver(prefix_);
-}
-
-void Factorization::eliminate_instead() {
-  own_.reset();  // its memory first
-  if (assembled_) keep(assembled_());
-  use({chain_, true});
-}
-
-void Factorization::use(Structure structure) {
-  chain_ = structure.chain;
-  assembled_ = structure.assembled;
-  ksp_ = linear_solver(matrix_, prefix_, structure.preferred());
+  ksp_ = linear_solver(matrix_, prefix_, structure.solver());
   {
     const PhaseTimer timer("analysis", ledger_.analysis_seconds);
-    own_ = own_preconditioner(ksp_, matrix_, std::move(structure));
+    own_ = own_preconditioner(ksp_, structure);
   }
-  factor();
+  factor(0);
 }
 
-void Factorization::update() {
+void Factorization::update(PetscScalar shift) {
   check(KSPSetOperators(ksp_, matrix_, matrix_));
-  factor();
+  factor(shift);
 }
 
-void Factorization::factor() {
+void Factorization::factor(PetscScalar shift) {
   measure_.forget();
   if (own_) {
     const PhaseTimer timer("factorisation", ledger_.factorization_seconds);
-    own_->factor();
+    own_->factor(shift);
     Ledger size;
     size.factor_entries = static_cast<std::int64_t>(own_->entries());
     size.factor_megabytes = own_->bytes() / 1e6;
@@ -133,15 +96,7 @@ void Factorization::solve_transposed_once(Vec b, Vec x) {
   ++ledger_.solves;
 }
 
-bool Factorization::iterates() const {
-  PetscBool preconditions_only = PETSC_FALSE;
-  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(static_cast<KSP>(ksp_)), KSPPREONLY,
-                               &preconditions_only));
-  return preconditions_only == PETSC_FALSE;
-}
-
-void Factorization::apply(Vec b, Vec x, bool transposed, bool from_guess) {
-  check(KSPSetInitialGuessNonzero(ksp_, from_guess ? PETSC_TRUE : PETSC_FALSE));
+void Factorization::apply(Vec b, Vec x, bool transposed) {
   check(transposed ? KSPSolveTranspose(ksp_, b, x) : KSPSolve(ksp_, b, x));
   PetscInt iterations = 0;
   check(KSPGetIterationNumber(ksp_, &iterations));
@@ -154,22 +109,7 @@ void Factorization::apply(Vec b, Vec x, bool transposed, bool from_guess) {
   }
 }
 
-void Factorization::precondition(Vec b, Vec x, bool transposed) {
-  if (own_) return own_->apply(b, x, transposed);
-  apply(b, x, transposed);
-}
-
-Solution Factorization::solve(Vec b, bool transposed, Vec guess) {
-  try {
-    return solve_by_ksp(b, transposed, guess);
-  } catch (const NotReached&) {
-    if (!replaceable()) throw;
-    eliminate_instead();
-    return solve_by_ksp(b, transposed, guess);
-  }
-}
-
-Solution Factorization::solve_by_ksp(Vec b, bool transposed, Vec guess) {
+Solution Factorization::solve(Vec b, bool transposed) {
   const PhaseTimer timer("solve", ledger_.solve_seconds);
   Solution s;
   VecHandle residual, step;
@@ -181,14 +121,12 @@ Solution Factorization::solve_by_ksp(Vec b, bool transposed, Vec guess) {
     check(transposed ? MatMultTranspose(matrix_, s.x, residual) : MatMult(matrix_, s.x, residual));
     check(VecAYPX(residual, -1, b));
   };
-  const bool from_guess = guess != nullptr && iterates();
-  if (from_guess) check(VecCopy(guess, s.x));
-  apply(b, s.x, transposed, from_guess);
+  apply(b, s.x, transposed);
   ++ledger_.solves;
   bool sound = false;
   for (int n = 0; n < kMostCorrections && !sound; ++n) {
     compute_residual();  // again, as backward_error may overwrite it
-    precondition(residual, step, transposed);
+    apply(residual, step, transposed);
     check(VecAXPY(s.x, 1, step));
     check(VecAXPY(s.correction, 1, step));
     compute_residual();
@@ -208,19 +146,14 @@ Solution Factorization::solve_by_ksp(Vec b, bool transposed, Vec guess) {
 }
 
 std::string Factorization::advice() const {
-  switch (kind_of(ksp_)) {
-  case Solver::levels: return fmt::format("; -{}pc_type lu exchanges more rows", prefix_);
-  case Solver::p_multigrid: return fmt::format("; leave -{}pc_type p_multigrid out", prefix_);
-  case Solver::lu: break;
-  }
-  return "";
+  return own_ ? fmt::format("; -{}pc_type lu exchanges more rows", prefix_) : "";
 }
 
 Analysis Factorization::analyse(Mat matrix, const std::string& prefix, Ledger& ledger,
-                                Structure structure) {
+                                const Structure& structure) {
   const PhaseTimer timer("analysis", ledger.analysis_seconds);
-  const KspHandle ksp = linear_solver(matrix, prefix, structure.preferred());
-  const auto own = own_preconditioner(ksp, matrix, std::move(structure));
+  const KspHandle ksp = linear_solver(matrix, prefix, structure.solver());
+  const auto own = own_preconditioner(ksp, structure);
   if (!own) return petsc::analyse(ksp, matrix);
   return {kind_of(ksp), own->entries(), own->bytes() / 1e6, own->operations()};
 }
@@ -234,10 +167,8 @@ void probe_linear_solver(const std::string& prefix) {
   for (PetscInt i = 0; i < 2; ++i) check(MatSetValue(unit, i, i, 1, INSERT_VALUES));
   check(MatAssemblyBegin(unit, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(unit, MAT_FINAL_ASSEMBLY));
-  for (Solver solver : {Solver::lu, Solver::p_multigrid}) {
-    const KspHandle ksp = linear_solver(unit, prefix, solver);
-    check(KSPSetUp(ksp));
-  }
+  const KspHandle ksp = linear_solver(unit, prefix, Solver::lu);
+  check(KSPSetUp(ksp));
 }
 
 }  // namespace stickslip::petsc

@@ -18,8 +18,7 @@
 namespace stickslip::petsc {
 namespace {
 
-constexpr const char* kLevels = "levels";
-constexpr const char* kPMultigrid = "p_multigrid";
+constexpr const char* kElements = "elements";
 
 // Options that were set here, not by the user.
 std::set<std::string>& own_defaults() {
@@ -40,13 +39,10 @@ void set_default(const std::string& option, const char* value) {
 // Called by PETSc.
 
 // PETSc's preconditioner of the type "shell" is filled in when its matrix is known.
-PetscErrorCode create_shell(PC pc, const char* name) {
+PetscErrorCode create_elements(PC pc) {
   const PetscErrorCode code = PCSetType(pc, PCSHELL);
-  return code == 0 ? PCShellSetName(pc, name) : code;
+  return code == 0 ? PCShellSetName(pc, kElements) : code;
 }
-
-PetscErrorCode create_levels(PC pc) { return create_shell(pc, kLevels); }
-PetscErrorCode create_p_multigrid(PC pc) { return create_shell(pc, kPMultigrid); }
 
 template <bool transposed>
 PetscErrorCode apply(PC pc, Vec b, Vec x) {
@@ -133,17 +129,6 @@ double entries_counted(PetscInt entries) {
   return entries < 0 ? -1e6 * static_cast<double>(entries) : static_cast<double>(entries);
 }
 
-// Backward errors, which a solve looks at, end some digits below the residuals that rule here.
-void set_p_multigrid(KSP ksp) {
-  constexpr double tolerance = 1e-12;
-  constexpr PetscInt most = 60;
-  check(KSPSetType(ksp, KSPGMRES));
-  check(KSPGMRESSetRestart(ksp, most));
-  check(KSPSetPCSide(ksp, PC_RIGHT));
-  check(KSPSetTolerances(ksp, tolerance, PETSC_DEFAULT, PETSC_DEFAULT, most));
-  check(PCSetType(preconditioner_of(ksp), kPMultigrid));
-}
-
 }  // namespace
 
 bool chooses_solver(const std::string& prefix) {
@@ -196,8 +181,7 @@ Solver chosen_solver(const std::string& prefix, Solver preferred) {
   std::array<char, 64> type{};
   check(PetscOptionsGetString(nullptr, nullptr, fmt::format("-{}pc_type", prefix).c_str(),
                               type.data(), type.size(), nullptr));
-  if (std::strcmp(type.data(), kLevels) == 0) return Solver::levels;
-  return std::strcmp(type.data(), kPMultigrid) == 0 ? Solver::p_multigrid : Solver::lu;
+  return std::strcmp(type.data(), kElements) == 0 ? Solver::elements : Solver::lu;
 }
 
 KspHandle linear_solver(Mat matrix, const std::string& prefix, Solver preferred) {
@@ -207,11 +191,10 @@ KspHandle linear_solver(Mat matrix, const std::string& prefix, Solver preferred)
   check(KSPSetOptionsPrefix(ksp, prefix.c_str()));
   check(KSPSetOperators(ksp, matrix, matrix));
   set_direct_solver(ksp);
-  check(PCRegister(kLevels, create_levels));
-  check(PCRegister(kPMultigrid, create_p_multigrid));
-  const Solver solver = chosen_solver(prefix, preferred);
-  if (solver == Solver::levels) check(PCSetType(preconditioner_of(ksp), kLevels));
-  if (solver == Solver::p_multigrid) set_p_multigrid(ksp);
+  check(PCRegister(kElements, create_elements));
+  if (chosen_solver(prefix, preferred) == Solver::elements) {
+    check(PCSetType(preconditioner_of(ksp), kElements));
+  }
   check(KSPSetFromOptions(ksp));
   set_default_ordering(ksp);
   return ksp;
@@ -221,10 +204,7 @@ Solver kind_of(KSP ksp) {
   PC pc = preconditioner_of(ksp);
   PetscBool shell = PETSC_FALSE;
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCSHELL, &shell));
-  if (shell == PETSC_FALSE) return Solver::lu;
-  const char* name = nullptr;
-  check(PCShellGetName(pc, &name));
-  return std::strcmp(name, kLevels) == 0 ? Solver::levels : Solver::p_multigrid;
+  return shell == PETSC_TRUE ? Solver::elements : Solver::lu;
 }
 
 void attach(KSP ksp, const Preconditioner& preconditioner) {

@@ -48,31 +48,35 @@ std::vector<double> atoms(const StationaryLaw& law) {
 }  // namespace
 
 DensityField density_field(const StationaryLaw& law) {
-  const auto weights = law.axis().weights();
-  const int nodes = law.axis().size(), n = law.process().noise.levels;
-  DensityField field{PhaseField(law.process(), law.axis(), law.states()), atoms(law),
-                     std::vector<double>(2 * static_cast<std::size_t>(n) + 1, 0.0),
+  const auto& [process, noise, axis] = law.discretisation();
+  const auto weights = axis->weights();
+  const int nodes = axis->size(), half = noise->half();
+  std::vector<double> noise_marginal(static_cast<std::size_t>(noise->count()), 0.0);
+  DensityField field{PhaseField(law.discretisation(), law.states(), PhaseField::Kind::measure),
+                     atoms(law),
+                     {},
                      std::vector<double>(2 * static_cast<std::size_t>(nodes), 0.0),
                      speed_distribution(law).at_top};
-  for_each_place(law, [&](Half half, const State& state, double probability) {
-    const bool upper = half == Half::upper;
-    field.noise_marginal[n + (upper ? state.level : -state.level)] += probability;
+  for_each_place(law, [&](Half side, const State& state, double probability) {
+    const bool upper = side == Half::upper;
+    noise_marginal[half + (upper ? state.noise : -state.noise)] += probability;
     if (state.kind == StateKind::holding) return;
     // The node of a state at the origin is 0.
     const double density = probability / weights[state.node];
-    field.pdf.add(half, state.level, state.node, density);
+    field.pdf.add(side, state.noise, state.node, density);
     field.velocity_marginal[upper ? nodes + state.node : nodes - 1 - state.node] += density;
   });
-  for (auto* marginal : {&field.noise_marginal, &field.velocity_marginal}) {
+  for (auto* marginal : {&noise_marginal, &field.velocity_marginal}) {
     petsc::sum_over_ranks(law.states().comm(), *marginal);
   }
+  field.noise_marginal = noise->spread(noise_marginal);
   for (std::size_t i = 0; i < field.atom.size(); ++i) field.noise_marginal[i] += field.atom[i];
   return field;
 }
 
 SpeedDistribution speed_distribution(const StationaryLaw& law) {
   const double total = law.excursion().mean_excursion();
-  const std::size_t nodes = law.axis().size();
+  const std::size_t nodes = law.discretisation().axis->size();
   std::vector<double> sums(nodes + 2, 0.0);  // of the nodes, the origin and the holding states
   const petsc::ReadView local(law.occupation());
   PetscInt at = 0;
@@ -82,7 +86,7 @@ SpeedDistribution speed_distribution(const StationaryLaw& law) {
     sums[place] += PetscRealPart(local[at++]) / total;
   });
   petsc::sum_over_ranks(law.states().comm(), sums);
-  return {law.shared_axis(),
+  return {law.discretisation().axis,
           {sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(nodes)},
           sums[nodes] + law.excursion().mean_stick() / total,
           sums[nodes + 1]};

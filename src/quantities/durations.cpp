@@ -104,8 +104,8 @@ namespace {
 // f(t) = g exp(L t) r from s+, r = -L 1 the rate of ending where `rest` kills.
 DurationLaw law_until(operators::Systems& systems, Rest rest, const StationaryLaw& law,
                       const std::vector<double>& time, double mean, double tolerance) {
-  auto a = operators::assemble(systems.comm(), systems.process(), systems.axis(), 0, Symmetry::even,
-                               rest, systems.ledger());
+  auto a = operators::assemble(systems.comm(), systems.discretisation(), 0, Symmetry::even, rest,
+                               systems.ledger());
   const petsc::VecHandle one = a.values([](double, double, double) { return 1.0; }), b = a.zeros(),
                          c = a.trace_at_exit(), d = law.weight_on(a);
   check(MatMult(a.matrix(), one, b));

@@ -17,10 +17,13 @@ double Excursion::mean_slide() const { return sum(slide_time); }
 double Excursion::mean_stick() const { return sum(stick_time); }
 double Excursion::mean_excursion() const { return mean_slide() + mean_stick(); }
 
-double Excursion::conservation_defect(const model::Process& process) const {
-  const int n = process.noise.levels, k = process.threshold_index();
+double Excursion::conservation_defect(const operators::Discretisation& discretisation) const {
+  const auto& process = discretisation.process;
+  const int k = process.threshold_index(), half = discretisation.noise->half();
   double beyond = 0;
-  for (int i = k + 1; i <= n; ++i) beyond += slide_time[n + i] + slide_time[n - i];
+  for (int n = discretisation.noise->last_up_to(k) + 1; n <= half; ++n) {
+    beyond += slide_time[half + n] + slide_time[half - n];
+  }
   // A bias holds levels beyond mu_s, too.
   const int lowest = process.lowest_static(), highest = process.static_index();
   for (int i = lowest; i <= highest; ++i) {
@@ -40,19 +43,21 @@ void append_sticking(const Excursion& excursion, Results& results) {
   results.push_back(scalar("mean_excursion", "time", total, 0));
 }
 
-void append_moments(const model::Process& process, const Excursion& excursion, Results& results) {
+void append_moments(const operators::Discretisation& discretisation, const Excursion& excursion,
+                    Results& results) {
   const double total = excursion.mean_excursion();
-  const int n = process.noise.levels;
+  const int half = discretisation.noise->half();
   double force_times_velocity = 0;
-  for (int i = -n; i <= n; ++i) {
-    force_times_velocity += process.noise.level(i) * excursion.slide_distance[n + i];
+  for (int n = -half; n <= half; ++n) {
+    force_times_velocity += discretisation.noise->x(n) * excursion.slide_distance[half + n];
   }
   results.push_back(scalar("E_V2", "velocity^2", sum(excursion.slide_square) / total, 0));
   results.push_back(scalar("E_absV", "velocity", sum(excursion.slide_distance) / total, 0));
   results.push_back(scalar("E_XV", "force*velocity", force_times_velocity / total, 0));
   const auto& drift = excursion.slide_drift;
   // A difference of what the two half lines give: exact to the size of E|V|.
-  const double rounding = excursion.conservation_defect(process) * sum(excursion.slide_distance);
+  const double rounding =
+      excursion.conservation_defect(discretisation) * sum(excursion.slide_distance);
   results.push_back(
       scalar("E_V", "velocity", sum(drift) / total, drift.empty() ? 0 : rounding / total));
 }
@@ -82,12 +87,15 @@ void append_noise_law(const model::Process& process, Results& results) {
   results.push_back(scalar("E_X2", "force^2", moments.variance, rounding * moments.variance));
 }
 
-std::vector<double> marginal_of_noise(const model::Process& process, const Excursion& excursion) {
+std::vector<double> marginal_of_noise(const operators::Discretisation& discretisation,
+                                      const Excursion& excursion) {
+  const auto& process = discretisation.process;
   const int n = process.noise.levels, k = process.static_index();
   const double total = excursion.mean_excursion();
-  std::vector<double> law(excursion.slide_time.size());
+  const auto slide_time = discretisation.noise->spread(excursion.slide_time);
+  std::vector<double> law(slide_time.size());
   for (int i = -n; i <= n; ++i) {
-    law[n + i] = (excursion.slide_time[n + i] + excursion.slide_time[n - i]) / (2 * total);
+    law[n + i] = (slide_time[n + i] + slide_time[n - i]) / (2 * total);
     if (std::abs(i) <= k) {
       law[n + i] += (excursion.stick_time[k + i] + excursion.stick_time[k - i]) / (2 * total);
     }

@@ -67,7 +67,7 @@ RelaxationMode mode_of(const operators::Systems& systems, const operators::State
   const bool real_rate = !oscillates(pair.value);
   const double sign = states.symmetry() == Symmetry::odd ? -1 : 1;
   const int k = systems.process().static_index();
-  const PhaseField empty(systems.process(), systems.axis(), states);
+  const PhaseField empty(systems.discretisation(), states, PhaseField::Kind::function);
   RelaxationMode mode{pair.value, pair.residual, 0, empty, empty, {}};
   if (real_rate) mode.rate = pair.value.real();
   mode.at_rest.resize(2 * static_cast<std::size_t>(k) + 1);
@@ -79,12 +79,12 @@ RelaxationMode mode_of(const operators::Systems& systems, const operators::State
     if (real_rate) value = value.real();
     if (state.kind == StateKind::node) {
       for (const auto& [half, factor] : {std::pair{Half::upper, 1.0}, {Half::lower, sign}}) {
-        mode.real.add(half, state.level, state.node, factor * value.real());
-        mode.imaginary.add(half, state.level, state.node, factor * value.imag());
+        mode.real.add(half, state.noise, state.node, factor * value.real());
+        mode.imaginary.add(half, state.noise, state.node, factor * value.imag());
       }
     } else if (state.kind == StateKind::rest) {
-      mode.at_rest[k + state.level] = value;
-      mode.at_rest[k - state.level] = sign * value;
+      mode.at_rest[k + state.noise] = value;
+      mode.at_rest[k - state.noise] = sign * value;
     }
   });
   MPI_Allreduce(MPI_IN_PLACE, mode.at_rest.data(), static_cast<int>(mode.at_rest.size()),
@@ -116,7 +116,7 @@ std::vector<const Eigenpair*> chosen(const std::vector<Eigenpair>& pairs, Symmet
 
 std::vector<RelaxationMode> relaxation_modes(operators::Systems& systems, Symmetry symmetry) {
   const auto& process = systems.process();
-  const auto a = operators::assemble(systems.comm(), process, systems.axis(), 0, symmetry,
+  const auto a = operators::assemble(systems.comm(), systems.discretisation(), 0, symmetry,
                                      operators::Rest::kept, systems.ledger());
   // All rates have real parts >= 0; a target left of them, on the scale of the noise.
   const double target = -0.1 / process.noise.tau;

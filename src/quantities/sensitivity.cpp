@@ -77,9 +77,8 @@ Sensitivity::Sensitivity(operators::Systems& systems, const StationaryLaw& law,
                          std::vector<Parameter> parameters)
     : system_(systems.at(0, Symmetry::even)), law_(law), parameters_(std::move(parameters)) {
   for (Parameter theta : parameters_) {
-    changes_.push_back(operators::assemble_derivative(systems.comm(), systems.process(),
-                                                      systems.axis(), Symmetry::even, theta,
-                                                      systems.ledger()));
+    changes_.push_back(operators::assemble_derivative(systems.comm(), systems.discretisation(),
+                                                      Symmetry::even, theta, systems.ledger()));
   }
   slide_ = slides([](double, double, double) { return 1.0; });
   stick_ = stays();

@@ -133,7 +133,7 @@ Uncertain integral(const Density& s, double tau, double relative_error) {
 class DirectSpectrum {
  public:
   DirectSpectrum(operators::Systems& systems, const StationaryLaw& law)
-      : a_(operators::assemble(systems.comm(), systems.process(), systems.axis(), 0, Symmetry::odd,
+      : a_(operators::assemble(systems.comm(), systems.discretisation(), 0, Symmetry::odd,
                                Rest::kept, systems.ledger())),
         ledger_(systems.ledger()),
         turn_(1 / systems.process().noise.tau),
@@ -157,16 +157,18 @@ class DirectSpectrum {
     check(MatShift(a_.matrix(), imaginary(omega - omega_)));
     omega_ = omega;
     if (factors_ == nullptr) {
-      factors_ = std::make_unique<petsc::Factorization>(a_.matrix(), operators::kSlidePrefix,
-                                                        ledger_, a_.states().structure());
+      first_ = omega;
+      factors_ =
+          std::make_unique<petsc::Factorization>(a_.matrix(), operators::kSlidePrefix, ledger_,
+                                                 operators::structure_of(a_, imaginary(omega)));
     } else {
-      factors_->update();
+      factors_->update(imaginary(omega - first_));
     }
   }
 
   KolmogorovOperator a_;
   petsc::Ledger& ledger_;
-  double turn_, omega_ = 0;
+  double turn_, omega_ = 0, first_ = 0;  // now, and when factored first
   petsc::VecHandle b_, c_, acceleration_, cl_;
   std::unique_ptr<petsc::Factorization> factors_;
 };
@@ -181,8 +183,8 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems, const StationaryLa
                                  const std::vector<double>& omega, double tolerance) {
   const auto& noise = systems.process().noise;
   const double turn = 1 / noise.tau;
-  auto odd = operators::assemble(systems.comm(), systems.process(), systems.axis(), 0,
-                                 Symmetry::odd, Rest::kept, systems.ledger());
+  auto odd = operators::assemble(systems.comm(), systems.discretisation(), 0, Symmetry::odd,
+                                 Rest::kept, systems.ledger());
   const petsc::VecHandle b = odd.values(velocity), c = law.weighted_velocity(odd),
                          d = law.weight_on(odd);
   ReducedModel model(systems, std::move(odd), Rest::kept, {b, c, d}, ReducedModel::Nature::smooth,

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "stickslip/operators/hierarchy.hpp"
 #include "stickslip/operators/laws.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
@@ -52,25 +51,24 @@ double normalise(const KolmogorovOperator& a, Vec nu) {
 }
 
 // Means over excursions of which nu is the occupation, normalised.
-Excursion excursion_of(const model::Process& process, const velocity::Axis& axis,
-                       const KolmogorovOperator& a, Vec nu, double lost) {
-  const auto& noise = process.noise;
-  const std::size_t levels = 2 * static_cast<std::size_t>(noise.levels) + 1;
+Excursion excursion_of(const KolmogorovOperator& a, Vec nu, double lost) {
+  const auto& [process, noise, axis] = a.discretisation();
+  const auto nodes = static_cast<std::size_t>(noise->count());
   const bool folded = a.states().folded();
   Excursion e;
-  for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square}) sums->resize(levels);
-  if (!folded) e.slide_drift.resize(levels);
+  for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square}) sums->resize(nodes);
+  if (!folded) e.slide_drift.resize(nodes);
   const petsc::ReadView local(nu);
   PetscInt at = 0;
-  a.states().for_each_local([&](const State& state) {
-    const double mass = PetscRealPart(local[at++]), v = speed(state, axis);
-    const std::size_t level = noise.levels + state.level;
-    e.slide_time[level] += mass;
-    e.slide_distance[level] += mass * v;
-    e.slide_square[level] += mass * v * v;
-    if (!folded) e.slide_drift[level] += state.half == Half::upper ? mass * v : -mass * v;
+  a.states().for_each_local([&, &v_axis = *axis, half = noise->half()](const State& state) {
+    const double mass = PetscRealPart(local[at++]), v = speed(state, v_axis);
+    const auto node = static_cast<std::size_t>(half + state.noise);
+    e.slide_time[node] += mass;
+    e.slide_distance[node] += mass * v;
+    e.slide_square[node] += mass * v * v;
+    if (!folded) e.slide_drift[node] += state.half == Half::upper ? mass * v : -mass * v;
   });
-  // The levels i and -i live on one rank, so that the sums do not depend on the distribution.
+  // The nodes n and -n live on one rank, so that the sums do not depend on the distribution.
   for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square, &e.slide_drift}) {
     petsc::sum_over_ranks(a.states().comm(), *sums);
   }
@@ -120,53 +118,29 @@ void mix(const Turns& turns, Vec upper, Vec lower) {
 
 }  // namespace
 
-StationaryLaw::StationaryLaw(Systems& systems, const StationaryLaw* lower)
-    : StationaryLaw(systems.process(), systems.shared_axis(),
-                    systems.at(0, operators::symmetry_of(systems.process())).a(),
-                    [&](Vec g, Half side) {
-                      auto& system = systems.at(0, operators::symmetry_of(systems.process()));
-                      petsc::VecHandle guess;
-                      if (lower) guess = lower->prolonged(system.a(), systems.axis(), side);
-                      auto s = system.factors().solve_transposed(g, guess);
-                      const bool monotone = systems.axis().keeps_origin();
-                      if (monotone) operators::require_occupation(s.x, systems.process());
-                      return s;
-                    }) {}
-
-StationaryLaw::StationaryLaw(operators::NestedSystem& fine, const StationaryLaw& lower)
-    : StationaryLaw(fine.process(), fine.axis(), fine.a(), [&](Vec g, Half side) {
-        return fine.solve_transposed(g, lower.prolonged(fine.a(), *fine.axis(), side));
-      }) {}
-
-StationaryLaw::StationaryLaw(const model::Process& process,
-                             std::shared_ptr<const velocity::Axis> axis,
-                             const KolmogorovOperator& a, const Solve& solve)
-    : process_(process), axis_(std::move(axis)), states_(a.states()) {
-  Occupation o = normalised(a, solve(a.trace_at_exit(), Half::upper));
-  if (!process_.symmetric()) {
-    Occupation lower = normalised(a, solve(a.trace_at_exit(Half::lower), Half::lower));
-    const Turns now = turns(process_, a, o.nu, lower.nu);
+StationaryLaw::StationaryLaw(Systems& systems)
+    : discretisation_(systems.discretisation()),
+      states_(systems.at(0, operators::symmetry_of(systems.process())).a().states()) {
+  auto& system = systems.at(0, operators::symmetry_of(process()));
+  const KolmogorovOperator& a = system.a();
+  const auto from = [&](Half side) {
+    auto s = system.factors().solve_transposed(a.trace_at_exit(side));
+    const bool monotone = discretisation_.axis->keeps_origin();
+    if (monotone) operators::require_occupation(s.x, process());
+    return normalised(a, std::move(s));
+  };
+  Occupation o = from(Half::upper);
+  if (!process().symmetric()) {
+    const Occupation lower = from(Half::lower);
+    const Turns now = turns(process(), a, o.nu, lower.nu);
     chance_of_falling_ = now.falling;
-    petsc::check(VecDuplicate(o.nu, from_upper_.out()));
-    petsc::check(VecCopy(o.nu, from_upper_));
     mix(now, o.nu, lower.nu);
-    mix(turns(process_, a, o.uncorrected, lower.uncorrected), o.uncorrected, lower.uncorrected);
+    mix(turns(process(), a, o.uncorrected, lower.uncorrected), o.uncorrected, lower.uncorrected);
     o.lost = std::max(std::abs(o.lost), std::abs(lower.lost));
-    from_lower_ = std::move(lower.nu);
   }
-  excursion_ = excursion_of(process_, *axis_, a, o.nu, o.lost);
-  uncorrected_ = excursion_of(process_, *axis_, a, o.uncorrected, o.uncorrected_lost);
+  excursion_ = excursion_of(a, o.nu, o.lost);
+  uncorrected_ = excursion_of(a, o.uncorrected, o.uncorrected_lost);
   occupation_ = std::move(o.nu);
-}
-
-petsc::VecHandle StationaryLaw::prolonged(const KolmogorovOperator& a, const velocity::Axis& axis,
-                                          Half side) const {
-  Vec own = occupation_;
-  if (!process_.symmetric()) own = side == Half::upper ? from_upper_ : from_lower_;
-  const auto hierarchy = operators::hierarchy(a.states(), axis, states_, *axis_);
-  petsc::VecHandle higher = a.zeros();
-  petsc::prolong(hierarchy, own, higher, true);
-  return higher;
 }
 
 void StationaryLaw::orient(Systems& systems) {
@@ -189,8 +163,8 @@ petsc::VecHandle StationaryLaw::occupation_on(const KolmogorovOperator& a) const
     if (state.kind != StateKind::rest) {
       local[at++] = nu[sliding++];
     } else {
-      const double here = stick[k + state.level];
-      local[at++] = state.level == 0 ? here : here + stick[k - state.level];
+      const double here = stick[k + state.noise];
+      local[at++] = state.noise == 0 ? here : here + stick[k - state.noise];
     }
   });
   return all;

@@ -19,8 +19,8 @@ using petsc::check;
 using petsc::dot;
 
 KolmogorovOperator kept(operators::Systems& systems, Symmetry symmetry) {
-  return operators::assemble(systems.comm(), systems.process(), systems.axis(), 0, symmetry,
-                             Rest::kept, systems.ledger());
+  return operators::assemble(systems.comm(), systems.discretisation(), 0, symmetry, Rest::kept,
+                             systems.ledger());
 }
 
 std::vector<std::size_t> rising(const std::vector<double>& time) {
@@ -96,7 +96,7 @@ Expectation expectation(operators::Systems& systems, const StationaryLaw& law,
     const double unit = std::sqrt(std::abs(dot(pi, square)));
     if (symmetry == Symmetry::even) result.stationary = dot(pi, b);
     if (unit == 0) continue;
-    const petsc::VecHandle c = a.value_at(systems.axis(), start.level, start.v);
+    const petsc::VecHandle c = a.value_at(start.level, start.v);
     PetscReal seen = 0;
     check(VecNorm(c, NORM_INFINITY, &seen));
     if (seen == 0) continue;  // odd functions vanish at rest at x = 0

@@ -11,14 +11,14 @@ using options::Quantity;
 using quantities::Uncertain;
 
 Average average(const Setting& setting, const char* key, const char* unit, const char* f) {
-  return {key, unit, model::parse_observable(f, setting.process.friction)};
+  return {key, unit, model::parse_observable(f, setting.discretisation.process.friction)};
 }
 
 }  // namespace
 
 std::vector<Average> averages(const Setting& setting) {
   std::vector<Average> all{average(setting, "P_X_gt_mu_s", "", "1")};
-  const auto within = model::parse_observable("|x|<=mu_s", setting.process.friction);
+  const auto within = model::parse_observable("|x|<=mu_s", setting.discretisation.process.friction);
   all[0].f.value = [within](double x, double y, double v) { return 1 - within(x, y, v); };
   const auto add = [&](const char* key, const char* unit, const char* f) {
     all.push_back(average(setting, key, unit, f));
@@ -31,7 +31,7 @@ std::vector<Average> averages(const Setting& setting) {
     add("E_V2", "velocity^2", "v^2");
     add("E_absV", "velocity", "|v|");
     add("E_XV", "force*velocity", "x*v");
-    if (!setting.process.symmetric()) add("E_V", "velocity", "v");
+    if (!setting.discretisation.process.symmetric()) add("E_V", "velocity", "v");
   }
   if (setting.request.wants(Quantity::noise_law)) {
     add("P_X_le_mu_s", "", "|x|<=mu_s");
@@ -43,8 +43,8 @@ std::vector<Average> averages(const Setting& setting) {
 void append_averages(const Setting& setting, const std::vector<Uncertain>& values,
                      quantities::Results& results) {
   const auto all = averages(setting);
-  const int k = setting.process.threshold_index();
-  const double beyond = model::noise_moments(setting.process.noise, k).beyond;
+  const int k = setting.discretisation.process.threshold_index();
+  const double beyond = model::noise_moments(setting.discretisation.process.noise, k).beyond;
   const double defect = std::abs(values[0].value / beyond - 1);
   for (std::size_t n = 1; n < all.size(); ++n) {
     double share = std::abs(values[n].value);
@@ -52,7 +52,7 @@ void append_averages(const Setting& setting, const std::vector<Uncertain>& value
     results.push_back(quantities::scalar(all[n].key, all[n].unit, values[n].value,
                                          values[n].error + defect * share));
   }
-  if (setting.request.wants(Quantity::moments) && setting.process.symmetric()) {
+  if (setting.request.wants(Quantity::moments) && setting.discretisation.process.symmetric()) {
     results.push_back(quantities::scalar("E_V", "velocity", 0, 0));  // by symmetry
   }
 }

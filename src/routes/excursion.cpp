@@ -31,7 +31,7 @@ void append_with_rounding(const StationaryLaw& law, Results& results, Append app
   Results corrected, uncorrected;
   append(law.excursion(), corrected);
   append(law.uncorrected(), uncorrected);
-  const double defect = law.excursion().conservation_defect(law.process());
+  const double defect = law.excursion().conservation_defect(law.discretisation());
   for (std::size_t r = 0; r < corrected.size(); ++r) {
     auto& result = corrected[r];
     for (std::size_t n = 0; n < result.value.size(); ++n) {
@@ -46,29 +46,8 @@ void append_law(const Request& request, const StationaryLaw& law, Results& resul
   append_with_rounding(law, results, [&](const auto& excursion, Results& found) {
     if (request.wants(Quantity::sticking)) quantities::append_sticking(excursion, found);
     if (!request.wants(Quantity::moments)) return;
-    quantities::append_moments(law.process(), excursion, found);
+    quantities::append_moments(law.discretisation(), excursion, found);
   });
-}
-
-Evaluation evaluation_of(const Request& request, std::shared_ptr<StationaryLaw> law) {
-  Evaluation made;
-  append_law(request, *law, made.results);
-  made.law = std::move(law);
-  return made;
-}
-
-// Of two cycles each; seldom more than two are needed. All together cost less than a factorisation.
-constexpr int kMostRounds = 6;
-
-// Whether what the cycles leave does not matter beside what the higher degrees changed, or at all.
-bool settled(const Request& request, const Results& lower, const Results& found) {
-  for (std::size_t r = 0; r < found.size(); ++r) {
-    if (!found[r].is_scalar()) continue;
-    const double value = found[r].value[0], change = std::abs(value - lower[r].value[0]);
-    const double harmless = std::max(0.1 * request.accuracy * std::abs(value), 0.2 * change);
-    if (found[r].error[0] > harmless) return false;
-  }
-  return true;
 }
 
 std::vector<Uncertain> entry_law(const StationaryLaw& law) {
@@ -82,7 +61,7 @@ std::vector<Uncertain> entry_law(const StationaryLaw& law) {
 // On several ranks each computes the law for itself, then its share of the frequencies.
 quantities::Spectrum direct_spectrum(const Setting& setting) {
   const MPI_Comm comm = petsc::ranks(setting.comm) > 1 ? PETSC_COMM_SELF : setting.comm;
-  operators::Systems systems(comm, setting.process, setting.axis, setting.ledger);
+  operators::Systems systems(comm, setting.discretisation, setting.ledger);
   const StationaryLaw law(systems);
   systems.release(0, Symmetry::even);
   return quantities::direct_spectrum(setting.comm, systems, law, setting.request.omega);
@@ -108,7 +87,7 @@ void append_durations(operators::Systems& systems, const Setting& setting, Evalu
   const auto& law = *evaluation.law;
   const double tolerance = 0.1 * setting.request.accuracy;
   const auto slide = quantities::slide_law(systems, law, time, tolerance);
-  const auto stick = quantities::stick_law(setting.process, entry_law(law), time);
+  const auto stick = quantities::stick_law(setting.discretisation.process, entry_law(law), time);
   const auto excursion = quantities::excursion_law(systems, law, time, tolerance);
   quantities::append_duration("slide", time, slide, evaluation.results);
   quantities::append_duration("stick", time, stick, evaluation.results);
@@ -153,24 +132,16 @@ void append_expectations(operators::Systems& systems, const Setting& setting,
   }
 }
 
-void choose_solver(operators::Systems& systems, const Setting& setting) {
-  const auto& process = setting.process;
-  const std::int64_t levels = 2LL * process.noise.levels + 1;
-  const std::int64_t unknowns = levels * setting.axis->size() * (process.symmetric() ? 1 : 2);
-  if (prefers_iteration(setting.request, unknowns)) systems.prefer_iteration();
-}
-
 /// Carries out the tasks of a plan on one discretisation.
 class Execution {
  public:
   explicit Execution(const Setting& setting)
       : setting_(setting),
         request_(setting.request),
-        systems_(setting.comm, setting.process, setting.axis, setting.ledger) {}
+        systems_(setting.comm, setting.discretisation, setting.ledger) {}
 
   Evaluation run() {
     const Plan plan = plan_of(request_);
-    choose_solver(systems_, setting_);
     for (std::size_t n = 0; n < plan.tasks.size(); ++n) {
       carry_out(plan.tasks[n]);
       systems_.keep(plan.used_from(n + 1));
@@ -212,7 +183,7 @@ class Execution {
   void find_entry_law() {
     evaluation_.law->orient(systems_);
     append_with_rounding(law(), results(), [this](const auto& excursion, Results& found) {
-      quantities::append_entry_law(setting_.process, excursion, found);
+      quantities::append_entry_law(setting_.discretisation.process, excursion, found);
     });
   }
 
@@ -226,12 +197,13 @@ class Execution {
   void find_duration_moments() {
     const auto entry = entry_law(law());
     const auto moments = quantities::duration_moments(systems_, entry);
-    quantities::append_duration_moments(setting_.process, moments, entry, results());
+    quantities::append_duration_moments(setting_.discretisation.process, moments, entry, results());
   }
 
   void transform_durations(double lambda) {
     const auto t = quantities::slide_transforms(systems_, lambda);
-    const auto stick = quantities::stick_transform(setting_.process, lambda, entry_law(law()));
+    const auto stick =
+        quantities::stick_transform(setting_.discretisation.process, lambda, entry_law(law()));
     transforms_.push_back({t.slide, stick, t.excursion});
   }
 
@@ -240,8 +212,8 @@ class Execution {
     auto result = quantities::array("F_stick", "", "lambda", request_.lambda);
     result.each_by_its_size = true;
     for (double lambda : request_.lambda) {
-      quantities::append_value(result,
-                               quantities::stick_transform(setting_.process, lambda, entry));
+      quantities::append_value(
+          result, quantities::stick_transform(setting_.discretisation.process, lambda, entry));
     }
     results().push_back(std::move(result));
   }
@@ -278,76 +250,9 @@ class Execution {
 
 Evaluation by_excursion(const Setting& setting) { return Execution(setting).run(); }
 
-/// The systems of the first discretisation, and the law and coarse system of the last one.
-class NestedEvaluation::Systems {
- public:
-  explicit Systems(const Setting& coarse)
-      : request_(coarse.request),
-        systems_(coarse.comm, coarse.process, coarse.axis, coarse.ledger) {
-    choose_solver(systems_, coarse);
-    law_ = std::make_shared<StationaryLaw>(systems_);
-    const auto symmetry = operators::symmetry_of(coarse.process);
-    auto& system = systems_.at(0, symmetry);
-    iterates_ = system.factors().iterates();
-    if (!iterates_) return;
-    // A preconditioner for the finer one is cheaper than cycles around iterations.
-    coarse_ = system.coarse();
-    systems_.release(0, symmetry);
-  }
-
-  [[nodiscard]] Evaluation evaluation() const { return evaluation_of(request_, law_); }
-  [[nodiscard]] Evaluation finer(const Setting& setting) {
-    return iterates_ ? by_iteration(setting) : by_cycles(setting);
-  }
-
- private:
-  [[nodiscard]] Evaluation by_iteration(const Setting& setting) {
-    operators::Systems finer(setting.comm, setting.process, setting.axis, setting.ledger);
-    choose_solver(finer, setting);
-    finer.offer(std::move(coarse_));
-    law_ = std::make_shared<StationaryLaw>(finer, law_.get());
-    coarse_ = finer.at(0, operators::symmetry_of(setting.process)).coarse();
-    return evaluation();
-  }
-
-  [[nodiscard]] Evaluation by_cycles(const Setting& setting) {
-    operators::NestedSystem nested(systems_, setting.axis, setting.ledger);
-    const Evaluation lower = evaluation();
-    setting.ledger.solves += setting.process.symmetric() ? 1 : 2;
-    Evaluation found;
-    for (int n = 0; n < kMostRounds; ++n) {
-      setting.ledger.backward_error = 0;  // that of the last round counts
-      law_ = std::make_shared<StationaryLaw>(nested, *law_);
-      found = evaluation();
-      if (settled(request_, lower.results, found.results)) break;
-    }
-    return found;
-  }
-
-  const Request& request_;
-  operators::Systems systems_;
-  std::shared_ptr<StationaryLaw> law_;
-  bool iterates_ = false;
-  std::shared_ptr<operators::CoarseSystem> coarse_;  // of the last step, if it iterated
-};
-
-petsc::Analysis analyse(const Setting& setting, const operators::SystemKey& key, bool iterates) {
-  operators::Systems systems(setting.comm, setting.process, setting.axis, setting.ledger);
-  if (iterates) systems.prefer_iteration();
+petsc::Analysis analyse(const Setting& setting, const operators::SystemKey& key) {
+  operators::Systems systems(setting.comm, setting.discretisation, setting.ledger);
   return systems.analyse(key);
 }
-
-void assemble_by_elements(const Setting& setting) {
-  (void)operators::assemble(setting.comm, setting.process, *setting.axis, 0,
-                            operators::symmetry_of(setting.process), operators::Rest::killing,
-                            setting.ledger, operators::Form::by_elements);
-}
-
-NestedEvaluation::NestedEvaluation(const Setting& coarse)
-    : systems_(std::make_unique<Systems>(coarse)) {}
-NestedEvaluation::~NestedEvaluation() = default;
-
-Evaluation NestedEvaluation::coarse() const { return systems_->evaluation(); }
-Evaluation NestedEvaluation::finer(const Setting& setting) { return systems_->finer(setting); }
 
 }  // namespace stickslip::routes

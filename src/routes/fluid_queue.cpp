@@ -74,12 +74,13 @@ void append_laplace(const Setting& setting, const Excursion& excursion, double r
   };
   std::vector<quantities::DurationTransforms> transforms;
   for (double lambda : setting.request.lambda) {
-    const FluidQueue killed = solve(setting.process, lambda);
+    const FluidQueue killed = solve(setting.discretisation.process, lambda);
     const double slide = killed.slide_transform();
-    transforms.push_back(
-        {{slide, rounding * slide},
-         quantities::stick_transform(setting.process, lambda, uncertain(excursion.entry)),
-         quantities::stick_transform(setting.process, lambda, uncertain(killed.entry()))});
+    transforms.push_back({{slide, rounding * slide},
+                          quantities::stick_transform(setting.discretisation.process, lambda,
+                                                      uncertain(excursion.entry)),
+                          quantities::stick_transform(setting.discretisation.process, lambda,
+                                                      uncertain(killed.entry()))});
   }
   quantities::append_laplace(setting.request.lambda, transforms, results);
 }
@@ -88,7 +89,7 @@ void append_laplace(const Setting& setting, const Excursion& excursion, double r
 
 Evaluation by_fluid_queue(const Setting& setting) {
   const auto& request = setting.request;
-  const auto& process = setting.process;
+  const auto& process = setting.discretisation.process;
   const petsc::PhaseTimer timer("fluid queue", setting.ledger.factorization_seconds);
   const FluidQueue queue = solve(process, 0);
   const Excursion excursion = excursion_of(process, queue);
@@ -96,12 +97,14 @@ Evaluation by_fluid_queue(const Setting& setting) {
   Evaluation evaluation;
   auto& results = evaluation.results;
   if (request.wants(Quantity::sticking)) quantities::append_sticking(excursion, results);
-  if (request.wants(Quantity::moments)) quantities::append_moments(process, excursion, results);
+  if (request.wants(Quantity::moments))
+    quantities::append_moments(setting.discretisation, excursion, results);
   if (request.wants(Quantity::entry_law)) {
     quantities::append_entry_law(process, excursion, results);
   }
   if (request.wants(Quantity::noise_law)) {
-    append_noise_law(process, quantities::marginal_of_noise(process, excursion), results);
+    append_noise_law(process, quantities::marginal_of_noise(setting.discretisation, excursion),
+                     results);
   }
   for (auto& r : results) {
     for (std::size_t n = 0; n < r.value.size(); ++n) r.error[n] = rounding * std::abs(r.value[n]);

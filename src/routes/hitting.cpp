@@ -16,12 +16,13 @@ using quantities::Uncertain;
 
 // E_{s+} of the time until `rest` kills.
 Uncertain mean_time(const Setting& setting, Rest rest) {
-  operators::Systems systems(setting.comm, setting.process, setting.axis, setting.ledger);
+  operators::Systems systems(setting.comm, setting.discretisation, setting.ledger);
   auto& system = systems.at(0, Symmetry::none, rest);
   // Where the process is killed at once the time is 0.
   const auto edge = [&](double x, double y) {
     return rest == Rest::killing_edges && y == 0 &&
-           std::abs(std::lround(x / setting.process.noise.delta)) == setting.process.static_index();
+           std::abs(std::lround(x / setting.discretisation.process.noise.delta)) ==
+               setting.discretisation.process.static_index();
   };
   const petsc::VecHandle source =
       system.a().values([&](double x, double y, double) { return edge(x, y) ? 0.0 : 1.0; });
@@ -31,10 +32,10 @@ Uncertain mean_time(const Setting& setting, Rest rest) {
 }  // namespace
 
 Evaluation by_hitting(const Setting& setting) {
-  const int k = setting.process.static_index();
+  const int k = setting.discretisation.process.static_index();
   const Uncertain slide = mean_time(setting, Rest::killing);
   const Uncertain to_edge = mean_time(setting, Rest::killing_edges);
-  const operators::StaticChain chain(setting.process.noise, k);
+  const operators::StaticChain chain(setting.discretisation.process.noise, k);
   const std::vector<double> ones(static_cast<std::size_t>(chain.size()), 1.0);
   const Uncertain from_edge{chain.integral(ones).back(), 0};
   const Uncertain excursion = to_edge + from_edge, p_slide = slide / excursion;

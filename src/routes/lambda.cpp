@@ -32,7 +32,7 @@ class FullGrid {
  public:
   FullGrid(const Setting& setting, double lambda)
       : lambda_(lambda),
-        systems_(setting.comm, setting.process, setting.axis, setting.ledger),
+        systems_(setting.comm, setting.discretisation, setting.ledger),
         system_(systems_.at(lambda, Symmetry::none, Rest::kept)),
         at_exit_(system_.a().trace_at_exit()) {}
 
@@ -91,7 +91,8 @@ class Search {
   explicit Search(const Setting& setting) : setting_(setting) {}
 
   Trial run() {
-    const double tau = setting_.process.noise.tau, wanted = 0.25 * setting_.request.accuracy;
+    const double tau = setting_.discretisation.process.noise.tau,
+                 wanted = 0.25 * setting_.request.accuracy;
     best_ = average_at(setting_, std::max(0.01 * setting_.request.accuracy, kSafe) / tau);
     for (int n = 1, means = 0; n < kMostTrials && means < kMostMeans; ++n) {
       const double excess = best_.largest_bias / wanted;

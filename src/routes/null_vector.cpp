@@ -56,7 +56,7 @@ double integral(const KolmogorovOperator& a, Vec pi, const model::Observable& f)
 // By renewal, excursions end at the rates Lambda alpha pi of the highest static level upwards and
 // Lambda (1 - alpha) pi of the lowest one downwards.
 Uncertain mean_excursion(const Setting& setting, const KolmogorovOperator& a, Vec pi, Vec before) {
-  const auto& process = setting.process;
+  const auto& process = setting.discretisation.process;
   const auto& noise = process.noise;
   const model::Observable exits{"", [&](double x, double y, double) {
                                   if (y != 0) return 0.0;
@@ -85,13 +85,13 @@ void append_durations(Uncertain excursion, quantities::Results& results) {
 }  // namespace
 
 Evaluation by_null_vector(const Setting& setting) {
-  const auto a = operators::assemble(setting.comm, setting.process, *setting.axis, 0,
-                                     Symmetry::none, operators::Rest::kept, setting.ledger);
+  const auto a = operators::assemble(setting.comm, setting.discretisation, 0, Symmetry::none,
+                                     operators::Rest::kept, setting.ledger);
   petsc::MatHandle transposed;  // of -M; its null vector is pi
   check(MatTranspose(a.matrix(), MAT_INITIAL_MATRIX, transposed.out()));
   // All eigenvalues of -M have real parts >= 0, and 0 is the one nearest to a small negative
   // target.
-  const double target = -1e-6 / setting.process.noise.tau;
+  const double target = -1e-6 / setting.discretisation.process.noise.tau;
   petsc::Eigensolver solver(transposed, kNullPrefix, target, 1, setting.ledger);
   const Vec before = solver.pairs()[0].real;
   normalise(before);

@@ -170,27 +170,6 @@ Plan plan_of(const Request& request) {
   return Planner(request).plan();
 }
 
-// Up to 200 000 unknowns both take the same time, over all scenes (0.7 to 2 times in single
-// ones); iteration takes half of the memory, above also less time, and more ranks share it. Without
-// drag it needs twice the iterations, and with a right-hand side more an elimination has paid off.
-bool prefers_iteration(const Request& request, std::int64_t unknowns) {
-  constexpr std::int64_t least = 100'000;
-  constexpr int most_solves = 2;
-  constexpr double finest = 1e-10;  // what the tolerance of the iteration is good for
-  if (unknowns < least || request.accuracy < finest || request.scene.drag.is_none()) return false;
-  const auto few = [](const Use& use) { return use.plain == 0 && use.transposed <= most_solves; };
-  const auto tasks = plan_of(request).tasks;
-  return !tasks.empty() && std::all_of(tasks.begin(), tasks.end(), [&few](const Task& task) {
-    return !task.adaptive && std::all_of(task.uses.begin(), task.uses.end(), few);
-  });
-}
-
-bool can_nest(const Request& request) {
-  if (request.method.scheme != options::Scheme::hp) return false;
-  const auto tasks = plan_of(request).tasks;
-  return tasks.size() == 1 && tasks.front().work == Work::stationary_law;
-}
-
 std::string task_name(const Request& request, const Task& task) {
   const auto at_lambda = [&](const char* what) {
     return fmt::format("{} at lambda = {:g}", what, request.lambda[task.at]);

@@ -93,18 +93,6 @@ HpAxis::HpAxis(std::vector<double> ends, const std::vector<int>& degrees, const 
   for (double v : ends_) drag_at_ends_.push_back(drag(v));
 }
 
-std::shared_ptr<HpAxis> HpAxis::coarsened(int degree) const {
-  std::vector<int> degrees;
-  for (const Element& element : elements_) {
-    degrees.push_back(std::min(element.reference->size - 1, degree));
-  }
-  auto coarse = std::make_shared<HpAxis>(ends_, degrees, drag_);
-  if (&mirrored() != this) {
-    coarse->set_mirrored(dynamic_cast<const HpAxis&>(mirrored()).coarsened(degree));
-  }
-  return coarse;
-}
-
 void HpAxis::transport(double excess, int j, TransportRow& row) const {
   const int element = element_of_[j];
   fill(j, std::max(-(excess + drag_at_ends_[element]), 0.0), excess + drag_at_nodes_[j],

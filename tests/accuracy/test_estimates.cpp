@@ -42,12 +42,6 @@ TEST_CASE("estimates: rounding is the least error, of every entry") {
   check_errors(results, {0.5, 1, 0.25, 5, 6});
 }
 
-TEST_CASE("estimates: truncation adds five times its tolerance, relative to every value") {
-  Results results{scalar("a", "", -2, 0.5), modes({1, 4, 0}, {0, 5, 6})};
-  accuracy::add_truncation(0.1, results);
-  check_errors(results, {1.5, 0.5, 7, 6});
-}
-
 TEST_CASE("estimates: the larger of two changes is added, each by its factor") {
   const Results coarse{scalar("f", "", 3, 9), modes({1, 2}, {9, 9})};
   Results results{scalar("f", "", 1, 0.5), modes({2, 2.5, 7}, {0, 0.25, 0})};

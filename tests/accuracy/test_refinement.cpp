@@ -75,9 +75,7 @@ std::vector<double> expected_seconds(const Request& r, Outcome& outcome) {
 }
 
 double work(const Request& r, int step) {
-  auto resolution = accuracy::Ladder(r).rung(step);
-  resolution.nested = false;
-  return accuracy::relative_work(r.scene, resolution);
+  return accuracy::relative_work(r.scene, accuracy::Ladder(r).rung(step));
 }
 
 // The value of one hand-made discretisation.
@@ -303,7 +301,7 @@ TEST_CASE("refinement: only what is asked for is done") {
   const Outcome even = solve(r);
   const int steps = static_cast<int>(even.steps.size());
   CHECK(even.total.assemblies == steps);
-  CHECK(factorizations(even) == (steps + 2) / 3);  // of three steps on the same elements
+  CHECK(factorizations(even) == steps);
   CHECK(even.total.solves == steps);
 
   r.quantities = {Quantity::entry_law};
@@ -387,26 +385,6 @@ TEST_CASE("refinement: estimates are made of the last changes, and of what the r
   CHECK(outcome.steps.back().estimate == Approx(largest).epsilon(1e-6));
   CHECK(outcome.steps.back().limiting_key == key);
   CHECK(outcome.reached == (largest <= r.accuracy));
-}
-
-// At so high degrees the truncation rules; nested cycles leave a part of the change.
-TEST_CASE("refinement: nested steps state what the truncation that they share may hide") {
-  Request r = request(1, 0.9, 1, 0.5, {1, 0});
-  r.quantities = {Quantity::sticking, Quantity::moments};
-  r.accuracy = 1e-8;
-  const Outcome outcome = solve(r);
-  const int last = static_cast<int>(outcome.steps.size()) - 1;
-  REQUIRE(outcome.steps.back().resolution.nested);
-  const double truncation = 5 * accuracy::Ladder(r).tail_tolerance(last);
-  const auto without = estimated(r, last);
-  for (std::size_t n = 0; n < without.size(); ++n) {
-    const auto& found = outcome.results[n];
-    if (found.value[0] == 0) continue;  // E_V
-    INFO(found.key);
-    const double hidden = (found.error[0] - without[n].error[0]) / std::abs(found.value[0]);
-    CHECK(hidden > 0.9 * truncation);
-    CHECK(hidden < 1.5 * truncation);
-  }
 }
 
 TEST_CASE("refinement: an accuracy is reached at its estimate, and not below") {

@@ -110,23 +110,31 @@ TEST_CASE("resolution: unknowns are levels times nodes, on each half line") {
   CHECK(accuracy::unknowns(s, upwind) == 11 * 50);
   upwind.v_max = 3.13;
   CHECK(accuracy::unknowns(s, upwind) == 11 * 51);
-  CHECK(accuracy::make_axis(s, upwind)->size() == 51);
+  CHECK(accuracy::discretise(s, upwind).axis->size() == 51);
   upwind.halves = 2;
   CHECK(accuracy::unknowns(s, upwind) == 2 * 11 * 51);
   const auto hp = hp_resolution(s, 7, 0, 1e-6);
-  CHECK(accuracy::unknowns(s, hp) == (2 * hp.levels + 1) * accuracy::make_axis(s, hp)->size());
+  const int nodes = accuracy::discretise(s, hp).axis->size();
+  CHECK(accuracy::unknowns(s, hp) == (2 * hp.levels + 1) * nodes);
+  const auto grouped = hp_resolution(s, 7, 0, 1e-6, {}, {3});
+  CHECK(grouped.noise_nodes() < 2 * grouped.levels + 1);
+  CHECK(accuracy::unknowns(s, grouped) == grouped.noise_nodes() * nodes);
+  CHECK(accuracy::discretise(s, grouped).noise->count() == grouped.noise_nodes());
   const auto exact = accuracy::exact_resolution(s, 1e-6);
   CHECK(accuracy::unknowns(s, exact) == 2 * exact.levels + 1);
 }
 
-TEST_CASE("resolution: the work of a band, and less through the factors of a step before") {
+TEST_CASE("resolution: the work of a band, or of blocks of noise nodes") {
   const auto s = scene(1, 0.25, 1, 0.25);
-  auto hp = hp_resolution(s, 7, 0, 1e-6);
+  const auto hp = hp_resolution(s, 7, 0, 1e-6);
   const double levels = 2.0 * hp.levels + 1;
-  const double nodes = accuracy::make_axis(s, hp)->size(), n = levels * nodes;
-  CHECK(accuracy::relative_work(s, hp) == Approx(n * nodes * std::min(levels, nodes)));
-  hp.nested = true;
-  CHECK(accuracy::relative_work(s, hp) == Approx(0.4 * n * nodes * std::min(levels, nodes)));
+  const double nodes = accuracy::discretise(s, hp).axis->size(), n = levels * nodes;
+  const bool dense = petsc::ranks(PETSC_COMM_WORLD) == 1;
+  const double band = n * nodes * std::min(levels, nodes), blocks = n * levels * levels / 7;
+  CHECK(accuracy::relative_work(s, hp) == Approx(dense ? blocks : band));
+  auto by_mumps = hp;
+  by_mumps.factors = options::Factors::in_memory;
+  CHECK(accuracy::relative_work(s, by_mumps) == Approx(band));
   const auto upwind = accuracy::upwind_resolution(s, 2, 1e-6);
   const double all = static_cast<double>(accuracy::unknowns(s, upwind));
   const double rows = 2.0 * upwind.levels + 1;
@@ -141,7 +149,7 @@ TEST_CASE("resolution: the axis of the other sign has the drag of the other sign
   s.noise_levels = 8;
   for (const auto& resolution :
        {accuracy::upwind_resolution(s, 2, 1e-6), hp_resolution(s, 4, 0, 1e-6)}) {
-    const auto axis = accuracy::make_axis(s, resolution);
+    const auto axis = accuracy::discretise(s, resolution).axis;
     velocity::TransportRow upper, lower;
     axis->transport(0.1, axis->size() / 2, upper);
     axis->mirrored().transport(0.1, axis->size() / 2, lower);
@@ -149,27 +157,6 @@ TEST_CASE("resolution: the axis of the other sign has the drag of the other sign
     for (const auto& e : upper.entries) up += std::abs(e.value);
     for (const auto& e : lower.entries) down += std::abs(e.value);
     CHECK(up > 1.05 * down);  // faster with more drag
-  }
-}
-
-// Triangles of level pairs, 2 n_v nodes each, take (2 n_v)^2/2 entries for 2 n_v unknowns: n n_v in
-// all. The matrix and dense blocks in work come on top.
-TEST_CASE("memory: elimination by levels is predicted as half of its dense blocks") {
-  for (int inverse : {16, 64}) {
-    const auto s = scene(1, 0.25, 1, 1.0 / inverse);
-    const auto resolution = hp_resolution(s, 9, 0, 1e-8);
-    const double n = static_cast<double>(accuracy::unknowns(s, resolution));
-    const double nodes = n / (2.0 * resolution.levels + 1);
-    const double entry = petsc::complex_scalars() ? 16 : 8;  // bytes
-    const double triangles = entry * n * nodes;
-    CHECK(accuracy::predicted_bytes(s, resolution) > 1.05 * triangles);
-    CHECK(accuracy::predicted_bytes(s, resolution) < 1.2 * triangles + entry * 200 * n);
-    auto nested = resolution, lower = resolution;
-    nested.nested = true;
-    --lower.degree;
-    const double more = accuracy::predicted_bytes(s, nested) - accuracy::predicted_bytes(s, lower);
-    CHECK(more > 0);
-    CHECK(more < 0.2 * accuracy::predicted_bytes(s, resolution));
   }
 }
 
@@ -194,14 +181,8 @@ TEST_CASE("ladder: every rung is finer in every respect") {
     CHECK(fine.degree > coarse.degree);
     CHECK(fine.levels >= coarse.levels);
     CHECK(fine.v_max >= coarse.v_max);
+    CHECK(fine.grouping.degree > coarse.grouping.degree);
     CHECK(ladder.tail_tolerance(n) <= ladder.tail_tolerance(n - 1));
-    // What follows from the stationary law alone is computed in threes on the same elements.
-    CHECK(fine.nested == (quantity == options::Quantity::sticking && n % 3 != 0));
-    if (fine.nested) {
-      CHECK(fine.levels == coarse.levels);
-      CHECK(fine.v_max == coarse.v_max);
-      CHECK(fine.layers == coarse.layers);
-    }
   }
 }
 
@@ -282,13 +263,6 @@ TEST_CASE("ladder: truncation is allowed a part of what the discretisation leave
     const double expected = std::pow(10.0, -hp.rung(n).degree);
     CHECK(hp.tail_tolerance(n) == Approx(1e-3 * expected));
   }
-  // Three steps on the same elements take what the second of them needs.
-  request.quantities = {options::Quantity::sticking};
-  const accuracy::Ladder nested(request);
-  for (int n : {0, 1, 2}) {
-    CHECK(nested.tail_tolerance(n) == Approx(std::pow(10.0, -(nested.rung(1).degree + 3))));
-    CHECK(nested.tail_tolerance(n + 3) == Approx(std::pow(10.0, -(nested.rung(4).degree + 3))));
-  }
   request.method.scheme = options::Scheme::upwind;
   CHECK(accuracy::Ladder(request).tail_tolerance(1) == Approx(1e-9));
   request.accuracy = 1e-3;
@@ -299,6 +273,34 @@ TEST_CASE("ladder: truncation is allowed a part of what the discretisation leave
   CHECK(accuracy::Ladder(request).tail_tolerance(0) == Approx(1e-8));
   CHECK(accuracy::Ladder(request).tail_tolerance(2) == Approx(1e-12));
   CHECK(accuracy::Ladder(request).tail_tolerance(20) == Approx(1e-18));
+}
+
+TEST_CASE("ladder: the noise is on nodes, of a degree by hand, or on all levels") {
+  options::Request request;
+  request.scene = scene(1, 0.25, 1, 1.0 / 32);
+  request.method.noise_grading = 3;
+  const accuracy::Ladder free(request);
+  CHECK(free.rung(1).noise_nodes() < 0.5 * (2 * free.rung(1).levels + 1));
+  CHECK(free.rung(1).grouping.grading == 3);
+  request.method.noise_degree = 0;
+  const accuracy::Ladder levels(request);
+  CHECK(levels.last() > 1);
+  CHECK(levels.rung(1).noise_nodes() == 2 * levels.rung(1).levels + 1);
+  request.method.noise_degree = 5;
+  const accuracy::Ladder fixed(request);
+  CHECK(fixed.last() == 1);
+  CHECK(fixed.rung(1).grouping.degree == 5);
+  CHECK(fixed.rung(0).grouping.degree == 4);
+  request.method.noise_degree.reset();
+  // The routes of the paper know single levels alone.
+  for (auto route :
+       {options::Route::lambda, options::Route::hitting, options::Route::null_vector}) {
+    request.route = route;
+    CHECK_FALSE(accuracy::Ladder(request).rung(1).noise);
+  }
+  request.route = options::Route::excursion;
+  request.method.scheme = options::Scheme::upwind;
+  CHECK_FALSE(accuracy::Ladder(request).rung(1).noise);
 }
 
 TEST_CASE("ladder: both signs of v where there is no symmetry, or none is used") {

@@ -13,7 +13,7 @@ namespace stickslip::test {
 /// What the quantities of dynamics start from.
 struct Solved {
   explicit Solved(const Discrete& d, MPI_Comm comm = PETSC_COMM_WORLD)
-      : systems(comm, d.process, d.axis, ledger), law(systems) {}
+      : systems(comm, d, ledger), law(systems) {}
   Solved(const Solved&) = delete;
   Solved& operator=(const Solved&) = delete;
 

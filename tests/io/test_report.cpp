@@ -174,9 +174,10 @@ TEST_CASE("summary: the cost is told in all and by steps") {
   CHECK(last == Json{{"scheme", "hp"},
                      {"degree", 8},
                      {"layers", 5},
+                     {"noise_degree", 0},
                      {"v_max", 7.5},
-                     {"nested", false},
                      {"noise_levels", 40},
+                     {"noise_nodes", 81},
                      {"unknowns", 1001},
                      {"nonzeros", 20002},
                      {"factor_entries", 300003},
@@ -244,7 +245,7 @@ TEST_CASE("table: steps with their sizes and seconds, the first to compare with"
   auto o = outcome();
   o.results.clear();
   const std::string text = io::table(request(), o, {});
-  const Words sizes{"8", "5", "40", "7.5", "1001", "20002", "12"};
+  const Words sizes{"8", "5", "40", "81", "7.5", "1001", "20002", "12"};
   Words first = sizes, second = sizes;
   for (const char* word : {"0.125", "0.250", "0.500", "0.750", "2.000", "to", "compare", "with"}) {
     first.emplace_back(word);
@@ -411,7 +412,7 @@ TEST_CASE("plan reports: sizes, solves and seconds in their places") {
   r.quantities = {options::Quantity::sticking};
   const std::string text = io::plan_table(r, p);
   CHECK(row(text, "0") ==
-        Words{"0", "8", "5", "40", "7.5", "1001", "20002", "3e+05", "12", "0.25"});
+        Words{"0", "8", "5", "40", "81", "7.5", "1001", "20002", "3e+05", "12", "0.25"});
   CHECK_THAT(text, Catch::Contains("in all 2 assemblies, 2 factorisations, 5 solves\n") &&
                        Catch::Contains("lambda = 0, even") && Catch::Contains("3 plain") &&
                        Catch::Contains("lambda = 0.5, both half lines") &&

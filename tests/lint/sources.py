@@ -12,7 +12,7 @@ import re
 import statistics
 import sys
 
-MODULES = ("support", "model", "exact", "velocity", "simulation", "petsc", "options", "operators",
+MODULES = ("support", "model", "exact", "noise", "velocity", "simulation", "petsc", "options", "operators",
            "quantities", "routes", "monte_carlo", "accuracy", "studies", "io", "sweeps", "app")
 SCALAR_MODULES = ("petsc", "operators", "quantities", "routes")
 LONGEST, LONG, MEDIAN = 60, 30, 8

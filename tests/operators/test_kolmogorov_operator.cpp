@@ -79,17 +79,19 @@ void for_each_row(Mat a, Visit visit) {
   }
 }
 
-struct Discretisation {
+struct Named {
   std::string name;
-  std::unique_ptr<velocity::Axis> axis;
+  operators::Discretisation on;
 };
 
-std::vector<Discretisation> both_schemes(double v_max, const model::Drag& drag) {
-  std::vector<Discretisation> all;
-  all.push_back({"hp", std::make_unique<velocity::HpAxis>(
-                           std::vector<double>{0, 0.02, 0.1, 0.5, v_max}, 3, drag)});
-  all.push_back({"upwind", std::make_unique<velocity::UpwindAxis>(0.05, 40, drag)});
-  return all;
+// The last one with groups of noise levels, on which functions up to degree 3 are exact.
+std::vector<Named> discretisations(const model::Process& process, double v_max) {
+  const auto& drag = process.drag;
+  const auto hp =
+      std::make_shared<velocity::HpAxis>(std::vector<double>{0, 0.02, 0.1, 0.5, v_max}, 3, drag);
+  const auto grid = std::make_shared<velocity::UpwindAxis>(0.05, 40, drag);
+  const auto nodes = std::make_shared<noise::Nodes>(process, noise::Grouping{3, 50});
+  return {{"hp", {process, hp}}, {"upwind", {process, grid}}, {"nodes", {process, hp, nodes}}};
 }
 
 }  // namespace
@@ -103,15 +105,15 @@ TEST_CASE("kolmogorov operator: the unfolded upwind operator is -M of the paper"
     const double spacing = 0.11;
     const int nodes = 5;
     const test::FullGrid grid(process, spacing, nodes);
-    const velocity::UpwindAxis axis(spacing, nodes, process.drag);
-    const KolmogorovOperator a(PETSC_COMM_SELF, process, axis, 0.0, Symmetry::none, Rest::kept);
+    const auto axis = std::make_shared<velocity::UpwindAxis>(spacing, nodes, process.drag);
+    const KolmogorovOperator a(PETSC_COMM_SELF, {process, axis}, 0.0, Symmetry::none, Rest::kept);
     const auto m = grid.generator();
     REQUIRE(static_cast<std::size_t>(a.states().global_size()) == grid.size());
     std::map<PetscInt, std::size_t> place;  // in the grid's numbering
     a.states().for_each_local([&](const State& s) {
       const int sign = s.half == Half::upper ? 1 : -1;
       const int j = s.kind == StateKind::node ? s.node + 1 : 0;
-      place[a.states().index(s)] = grid.index(sign * s.level, sign * j);
+      place[a.states().index(s)] = grid.index(sign * s.noise, sign * j);
     });
     for (const auto& [row, grid_row] : place) {
       for (const auto& [column, grid_column] : place) {
@@ -126,10 +128,10 @@ TEST_CASE("kolmogorov operator: the unfolded upwind operator is -M of the paper"
 
 TEST_CASE("kolmogorov operator: constants are harmonic for the whole process", "[parallel]") {
   const double v_max = GENERATE(8.0, 1.0);  // the second cuts the axis: holding states
-  const auto process = process_on(9, 1, 0.25);
-  for (const auto& d : both_schemes(v_max, process.drag)) {
+  const auto process = process_on(11, 1, 0.25);
+  for (const auto& d : discretisations(process, v_max)) {
     for (Symmetry symmetry : {Symmetry::even, Symmetry::none}) {
-      const KolmogorovOperator a(PETSC_COMM_WORLD, process, *d.axis, 0.0, symmetry, Rest::kept);
+      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0.0, symmetry, Rest::kept);
       INFO(d.name);
       CHECK(largest(row_sums(a)) < 1e-14 * largest_entry(a.matrix()));
     }
@@ -140,12 +142,11 @@ TEST_CASE("kolmogorov operator: constants are harmonic for the whole process", "
 TEST_CASE("kolmogorov operator: rows conserve probability up to killing", "[parallel]") {
   const double lambda = GENERATE(0.0, 1.5);
   const double v_max = GENERATE(8.0, 1.0);
-  const auto process = process_on(9, 1, 0.25);
-  for (const auto& d : both_schemes(v_max, process.drag)) {
+  const auto process = process_on(11, 1, 0.25);
+  for (const auto& d : discretisations(process, v_max)) {
     for (Symmetry symmetry : {Symmetry::even, Symmetry::none}) {
       INFO(d.name << " lambda " << lambda << " v_max " << v_max);
-      const KolmogorovOperator a(PETSC_COMM_WORLD, process, *d.axis, lambda, symmetry,
-                                 Rest::killing);
+      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, lambda, symmetry, Rest::killing);
       const auto nu = test_vector(a);
       PetscScalar left = 0, mass = 0, sent = 0;
       check(VecTDot(nu, row_sums(a), &left));
@@ -162,17 +163,16 @@ TEST_CASE("kolmogorov operator: rows conserve probability up to killing", "[para
 
 // The fold is exact: an even (odd) function on the whole space and its upper half see the same.
 TEST_CASE("kolmogorov operator: folded and unfolded agree on functions of their symmetry") {
-  const auto process = process_on(7, 0.6, 0.25);
+  const auto process = process_on(11, 0.6, 0.25);
   const auto even = [](double x, double y, double v) { return 1 + x * v + std::cos(v) + y * x; };
   const auto odd = [](double x, double y, double v) { return x + v * v * v + y; };
-  for (const auto& d : both_schemes(8, process.drag)) {
+  for (const auto& d : discretisations(process, 8)) {
     for (Symmetry symmetry : {Symmetry::even, Symmetry::odd}) {
       for (Rest rest : {Rest::killing, Rest::kept, Rest::killing_edges}) {
         const auto f = symmetry == Symmetry::even ? KolmogorovOperator::Observable(even)
                                                   : KolmogorovOperator::Observable(odd);
-        const KolmogorovOperator half(PETSC_COMM_SELF, process, *d.axis, 0.3, symmetry, rest);
-        const KolmogorovOperator whole(PETSC_COMM_SELF, process, *d.axis, 0.3, Symmetry::none,
-                                       rest);
+        const KolmogorovOperator half(PETSC_COMM_SELF, d.on, 0.3, symmetry, rest);
+        const KolmogorovOperator whole(PETSC_COMM_SELF, d.on, 0.3, Symmetry::none, rest);
         petsc::VecHandle from_half = half.zeros(), from_whole = whole.zeros();
         check(MatMult(half.matrix(), half.values(f), from_half));
         check(MatMult(whole.matrix(), whole.values(f), from_whole));
@@ -189,20 +189,19 @@ TEST_CASE("kolmogorov operator: folded and unfolded agree on functions of their 
 }
 
 TEST_CASE("kolmogorov operator: parity enters through levels below -k alone", "[parallel]") {
-  const auto process = process_on(9, 1, 0.25);
-  for (const auto& d : both_schemes(8, process.drag)) {
-    const KolmogorovOperator even(PETSC_COMM_WORLD, process, *d.axis, 0.0, Symmetry::even,
-                                  Rest::killing);
-    const KolmogorovOperator odd(PETSC_COMM_WORLD, process, *d.axis, 0.0, Symmetry::odd,
-                                 Rest::killing);
+  const auto process = process_on(11, 1, 0.25);
+  for (const auto& d : discretisations(process, 8)) {
+    const KolmogorovOperator even(PETSC_COMM_WORLD, d.on, 0.0, Symmetry::even, Rest::killing);
+    const KolmogorovOperator odd(PETSC_COMM_WORLD, d.on, 0.0, Symmetry::odd, Rest::killing);
     petsc::VecHandle change = row_sums(odd);
     check(VecAXPY(change, -1, row_sums(even)));
     const petsc::ReadView difference(change);
     PetscInt at = 0;
     even.states().for_each_local([&](const State& s) {
       // hp lifts the value at v = 0 into the lowest element, upwind into the lowest node.
-      const int lowest = d.name == "hp" ? 4 : 1;
-      const bool reflects = s.kind == StateKind::node && s.level < -4 && s.node < lowest;
+      const int lowest = d.name == "upwind" ? 1 : 4;
+      const bool falls_far = s.noise < -even.states().last_static(Half::upper);
+      const bool reflects = s.kind == StateKind::node && falls_far && s.node < lowest;
       const double size = std::abs(difference[at++]);
       CHECK((reflects ? size > 1 : size < 1e-8));
     });
@@ -210,10 +209,10 @@ TEST_CASE("kolmogorov operator: parity enters through levels below -k alone", "[
 }
 
 TEST_CASE("kolmogorov operator: upwind is an M-matrix of at most five entries a row") {
-  const auto process = process_on(9, 1, 0.25);
-  const velocity::UpwindAxis axis(0.05, 160, process.drag);
+  const auto process = process_on(11, 1, 0.25);
+  const auto axis = std::make_shared<velocity::UpwindAxis>(0.05, 160, process.drag);
   for (Symmetry symmetry : {Symmetry::even, Symmetry::none}) {
-    const KolmogorovOperator a(PETSC_COMM_SELF, process, axis, 0.0, symmetry, Rest::kept);
+    const KolmogorovOperator a(PETSC_COMM_SELF, {process, axis}, 0.0, symmetry, Rest::kept);
     for_each_row(a.matrix(), [](PetscInt row, const Row& entries) {
       CHECK(entries.size() <= 5);
       for (const auto& [column, value] : entries) CHECK((column == row ? value > 0 : value <= 0));
@@ -226,8 +225,9 @@ TEST_CASE("kolmogorov operator: upwind is an M-matrix of at most five entries a 
 TEST_CASE("kolmogorov operator: unfolded and kept, upwind is minus a generator to the last bit",
           "[parallel]") {
   for (const auto& process : {process_on(9, 1, 0.25, {1, 0.4}), rough_process(53)}) {
-    const velocity::UpwindAxis axis(process.noise.delta / 3, 40, process.drag);
-    const KolmogorovOperator a(PETSC_COMM_WORLD, process, axis, 0.0, Symmetry::none, Rest::kept);
+    const auto axis =
+        std::make_shared<velocity::UpwindAxis>(process.noise.delta / 3, 40, process.drag);
+    const KolmogorovOperator a(PETSC_COMM_WORLD, {process, axis}, 0.0, Symmetry::none, Rest::kept);
     for_each_row(a.matrix(), [](PetscInt row, const Row& entries) {
       double off_diagonal = 0, diagonal = 0;
       for (const auto& [column, value] : entries) {
@@ -243,9 +243,9 @@ TEST_CASE("kolmogorov operator: unfolded and kept, upwind is minus a generator t
 // N = 1, k = 0, one upwind node, all rates by hand: Lambda = 2/(1 * 1)^2 = 2, alpha_0 = 1/2.
 TEST_CASE("kolmogorov operator: three noise levels by hand") {
   const model::Process process{{1, 1, 1}, {0.5, 0.5}, {1, 0}};
-  const velocity::UpwindAxis axis(0.25, 1, process.drag);
+  const auto axis = std::make_shared<velocity::UpwindAxis>(0.25, 1, process.drag);
   for (const Symmetry symmetry : {Symmetry::even, Symmetry::odd}) {
-    const KolmogorovOperator a(PETSC_COMM_SELF, process, axis, 0.0, symmetry, Rest::killing);
+    const KolmogorovOperator a(PETSC_COMM_SELF, {process, axis}, 0.0, symmetry, Rest::killing);
     REQUIRE(a.states().global_size() == 4);
     const double sign = symmetry == Symmetry::even ? 1 : -1;
     // Order: (1, v = 0), (-1, v), (0, v), (1, v). B_1(0) = 0.5 goes on at rate 2; B_-1(v) = -1.75
@@ -275,10 +275,9 @@ TEST_CASE("kolmogorov operator: three noise levels by hand") {
 // Killed on exit, the static states see nothing of the sliding ones: their values are those of the
 // static chain, F_lambda for the sum of both exits.
 TEST_CASE("kolmogorov operator: exits of the static states carry their rates", "[parallel]") {
-  const auto process = process_on(9, 1, 0.25);
-  for (const auto& d : both_schemes(8, process.drag)) {
-    const KolmogorovOperator a(PETSC_COMM_WORLD, process, *d.axis, 0.7, Symmetry::none,
-                               Rest::killed_on_exit);
+  const auto process = process_on(11, 1, 0.25);
+  for (const auto& d : discretisations(process, 8)) {
+    const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0.7, Symmetry::none, Rest::killed_on_exit);
     petsc::VecHandle rates = a.exit_rates(Half::upper);
     check(VecAXPY(rates, 1, a.exit_rates(Half::lower)));
     const auto transform = operators::StaticChain(process.noise, 4, 0.7).exit_transform();
@@ -287,7 +286,7 @@ TEST_CASE("kolmogorov operator: exits of the static states carry their rates", "
       petsc::WriteView local(u);
       PetscInt at = 0;
       a.states().for_each_local([&](const State& s) {
-        local[at++] = s.kind == StateKind::rest ? transform[s.level + 4] : 0.0;
+        local[at++] = s.kind == StateKind::rest ? transform[s.noise + 4] : 0.0;
       });
     }
     check(MatMult(a.matrix(), u, residual));
@@ -341,16 +340,16 @@ std::vector<Symmetric> symmetric_samples() {
 // Every level at rest, at s+ and s- and beyond, and at velocities of both signs; folded, from the
 // half that is kept, with the sign of the symmetry.
 TEST_CASE("kolmogorov operator: values at single states", "[parallel]") {
-  const auto process = process_on(9, 1, 0.25);
-  for (const auto& d : both_schemes(2, process.drag)) {
+  const auto process = process_on(11, 1, 0.25);
+  for (const auto& d : discretisations(process, 2)) {
     for (const auto& [symmetry, f] : symmetric_samples()) {
-      const KolmogorovOperator a(PETSC_COMM_WORLD, process, *d.axis, 0.0, symmetry, Rest::kept);
+      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0.0, symmetry, Rest::kept);
       const auto values = a.values(f);
-      for (int i = -9; i <= 9; ++i) {
+      for (int i = -11; i <= 11; ++i) {
         for (double v : {0.0, 0.05, 0.333, 2.0, -0.05, -0.1234, -2.0}) {
           INFO(d.name << " level " << i << " v " << v << " folded " << a.states().folded());
           const double expected = at_state(process, f, i, v);
-          CHECK(applied(a.value_at(*d.axis, i, v), values) == Approx(expected).margin(1e-11));
+          CHECK(applied(a.value_at(i, v), values) == Approx(expected).margin(1e-11));
         }
       }
     }
@@ -358,20 +357,20 @@ TEST_CASE("kolmogorov operator: values at single states", "[parallel]") {
 }
 
 TEST_CASE("kolmogorov operator: values at s+ and s- are the traces at the exits", "[parallel]") {
-  const auto process = process_on(9, 1, 0.25);
+  const auto process = process_on(11, 1, 0.25);
   const auto distance = [](const petsc::VecHandle& one, const petsc::VecHandle& other,
                            double sign) {
     check(VecAXPY(one, -sign, other));
     return largest(one);
   };
-  for (const auto& d : both_schemes(2, process.drag)) {
+  for (const auto& d : discretisations(process, 2)) {
     for (Symmetry symmetry : {Symmetry::even, Symmetry::odd, Symmetry::none}) {
-      const KolmogorovOperator a(PETSC_COMM_WORLD, process, *d.axis, 0.0, symmetry, Rest::kept);
+      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0.0, symmetry, Rest::kept);
       const bool folded = a.states().folded();
       const double sign = symmetry == Symmetry::odd ? -1 : 1;
       const auto lower = a.trace_at_exit(folded ? Half::upper : Half::lower);
-      CHECK(distance(a.value_at(*d.axis, 5, 0), a.trace_at_exit(), 1) == 0);
-      CHECK(distance(a.value_at(*d.axis, -5, 0), lower, sign) == 0);
+      CHECK(distance(a.value_at(5, 0), a.trace_at_exit(), 1) == 0);
+      CHECK(distance(a.value_at(-5, 0), lower, sign) == 0);
     }
   }
 }
@@ -379,12 +378,12 @@ TEST_CASE("kolmogorov operator: values at s+ and s- are the traces at the exits"
 // At rest a value is one entry of the solution; an odd one vanishes at x = 0, and i and -i differ
 // by the sign.
 TEST_CASE("kolmogorov operator: a value at rest is one entry", "[parallel]") {
-  const auto process = process_on(9, 1, 0.25);
-  for (const auto& d : both_schemes(2, process.drag)) {
+  const auto process = process_on(11, 1, 0.25);
+  for (const auto& d : discretisations(process, 2)) {
     for (Symmetry symmetry : {Symmetry::even, Symmetry::odd, Symmetry::none}) {
-      const KolmogorovOperator a(PETSC_COMM_WORLD, process, *d.axis, 0.0, symmetry, Rest::kept);
+      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0.0, symmetry, Rest::kept);
       for (int i = -4; i <= 4; ++i) {
-        const auto g = a.value_at(*d.axis, i, 0);
+        const auto g = a.value_at(i, 0);
         PetscReal entries = 0;
         PetscScalar sum = 0;
         check(VecNorm(g, NORM_1, &entries));
@@ -398,14 +397,11 @@ TEST_CASE("kolmogorov operator: a value at rest is one entry", "[parallel]") {
 }
 
 TEST_CASE("kolmogorov operator: with a bias rows of the whole process sum to 0", "[parallel]") {
-  auto process = rough_process(9);
+  auto process = rough_process(19);
   for (double bias : {0.23, -0.4}) {
     process.bias = bias;
-    const velocity::UpwindAxis upwind(0.05, 30, process.drag);
-    const velocity::HpAxis hp({0, 0.1, 0.5, 1.4}, 5, process.drag);
-    for (const velocity::Axis* axis :
-         {static_cast<const velocity::Axis*>(&upwind), static_cast<const velocity::Axis*>(&hp)}) {
-      const KolmogorovOperator a(PETSC_COMM_WORLD, process, *axis, 0, Symmetry::none, Rest::kept);
+    for (const auto& d : discretisations(process, 1.4)) {
+      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0, Symmetry::none, Rest::kept);
       CHECK(largest(row_sums(a)) < 1e-14 * largest_entry(a.matrix()));
     }
   }
@@ -432,19 +428,23 @@ TEST_CASE("kolmogorov operator: derivatives are limits of differences", "[parall
       {Parameter::mu_d, changed(h, 0, 0), changed(-h, 0, 0), 2 * h},
       {Parameter::tau, changed(0, h, 0), changed(0, -h, 0), 2 * h},
       {Parameter::drag_coefficient, changed(0, 0, h), changed(0, 0, -h), 2 * h}};
-  const auto on = [](const model::Process& p, bool hp) -> std::unique_ptr<velocity::Axis> {
-    if (hp) return std::make_unique<velocity::HpAxis>(std::vector{0.0, 0.1, 0.5, 1.43}, 5, p.drag);
-    return std::make_unique<velocity::UpwindAxis>(0.053, 25, p.drag);
+  const auto on = [](const model::Process& p, bool hp) {
+    std::shared_ptr<velocity::Axis> axis;
+    if (hp) {
+      axis = std::make_shared<velocity::HpAxis>(std::vector{0.0, 0.1, 0.5, 1.43}, 5, p.drag);
+    } else {
+      axis = std::make_shared<velocity::UpwindAxis>(0.053, 25, p.drag);
+    }
+    return operators::Discretisation(p, axis);
   };
   for (const Step& step : steps) {
     for (bool hp : {true, false}) {
-      const auto axis = on(process, hp), above = on(step.above, hp), below = on(step.below, hp);
-      const auto derivative = KolmogorovOperator::derivative(PETSC_COMM_WORLD, process, *axis,
+      const auto derivative = KolmogorovOperator::derivative(PETSC_COMM_WORLD, on(process, hp),
                                                              Symmetry::even, step.parameter);
-      const auto at = [](const model::Process& p, const velocity::Axis& on_axis) {
-        return KolmogorovOperator(PETSC_COMM_WORLD, p, on_axis, 0, Symmetry::even, Rest::killing);
+      const auto at = [&](const model::Process& p) {
+        return KolmogorovOperator(PETSC_COMM_WORLD, on(p, hp), 0, Symmetry::even, Rest::killing);
       };
-      const auto upper = at(step.above, *above), lower = at(step.below, *below);
+      const auto upper = at(step.above), lower = at(step.below);
       const auto x = test_vector(derivative);
       const auto image = derivative.zeros(), up = derivative.zeros(), down = derivative.zeros();
       check(MatMult(derivative.matrix(), x, image));

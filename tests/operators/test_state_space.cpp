@@ -8,6 +8,7 @@
 #include "stickslip/velocity/upwind_axis.hpp"
 
 using namespace stickslip;
+using operators::Discretisation;
 using operators::Half;
 using operators::State;
 using operators::StateKind;
@@ -21,15 +22,15 @@ model::Process process_on(int levels, double mu_s, double mu_d) {
 }
 
 // Number of states of each kind by counting what the model says exists.
-PetscInt expected_size(const model::Process& process, const velocity::Axis& axis, Symmetry symmetry,
-                       bool with_rest) {
-  const int n = process.noise.levels, k = process.static_index();
+PetscInt expected_size(const Discretisation& d, Symmetry symmetry, bool with_rest) {
+  const auto& [process, noise, axis] = d;
+  const int k = process.static_index();
   const int halves = symmetry == Symmetry::none ? 2 : 1;
-  int size = halves * (2 * n + 1) * axis.size();
-  if (axis.keeps_origin()) size += halves * (n - k);
-  for (int l = -n; l <= n; ++l) {
-    const bool accelerates = process.excess(l) + process.drag(axis.v_max()) > 0;
-    if (axis.needs_holding() && accelerates) size += halves;
+  int size = halves * noise->count() * axis->size();
+  if (axis->keeps_origin()) size += halves * (noise->half() - k);
+  for (int n = -noise->half(); n <= noise->half(); ++n) {
+    const bool accelerates = process.excess_at(noise->x(n)) + process.drag(axis->v_max()) > 0;
+    if (axis->needs_holding() && accelerates) size += halves;
   }
   if (with_rest) size += symmetry == Symmetry::none ? 2 * k + 1 : (symmetry == Symmetry::even) + k;
   return size;
@@ -38,17 +39,20 @@ PetscInt expected_size(const model::Process& process, const velocity::Axis& axis
 }  // namespace
 
 TEST_CASE("state space: every state has one index, ranks follow one another", "[parallel]") {
-  const auto process = process_on(9, 1, 0.25);
-  const velocity::HpAxis tall({0, 0.1, 0.5, 8}, 2, process.drag);
-  const velocity::HpAxis cut({0, 0.1, 0.5, 1}, 2, process.drag);
-  const velocity::UpwindAxis grid(0.05, 40, process.drag);
-  for (const velocity::Axis* axis :
-       {static_cast<const velocity::Axis*>(&tall), static_cast<const velocity::Axis*>(&cut),
-        static_cast<const velocity::Axis*>(&grid)}) {
+  const auto process = process_on(14, 1, 0.25);
+  const std::vector<double> low{0, 0.1, 0.5, 1}, high{0, 0.1, 0.5, 8};
+  const auto tall = std::make_shared<velocity::HpAxis>(high, 2, process.drag);
+  const auto cut = std::make_shared<velocity::HpAxis>(low, 2, process.drag);
+  const auto grid = std::make_shared<velocity::UpwindAxis>(0.05, 40, process.drag);
+  const auto nodes = std::make_shared<noise::Nodes>(process, noise::Grouping{1, 50});
+  REQUIRE(nodes->half() < 14);
+  for (const Discretisation& d :
+       {Discretisation(process, tall), Discretisation(process, cut), Discretisation(process, grid),
+        Discretisation(process, tall, nodes), Discretisation(process, cut, nodes)}) {
     for (Symmetry symmetry : {Symmetry::even, Symmetry::odd, Symmetry::none}) {
       for (bool with_rest : {false, true}) {
-        const StateSpace states(PETSC_COMM_WORLD, process, *axis, symmetry, with_rest);
-        CHECK(states.global_size() == expected_size(process, *axis, symmetry, with_rest));
+        const StateSpace states(PETSC_COMM_WORLD, d, symmetry, with_rest);
+        CHECK(states.global_size() == expected_size(d, symmetry, with_rest));
         PetscInt next = states.local_begin();
         states.for_each_local([&](const State& s) { CHECK(states.index(s) == next++); });
         CHECK(next == states.local_begin() + states.local_size());
@@ -62,8 +66,8 @@ TEST_CASE("state space: every state has one index, ranks follow one another", "[
 
 TEST_CASE("state space: all ranks know the index of every state", "[parallel]") {
   const auto process = process_on(6, 0.6, 0.25);
-  const velocity::UpwindAxis axis(0.1, 3, process.drag);
-  const StateSpace states(PETSC_COMM_WORLD, process, axis, Symmetry::none, true);
+  const auto axis = std::make_shared<velocity::UpwindAxis>(0.1, 3, process.drag);
+  const StateSpace states(PETSC_COMM_WORLD, {process, axis}, Symmetry::none, true);
   std::set<PetscInt> seen;
   for (int l = -6; l <= 6; ++l) {
     for (Half half : {Half::upper, Half::lower}) {
@@ -79,32 +83,32 @@ TEST_CASE("state space: all ranks know the index of every state", "[parallel]") 
 
 TEST_CASE("state space: a rank owns i together with -i", "[parallel]") {
   const auto process = process_on(9, 1, 0.25);
-  const velocity::UpwindAxis axis(0.1, 3, process.drag);
-  const StateSpace states(PETSC_COMM_WORLD, process, axis, Symmetry::even, false);
-  const auto levels = states.local_levels();
+  const auto axis = std::make_shared<velocity::UpwindAxis>(0.1, 3, process.drag);
+  const StateSpace states(PETSC_COMM_WORLD, {process, axis}, Symmetry::even, false);
+  const auto& levels = states.local_noise();
   CHECK(std::is_sorted(levels.begin(), levels.end()));
   for (int i : levels) CHECK(std::binary_search(levels.begin(), levels.end(), -i));
 }
 
 TEST_CASE("state space: more ranks than shells leaves some ranks empty", "[parallel]") {
   const auto process = process_on(1, 0.1, 0.1);
-  const velocity::UpwindAxis axis(0.1, 2, process.drag);
-  const StateSpace states(PETSC_COMM_WORLD, process, axis, Symmetry::even, false);
+  const auto axis = std::make_shared<velocity::UpwindAxis>(0.1, 2, process.drag);
+  const StateSpace states(PETSC_COMM_WORLD, {process, axis}, Symmetry::even, false);
   CHECK(states.global_size() == 7);  // three levels of two nodes, and the origin of level 1
 }
 
 TEST_CASE("state space: too many states are refused before anything is allocated") {
-  const auto process = process_on(2000000, 1, 0.25);
-  const velocity::UpwindAxis axis(0.001, 2000, process.drag);
-  CHECK_THROWS_AS(StateSpace(PETSC_COMM_WORLD, process, axis, Symmetry::even, false), NoMemory);
+  const auto process = process_on(200000, 1, 0.25);
+  const auto axis = std::make_shared<velocity::UpwindAxis>(0.001, 20000, process.drag);
+  CHECK_THROWS_AS(StateSpace(PETSC_COMM_WORLD, {process, axis}, Symmetry::even, false), NoMemory);
 }
 
 TEST_CASE("state space: with a bias every state has one index, too", "[parallel]") {
   for (double bias : {0.3, -0.55, 1.1}) {
     auto process = process_on(8, 0.6, 0.25);
     process.bias = bias;
-    const velocity::UpwindAxis axis(0.1, 3, process.drag);
-    const StateSpace states(PETSC_COMM_WORLD, process, axis, Symmetry::none, true);
+    const auto axis = std::make_shared<velocity::UpwindAxis>(0.1, 3, process.drag);
+    const StateSpace states(PETSC_COMM_WORLD, {process, axis}, Symmetry::none, true);
     PetscInt next = states.local_begin();
     states.for_each_local([&](const State& state) {
       REQUIRE(states.index(state) == next);

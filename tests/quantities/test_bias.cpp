@@ -37,7 +37,7 @@ const std::vector<model::Scene>& sample_scenes() {
 std::map<std::string, double> scalars(const Solved& solved) {
   Results results;
   quantities::append_sticking(solved.law.excursion(), results);
-  quantities::append_moments(solved.law.process(), solved.law.excursion(), results);
+  quantities::append_moments(solved.law.discretisation(), solved.law.excursion(), results);
   std::map<std::string, double> values;
   for (const auto& r : results) values[r.key] = r.value[0];
   return values;
@@ -67,7 +67,7 @@ TEST_CASE("bias: without one both half lines give what one of them gives", "[par
       CHECK(std::abs(both.at("E_V")) < 1e-12 * one.at("E_absV"));
       CHECK(whole.law.chance_of_falling() > 0);
       CHECK(whole.law.chance_of_falling() < 1);
-      CHECK(whole.law.excursion().conservation_defect(whole.law.process()) < 1e-10);
+      CHECK(whole.law.excursion().conservation_defect(whole.law.discretisation()) < 1e-10);
     }
   }
 }
@@ -113,7 +113,7 @@ TEST_CASE("bias: the density integrates to the law and to its drift") {
     const Solved solved(test::on_hp(s, 8));
     const auto field = quantities::density_field(solved.law);
     const auto values = scalars(solved);
-    const auto weights = solved.law.axis().weights();
+    const auto weights = solved.law.discretisation().axis->weights();
     const std::size_t half = field.pdf.v().size() / 2;
     double sliding = 0, drift = 0, noise = 0, stick = 0;
     for (std::size_t j = 0; j < half; ++j) {
@@ -150,7 +150,7 @@ TEST_CASE("bias: the excursions agree with the null vector") {
       petsc::Ledger ledger;
       const auto evaluate = [&](options::Route route) {
         r.route = route;
-        return routes::evaluate({PETSC_COMM_WORLD, r, d.process, d.axis, ledger}).results;
+        return routes::evaluate({PETSC_COMM_WORLD, r, d, ledger}).results;
       };
       const auto excursions = evaluate(options::Route::excursion);
       std::map<std::string, double> found;

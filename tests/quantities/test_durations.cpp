@@ -95,7 +95,7 @@ std::vector<double> stepped(const KolmogorovOperator& a, const petsc::VecHandle&
 
 std::vector<double> stepped_slide(Solved& s, const std::vector<double>& time, double tolerance) {
   const auto& process = s.systems.process();
-  const KolmogorovOperator a(s.systems.comm(), process, s.systems.axis(), 0.0, Symmetry::even,
+  const KolmogorovOperator a(s.systems.comm(), s.systems.discretisation(), 0.0, Symmetry::even,
                              Rest::killing);
   const auto levels = 2 * static_cast<std::size_t>(process.static_index()) + 1;
   const auto ends = a.from_rest(std::vector<PetscScalar>(levels, 1.0));
@@ -104,8 +104,8 @@ std::vector<double> stepped_slide(Solved& s, const std::vector<double>& time, do
 
 std::vector<double> stepped_excursion(Solved& s, const std::vector<double>& time,
                                       double tolerance) {
-  const KolmogorovOperator a(s.systems.comm(), s.systems.process(), s.systems.axis(), 0.0,
-                             Symmetry::even, Rest::killed_on_exit);
+  const KolmogorovOperator a(s.systems.comm(), s.systems.discretisation(), 0.0, Symmetry::even,
+                             Rest::killed_on_exit);
   const auto ends = a.exit_rates(Half::upper), down = a.exit_rates(Half::lower);
   check(VecAXPY(ends, 1, down));
   return stepped(a, ends, a.trace_at_exit(), time, tolerance);

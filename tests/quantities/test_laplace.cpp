@@ -21,7 +21,7 @@ namespace {
 class Durations {
  public:
   explicit Durations(const test::Discrete& d)
-      : systems_(PETSC_COMM_WORLD, d.process, d.axis, ledger_), law_(systems_) {}
+      : systems_(PETSC_COMM_WORLD, d, ledger_), law_(systems_) {}
 
   [[nodiscard]] DurationTransforms at(double lambda) {
     std::vector<Uncertain> entry;
@@ -114,7 +114,7 @@ TEST_CASE("laplace: without drag hp agrees with the fluid queue") {
   };
   for (const auto& c : {Case{0.5, 1}, Case{0.25, 1}, Case{0.25, 0.25}, Case{0.125, 0.5}}) {
     const auto s = scene(1, c.mu_d, 1, c.delta, {0, 0});
-    const auto d = test::discretise(s, accuracy::hp_resolution(s, 9, 0, 1e-11, {30, 0}));
+    const auto d = accuracy::discretise(s, accuracy::hp_resolution(s, 9, 0, 1e-11, {30, 0}));
     Durations durations(d);
     for (double lambda : {1.0, 30.0}) {
       const auto found = durations.at(lambda), known = exact_transforms(d.process, lambda);
@@ -132,7 +132,7 @@ TEST_CASE("laplace: transforms of large lambda have the accuracy of their own si
   const double lambda = 1e4;
   for (const auto& s : {scene(1, 0.25, 1, 0.25, {0, 0}), scene(1, 1, 1, 0.5, {1, 0})}) {
     const auto on_layers = [&](int degree) {
-      return test::discretise(s, accuracy::hp_resolution(s, degree, 16, 1e-12, {lambda, 0}));
+      return accuracy::discretise(s, accuracy::hp_resolution(s, degree, 16, 1e-12, {lambda, 0}));
     };
     const auto fine = on_layers(12);
     const auto found = Durations(on_layers(10)).at(lambda), finer = Durations(fine).at(lambda);

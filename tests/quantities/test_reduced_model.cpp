@@ -40,9 +40,8 @@ class Scripted {
 
  private:
   std::unique_ptr<ReducedModel> made(int most_pairs) {
-    auto odd =
-        operators::assemble(PETSC_COMM_WORLD, solved_.systems.process(), solved_.systems.axis(), 0,
-                            Symmetry::odd, Rest::kept, solved_.ledger);
+    auto odd = operators::assemble(PETSC_COMM_WORLD, solved_.systems.discretisation(), 0,
+                                   Symmetry::odd, Rest::kept, solved_.ledger);
     const petsc::VecHandle b = odd.values([](double, double, double v) { return v; }),
                            c = solved_.law.weighted_velocity(odd),
                            weight = solved_.law.weight_on(odd);

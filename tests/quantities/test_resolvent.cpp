@@ -79,8 +79,7 @@ const std::vector<model::Scene>& sample_scenes() {
 
 /// Systems of one discretisation, with what must outlive them.
 struct Discretised {
-  explicit Discretised(const test::Discrete& d)
-      : systems(PETSC_COMM_WORLD, d.process, d.axis, ledger) {}
+  explicit Discretised(const test::Discrete& d) : systems(PETSC_COMM_WORLD, d, ledger) {}
   petsc::Ledger ledger;
   Systems systems;
 };
@@ -138,7 +137,7 @@ TEST_CASE("resolvent: pi at lambda = 0 are the stationary averages", "[parallel]
     const quantities::StationaryLaw law(made.systems);
     quantities::Results known;
     quantities::append_sticking(law.excursion(), known);
-    quantities::append_moments(d.process, law.excursion(), known);
+    quantities::append_moments(d, law.excursion(), known);
     const auto value = [&known](const std::string& key) {
       const auto same = [&key](const auto& result) { return result.key == key; };
       return std::find_if(known.begin(), known.end(), same)->value[0];

@@ -30,7 +30,7 @@ Values scalars(const model::Scene& s) {
   const Solved solved(test::on_hp(s, kDegree));
   Results results;
   quantities::append_sticking(solved.law.excursion(), results);
-  quantities::append_moments(solved.law.process(), solved.law.excursion(), results);
+  quantities::append_moments(solved.law.discretisation(), solved.law.excursion(), results);
   quantities::append_noise_law(solved.law.process(), results);
   return by_key(results);
 }

@@ -32,7 +32,7 @@ double sum(const std::vector<double>& values) {
 double moment(const StationaryLaw& law, const char* key) {
   quantities::Results results;
   quantities::append_sticking(law.excursion(), results);
-  quantities::append_moments(law.process(), law.excursion(), results);
+  quantities::append_moments(law.discretisation(), law.excursion(), results);
   for (const auto& r : results) {
     if (r.key == key) return r.value[0];
   }
@@ -41,8 +41,7 @@ double moment(const StationaryLaw& law, const char* key) {
 
 StationaryLaw solve(const model::Scene& s, const accuracy::Resolution& resolution) {
   petsc::Ledger ledger;
-  Systems systems(PETSC_COMM_WORLD, s.process(resolution.levels),
-                  accuracy::make_axis(s, resolution), ledger);
+  Systems systems(PETSC_COMM_WORLD, accuracy::discretise(s, resolution), ledger);
   StationaryLaw law(systems);
   law.orient(systems);
   return law;
@@ -57,8 +56,12 @@ const std::vector<model::Scene>& sample_scenes() {
 }
 
 std::vector<accuracy::Resolution> sample_resolutions(const model::Scene& s) {
-  return {accuracy::hp_resolution(s, 2, 0, 1e-6), accuracy::hp_resolution(s, 7, 0, 1e-10),
-          accuracy::upwind_resolution(s, 1, 1e-6), accuracy::upwind_resolution(s, 8, 1e-8)};
+  return {accuracy::hp_resolution(s, 2, 0, 1e-6),
+          accuracy::hp_resolution(s, 7, 0, 1e-10),
+          accuracy::hp_resolution(s, 7, 0, 1e-10, {}, {2, 6}),
+          accuracy::hp_resolution(s, 7, 0, 1e-10, {}, {5}),
+          accuracy::upwind_resolution(s, 1, 1e-6),
+          accuracy::upwind_resolution(s, 8, 1e-8)};
 }
 
 }  // namespace
@@ -85,8 +88,8 @@ TEST_CASE("stationary law: upwind equals the null vector of the unfolded generat
     });
 
     petsc::Ledger ledger;
-    Systems systems(PETSC_COMM_WORLD, process,
-                    std::make_shared<velocity::UpwindAxis>(spacing, nodes, process.drag), ledger);
+    const auto axis = std::make_shared<velocity::UpwindAxis>(spacing, nodes, process.drag);
+    Systems systems(PETSC_COMM_WORLD, {process, axis}, ledger);
     StationaryLaw law(systems);
     law.orient(systems);
     CHECK(relative_difference(moment(law, "P_stick"), stick) < 1e-11);
@@ -109,8 +112,8 @@ TEST_CASE("stationary law: sliding ends somewhere, and X keeps its own law", "[p
       INFO("mu_d " << s.friction.mu_d << " degree " << resolution.degree << " p "
                    << resolution.points);
       CHECK(std::abs(sum(law.excursion().entry) - 1) < 1e-11);
-      CHECK(law.excursion().conservation_defect(law.process()) < 1e-11);
-      const auto marginal = marginal_of_noise(law.process(), law.excursion());
+      CHECK(law.excursion().conservation_defect(law.discretisation()) < 1e-11);
+      const auto marginal = marginal_of_noise(law.discretisation(), law.excursion());
       const auto noise = model::stationary_law(law.process().noise);
       for (std::size_t n = 0; n < noise.size(); ++n) {
         CHECK(marginal[n] == Approx(noise[n]).epsilon(1e-10).margin(1e-14));
@@ -141,7 +144,7 @@ TEST_CASE("stationary law: P(|X| <= mu_s) summed over the grid at every scheme a
   for (int p : {1, 2, 7, 64}) resolutions.push_back(accuracy::upwind_resolution(s, p, 1e-8));
   for (const auto& resolution : resolutions) {
     const auto law = solve(s, resolution);
-    const auto marginal = marginal_of_noise(law.process(), law.excursion());
+    const auto marginal = marginal_of_noise(law.discretisation(), law.excursion());
     double within = 0;
     for (int i = -k; i <= k; ++i) within += marginal[*s.noise_levels + i];
     CHECK(std::abs(within - closed) < 1e-12);
@@ -156,7 +159,7 @@ TEST_CASE("density: integrates to the law it came from", "[parallel]") {
     const std::size_t half = field.pdf.v().size() / 2;
     std::vector<double> weights(field.pdf.v().size());
     for (std::size_t j = 0; j < half; ++j) {
-      weights[half + j] = weights[half - 1 - j] = law.axis().weights()[j];
+      weights[half + j] = weights[half - 1 - j] = law.discretisation().axis->weights()[j];
     }
     CHECK(std::is_sorted(field.pdf.v().begin(), field.pdf.v().end()));
     double sliding = 0;
@@ -165,7 +168,7 @@ TEST_CASE("density: integrates to the law it came from", "[parallel]") {
     }
     const double stick = sum(field.atom);
     CHECK(stick == Approx(moment(law, "P_stick")).epsilon(1e-12));
-    if (law.axis().keeps_origin()) continue;  // its states at v = 0 are no density
+    if (law.discretisation().axis->keeps_origin()) continue;  // its states at v = 0 are no density
     CHECK(sliding + stick + field.cut_mass == Approx(1).epsilon(1e-11));
     // Each row integrates to P(X = x_i) less its atom, from both halves.
     const int n = law.process().noise.levels;

@@ -36,7 +36,7 @@ Request request(const model::Scene& s, std::set<Quantity> quantities) {
 
 Evaluation evaluate(const Request& r, const test::Discrete& d) {
   petsc::Ledger ledger;
-  return routes::evaluate({PETSC_COMM_WORLD, r, d.process, d.axis, ledger});
+  return routes::evaluate({PETSC_COMM_WORLD, r, d, ledger});
 }
 
 const Result& result(const Results& results, const std::string& key) {
@@ -126,7 +126,7 @@ TEST_CASE("rounding: what an identity lacks is added to every number of the stat
       request(scene(0.15, 0.005, 1.0 / 256, 0.25, {1, 0}), {sticking, moments, entry_law});
   const auto d = test::on_hp(r.scene, 6, 1e-9);
   const auto found = evaluate(r, d);
-  const double defect = found.law->excursion().conservation_defect(d.process);
+  const double defect = found.law->excursion().conservation_defect(d);
   REQUIRE(defect > 1e-14);  // the noise is far faster than slides
   const auto& results = found.results;
   const double stick = value(results, "mean_stick");
@@ -141,7 +141,7 @@ TEST_CASE("rounding: averages by hand, with the error of a probability that is k
   const Request r = request(plain(), {Quantity::sticking, Quantity::moments, Quantity::noise_law});
   const auto process = r.scene.process(8);
   petsc::Ledger ledger;
-  const routes::Setting setting{PETSC_COMM_WORLD, r, process, nullptr, ledger};
+  const routes::Setting setting{PETSC_COMM_WORLD, r, {process, nullptr}, ledger};
   const double beyond = model::noise_moments(process.noise, 2).beyond;
   for (const auto& [stick, slide] : {std::pair{0.3, 0.7}, {0.9, 0.1}}) {
     const std::vector<Uncertain> values{{beyond * (1 - 1e-3), 0},
@@ -181,28 +181,6 @@ TEST_CASE("rounding: of the fluid queue four times its defects, more for fast bo
     INFO(key);
     const double relative = error(results, key) / value(results, key);
     CHECK(relative == Approx(4 * defect * (1 + speed)).epsilon(1e-6));
-  }
-}
-
-TEST_CASE("rounding: nested cycles end when they leave a fifth of the change, or nothing") {
-  auto r = request(scene(1, 0.3, 0.0625, 0.25, {1, 0}), {Quantity::sticking, Quantity::moments});
-  const auto two = test::on_two_degrees(r.scene, 4, 5);
-  for (double accuracy : {1e-14, 1e-2}) {
-    r.accuracy = accuracy;
-    petsc::Ledger coarse_ledger, ledger;
-    routes::NestedEvaluation nested(
-        {PETSC_COMM_WORLD, r, two.coarse.process, two.coarse.axis, coarse_ledger});
-    const auto coarse = nested.coarse().results;
-    const auto fine =
-        nested.finer({PETSC_COMM_WORLD, r, two.fine.process, two.fine.axis, ledger}).results;
-    for (std::size_t n = 0; n < fine.size(); ++n) {
-      const double change = std::abs(fine[n].value[0] - coarse[n].value[0]);
-      INFO(fine[n].key << " at accuracy " << accuracy);
-      CHECK(fine[n].error[0] <=
-            std::max(0.2 * change, 0.1 * accuracy * std::abs(fine[n].value[0])));
-    }
-    CHECK(ledger.backward_error > 0);
-    CHECK(ledger.backward_error < 1e-6);
   }
 }
 

@@ -30,7 +30,7 @@ Request request(const model::Scene& s, Route route, std::set<Quantity> quantitie
 
 Evaluation evaluate(const Request& r, const test::Discrete& d) {
   petsc::Ledger ledger;
-  return routes::evaluate({PETSC_COMM_WORLD, r, d.process, d.axis, ledger});
+  return routes::evaluate({PETSC_COMM_WORLD, r, d, ledger});
 }
 
 const Result& result(const Evaluation& evaluation, const std::string& key) {

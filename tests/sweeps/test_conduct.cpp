@@ -118,7 +118,8 @@ TEST_CASE("sweeps: what falls short keeps its values and stops no other", "[para
 }
 
 TEST_CASE("sweeps: what does not fit in memory stops no other", "[parallel]") {
-  const auto sweep = conducted(read({{"-sweep_delta", "4e-5,0.5"}, {"-accuracy", "1e-12"}}));
+  const auto sweep = conducted(
+      read({{"-sweep_delta", "4e-5,0.5"}, {"-accuracy", "1e-12"}, {"-noise_degree", "0"}}));
   if (!first_rank()) return;
   CHECK(sweep.runs[0].status == Status::no_memory);
   CHECK(sweep.runs[0].results.empty());
@@ -149,7 +150,8 @@ TEST_CASE("sweeps: points that lacked memory are tried again, those that fell sh
     (void)conducted(read(all));
     return conducted(read(all)).resumed;
   };
-  CHECK(resumed({{"-sweep_delta", "4e-5,0.5"}, {"-accuracy", "1e-12"}}) == 1);
+  CHECK(resumed({{"-sweep_delta", "4e-5,0.5"}, {"-accuracy", "1e-12"}, {"-noise_degree", "0"}}) ==
+        1);
   CHECK(resumed({{"-sweep_v_max", "1,3.7"}, {"-delta", "0.5"}, {"-accuracy", "1e-4"}}) == 2);
 }
 

@@ -191,28 +191,3 @@ TEST_CASE("hp transport: the derivative of a row is the difference of rows") {
     }
   }
 }
-
-TEST_CASE("hp axis: coarsened, both half lines keep their elements and drag at lower degrees") {
-  HpAxis axis({0, 0.25, 1, 2}, {2, 5, 8}, one_sided());
-  axis.set_mirrored(std::make_shared<HpAxis>(std::vector<double>{0, 0.25, 1, 2},
-                                             std::vector{2, 5, 8}, one_sided().mirrored()));
-  const auto coarse = axis.coarsened(4);
-  const HpAxis above({0, 0.25, 1, 2}, {2, 4, 4}, one_sided()),
-      below({0, 0.25, 1, 2}, {2, 4, 4}, one_sided().mirrored());
-  CHECK(&coarse->mirrored() != coarse.get());
-  velocity::TransportRow found, expected;
-  for (const auto& [a, b] :
-       {std::pair<const velocity::Axis*, const velocity::Axis*>{coarse.get(), &above},
-        {&coarse->mirrored(), &below}}) {
-    REQUIRE(a->size() == b->size());
-    for (int j = 0; j < a->size(); ++j) {
-      CHECK(a->nodes()[j] == b->nodes()[j]);
-      a->transport(0.3, j, found);
-      b->transport(0.3, j, expected);
-      REQUIRE(found.entries.size() == expected.entries.size());
-      for (std::size_t n = 0; n < found.entries.size(); ++n) {
-        CHECK(found.entries[n].value == expected.entries[n].value);
-      }
-    }
-  }
-}

@@ -12,10 +12,6 @@ namespace stickslip::accuracy {
 /// distribution on every discretisation.
 void require_rounding(double rounding, quantities::Results& results);
 
-/// error += 5 tolerance |value|, for discretisations whose noise range and velocity axis were
-/// truncated at `tolerance` as those of the one before, so that no change shows what is missing.
-void add_truncation(double tolerance, quantities::Results& results);
-
 /// |change| from one discretisation to the next, by result and entry.
 using Changes = std::vector<std::vector<double>>;
 

@@ -1,28 +1,23 @@
 #pragma once
 /// Discretisations in the order in which refinement tries them.
 
-#include <cstdint>
-#include <functional>
+#include <map>
 
 #include "stickslip/accuracy/resolution.hpp"
 #include "stickslip/options/request.hpp"
 
 namespace stickslip::accuracy {
 
-/// Rung 0 is only there to be compared with; each further rung is finer in every respect (degree
+/// Rung 0 is only there to be compared with; each further rung is finer in every respect (degrees
 /// or points, noise range, velocity cut), so that the change from one rung to the next shows the
 /// error of the coarser one, whatever its cause.
-///
-/// Where the stationary law is all that is asked for, rungs come in threes with the same elements,
-/// noise range and velocity cut, so that the second and third one, which is seldom needed, can be
-/// solved through the factors of the first; what the cuts hide is then judged by their tolerance.
 class Ladder {
  public:
   explicit Ladder(const options::Request& request);
 
   /// Number of the last rung that may be tried.
   [[nodiscard]] int last() const { return last_; }
-  [[nodiscard]] Resolution rung(int n) const;
+  [[nodiscard]] const Resolution& rung(int n) const;
 
   /// Bound for error(rung n) / |change from rung n-1 to rung n|, n >= 1.
   [[nodiscard]] double error_per_change(int n) const;
@@ -35,19 +30,20 @@ class Ladder {
 
  private:
   [[nodiscard]] int free_rungs() const;
-  [[nodiscard]] bool is_nested(int n) const { return nests_ && n % 3 != 0; }
+  [[nodiscard]] Resolution made(int n) const;
+  [[nodiscard]] noise::Grouping grouping(int n) const;
   [[nodiscard]] int degree(int n) const;
   [[nodiscard]] int points(int n) const;
 
   model::Scene scene_;
   options::Method method_;
   double accuracy_;
-  std::function<bool(std::int64_t)> prefers_iteration_;
   int first_degree_ = 0;   // of rung 1
   velocity::Rates rates_;  // of the equations to be solved
   int halves_ = 1;
-  bool nests_ = false;
+  bool all_levels_ = false;  // every noise level is a node
   int last_;
+  mutable std::map<int, Resolution> rungs_;  // those asked for so far
 };
 
 }  // namespace stickslip::accuracy

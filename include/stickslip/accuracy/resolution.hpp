@@ -1,33 +1,32 @@
 #pragma once
-/// One discretisation of a scene: noise range, velocity cut and velocity axis.
+/// One discretisation of a scene: noise range and nodes, velocity cut and axis.
 
 #include <cstdint>
 #include <memory>
 
 #include "stickslip/model/scene.hpp"
+#include "stickslip/noise/nodes.hpp"
+#include "stickslip/operators/discretisation.hpp"
 #include "stickslip/options/request.hpp"
-#include "stickslip/velocity/axis.hpp"
 #include "stickslip/velocity/mesh.hpp"
 
 namespace stickslip::accuracy {
 
 struct Resolution {
   options::Scheme scheme = options::Scheme::hp;
-  int degree = 0;         ///< hp: largest polynomial degree of an element
-  int layers = 0;         ///< hp: elements graded towards v = 0
-  velocity::Rates rates;  ///< hp: fastest rates that the elements resolve
-  int points = 0;         ///< upwind: nodes per noise step
-  int levels = 0;         ///< N, noise levels on each side of 0
-  double v_max = 0;       ///< end of the velocity axis [velocity]
-  int halves = 1;         ///< 1: folded by symmetry, v > 0 only; 2: both signs of v
+  int degree = 0;                             ///< hp: largest polynomial degree of an element
+  int layers = 0;                             ///< hp: elements graded towards v = 0
+  velocity::Rates rates;                      ///< hp: fastest rates that the elements resolve
+  int points = 0;                             ///< upwind: nodes per noise step
+  int levels = 0;                             ///< N, noise levels on each side of 0
+  noise::Grouping grouping;                   ///< of the noise levels
+  std::shared_ptr<const noise::Nodes> noise;  ///< of that grouping; none: every level is a node
+  double v_max = 0;                           ///< end of the velocity axis [velocity]
+  int halves = 1;  ///< 1: folded by symmetry, v > 0 only; 2: both signs of v
   options::Factors factors = options::Factors::own;
-  bool nested = false;  ///< on the elements and levels of the discretisation before
 
-  /// Whether it is solved through the factors of the one before; iterations start from its solution
-  /// instead.
-  [[nodiscard]] bool shares_factors() const {
-    return nested && factors != options::Factors::p_multigrid &&
-           factors != options::Factors::incomplete;
+  [[nodiscard]] std::int64_t noise_nodes() const {
+    return noise ? noise->count() : 2LL * levels + 1;
   }
 };
 
@@ -41,10 +40,12 @@ struct Resolution {
 /// fallen below `tolerance` if that comes first. What the user fixed goes before.
 [[nodiscard]] double velocity_end(const model::Scene& scene, int levels, double tolerance);
 
-/// hp of polynomial degree `degree`, the open rest chosen for truncation errors of `tolerance`;
-/// `layers` 0 are chosen for equations with rates up to `rates`.
+/// hp of polynomial degree `degree` in v, the noise levels grouped so, the open rest chosen for
+/// truncation errors of `tolerance`; `layers` 0 are chosen for equations with rates up to `rates`.
+/// O(noise levels).
 [[nodiscard]] Resolution hp_resolution(const model::Scene& scene, int degree, int layers,
-                                       double tolerance, const velocity::Rates& rates = {});
+                                       double tolerance, const velocity::Rates& rates = {},
+                                       const noise::Grouping& grouping = {});
 
 /// Upwind with `points` nodes per noise step, the open rest chosen as above.
 [[nodiscard]] Resolution upwind_resolution(const model::Scene& scene, int points, double tolerance);
@@ -52,9 +53,9 @@ struct Resolution {
 /// No discretisation in v: only the noise range is chosen.
 [[nodiscard]] Resolution exact_resolution(const model::Scene& scene, double tolerance);
 
-/// None without a discretisation in v.
-[[nodiscard]] std::shared_ptr<const velocity::Axis> make_axis(const model::Scene& scene,
-                                                              const Resolution& resolution);
+/// Without a velocity axis if the scheme has none.
+[[nodiscard]] operators::Discretisation discretise(const model::Scene& scene,
+                                                   const Resolution& resolution);
 
 /// Number of sliding unknowns, up to the few origin and holding states; for the fluid queue that of
 /// its phases.

@@ -13,43 +13,38 @@
 
 namespace stickslip::operators {
 
-/// How an operator is stored.
-enum class Form {
-  assembled,   ///< all entries, in an AIJ matrix
-  by_elements  ///< a petsc::SplitMatrix: transport and jumps applied, ends of the axis stored
-};
-
-/// A = lambda - L. On level l of a half, with B_l(v) = x_l + g - mu_d + b(v) on the upper one and
-/// that of the mirrored process on the lower one,
+/// A = lambda - L. On noise node l of a half, with B_l(v) = x_l + g - mu_d + b(v) on the upper one
+/// and that of the mirrored process on the lower one, J the jump matrix of noise::Nodes,
 ///
-///   (A u)_l = lambda u_l - B_l u_l' - Lambda (alpha_l u_{l+1} - u_l + (1 - alpha_l) u_{l-1}),
+///   (A u)_l = lambda u_l - B_l u_l' - sum_m J_lm u_m,
 ///
 /// and where the flow reaches v = 0 the value met there is
-///   static l:    the static value s,
-///   l below:     u(0+) on level -l of the other half, or +- that on the same half when folded.
-/// Levels that leave v = 0 need no condition. Static values follow the noise until they leave to
-/// s+- = (x, +-1, 0), x the level next to the static ones, x_{+-(k+1)} without bias.
+///   static l:    sum_i T_il s_i of the static values s,
+///   l below:     u(0+) on node -l of the other half, or +- that on the same half when folded.
+/// Nodes that leave v = 0 need no condition. Static values live on all their levels and follow the
+/// noise until they leave to s+- = (x, +-1, 0), x the level next to them, x_{+-(k+1)} without bias.
 ///
 /// Diagonals are summed from the off-diagonals of their row in the order of columns, so that with
 /// Rest::kept and lambda = 0 row sums are exactly zero. On an upwind axis the off-diagonals of -A
-/// are >= 0 and a row has at most five entries: unfolded and kept, -A then is the generator M of
-/// the paper's section 5.
+/// are >= 0 and a row has at most five entries if every level is a node: unfolded and kept, -A then
+/// is the generator M of the paper's section 5.
 class KolmogorovOperator {
  public:
-  /// Assembles the local rows. The matrix lives as long as the operator. By elements on hp axes
-  /// only. Collective. O(local nonzeros); by elements O(local states).
-  KolmogorovOperator(MPI_Comm comm, const model::Process& process, const velocity::Axis& axis,
-                     PetscScalar lambda, Symmetry symmetry, Rest rest, Form form = Form::assembled);
+  /// Assembles the local rows. The matrix lives as long as the operator. Collective.
+  /// O(local nonzeros).
+  KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda,
+                     Symmetry symmetry, Rest rest);
 
   /// dA/dtheta with all members, for Rest::killing: entry_rates and from_rest are those of
-  /// -dA_us/dtheta. Elements and upwind directions stay as they are. Collective.
-  [[nodiscard]] static KolmogorovOperator derivative(MPI_Comm comm, const model::Process& process,
-                                                     const velocity::Axis& axis, Symmetry symmetry,
-                                                     Parameter theta);
+  /// -dA_us/dtheta. Elements, nodes and upwind directions stay as they are: what is projected is
+  /// the derivative of the process. Collective.
+  [[nodiscard]] static KolmogorovOperator derivative(MPI_Comm comm,
+                                                     const Discretisation& discretisation,
+                                                     Symmetry symmetry, Parameter theta);
 
+  [[nodiscard]] const Discretisation& discretisation() const { return discretisation_; }
   [[nodiscard]] const StateSpace& states() const { return states_; }
   [[nodiscard]] Mat matrix() const { return matrix_; }
-  /// Of the assembled matrix, whether or not all are stored.
   [[nodiscard]] PetscInt64 nonzeros() const { return nonzeros_; }
 
   /// The functional u -> u(s+) (upper) or u(s-) (lower; unfolded only) as a vector. Collective.
@@ -57,7 +52,7 @@ class KolmogorovOperator {
 
   /// The functional u -> u(x_i, v), v = 0 being s+- for |i| > k and rest for |i| <= k; folded, from
   /// the half that is kept. Static states must be kept. Collective.
-  [[nodiscard]] petsc::VecHandle value_at(const velocity::Axis& axis, int i, double v) const;
+  [[nodiscard]] petsc::VecHandle value_at(int i, double v) const;
 
   /// nu -> -nu A_us, from the lowest static level up: the rate at which an occupation flows into
   /// each static level; the same on all ranks. Rest::killing only. Collective.
@@ -71,16 +66,16 @@ class KolmogorovOperator {
   /// of doing so. Rest::killed_on_exit only. Collective.
   [[nodiscard]] petsc::VecHandle exit_rates(Half half) const;
 
-  /// f(x, y, v) on all states. Collective.
+  /// f(x, y, v) on all states, projected on noise nodes: products with occupations are those of
+  /// the measures that they stand for, whatever f is. Collective. O(levels velocity nodes).
   using Observable = std::function<double(double x, double y, double v)>;
   [[nodiscard]] petsc::VecHandle values(const Observable& f) const;
   /// A vector of the operator's layout, zero. Collective.
   [[nodiscard]] petsc::VecHandle zeros() const;
 
  private:
-  KolmogorovOperator(MPI_Comm comm, const model::Process& process, const velocity::Axis& axis,
-                     PetscScalar lambda, Symmetry symmetry, Rest rest, Form form,
-                     std::optional<Parameter> derivative);
+  KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda,
+                     Symmetry symmetry, Rest rest, std::optional<Parameter> derivative);
 
   // The AIJ matrix of the rows.
   [[nodiscard]] petsc::MatHandle stored();
@@ -94,10 +89,8 @@ class KolmogorovOperator {
   class Assembler;
   using Functional = std::vector<std::pair<PetscInt, double>>;
 
+  Discretisation discretisation_;
   StateSpace states_;
-  model::Process process_;
-  std::vector<double> nodes_;
-  double v_max_;
   Functional trace_upper_, trace_lower_;
   std::vector<Coupling> rest_coupling_;  // -A_us
   std::vector<Coupling> exit_coupling_;  // level +1 upwards, -1 downwards

@@ -3,13 +3,11 @@
 
 #include <petscsys.h>
 
-#include <cstdlib>
 #include <span>
 #include <vector>
 
+#include "stickslip/operators/discretisation.hpp"
 #include "stickslip/operators/system_key.hpp"
-#include "stickslip/petsc/factorization.hpp"
-#include "stickslip/velocity/axis.hpp"
 
 namespace stickslip::operators {
 
@@ -21,28 +19,29 @@ enum class StateKind {
   rest      ///< static, (x_i, 0, 0)
 };
 
-/// One state. The level of a sliding state counts along its own half: on the lower half level l
-/// stands for the noise x_{-l}, so that both halves look alike. The level of a state at rest is i.
+/// One state. The noise node of a sliding state counts along its own half: on the lower half n
+/// stands for the node -n, so that both halves look alike. A state at rest has a noise level.
 struct State {
   StateKind kind;
   Half half;  ///< upper for states at rest
-  int level;
-  int node;  ///< index on the velocity axis, for nodes
+  int noise;  ///< number of the noise node; at rest the level
+  int node;   ///< index on the velocity axis, for nodes
 };
 
-/// All states of a discretisation: for each half and level its nodes and, if it has them, an origin
-/// and a holding state; with `with_rest` also the static states, of which the even fold keeps
-/// 0 <= i <= k and the odd one 1 <= i <= k.
+/// All states of a discretisation: for each half and noise node its velocity nodes and, if it has
+/// them, an origin and a holding state; with `with_rest` also the static states, of which the even
+/// fold keeps 0 <= i <= k and the odd one 1 <= i <= k, on all their levels.
 ///
-/// States are numbered rank by rank; a rank owns whole shells {i, -i} of noise levels, which the
-/// reflection at v = 0 couples, and numbers its states by velocity from low to high, noise levels
-/// fastest: incomplete factorisations need that order, complete ones do not mind. Tables of size N
-/// on every rank, nothing of the size of the grid.
+/// States are numbered rank by rank; a rank owns whole groups of noise nodes, those of n and -n
+/// together, which the reflection at v = 0 couples, with their levels at rest, and numbers its
+/// states by velocity from low to high, noise fastest: incomplete factorisations need that order,
+/// complete ones do not mind. Tables of the size of the noise on every rank, nothing of the size of
+/// the grid.
 class StateSpace {
  public:
   /// Collective on `comm`. Throws NoMemory when the states exceed PETSc's index type.
-  StateSpace(MPI_Comm comm, const model::Process& process, const velocity::Axis& axis,
-             Symmetry symmetry, bool with_rest);
+  StateSpace(MPI_Comm comm, const Discretisation& discretisation, Symmetry symmetry,
+             bool with_rest);
 
   [[nodiscard]] MPI_Comm comm() const { return comm_; }
   [[nodiscard]] Symmetry symmetry() const { return symmetry_; }
@@ -55,91 +54,102 @@ class StateSpace {
   [[nodiscard]] PetscInt local_size() const { return local_size_; }
   /// First global index of this rank.
   [[nodiscard]] PetscInt local_begin() const { return blocks_[rank_].begin; }
-  /// Whether this rank owns the levels i and -i.
-  [[nodiscard]] bool owns(int level) const { return owner_of_shell_[std::abs(level)] == rank_; }
-  /// Noise levels i owned by this rank, rising.
-  [[nodiscard]] std::vector<int> local_levels() const;
+  /// Noise nodes of this rank, rising.
+  [[nodiscard]] const std::vector<int>& local_noise() const { return local_noise_; }
 
-  [[nodiscard]] bool has_origin(Half half, int level) const {
-    return keeps_origin_ && level > side(half).k;
+  /// The highest noise node that can stick.
+  [[nodiscard]] int last_static(Half half) const { return side(half).last_static; }
+  [[nodiscard]] bool has_origin(Half half, int noise) const {
+    return keeps_origin_ && noise > side(half).last_static;
   }
-  [[nodiscard]] bool has_holding(Half half, int level) const {
-    return level >= side(half).first_holding;
+  [[nodiscard]] bool has_holding(Half half, int noise) const {
+    return noise >= side(half).first_holding;
   }
   /// Whether the static level i is an unknown of its own.
   [[nodiscard]] bool has_rest(int i) const {
-    return with_rest_ && i >= lowest_rest_ && i <= upper_.k;
+    return with_rest_ && i >= lowest_rest_ && i <= highest_rest_;
   }
 
   /// Global index of a state that exists. O(1).
   [[nodiscard]] PetscInt index(const State& state) const;
 
-  /// Where the nodes of a level lie: node j has the index first + j stride.
+  /// Where the velocity nodes of a noise node lie: node j has the index first + j stride.
   struct NodeLine {
     PetscInt first, stride;
   };
   /// O(1).
-  [[nodiscard]] NodeLine nodes_of(Half half, int level) const;
-
-  /// Where the nodes from ... from + size - 1 of a half begin in the local rows, in which they
-  /// follow one another from low to high velocity, each on all local levels. Not for ranks without
-  /// levels.
-  [[nodiscard]] PetscInt strip(Half half, int from, int size) const;
-
-  /// The local states by shells, which jumps of the noise couple with the next ones alone: in each
-  /// those that fall towards v = 0, fast ones first, then states at rest, then those that rise;
-  /// unfolded, all of level i before all of level -i, which meet at level 0 only.
-  /// O(local states log(local states)).
-  [[nodiscard]] petsc::Chain chain() const;
-  /// For this chain, which is narrow on an hp axis; refers to this object.
-  [[nodiscard]] petsc::Structure structure() const;
+  [[nodiscard]] NodeLine nodes_of(Half half, int noise) const;
 
   /// Calls visit(state) for the local states in the order of their indices.
   template <class Visit>
   void for_each_local(Visit visit) const {
-    const std::vector<int> levels = local_levels();
     for (int row = first_row(); row <= last_row(); ++row) {
-      for (int i : levels) {
-        if (has_state(row, i)) visit(state_at(row, i));
+      if (row == 0) {
+        visit_local_at_zero(visit);
+        continue;
+      }
+      for (int n : local_noise_) {
+        if (has_state(row, n)) visit(state_at(row, n));
       }
     }
   }
 
  private:
-  // Levels of a half, counted along it.
+  // Noise nodes of a half, counted along it.
   struct Side {
-    Side(const model::Process& process, const velocity::Axis& axis);
-    int k;              // the highest that can stick
-    int first_holding;  // holding states exist from here on; N + 1 if there are none
+    Side(const model::Process& process, const noise::Nodes& noise, const velocity::Axis& axis);
+    int last_static;
+    int first_holding;  // holding states exist from here on; half() + 1 if there are none
   };
   [[nodiscard]] const Side& side(Half half) const { return half == Half::upper ? upper_ : lower_; }
 
-  // Shells [first, last) of a rank and its first global index.
+  // Shells [first, last) of a rank, the levels at rest with first_rest <= |i| < last_rest, and its
+  // first global index.
   struct Block {
-    int first, last;
+    int first, last, first_rest, last_rest;
     PetscInt begin;
   };
+  void distribute(const noise::Nodes& noise, int levels);
+
+  template <class Visit>
+  void visit_local_at_zero(Visit visit) const {
+    for (int n : local_noise_) {
+      if (!folded() && has_origin(Half::lower, -n)) {
+        visit(State{StateKind::origin, Half::lower, -n, 0});
+      }
+    }
+    for (int i = lowest_rest_; with_rest_ && i <= highest_rest_; ++i) {
+      if (owner_of_rest(i) == rank_) visit(State{StateKind::rest, Half::upper, i, 0});
+    }
+    for (int n : local_noise_) {
+      if (has_origin(Half::upper, n)) visit(State{StateKind::origin, Half::upper, n, 0});
+    }
+  }
 
   // Rows of equal velocity: 0 is v = 0, +-1 ... +-n the nodes, +-(n+1) the holding states.
   [[nodiscard]] int last_row() const { return nodes_ + 1; }
   [[nodiscard]] int first_row() const { return folded() ? 0 : -last_row(); }
-  [[nodiscard]] bool has_state(int row, int i) const;
-  [[nodiscard]] State state_at(int row, int i) const;
-  [[nodiscard]] int levels_below(const Block& block, int i) const;
+  [[nodiscard]] bool has_state(int row, int n) const;
+  [[nodiscard]] State state_at(int row, int n) const;
+  [[nodiscard]] int owner_of_rest(int level) const;
+  [[nodiscard]] static int nodes_below(const Block& block, int n);
+  [[nodiscard]] int rest_below(const Block& block, int level) const;
+  [[nodiscard]] int size_at_zero(const Block& block) const;
   [[nodiscard]] int count(const Block& block, int row) const;
-  [[nodiscard]] int position(const Block& block, int row, int i) const;
+  [[nodiscard]] int position(const Block& block, int row, const State& state) const;
   [[nodiscard]] PetscInt row_offset(const Block& block, int row) const;
   [[nodiscard]] PetscInt size(const Block& block) const;
 
   MPI_Comm comm_;
   Symmetry symmetry_;
   bool with_rest_, keeps_origin_;
-  int levels_, nodes_;
+  int half_, nodes_;
   Side upper_, lower_;
-  int lowest_rest_;  // static states exist for i >= this
+  int lowest_rest_, highest_rest_;
   int rank_;
   std::vector<Block> blocks_;        // by rank
   std::vector<int> owner_of_shell_;  // rank
+  std::vector<int> local_noise_;
   PetscInt global_size_ = 0, local_size_ = 0;
 };
 

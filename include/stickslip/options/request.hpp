@@ -37,8 +37,8 @@ enum class Quantity {
 enum class Scheme { hp, upwind, none };
 
 /// What factors the sliding operator, and where they go; the PETSc options of -slide_ decide.
-/// `own`: by levels on an hp axis, else by MUMPS in memory. `p_multigrid`: those of low degree.
-enum class Factors { own, levels, p_multigrid, in_memory, on_disk, incomplete };
+/// `own`: what fits the discretisation, element by element or by MUMPS in memory.
+enum class Factors { own, elements, in_memory, on_disk, incomplete };
 
 /// By which system of equations.
 enum class Route { excursion, lambda, hitting, null_vector, fluid_queue, monte_carlo };
@@ -57,14 +57,18 @@ enum class StudyKind { none, points, steps, heuristic, cost };
   return route == Route::lambda || route == Route::hitting || route == Route::null_vector;
 }
 
-/// Choices of the discretisation made by hand; one of the first three switches refinement off.
+/// Choices of the discretisation made by hand; a degree, layers or points switch refinement off.
 struct Method {
   Scheme scheme = Scheme::hp;
   std::optional<int> degree, layers;  ///< hp
   std::optional<int> points;          ///< upwind, per noise step
+  std::optional<int> noise_degree;    ///< hp; 0: every noise level is a node
+  double noise_grading = 2;           ///< hp
   Factors factors = Factors::own;
 
-  [[nodiscard]] bool fixed() const { return degree || layers || points; }
+  [[nodiscard]] bool fixed() const {
+    return degree || layers || points || noise_degree.value_or(0) > 0;
+  }
 };
 
 class Sweep;

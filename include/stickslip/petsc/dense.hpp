@@ -1,25 +1,64 @@
 #pragma once
-/// Operations on lists of scalars, and on dense blocks by columns, which may be parts of larger
-/// ones.
+/// Dense matrices of scalars on BLAS and LAPACK.
 
 #include <petscsys.h>
 
-#include <span>
+#include <cstddef>
+#include <vector>
 
 namespace stickslip::petsc {
 
-/// Each value becomes its absolute value.
-void take_sizes(std::span<PetscScalar> values);
+/// By columns.
+class DenseMatrix {
+ public:
+  DenseMatrix() = default;
+  /// Zero.
+  DenseMatrix(int rows, int columns)
+      : rows_(rows), columns_(columns), data_(static_cast<std::size_t>(rows) * columns, 0.0) {}
 
-/// C <- factor A B + keep C with C m x n and the inner size k. `how` is "NN", or has T for a matrix
-/// that is taken transposed; each matrix is followed by its stride.
-void product(const char* how, int m, int n, int k, double factor, const PetscScalar* a,
-             int stride_a, const PetscScalar* b, int stride_b, double keep, PetscScalar* c,
-             int stride_c);
+  [[nodiscard]] int rows() const { return rows_; }
+  [[nodiscard]] int columns() const { return columns_; }
+  [[nodiscard]] PetscScalar& operator()(int r, int c) { return data_[place(r, c)]; }
+  [[nodiscard]] PetscScalar operator()(int r, int c) const { return data_[place(r, c)]; }
+  [[nodiscard]] PetscScalar* data() { return data_.data(); }
+  [[nodiscard]] const PetscScalar* data() const { return data_.data(); }
+  [[nodiscard]] PetscScalar* column(int c) { return data() + place(0, c); }
+  [[nodiscard]] const PetscScalar* column(int c) const { return data() + place(0, c); }
 
-/// Inverts a small n x n block in place with exchanges of rows; false if it is singular.
-/// `exchanges`: work space of n entries. 2 n^3 operations. LAPACK takes 12 times as long at n = 2,
-/// 3 times at 8, 1.5 at 16.
-[[nodiscard]] bool invert(PetscScalar* a, int n, int stride, std::span<int> exchanges);
+ private:
+  [[nodiscard]] std::size_t place(int r, int c) const {
+    return static_cast<std::size_t>(c) * rows_ + r;
+  }
+  int rows_ = 0, columns_ = 0;
+  std::vector<PetscScalar> data_;
+};
+
+/// C += factor A B for the first `columns` columns of B and C.
+void add_product(PetscScalar factor, const DenseMatrix& a, const DenseMatrix& b, int columns,
+                 DenseMatrix& c);
+[[nodiscard]] DenseMatrix operator*(const DenseMatrix& a, const DenseMatrix& b);
+
+using Scalars = std::vector<PetscScalar>;
+/// y += A x, or A^T x.
+void add_product(const DenseMatrix& a, const Scalars& x, Scalars& y, bool transposed = false);
+
+/// LU factors of a square matrix with exchanges of rows.
+class DenseFactors {
+ public:
+  DenseFactors() = default;
+  /// O(size^3). Throws NotReached if the matrix is singular.
+  explicit DenseFactors(DenseMatrix a);
+
+  [[nodiscard]] int size() const { return lu_.rows(); }
+  /// B <- A^-1 B. O(size^2 columns).
+  void solve(DenseMatrix& b) const;
+  /// x <- A^-1 x, or A^-T x.
+  void solve(PetscScalar* x, bool transposed) const;
+  void solve(Scalars& x, bool transposed) const { solve(x.data(), transposed); }
+
+ private:
+  DenseMatrix lu_;
+  std::vector<PetscBLASInt> pivots_;
+};
 
 }  // namespace stickslip::petsc

@@ -25,17 +25,17 @@ void require_factored(KSP ksp, const std::string& prefix);
 /// Memory and entries of the factors of a KSP, as MUMPS counts them; nothing for other solvers.
 void record_factors(KSP ksp, Ledger& ledger);
 
-/// KSP for one of these: of type preonly around the preconditioner "levels"; of type gmres around
-/// "p_multigrid"; else preonly around an LU factorisation by MUMPS with the ordering AMF (MUMPS
-/// would choose PORD, as METIS is not in Debian's build, which costs 10 to 30 times more on these
-/// matrices). Every choice is a PETSc option under the prefix, e.g. -slide_pc_type lu or
-/// -slide_pc_factor_mat_solver_type klu; with any of them LU is the default. Collective.
+/// KSP of type preonly around the preconditioner "elements", or else around an LU factorisation by
+/// MUMPS with the ordering AMF (MUMPS would choose PORD, as METIS is not in Debian's build, which
+/// costs 10 to 30 times more on these matrices). Every choice is a PETSc option under the prefix,
+/// e.g. -slide_pc_type lu or -slide_pc_factor_mat_solver_type klu; with any of them LU is the
+/// default. Collective.
 [[nodiscard]] KspHandle linear_solver(Mat matrix, const std::string& prefix, Solver preferred);
 
 /// Which of them a KSP is.
 [[nodiscard]] Solver kind_of(KSP ksp);
 
-/// Makes "levels" or "p_multigrid" call this, which must outlive the solves. Not collective.
+/// Makes "elements" call this, which must outlive the solves. Not collective.
 void attach(KSP ksp, const Preconditioner& preconditioner);
 
 /// Whether MUMPS ran out of the workspace that it set aside (INFOG(1) = -8, -9): pivots against the

@@ -12,9 +12,10 @@ class Preconditioner {
   Preconditioner(const Preconditioner&) = delete;
   Preconditioner& operator=(const Preconditioner&) = delete;
 
-  /// Reads the values of the matrix and prepares. Collective. Throws NotReached where the matrix is
-  /// singular, NoMemory when the factors do not fit.
-  virtual void factor() = 0;
+  /// Prepares, for the matrix with `shift` times the identity added since this object was made, as
+  /// its values say already. Collective. Throws NotReached where the matrix is singular, NoMemory
+  /// when the factors do not fit.
+  virtual void factor(PetscScalar shift) = 0;
   /// x = M^-1 b, or M^-T b without conjugation. Collective.
   virtual void apply(Vec b, Vec x, bool transposed) const = 0;
 

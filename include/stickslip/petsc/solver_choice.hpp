@@ -7,9 +7,8 @@ namespace stickslip::petsc {
 
 /// By what a system is solved.
 enum class Solver {
-  lu,          ///< any of PETSc's preconditioners; by default an LU factorisation by MUMPS
-  levels,      ///< LevelElimination
-  p_multigrid  ///< GMRES with PMultigrid
+  lu,       ///< any of PETSc's preconditioners; by default an LU factorisation by MUMPS
+  elements  ///< the operators' own elimination along the velocity
 };
 
 /// Whether options under the prefix say something about the preconditioner or its matrices.

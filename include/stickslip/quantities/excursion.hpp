@@ -3,21 +3,22 @@
 
 #include <vector>
 
-#include "stickslip/model/process.hpp"
+#include "stickslip/operators/discretisation.hpp"
 #include "stickslip/quantities/results.hpp"
 
 namespace stickslip::quantities {
 
 /// Means over one excursion, which starts at s+ = (x_{k+1}, +1, 0), slides, sticks and ends at
 /// the next exit. Positions are folded: (x, y, v) stands for (-x, -y, -v) as well, such that y >=
-/// 0. Arrays over noise levels have the index i + N, those over static levels i + k. Without
+/// 0. Arrays over noise nodes have the index n + H, H = noise::Nodes::half(), those over static
+/// levels i + k. Without
 /// symmetry, the means are over excursions from s+ and from s- in the shares in which they occur,
 /// and static levels are those of the noise, counted from the lowest.
 struct Excursion {
-  std::vector<double> slide_time;         ///< time spent sliding on level i [time]
-  std::vector<double> slide_distance;     ///< int |V| dt on level i [length]
-  std::vector<double> slide_square;       ///< int V^2 dt on level i
-  std::vector<double> slide_drift;        ///< int V dt on level i [length]; empty if folded
+  std::vector<double> slide_time;         ///< time spent sliding on node n [time]
+  std::vector<double> slide_distance;     ///< int |V| dt on node n [length]
+  std::vector<double> slide_square;       ///< int V^2 dt on node n
+  std::vector<double> slide_drift;        ///< int V dt on node n [length]; empty if folded
   std::vector<double> entry;              ///< probability that sliding ends on folded level i
   std::vector<double> entry_orientation;  ///< the same, counted negative if V < 0 then; or empty
   std::vector<double> stick_time;         ///< time spent sticking on folded level i [time]
@@ -31,14 +32,15 @@ struct Excursion {
   /// the time spent beyond mu_s is pi(|X| > mu_s) E[tau_1]. What is left is rounding, of the matrix
   /// entries too, which residuals do not see. The square of lost_probability is added: scaling has
   /// removed its first order.
-  [[nodiscard]] double conservation_defect(const model::Process& process) const;
+  [[nodiscard]] double conservation_defect(const operators::Discretisation& discretisation) const;
 };
 
 /// P_stick, P_slide, mean_stick, mean_slide, mean_excursion; ratios of positive sums.
 void append_sticking(const Excursion& excursion, Results& results);
 
 /// E_V2, E_absV, E_XV and E_V (0 where symmetry makes it so).
-void append_moments(const model::Process& process, const Excursion& excursion, Results& results);
+void append_moments(const operators::Discretisation& discretisation, const Excursion& excursion,
+                    Results& results);
 
 /// entry_law: P(X = x_k when the first slide from s+ ends), k = -K ... K, and
 /// f_stick_0 = Lambda alpha_K (entry_K + entry_-K), the density of sticking times at 0+.
@@ -51,7 +53,7 @@ void append_noise_law(const model::Process& process, Results& results);
 void append_noise_sensitivity(const model::Process& process, Results& results);
 
 /// The stationary law of X as the excursion sees it, summed over the grid; index i + N.
-[[nodiscard]] std::vector<double> marginal_of_noise(const model::Process& process,
+[[nodiscard]] std::vector<double> marginal_of_noise(const operators::Discretisation& discretisation,
                                                     const Excursion& excursion);
 
 }  // namespace stickslip::quantities

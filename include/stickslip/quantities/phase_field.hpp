@@ -1,10 +1,11 @@
 #pragma once
 /// A function on the whole (x, v) grid.
 
+#include <memory>
 #include <vector>
 
+#include "stickslip/operators/discretisation.hpp"
 #include "stickslip/operators/system_key.hpp"
-#include "stickslip/velocity/axis.hpp"
 
 namespace stickslip::operators {
 class StateSpace;
@@ -12,29 +13,41 @@ class StateSpace;
 
 namespace stickslip::quantities {
 
-/// Values by rows of x_i, |i| <= N, and columns of v, -v_max ... v_max without 0; rows of whole
-/// levels are owned by ranks.
+/// Values by rows of x_i, |i| <= N, and columns of v, -v_max ... v_max without 0, kept by noise
+/// nodes, of which whole groups are owned by ranks.
 class PhaseField {
  public:
-  /// All zero.
-  PhaseField(const model::Process& process, const velocity::Axis& axis,
-             const operators::StateSpace& states);
+  /// How values on noise nodes stand for those on levels.
+  enum class Kind {
+    function,  ///< u_i = sum_l P_il u_l
+    measure    ///< nu_i = sum_l T_il nu_l
+  };
 
-  /// Adds to the node of a half, levels counted along it: (x_level, v_node) of the upper one,
-  /// (-x_level, -v_node) of the lower one. A level of this rank.
-  void add(operators::Half half, int level, int node, double value);
+  /// All zero.
+  PhaseField(const operators::Discretisation& discretisation, const operators::StateSpace& states,
+             Kind kind);
+
+  /// Adds to the velocity node of a half on a noise node counted along it: (x_n, v) of the upper
+  /// one, (-x_n, -v) of the lower one. A noise node of this rank.
+  void add(operators::Half half, int noise, int node, double value);
 
   [[nodiscard]] const std::vector<double>& x() const { return x_; }
   [[nodiscard]] const std::vector<double>& v() const { return v_; }
-  [[nodiscard]] const std::vector<int>& local_levels() const { return local_levels_; }
-  [[nodiscard]] const std::vector<double>& local_rows() const { return local_rows_; }
+  /// Levels of this rank, rising, and their rows. O(levels velocity nodes).
+  [[nodiscard]] std::vector<int> local_levels() const;
+  [[nodiscard]] std::vector<double> local_rows() const;
 
  private:
-  [[nodiscard]] std::size_t row_start(int level) const;
+  // Calls visit(group) for the groups of this rank, rising.
+  template <class Visit>
+  void for_each_group(Visit visit) const;
+  [[nodiscard]] std::size_t row_start(int noise) const;
 
+  std::shared_ptr<const noise::Nodes> noise_;
+  Kind kind_;
   std::vector<double> x_, v_;
-  std::vector<int> local_levels_;
-  std::vector<double> local_rows_;
+  std::vector<int> local_noise_;
+  std::vector<double> by_node_;
 };
 
 }  // namespace stickslip::quantities

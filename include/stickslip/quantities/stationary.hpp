@@ -1,14 +1,8 @@
 #pragma once
 /// The stationary law from one transposed solve with the sliding operator.
 
-#include <functional>
-#include <memory>
-#include <vector>
-
-#include "stickslip/operators/nested_system.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/quantities/excursion.hpp"
-#include "stickslip/velocity/axis.hpp"
 
 namespace stickslip::quantities {
 
@@ -29,21 +23,14 @@ class StationaryLaw {
  public:
   /// One transposed solve with systems.at(0, even), or two with systems.at(0, none). Collective.
   /// Throws NotReached or NoMemory.
-  /// A law on the same elements with lower degrees serves as a guess, which saves iterations if
-  /// there are any.
-  explicit StationaryLaw(operators::Systems& systems, const StationaryLaw* lower = nullptr);
-
-  /// By a nested system, from a law on lower degrees. uncorrected() is that before the last cycle:
-  /// the difference bounds what is left. Collective. Throws NotReached.
-  StationaryLaw(operators::NestedSystem& fine, const StationaryLaw& lower);
+  explicit StationaryLaw(operators::Systems& systems);
 
   /// Adds Excursion::entry_orientation. It is no even functional: one more transposed solve, with
   /// systems.at(0, odd). Collective.
   void orient(operators::Systems& systems);
 
-  [[nodiscard]] const model::Process& process() const { return process_; }
-  [[nodiscard]] const velocity::Axis& axis() const { return *axis_; }
-  [[nodiscard]] const std::shared_ptr<const velocity::Axis>& shared_axis() const { return axis_; }
+  [[nodiscard]] const operators::Discretisation& discretisation() const { return discretisation_; }
+  [[nodiscard]] const model::Process& process() const { return discretisation_.process; }
   [[nodiscard]] const operators::StateSpace& states() const { return states_; }
 
   /// Means over an excursion, the same on all ranks.
@@ -67,18 +54,9 @@ class StationaryLaw {
   [[nodiscard]] petsc::VecHandle weighted_velocity(const operators::KolmogorovOperator& a) const;
 
  private:
-  // nu A = g for excursions from one side.
-  using Solve = std::function<petsc::Solution(Vec g, operators::Half side)>;
-  StationaryLaw(const model::Process& process, std::shared_ptr<const velocity::Axis> axis,
-                const operators::KolmogorovOperator& a, const Solve& solve);
-  // The occupation from one side, on higher degrees.
-  [[nodiscard]] petsc::VecHandle prolonged(const operators::KolmogorovOperator& a,
-                                           const velocity::Axis& axis, operators::Half side) const;
-
-  model::Process process_;
-  std::shared_ptr<const velocity::Axis> axis_;
+  operators::Discretisation discretisation_;
   operators::StateSpace states_;
-  petsc::VecHandle occupation_, from_upper_, from_lower_;  // the last two without symmetry only
+  petsc::VecHandle occupation_;
   Excursion excursion_, uncorrected_;
   double chance_of_falling_ = 0;
 };

@@ -66,14 +66,6 @@ struct Plan {
 /// each, and their plan is empty. Local.
 [[nodiscard]] Plan plan_of(const options::Request& request);
 
-/// Whether systems with so many unknowns are better solved by iteration than by elimination: they
-/// are large, and their right-hand sides few, and the accuracy is no finer than 1e-10. Local.
-[[nodiscard]] bool prefers_iteration(const options::Request& request, std::int64_t unknowns);
-
-/// Whether all that is asked for follows from the stationary law on an hp axis, so that a nested
-/// evaluation gives it. Local.
-[[nodiscard]] bool can_nest(const options::Request& request);
-
 /// "stationary law", "resolvent at lambda = 0.5".
 [[nodiscard]] std::string task_name(const options::Request& request, const Task& task);
 

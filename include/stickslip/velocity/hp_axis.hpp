@@ -70,8 +70,8 @@ class HpAxis final : public Axis {
   [[nodiscard]] int elements() const { return static_cast<int>(ends_.size()) - 1; }
   [[nodiscard]] const Element& element(int e) const { return elements_[e]; }
 
-  /// The same elements with degrees up to `degree`, here and on the lower half line.
-  [[nodiscard]] std::shared_ptr<HpAxis> coarsened(int degree) const;
+  /// b at an end of elements.
+  [[nodiscard]] double drag_at_end(int end) const { return drag_at_ends_[end]; }
 
  private:
   using Trace = std::vector<double> ReferenceElement::*;

@@ -1,0 +1,121 @@
+#pragma once
+/// The noise chain on few nodes: functions of x as piecewise polynomials.
+
+#include <span>
+#include <vector>
+
+#include "stickslip/model/process.hpp"
+
+namespace stickslip::noise {
+
+/// How levels are gathered into groups.
+struct Grouping {
+  int degree = 0;      ///< of the polynomials on a group; 0: every level is a node
+  double grading = 2;  ///< levels of a group per level of distance from the nearest special point
+  double width = 4;    ///< of the widest group, in standard deviations 1/sqrt(tau)
+};
+
+/// Galerkin projection of the noise chain on piecewise polynomials, held by their values at nodes.
+///
+/// Consecutive levels form groups. On a group of more than degree + 1 levels functions of x are
+/// polynomials, of which the nodes are the Gauss nodes x_l of the stationary weights w_i on its
+/// levels, gamma_l their Gauss weights, P_il the cardinal functions, T = diag(w) P diag(gamma)^-1:
+///
+///   u_i = sum_l P_il u_l,   nu_i = sum_l T_il nu_l,   T^T P = 1,   sum_i T_il = 1,
+///
+/// for functions u and measures nu. All other levels are nodes themselves, with P = T = 1. Jumps
+/// become J = T^T Q P, block tridiagonal over groups, in Dirichlet form
+///
+///   J_lm = -(1/gamma_l) sum_i w_i Lambda alpha_i (P_(i+1)l - P_il)(P_(i+1)m - P_im),
+///
+/// so that w stays stationary and rows sum to zero; J_lm may be negative for l != m. Since Gauss
+/// rules are exact for x times two such polynomials, speeds at the nodes are all that transport
+/// needs. Groups shrink towards the special points of a process, where functions are not smooth:
+/// levels on which the speed at v = 0 vanishes, and the ends of the static range. None contains
+/// one, and x -> -x maps groups to groups.
+///
+/// Nodes are numbered -half() ... half(), rising, with x_-n = -x_n. Immutable; members are local.
+class Nodes {
+ public:
+  /// O(levels degree^2). Throws std::invalid_argument for a degree below 0 or a grading <= 0.
+  Nodes(const model::Process& process, const Grouping& grouping);
+  /// Every level a node.
+  explicit Nodes(const model::Process& process) : Nodes(process, Grouping{}) {}
+
+  /// Consecutive levels with the nodes that stand for them.
+  struct Group {
+    int first, last;                         ///< levels
+    int begin;                               ///< number of its first node
+    int count;                               ///< of nodes
+    std::vector<double> value, weight;       ///< P and T, levels x nodes by rows
+    std::vector<double> to_above, to_below;  ///< by node: rates into the next groups
+    [[nodiscard]] int levels() const { return last - first + 1; }
+    /// P on the first and on the last level.
+    [[nodiscard]] std::span<const double> at_first() const { return row(value, first); }
+    [[nodiscard]] std::span<const double> at_last() const { return row(value, last); }
+    /// The row of P or T for a level.
+    [[nodiscard]] std::span<const double> row(const std::vector<double>& matrix, int level) const {
+      const auto from = static_cast<std::size_t>(level - first) * static_cast<std::size_t>(count);
+      return std::span(matrix).subspan(from, static_cast<std::size_t>(count));
+    }
+  };
+  [[nodiscard]] const std::vector<Group>& groups() const { return groups_; }
+  [[nodiscard]] const Group& group_of(int node) const { return groups_[group_of_[at(node)]]; }
+  [[nodiscard]] const Group& group_at(int level) const;
+
+  [[nodiscard]] int half() const { return half_; }
+  [[nodiscard]] int count() const { return 2 * half_ + 1; }
+  [[nodiscard]] double x(int node) const { return x_[at(node)]; }
+  /// Whether every level is a node.
+  [[nodiscard]] bool all_levels() const { return half_ == levels_; }
+
+  /// One entry of a row of J.
+  struct Rate {
+    int node;
+    double value;
+  };
+  /// The row of J at a node without its diagonal, rising.
+  [[nodiscard]] std::span<const Rate> jumps(int node) const { return jumps_[at(node)]; }
+  /// The same of T^T (dQ/d tau) P, at a fixed number of levels. O(levels of the group).
+  [[nodiscard]] std::vector<Rate> jumps_by_tau(int node) const;
+
+  /// The highest node that stands for levels up to `level`, which ends a group.
+  [[nodiscard]] int last_up_to(int level) const;
+
+  /// sum_i T_il f(i): what a function on the levels is at a node, so that sums with measures on the
+  /// nodes are those with the measures that they stand for.
+  template <class Function>
+  [[nodiscard]] double projected(int node, Function f) const {
+    const Group& g = group_of(node);
+    if (g.levels() == 1) return f(g.first);
+    double sum = 0;
+    for (int i = g.first; i <= g.last; ++i) {
+      sum += g.weight[(i - g.first) * g.count + node - g.begin] * f(i);
+    }
+    return sum;
+  }
+
+  /// nu_i = sum_l T_il nu_l on all levels, from values by node (index node + half()); index
+  /// i + N. O(levels degree).
+  [[nodiscard]] std::vector<double> spread(std::span<const double> by_node) const;
+
+ private:
+  [[nodiscard]] std::size_t at(int node) const { return static_cast<std::size_t>(node + half_); }
+  void add_levels(int first, int last);
+  void add_group(int first, int last, int size);
+  void mirror();
+  void number();
+  void find_jumps();
+  [[nodiscard]] double up(int level) const { return noise_.rate() * noise_.up(level); }
+  [[nodiscard]] double down(int level) const { return noise_.rate() * noise_.down(level); }
+
+  model::NoiseChain noise_;
+  int levels_, half_ = 0;
+  std::vector<Group> groups_;
+  std::vector<std::vector<double>> inner_;  // by group of several levels: rates inside, by rows
+  std::vector<std::size_t> group_of_;       // by node
+  std::vector<double> x_;
+  std::vector<std::vector<Rate>> jumps_;
+};
+
+}  // namespace stickslip::noise

@@ -1,0 +1,234 @@
+#include "stickslip/noise/nodes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "stickslip/noise/gauss_rule.hpp"
+
+namespace stickslip::noise {
+namespace {
+
+/// Where groups of the levels i >= 1 end and towards which they shrink, in levels.
+class SpecialPoints {
+ public:
+  explicit SpecialPoints(const model::Process& process) {
+    const double delta = process.noise.delta, mu_d = process.friction.mu_d;
+    for (double bias : {process.bias, -process.bias}) {
+      graded_.push_back(std::abs(mu_d - bias) / delta);
+    }
+    graded_.push_back(std::abs(process.static_index() + 0.5));
+    graded_.push_back(std::abs(process.lowest_static() - 0.5));
+    ends_ = graded_;
+    ends_.push_back(process.threshold_index() + 0.5);
+  }
+
+  /// Whether the levels first ... last may be one group.
+  [[nodiscard]] bool allow(int first, int last, double grading) const {
+    const double low = first - 0.5, high = last + 0.5;
+    for (double s : ends_) {
+      if (low < s && s < high) return false;
+    }
+    double distance = std::numeric_limits<double>::infinity();
+    for (double s : graded_) {
+      distance = std::min({distance, std::abs(low - s), std::abs(high - s)});
+    }
+    return last - first + 1 <= grading * distance;
+  }
+
+ private:
+  std::vector<double> graded_, ends_;
+};
+
+// The weights of the levels first ... last, the largest 1: by sums of logarithms of their ratios,
+// which neither overflow nor lose digits.
+std::vector<double> weights_within(const model::NoiseChain& noise, int first, int last) {
+  std::vector<double> w{0};
+  for (int i = first + 1; i <= last; ++i) {
+    w.push_back(w.back() + std::log(model::weight_ratio(noise, i)));
+  }
+  const double largest = *std::max_element(w.begin(), w.end());
+  constexpr double least = 1e-280;
+  for (double& value : w) value = std::max(std::exp(value - largest), least);
+  return w;
+}
+
+std::vector<double> reversed(const std::vector<double>& values) {
+  return {values.rbegin(), values.rend()};
+}
+
+}  // namespace
+
+Nodes::Nodes(const model::Process& process, const Grouping& grouping)
+    : noise_(process.noise), levels_(process.noise.levels) {
+  if (grouping.degree < 0 || !(grouping.grading > 0) || !(grouping.width > 0)) {
+    throw std::invalid_argument("noise groups need a degree >= 0, a grading and a width > 0");
+  }
+  const SpecialPoints special(process);
+  const double widest = grouping.width / (noise_.delta * std::sqrt(noise_.tau));
+  const int size = grouping.degree == 0 ? std::numeric_limits<int>::max() : grouping.degree + 1;
+  for (int first = 1; first <= levels_;) {
+    int last = first;
+    while (grouping.degree > 0 && last < levels_ && last + 1 - first < widest &&
+           special.allow(first, last + 1, grouping.grading)) {
+      ++last;
+    }
+    last - first + 1 <= size ? add_levels(first, last) : add_group(first, last, size);
+    first = last + 1;
+  }
+  mirror();
+  number();
+  find_jumps();
+}
+
+void Nodes::add_levels(int first, int last) {
+  for (int i = first; i <= last; ++i) {
+    groups_.push_back({i, i, 0, 1, {1}, {1}, {up(i)}, {down(i)}});
+    inner_.emplace_back();
+    x_.push_back(noise_.level(i));
+  }
+}
+
+void Nodes::add_group(int first, int last, int size) {
+  const std::vector<double> w = weights_within(noise_, first, last);
+  std::vector<double> points;
+  for (int i = first; i <= last; ++i) points.push_back(noise_.level(i));
+  GaussRule rule(points, w, size);
+  const auto n = static_cast<std::size_t>(size);
+  Group g{first, last, 0, size, std::move(rule.cardinal), {}, {}, {}};
+  g.weight = g.value;
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    for (std::size_t l = 0; l < n; ++l) g.weight[i * n + l] *= w[i] / rule.weight[l];
+  }
+  for (double t : g.row(g.weight, last)) g.to_above.push_back(t * up(last));
+  for (double t : g.row(g.weight, first)) g.to_below.push_back(t * down(first));
+  std::vector<double> inner(n * n, 0.0);
+  for (std::size_t i = 0; i + 1 < w.size(); ++i) {
+    const double* step = rule.step.data() + i * n;
+    const double flow = w[i] * up(first + static_cast<int>(i));
+    for (std::size_t l = 0; l < n; ++l) {
+      for (std::size_t m = 0; m < n; ++m) inner[l * n + m] -= flow * step[l] * step[m];
+    }
+  }
+  for (std::size_t l = 0; l < n; ++l) {
+    for (std::size_t m = 0; m < n; ++m) inner[l * n + m] /= rule.weight[l];
+  }
+  groups_.push_back(std::move(g));
+  inner_.push_back(std::move(inner));
+  x_.insert(x_.end(), rule.node.begin(), rule.node.end());
+}
+
+// So far there are the levels i >= 1.
+void Nodes::mirror() {
+  const std::vector<double> above = x_;
+  half_ = static_cast<int>(above.size());
+  const auto upper = std::move(groups_);
+  const auto inner = std::move(inner_);
+  groups_.clear();
+  inner_.clear();
+  x_ = reversed(above);
+  for (double& x : x_) x = -x;
+  for (std::size_t g = upper.size(); g-- > 0;) {
+    const Group& other = upper[g];
+    groups_.push_back({-other.last, -other.first, 0, other.count, reversed(other.value),
+                       reversed(other.weight), reversed(other.to_below), reversed(other.to_above)});
+    inner_.push_back(reversed(inner[g]));
+  }
+  groups_.push_back({0, 0, 0, 1, {1}, {1}, {up(0)}, {down(0)}});
+  inner_.emplace_back();
+  groups_.insert(groups_.end(), upper.begin(), upper.end());
+  inner_.insert(inner_.end(), inner.begin(), inner.end());
+  x_.push_back(0);
+  x_.insert(x_.end(), above.begin(), above.end());
+}
+
+void Nodes::number() {
+  int next = -half_;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    groups_[g].begin = next;
+    next += groups_[g].count;
+    group_of_.insert(group_of_.end(), static_cast<std::size_t>(groups_[g].count), g);
+  }
+}
+
+void Nodes::find_jumps() {
+  jumps_.resize(x_.size());
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const Group& here = groups_[g];
+    const auto last = here.at_last(), first = here.at_first();
+    const bool has_below = g > 0, has_above = g + 1 < groups_.size();
+    for (int l = 0; l < here.count; ++l) {
+      auto& row = jumps_[at(here.begin + l)];
+      const double rise = here.to_above[l], fall = here.to_below[l];
+      const auto to = [&row](const Group& other, std::span<const double> values, double rate) {
+        for (int m = 0; m < other.count; ++m) row.push_back({other.begin + m, rate * values[m]});
+      };
+      if (has_below) to(groups_[g - 1], groups_[g - 1].at_last(), fall);
+      for (int m = 0; m < here.count; ++m) {
+        if (m == l) continue;
+        double rate = inner_[g][static_cast<std::size_t>(l) * here.count + m];
+        if (has_above) rate -= rise * last[m];
+        if (has_below) rate -= fall * first[m];
+        row.push_back({here.begin + m, rate});
+      }
+      if (has_above) to(groups_[g + 1], groups_[g + 1].at_first(), rise);
+    }
+  }
+}
+
+const Nodes::Group& Nodes::group_at(int level) const {
+  const auto above = std::upper_bound(groups_.begin(), groups_.end(), level,
+                                      [](int i, const Group& g) { return i < g.first; });
+  return *(above - 1);
+}
+
+int Nodes::last_up_to(int level) const {
+  const Group& g = group_at(level);
+  return g.begin + g.count - 1;
+}
+
+std::vector<Nodes::Rate> Nodes::jumps_by_tau(int node) const {
+  const std::size_t number = group_of_[at(node)];
+  const Group& here = groups_[number];
+  const auto change = [this](double probability, double of_probability) {
+    return noise_.rate_change() * probability + noise_.rate() * of_probability;
+  };
+  std::vector<double> own(static_cast<std::size_t>(here.count), 0.0);
+  std::vector<Rate> row;
+  // Of T_il times a rate from level i to level j beside it: in the group, a difference of P.
+  const auto add = [&](int i, int j, double rate) {
+    const double flow = here.row(here.weight, i)[node - here.begin] * rate;
+    const auto from = here.row(here.value, i);
+    const bool inside = j >= here.first && j <= here.last;
+    for (int m = 0; m < here.count; ++m) {
+      own[m] += flow * ((inside ? here.row(here.value, j)[m] : 0) - from[m]);
+    }
+    if (inside) return;
+    const Group& other = groups_[j > i ? number + 1 : number - 1];
+    const auto values = other.row(other.value, j);
+    for (int m = 0; m < other.count; ++m) row.push_back({other.begin + m, flow * values[m]});
+  };
+  for (int i = here.first; i <= here.last; ++i) {
+    if (i > -levels_) add(i, i - 1, change(noise_.down(i), noise_.down_change(i)));
+    if (i < levels_) add(i, i + 1, change(noise_.up(i), noise_.up_change(i)));
+  }
+  for (int m = 0; m < here.count; ++m) {
+    if (here.begin + m != node) row.push_back({here.begin + m, own[m]});
+  }
+  return row;
+}
+
+std::vector<double> Nodes::spread(std::span<const double> by_node) const {
+  std::vector<double> by_level(2 * static_cast<std::size_t>(levels_) + 1, 0.0);
+  for (const Group& g : groups_) {
+    for (int i = g.first; i <= g.last; ++i) {
+      double& sum = by_level[static_cast<std::size_t>(i + levels_)];
+      const auto weights = g.row(g.weight, i);
+      for (int l = 0; l < g.count; ++l) sum += weights[l] * by_node[at(g.begin + l)];
+    }
+  }
+  return by_level;
+}
+
+}  // namespace stickslip::noise

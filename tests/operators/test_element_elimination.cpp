@@ -1,0 +1,148 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../common/scenes.hpp"
+#include "stickslip/model/drag_law.hpp"
+#include "stickslip/operators/element_elimination.hpp"
+#include "stickslip/operators/kolmogorov_operator.hpp"
+#include "stickslip/operators/systems.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/session.hpp"
+#include "stickslip/petsc/vectors.hpp"
+#include "stickslip/support/errors.hpp"
+
+using namespace stickslip;
+using operators::ElementElimination;
+using operators::KolmogorovOperator;
+using operators::Rest;
+using operators::Symmetry;
+using petsc::check;
+
+namespace {
+
+struct Case {
+  std::string name;
+  operators::Discretisation on;
+  Symmetry symmetry;
+};
+
+model::Scene plain(double mu_d, double delta) { return test::scene(1, mu_d, 1, delta, {1, 0}); }
+
+// With holding states and without, on levels and on nodes, drags of both kinds, one level at rest.
+std::vector<Case> cases() {
+  auto cut = plain(0.25, 0.25), biased = plain(0.6, 0.2), driven = plain(0.5, 0.25);
+  cut.v_max = 1;
+  biased.bias = 0.3;
+  driven.bias = -1.4;
+  auto one_sided = plain(0.3, 0.25);
+  one_sided.noise_levels = 30;
+  one_sided.drag = model::parse_drag("-(1 + 0.3*tanh(v))*v", one_sided.friction, 0.25, 30);
+  const auto single = test::scene(0.1, 0.1, 1, 0.25, {1, 0});
+  const auto free = test::scene(1, 0.5, 1, 0.25, {0, 0});
+  std::vector<Case> all;
+  for (Symmetry symmetry : {Symmetry::even, Symmetry::odd, Symmetry::none}) {
+    all.push_back({"levels", test::on_hp(plain(0.25, 0.25), 4), symmetry});
+    all.push_back({"nodes", test::on_nodes(plain(0.25, 1.0 / 16), 4, 3), symmetry});
+    all.push_back({"cut", test::on_nodes(cut, 3, 2), symmetry});
+    all.push_back({"free", test::on_nodes(free, 3, 3), symmetry});
+    all.push_back({"one level at rest", test::on_hp(single, 3), symmetry});
+  }
+  all.push_back({"bias", test::on_nodes(biased, 4, 2), Symmetry::none});
+  all.push_back({"nothing rests long", test::on_nodes(driven, 3, 2), Symmetry::none});
+  all.push_back({"drag that is not odd", test::on_nodes(one_sided, 3, 2), Symmetry::none});
+  return all;
+}
+
+petsc::VecHandle rough(const KolmogorovOperator& a) {
+  petsc::VecHandle x = a.zeros();
+  petsc::WriteView local(x);
+  for (PetscInt r = 0; r < a.states().local_size(); ++r) {
+    local[r] = 1 + std::sin(1.7 * r * r);
+#if defined(PETSC_USE_COMPLEX)
+    local[r] += PetscScalar(0, std::cos(2.3 * r));
+#endif
+  }
+  return x;
+}
+
+// Largest component of b - A x against those of |A| |x|.
+double residual(const KolmogorovOperator& a, Vec x, Vec b, bool transposed) {
+  petsc::VecHandle r = a.zeros();
+  check(transposed ? MatMultTranspose(a.matrix(), x, r) : MatMult(a.matrix(), x, r));
+  PetscReal size = 0, left = 0;
+  check(VecNorm(r, NORM_INFINITY, &size));
+  check(VecAXPY(r, -1, b));
+  check(VecNorm(r, NORM_INFINITY, &left));
+  PetscReal solution = 0, matrix = 0;
+  check(VecNorm(x, NORM_INFINITY, &solution));
+  check(MatNorm(a.matrix(), transposed ? NORM_1 : NORM_INFINITY, &matrix));
+  return left / (size + matrix * solution);
+}
+
+void check_solves(const KolmogorovOperator& a, PetscScalar lambda, PetscScalar shift) {
+  ElementElimination elimination(a.discretisation(), a.states(), a.matrix(), lambda);
+  check(MatShift(a.matrix(), shift));
+  elimination.factor(shift);
+  const auto b = rough(a);
+  const auto x = a.zeros();
+  for (bool transposed : {false, true}) {
+    INFO((transposed ? "transposed" : "plain"));
+    elimination.apply(b, x, transposed);
+    CHECK(residual(a, x, b, transposed) < 1e-13);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("element elimination: solves every kind of system, plain and transposed") {
+  if (petsc::ranks(PETSC_COMM_WORLD) > 1) return;
+  for (const auto& c : cases()) {
+    for (Rest rest : {Rest::killing, Rest::kept, Rest::killed_on_exit, Rest::killing_edges}) {
+      INFO(c.name << ", symmetry " << static_cast<int>(c.symmetry) << ", rest "
+                  << static_cast<int>(rest));
+      const KolmogorovOperator a(PETSC_COMM_SELF, c.on, 0.4, c.symmetry, rest);
+      check_solves(a, 0.4, 0);
+    }
+  }
+}
+
+TEST_CASE("element elimination: follows a shift of the matrix") {
+  if (petsc::ranks(PETSC_COMM_WORLD) > 1) return;
+  PetscScalar shift = 3.5;
+#if defined(PETSC_USE_COMPLEX)
+  shift = PetscScalar(0.5, 12);
+#endif
+  for (const auto& c : cases()) {
+    INFO(c.name);
+    const KolmogorovOperator a(PETSC_COMM_SELF, c.on, 0.1, c.symmetry, Rest::kept);
+    check_solves(a, 0.1, shift);
+  }
+}
+
+TEST_CASE("element elimination: entries are blocks of noise nodes, and the elements' own") {
+  if (petsc::ranks(PETSC_COMM_WORLD) > 1) return;
+  const auto on = test::on_nodes(plain(0.25, 1.0 / 64), 8, 6);
+  const KolmogorovOperator a(PETSC_COMM_SELF, on, 0.0, Symmetry::even, Rest::killing);
+  const ElementElimination elimination(on, a.states(), a.matrix(), 0.0);
+  const double noise = on.noise->count();
+  const double elements = static_cast<double>(on.axis->cells().size()) - 1;
+  CHECK(elimination.entries() > elements * noise * noise);
+  CHECK(elimination.entries() < 4.5 * elements * noise * noise);
+  CHECK(elimination.bytes() == sizeof(PetscScalar) * elimination.entries());
+  CHECK(elimination.operations() > elements * noise * noise * noise / 2);
+}
+
+TEST_CASE("element elimination: for hp axes on one rank, up to a number of nodes", "[parallel]") {
+  const bool alone = petsc::ranks(PETSC_COMM_WORLD) == 1;
+  const auto preferred = [](const operators::Discretisation& on) {
+    const KolmogorovOperator a(PETSC_COMM_WORLD, on, 0.0, Symmetry::even, Rest::killing);
+    const auto structure = operators::structure_of(a, 0.0);
+    return std::pair{structure.elimination != nullptr, structure.preferred};
+  };
+  CHECK(preferred(test::on_hp(plain(0.25, 0.25), 3)) == std::pair{alone, alone});
+  CHECK(preferred(test::on_hp(plain(0.25, 1.0 / 64), 2)) == std::pair{alone, false});
+  CHECK(preferred(test::on_upwind(plain(0.25, 0.25), 2)) == std::pair{false, false});
+}
