@@ -22,10 +22,13 @@ double order_margin(int points) { return 1.5 * (1 + 2.0 / points); }
 constexpr int kFirstPoints = 8;
 
 // Degree at which the estimate, the error one degree below, is expected to meet the accuracy:
-// errors are about 10^-d at degree d, and ten times that for the density of sticking times at 0+.
+// errors are about 10^-d at degree d, ten times that for the density of sticking times at 0+, and
+// a hundred times for the tail of a spectrum. (On coarser elements reduced models search long for
+// waves that are not resolved.)
 int starting_degree(const options::Request& request) {
   const double digits = -std::log10(request.accuracy);
-  const int extra = request.wants(options::Quantity::entry_law) ? 2 : 1;
+  int extra = request.wants(options::Quantity::entry_law) ? 2 : 1;
+  if (request.wants(options::Quantity::spectrum)) extra = 3;
   return std::clamp(static_cast<int>(std::ceil(digits)) + extra, 3, kHighestDegree);
 }
 
@@ -83,9 +86,19 @@ noise::Grouping Ladder::grouping(int n) const {
   noise::Grouping grouping;
   if (all_levels_) return grouping;
   grouping.grading = method_.noise_grading;
-  grouping.degree = std::max(2, method_.noise_degree ? *method_.noise_degree + n - 1
-                                                     : degree(n) - kDegreesLessInNoise);
+  // Never the same on two rungs, or no change would show the error.
+  constexpr int least = 2;
+  grouping.degree = method_.noise_degree ? *method_.noise_degree + n - 1
+                                         : std::max(least + n, degree(n) - kDegreesLessInNoise);
   return grouping;
+}
+
+// Elements follow waves where the first estimate asks for it: in most scenes the noise damps them.
+velocity::Rates Ladder::rates(int n) const {
+  constexpr int first_with_waves = 2;
+  velocity::Rates rates = rates_;
+  if (n < first_with_waves && !method_.fixed()) rates.omega = 0;
+  return rates;
 }
 
 const Resolution& Ladder::rung(int n) const {
@@ -97,7 +110,7 @@ Resolution Ladder::made(int n) const {
   Resolution r;
   switch (method_.scheme) {
   case options::Scheme::hp:
-    r = hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n), rates_,
+    r = hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n), rates(n),
                       grouping(n));
     break;
   case options::Scheme::upwind: r = upwind_resolution(scene_, points(n), tail_tolerance(n)); break;

@@ -151,7 +151,12 @@ class Refiner {
       check_laws();
       return true;
     }
-    // What a finer discretisation still improves is no limit yet.
+    // What a finer discretisation still improves is no limit yet, and one that only now resolves
+    // the waves has nothing to be held against.
+    if (step.resolution.rates.omega > last_omega_) {
+      last_omega_ = step.resolution.rates.omega;
+      last_rounding_ = std::numeric_limits<double>::infinity();
+    }
     const bool falls = rounding < 0.5 * std::exchange(last_rounding_, rounding);
     if (rounding <= request_.accuracy || falls) return false;
     const bool by_lambda = request_.route == options::Route::lambda;
@@ -232,8 +237,9 @@ class Refiner {
   Outcome outcome_;
   std::vector<double> rounding_;                                    // relative, of each result
   double last_rounding_ = std::numeric_limits<double>::infinity();  // of the limiting result
-  Changes changes_;                                                 // of the last step
-  std::shared_ptr<const StationaryLaw> law_;                        // of the last step, if needed
+  double last_omega_ = 0;                     // of waves that elements followed
+  Changes changes_;                           // of the last step
+  std::shared_ptr<const StationaryLaw> law_;  // of the last step, if needed
   std::optional<quantities::SpeedDistribution> speed_;
 };
 

@@ -51,7 +51,7 @@ double tilt(const model::Scene& scene) {
 bool by_elements(const Resolution& r) {
   if (r.scheme != options::Scheme::hp) return false;
   const bool own = r.factors == options::Factors::own &&
-                   r.noise_nodes() <= operators::kMostNodesByElements &&
+                   operators::suits_elements(r.noise_nodes(), r.noise == nullptr) &&
                    petsc::ranks(PETSC_COMM_WORLD) == 1;
   return own || r.factors == options::Factors::elements;
 }

@@ -43,7 +43,7 @@ petsc::Structure structure_of(const KolmogorovOperator& a, PetscScalar lambda) {
   const auto make = [&a, lambda] {
     return std::make_unique<ElementElimination>(a.discretisation(), a.states(), a.matrix(), lambda);
   };
-  return {make, d.noise->count() <= kMostNodesByElements};
+  return {make, suits_elements(d.noise->count(), d.noise->all_levels())};
 }
 
 System& Systems::at(double lambda, Symmetry symmetry, Rest rest) {

@@ -46,7 +46,7 @@ class Refusals(Case):
     def test_solvers(self):
         for pc in ("shell", "mg", "eisenstat", "ml", "hmg", "foo"):
             self.refuse(*SMALL, "-slide_pc_type", pc,
-                        told=(f"-slide_pc_type = {pc}: must be levels, p_multigrid, lu",))
+                        told=(f"-slide_pc_type = {pc}: must be elements, lu",))
         self.refuse(*SMALL, "-slide_pc_type", "iluu", told=("did you mean ilu?",))
         self.refuse(*SMALL, "-slide_ksp_type", "gmre", told=("-slide_ksp_type = gmre: must be preonly",
                                                               "did you mean gmres?"))
@@ -55,7 +55,7 @@ class Refusals(Case):
         self.refuse(*SMALL, "-backward_ts_type", "foo", told=("-backward_ts_type = foo:",))
         self.refuse(*SMALL, "-slide_pc_factor_mat_solver_type", "foo",
                     told=("-slide_pc_factor_mat_solver_type = foo:",))
-        for pc in ("levels", "p_multigrid", "lu", "qr", "redundant"):
+        for pc in ("elements", "lu", "qr", "redundant"):
             self.run_ok(*SMALL, "-slide_pc_type", pc, "-accuracy", "1e-3")
         self.run_ok(*SMALL, "-slide_ksp_type", "gmres", "-accuracy", "1e-3")
 

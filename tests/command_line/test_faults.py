@@ -197,7 +197,8 @@ class Memory(Faults):
         for megabytes in (400, 500, 600):
             status, told = self.limited(resource.RLIMIT_AS, megabytes << 20, "-mu_d", "0.25",
                                         "-delta", "0.0078125", "-accuracy", "1e-10",
-                                        "-slide_pc_type", "levels", "-summary", "s.json")
+                                        "-slide_pc_type", "elements", "-noise_degree", "0",
+                                        "-summary", "s.json")
             self.assertIn(status, (3, 4), told)
             self.assertNotIn("Segmentation", told)
             if status == 4:

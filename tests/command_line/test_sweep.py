@@ -222,7 +222,8 @@ class Ends(Case):
             self.assertIn(",not reached\n", (self.folder / "s.csv").read_text())
 
     def test_points_without_memory_are_tried_again(self):
-        options = ("-sweep_delta", "4e-5,0.5", "-quantities", "sticking", "-checkpoint", "kept")
+        options = ("-sweep_delta", "4e-5,0.5", "-noise_degree", "0", "-quantities", "sticking",
+                   "-checkpoint", "kept")
         for kept in (0, 1):
             s = self.summary(*options, status=4)
             self.assertEqual(s["sweep"]["from_record"], kept)

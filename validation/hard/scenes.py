@@ -128,8 +128,9 @@ SCENES = (
 
     # Discretisations fixed by hand.
     scene("degree 1", "the coarsest elements keep probability", "probability noise entry stay lambda_route hitting",
-          degree=1),
-    scene("degree 16", "powers of v to v^16", BALANCE + "lambda_route hitting", degree=16),
+          degree=1, noise_degree=0),
+    scene("degree 16", "powers of v to v^16", BALANCE + "lambda_route hitting", degree=16,
+          noise_degree=0),
     scene("degree 24", "powers of v to v^24; the last one there is",
           BALANCE + "reference", degree=24, delta=0.5),
     scene("upwind p = 1", "one point per noise step", "probability noise entry stay null_vector lambda_route",

@@ -32,6 +32,7 @@ class Ladder {
   [[nodiscard]] int free_rungs() const;
   [[nodiscard]] Resolution made(int n) const;
   [[nodiscard]] noise::Grouping grouping(int n) const;
+  [[nodiscard]] velocity::Rates rates(int n) const;
   [[nodiscard]] int degree(int n) const;
   [[nodiscard]] int points(int n) const;
 

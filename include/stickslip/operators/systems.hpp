@@ -29,8 +29,7 @@ inline const std::string kSlidePrefix = "slide_";
                                                      petsc::Ledger& ledger);
 
 /// What solvers can use of an operator assembled for this lambda, which must live as long as the
-/// result: on one rank and an hp axis an ElementElimination, preferred up to a number of noise
-/// nodes beyond which its dense blocks lose to sparse factors.
+/// result: on one rank and an hp axis an ElementElimination, preferred where suits_elements().
 [[nodiscard]] petsc::Structure structure_of(const KolmogorovOperator& a, PetscScalar lambda);
 
 /// lambda - L with its solver.
