@@ -451,19 +451,20 @@ petsc::VecHandle KolmogorovOperator::exit_rates(Half half) const {
 petsc::VecHandle KolmogorovOperator::values(const Observable& f) const {
   petsc::VecHandle result = zeros();
   petsc::WriteView local(result);
-  const auto& [process, noise, axis] = discretisation_;
+  const model::NoiseChain& chain = discretisation_.process.noise;
+  const velocity::Axis& axis = *discretisation_.axis;
   PetscInt at = 0;
   states_.for_each_local([&](const State& s) {
     const double sign = s.half == Half::upper ? 1 : -1;
     if (s.kind == StateKind::rest) {
-      local[at++] = f(process.noise.level(s.noise), 0, 0);
+      local[at++] = f(chain.level(s.noise), 0, 0);
       return;
     }
     double v = 0;
-    if (s.kind == StateKind::node) v = sign * axis->nodes()[s.node];
-    if (s.kind == StateKind::holding) v = sign * axis->v_max();
-    local[at++] =
-        noise->projected(s.noise, [&](int i) { return f(sign * process.noise.level(i), sign, v); });
+    if (s.kind == StateKind::node) v = sign * axis.nodes()[s.node];
+    if (s.kind == StateKind::holding) v = sign * axis.v_max();
+    local[at++] = discretisation_.noise->projected(
+        s.noise, [&](int i) { return f(sign * chain.level(i), sign, v); });
   });
   return result;
 }

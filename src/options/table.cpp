@@ -218,7 +218,7 @@ Group study_group() {
                 "the extrapolation of "
                 "the paper beside converged values. cost: error against time of all methods"),
           integer("study_steps", "", whole(4, 20), {},
-                  "length of the series: number of values of p or delta (default 8 and 5)",
+                  "length of the series: number of values of p or delta (default 8)",
                   "three values tell an order, a fourth how sure it is"),
           integer("study_repeats", "3", whole(1, 99), {},
                   "repetitions of each run of -study cost, of which the median time is taken",

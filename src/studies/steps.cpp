@@ -18,7 +18,7 @@ class Family {
     grazing_ = friction.mu_d == friction.mu_s;
     const double mu_s = friction.mu_s;
     const double first = std::max(1.0, std::round(mu_s / setting.request.scene.delta - offset));
-    const int steps = setting.request.study_steps.value_or(5);
+    const int steps = setting.request.study_steps.value_or(8);
     for (int n = 0; n < steps; ++n) deltas_.push_back(mu_s / (first * (1 << n) + offset));
   }
 
