@@ -54,7 +54,9 @@ Ladder::Ladder(const options::Request& request)
   first_degree_ = method_.degree.value_or(starting_degree(request));
   rates_ = fastest_rates(request);
   halves_ = options::on_full_grid(request.route) || !request.scene.symmetric() ? 2 : 1;
-  all_levels_ = options::on_full_grid(request.route) || method_.noise_degree == 0;
+  // On nodes the residuals of eigenvectors, which stand for errors, stay five times larger.
+  all_levels_ = options::on_full_grid(request.route) || method_.noise_degree == 0 ||
+                request.wants(options::Quantity::relaxation);
   last_ = method_.fixed() ? 1 : free_rungs();
 }
 

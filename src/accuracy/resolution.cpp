@@ -1,6 +1,7 @@
 #include "stickslip/accuracy/resolution.hpp"
 
 #include <fmt/format.h>
+#include <petscsys.h>
 
 #include <algorithm>
 #include <cmath>

@@ -358,10 +358,9 @@ TEST_CASE("refinement: estimates are made of the last changes, and of what the r
     double accuracy;
     int steps;
   };
-  const auto c =
-      GENERATE(Case{{}, {0.1, 3}, 1e-5, 3}, Case{{}, {0.1, 3}, 1e-6, 4},
-               Case{{}, {0.1, 3}, 1e-7, 4}, Case{{options::Scheme::hp, 4, {}, {}}, {1, 0}, 1e-5, 2},
-               Case{{options::Scheme::upwind, {}, {}, 16}, {1, 0}, 1e-5, 2});
+  const auto c = GENERATE(Case{{}, {0.1, 3}, 1e-5, 3}, Case{{}, {0.1, 3}, 1e-6, 4},
+                          Case{{}, {0.1, 3}, 1e-7, 4}, Case{{.degree = 4}, {1, 0}, 1e-5, 2},
+                          Case{{.scheme = options::Scheme::upwind, .points = 16}, {1, 0}, 1e-5, 2});
   Request r = request(1, 0.25, c.drag.cubic > 0 ? 4 : 1, c.drag.cubic > 0 ? 0.25 : 0.5, c.drag);
   r.accuracy = c.accuracy;
   r.method = c.method;

@@ -194,7 +194,7 @@ TEST_CASE("ladder: a discretisation fixed by hand has one companion and no more"
   CHECK(accuracy::Ladder(request).rung(1).degree == 4);
   CHECK(accuracy::Ladder(request).rung(0).degree == 3);
 
-  request.method = {options::Scheme::upwind, {}, {}, 1};
+  request.method = {.scheme = options::Scheme::upwind, .points = 1};
   const accuracy::Ladder one_point(request);
   CHECK(one_point.rung(1).points == 1);
   CHECK(one_point.rung(0).points == 2);  // nothing coarser exists
@@ -280,7 +280,7 @@ TEST_CASE("ladder: the noise is on nodes, of a degree by hand, or on all levels"
   request.scene = scene(1, 0.25, 1, 1.0 / 32);
   request.method.noise_grading = 3;
   const accuracy::Ladder free(request);
-  CHECK(free.rung(1).noise_nodes() < 0.5 * (2 * free.rung(1).levels + 1));
+  CHECK(2 * free.rung(1).noise_nodes() < 2 * free.rung(1).levels + 1);
   CHECK(free.rung(1).grouping.grading == 3);
   request.method.noise_degree = 0;
   const accuracy::Ladder levels(request);
@@ -299,6 +299,10 @@ TEST_CASE("ladder: the noise is on nodes, of a degree by hand, or on all levels"
     CHECK_FALSE(accuracy::Ladder(request).rung(1).noise);
   }
   request.route = options::Route::excursion;
+  request.quantities = {options::Quantity::relaxation};
+  CHECK_FALSE(accuracy::Ladder(request).rung(1).noise);
+  request.quantities = {options::Quantity::sticking};
+  CHECK(accuracy::Ladder(request).rung(1).noise);
   request.method.scheme = options::Scheme::upwind;
   CHECK_FALSE(accuracy::Ladder(request).rung(1).noise);
 }
@@ -320,15 +324,20 @@ TEST_CASE("ladder: elements resolve the fastest rate of what is asked for, and n
   request.scene = scene(1, 0.25, 1, 0.25);
   request.lambda = {3, 700, 2};
   request.omega = {1, 90, 5};
-  const auto rates = [&](std::set<options::Quantity> quantities) {
+  const auto rates = [&](std::set<options::Quantity> quantities, int rung = 1) {
     request.quantities = std::move(quantities);
-    const auto found = accuracy::Ladder(request).rung(1).rates;
+    const auto found = accuracy::Ladder(request).rung(rung).rates;
     return std::pair{found.lambda, found.omega};
   };
   CHECK(rates({sticking}) == std::pair{0.0, 0.0});
   CHECK(rates({laplace}) == std::pair{700.0, 0.0});
   CHECK(rates({resolvent}) == std::pair{700.0, 0.0});
+  // Waves only where the first change asks for it, or nothing is refined.
+  CHECK(rates({spectrum}) == std::pair{0.0, 0.0});
+  CHECK(rates({spectrum}, 2) == std::pair{0.0, 90.0});
+  request.method.degree = 8;
   CHECK(rates({spectrum}) == std::pair{0.0, 90.0});
+  request.method.degree.reset();
   request.route = options::Route::lambda;
   CHECK(rates({sticking}) == std::pair{700.0, 0.0});
 }

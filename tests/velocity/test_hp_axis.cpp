@@ -158,17 +158,6 @@ TEST_CASE("hp axis: a value takes the nodes of its own element, a node itself") 
   }
 }
 
-namespace {
-
-// Drag three times as large downwards.
-model::Drag one_sided() {
-  model::Drag drag{0, 0, [](double v) { return v > 0 ? -v : -3 * v; }, 100};
-  drag.law_is_odd = false;
-  return drag;
-}
-
-}  // namespace
-
 // B + h dB with dB = 1 + 0.5 v is the row of excess + h and drag -(1 - 0.5 h) v.
 TEST_CASE("hp transport: the derivative of a row is the difference of rows") {
   const double h = 1e-6;
