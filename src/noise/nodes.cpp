@@ -223,7 +223,7 @@ std::vector<double> Nodes::spread(std::span<const double> by_node) const {
   std::vector<double> by_level(2 * static_cast<std::size_t>(levels_) + 1, 0.0);
   for (const Group& g : groups_) {
     for (int i = g.first; i <= g.last; ++i) {
-      double& sum = by_level[static_cast<std::size_t>(i + levels_)];
+      double& sum = by_level[i + levels_];
       const auto weights = g.row(g.weight, i);
       for (int l = 0; l < g.count; ++l) sum += weights[l] * by_node[at(g.begin + l)];
     }

@@ -300,8 +300,9 @@ Scalars ElementElimination::gathered(const Line& line, const ElementSystem& elem
   Scalars f(static_cast<std::size_t>(element.size()));
   auto to = f.begin();
   for (PetscInt first : line.first) {
-    const PetscScalar* from = b + first + line.stride * element.first_node();
-    for (int m = 0; m < element.nodes(); ++m) *to++ = from[m * line.stride];
+    for (int m = 0; m < element.nodes(); ++m) {
+      *to++ = b[first + line.stride * (element.first_node() + m)];
+    }
   }
   return f;
 }
@@ -310,8 +311,9 @@ void ElementElimination::scatter(const Line& line, const ElementSystem& element,
                                  PetscScalar* x) const {
   auto from = u.begin();
   for (PetscInt first : line.first) {
-    PetscScalar* to = x + first + line.stride * element.first_node();
-    for (int m = 0; m < element.nodes(); ++m) to[m * line.stride] = *from++;
+    for (int m = 0; m < element.nodes(); ++m) {
+      x[first + line.stride * (element.first_node() + m)] = *from++;
+    }
   }
 }
 

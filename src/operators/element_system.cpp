@@ -208,7 +208,7 @@ class ElementSystem::Sweep {
     for (int c = 0; c < columns.columns(); ++c) {
       const auto& rates = ports[c].inner ? s_.from_inner_ : s_.from_outer_;
       const auto from = rates.begin() + static_cast<std::ptrdiff_t>(ports[c].noise) * s_.nodes_;
-      std::copy_n(from, s_.nodes_, columns.column(c) + (ports[c].noise - group.begin) * s_.nodes_);
+      std::copy_n(from, s_.nodes_, &columns((ports[c].noise - group.begin) * s_.nodes_, c));
     }
     group.factors.solve(columns);
     return columns;
@@ -221,8 +221,8 @@ class ElementSystem::Sweep {
     for (int c = 0; c < x.columns(); ++c) {
       for (int r = 0; r < y.rows(); ++r) {
         const auto& trace = ports[r].inner ? s_.at_inner_ : s_.at_outer_;
-        const PetscScalar* from = x.column(c) + (ports[r].noise - group.begin) * s_.nodes_;
-        for (int m = 0; m < s_.nodes_; ++m) y(r, c) += trace[m] * from[m];
+        const int from = (ports[r].noise - group.begin) * s_.nodes_;
+        for (int m = 0; m < s_.nodes_; ++m) y(r, c) += trace[m] * x(from + m, c);
       }
     }
     return y;

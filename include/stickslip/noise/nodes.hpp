@@ -100,7 +100,10 @@ class Nodes {
   [[nodiscard]] std::vector<double> spread(std::span<const double> by_node) const;
 
  private:
-  [[nodiscard]] std::size_t at(int node) const { return static_cast<std::size_t>(node + half_); }
+  [[nodiscard]] std::size_t at(int node) const {
+    const int place = node + half_;
+    return static_cast<std::size_t>(place);
+  }
   void add_levels(int first, int last);
   void add_group(int first, int last, int size);
   void mirror();
