@@ -62,7 +62,7 @@ Excursion excursion_of(const KolmogorovOperator& a, Vec nu, double lost) {
   PetscInt at = 0;
   a.states().for_each_local([&, &v_axis = *axis, half = noise->half()](const State& state) {
     const double mass = PetscRealPart(local[at++]), v = speed(state, v_axis);
-    const auto node = static_cast<std::size_t>(half + state.noise);
+    const int node = half + state.noise;
     e.slide_time[node] += mass;
     e.slide_distance[node] += mass * v;
     e.slide_square[node] += mass * v * v;
