@@ -193,6 +193,7 @@ void ElementElimination::read_rest() {
   std::vector<std::ptrdiff_t> place(static_cast<std::size_t>(states_.local_size()), -1);
   for (int i = process.lowest_static(); i <= process.static_index(); ++i) {
     if (!states_.has_rest(i)) continue;
+    if (rest_.rows.empty()) rest_.lowest = i;
     rest_.rows.push_back(states_.index({StateKind::rest, Half::upper, i, 0}));
     place[rest_.rows.back()] = static_cast<std::ptrdiff_t>(rest_.rows.size()) - 1;
   }
@@ -225,15 +226,13 @@ void ElementElimination::read_rest() {
 void ElementElimination::place_rest_shares(const Line& line, int node, std::size_t row) {
   const auto& group = discretisation_.noise->group_of(node);
   const double reflected = states_.symmetry() == Symmetry::odd ? -1 : 1;
-  const int lowest_rest = states_.folded() ? (states_.symmetry() == Symmetry::odd ? 1 : 0)
-                                           : discretisation_.process.lowest_static();
   for (int along = group.first; along <= group.last; ++along) {
     const int i = line.half == Half::upper ? along : -along;
     const int kept = states_.folded() ? std::abs(i) : i;
     if (!states_.has_rest(kept)) continue;  // an odd function vanishes at x = 0
     const double share = group.row(group.weight, along)[node - group.begin];
-    rest_.shares.push_back(
-        {row, static_cast<std::size_t>(kept - lowest_rest), kept == i ? share : reflected * share});
+    rest_.shares.push_back({row, static_cast<std::size_t>(kept - rest_.lowest),
+                            kept == i ? share : reflected * share});
   }
 }
 

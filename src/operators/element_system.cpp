@@ -68,7 +68,7 @@ ElementSystem::ElementSystem(const noise::Nodes& noise, const velocity::HpAxis& 
 ElementSystem::Rows ElementSystem::rows_of(const velocity::HpAxis& axis,
                                            std::span<const double> excess) {
   const auto q = static_cast<std::size_t>(nodes_), all = excess.size() * q;
-  Rows rows{std::vector<double>(all * q, 0.0)};
+  Rows rows(all * q, 0.0);
   from_inner_.assign(all, 0.0);
   from_outer_.assign(all, 0.0);
   velocity::TransportRow row;
@@ -82,7 +82,7 @@ ElementSystem::Rows ElementSystem::rows_of(const velocity::HpAxis& axis,
       } else if (node >= first_ + nodes_) {
         outer += value;
       } else {
-        rows.inside[place * q + static_cast<std::size_t>(node - first_)] = value;
+        rows[place * q + static_cast<std::size_t>(node - first_)] = value;
       }
     }
   }
@@ -107,7 +107,7 @@ DenseMatrix ElementSystem::block(const noise::Nodes& noise, const Rows& rows, co
       const std::size_t place = static_cast<std::size_t>(group.begin + l) * nodes_ + m;
       double sum = from_inner_[place] + from_outer_[place];
       for (int n = 0; n < nodes_; ++n) {
-        const double rate = rows.inside[place * nodes_ + n];
+        const double rate = rows[place * nodes_ + n];
         sum += rate;
         a(row, l * nodes_ + n) -= rate;
       }

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <cstdint>
 
 #include "routes.hpp"
 #include "stickslip/operators/systems.hpp"

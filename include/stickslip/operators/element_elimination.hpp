@@ -71,6 +71,7 @@ class ElementElimination final : public petsc::Preconditioner {
       std::size_t node, level;  // of all nodes that fall at v = 0; of the chain
       double weight;
     };
+    int lowest = 0;  // the level of the first row
     std::vector<PetscInt> rows;
     Scalars diagonal, below, above;  // LU: pivots, multipliers, upper diagonal
     std::vector<Exit> exits;

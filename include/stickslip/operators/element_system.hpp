@@ -60,10 +60,8 @@ class ElementSystem {
   [[nodiscard]] double entries() const;
 
  private:
-  // Of the system: rates of the own nodes among each other and to beyond the ends.
-  struct Rows {
-    std::vector<double> inside;  // by noise node, q x q by rows, zero diagonals
-  };
+  // Rates of the own nodes among each other: by noise node, q x q by rows, zero diagonals.
+  using Rows = std::vector<double>;
   struct Group {
     const noise::Nodes::Group* noise;
     int begin, count;  // noise nodes from 0

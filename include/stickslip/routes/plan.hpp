@@ -1,7 +1,6 @@
 #pragma once
 /// What is assembled, factored and solved on each discretisation, derived from the request.
 
-#include <cstdint>
 #include <set>
 #include <string>
 #include <vector>
