@@ -116,7 +116,7 @@ class Worker {
   void load() {
     std::string problem;
     std::vector<char> finished(sweep_.size(), 0);
-    if (first_rank() && !request_.checkpoint.empty()) {
+    if (first_rank() && !request_.output.checkpoint.empty()) {
       try {
         read_finished(finished);
       } catch (const BadInput& bad) {
@@ -132,7 +132,7 @@ class Worker {
   }
 
   void read_finished(std::vector<char>& finished) {
-    const auto& file = request_.checkpoint;
+    const auto& file = request_.output.checkpoint;
     const auto take = [&](const std::string& line) {
       Run run = read_line(file, line, sweep_.size());
       finished[run.point] = run.status == Status::no_memory ? 0 : 1;
@@ -158,7 +158,8 @@ class Worker {
 
   void finish(const Run& run, SharedCounter& done) {
     lines_.push_back(run.entry);
-    if (!request_.checkpoint.empty()) append_to_record(request_.checkpoint, sealed(lines_.back()));
+    if (!request_.output.checkpoint.empty())
+      append_to_record(request_.output.checkpoint, sealed(lines_.back()));
     const auto here = static_cast<std::size_t>(done.next()) + 1;
     if (!progress_) return;
     State state;
