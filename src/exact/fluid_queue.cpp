@@ -5,10 +5,13 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "stickslip/exact/dense.hpp"
+#include "stickslip/algebra/dense.hpp"
 
 namespace stickslip::exact {
 namespace {
+
+using algebra::LuFactors;
+using Matrix = algebra::Matrix<double>;
 
 /// Noise levels by the sign of their fluid rate x_i - mu_d.
 struct Phases {
@@ -94,25 +97,25 @@ struct Riccati {
     const int m = a.rows(), n = d.rows();
     const LuFactors a_shifted(a + Matrix::identity(m, beta));
     const LuFactors d_shifted(d + Matrix::identity(n, alpha));
-    const Matrix into_a = a_shifted.solve(b), into_d = d_shifted.solve(c);
+    const Matrix into_a = a_shifted.solved(b), into_d = d_shifted.solved(c);
     const LuFactors w(a + Matrix::identity(m, beta) - b * into_d);
     const LuFactors v(d + Matrix::identity(n, alpha) - c * into_a);
     // I - sum V^-1 = V^-1 (D - beta - C A_beta^-1 B): all terms of one sign.
-    Matrix e = v.solve(d - Matrix::identity(n, beta) - c * into_a);
-    Matrix f = w.solve(a - Matrix::identity(m, alpha) - b * into_d);
-    Matrix g = sum * d_shifted.solve(c * w.solve(Matrix::identity(m)));
-    Matrix h = sum * w.solve(b * d_shifted.solve(Matrix::identity(n)));
+    Matrix e = v.solved(d - Matrix::identity(n, beta) - c * into_a);
+    Matrix f = w.solved(a - Matrix::identity(m, alpha) - b * into_d);
+    Matrix g = sum * d_shifted.solved(c * w.solved(Matrix::identity(m)));
+    Matrix h = sum * w.solved(b * d_shifted.solved(Matrix::identity(n)));
     constexpr int most = 60;
     for (int step = 0; step < most; ++step) {
       balance(e, f);
       const LuFactors gh(Matrix::identity(n) - g * h), hg(Matrix::identity(m) - h * g);
-      const Matrix change = f * hg.solve(h * e);
-      g += e * gh.solve(g * f);
+      const Matrix change = f * hg.solved(h * e);
+      g += e * gh.solved(g * f);
       h += change;
       // Convergence is quadratic: what is left is the square of the last change.
       if (largest_ratio(change, h) <= 1e-9) return h;
-      e = e * gh.solve(e);
-      f = f * hg.solve(f);
+      e = e * gh.solved(e);
+      f = f * hg.solved(f);
     }
     throw std::runtime_error("the doubling algorithm of the fluid queue does not converge");
   }
@@ -149,9 +152,10 @@ struct Boundary {
   /// Mean number of starts in each phase k+1 ... N during a slide from s+, each counted with `sign`
   /// to the power of the number of crossings before.
   [[nodiscard]] std::vector<double> visits(double sign) const {
-    std::vector<double> from_exit(static_cast<std::size_t>(starts), 0.0);
-    from_exit[0] = 1;
-    return LuFactors(Matrix::identity(starts) - sign * restart).solve_row(std::move(from_exit));
+    std::vector<double> number(static_cast<std::size_t>(starts), 0.0);
+    number[0] = 1;
+    LuFactors(Matrix::identity(starts) - sign * restart).solve(number, true);
+    return number;
   }
 
   int k, starts;
@@ -174,8 +178,8 @@ FluidQueue::FluidQueue(const model::Process& process, double lambda) {
 
   const Boundary boundary(process, phases, psi);
   const auto visits = boundary.visits(1);
-  entry_ = row_times(visits, boundary.rest);
-  orientation_ = row_times(boundary.visits(-1), boundary.rest);
+  entry_ = visits * boundary.rest;
+  orientation_ = boundary.visits(-1) * boundary.rest;
 
   // Density of upcrossings of v by phase: starts exp(K v), K = C_u^-1 T_uu + Psi C_d^-1 T_du; its
   // moments are powers of (-K)^-1.
@@ -185,9 +189,9 @@ FluidQueue::FluidQueue(const model::Process& process, double lambda) {
   const int n = process.noise.levels;
   double factorial = 1;
   for (auto* sums : {&time_, &distance_, &square_}) {
-    moment = minus_k.solve_row(moment);
+    minus_k.solve(moment, true);
     sums->assign(2 * static_cast<std::size_t>(n) + 1, 0.0);
-    const auto falling = row_times(moment, psi);
+    const auto falling = moment * psi;
     const auto spend = [&](const std::vector<int>& group, const std::vector<double>& crossings) {
       for (std::size_t p = 0; p < group.size(); ++p) {
         const double spent = factorial * crossings[p] / std::abs(process.excess(group[p]));

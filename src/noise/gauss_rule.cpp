@@ -4,12 +4,7 @@
 #include <cstddef>
 #include <stdexcept>
 
-// NOLINTBEGIN(readability-identifier-naming): the name in LAPACK.
-extern "C" {
-void dstev_(const char* vectors, const int* n, double* diagonal, double* off_diagonal, double* z,
-            const int* ldz, double* work, int* info);
-}
-// NOLINTEND(readability-identifier-naming)
+#include "stickslip/algebra/dense.hpp"
 
 namespace stickslip::noise {
 namespace {
@@ -82,15 +77,14 @@ Column scaled(std::span<const double> x, double shift, double factor) {
 }
 
 // Rows of sum_j p_j(x) vector_jl scale_l.
-std::vector<double> combined(const std::vector<Column>& p, const Column& vectors,
+std::vector<double> combined(const std::vector<Column>& p, const algebra::Matrix<double>& vectors,
                              const Column& scale) {
-  const std::size_t rows = p.front().size(), n = p.size();
-  std::vector<double> result(rows * n, 0.0);
+  const std::size_t rows = p.front().size();
+  const int n = vectors.rows();
+  std::vector<double> result(rows * p.size(), 0.0);
   for (std::size_t i = 0; i < rows; ++i) {
-    for (std::size_t j = 0; j < n; ++j) {
-      for (std::size_t l = 0; l < n; ++l) {
-        result[i * n + l] += p[j][i] * vectors[l * n + j] * scale[l];
-      }
+    for (int j = 0; j < n; ++j) {
+      for (int l = 0; l < n; ++l) result[i * n + l] += p[j][i] * vectors(j, l) * scale[l];
     }
   }
   return result;
@@ -109,23 +103,17 @@ GaussRule::GaussRule(std::span<const double> points, std::span<const double> wei
   const double half = (points.back() - points.front()) / 2;
   const Column t = scaled(points, middle, 1 / half), w = scaled(weights, 0, 1 / total);
   const OrthogonalPolynomials p(t, w, size);
-  node = p.diagonal;
-  Column off(p.off_diagonal.begin() + 1, p.off_diagonal.end());
-  off.push_back(0);
-  const auto n = static_cast<std::size_t>(size);
-  Column vectors(n * n), work(2 * n);
-  int info = 0;
-  dstev_("V", &size, node.data(), off.data(), vectors.data(), &size, work.data(), &info);
-  if (info != 0) throw std::runtime_error("the nodes of a Gauss rule were not found");
+  algebra::TridiagonalEigen eigen(p.diagonal, {p.off_diagonal.begin() + 1, p.off_diagonal.end()});
+  node = std::move(eigen.value);
   // p_0 = 1, so that the first entry of an eigenvector is the root of its weight.
-  Column root(n);
-  for (std::size_t l = 0; l < n; ++l) {
-    root[l] = vectors[l * n];
+  Column root(node.size());
+  for (int l = 0; l < size; ++l) {
+    root[l] = eigen.vectors(0, l);
     weight.push_back(total * root[l] * root[l]);
     node[l] = middle + half * node[l];
   }
-  cardinal = combined(p.value, vectors, root);
-  step = combined(p.steps(), vectors, root);
+  cardinal = combined(p.value, eigen.vectors, root);
+  step = combined(p.steps(), eigen.vectors, root);
 }
 
 }  // namespace stickslip::noise

@@ -9,6 +9,7 @@
 namespace stickslip::quantities {
 namespace {
 
+using algebra::Matrix;
 using petsc::check;
 
 petsc::BvHandle basis_like(Vec vec, int columns) {
@@ -48,11 +49,11 @@ petsc::VecHandle copy_of(Vec vec) {
 }
 
 // Y^T X of the first columns.
-exact::Matrix products(BV x, BV y, int size) {
+Matrix<double> products(BV x, BV y, int size) {
   petsc::MatHandle dense;
   check(MatCreateSeqDense(PETSC_COMM_SELF, size, size, nullptr, dense.out()));
   check(BVDot(x, y, dense));
-  exact::Matrix result(size, size);
+  Matrix<double> result(size, size);
   const PetscScalar* values = nullptr;
   check(MatDenseGetArrayRead(dense, &values));
   for (int c = 0; c < size; ++c) {
@@ -148,14 +149,14 @@ Reduced ReducedModel::reduce() const {
   check(BVDuplicate(right_, image.out()));
   for (BV basis : {BV(right_), BV(left_), BV(image)}) check(BVSetActiveColumns(basis, 0, pairs_));
   check(BVMatMult(right_, minus_l_.matrix(), image));
-  const exact::SingularValues g(products(right_, left_, pairs_));
-  const exact::Matrix projected = products(image, left_, pairs_);
+  const algebra::SingularValues g(products(right_, left_, pairs_));
+  const Matrix<double> projected = products(image, left_, pairs_);
   // Directions of V and W that are orthogonal to the rounding of the products see nothing of each
   // other; the others are scaled so that W^T V = 1.
   constexpr double rounding = 1e-14;
   const int seen = static_cast<int>(
       std::count_if(g.value.begin(), g.value.end(), [](double s) { return s > rounding; }));
-  exact::Matrix to_left(seen, pairs_), to_right(pairs_, seen);
+  Matrix<double> to_left(seen, pairs_), to_right(pairs_, seen);
   for (int n = 0; n < seen; ++n) {
     const double scale = 1 / std::sqrt(g.value[n]);
     for (int row = 0; row < pairs_; ++row) {
@@ -165,12 +166,8 @@ Reduced ReducedModel::reduce() const {
   }
   Reduced r;
   r.m = -1.0 * (to_left * projected * to_right);
-  exact::Matrix b(pairs_, 1);
-  const auto left_b = products(left_, b_, pairs_);
-  std::copy(left_b.begin(), left_b.end(), b.data());
-  b = to_left * b;
-  r.beta.assign(b.data(), b.data() + seen);
-  r.gamma = exact::row_times(products(right_, c_, pairs_), to_right);
+  r.beta = to_left * products(left_, b_, pairs_);
+  r.gamma = products(right_, c_, pairs_) * to_right;
   return r;
 }
 

@@ -44,8 +44,7 @@ class ReducedFunction {
   ReducedFunction(const Reduced& r, double turn)
       : turn_(turn),
         near_(r.m, r.gamma, r.beta),
-        far_(near_.between(exact::row_times(exact::row_times(r.gamma, r.m), r.m),
-                           column(r.m, r.beta))) {}
+        far_(near_.between(r.gamma * r.m * r.m, r.m * r.beta)) {}
 
   [[nodiscard]] double operator()(double omega) const {
     const std::complex<double> z(0, omega);
@@ -54,14 +53,6 @@ class ReducedFunction {
   }
 
  private:
-  static std::vector<double> column(const exact::Matrix& m, const std::vector<double>& x) {
-    std::vector<double> result(x.size(), 0.0);
-    for (int c = 0; c < m.columns(); ++c) {
-      for (int r = 0; r < m.rows(); ++r) result[r] += m(r, c) * x[c];
-    }
-    return result;
-  }
-
   double turn_;  // where the formulas for large omega take over
   exact::TransferFunction near_, far_;
 };

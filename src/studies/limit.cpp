@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "stickslip/exact/dense.hpp"
+#include "stickslip/algebra/dense.hpp"
 #include "studies.hpp"
 
 namespace stickslip::studies {
@@ -19,18 +19,19 @@ double gap(double d, double e, double q) { return std::pow(d, q) - std::pow(e, q
 Limit through(Samples samples, double first_power, double step) {
   const int n = static_cast<int>(samples.size());
   // Weights w with sum w = 1 and sum w delta^p = 0.
-  exact::Matrix conditions(n, n), right(n, 1);
-  right(0, 0) = 1;
+  algebra::Matrix<double> conditions(n, n);
+  std::vector<double> weights(samples.size(), 0.0);
+  weights[0] = 1;
   for (int s = 0; s < n; ++s) {
     conditions(0, s) = 1;
     const double d = samples[s].delta / samples.back().delta;
     for (int m = 1; m < n; ++m) conditions(m, s) = std::pow(d, first_power + (m - 1) * step);
   }
-  const exact::Matrix weights = exact::LuFactors(conditions).solve(right);
+  algebra::LuFactors(std::move(conditions)).solve(weights, false);
   Limit limit{0, 0};
   for (int s = 0; s < n; ++s) {
-    limit.value += weights(s, 0) * samples[s].value;
-    limit.error += std::abs(weights(s, 0)) * samples[s].error;
+    limit.value += weights[s] * samples[s].value;
+    limit.error += std::abs(weights[s]) * samples[s].error;
   }
   return limit;
 }

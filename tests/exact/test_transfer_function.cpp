@@ -1,14 +1,15 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "stickslip/exact/transfer_function.hpp"
 
-using stickslip::exact::LuFactors;
-using stickslip::exact::Matrix;
+using stickslip::algebra::LuFactors;
 using stickslip::exact::TransferFunction;
 using Complex = std::complex<double>;
+using Matrix = stickslip::algebra::Matrix<double>;
 
 namespace {
 
@@ -46,23 +47,17 @@ std::vector<double> wave(int n, double frequency) {
   return x;
 }
 
-// (z - M) x = right as a real system of twice the size.
+// left x, (z - M) x = right.
 Complex dense(const Matrix& m, const std::vector<double>& left, const std::vector<double>& right,
               Complex z) {
   const int n = m.rows();
-  Matrix a(2 * n, 2 * n), b(2 * n, 1);
-  for (int r = 0; r < n; ++r) {
-    for (int c = 0; c < n; ++c) a(r, c) = a(n + r, n + c) = -m(r, c);
-    a(r, r) += z.real();
-    a(n + r, n + r) += z.real();
-    a(r, n + r) = -z.imag();
-    a(n + r, r) = z.imag();
-    b(r, 0) = right[r];
+  auto a = stickslip::algebra::Matrix<Complex>::identity(n, z);
+  for (int c = 0; c < n; ++c) {
+    for (int r = 0; r < n; ++r) a(r, c) -= m(r, c);
   }
-  const Matrix x = LuFactors(a).solve(b);
-  Complex sum = 0;
-  for (int r = 0; r < n; ++r) sum += left[r] * Complex(x(r, 0), x(n + r, 0));
-  return sum;
+  std::vector<Complex> x(right.begin(), right.end());
+  LuFactors(a).solve(x, false);
+  return std::inner_product(x.begin(), x.end(), left.begin(), Complex(0));
 }
 
 double distance(Complex a, Complex b) { return std::abs(a - b) / std::abs(b); }
@@ -104,7 +99,7 @@ TEST_CASE("transfer function: moments of the matrix at large z") {
   const int n = 12;
   const Matrix m = grcar(n);
   const auto left = wave(n, 0.7), right = wave(n, 2.1);
-  const auto next = row_times(left, m);
+  const auto next = left * m;
   double first = 0, second = 0;
   for (int r = 0; r < n; ++r) {
     first += left[r] * right[r];

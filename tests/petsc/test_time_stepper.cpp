@@ -11,7 +11,7 @@
 using namespace stickslip;
 using namespace stickslip::petsc;
 using test::Given;
-using test::SmallMatrix;
+using test::Matrix;
 
 namespace {
 
@@ -19,9 +19,9 @@ constexpr int kSize = 8;
 
 // Rates from 0.1 to 1e4, fast ones fed by slow ones and the slowest by the fastest; b of the middle
 // turns, so that some eigenvalues are complex.
-SmallMatrix stiff() {
-  SmallMatrix a(kSize);
-  for (std::size_t r = 0; r < kSize; ++r) {
+Matrix stiff() {
+  Matrix a(kSize, kSize);
+  for (int r = 0; r < kSize; ++r) {
     const double rate = 0.1 * std::pow(10.0, 5.0 * static_cast<double>(r) / (kSize - 1));
     a(r, r) = rate;
     if (r > 0) a(r, r - 1) = -0.7 * rate;
@@ -31,13 +31,12 @@ SmallMatrix stiff() {
   return a;
 }
 
-MatHandle distributed(const SmallMatrix& m) {
-  const auto n = static_cast<PetscInt>(m.size());
+MatHandle distributed(const Matrix& m) {
+  const PetscInt n = m.rows();
   return test::matrix(n, [&m, n](PetscInt r) {
     test::Row row;
     for (PetscInt c = 0; c < n; ++c) {
-      const auto value = static_cast<double>(m(r, c));
-      if (value != 0 || r == c) row.emplace_back(c, value);
+      if (m(r, c) != 0 || r == c) row.emplace_back(c, m(r, c));
     }
     return row;
   });
@@ -56,10 +55,10 @@ VecHandle start_on(Mat a) {
   return u;
 }
 
-std::vector<double> exact(const SmallMatrix& m, double time) {
+std::vector<double> exact(const Matrix& m, double time) {
   std::vector<double> u;
   for (PetscInt r = 0; r < kSize; ++r) u.push_back(start(r));
-  return times(exponential(m, -time), u);
+  return test::exponential(m, -time) * u;
 }
 
 // max |u - expected|, the same on all ranks.
@@ -132,8 +131,8 @@ TEST_CASE("time stepper: the present time again is no step", "[parallel]") {
 }
 
 TEST_CASE("time stepper: constants of a generator stay constant", "[parallel]") {
-  SmallMatrix ring(kSize);
-  for (std::size_t r = 0; r < kSize; ++r) {
+  Matrix ring(kSize, kSize);
+  for (int r = 0; r < kSize; ++r) {
     const double rate = std::pow(10.0, static_cast<double>(r) - 3);
     ring(r, r) = rate;
     ring(r, (r + 1) % kSize) = -rate;

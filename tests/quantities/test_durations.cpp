@@ -22,9 +22,9 @@ using operators::Symmetry;
 using petsc::check;
 using quantities::DurationLaw;
 using quantities::Uncertain;
+using test::Matrix;
 using test::relative_difference;
 using test::scene;
-using test::SmallMatrix;
 using test::Solved;
 
 namespace {
@@ -120,36 +120,35 @@ class DenseDurations {
   DenseDurations(const test::FullGrid& grid, int k, Ends ends)
       : m_(grid.generator()), rates_(grid.size()), start_(grid.index(k + 1, 0)) {
     std::vector<bool> rests(grid.size());
-    grid.for_each([&](int i, int j, double, std::size_t s) { rests[s] = grid.is_static(i, j); });
-    for (std::size_t r = 0; r < grid.size(); ++r) {
-      for (std::size_t c = 0; c < grid.size(); ++c) {
+    grid.for_each([&](int i, int j, double, int s) { rests[s] = grid.is_static(i, j); });
+    for (int r = 0; r < grid.size(); ++r) {
+      for (int c = 0; c < grid.size(); ++c) {
         const bool ending = ends == Ends::at_rest ? !rests[r] && rests[c] : rests[r] && !rests[c];
         if (!ending) continue;
-        rates_[r] += static_cast<double>(m_(r, c));
+        rates_[r] += m_(r, c);
         m_(r, c) = 0;
       }
     }
   }
 
   [[nodiscard]] double density(double time) const {
-    return test::times(test::exponential(m_, time), rates_)[start_];
+    return (test::exponential(m_, time) * rates_)[start_];
   }
   [[nodiscard]] double distribution(double time) const {
     // What has ended is no state here; at rest, the static states still are.
-    std::vector<double> ended(rates_.size());
-    SmallMatrix all(rates_.size() + 1);
-    for (std::size_t r = 0; r < rates_.size(); ++r) {
-      for (std::size_t c = 0; c < rates_.size(); ++c) all(r, c) = m_(r, c);
-      all(r, rates_.size()) = rates_[r];
+    const int n = m_.rows();
+    Matrix all(n + 1, n + 1);
+    for (int r = 0; r < n; ++r) {
+      for (int c = 0; c < n; ++c) all(r, c) = m_(r, c);
+      all(r, n) = rates_[r];
     }
-    ended.push_back(1);
-    return test::times(test::exponential(all, time), ended)[start_];
+    return test::exponential(all, time)(start_, n);
   }
 
  private:
-  SmallMatrix m_;
+  Matrix m_;
   std::vector<double> rates_;  // of ending
-  std::size_t start_;
+  int start_;
 };
 
 double f_slide_at(const model::Process& process) {
@@ -328,28 +327,28 @@ TEST_CASE("durations: stays by dense exponentials, right relative to their size"
     const auto process = process_with(mu_s, 0.25);
     const int k = process.static_index();
     const double rate = process.noise.rate();
-    const auto middle = static_cast<std::size_t>(k), left = 2 * middle + 1;
-    SmallMatrix q(left + 1);
+    const int middle = k, left = 2 * k + 1;
+    Matrix q(left + 1, left + 1);
     for (int i = -k; i <= k; ++i) {
-      const std::size_t at = middle + i;
+      const int at = middle + i;
       q(at, i < k ? at + 1 : left) += rate * process.noise.up(i);
       q(at, i > -k ? at - 1 : left) += rate * process.noise.down(i);
     }
     q(left, left) = rate;
-    std::vector<Uncertain> entry(left, Uncertain{0, 0});
+    std::vector<Uncertain> entry(static_cast<std::size_t>(left), Uncertain{0, 0});
     entry[middle] = {1, 0};
     const std::vector<double> time{20, 0.5, 3, 1e-3, 0.02};  // in any order
     const auto law = quantities::stick_law(process, entry, time);
     for (std::size_t n = 0; n < time.size(); ++n) {
       const auto flow = test::exponential(q, time[n]);
       const double shift = std::exp(-rate * time[n]);
-      long double density = 0;
-      for (std::size_t c = 0; c < left; ++c) density += flow(middle, c) * q(c, left);
+      double density = 0;
+      for (int c = 0; c < left; ++c) density += flow(middle, c) * q(c, left);
       INFO("k " << k << " time " << time[n]);
-      const auto expected = static_cast<double>(shift * density);
+      const double expected = shift * density;
       CHECK(relative_difference(law.density[n].value, expected) < 1e-11);
       CHECK(law.density[n].error < 1e-11 * expected);
-      const auto gone = static_cast<double>(shift * flow(middle, left));
+      const double gone = shift * flow(middle, left);
       CHECK(relative_difference(law.distribution[n].value, gone) < 1e-11);
     }
   }

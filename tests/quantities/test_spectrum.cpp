@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <complex>
+#include <numeric>
 
 #include "../common/full_grid.hpp"
 #include "../common/near.hpp"
@@ -84,42 +86,33 @@ std::vector<Sample> small_samples() {
           {"no drag", test::on_hp(scene(1, 1, 1, 0.5, {0, 0}), 12)}};
 }
 
-/// Small dense chains without any folding, 2 Re c (i omega - M)^-1 v as a real system.
+/// Small dense chains without any folding, 2 Re c (i omega - M)^-1 v.
 class DenseSpectrum {
  public:
   DenseSpectrum(const model::Process& process, double spacing, int nodes)
       : grid_(process, spacing, nodes), v_(grid_.size()), c_(grid_.stationary()) {
-    grid_.for_each([&](int, int, double v, std::size_t s) {
+    grid_.for_each([&](int, int, double v, int s) {
       v_[s] = v;
       c_[s] *= v;
     });
   }
 
   [[nodiscard]] double operator()(double omega) const {
-    const std::size_t n = grid_.size(), m = 2 * n;
-    std::vector<double> a(m * m), b(m);
-    for (std::size_t r = 0; r < n; ++r) {
-      for (std::size_t c = 0; c < n; ++c) {
-        a[r * m + c] = a[(n + r) * m + n + c] = -grid_.generator()[r * n + c];
-      }
-      a[r * m + n + r] = -omega;
-      a[(n + r) * m + r] = omega;
-      b[r] = v_[r];
+    using Complex = std::complex<double>;
+    const int n = grid_.size();
+    auto a = algebra::Matrix<Complex>::identity(n, {0, omega});
+    for (int c = 0; c < n; ++c) {
+      for (int r = 0; r < n; ++r) a(r, c) -= grid_.generator()(r, c);
     }
-    const auto x = test::dense_solve(std::move(a), std::move(b));
-    double sum = 0;
-    for (std::size_t r = 0; r < n; ++r) sum += c_[r] * x[r];
-    return 2 * sum;
+    std::vector<Complex> x(v_.begin(), v_.end());
+    algebra::LuFactors(std::move(a)).solve(x, false);
+    return 2 * std::inner_product(c_.begin(), c_.end(), x.begin(), Complex(0)).real();
   }
 
   /// E[V L V]: 0 for the process, the diffusion of the scheme on a grid.
   [[nodiscard]] double power() const {
-    const std::size_t n = grid_.size();
-    double sum = 0;
-    for (std::size_t r = 0; r < n; ++r) {
-      for (std::size_t c = 0; c < n; ++c) sum += c_[r] * grid_.generator()[r * n + c] * v_[c];
-    }
-    return sum;
+    const auto lv = grid_.generator() * v_;
+    return std::inner_product(c_.begin(), c_.end(), lv.begin(), 0.0);
   }
 
  private:

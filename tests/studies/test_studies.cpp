@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "stickslip/exact/dense.hpp"
+#include "stickslip/algebra/dense.hpp"
 #include "stickslip/io/study_report.hpp"
 #include "stickslip/studies/extrapolation.hpp"
 #include "stickslip/studies/limit.hpp"
@@ -232,20 +232,21 @@ std::string price(const Table& t) {
     x.push_back(-std::log10(error[n]));
     y.push_back(std::log10(seconds[n]));
   }
-  exact::Matrix normal(2, 2), right(2, 1);
+  algebra::Matrix<double> normal(2, 2);
+  std::vector<double> line(2);
   for (std::size_t n = 0; n < x.size(); ++n) {
     normal(0, 0) += 1;
     normal(0, 1) += x[n];
     normal(1, 0) += x[n];
     normal(1, 1) += x[n] * x[n];
-    right(0, 0) += y[n];
-    right(1, 0) += x[n] * y[n];
+    line[0] += y[n];
+    line[1] += x[n] * y[n];
   }
-  const auto line = exact::LuFactors(normal).solve(right);
-  const auto at = [&](double digits) { return std::pow(10, line(0, 0) + line(1, 0) * digits); };
+  algebra::LuFactors(normal).solve(line, false);
+  const auto at = [&](double digits) { return std::pow(10, line[0] + line[1] * digits); };
   return fmt::format("{}: one more digit costs {:.3g} times the time; 1e-6 takes about {:.2g} s, "
                      "1e-9 about {:.2g} s",
-                     t.name, std::pow(10, line(1, 0)), at(6), at(9));
+                     t.name, std::pow(10, line[1]), at(6), at(9));
 }
 
 }  // namespace

@@ -4,16 +4,16 @@
 #include <complex>
 #include <vector>
 
-#include "stickslip/exact/dense.hpp"
+#include "stickslip/algebra/dense.hpp"
 
 namespace stickslip::exact {
 
-/// H(z) = left (z - M)^-1 right through the Schur form M = Q T Q^H (zgees), backward stable for
-/// matrices far from normal too. O(n^3) once, O(n^2) a value.
+/// H(z) = left (z - M)^-1 right through the Schur form M = Q T Q^H (algebra::SchurForm), backward
+/// stable for matrices far from normal too. O(n^3) once, O(n^2) a value.
 class TransferFunction {
  public:
-  /// Throws std::runtime_error when the Schur form does not converge.
-  TransferFunction(const Matrix& m, const std::vector<double>& left,
+  /// Throws NotReached when the Schur form does not converge.
+  TransferFunction(const algebra::Matrix<double>& m, const std::vector<double>& left,
                    const std::vector<double>& right);
   /// The same M between other vectors; shares no work but the Schur form. O(n^2).
   [[nodiscard]] TransferFunction between(const std::vector<double>& left,
@@ -25,8 +25,7 @@ class TransferFunction {
  private:
   void set_ends(const std::vector<double>& left, const std::vector<double>& right);
 
-  int n_;
-  std::vector<std::complex<double>> q_;             // by columns
+  algebra::Matrix<std::complex<double>> q_;
   std::vector<double> t_real_, t_imaginary_;        // upper triangle, by columns
   std::vector<std::complex<double>> left_, right_;  // left Q, Q^H right
 };

@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-#include "stickslip/exact/dense.hpp"
+#include "stickslip/algebra/dense.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/handle.hpp"
 
@@ -15,7 +15,7 @@ namespace stickslip::quantities {
 
 /// A small model of L: c (z - L)^-1 b ~ gamma (z - m)^-1 beta.
 struct Reduced {
-  exact::Matrix m;
+  algebra::Matrix<double> m;
   std::vector<double> beta, gamma;
 };
 

@@ -1,0 +1,149 @@
+#pragma once
+/// Small dense linear algebra on BLAS and LAPACK, for double and std::complex<double>. Local.
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace stickslip::algebra {
+
+/// Column-major matrix.
+template <class Scalar>
+class Matrix {
+ public:
+  Matrix() = default;
+  /// Zero.
+  Matrix(int rows, int columns)
+      : rows_(rows), columns_(columns), data_(static_cast<std::size_t>(rows) * columns, 0.0) {}
+  [[nodiscard]] static Matrix identity(int n, Scalar value = 1) {
+    Matrix result(n, n);
+    for (int i = 0; i < n; ++i) result(i, i) = value;
+    return result;
+  }
+
+  [[nodiscard]] int rows() const { return rows_; }
+  [[nodiscard]] int columns() const { return columns_; }
+  [[nodiscard]] Scalar& operator()(int r, int c) { return data_[at(r, c)]; }
+  [[nodiscard]] Scalar operator()(int r, int c) const { return data_[at(r, c)]; }
+  [[nodiscard]] Scalar* data() { return data_.data(); }
+  [[nodiscard]] const Scalar* data() const { return data_.data(); }
+  [[nodiscard]] Scalar* column(int c) { return data() + at(0, c); }
+  [[nodiscard]] const Scalar* column(int c) const { return data() + at(0, c); }
+
+  Matrix& operator+=(const Matrix& other) {
+    for (std::size_t n = 0; n < data_.size(); ++n) data_[n] += other.data_[n];
+    return *this;
+  }
+  Matrix& operator-=(const Matrix& other) {
+    for (std::size_t n = 0; n < data_.size(); ++n) data_[n] -= other.data_[n];
+    return *this;
+  }
+  Matrix& operator*=(Scalar factor) {
+    for (Scalar& entry : data_) entry *= factor;
+    return *this;
+  }
+  friend Matrix operator+(Matrix a, const Matrix& b) { return a += b; }
+  friend Matrix operator-(Matrix a, const Matrix& b) { return a -= b; }
+  friend Matrix operator*(Scalar factor, Matrix a) { return a *= factor; }
+  /// Largest magnitude of an entry.
+  [[nodiscard]] double largest() const {
+    double size = 0;
+    for (const Scalar& entry : data_) size = std::max(size, std::abs(entry));
+    return size;
+  }
+
+ private:
+  [[nodiscard]] std::size_t at(int r, int c) const {
+    return static_cast<std::size_t>(c) * rows_ + r;
+  }
+  int rows_ = 0, columns_ = 0;
+  std::vector<Scalar> data_;
+};
+
+/// C += factor A B for the first `columns` columns of B and C. O(rows(A) columns(A) columns).
+template <class Scalar>
+void add_product(std::type_identity_t<Scalar> factor, const Matrix<Scalar>& a,
+                 const Matrix<Scalar>& b, int columns, Matrix<Scalar>& c);
+/// y += A x, or A^T x. O(rows(A) columns(A)).
+template <class Scalar>
+void add_product(const Matrix<Scalar>& a, const std::vector<Scalar>& x, std::vector<Scalar>& y,
+                 bool transposed = false);
+
+template <class Scalar>
+[[nodiscard]] Matrix<Scalar> operator*(const Matrix<Scalar>& a, const Matrix<Scalar>& b) {
+  Matrix<Scalar> c(a.rows(), b.columns());
+  add_product(1, a, b, b.columns(), c);
+  return c;
+}
+/// A x for a column x.
+template <class Scalar>
+[[nodiscard]] std::vector<Scalar> operator*(const Matrix<Scalar>& a, const std::vector<Scalar>& x) {
+  std::vector<Scalar> y(static_cast<std::size_t>(a.rows()), 0.0);
+  add_product(a, x, y);
+  return y;
+}
+/// x A for a row x.
+template <class Scalar>
+[[nodiscard]] std::vector<Scalar> operator*(const std::vector<Scalar>& x, const Matrix<Scalar>& a) {
+  std::vector<Scalar> y(static_cast<std::size_t>(a.columns()), 0.0);
+  add_product(a, x, y, true);
+  return y;
+}
+/// LU factors of a square matrix with row interchanges (getrf).
+template <class Scalar>
+class LuFactors {
+ public:
+  LuFactors() = default;
+  /// O(size^3). Throws NotReached when the matrix is singular.
+  explicit LuFactors(Matrix<Scalar> a);
+
+  [[nodiscard]] int size() const { return lu_.rows(); }
+  /// B <- A^-1 B. O(size^2 columns).
+  void solve(Matrix<Scalar>& b) const;
+  [[nodiscard]] Matrix<Scalar> solved(Matrix<Scalar> b) const {
+    solve(b);
+    return b;
+  }
+  /// x <- A^-1 x, or A^-T x. O(size^2).
+  void solve(Scalar* x, bool transposed) const { solve(x, 1, transposed); }
+  void solve(std::vector<Scalar>& x, bool transposed) const { solve(x.data(), 1, transposed); }
+
+ private:
+  void solve(Scalar* b, int columns, bool transposed) const;
+
+  Matrix<Scalar> lu_;
+  std::vector<int> pivots_;
+};
+
+/// A = left diag(value) right^T for a square matrix, the largest values first (gesvd). O(n^3).
+struct SingularValues {
+  Matrix<double> left, right_transposed;
+  std::vector<double> value;
+
+  /// Throws NotReached when the iteration does not converge.
+  explicit SingularValues(Matrix<double> a);
+};
+
+/// Complex Schur form A = Q T Q^H of a square matrix, T upper triangular (gees). O(n^3).
+struct SchurForm {
+  Matrix<std::complex<double>> q, t;
+
+  /// Throws NotReached when the iteration does not converge.
+  explicit SchurForm(const Matrix<double>& a);
+};
+
+/// Eigenvalues in rising order and orthonormal eigenvectors, by columns, of the symmetric matrix
+/// with a diagonal of n entries and n - 1 entries beside it (stev). O(n^3).
+struct TridiagonalEigen {
+  std::vector<double> value;
+  Matrix<double> vectors;
+
+  /// Throws NotReached when the iteration does not converge.
+  TridiagonalEigen(std::vector<double> diagonal, std::vector<double> beside);
+};
+
+}  // namespace stickslip::algebra

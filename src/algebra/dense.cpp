@@ -1,0 +1,168 @@
+#include "stickslip/algebra/dense.hpp"
+
+#include <algorithm>
+
+#include "stickslip/support/errors.hpp"
+
+namespace {
+
+using Complex = std::complex<double>;
+
+// Signatures by scalar type.
+template <class S>
+using Gemm = void(const char* transpose_a, const char* transpose_b, const int* m, const int* n,
+                  const int* k, const S* alpha, const S* a, const int* lda, const S* b,
+                  const int* ldb, const S* beta, S* c, const int* ldc);
+template <class S>
+using Gemv = void(const char* transpose, const int* m, const int* n, const S* alpha, const S* a,
+                  const int* lda, const S* x, const int* step_x, const S* beta, S* y,
+                  const int* step_y);
+template <class S>
+using Getrf = void(const int* m, const int* n, S* a, const int* lda, int* pivots, int* info);
+template <class S>
+using Getrs = void(const char* transpose, const int* n, const int* columns, const S* a,
+                   const int* lda, const int* pivots, S* b, const int* ldb, int* info);
+
+}  // namespace
+
+// NOLINTBEGIN(readability-identifier-naming): the names of BLAS and LAPACK.
+extern "C" {
+Gemm<double> dgemm_;
+Gemm<Complex> zgemm_;
+Gemv<double> dgemv_;
+Gemv<Complex> zgemv_;
+Getrf<double> dgetrf_;
+Getrf<Complex> zgetrf_;
+Getrs<double> dgetrs_;
+Getrs<Complex> zgetrs_;
+void dgesvd_(const char* left, const char* right, const int* m, const int* n, double* a,
+             const int* lda, double* values, double* u, const int* ldu, double* vt, const int* ldvt,
+             double* work, const int* work_size, int* info);
+void zgees_(const char* vectors, const char* sort, int (*select)(const Complex*), const int* n,
+            Complex* a, const int* lda, int* selected, Complex* w, Complex* q, const int* ldq,
+            Complex* work, const int* work_size, double* real_work, int* flags, int* info);
+void dstev_(const char* vectors, const int* n, double* diagonal, double* beside, double* z,
+            const int* ldz, double* work, int* info);
+}
+// NOLINTEND(readability-identifier-naming)
+
+namespace stickslip::algebra {
+namespace {
+
+template <class Scalar>
+struct Routines;
+template <>
+struct Routines<double> {
+  static constexpr auto gemm = dgemm_;
+  static constexpr auto gemv = dgemv_;
+  static constexpr auto getrf = dgetrf_;
+  static constexpr auto getrs = dgetrs_;
+};
+template <>
+struct Routines<Complex> {
+  static constexpr auto gemm = zgemm_;
+  static constexpr auto gemv = zgemv_;
+  static constexpr auto getrf = zgetrf_;
+  static constexpr auto getrs = zgetrs_;
+};
+
+void expect_success(int info, const char* complaint) {
+  if (info != 0) throw NotReached(complaint);
+}
+
+}  // namespace
+
+template <class Scalar>
+void add_product(std::type_identity_t<Scalar> factor, const Matrix<Scalar>& a,
+                 const Matrix<Scalar>& b, int columns, Matrix<Scalar>& c) {
+  const int m = a.rows(), n = columns, k = a.columns(), ldb = b.rows(), ldc = c.rows();
+  if (m == 0 || n == 0 || k == 0) return;
+  const Scalar one = 1;
+  Routines<Scalar>::gemm("N", "N", &m, &n, &k, &factor, a.data(), &m, b.data(), &ldb, &one,
+                         c.data(), &ldc);
+}
+
+template <class Scalar>
+void add_product(const Matrix<Scalar>& a, const std::vector<Scalar>& x, std::vector<Scalar>& y,
+                 bool transposed) {
+  const int m = a.rows(), n = a.columns(), step = 1;
+  if (m == 0 || n == 0) return;
+  const Scalar one = 1;
+  Routines<Scalar>::gemv(transposed ? "T" : "N", &m, &n, &one, a.data(), &m, x.data(), &step, &one,
+                         y.data(), &step);
+}
+
+template <class Scalar>
+LuFactors<Scalar>::LuFactors(Matrix<Scalar> a)
+    : lu_(std::move(a)), pivots_(static_cast<std::size_t>(lu_.rows())) {
+  const int n = size();
+  int info = 0;
+  if (n > 0) Routines<Scalar>::getrf(&n, &n, lu_.data(), &n, pivots_.data(), &info);
+  expect_success(info, "the factorisation met a singular block");
+}
+
+template <class Scalar>
+void LuFactors<Scalar>::solve(Matrix<Scalar>& b) const {
+  solve(b.data(), b.columns(), false);
+}
+
+template <class Scalar>
+void LuFactors<Scalar>::solve(Scalar* b, int columns, bool transposed) const {
+  const int n = size();
+  if (n == 0 || columns == 0) return;
+  int info = 0;  // nothing but wrong arguments
+  Routines<Scalar>::getrs(transposed ? "T" : "N", &n, &columns, lu_.data(), &n, pivots_.data(), b,
+                          &n, &info);
+}
+
+template class LuFactors<double>;
+template class LuFactors<Complex>;
+template void add_product(double, const Matrix<double>&, const Matrix<double>&, int,
+                          Matrix<double>&);
+template void add_product(Complex, const Matrix<Complex>&, const Matrix<Complex>&, int,
+                          Matrix<Complex>&);
+template void add_product(const Matrix<double>&, const std::vector<double>&, std::vector<double>&,
+                          bool);
+template void add_product(const Matrix<Complex>&, const std::vector<Complex>&,
+                          std::vector<Complex>&, bool);
+
+SingularValues::SingularValues(Matrix<double> a)
+    : left(a.rows(), a.rows()),
+      right_transposed(a.rows(), a.rows()),
+      value(static_cast<std::size_t>(a.rows())) {
+  const int n = a.rows(), work_size = 64 * n;
+  std::vector<double> work(static_cast<std::size_t>(work_size));
+  int info = 0;
+  if (n > 0) {
+    dgesvd_("A", "A", &n, &n, a.data(), &n, value.data(), left.data(), &n, right_transposed.data(),
+            &n, work.data(), &work_size, &info);
+  }
+  expect_success(info, "the singular values of a matrix do not converge");
+}
+
+SchurForm::SchurForm(const Matrix<double>& a) : q(a.rows(), a.rows()), t(a.rows(), a.rows()) {
+  const int n = a.rows(), work_size = 64 * n + 1;
+  std::copy(a.data(), a.column(n), t.data());
+  std::vector<Complex> values(static_cast<std::size_t>(n)), work(64 * values.size() + 1);
+  std::vector<double> real_work(values.size());
+  int selected = 0, info = 0;
+  if (n > 0) {
+    zgees_("V", "N", nullptr, &n, t.data(), &n, &selected, values.data(), q.data(), &n, work.data(),
+           &work_size, real_work.data(), nullptr, &info);
+  }
+  expect_success(info, "the Schur form of a matrix does not converge");
+}
+
+TridiagonalEigen::TridiagonalEigen(std::vector<double> diagonal, std::vector<double> beside)
+    : value(std::move(diagonal)) {
+  const int n = static_cast<int>(value.size());
+  vectors = Matrix<double>(n, n);
+  std::vector<double> work(2 * value.size());
+  int info = 0;
+  if (n > 0) {
+    dstev_("V", &n, value.data(), beside.data(), vectors.data(), &n, work.data(), &info);
+  }
+  expect_success(info, "the eigenvalues of a tridiagonal matrix do not converge");
+}
+
+}  // namespace stickslip::algebra
