@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "stickslip/operators/solver_policy.hpp"
 #include "stickslip/petsc/memory.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
@@ -47,14 +48,6 @@ double tilt(const model::Scene& scene) {
   if (scene.drag.law && !scene.drag.bounds_velocity()) return 2 * scene.tau * most;
   if (drag_time > 1) return 0;
   return 2 * scene.tau * std::min(mu_d, most);
-}
-
-bool by_elements(const Resolution& r) {
-  if (r.scheme != options::Scheme::hp) return false;
-  const bool own = r.factors == options::Factors::own &&
-                   operators::suits_elements(r.noise_nodes(), r.noise == nullptr) &&
-                   petsc::ranks(PETSC_COMM_WORLD) == 1;
-  return own || r.factors == options::Factors::elements;
 }
 
 std::shared_ptr<velocity::Axis> axis_of(const model::Scene& scene, const Resolution& resolution,
@@ -160,47 +153,50 @@ std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution) {
   return static_cast<std::int64_t>(std::min(total, most));
 }
 
-// Entries of the factors: by elements what ElementElimination counts, about; by MUMPS 2.7 to 3.2 n
-// n_v (n unknowns, n_v of them on a noise node) on hp axes with all levels. The upwind matrix is a
-// two-dimensional grid to MUMPS, where the shorter side m decides: 4.5 n m^0.52 entries were
-// counted for m = 65 ... 257. MUMPS takes 9 to 12 bytes a real entry; the matrix, its magnitudes
-// and MUMPS's copy come on top.
+namespace {
+
+// By the solver that will serve it.
+operators::FactorCost factor_cost(const model::Scene& scene, const Resolution& r,
+                                  options::Factors factors) {
+  const auto n = static_cast<double>(unknowns(scene, r));
+  const auto noise = static_cast<double>(r.noise_nodes());
+  if (factors != options::Factors::elements) {
+    return operators::sparse_cost(factors, r.scheme, n, noise);
+  }
+  const auto axis = axis_of(scene, r, scene.drag);
+  const auto cost = operators::elimination_cost(scene.process(r.levels),
+                                                dynamic_cast<const velocity::HpAxis&>(*axis),
+                                                r.noise.get(), petsc::ranks(PETSC_COMM_WORLD));
+  return {r.halves * cost.entries, r.halves * cost.bytes, r.halves * cost.operations};
+}
+
+options::Factors factors_of(const Resolution& r) {
+  return operators::chosen_factors(r.factors, r.scheme, r.noise_nodes(), r.noise == nullptr);
+}
+
+}  // namespace
+
+// The matrix, its magnitudes and what a solver copies come on top of the factors.
 double predicted_bytes(const model::Scene& scene, const Resolution& resolution) {
   const auto n = static_cast<double>(unknowns(scene, resolution));
-  const auto noise = static_cast<double>(resolution.noise_nodes());
-  const double nodes = n / noise;
-  const double scalars = petsc::complex_scalars() ? 2 : 1;
   if (resolution.scheme == options::Scheme::none) {
     constexpr double dense_matrices = 30;
     return 8 * dense_matrices * n * n;
   }
   const bool upwind = resolution.scheme == options::Scheme::upwind;
-  const double degree = resolution.degree;
-  const double row = upwind ? 4 : degree + 2.0 * resolution.grouping.degree + 6;
-  const double factors =
-      upwind ? 12 * 4.5 * n * std::pow(std::min(noise, nodes), 0.52) : 10 * 3.0 * n * nodes;
-  if (by_elements(resolution)) {
-    const double elements = nodes / std::max(1.0, degree - 1);
-    const double inside = (resolution.grouping.degree + 4) * degree * n;
-    return scalars * (8 * (1.4 * elements * noise * noise + inside) + 40 * row * n);
-  }
-  switch (resolution.factors) {
-  case options::Factors::own:
-  case options::Factors::elements:
-  case options::Factors::in_memory: return scalars * (factors + 60 * row * n);
-  case options::Factors::on_disk: return scalars * (0.3 * factors + 60 * row * n);
-  case options::Factors::incomplete: break;
-  }
-  return scalars * 120 * row * n;
+  const double row = upwind ? 4 : resolution.degree + 2.0 * resolution.grouping.degree + 6;
+  const options::Factors factors = factors_of(resolution);
+  double copies = 60;
+  if (factors == options::Factors::elements) copies = 40;
+  if (factors == options::Factors::incomplete) copies = 120;
+  const double scalars = petsc::complex_scalars() ? 2 : 1;
+  return factor_cost(scene, resolution, factors).bytes + scalars * copies * row * n;
 }
 
 double relative_work(const model::Scene& scene, const Resolution& resolution) {
   const auto n = static_cast<double>(unknowns(scene, resolution));
-  const auto noise = static_cast<double>(resolution.noise_nodes());
   if (resolution.scheme == options::Scheme::none) return n * n * n;
-  const double nodes = n / noise, band = std::min(noise, nodes);
-  if (resolution.scheme == options::Scheme::upwind) return n * band;
-  return by_elements(resolution) ? n * noise * noise / resolution.degree : n * nodes * band;
+  return factor_cost(scene, resolution, factors_of(resolution)).operations;
 }
 
 }  // namespace stickslip::accuracy

@@ -83,13 +83,13 @@ void add_product(std::type_identity_t<Scalar> factor, const Matrix<Scalar>& a,
 }
 
 template <class Scalar>
-void add_product(const Matrix<Scalar>& a, const std::vector<Scalar>& x, std::vector<Scalar>& y,
-                 bool transposed) {
+void add_product(const Matrix<Scalar>& a, const std::type_identity_t<Scalar>* x,
+                 std::type_identity_t<Scalar>* y, bool transposed) {
   const int m = a.rows(), n = a.columns(), step = 1;
   if (m == 0 || n == 0) return;
   const Scalar one = 1;
-  Routines<Scalar>::gemv(transposed ? "T" : "N", &m, &n, &one, a.data(), &m, x.data(), &step, &one,
-                         y.data(), &step);
+  Routines<Scalar>::gemv(transposed ? "T" : "N", &m, &n, &one, a.data(), &m, x, &step, &one, y,
+                         &step);
 }
 
 template <class Scalar>
@@ -121,10 +121,8 @@ template void add_product(double, const Matrix<double>&, const Matrix<double>&, 
                           Matrix<double>&);
 template void add_product(Complex, const Matrix<Complex>&, const Matrix<Complex>&, int,
                           Matrix<Complex>&);
-template void add_product(const Matrix<double>&, const std::vector<double>&, std::vector<double>&,
-                          bool);
-template void add_product(const Matrix<Complex>&, const std::vector<Complex>&,
-                          std::vector<Complex>&, bool);
+template void add_product(const Matrix<double>&, const double*, double*, bool);
+template void add_product(const Matrix<Complex>&, const Complex*, Complex*, bool);
 
 SingularValues::SingularValues(Matrix<double> a)
     : left(a.rows(), a.rows()),

@@ -20,6 +20,7 @@
 #include "stickslip/io/provenance.hpp"
 #include "stickslip/io/report.hpp"
 #include "stickslip/io/study_report.hpp"
+#include "stickslip/operators/element_pc.hpp"
 #include "stickslip/options/manual.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/options/table.hpp"
@@ -273,6 +274,7 @@ int run(int argc, char** argv) {
     char** values = arguments.data();
     const petsc::Session session(argc, values);
     petsc::keep_blas_to_one_thread();
+    operators::register_preconditioners();
     return run_session(words, seconds_since(start));
   } catch (const Failure& failure) {
     return tell(failure, true);

@@ -304,17 +304,18 @@ KolmogorovOperator KolmogorovOperator::derivative(MPI_Comm comm,
 KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation,
                                        PetscScalar lambda, Symmetry symmetry, Rest rest,
                                        std::optional<Parameter> derivative)
-    : discretisation_(discretisation),
-      states_(comm, discretisation, symmetry, rest != Rest::killing) {
-  Assembler rows(discretisation, states_, lambda, rest, derivative);
+    : data_(std::make_shared<MatrixData>(
+          MatrixData{discretisation,
+                     StateSpace(comm, discretisation, symmetry, rest != Rest::killing), lambda})) {
+  Assembler rows(discretisation, states(), lambda, rest, derivative);
   rows.assemble();
   trace_upper_ = rows.trace_at_exit(Half::upper);
-  if (!states_.folded()) trace_lower_ = rows.trace_at_exit(Half::lower);
+  if (!states().folded()) trace_lower_ = rows.trace_at_exit(Half::lower);
   rest_coupling_ = std::move(rows.rest_coupling);
   exit_coupling_ = std::move(rows.exit_coupling);
   if (!derivative && symmetry != Symmetry::odd && PetscRealPart(lambda) >= 0) {
     const bool nothing_killed = rest == Rest::kept && PetscAbsScalar(lambda) == 0;
-    require_generator(comm, {states_.local_begin(), rows.row_start, rows.columns, rows.values},
+    require_generator(comm, {states().local_begin(), rows.row_start, rows.columns, rows.values},
                       {discretisation.axis->keeps_origin(), nothing_killed},
                       discretisation.process);
   }
@@ -323,12 +324,18 @@ KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& disc
   columns_ = std::move(rows.columns);
   values_ = std::move(rows.values);
   matrix_ = stored();
+  if (!derivative) attach(matrix_, data_);
   MPI_Allreduce(MPI_IN_PLACE, &nonzeros_, 1, MPIU_INT64, MPI_SUM, comm);
 }
 
+void KolmogorovOperator::shift(PetscScalar by) {
+  check(MatShift(matrix_, by));
+  data_->lambda += by;
+}
+
 petsc::MatHandle KolmogorovOperator::stored() {
-  const PetscInt local = states_.local_size(), global = states_.global_size();
-  MPI_Comm comm = states_.comm();
+  const PetscInt local = states().local_size(), global = states().global_size();
+  MPI_Comm comm = states().comm();
   petsc::MatHandle matrix;
   if (petsc::ranks(comm) == 1) {
     check(MatCreateSeqAIJWithArrays(comm, local, local, row_start_.data(), columns_.data(),
@@ -345,7 +352,7 @@ petsc::MatHandle KolmogorovOperator::stored() {
 // Entries in columns of other ranks into arrays of their own, which PETSc wants apart; few, as only
 // jumps lead there.
 void KolmogorovOperator::separate_others() {
-  const PetscInt begin = states_.local_begin(), local = states_.local_size();
+  const PetscInt begin = states().local_begin(), local = states().local_size();
   other_start_.assign(1, 0);
   PetscInt kept = 0, next = 0;
   for (PetscInt r = 0; r < local; ++r) {
@@ -373,7 +380,7 @@ petsc::VecHandle KolmogorovOperator::zeros() const {
 
 petsc::VecHandle KolmogorovOperator::trace_at_exit(Half half) const {
   petsc::VecHandle g = zeros();
-  const PetscInt begin = states_.local_begin(), end = begin + states_.local_size();
+  const PetscInt begin = states().local_begin(), end = begin + states().local_size();
   for (const auto& [index, weight] : half == Half::upper ? trace_upper_ : trace_lower_) {
     if (index < begin || index >= end) continue;
     check(VecSetValue(g, index, weight, INSERT_VALUES));
@@ -384,17 +391,17 @@ petsc::VecHandle KolmogorovOperator::trace_at_exit(Half half) const {
 }
 
 petsc::VecHandle KolmogorovOperator::value_at(int i, double v) const {
-  const auto& [process, noise, axis] = discretisation_;
+  const auto& [process, noise, axis] = discretisation();
   const int lowest = process.lowest_static();
   const bool rest = v == 0 && i >= lowest && i <= process.static_index();
   const bool below = v < 0 || (v == 0 && (rest ? i < 0 : i < lowest));
-  const bool mirrored = below && states_.folded();
-  const double sign = mirrored && states_.symmetry() == Symmetry::odd ? -1 : 1;
+  const bool mirrored = below && states().folded();
+  const double sign = mirrored && states().symmetry() == Symmetry::odd ? -1 : 1;
   const Half half = below && !mirrored ? Half::lower : Half::upper;
   petsc::VecHandle g = zeros();
-  const PetscInt begin = states_.local_begin(), end = begin + states_.local_size();
+  const PetscInt begin = states().local_begin(), end = begin + states().local_size();
   const auto add = [&](const State& state, double weight) {
-    const PetscInt index = states_.index(state);
+    const PetscInt index = states().index(state);
     if (index >= begin && index < end) check(VecSetValue(g, index, weight, ADD_VALUES));
   };
   // A level as a combination of noise nodes, of those as combinations of velocity nodes.
@@ -402,7 +409,7 @@ petsc::VecHandle KolmogorovOperator::value_at(int i, double v) const {
   const auto shares = group.row(group.value, below ? -i : i);
   for (int l = 0; !rest && l < group.count; ++l) {
     const int n = group.begin + l;
-    if (v == 0 && states_.has_origin(half, n)) {
+    if (v == 0 && states().has_origin(half, n)) {
       add({StateKind::origin, half, n, 0}, sign);
       continue;
     }
@@ -411,8 +418,8 @@ petsc::VecHandle KolmogorovOperator::value_at(int i, double v) const {
     }
   }
   if (rest) {
-    const int kept = states_.folded() ? std::abs(i) : i;
-    if (states_.has_rest(kept)) add({StateKind::rest, Half::upper, kept, 0}, sign);
+    const int kept = states().folded() ? std::abs(i) : i;
+    if (states().has_rest(kept)) add({StateKind::rest, Half::upper, kept, 0}, sign);
   }
   check(VecAssemblyBegin(g));
   check(VecAssemblyEnd(g));
@@ -420,18 +427,18 @@ petsc::VecHandle KolmogorovOperator::value_at(int i, double v) const {
 }
 
 std::vector<PetscScalar> KolmogorovOperator::entry_rates(Vec nu) const {
-  const int lowest = discretisation_.process.lowest_static(),
-            count = discretisation_.process.static_index() - lowest + 1;
+  const int lowest = discretisation().process.lowest_static(),
+            count = discretisation().process.static_index() - lowest + 1;
   std::vector<PetscScalar> rates(static_cast<std::size_t>(count), 0.0);
   const petsc::ReadView local(nu);
   for (const auto& c : rest_coupling_) rates[c.level - lowest] += c.rate * local[c.row];
   MPI_Allreduce(MPI_IN_PLACE, rates.data(), static_cast<int>(rates.size()), MPIU_SCALAR, MPIU_SUM,
-                states_.comm());
+                states().comm());
   return rates;
 }
 
 petsc::VecHandle KolmogorovOperator::from_rest(const std::vector<PetscScalar>& s) const {
-  const int lowest = discretisation_.process.lowest_static();
+  const int lowest = discretisation().process.lowest_static();
   petsc::VecHandle f = zeros();
   petsc::WriteView local(f);
   for (const auto& c : rest_coupling_) local[c.row] += c.rate * s[c.level - lowest];
@@ -451,10 +458,10 @@ petsc::VecHandle KolmogorovOperator::exit_rates(Half half) const {
 petsc::VecHandle KolmogorovOperator::values(const Observable& f) const {
   petsc::VecHandle result = zeros();
   petsc::WriteView local(result);
-  const model::NoiseChain& chain = discretisation_.process.noise;
-  const velocity::Axis& axis = *discretisation_.axis;
+  const model::NoiseChain& chain = discretisation().process.noise;
+  const velocity::Axis& axis = *discretisation().axis;
   PetscInt at = 0;
-  states_.for_each_local([&](const State& s) {
+  states().for_each_local([&](const State& s) {
     const double sign = s.half == Half::upper ? 1 : -1;
     if (s.kind == StateKind::rest) {
       local[at++] = f(chain.level(s.noise), 0, 0);
@@ -463,7 +470,7 @@ petsc::VecHandle KolmogorovOperator::values(const Observable& f) const {
     double v = 0;
     if (s.kind == StateKind::node) v = sign * axis.nodes()[s.node];
     if (s.kind == StateKind::holding) v = sign * axis.v_max();
-    local[at++] = discretisation_.noise->projected(
+    local[at++] = discretisation().noise->projected(
         s.noise, [&](int i) { return f(sign * chain.level(i), sign, v); });
   });
   return result;

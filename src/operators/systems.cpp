@@ -2,8 +2,7 @@
 
 #include <utility>
 
-#include "stickslip/operators/element_elimination.hpp"
-#include "stickslip/petsc/session.hpp"
+#include "stickslip/operators/solver_policy.hpp"
 
 namespace stickslip::operators {
 
@@ -36,21 +35,17 @@ KolmogorovOperator assemble_derivative(MPI_Comm comm, const Discretisation& disc
   });
 }
 
-petsc::Structure structure_of(const KolmogorovOperator& a, PetscScalar lambda) {
-  const Discretisation& d = a.discretisation();
-  const bool has_elements = dynamic_cast<const velocity::HpAxis*>(d.axis.get()) != nullptr;
-  if (!has_elements || petsc::ranks(a.states().comm()) > 1) return {};
-  const auto make = [&a, lambda] {
-    return std::make_unique<ElementElimination>(a.discretisation(), a.states(), a.matrix(), lambda);
-  };
-  return {make, suits_elements(d.noise->count(), d.noise->all_levels())};
+std::unique_ptr<petsc::Factorization> factorization(const KolmogorovOperator& a,
+                                                    petsc::Ledger& ledger) {
+  return std::make_unique<petsc::Factorization>(a.matrix(), kSlidePrefix, ledger,
+                                                default_pc_type(a.discretisation()));
 }
 
 System& Systems::at(double lambda, Symmetry symmetry, Rest rest) {
   auto& system = systems_[{lambda, symmetry, rest}];
   if (!system) {
     auto a = assemble(comm_, discretisation_, lambda, symmetry, rest, ledger_);
-    system = std::make_unique<System>(std::move(a), lambda, ledger_);
+    system = std::make_unique<System>(std::move(a), ledger_);
   }
   return *system;
 }
@@ -58,7 +53,7 @@ System& Systems::at(double lambda, Symmetry symmetry, Rest rest) {
 petsc::Analysis Systems::analyse(const SystemKey& key) {
   const auto a = assemble(comm_, discretisation_, key.lambda, key.symmetry, key.rest, ledger_);
   return petsc::Factorization::analyse(a.matrix(), kSlidePrefix, ledger_,
-                                       structure_of(a, key.lambda));
+                                       default_pc_type(a.discretisation()));
 }
 
 }  // namespace stickslip::operators

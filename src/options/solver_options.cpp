@@ -206,11 +206,8 @@ void check_unknown_options(Problems& problems) {
 
 Factors read_factors() {
   if (!petsc::chooses_solver("slide_")) return Factors::own;
-  switch (petsc::chosen_solver("slide_", petsc::Solver::lu)) {
-  case petsc::Solver::elements: return Factors::elements;
-  case petsc::Solver::lu: break;
-  }
   const std::string pc = solver_option("-slide_pc_type");
+  if (pc == "elements") return Factors::elements;
   if (!pc.empty() && pc != "lu" && pc != "cholesky") return Factors::incomplete;
   const bool on_disk = solver_option("-slide_mat_mumps_icntl_22") == "1";
   return on_disk ? Factors::on_disk : Factors::in_memory;

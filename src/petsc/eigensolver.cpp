@@ -51,7 +51,7 @@ EpsHandle configured_eigensolver(Mat matrix, const std::string& prefix, double t
   check(DSSetParallel(projected, DS_PARALLEL_SYNCHRONIZED));
   check(EPSSetFromOptions(eps));
   keep_space_small_for_one(eps);
-  set_default_ordering(solver_of(eps));
+  set_default_ordering(solver_of(eps), matrix);
   return eps;
 }
 

@@ -19,69 +19,34 @@ constexpr double kBackwardErrorLimit = 1e-12;
 constexpr int kMostCorrections = 2;  // the second only where the first leaves too much
 constexpr bool kComplex = PetscDefined(USE_COMPLEX);
 
-// What the solver of a KSP calls; null for PETSc's own.
-std::unique_ptr<Preconditioner> own_preconditioner(KSP ksp, const Structure& structure) {
-  if (kind_of(ksp) == Solver::lu) return nullptr;
-  if (!structure.elimination) {
-    const char* prefix = nullptr;
-    check(KSPGetOptionsPrefix(ksp, &prefix));
-    throw BadInput(fmt::format("-{}pc_type: this solver eliminates elements of an hp "
-                               "discretisation, on one rank; leave it out",
-                               prefix));
-  }
-  auto own = structure.elimination();
-  attach(ksp, *own);
-  return own;
-}
-
 }  // namespace
 
-Factorization::Factorization(Mat matrix, const std::string& prefix, Ledger& ledger,
-                             const Structure& structure)
+Factorization::Factorization(Mat matrix, const std::string& prefix, Ledger& ledger, PCType pc_type)
     : measure_(matrix), prefix_(prefix), ledger_(ledger) {
   check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
   matrix_ = MatHandle(matrix);
-  ksp_ = linear_solver(matrix_, prefix_, structure.solver());
-  {
-    const PhaseTimer timer("analysis", ledger_.analysis_seconds);
-    own_ = own_preconditioner(ksp_, structure);
-  }
-  factor(0);
+  ksp_ = linear_solver(matrix_, prefix_, pc_type);
+  factor();
 }
 
-void Factorization::update(PetscScalar shift) {
+void Factorization::update() {
   check(KSPSetOperators(ksp_, matrix_, matrix_));
-  factor(shift);
-}
-
-void Factorization::factor(PetscScalar shift) {
   measure_.forget();
-  if (own_) {
-    const PhaseTimer timer("factorisation", ledger_.factorization_seconds);
-    own_->factor(shift);
-    Ledger size;
-    size.factor_entries = static_cast<std::int64_t>(own_->entries());
-    size.factor_megabytes = own_->bytes() / 1e6;
-    ledger_ += size;
-  } else {
-    factor_by_petsc();
-  }
-  ++(kComplex ? ledger_.factorizations_complex : ledger_.factorizations_real);
+  factor();
 }
 
-void Factorization::factor_by_petsc() {
+void Factorization::factor() {
   double total = 0;
   const double symbolic_before = logged_seconds("MatLUFactorSym");
   {
     const PhaseTimer timer("factorisation", total);
-    check(KSPSetUp(ksp_));
-    if (lacks_workspace(ksp_)) ksp_ = with_more_workspace(ksp_, matrix_, prefix_);
-    require_factored(ksp_, prefix_);
+    petsc::factor(ksp_, matrix_, prefix_);
   }
   const double symbolic = logged_seconds("MatLUFactorSym") - symbolic_before;
   ledger_.analysis_seconds += symbolic;
   ledger_.factorization_seconds += total - symbolic;
   record_factors(ksp_, ledger_);
+  ++(kComplex ? ledger_.factorizations_complex : ledger_.factorizations_real);
 }
 
 void Factorization::solve_once(Vec b, Vec x) {
@@ -146,16 +111,14 @@ Solution Factorization::solve(Vec b, bool transposed) {
 }
 
 std::string Factorization::advice() const {
-  return own_ ? fmt::format("; -{}pc_type lu exchanges more rows", prefix_) : "";
+  return is_own(ksp_) ? fmt::format("; -{}pc_type lu exchanges more rows", prefix_) : "";
 }
 
 Analysis Factorization::analyse(Mat matrix, const std::string& prefix, Ledger& ledger,
-                                const Structure& structure) {
+                                PCType pc_type) {
   const PhaseTimer timer("analysis", ledger.analysis_seconds);
-  const KspHandle ksp = linear_solver(matrix, prefix, structure.solver());
-  const auto own = own_preconditioner(ksp, structure);
-  if (!own) return petsc::analyse(ksp, matrix);
-  return {kind_of(ksp), own->entries(), own->bytes() / 1e6, own->operations()};
+  const KspHandle ksp = linear_solver(matrix, prefix, pc_type);
+  return petsc::analyse(ksp, matrix);
 }
 
 void probe_linear_solver(const std::string& prefix) {
@@ -167,8 +130,8 @@ void probe_linear_solver(const std::string& prefix) {
   for (PetscInt i = 0; i < 2; ++i) check(MatSetValue(unit, i, i, 1, INSERT_VALUES));
   check(MatAssemblyBegin(unit, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(unit, MAT_FINAL_ASSEMBLY));
-  const KspHandle ksp = linear_solver(unit, prefix, Solver::lu);
-  check(KSPSetUp(ksp));
+  const KspHandle ksp = linear_solver(unit, prefix, PCLU);
+  if (!is_own(ksp)) check(KSPSetUp(ksp));
 }
 
 }  // namespace stickslip::petsc

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -17,41 +16,6 @@
 
 namespace stickslip::petsc {
 namespace {
-
-constexpr const char* kElements = "elements";
-
-// Options that were set here, not by the user.
-std::set<std::string>& own_defaults() {
-  static std::set<std::string> names;
-  return names;
-}
-
-// A default that any option of the user overrides.
-void set_default(const std::string& option, const char* value) {
-  PetscBool given = PETSC_FALSE;
-  check(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &given));
-  if (given == PETSC_TRUE) return;
-  check(PetscOptionsSetValue(nullptr, option.c_str(), value));
-  check(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &given));  // counts as used
-  own_defaults().insert(option);
-}
-
-// Called by PETSc.
-
-// PETSc's preconditioner of the type "shell" is filled in when its matrix is known.
-PetscErrorCode create_elements(PC pc) {
-  const PetscErrorCode code = PCSetType(pc, PCSHELL);
-  return code == 0 ? PCShellSetName(pc, kElements) : code;
-}
-
-template <bool transposed>
-PetscErrorCode apply(PC pc, Vec b, Vec x) {
-  return guarded([&] {
-    void* own = nullptr;
-    check(PCShellGetContext(pc, &own));
-    static_cast<const Preconditioner*>(own)->apply(b, x, transposed);
-  });
-}
 
 PC preconditioner_of(KSP ksp) {
   PC pc = nullptr;
@@ -124,97 +88,6 @@ class OptionFor {
   PetscBool given_ = PETSC_FALSE;
 };
 
-// MUMPS counts in millions, negative, what exceeds its integers.
-double entries_counted(PetscInt entries) {
-  return entries < 0 ? -1e6 * static_cast<double>(entries) : static_cast<double>(entries);
-}
-
-}  // namespace
-
-bool chooses_solver(const std::string& prefix) {
-  char* text = nullptr;
-  check(PetscOptionsGetAll(nullptr, &text));
-  std::istringstream words(text);
-  check(PetscFree(text));
-  for (std::string word; words >> word;) {
-    const bool chooses =
-        word.starts_with("-" + prefix + "pc_") || word.starts_with("-" + prefix + "mat_");
-    if (chooses && !own_defaults().contains(word)) return true;
-  }
-  return false;
-}
-
-void set_direct_solver(KSP ksp) {
-  check(KSPSetType(ksp, KSPPREONLY));
-  PC pc = preconditioner_of(ksp);
-  check(PCSetType(pc, PCLU));
-  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-}
-
-void set_default_ordering(KSP ksp) {
-  const char* prefix = nullptr;
-  check(KSPGetOptionsPrefix(ksp, &prefix));
-  if (uses_mumps(ksp)) set_default(fmt::format("-{}mat_mumps_icntl_7", prefix), "2");  // AMF
-}
-
-void require_factored(KSP ksp, const std::string& prefix) {
-  const PCFailedReason reason = failure_of(ksp);
-  if (reason == PC_NOERROR) return;
-  const std::string what = describe_failure(ksp);
-  if (reason == PC_FACTOR_OUTMEMORY) {
-    throw NoMemory(fmt::format("{}; {}", what, kFactorsTooLarge));
-  }
-  throw NotReached(fmt::format("the solver -{} failed: {}", prefix, what));
-}
-
-void record_factors(KSP ksp, Ledger& ledger) {
-  if (!uses_mumps(ksp)) return;
-  const PetscInt entries = infog(ksp, 29), megabytes = infog(ksp, 22);  // of all ranks
-  Ledger size;
-  size.factor_entries = static_cast<std::int64_t>(entries_counted(entries));
-  size.factor_megabytes = static_cast<double>(megabytes);
-  ledger += size;
-}
-
-Solver chosen_solver(const std::string& prefix, Solver preferred) {
-  if (!chooses_solver(prefix)) return preferred;
-  std::array<char, 64> type{};
-  check(PetscOptionsGetString(nullptr, nullptr, fmt::format("-{}pc_type", prefix).c_str(),
-                              type.data(), type.size(), nullptr));
-  return std::strcmp(type.data(), kElements) == 0 ? Solver::elements : Solver::lu;
-}
-
-KspHandle linear_solver(Mat matrix, const std::string& prefix, Solver preferred) {
-  MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(matrix));
-  KspHandle ksp;
-  check(KSPCreate(comm, ksp.out()));
-  check(KSPSetOptionsPrefix(ksp, prefix.c_str()));
-  check(KSPSetOperators(ksp, matrix, matrix));
-  set_direct_solver(ksp);
-  check(PCRegister(kElements, create_elements));
-  if (chosen_solver(prefix, preferred) == Solver::elements) {
-    check(PCSetType(preconditioner_of(ksp), kElements));
-  }
-  check(KSPSetFromOptions(ksp));
-  set_default_ordering(ksp);
-  return ksp;
-}
-
-Solver kind_of(KSP ksp) {
-  PC pc = preconditioner_of(ksp);
-  PetscBool shell = PETSC_FALSE;
-  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCSHELL, &shell));
-  return shell == PETSC_TRUE ? Solver::elements : Solver::lu;
-}
-
-void attach(KSP ksp, const Preconditioner& preconditioner) {
-  PC pc = preconditioner_of(ksp);
-  // PETSc's interface knows no const.
-  check(PCShellSetContext(pc, const_cast<Preconditioner*>(&preconditioner)));
-  check(PCShellSetApply(pc, apply<false>));
-  check(PCShellSetApplyTranspose(pc, apply<true>));
-}
-
 bool lacks_workspace(KSP ksp) {
   if (failure_of(ksp) == PC_NOERROR || !uses_mumps(ksp)) return false;
   MatFactorType type = MAT_FACTOR_NONE;
@@ -231,24 +104,120 @@ KspHandle with_more_workspace(KSP ksp, Mat matrix, const std::string& prefix) {
   check(MatMumpsGetIcntl(factor_of(ksp), 14, &percent));
   const OptionFor more(fmt::format("-{}mat_mumps_icntl_14", prefix),
                        std::to_string(std::max(least, 2 * percent)));
-  KspHandle again = linear_solver(matrix, prefix, Solver::lu);
+  KspHandle again = linear_solver(matrix, prefix, PCLU);
   check(KSPSetUp(again));
   return again;
 }
 
-Analysis analyse(KSP ksp, Mat matrix) {
-  if (!uses_mumps(ksp)) return {};
+// MUMPS counts in millions, negative, what exceeds its integers.
+double entries_counted(PetscInt entries) {
+  return entries < 0 ? -1e6 * static_cast<double>(entries) : static_cast<double>(entries);
+}
+
+// By the number of its counters for entries and megabytes.
+Analysis counted_by_mumps(KSP ksp, PetscInt entries, PetscInt megabytes) {
+  PetscReal operations = 0;
+  check(MatMumpsGetRinfog(factor_of(ksp), 1, &operations));
+  return {PCLU, entries_counted(infog(ksp, entries)), static_cast<double>(infog(ksp, megabytes)),
+          operations};
+}
+
+using Analyse = PetscErrorCode (*)(PC, Analysis*);
+
+Analyse own_function(KSP ksp) {
+  Analyse analyse = nullptr;
+  const auto pc = reinterpret_cast<PetscObject>(preconditioner_of(ksp));
+  check(PetscObjectQueryFunction(pc, kAnalyse, &analyse));
+  return analyse;
+}
+
+// Of PCs of this program; no sizes of others.
+Analysis own_analysis(KSP ksp) {
+  Analysis analysis;
+  if (const Analyse analyse = own_function(ksp)) check(analyse(preconditioner_of(ksp), &analysis));
+  return analysis;
+}
+
+}  // namespace
+
+bool chooses_solver(const std::string& prefix) {
+  char* text = nullptr;
+  check(PetscOptionsGetAll(nullptr, &text));
+  std::istringstream words(text);
+  check(PetscFree(text));
+  for (std::string word; words >> word;) {
+    if (word.starts_with("-" + prefix + "pc_") || word.starts_with("-" + prefix + "mat_")) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void set_direct_solver(KSP ksp) {
+  check(KSPSetType(ksp, KSPPREONLY));
+  PC pc = preconditioner_of(ksp);
+  check(PCSetType(pc, PCLU));
+  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+}
+
+void set_default_ordering(KSP ksp, Mat matrix) {
+  if (!uses_mumps(ksp)) return;
+  constexpr PetscInt ordering = 7, amf = 2;
+  const char* prefix = nullptr;
+  check(KSPGetOptionsPrefix(ksp, &prefix));
+  check(KSPSetOperators(ksp, matrix, matrix));
+  check(MatSetOptionsPrefixFactor(matrix, prefix));  // of the options that the factors read
   check(PCFactorSetUpMatSolverType(preconditioner_of(ksp)));
-  Mat factor = factor_of(ksp);
+  check(MatMumpsSetIcntl(factor_of(ksp), ordering, amf));
+}
+
+KspHandle linear_solver(Mat matrix, const std::string& prefix, PCType pc_type) {
+  KspHandle ksp;
+  check(KSPCreate(PetscObjectComm(reinterpret_cast<PetscObject>(matrix)), ksp.out()));
+  check(KSPSetOptionsPrefix(ksp, prefix.c_str()));
+  check(KSPSetOperators(ksp, matrix, matrix));
+  set_direct_solver(ksp);
+  if (!chooses_solver(prefix)) check(PCSetType(preconditioner_of(ksp), pc_type));
+  check(KSPSetFromOptions(ksp));
+  set_default_ordering(ksp, matrix);
+  return ksp;
+}
+
+bool is_own(KSP ksp) { return own_function(ksp) != nullptr; }
+
+void factor(KspHandle& ksp, Mat matrix, const std::string& prefix) {
+  check(KSPSetUp(ksp));
+  if (lacks_workspace(ksp)) ksp = with_more_workspace(ksp, matrix, prefix);
+  require_factored(ksp, prefix);
+}
+
+void require_factored(KSP ksp, const std::string& prefix) {
+  const PCFailedReason reason = failure_of(ksp);
+  if (reason == PC_NOERROR) return;
+  const std::string what = describe_failure(ksp);
+  if (reason == PC_FACTOR_OUTMEMORY) {
+    throw NoMemory(fmt::format("{}; {}", what, kFactorsTooLarge));
+  }
+  throw NotReached(fmt::format("the solver -{} failed: {}", prefix, what));
+}
+
+void record_factors(KSP ksp, Ledger& ledger) {
+  constexpr PetscInt entries = 29, megabytes = 22;  // of all ranks
+  const Analysis sizes =
+      uses_mumps(ksp) ? counted_by_mumps(ksp, entries, megabytes) : own_analysis(ksp);
+  Ledger seen;
+  seen.factor_entries = static_cast<std::int64_t>(sizes.factor_entries);
+  seen.factor_megabytes = sizes.megabytes;
+  ledger += seen;
+}
+
+Analysis analyse(KSP ksp, Mat matrix) {
+  if (!uses_mumps(ksp)) return own_analysis(ksp);
   MatFactorInfo info{};
   check(MatFactorInfoInitialize(&info));
-  check(MatLUFactorSymbolic(factor, matrix, nullptr, nullptr, &info));
-  PetscInt entries = 0, megabytes = 0;
-  PetscReal operations = 0;
-  check(MatMumpsGetInfog(factor, 3, &entries));
-  check(MatMumpsGetInfog(factor, 17, &megabytes));
-  check(MatMumpsGetRinfog(factor, 1, &operations));
-  return {Solver::lu, entries_counted(entries), static_cast<double>(megabytes), operations};
+  check(MatLUFactorSymbolic(factor_of(ksp), matrix, nullptr, nullptr, &info));
+  constexpr PetscInt entries = 3, megabytes = 17;
+  return counted_by_mumps(ksp, entries, megabytes);
 }
 
 }  // namespace stickslip::petsc

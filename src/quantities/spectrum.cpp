@@ -145,21 +145,14 @@ class DirectSpectrum {
 
  private:
   void shift_to(double omega) {
-    check(MatShift(a_.matrix(), imaginary(omega - omega_)));
-    omega_ = omega;
-    if (factors_ == nullptr) {
-      first_ = omega;
-      factors_ =
-          std::make_unique<petsc::Factorization>(a_.matrix(), operators::kSlidePrefix, ledger_,
-                                                 operators::structure_of(a_, imaginary(omega)));
-    } else {
-      factors_->update(imaginary(omega - first_));
-    }
+    a_.shift(imaginary(omega - std::exchange(omega_, omega)));
+    if (factors_) return factors_->update();
+    factors_ = operators::factorization(a_, ledger_);
   }
 
   KolmogorovOperator a_;
   petsc::Ledger& ledger_;
-  double turn_, omega_ = 0, first_ = 0;  // now, and when factored first
+  double turn_, omega_ = 0;
   petsc::VecHandle b_, c_, acceleration_, cl_;
   std::unique_ptr<petsc::Factorization> factors_;
 };

@@ -6,6 +6,7 @@
 #include "stickslip/accuracy/refinement.hpp"
 #include "stickslip/accuracy/resolution.hpp"
 #include "stickslip/model/drag_law.hpp"
+#include "stickslip/operators/solver_policy.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/velocity/axis.hpp"
 
@@ -129,9 +130,12 @@ TEST_CASE("resolution: the work of a band, or of blocks of noise nodes") {
   const auto hp = hp_resolution(s, 7, 0, 1e-6);
   const double levels = 2.0 * hp.levels + 1;
   const double nodes = accuracy::discretise(s, hp).axis->size(), n = levels * nodes;
-  const bool dense = petsc::ranks(PETSC_COMM_WORLD) == 1;
-  const double band = n * nodes * std::min(levels, nodes), blocks = n * levels * levels / 7;
-  CHECK(accuracy::relative_work(s, hp) == Approx(dense ? blocks : band));
+  const double band = n * nodes * std::min(levels, nodes);
+  const auto blocks = operators::elimination_cost(accuracy::discretise(s, hp), true, 1);
+  CHECK(accuracy::relative_work(s, hp) == Approx(blocks.operations));
+  auto both = hp;
+  both.halves = 2;
+  CHECK(accuracy::relative_work(s, both) == Approx(2 * blocks.operations));
   auto by_mumps = hp;
   by_mumps.factors = options::Factors::in_memory;
   CHECK(accuracy::relative_work(s, by_mumps) == Approx(band));

@@ -8,6 +8,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "stickslip/operators/element_pc.hpp"
 #include "stickslip/petsc/blas.hpp"
 #include "stickslip/petsc/session.hpp"
 
@@ -15,6 +16,7 @@ int main(int argc, char** argv) {
   int petsc_argc = 1;  // Catch2's flags are no PETSc options; those come by PETSC_OPTIONS
   const stickslip::petsc::Session session(petsc_argc, argv);
   stickslip::petsc::keep_blas_to_one_thread();
+  stickslip::operators::register_preconditioners();
   const int rank = stickslip::petsc::rank(MPI_COMM_WORLD);
 
   std::ostringstream quiet;

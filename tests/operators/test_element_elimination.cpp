@@ -8,6 +8,7 @@
 #include "stickslip/model/drag_law.hpp"
 #include "stickslip/operators/element_elimination.hpp"
 #include "stickslip/operators/kolmogorov_operator.hpp"
+#include "stickslip/operators/solver_policy.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
@@ -82,67 +83,56 @@ double residual(const KolmogorovOperator& a, Vec x, Vec b, bool transposed) {
   return left / (size + matrix * solution);
 }
 
-void check_solves(const KolmogorovOperator& a, PetscScalar lambda, PetscScalar shift) {
-  ElementElimination elimination(a.discretisation(), a.states(), a.matrix(), lambda);
-  check(MatShift(a.matrix(), shift));
-  elimination.factor(shift);
+void check_solves(const KolmogorovOperator& a) {
+  const ElementElimination elimination(a.matrix(), operators::data_of(a.matrix()));
   const auto b = rough(a);
   const auto x = a.zeros();
   for (bool transposed : {false, true}) {
     INFO((transposed ? "transposed" : "plain"));
-    elimination.apply(b, x, transposed);
+    elimination.solve(b, x, transposed);
     CHECK(residual(a, x, b, transposed) < 1e-13);
   }
 }
 
 }  // namespace
 
-TEST_CASE("element elimination: solves every kind of system, plain and transposed") {
-  if (petsc::ranks(PETSC_COMM_WORLD) > 1) return;
+TEST_CASE("element elimination: solves every kind of system, plain and transposed", "[parallel]") {
   for (const auto& c : cases()) {
     for (Rest rest : {Rest::killing, Rest::kept, Rest::killed_on_exit, Rest::killing_edges}) {
       INFO(c.name << ", symmetry " << static_cast<int>(c.symmetry) << ", rest "
                   << static_cast<int>(rest));
-      const KolmogorovOperator a(PETSC_COMM_SELF, c.on, 0.4, c.symmetry, rest);
-      check_solves(a, 0.4, 0);
+      check_solves(KolmogorovOperator(PETSC_COMM_WORLD, c.on, 0.4, c.symmetry, rest));
     }
   }
 }
 
-TEST_CASE("element elimination: follows a shift of the matrix") {
-  if (petsc::ranks(PETSC_COMM_WORLD) > 1) return;
+TEST_CASE("element elimination: follows a shift of the operator", "[parallel]") {
   PetscScalar shift = 3.5;
 #if defined(PETSC_USE_COMPLEX)
   shift = PetscScalar(0.5, 12);
 #endif
   for (const auto& c : cases()) {
     INFO(c.name);
-    const KolmogorovOperator a(PETSC_COMM_SELF, c.on, 0.1, c.symmetry, Rest::kept);
-    check_solves(a, 0.1, shift);
+    KolmogorovOperator a(PETSC_COMM_WORLD, c.on, 0.1, c.symmetry, Rest::kept);
+    a.shift(shift);
+    check_solves(a);
   }
 }
 
-TEST_CASE("element elimination: entries are blocks of noise nodes, and the elements' own") {
-  if (petsc::ranks(PETSC_COMM_WORLD) > 1) return;
+TEST_CASE("element elimination: what is kept was predicted", "[parallel]") {
   const auto on = test::on_nodes(plain(0.25, 1.0 / 64), 8, 6);
-  const KolmogorovOperator a(PETSC_COMM_SELF, on, 0.0, Symmetry::even, Rest::killing);
-  const ElementElimination elimination(on, a.states(), a.matrix(), 0.0);
-  const double noise = on.noise->count();
-  const double elements = static_cast<double>(on.axis->cells().size()) - 1;
-  CHECK(elimination.entries() > elements * noise * noise);
-  CHECK(elimination.entries() < 4.5 * elements * noise * noise);
-  CHECK(elimination.bytes() == sizeof(PetscScalar) * elimination.entries());
-  CHECK(elimination.operations() > elements * noise * noise * noise / 2);
-}
-
-TEST_CASE("element elimination: for hp axes on one rank, up to a number of nodes", "[parallel]") {
-  const bool alone = petsc::ranks(PETSC_COMM_WORLD) == 1;
-  const auto preferred = [](const operators::Discretisation& on) {
-    const KolmogorovOperator a(PETSC_COMM_WORLD, on, 0.0, Symmetry::even, Rest::killing);
-    const auto structure = operators::structure_of(a, 0.0);
-    return std::pair{structure.elimination != nullptr, structure.preferred};
-  };
-  CHECK(preferred(test::on_hp(plain(0.25, 0.25), 3)) == std::pair{alone, alone});
-  CHECK(preferred(test::on_hp(plain(0.25, 1.0 / 64), 2)) == std::pair{alone, false});
-  CHECK(preferred(test::on_upwind(plain(0.25, 0.25), 2)) == std::pair{false, false});
+  for (Symmetry symmetry : {Symmetry::even, Symmetry::none}) {
+    const KolmogorovOperator a(PETSC_COMM_WORLD, on, 0.0, symmetry, Rest::killing);
+    const ElementElimination elimination(a.matrix(), operators::data_of(a.matrix()));
+    const int ranks = petsc::ranks(PETSC_COMM_WORLD);
+    double kept = elimination.entries();
+    MPI_Allreduce(MPI_IN_PLACE, &kept, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    const auto cost = operators::elimination_cost(on, a.states().folded(), ranks);
+    CHECK(cost.entries < kept);  // the meeting at v = 0, couplings of groups
+    CHECK(cost.entries > 0.8 * kept);
+    CHECK(cost.bytes == sizeof(PetscScalar) * cost.entries);
+    const double noise = on.noise->count();
+    const double elements = static_cast<double>(on.axis->cells().size()) - 1;
+    CHECK(cost.operations > elements * noise * noise * noise / 2);
+  }
 }

@@ -70,8 +70,8 @@ void add_product(std::type_identity_t<Scalar> factor, const Matrix<Scalar>& a,
                  const Matrix<Scalar>& b, int columns, Matrix<Scalar>& c);
 /// y += A x, or A^T x. O(rows(A) columns(A)).
 template <class Scalar>
-void add_product(const Matrix<Scalar>& a, const std::vector<Scalar>& x, std::vector<Scalar>& y,
-                 bool transposed = false);
+void add_product(const Matrix<Scalar>& a, const std::type_identity_t<Scalar>* x,
+                 std::type_identity_t<Scalar>* y, bool transposed = false);
 
 template <class Scalar>
 [[nodiscard]] Matrix<Scalar> operator*(const Matrix<Scalar>& a, const Matrix<Scalar>& b) {
@@ -83,14 +83,14 @@ template <class Scalar>
 template <class Scalar>
 [[nodiscard]] std::vector<Scalar> operator*(const Matrix<Scalar>& a, const std::vector<Scalar>& x) {
   std::vector<Scalar> y(static_cast<std::size_t>(a.rows()), 0.0);
-  add_product(a, x, y);
+  add_product(a, x.data(), y.data());
   return y;
 }
 /// x A for a row x.
 template <class Scalar>
 [[nodiscard]] std::vector<Scalar> operator*(const std::vector<Scalar>& x, const Matrix<Scalar>& a) {
   std::vector<Scalar> y(static_cast<std::size_t>(a.columns()), 0.0);
-  add_product(a, x, y, true);
+  add_product(a, x.data(), y.data(), true);
   return y;
 }
 /// LU factors of a square matrix with row interchanges (getrf).

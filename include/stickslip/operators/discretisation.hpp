@@ -1,7 +1,6 @@
 #pragma once
 /// A process made discrete.
 
-#include <cstdint>
 #include <memory>
 #include <utility>
 
@@ -24,13 +23,5 @@ struct Discretisation {
   std::shared_ptr<const noise::Nodes> noise;
   std::shared_ptr<const velocity::Axis> axis;  ///< none for the fluid queue
 };
-
-/// Whether dense blocks of noise nodes along the velocity beat sparse factors: groups couple all of
-/// their nodes, and MUMPS takes ten times as long; where every level is a node, which has two
-/// neighbours alone, both are even at some 900 of them.
-[[nodiscard]] inline bool suits_elements(std::int64_t noise_nodes, bool all_levels) {
-  constexpr std::int64_t most_levels = 700;
-  return !all_levels || noise_nodes <= most_levels;
-}
 
 }  // namespace stickslip::operators

@@ -4,11 +4,12 @@
 #include <petscmat.h>
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "stickslip/operators/state_space.hpp"
+#include "stickslip/operators/matrix_data.hpp"
 #include "stickslip/petsc/handle.hpp"
 
 namespace stickslip::operators {
@@ -42,9 +43,12 @@ class KolmogorovOperator {
                                                      const Discretisation& discretisation,
                                                      Symmetry symmetry, Parameter theta);
 
-  [[nodiscard]] const Discretisation& discretisation() const { return discretisation_; }
-  [[nodiscard]] const StateSpace& states() const { return states_; }
+  [[nodiscard]] const Discretisation& discretisation() const { return data_->discretisation; }
+  [[nodiscard]] const StateSpace& states() const { return data_->states; }
+  /// Carries the MatrixData of the operator.
   [[nodiscard]] Mat matrix() const { return matrix_; }
+  /// lambda += by. Collective.
+  void shift(PetscScalar by);
   [[nodiscard]] PetscInt64 nonzeros() const { return nonzeros_; }
 
   /// The functional u -> u(s+) (upper) or u(s-) (lower; unfolded only) as a vector. Collective.
@@ -89,8 +93,7 @@ class KolmogorovOperator {
   class Assembler;
   using Functional = std::vector<std::pair<PetscInt, double>>;
 
-  Discretisation discretisation_;
-  StateSpace states_;
+  std::shared_ptr<MatrixData> data_;
   Functional trace_upper_, trace_lower_;
   std::vector<Coupling> rest_coupling_;  // -A_us
   std::vector<Coupling> exit_coupling_;  // level +1 upwards, -1 downwards

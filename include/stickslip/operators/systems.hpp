@@ -28,23 +28,24 @@ inline const std::string kSlidePrefix = "slide_";
                                                      Symmetry symmetry, Parameter theta,
                                                      petsc::Ledger& ledger);
 
-/// What solvers can use of an operator assembled for this lambda, which must live as long as the
-/// result: on one rank and an hp axis an ElementElimination, preferred where suits_elements().
-[[nodiscard]] petsc::Structure structure_of(const KolmogorovOperator& a, PetscScalar lambda);
+/// The solver of an operator, which must live as long: by default what default_pc_type() says.
+/// Collective. Throws NoMemory or NotReached.
+[[nodiscard]] std::unique_ptr<petsc::Factorization> factorization(const KolmogorovOperator& a,
+                                                                  petsc::Ledger& ledger);
 
 /// lambda - L with its solver.
 class System {
  public:
   /// Collective. Throws NoMemory or NotReached.
-  System(KolmogorovOperator a, PetscScalar lambda, petsc::Ledger& ledger)
-      : a_(std::move(a)), factors_(a_.matrix(), kSlidePrefix, ledger, structure_of(a_, lambda)) {}
+  System(KolmogorovOperator a, petsc::Ledger& ledger)
+      : a_(std::move(a)), factors_(factorization(a_, ledger)) {}
 
   [[nodiscard]] const KolmogorovOperator& a() const { return a_; }
-  [[nodiscard]] petsc::Factorization& factors() { return factors_; }
+  [[nodiscard]] petsc::Factorization& factors() { return *factors_; }
 
  private:
   KolmogorovOperator a_;
-  petsc::Factorization factors_;
+  std::unique_ptr<petsc::Factorization> factors_;
 };
 
 /// One system for each (lambda, symmetry, rest) that is asked for, and none else; each is assembled

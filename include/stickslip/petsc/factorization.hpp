@@ -3,15 +3,12 @@
 
 #include <petscmat.h>
 
-#include <functional>
-#include <memory>
 #include <string>
 
 #include "stickslip/petsc/backward_error.hpp"
 #include "stickslip/petsc/handle.hpp"
 #include "stickslip/petsc/ledger.hpp"
 #include "stickslip/petsc/linear_solver.hpp"
-#include "stickslip/petsc/preconditioner.hpp"
 
 namespace stickslip::petsc {
 
@@ -23,15 +20,6 @@ struct Solution {
   double backward_error = 0;  ///< of the corrected x; see BackwardError
 };
 
-/// What is known of a matrix besides its entries.
-struct Structure {
-  /// Makes an elimination of its own for it, asked when it comes to that.
-  std::function<std::unique_ptr<Preconditioner>()> elimination = {};
-  bool preferred = false;  ///< whether that beats general sparse factors
-
-  [[nodiscard]] Solver solver() const { return preferred ? Solver::elements : Solver::lu; }
-};
-
 /// A direct solver reports success on a singular matrix too, so each solve computes its residual
 /// and makes one step of iterative refinement, a second one where the backward error is above
 /// 1e-12 still. All members are collective.
@@ -41,8 +29,8 @@ class Factorization {
   /// trailing underscore. Times and counts go to `ledger`, which must outlive this object.
   /// Where MUMPS runs out of the workspace that it set aside (INFOG(1) = -8, -9), it is given more
   /// once. Throws NoMemory when the factors do not fit, NotReached when the factorisation fails.
-  Factorization(Mat matrix, const std::string& prefix, Ledger& ledger,
-                const Structure& structure = {});
+  /// `pc_type`: default of -<prefix>pc_type.
+  Factorization(Mat matrix, const std::string& prefix, Ledger& ledger, PCType pc_type = PCLU);
 
   /// A x = b. Throws NotReached when the backward error stays above 1e-12.
   [[nodiscard]] Solution solve(Vec b) { return solve(b, false); }
@@ -54,24 +42,21 @@ class Factorization {
   void solve_once(Vec b, Vec x);
   void solve_transposed_once(Vec b, Vec x);
 
-  /// Factors again after `shift` times the identity has been added to the matrix, in all since this
-  /// object was made; the analysis is kept.
-  void update(PetscScalar shift);
+  /// Factors again after the values of the matrix have changed; the analysis is kept.
+  void update();
 
   /// Orders and analyses `matrix` as the constructor would, and stops there. Collective.
   [[nodiscard]] static Analysis analyse(Mat matrix, const std::string& prefix, Ledger& ledger,
-                                        const Structure& structure = {});
+                                        PCType pc_type = PCLU);
 
  private:
-  void factor(PetscScalar shift);
-  void factor_by_petsc();
+  void factor();
   [[nodiscard]] Solution solve(Vec b, bool transposed);
   [[nodiscard]] std::string advice() const;
   void apply(Vec b, Vec x, bool transposed);
 
   MatHandle matrix_;
   BackwardError measure_;
-  std::unique_ptr<Preconditioner> own_;  // null: PETSc's preconditioner does it all
   KspHandle ksp_;
   std::string prefix_;
   Ledger& ledger_;

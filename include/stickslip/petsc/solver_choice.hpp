@@ -5,21 +5,12 @@
 
 namespace stickslip::petsc {
 
-/// By what a system is solved.
-enum class Solver {
-  lu,       ///< any of PETSc's preconditioners; by default an LU factorisation by MUMPS
-  elements  ///< the operators' own elimination along the velocity
-};
-
 /// Whether options under the prefix say something about the preconditioner or its matrices.
 [[nodiscard]] bool chooses_solver(const std::string& prefix);
 
-/// What the options under the prefix choose, and `preferred` where they say nothing. Local.
-[[nodiscard]] Solver chosen_solver(const std::string& prefix, Solver preferred);
-
 /// What an analysis predicts; zeros for solvers that report nothing.
 struct Analysis {
-  Solver solver = Solver::lu;
+  std::string pc_type;
   double factor_entries = 0;
   double megabytes = 0;   ///< of all ranks, while factoring
   double operations = 0;  ///< of factoring

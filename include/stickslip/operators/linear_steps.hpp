@@ -1,0 +1,65 @@
+#pragma once
+/// A linear map as a sequence of small steps.
+
+#include <cstddef>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "stickslip/petsc/dense.hpp"
+
+namespace stickslip::operators {
+
+/// A linear map of a list in place. Each step adds a multiple of one part of the list to another,
+/// or solves a small system on one; the transposed map runs the transposed steps from the last to
+/// the first, so that one description serves both. Local.
+class LinearSteps {
+ public:
+  using Scalars = petsc::Scalars;
+
+  /// w[to] += weight w[from].
+  struct Coupling {
+    std::size_t from, to;
+    double weight;
+  };
+  /// LU factors of a tridiagonal matrix: pivots, multipliers, upper diagonal; below[0] and the last
+  /// of `above` mean nothing.
+  struct Tridiagonal {
+    Scalars diagonal, below, above;
+    /// Factors in place, without exchanges.
+    void factor();
+    void solve(PetscScalar* x, bool transposed) const;
+  };
+
+  /// w[to ...] += A w[from ...].
+  void add(petsc::DenseMatrix a, std::size_t from, std::size_t to);
+  /// One after the other.
+  void add(std::vector<Coupling> couplings);
+  /// w[at ...] <- A^-1 w[at ...].
+  void solve(petsc::DenseFactors a, std::size_t at);
+  void solve(Tridiagonal a, std::size_t at);
+  /// The steps of another map after those of this one.
+  void append(LinearSteps other);
+
+  /// w <- M w, or M^T w. O(entries).
+  void run(Scalars& w, bool transposed) const;
+
+  /// Numbers kept.
+  [[nodiscard]] double entries() const;
+
+ private:
+  struct Product {
+    petsc::DenseMatrix a;
+    std::size_t from, to;
+  };
+  template <class Factors>
+  struct Solve {
+    Factors a;
+    std::size_t at;
+  };
+  using Step =
+      std::variant<Product, std::vector<Coupling>, Solve<petsc::DenseFactors>, Solve<Tridiagonal>>;
+  std::vector<Step> steps_;
+};
+
+}  // namespace stickslip::operators

@@ -1,0 +1,50 @@
+#pragma once
+/// Which solver serves which system, and what its factors cost.
+
+#include <cstdint>
+
+#include "stickslip/noise/nodes.hpp"
+#include "stickslip/operators/discretisation.hpp"
+#include "stickslip/options/case.hpp"
+#include "stickslip/velocity/hp_axis.hpp"
+
+namespace stickslip::operators {
+
+/// By what a sliding operator is factored, where the options of -slide_ leave it `own`: on hp
+/// elements by the PC "elements" where few noise nodes stand for the levels, as groups couple all
+/// of their nodes and MUMPS takes ten times as long, and up to 700 levels that are nodes
+/// themselves, which have two neighbours alone: both are even at some 900. All else goes to MUMPS,
+/// in memory. What one solver cannot do, it says; the advice then is -slide_pc_type lu.
+[[nodiscard]] options::Factors chosen_factors(options::Factors asked, options::Scheme scheme,
+                                              std::int64_t noise_nodes, bool all_levels);
+
+/// The default of -slide_pc_type by the same rule.
+[[nodiscard]] const char* default_pc_type(const Discretisation& discretisation);
+
+/// What the factors of a matrix take, all ranks together.
+struct FactorCost {
+  double entries = 0;
+  double bytes = 0;
+  double operations = 0;  ///< of factoring
+};
+
+/// Of ElementElimination on one half line, exactly; `noise` null: every level of the process is a
+/// node. The elements are dealt out to the ranks, what is between them each rank has. Local.
+/// O(elements (groups + log nodes)).
+[[nodiscard]] FactorCost elimination_cost(const model::Process& process,
+                                          const velocity::HpAxis& axis, const noise::Nodes* noise,
+                                          int ranks);
+
+/// Of both half lines, or of the upper one if folded.
+[[nodiscard]] FactorCost elimination_cost(const Discretisation& discretisation, bool folded,
+                                          int ranks);
+
+/// Of MUMPS, or of what stands in its place, from counts: 2.7 to 3.2 n n_v entries (n unknowns, n_v
+/// of them on a noise node) on hp axes with all levels. The upwind matrix is a two-dimensional grid
+/// to MUMPS, where the shorter side m decides: 4.5 n m^0.52 entries were counted for m = 65 ...
+/// 257. 9 to 12 bytes a real entry, of which a third stays in memory when factors go to disk;
+/// incomplete factors count as none. Operations up to a factor.
+[[nodiscard]] FactorCost sparse_cost(options::Factors factors, options::Scheme scheme,
+                                     double unknowns, double noise_nodes);
+
+}  // namespace stickslip::operators

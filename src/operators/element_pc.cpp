@@ -1,0 +1,146 @@
+#include "stickslip/operators/element_pc.hpp"
+
+#include <fmt/format.h>
+#include <petsc/private/pcimpl.h>
+
+#include <memory>
+
+#include "stickslip/operators/element_elimination.hpp"
+#include "stickslip/operators/solver_policy.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/linear_solver.hpp"
+#include "stickslip/petsc/session.hpp"
+#include "stickslip/support/errors.hpp"
+
+namespace stickslip::operators {
+namespace {
+
+using petsc::check;
+using petsc::guarded;
+
+struct Events {
+  PetscClassId id = 0;
+  PetscLogEvent set_up = 0, solve = 0;
+};
+
+Events& events() {
+  static Events all;
+  return all;
+}
+
+/// What a PC of this type owns.
+struct Elements {
+  std::unique_ptr<ElementElimination> factors;
+};
+
+Elements& elements_of(PC pc) { return *static_cast<Elements*>(pc->data); }
+
+/// Shows a scope as an event of -log_view.
+class LoggedEvent {
+ public:
+  LoggedEvent(PetscLogEvent event, PC pc) : event_(event), pc_(pc) {
+    (void)PetscLogEventBegin(event_, pc_, 0, 0, 0);
+  }
+  ~LoggedEvent() { (void)PetscLogEventEnd(event_, pc_, 0, 0, 0); }
+  LoggedEvent(const LoggedEvent&) = delete;
+  LoggedEvent& operator=(const LoggedEvent&) = delete;
+
+ private:
+  PetscLogEvent event_;
+  PC pc_;
+};
+
+std::shared_ptr<const MatrixData> data_for(PC pc) {
+  auto data = data_of(pc->pmat);
+  if (data && dynamic_cast<const velocity::HpAxis*>(data->discretisation.axis.get())) return data;
+  const char* prefix = nullptr;
+  check(PCGetOptionsPrefix(pc, &prefix));
+  throw BadInput(fmt::format("-{}pc_type: elements needs the matrix of a sliding operator on an hp "
+                             "discretisation; leave it out",
+                             prefix == nullptr ? "" : prefix));
+}
+
+FactorCost cost_of(const MatrixData& data) {
+  return elimination_cost(data.discretisation, data.states.folded(),
+                          petsc::ranks(data.states.comm()));
+}
+
+// Called by PETSc.
+
+PetscErrorCode set_up(PC pc) {
+  return guarded([pc] {
+    const LoggedEvent logged(events().set_up, pc);
+    elements_of(pc).factors.reset();  // before there are others
+    elements_of(pc).factors = std::make_unique<ElementElimination>(pc->pmat, data_for(pc));
+  });
+}
+
+template <bool transposed>
+PetscErrorCode apply(PC pc, Vec b, Vec x) {
+  return guarded([=] {
+    const LoggedEvent logged(events().solve, pc);
+    elements_of(pc).factors->solve(b, x, transposed);
+  });
+}
+
+PetscErrorCode reset(PC pc) {
+  elements_of(pc).factors.reset();
+  return 0;
+}
+
+PetscErrorCode destroy(PC pc) {
+  delete &elements_of(pc);
+  pc->data = nullptr;
+  return PetscObjectComposeFunction(reinterpret_cast<PetscObject>(pc), petsc::kAnalyse, nullptr);
+}
+
+PetscErrorCode view(PC pc, PetscViewer viewer) {
+  return guarded([=] {
+    PetscBool ascii = PETSC_FALSE;
+    check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(viewer), PETSCVIEWERASCII, &ascii));
+    if (ascii == PETSC_FALSE) return;
+    const auto data = data_of(pc->pmat);
+    if (!data) return;
+    const Discretisation& on = data->discretisation;
+    const FactorCost cost = cost_of(*data);
+    const auto line = [viewer](const std::string& text) {
+      check(PetscViewerASCIIPrintf(viewer, "  %s\n", text.c_str()));
+    };
+    line("block LU along the velocity, over elements condensed to the values at their ends");
+    line(fmt::format("elements {} on {} half line(s), noise nodes {} in {} groups",
+                     on.axis->cells().size() - 1, data->states.halves().size(), on.noise->count(),
+                     on.noise->groups().size()));
+    line(fmt::format("entries of the factors {:.4g}, operations of factoring {:.4g}", cost.entries,
+                     cost.operations));
+  });
+}
+
+PetscErrorCode analyse(PC pc, petsc::Analysis* analysis) {
+  return guarded([=] {
+    const auto data = data_for(pc);
+    const FactorCost cost = cost_of(*data);
+    *analysis = {kElementsPc, cost.entries, cost.bytes / 1e6, cost.operations};
+  });
+}
+
+PetscErrorCode create(PC pc) {
+  pc->data = new Elements;
+  pc->ops->setup = set_up;
+  pc->ops->apply = apply<false>;
+  pc->ops->applytranspose = apply<true>;
+  pc->ops->reset = reset;
+  pc->ops->destroy = destroy;
+  pc->ops->view = view;
+  return PetscObjectComposeFunction(reinterpret_cast<PetscObject>(pc), petsc::kAnalyse, analyse);
+}
+
+}  // namespace
+
+void register_preconditioners() {
+  check(PCRegister(kElementsPc, create));
+  check(PetscClassIdRegister("stickslip", &events().id));
+  check(PetscLogEventRegister("PCElementsSetUp", events().id, &events().set_up));
+  check(PetscLogEventRegister("PCElementsSolve", events().id, &events().solve));
+}
+
+}  // namespace stickslip::operators

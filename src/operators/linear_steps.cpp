@@ -1,0 +1,98 @@
+#include "stickslip/operators/linear_steps.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace stickslip::operators {
+namespace {
+
+using petsc::Scalars;
+
+template <class... Cases>
+struct Overloaded : Cases... {
+  using Cases::operator()...;
+};
+template <class... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;
+
+}  // namespace
+
+void LinearSteps::Tridiagonal::factor() {
+  for (std::size_t n = 1; n < diagonal.size(); ++n) {
+    below[n] /= diagonal[n - 1];
+    diagonal[n] -= below[n] * above[n - 1];
+  }
+}
+
+void LinearSteps::Tridiagonal::solve(PetscScalar* x, bool transposed) const {
+  const std::size_t size = diagonal.size();
+  if (size == 0) return;
+  if (!transposed) {
+    for (std::size_t n = 1; n < size; ++n) x[n] -= below[n] * x[n - 1];
+    x[size - 1] /= diagonal[size - 1];
+    for (std::size_t n = size - 1; n-- > 0;) x[n] = (x[n] - above[n] * x[n + 1]) / diagonal[n];
+    return;
+  }
+  x[0] /= diagonal[0];
+  for (std::size_t n = 1; n < size; ++n) x[n] = (x[n] - above[n - 1] * x[n - 1]) / diagonal[n];
+  for (std::size_t n = size - 1; n-- > 0;) x[n] -= below[n + 1] * x[n + 1];
+}
+
+void LinearSteps::add(petsc::DenseMatrix a, std::size_t from, std::size_t to) {
+  steps_.emplace_back(Product{std::move(a), from, to});
+}
+
+void LinearSteps::add(std::vector<Coupling> couplings) {
+  steps_.emplace_back(std::move(couplings));
+}
+
+void LinearSteps::solve(petsc::DenseFactors a, std::size_t at) {
+  steps_.emplace_back(Solve<petsc::DenseFactors>{std::move(a), at});
+}
+
+void LinearSteps::solve(Tridiagonal a, std::size_t at) {
+  steps_.emplace_back(Solve<Tridiagonal>{std::move(a), at});
+}
+
+void LinearSteps::append(LinearSteps other) {
+  std::move(other.steps_.begin(), other.steps_.end(), std::back_inserter(steps_));
+}
+
+void LinearSteps::run(Scalars& w, bool transposed) const {
+  const Overloaded carry_out{
+      [&](const Product& p) {
+        const std::size_t from = transposed ? p.to : p.from, to = transposed ? p.from : p.to;
+        petsc::add_product(p.a, w.data() + from, w.data() + to, transposed);
+      },
+      [&](const std::vector<Coupling>& couplings) {
+        if (!transposed) {
+          for (const auto& [from, to, weight] : couplings) w[to] += weight * w[from];
+          return;
+        }
+        for (auto c = couplings.rbegin(); c != couplings.rend(); ++c) {
+          w[c->from] += c->weight * w[c->to];
+        }
+      },
+      [&](const auto& solve) { solve.a.solve(w.data() + solve.at, transposed); }};
+  if (transposed) {
+    for (auto step = steps_.rbegin(); step != steps_.rend(); ++step) std::visit(carry_out, *step);
+  } else {
+    for (const Step& step : steps_) std::visit(carry_out, step);
+  }
+}
+
+double LinearSteps::entries() const {
+  double count = 0;
+  const Overloaded add{
+      [&](const Product& p) { count += 1.0 * p.a.rows() * p.a.columns(); },
+      [&](const std::vector<Coupling>& couplings) {
+        count += static_cast<double>(2 * couplings.size());
+      },
+      [&](const Solve<petsc::DenseFactors>& s) { count += 1.0 * s.a.size() * s.a.size(); },
+      [&](const Solve<Tridiagonal>& s) { count += static_cast<double>(3 * s.a.diagonal.size()); }};
+  for (const Step& step : steps_) std::visit(add, step);
+  return count;
+}
+
+}  // namespace stickslip::operators

@@ -1,0 +1,109 @@
+#include "stickslip/operators/solver_policy.hpp"
+
+#include <petscsys.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "stickslip/operators/element_pc.hpp"
+#include "stickslip/petsc/session.hpp"
+
+namespace stickslip::operators {
+namespace {
+
+using options::Factors;
+using options::Scheme;
+
+double scalar_bytes() { return petsc::complex_scalars() ? 16 : 8; }
+
+// How many noise nodes do not rise where drag adds `drag` to their speeds.
+double falling_nodes(const model::Process& process, const noise::Nodes* noise, double drag) {
+  const int half = noise == nullptr ? process.noise.levels : noise->half();
+  int below = -half, above = half + 1;  // the first that rises is in [below, above]
+  while (below < above) {
+    const int n = below + (above - below) / 2;
+    const double x = noise == nullptr ? process.noise.level(n) : noise->x(n);
+    if (process.excess_at(x) + drag > 0) {
+      above = n;
+    } else {
+      below = n + 1;
+    }
+  }
+  return static_cast<double>(below) + half;
+}
+
+// How many groups have how many nodes.
+std::map<int, double> group_sizes(const model::Process& process, const noise::Nodes* noise) {
+  if (noise == nullptr) return {{1, 2.0 * process.noise.levels + 1}};
+  std::map<int, double> sizes;
+  for (const auto& group : noise->groups()) sizes[group.count] += 1;
+  return sizes;
+}
+
+}  // namespace
+
+Factors chosen_factors(Factors asked, Scheme scheme, std::int64_t noise_nodes, bool all_levels) {
+  if (asked != Factors::own) return asked;
+  constexpr std::int64_t most_levels = 700;
+  const bool few = !all_levels || noise_nodes <= most_levels;
+  return scheme == Scheme::hp && few ? Factors::elements : Factors::in_memory;
+}
+
+const char* default_pc_type(const Discretisation& discretisation) {
+  const auto& [process, noise, axis] = discretisation;
+  const bool hp = dynamic_cast<const velocity::HpAxis*>(axis.get()) != nullptr;
+  const Factors factors = chosen_factors(Factors::own, hp ? Scheme::hp : Scheme::upwind,
+                                         noise->count(), noise->all_levels());
+  return factors == Factors::elements ? kElementsPc : "lu";
+}
+
+// The blocks and couplings of groups inside of the elements, and those between elements.
+FactorCost elimination_cost(const model::Process& process, const velocity::HpAxis& axis,
+                            const noise::Nodes* noise, int ranks) {
+  const auto sizes = group_sizes(process, noise);
+  const double all = noise == nullptr ? 2.0 * process.noise.levels + 1 : noise->count();
+  double inside = 0, between = 0, operations = 0;
+  double inner = falling_nodes(process, noise, axis.drag_at_end(0));
+  for (int e = 0; e < axis.elements(); ++e) {
+    const double q = axis.element(e).reference->size;
+    const double outer = falling_nodes(process, noise, axis.drag_at_end(e + 1));
+    for (const auto& [nodes, groups] : sizes) {
+      const double n = nodes * q;
+      inside += groups * (n * n + n * q);
+      operations +=
+          groups * (n * n * (2 * n / 3 + 4 * q + 2 * nodes) + (nodes == 1 ? 4 : 8) * q * q * all);
+    }
+    const double up = all - outer, up_inner = all - inner;
+    between += up_inner * up + 2 * outer * up + outer * outer + (outer + up) * inner;
+    operations += 2 * outer * (outer * up + outer * outer / 3 + outer * inner + up * inner) +
+                  2 * up_inner * up * inner + 4 * q * all * all;
+    inner = outer;
+  }
+  const double entries = inside + ranks * between;
+  return {entries, scalar_bytes() * entries, operations};
+}
+
+FactorCost elimination_cost(const Discretisation& discretisation, bool folded, int ranks) {
+  const auto& [process, noise, axis] = discretisation;
+  const auto of = [&](const model::Process& along, const velocity::Axis& side) {
+    return elimination_cost(along, dynamic_cast<const velocity::HpAxis&>(side), noise.get(), ranks);
+  };
+  FactorCost cost = of(process, *axis);
+  if (folded) return cost;
+  const FactorCost other = of(process.mirrored(), axis->mirrored());
+  return {cost.entries + other.entries, cost.bytes + other.bytes,
+          cost.operations + other.operations};
+}
+
+FactorCost sparse_cost(Factors factors, Scheme scheme, double unknowns, double noise_nodes) {
+  const double nodes = unknowns / noise_nodes, shorter = std::min(noise_nodes, nodes);
+  const bool upwind = scheme == Scheme::upwind;
+  const double operations = unknowns * (upwind ? 1 : nodes) * shorter;
+  if (factors == Factors::incomplete) return {0, 0, operations};
+  const double entries = unknowns * (upwind ? 4.5 * std::pow(shorter, 0.52) : 3.0 * nodes);
+  const double bytes_an_entry = (upwind ? 12 : 10) * (factors == Factors::on_disk ? 0.3 : 1);
+  return {entries, scalar_bytes() / 8 * bytes_an_entry * entries, operations};
+}
+
+}  // namespace stickslip::operators

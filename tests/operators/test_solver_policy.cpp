@@ -1,0 +1,128 @@
+#include <catch2/catch.hpp>
+#include <petscksp.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "../common/options.hpp"
+#include "../common/scenes.hpp"
+#include "stickslip/operators/element_pc.hpp"
+#include "stickslip/operators/solver_policy.hpp"
+#include "stickslip/operators/systems.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/linear_solver.hpp"
+#include "stickslip/petsc/session.hpp"
+#include "stickslip/petsc/vectors.hpp"
+#include "stickslip/support/errors.hpp"
+
+using namespace stickslip;
+using operators::KolmogorovOperator;
+using operators::Rest;
+using operators::Symmetry;
+using options::Factors;
+using options::Scheme;
+using petsc::check;
+
+namespace {
+
+model::Scene with_step(double delta) { return test::scene(1, 0.25, 1, delta, {1, 0}); }
+
+KolmogorovOperator sliding(const operators::Discretisation& on, double lambda = 0) {
+  return {PETSC_COMM_WORLD, on, lambda, Symmetry::even, Rest::killing};
+}
+
+// The solution of (lambda - L) u = 1 by what the options choose, and the type of its PC.
+std::pair<petsc::VecHandle, std::string> solved(const operators::Discretisation& on) {
+  const auto a = sliding(on, 0.4);
+  const auto ksp = petsc::linear_solver(a.matrix(), "user_", operators::default_pc_type(on));
+  auto one = a.zeros(), u = a.zeros();
+  check(VecSet(one, 1));
+  check(KSPSolve(ksp, one, u));
+  PC pc = nullptr;
+  PCType type = nullptr;
+  check(KSPGetPC(ksp, &pc));
+  check(PCGetType(pc, &type));
+  return {std::move(u), type};
+}
+
+double distance(Vec a, Vec b) {
+  PetscReal size = 0;
+  check(VecAXPY(a, -1, b));
+  check(VecNorm(a, NORM_INFINITY, &size));
+  return size;
+}
+
+}  // namespace
+
+TEST_CASE("solver policy: elements where few noise nodes stand for the levels", "[parallel]") {
+  CHECK(operators::chosen_factors(Factors::own, Scheme::hp, 100000, false) == Factors::elements);
+  CHECK(operators::chosen_factors(Factors::own, Scheme::hp, 700, true) == Factors::elements);
+  CHECK(operators::chosen_factors(Factors::own, Scheme::hp, 701, true) == Factors::in_memory);
+  CHECK(operators::chosen_factors(Factors::own, Scheme::upwind, 9, true) == Factors::in_memory);
+  CHECK(operators::chosen_factors(Factors::on_disk, Scheme::hp, 9, false) == Factors::on_disk);
+  const std::string own = operators::kElementsPc;
+  CHECK(operators::default_pc_type(test::on_nodes(with_step(1.0 / 64), 3, 3)) == own);
+  CHECK(operators::default_pc_type(test::on_hp(with_step(1.0 / 64), 2)) == std::string("lu"));
+  CHECK(operators::default_pc_type(test::on_upwind(with_step(0.25), 2)) == std::string("lu"));
+}
+
+TEST_CASE("solver policy: options choose another solver, with the same solution", "[parallel]") {
+  const auto on = test::on_nodes(with_step(0.25), 4, 3);
+  const auto [expected, type] = solved(on);
+  CHECK(type == operators::kElementsPc);
+  using Options = std::vector<std::pair<std::string, std::string>>;
+  const bool alone = petsc::ranks(PETSC_COMM_WORLD) == 1;
+  const std::string block = alone ? "ilu" : "bjacobi";
+  const std::vector<std::pair<Options, std::string>> choices{
+      {{{"-user_pc_type", "lu"}}, "lu"},
+      {{{"-user_mat_mumps_icntl_7", "0"}}, "lu"},
+      {{{"-user_pc_type", "redundant"}, {"-user_redundant_pc_factor_mat_solver_type", "klu"}},
+       "redundant"},
+      {{{"-user_ksp_type", "gmres"}, {"-user_ksp_rtol", "1e-13"}, {"-user_pc_type", block}}, block},
+      {{{"-user_ksp_type", "fgmres"}, {"-user_ksp_rtol", "1e-13"}}, operators::kElementsPc},
+      {{{"-user_ksp_type", "gmres"}, {"-user_ksp_rtol", "1e-13"}, {"-user_pc_type", "asm"}},
+       "asm"}};
+  for (const auto& [options, chosen] : choices) {
+    INFO(options.back().first << " " << options.back().second);
+    const test::Given given(options);
+    const auto [u, used] = solved(on);
+    CHECK(used == chosen);
+    CHECK(distance(u, expected) < 1e-10);
+  }
+}
+
+TEST_CASE("PC elements: its view tells what it works on", "[parallel]") {
+  const auto on = test::on_nodes(with_step(0.25), 4, 3);
+  const auto a = sliding(on);
+  const auto ksp = petsc::linear_solver(a.matrix(), "user_", operators::kElementsPc);
+  check(KSPSetUp(ksp));
+  char* text = nullptr;
+  std::size_t size = 0;
+  std::FILE* const memory = open_memstream(&text, &size);
+  PetscViewer viewer = nullptr;
+  check(PetscViewerASCIIOpenWithFILE(PETSC_COMM_WORLD, memory, &viewer));
+  check(KSPView(ksp, viewer));
+  check(PetscViewerDestroy(&viewer));
+  std::fclose(memory);
+  const std::string shown(text, size);
+  std::free(text);
+  if (petsc::rank(PETSC_COMM_WORLD) != 0) return;
+  CHECK_THAT(shown, Catch::Contains("type: elements"));
+  CHECK_THAT(shown, Catch::Contains("noise nodes " + std::to_string(on.noise->count())));
+}
+
+TEST_CASE("PC elements: a matrix of something else is refused", "[parallel]") {
+  const auto upwind = sliding(test::on_upwind(with_step(0.25), 2));
+  const auto ksp = petsc::linear_solver(upwind.matrix(), "user_", operators::kElementsPc);
+  CHECK_THROWS_AS(check(KSPSetUp(ksp)), BadInput);
+}
+
+TEST_CASE("PC elements: shows its events", "[parallel]") {
+  const auto on = test::on_nodes(with_step(0.25), 4, 3);
+  const double before = petsc::logged_seconds("PCElementsSetUp");
+  (void)solved(on);
+  CHECK(petsc::logged_seconds("PCElementsSetUp") > before);
+  CHECK(petsc::logged_seconds("PCElementsSolve") > 0);
+}
