@@ -51,7 +51,6 @@ EpsHandle configured_eigensolver(Mat matrix, const std::string& prefix, double t
   check(DSSetParallel(projected, DS_PARALLEL_SYNCHRONIZED));
   check(EPSSetFromOptions(eps));
   keep_space_small_for_one(eps);
-  set_default_ordering(solver_of(eps), matrix);
   return eps;
 }
 
@@ -66,6 +65,7 @@ Eigensolver::Eigensolver(Mat matrix, const std::string& prefix, double target, i
   {
     const PhaseTimer timer("eigenvalues", total);
     eps_ = configured_eigensolver(matrix, prefix, target, wanted);
+    const DefaultOrdering amf(prefix + "st_");
     check(EPSSetUp(eps_));
     require_factored(solver_of(eps_), prefix + "st_");
     check(EPSSolve(eps_));

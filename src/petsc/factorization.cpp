@@ -118,7 +118,7 @@ Analysis Factorization::analyse(Mat matrix, const std::string& prefix, Ledger& l
                                 PCType pc_type) {
   const PhaseTimer timer("analysis", ledger.analysis_seconds);
   const KspHandle ksp = linear_solver(matrix, prefix, pc_type);
-  return petsc::analyse(ksp, matrix);
+  return petsc::analyse(ksp, matrix, prefix);
 }
 
 void probe_linear_solver(const std::string& prefix) {

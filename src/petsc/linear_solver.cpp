@@ -160,15 +160,15 @@ void set_direct_solver(KSP ksp) {
   check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
 }
 
-void set_default_ordering(KSP ksp, Mat matrix) {
-  if (!uses_mumps(ksp)) return;
-  constexpr PetscInt ordering = 7, amf = 2;
-  const char* prefix = nullptr;
-  check(KSPGetOptionsPrefix(ksp, &prefix));
-  check(KSPSetOperators(ksp, matrix, matrix));
-  check(MatSetOptionsPrefixFactor(matrix, prefix));  // of the options that the factors read
-  check(PCFactorSetUpMatSolverType(preconditioner_of(ksp)));
-  check(MatMumpsSetIcntl(factor_of(ksp), ordering, amf));
+DefaultOrdering::DefaultOrdering(const std::string& prefix)
+    : option_(fmt::format("-{}mat_mumps_icntl_7", prefix)) {
+  constexpr const char* amf = "2";
+  check(PetscOptionsHasName(nullptr, nullptr, option_.c_str(), &given_));
+  if (given_ == PETSC_FALSE) check(PetscOptionsSetValue(nullptr, option_.c_str(), amf));
+}
+
+DefaultOrdering::~DefaultOrdering() {
+  if (given_ == PETSC_FALSE) (void)PetscOptionsClearValue(nullptr, option_.c_str());
 }
 
 KspHandle linear_solver(Mat matrix, const std::string& prefix, PCType pc_type) {
@@ -179,13 +179,13 @@ KspHandle linear_solver(Mat matrix, const std::string& prefix, PCType pc_type) {
   set_direct_solver(ksp);
   if (!chooses_solver(prefix)) check(PCSetType(preconditioner_of(ksp), pc_type));
   check(KSPSetFromOptions(ksp));
-  set_default_ordering(ksp, matrix);
   return ksp;
 }
 
 bool is_own(KSP ksp) { return own_function(ksp) != nullptr; }
 
 void factor(KspHandle& ksp, Mat matrix, const std::string& prefix) {
+  const DefaultOrdering amf(prefix);
   check(KSPSetUp(ksp));
   if (lacks_workspace(ksp)) ksp = with_more_workspace(ksp, matrix, prefix);
   require_factored(ksp, prefix);
@@ -211,8 +211,10 @@ void record_factors(KSP ksp, Ledger& ledger) {
   ledger += seen;
 }
 
-Analysis analyse(KSP ksp, Mat matrix) {
+Analysis analyse(KSP ksp, Mat matrix, const std::string& prefix) {
   if (!uses_mumps(ksp)) return own_analysis(ksp);
+  const DefaultOrdering amf(prefix);
+  check(PCFactorSetUpMatSolverType(preconditioner_of(ksp)));
   MatFactorInfo info{};
   check(MatFactorInfoInitialize(&info));
   check(MatLUFactorSymbolic(factor_of(ksp), matrix, nullptr, nullptr, &info));

@@ -39,7 +39,7 @@ KSP solver_of(TS ts) {
   return ksp;
 }
 
-void configure(TS ts, Mat matrix, const std::string& prefix, double tolerance) {
+void configure(TS ts, const std::string& prefix, double tolerance) {
   check(TSSetOptionsPrefix(ts, prefix.c_str()));
   check(TSSetProblemType(ts, TS_LINEAR));
   check(TSSetType(ts, TSARKIMEX));
@@ -52,7 +52,6 @@ void configure(TS ts, Mat matrix, const std::string& prefix, double tolerance) {
   check(TSSetExactFinalTime(ts, TS_EXACTFINALTIME_MATCHSTEP));
   set_direct_solver(solver_of(ts));
   check(TSSetFromOptions(ts));
-  set_default_ordering(solver_of(ts), matrix);
 }
 
 }  // namespace
@@ -68,13 +67,14 @@ TimeStepper::TimeStepper(Mat a, Vec u, const std::string& prefix, double toleran
   check(TSCreate(PetscObjectComm(reinterpret_cast<PetscObject>(a)), ts_.out()));
   check(TSSetIFunction(ts_, nullptr, residual, a));
   check(TSSetIJacobian(ts_, shifted_, shifted_, jacobian, jacobian_.get()));
-  configure(ts_, shifted_, prefix, tolerance);
+  configure(ts_, prefix, tolerance);
   check(TSSetSolution(ts_, u_));
 }
 
 void TimeStepper::advance(double time) {
   if (time <= now_) return;
   const PhaseTimer timer("time stepping", ledger_.solve_seconds);
+  const DefaultOrdering amf(prefix_);
   check(TSSetMaxTime(ts_, time));
   check(TSSolve(ts_, u_));
   TSConvergedReason reason = TS_CONVERGED_ITERATING;

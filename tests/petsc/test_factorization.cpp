@@ -216,6 +216,32 @@ TEST_CASE("factorization: options of the role override its defaults") {
   check(PetscOptionsClearValue(nullptr, "-own_pc_factor_mat_solver_type"));
 }
 
+namespace {
+
+// What MUMPS says that it used (INFOG(7)).
+PetscInt ordering_used(Mat a, const std::string& prefix) {
+  KspHandle ksp = linear_solver(a, prefix, PCLU);
+  factor(ksp, a, prefix);
+  PC pc = nullptr;
+  Mat factors = nullptr;
+  PetscInt used = -1;
+  check(KSPGetPC(ksp, &pc));
+  check(PCFactorGetMatrix(pc, &factors));
+  check(MatMumpsGetInfog(factors, 7, &used));
+  return used;
+}
+
+}  // namespace
+
+TEST_CASE("factorization: MUMPS orders by AMF unless told otherwise", "[parallel]") {
+  const MatHandle a = saddle(400);
+  constexpr PetscInt amd = 0, amf = 2;
+  CHECK(ordering_used(a, "order_") == amf);
+  CHECK_FALSE(chooses_solver("order_"));  // nothing stays behind
+  const test::Given given({{"-order_mat_mumps_icntl_7", "0"}});
+  CHECK(ordering_used(a, "order_") == amd);
+}
+
 TEST_CASE("factorization: probing marks the options of a role as known") {
   check(PetscOptionsSetValue(nullptr, "-probe_mat_mumps_icntl_14", "30"));
   check(PetscOptionsSetValue(nullptr, "-probe_mat_mumps_icntl_99", "1"));

@@ -19,14 +19,22 @@ inline constexpr const char* kAnalyse = "PCAnalyse_C";
 /// its options are read. Not collective.
 void set_direct_solver(KSP ksp);
 
-/// Where MUMPS is used, the ordering AMF for matrices like this one unless
-/// -<prefix>mat_mumps_icntl_7 says otherwise (MUMPS would choose PORD, as METIS is not in Debian's
-/// build, which costs 10 to 30 times more on these matrices); to be called after the options are
-/// read. Collective.
-void set_default_ordering(KSP ksp, Mat matrix);
+/// The ordering AMF in analyses by MUMPS with this prefix during the life of the object, unless
+/// -<prefix>mat_mumps_icntl_7 says otherwise: MUMPS would choose PORD, as METIS is not in Debian's
+/// build, which costs 10 to 30 times more on these matrices. PETSc takes it from its options alone.
+class DefaultOrdering {
+ public:
+  explicit DefaultOrdering(const std::string& prefix);
+  ~DefaultOrdering();
+  DefaultOrdering(const DefaultOrdering&) = delete;
+  DefaultOrdering& operator=(const DefaultOrdering&) = delete;
 
-/// KSP of type preonly around a PC of type `pc_type`; with PCLU around MUMPS with the ordering AMF.
-/// Every choice is a PETSc option under the prefix, e.g. -slide_pc_type lu or
+ private:
+  std::string option_;
+  PetscBool given_ = PETSC_FALSE;
+};
+
+/// KSP of type preonly around a PC of type `pc_type`; with PCLU around MUMPS. Every choice is a PETSc option under the prefix, e.g. -slide_pc_type lu or
 /// -slide_pc_factor_mat_solver_type klu; with any option of the PC or its matrices LU is the
 /// default. Collective.
 [[nodiscard]] KspHandle linear_solver(Mat matrix, const std::string& prefix, PCType pc_type);
@@ -48,6 +56,6 @@ void record_factors(KSP ksp, Ledger& ledger);
 
 /// Orders and analyses `matrix` as the PC would, and stops there; zeros for solvers that report
 /// nothing. Collective.
-[[nodiscard]] Analysis analyse(KSP ksp, Mat matrix);
+[[nodiscard]] Analysis analyse(KSP ksp, Mat matrix, const std::string& prefix);
 
 }  // namespace stickslip::petsc
