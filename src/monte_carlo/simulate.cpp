@@ -6,8 +6,11 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
 
-#include "checkpoint.hpp"
+#include "stickslip/checkpoint/checkpoint.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/simulation/tally.hpp"
@@ -24,6 +27,7 @@ using simulation::Duration;
 using simulation::Estimate;
 using simulation::Tally;
 using Clock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
 
 constexpr int kBatch = 256;  // excursions with one random stream
 constexpr int kRound = 64;   // batches between merges
@@ -190,13 +194,14 @@ class Estimates {
 
 // What fixes the numbers of a simulation, but for how many excursions there are. The questions may
 // come from the file of -compare, so they are taken as understood, not as written.
-std::vector<std::pair<std::string, std::string>> identity(const Request& request) {
+checkpoint::Identity identity(const Request& request) {
   std::vector<std::string> names{"mu_s", "mu_d",       "tau",          "delta", "drag",
                                  "seed", "drag_cubic", "noise_levels", "bias",  "drag_coefficient"};
   if (request.scene.drag.law) names.emplace_back("drag_expression");
-  std::vector<std::pair<std::string, std::string>> found;
-  for (const auto& option : request.resolved) {
-    if (std::count(names.begin(), names.end(), option.first) > 0) found.push_back(option);
+  checkpoint::Identity found;
+  for (const auto& [name, value] : request.resolved) {
+    const bool counts = std::count(names.begin(), names.end(), name) > 0;
+    if (counts) found.emplace_back("-" + name, value);
   }
   const auto wanted = wanted_of(request);
   const auto add = [&](const char* name, const auto& values) {
@@ -205,10 +210,10 @@ std::vector<std::pair<std::string, std::string>> identity(const Request& request
   std::vector<std::string> followed;
   if (wanted.moments) followed.emplace_back("moments");
   if (wanted.noise) followed.emplace_back("noise_law");
-  add("quantities", followed);
-  add("lambda", wanted.lambda);
-  add("omega", wanted.omega);
-  add("time", wanted.edges.empty() ? wanted.edges : request.time);
+  add("-quantities", followed);
+  add("-lambda", wanted.lambda);
+  add("-omega", wanted.omega);
+  add("-time", wanted.edges.empty() ? wanted.edges : request.time);
   return found;
 }
 
@@ -221,7 +226,10 @@ class Campaign {
         process_(request.scene.meant()),
         wanted_(wanted_of(request)),
         source_(simulation::make_source(process_, wanted_)),
-        tally_(wanted_, process_.static_index()) {}
+        tally_(wanted_, process_.static_index()) {
+    if (request.checkpoint.empty()) return;
+    checkpoint_.emplace(request.checkpoint, checkpoint::Kind::simulation, identity(request));
+  }
 
   Simulated run() {
     require_time();
@@ -232,7 +240,7 @@ class Campaign {
       const auto left = static_cast<long>(all - done());
       const bool whole = left >= static_cast<long>(kRound) * kBatch;
       if (!whole) {
-        save(0);  // the checkpoint holds whole rounds, to go on from
+        save(0);  // whole rounds, from which another run resumes
         round(left);
         return outcome();
       }
@@ -267,26 +275,31 @@ class Campaign {
   }
 
   void load() {
-    if (request_.checkpoint.empty()) return;
-    const auto found = read_checkpoint(comm_, request_.checkpoint, identity(request_));
-    if (!found) return;
-    rounds_ = found->rounds;
-    bool whole = true;
-    try {
-      tally_.unpack(found->tally);
-    } catch (const std::invalid_argument&) {
-      whole = false;
-    }
-    if (!whole || done() != static_cast<double>(rounds_) * kRound * kBatch) {
-      throw BadInput(fmt::format("-checkpoint = {}: is damaged; remove it", request_.checkpoint));
-    }
+    if (!checkpoint_) return;
+    std::string state;
+    checkpoint_->open(comm_, [&](const std::string& entry) {
+      restore(entry);
+      state = entry;
+    });
+    state = petsc::first_text(comm_, state);
+    if (!state.empty()) restore(state);
     continued_from_ = done();
     jumps_before_ = tally_.jumps();
   }
 
+  void restore(const std::string& state) {
+    const Json json = Json::parse(state);
+    const Json& rounds = json.at("rounds");
+    tally_.unpack(json.at("tally").get<std::vector<double>>());
+    if (!rounds.is_number_integer() || done() != rounds.get<double>() * kRound * kBatch) {
+      throw std::invalid_argument("rounds and excursions of the tally differ");
+    }
+    rounds_ = rounds.get<long>();
+  }
+
   void save(double seconds_between) {
-    if (request_.checkpoint.empty() || !first_rank() || since(last_file_) < seconds_between) return;
-    write_checkpoint(request_.checkpoint, {identity(request_), rounds_, tally_.pack()});
+    if (!checkpoint_ || !first_rank() || since(last_file_) < seconds_between) return;
+    checkpoint_->replace(Json{{"rounds", rounds_}, {"tally", tally_.pack()}}.dump());
     last_file_ = Clock::now();
   }
 
@@ -400,6 +413,7 @@ class Campaign {
   simulation::Wanted wanted_;
   std::unique_ptr<simulation::ExcursionSource> source_;
   Tally tally_;
+  std::optional<checkpoint::Checkpoint> checkpoint_;
   SimulationState state_;
   long rounds_ = 0;  // whole ones in the tally
   double continued_from_ = 0, jumps_before_ = 0;
