@@ -78,10 +78,9 @@ const char* verdict_text(Verdict verdict) {
   return "DISAGREES";
 }
 
-Comparison compare(const std::string& file, const std::vector<options::Reference>& references,
+Comparison compare(const std::vector<options::Reference>& references,
                    const quantities::Results& results) {
   Comparison comparison;
-  comparison.file = file;
   for (const auto& reference : references) {
     auto row = counterpart(reference, results);
     if (row) {

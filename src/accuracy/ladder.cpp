@@ -25,10 +25,10 @@ constexpr int kFirstPoints = 8;
 // errors are about 10^-d at degree d, ten times that for the density of sticking times at 0+, and
 // a hundred times for the tail of a spectrum. (On coarser elements reduced models search long for
 // waves that are not resolved.)
-int starting_degree(const options::Request& request) {
-  const double digits = -std::log10(request.accuracy);
-  int extra = request.wants(options::Quantity::entry_law) ? 2 : 1;
-  if (request.wants(options::Quantity::spectrum)) extra = 3;
+int starting_degree(const options::Question& question) {
+  const double digits = -std::log10(question.accuracy);
+  int extra = question.wants(options::Quantity::entry_law) ? 2 : 1;
+  if (question.wants(options::Quantity::spectrum)) extra = 3;
   return std::clamp(static_cast<int>(std::ceil(digits)) + extra, 3, kHighestDegree);
 }
 
@@ -36,27 +36,28 @@ double largest(const std::vector<double>& values) {
   return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
 }
 
-velocity::Rates fastest_rates(const options::Request& request) {
+velocity::Rates fastest_rates(const options::Case& given) {
   using options::Quantity;
+  const options::Question& question = given.question;
   velocity::Rates rates;
-  if (request.wants(Quantity::laplace) || request.wants(Quantity::resolvent) ||
-      request.route == options::Route::lambda) {
-    rates.lambda = largest(request.lambda);
+  if (question.wants(Quantity::laplace) || question.wants(Quantity::resolvent) ||
+      given.method.route == options::Route::lambda) {
+    rates.lambda = largest(question.lambda);
   }
-  if (request.wants(Quantity::spectrum)) rates.omega = largest(request.omega);
+  if (question.wants(Quantity::spectrum)) rates.omega = largest(question.omega);
   return rates;
 }
 
 }  // namespace
 
-Ladder::Ladder(const options::Request& request)
-    : scene_(request.scene), method_(request.method), accuracy_(request.accuracy) {
-  first_degree_ = method_.degree.value_or(starting_degree(request));
-  rates_ = fastest_rates(request);
-  halves_ = options::on_full_grid(request.route) || !request.scene.symmetric() ? 2 : 1;
+Ladder::Ladder(const options::Case& given)
+    : scene_(given.scene), method_(given.method), accuracy_(given.question.accuracy) {
+  first_degree_ = method_.degree.value_or(starting_degree(given.question));
+  rates_ = fastest_rates(given);
+  halves_ = options::on_full_grid(given.method.route) || !given.scene.symmetric() ? 2 : 1;
   // On nodes the residuals of eigenvectors, which stand for errors, stay five times larger.
-  all_levels_ = options::on_full_grid(request.route) || method_.noise_degree == 0 ||
-                request.wants(options::Quantity::relaxation);
+  all_levels_ = options::on_full_grid(given.method.route) || method_.noise_degree == 0 ||
+                given.question.wants(options::Quantity::relaxation);
   last_ = method_.fixed() ? 1 : free_rungs();
 }
 

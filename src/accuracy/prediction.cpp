@@ -28,10 +28,10 @@ constexpr double kFixedSeconds = 5e-4;       // of a factorisation
 
 class Predictor {
  public:
-  Predictor(MPI_Comm comm, const options::Request& request, const Resolution& resolution)
-      : comm_(comm), request_(request), discretisation_(discretise(request.scene, resolution)) {
+  Predictor(MPI_Comm comm, const options::Case& given, const Resolution& resolution)
+      : comm_(comm), given_(given), discretisation_(discretise(given.scene, resolution)) {
     step_.resolution = resolution;
-    step_.unknowns = unknowns(request.scene, resolution);
+    step_.unknowns = unknowns(given.scene, resolution);
   }
 
   PredictedStep follow(const routes::Plan& plan) {
@@ -46,7 +46,7 @@ class Predictor {
   };
 
   [[nodiscard]] routes::Setting setting(petsc::Ledger& ledger) const {
-    return {comm_, request_, discretisation_, ledger};
+    return {comm_, given_, discretisation_, ledger};
   }
 
   const Foretold& assemble(const SystemKey& key) {
@@ -95,7 +95,7 @@ class Predictor {
   }
 
   MPI_Comm comm_;
-  const options::Request& request_;
+  const options::Case& given_;
   operators::Discretisation discretisation_;
   PredictedStep step_;
   std::map<SystemKey, Foretold> systems_;
@@ -104,21 +104,21 @@ class Predictor {
 
 }  // namespace
 
-Prediction predict(MPI_Comm comm, const options::Request& request) {
+Prediction predict(MPI_Comm comm, const options::Case& given) {
   Prediction prediction;
-  if (!needs_system(request)) return prediction;
-  prediction.plan = routes::plan_of(request);
-  if (request.route == options::Route::monte_carlo) return prediction;
-  const Ladder ladder(request);
-  require_memory(comm, request, ladder.rung(1));
+  if (!needs_system(given)) return prediction;
+  prediction.plan = routes::plan_of(given);
+  if (given.method.route == options::Route::monte_carlo) return prediction;
+  const Ladder ladder(given);
+  require_memory(comm, given.scene, ladder.rung(1));
   for (int n = 0; n <= 1; ++n) {
     const Resolution& resolution = ladder.rung(n);
     if (prediction.plan.tasks.empty()) {
-      PredictedStep step{resolution, unknowns(request.scene, resolution)};
-      step.megabytes = predicted_bytes(request.scene, resolution) / 1e6;
+      PredictedStep step{resolution, unknowns(given.scene, resolution)};
+      step.megabytes = predicted_bytes(given.scene, resolution) / 1e6;
       prediction.steps.push_back(step);
     } else {
-      prediction.steps.push_back(Predictor(comm, request, resolution).follow(prediction.plan));
+      prediction.steps.push_back(Predictor(comm, given, resolution).follow(prediction.plan));
     }
     prediction.seconds += prediction.steps.back().seconds;
   }

@@ -25,12 +25,12 @@ using quantities::StationaryLaw;
 
 std::string gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / 1e9); }
 
-Solved evaluated(MPI_Comm comm, const options::Request& request, const Resolution& resolution) {
+Solved evaluated(MPI_Comm comm, const options::Case& given, const Resolution& resolution) {
   Solved solved;
   Step& step = solved.step;
   step.resolution = resolution;
   const double start = petsc::wall_seconds();
-  const routes::Setting setting{comm, request, discretise(request.scene, resolution), step.ledger};
+  const routes::Setting setting{comm, given, discretise(given.scene, resolution), step.ledger};
   solved.evaluation = routes::evaluate(setting);
   require_rounding(model::rounding_of_sums(setting.discretisation.process.noise),
                    solved.evaluation.results);
@@ -40,15 +40,16 @@ Solved evaluated(MPI_Comm comm, const options::Request& request, const Resolutio
 }
 
 // Beyond the levels and the axis of the first discretisation there is nothing but extrapolation.
-void require_start_within(const options::Request& request, const Resolution& first) {
-  if (!request.wants(Quantity::expectation)) return;
-  const double delta = request.scene.delta, x = request.start_level * delta, v = request.start_v;
+void require_start_within(const options::Case& given, const Resolution& first) {
+  const options::Question& question = given.question;
+  if (!question.wants(Quantity::expectation)) return;
+  const double delta = given.scene.delta, x = question.start_level * delta, v = question.start_v;
   const auto refuse = [&](const char* what, double largest, const char* more) {
     throw BadInput(fmt::format("-start = {:g},{:g}: starts beyond the largest {} on which the mean "
                                "is computed at -accuracy {:g}; take |{}| at most {:g}, or {}",
-                               x, v, what, request.accuracy, what, largest, more));
+                               x, v, what, question.accuracy, what, largest, more));
   };
-  if (std::abs(request.start_level) > first.levels) {
+  if (std::abs(question.start_level) > first.levels) {
     refuse("x", first.levels * delta, "-noise_levels full");
   }
   if (std::abs(v) > first.v_max) {
@@ -58,19 +59,23 @@ void require_start_within(const options::Request& request, const Resolution& fir
 
 class Refiner {
  public:
-  Refiner(MPI_Comm comm, const options::Request& request, const Progress& progress)
-      : comm_(comm), request_(request), progress_(progress), ladder_(request) {}
+  Refiner(MPI_Comm comm, const options::Case& given, const Progress& progress)
+      : comm_(comm),
+        given_(given),
+        question_(given.question),
+        progress_(progress),
+        ladder_(given) {}
 
   Outcome run() {
     climb();
-    if (request_.wants(Quantity::density)) outcome_.density = quantities::density_field(*law_);
+    if (question_.wants(Quantity::density)) outcome_.density = quantities::density_field(*law_);
     return std::move(outcome_);
   }
 
  private:
   void climb() {
-    require_start_within(request_, ladder_.rung(0));
-    require_memory(comm_, request_, ladder_.rung(1));
+    require_start_within(given_, ladder_.rung(0));
+    require_memory(comm_, given_.scene, ladder_.rung(1));
     for (int n = 0; n <= ladder_.last(); ++n) {
       if (n >= 2 && !fits(ladder_.rung(n))) return short_of_memory(n);
       solve(n);
@@ -81,21 +86,21 @@ class Refiner {
       }
       if (ladder_.first_order() && hopeless(n)) return;
     }
-    outcome_.shortfall = request_.method.fixed()
+    outcome_.shortfall = given_.method.fixed()
                              ? "the discretisation is fixed by hand; leave -degree, -layers and -p "
                                "out to have it refined"
                              : "no finer discretisation is tried";
   }
 
   [[nodiscard]] bool fits(const Resolution& resolution) const {
-    const double need = predicted_bytes(request_.scene, resolution);
+    const double need = predicted_bytes(given_.scene, resolution);
     return need <= petsc::available_bytes(comm_, need);
   }
 
   void solve(int n) {
     const Resolution& resolution = ladder_.rung(n);
     if (progress_) progress_(n, resolution, expected_seconds(resolution));
-    auto [evaluation, step] = evaluated(comm_, request_, resolution);
+    auto [evaluation, step] = evaluated(comm_, given_, resolution);
     remember_rounding(evaluation.results);
     if (n >= 1) add_discretisation(n, evaluation.results);
     outcome_.results = std::move(evaluation.results);
@@ -109,8 +114,8 @@ class Refiner {
   [[nodiscard]] double expected_seconds(const Resolution& next) const {
     if (outcome_.steps.empty()) return 0;
     const Step& last = outcome_.steps.back();
-    return last.seconds * relative_work(request_.scene, next) /
-           relative_work(request_.scene, last.resolution);
+    return last.seconds * relative_work(given_.scene, next) /
+           relative_work(given_.scene, last.resolution);
   }
 
   // The errors of the route itself, for the verdict.
@@ -128,7 +133,7 @@ class Refiner {
   // How far its distribution function moved is the density's own measure. It converges slowly (the
   // density has corners), so the whole change is taken for the error.
   void follow(std::shared_ptr<const StationaryLaw> law) {
-    if (!law || (!request_.wants(Quantity::density) && !request_.scene.v_max)) return;
+    if (!law || (!question_.wants(Quantity::density) && !given_.scene.v_max)) return;
     auto now = quantities::speed_distribution(*law);
     if (speed_) outcome_.speed_error = quantities::distance(*speed_, now);
     speed_ = std::move(now);
@@ -145,7 +150,7 @@ class Refiner {
       step.limiting_key = outcome_.results[r].key;
       rounding = rounding_[r];
     }
-    outcome_.reached = step.estimate <= request_.accuracy;
+    outcome_.reached = step.estimate <= question_.accuracy;
     if (outcome_.reached) {
       check_cut();
       check_laws();
@@ -158,8 +163,8 @@ class Refiner {
       last_rounding_ = std::numeric_limits<double>::infinity();
     }
     const bool falls = rounding < 0.5 * std::exchange(last_rounding_, rounding);
-    if (rounding <= request_.accuracy || falls) return false;
-    const bool by_lambda = request_.route == options::Route::lambda;
+    if (rounding <= question_.accuracy || falls) return false;
+    const bool by_lambda = given_.method.route == options::Route::lambda;
     const double least = std::max(rounding, step.estimate);
     const std::string looser = least < 0.05
                                    ? fmt::format("take {}-accuracy {:.0e}",
@@ -180,24 +185,22 @@ class Refiner {
     }
     if (ladder_.first_order()) fall = std::log10(2.0);
     const int more = static_cast<int>(std::ceil(1 / std::clamp(fall, 0.2, 10.0)));
-    if (n + more > ladder_.last() || 0.1 * request_.accuracy < 1e-14) return 0;
+    if (n + more > ladder_.last() || 0.1 * question_.accuracy < 1e-14) return 0;
     double seconds = 0;
     for (const Step& step : steps) seconds += step.seconds;
-    const auto work = [this](int rung) {
-      return relative_work(request_.scene, ladder_.rung(rung));
-    };
+    const auto work = [this](int rung) { return relative_work(given_.scene, ladder_.rung(rung)); };
     return seconds * work(n + more) / work(n);
   }
 
   // A velocity cut made by hand is no part of the model: what it holds back is an error.
   void check_cut() {
-    if (!request_.scene.v_max || !speed_) return;
+    if (!given_.scene.v_max || !speed_) return;
     const double held = speed_->at_top, sliding = 1 - speed_->at_rest;
-    if (held <= request_.accuracy * sliding) return;
+    if (held <= question_.accuracy * sliding) return;
     outcome_.reached = false;
     outcome_.shortfall = fmt::format(
         "-v_max = {:g} holds back {:.1e} of the sliding time; leave it out, or take it larger",
-        *request_.scene.v_max, held / sliding);
+        *given_.scene.v_max, held / sliding);
   }
 
   // Errors that are too small betray themselves where results break a law.
@@ -206,32 +209,33 @@ class Refiner {
     if (broken.empty()) return;
     const int levels = outcome_.steps.back().resolution.levels;
     outcome_.reached = false;
-    outcome_.shortfall = broken + model::please_report(request_.scene.process(levels));
+    outcome_.shortfall = broken + model::please_report(given_.scene.process(levels));
   }
 
   // A first-order scheme tells early how many points it would take.
   [[nodiscard]] bool hopeless(int n) {
     const Resolution now = ladder_.rung(n);
-    const double needed = now.points * outcome_.steps.back().estimate / request_.accuracy;
-    if (n < 3 || request_.method.fixed()) return false;
+    const double needed = now.points * outcome_.steps.back().estimate / question_.accuracy;
+    if (n < 3 || given_.method.fixed()) return false;
     Resolution final = now;
     final.points = static_cast<int>(std::min(needed, 1e9));
     if (fits(final)) return false;
     outcome_.shortfall = fmt::format(
         "the upwind scheme would need about p = {:.1e} and {} of memory; take -scheme hp, or "
         "-accuracy {:.0e}",
-        needed, gigabytes(predicted_bytes(request_.scene, final)),
+        needed, gigabytes(predicted_bytes(given_.scene, final)),
         2 * outcome_.steps.back().estimate);
     return true;
   }
 
   void short_of_memory(int n) {
     outcome_.shortfall = fmt::format("the next refinement would need {} of memory",
-                                     gigabytes(predicted_bytes(request_.scene, ladder_.rung(n))));
+                                     gigabytes(predicted_bytes(given_.scene, ladder_.rung(n))));
   }
 
   MPI_Comm comm_;
-  const options::Request& request_;
+  const options::Case& given_;
+  const options::Question& question_;
   const Progress& progress_;
   Ladder ladder_;
   Outcome outcome_;
@@ -244,14 +248,15 @@ class Refiner {
 };
 
 // The law of the noise has a closed form; routes that check the model compute it all the same.
-bool closed_noise_law(const options::Request& request) {
-  return request.wants(Quantity::noise_law) && request.route == options::Route::excursion;
+bool closed_noise_law(const options::Case& given) {
+  return given.question.wants(Quantity::noise_law) &&
+         given.method.route == options::Route::excursion;
 }
 
-Outcome by_simulation(MPI_Comm comm, const options::Request& request,
+Outcome by_simulation(MPI_Comm comm, const options::Case& given, const std::string& checkpoint,
                       const monte_carlo::SimulationProgress& progress) {
   Outcome outcome;
-  auto simulated = monte_carlo::simulate(comm, request, progress);
+  auto simulated = monte_carlo::simulate(comm, given, checkpoint, progress);
   outcome.results = std::move(simulated.results);
   outcome.reached = simulated.reached;
   outcome.shortfall = simulated.shortfall;
@@ -262,51 +267,54 @@ Outcome by_simulation(MPI_Comm comm, const options::Request& request,
 
 }  // namespace
 
-void require_memory(MPI_Comm comm, const options::Request& request, const Resolution& resolution) {
-  const double need = predicted_bytes(request.scene, resolution);
+void require_memory(MPI_Comm comm, const model::Scene& scene, const Resolution& resolution) {
+  const double need = predicted_bytes(scene, resolution);
   const double have = petsc::available_bytes(comm, need);
   if (need <= have) return;
   throw NoMemory(fmt::format(
       "about {:.3g} unknowns would need {} of memory, and {} are free; take a larger -delta, a "
       "looser -accuracy, fewer -noise_levels or more machines",
-      static_cast<double>(unknowns(request.scene, resolution)), gigabytes(need), gigabytes(have)));
+      static_cast<double>(unknowns(scene, resolution)), gigabytes(need), gigabytes(have)));
 }
 
-bool needs_system(const options::Request& request) {
-  std::size_t others = request.quantities.size();
-  for (bool closed : {closed_noise_law(request), request.wants(Quantity::trajectory),
-                      request.wants(Quantity::sensitivity)}) {
+bool needs_system(const options::Case& given) {
+  const options::Question& question = given.question;
+  std::size_t others = question.quantities.size();
+  for (bool closed : {closed_noise_law(given), question.wants(Quantity::trajectory),
+                      question.wants(Quantity::sensitivity)}) {
     others -= closed ? 1 : 0;
   }
   return others > 0;
 }
 
-Solved solve_on(MPI_Comm comm, const options::Request& request, const Resolution& resolution) {
-  require_memory(comm, request, resolution);
-  return evaluated(comm, request, resolution);
+Solved solve_on(MPI_Comm comm, const options::Case& given, const Resolution& resolution) {
+  require_memory(comm, given.scene, resolution);
+  return evaluated(comm, given, resolution);
 }
 
-Outcome refine(MPI_Comm comm, const options::Request& request, const Progress& progress,
-               const monte_carlo::SimulationProgress& simulation_progress) {
+Outcome refine(MPI_Comm comm, const options::Case& given, const Progress& progress,
+               const monte_carlo::SimulationProgress& simulation_progress,
+               const std::string& checkpoint) {
+  const options::Question& question = given.question;
   Outcome outcome;
   outcome.reached = true;
-  if (needs_system(request)) {
-    outcome = request.route == options::Route::monte_carlo
-                  ? by_simulation(comm, request, simulation_progress)
-                  : Refiner(comm, request, progress).run();
+  if (needs_system(given)) {
+    outcome = given.method.route == options::Route::monte_carlo
+                  ? by_simulation(comm, given, checkpoint, simulation_progress)
+                  : Refiner(comm, given, progress).run();
   }
-  if (closed_noise_law(request)) {
-    quantities::append_noise_law(request.scene.meant(), outcome.results);
-    if (request.wants(Quantity::sensitivity)) {
-      quantities::append_noise_sensitivity(request.scene.meant(), outcome.results);
+  if (closed_noise_law(given)) {
+    quantities::append_noise_law(given.scene.meant(), outcome.results);
+    if (question.wants(Quantity::sensitivity)) {
+      quantities::append_noise_sensitivity(given.scene.meant(), outcome.results);
     }
   }
-  if (request.wants(Quantity::trajectory)) {
-    outcome.path = simulation::simulate_path(request.scene.meant(), request.start_level,
-                                             request.start_v, request.horizon, request.seed);
+  if (question.wants(Quantity::trajectory)) {
+    outcome.path = simulation::simulate_path(given.scene.meant(), question.start_level,
+                                             question.start_v, question.horizon, given.method.seed);
   }
-  if (!request.references.empty()) {
-    outcome.comparison = compare(request.compared, request.references, outcome.results);
+  if (!question.references.empty()) {
+    outcome.comparison = compare(question.references, outcome.results);
   }
   return outcome;
 }

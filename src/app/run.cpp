@@ -76,7 +76,7 @@ void warn(const options::Request& request) {
 }
 
 accuracy::Progress progress_of(const options::Request& request, bool first_rank) {
-  if (!request.progress || !first_rank) return {};
+  if (!request.output.progress || !first_rank) return {};
   return [&request](int step, const accuracy::Resolution& r, double seconds) {
     std::string axis = "no grid in v";
     if (r.scheme == options::Scheme::hp) axis = fmt::format("degree {}", r.degree);
@@ -88,7 +88,7 @@ accuracy::Progress progress_of(const options::Request& request, bool first_rank)
 }
 
 monte_carlo::SimulationProgress simulation_progress_of(const options::Request& request) {
-  if (!request.progress) return {};
+  if (!request.output.progress) return {};
   return [](const monte_carlo::SimulationState& s) {
     const double share = 100 * s.excursions / s.wanted;
     say(fmt::format(
@@ -105,7 +105,7 @@ int status_of(const accuracy::Outcome& outcome) {
 }
 
 studies::StudyProgress study_progress_of(const options::Request& request, bool first_rank) {
-  if (!request.progress || !first_rank) return {};
+  if (!request.output.progress || !first_rank) return {};
   return [start = Clock::now()](int number, int count, const std::string& what) {
     say(fmt::format("study, run {} of {}: {} ({:.0f} s so far)", number, count, what,
                     seconds_since(start)));
@@ -115,14 +115,15 @@ studies::StudyProgress study_progress_of(const options::Request& request, bool f
 int conduct_study(const options::Request& request, Clock::time_point start, double start_up) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const bool first_rank = petsc::rank(comm) == 0;
-  const auto study = studies::conduct(comm, request, study_progress_of(request, first_rank));
+  const auto study =
+      studies::conduct(comm, request, request.study, study_progress_of(request, first_rank));
   const io::RunTimes times{start_up, start_up + seconds_since(start)};
-  if (!request.output.empty()) io::write_study_hdf5(comm, request, study, times);
+  if (!request.output.output.empty()) io::write_study_hdf5(comm, request, study, times);
   if (!first_rank) return 0;
-  if (!request.summary.empty()) {
-    write_text(request.summary, io::study_summary(comm, request, study, times));
+  if (!request.output.summary.empty()) {
+    write_text(request.output.summary, io::study_summary(comm, request, study, times));
   }
-  if (!request.study_csv.empty()) write_text(request.study_csv, io::study_csv(study));
+  if (!request.output.study_csv.empty()) write_text(request.output.study_csv, io::study_csv(study));
   print(io::study_table(request, study, times));
   return 0;
 }
@@ -131,15 +132,15 @@ int tell_plan(const options::Request& request) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const auto prediction = accuracy::predict(comm, request);
   if (petsc::rank(comm) != 0) return 0;
-  if (!request.summary.empty()) {
-    write_text(request.summary, io::plan_summary(comm, request, prediction));
+  if (!request.output.summary.empty()) {
+    write_text(request.output.summary, io::plan_summary(comm, request, prediction));
   }
   print(io::plan_table(request, prediction));
   return 0;
 }
 
 sweeps::SweepProgress sweep_progress_of(const options::Request& request) {
-  if (!request.progress) return {};
+  if (!request.output.progress) return {};
   return [&request, last = Clock::time_point()](const sweeps::State& s) mutable {
     if (s.status == "reached" && s.done < s.count && seconds_since(last) < 1) return;
     last = Clock::now();
@@ -155,12 +156,12 @@ int conduct_sweep(const options::Request& request, Clock::time_point start, doub
   int status = sweeps::exit_status(sweep.runs);
   if (first_rank) {
     const io::RunTimes times{start_up, start_up + seconds_since(start)};
-    if (!request.summary.empty()) {
-      write_text(request.summary, sweeps::sweep_summary(comm, request, sweep, times));
+    if (!request.output.summary.empty()) {
+      write_text(request.output.summary, sweeps::sweep_summary(comm, request, sweep, times));
     }
-    if (!request.output.empty()) sweeps::write_sweep_hdf5(comm, request, sweep, times);
-    if (!request.sweep_csv.empty()) {
-      write_text(request.sweep_csv, sweeps::sweep_csv(request, sweep));
+    if (!request.output.output.empty()) sweeps::write_sweep_hdf5(comm, request, sweep, times);
+    if (!request.output.sweep_csv.empty()) {
+      write_text(request.output.sweep_csv, sweeps::sweep_csv(request, sweep));
     }
     print(sweeps::sweep_table(request, sweep, times));
     if (status != 0) say("stickslip: some points fell short; the table says which, and why");
@@ -173,15 +174,15 @@ int compute(const options::Request& request, Clock::time_point start, double sta
   const MPI_Comm comm = MPI_COMM_WORLD;
   const bool first_rank = petsc::rank(comm) == 0;
   const auto outcome = accuracy::refine(comm, request, progress_of(request, first_rank),
-                                        simulation_progress_of(request));
+                                        simulation_progress_of(request), request.output.checkpoint);
   const io::RunTimes times{start_up, start_up + seconds_since(start)};
-  if (!request.output.empty()) io::write_hdf5(comm, request, outcome, times);
+  if (!request.output.output.empty()) io::write_hdf5(comm, request, outcome, times);
   if (first_rank) {
-    if (!request.summary.empty()) {
-      write_text(request.summary, io::summary(comm, request, outcome, times));
+    if (!request.output.summary.empty()) {
+      write_text(request.output.summary, io::summary(comm, request, outcome, times));
     }
-    if (!request.trajectory.empty() && outcome.path) {
-      write_text(request.trajectory, io::trajectory_csv(*outcome.path));
+    if (!request.output.trajectory.empty() && outcome.path) {
+      write_text(request.output.trajectory, io::trajectory_csv(*outcome.path));
     }
     print(io::table(request, outcome, times));
   }
@@ -232,7 +233,9 @@ int run_session(const std::vector<std::string>& words, double start_up) {
     const auto request = agreed_request(words);
     if (request.plan_only) return tell_plan(request);
     if (rank == 0) warn(request);
-    if (request.study != options::StudyKind::none) return conduct_study(request, start, start_up);
+    if (request.study.kind != options::StudyKind::none) {
+      return conduct_study(request, start, start_up);
+    }
     if (request.sweep) return conduct_sweep(request, start, start_up);
     return compute(request, start, start_up);
   } catch (const BadInput& failure) {

@@ -75,10 +75,11 @@ void write_path(Hdf5File& file, const simulation::Path& path) {
 }
 
 // One group for each quantity, with a row for each of its arguments.
-void write_comparison(Hdf5File& file, const accuracy::Comparison& comparison) {
+void write_comparison(Hdf5File& file, const accuracy::Comparison& comparison,
+                      const std::string& compared) {
   using accuracy::Compared;
   file.make_group("/comparison");
-  file.attribute("/comparison", "file", comparison.file);
+  file.attribute("/comparison", "file", compared);
   file.attribute("/comparison", "disagrees", comparison.disagrees ? "yes" : "no");
   std::map<std::string, std::vector<Compared>> groups;
   for (const auto& row : comparison.rows) groups[row.reference.quantity].push_back(row);
@@ -161,18 +162,18 @@ void write_record(Hdf5File& file, MPI_Comm comm, const options::Request& request
 
 void write_hdf5(MPI_Comm comm, const options::Request& request, const accuracy::Outcome& outcome,
                 const RunTimes& times) {
-  Hdf5File file(comm, request.output);
+  Hdf5File file(comm, request.output.output);
   write_results(file, outcome.results);
   write_record(file, comm, request, times);
   file.attribute("/record", "accuracy_reached", outcome.reached ? "yes" : "no");
   write_modes(file, "even", outcome.even);
   write_modes(file, "odd", outcome.odd);
   if (outcome.path) write_path(file, *outcome.path);
-  if (outcome.comparison) write_comparison(file, *outcome.comparison);
+  if (outcome.comparison) write_comparison(file, *outcome.comparison, request.output.compared);
   if (outcome.density) write_density(file, *outcome.density, outcome.speed_error);
   file.commit();
   if (!outcome.density || petsc::rank(comm) != 0) return;
-  const std::filesystem::path name = request.output;
+  const std::filesystem::path name = request.output.output;
   std::filesystem::path beside = name;
   beside.replace_extension(".xdmf");
   write_text(beside.string(), xdmf(name.filename().string(), *outcome.density));

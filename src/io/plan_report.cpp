@@ -30,9 +30,9 @@ std::string solves_text(const routes::Use& use) {
   return fmt::format("{} plain", use.plain);
 }
 
-std::string task_lines(const options::Request& request, const routes::Task& task) {
+std::string task_lines(const options::Question& question, const routes::Task& task) {
   std::string text;
-  std::string name = routes::task_name(request, task);
+  std::string name = routes::task_name(question, task);
   const auto line = [&](const std::string& system, const std::string& solves) {
     text += fmt::format("{:<34} {:<28} {}\n", name, system, solves);
     name.clear();
@@ -64,8 +64,8 @@ Json step_json(const accuracy::PredictedStep& step) {
   return json;
 }
 
-Json task_json(const options::Request& request, const routes::Task& task) {
-  Json json{{"name", routes::task_name(request, task)}, {"systems", Json::array()}};
+Json task_json(const options::Question& question, const routes::Task& task) {
+  Json json{{"name", routes::task_name(question, task)}, {"systems", Json::array()}};
   for (const auto& use : task.uses) {
     json["systems"].push_back({{"lambda", use.system.lambda},
                                {"symmetry", symmetry_name(use.system.symmetry)},
@@ -80,17 +80,17 @@ Json task_json(const options::Request& request, const routes::Task& task) {
 }  // namespace
 
 std::string plan_table(const options::Request& request, const accuracy::Prediction& prediction) {
-  std::string text = scene_line(request);
+  std::string text = scene_line(request.scene);
   const auto& plan = prediction.plan;
   if (!accuracy::needs_system(request)) {
     return text + "\nclosed formulas only: no system is assembled, factored or solved\n";
   }
-  if (request.route == options::Route::monte_carlo) {
+  if (request.method.route == options::Route::monte_carlo) {
     return text + fmt::format("\n{:g} excursions are simulated; no system is assembled\n",
-                              request.excursions);
+                              request.method.excursions);
   }
   text += "\non each discretisation\n";
-  for (const auto& task : plan.tasks) text += task_lines(request, task);
+  for (const auto& task : plan.tasks) text += task_lines(request.question, task);
   if (plan.tasks.empty()) text += "the systems of the route, on both half lines\n";
   text += fmt::format("in all {}{} assemblies, {} factorisations, {} solves\n\n",
                       plan.adaptive() ? "at least " : "", plan.assemblies(), plan.factorizations(),
@@ -110,10 +110,12 @@ std::string plan_table(const options::Request& request, const accuracy::Predicti
 std::string plan_summary(MPI_Comm comm, const options::Request& request,
                          const accuracy::Prediction& prediction) {
   Json json;
-  json["scene"] = scene_json(request);
+  json["scene"] = scene_json(request.scene);
   auto& plan = json["plan"];
   plan["tasks"] = Json::array();
-  for (const auto& task : prediction.plan.tasks) plan["tasks"].push_back(task_json(request, task));
+  for (const auto& task : prediction.plan.tasks) {
+    plan["tasks"].push_back(task_json(request.question, task));
+  }
   plan["assemblies"] = prediction.plan.assemblies();
   plan["factorizations"] = prediction.plan.factorizations();
   plan["solves"] = prediction.plan.solves();

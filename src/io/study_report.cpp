@@ -28,8 +28,8 @@ std::string table_text(const studies::Table& table) {
   return text;
 }
 
-Json run_json(const options::Request& request, const studies::Run& run) {
-  Json scene = scene_json(request);
+Json run_json(const model::Scene& meant, const studies::Run& run) {
+  Json scene = scene_json(meant);
   scene["method"] = run.method;
   for (const auto& [name, value] : run.parameters) scene[name] = value;
   Json cost = seconds_json(run.ledger);
@@ -57,7 +57,7 @@ std::string table_group(std::string name) {
 
 std::string study_table(const options::Request& request, const studies::Study& study,
                         const RunTimes& times) {
-  std::string text = scene_line(request);
+  std::string text = scene_line(request.scene);
   for (const auto& table : study.tables) text += table_text(table);
   text += "\n";
   for (const auto& line : study.conclusions) text += line + "\n";
@@ -67,9 +67,9 @@ std::string study_table(const options::Request& request, const studies::Study& s
 std::string study_summary(MPI_Comm comm, const options::Request& request,
                           const studies::Study& study, const RunTimes& times) {
   Json json;
-  json["scene"] = scene_json(request);
+  json["scene"] = scene_json(request.scene);
   json["runs"] = Json::array();
-  for (const auto& run : study.runs) json["runs"].push_back(run_json(request, run));
+  for (const auto& run : study.runs) json["runs"].push_back(run_json(request.scene, run));
   json["study"]["kind"] = study.kind;
   for (const auto& table : study.tables) json["study"]["tables"][table.name] = table_json(table);
   json["study"]["conclusions"] = study.conclusions;
@@ -100,7 +100,7 @@ std::string study_csv(const studies::Study& study) {
 
 void write_study_hdf5(MPI_Comm comm, const options::Request& request, const studies::Study& study,
                       const RunTimes& times) {
-  Hdf5File file(comm, request.output);
+  Hdf5File file(comm, request.output.output);
   file.make_group("/study");
   file.attribute("/study", "kind", study.kind);
   for (const auto& table : study.tables) {

@@ -6,8 +6,7 @@
 
 namespace stickslip::io {
 
-Json scene_json(const options::Request& request) {
-  const auto& s = request.scene;
+Json scene_json(const model::Scene& s) {
   Json scene{{"mu_s", s.friction.mu_s},
              {"mu_d", s.friction.mu_d},
              {"tau", s.tau},
@@ -75,8 +74,8 @@ Json resolution_json(const accuracy::Resolution& r) {
 
 namespace {
 
-Json scene_of(const options::Request& request, const accuracy::Outcome& outcome) {
-  Json scene = scene_json(request);
+Json scene_of(const model::Scene& meant, const accuracy::Outcome& outcome) {
+  Json scene = scene_json(meant);
   if (!outcome.steps.empty()) {
     scene["noise_levels"] = outcome.steps.back().resolution.levels;
     const double v_max = outcome.steps.back().resolution.v_max;
@@ -122,7 +121,7 @@ Json cost_of(const accuracy::Outcome& outcome, const RunTimes& times) {
   return cost;
 }
 
-Json comparison_of(const accuracy::Comparison& comparison) {
+Json comparison_of(const accuracy::Comparison& comparison, const std::string& file) {
   Json rows = Json::array();
   for (const auto& c : comparison.rows) {
     const auto& r = c.reference;
@@ -136,7 +135,7 @@ Json comparison_of(const accuracy::Comparison& comparison) {
                 {"verdict", verdict_text(c.verdict)}});
     rows.push_back(std::move(row));
   }
-  return {{"file", comparison.file},
+  return {{"file", file},
           {"disagrees", comparison.disagrees},
           {"left_out", comparison.left_out},
           {"rows", std::move(rows)}};
@@ -154,14 +153,14 @@ Json plan_of(const petsc::Ledger& total) {
 
 }  // namespace
 
-Json run_json(const options::Request& request, const accuracy::Outcome& outcome,
-              const RunTimes& times) {
+Json run_json(const options::Case& given, const accuracy::Outcome& outcome, const RunTimes& times,
+              const std::string& compared) {
   Json json;
-  json["scene"] = scene_of(request, outcome);
+  json["scene"] = scene_of(given.scene, outcome);
   json["results"] = results_json(outcome.results);
-  json["accuracy"] = {{"asked", request.accuracy}, {"reached", outcome.reached}};
+  json["accuracy"] = {{"asked", given.question.accuracy}, {"reached", outcome.reached}};
   if (!outcome.reached) json["accuracy"]["shortfall"] = outcome.shortfall;
-  if (outcome.comparison) json["comparison"] = comparison_of(*outcome.comparison);
+  if (outcome.comparison) json["comparison"] = comparison_of(*outcome.comparison, compared);
   json["cost"] = cost_of(outcome, times);
   json["plan"] = plan_of(outcome.total);
   return json;
@@ -169,7 +168,7 @@ Json run_json(const options::Request& request, const accuracy::Outcome& outcome,
 
 std::string summary(MPI_Comm comm, const options::Request& request,
                     const accuracy::Outcome& outcome, const RunTimes& times) {
-  Json json = run_json(request, outcome, times);
+  Json json = run_json(request, outcome, times, request.output.compared);
   json["provenance"] = provenance_json(comm, request);
   return json.dump(2) + "\n";
 }

@@ -8,8 +8,7 @@
 
 namespace stickslip::io {
 
-std::string scene_line(const options::Request& request) {
-  const auto& s = request.scene;
+std::string scene_line(const model::Scene& s) {
   std::string drag = s.drag_name;
   if (s.drag.linear > 0) drag += fmt::format(", c = {:g}", s.drag.linear);
   if (s.drag.law) drag = "b(v) = " + s.drag_expression;
@@ -99,11 +98,11 @@ std::string comparison_line(const accuracy::Compared& c) {
                      verdict_text(c.verdict));
 }
 
-std::string comparison_table(const accuracy::Comparison& comparison) {
+std::string comparison_table(const accuracy::Comparison& comparison, const std::string& file) {
   constexpr std::size_t most = 40;  // the files hold all
   std::string text =
-      fmt::format("\nagainst {}\n{:<16} {:>9} {:>17} {:>17} {} {:>7}  {}\n", comparison.file,
-                  "quantity", "argument", "value", "reference", "95 % interval", "z", "verdict");
+      fmt::format("\nagainst {}\n{:<16} {:>9} {:>17} {:>17} {} {:>7}  {}\n", file, "quantity",
+                  "argument", "value", "reference", "95 % interval", "z", "verdict");
   const auto& rows = comparison.rows;
   for (std::size_t n = 0; n < rows.size(); ++n) {
     const bool shown = rows.size() <= most || n < most / 2 || n >= rows.size() - most / 2 ||
@@ -143,24 +142,24 @@ std::string cost_table(const options::Request& request, const accuracy::Outcome&
 
 std::string table(const options::Request& request, const accuracy::Outcome& outcome,
                   const RunTimes& times) {
-  std::string text = scene_line(request);
+  std::string text = scene_line(request.scene);
   const std::size_t width = key_width(outcome.results);
   text += fmt::format("\n{:<{}} {:>24}  {:>8}  {:>8}\n", "quantity", width, "value", "error",
                       "relative");
   for (const auto& result : outcome.results) text += result_lines(result, width);
-  if (request.wants(options::Quantity::density)) {
+  if (request.question.wants(options::Quantity::density)) {
     text += fmt::format("{:<{}} {:>24}  {:>8.1e}  of the distribution function of |V|\n", "density",
-                        width, "in " + request.output, outcome.speed_error);
+                        width, "in " + request.output.output, outcome.speed_error);
   }
   if (outcome.path) {
-    text += fmt::format("trajectory up to {:g}: {} events\n", request.horizon,
+    text += fmt::format("trajectory up to {:g}: {} events\n", request.question.horizon,
                         outcome.path->time.size());
   }
-  if (outcome.comparison) text += comparison_table(*outcome.comparison);
+  if (outcome.comparison) text += comparison_table(*outcome.comparison, request.output.compared);
   text += "\n" + cost_table(request, outcome);
   // Simulations go on to the number of excursions unless an accuracy is asked for.
-  if (!outcome.simulation || request.accuracy_given) {
-    text += fmt::format("accuracy {:g} {}; ", request.accuracy,
+  if (!outcome.simulation || request.question.accuracy_given) {
+    text += fmt::format("accuracy {:g} {}; ", request.question.accuracy,
                         outcome.reached ? "reached" : "NOT reached: " + outcome.shortfall);
   }
   text += fmt::format("{:.2f} s in all, {:.2f} s of it start-up\n", times.total, times.start_up);

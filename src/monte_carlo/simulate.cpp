@@ -19,8 +19,8 @@
 namespace stickslip::monte_carlo {
 namespace {
 
+using options::Case;
 using options::Quantity;
-using options::Request;
 using quantities::Result;
 using quantities::Results;
 using simulation::Duration;
@@ -56,17 +56,18 @@ std::vector<Cell> cells_around(const std::vector<double>& time) {
   return cells;
 }
 
-simulation::Wanted wanted_of(const Request& request) {
+simulation::Wanted wanted_of(const Case& given) {
   simulation::Wanted wanted;
-  wanted.moments = request.wants(Quantity::moments);
-  wanted.noise = request.wants(Quantity::noise_law);
-  wanted.cycles = !request.scene.symmetric();
-  if (request.wants(Quantity::spectrum)) wanted.omega = request.omega;
-  if (request.wants(Quantity::laplace)) wanted.lambda = request.lambda;
-  if (!request.wants(Quantity::duration_density)) return wanted;
+  const options::Question& question = given.question;
+  wanted.moments = question.wants(Quantity::moments);
+  wanted.noise = question.wants(Quantity::noise_law);
+  wanted.cycles = !given.scene.symmetric();
+  if (question.wants(Quantity::spectrum)) wanted.omega = question.omega;
+  if (question.wants(Quantity::laplace)) wanted.lambda = question.lambda;
+  if (!question.wants(Quantity::duration_density)) return wanted;
   auto& edges = wanted.edges;
-  for (double t : request.time) edges.push_back(t);
-  for (const Cell& cell : cells_around(request.time)) {
+  for (double t : question.time) edges.push_back(t);
+  for (const Cell& cell : cells_around(question.time)) {
     edges.push_back(cell.low);
     edges.push_back(cell.high);
   }
@@ -84,20 +85,20 @@ void append_value(Result& result, const Estimate& e) {
 /// Turns a tally into results.
 class Estimates {
  public:
-  Estimates(const Request& request, const model::Process& process, const Tally& tally)
-      : request_(request), process_(process), tally_(tally) {}
+  Estimates(const options::Question& question, const model::Process& process, const Tally& tally)
+      : question_(question), process_(process), tally_(tally) {}
 
   Results all() {
-    if (request_.wants(Quantity::sticking)) append_sticking();
-    if (request_.wants(Quantity::moments)) append_moments();
-    if (request_.wants(Quantity::noise_law)) {
+    if (question_.wants(Quantity::sticking)) append_sticking();
+    if (question_.wants(Quantity::moments)) append_moments();
+    if (question_.wants(Quantity::noise_law)) {
       scalar("P_X_le_mu_s", "", tally_.within());
       scalar("E_X2", "force^2", tally_.noise_square());
     }
-    if (request_.wants(Quantity::entry_law)) append_entry_law();
-    if (request_.wants(Quantity::laplace)) append_laplace();
-    if (request_.wants(Quantity::duration_density)) append_durations();
-    if (request_.wants(Quantity::spectrum)) append_spectrum();
+    if (question_.wants(Quantity::entry_law)) append_entry_law();
+    if (question_.wants(Quantity::laplace)) append_laplace();
+    if (question_.wants(Quantity::duration_density)) append_durations();
+    if (question_.wants(Quantity::spectrum)) append_spectrum();
     return std::move(results_);
   }
 
@@ -141,9 +142,9 @@ class Estimates {
 
   void append_laplace() {
     for (const auto& [key, duration] : names("F_")) {
-      Result result = quantities::array(key, "", "lambda", request_.lambda);
+      Result result = quantities::array(key, "", "lambda", question_.lambda);
       result.each_by_its_size = true;
-      for (std::size_t n = 0; n < request_.lambda.size(); ++n) {
+      for (std::size_t n = 0; n < question_.lambda.size(); ++n) {
         append_value(result, tally_.laplace(n, duration));
       }
       results_.push_back(std::move(result));
@@ -151,26 +152,28 @@ class Estimates {
   }
 
   void append_durations() {
-    const auto cells = cells_around(request_.time);
+    const auto cells = cells_around(question_.time);
     for (const auto& [key, duration] : names("f_")) {
-      Result density = quantities::array(key, "1/time", "time", request_.time);
+      Result density = quantities::array(key, "1/time", "time", question_.time);
       for (const auto& cell : cells) {
         const Estimate e = tally_.probability(duration, cell.low, cell.high);
         const double width = cell.high - cell.low;
         append_value(density, {e.value / width, e.low / width, e.high / width});
       }
       results_.push_back(std::move(density));
-      Result distribution = quantities::array("cd" + key, "", "time", request_.time);
-      for (double t : request_.time) append_value(distribution, tally_.probability(duration, 0, t));
+      Result distribution = quantities::array("cd" + key, "", "time", question_.time);
+      for (double t : question_.time) {
+        append_value(distribution, tally_.probability(duration, 0, t));
+      }
       results_.push_back(std::move(distribution));
     }
   }
 
   void append_spectrum() {
     if (!process_.symmetric()) return append_spectrum_at_zero();
-    Result s = quantities::array("S_v", "velocity^2*time", "omega", request_.omega);
+    Result s = quantities::array("S_v", "velocity^2*time", "omega", question_.omega);
     s.each_by_its_size = true;
-    for (std::size_t n = 0; n < request_.omega.size(); ++n) append_value(s, tally_.spectrum(n));
+    for (std::size_t n = 0; n < question_.omega.size(); ++n) append_value(s, tally_.spectrum(n));
     results_.push_back(std::move(s));
   }
 
@@ -186,24 +189,29 @@ class Estimates {
             {prefix + "excursion", Duration::excursion}};
   }
 
-  const Request& request_;
+  const options::Question& question_;
   const model::Process& process_;
   const Tally& tally_;
   Results results_;
 };
 
-// What fixes the numbers of a simulation, but for how many excursions there are. The questions may
-// come from the file of -compare, so they are taken as understood, not as written.
-checkpoint::Identity identity(const Request& request) {
-  std::vector<std::string> names{"mu_s", "mu_d",       "tau",          "delta", "drag",
-                                 "seed", "drag_cubic", "noise_levels", "bias",  "drag_coefficient"};
-  if (request.scene.drag.law) names.emplace_back("drag_expression");
-  checkpoint::Identity found;
-  for (const auto& [name, value] : request.resolved) {
-    const bool counts = std::count(names.begin(), names.end(), name) > 0;
-    if (counts) found.emplace_back("-" + name, value);
-  }
-  const auto wanted = wanted_of(request);
+// What fixes the numbers of a simulation, but for how many excursions there are: as understood, not
+// as written, since questions may come from the file of -compare.
+checkpoint::Identity identity(const Case& given) {
+  const auto text = [](auto value) { return fmt::format("{}", value); };
+  const auto& s = given.scene;
+  checkpoint::Identity found{{"-mu_s", text(s.friction.mu_s)},
+                             {"-mu_d", text(s.friction.mu_d)},
+                             {"-tau", text(s.tau)},
+                             {"-delta", text(s.delta)},
+                             {"-noise_levels", s.noise_levels ? text(*s.noise_levels) : ""},
+                             {"-drag", s.drag_name},
+                             {"-drag_coefficient", text(s.drag.linear)},
+                             {"-drag_cubic", text(s.drag.cubic)}};
+  if (s.drag.law) found.emplace_back("-drag_expression", s.drag_expression);
+  found.emplace_back("-bias", text(s.bias));
+  found.emplace_back("-seed", text(given.method.seed));
+  const auto wanted = wanted_of(given);
   const auto add = [&](const char* name, const auto& values) {
     found.emplace_back(name, values.empty() ? "none" : fmt::format("{}", fmt::join(values, ",")));
   };
@@ -213,28 +221,30 @@ checkpoint::Identity identity(const Request& request) {
   add("-quantities", followed);
   add("-lambda", wanted.lambda);
   add("-omega", wanted.omega);
-  add("-time", wanted.edges.empty() ? wanted.edges : request.time);
+  add("-time", wanted.edges.empty() ? wanted.edges : given.question.time);
   return found;
 }
 
 class Campaign {
  public:
-  Campaign(MPI_Comm comm, const Request& request, const SimulationProgress& progress)
+  Campaign(MPI_Comm comm, const Case& given, const std::string& file,
+           const SimulationProgress& progress)
       : comm_(comm),
-        request_(request),
+        given_(given),
+        question_(given.question),
         progress_(progress),
-        process_(request.scene.meant()),
-        wanted_(wanted_of(request)),
+        process_(given.scene.meant()),
+        wanted_(wanted_of(given)),
         source_(simulation::make_source(process_, wanted_)),
         tally_(wanted_, process_.static_index()) {
-    if (request.checkpoint.empty()) return;
-    checkpoint_.emplace(request.checkpoint, checkpoint::Kind::simulation, identity(request));
+    if (file.empty()) return;
+    checkpoint_.emplace(file, checkpoint::Kind::simulation, identity(given));
   }
 
   Simulated run() {
     require_time();
     load();
-    const double all = request_.excursions;
+    const double all = given_.method.excursions;
     state_.wanted = all;
     while (!met() && done() < all) {
       const auto left = static_cast<long>(all - done());
@@ -266,12 +276,12 @@ class Campaign {
     const auto stay = chain.integral(std::vector<double>(chain.size(), 1.0));
     constexpr double jump = 15e-9, month = 30 * 86400.0;
     const double jumps = process_.noise.rate() * std::min(stay.front(), stay.back());
-    const double seconds = request_.excursions * jumps * jump / petsc::ranks(comm_);
+    const double seconds = given_.method.excursions * jumps * jump / petsc::ranks(comm_);
     if (seconds < month) return;
     throw BadInput(fmt::format(
         "-excursions = {:g}: bodies stick for {:.1e} jumps of the noise and more, so that this "
         "would take {:.0e} days; take fewer excursions, or -route excursion",
-        request_.excursions, jumps, seconds / 86400));
+        given_.method.excursions, jumps, seconds / 86400));
   }
 
   void load() {
@@ -312,7 +322,7 @@ class Campaign {
       const auto count = static_cast<int>(std::min<long>(kBatch, excursions - b * kBatch));
       const auto number = static_cast<std::uint64_t>(rounds_ * kRound + b);
       const auto part = simulation::simulate_batch(*source_, wanted_, process_.static_index(),
-                                                   request_.seed, number, count);
+                                                   given_.method.seed, number, count);
       const auto packed = part.pack();
       own.insert(own.end(), packed.begin(), packed.end());
       if (!predicted_) predict(part);
@@ -355,7 +365,7 @@ class Campaign {
     }
   }
 
-  [[nodiscard]] Results results() const { return Estimates(request_, process_, tally_).all(); }
+  [[nodiscard]] Results results() const { return Estimates(question_, process_, tally_).all(); }
 
   [[nodiscard]] std::pair<double, std::string> worst(const Results& results) const {
     std::pair<double, std::string> worst{0, ""};
@@ -368,11 +378,11 @@ class Campaign {
 
   // Whether -accuracy is given and met.
   [[nodiscard]] bool met() {
-    if (!request_.accuracy_given || done() == 0) return false;
+    if (!question_.accuracy_given || done() == 0) return false;
     const double error = worst(results()).first;
-    const double needed = done() * std::pow(error / request_.accuracy, 2);
-    state_.wanted = std::clamp(needed, done(), request_.excursions);
-    return error <= request_.accuracy;
+    const double needed = done() * std::pow(error / question_.accuracy, 2);
+    state_.wanted = std::clamp(needed, done(), given_.method.excursions);
+    return error <= question_.accuracy;
   }
 
   void report() {
@@ -395,19 +405,20 @@ class Campaign {
     Simulated simulated;
     simulated.results = results();
     const auto [error, key] = worst(simulated.results);
-    simulated.reached = !request_.accuracy_given || error <= request_.accuracy;
+    simulated.reached = !question_.accuracy_given || error <= question_.accuracy;
     simulated.state = now();
     simulated.continued_from = continued_from_;
     if (!simulated.reached) {
       simulated.shortfall =
           fmt::format("the interval of {} is +-{:.1e}; it would take about -excursions {:.0e}", key,
-                      error, done() * std::pow(error / request_.accuracy, 2));
+                      error, done() * std::pow(error / question_.accuracy, 2));
     }
     return simulated;
   }
 
   MPI_Comm comm_;
-  const Request& request_;
+  const Case& given_;
+  const options::Question& question_;
   const SimulationProgress& progress_;
   model::Process process_;
   simulation::Wanted wanted_;
@@ -423,8 +434,9 @@ class Campaign {
 
 }  // namespace
 
-Simulated simulate(MPI_Comm comm, const Request& request, const SimulationProgress& progress) {
-  return Campaign(comm, request, progress).run();
+Simulated simulate(MPI_Comm comm, const Case& given, const std::string& checkpoint,
+                   const SimulationProgress& progress) {
+  return Campaign(comm, given, checkpoint, progress).run();
 }
 
 }  // namespace stickslip::monte_carlo

@@ -255,7 +255,7 @@ bool is_composed_key(const std::string& key) {
 void check_keys(const Settings& settings, const Request& request, Problems& problems) {
   const auto keys = plain_keys();
   std::set<std::string> told;
-  for (const auto& reference : request.references) {
+  for (const auto& reference : request.question.references) {
     const std::string& key = reference.quantity;
     const bool known = std::count(keys.begin(), keys.end(), key) > 0 || is_composed_key(key);
     if (known || !told.insert(key).second) continue;
@@ -267,10 +267,10 @@ void check_keys(const Settings& settings, const Request& request, Problems& prob
 }
 
 void read_compared(const Settings& settings, Request& request, Problems& problems) {
-  request.compared = settings.text("compare");
-  if (request.compared.empty()) return;
+  request.output.compared = settings.text("compare");
+  if (request.output.compared.empty()) return;
   try {
-    request.references = read_references(request.compared);
+    request.question.references = read_references(request.output.compared);
   } catch (const std::invalid_argument& error) {
     settings.report(problems, "compare", error.what(),
                     "name a file written by -output or -summary, or CSV with the columns "
@@ -281,11 +281,11 @@ void read_compared(const Settings& settings, Request& request, Problems& problem
 
 // Those named; else those of the file to compare with; else the default ones.
 std::vector<std::string> quantity_names(const Settings& settings, const Request& request) {
-  if (settings.given("quantities") || request.references.empty()) {
+  if (settings.given("quantities") || request.question.references.empty()) {
     return settings.list("quantities");
   }
   std::vector<std::string> names;
-  for (const auto& reference : request.references) {
+  for (const auto& reference : request.question.references) {
     names.push_back(quantity_of(reference.quantity));
   }
   return names;
@@ -298,13 +298,13 @@ void read_quantities(const Settings& settings, Request& request, Problems& probl
   const auto names = quantity_names(settings, request);
   for (const auto& asked : askable()) {
     const auto& routes = symmetric ? asked.routes : asked.without_symmetry;
-    const bool gives = std::count(routes.begin(), routes.end(), request.route) > 0;
+    const bool gives = std::count(routes.begin(), routes.end(), request.method.route) > 0;
     const bool named = std::count(names.begin(), names.end(), asked.name) > 0;
     if (gives) given_by_route.emplace_back(asked.name);
-    if (named && gives) request.quantities.insert(asked.quantity);
+    if (named && gives) request.question.quantities.insert(asked.quantity);
     if (named && !gives) refused.emplace_back(asked.name);
   }
-  const bool some = !request.quantities.empty() && !settings.given("quantities");
+  const bool some = !request.question.quantities.empty() && !settings.given("quantities");
   if (refused.empty() || some) return;
   settings.report(
       problems, "quantities",
@@ -327,7 +327,8 @@ void read_observables(const Settings& settings, Request& request, Problems& prob
       continue;
     }
     try {
-      request.observables.push_back(model::parse_observable(*text, request.scene.friction));
+      request.question.observables.push_back(
+          model::parse_observable(*text, request.scene.friction));
     } catch (const std::invalid_argument& error) {
       settings.report(problems, "observable", error.what(),
                       "write for example \"v^2; x*v; stick\"");
@@ -368,10 +369,11 @@ double largest_speed(const model::Scene& scene) {
 // Where f jumps within an element, its polynomials are wrong by more than refinement sees. At v = 0
 // elements end, and x has a level on each of its values.
 void check_observables(const Settings& settings, const Request& request, Problems& problems) {
-  const bool used = request.wants(Quantity::resolvent) || request.wants(Quantity::expectation);
+  const bool used =
+      request.question.wants(Quantity::resolvent) || request.question.wants(Quantity::expectation);
   if (!used || request.method.scheme != Scheme::hp || !problems.empty()) return;
   const double speed = largest_speed(request.scene);
-  for (const auto& f : request.observables) {
+  for (const auto& f : request.question.observables) {
     const auto jump = model::velocity_jump(f, probed_levels(request.scene, f), speed);
     if (!jump) continue;
     settings.report(problems, "observable",
@@ -387,7 +389,7 @@ std::vector<double> arguments(const Settings& settings, const Request& request,
                               const std::string& option, const std::string& quantity) {
   std::vector<double> values = settings.numbers(option);
   if (settings.given(option)) return values;
-  for (const auto& reference : request.references) {
+  for (const auto& reference : request.question.references) {
     const bool asks = reference.argument && quantity_of(reference.quantity) == quantity;
     const double value = reference.argument.value_or(0);
     if (asks && value >= 0 && std::count(values.begin(), values.end(), value) == 0) {
@@ -399,32 +401,33 @@ std::vector<double> arguments(const Settings& settings, const Request& request,
 
 // What the quantities and the route need besides the scene.
 void read_arguments(const Settings& settings, Request& request, Problems& problems) {
-  request.lambda = arguments(settings, request, "lambda", "laplace");
-  request.omega = arguments(settings, request, "omega", "spectrum");
-  request.time = arguments(settings, request, "time", "duration_density");
+  request.question.lambda = arguments(settings, request, "lambda", "laplace");
+  request.question.omega = arguments(settings, request, "omega", "spectrum");
+  request.question.time = arguments(settings, request, "time", "duration_density");
   read_observables(settings, request, problems);
-  const bool transforms = request.wants(Quantity::laplace) ||
-                          request.wants(Quantity::stay_transform) ||
-                          request.wants(Quantity::resolvent);
-  const bool resolvent = request.wants(Quantity::resolvent) || request.wants(Quantity::expectation);
-  if (transforms && request.lambda.empty()) {
+  const bool transforms = request.question.wants(Quantity::laplace) ||
+                          request.question.wants(Quantity::stay_transform) ||
+                          request.question.wants(Quantity::resolvent);
+  const bool resolvent =
+      request.question.wants(Quantity::resolvent) || request.question.wants(Quantity::expectation);
+  if (transforms && request.question.lambda.empty()) {
     settings.report(problems, "quantities", "asks for functions of lambda and no values are given",
                     "add for example -lambda 0.1,1,10");
   }
-  if (resolvent && request.observables.empty() && !settings.given("observable")) {
+  if (resolvent && request.question.observables.empty() && !settings.given("observable")) {
     settings.report(problems, "quantities", "asks for functions of the state and none are given",
                     "add for example -observable \"v^2; stick\"");
   }
-  const bool of_time = request.wants(Quantity::duration_density) ||
-                       request.wants(Quantity::autocorrelation) ||
-                       request.wants(Quantity::expectation);
-  if (of_time && request.time.empty()) {
+  const bool of_time = request.question.wants(Quantity::duration_density) ||
+                       request.question.wants(Quantity::autocorrelation) ||
+                       request.question.wants(Quantity::expectation);
+  if (of_time && request.question.time.empty()) {
     settings.report(problems, "quantities", "asks for functions of time and no times are given",
                     "add for example -time 0.01:10:31:log");
   }
-  const bool by_lambda = request.route == Route::lambda;
-  if (by_lambda && !request.lambda.empty() &&
-      (request.lambda.size() > 1 || request.lambda[0] == 0)) {
+  const bool by_lambda = request.method.route == Route::lambda;
+  if (by_lambda && !request.question.lambda.empty() &&
+      (request.question.lambda.size() > 1 || request.question.lambda[0] == 0)) {
     settings.report(problems, "lambda", "must be one positive number with -route lambda",
                     "leave it out to have it chosen from -accuracy");
   }
@@ -433,32 +436,35 @@ void read_arguments(const Settings& settings, Request& request, Problems& proble
       request.warnings.push_back(fmt::format("-{} has no effect on what is asked for", name));
     }
   };
-  if (request.wants(Quantity::sensitivity) && !request.wants(Quantity::sticking) &&
-      !request.wants(Quantity::moments) && !request.wants(Quantity::noise_law)) {
+  if (request.question.wants(Quantity::sensitivity) &&
+      !request.question.wants(Quantity::sticking) && !request.question.wants(Quantity::moments) &&
+      !request.question.wants(Quantity::noise_law)) {
     settings.report(problems, "quantities", "asks for derivatives and for nothing to derive",
                     "add sticking, moments or noise_law");
   }
   warn_unused("lambda", transforms || by_lambda);
   warn_unused("observable", resolvent);
   warn_unused("time", of_time);
-  warn_unused("start", request.wants(Quantity::expectation) || request.wants(Quantity::trajectory));
-  warn_unused("horizon", request.wants(Quantity::trajectory));
-  const bool simulates = request.route == Route::monte_carlo;
+  warn_unused("start", request.question.wants(Quantity::expectation) ||
+                           request.question.wants(Quantity::trajectory));
+  warn_unused("horizon", request.question.wants(Quantity::trajectory));
+  const bool simulates = request.method.route == Route::monte_carlo;
   warn_unused("excursions", simulates);
   warn_unused("checkpoint", simulates || sweeps(settings));
   warn_unused("sweep_csv", sweeps(settings));
   warn_unused("sweep_ranks", sweeps(settings));
-  warn_unused("seed", simulates || request.wants(Quantity::trajectory));
+  warn_unused("seed", simulates || request.question.wants(Quantity::trajectory));
   warn_unused("transient_solver", of_time);
-  warn_unused("omega", request.wants(Quantity::spectrum));
-  warn_unused("spectrum_solver", request.wants(Quantity::spectrum));
+  warn_unused("omega", request.question.wants(Quantity::spectrum));
+  warn_unused("spectrum_solver", request.question.wants(Quantity::spectrum));
 }
 
 // s+, s- or x,v with x on a noise level.
 void read_start(const Settings& settings, Request& request, Problems& problems) {
   const std::string text = settings.text("start");
   const auto process = request.scene.process(1);
-  request.start_level = text == "s-" ? process.lowest_static() - 1 : process.static_index() + 1;
+  request.question.start_level =
+      text == "s-" ? process.lowest_static() - 1 : process.static_index() + 1;
   if (text == "s+" || text == "s-") return;
   const auto numbers = parse_numbers(text);
   if (!numbers || numbers->size() != 2) {
@@ -466,7 +472,7 @@ void read_start(const Settings& settings, Request& request, Problems& problems) 
     return;
   }
   const double place = (*numbers)[0] / request.scene.delta, level = std::round(place);
-  request.start_v = (*numbers)[1];
+  request.question.start_v = (*numbers)[1];
   const int levels = request.scene.noise_levels.value_or(request.scene.full_levels());
   if (std::abs(place - level) > 1e-9 * std::max(1.0, std::abs(place)) || std::abs(level) > levels) {
     settings.report(problems, "start",
@@ -476,32 +482,33 @@ void read_start(const Settings& settings, Request& request, Problems& problems) 
                                 std::clamp<double>(level, -levels, levels) * request.scene.delta));
     return;
   }
-  request.start_level = static_cast<int>(level);
+  request.question.start_level = static_cast<int>(level);
 }
 
 // A path is kept in memory.
 void read_horizon(const Settings& settings, Request& request, Problems& problems) {
-  request.horizon = settings.real("horizon");
+  request.question.horizon = settings.real("horizon");
   const auto& scene = request.scene;
-  const double jumps = request.horizon * scene.process(1).noise.rate();
+  const double jumps = request.question.horizon * scene.process(1).noise.rate();
   constexpr double most = 5e7;
-  if (!request.wants(Quantity::trajectory) || jumps <= most) return;
+  if (!request.question.wants(Quantity::trajectory) || jumps <= most) return;
   settings.report(
       problems, "horizon",
       fmt::format("means {:.1e} jumps of the noise, and {:.0e} can be kept", jumps, most),
-      fmt::format("take at most {:.3g}", request.horizon * most / jumps));
+      fmt::format("take at most {:.3g}", request.question.horizon * most / jumps));
 }
 
 void read_spectrum_solver(const Settings& settings, Request& request, Problems& problems) {
   if (settings.text("spectrum_solver") != "direct") return;
-  request.spectrum_solver = SpectrumSolver::direct;
+  request.method.spectrum_solver = SpectrumSolver::direct;
   if (petsc::complex_scalars()) return;
   settings.report(problems, "spectrum_solver", "needs complex scalars",
                   "run stickslip-complex with the same options, or take krylov");
 }
 
 void check_no_grid(const Settings& settings, const Request& request, Problems& problems) {
-  if (request.route != Route::monte_carlo && request.route != Route::fluid_queue) return;
+  if (request.method.route != Route::monte_carlo && request.method.route != Route::fluid_queue)
+    return;
   for (const char* name : {"scheme", "degree", "layers", "noise_degree", "noise_grading", "p"}) {
     if (!settings.given(name)) continue;
     settings.report(
@@ -513,31 +520,31 @@ void check_no_grid(const Settings& settings, const Request& request, Problems& p
 
 // What only some routes can do.
 void check_route(const Settings& settings, const Request& request, Problems& problems) {
-  if (request.route != Route::excursion && request.scene.v_max) {
+  if (request.method.route != Route::excursion && request.scene.v_max) {
     settings.report(problems, "v_max", "is no choice of -route " + settings.text("route"),
                     "leave it out, or take -route excursion");
   }
   check_no_grid(settings, request, problems);
-  if (request.route == Route::monte_carlo) {
+  if (request.method.route == Route::monte_carlo) {
     const bool by_omega = request.scene.symmetric();
-    if (request.wants(Quantity::spectrum) && request.omega.empty() && by_omega) {
+    if (request.question.wants(Quantity::spectrum) && request.question.omega.empty() && by_omega) {
       settings.report(problems, "quantities", "asks for the spectrum and no frequencies are given",
                       "add for example -omega 0:10:41");
     }
   }
-  if (!request.scene.symmetric() && request.wants(Quantity::spectrum) && !request.omega.empty()) {
+  if (!request.scene.symmetric() && request.question.wants(Quantity::spectrum) &&
+      !request.question.omega.empty()) {
     settings.report(problems, "omega", "has no meaning without symmetry, where spectrum gives S_0",
                     "leave it out");
   }
-  if (request.route != Route::fluid_queue) return;
+  if (request.method.route != Route::fluid_queue) return;
   if (!request.scene.drag.is_none()) {
     settings.report(problems, "route", "needs b = 0: only then is the model a fluid queue",
                     "add -drag none, or take -route excursion");
   }
 }
 
-Method read_method(const Settings& settings, Problems& problems) {
-  Method method;
+void read_method(const Settings& settings, Method& method, Problems& problems) {
   method.scheme = settings.text("scheme") == "upwind" ? Scheme::upwind : Scheme::hp;
   method.degree = settings.integer("degree");
   method.layers = settings.integer("layers");
@@ -555,7 +562,6 @@ Method read_method(const Settings& settings, Problems& problems) {
     settings.report(problems, "p", "belongs to -scheme upwind",
                     "leave it out, or take -scheme upwind");
   }
-  return method;
 }
 
 StudyKind study_named(const std::string& name) {
@@ -567,11 +573,11 @@ StudyKind study_named(const std::string& name) {
 
 // A study chooses discretisations and routes itself, and looks at scalars.
 void read_study(const Settings& settings, Request& request, Problems& problems) {
-  request.study = study_named(settings.text("study"));
-  request.study_steps = settings.integer("study_steps");
-  request.study_repeats = settings.integer("study_repeats").value_or(3);
-  request.study_csv = settings.text("study_csv");
-  if (request.study == StudyKind::none) {
+  request.study.kind = study_named(settings.text("study"));
+  request.study.steps = settings.integer("study_steps");
+  request.study.repeats = settings.integer("study_repeats").value_or(3);
+  request.output.study_csv = settings.text("study_csv");
+  if (request.study.kind == StudyKind::none) {
     for (const char* name : {"study_steps", "study_repeats", "study_csv"}) {
       if (!settings.given(name)) continue;
       request.warnings.push_back(fmt::format("-{} has no effect without -study", name));
@@ -583,7 +589,7 @@ void read_study(const Settings& settings, Request& request, Problems& problems) 
     if (!settings.given(name)) continue;
     settings.report(problems, name, "is chosen by -study itself", "leave it out");
   }
-  for (Quantity q : request.quantities) {
+  for (Quantity q : request.question.quantities) {
     const bool scalar =
         q == Quantity::sticking || q == Quantity::moments || q == Quantity::noise_law;
     if (scalar) continue;
@@ -617,17 +623,18 @@ void read_output(const Settings& settings, Request& request, Problems& problems)
   check_writable(settings, "study_csv", problems);
   check_writable(settings, "sweep_csv", problems);
   check_writable(settings, "checkpoint", problems);
-  request.summary = settings.text("summary");
-  request.output = settings.text("output");
-  request.trajectory = settings.text("trajectory");
-  request.checkpoint = settings.text("checkpoint");
+  request.output.summary = settings.text("summary");
+  request.output.output = settings.text("output");
+  request.output.trajectory = settings.text("trajectory");
+  request.output.checkpoint = settings.text("checkpoint");
   const std::string progress = settings.text("progress");
-  request.progress = progress == "on" || (progress == "auto" && isatty(STDERR_FILENO) != 0);
-  if (request.wants(Quantity::density) && request.output.empty()) {
+  request.output.progress = progress == "on" || (progress == "auto" && isatty(STDERR_FILENO) != 0);
+  if (request.question.wants(Quantity::density) && request.output.output.empty()) {
     settings.report(problems, "quantities", "asks for density, a field that needs a file",
                     "add -output FILE.h5");
   }
-  if (request.wants(Quantity::trajectory) && request.output.empty() && request.trajectory.empty()) {
+  if (request.question.wants(Quantity::trajectory) && request.output.output.empty() &&
+      request.output.trajectory.empty()) {
     settings.report(problems, "quantities", "asks for a trajectory, which needs a file",
                     "add -output FILE.h5 or -trajectory FILE.csv");
   }
@@ -640,28 +647,29 @@ Request request_of(const Settings& settings, Problems& problems) {
   request.scene = read_scene(settings, request, problems);
   check_noise(settings, request.scene, problems);
   read_drag_law(settings, request.scene, problems);
-  request.route = route_named(settings.text("route"));
+  request.method.route = route_named(settings.text("route"));
   read_compared(settings, request, problems);
   read_quantities(settings, request, problems);
   read_arguments(settings, request, problems);
   read_spectrum_solver(settings, request, problems);
-  const bool starts = request.wants(Quantity::expectation) || request.wants(Quantity::trajectory);
+  const bool starts =
+      request.question.wants(Quantity::expectation) || request.question.wants(Quantity::trajectory);
   if (starts && problems.empty()) read_start(settings, request, problems);
   if (settings.text("transient_solver") == "stepping") {
-    request.transient_solver = TransientSolver::stepping;
+    request.method.transient_solver = TransientSolver::stepping;
   }
-  request.accuracy = settings.real("accuracy");
-  request.accuracy_given = settings.given("accuracy");
-  request.excursions = settings.real("excursions");
-  request.seed = static_cast<std::uint64_t>(settings.real("seed"));
+  request.question.accuracy = settings.real("accuracy");
+  request.question.accuracy_given = settings.given("accuracy");
+  request.method.excursions = settings.real("excursions");
+  request.method.seed = static_cast<std::uint64_t>(settings.real("seed"));
   read_horizon(settings, request, problems);
-  request.method = read_method(settings, problems);
+  read_method(settings, request.method, problems);
   check_observables(settings, request, problems);
   check_route(settings, request, problems);
-  if (request.route == Route::fluid_queue) request.method.scheme = Scheme::none;
+  if (request.method.route == Route::fluid_queue) request.method.scheme = Scheme::none;
   read_study(settings, request, problems);
   request.plan_only = settings.flag("plan");
-  if (request.plan_only && request.study != StudyKind::none) {
+  if (request.plan_only && request.study.kind != StudyKind::none) {
     settings.report(problems, "plan", "foretells one run, not a study", "leave -study out");
   }
   read_output(settings, request, problems);

@@ -198,7 +198,9 @@ Request Sweep::request(std::size_t point, Problems& problems) const {
   for (std::size_t a = 0; a < at.size(); ++a) settings.set(axes_[a].option, at[a], problems);
   Request request;
   if (problems.empty()) request = request_of(settings, problems);
-  for (std::string* file : {&request.summary, &request.output, &request.checkpoint}) file->clear();
+  for (std::string* file :
+       {&request.output.summary, &request.output.output, &request.output.checkpoint})
+    file->clear();
   return request;
 }
 
@@ -228,10 +230,10 @@ Request read_sweep(const Settings& settings) {
   problems.raise();
   Request request = sweep->request(0);
   request.sweep = sweep;
-  request.summary = settings.text("summary");
-  request.output = settings.text("output");
-  request.checkpoint = settings.text("checkpoint");
-  request.sweep_csv = settings.text("sweep_csv");
+  request.output.summary = settings.text("summary");
+  request.output.output = settings.text("output");
+  request.output.checkpoint = settings.text("checkpoint");
+  request.output.sweep_csv = settings.text("sweep_csv");
   request.sweep_ranks = settings.integer("sweep_ranks").value_or(1);
   for (auto& [name, value] : request.resolved) {
     if (is_axis(sweep->axes(), name)) value = kSwept;

@@ -17,23 +17,24 @@ Average average(const Setting& setting, const char* key, const char* unit, const
 }  // namespace
 
 std::vector<Average> averages(const Setting& setting) {
+  const options::Question& question = setting.given.question;
   std::vector<Average> all{average(setting, "P_X_gt_mu_s", "", "1")};
   const auto within = model::parse_observable("|x|<=mu_s", setting.discretisation.process.friction);
   all[0].f.value = [within](double x, double y, double v) { return 1 - within(x, y, v); };
   const auto add = [&](const char* key, const char* unit, const char* f) {
     all.push_back(average(setting, key, unit, f));
   };
-  if (setting.request.wants(Quantity::sticking)) {
+  if (question.wants(Quantity::sticking)) {
     add("P_stick", "", "stick");
     add("P_slide", "", "slide");
   }
-  if (setting.request.wants(Quantity::moments)) {
+  if (question.wants(Quantity::moments)) {
     add("E_V2", "velocity^2", "v^2");
     add("E_absV", "velocity", "|v|");
     add("E_XV", "force*velocity", "x*v");
     if (!setting.discretisation.process.symmetric()) add("E_V", "velocity", "v");
   }
-  if (setting.request.wants(Quantity::noise_law)) {
+  if (question.wants(Quantity::noise_law)) {
     add("P_X_le_mu_s", "", "|x|<=mu_s");
     add("E_X2", "force^2", "x^2");
   }
@@ -52,7 +53,8 @@ void append_averages(const Setting& setting, const std::vector<Uncertain>& value
     results.push_back(quantities::scalar(all[n].key, all[n].unit, values[n].value,
                                          values[n].error + defect * share));
   }
-  if (setting.request.wants(Quantity::moments) && setting.discretisation.process.symmetric()) {
+  if (setting.given.question.wants(Quantity::moments) &&
+      setting.discretisation.process.symmetric()) {
     results.push_back(quantities::scalar("E_V", "velocity", 0, 0));  // by symmetry
   }
 }

@@ -16,7 +16,7 @@ struct Average {
   model::Observable f;
 };
 
-/// Those that the request asks for, and P_X_gt_mu_s, which check_averages needs.
+/// Those that are asked for, and P_X_gt_mu_s, which check_averages needs.
 [[nodiscard]] std::vector<Average> averages(const Setting& setting);
 
 /// Turns pi(f) of averages(setting) into results.

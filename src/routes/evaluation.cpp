@@ -5,7 +5,7 @@
 namespace stickslip::routes {
 
 Evaluation evaluate(const Setting& setting) {
-  switch (setting.request.route) {
+  switch (setting.given.method.route) {
   case options::Route::excursion: return by_excursion(setting);
   case options::Route::lambda: return by_lambda(setting);
   case options::Route::hitting: return by_hitting(setting);

@@ -17,8 +17,9 @@ namespace stickslip::routes {
 namespace {
 
 using operators::Symmetry;
+using options::Case;
 using options::Quantity;
-using options::Request;
+using options::Question;
 using quantities::Results;
 using quantities::StationaryLaw;
 using quantities::Uncertain;
@@ -41,10 +42,10 @@ void append_with_rounding(const StationaryLaw& law, Results& results, Append app
   }
 }
 
-void append_law(const Request& request, const StationaryLaw& law, Results& results) {
+void append_law(const Question& question, const StationaryLaw& law, Results& results) {
   append_with_rounding(law, results, [&](const auto& excursion, Results& found) {
-    if (request.wants(Quantity::sticking)) quantities::append_sticking(excursion, found);
-    if (!request.wants(Quantity::moments)) return;
+    if (question.wants(Quantity::sticking)) quantities::append_sticking(excursion, found);
+    if (!question.wants(Quantity::moments)) return;
     quantities::append_moments(law.discretisation(), excursion, found);
   });
 }
@@ -63,28 +64,28 @@ quantities::Spectrum direct_spectrum(const Setting& setting) {
   operators::Systems systems(comm, setting.discretisation, setting.ledger);
   const StationaryLaw law(systems);
   systems.release(0, Symmetry::even);
-  return quantities::direct_spectrum(setting.comm, systems, law, setting.request.omega);
+  return quantities::direct_spectrum(setting.comm, systems, law, setting.given.question.omega);
 }
 
 void append_spectrum(operators::Systems& systems, const Setting& setting, Evaluation& evaluation) {
-  const Request& request = setting.request;
-  if (request.spectrum_solver == options::SpectrumSolver::direct) {
-    quantities::append_spectrum(request.omega, direct_spectrum(setting), evaluation.results);
+  const Question& question = setting.given.question;
+  if (setting.given.method.spectrum_solver == options::SpectrumSolver::direct) {
+    quantities::append_spectrum(question.omega, direct_spectrum(setting), evaluation.results);
     return;
   }
   // A tenth of the accuracy, so that the projection does not rule the error.
-  const auto reduced =
-      quantities::reduced_spectrum(systems, *evaluation.law, request.omega, 0.1 * request.accuracy);
-  quantities::append_spectrum(request.omega, reduced.spectrum, evaluation.results);
+  const auto reduced = quantities::reduced_spectrum(systems, *evaluation.law, question.omega,
+                                                    0.1 * question.accuracy);
+  quantities::append_spectrum(question.omega, reduced.spectrum, evaluation.results);
   quantities::append_shape(reduced.shape, evaluation.results);
   evaluation.checks.emplace_back("krylov_pairs", reduced.pairs);
   evaluation.checks.emplace_back("krylov_shifts", static_cast<double>(reduced.shifts.size()));
 }
 
 void append_durations(operators::Systems& systems, const Setting& setting, Evaluation& evaluation) {
-  const auto& time = setting.request.time;
+  const auto& time = setting.given.question.time;
   const auto& law = *evaluation.law;
-  const double tolerance = 0.1 * setting.request.accuracy;
+  const double tolerance = 0.1 * setting.given.question.accuracy;
   const auto slide = quantities::slide_law(systems, law, time, tolerance);
   const auto stick = quantities::stick_law(setting.discretisation.process, entry_law(law), time);
   const auto excursion = quantities::excursion_law(systems, law, time, tolerance);
@@ -95,36 +96,38 @@ void append_durations(operators::Systems& systems, const Setting& setting, Evalu
   evaluation.checks.emplace_back("excursion_pairs", excursion.pairs);
 }
 
-quantities::TransientMethod transient_method(const Request& request) {
-  return request.transient_solver == options::TransientSolver::krylov
+quantities::TransientMethod transient_method(const options::Method& method) {
+  return method.transient_solver == options::TransientSolver::krylov
              ? quantities::TransientMethod::krylov
              : quantities::TransientMethod::stepping;
 }
 
-void append_function_of_time(const Request& request, const std::string& key,
+void append_function_of_time(const std::vector<double>& time, const std::string& key,
                              const std::string& unit, const std::vector<Uncertain>& values,
                              Results& results) {
-  auto result = quantities::array(key, unit, "time", request.time);
+  auto result = quantities::array(key, unit, "time", time);
   for (const auto& value : values) quantities::append_value(result, value);
   results.push_back(std::move(result));
 }
 
 void append_autocorrelation(operators::Systems& systems, const Setting& setting,
                             Evaluation& evaluation) {
-  const Request& request = setting.request;
-  const auto values = quantities::autocorrelation(
-      systems, *evaluation.law, request.time, transient_method(request), 0.1 * request.accuracy);
-  append_function_of_time(request, "C_vv", "velocity^2", values, evaluation.results);
+  const Question& question = setting.given.question;
+  const auto method = transient_method(setting.given.method);
+  const auto values = quantities::autocorrelation(systems, *evaluation.law, question.time, method,
+                                                  0.1 * question.accuracy);
+  append_function_of_time(question.time, "C_vv", "velocity^2", values, evaluation.results);
 }
 
 void append_expectations(operators::Systems& systems, const Setting& setting,
                          Evaluation& evaluation) {
-  const Request& request = setting.request;
-  for (const auto& f : request.observables) {
-    const auto expectation =
-        quantities::expectation(systems, *evaluation.law, f, {request.start_level, request.start_v},
-                                request.time, transient_method(request), 0.1 * request.accuracy);
-    append_function_of_time(request, "E(" + f.name + ")", "", expectation.value,
+  const Question& question = setting.given.question;
+  const auto method = transient_method(setting.given.method);
+  for (const auto& f : question.observables) {
+    const auto expectation = quantities::expectation(
+        systems, *evaluation.law, f, {question.start_level, question.start_v}, question.time,
+        method, 0.1 * question.accuracy);
+    append_function_of_time(question.time, "E(" + f.name + ")", "", expectation.value,
                             evaluation.results);
     evaluation.results.push_back(
         quantities::scalar("stationary(" + f.name + ")", "", expectation.stationary, 0));
@@ -136,11 +139,12 @@ class Execution {
  public:
   explicit Execution(const Setting& setting)
       : setting_(setting),
-        request_(setting.request),
+        given_(setting.given),
+        question_(given_.question),
         systems_(setting.comm, setting.discretisation, setting.ledger) {}
 
   Evaluation run() {
-    const Plan plan = plan_of(request_);
+    const Plan plan = plan_of(given_);
     for (std::size_t n = 0; n < plan.tasks.size(); ++n) {
       carry_out(plan.tasks[n]);
       systems_.keep(plan.used_from(n + 1));
@@ -156,11 +160,11 @@ class Execution {
     case Work::orientation: return find_entry_law();
     case Work::sensitivity: return find_sensitivity();
     case Work::duration_moments: return find_duration_moments();
-    case Work::duration_transforms: return transform_durations(request_.lambda[task.at]);
+    case Work::duration_transforms: return transform_durations(question_.lambda[task.at]);
     case Work::stay_transforms: return transform_stays();
     case Work::resolvent:
       resolvents_.push_back(
-          quantities::resolvent(systems_, request_.lambda[task.at], request_.observables));
+          quantities::resolvent(systems_, question_.lambda[task.at], question_.observables));
       return;
     case Work::spectrum: return append_spectrum(systems_, setting_, evaluation_);
     case Work::spectrum_at_zero: return find_spectrum_at_zero();
@@ -176,7 +180,7 @@ class Execution {
 
   void find_law() {
     evaluation_.law = std::make_shared<StationaryLaw>(systems_);
-    append_law(request_, law(), results());
+    append_law(question_, law(), results());
   }
 
   void find_entry_law() {
@@ -188,9 +192,9 @@ class Execution {
 
   void find_sensitivity() {
     const quantities::Sensitivity sensitivity(systems_, law(),
-                                              quantities::parameters_of(request_.scene));
-    if (request_.wants(Quantity::sticking)) sensitivity.append_sticking(results());
-    if (request_.wants(Quantity::moments)) sensitivity.append_moments(results());
+                                              quantities::parameters_of(given_.scene));
+    if (question_.wants(Quantity::sticking)) sensitivity.append_sticking(results());
+    if (question_.wants(Quantity::moments)) sensitivity.append_moments(results());
   }
 
   void find_duration_moments() {
@@ -208,9 +212,9 @@ class Execution {
 
   void transform_stays() {
     const auto entry = entry_law(law());
-    auto result = quantities::array("F_stick", "", "lambda", request_.lambda);
+    auto result = quantities::array("F_stick", "", "lambda", question_.lambda);
     result.each_by_its_size = true;
-    for (double lambda : request_.lambda) {
+    for (double lambda : question_.lambda) {
       quantities::append_value(
           result, quantities::stick_transform(setting_.discretisation.process, lambda, entry));
     }
@@ -231,14 +235,15 @@ class Execution {
 
   // What was found one lambda at a time.
   void append_arrays() {
-    const auto& lambda = request_.lambda;
+    const auto& lambda = question_.lambda;
     if (!transforms_.empty()) quantities::append_laplace(lambda, transforms_, results());
     if (resolvents_.empty()) return;
-    quantities::append_resolvent(lambda, request_.observables, resolvents_, results());
+    quantities::append_resolvent(lambda, question_.observables, resolvents_, results());
   }
 
   const Setting& setting_;
-  const Request& request_;
+  const Case& given_;
+  const Question& question_;
   operators::Systems systems_;
   Evaluation evaluation_;
   std::vector<quantities::DurationTransforms> transforms_;

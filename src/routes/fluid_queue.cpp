@@ -73,7 +73,7 @@ void append_laplace(const Setting& setting, const Excursion& excursion, double r
     return all;
   };
   std::vector<quantities::DurationTransforms> transforms;
-  for (double lambda : setting.request.lambda) {
+  for (double lambda : setting.given.question.lambda) {
     const FluidQueue killed = solve(setting.discretisation.process, lambda);
     const double slide = killed.slide_transform();
     transforms.push_back({{slide, rounding * slide},
@@ -82,13 +82,13 @@ void append_laplace(const Setting& setting, const Excursion& excursion, double r
                           quantities::stick_transform(setting.discretisation.process, lambda,
                                                       uncertain(killed.entry()))});
   }
-  quantities::append_laplace(setting.request.lambda, transforms, results);
+  quantities::append_laplace(setting.given.question.lambda, transforms, results);
 }
 
 }  // namespace
 
 Evaluation by_fluid_queue(const Setting& setting) {
-  const auto& request = setting.request;
+  const auto& question = setting.given.question;
   const auto& process = setting.discretisation.process;
   const petsc::PhaseTimer timer("fluid queue", setting.ledger.factorization_seconds);
   const FluidQueue queue = solve(process, 0);
@@ -96,20 +96,20 @@ Evaluation by_fluid_queue(const Setting& setting) {
   const double rounding = relative_rounding(excursion, queue);
   Evaluation evaluation;
   auto& results = evaluation.results;
-  if (request.wants(Quantity::sticking)) quantities::append_sticking(excursion, results);
-  if (request.wants(Quantity::moments))
+  if (question.wants(Quantity::sticking)) quantities::append_sticking(excursion, results);
+  if (question.wants(Quantity::moments))
     quantities::append_moments(setting.discretisation, excursion, results);
-  if (request.wants(Quantity::entry_law)) {
+  if (question.wants(Quantity::entry_law)) {
     quantities::append_entry_law(process, excursion, results);
   }
-  if (request.wants(Quantity::noise_law)) {
+  if (question.wants(Quantity::noise_law)) {
     append_noise_law(process, quantities::marginal_of_noise(setting.discretisation, excursion),
                      results);
   }
   for (auto& r : results) {
     for (std::size_t n = 0; n < r.value.size(); ++n) r.error[n] = rounding * std::abs(r.value[n]);
   }
-  if (request.wants(Quantity::laplace)) append_laplace(setting, excursion, rounding, results);
+  if (question.wants(Quantity::laplace)) append_laplace(setting, excursion, rounding, results);
   evaluation.checks = {{"riccati_residual", queue.residual()},
                        {"lost_probability", excursion.lost_probability}};
   return evaluation;

@@ -92,8 +92,8 @@ class Search {
 
   Trial run() {
     const double tau = setting_.discretisation.process.noise.tau,
-                 wanted = 0.25 * setting_.request.accuracy;
-    best_ = average_at(setting_, std::max(0.01 * setting_.request.accuracy, kSafe) / tau);
+                 wanted = 0.25 * setting_.given.question.accuracy;
+    best_ = average_at(setting_, std::max(0.01 * setting_.given.question.accuracy, kSafe) / tau);
     for (int n = 1, means = 0; n < kMostTrials && means < kMostMeans; ++n) {
       const double excess = best_.largest_bias / wanted;
       if (excess <= 1) break;
@@ -133,7 +133,7 @@ class Search {
 }  // namespace
 
 Evaluation by_lambda(const Setting& setting) {
-  const auto& fixed = setting.request.lambda;
+  const auto& fixed = setting.given.question.lambda;
   Trial best = fixed.empty() ? Search(setting).run() : average_at(setting, fixed[0]);
   Evaluation evaluation;
   evaluation.results = std::move(best.results);

@@ -108,7 +108,7 @@ Evaluation by_null_vector(const Setting& setting) {
     values.push_back({value, std::abs(value - integral(a, before, average.f))});
   }
   append_averages(setting, values, evaluation.results);
-  if (setting.request.wants(options::Quantity::sticking)) {
+  if (setting.given.question.wants(options::Quantity::sticking)) {
     append_durations(mean_excursion(setting, a, pi, before), evaluation.results);
   }
   evaluation.checks = {{"norm_pi_M_over_norm_M", relative_residual(transposed, pi)},

@@ -12,37 +12,37 @@ namespace stickslip::routes {
 namespace {
 
 using operators::Symmetry;
+using options::Case;
 using options::Quantity;
-using options::Request;
 
 // Anything but resolvents, modes and closed forms.
-bool needs_law(const Request& request) {
+bool needs_law(const Case& given) {
   for (Quantity q :
        {Quantity::sticking, Quantity::moments, Quantity::entry_law, Quantity::density,
         Quantity::laplace, Quantity::stay_transform, Quantity::spectrum, Quantity::duration_density,
         Quantity::autocorrelation, Quantity::expectation}) {
-    if (request.wants(q)) return true;
+    if (given.question.wants(q)) return true;
   }
-  return request.scene.v_max.has_value();  // what the cut holds back is judged by the law
+  return given.scene.v_max.has_value();  // what the cut holds back is judged by the law
 }
 
 /// Collects the tasks in their order.
 class Planner {
  public:
-  explicit Planner(const Request& request) : request_(request) {}
+  explicit Planner(const Case& given) : given_(given), question_(given.question) {}
 
   Plan plan() {
-    if (needs_law(request_)) plan_law();
-    if (request_.wants(Quantity::sensitivity)) plan_sensitivity();
+    if (needs_law(given_)) plan_law();
+    if (question_.wants(Quantity::sensitivity)) plan_sensitivity();
     plan_transforms();
-    if (request_.wants(Quantity::spectrum)) plan_spectrum();
-    const auto observables = static_cast<int>(request_.observables.size());
-    if (request_.wants(Quantity::duration_density)) add_adaptive(Work::durations, 14, 160);
-    if (request_.wants(Quantity::autocorrelation)) add_adaptive(Work::autocorrelation, 6, 36);
-    if (request_.wants(Quantity::expectation)) {
+    if (question_.wants(Quantity::spectrum)) plan_spectrum();
+    const auto observables = static_cast<int>(question_.observables.size());
+    if (question_.wants(Quantity::duration_density)) add_adaptive(Work::durations, 14, 160);
+    if (question_.wants(Quantity::autocorrelation)) add_adaptive(Work::autocorrelation, 6, 36);
+    if (question_.wants(Quantity::expectation)) {
       add_adaptive(Work::expectation, 6 * observables, 36 * observables);
     }
-    if (request_.wants(Quantity::relaxation)) add_adaptive(Work::relaxation, 2, 70);
+    if (question_.wants(Quantity::relaxation)) add_adaptive(Work::relaxation, 2, 70);
     return std::move(plan_);
   }
 
@@ -60,9 +60,9 @@ class Planner {
   }
 
   void plan_law() {
-    const bool symmetric = request_.scene.symmetric();
+    const bool symmetric = given_.scene.symmetric();
     add({Work::stationary_law, 0, {{ground(), 0, symmetric ? 1 : 2}}});
-    if (request_.wants(Quantity::entry_law)) {
+    if (question_.wants(Quantity::entry_law)) {
       add({Work::orientation, 0, {{{0, Symmetry::odd}, 0, 1}}});
     }
   }
@@ -70,26 +70,26 @@ class Planner {
   // Adjoints of mean_slide and mean_stick, which every derivative needs, and of three moments.
   // With a single static level mean_stick needs none.
   void plan_sensitivity() {
-    const bool moments = request_.wants(Quantity::moments);
-    if (!moments && !request_.wants(Quantity::sticking)) return;
-    const int durations = request_.scene.process(1).static_index() > 0 ? 2 : 1;
+    const bool moments = question_.wants(Quantity::moments);
+    if (!moments && !question_.wants(Quantity::sticking)) return;
+    const int durations = given_.scene.process(1).static_index() > 0 ? 2 : 1;
     Task task{Work::sensitivity, 0, {{ground(), durations + (moments ? 3 : 0), 0}}};
-    task.derivatives = static_cast<int>(quantities::parameters_of(request_.scene).size());
+    task.derivatives = static_cast<int>(quantities::parameters_of(given_.scene).size());
     add(std::move(task));
   }
 
   void plan_transforms() {
-    const bool laplace = request_.wants(Quantity::laplace);
-    if (request_.wants(Quantity::stay_transform) && !laplace) add({Work::stay_transforms});
+    const bool laplace = question_.wants(Quantity::laplace);
+    if (question_.wants(Quantity::stay_transform) && !laplace) add({Work::stay_transforms});
     if (laplace) add({Work::duration_moments, 0, {{ground(), 4, 0}}});
-    if (!laplace && !request_.wants(Quantity::resolvent)) return;
+    if (!laplace && !question_.wants(Quantity::resolvent)) return;
     // Both sectors for the exits, the even one for their discounted time.
     const int even = 2 + observables_with(&model::Observable::even);
     const int odd = 1 + observables_with(&model::Observable::odd);
-    for (std::size_t n = 0; n < request_.lambda.size(); ++n) {
-      const double lambda = request_.lambda[n];
+    for (std::size_t n = 0; n < question_.lambda.size(); ++n) {
+      const double lambda = question_.lambda[n];
       if (laplace) add({Work::duration_transforms, n, {{{lambda, Symmetry::even}, 2, 0}}});
-      if (!request_.wants(Quantity::resolvent)) continue;
+      if (!question_.wants(Quantity::resolvent)) continue;
       add({Work::resolvent,
            n,
            {{{lambda, Symmetry::even}, even, 0}, {{lambda, Symmetry::odd}, odd, 0}}});
@@ -97,11 +97,11 @@ class Planner {
   }
 
   void plan_spectrum() {
-    if (!request_.scene.symmetric()) {
+    if (!given_.scene.symmetric()) {
       add({Work::spectrum_at_zero, 0, {{ground(), 2, 0}}});
-    } else if (request_.spectrum_solver == options::SpectrumSolver::direct) {
-      const int frequencies = static_cast<int>(request_.omega.size()) + 1;  // and 0
-      add_adaptive(Work::spectrum, frequencies + 1, frequencies + 1);       // and the law alone
+    } else if (given_.method.spectrum_solver == options::SpectrumSolver::direct) {
+      const int frequencies = static_cast<int>(question_.omega.size()) + 1;  // and 0
+      add_adaptive(Work::spectrum, frequencies + 1, frequencies + 1);        // and the law alone
     } else {
       add_adaptive(Work::spectrum, 2, 18);
     }
@@ -111,9 +111,9 @@ class Planner {
   // others are not solved for.
   [[nodiscard]] int observables_with(double (model::Observable::*part)(double, double, double)
                                          const) const {
-    const auto& f = request_.observables;
+    const auto& f = question_.observables;
     return static_cast<int>(std::count_if(f.begin(), f.end(), [&](const model::Observable& g) {
-      const auto process = request_.scene.process(1);
+      const auto process = given_.scene.process(1);
       for (int i = 0; i <= 3 * process.static_index() + 3; ++i) {
         const double x = process.noise.level(i);
         if (i <= process.static_index() && (g.*part)(x, 0, 0) != 0) return true;
@@ -127,10 +127,11 @@ class Planner {
 
   // The system of the stationary law.
   [[nodiscard]] operators::SystemKey ground() const {
-    return {0, operators::symmetry_of(request_.scene.process(1))};
+    return {0, operators::symmetry_of(given_.scene.process(1))};
   }
 
-  const Request& request_;
+  const Case& given_;
+  const options::Question& question_;
   Plan plan_;
 };
 
@@ -165,14 +166,14 @@ bool Plan::adaptive() const {
   return std::any_of(tasks.begin(), tasks.end(), [](const Task& task) { return task.adaptive; });
 }
 
-Plan plan_of(const Request& request) {
-  if (request.route != options::Route::excursion) return {};
-  return Planner(request).plan();
+Plan plan_of(const Case& given) {
+  if (given.method.route != options::Route::excursion) return {};
+  return Planner(given).plan();
 }
 
-std::string task_name(const Request& request, const Task& task) {
+std::string task_name(const options::Question& question, const Task& task) {
   const auto at_lambda = [&](const char* what) {
-    return fmt::format("{} at lambda = {:g}", what, request.lambda[task.at]);
+    return fmt::format("{} at lambda = {:g}", what, question.lambda[task.at]);
   };
   switch (task.work) {
   case Work::stationary_law: return "stationary law";

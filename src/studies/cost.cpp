@@ -36,13 +36,12 @@ Run median_run(int repeats, const std::function<Run()>& make) {
 
 class CostStudy {
  public:
-  explicit CostStudy(const Setting& setting)
-      : setting_(setting), repeats_(setting.request.study_repeats) {
+  explicit CostStudy(const Setting& setting) : setting_(setting), repeats_(setting.study.repeats) {
     study_.kind = "cost";
   }
 
   Study conduct() {
-    require_upwind_memory(setting_, setting_.request, kFirstPoints << (upwind_steps() - 1));
+    require_upwind_memory(setting_, setting_.given, kFirstPoints << (upwind_steps() - 1));
     count_ = 1 + kLastDegree - kFirstDegree + 1 + upwind_steps() + kSimulations;
     reference_ = reference();
     hp();
@@ -55,11 +54,11 @@ class CostStudy {
  private:
   static constexpr int kFirstDegree = 2, kLastDegree = 12, kSimulations = 6, kFirstPoints = 4;
 
-  [[nodiscard]] int upwind_steps() const { return setting_.request.study_steps.value_or(7); }
+  [[nodiscard]] int upwind_steps() const { return setting_.study.steps.value_or(7); }
   void announce(const std::string& what) { setting_.tell(++number_, count_, what); }
 
-  [[nodiscard]] static options::Request hp_request(const options::Request& request) {
-    options::Request hp = request;
+  [[nodiscard]] static options::Case hp_case(const options::Case& given) {
+    options::Case hp = given;
     hp.method = {};
     return hp;
   }
@@ -67,10 +66,10 @@ class CostStudy {
   // Finer than every point that is held against it, in degree and in layers.
   quantities::Results reference() {
     announce("reference");
-    const auto request = hp_request(setting_.request);
-    auto resolution = accuracy::hp_resolution(request.scene, kFinestDegree, 0, 1e-18);
+    const auto given = hp_case(setting_.given);
+    auto resolution = accuracy::hp_resolution(given.scene, kFinestDegree, 0, 1e-18);
     resolution.layers += 2;
-    return scalars(accuracy::solve_on(setting_.comm, request, resolution).evaluation.results);
+    return scalars(accuracy::solve_on(setting_.comm, given, resolution).evaluation.results);
   }
 
   // Largest relative error of a scalar.
@@ -91,13 +90,13 @@ class CostStudy {
 
   void hp() {
     Curve curve{"hp", "degree", {}};
-    const auto request = hp_request(setting_.request);
+    const auto given = hp_case(setting_.given);
     for (int degree = kFirstDegree; degree <= kLastDegree; ++degree) {
       announce(fmt::format("hp, degree {}", degree));
       const auto resolution = accuracy::hp_resolution(
-          request.scene, degree, 0, std::max(std::pow(10.0, -(degree + 3)), 1e-18));
+          given.scene, degree, 0, std::max(std::pow(10.0, -(degree + 3)), 1e-18));
       Run run = median_run(repeats_, [&] {
-        auto [evaluation, step] = accuracy::solve_on(setting_.comm, request, resolution);
+        auto [evaluation, step] = accuracy::solve_on(setting_.comm, given, resolution);
         return Run{"hp",
                    {{"degree", degree}, {"layers", resolution.layers}},
                    scalars(evaluation.results),
@@ -115,8 +114,7 @@ class CostStudy {
     for (int n = 0; n < upwind_steps(); ++n) {
       const int points = kFirstPoints << n;
       announce(fmt::format("upwind, p = {}", points));
-      Run run =
-          median_run(repeats_, [&] { return upwind_run(setting_, setting_.request, points); });
+      Run run = median_run(repeats_, [&] { return upwind_run(setting_, setting_.given, points); });
       set_errors(reference_, run.results);
       if (n > 0) add_extrapolated(extrapolated, study_.runs.back(), run, points);
       add(plain, run, points, error_of(run.results));
@@ -139,26 +137,25 @@ class CostStudy {
   // The error is the standard deviation that the interval tells: a single one is a matter of luck.
   void simulations() {
     Curve curve{"monte_carlo", "excursions", {}};
-    options::Request request = setting_.request;
-    request.accuracy_given = false;
-    request.checkpoint.clear();
+    options::Case given = setting_.given;
+    given.question.accuracy_given = false;
     for (int n = 0; n < kSimulations; ++n) {
-      request.excursions = 1000 * std::pow(4, n);
-      announce(fmt::format("Monte Carlo, {:g} excursions", request.excursions));
-      const Run run = median_run(repeats_, [&] { return simulated(request); });
+      given.method.excursions = 1000 * std::pow(4, n);
+      announce(fmt::format("Monte Carlo, {:g} excursions", given.method.excursions));
+      const Run run = median_run(repeats_, [&] { return simulated(given); });
       double error = 0;
       for (const auto& result : run.results) {
         error = std::max(error, quantities::relative_error(result) / kNormalQuantile);
       }
-      add(curve, run, request.excursions, error);
+      add(curve, run, given.method.excursions, error);
     }
     curves_.push_back(std::move(curve));
   }
 
-  [[nodiscard]] Run simulated(const options::Request& request) const {
-    auto simulation = monte_carlo::simulate(setting_.comm, request, {});
+  [[nodiscard]] Run simulated(const options::Case& given) const {
+    auto simulation = monte_carlo::simulate(setting_.comm, given, "", {});
     return {"monte_carlo",
-            {{"excursions", request.excursions}},
+            {{"excursions", given.method.excursions}},
             scalars(simulation.results),
             simulation.state.seconds,
             {}};

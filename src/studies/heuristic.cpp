@@ -40,16 +40,16 @@ class Grid {
   void run() {
     int number = 0, count = 2;
     each([&](int k, int l) {
-      require_upwind_memory(setting_, request(l), 1 << k, kTail);
+      require_upwind_memory(setting_, case_at(l), 1 << k, kTail);
       ++count;
     });
     each([&](int k, int l) {
       setting_.tell(++number, count, fmt::format("p = {}, delta = 1/{}", 1 << k, 1 << l));
-      runs_[{k, l}] = upwind_run(setting_, request(l), 1 << k, kTail);
+      runs_[{k, l}] = upwind_run(setting_, case_at(l), 1 << k, kTail);
     });
     for (int l : {5, 6}) {
       setting_.tell(++number, count, fmt::format("hp, delta = 1/{}", 1 << l));
-      converged_[l] = converged_run(setting_, request(l), 1e-9);
+      converged_[l] = converged_run(setting_, case_at(l), 1e-9);
     }
   }
 
@@ -84,8 +84,8 @@ class Grid {
   // Extrapolation itself is right to a few digits.
   static constexpr double kTail = 1e-6;
 
-  [[nodiscard]] options::Request request(int l) const {
-    return with_delta(setting_.request, std::ldexp(1, -l));
+  [[nodiscard]] options::Case case_at(int l) const {
+    return with_delta(setting_.given, std::ldexp(1, -l));
   }
 
   template <class Action>

@@ -14,11 +14,11 @@ class Family {
  public:
   Family(const Setting& setting, double offset, std::string name)
       : setting_(setting), name_(std::move(name)) {
-    const auto& friction = setting.request.scene.friction;
+    const auto& friction = setting.given.scene.friction;
     grazing_ = friction.mu_d == friction.mu_s;
     const double mu_s = friction.mu_s;
-    const double first = std::max(1.0, std::round(mu_s / setting.request.scene.delta - offset));
-    const int steps = setting.request.study_steps.value_or(8);
+    const double first = std::max(1.0, std::round(mu_s / setting.given.scene.delta - offset));
+    const int steps = setting.study.steps.value_or(8);
     for (int n = 0; n < steps; ++n) deltas_.push_back(mu_s / (first * (1 << n) + offset));
   }
 
@@ -29,8 +29,8 @@ class Family {
   void run(int& number, int count) {
     for (double delta : deltas_) {
       setting_.tell(++number, count, fmt::format("{}, delta = {:.6g}", name_, delta));
-      runs_.push_back(converged_run(setting_, with_delta(setting_.request, delta),
-                                    std::min(setting_.request.accuracy, 1e-9)));
+      runs_.push_back(converged_run(setting_, with_delta(setting_.given, delta),
+                                    std::min(setting_.given.question.accuracy, 1e-9)));
     }
   }
 

@@ -7,9 +7,10 @@
 
 namespace stickslip::studies {
 
-Study conduct(MPI_Comm comm, const options::Request& request, const StudyProgress& progress) {
-  const Setting setting{comm, request, progress};
-  switch (request.study) {
+Study conduct(MPI_Comm comm, const options::Case& given, const options::StudyOptions& study,
+              const StudyProgress& progress) {
+  const Setting setting{comm, given, study, progress};
+  switch (study.kind) {
   case options::StudyKind::points: return study_points(setting);
   case options::StudyKind::steps: return study_steps(setting);
   case options::StudyKind::heuristic: return study_heuristic(setting);
@@ -41,8 +42,8 @@ void set_errors(const quantities::Results& known, quantities::Results& results) 
   }
 }
 
-options::Request with_delta(const options::Request& request, double delta) {
-  options::Request other = request;
+options::Case with_delta(const options::Case& given, double delta) {
+  options::Case other = given;
   other.scene.delta = delta;
   other.scene.noise_levels.reset();
   other.method = {};
@@ -51,8 +52,8 @@ options::Request with_delta(const options::Request& request, double delta) {
 
 namespace {
 
-options::Request upwind_request(const options::Request& request) {
-  options::Request upwind = request;
+options::Case upwind_case(const options::Case& given) {
+  options::Case upwind = given;
   upwind.method = {};
   upwind.method.scheme = options::Scheme::upwind;
   return upwind;
@@ -60,21 +61,21 @@ options::Request upwind_request(const options::Request& request) {
 
 }  // namespace
 
-void require_upwind_memory(const Setting& setting, const options::Request& request, int points,
+void require_upwind_memory(const Setting& setting, const options::Case& given, int points,
                            double tail) {
-  const auto upwind = upwind_request(request);
+  const auto upwind = upwind_case(given);
   try {
-    accuracy::require_memory(setting.comm, upwind,
+    accuracy::require_memory(setting.comm, upwind.scene,
                              accuracy::upwind_resolution(upwind.scene, points, tail));
   } catch (const NoMemory& lack) {
-    const bool fixed = request.study == options::StudyKind::heuristic;
+    const bool fixed = setting.study.kind == options::StudyKind::heuristic;
     throw NoMemory(fmt::format("upwind with p = {}, delta = {:g}: {}{}", points, upwind.scene.delta,
                                lack.what(), fixed ? "" : ", or fewer -study_steps"));
   }
 }
 
-Run upwind_run(const Setting& setting, const options::Request& request, int points, double tail) {
-  const auto upwind = upwind_request(request);
+Run upwind_run(const Setting& setting, const options::Case& given, int points, double tail) {
+  const auto upwind = upwind_case(given);
   const auto resolution = accuracy::upwind_resolution(upwind.scene, points, tail);
   auto [evaluation, step] = accuracy::solve_on(setting.comm, upwind, resolution);
   return {"upwind",
@@ -84,10 +85,10 @@ Run upwind_run(const Setting& setting, const options::Request& request, int poin
           step.ledger};
 }
 
-Run converged_run(const Setting& setting, const options::Request& request, double accuracy) {
-  options::Request hp = request;
+Run converged_run(const Setting& setting, const options::Case& given, double accuracy) {
+  options::Case hp = given;
   hp.method = {};
-  hp.accuracy = accuracy;
+  hp.question.accuracy = accuracy;
   const auto outcome = accuracy::refine(setting.comm, hp, {}, {});
   double seconds = 0;
   for (const auto& step : outcome.steps) seconds += step.seconds;

@@ -88,8 +88,9 @@ class Worker {
  public:
   Worker(MPI_Comm comm, const Request& request, const SweepProgress& progress)
       : comm_(comm), request_(request), sweep_(*request.sweep), progress_(progress) {
-    if (request.checkpoint.empty()) return;
-    checkpoint_.emplace(request.checkpoint, checkpoint::Kind::sweep, identity_of(comm, sweep_));
+    const auto& file = request.output.checkpoint;
+    if (file.empty()) return;
+    checkpoint_.emplace(file, checkpoint::Kind::sweep, identity_of(comm, sweep_));
   }
 
   Conducted run() {

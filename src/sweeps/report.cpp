@@ -273,7 +273,7 @@ std::string sweep_summary(MPI_Comm comm, const options::Request& request,
 
 void write_sweep_hdf5(MPI_Comm comm, const options::Request& request, const Conducted& conducted,
                       const io::RunTimes& times) {
-  io::Hdf5File file(PETSC_COMM_SELF, request.output);
+  io::Hdf5File file(PETSC_COMM_SELF, request.output.output);
   file.make_group("/sweep");
   Grid grid(file, *request.sweep, conducted.runs);
   grid.write_axes(*request.sweep);

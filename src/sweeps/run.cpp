@@ -74,18 +74,18 @@ quantities::Result result_of(const std::string& key, const Json& json) {
   return result;
 }
 
-Json entry_of(MPI_Comm comm, const options::Request& request, std::size_t point) {
+Json entry_of(MPI_Comm comm, const options::Case& given, std::size_t point) {
   const double start = petsc::wall_seconds();
   try {
-    const auto outcome = accuracy::refine(comm, request, {});
+    const auto outcome = accuracy::refine(comm, given, {});
     Json json =
         head(point, outcome.reached ? Status::reached : Status::not_reached, outcome.shortfall);
-    json.update(io::run_json(request, outcome, {0, petsc::wall_seconds() - start}));
+    json.update(io::run_json(given, outcome, {0, petsc::wall_seconds() - start}));
     return json;
   } catch (const Failure& failure) {
     const bool memory = failure.status() == ExitStatus::no_memory;
     Json json = head(point, memory ? Status::no_memory : Status::failed, failure.what());
-    json["scene"] = io::scene_json(request);
+    json["scene"] = io::scene_json(given.scene);
     json["results"] = Json::object();
     json["cost"]["seconds"] = petsc::wall_seconds() - start;
     return json;
@@ -104,8 +104,8 @@ const char* status_text(Status status) {
   return "";
 }
 
-Run compute_run(MPI_Comm comm, const options::Request& request, std::size_t point) {
-  return read_run(entry_of(comm, request, point).dump());
+Run compute_run(MPI_Comm comm, const options::Case& given, std::size_t point) {
+  return read_run(entry_of(comm, given, point).dump());
 }
 
 Run read_run(std::string entry) {

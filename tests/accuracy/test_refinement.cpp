@@ -14,22 +14,21 @@
 using namespace stickslip;
 using accuracy::Outcome;
 using options::Quantity;
-using options::Request;
 using test::relative_difference;
 
 namespace {
 
-Request request(double mu_s, double mu_d, double tau, double delta, model::Drag drag) {
-  Request r;
+options::Case given(double mu_s, double mu_d, double tau, double delta, model::Drag drag) {
+  options::Case r;
   r.scene.friction = {mu_s, mu_d};
   r.scene.tau = tau;
   r.scene.delta = delta;
   r.scene.drag = drag;
-  r.quantities = {Quantity::sticking, Quantity::moments, Quantity::entry_law};
+  r.question.quantities = {Quantity::sticking, Quantity::moments, Quantity::entry_law};
   return r;
 }
 
-Outcome solve(const Request& r) { return accuracy::refine(PETSC_COMM_WORLD, r, {}, {}); }
+Outcome solve(const options::Case& r) { return accuracy::refine(PETSC_COMM_WORLD, r, {}, {}); }
 
 const quantities::Result& result(const Outcome& outcome, const std::string& key) {
   for (const auto& r : outcome.results) {
@@ -42,13 +41,13 @@ double value(const Outcome& outcome, const std::string& key) {
   return result(outcome, key).value[0];
 }
 
-quantities::Results solved_alone(const Request& r, int step) {
+quantities::Results solved_alone(const options::Case& r, int step) {
   const auto resolution = accuracy::Ladder(r).rung(step);
   return accuracy::solve_on(PETSC_COMM_WORLD, r, resolution).evaluation.results;
 }
 
 // Error estimates of a step from the values of this step and those before, solved one by one.
-quantities::Results estimated(const Request& r, int step) {
+quantities::Results estimated(const options::Case& r, int step) {
   auto found = solved_alone(r, step);
   const auto before = solved_alone(r, step - 1);
   const auto first = step > 1 ? solved_alone(r, step - 2) : before;
@@ -66,7 +65,7 @@ quantities::Results estimated(const Request& r, int step) {
 }
 
 // Times a step takes from the times of those before.
-std::vector<double> expected_seconds(const Request& r, Outcome& outcome) {
+std::vector<double> expected_seconds(const options::Case& r, Outcome& outcome) {
   std::vector<double> expected;
   outcome = accuracy::refine(
       PETSC_COMM_WORLD, r,
@@ -74,20 +73,20 @@ std::vector<double> expected_seconds(const Request& r, Outcome& outcome) {
   return expected;
 }
 
-double work(const Request& r, int step) {
+double work(const options::Case& r, int step) {
   return accuracy::relative_work(r.scene, accuracy::Ladder(r).rung(step));
 }
 
 // The value of one hand-made discretisation.
-double at_degree(Request r, int degree, const char* key) {
+double at_degree(options::Case r, int degree, const char* key) {
   r.method.degree = degree;
   return value(solve(r), key);
 }
 
-double at_points(Request r, int points, const char* key) {
+double at_points(options::Case r, int points, const char* key) {
   r.method.scheme = options::Scheme::upwind;
   r.method.points = points;
-  r.quantities = {Quantity::sticking, Quantity::moments};
+  r.question.quantities = {Quantity::sticking, Quantity::moments};
   return value(solve(r), key);
 }
 
@@ -143,9 +142,9 @@ TEST_CASE("refinement: known values to nine digits at accuracy 1e-10", "[slow][r
        {{"P_stick", 0.453441658945}, {"E_V2", 0.566213687113}, {"f_stick_0", 0.308665061}}},
       {1, 0.25, 1.0 / 4, none, {{"P_stick", 0.0444301477306}, {"E_V2", 29.5037230587}}}};
   for (const auto& c : cases) {
-    Request r = request(c.mu_s, c.mu_d, 1, c.delta, c.drag);
-    r.accuracy = 1e-10;
-    if (c.mu_s == 6) r.quantities = {Quantity::sticking, Quantity::moments};
+    options::Case r = given(c.mu_s, c.mu_d, 1, c.delta, c.drag);
+    r.question.accuracy = 1e-10;
+    if (c.mu_s == 6) r.question.quantities = {Quantity::sticking, Quantity::moments};
     const Outcome outcome = solve(r);
     CHECK(outcome.reached);
     for (const auto& [key, known] : c.known) {
@@ -170,16 +169,16 @@ TEST_CASE("refinement: densities of sticking times at 0+", "[slow][real]") {
         Case{0.5, 1.0 / 32, 8.36837}, Case{0.75, 1.0 / 8, 0.68153}, Case{0.75, 1.0 / 16, 1.24353},
         Case{0.75, 1.0 / 32, 2.36272}, Case{1, 1.0 / 8, 0.132599}, Case{1, 1.0 / 16, 0.185010},
         Case{1, 1.0 / 32, 0.260757}}) {
-    Request r = request(1, c.mu_d, 1, c.delta, {1, 0});
-    r.accuracy = 1e-7;
+    options::Case r = given(1, c.mu_d, 1, c.delta, {1, 0});
+    r.question.accuracy = 1e-7;
     INFO("mu_d " << c.mu_d << " delta " << c.delta);
     CHECK(std::abs(value(solve(r), "f_stick_0") - c.known) < 6e-6);
   }
 }
 
 TEST_CASE("refinement: hp errors fall tenfold and more with two degrees", "[slow][real]") {
-  for (const auto& r : {request(1, 0.25, 1, 1.0 / 4, {1, 0}), request(1, 0.25, 1, 1.0 / 16, {1, 0}),
-                        request(1, 1, 1, 1.0 / 4, {0, 0})}) {
+  for (const auto& r : {given(1, 0.25, 1, 1.0 / 4, {1, 0}), given(1, 0.25, 1, 1.0 / 16, {1, 0}),
+                        given(1, 1, 1, 1.0 / 4, {0, 0})}) {
     const double reference = at_degree(r, 15, "P_stick");
     double before = std::abs(at_degree(r, 3, "P_stick") - reference);
     for (int degree : {5, 7, 9}) {
@@ -192,9 +191,9 @@ TEST_CASE("refinement: hp errors fall tenfold and more with two degrees", "[slow
 }
 
 TEST_CASE("refinement: upwind is of first order in 1/p", "[slow][real]") {
-  const Request r = request(1, 0.25, 1, 1.0 / 2, {1, 0});
-  Request fine = r;
-  fine.accuracy = 1e-12;
+  const options::Case r = given(1, 0.25, 1, 1.0 / 2, {1, 0});
+  options::Case fine = r;
+  fine.question.accuracy = 1e-12;
   const Outcome reference = solve(fine);
   for (const char* key : {"P_stick", "E_V2"}) {
     const double exact = value(reference, key);
@@ -208,9 +207,9 @@ TEST_CASE("refinement: upwind is of first order in 1/p", "[slow][real]") {
 }
 
 TEST_CASE("refinement: estimates of fixed upwind grids cover their errors", "[slow][real]") {
-  Request r = request(1, 0.25, 1, 1.0 / 2, {1, 0});
-  Request fine = r;
-  fine.accuracy = 1e-11;
+  options::Case r = given(1, 0.25, 1, 1.0 / 2, {1, 0});
+  options::Case fine = r;
+  fine.question.accuracy = 1e-11;
   const Outcome exact = solve(fine);
   r.method.scheme = options::Scheme::upwind;
   for (int p : {1, 2, 3, 16, 64}) {
@@ -240,14 +239,14 @@ TEST_CASE("refinement: error estimates are honest and not far off", "[slow][real
     const double mu_d = scenes % 2 == 0 ? mu_s : mu_s * uniform(0.1, 1);
     const model::Drag drag{scenes % 5 == 4 ? 0 : std::exp2(uniform(-3, 3)),
                            scenes % 7 == 6 ? 0.5 : 0.0};
-    Request r = request(mu_s, mu_d, tau, delta, drag);
+    options::Case r = given(mu_s, mu_d, tau, delta, drag);
     if (delta > std::sqrt(1 / tau)) continue;
     if (r.scene.friction.static_index(delta) >= r.scene.full_levels() - 1) continue;
     if (accuracy::levels_for(r.scene, 1e-12) > 80) continue;
     ++scenes;
-    r.accuracy = std::pow(10.0, -4 - scenes % 4);
+    r.question.accuracy = std::pow(10.0, -4 - scenes % 4);
     const Outcome outcome = solve(r);
-    r.accuracy *= 1e-4;
+    r.question.accuracy *= 1e-4;
     const Outcome truth = solve(r);
     if (!truth.reached) continue;  // a density at 0+ of 1e-40, say
     for (const auto& known : truth.results) {
@@ -267,8 +266,8 @@ TEST_CASE("refinement: error estimates are honest and not far off", "[slow][real
 }
 
 TEST_CASE("refinement: what is zero by symmetry is exactly zero", "[parallel]") {
-  Request r = request(1, 0.25, 1, 0.5, {1, 0});
-  r.quantities = {Quantity::moments};
+  options::Case r = given(1, 0.25, 1, 0.5, {1, 0});
+  r.question.quantities = {Quantity::moments};
   const Outcome outcome = solve(r);
   CHECK(value(outcome, "E_V") == 0);
   CHECK(result(outcome, "E_V").error[0] == 0);
@@ -276,8 +275,8 @@ TEST_CASE("refinement: what is zero by symmetry is exactly zero", "[parallel]") 
 
 TEST_CASE("refinement: no error is below the rounding of the value") {
   // Without drag on a full range nothing but rounding changes from one discretisation to the next.
-  Request r = request(1, 0.3, 1, 0.5, {0, 0});
-  r.accuracy = 1e-10;
+  options::Case r = given(1, 0.3, 1, 0.5, {0, 0});
+  r.question.accuracy = 1e-10;
   const Outcome outcome = solve(r);
   for (const auto& found : outcome.results) {
     for (std::size_t e = 0; e < found.value.size(); ++e) {
@@ -287,8 +286,8 @@ TEST_CASE("refinement: no error is below the rounding of the value") {
 }
 
 TEST_CASE("refinement: only what is asked for is done") {
-  Request r = request(1, 0.25, 1, 0.5, {1, 0});
-  r.quantities = {Quantity::noise_law};
+  options::Case r = given(1, 0.25, 1, 0.5, {1, 0});
+  r.question.quantities = {Quantity::noise_law};
   const Outcome noise = solve(r);
   CHECK(noise.total.assemblies == 0);
   CHECK(noise.results.size() == 2);
@@ -297,55 +296,55 @@ TEST_CASE("refinement: only what is asked for is done") {
   const auto factorizations = [](const Outcome& o) {
     return o.total.factorizations_real + o.total.factorizations_complex;
   };
-  r.quantities = {Quantity::sticking, Quantity::moments, Quantity::noise_law};
+  r.question.quantities = {Quantity::sticking, Quantity::moments, Quantity::noise_law};
   const Outcome even = solve(r);
   const int steps = static_cast<int>(even.steps.size());
   CHECK(even.total.assemblies == steps);
   CHECK(factorizations(even) == steps);
   CHECK(even.total.solves == steps);
 
-  r.quantities = {Quantity::entry_law};
+  r.question.quantities = {Quantity::entry_law};
   const Outcome both = solve(r);
   CHECK(factorizations(both) == 2 * static_cast<int>(both.steps.size()));
 }
 
 TEST_CASE("refinement: a fixed discretisation is not refined, and says what it reaches") {
-  Request r = request(1, 0.25, 1, 0.25, {1, 0});
-  r.quantities = {Quantity::sticking};
+  options::Case r = given(1, 0.25, 1, 0.25, {1, 0});
+  r.question.quantities = {Quantity::sticking};
   r.method.degree = 3;
   const Outcome coarse = solve(r);
   CHECK(coarse.steps.size() == 2);
   CHECK_FALSE(coarse.reached);
   CHECK_THAT(coarse.shortfall, Catch::Contains("-degree"));
-  r.accuracy = 0.1;
+  r.question.accuracy = 0.1;
   CHECK(solve(r).reached);
 }
 
 TEST_CASE("refinement: rounding is told from discretisation") {
-  Request r = request(1, 0.25, 1.0 / 64, 0.5, {1, 0});
-  r.quantities = {Quantity::sticking, Quantity::moments};
-  r.accuracy = 1e-15;
+  options::Case r = given(1, 0.25, 1.0 / 64, 0.5, {1, 0});
+  r.question.quantities = {Quantity::sticking, Quantity::moments};
+  r.question.accuracy = 1e-15;
   const Outcome outcome = solve(r);
   CHECK_FALSE(outcome.reached);
   CHECK_THAT(outcome.shortfall, Catch::Contains("rounding"));
 }
 
 TEST_CASE("refinement: the upwind scheme says early what an accuracy would take") {
-  Request r = request(1, 0.25, 1, 0.25, {1, 0});
-  r.quantities = {Quantity::sticking};
+  options::Case r = given(1, 0.25, 1, 0.25, {1, 0});
+  r.question.quantities = {Quantity::sticking};
   r.method.scheme = options::Scheme::upwind;
-  r.accuracy = 1e-9;
+  r.question.accuracy = 1e-9;
   const Outcome outcome = solve(r);
   CHECK_FALSE(outcome.reached);
   CHECK(outcome.steps.size() < 6);
   const auto& step = outcome.steps.back();
-  const double needed = step.resolution.points * step.estimate / r.accuracy;
+  const double needed = step.resolution.points * step.estimate / r.question.accuracy;
   CHECK_THAT(outcome.shortfall, Catch::Contains(fmt::format("p = {:.1e}", needed)) &&
                                     Catch::Contains(fmt::format("{:.0e}", 2 * step.estimate)));
 }
 
 TEST_CASE("refinement: refuses what cannot fit before allocating it") {
-  Request r = request(1, 0.25, 1, 1.0 / 64, {1, 0});
+  options::Case r = given(1, 0.25, 1, 1.0 / 64, {1, 0});
   r.method.scheme = options::Scheme::upwind;
   r.method.points = 5000000;
   CHECK_THROWS_AS(solve(r), NoMemory);
@@ -361,8 +360,8 @@ TEST_CASE("refinement: estimates are made of the last changes, and of what the r
   const auto c = GENERATE(Case{{}, {0.1, 3}, 1e-5, 3}, Case{{}, {0.1, 3}, 1e-6, 4},
                           Case{{}, {0.1, 3}, 1e-7, 4}, Case{{.degree = 4}, {1, 0}, 1e-5, 2},
                           Case{{.scheme = options::Scheme::upwind, .points = 16}, {1, 0}, 1e-5, 2});
-  Request r = request(1, 0.25, c.drag.cubic > 0 ? 4 : 1, c.drag.cubic > 0 ? 0.25 : 0.5, c.drag);
-  r.accuracy = c.accuracy;
+  options::Case r = given(1, 0.25, c.drag.cubic > 0 ? 4 : 1, c.drag.cubic > 0 ? 0.25 : 0.5, c.drag);
+  r.question.accuracy = c.accuracy;
   r.method = c.method;
   const Outcome outcome = solve(r);
   const int last = static_cast<int>(outcome.steps.size()) - 1;
@@ -383,22 +382,22 @@ TEST_CASE("refinement: estimates are made of the last changes, and of what the r
   }
   CHECK(outcome.steps.back().estimate == Approx(largest).epsilon(1e-6));
   CHECK(outcome.steps.back().limiting_key == key);
-  CHECK(outcome.reached == (largest <= r.accuracy));
+  CHECK(outcome.reached == (largest <= r.question.accuracy));
 }
 
 TEST_CASE("refinement: an accuracy is reached at its estimate, and not below") {
-  Request r = request(1, 0.25, 1, 0.5, {1, 0});
+  options::Case r = given(1, 0.25, 1, 0.5, {1, 0});
   r.method.degree = 4;
   const double estimate = solve(r).steps.back().estimate;
-  r.accuracy = 1.001 * estimate;
+  r.question.accuracy = 1.001 * estimate;
   CHECK(solve(r).reached);
-  r.accuracy = 0.999 * estimate;
+  r.question.accuracy = 0.999 * estimate;
   CHECK_FALSE(solve(r).reached);
 }
 
 TEST_CASE("refinement: the density is judged by the distribution of |V|", "[parallel]") {
-  Request r = request(1, 0.25, 1, 0.5, {1, 0});
-  r.quantities = {Quantity::density};
+  options::Case r = given(1, 0.25, 1, 0.5, {1, 0});
+  r.question.quantities = {Quantity::density};
   r.method.degree = 4;
   const accuracy::Ladder ladder(r);
   const auto at = [&](int step) {
@@ -412,20 +411,20 @@ TEST_CASE("refinement: the density is judged by the distribution of |V|", "[para
 }
 
 TEST_CASE("refinement: a velocity cut by hand is an error of the time spent at it") {
-  Request r = request(1, 0.25, 1, 0.5, {1, 0});
-  r.quantities = {Quantity::sticking};
+  options::Case r = given(1, 0.25, 1, 0.5, {1, 0});
+  r.question.quantities = {Quantity::sticking};
   r.scene.v_max = 1;
   r.method.degree = 5;
-  r.accuracy = 0.5;
+  r.question.accuracy = 0.5;
   const Outcome outcome = solve(r);
   CHECK(outcome.reached);
   const auto solved = accuracy::solve_on(PETSC_COMM_WORLD, r, outcome.steps.back().resolution);
   const auto speed = quantities::speed_distribution(*solved.evaluation.law);
   const double share = speed.at_top / (1 - speed.at_rest);
   CHECK(share > 0.01);
-  r.accuracy = 1.02 * share;
+  r.question.accuracy = 1.02 * share;
   CHECK(solve(r).reached);
-  r.accuracy = 0.98 * share;
+  r.question.accuracy = 0.98 * share;
   const Outcome held = solve(r);
   CHECK_FALSE(held.reached);
   CHECK_THAT(held.shortfall, Catch::Contains(fmt::format("holds back {:.1e}", share)));
@@ -433,10 +432,10 @@ TEST_CASE("refinement: a velocity cut by hand is an error of the time spent at i
 
 TEST_CASE("refinement: a digit more takes the steps by which estimates fall") {
   const bool hp = GENERATE(true, false);
-  Request r = hp ? request(1, 0.25, 4, 0.25, {0.1, 3}) : request(1, 0.25, 1, 0.5, {1, 0});
-  r.quantities = {Quantity::sticking, Quantity::moments};
-  r.accuracy = hp ? 1e-6 : 0.05;
-  if (hp) r.quantities.insert(Quantity::entry_law);
+  options::Case r = hp ? given(1, 0.25, 4, 0.25, {0.1, 3}) : given(1, 0.25, 1, 0.5, {1, 0});
+  r.question.quantities = {Quantity::sticking, Quantity::moments};
+  r.question.accuracy = hp ? 1e-6 : 0.05;
+  if (hp) r.question.quantities.insert(Quantity::entry_law);
   if (!hp) r.method.scheme = options::Scheme::upwind;
   const Outcome outcome = solve(r);
   REQUIRE(outcome.reached);
@@ -455,8 +454,8 @@ TEST_CASE("refinement: a digit more takes the steps by which estimates fall") {
 }
 
 TEST_CASE("refinement: a step is expected to take the time of the last one, by its work") {
-  Request r = request(1, 0.25, 1, 0.25, {1, 0});
-  r.accuracy = 1e-5;
+  options::Case r = given(1, 0.25, 1, 0.25, {1, 0});
+  r.question.accuracy = 1e-5;
   Outcome outcome;
   const auto expected = expected_seconds(r, outcome);
   REQUIRE(expected.size() == outcome.steps.size());
@@ -468,8 +467,8 @@ TEST_CASE("refinement: a step is expected to take the time of the last one, by i
 }
 
 TEST_CASE("refinement: the ledger of a run is that of its steps") {
-  Request r = request(1, 0.25, 1, 0.5, {1, 0});
-  r.quantities = {Quantity::sticking, Quantity::moments};
+  options::Case r = given(1, 0.25, 1, 0.5, {1, 0});
+  r.question.quantities = {Quantity::sticking, Quantity::moments};
   const Outcome outcome = solve(r);
   petsc::Ledger sum;
   for (const auto& step : outcome.steps) sum += step.ledger;
@@ -481,9 +480,9 @@ TEST_CASE("refinement: the ledger of a run is that of its steps") {
 
 TEST_CASE("refinement: closed forms and paths need no system, all else does") {
   const auto needs = [](std::set<Quantity> quantities, options::Route route) {
-    Request r;
-    r.quantities = std::move(quantities);
-    r.route = route;
+    options::Case r;
+    r.question.quantities = std::move(quantities);
+    r.method.route = route;
     return accuracy::needs_system(r);
   };
   using enum Quantity;

@@ -169,12 +169,12 @@ TEST_CASE("resolution: what the user fixes stays fixed") {
 }
 
 TEST_CASE("ladder: every rung is finer in every respect") {
-  options::Request request;
-  request.scene = scene(1, 0.25, 1, 0.125);
-  request.scene.drag = {0.01, 0};
+  options::Case given;
+  given.scene = scene(1, 0.25, 1, 0.125);
+  given.scene.drag = {0.01, 0};
   const auto quantity = GENERATE(options::Quantity::sticking, options::Quantity::entry_law);
-  request.quantities = {quantity};
-  const accuracy::Ladder ladder(request);
+  given.question.quantities = {quantity};
+  const accuracy::Ladder ladder(given);
   REQUIRE(ladder.last() > 3);
   for (int n = 1; n <= ladder.last(); ++n) {
     const auto coarse = ladder.rung(n - 1), fine = ladder.rung(n);
@@ -187,15 +187,15 @@ TEST_CASE("ladder: every rung is finer in every respect") {
 }
 
 TEST_CASE("ladder: a discretisation fixed by hand has one companion and no more") {
-  options::Request request;
-  request.scene = scene(1, 0.25, 1, 0.25);
-  request.method.degree = 4;
-  CHECK(accuracy::Ladder(request).last() == 1);
-  CHECK(accuracy::Ladder(request).rung(1).degree == 4);
-  CHECK(accuracy::Ladder(request).rung(0).degree == 3);
+  options::Case given;
+  given.scene = scene(1, 0.25, 1, 0.25);
+  given.method.degree = 4;
+  CHECK(accuracy::Ladder(given).last() == 1);
+  CHECK(accuracy::Ladder(given).rung(1).degree == 4);
+  CHECK(accuracy::Ladder(given).rung(0).degree == 3);
 
-  request.method = {.scheme = options::Scheme::upwind, .points = 1};
-  const accuracy::Ladder one_point(request);
+  given.method = {.scheme = options::Scheme::upwind, .points = 1};
+  const accuracy::Ladder one_point(given);
   CHECK(one_point.rung(1).points == 1);
   CHECK(one_point.rung(0).points == 2);  // nothing coarser exists
   // u^p = u + C/p: the change C/2 is half the error at p = 1.
@@ -204,10 +204,10 @@ TEST_CASE("ladder: a discretisation fixed by hand has one companion and no more"
 
 // Of errors that fall as C/p the estimate is 1.5 to 2 times too large, more where p is small.
 TEST_CASE("ladder: first-order changes are extrapolated, with a margin") {
-  options::Request request;
-  request.scene = scene(1, 0.25, 1, 0.25);
-  request.method.scheme = options::Scheme::upwind;
-  const accuracy::Ladder ladder(request);
+  options::Case given;
+  given.scene = scene(1, 0.25, 1, 0.25);
+  given.method.scheme = options::Scheme::upwind;
+  const accuracy::Ladder ladder(given);
   for (int n = 1; n < 6; ++n) {
     const double coarse = 1.0 / ladder.rung(n - 1).points, fine = 1.0 / ladder.rung(n).points;
     const double estimate = ladder.error_per_change(n) * (coarse - fine);
@@ -217,29 +217,29 @@ TEST_CASE("ladder: first-order changes are extrapolated, with a margin") {
   CHECK(ladder.first_order());
   CHECK(ladder.last() == 20);
   for (int points : {7, 32}) {
-    request.method.points = points;
-    const accuracy::Ladder fixed(request);
+    given.method.points = points;
+    const accuracy::Ladder fixed(given);
     const double coarse = 1.0 / fixed.rung(0).points, fine = 1.0 / fixed.rung(1).points;
     CHECK(fixed.error_per_change(1) * (coarse - fine) == Approx(1.5 * (1 + 2 * fine) * fine));
   }
 }
 
 TEST_CASE("ladder: an hp change counts whole, and three per cent of the one before") {
-  options::Request request;
-  request.scene = scene(1, 0.25, 1, 0.25);
-  const accuracy::Ladder ladder(request);
+  options::Case given;
+  given.scene = scene(1, 0.25, 1, 0.25);
+  const accuracy::Ladder ladder(given);
   CHECK(ladder.error_per_change(1) == 1);
   CHECK(ladder.error_per_earlier_change() == 0.03);
   CHECK_FALSE(ladder.first_order());
 }
 
 TEST_CASE("ladder: the first estimate is expected at the accuracy, within degrees 3 to 19") {
-  options::Request request;
-  request.scene = scene(1, 0.25, 1, 0.25);
+  options::Case given;
+  given.scene = scene(1, 0.25, 1, 0.25);
   const auto first = [&](double accuracy, options::Quantity quantity) {
-    request.accuracy = accuracy;
-    request.quantities = {quantity};
-    return accuracy::Ladder(request).rung(1).degree;
+    given.question.accuracy = accuracy;
+    given.question.quantities = {quantity};
+    return accuracy::Ladder(given).rung(1).degree;
   };
   // Errors are 10^-d at degree d, and the estimate is that of a degree less; ten times that for
   // densities at 0+.
@@ -248,85 +248,85 @@ TEST_CASE("ladder: the first estimate is expected at the accuracy, within degree
   CHECK(first(3e-7, options::Quantity::sticking) == 8);
   CHECK(first(0.1, options::Quantity::sticking) == 3);
   CHECK(first(1e-30, options::Quantity::sticking) == 19);
-  request.accuracy = 1e-6;
-  const accuracy::Ladder ladder(request);
+  given.question.accuracy = 1e-6;
+  const accuracy::Ladder ladder(given);
   CHECK(ladder.rung(ladder.last()).degree == 19);
 }
 
 TEST_CASE("ladder: truncation is allowed a part of what the discretisation leaves") {
-  options::Request request;
-  request.scene = scene(1, 0.25, 1, 0.25);
-  request.quantities = {options::Quantity::entry_law};
-  request.accuracy = 1e-6;
-  const accuracy::Ladder hp(request);
+  options::Case given;
+  given.scene = scene(1, 0.25, 1, 0.25);
+  given.question.quantities = {options::Quantity::entry_law};
+  given.question.accuracy = 1e-6;
+  const accuracy::Ladder hp(given);
   for (int n = 0; n < 4; ++n) {
     const double expected = std::pow(10.0, -hp.rung(n).degree);
     CHECK(hp.tail_tolerance(n) == Approx(1e-3 * expected));
   }
-  request.method.scheme = options::Scheme::upwind;
-  CHECK(accuracy::Ladder(request).tail_tolerance(1) == Approx(1e-9));
-  request.accuracy = 1e-3;
-  CHECK(accuracy::Ladder(request).tail_tolerance(3) == Approx(1e-9));
-  request.accuracy = 1e-8;
-  CHECK(accuracy::Ladder(request).tail_tolerance(3) == Approx(1e-11));
-  request.method.scheme = options::Scheme::none;
-  CHECK(accuracy::Ladder(request).tail_tolerance(0) == Approx(1e-8));
-  CHECK(accuracy::Ladder(request).tail_tolerance(2) == Approx(1e-12));
-  CHECK(accuracy::Ladder(request).tail_tolerance(20) == Approx(1e-18));
+  given.method.scheme = options::Scheme::upwind;
+  CHECK(accuracy::Ladder(given).tail_tolerance(1) == Approx(1e-9));
+  given.question.accuracy = 1e-3;
+  CHECK(accuracy::Ladder(given).tail_tolerance(3) == Approx(1e-9));
+  given.question.accuracy = 1e-8;
+  CHECK(accuracy::Ladder(given).tail_tolerance(3) == Approx(1e-11));
+  given.method.scheme = options::Scheme::none;
+  CHECK(accuracy::Ladder(given).tail_tolerance(0) == Approx(1e-8));
+  CHECK(accuracy::Ladder(given).tail_tolerance(2) == Approx(1e-12));
+  CHECK(accuracy::Ladder(given).tail_tolerance(20) == Approx(1e-18));
 }
 
 TEST_CASE("ladder: the noise is on nodes, of a degree by hand, or on all levels") {
-  options::Request request;
-  request.scene = scene(1, 0.25, 1, 1.0 / 32);
-  request.method.noise_grading = 3;
-  const accuracy::Ladder free(request);
+  options::Case given;
+  given.scene = scene(1, 0.25, 1, 1.0 / 32);
+  given.method.noise_grading = 3;
+  const accuracy::Ladder free(given);
   CHECK(2 * free.rung(1).noise_nodes() < 2 * free.rung(1).levels + 1);
   CHECK(free.rung(1).grouping.grading == 3);
-  request.method.noise_degree = 0;
-  const accuracy::Ladder levels(request);
+  given.method.noise_degree = 0;
+  const accuracy::Ladder levels(given);
   CHECK(levels.last() > 1);
   CHECK(levels.rung(1).noise_nodes() == 2 * levels.rung(1).levels + 1);
-  request.method.noise_degree = 5;
-  const accuracy::Ladder fixed(request);
+  given.method.noise_degree = 5;
+  const accuracy::Ladder fixed(given);
   CHECK(fixed.last() == 1);
   CHECK(fixed.rung(1).grouping.degree == 5);
   CHECK(fixed.rung(0).grouping.degree == 4);
-  request.method.noise_degree.reset();
+  given.method.noise_degree.reset();
   // The routes of the paper know single levels alone.
   for (auto route :
        {options::Route::lambda, options::Route::hitting, options::Route::null_vector}) {
-    request.route = route;
-    CHECK_FALSE(accuracy::Ladder(request).rung(1).noise);
+    given.method.route = route;
+    CHECK_FALSE(accuracy::Ladder(given).rung(1).noise);
   }
-  request.route = options::Route::excursion;
-  request.quantities = {options::Quantity::relaxation};
-  CHECK_FALSE(accuracy::Ladder(request).rung(1).noise);
-  request.quantities = {options::Quantity::sticking};
-  CHECK(accuracy::Ladder(request).rung(1).noise);
-  request.method.scheme = options::Scheme::upwind;
-  CHECK_FALSE(accuracy::Ladder(request).rung(1).noise);
+  given.method.route = options::Route::excursion;
+  given.question.quantities = {options::Quantity::relaxation};
+  CHECK_FALSE(accuracy::Ladder(given).rung(1).noise);
+  given.question.quantities = {options::Quantity::sticking};
+  CHECK(accuracy::Ladder(given).rung(1).noise);
+  given.method.scheme = options::Scheme::upwind;
+  CHECK_FALSE(accuracy::Ladder(given).rung(1).noise);
 }
 
 TEST_CASE("ladder: both signs of v where there is no symmetry, or none is used") {
-  options::Request request;
-  request.scene = scene(1, 0.25, 1, 0.25);
-  CHECK(accuracy::Ladder(request).rung(1).halves == 1);
-  request.route = options::Route::null_vector;
-  CHECK(accuracy::Ladder(request).rung(1).halves == 2);
-  request.route = options::Route::excursion;
-  request.scene.bias = 0.2;
-  CHECK(accuracy::Ladder(request).rung(1).halves == 2);
+  options::Case given;
+  given.scene = scene(1, 0.25, 1, 0.25);
+  CHECK(accuracy::Ladder(given).rung(1).halves == 1);
+  given.method.route = options::Route::null_vector;
+  CHECK(accuracy::Ladder(given).rung(1).halves == 2);
+  given.method.route = options::Route::excursion;
+  given.scene.bias = 0.2;
+  CHECK(accuracy::Ladder(given).rung(1).halves == 2);
 }
 
 TEST_CASE("ladder: elements resolve the fastest rate of what is asked for, and no other") {
   using enum options::Quantity;
-  options::Request request;
-  request.scene = scene(1, 0.25, 1, 0.25);
-  request.lambda = {3, 700, 2};
-  request.omega = {1, 90, 5};
+  options::Case given;
+  given.scene = scene(1, 0.25, 1, 0.25);
+  given.question.lambda = {3, 700, 2};
+  given.question.omega = {1, 90, 5};
   const auto rates = [&](std::set<options::Quantity> quantities, int rung = 1) {
-    request.quantities = std::move(quantities);
-    const auto found = accuracy::Ladder(request).rung(rung).rates;
+    given.question.quantities = std::move(quantities);
+    const auto found = accuracy::Ladder(given).rung(rung).rates;
     return std::pair{found.lambda, found.omega};
   };
   CHECK(rates({sticking}) == std::pair{0.0, 0.0});
@@ -335,10 +335,10 @@ TEST_CASE("ladder: elements resolve the fastest rate of what is asked for, and n
   // Waves only where the first change asks for it, or nothing is refined.
   CHECK(rates({spectrum}) == std::pair{0.0, 0.0});
   CHECK(rates({spectrum}, 2) == std::pair{0.0, 90.0});
-  request.method.degree = 8;
+  given.method.degree = 8;
   CHECK(rates({spectrum}) == std::pair{0.0, 90.0});
-  request.method.degree.reset();
-  request.route = options::Route::lambda;
+  given.method.degree.reset();
+  given.method.route = options::Route::lambda;
   CHECK(rates({sticking}) == std::pair{700.0, 0.0});
 }
 
@@ -355,10 +355,10 @@ TEST_CASE("memory: predicted within a factor 2.5 of what MUMPS counts", "[slow]"
     auto resolution = c.points > 0 ? accuracy::upwind_resolution(s, c.points, 1e-8)
                                    : hp_resolution(s, c.degree, 0, 1e-8);
     resolution.factors = options::Factors::in_memory;
-    options::Request request;
-    request.scene = s;
-    request.quantities = {options::Quantity::sticking};
-    const auto ledger = accuracy::solve_on(MPI_COMM_WORLD, request, resolution).step.ledger;
+    options::Case given;
+    given.scene = s;
+    given.question.quantities = {options::Quantity::sticking};
+    const auto ledger = accuracy::solve_on(MPI_COMM_WORLD, given, resolution).step.ledger;
     const double predicted = accuracy::predicted_bytes(s, resolution);
     const double scalars = petsc::complex_scalars() ? 2 : 1;
     const double counted =

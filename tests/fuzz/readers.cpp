@@ -184,10 +184,9 @@ class Corpus {
   explicit Corpus(const test::TemporaryFolder& folder) : folder_(folder) {}
 
   std::string checkpoint() const {
-    options::Request request = simulation();
-    request.checkpoint = folder_ / "seed.checkpoint";
-    (void)monte_carlo::simulate(PETSC_COMM_SELF, request, {});
-    return test::content(request.checkpoint);
+    const std::string file = folder_ / "seed.checkpoint";
+    (void)monte_carlo::simulate(PETSC_COMM_SELF, simulation(), file, {});
+    return test::content(file);
   }
   static options::Request simulation() {
     return request_of_line(std::string(kScene) +
@@ -196,9 +195,9 @@ class Corpus {
 
   std::string record() const {
     options::Request request = sweep();
-    request.checkpoint = folder_ / "seed.record";
+    request.output.checkpoint = folder_ / "seed.record";
     (void)sweeps::conduct(PETSC_COMM_SELF, request, {});
-    return test::content(request.checkpoint);
+    return test::content(request.output.checkpoint);
   }
   static options::Request sweep() {
     return request_of_line(std::string(kScene) +
@@ -304,12 +303,12 @@ void keeps_file_when_refused(const std::string& file, Work work) {
 }
 
 void go_on_with(options::Request request, const std::string& file) {
-  request.checkpoint = file;
+  request.output.checkpoint = file;
   keeps_file_when_refused(file, [&] {
     if (request.sweep) {
       (void)sweeps::conduct(PETSC_COMM_SELF, request, {});
     } else {
-      (void)monte_carlo::simulate(PETSC_COMM_SELF, request, {});
+      (void)monte_carlo::simulate(PETSC_COMM_SELF, request, file, {});
     }
   });
 }

@@ -80,7 +80,8 @@ options::Request request() {
   r.scene.delta = 0.5;
   r.scene.drag = {3, 4};
   r.scene.bias = 0.0625;
-  r.accuracy = 1e-5;
+  r.question.accuracy = 1e-5;
+  r.output.compared = "a.csv";
   r.resolved = {{"mu_d", "0.25"}};
   return r;
 }
@@ -200,8 +201,8 @@ TEST_CASE("summary: simulations and comparisons") {
   o.simulation.emplace();
   o.simulation->state = {1000, 2000, 30000, 5, 6};
   o.simulation->continued_from = 400;
-  o.comparison = accuracy::Comparison{
-      "a.csv", {compared("S_v", 2.5, accuracy::Verdict::by_chance)}, {"E_X2"}, true};
+  o.comparison =
+      accuracy::Comparison{{compared("S_v", 2.5, accuracy::Verdict::by_chance)}, {"E_X2"}, true};
   o.comparison->rows.push_back({{"E_V2", {}, 1, 1, 1}, 1, 0, 0, accuracy::Verdict::agrees});
   const Json s = summary_of(o);
   CHECK(s["accuracy"] == Json{{"asked", 1e-5}, {"reached", true}});
@@ -276,7 +277,7 @@ TEST_CASE("table: of a long array the first and the last six") {
 
 TEST_CASE("table: a comparison of many rows shows its ends and what disagrees") {
   auto o = outcome();
-  o.comparison = accuracy::Comparison{"a.csv", {}, {"E_X2"}, true};
+  o.comparison = accuracy::Comparison{{}, {"E_X2"}, true};
   for (int n = 0; n < 50; ++n) {
     o.comparison->rows.push_back(compared(("Q" + std::to_string(n)).c_str(), n < 48 ? 0.5 : -2.5,
                                           accuracy::Verdict::agrees));
@@ -305,7 +306,7 @@ TEST_CASE("table: a simulation tells its price, and of accuracy only if one was 
              Catch::Contains("1000 excursions, 400 of them from the checkpoint, 4e+06 jumps of the "
                              "noise in 2.00 s (500 ns a jump)\n") &&
                  !Catch::Contains("accuracy 1e-05"));
-  r.accuracy_given = true;
+  r.question.accuracy_given = true;
   CHECK_THAT(io::table(r, o, {}), Catch::Contains("accuracy 1e-05 NOT reached"));
 }
 
@@ -317,13 +318,13 @@ TEST_CASE("trajectory: columns of CSV in the order of their names") {
 TEST_CASE("HDF5: results, intervals, comparison and path at their paths") {
   const test::TemporaryFolder folder;
   auto r = request();
-  r.output = folder / "out.h5";
+  r.output.output = folder / "out.h5";
   auto o = outcome();
-  o.comparison = accuracy::Comparison{
-      "a.csv", {compared("S_v", 2.5, accuracy::Verdict::by_chance)}, {}, false};
+  o.comparison =
+      accuracy::Comparison{{compared("S_v", 2.5, accuracy::Verdict::by_chance)}, {}, false};
   o.path = simulation::Path{{0, 0.5}, {-1.5, 2}, {0, 1}, {0, 0.25}};
   io::write_hdf5(PETSC_COMM_SELF, r, o, {0.5, 4});
-  const auto at = [&](const char* path) { return dataset(r.output, path); };
+  const auto at = [&](const char* path) { return dataset(r.output.output, path); };
   CHECK(at("/results/E_V2/value") == Numbers{-4});
   CHECK(at("/results/E_V2/error") == Numbers{0.5});
   CHECK(at("/results/P_stick/low") == Numbers{0.2});
@@ -349,7 +350,7 @@ TEST_CASE("HDF5: results, intervals, comparison and path at their paths") {
 TEST_CASE("reports: references read from a summary and from HDF5 are what was written") {
   const test::TemporaryFolder folder;
   auto r = request();
-  r.output = folder / "out.h5";
+  r.output.output = folder / "out.h5";
   const std::string json = folder / "out.json";
   io::write_hdf5(PETSC_COMM_SELF, r, outcome(), {0.5, 4});
   write_text(json, io::summary(PETSC_COMM_SELF, r, outcome(), {0.5, 4}));
@@ -358,7 +359,7 @@ TEST_CASE("reports: references read from a summary and from HDF5 are what was wr
                                                 {"P_stick", {}, 0.25, 0.2, 0.3},
                                                 {"S_v", 0.5, 3, 2.5, 3.25},
                                                 {"S_v", 2.0, 5, 4.75, 5.5}};
-  for (const auto& file : {r.output, json}) {
+  for (const auto& file : {r.output.output, json}) {
     const auto read = options::read_references(file);
     REQUIRE(read.size() == written.size());
     for (std::size_t n = 0; n < read.size(); ++n) {
@@ -374,7 +375,7 @@ TEST_CASE("reports: references read from a summary and from HDF5 are what was wr
 TEST_CASE("study reports: CSV, JSON and HDF5 hold the same numbers") {
   const test::TemporaryFolder folder;
   auto r = request();
-  r.output = folder / "out.h5";
+  r.output.output = folder / "out.h5";
   const auto s = study();
   CHECK(lines(io::study_csv(s))[1] == "upwind,delta=0.5;p=4,E_V2,-4,0.5,2,0.125,0.25,0.5,0.75,12");
   const Json json = Json::parse(io::study_summary(PETSC_COMM_SELF, r, s, {0.5, 4}));
@@ -394,8 +395,8 @@ TEST_CASE("study reports: CSV, JSON and HDF5 hold the same numbers") {
   CHECK(table["kappa"] == Json{nullptr, 1.5});
   CHECK(json["cost"]["seconds"] == 4.0);
   io::write_study_hdf5(PETSC_COMM_SELF, r, s, {0.5, 4});
-  CHECK(dataset(r.output, "/study/P_stick_on_a_level/p") == Numbers{4, 8});
-  CHECK(dataset(r.output, "/study/P_stick_on_a_level/kappa")[1] == 1.5);
+  CHECK(dataset(r.output.output, "/study/P_stick_on_a_level/p") == Numbers{4, 8});
+  CHECK(dataset(r.output.output, "/study/P_stick_on_a_level/kappa")[1] == 1.5);
   const std::string text = io::study_table(r, s, {0.5, 4});
   CHECK(row(text, "8") == Words{"8", "1.5"});
   CHECK(row(text, "4") == Words{"4"});
@@ -409,7 +410,7 @@ TEST_CASE("plan reports: sizes, solves and seconds in their places") {
   p.steps = {{step(0).resolution, 1001, 20002, 3e5, 12, 4e6, 0.25, 0.125}};
   p.seconds = 7;
   auto r = request();
-  r.quantities = {options::Quantity::sticking};
+  r.question.quantities = {options::Quantity::sticking};
   const std::string text = io::plan_table(r, p);
   CHECK(row(text, "0") ==
         Words{"0", "8", "5", "40", "81", "7.5", "1001", "20002", "3e+05", "12", "0.25"});

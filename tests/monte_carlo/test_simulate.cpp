@@ -14,8 +14,8 @@
 #include "stickslip/support/seal.hpp"
 
 using namespace stickslip;
+using options::Case;
 using options::Quantity;
-using options::Request;
 using quantities::Results;
 using test::scene;
 
@@ -24,25 +24,25 @@ namespace {
 constexpr double kRound = 64 * 256;  // excursions after which it may stop
 
 /// Every question the route can answer.
-Request request(const model::Scene& s, double excursions) {
-  Request r;
+Case given(const model::Scene& s, double excursions) {
+  Case r;
   r.scene = s;
-  r.route = options::Route::monte_carlo;
-  r.quantities = {Quantity::sticking,  Quantity::moments, Quantity::noise_law,
-                  Quantity::entry_law, Quantity::laplace, Quantity::duration_density,
-                  Quantity::spectrum};
-  r.lambda = {0.5, 2};
-  r.omega = {0, 1};
-  r.time = {0.5, 1, 3};
-  r.excursions = excursions;
-  r.resolved = {{"mu_s", "1"}, {"seed", "1"}, {"summary", ""}};
+  r.method.route = options::Route::monte_carlo;
+  r.question.quantities = {Quantity::sticking,  Quantity::moments, Quantity::noise_law,
+                           Quantity::entry_law, Quantity::laplace, Quantity::duration_density,
+                           Quantity::spectrum};
+  r.question.lambda = {0.5, 2};
+  r.question.omega = {0, 1};
+  r.question.time = {0.5, 1, 3};
+  r.method.excursions = excursions;
   return r;
 }
 
 model::Scene small() { return scene(1, 0.25, 1, 0.5, {1, 0}); }
 
-monte_carlo::Simulated simulate(const Request& r, MPI_Comm comm = PETSC_COMM_WORLD) {
-  return monte_carlo::simulate(comm, r, {});
+monte_carlo::Simulated simulate(const Case& r, const std::string& checkpoint = {},
+                                MPI_Comm comm = PETSC_COMM_WORLD) {
+  return monte_carlo::simulate(comm, r, checkpoint, {});
 }
 
 /// All numbers in a row, to be compared bit for bit.
@@ -63,9 +63,9 @@ const quantities::Result& result(const Results& results, const std::string& key)
   throw std::invalid_argument(key);
 }
 
-std::string complaint(const Request& r) {
+std::string complaint(const Case& r, const std::string& checkpoint = {}) {
   try {
-    (void)simulate(r);
+    (void)simulate(r, checkpoint);
   } catch (const BadInput& bad) {
     return bad.what();
   }
@@ -78,8 +78,8 @@ TEST_CASE("monte carlo: the same bits on any number of ranks", "[parallel]") {
   // Whole rounds, a part of one, and less than a batch for each rank.
   for (double excursions : {2 * kRound + 1000, kRound, 300.0, 2.0}) {
     INFO(excursions << " excursions");
-    const auto r = request(small(), excursions);
-    const auto together = simulate(r), alone = simulate(r, PETSC_COMM_SELF);
+    const auto r = given(small(), excursions);
+    const auto together = simulate(r), alone = simulate(r, "", PETSC_COMM_SELF);
     CHECK(numbers(together.results) == numbers(alone.results));
     CHECK(together.state.excursions == excursions);
     CHECK(together.state.jumps == alone.state.jumps);
@@ -88,9 +88,9 @@ TEST_CASE("monte carlo: the same bits on any number of ranks", "[parallel]") {
 }
 
 TEST_CASE("monte carlo: seeds differ, every value has an interval around it") {
-  auto r = request(small(), 5000);
+  auto r = given(small(), 5000);
   const auto first = simulate(r);
-  r.seed = 2;
+  r.method.seed = 2;
   CHECK(numbers(simulate(r).results) != numbers(first.results));
   for (const auto& found : first.results) {
     INFO(found.key);
@@ -107,27 +107,27 @@ TEST_CASE("monte carlo: seeds differ, every value has an interval around it") {
 }
 
 TEST_CASE("monte carlo: only what is asked for, with the arguments asked for") {
-  auto r = request(small(), 500);
-  r.quantities = {Quantity::laplace};
+  auto r = given(small(), 500);
+  r.question.quantities = {Quantity::laplace};
   const auto found = simulate(r).results;
   REQUIRE(found.size() == 3);
   CHECK(found[0].key == "F_slide");
-  CHECK(found[2].abscissa == r.lambda);
-  r.quantities = {Quantity::sticking};
+  CHECK(found[2].abscissa == r.question.lambda);
+  r.question.quantities = {Quantity::sticking};
   CHECK(simulate(r).results.size() == 5);
 }
 
 // The same excursions, asked for the edges of the cells.
 TEST_CASE("monte carlo: densities are those of cells up to the middle between times") {
-  auto r = request(small(), 5000);
-  r.quantities = {Quantity::duration_density};
-  r.time = {4, 1, 2};
+  auto r = given(small(), 5000);
+  r.question.quantities = {Quantity::duration_density};
+  r.question.time = {4, 1, 2};
   const auto density = simulate(r).results;
-  r.time = {0.5, 1.5, 3, 5};
+  r.question.time = {0.5, 1.5, 3, 5};
   const auto edges = simulate(r).results;
-  r.time = {2};
+  r.question.time = {2};
   const auto alone = simulate(r).results;
-  r.time = {1.9, 2.1};
+  r.question.time = {1.9, 2.1};
   const auto around = simulate(r).results;
   for (const std::string name : {"slide", "stick", "excursion"}) {
     INFO(name);
@@ -144,8 +144,8 @@ TEST_CASE("monte carlo: densities are those of cells up to the middle between ti
 TEST_CASE("monte carlo: half of S_v(0) is the diffusivity, with half its interval") {
   auto s = small();
   s.bias = 0.3;
-  auto r = request(s, 2000);
-  r.quantities = {Quantity::spectrum};
+  auto r = given(s, 2000);
+  r.question.quantities = {Quantity::spectrum};
   const auto found = simulate(r).results;
   const auto& whole = result(found, "S_0");
   const auto& half = result(found, "diffusivity");
@@ -156,10 +156,10 @@ TEST_CASE("monte carlo: half of S_v(0) is the diffusivity, with half its interva
 }
 
 TEST_CASE("monte carlo: stops when the accuracy is met", "[parallel]") {
-  auto r = request(small(), 1e7);
-  r.quantities = {Quantity::sticking, Quantity::moments};
-  r.accuracy_given = true;
-  r.accuracy = 0.006;
+  auto r = given(small(), 1e7);
+  r.question.quantities = {Quantity::sticking, Quantity::moments};
+  r.question.accuracy_given = true;
+  r.question.accuracy = 0.006;
   const auto found = simulate(r);
   CHECK(found.reached);
   CHECK(found.state.excursions >= 2 * kRound);
@@ -174,34 +174,34 @@ TEST_CASE("monte carlo: stops when the accuracy is met", "[parallel]") {
 }
 
 TEST_CASE("monte carlo: tells what is lacking when the accuracy is not met") {
-  auto r = request(small(), 1000);
-  r.accuracy_given = true;
-  r.accuracy = 1e-4;
+  auto r = given(small(), 1000);
+  r.question.accuracy_given = true;
+  r.question.accuracy = 1e-4;
   const auto found = simulate(r);
   CHECK_FALSE(found.reached);
   CHECK_THAT(found.shortfall, Catch::Contains("it would take about -excursions"));
-  r.accuracy_given = false;
+  r.question.accuracy_given = false;
   CHECK(simulate(r).reached);
 }
 
 TEST_CASE("monte carlo: an accuracy is met by the widest interval, and not below") {
-  auto r = request(small(), 1000);
-  r.quantities = {Quantity::sticking};
+  auto r = given(small(), 1000);
+  r.question.quantities = {Quantity::sticking};
   double widest = 0;
   for (const auto& each : simulate(r).results) {
     widest = std::max(widest, quantities::relative_error(each));
   }
-  r.accuracy_given = true;
-  r.accuracy = 1.001 * widest;
+  r.question.accuracy_given = true;
+  r.question.accuracy = 1.001 * widest;
   CHECK(simulate(r).reached);
-  r.accuracy = 0.999 * widest;
+  r.question.accuracy = 0.999 * widest;
   CHECK_FALSE(simulate(r).reached);
 }
 
 TEST_CASE("monte carlo: progress is told at once, and how much is left") {
-  const auto r = request(small(), 3 * kRound);
+  const auto r = given(small(), 3 * kRound);
   std::vector<monte_carlo::SimulationState> told;
-  (void)monte_carlo::simulate(PETSC_COMM_WORLD, r,
+  (void)monte_carlo::simulate(PETSC_COMM_WORLD, r, "",
                               [&](const monte_carlo::SimulationState& s) { told.push_back(s); });
   REQUIRE_FALSE(told.empty());
   REQUIRE(told[0].excursions > 0);
@@ -212,45 +212,43 @@ TEST_CASE("monte carlo: progress is told at once, and how much is left") {
 }
 
 TEST_CASE("monte carlo: what would take months is refused at once") {
-  CHECK_THAT(complaint(request(scene(6, 0.25, 1, 0.125, {1, 0}), 1e9)),
+  CHECK_THAT(complaint(given(scene(6, 0.25, 1, 0.125, {1, 0}), 1e9)),
              Catch::Contains("-excursions = 1e+09") && Catch::Contains("days"));
-  CHECK_THAT(complaint(request(small(), 1e15)), Catch::Contains("-excursions"));
+  CHECK_THAT(complaint(given(small(), 1e15)), Catch::Contains("-excursions"));
 }
 
 TEST_CASE("monte carlo: continued from a checkpoint it gives the bits of one run", "[parallel]") {
   const test::TemporaryFolder folder;
-  auto r = request(small(), 2 * kRound + 3000);
+  auto r = given(small(), 2 * kRound + 3000);
   const auto uninterrupted = numbers(simulate(r).results);
-  r.checkpoint = folder / "run.checkpoint";
-  r.excursions = kRound + 777;  // whole rounds are kept
-  CHECK(simulate(r).continued_from == 0);
-  r.excursions = 2 * kRound + 3000;
-  const auto continued = simulate(r);
+  const std::string file = folder / "run.checkpoint";
+  r.method.excursions = kRound + 777;  // whole rounds are kept
+  CHECK(simulate(r, file).continued_from == 0);
+  r.method.excursions = 2 * kRound + 3000;
+  const auto continued = simulate(r, file);
   CHECK(continued.continued_from == kRound);
   CHECK(numbers(continued.results) == uninterrupted);
-  CHECK(simulate(r).continued_from == 2 * kRound);
-  CHECK(numbers(simulate(r).results) == uninterrupted);
+  CHECK(simulate(r, file).continued_from == 2 * kRound);
+  CHECK(numbers(simulate(r, file).results) == uninterrupted);
 }
 
 namespace {
 
-/// A checkpoint of one round, and the request that wrote it.
+/// A checkpoint of one round, and the case that wrote it.
 struct Written {
-  Written() : r(request(small(), kRound)) {
-    r.checkpoint = folder / "run.checkpoint";
-    (void)simulate(r);
-  }
-  void overwrite(const std::string& text) const { std::ofstream(r.checkpoint) << text; }
+  Written() : r(given(small(), kRound)) { (void)simulate(r, file); }
+  void overwrite(const std::string& text) const { std::ofstream(file) << text; }
 
   test::TemporaryFolder folder;
-  Request r;
+  std::string file = folder / "run.checkpoint";
+  Case r;
 };
 
 }  // namespace
 
 TEST_CASE("monte carlo: damaged checkpoints are refused and kept") {
   const Written w;
-  const std::string good = test::content(w.r.checkpoint);
+  const std::string good = test::content(w.file);
   const std::size_t end = good.find('\n') + 1;
   const std::string header = good.substr(0, end), state = good.substr(end, good.size() - end - 1);
   const auto edited = [](const std::string& line, auto edit) {
@@ -281,34 +279,34 @@ TEST_CASE("monte carlo: damaged checkpoints are refused and kept") {
   for (const auto& text : damaged) {
     w.overwrite(text);
     INFO(text.substr(0, 100));
-    CHECK_THAT(complaint(w.r), Catch::Contains("-checkpoint = " + w.r.checkpoint));
-    CHECK(test::content(w.r.checkpoint) == text);
+    CHECK_THAT(complaint(w.r, w.file), Catch::Contains("-checkpoint = " + w.file));
+    CHECK(test::content(w.file) == text);
   }
   w.overwrite(good);
-  CHECK(complaint(w.r) == "nothing");
+  CHECK(complaint(w.r, w.file) == "nothing");
 }
 
 TEST_CASE("monte carlo: checkpoints of other runs are refused, with what differs") {
   Written w;
   auto other = w.r;
-  other.resolved[1].second = "2";
-  CHECK_THAT(complaint(other),
+  other.method.seed = 2;
+  CHECK_THAT(complaint(other, w.file),
              Catch::Contains("belongs to a simulation with -seed \"1\", not \"2\""));
   other = w.r;
-  other.resolved[2].second = "file.json";  // where it is written to does not matter
-  CHECK(complaint(other) == "nothing");
+  other.question.horizon = 2;  // nothing simulated depends on it
+  CHECK(complaint(other, w.file) == "nothing");
 }
 
 // Questions may come from the file of -compare, with nothing of them on the command line.
 TEST_CASE("monte carlo: checkpoints of other questions are refused") {
   const Written w;
   auto lambda = w.r, omega = w.r, time = w.r, fewer = w.r;
-  lambda.lambda = {0.5, 3};
-  omega.omega = {0, 2};
-  time.time = {0.5, 1, 4};
-  fewer.quantities.erase(Quantity::moments);
+  lambda.question.lambda = {0.5, 3};
+  omega.question.omega = {0, 2};
+  time.question.time = {0.5, 1, 4};
+  fewer.question.quantities.erase(Quantity::moments);
   for (const auto& other : {lambda, omega, time, fewer}) {
-    CHECK_THAT(complaint(other), Catch::Contains("-checkpoint = "));
+    CHECK_THAT(complaint(other, w.file), Catch::Contains("-checkpoint = "));
   }
 }
 
@@ -337,27 +335,27 @@ std::vector<model::Scene> covered_scenes() {
           scene(1.5, 0.5, 1, 0.4, {0.3, 0}), scene(0.6, 0.5, 0.5, 0.5, {2, 0})};
 }
 
-Request covering(const model::Scene& s) {
-  auto r = request(s, 20000);
-  r.quantities = {Quantity::sticking,  Quantity::moments, Quantity::noise_law,
-                  Quantity::entry_law, Quantity::laplace, Quantity::spectrum};
-  r.lambda = {0.5};
-  r.omega = {1};
+Case covering(const model::Scene& s) {
+  auto r = given(s, 20000);
+  r.question.quantities = {Quantity::sticking,  Quantity::moments, Quantity::noise_law,
+                           Quantity::entry_law, Quantity::laplace, Quantity::spectrum};
+  r.question.lambda = {0.5};
+  r.question.omega = {1};
   return r;
 }
 
-Results computed(Request r) {
-  r.route = options::Route::excursion;
-  r.accuracy = 1e-8;
+Results computed(Case r) {
+  r.method.route = options::Route::excursion;
+  r.question.accuracy = 1e-8;
   const auto outcome = accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
   REQUIRE(outcome.reached);
   return outcome.results;
 }
 
 /// Whether the interval of one value, from a run of its own, holds the computed one.
-bool covers(Request r, const Asked& a, std::uint64_t seed, const Results& known) {
-  r.quantities = {a.quantity};
-  r.seed = seed;
+bool covers(Case r, const Asked& a, std::uint64_t seed, const Results& known) {
+  r.question.quantities = {a.quantity};
+  r.method.seed = seed;
   const auto [low, high] = result(simulate(r).results, a.key).ci95[0];
   const double value = result(known, a.key).value[0];
   return low <= value && value <= high;

@@ -74,7 +74,7 @@ TEST_CASE("request: defaults of the command-line contract") {
   CHECK(r.scene.drag.cubic == 0);
   CHECK_FALSE(r.scene.noise_levels);
   CHECK_FALSE(r.scene.v_max);
-  CHECK(r.accuracy == 1e-6);
+  CHECK(r.question.accuracy == 1e-6);
   CHECK(r.method.scheme == Scheme::hp);
   CHECK_FALSE(r.method.fixed());
 }
@@ -88,8 +88,8 @@ TEST_CASE("request: values arrive where they belong") {
   CHECK(r.scene.noise_levels == 40);
   CHECK(r.scene.drag.cubic == 3);
   CHECK(r.scene.v_max == 9.0);
-  CHECK(r.wants(Quantity::entry_law));
-  CHECK_FALSE(r.wants(Quantity::sticking));
+  CHECK(r.question.wants(Quantity::entry_law));
+  CHECK_FALSE(r.question.wants(Quantity::sticking));
   CHECK(r.method.points == 12);
   CHECK(r.method.fixed());
 }
@@ -144,7 +144,7 @@ TEST_CASE("request: without symmetry") {
   const Request down = Given("-bias 0.3 -delta 0.25 -quantities trajectory -trajectory t.csv "
                              "-start s-")
                            .read();
-  CHECK(down.start_level == -6);  // x = -1.25 holds, -1.5 does not
+  CHECK(down.question.start_level == -6);  // x = -1.25 holds, -1.5 does not
   const std::vector<Refusal> refusals{
       {"-bias 0.5 -quantities entry_law", {"-quantities", "entry_law", "without symmetry"}},
       {"-bias 0.5 -route lambda", {"-quantities", "-route lambda", "-bias 0"}},
@@ -219,30 +219,30 @@ TEST_CASE("request: a route refuses what it does not give, and names what it giv
 TEST_CASE("request: a route takes the default quantities that it gives") {
   using Quantities = std::set<Quantity>;
   const Quantities all{Quantity::sticking, Quantity::moments, Quantity::noise_law};
-  CHECK(Given("").read().quantities == all);
-  CHECK(Given("-route lambda").read().quantities == all);
-  CHECK(Given("-route null_vector").read().quantities == all);
-  CHECK(Given("-route fluid_queue -drag none").read().quantities == all);
-  CHECK(Given("-route hitting").read().quantities == Quantities{Quantity::sticking});
+  CHECK(Given("").read().question.quantities == all);
+  CHECK(Given("-route lambda").read().question.quantities == all);
+  CHECK(Given("-route null_vector").read().question.quantities == all);
+  CHECK(Given("-route fluid_queue -drag none").read().question.quantities == all);
+  CHECK(Given("-route hitting").read().question.quantities == Quantities{Quantity::sticking});
 }
 
 TEST_CASE("request: routes and what they need arrive where they belong") {
-  CHECK(Given("").read().route == Route::excursion);
+  CHECK(Given("").read().method.route == Route::excursion);
   const Request by_lambda = Given("-route lambda -lambda 1e-4 -scheme upwind -p 3").read();
-  CHECK(by_lambda.route == Route::lambda);
-  CHECK(by_lambda.lambda == std::vector<double>{1e-4});
+  CHECK(by_lambda.method.route == Route::lambda);
+  CHECK(by_lambda.question.lambda == std::vector<double>{1e-4});
   CHECK(by_lambda.warnings.empty());
-  CHECK(Given("-route lambda").read().lambda.empty());
+  CHECK(Given("-route lambda").read().question.lambda.empty());
   const Request queue = Given("-route fluid_queue -drag none").read();
-  CHECK(queue.route == Route::fluid_queue);
+  CHECK(queue.method.route == Route::fluid_queue);
   CHECK(queue.method.scheme == Scheme::none);
   const Request transforms =
       Given("-quantities laplace,resolvent -lambda 0:1:3 -observable x*v;stick;abs(v)^3").read();
-  CHECK(transforms.lambda == std::vector<double>{0, 0.5, 1});
-  REQUIRE(transforms.observables.size() == 3);
-  CHECK(transforms.observables[0].name == "x*v");
-  CHECK(transforms.observables[0](2, 1, 3) == 6);
-  CHECK(transforms.observables[2](2, -1, -3) == 27);
+  CHECK(transforms.question.lambda == std::vector<double>{0, 0.5, 1});
+  REQUIRE(transforms.question.observables.size() == 3);
+  CHECK(transforms.question.observables[0].name == "x*v");
+  CHECK(transforms.question.observables[0](2, 1, 3) == 6);
+  CHECK(transforms.question.observables[2](2, -1, -3) == 27);
 }
 
 TEST_CASE("request: arguments that are missing or make no sense are told") {
@@ -369,13 +369,13 @@ TEST_CASE("options files: one that includes itself, or is no file, is told") {
 
 TEST_CASE("request: what is simulated, and how well, arrives where it belongs") {
   const Request r = Given("-route monte_carlo -seed 7 -excursions 5000 -accuracy 1e-3").read();
-  CHECK(r.seed == 7);
-  CHECK(r.excursions == 5000);
-  CHECK(r.accuracy_given);
+  CHECK(r.method.seed == 7);
+  CHECK(r.method.excursions == 5000);
+  CHECK(r.question.accuracy_given);
   CHECK(r.warnings.empty());
   const Request usual = Given("").read();
-  CHECK_FALSE(usual.accuracy_given);
-  CHECK(usual.study_repeats == 3);
+  CHECK_FALSE(usual.question.accuracy_given);
+  CHECK(usual.study.repeats == 3);
   CHECK(usual.sweep_ranks == 1);
   CHECK(Given("-seed 7").read().warnings.size() == 1);
 }
@@ -388,11 +388,11 @@ TEST_CASE("request: a cubic coefficient counts with cubic drag only") {
 
 TEST_CASE("request: starts lie on noise levels, with any velocity") {
   const std::string path = "-quantities trajectory -trajectory t.csv -start ";
-  CHECK(Given(path + "s+").read().start_level == 9);  // x = 1 holds at delta = 1/8
-  CHECK(Given(path + "s-").read().start_level == -9);
+  CHECK(Given(path + "s+").read().question.start_level == 9);  // x = 1 holds at delta = 1/8
+  CHECK(Given(path + "s-").read().question.start_level == -9);
   const Request r = Given(path + "-0.5,0.25").read();
-  CHECK(r.start_level == -4);
-  CHECK(r.start_v == 0.25);
+  CHECK(r.question.start_level == -4);
+  CHECK(r.question.start_v == 0.25);
   check_refusal({path + "0.3,0", {"-start = 0.3,0", "0.125 apart", "take x = 0.25"}});
   check_refusal({path + "-99,0", {"up to 16", "take x = -16"}});
 }
@@ -432,10 +432,10 @@ TEST_CASE("request: arguments come from the file to compare with, each once") {
                          "F_stick,0.5,1,,\nF_slide,0.5,1,,\nF_excursion,2,1,,\n"
                          "S_v,3,1,,\nf_slide,4,1,,\ncdf_stick,5,1,,\nP_stick,,1,,\n";
   const Request r = Given("-compare " + file).read();
-  CHECK(r.lambda == std::vector<double>{0.5, 2});
-  CHECK(r.omega == std::vector<double>{3});
-  CHECK(r.time == std::vector<double>{4, 5});
-  CHECK(r.quantities == std::set{Quantity::sticking, Quantity::laplace, Quantity::spectrum,
-                                 Quantity::duration_density});
-  CHECK(Given("-lambda 7 -compare " + file).read().lambda == std::vector<double>{7});
+  CHECK(r.question.lambda == std::vector<double>{0.5, 2});
+  CHECK(r.question.omega == std::vector<double>{3});
+  CHECK(r.question.time == std::vector<double>{4, 5});
+  CHECK(r.question.quantities == std::set{Quantity::sticking, Quantity::laplace, Quantity::spectrum,
+                                          Quantity::duration_density});
+  CHECK(Given("-lambda 7 -compare " + file).read().question.lambda == std::vector<double>{7});
 }

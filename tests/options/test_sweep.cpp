@@ -66,9 +66,9 @@ TEST_CASE("sweep: a point is what a single run would be") {
   CHECK(r.scene.friction.mu_d == 0.7);
   CHECK(r.scene.noise_levels == 20);
   CHECK(r.scene.delta == 0.25);
-  CHECK(r.accuracy == 1e-9);
-  CHECK(r.quantities == std::set{Quantity::laplace});
-  CHECK(r.lambda == std::vector<double>{1, 2});
+  CHECK(r.question.accuracy == 1e-9);
+  CHECK(r.question.quantities == std::set{Quantity::laplace});
+  CHECK(r.question.lambda == std::vector<double>{1, 2});
   CHECK_FALSE(r.sweep);
   // No digit is lost on the way.
   CHECK(sweep.sweep->request(2).scene.friction.mu_d == 0.1 * std::pow(0.7 / 0.1, 1 / 3.0));
@@ -130,12 +130,12 @@ TEST_CASE("sweep: files belong to the whole, and its own options are useless wit
                           {"-summary", "s.json"},
                           {"-checkpoint", "c"},
                           {"-sweep_csv", "s.csv"}});
-  CHECK(r.sweep_csv == "s.csv");
-  CHECK(r.summary == "s.json");
-  CHECK(r.checkpoint == "c");
+  CHECK(r.output.sweep_csv == "s.csv");
+  CHECK(r.output.summary == "s.json");
+  CHECK(r.output.checkpoint == "c");
   CHECK(r.warnings.empty());
-  CHECK(r.sweep->request(1).summary.empty());
-  CHECK(r.sweep->request(1).checkpoint.empty());
+  CHECK(r.sweep->request(1).output.summary.empty());
+  CHECK(r.sweep->request(1).output.checkpoint.empty());
   CHECK(read({{"-sweep_csv", "x.csv"}, {"-checkpoint", "c"}}).warnings.size() == 2);
 }
 

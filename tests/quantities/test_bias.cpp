@@ -144,12 +144,12 @@ TEST_CASE("bias: the excursions agree with the null vector") {
     for (double bias : {0.1, -0.3}) {
       const auto s = biased(base, bias);
       const auto d = test::on_upwind(s, 3);
-      options::Request r;
+      options::Case r;
       r.scene = s;
-      r.quantities = {options::Quantity::sticking, options::Quantity::moments};
+      r.question.quantities = {options::Quantity::sticking, options::Quantity::moments};
       petsc::Ledger ledger;
       const auto evaluate = [&](options::Route route) {
-        r.route = route;
+        r.method.route = route;
         return routes::evaluate({PETSC_COMM_WORLD, r, d, ledger}).results;
       };
       const auto excursions = evaluate(options::Route::excursion);

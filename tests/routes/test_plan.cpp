@@ -8,8 +8,8 @@
 
 using namespace stickslip;
 using operators::Symmetry;
+using options::Case;
 using options::Quantity;
-using options::Request;
 using test::scene;
 
 namespace {
@@ -25,7 +25,7 @@ std::ostream& operator<<(std::ostream& out, const Counts& c) {
              << c.solves << " solves";
 }
 
-struct Case {
+struct Example {
   const char* name;
   std::set<Quantity> quantities;
   Counts expected;
@@ -52,9 +52,9 @@ model::Scene cut() {
   return s;
 }
 
-const std::vector<Case>& cases() {
+const std::vector<Example>& cases() {
   using enum Quantity;
-  static const std::vector<Case> all{
+  static const std::vector<Example> all{
       {"noise alone", {noise_law}, {0, 0, 0}},
       {"noise and its derivatives", {noise_law, sensitivity}, {0, 0, 0}},
       {"a trajectory", {trajectory}, {0, 0, 0}},
@@ -84,14 +84,14 @@ const std::vector<Case>& cases() {
   return all;
 }
 
-Request request(const Case& c) {
-  Request r;
+Case given(const Example& c) {
+  Case r;
   r.scene = c.of;
-  r.quantities = c.quantities;
-  r.lambda = c.lambda;
-  r.accuracy = 1e-4;
+  r.question.quantities = c.quantities;
+  r.question.lambda = c.lambda;
+  r.question.accuracy = 1e-4;
   for (const char* f : c.observables) {
-    r.observables.push_back(model::parse_observable(f, r.scene.friction));
+    r.question.observables.push_back(model::parse_observable(f, r.scene.friction));
   }
   return r;
 }
@@ -101,7 +101,7 @@ Request request(const Case& c) {
 TEST_CASE("plan: what is foretold is what is done") {
   for (const auto& c : cases()) {
     INFO(c.name);
-    const Request r = request(c);
+    const Case r = given(c);
     const auto plan = accuracy::needs_system(r) ? routes::plan_of(r) : routes::Plan{};
     CHECK_FALSE(plan.adaptive());
     const Counts foretold{plan.assemblies(), plan.factorizations(), plan.solves()};
@@ -123,9 +123,9 @@ TEST_CASE("plan: what is foretold is what is done") {
 TEST_CASE("plan: what is adaptive says so, and takes no complex arithmetic") {
   using enum Quantity;
   for (Quantity q : {spectrum, duration_density, autocorrelation, expectation, relaxation}) {
-    Request r = request({"", {q}, {}});
-    r.time = {0.5, 2};
-    r.observables.push_back(model::parse_observable("v^2", r.scene.friction));
+    Case r = given({"", {q}, {}});
+    r.question.time = {0.5, 2};
+    r.question.observables.push_back(model::parse_observable("v^2", r.scene.friction));
     const auto plan = routes::plan_of(r);
     CHECK(plan.adaptive());
     CHECK(plan.factorizations() == (q == relaxation ? 0 : 1));
@@ -139,7 +139,7 @@ TEST_CASE("plan: what is adaptive says so, and takes no complex arithmetic") {
 
 TEST_CASE("plan: sizes are those of the run, by the analysis alone") {
   for (double delta : {0.5, 0.25}) {
-    Request r = request({"", {Quantity::sticking, Quantity::entry_law}, {}});
+    Case r = given({"", {Quantity::sticking, Quantity::entry_law}, {}});
     r.scene.delta = delta;
     const auto prediction = accuracy::predict(PETSC_COMM_WORLD, r);
     const auto outcome = accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
@@ -164,9 +164,8 @@ TEST_CASE("plan: sizes are those of the run, by the analysis alone") {
 // The odd operator has the size of the even one.
 TEST_CASE("plan: operations of all systems are foretold, sizes of the largest") {
   using enum Quantity;
-  const auto even =
-      accuracy::predict(PETSC_COMM_WORLD, request({"", {density, stay_transform}, {}}));
-  auto both = request({"", {density, stay_transform, entry_law}, {}});
+  const auto even = accuracy::predict(PETSC_COMM_WORLD, given({"", {density, stay_transform}, {}}));
+  auto both = given({"", {density, stay_transform, entry_law}, {}});
   const auto two = accuracy::predict(PETSC_COMM_WORLD, both);
   // Densities at 0+ ask for a degree more.
   const double growth =

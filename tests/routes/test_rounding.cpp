@@ -11,8 +11,8 @@
 #include "stickslip/routes/evaluation.hpp"
 
 using namespace stickslip;
+using options::Case;
 using options::Quantity;
-using options::Request;
 using options::Route;
 using quantities::Result;
 using quantities::Results;
@@ -23,18 +23,18 @@ using test::scene;
 
 namespace {
 
-Request request(const model::Scene& s, std::set<Quantity> quantities) {
-  Request r;
+Case given(const model::Scene& s, std::set<Quantity> quantities) {
+  Case r;
   r.scene = s;
-  r.quantities = std::move(quantities);
-  r.lambda = {0.5};
+  r.question.quantities = std::move(quantities);
+  r.question.lambda = {0.5};
   for (const char* f : {"v^2", "v"}) {
-    r.observables.push_back(model::parse_observable(f, s.friction));
+    r.question.observables.push_back(model::parse_observable(f, s.friction));
   }
   return r;
 }
 
-Evaluation evaluate(const Request& r, const test::Discrete& d) {
+Evaluation evaluate(const Case& r, const test::Discrete& d) {
   petsc::Ledger ledger;
   return routes::evaluate({PETSC_COMM_WORLD, r, d, ledger});
 }
@@ -66,7 +66,7 @@ model::Scene plain() { return scene(1, 0.25, 1, 0.5, {1, 0}); }
 
 Results all_by_rough_solves() {
   using enum Quantity;
-  const auto r = request(plain(), {sticking, moments, entry_law, laplace, resolvent, sensitivity});
+  const auto r = given(plain(), {sticking, moments, entry_law, laplace, resolvent, sensitivity});
   const auto rough = rough_solves();
   return evaluate(r, test::on_hp(r.scene, 5, 1e-8)).results;
 }
@@ -79,8 +79,8 @@ TEST_CASE("rounding: every number says how far its solves were corrected") {
   auto inclined = plain();
   inclined.bias = 0.3;
   for (const auto& r :
-       {request(plain(), {sticking, moments, entry_law, laplace, resolvent, sensitivity}),
-        request(inclined, {sticking, moments, spectrum})}) {
+       {given(plain(), {sticking, moments, entry_law, laplace, resolvent, sensitivity}),
+        given(inclined, {sticking, moments, spectrum})}) {
     const auto d = test::on_hp(r.scene, 5, 1e-8);
     const auto exact = evaluate(r, d).results;
     const auto rough = rough_solves();
@@ -122,8 +122,7 @@ TEST_CASE("rounding: derivatives are off by what those of the mean durations are
 // With a single static level all stays are alike, whatever the corrections were.
 TEST_CASE("rounding: what an identity lacks is added to every number of the stationary law") {
   using enum Quantity;
-  const auto r =
-      request(scene(0.15, 0.005, 1.0 / 256, 0.25, {1, 0}), {sticking, moments, entry_law});
+  const auto r = given(scene(0.15, 0.005, 1.0 / 256, 0.25, {1, 0}), {sticking, moments, entry_law});
   const auto d = test::on_hp(r.scene, 6, 1e-9);
   const auto found = evaluate(r, d);
   const double defect = found.law->excursion().conservation_defect(d);
@@ -138,7 +137,7 @@ TEST_CASE("rounding: what an identity lacks is added to every number of the stat
 }
 
 TEST_CASE("rounding: averages by hand, with the error of a probability that is known") {
-  const Request r = request(plain(), {Quantity::sticking, Quantity::moments, Quantity::noise_law});
+  const Case r = given(plain(), {Quantity::sticking, Quantity::moments, Quantity::noise_law});
   const auto process = r.scene.process(8);
   petsc::Ledger ledger;
   const routes::Setting setting{PETSC_COMM_WORLD, r, {process, nullptr}, ledger};
@@ -169,9 +168,9 @@ TEST_CASE("rounding: averages by hand, with the error of a probability that is k
 }
 
 TEST_CASE("rounding: of the fluid queue four times its defects, more for fast bodies") {
-  auto r = request(scene(1, 0.5, 1, 0.25, {0, 0}),
-                   {Quantity::sticking, Quantity::moments, Quantity::laplace});
-  r.route = Route::fluid_queue;
+  auto r = given(scene(1, 0.5, 1, 0.25, {0, 0}),
+                 {Quantity::sticking, Quantity::moments, Quantity::laplace});
+  r.method.route = Route::fluid_queue;
   const auto found = evaluate(r, {r.scene.process(12), nullptr});
   double defect = std::numeric_limits<double>::epsilon();
   for (const auto& [name, left] : found.checks) defect += std::abs(left);
@@ -185,8 +184,8 @@ TEST_CASE("rounding: of the fluid queue four times its defects, more for fast bo
 }
 
 TEST_CASE("rounding: hitting times say how far their solves were corrected") {
-  auto r = request(plain(), {Quantity::sticking});
-  r.route = Route::hitting;
+  auto r = given(plain(), {Quantity::sticking});
+  r.method.route = Route::hitting;
   const auto d = test::on_hp(r.scene, 5, 1e-8);
   const auto rough = rough_solves();
   for (const auto& found : evaluate(r, d).results) {
@@ -199,10 +198,10 @@ TEST_CASE("rounding: hitting times say how far their solves were corrected") {
 // A step of inverse iteration more makes a rough vector a good one, and shows how rough it was.
 TEST_CASE("rounding: the null vector says what its last iteration changed") {
   using enum Quantity;
-  auto r = request(plain(), {sticking, moments, noise_law});
+  auto r = given(plain(), {sticking, moments, noise_law});
   const auto d = test::on_upwind(r.scene, 2, 1e-5);
   const auto known = evaluate(r, d).results;
-  r.route = Route::null_vector;
+  r.method.route = Route::null_vector;
   const test::Given rough({{"-null_eps_tol", "0.5"}, {"-null_eps_target", "-0.01"}});
   const auto found = evaluate(r, d);
   for (const auto& each : found.results) {
@@ -220,12 +219,12 @@ TEST_CASE("rounding: the null vector says what its last iteration changed") {
 
 TEST_CASE("rounding: reduced models take a tenth of the accuracy at most") {
   using enum Quantity;
-  auto r = request(plain(), {sticking, moments, spectrum, autocorrelation});
-  r.omega = {0.3, 2};
-  r.time = {0.2, 1};
+  auto r = given(plain(), {sticking, moments, spectrum, autocorrelation});
+  r.question.omega = {0.3, 2};
+  r.question.time = {0.2, 1};
   const auto d = test::on_hp(r.scene, 5, 1e-8);
   for (double accuracy : {1e-3, 1e-6}) {
-    r.accuracy = accuracy;
+    r.question.accuracy = accuracy;
     const auto found = evaluate(r, d).results;
     INFO("accuracy " << accuracy);
     CHECK(quantities::relative_error(result(found, "S_v")) <= 0.1 * accuracy);

@@ -9,7 +9,6 @@
 
 using namespace stickslip;
 using options::Quantity;
-using options::Request;
 using options::Route;
 using options::Scheme;
 using quantities::Result;
@@ -19,16 +18,16 @@ using test::scene;
 
 namespace {
 
-Request request(const model::Scene& s, Route route, std::set<Quantity> quantities) {
-  Request r;
+options::Case given(const model::Scene& s, Route route, std::set<Quantity> quantities) {
+  options::Case r;
   r.scene = s;
-  r.route = route;
-  r.quantities = std::move(quantities);
-  r.accuracy = 1e-8;
+  r.method.route = route;
+  r.question.quantities = std::move(quantities);
+  r.question.accuracy = 1e-8;
   return r;
 }
 
-Evaluation evaluate(const Request& r, const test::Discrete& d) {
+Evaluation evaluate(const options::Case& r, const test::Discrete& d) {
   petsc::Ledger ledger;
   return routes::evaluate({PETSC_COMM_WORLD, r, d, ledger});
 }
@@ -68,7 +67,7 @@ std::vector<test::Discrete> discretisations(const model::Scene& s) {
 /// What the excursion route and the closed law of the noise give on a discretisation, by key.
 std::map<std::string, double> known_values(const model::Scene& s, const test::Discrete& d) {
   std::map<std::string, double> known;
-  const auto r = request(s, Route::excursion, {Quantity::sticking, Quantity::moments});
+  const auto r = given(s, Route::excursion, {Quantity::sticking, Quantity::moments});
   for (const auto& result : evaluate(r, d).results) known[result.key] = result.value[0];
   const auto noise = model::noise_moments(d.process.noise, d.process.static_index());
   known["P_X_le_mu_s"] = noise.within;
@@ -84,8 +83,8 @@ TEST_CASE("routes: hitting times and the null vector give what excursions give")
   for (const auto& s : sample_scenes()) {
     for (const auto& d : discretisations(s)) {
       const auto known = known_values(s, d);
-      const auto by_hitting = evaluate(request(s, Route::hitting, {Quantity::sticking}), d);
-      const auto by_null_vector = evaluate(request(s, Route::null_vector, kAverages), d);
+      const auto by_hitting = evaluate(given(s, Route::hitting, {Quantity::sticking}), d);
+      const auto by_null_vector = evaluate(given(s, Route::null_vector, kAverages), d);
       CHECK(by_hitting.results.size() == 5);
       CHECK(by_null_vector.results.size() == 11);
       for (const auto* found : {&by_hitting, &by_null_vector}) {
@@ -103,7 +102,7 @@ TEST_CASE("routes: a small lambda gives what excursions give, within its stated 
   for (const auto& s : sample_scenes()) {
     for (const auto& d : discretisations(s)) {
       const auto known = known_values(s, d);
-      const auto found = evaluate(request(s, Route::lambda, kAverages), d);
+      const auto found = evaluate(given(s, Route::lambda, kAverages), d);
       CHECK(found.results.size() == 8);
       for (const auto& r : found.results) {
         INFO(r.key << " at mu_s " << s.friction.mu_s << " mu_d " << s.friction.mu_d);
@@ -123,8 +122,8 @@ TEST_CASE(
   const auto d = test::on_hp(s, 6);
   const double known = known_values(s, d).at("P_slide");
   for (double accuracy : {1e-6, 1e-7, 1e-8, 1e-10, 1e-15}) {
-    auto r = request(s, Route::lambda, {Quantity::sticking});
-    r.accuracy = accuracy;
+    auto r = given(s, Route::lambda, {Quantity::sticking});
+    r.question.accuracy = accuracy;
     const auto found = evaluate(r, d);
     const auto& p_slide = result(found, "P_slide");
     INFO("accuracy " << accuracy << " lambda " << check_value(found, "lambda"));
@@ -138,7 +137,7 @@ TEST_CASE("routes: all agree on any number of ranks", "[parallel]") {
   for (const auto& d : {test::on_hp(s, 3, 1e-6), test::on_upwind(s, 2, 1e-5)}) {
     const auto known = known_values(s, d);
     for (Route route : {Route::lambda, Route::hitting, Route::null_vector}) {
-      for (const auto& r : evaluate(request(s, route, {Quantity::sticking}), d).results) {
+      for (const auto& r : evaluate(given(s, route, {Quantity::sticking}), d).results) {
         INFO(r.key);
         CHECK(relative_difference(r.value[0], known.at(r.key)) < 1e-8);
       }
@@ -150,13 +149,13 @@ TEST_CASE("routes: the bias of a fixed lambda is stated, and of first order") {
   for (const auto& s : sample_scenes()) {
     const auto d = test::on_hp(s, 4, 1e-8);
     const auto known = known_values(s, d);
-    auto r = request(s, Route::lambda, kAverages);
+    auto r = given(s, Route::lambda, kAverages);
     const auto at = [&](double lambda) {
-      r.lambda = {lambda};
+      r.question.lambda = {lambda};
       return evaluate(r, d);
     };
     const auto coarse = at(1e-3 / s.tau), fine = at(0.5e-3 / s.tau);
-    CHECK(check_value(coarse, "lambda") == r.lambda[0] * 2);
+    CHECK(check_value(coarse, "lambda") == r.question.lambda[0] * 2);
     for (const auto& result_of_coarse : coarse.results) {
       const auto& key = result_of_coarse.key;
       const double bias = std::abs(result_of_coarse.value[0] - known.at(key));
@@ -173,7 +172,7 @@ TEST_CASE("routes: the bias of a fixed lambda is stated, and of first order") {
 TEST_CASE("routes: the null vector is one, and a probability on a grid") {
   for (const auto& s : sample_scenes()) {
     for (const auto& d : discretisations(s)) {
-      const auto found = evaluate(request(s, Route::null_vector, {Quantity::moments}), d);
+      const auto found = evaluate(given(s, Route::null_vector, {Quantity::moments}), d);
       CHECK(check_value(found, "norm_pi_M_over_norm_M") <= 1e-10);
       if (is_on_grid(d)) CHECK(check_value(found, "most_negative_pi") >= -1e-15);
     }
@@ -190,10 +189,10 @@ TEST_CASE("routes: P(|X| <= mu_s) is the binomial sum at every p") {
     for (int p : {1, 2, 8}) {
       if (p == 8 && c.delta < 0.5) continue;  // seconds, and nothing new
       const auto d = test::on_upwind(s, p);
-      const auto exact = evaluate(request(s, Route::null_vector, {Quantity::noise_law}), d);
+      const auto exact = evaluate(given(s, Route::null_vector, {Quantity::noise_law}), d);
       CHECK(relative_difference(result(exact, "P_X_le_mu_s").value[0], c.known) < 1e-12);
       CHECK(relative_difference(result(exact, "E_X2").value[0], 1) < 1e-12);
-      const auto biased = evaluate(request(s, Route::lambda, {Quantity::noise_law}), d);
+      const auto biased = evaluate(given(s, Route::lambda, {Quantity::noise_law}), d);
       const auto& within = result(biased, "P_X_le_mu_s");
       CHECK(std::abs(within.value[0] - c.known) <= within.error[0]);
       CHECK(within.error[0] < 1e-8);
@@ -204,13 +203,12 @@ TEST_CASE("routes: P(|X| <= mu_s) is the binomial sum at every p") {
 TEST_CASE("routes: without drag excursions agree with the fluid queue") {
   for (const auto& s : {scene(1, 1, 1, 0.5, {0, 0}), scene(1, 0.5, 1, 0.25, {0, 0}),
                         scene(0.2, 0.15, 1, 0.5, {0, 0}), scene(0.7, 0.3, 2, 0.5, {0, 0})}) {
-    auto r =
-        request(s, Route::excursion,
-                {Quantity::sticking, Quantity::moments, Quantity::entry_law, Quantity::laplace});
-    r.lambda = {0, 0.1, 3};
+    auto r = given(s, Route::excursion,
+                   {Quantity::sticking, Quantity::moments, Quantity::entry_law, Quantity::laplace});
+    r.question.lambda = {0, 0.1, 3};
     const auto d = test::on_hp(s, 11, 1e-13);
     const auto found = evaluate(r, d);
-    r.route = Route::fluid_queue;
+    r.method.route = Route::fluid_queue;
     r.method.scheme = Scheme::none;
     const auto known = evaluate(r, {d.process, nullptr});
     CHECK(known.results.size() == 14);
@@ -230,7 +228,7 @@ TEST_CASE("routes: without drag excursions agree with the fluid queue") {
 
 TEST_CASE("routes: the fluid queue leaves the noise its law") {
   const auto s = test::on_full_noise(scene(1, 0.3, 1, 0.25, {0, 0}));
-  auto r = request(s, Route::fluid_queue, {Quantity::noise_law});
+  auto r = given(s, Route::fluid_queue, {Quantity::noise_law});
   r.method.scheme = Scheme::none;
   const auto found = evaluate(r, {s.meant(), nullptr});
   CHECK(found.results.size() == 2);
@@ -248,21 +246,20 @@ TEST_CASE("routes: only what is asked for is given, with what fields need", "[pa
   };
   using Keys = std::set<std::string>;
   for (Route route : {Route::lambda, Route::null_vector}) {
-    CHECK(keys(evaluate(request(s, route, {Quantity::noise_law}), d)) ==
-          Keys{"P_X_le_mu_s", "E_X2"});
+    CHECK(keys(evaluate(given(s, route, {Quantity::noise_law}), d)) == Keys{"P_X_le_mu_s", "E_X2"});
   }
-  const auto modes = evaluate(request(s, Route::excursion, {Quantity::relaxation}), d);
+  const auto modes = evaluate(given(s, Route::excursion, {Quantity::relaxation}), d);
   CHECK(keys(modes) == Keys{"relaxation_even", "relaxation_even_frequency", "relaxation_odd",
                             "relaxation_odd_frequency"});
   CHECK(modes.even.size() == 4);
   CHECK(modes.odd.size() == 4);
   CHECK_FALSE(modes.law);
-  auto r = request(s, Route::excursion, {Quantity::resolvent});
-  r.lambda = {2};
-  r.observables = {model::parse_observable("stick", s.friction)};
+  auto r = given(s, Route::excursion, {Quantity::resolvent});
+  r.question.lambda = {2};
+  r.question.observables = {model::parse_observable("stick", s.friction)};
   CHECK(keys(evaluate(r, d)) == Keys{"h_plus", "h_minus", "w_one", "u(stick)", "w_plus(stick)",
                                      "w_minus(stick)", "pi(stick)", "mu(stick)"});
-  r.quantities = {Quantity::laplace};
+  r.question.quantities = {Quantity::laplace};
   const auto laplace = evaluate(r, d);
   CHECK(keys(laplace) == Keys{"F_slide", "F_stick", "F_excursion", "mean_slide", "mean_stick",
                               "mean_excursion", "var_slide", "var_stick", "var_excursion",

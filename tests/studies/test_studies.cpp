@@ -25,14 +25,14 @@ Request request(StudyKind kind, double mu_d, double delta, int steps) {
   Request r;
   r.scene.friction = {1, mu_d};
   r.scene.delta = delta;
-  r.quantities = {Quantity::sticking, Quantity::moments};
-  r.study = kind;
-  r.study_steps = steps;
-  r.study_repeats = 1;
+  r.question.quantities = {Quantity::sticking, Quantity::moments};
+  r.study.kind = kind;
+  r.study.steps = steps;
+  r.study.repeats = 1;
   return r;
 }
 
-Study conducted(const Request& r) { return studies::conduct(PETSC_COMM_WORLD, r, {}); }
+Study conducted(const Request& r) { return studies::conduct(PETSC_COMM_WORLD, r, r.study, {}); }
 
 const Table& table(const Study& study, const std::string& name) {
   for (const auto& t : study.tables) {
@@ -107,14 +107,14 @@ TEST_CASE("studies: the table of p holds differences of its values, and errors a
 
 TEST_CASE("studies: without -study_steps there are eight values of p") {
   Request r = request(StudyKind::points, 0.25, 1, 8);
-  r.study_steps.reset();
+  r.study.steps.reset();
   CHECK(conducted(r).runs.size() == 9);
 }
 
 TEST_CASE("studies: steps put mu_s on a level or in the middle, and extrapolate what they found") {
   for (double mu_d : {1.0, 0.5}) {
     Request r = request(StudyKind::steps, mu_d, 0.45, 3);
-    r.accuracy = 1e-6;
+    r.question.accuracy = 1e-6;
     const Study study = conducted(r);
     REQUIRE(study.runs.size() == 6);
     const std::vector<double> places{2, 4, 8, 2.5, 4.5, 8.5};  // mu_s/delta, nearest to 1/0.45
@@ -350,7 +350,7 @@ TEST_CASE("studies: one whose largest run would not fit is refused before the fi
     int runs = 0;
     const auto count = [&runs](int, int, const std::string&) { ++runs; };
     const Request r = request(kind, 0.25, 1.0 / 64, 20);
-    CHECK_THROWS_AS(studies::conduct(PETSC_COMM_WORLD, r, count), NoMemory);
+    CHECK_THROWS_AS(studies::conduct(PETSC_COMM_WORLD, r, r.study, count), NoMemory);
     CHECK(runs == 0);
   }
 }

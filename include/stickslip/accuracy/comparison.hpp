@@ -24,7 +24,6 @@ struct Compared {
 };
 
 struct Comparison {
-  std::string file;
   std::vector<Compared> rows;
   std::vector<std::string> left_out;  ///< quantities of the file that were not computed
   bool disagrees = false;
@@ -34,8 +33,7 @@ struct Comparison {
 /// value with our error (a bound, or half of an interval if ours is simulated). |z| < 1.96 agrees;
 /// what is beyond is chance unless Holm's step-down test rejects it at the family-wise level 1e-3.
 /// References without counterpart are left out. Local.
-[[nodiscard]] Comparison compare(const std::string& file,
-                                 const std::vector<options::Reference>& references,
+[[nodiscard]] Comparison compare(const std::vector<options::Reference>& references,
                                  const quantities::Results& results);
 
 }  // namespace stickslip::accuracy

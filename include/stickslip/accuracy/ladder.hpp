@@ -4,7 +4,7 @@
 #include <map>
 
 #include "stickslip/accuracy/resolution.hpp"
-#include "stickslip/options/request.hpp"
+#include "stickslip/options/case.hpp"
 
 namespace stickslip::accuracy {
 
@@ -13,7 +13,7 @@ namespace stickslip::accuracy {
 /// error of the coarser one, whatever its cause.
 class Ladder {
  public:
-  explicit Ladder(const options::Request& request);
+  explicit Ladder(const options::Case& given);
 
   /// Number of the last rung that may be tried.
   [[nodiscard]] int last() const { return last_; }

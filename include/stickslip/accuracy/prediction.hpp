@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "stickslip/accuracy/resolution.hpp"
-#include "stickslip/options/request.hpp"
+#include "stickslip/options/case.hpp"
 #include "stickslip/routes/plan.hpp"
 
 namespace stickslip::accuracy {
@@ -34,6 +34,6 @@ struct Prediction {
 /// a matrix product measured now, and were found within a factor 2 of real ones; a run may need
 /// one or two steps more than foretold. Routes other than excursion: the sizes only, with seconds
 /// 0. Collective. Throws NoMemory as the run would.
-[[nodiscard]] Prediction predict(MPI_Comm comm, const options::Request& request);
+[[nodiscard]] Prediction predict(MPI_Comm comm, const options::Case& given);
 
 }  // namespace stickslip::accuracy

@@ -10,7 +10,7 @@
 #include "stickslip/accuracy/comparison.hpp"
 #include "stickslip/accuracy/resolution.hpp"
 #include "stickslip/monte_carlo/simulate.hpp"
-#include "stickslip/options/request.hpp"
+#include "stickslip/options/case.hpp"
 #include "stickslip/petsc/ledger.hpp"
 #include "stickslip/quantities/density.hpp"
 #include "stickslip/quantities/relaxation.hpp"
@@ -31,10 +31,10 @@ struct Step {
 
 /// Whether anything asked for takes a discretisation or a simulation; closed forms and paths do
 /// not.
-[[nodiscard]] bool needs_system(const options::Request& request);
+[[nodiscard]] bool needs_system(const options::Case& given);
 
 /// Throws NoMemory, with what would help, if the predicted need exceeds what is free. Collective.
-void require_memory(MPI_Comm comm, const options::Request& request, const Resolution& resolution);
+void require_memory(MPI_Comm comm, const model::Scene& scene, const Resolution& resolution);
 
 /// What is asked for on one discretisation.
 struct Solved {
@@ -42,9 +42,9 @@ struct Solved {
   Step step;
 };
 
-/// Solves on one discretisation of the request's scene. Collective. Throws NoMemory before anything
+/// Solves a case on one discretisation. Collective. Throws NoMemory before anything
 /// is allocated that would not fit, NotReached when a solver fails.
-[[nodiscard]] Solved solve_on(MPI_Comm comm, const options::Request& request,
+[[nodiscard]] Solved solve_on(MPI_Comm comm, const options::Case& given,
                               const Resolution& resolution);
 
 struct Outcome {
@@ -67,7 +67,7 @@ struct Outcome {
 /// (0 for the first, of which nothing is known).
 using Progress = std::function<void(int, const Resolution&, double)>;
 
-/// All that the request asks for. Deterministic routes climb the ladder of the request; the error
+/// All that is asked for. Deterministic routes climb the ladder of the case; the error
 /// estimate of a value is
 ///
 ///   max(error_per_change |last change|, error_per_earlier_change |change before|)
@@ -76,8 +76,8 @@ using Progress = std::function<void(int, const Resolution&, double)>;
 /// where the second line is mostly rounding; see routes::Evaluation. Stops when every scalar meets
 /// the accuracy, when rounding forbids it, or at the end of the ladder. Collective. Throws NoMemory
 /// before anything is allocated that would not fit, NotReached when a solver fails.
-[[nodiscard]] Outcome refine(MPI_Comm comm, const options::Request& request,
-                             const Progress& progress,
-                             const monte_carlo::SimulationProgress& simulation_progress = {});
+[[nodiscard]] Outcome refine(MPI_Comm comm, const options::Case& given, const Progress& progress,
+                             const monte_carlo::SimulationProgress& simulation_progress = {},
+                             const std::string& checkpoint = {});
 
 }  // namespace stickslip::accuracy

@@ -7,7 +7,7 @@
 #include "stickslip/model/scene.hpp"
 #include "stickslip/noise/nodes.hpp"
 #include "stickslip/operators/discretisation.hpp"
-#include "stickslip/options/request.hpp"
+#include "stickslip/options/case.hpp"
 #include "stickslip/velocity/mesh.hpp"
 
 namespace stickslip::accuracy {

@@ -18,17 +18,18 @@ class Hdf5File;
 using Json = nlohmann::ordered_json;
 
 /// The scene in a line.
-[[nodiscard]] std::string scene_line(const options::Request& request);
+[[nodiscard]] std::string scene_line(const model::Scene& scene);
 /// The discretisation in v as cells of a table of steps, and their title.
 [[nodiscard]] std::string axis_cells(const accuracy::Resolution& resolution);
 [[nodiscard]] const char* axis_title(options::Scheme scheme);
 
 [[nodiscard]] Json resolution_json(const accuracy::Resolution& resolution);
-[[nodiscard]] Json scene_json(const options::Request& request);
+[[nodiscard]] Json scene_json(const model::Scene& scene);
 [[nodiscard]] Json results_json(const quantities::Results& results);
 /// What one run found and what it cost: scene, results, accuracy, comparison if any, cost, plan.
-[[nodiscard]] Json run_json(const options::Request& request, const accuracy::Outcome& outcome,
-                            const RunTimes& times);
+/// `compared` is the name of the file of the references.
+[[nodiscard]] Json run_json(const options::Case& given, const accuracy::Outcome& outcome,
+                            const RunTimes& times, const std::string& compared = {});
 [[nodiscard]] Json provenance_json(MPI_Comm comm, const options::Request& request);
 [[nodiscard]] Json seconds_json(const petsc::Ledger& ledger);
 /// A key of a result as the name of a group or dataset, where a slash would make a group of its

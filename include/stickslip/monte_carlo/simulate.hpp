@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "stickslip/options/request.hpp"
+#include "stickslip/options/case.hpp"
 #include "stickslip/quantities/results.hpp"
 
 namespace stickslip::monte_carlo {
@@ -30,13 +30,13 @@ struct Simulated {
   std::string shortfall;
 };
 
-/// Simulates request.excursions excursions (without symmetry, cycles of them), or fewer if
+/// Simulates given.method.excursions excursions (without symmetry, cycles of them), or fewer if
 /// -accuracy is given and met before. Batches of them have random streams of their own, are dealt
 /// out to the ranks, and merged in their order: the numbers depend on the scene, the seed and the
-/// excursions alone. With request.checkpoint the tally is read from that file if it exists, and
-/// written to it every few seconds. Collective. Throws BadInput when the checkpoint belongs to
-/// another run or is damaged, and when it would take more than a month.
-[[nodiscard]] Simulated simulate(MPI_Comm comm, const options::Request& request,
-                                 const SimulationProgress& progress);
+/// excursions alone. With a file name in `checkpoint` the tally is read from that file if it
+/// exists, and written to it every few seconds. Collective. Throws BadInput when the checkpoint
+/// belongs to another run or is damaged, and when it would take more than a month.
+[[nodiscard]] Simulated simulate(MPI_Comm comm, const options::Case& given,
+                                 const std::string& checkpoint, const SimulationProgress& progress);
 
 }  // namespace stickslip::monte_carlo

@@ -10,7 +10,7 @@
 
 #include "stickslip/operators/discretisation.hpp"
 #include "stickslip/operators/system_key.hpp"
-#include "stickslip/options/request.hpp"
+#include "stickslip/options/case.hpp"
 #include "stickslip/petsc/ledger.hpp"
 #include "stickslip/petsc/solver_choice.hpp"
 #include "stickslip/quantities/relaxation.hpp"
@@ -22,10 +22,10 @@ class StationaryLaw;
 
 namespace stickslip::routes {
 
-/// One discretisation of the scene of a request.
+/// A case on one discretisation.
 struct Setting {
   MPI_Comm comm;
-  const options::Request& request;
+  const options::Case& given;
   operators::Discretisation discretisation;
   petsc::Ledger& ledger;
 };
@@ -39,7 +39,7 @@ struct Evaluation {
   std::vector<quantities::RelaxationMode> even, odd;  ///< modes, if asked for
 };
 
-/// Assembles, factors and solves what the request needs and nothing else. Collective. Throws
+/// Assembles, factors and solves what the question needs and nothing else. Collective. Throws
 /// NotReached or NoMemory.
 [[nodiscard]] Evaluation evaluate(const Setting& setting);
 

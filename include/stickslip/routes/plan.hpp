@@ -1,12 +1,12 @@
 #pragma once
-/// What is assembled, factored and solved on each discretisation, derived from the request.
+/// What is assembled, factored and solved on each discretisation, derived from the question.
 
 #include <set>
 #include <string>
 #include <vector>
 
 #include "stickslip/operators/system_key.hpp"
-#include "stickslip/options/request.hpp"
+#include "stickslip/options/case.hpp"
 
 namespace stickslip::routes {
 
@@ -63,9 +63,9 @@ struct Plan {
 
 /// The least set of work for the quantities asked for. Routes other than excursion do one thing
 /// each, and their plan is empty. Local.
-[[nodiscard]] Plan plan_of(const options::Request& request);
+[[nodiscard]] Plan plan_of(const options::Case& given);
 
 /// "stationary law", "resolvent at lambda = 0.5".
-[[nodiscard]] std::string task_name(const options::Request& request, const Task& task);
+[[nodiscard]] std::string task_name(const options::Question& question, const Task& task);
 
 }  // namespace stickslip::routes

@@ -38,7 +38,7 @@ struct Study {
 /// Called on all ranks before each run with its number, how many there are, and what it is.
 using StudyProgress = std::function<void(int, int, const std::string&)>;
 
-/// -study of the request:
+/// -study, by its kind:
 ///
 /// p: the upwind scheme on p = 2, 4, ... points per noise step, observed order
 ///   kappa(p) = log2(|u^p - u^(p/2)|/|u^2p - u^p|), Richardson's extrapolation 2 u^2p - u^p, and
@@ -50,7 +50,7 @@ using StudyProgress = std::function<void(int, int, const std::string&)>;
 /// cost: error against time for upwind, Richardson, hp and Monte Carlo.
 ///
 /// Collective. Throws what the runs throw.
-[[nodiscard]] Study conduct(MPI_Comm comm, const options::Request& request,
-                            const StudyProgress& progress);
+[[nodiscard]] Study conduct(MPI_Comm comm, const options::Case& given,
+                            const options::StudyOptions& study, const StudyProgress& progress);
 
 }  // namespace stickslip::studies

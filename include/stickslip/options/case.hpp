@@ -1,0 +1,99 @@
+#pragma once
+/// What computes a result: model parameters, question and method.
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "stickslip/model/observable.hpp"
+#include "stickslip/model/scene.hpp"
+#include "stickslip/options/reference.hpp"
+
+namespace stickslip::options {
+
+/// What can be asked for by -quantities.
+enum class Quantity {
+  sticking,
+  moments,
+  noise_law,
+  entry_law,
+  density,
+  laplace,
+  stay_transform,
+  resolvent,
+  relaxation,
+  spectrum,
+  duration_density,
+  autocorrelation,
+  expectation,
+  trajectory,
+  sensitivity
+};
+
+/// Discretisation in v; `none` for the fluid queue, which needs none.
+enum class Scheme { hp, upwind, none };
+
+/// What factors the sliding operator, and where they go; the PETSc options of -slide_ decide.
+/// `own`: what fits the discretisation, element by element or by MUMPS in memory.
+enum class Factors { own, elements, in_memory, on_disk, incomplete };
+
+/// By which system of equations.
+enum class Route { excursion, lambda, hitting, null_vector, fluid_queue, monte_carlo };
+
+/// How functions of time are computed.
+enum class TransientSolver { krylov, stepping };
+
+/// How the spectrum is computed.
+enum class SpectrumSolver { krylov, direct };
+
+/// Whether a route works on both signs of v, unfolded.
+[[nodiscard]] inline bool on_full_grid(Route route) {
+  return route == Route::lambda || route == Route::hitting || route == Route::null_vector;
+}
+
+/// What is asked for, and how accurate it has to be.
+struct Question {
+  std::set<Quantity> quantities;
+  std::vector<double> lambda;  ///< of laplace and resolvent; one for -route lambda [1/time]
+  std::vector<model::Observable> observables;  ///< of resolvent and expectation
+  std::vector<double> omega;                   ///< of spectrum [1/time]
+  std::vector<double> time;                    ///< of functions of time [time]
+  int start_level = 0;                         ///< of expectation: x_i and v at time 0
+  double start_v = 0;
+  double horizon = 100;  ///< end of the trajectory [time]
+  double accuracy = 1e-6;
+  bool accuracy_given = false;        ///< by the user
+  std::vector<Reference> references;  ///< of -compare
+
+  [[nodiscard]] bool wants(Quantity q) const { return quantities.contains(q); }
+};
+
+/// How it is computed; a degree, layers or points switch refinement off.
+struct Method {
+  Route route = Route::excursion;
+  Scheme scheme = Scheme::hp;
+  std::optional<int> degree = {}, layers = {};  ///< hp
+  std::optional<int> points = {};               ///< upwind, per noise step
+  std::optional<int> noise_degree = {};         ///< hp; 0: every noise level is a node
+  double noise_grading = 2;                     ///< hp
+  Factors factors = Factors::own;
+  SpectrumSolver spectrum_solver = SpectrumSolver::krylov;
+  TransientSolver transient_solver = TransientSolver::krylov;
+  double excursions = 1e6;  ///< of -route monte_carlo, at most
+  std::uint64_t seed = 1;   ///< of whatever is simulated
+
+  /// Whether the discretisation is chosen by hand.
+  [[nodiscard]] bool fixed() const {
+    return degree || layers || points || noise_degree.value_or(0) > 0;
+  }
+};
+
+/// All that fixes the numbers of a result, but for the PETSc options of the solvers.
+struct Case {
+  model::Scene scene;
+  Question question;
+  Method method;
+};
+
+}  // namespace stickslip::options
