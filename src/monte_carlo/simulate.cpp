@@ -21,6 +21,7 @@ namespace {
 
 using options::Case;
 using options::Quantity;
+using quantities::Kind;
 using quantities::Result;
 using quantities::Results;
 using simulation::Duration;
@@ -92,8 +93,8 @@ class Estimates {
     if (question_.wants(Quantity::sticking)) append_sticking();
     if (question_.wants(Quantity::moments)) append_moments();
     if (question_.wants(Quantity::noise_law)) {
-      scalar("P_X_le_mu_s", "", tally_.within());
-      scalar("E_X2", "force^2", tally_.noise_square());
+      scalar("P_X_le_mu_s", "", tally_.within(), Kind::probability);
+      scalar("E_X2", "force^2", tally_.noise_square(), Kind::positive_mean);
     }
     if (question_.wants(Quantity::entry_law)) append_entry_law();
     if (question_.wants(Quantity::laplace)) append_laplace();
@@ -103,28 +104,28 @@ class Estimates {
   }
 
  private:
-  void scalar(const char* key, const char* unit, const Estimate& e) {
-    Result result{key, unit, "", {}, {}, {}};
+  void scalar(const char* key, const char* unit, const Estimate& e, Kind kind = Kind::other) {
+    Result result{key, unit, "", {}, {}, {}, kind};
     append_value(result, e);
     results_.push_back(std::move(result));
   }
 
   void append_sticking() {
-    scalar("P_stick", "", tally_.sticking());
-    scalar("P_slide", "", tally_.sliding());
-    scalar("mean_stick", "time", tally_.mean(Duration::stick));
-    scalar("mean_slide", "time", tally_.mean(Duration::slide));
-    scalar("mean_excursion", "time", tally_.mean(Duration::excursion));
+    scalar("P_stick", "", tally_.sticking(), Kind::share);
+    scalar("P_slide", "", tally_.sliding(), Kind::share);
+    scalar("mean_stick", "time", tally_.mean(Duration::stick), Kind::positive_mean);
+    scalar("mean_slide", "time", tally_.mean(Duration::slide), Kind::positive_mean);
+    scalar("mean_excursion", "time", tally_.mean(Duration::excursion), Kind::positive_mean);
   }
 
   void append_moments() {
-    scalar("E_V2", "velocity^2", tally_.mean_square());
-    scalar("E_absV", "velocity", tally_.mean_speed());
-    scalar("E_XV", "force*velocity", tally_.mean_product());
+    scalar("E_V2", "velocity^2", tally_.mean_square(), Kind::positive_mean);
+    scalar("E_absV", "velocity", tally_.mean_speed(), Kind::mean);
+    scalar("E_XV", "force*velocity", tally_.mean_product(), Kind::mean);
     if (process_.symmetric()) {
-      results_.push_back(quantities::scalar("E_V", "velocity", 0, 0));
+      results_.push_back(quantities::scalar("E_V", "velocity", 0, 0, Kind::drift));
     } else {
-      scalar("E_V", "velocity", tally_.mean_velocity());
+      scalar("E_V", "velocity", tally_.mean_velocity(), Kind::drift);
     }
   }
 
@@ -142,8 +143,7 @@ class Estimates {
 
   void append_laplace() {
     for (const auto& [key, duration] : names("F_")) {
-      Result result = quantities::array(key, "", "lambda", question_.lambda);
-      result.each_by_its_size = true;
+      Result result = quantities::array(key, "", "lambda", question_.lambda, Kind::transform);
       for (std::size_t n = 0; n < question_.lambda.size(); ++n) {
         append_value(result, tally_.laplace(n, duration));
       }
@@ -161,7 +161,8 @@ class Estimates {
         append_value(density, {e.value / width, e.low / width, e.high / width});
       }
       results_.push_back(std::move(density));
-      Result distribution = quantities::array("cd" + key, "", "time", question_.time);
+      Result distribution =
+          quantities::array("cd" + key, "", "time", question_.time, Kind::distribution);
       for (double t : question_.time) {
         append_value(distribution, tally_.probability(duration, 0, t));
       }
@@ -171,15 +172,15 @@ class Estimates {
 
   void append_spectrum() {
     if (!process_.symmetric()) return append_spectrum_at_zero();
-    Result s = quantities::array("S_v", "velocity^2*time", "omega", question_.omega);
-    s.each_by_its_size = true;
+    Result s =
+        quantities::array("S_v", "velocity^2*time", "omega", question_.omega, Kind::spectrum);
     for (std::size_t n = 0; n < question_.omega.size(); ++n) append_value(s, tally_.spectrum(n));
     results_.push_back(std::move(s));
   }
 
   void append_spectrum_at_zero() {
     const Estimate s = tally_.spectrum_at_zero();
-    scalar("S_0", "velocity^2*time", s);
+    scalar("S_0", "velocity^2*time", s, Kind::spectrum);
     scalar("diffusivity", "velocity^2*time", {s.value / 2, s.low / 2, s.high / 2});
   }
 
