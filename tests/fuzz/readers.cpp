@@ -286,9 +286,9 @@ void report(const std::string& file) {
     throw BadInput(refusal.what());
   }
   if (conducted.runs[0].point >= request.sweep->size()) return;
-  (void)sweeps::sweep_table(request, conducted, {});
-  (void)sweeps::sweep_csv(request, conducted);
-  (void)sweeps::sweep_summary(PETSC_COMM_SELF, request, conducted, {});
+  (void)sweeps::table(request, conducted, {});
+  (void)sweeps::csv(request, conducted);
+  (void)sweeps::summary(PETSC_COMM_SELF, request, conducted, {});
 }
 
 template <class Work>
