@@ -7,6 +7,7 @@
 namespace stickslip::accuracy {
 namespace {
 
+using quantities::Kind;
 using quantities::Result;
 using quantities::Results;
 
@@ -18,10 +19,9 @@ constexpr double kShareOfLargest = 0.05;
 constexpr double kUnchanged = 1e-13;
 
 bool is_mean(const Result& r) {
-  return r.is_scalar() && (r.key.starts_with("mean_") || r.key.starts_with("E_"));
+  const bool mean = r.kind == Kind::mean || r.kind == Kind::positive_mean || r.kind == Kind::drift;
+  return mean && r.is_scalar();
 }
-
-bool is_probability(const Result& r) { return r.key == "P_stick" || r.key == "P_slide"; }
 
 }  // namespace
 
@@ -58,8 +58,9 @@ void share_errors(Results& results) {
   double largest = 0, odds = 1;  // P_stick P_slide
   for (const auto& r : results) {
     // The drift may vanish.
-    if (is_mean(r) && r.key != "E_V") largest = std::max(largest, quantities::relative_error(r));
-    if (is_probability(r)) odds *= r.value[0];
+    if (is_mean(r) && r.kind != Kind::drift)
+      largest = std::max(largest, quantities::relative_error(r));
+    if (r.kind == Kind::share) odds *= r.value[0];
   }
   const double shared = kShareOfLargest * largest;
   for (auto& r : results) {
@@ -68,7 +69,7 @@ void share_errors(Results& results) {
     const double size = std::abs(r.value[0]);
     if (error <= kUnchanged * size) continue;
     if (is_mean(r)) error = std::max(error, shared * size);
-    if (is_probability(r)) error = std::max(error, shared * odds);
+    if (r.kind == Kind::share) error = std::max(error, shared * odds);
   }
 }
 

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 namespace stickslip::accuracy {
 namespace {
 
+using quantities::Kind;
 using quantities::Result;
 
 constexpr double kRounding = 1e-10;  // where errors are smaller, they are estimates themselves
@@ -17,18 +19,23 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What a result has to keep to.
 struct Law {
-  const char* prefix;  // of the keys
-  double highest;      // the lowest is 0
-  int direction;       // along the abscissa: -1 falls, 1 rises, 0 either
+  double highest;     // the lowest is 0
+  int direction = 0;  // along the abscissa: -1 falls, 1 rises, 0 either
 };
 
-const Law* law_of(const std::string& key) {
-  static const std::vector<Law> laws{
-      {"P_", 1, 0},           {"F_", 1, -1},          {"cdf_", 1, 1},      {"mean_", kInfinity, 0},
-      {"E_V2", kInfinity, 0}, {"E_X2", kInfinity, 0}, {"S_", kInfinity, 0}};
-  const auto found = std::find_if(laws.begin(), laws.end(),
-                                  [&](const Law& law) { return key.starts_with(law.prefix); });
-  return found == laws.end() ? nullptr : &*found;
+std::optional<Law> law_of(Kind kind) {
+  switch (kind) {
+  case Kind::probability:
+  case Kind::share: return Law{1};
+  case Kind::transform: return Law{1, -1};
+  case Kind::distribution: return Law{1, 1};
+  case Kind::positive_mean:
+  case Kind::spectrum: return Law{kInfinity};
+  case Kind::other:
+  case Kind::mean:
+  case Kind::drift: break;
+  }
+  return std::nullopt;
 }
 
 std::string place(const Result& result, std::size_t n) {
@@ -62,8 +69,8 @@ std::string wrong_way(const Result& result, int direction) {
 }
 
 std::string broken_by(const Result& result) {
-  const Law* law = result.ci95.empty() ? law_of(result.key) : nullptr;
-  if (law == nullptr) return "";
+  const auto law = law_of(result.kind);
+  if (!law || !result.ci95.empty()) return "";
   std::string broken = out_of_range(result, law->highest);
   const bool ordered = law->direction != 0 && !result.is_scalar();
   if (broken.empty() && ordered) broken = wrong_way(result, law->direction);

@@ -16,10 +16,8 @@
 #include <vector>
 
 #include "stickslip/accuracy/refinement.hpp"
-#include "stickslip/io/plan_report.hpp"
 #include "stickslip/io/provenance.hpp"
 #include "stickslip/io/report.hpp"
-#include "stickslip/io/study_report.hpp"
 #include "stickslip/operators/element_pc.hpp"
 #include "stickslip/options/manual.hpp"
 #include "stickslip/options/request.hpp"
@@ -119,13 +117,13 @@ int conduct_study(const options::Request& request, Clock::time_point start, doub
   const auto study =
       studies::conduct(comm, request, request.study, study_progress_of(request, first_rank));
   const io::RunTimes times{start_up, start_up + seconds_since(start)};
-  if (!request.output.output.empty()) io::write_study_hdf5(comm, request, study, times);
+  if (!request.output.output.empty()) io::write_hdf5(comm, request, study, times);
   if (!first_rank) return 0;
   if (!request.output.summary.empty()) {
-    write_text(request.output.summary, io::study_summary(comm, request, study, times));
+    write_text(request.output.summary, io::summary(comm, request, study, times));
   }
-  if (!request.output.study_csv.empty()) write_text(request.output.study_csv, io::study_csv(study));
-  print(io::study_table(request, study, times));
+  if (!request.output.study_csv.empty()) write_text(request.output.study_csv, io::csv(study));
+  print(io::table(request, study, times));
   return 0;
 }
 
@@ -134,9 +132,9 @@ int tell_plan(const options::Request& request) {
   const auto prediction = accuracy::predict(comm, request);
   if (petsc::rank(comm) != 0) return 0;
   if (!request.output.summary.empty()) {
-    write_text(request.output.summary, io::plan_summary(comm, request, prediction));
+    write_text(request.output.summary, io::summary(comm, request, prediction));
   }
-  print(io::plan_table(request, prediction));
+  print(io::table(request, prediction));
   return 0;
 }
 
@@ -158,13 +156,13 @@ int conduct_sweep(const options::Request& request, Clock::time_point start, doub
   if (first_rank) {
     const io::RunTimes times{start_up, start_up + seconds_since(start)};
     if (!request.output.summary.empty()) {
-      write_text(request.output.summary, sweeps::sweep_summary(comm, request, sweep, times));
+      write_text(request.output.summary, sweeps::summary(comm, request, sweep, times));
     }
-    if (!request.output.output.empty()) sweeps::write_sweep_hdf5(comm, request, sweep, times);
+    if (!request.output.output.empty()) sweeps::write_hdf5(comm, request, sweep, times);
     if (!request.output.sweep_csv.empty()) {
-      write_text(request.output.sweep_csv, sweeps::sweep_csv(request, sweep));
+      write_text(request.output.sweep_csv, sweeps::csv(request, sweep));
     }
-    print(sweeps::sweep_table(request, sweep, times));
+    print(sweeps::table(request, sweep, times));
     if (status != 0) say("stickslip: some points fell short; the table says which, and why");
   }
   MPI_Bcast(&status, 1, MPI_INT, 0, comm);
@@ -183,7 +181,7 @@ int compute(const options::Request& request, Clock::time_point start, double sta
       write_text(request.output.summary, io::summary(comm, request, outcome, times));
     }
     if (!request.output.trajectory.empty() && outcome.path) {
-      write_text(request.output.trajectory, io::trajectory_csv(*outcome.path));
+      write_text(request.output.trajectory, io::csv(*outcome.path));
     }
     print(io::table(request, outcome, times));
   }

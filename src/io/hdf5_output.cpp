@@ -2,39 +2,15 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
+#include <nlohmann/json.hpp>
 
 #include "stickslip/io/hdf5_file.hpp"
 #include "stickslip/io/parts.hpp"
-#include "stickslip/io/provenance.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/quantities/density.hpp"
 
 namespace stickslip::io {
 namespace {
-
-void write_results(Hdf5File& file, const quantities::Results& results) {
-  file.make_group("/results");
-  for (const auto& r : results) {
-    const std::string group = "/results/" + hdf5_name(r.key);
-    file.make_group(group);
-    if (!r.unit.empty()) file.attribute(group, "unit", r.unit);
-    if (r.is_scalar()) {
-      file.write_scalar(group + "/value", r.value[0]);
-      file.write_scalar(group + "/error", r.error[0]);
-      if (r.ci95.empty()) continue;
-      file.write_scalar(group + "/low", r.ci95[0].first);
-      file.write_scalar(group + "/high", r.ci95[0].second);
-    } else {
-      file.write_array(group + "/" + r.abscissa_name, r.abscissa);
-      file.write_array(group + "/value", r.value);
-      file.write_array(group + "/error", r.error);
-      if (r.ci95.empty()) continue;
-      file.write_array(group + "/low", column(r.ci95, [](const auto& c) { return c.first; }));
-      file.write_array(group + "/high", column(r.ci95, [](const auto& c) { return c.second; }));
-    }
-  }
-}
 
 void write_field(Hdf5File& file, const std::string& name, const quantities::PhaseField& field) {
   const int n = static_cast<int>(field.x().size()) / 2;
@@ -75,29 +51,16 @@ void write_path(Hdf5File& file, const simulation::Path& path) {
 }
 
 // One group for each quantity, with a row for each of its arguments.
-void write_comparison(Hdf5File& file, const accuracy::Comparison& comparison,
-                      const std::string& compared) {
-  using accuracy::Compared;
-  file.make_group("/comparison");
-  file.attribute("/comparison", "file", compared);
-  file.attribute("/comparison", "disagrees", comparison.disagrees ? "yes" : "no");
-  std::map<std::string, std::vector<Compared>> groups;
-  for (const auto& row : comparison.rows) groups[row.reference.quantity].push_back(row);
-  for (const auto& entry : groups) {
-    const std::vector<Compared>& rows = entry.second;
-    const std::string group = "/comparison/" + hdf5_name(entry.first);
-    file.make_group(group);
-    const auto write = [&](const char* name, auto get) {
-      file.write_array(group + "/" + name, column(rows, get));
-    };
-    write("argument", [](const Compared& c) { return c.reference.argument.value_or(0); });
-    write("value", [](const Compared& c) { return c.value; });
-    write("error", [](const Compared& c) { return c.error; });
-    write("reference", [](const Compared& c) { return c.reference.value; });
-    write("low", [](const Compared& c) { return c.reference.low; });
-    write("high", [](const Compared& c) { return c.reference.high; });
-    write("z", [](const Compared& c) { return c.z; });
+void write_comparison(Hdf5File& file, const Json& comparison) {
+  Json tree{{"file", comparison["file"]}, {"disagrees", comparison["disagrees"]}};
+  for (const auto& row : comparison["rows"]) {
+    Json& group = tree[row["quantity"].get<std::string>()];
+    group["argument"].push_back(row.value("argument", 0.0));
+    for (const char* name : {"value", "error", "reference", "ci95", "z"}) {
+      group[name].push_back(row[name]);
+    }
   }
+  write_tree(file, "/comparison", tree);
 }
 
 void write_modes(Hdf5File& file, const std::string& parity,
@@ -149,27 +112,54 @@ std::string hdf5_name(std::string key) {
   return key;
 }
 
+void write_tree(Hdf5File& file, const std::string& group, const Json& tree) {
+  const auto write = [&](const std::string& name, const Json& value) {
+    const std::string path = group + "/" + hdf5_name(name);
+    if (value.is_array()) return file.write_array(path, value.get<std::vector<double>>());
+    file.write_scalar(path, value.get<double>());
+  };
+  // A pair for each value, or the only pair.
+  const auto end_of = [](const Json& ci95, std::size_t end) {
+    if (ci95.at(0).is_number()) return ci95[end];
+    Json ends;
+    for (const auto& pair : ci95) ends.push_back(pair[end]);
+    return ends;
+  };
+  file.make_group(group);
+  for (const auto& [name, value] : tree.items()) {
+    if (value.is_object()) {
+      write_tree(file, group + "/" + hdf5_name(name), value);
+    } else if (value.is_string()) {
+      file.attribute(group, name, value.get<std::string>());
+    } else if (value.is_boolean()) {
+      file.attribute(group, name, value.get<bool>() ? "yes" : "no");
+    } else if (name == "ci95") {
+      write("low", end_of(value, 0));
+      write("high", end_of(value, 1));
+    } else {
+      write(name, value);
+    }
+  }
+}
+
 void write_record(Hdf5File& file, MPI_Comm comm, const options::Request& request,
                   const RunTimes& times) {
-  file.make_group("/record");
-  for (const auto& [name, value] : provenance(comm)) file.attribute("/record", name, value);
-  file.make_group("/record/options");
-  for (const auto& [name, value] : request.resolved) {
-    file.attribute("/record/options", name, value);
-  }
+  write_tree(file, "/record", provenance_json(comm, request));
   file.attribute("/record", "seconds", times.total);
 }
 
 void write_hdf5(MPI_Comm comm, const options::Request& request, const accuracy::Outcome& outcome,
                 const RunTimes& times) {
   Hdf5File file(comm, request.output.output);
-  write_results(file, outcome.results);
+  write_tree(file, "/results", results_json(outcome.results));
   write_record(file, comm, request, times);
   file.attribute("/record", "accuracy_reached", outcome.reached ? "yes" : "no");
   write_modes(file, "even", outcome.even);
   write_modes(file, "odd", outcome.odd);
   if (outcome.path) write_path(file, *outcome.path);
-  if (outcome.comparison) write_comparison(file, *outcome.comparison, request.output.compared);
+  if (outcome.comparison) {
+    write_comparison(file, comparison_json(*outcome.comparison, request.output.compared));
+  }
   if (outcome.density) write_density(file, *outcome.density, outcome.speed_error);
   file.commit();
   if (!outcome.density || petsc::rank(comm) != 0) return;

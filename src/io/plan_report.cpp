@@ -1,5 +1,3 @@
-#include "stickslip/io/plan_report.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,20 +45,19 @@ std::string task_lines(const options::Question& question, const routes::Task& ta
 }
 
 std::string step_line(const accuracy::PredictedStep& step, std::size_t number) {
-  return fmt::format("{:<4} {} {:>7} {:>6} {:>8.4g} {:>9} {:>10} {:>14.4g} {:>8.0f} {:>9.3g}\n",
-                     number, axis_cells(step.resolution), step.resolution.levels,
-                     step.resolution.noise_nodes(), step.resolution.v_max, step.unknowns,
-                     step.nonzeros, step.factor_entries, step.megabytes, step.seconds);
+  return fmt::format("{:<4} {} {:>14.4g} {:>8.0f} {:>9.3g}\n", number,
+                     size_cells(step.resolution, step.unknowns, step.nonzeros), step.factor_entries,
+                     step.megabytes, step.seconds);
 }
 
 Json step_json(const accuracy::PredictedStep& step) {
   Json json = resolution_json(step.resolution);
-  json["unknowns"] = step.unknowns;
-  json["nonzeros"] = step.nonzeros;
-  json["factor_entries"] = step.factor_entries;
-  json["factor_megabytes"] = step.megabytes;
-  json["factor_operations"] = step.operations;
-  json["seconds"] = step.seconds;
+  json.update({{"unknowns", step.unknowns},
+               {"nonzeros", step.nonzeros},
+               {"factor_entries", step.factor_entries},
+               {"factor_megabytes", step.megabytes},
+               {"factor_operations", step.operations},
+               {"seconds", step.seconds}});
   return json;
 }
 
@@ -79,7 +76,7 @@ Json task_json(const options::Question& question, const routes::Task& task) {
 
 }  // namespace
 
-std::string plan_table(const options::Request& request, const accuracy::Prediction& prediction) {
+std::string table(const options::Request& request, const accuracy::Prediction& prediction) {
   std::string text = scene_line(request.scene);
   const auto& plan = prediction.plan;
   if (!accuracy::needs_system(request)) {
@@ -95,9 +92,8 @@ std::string plan_table(const options::Request& request, const accuracy::Predicti
   text += fmt::format("in all {}{} assemblies, {} factorisations, {} solves\n\n",
                       plan.adaptive() ? "at least " : "", plan.assemblies(), plan.factorizations(),
                       plan.solves());
-  text += fmt::format("step {} {:>7} {:>6} {:>8} {:>9} {:>10} {:>14} {:>8} {:>9}\n",
-                      axis_title(request.method.scheme), "levels", "nodes", "v_max", "unknowns",
-                      "nonzeros", "factor entries", "MB", "seconds");
+  text += fmt::format("step {} {:>14} {:>8} {:>9}\n", size_titles(request.method.scheme),
+                      "factor entries", "MB", "seconds");
   for (std::size_t n = 0; n < prediction.steps.size(); ++n) {
     text += step_line(prediction.steps[n], n);
   }
@@ -107,24 +103,21 @@ std::string plan_table(const options::Request& request, const accuracy::Predicti
                             prediction.seconds);
 }
 
-std::string plan_summary(MPI_Comm comm, const options::Request& request,
-                         const accuracy::Prediction& prediction) {
-  Json json;
-  json["scene"] = scene_json(request.scene);
-  auto& plan = json["plan"];
-  plan["tasks"] = Json::array();
+std::string summary(MPI_Comm comm, const options::Request& request,
+                    const accuracy::Prediction& prediction) {
+  Json tasks = Json::array(), steps = Json::array();
   for (const auto& task : prediction.plan.tasks) {
-    plan["tasks"].push_back(task_json(request.question, task));
+    tasks.push_back(task_json(request.question, task));
   }
-  plan["assemblies"] = prediction.plan.assemblies();
-  plan["factorizations"] = prediction.plan.factorizations();
-  plan["solves"] = prediction.plan.solves();
-  plan["adaptive"] = prediction.plan.adaptive();
-  plan["steps"] = Json::array();
-  for (const auto& step : prediction.steps) plan["steps"].push_back(step_json(step));
-  plan["seconds"] = prediction.seconds;
-  json["provenance"] = provenance_json(comm, request);
-  return json.dump(2) + "\n";
+  for (const auto& step : prediction.steps) steps.push_back(step_json(step));
+  const Json plan{{"tasks", std::move(tasks)},
+                  {"assemblies", prediction.plan.assemblies()},
+                  {"factorizations", prediction.plan.factorizations()},
+                  {"solves", prediction.plan.solves()},
+                  {"adaptive", prediction.plan.adaptive()},
+                  {"steps", std::move(steps)},
+                  {"seconds", prediction.seconds}};
+  return summary_text(comm, request, {{"scene", scene_json(request.scene)}, {"plan", plan}});
 }
 
 }  // namespace stickslip::io

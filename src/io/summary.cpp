@@ -72,6 +72,31 @@ Json resolution_json(const accuracy::Resolution& r) {
   return json;
 }
 
+Json comparison_json(const accuracy::Comparison& comparison, const std::string& compared) {
+  Json rows = Json::array();
+  for (const auto& c : comparison.rows) {
+    const auto& r = c.reference;
+    Json row{{"quantity", r.quantity}};
+    if (r.argument) row["argument"] = *r.argument;
+    row.update({{"value", c.value},
+                {"error", c.error},
+                {"reference", r.value},
+                {"ci95", {r.low, r.high}},
+                {"z", c.z},
+                {"verdict", verdict_text(c.verdict)}});
+    rows.push_back(std::move(row));
+  }
+  return {{"file", compared},
+          {"disagrees", comparison.disagrees},
+          {"left_out", comparison.left_out},
+          {"rows", std::move(rows)}};
+}
+
+std::string summary_text(MPI_Comm comm, const options::Request& request, Json tree) {
+  tree["provenance"] = provenance_json(comm, request);
+  return tree.dump(2) + "\n";
+}
+
 namespace {
 
 Json scene_of(const model::Scene& meant, const accuracy::Outcome& outcome) {
@@ -121,26 +146,6 @@ Json cost_of(const accuracy::Outcome& outcome, const RunTimes& times) {
   return cost;
 }
 
-Json comparison_of(const accuracy::Comparison& comparison, const std::string& file) {
-  Json rows = Json::array();
-  for (const auto& c : comparison.rows) {
-    const auto& r = c.reference;
-    Json row{{"quantity", r.quantity}};
-    if (r.argument) row["argument"] = *r.argument;
-    row.update({{"value", c.value},
-                {"error", c.error},
-                {"reference", r.value},
-                {"ci95", {r.low, r.high}},
-                {"z", c.z},
-                {"verdict", verdict_text(c.verdict)}});
-    rows.push_back(std::move(row));
-  }
-  return {{"file", file},
-          {"disagrees", comparison.disagrees},
-          {"left_out", comparison.left_out},
-          {"rows", std::move(rows)}};
-}
-
 Json plan_of(const petsc::Ledger& total) {
   return {{"assemblies", total.assemblies},
           {"factorizations_real", total.factorizations_real},
@@ -160,7 +165,7 @@ Json run_json(const options::Case& given, const accuracy::Outcome& outcome, cons
   json["results"] = results_json(outcome.results);
   json["accuracy"] = {{"asked", given.question.accuracy}, {"reached", outcome.reached}};
   if (!outcome.reached) json["accuracy"]["shortfall"] = outcome.shortfall;
-  if (outcome.comparison) json["comparison"] = comparison_of(*outcome.comparison, compared);
+  if (outcome.comparison) json["comparison"] = comparison_json(*outcome.comparison, compared);
   json["cost"] = cost_of(outcome, times);
   json["plan"] = plan_of(outcome.total);
   return json;
@@ -168,9 +173,7 @@ Json run_json(const options::Case& given, const accuracy::Outcome& outcome, cons
 
 std::string summary(MPI_Comm comm, const options::Request& request,
                     const accuracy::Outcome& outcome, const RunTimes& times) {
-  Json json = run_json(request, outcome, times, request.output.compared);
-  json["provenance"] = provenance_json(comm, request);
-  return json.dump(2) + "\n";
+  return summary_text(comm, request, run_json(request, outcome, times, request.output.compared));
 }
 
 }  // namespace stickslip::io

@@ -18,22 +18,37 @@ std::string scene_line(const model::Scene& s) {
                      s.friction.mu_s, s.friction.mu_d, s.tau, s.delta, drag, bias);
 }
 
-std::string axis_cells(const accuracy::Resolution& r) {
-  switch (r.scheme) {
-  case options::Scheme::hp: return fmt::format("{:>6} {:>6}", r.degree, r.layers);
-  case options::Scheme::upwind: return fmt::format("{:>13}", r.points);
-  case options::Scheme::none: break;
-  }
-  return fmt::format("{:>13}", "exact");
+std::string size_cells(const accuracy::Resolution& r, std::int64_t unknowns,
+                       std::int64_t nonzeros) {
+  std::string axis = fmt::format("{:>13}", "exact");
+  if (r.scheme == options::Scheme::hp) axis = fmt::format("{:>6} {:>6}", r.degree, r.layers);
+  if (r.scheme == options::Scheme::upwind) axis = fmt::format("{:>13}", r.points);
+  return fmt::format("{} {:>7} {:>6} {:>8.4g} {:>9} {:>10}", axis, r.levels, r.noise_nodes(),
+                     r.v_max, unknowns, nonzeros);
 }
 
-const char* axis_title(options::Scheme scheme) {
-  switch (scheme) {
-  case options::Scheme::hp: return "degree layers";
-  case options::Scheme::upwind: return "            p";
-  case options::Scheme::none: break;
+std::string size_titles(options::Scheme scheme) {
+  const char* axis = "in v";
+  if (scheme == options::Scheme::hp) axis = "degree layers";
+  if (scheme == options::Scheme::upwind) axis = "p";
+  return fmt::format("{:>13} {:>7} {:>6} {:>8} {:>9} {:>10}", axis, "levels", "nodes", "v_max",
+                     "unknowns", "nonzeros");
+}
+
+std::string cell(double value, int digits) {
+  return std::isnan(value) ? "" : fmt::format("{:.{}g}", value, digits);
+}
+
+std::string csv_line(const std::vector<std::string>& cells) {
+  std::string line;
+  for (const auto& text : cells) {
+    const bool plain = text.find_first_of(",\"\n") == text.npos;
+    std::string inside;
+    for (char c : text) inside += c == '"' ? "\"\"" : std::string(1, c);
+    line += plain ? text + "," : "\"" + inside + "\",";
   }
-  return "         in v";
+  if (!line.empty()) line.pop_back();
+  return line + "\n";
 }
 
 namespace {
@@ -67,17 +82,14 @@ std::string result_lines(const quantities::Result& r, std::size_t width) {
 }
 
 std::string step_line(const accuracy::Step& step) {
-  const auto& r = step.resolution;
   const auto& l = step.ledger;
-  std::string line =
-      fmt::format("{} {:>7} {:>6} {:>8.4g} {:>9} {:>10} {:>8.0f} {:>9.3f} "
-                  "{:>9.3f} {:>9.3f} {:>9.3f} {:>9.3f}",
-                  axis_cells(r), r.levels, r.noise_nodes(), r.v_max, l.unknowns, l.nonzeros,
-                  l.factor_megabytes, l.assembly_seconds, l.analysis_seconds,
-                  l.factorization_seconds, l.solve_seconds, step.seconds);
-  line += step.limiting_key.empty() ? "  to compare with"
-                                    : fmt::format("  {:.1e} {}", step.estimate, step.limiting_key);
-  return line + "\n";
+  const std::string error = step.limiting_key.empty()
+                                ? "to compare with"
+                                : fmt::format("{:.1e} {}", step.estimate, step.limiting_key);
+  return fmt::format("{} {:>8.0f} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.3f}  {}\n",
+                     size_cells(step.resolution, l.unknowns, l.nonzeros), l.factor_megabytes,
+                     l.assembly_seconds, l.analysis_seconds, l.factorization_seconds,
+                     l.solve_seconds, step.seconds, error);
 }
 
 std::string simulation_lines(const monte_carlo::Simulated& simulated) {
@@ -123,10 +135,9 @@ std::string comparison_table(const accuracy::Comparison& comparison, const std::
 std::string cost_table(const options::Request& request, const accuracy::Outcome& outcome) {
   if (outcome.simulation) return simulation_lines(*outcome.simulation);
   if (outcome.steps.empty()) return "no system was assembled: closed formulas only\n";
-  std::string text = fmt::format(
-      "{} {:>7} {:>6} {:>8} {:>9} {:>10} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9}  {}\n",
-      axis_title(request.method.scheme), "levels", "nodes", "v_max", "unknowns", "nonzeros", "MB",
-      "assembly", "analysis", "factor", "solve", "total s", "largest relative error");
+  std::string text = fmt::format("{} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9}  {}\n",
+                                 size_titles(request.method.scheme), "MB", "assembly", "analysis",
+                                 "factor", "solve", "total s", "largest relative error");
   for (const auto& step : outcome.steps) text += step_line(step);
   if (outcome.total.iterations > 0) {
     text += fmt::format("{} iterations in {} solves and {} corrections\n", outcome.total.iterations,
@@ -169,7 +180,7 @@ std::string table(const options::Request& request, const accuracy::Outcome& outc
   return text;
 }
 
-std::string trajectory_csv(const simulation::Path& path) {
+std::string csv(const simulation::Path& path) {
   std::string text = "time,x,y,v\n";
   for (std::size_t n = 0; n < path.time.size(); ++n) {
     text += fmt::format("{:.17g},{:.17g},{:g},{:.17g}\n", path.time[n], path.x[n], path.y[n],

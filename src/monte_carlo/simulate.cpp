@@ -6,8 +6,11 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
 
-#include "checkpoint.hpp"
+#include "stickslip/checkpoint/checkpoint.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/simulation/tally.hpp"
@@ -18,12 +21,14 @@ namespace {
 
 using options::Case;
 using options::Quantity;
+using quantities::Kind;
 using quantities::Result;
 using quantities::Results;
 using simulation::Duration;
 using simulation::Estimate;
 using simulation::Tally;
 using Clock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
 
 constexpr int kBatch = 256;  // excursions with one random stream
 constexpr int kRound = 64;   // batches between merges
@@ -88,8 +93,8 @@ class Estimates {
     if (question_.wants(Quantity::sticking)) append_sticking();
     if (question_.wants(Quantity::moments)) append_moments();
     if (question_.wants(Quantity::noise_law)) {
-      scalar("P_X_le_mu_s", "", tally_.within());
-      scalar("E_X2", "force^2", tally_.noise_square());
+      scalar("P_X_le_mu_s", "", tally_.within(), Kind::probability);
+      scalar("E_X2", "force^2", tally_.noise_square(), Kind::positive_mean);
     }
     if (question_.wants(Quantity::entry_law)) append_entry_law();
     if (question_.wants(Quantity::laplace)) append_laplace();
@@ -99,28 +104,28 @@ class Estimates {
   }
 
  private:
-  void scalar(const char* key, const char* unit, const Estimate& e) {
-    Result result{key, unit, "", {}, {}, {}};
+  void scalar(const char* key, const char* unit, const Estimate& e, Kind kind = Kind::other) {
+    Result result{key, unit, "", {}, {}, {}, kind};
     append_value(result, e);
     results_.push_back(std::move(result));
   }
 
   void append_sticking() {
-    scalar("P_stick", "", tally_.sticking());
-    scalar("P_slide", "", tally_.sliding());
-    scalar("mean_stick", "time", tally_.mean(Duration::stick));
-    scalar("mean_slide", "time", tally_.mean(Duration::slide));
-    scalar("mean_excursion", "time", tally_.mean(Duration::excursion));
+    scalar("P_stick", "", tally_.sticking(), Kind::share);
+    scalar("P_slide", "", tally_.sliding(), Kind::share);
+    scalar("mean_stick", "time", tally_.mean(Duration::stick), Kind::positive_mean);
+    scalar("mean_slide", "time", tally_.mean(Duration::slide), Kind::positive_mean);
+    scalar("mean_excursion", "time", tally_.mean(Duration::excursion), Kind::positive_mean);
   }
 
   void append_moments() {
-    scalar("E_V2", "velocity^2", tally_.mean_square());
-    scalar("E_absV", "velocity", tally_.mean_speed());
-    scalar("E_XV", "force*velocity", tally_.mean_product());
+    scalar("E_V2", "velocity^2", tally_.mean_square(), Kind::positive_mean);
+    scalar("E_absV", "velocity", tally_.mean_speed(), Kind::mean);
+    scalar("E_XV", "force*velocity", tally_.mean_product(), Kind::mean);
     if (process_.symmetric()) {
-      results_.push_back(quantities::scalar("E_V", "velocity", 0, 0));
+      results_.push_back(quantities::scalar("E_V", "velocity", 0, 0, Kind::drift));
     } else {
-      scalar("E_V", "velocity", tally_.mean_velocity());
+      scalar("E_V", "velocity", tally_.mean_velocity(), Kind::drift);
     }
   }
 
@@ -138,8 +143,7 @@ class Estimates {
 
   void append_laplace() {
     for (const auto& [key, duration] : names("F_")) {
-      Result result = quantities::array(key, "", "lambda", question_.lambda);
-      result.each_by_its_size = true;
+      Result result = quantities::array(key, "", "lambda", question_.lambda, Kind::transform);
       for (std::size_t n = 0; n < question_.lambda.size(); ++n) {
         append_value(result, tally_.laplace(n, duration));
       }
@@ -157,7 +161,8 @@ class Estimates {
         append_value(density, {e.value / width, e.low / width, e.high / width});
       }
       results_.push_back(std::move(density));
-      Result distribution = quantities::array("cd" + key, "", "time", question_.time);
+      Result distribution =
+          quantities::array("cd" + key, "", "time", question_.time, Kind::distribution);
       for (double t : question_.time) {
         append_value(distribution, tally_.probability(duration, 0, t));
       }
@@ -167,15 +172,15 @@ class Estimates {
 
   void append_spectrum() {
     if (!process_.symmetric()) return append_spectrum_at_zero();
-    Result s = quantities::array("S_v", "velocity^2*time", "omega", question_.omega);
-    s.each_by_its_size = true;
+    Result s =
+        quantities::array("S_v", "velocity^2*time", "omega", question_.omega, Kind::spectrum);
     for (std::size_t n = 0; n < question_.omega.size(); ++n) append_value(s, tally_.spectrum(n));
     results_.push_back(std::move(s));
   }
 
   void append_spectrum_at_zero() {
     const Estimate s = tally_.spectrum_at_zero();
-    scalar("S_0", "velocity^2*time", s);
+    scalar("S_0", "velocity^2*time", s, Kind::spectrum);
     scalar("diffusivity", "velocity^2*time", {s.value / 2, s.low / 2, s.high / 2});
   }
 
@@ -193,21 +198,20 @@ class Estimates {
 
 // What fixes the numbers of a simulation, but for how many excursions there are: as understood, not
 // as written, since questions may come from the file of -compare.
-std::vector<std::pair<std::string, std::string>> identity(const Case& given) {
+checkpoint::Identity identity(const Case& given) {
   const auto text = [](auto value) { return fmt::format("{}", value); };
   const auto& s = given.scene;
-  std::vector<std::pair<std::string, std::string>> found{
-      {"mu_s", text(s.friction.mu_s)},
-      {"mu_d", text(s.friction.mu_d)},
-      {"tau", text(s.tau)},
-      {"delta", text(s.delta)},
-      {"noise_levels", s.noise_levels ? text(*s.noise_levels) : ""},
-      {"drag", s.drag_name},
-      {"drag_coefficient", text(s.drag.linear)},
-      {"drag_cubic", text(s.drag.cubic)}};
-  if (s.drag.law) found.emplace_back("drag_expression", s.drag_expression);
-  found.emplace_back("bias", text(s.bias));
-  found.emplace_back("seed", text(given.method.seed));
+  checkpoint::Identity found{{"-mu_s", text(s.friction.mu_s)},
+                             {"-mu_d", text(s.friction.mu_d)},
+                             {"-tau", text(s.tau)},
+                             {"-delta", text(s.delta)},
+                             {"-noise_levels", s.noise_levels ? text(*s.noise_levels) : ""},
+                             {"-drag", s.drag_name},
+                             {"-drag_coefficient", text(s.drag.linear)},
+                             {"-drag_cubic", text(s.drag.cubic)}};
+  if (s.drag.law) found.emplace_back("-drag_expression", s.drag_expression);
+  found.emplace_back("-bias", text(s.bias));
+  found.emplace_back("-seed", text(given.method.seed));
   const auto wanted = wanted_of(given);
   const auto add = [&](const char* name, const auto& values) {
     found.emplace_back(name, values.empty() ? "none" : fmt::format("{}", fmt::join(values, ",")));
@@ -215,26 +219,28 @@ std::vector<std::pair<std::string, std::string>> identity(const Case& given) {
   std::vector<std::string> followed;
   if (wanted.moments) followed.emplace_back("moments");
   if (wanted.noise) followed.emplace_back("noise_law");
-  add("quantities", followed);
-  add("lambda", wanted.lambda);
-  add("omega", wanted.omega);
-  add("time", wanted.edges.empty() ? wanted.edges : given.question.time);
+  add("-quantities", followed);
+  add("-lambda", wanted.lambda);
+  add("-omega", wanted.omega);
+  add("-time", wanted.edges.empty() ? wanted.edges : given.question.time);
   return found;
 }
 
 class Campaign {
  public:
-  Campaign(MPI_Comm comm, const Case& given, const std::string& checkpoint,
+  Campaign(MPI_Comm comm, const Case& given, const std::string& file,
            const SimulationProgress& progress)
       : comm_(comm),
         given_(given),
         question_(given.question),
-        checkpoint_(checkpoint),
         progress_(progress),
         process_(given.scene.meant()),
         wanted_(wanted_of(given)),
         source_(simulation::make_source(process_, wanted_)),
-        tally_(wanted_, process_.static_index()) {}
+        tally_(wanted_, process_.static_index()) {
+    if (file.empty()) return;
+    checkpoint_.emplace(file, checkpoint::Kind::simulation, identity(given));
+  }
 
   Simulated run() {
     require_time();
@@ -245,7 +251,7 @@ class Campaign {
       const auto left = static_cast<long>(all - done());
       const bool whole = left >= static_cast<long>(kRound) * kBatch;
       if (!whole) {
-        save(0);  // the checkpoint holds whole rounds, to go on from
+        save(0);  // whole rounds, from which another run resumes
         round(left);
         return outcome();
       }
@@ -280,26 +286,31 @@ class Campaign {
   }
 
   void load() {
-    if (checkpoint_.empty()) return;
-    const auto found = read_checkpoint(comm_, checkpoint_, identity(given_));
-    if (!found) return;
-    rounds_ = found->rounds;
-    bool whole = true;
-    try {
-      tally_.unpack(found->tally);
-    } catch (const std::invalid_argument&) {
-      whole = false;
-    }
-    if (!whole || done() != static_cast<double>(rounds_) * kRound * kBatch) {
-      throw BadInput(fmt::format("-checkpoint = {}: is damaged; remove it", checkpoint_));
-    }
+    if (!checkpoint_) return;
+    std::string state;
+    checkpoint_->open(comm_, [&](const std::string& entry) {
+      restore(entry);
+      state = entry;
+    });
+    state = petsc::first_text(comm_, state);
+    if (!state.empty()) restore(state);
     continued_from_ = done();
     jumps_before_ = tally_.jumps();
   }
 
+  void restore(const std::string& state) {
+    const Json json = Json::parse(state);
+    const Json& rounds = json.at("rounds");
+    tally_.unpack(json.at("tally").get<std::vector<double>>());
+    if (!rounds.is_number_integer() || done() != rounds.get<double>() * kRound * kBatch) {
+      throw std::invalid_argument("rounds and excursions of the tally differ");
+    }
+    rounds_ = rounds.get<long>();
+  }
+
   void save(double seconds_between) {
-    if (checkpoint_.empty() || !first_rank() || since(last_file_) < seconds_between) return;
-    write_checkpoint(checkpoint_, {identity(given_), rounds_, tally_.pack()});
+    if (!checkpoint_ || !first_rank() || since(last_file_) < seconds_between) return;
+    checkpoint_->replace(Json{{"rounds", rounds_}, {"tally", tally_.pack()}}.dump());
     last_file_ = Clock::now();
   }
 
@@ -409,12 +420,12 @@ class Campaign {
   MPI_Comm comm_;
   const Case& given_;
   const options::Question& question_;
-  const std::string& checkpoint_;
   const SimulationProgress& progress_;
   model::Process process_;
   simulation::Wanted wanted_;
   std::unique_ptr<simulation::ExcursionSource> source_;
   Tally tally_;
+  std::optional<checkpoint::Checkpoint> checkpoint_;
   SimulationState state_;
   long rounds_ = 0;  // whole ones in the tally
   double continued_from_ = 0, jumps_before_ = 0;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 
 #define CSV_IO_NO_THREAD  // small files
@@ -53,11 +54,17 @@ void require_numbers(const std::string& key, const Values& v) {
   if (!sound) throw std::invalid_argument(key + " has values or errors that are no numbers");
 }
 
+// Of durations: averages over cells, where they are simulated.
+bool is_histogram(const std::string& key) {
+  static const std::set<std::string> keys{"f_slide", "f_stick", "f_excursion"};
+  return keys.contains(key);
+}
+
 void append(const std::string& key, const Values& v, std::vector<Reference>& all) {
   require_equal_sizes(key, v);
   require_numbers(key, v);
   const bool simulated = !v.low.empty();
-  if (simulated && !v.scalar && key.starts_with("f_")) return;
+  if (simulated && !v.scalar && is_histogram(key)) return;
   for (std::size_t n = 0; n < v.value.size(); ++n) {
     // A computed error is a bound; as a standard deviation it errs on the safe side.
     const double half = simulated ? 0 : kNormalQuantile * v.error[n];

@@ -164,14 +164,15 @@ DurationMoments duration_moments(operators::Systems& systems, const std::vector<
 
 void append_duration_moments(const model::Process& process, const DurationMoments& moments,
                              const std::vector<Uncertain>& entry, Results& results) {
-  const auto append = [&](const char* key, const char* unit, Uncertain value) {
+  const auto append = [&](const char* key, const char* unit, Uncertain value,
+                          Kind kind = Kind::other) {
     const bool there = std::any_of(results.begin(), results.end(),
                                    [key](const Result& result) { return result.key == key; });
-    if (!there) results.push_back(scalar(key, unit, value));
+    if (!there) results.push_back(scalar(key, unit, value, kind));
   };
-  append("mean_slide", "time", moments.mean_slide);
-  append("mean_stick", "time", moments.mean_stick);
-  append("mean_excursion", "time", moments.mean_excursion);
+  append("mean_slide", "time", moments.mean_slide, Kind::positive_mean);
+  append("mean_stick", "time", moments.mean_stick, Kind::positive_mean);
+  append("mean_excursion", "time", moments.mean_excursion, Kind::positive_mean);
   append("var_slide", "time^2", moments.var_slide);
   append("var_stick", "time^2", moments.var_stick);
   append("var_excursion", "time^2", moments.var_excursion);
@@ -183,7 +184,7 @@ void append_duration_moments(const model::Process& process, const DurationMoment
 void append_duration(const char* name, const std::vector<double>& time, const DurationLaw& law,
                      Results& results) {
   Result density = array(std::string("f_") + name, "1/time", "time", time);
-  Result distribution = array(std::string("cdf_") + name, "", "time", time);
+  Result distribution = array(std::string("cdf_") + name, "", "time", time, Kind::distribution);
   for (const auto& value : law.density) append_value(density, value);
   for (const auto& value : law.distribution) append_value(distribution, value);
   results.push_back(std::move(density));

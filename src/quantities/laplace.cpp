@@ -33,8 +33,7 @@ SlideTransforms slide_transforms(operators::Systems& systems, double lambda) {
 void append_laplace(const std::vector<double>& lambda,
                     const std::vector<DurationTransforms>& transforms, Results& results) {
   const auto append = [&](const char* key, Uncertain DurationTransforms::*member) {
-    Result result = array(key, "", "lambda", lambda);
-    result.each_by_its_size = true;
+    Result result = array(key, "", "lambda", lambda, Kind::transform);
     for (const auto& t : transforms) append_value(result, t.*member);
     results.push_back(std::move(result));
   };

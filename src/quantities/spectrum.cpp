@@ -239,12 +239,11 @@ Spectrum direct_spectrum(MPI_Comm comm, operators::Systems& systems, const Stati
 
 void append_spectrum(const std::vector<double>& omega, const Spectrum& spectrum, Results& results) {
   if (!omega.empty()) {
-    Result s = array("S_v", "velocity^2*time", "omega", omega);
-    s.each_by_its_size = true;
+    Result s = array("S_v", "velocity^2*time", "omega", omega, Kind::spectrum);
     for (const auto& value : spectrum.value) append_value(s, value);
     results.push_back(std::move(s));
   }
-  results.push_back(scalar("S_0", "velocity^2*time", spectrum.at_zero));
+  results.push_back(scalar("S_0", "velocity^2*time", spectrum.at_zero, Kind::spectrum));
   results.push_back(scalar("diffusivity", "velocity^2*time", 0.5 * spectrum.at_zero));
 }
 

@@ -13,6 +13,7 @@ namespace stickslip::routes {
 
 struct Average {
   std::string key, unit;
+  quantities::Kind kind;
   model::Observable f;
 };
 

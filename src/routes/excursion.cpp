@@ -212,8 +212,8 @@ class Execution {
 
   void transform_stays() {
     const auto entry = entry_law(law());
-    auto result = quantities::array("F_stick", "", "lambda", question_.lambda);
-    result.each_by_its_size = true;
+    auto result =
+        quantities::array("F_stick", "", "lambda", question_.lambda, quantities::Kind::transform);
     for (double lambda : question_.lambda) {
       quantities::append_value(
           result, quantities::stick_transform(setting_.discretisation.process, lambda, entry));

@@ -10,12 +10,11 @@
 #include <string>
 
 #include "shared_counter.hpp"
+#include "stickslip/checkpoint/checkpoint.hpp"
 #include "stickslip/io/provenance.hpp"
 #include "stickslip/petsc/ledger.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
-#include "stickslip/support/seal.hpp"
-#include "stickslip/sweeps/record.hpp"
 
 namespace stickslip::sweeps {
 namespace {
@@ -74,8 +73,8 @@ class Group {
 };
 
 // Everything that may change a number: options, and the program.
-Identity identity_of(MPI_Comm comm, const options::Sweep& sweep) {
-  Identity identity;
+checkpoint::Identity identity_of(MPI_Comm comm, const options::Sweep& sweep) {
+  checkpoint::Identity identity;
   for (const auto& [name, value] : io::provenance(comm)) {
     const bool counts = name == "program" || name == "commit" || name == "scalar";
     if (counts) identity.emplace_back(name, value);
@@ -84,24 +83,15 @@ Identity identity_of(MPI_Comm comm, const options::Sweep& sweep) {
   return identity;
 }
 
-Run read_line(const std::string& file, const std::string& line, std::size_t count) {
-  std::optional<Run> run;
-  const auto entry = unsealed(line);
-  if (!entry) refuse_record(file, "is damaged");
-  try {
-    run = read_run(*entry);
-  } catch (const std::exception&) {
-    refuse_record(file, "is damaged");
-  }
-  if (run->point >= count) refuse_record(file, "is damaged");
-  return std::move(*run);
-}
-
 /// The work of one rank.
 class Worker {
  public:
   Worker(MPI_Comm comm, const Request& request, const SweepProgress& progress)
-      : comm_(comm), request_(request), sweep_(*request.sweep), progress_(progress) {}
+      : comm_(comm), request_(request), sweep_(*request.sweep), progress_(progress) {
+    const auto& file = request.output.checkpoint;
+    if (file.empty()) return;
+    checkpoint_.emplace(file, checkpoint::Kind::sweep, identity_of(comm, sweep_));
+  }
 
   Conducted run() {
     load();
@@ -112,33 +102,20 @@ class Worker {
  private:
   [[nodiscard]] bool first_rank() const { return petsc::rank(comm_) == 0; }
 
-  // What the record holds, to rank 0, and to all what is left to do.
+  // What the checkpoint holds, to rank 0, and to all what is left to do.
   void load() {
-    std::string problem;
     std::vector<char> finished(sweep_.size(), 0);
-    if (first_rank() && !request_.output.checkpoint.empty()) {
-      try {
-        read_finished(finished);
-      } catch (const BadInput& bad) {
-        problem = bad.what();
-      }
+    if (checkpoint_) {
+      checkpoint_->open(comm_, [&](const std::string& entry) {
+        Run run = read_run(entry);
+        finished.at(run.point) = run.status == Status::no_memory ? 0 : 1;
+        if (finished[run.point] != 0) resumed_.push_back(std::move(run));
+      });
     }
-    problem = petsc::first_text(comm_, problem);
-    if (!problem.empty()) throw BadInput(problem);
     MPI_Bcast(finished.data(), static_cast<int>(finished.size()), MPI_CHAR, 0, comm_);
     for (std::size_t point = 0; point < finished.size(); ++point) {
       if (finished[point] == 0) open_.push_back(point);
     }
-  }
-
-  void read_finished(std::vector<char>& finished) {
-    const auto& file = request_.output.checkpoint;
-    const auto take = [&](const std::string& line) {
-      Run run = read_line(file, line, sweep_.size());
-      finished[run.point] = run.status == Status::no_memory ? 0 : 1;
-      if (finished[run.point] != 0) resumed_.push_back(std::move(run));
-    };
-    (void)open_record(file, identity_of(comm_, sweep_), take);
   }
 
   void compute() {
@@ -158,8 +135,7 @@ class Worker {
 
   void finish(const Run& run, SharedCounter& done) {
     lines_.push_back(run.entry);
-    if (!request_.output.checkpoint.empty())
-      append_to_record(request_.output.checkpoint, sealed(lines_.back()));
+    if (checkpoint_) checkpoint_->append(run.entry);
     const auto here = static_cast<std::size_t>(done.next()) + 1;
     if (!progress_) return;
     State state;
@@ -212,7 +188,8 @@ class Worker {
   const Request& request_;
   const options::Sweep& sweep_;
   const SweepProgress& progress_;
-  std::vector<Run> resumed_;        // of the record, on rank 0
+  std::optional<checkpoint::Checkpoint> checkpoint_;
+  std::vector<Run> resumed_;        // of the checkpoint, on rank 0
   std::vector<std::size_t> open_;   // points left to do, on all ranks
   std::vector<std::string> lines_;  // finished here
   double start_ = 0;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -22,40 +21,57 @@ using quantities::Result;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-const Result* find(const Run& run, const std::string& key) {
-  for (const auto& result : run.results) {
-    if (result.key == key) return &result;
-  }
-  return nullptr;
-}
+/// Numbers of one result at all points: a column of tables and CSV, a dataset of HDF5.
+struct Column {
+  const Result* result;  // of the first point that has it
+  std::string name;      // its key, with _error, _low, _high or its abscissa behind it
+  std::vector<std::vector<double>> at;  // by point: one number of a scalar; none where it lacks
 
-/// A result by its key, as the first run that has it shows it.
-std::vector<const Result*> kinds_of_results(const std::vector<Run>& runs) {
-  std::vector<const Result*> kinds;
+  [[nodiscard]] bool is_values() const { return name == result->key; }
+  [[nodiscard]] double number(const Run& run) const {
+    return at[run.point].empty() ? kNone : at[run.point][0];
+  }
+};
+
+/// Columns of all results, the values of each followed by its errors.
+std::vector<Column> columns_of(const std::vector<Run>& runs) {
+  std::vector<Column> columns;
+  std::size_t points = 0;
+  for (const auto& run : runs) points = std::max(points, run.point + 1);
+  const auto put = [&](const Run& run, const Result& r, const std::string& part, auto values) {
+    const std::string name = r.key + part;
+    auto found = std::find_if(columns.begin(), columns.end(),
+                              [&](const Column& column) { return column.name == name; });
+    if (found == columns.end()) {
+      found = columns.insert(found, {&r, name, std::vector<std::vector<double>>(points)});
+    }
+    found->at[run.point] = std::move(values);
+  };
   for (const auto& run : runs) {
-    for (const auto& result : run.results) {
-      const bool known = std::any_of(kinds.begin(), kinds.end(),
-                                     [&](const Result* kind) { return kind->key == result.key; });
-      if (!known) kinds.push_back(&result);
+    for (const auto& r : run.results) {
+      put(run, r, "", r.value);
+      put(run, r, "_error", r.error);
+      if (!r.is_scalar()) put(run, r, "_" + r.abscissa_name, r.abscissa);
+      if (r.ci95.empty()) continue;
+      std::vector<double> low, high;
+      for (const auto& interval : r.ci95) {
+        low.push_back(interval.first);
+        high.push_back(interval.second);
+      }
+      put(run, r, "_low", std::move(low));
+      put(run, r, "_high", std::move(high));
     }
   }
-  return kinds;
+  return columns;
 }
 
-std::vector<const Result*> kinds_of_scalars(const std::vector<Run>& runs) {
-  auto kinds = kinds_of_results(runs);
-  std::erase_if(kinds, [](const Result* kind) { return !kind->is_scalar(); });
-  return kinds;
-}
-
-std::string cell(double value) { return std::isnan(value) ? "" : fmt::format("{:.17g}", value); }
-
-// RFC 4180: what holds a comma stands in quotes.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == text.npos) return text;
-  std::string inside;
-  for (char c : text) inside += c == '"' ? "\"\"" : std::string(1, c);
-  return "\"" + inside + "\"";
+/// Values and errors of scalars, one after the other.
+std::vector<Column> scalars_of(const std::vector<Run>& runs) {
+  auto columns = columns_of(runs);
+  std::erase_if(columns, [](const Column& c) {
+    return !c.result->is_scalar() || !(c.is_values() || c.name == c.result->key + "_error");
+  });
+  return columns;
 }
 
 // The options of the scene that stay.
@@ -83,30 +99,31 @@ std::size_t width(const options::SweepAxis& axis) {
   return std::max<std::size_t>(11, axis.option.size() + 2);
 }
 
-std::string scalar_cells(const Run& run, const std::string& key) {
-  const Result* result = find(run, key);
-  if (result == nullptr) return fmt::format("  {:>17} {:>8}", "", "");
-  return fmt::format("  {:>17.10g} {:>8.1e}", result->value[0], result->error[0]);
-}
-
-std::string row(const options::Sweep& sweep, const Run& run,
-                std::span<const Result* const> scalars) {
+std::string row(const options::Sweep& sweep, const Run& run, std::span<const Column> scalars) {
   std::string text;
   const auto values = sweep.values(run.point);
   for (std::size_t a = 0; a < values.size(); ++a) {
     text += fmt::format("{:>{}.6g}", values[a], width(sweep.axes()[a]));
   }
-  for (const Result* scalar : scalars) text += scalar_cells(run, scalar->key);
+  for (const Column& scalar : scalars) {
+    const double number = scalar.number(run);
+    const std::string error = std::isnan(number) ? "" : fmt::format("{:.1e}", number);
+    text += scalar.is_values() ? fmt::format("  {:>17}", io::cell(number, 10))
+                               : fmt::format(" {:>8}", error);
+  }
   if (run.status != Status::reached) text += fmt::format("  {}", status_text(run.status));
   return text + "\n";
 }
 
 // Some scalars of all points; an empty line where the last but one axis moves on.
 std::string block(const options::Sweep& sweep, const std::vector<Run>& runs,
-                  std::span<const Result* const> scalars) {
+                  std::span<const Column> scalars) {
   std::string text = "\n";
   for (const auto& axis : sweep.axes()) text += fmt::format("{:>{}}", axis.option, width(axis));
-  for (const Result* scalar : scalars) text += fmt::format("  {:>17} {:>8}", scalar->key, "error");
+  for (const Column& scalar : scalars) {
+    text +=
+        scalar.is_values() ? fmt::format("  {:>17}", scalar.name) : fmt::format(" {:>8}", "error");
+  }
   text += "\n";
   const std::size_t fastest = sweep.axes().back().values.size();
   for (const auto& run : runs) {
@@ -139,17 +156,13 @@ std::string counts(const Conducted& conducted, const io::RunTimes& times) {
          fmt::format("{:.2f} s in all, {:.2f} s of it start-up\n", times.total, times.start_up);
 }
 
-/// Results of all points as arrays over the axes of the sweep, the last index within a result.
+/// Datasets over the axes of the sweep, the last index within a result.
 class Grid {
  public:
-  Grid(io::Hdf5File& file, const options::Sweep& sweep, const std::vector<Run>& runs)
-      : file_(file), runs_(runs) {
-    for (const auto& axis : sweep.axes()) sizes_.push_back(axis.values.size());
-  }
-
-  void write_axes(const options::Sweep& sweep) {
+  Grid(io::Hdf5File& file, const options::Sweep& sweep) : file_(file) {
     std::string names;
     for (const auto& axis : sweep.axes()) {
+      sizes_.push_back(axis.values.size());
       file_.write_array("/sweep/" + axis.option, axis.values);
       if (!axis.unit.empty()) file_.attribute("/sweep/" + axis.option, "unit", axis.unit);
       names += (names.empty() ? "" : ",") + axis.option;
@@ -157,131 +170,102 @@ class Grid {
     file_.attribute("/sweep", "axes", names);
   }
 
-  void write_result(const Result& kind) {
-    const std::string path = "/sweep/" + io::hdf5_name(kind.key);
-    std::size_t length = 0;
-    for (const auto& run : runs_) {
-      const Result* result = find(run, kind.key);
-      if (result != nullptr) length = std::max(length, result->value.size());
-    }
-    const auto write = [&](const std::string& name, auto values) {
-      write_numbers(name, kind, length, values);
-    };
-    write(path, [](const Result& r) { return r.value; });
-    write(path + "_error", [](const Result& r) { return r.error; });
-    if (!kind.ci95.empty()) {
-      write(path + "_low", [](const Result& r) { return ends(r, true); });
-      write(path + "_high", [](const Result& r) { return ends(r, false); });
-    }
-    if (!kind.unit.empty()) file_.attribute(path, "unit", kind.unit);
-    if (kind.is_scalar()) return;
-    file_.attribute(path, "abscissa", kind.abscissa_name);
-    write(path + "_" + kind.abscissa_name, [](const Result& r) { return r.abscissa; });
-  }
-
-  void write_numbers_of_runs(const std::string& name, const std::function<double(const Run&)>& of) {
-    std::vector<double> values;
-    for (const auto& run : runs_) values.push_back(of(run));
-    file_.write_array(name, sizes_, values);
-  }
-
- private:
-  static std::vector<double> ends(const Result& result, bool low) {
-    std::vector<double> values;
-    for (const auto& pair : result.ci95) values.push_back(low ? pair.first : pair.second);
-    return values;
+  void write(const std::string& name, const std::vector<double>& values) {
+    file_.write_array("/sweep/" + name, sizes_, values);
   }
 
   // Arrays may differ in length from point to point, as the levels at which slides end do; NaN
   // where there is nothing.
-  template <class Values>
-  void write_numbers(const std::string& path, const Result& kind, std::size_t length,
-                     Values values_of) {
+  void write(const Column& column) {
+    const Result& r = *column.result;
+    const std::string path = "/sweep/" + io::hdf5_name(column.name);
+    std::size_t length = 0;
+    for (const auto& numbers : column.at) length = std::max(length, numbers.size());
     std::vector<double> all;
-    for (const auto& run : runs_) {
-      const Result* result = find(run, kind.key);
-      std::vector<double> values = result == nullptr ? std::vector<double>{} : values_of(*result);
-      values.resize(length, kNone);
-      all.insert(all.end(), values.begin(), values.end());
+    for (auto numbers : column.at) {
+      numbers.resize(length, kNone);
+      all.insert(all.end(), numbers.begin(), numbers.end());
     }
     auto sizes = sizes_;
-    if (!kind.is_scalar()) sizes.push_back(length);
+    if (!r.is_scalar()) sizes.push_back(length);
     file_.write_array(path, sizes, all);
+    if (!column.is_values()) return;
+    if (!r.unit.empty()) file_.attribute(path, "unit", r.unit);
+    if (!r.is_scalar()) file_.attribute(path, "abscissa", r.abscissa_name);
   }
 
+ private:
   io::Hdf5File& file_;
-  const std::vector<Run>& runs_;
   std::vector<std::size_t> sizes_;
 };
 
 }  // namespace
 
-std::string sweep_table(const options::Request& request, const Conducted& conducted,
-                        const io::RunTimes& times) {
+std::string table(const options::Request& request, const Conducted& conducted,
+                  const io::RunTimes& times) {
   const auto& sweep = *request.sweep;
   std::string text = title(sweep) + fixed_options(request);
-  const auto kinds = kinds_of_scalars(conducted.runs);
+  const auto scalars = scalars_of(conducted.runs);
   constexpr std::size_t side_by_side = 4;
-  const std::size_t blocks =
-      std::max<std::size_t>(1, (kinds.size() + side_by_side - 1) / side_by_side);
+  const std::size_t count = scalars.size() / 2;
+  const std::size_t blocks = std::max<std::size_t>(1, (count + side_by_side - 1) / side_by_side);
   for (std::size_t b = 0; b < blocks; ++b) {
-    const std::size_t first = kinds.size() * b / blocks, end = kinds.size() * (b + 1) / blocks;
-    text += block(sweep, conducted.runs, {kinds.data() + first, end - first});
+    const std::size_t first = count * b / blocks, end = count * (b + 1) / blocks;
+    text += block(sweep, conducted.runs, {scalars.data() + 2 * first, 2 * (end - first)});
   }
   text += "\n";
-  for (const Result* kind : kinds_of_results(conducted.runs)) {
-    if (kind->is_scalar()) continue;
-    text += fmt::format("{} by {}: in the files of -summary and -output\n", kind->key,
-                        kind->abscissa_name);
+  for (const auto& column : columns_of(conducted.runs)) {
+    if (column.result->is_scalar() || !column.is_values()) continue;
+    text += fmt::format("{} by {}: in the files of -summary and -output\n", column.name,
+                        column.result->abscissa_name);
   }
   return text + shortfalls(sweep, conducted.runs) + counts(conducted, times);
 }
 
-std::string sweep_csv(const options::Request& request, const Conducted& conducted) {
+std::string csv(const options::Request& request, const Conducted& conducted) {
   const auto& sweep = *request.sweep;
-  const auto kinds = kinds_of_scalars(conducted.runs);
-  std::string text;
-  for (const auto& axis : sweep.axes()) text += axis.option + ",";
-  for (const Result* kind : kinds) {
-    text += quoted(kind->key) + "," + quoted(kind->key + "_error") + ",";
-  }
-  text += "status\n";
+  const auto scalars = scalars_of(conducted.runs);
+  std::vector<std::string> cells;
+  for (const auto& axis : sweep.axes()) cells.push_back(axis.option);
+  for (const auto& scalar : scalars) cells.push_back(scalar.name);
+  cells.emplace_back("status");
+  std::string text = io::csv_line(cells);
   for (const auto& run : conducted.runs) {
-    for (double value : sweep.values(run.point)) text += cell(value) + ",";
-    for (const Result* kind : kinds) {
-      const Result* result = find(run, kind->key);
-      text +=
-          result == nullptr ? ",," : cell(result->value[0]) + "," + cell(result->error[0]) + ",";
-    }
-    text += std::string(status_text(run.status)) + "\n";
+    cells.clear();
+    for (double value : sweep.values(run.point)) cells.push_back(io::cell(value, 17));
+    for (const auto& scalar : scalars) cells.push_back(io::cell(scalar.number(run), 17));
+    cells.emplace_back(status_text(run.status));
+    text += io::csv_line(cells);
   }
   return text;
 }
 
-std::string sweep_summary(MPI_Comm comm, const options::Request& request,
-                          const Conducted& conducted, const io::RunTimes& times) {
-  Json json;
-  for (const auto& axis : request.sweep->axes()) json["sweep"]["axes"][axis.option] = axis.values;
-  json["sweep"]["points"] = conducted.runs.size();
-  json["sweep"]["from_record"] = conducted.resumed;
-  json["runs"] = Json::array();
-  for (const auto& run : conducted.runs) json["runs"].push_back(Json::parse(run.entry));
-  json["cost"] = {{"seconds", times.total}, {"start_up_seconds", times.start_up}};
-  json["provenance"] = io::provenance_json(comm, request);
-  return json.dump(2) + "\n";
+std::string summary(MPI_Comm comm, const options::Request& request, const Conducted& conducted,
+                    const io::RunTimes& times) {
+  Json tree;
+  for (const auto& axis : request.sweep->axes()) tree["sweep"]["axes"][axis.option] = axis.values;
+  tree["sweep"]["points"] = conducted.runs.size();
+  tree["sweep"]["from_record"] = conducted.resumed;
+  tree["runs"] = Json::array();
+  for (const auto& run : conducted.runs) tree["runs"].push_back(Json::parse(run.entry));
+  tree["cost"] = {{"seconds", times.total}, {"start_up_seconds", times.start_up}};
+  return io::summary_text(comm, request, std::move(tree));
 }
 
-void write_sweep_hdf5(MPI_Comm comm, const options::Request& request, const Conducted& conducted,
-                      const io::RunTimes& times) {
+void write_hdf5(MPI_Comm comm, const options::Request& request, const Conducted& conducted,
+                const io::RunTimes& times) {
   io::Hdf5File file(PETSC_COMM_SELF, request.output.output);
   file.make_group("/sweep");
-  Grid grid(file, *request.sweep, conducted.runs);
-  grid.write_axes(*request.sweep);
-  for (const Result* kind : kinds_of_results(conducted.runs)) grid.write_result(*kind);
-  grid.write_numbers_of_runs("/sweep/status",
-                             [](const Run& run) { return static_cast<double>(run.status); });
+  Grid grid(file, *request.sweep);
+  for (const auto& column : columns_of(conducted.runs)) grid.write(column);
+  std::vector<double> status, seconds;
+  for (const auto& run : conducted.runs) {
+    status.push_back(static_cast<double>(run.status));
+    seconds.push_back(run.seconds);
+  }
+  grid.write("status", status);
   file.attribute("/sweep/status", "meaning", "0 reached, 1 not reached, 2 failed, 3 no memory");
-  grid.write_numbers_of_runs("/sweep/seconds", [](const Run& run) { return run.seconds; });
+  grid.write("seconds", seconds);
   io::write_record(file, comm, request, times);
   file.commit();
 }

@@ -6,6 +6,7 @@ using namespace stickslip;
 using accuracy::add_discretisation;
 using accuracy::Changes;
 using quantities::array;
+using quantities::Kind;
 using quantities::Result;
 using quantities::Results;
 using quantities::scalar;
@@ -59,49 +60,58 @@ TEST_CASE("estimates: without an earlier change the last one counts alone") {
 }
 
 TEST_CASE("estimates: a change through zero is no small error, as the other means show") {
-  Results results{scalar("mean_slide", "", 10, 0), scalar("E_V2", "", 4, 1e-9)};
-  const Results coarse{scalar("mean_slide", "", 8, 0), scalar("E_V2", "", 4, 0)};
+  Results results{scalar("mean_slide", "", 10, 0, Kind::positive_mean),
+                  scalar("E_V2", "", 4, 1e-9, Kind::positive_mean)};
+  const Results coarse{scalar("mean_slide", "", 8, 0, Kind::positive_mean),
+                       scalar("E_V2", "", 4, 0, Kind::positive_mean)};
   (void)add_discretisation({1, 0}, coarse, {}, results);
   check_errors(results, {2, 0.05 * 0.2 * 4});
 }
 
 TEST_CASE("estimates: means share a twentieth of the largest relative error") {
-  Results results{scalar("mean_stick", "", 10, 2),  // 0.2, the largest
-                  scalar("E_V2", "", -4, 1e-6),      scalar("E_absV", "", 2, 0.1),
-                  scalar("E_V", "", 0.5, 100),       scalar("f_stick_0", "", 1, 1e-6),
-                  scalar("mean_slide", "", 3, 2e-13)};
+  Results results{scalar("mean_stick", "", 10, 2, Kind::positive_mean),  // 0.2, the largest
+                  scalar("E_V2", "", -4, 1e-6, Kind::positive_mean),
+                  scalar("E_absV", "", 2, 0.1, Kind::mean),
+                  scalar("E_V", "", 0.5, 100, Kind::drift),
+                  scalar("f_stick_0", "", 1, 1e-6),
+                  scalar("mean_slide", "", 3, 2e-13, Kind::positive_mean)};
   accuracy::share_errors(results);
   // E_V may vanish: it takes its share, and gives none. A density is no mean. A mean that does not
   // change stays.
   check_errors(results, {2, 0.01 * 4, 0.1, 100, 1e-6, 2e-13});
-  Results drift{scalar("mean_stick", "", 10, 2), scalar("E_V", "", 0.5, 1e-6)};
+  Results drift{scalar("mean_stick", "", 10, 2, Kind::positive_mean),
+                scalar("E_V", "", 0.5, 1e-6, Kind::drift)};
   accuracy::share_errors(drift);
   check_errors(drift, {2, 0.01 * 0.5});
 }
 
 TEST_CASE("estimates: a mean changes as soon as it does so by 1e-13") {
-  Results results{scalar("mean_stick", "", 10, 2), scalar("E_V2", "", 4, 4.1e-13),
-                  scalar("E_XV", "", 4, 3.9e-13)};
+  Results results{scalar("mean_stick", "", 10, 2, Kind::positive_mean),
+                  scalar("E_V2", "", 4, 4.1e-13, Kind::positive_mean),
+                  scalar("E_XV", "", 4, 3.9e-13, Kind::mean)};
   accuracy::share_errors(results);
   check_errors(results, {2, 0.04, 3.9e-13});
 }
 
 // P_stick = 1/(1 + q), q = mean_slide/mean_stick: dP_stick = P_stick P_slide dq/q.
 TEST_CASE("estimates: probabilities of the phases share what their ratio does") {
-  Results results{scalar("P_stick", "", 0.2, 1e-6), scalar("P_slide", "", 0.8, 1e-6),
-                  scalar("mean_stick", "", 10, 5), scalar("P_X_le_mu_s", "", 0.5, 1e-6)};
+  Results results{scalar("P_stick", "", 0.2, 1e-6, Kind::share),
+                  scalar("P_slide", "", 0.8, 1e-6, Kind::share),
+                  scalar("mean_stick", "", 10, 5, Kind::positive_mean),
+                  scalar("P_X_le_mu_s", "", 0.5, 1e-6, Kind::probability)};
   accuracy::share_errors(results);
   check_errors(results, {0.05 * 0.5 * 0.16, 0.05 * 0.5 * 0.16, 5, 1e-6});
-  Results exact{scalar("P_stick", "", 0.2, 0), scalar("P_slide", "", 0.8, 0.7),
-                scalar("mean_stick", "", 10, 5)};
+  Results exact{scalar("P_stick", "", 0.2, 0, Kind::share),
+                scalar("P_slide", "", 0.8, 0.7, Kind::share),
+                scalar("mean_stick", "", 10, 5, Kind::positive_mean)};
   accuracy::share_errors(exact);
   check_errors(exact, {0, 0.7, 5});
 }
 
 TEST_CASE("estimates: arrays keep their own errors") {
   Result array_of_means = modes({1, 2, 3}, {1e-6, 1e-6, 1e-6});
-  array_of_means.key = "E_(x)";
-  Results results{scalar("mean_stick", "", 10, 5), array_of_means};
+  array_of_means.kind = Kind::mean;
+  Results results{scalar("mean_stick", "", 10, 5, Kind::positive_mean), array_of_means};
   accuracy::share_errors(results);
   check_errors(results, {5, 1e-6, 1e-6, 1e-6});
 }

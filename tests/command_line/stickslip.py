@@ -46,10 +46,10 @@ class Case(unittest.TestCase):
         self.run_ok(*options, "-summary", file, **how)
         return json.loads(file.read_text())
 
-    def wait_for_file(self, file, process):
-        """Until a process wrote it; a failure if it ends first, or takes two minutes."""
+    def wait_for_file(self, file, process, lines=0):
+        """Until a process wrote it, with that many lines; a failure if it ends first, or takes two minutes."""
         end = time.monotonic() + 120
-        while not file.exists():
+        while not file.exists() or file.read_bytes().count(b"\n") < lines:
             if process.poll() is not None or time.monotonic() > end:
                 process.kill()
                 self.fail(f"{file.name} was not written")

@@ -105,7 +105,8 @@ class Killed(Faults):
             process.kill()
             process.communicate()
             if file.exists():
-                self.assertGreaterEqual(json.loads(file.read_text())["rounds"], 0)
+                for state in file.read_text().splitlines()[1:]:
+                    self.assertGreaterEqual(json.loads(state)["rounds"], 0)
         self.assertGreater(kills, 0)
         self.assertEqual(self.summary(*SIMULATE, "-checkpoint", file)["results"], whole)
 

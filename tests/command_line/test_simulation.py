@@ -96,7 +96,7 @@ class Expressions(Case):
         self.run_ok(*self.LAW, "-tanh(v)", *options)
         self.run_ok(*self.LAW, "-tanh(v)", *options)
         other = self.run_ok(*self.LAW, "-tanh(2*v)", *options, status=2)
-        self.assertIn("-drag_expression -tanh(v), not -tanh(2*v)", other.stderr)
+        self.assertIn('-drag_expression "-tanh(v)", not "-tanh(2*v)"', other.stderr)
 
 
 class Refusals(Case):
@@ -143,14 +143,14 @@ class Checkpoints(Case):
         with subprocess.Popen([*map(str, command)], stdout=subprocess.DEVNULL,
                               cwd=self.folder) as process:
             self.addCleanup(process.kill)
-            self.wait_for_file(file, process)
+            self.wait_for_file(file, process, lines=2)
             process.send_signal(signal.SIGKILL)
             return process.wait()
 
     def test_killed_and_continued(self):
         file = self.folder / "run.checkpoint"
         self.assertEqual(self.interrupt(file), -signal.SIGKILL)
-        kept = json.loads(file.read_text())
+        kept = json.loads(file.read_text().splitlines()[1])
         self.assertGreater(kept["rounds"], 0)
         self.assertLess(kept["rounds"], 2000000 // (64 * 256))
         continued = self.simulate("-checkpoint", file)
@@ -170,8 +170,8 @@ class Checkpoints(Case):
         few = (*SIMULATE, "-excursions", "20000", "-checkpoint", file)
         self.run_ok(*few)
         good = file.read_text()
-        for options, told in (((), "damaged"), (("-seed", "2"), "-seed 1, not 2"),
-                              (("-mu_d", "0.3"), "-mu_d 0.25, not 0.3")):
+        for options, told in (((), "damaged"), (("-seed", "2"), '-seed "1", not "2"'),
+                              (("-mu_d", "0.3"), '-mu_d "0.25", not "0.3"')):
             file.write_text(good if options else good[:-100])
             done = run(*few, *options, folder=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)

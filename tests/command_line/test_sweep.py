@@ -209,7 +209,7 @@ class Ends(Case):
         (self.folder / "kept").write_text("precious")
         done = run(*SMALL, "-checkpoint", "kept", ranks=3, folder=self.folder)
         self.assertEqual(done.returncode, 2)
-        self.assertEqual(done.stderr.count("is no record of a sweep"), 1)
+        self.assertEqual(done.stderr.count("is no checkpoint of a sweep"), 1)
 
     def test_some_points_fall_short(self):
         options = ("-delta", "0.5", "-accuracy", "1e-4", "-sweep_v_max", "1,3.7", "-sweep_csv",

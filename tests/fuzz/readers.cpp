@@ -164,9 +164,9 @@ std::string sealed_again(fuzz::Mutator& mutator, const std::string& text,
   return damaged.ends_with('}') ? sealed(damaged) + "\n" : damaged;
 }
 
-// The lines of a record behind its head, each with the right checksum half of the time.
-std::string record_again(fuzz::Mutator& mutator, const std::string& text,
-                         const std::string& other) {
+// The entries of a checkpoint, each with the right checksum half of the time.
+std::string entries_again(fuzz::Mutator& mutator, const std::string& text,
+                          const std::string& other) {
   if (mutator.one_in(2)) return mutator.text(text, other);
   auto lines = split(text, '\n');
   std::string& line = lines[1 + mutator.below(lines.size() - 2)];
@@ -286,9 +286,9 @@ void report(const std::string& file) {
     throw BadInput(refusal.what());
   }
   if (conducted.runs[0].point >= request.sweep->size()) return;
-  (void)sweeps::sweep_table(request, conducted, {});
-  (void)sweeps::sweep_csv(request, conducted);
-  (void)sweeps::sweep_summary(PETSC_COMM_SELF, request, conducted, {});
+  (void)sweeps::table(request, conducted, {});
+  (void)sweeps::csv(request, conducted);
+  (void)sweeps::summary(PETSC_COMM_SELF, request, conducted, {});
 }
 
 template <class Work>
@@ -328,13 +328,13 @@ std::vector<Target> targets(const Corpus& corpus) {
        ".checkpoint",
        6,
        {corpus.checkpoint()},
-       sealed_again,
+       entries_again,
        [request = Corpus::simulation()](const std::string& file) { go_on_with(request, file); }},
       {"sweep record",
        ".record",
        4,
        {corpus.record()},
-       record_again,
+       entries_again,
        [request = Corpus::sweep()](const std::string& file) { go_on_with(request, file); }},
       {"sweep entry", ".json", 6, corpus.entries(), by_structure, report},
       {"drag",

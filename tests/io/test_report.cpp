@@ -8,8 +8,6 @@
 #include <sstream>
 
 #include "../common/temporary.hpp"
-#include "stickslip/io/plan_report.hpp"
-#include "stickslip/io/study_report.hpp"
 #include "stickslip/options/reference.hpp"
 #include "stickslip/support/atomic_file.hpp"
 #include "stickslip/support/hdf5_id.hpp"
@@ -311,7 +309,7 @@ TEST_CASE("table: a simulation tells its price, and of accuracy only if one was 
 }
 
 TEST_CASE("trajectory: columns of CSV in the order of their names") {
-  CHECK(io::trajectory_csv({{0, 0.5}, {-1.5, 2}, {0, 1}, {0, 0.25}}) ==
+  CHECK(io::csv(simulation::Path{{0, 0.5}, {-1.5, 2}, {0, 1}, {0, 0.25}}) ==
         "time,x,y,v\n0,-1.5,0,0\n0.5,2,1,0.25\n");
 }
 
@@ -377,8 +375,8 @@ TEST_CASE("study reports: CSV, JSON and HDF5 hold the same numbers") {
   auto r = request();
   r.output.output = folder / "out.h5";
   const auto s = study();
-  CHECK(lines(io::study_csv(s))[1] == "upwind,delta=0.5;p=4,E_V2,-4,0.5,2,0.125,0.25,0.5,0.75,12");
-  const Json json = Json::parse(io::study_summary(PETSC_COMM_SELF, r, s, {0.5, 4}));
+  CHECK(lines(io::csv(s))[1] == "upwind,delta=0.5;p=4,E_V2,-4,0.5,2,0.125,0.25,0.5,0.75,12");
+  const Json json = Json::parse(io::summary(PETSC_COMM_SELF, r, s, {0.5, 4}));
   const auto& run = json["runs"][0];
   CHECK(run["scene"]["method"] == "upwind");
   CHECK(run["scene"]["p"] == 4.0);
@@ -394,10 +392,10 @@ TEST_CASE("study reports: CSV, JSON and HDF5 hold the same numbers") {
   CHECK(table["p"] == Json{4.0, 8.0});
   CHECK(table["kappa"] == Json{nullptr, 1.5});
   CHECK(json["cost"]["seconds"] == 4.0);
-  io::write_study_hdf5(PETSC_COMM_SELF, r, s, {0.5, 4});
+  io::write_hdf5(PETSC_COMM_SELF, r, s, {0.5, 4});
   CHECK(dataset(r.output.output, "/study/P_stick_on_a_level/p") == Numbers{4, 8});
   CHECK(dataset(r.output.output, "/study/P_stick_on_a_level/kappa")[1] == 1.5);
-  const std::string text = io::study_table(r, s, {0.5, 4});
+  const std::string text = io::table(r, s, {0.5, 4});
   CHECK(row(text, "8") == Words{"8", "1.5"});
   CHECK(row(text, "4") == Words{"4"});
   CHECK_THAT(text, Catch::Contains("1 runs, 4.00 s in all"));
@@ -411,14 +409,14 @@ TEST_CASE("plan reports: sizes, solves and seconds in their places") {
   p.seconds = 7;
   auto r = request();
   r.question.quantities = {options::Quantity::sticking};
-  const std::string text = io::plan_table(r, p);
+  const std::string text = io::table(r, p);
   CHECK(row(text, "0") ==
         Words{"0", "8", "5", "40", "81", "7.5", "1001", "20002", "3e+05", "12", "0.25"});
   CHECK_THAT(text, Catch::Contains("in all 2 assemblies, 2 factorisations, 5 solves\n") &&
                        Catch::Contains("lambda = 0, even") && Catch::Contains("3 plain") &&
                        Catch::Contains("lambda = 0.5, both half lines") &&
                        Catch::Contains("2 transposed") && Catch::Contains("about 7 s for"));
-  const Json plan = Json::parse(io::plan_summary(PETSC_COMM_SELF, r, p))["plan"];
+  const Json plan = Json::parse(io::summary(PETSC_COMM_SELF, r, p))["plan"];
   CHECK(plan["solves"] == 5);
   CHECK(plan["adaptive"] == false);
   CHECK(plan["seconds"] == 7.0);
@@ -431,5 +429,5 @@ TEST_CASE("plan reports: sizes, solves and seconds in their places") {
   CHECK(s["factor_operations"] == 4e6);
   CHECK(s["seconds"] == 0.25);
   p.plan.tasks[1].adaptive = true;
-  CHECK_THAT(io::plan_table(r, p), Catch::Contains("in all at least 2 assemblies"));
+  CHECK_THAT(io::table(r, p), Catch::Contains("in all at least 2 assemblies"));
 }

@@ -13,7 +13,7 @@ import statistics
 import sys
 
 MODULES = ("support", "algebra", "model", "exact", "noise", "velocity", "simulation", "petsc",
-           "options", "operators", "quantities", "routes", "monte_carlo", "accuracy", "studies", "io", "sweeps", "app")
+           "checkpoint", "options", "operators", "quantities", "routes", "monte_carlo", "accuracy", "studies", "io", "sweeps", "app")
 SCALAR_MODULES = ("petsc", "operators", "quantities", "routes")
 LONGEST, LONG, MEDIAN = 60, 30, 8
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
@@ -9,6 +11,7 @@
 #include "stickslip/monte_carlo/simulate.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
+#include "stickslip/support/seal.hpp"
 
 using namespace stickslip;
 using options::Case;
@@ -246,23 +249,33 @@ struct Written {
 TEST_CASE("monte carlo: damaged checkpoints are refused and kept") {
   const Written w;
   const std::string good = test::content(w.file);
-  const auto edited = [&](auto edit) {
-    auto json = nlohmann::ordered_json::parse(good);
+  const std::size_t end = good.find('\n') + 1;
+  const std::string header = good.substr(0, end), state = good.substr(end, good.size() - end - 1);
+  const auto edited = [](const std::string& line, auto edit) {
+    auto json = nlohmann::ordered_json::parse(line);
     edit(json);
     return json.dump();
   };
+  const auto resealed = [&](auto edit) {
+    return header + sealed(edited(*unsealed(state), edit)) + "\n";
+  };
   const std::vector<std::string> damaged{
       good.substr(0, good.size() / 2),
+      good.substr(0, good.size() - 1),
+      good + "{}\n",
       "no checkpoint",
       "{}",
       "[1, 2]",
-      edited([](auto& json) { json["format"] = "stickslip checkpoint 0"; }),
-      edited([](auto& json) { json["rounds"] = -1; }),
-      edited([](auto& json) { json["rounds"] = 7; }),
-      edited([](auto& json) { json["tally"].erase(0); }),
-      edited([](auto& json) { json["tally"][3] = "x"; }),
-      edited([](auto& json) { json["tally"][3] = nullptr; }),
-      edited([](auto& json) { json.erase("run"); })};
+      edited(header, [](auto& json) { json["format"] = "stickslip checkpoint 0"; }) + "\n" + state,
+      edited(header, [](auto& json) { json.erase("run"); }) + "\n" + state,
+      header + edited(state, [](auto& json) { json["tally"][3] = 0.5; }) + "\n",
+      resealed([](auto& json) { json["rounds"] = -1; }),
+      resealed([](auto& json) { json["rounds"] = 7; }),
+      resealed([](auto& json) { json["rounds"] = 1.0; }),
+      resealed([](auto& json) { json["tally"].erase(0); }),
+      resealed([](auto& json) { json["tally"][3] = "x"; }),
+      resealed([](auto& json) { json["tally"][3] = nullptr; }),
+      resealed([](auto& json) { json.erase("tally"); })};
   for (const auto& text : damaged) {
     w.overwrite(text);
     INFO(text.substr(0, 100));
@@ -277,7 +290,8 @@ TEST_CASE("monte carlo: checkpoints of other runs are refused, with what differs
   Written w;
   auto other = w.r;
   other.method.seed = 2;
-  CHECK_THAT(complaint(other, w.file), Catch::Contains("belongs to a run with -seed 1, not 2"));
+  CHECK_THAT(complaint(other, w.file),
+             Catch::Contains("belongs to a simulation with -seed \"1\", not \"2\""));
   other = w.r;
   other.question.horizon = 2;  // nothing simulated depends on it
   CHECK(complaint(other, w.file) == "nothing");
@@ -361,7 +375,7 @@ TEST_CASE("monte carlo: of 100 intervals 90 to 99 hold the computed value", "[sl
       const bool holds = covers(r, a, ++seed, known);
       covered += holds;
       ++all;
-      if (!holds) missed += " " + std::string(a.key) + " by seed " + std::to_string(seed);
+      if (!holds) missed += fmt::format(" {} by seed {}", a.key, seed);
     }
   }
   INFO("missed:" << missed);

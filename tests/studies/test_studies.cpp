@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "stickslip/algebra/dense.hpp"
-#include "stickslip/io/study_report.hpp"
+#include "stickslip/io/report.hpp"
 #include "stickslip/studies/extrapolation.hpp"
 #include "stickslip/studies/limit.hpp"
 #include "stickslip/studies/study.hpp"
@@ -335,12 +335,11 @@ TEST_CASE("studies: reports name every run and leave gaps where there is no numb
   study.tables.push_back({"P_stick", "of p", {"p", "kappa"}, {{4, std::nan("")}}});
   study.conclusions = {"so it is"};
   const Request r = request(StudyKind::points, 0.25, 0.5, 3);
-  const std::string text = io::study_table(r, study, {});
+  const std::string text = io::table(r, study, {});
   CHECK(text.find("nan") == std::string::npos);
   CHECK(text.find("so it is") != std::string::npos);
-  CHECK(io::study_csv(study).find("upwind,delta=0.5;p=4,P_stick,0.25,0.125,2,") !=
-        std::string::npos);
-  const std::string json = io::study_summary(PETSC_COMM_WORLD, r, study, {});
+  CHECK(io::csv(study).find("upwind,delta=0.5;p=4,P_stick,0.25,0.125,2,") != std::string::npos);
+  const std::string json = io::summary(PETSC_COMM_WORLD, r, study, {});
   CHECK(json.find("\"runs\"") != std::string::npos);
   CHECK(json.find("null") != std::string::npos);
 }

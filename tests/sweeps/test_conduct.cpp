@@ -206,11 +206,11 @@ TEST_CASE("sweeps: CSV quotes what holds a comma and leaves gaps where there is 
   sweep.runs = {made_by_hand(0, 2), made_by_hand(1, std::nan("")), made_by_hand(2, 0)};
   sweep.runs[2].results.clear();
   sweep.runs[2].status = Status::failed;
-  CHECK(sweep_csv(request, sweep) == "mu_d,\"E(max(x,v))\",\"E(max(x,v))_error\",status\n"
-                                     "0.25,2,0.125,reached\n"
-                                     "0.5,,0.125,reached\n"
-                                     "0.75,,,failed\n");
-  const std::string table = sweep_table(request, sweep, {});
+  CHECK(sweeps::csv(request, sweep) == "mu_d,\"E(max(x,v))\",\"E(max(x,v))_error\",status\n"
+                                       "0.25,2,0.125,reached\n"
+                                       "0.5,,0.125,reached\n"
+                                       "0.75,,,failed\n");
+  const std::string table = sweeps::table(request, sweep, {});
   CHECK_THAT(table, Catch::Contains("mu_d = 0.75: failed") &&
                         Catch::Contains("2 of 3 points reached") &&
                         !Catch::Contains("mu_d = swept"));
@@ -225,7 +225,7 @@ TEST_CASE("sweeps: ten points that fell short are told of, and how many more the
       sweep.runs.back().status = Status::failed;
       sweep.runs.back().message = "why" + std::to_string(n);
     }
-    const std::string table = sweep_table(request, sweep, {});
+    const std::string table = sweeps::table(request, sweep, {});
     CHECK_THAT(table, Catch::Contains("why9\n") && Catch::Contains(more));
     CHECK((table.find("more like these") != table.npos) == (count == 12));
     CHECK(table.find("why10") == table.npos);
@@ -240,7 +240,7 @@ TEST_CASE("sweeps: HDF5 keeps both ends of intervals, and gaps where a point has
   sweep.runs = {made_by_hand(0, 2), made_by_hand(1, 3)};
   sweep.runs[0].results[0].ci95 = {{1.5, 2.75}};
   sweep.runs[1].results.clear();
-  write_sweep_hdf5(PETSC_COMM_SELF, request, sweep, {});
+  sweeps::write_hdf5(PETSC_COMM_SELF, request, sweep, {});
   const Hdf5Id id(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   const auto first_and_second = [&](const std::string& name) {
     const Hdf5Id data(H5Dopen2(id, ("/sweep/E(max(x,v))" + name).c_str(), H5P_DEFAULT), H5Dclose);

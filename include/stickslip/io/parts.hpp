@@ -1,5 +1,5 @@
 #pragma once
-/// Parts that reports of runs, studies and sweeps share.
+/// Parts that reports of runs, studies, plans and sweeps share.
 
 #include <mpi.h>
 
@@ -19,9 +19,14 @@ using Json = nlohmann::ordered_json;
 
 /// The scene in a line.
 [[nodiscard]] std::string scene_line(const model::Scene& scene);
-/// The discretisation in v as cells of a table of steps, and their title.
-[[nodiscard]] std::string axis_cells(const accuracy::Resolution& resolution);
-[[nodiscard]] const char* axis_title(options::Scheme scheme);
+/// The sizes of a discretisation as cells of a table of steps, and their titles.
+[[nodiscard]] std::string size_cells(const accuracy::Resolution& resolution, std::int64_t unknowns,
+                                     std::int64_t nonzeros);
+[[nodiscard]] std::string size_titles(options::Scheme scheme);
+/// A number in a cell; nothing for NaN.
+[[nodiscard]] std::string cell(double value, int digits);
+/// A line of CSV (RFC 4180: what holds a comma stands in quotes).
+[[nodiscard]] std::string csv_line(const std::vector<std::string>& cells);
 
 [[nodiscard]] Json resolution_json(const accuracy::Resolution& resolution);
 [[nodiscard]] Json scene_json(const model::Scene& scene);
@@ -30,18 +35,20 @@ using Json = nlohmann::ordered_json;
 /// `compared` is the name of the file of the references.
 [[nodiscard]] Json run_json(const options::Case& given, const accuracy::Outcome& outcome,
                             const RunTimes& times, const std::string& compared = {});
+[[nodiscard]] Json comparison_json(const accuracy::Comparison& comparison,
+                                   const std::string& compared);
 [[nodiscard]] Json provenance_json(MPI_Comm comm, const options::Request& request);
 [[nodiscard]] Json seconds_json(const petsc::Ledger& ledger);
+/// The text of a summary: the tree, and where it comes from.
+[[nodiscard]] std::string summary_text(MPI_Comm comm, const options::Request& request, Json tree);
+
 /// A key of a result as the name of a group or dataset, where a slash would make a group of its
 /// own.
 [[nodiscard]] std::string hdf5_name(std::string key);
-/// get(row) for each row.
-template <class Row, class Get>
-[[nodiscard]] std::vector<double> column(const std::vector<Row>& rows, Get get) {
-  std::vector<double> values;
-  for (const Row& row : rows) values.push_back(get(row));
-  return values;
-}
+/// Writes a tree to a group of its own: objects as groups, texts and truths (yes, no) as attributes
+/// of their group, numbers and arrays of numbers as datasets, ci95 as two of them, low and high.
+/// Collective with equal trees.
+void write_tree(Hdf5File& file, const std::string& group, const Json& tree);
 /// The group /record: provenance, options, seconds.
 void write_record(Hdf5File& file, MPI_Comm comm, const options::Request& request,
                   const RunTimes& times);

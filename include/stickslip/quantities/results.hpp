@@ -7,6 +7,20 @@
 
 namespace stickslip::quantities {
 
+/// What a result is, whatever it is called: its range and direction (accuracy/laws.hpp), and with
+/// which others it shares errors (accuracy/estimates.hpp), follow from it.
+enum class Kind {
+  other,          ///< nothing more is known
+  probability,    ///< in [0, 1]
+  share,          ///< of the time: one of two probabilities whose sum is 1
+  mean,           ///< of what has either sign
+  drift,          ///< a mean that may vanish
+  positive_mean,  ///< of a duration or a square
+  transform,      ///< E[exp(-lambda T)]: in [0, 1], falls with lambda
+  distribution,   ///< P(T <= t): in [0, 1], rises with t
+  spectrum        ///< a power spectral density, >= 0
+};
+
 /// A scalar (no abscissa, one value) or an array over an abscissa.
 struct Result {
   std::string key;            ///< name in table, JSON and HDF5
@@ -15,6 +29,7 @@ struct Result {
   std::vector<double> abscissa;
   std::vector<double> value;
   std::vector<double> error;  ///< absolute error estimates, one for each value
+  Kind kind = Kind::other;
   /// Whether accuracy is meant relative to each value of an array, not to the largest one.
   bool each_by_its_size = false;
   /// 95 % confidence intervals, one for each value; none for deterministic results.
@@ -26,14 +41,24 @@ struct Result {
 using Results = std::vector<Result>;
 
 /// A scalar result.
-[[nodiscard]] inline Result scalar(std::string key, std::string unit, double value, double error) {
-  return {std::move(key), std::move(unit), "", {}, {value}, {error}};
+[[nodiscard]] inline Result scalar(std::string key, std::string unit, double value, double error,
+                                   Kind kind = Kind::other) {
+  return {std::move(key), std::move(unit), "", {}, {value}, {error}, kind};
 }
 
-/// An array result without values yet.
+/// An array result without values yet. Transforms and spectra, which span decades, are meant
+/// relative to each value.
 [[nodiscard]] inline Result array(std::string key, std::string unit, std::string abscissa_name,
-                                  std::vector<double> abscissa) {
-  return {std::move(key), std::move(unit), std::move(abscissa_name), std::move(abscissa), {}, {}};
+                                  std::vector<double> abscissa, Kind kind = Kind::other) {
+  const bool each = kind == Kind::transform || kind == Kind::spectrum;
+  return {std::move(key),
+          std::move(unit),
+          std::move(abscissa_name),
+          std::move(abscissa),
+          {},
+          {},
+          kind,
+          each};
 }
 
 /// Largest error relative to the size of the values; infinite where one is not a number.

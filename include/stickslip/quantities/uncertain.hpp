@@ -35,8 +35,9 @@ struct Uncertain {
 [[nodiscard]] Uncertain value_of(Vec functional, const petsc::Solution& solution);
 
 /// A scalar result.
-[[nodiscard]] inline Result scalar(std::string key, std::string unit, Uncertain value) {
-  return scalar(std::move(key), std::move(unit), value.value, value.error);
+[[nodiscard]] inline Result scalar(std::string key, std::string unit, Uncertain value,
+                                   Kind kind = Kind::other) {
+  return scalar(std::move(key), std::move(unit), value.value, value.error, kind);
 }
 
 inline void append_value(Result& array, Uncertain value) {

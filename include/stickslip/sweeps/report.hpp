@@ -11,20 +11,20 @@
 namespace stickslip::sweeps {
 
 /// Values and scalars of every point for standard output, four scalars side by side.
-[[nodiscard]] std::string sweep_table(const options::Request& request, const Conducted& sweep,
-                                      const io::RunTimes& times);
+[[nodiscard]] std::string table(const options::Request& request, const Conducted& sweep,
+                                const io::RunTimes& times);
 
 /// A row for each point: its values, each scalar with its error, status. Without times, so that an
 /// interrupted sweep ends with the same bytes as one in one go.
-[[nodiscard]] std::string sweep_csv(const options::Request& request, const Conducted& sweep);
+[[nodiscard]] std::string csv(const options::Request& request, const Conducted& sweep);
 
 /// The JSON summary: the axes, and `runs` in the place of results.
-[[nodiscard]] std::string sweep_summary(MPI_Comm comm, const options::Request& request,
-                                        const Conducted& sweep, const io::RunTimes& times);
+[[nodiscard]] std::string summary(MPI_Comm comm, const options::Request& request,
+                                  const Conducted& sweep, const io::RunTimes& times);
 
 /// Writes -output: every result as an array over the axes of the sweep. Local. Throws
 /// std::runtime_error when the disk refuses.
-void write_sweep_hdf5(MPI_Comm comm, const options::Request& request, const Conducted& sweep,
-                      const io::RunTimes& times);
+void write_hdf5(MPI_Comm comm, const options::Request& request, const Conducted& sweep,
+                const io::RunTimes& times);
 
 }  // namespace stickslip::sweeps
