@@ -262,11 +262,11 @@ void ElementElimination::add_shares(const Line& line, std::size_t falling,
   const StateSpace& states = data_->states;
   const noise::Nodes& noise = *data_->discretisation.noise;
   const bool upper = line.half == Half::upper;
-  const Half opposite = states.folded() || !upper ? Half::upper : Half::lower;
+  const Half other = states.folded() ? line.half : opposite(line.half);
   const double reflected = states.symmetry() == Symmetry::odd ? -1 : 1;
   for (int l = 0; l < line.rising[0]; ++l) {
     const int node = l - noise.half();
-    if (node < -states.last_static(opposite)) continue;
+    if (node < -states.last_static(other)) continue;
     const auto& group = noise.group_of(node);
     for (int along = group.first; along <= group.last; ++along) {
       const int i = upper ? along : -along, kept = states.folded() ? std::abs(i) : i;

@@ -14,6 +14,13 @@
 
 namespace stickslip::operators {
 
+/// What a row has to do with a state at rest.
+struct RestCoupling {
+  PetscInt row;  ///< local
+  int level;     ///< static level i; of an exit +1 upwards and -1 downwards
+  double rate;
+};
+
 /// A = lambda - L. On noise node l of a half, with B_l(v) = x_l + g - mu_d + b(v) on the upper one
 /// and that of the mirrored process on the lower one, J the jump matrix of noise::Nodes,
 ///
@@ -81,25 +88,13 @@ class KolmogorovOperator {
   KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda,
                      Symmetry symmetry, Rest rest, std::optional<Parameter> derivative);
 
-  // The AIJ matrix of the rows.
-  [[nodiscard]] petsc::MatHandle stored();
-  void separate_others();
-
-  struct Coupling {
-    PetscInt row;  // local
-    int level;     // static level i, or the side of an exit
-    double rate;
-  };
-  class Assembler;
-  using Functional = std::vector<std::pair<PetscInt, double>>;
-
   std::shared_ptr<MatrixData> data_;
-  Functional trace_upper_, trace_lower_;
-  std::vector<Coupling> rest_coupling_;  // -A_us
-  std::vector<Coupling> exit_coupling_;  // level +1 upwards, -1 downwards
-  // The matrix lives in these: local columns, and those of other ranks.
-  std::vector<PetscInt> row_start_, columns_, other_start_, other_columns_;
-  std::vector<PetscScalar> values_, other_values_;
+  std::vector<std::pair<PetscInt, double>> trace_upper_, trace_lower_;
+  std::vector<RestCoupling> rest_coupling_;  // -A_us
+  std::vector<RestCoupling> exit_coupling_;
+  // The matrix of a single rank lives in these.
+  std::vector<PetscInt> row_start_, columns_;
+  std::vector<PetscScalar> values_;
   petsc::MatHandle matrix_;
   PetscInt64 nonzeros_ = 0;
 };

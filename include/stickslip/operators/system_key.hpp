@@ -18,6 +18,9 @@ enum class Symmetry { even, odd, none };
 
 /// The two half lines of the velocity.
 enum class Half { upper, lower };
+[[nodiscard]] inline Half opposite(Half half) {
+  return half == Half::upper ? Half::lower : Half::upper;
+}
 
 /// The part of the static states in an operator.
 enum class Rest {

@@ -1,0 +1,291 @@
+#pragma once
+/// Rows of a KolmogorovOperator.
+
+#include <petscsys.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "stickslip/operators/kolmogorov_operator.hpp"
+
+namespace stickslip::operators {
+
+/// Collects the rates out of one state at a time and appends its row to the local CSR arrays.
+class RowAssembler {
+ public:
+  /// Values by global index.
+  using Functional = std::vector<std::pair<PetscInt, double>>;
+
+  RowAssembler(const Discretisation& discretisation, const StateSpace& states, PetscScalar lambda,
+               Rest rest, std::optional<Parameter> derivative)
+      : derivative_(derivative),
+        noise_(*discretisation.noise),
+        chain_(discretisation.process.noise),
+        upper_{discretisation.process, *discretisation.axis},
+        lower_{discretisation.process.mirrored(), discretisation.axis->mirrored()},
+        states_(states),
+        lambda_(lambda),
+        rest_(rest),
+        zero_trace_(discretisation.axis->trace_at_zero()),
+        top_trace_(discretisation.axis->trace_at_top()),
+        lines_(2 * static_cast<std::size_t>(noise_.count())) {
+    for (int n = -noise_.half(); n <= noise_.half(); ++n) {
+      for (Half half : states.halves()) lines_[place_of_line(half, n)] = states.nodes_of(half, n);
+    }
+  }
+
+  void assemble() {
+    reserve();
+    states_.for_each_local([this](const State& state) { append(state); });
+  }
+
+  /// u(0+) on a noise node of a half that leaves v = 0, as global indices and coefficients.
+  [[nodiscard]] Functional trace_at_zero(Half half, int n) const {
+    if (states_.has_origin(half, n)) {
+      return {{states_.index({StateKind::origin, half, n, 0}), 1.0}};
+    }
+    Functional trace;
+    for (const auto& e : zero_trace_) trace.emplace_back(node(half, n, e.node), e.value);
+    return trace;
+  }
+
+  /// The same at s+ or s-: the level next to those at rest is a node.
+  [[nodiscard]] Functional trace_at_exit(Half half) const {
+    return trace_at_zero(half, states_.last_static(half) + 1);
+  }
+
+  std::vector<PetscInt> row_start{0};
+  std::vector<PetscInt> columns;
+  std::vector<PetscScalar> values;
+  std::vector<RestCoupling> rest_coupling, exit_coupling;
+
+ private:
+  // A half line, seen with its noise and velocities counted along it.
+  struct Side {
+    model::Process process;
+    const velocity::Axis& axis;
+  };
+  [[nodiscard]] const Side& side(Half half) const { return half == Half::upper ? upper_ : lower_; }
+
+  // What rows on a node where all speeds are positive, and jumps, take: little more than there is.
+  void reserve() {
+    std::size_t entries = 0;
+    for (int j = 0; j < upper_.axis.size(); ++j) {
+      upper_.axis.transport(upper_.process.excess_at(noise_.x(noise_.half())), j, transport_);
+      entries += transport_.entries.size() + 1;
+    }
+    const std::vector<int>& local = states_.local_noise();
+    entries *= local.size();
+    for (int n : local) entries += noise_.jumps(n).size() * upper_.axis.nodes().size();
+    entries *= states_.halves().size();
+    columns.reserve(entries);
+    values.reserve(entries);
+    row_start.reserve(static_cast<std::size_t>(states_.local_size()) + 1);
+  }
+
+  void append(const State& state) {
+    switch (state.kind) {
+    case StateKind::node: rates_of_node(state); break;
+    case StateKind::origin: rates_of_origin(state); break;
+    case StateKind::holding: rates_of_holding(state); break;
+    case StateKind::rest: rates_of_rest(state.noise); break;
+    }
+    finish_row(states_.index(state));
+  }
+
+  // Calls visit(node, rate) for the jumps from a noise node, which are alike on both halves.
+  template <class Visit>
+  void for_each_jump(int n, Visit visit) const {
+    if (!derivative_) {
+      for (const auto& [to, rate] : noise_.jumps(n)) visit(to, rate);
+    } else if (*derivative_ == Parameter::tau) {
+      if (changes_of_ != n) {
+        changes_ = noise_.jumps_by_tau(n);
+        changes_of_ = n;
+      }
+      for (const auto& [to, rate] : changes_) visit(to, rate);
+    }
+  }
+
+  void rates_of_node(const State& s) {
+    rates_of_transport(s);
+    for_each_jump(s.noise, [&](int to, double rate) { rate_to(node(s.half, to, s.node), rate); });
+  }
+
+  void rates_of_transport(const State& s) {
+    const Side& here = side(s.half);
+    const double excess = here.process.excess_at(noise_.x(s.noise));
+    if (derivative_) {
+      here.axis.transport_change(excess, speed_change(), s.node, transport_);
+    } else {
+      here.axis.transport(excess, s.node, transport_);
+    }
+    for (const auto& e : transport_.entries) rate_to(node(s.half, s.noise, e.node), e.value);
+    if (transport_.inflow != 0) rate_to_zero(s, transport_.inflow);
+    if (transport_.outflow != 0) rate_to(holding(s.half, s.noise), transport_.outflow);
+  }
+
+  void rates_of_origin(const State& s) {
+    const Side& here = side(s.half);
+    const double excess = here.process.excess_at(noise_.x(s.noise));
+    rate_to(node(s.half, s.noise, 0),
+            here.axis.origin_rate(derivative_ ? speed_change().excess : excess));
+    for_each_jump(s.noise, [&](int to, double rate) {
+      if (states_.has_origin(s.half, to)) {
+        rate_to(states_.index({StateKind::origin, s.half, to, 0}), rate);
+      } else {
+        rate_to_rest(s.half, to, rate);
+      }
+    });
+  }
+
+  void rates_of_holding(const State& s) {
+    for_each_jump(s.noise, [&](int to, double rate) {
+      if (states_.has_holding(s.half, to)) return rate_to(holding(s.half, to), rate);
+      for (const auto& e : top_trace_) rate_to(node(s.half, to, e.node), rate * e.value);
+    });
+  }
+
+  void rates_of_rest(int i) {
+    const int highest = upper_.process.static_index(), lowest = upper_.process.lowest_static();
+    if (rest_ == Rest::killing_edges && (i == highest || i == lowest)) {
+      killing_ = chain_.rate();  // value 0 there: killed at once
+      return;
+    }
+    if (i < highest) rate_to_rest(i + 1, up_rate(i));
+    if (i == highest) rate_to_exit(Half::upper, up_rate(i));
+    if (i > lowest) rate_to_rest(i - 1, down_rate(i));
+    if (i == lowest) rate_to_exit(Half::lower, down_rate(i));
+  }
+
+  // Where a sliding body meets v = 0.
+  void rate_to_zero(const State& s, double rate) {
+    if (s.noise > states_.last_static(s.half)) {
+      // A grid scheme near a turning point: back to the state at v = 0.
+      rate_to(states_.index({StateKind::origin, s.half, s.noise, 0}), rate);
+    } else if (s.noise >= -states_.last_static(opposite(s.half))) {
+      rate_to_rest(s.half, s.noise, rate);
+    } else if (states_.folded()) {
+      rate_to_trace(trace_at_zero(s.half, -s.noise), rate, reflection());
+    } else {
+      rate_to_trace(trace_at_zero(opposite(s.half), -s.noise), rate, 1);
+    }
+  }
+
+  // To rest on the levels for which a node stands, in the shares of T.
+  void rate_to_rest(Half half, int n, double rate) {
+    const noise::Nodes::Group& group = noise_.group_of(n);
+    for (int i = group.first; i <= group.last; ++i) {
+      const double share = group.row(group.weight, i)[n - group.begin];
+      rate_to_rest(half == Half::upper ? i : -i, rate * share);
+    }
+  }
+
+  void rate_to_rest(int i, double rate) {
+    if (rest_ == Rest::killing) {
+      killing_ += rate;
+      rest_coupling.push_back({local_row(), i, rate});
+      return;
+    }
+    const int kept = states_.folded() ? std::abs(i) : i;
+    if (!states_.has_rest(kept)) {
+      killing_ += rate;  // an odd function vanishes at x = 0
+      return;
+    }
+    rate_to(states_.index({StateKind::rest, Half::upper, kept, 0}), rate,
+            kept == i ? 1 : reflection());
+  }
+
+  void rate_to_exit(Half half, double rate) {
+    if (rest_ == Rest::killed_on_exit) {
+      killing_ += rate;
+      exit_coupling.push_back({local_row(), half == Half::upper ? 1 : -1, rate});
+    } else if (states_.folded()) {
+      rate_to_trace(trace_at_exit(Half::upper), rate, half == Half::upper ? 1 : reflection());
+    } else {
+      rate_to_trace(trace_at_exit(half), rate, 1);
+    }
+  }
+
+  void rate_to_trace(const Functional& trace, double rate, double sign) {
+    for (const auto& [column, weight] : trace) rate_to(column, rate * weight, sign);
+  }
+
+  // A value seen with sign -1 through a reflection leaves twice its rate in the row sum.
+  void rate_to(PetscInt column, double rate, double sign = 1) {
+    if (sign < 0) killing_ += 2 * rate;
+    row_.emplace_back(column, -sign * rate);
+  }
+
+  // The couplings of the row to the arrays, in the order of columns, each once.
+  void finish_row(PetscInt diagonal) {
+    row_.emplace_back(diagonal, 0.0);  // keeps its place in the order
+    std::sort(row_.begin(), row_.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
+    const std::size_t begin = columns.size();
+    for (auto next = row_.begin(); next != row_.end();) {
+      const PetscInt column = next->first;
+      PetscScalar rate = 0;
+      for (; next != row_.end() && next->first == column; ++next) rate += next->second;
+      columns.push_back(column);
+      values.push_back(rate);
+    }
+    row_start.push_back(static_cast<PetscInt>(columns.size()));
+    row_.clear();
+    // Summed as a reader of the row would sum it: with it the row adds up to exactly zero.
+    PetscScalar sum = 0;
+    std::size_t place = begin;
+    for (std::size_t n = begin; n < columns.size(); ++n) {
+      if (columns[n] == diagonal) {
+        place = n;  // and nothing goes back to itself
+      } else {
+        sum += values[n];
+      }
+    }
+    values[place] = lambda_ - sum + std::exchange(killing_, 0.0);
+  }
+
+  [[nodiscard]] PetscInt local_row() const { return static_cast<PetscInt>(row_start.size()) - 1; }
+  [[nodiscard]] PetscInt node(Half half, int n, int j) const {
+    const auto& [first, stride] = lines_[place_of_line(half, n)];
+    return first + j * stride;
+  }
+  [[nodiscard]] std::size_t place_of_line(Half half, int n) const {
+    return 2 * static_cast<std::size_t>(noise_.half() + n) + (half == Half::upper ? 0 : 1);
+  }
+  [[nodiscard]] PetscInt holding(Half half, int n) const {
+    return states_.index({StateKind::holding, half, n, 0});
+  }
+  [[nodiscard]] double reflection() const { return states_.symmetry() == Symmetry::odd ? -1 : 1; }
+  [[nodiscard]] double up_rate(int level) const { return chain_.rate() * chain_.up(level); }
+  [[nodiscard]] double down_rate(int level) const { return chain_.rate() * chain_.down(level); }
+  [[nodiscard]] velocity::SpeedChange speed_change() const {
+    switch (*derivative_) {
+    case Parameter::mu_d: return {-1, 0};
+    case Parameter::tau: return {0, 0};
+    case Parameter::drag_coefficient: return {0, -1};
+    }
+    return {};
+  }
+
+  std::optional<Parameter> derivative_;
+  const noise::Nodes& noise_;
+  const model::NoiseChain& chain_;
+  Side upper_, lower_;
+  const StateSpace& states_;
+  PetscScalar lambda_;
+  Rest rest_;
+  std::vector<velocity::Entry> zero_trace_, top_trace_;
+  std::vector<StateSpace::NodeLine> lines_;  // by noise node and half
+  // Derivatives of the jumps from the noise node that was asked for last.
+  mutable std::vector<noise::Nodes::Rate> changes_;
+  mutable std::optional<int> changes_of_;
+  velocity::TransportRow transport_;
+  std::vector<std::pair<PetscInt, PetscScalar>> row_;
+  double killing_ = 0;  // row sum of A - lambda
+};
+
+}  // namespace stickslip::operators
