@@ -256,101 +256,88 @@ void ElementElimination::reflect(Line& line) {
   }
 }
 
-// The row of `falling` nodes at v = 0 that find themselves at rest there, and with which shares.
-void ElementElimination::add_shares(const Line& line, std::size_t falling,
-                                    Couplings& shares) const {
+// What a line finds at rest, of its nodes that fall to v = 0 from `fall` on.
+void ElementElimination::add_shares(const Line& line, std::size_t fall, Couplings& shares) const {
   const StateSpace& states = data_->states;
   const noise::Nodes& noise = *data_->discretisation.noise;
-  const bool upper = line.half == Half::upper;
   const Half other = states.folded() ? line.half : opposite(line.half);
-  const double reflected = states.symmetry() == Symmetry::odd ? -1 : 1;
   for (int l = 0; l < line.rising[0]; ++l) {
     const int node = l - noise.half();
     if (node < -states.last_static(other)) continue;
     const auto& group = noise.group_of(node);
     for (int along = group.first; along <= group.last; ++along) {
-      const int i = upper ? along : -along, kept = states.folded() ? std::abs(i) : i;
+      const int i = line.half == Half::upper ? along : -along;
+      const int kept = states.folded() ? std::abs(i) : i;
       if (!states.has_rest(kept)) continue;  // an odd function vanishes at x = 0
       const double share = group.row(group.weight, along)[node - group.begin];
       shares.push_back({rest_ + static_cast<std::size_t>(kept - lowest_rest_),
-                        falling + static_cast<std::size_t>(l),
-                        kept == i ? share : reflected * share});
+                        fall + static_cast<std::size_t>(l), kept == i ? share : sign() * share});
     }
   }
 }
 
-// The node next to those at rest to which an entry of a row at rest belongs, as a line and one of
-// its nodes that rise at v = 0.
-std::pair<std::size_t, std::size_t> ElementElimination::exit_of(PetscInt column) const {
-  for (std::size_t n = 0; n < lines_.size(); ++n) {
-    const Line& line = lines_[n];
+// What a line finds on the other side, or reflected.
+void ElementElimination::add_crossings(const Line& line, std::size_t fall, Couplings& found) const {
+  const Line& other = lines_[data_->states.folded() || &line != &lines_[0] ? 0 : 1];
+  const int crossing = data_->discretisation.noise->half() - data_->states.last_static(other.half);
+  for (int l = 0; l < crossing; ++l) {
+    found.push_back({other.falling_at(1) - 1 - l, fall + static_cast<std::size_t>(l), sign()});
+  }
+}
+
+// The place in w of the node next to those at rest to which an entry of a row at rest belongs.
+std::size_t ElementElimination::exit_at(PetscInt column) const {
+  for (const Line& line : lines_) {
     const int node = data_->states.last_static(line.half) + 1 + data_->discretisation.noise->half();
     const auto& [first, stride] = line.nodes[node];
     const PetscInt from = column - first, q = line.axis->element(0).reference->size;
     const PetscInt place = stride == 0 ? 0 : from / stride;
-    if (from == place * stride && place >= 0 && place < q) {
-      return {n, static_cast<std::size_t>(node - line.rising[0])};
-    }
+    if (from == place * stride && place >= 0 && place < q) return line.begin + node;
   }
   throw NotReached("a state at rest is left for one that is no exit");
 }
 
-// What falls to v = 0 goes on at the other side, or comes to rest and leaves by an exit. With C the
-// values that falling nodes find there, from those of rising ones, 1 - C R is what is left to
-// solve.
+// What falls to v = 0 goes on at the other side, or comes to rest and leaves by an exit. With C
+// what falling nodes find there, from the values of rising ones, 1 - C R is left to solve.
 void ElementElimination::meet(Mat matrix) {
-  std::size_t falling = 0, rising = 0;
-  std::vector<std::size_t> falling_of, rising_of;  // lines in lists over all lines
+  const std::size_t fall = length_;  // what falling nodes find
+  Couplings shares, found, returned;
   for (const Line& line : lines_) {
-    falling_of.push_back(std::exchange(falling, falling + line.rising[0]));
-    rising_of.push_back(std::exchange(rising, rising + line.count() - line.rising[0]));
+    add_shares(line, length_, shares);
+    add_crossings(line, length_, found);
+    for (int l = 0; l < line.rising[0]; ++l) returned.push_back({length_++, line.begin + l, 1});
   }
-  const std::size_t fall = length_, rise = fall + falling;
-  length_ = rise + rising;
-  DenseMatrix found(static_cast<int>(falling), static_cast<int>(rising));      // C
-  DenseMatrix reflected(static_cast<int>(rising), static_cast<int>(falling));  // R
-  Couplings copied, returned, shares;
-  const bool folded = data_->states.folded();
-  const double sign = data_->states.symmetry() == Symmetry::odd ? -1 : 1;
-  for (std::size_t n = 0; n < lines_.size(); ++n) {
-    const Line& line = lines_[n];
-    const std::size_t opposite = folded ? n : 1 - n;
-    const int static_nodes = data_->states.last_static(lines_[opposite].half);
-    const int crossing = data_->discretisation.noise->half() - static_nodes;
-    for (int l = 0; l < crossing; ++l) {
-      const int met = line.count() - 1 - l - lines_[opposite].rising[0];
-      found(static_cast<int>(falling_of[n]) + l, static_cast<int>(rising_of[opposite]) + met) =
-          sign;
-    }
-    for (int c = 0; c < line.reflection.columns(); ++c) {
-      std::copy_n(line.reflection.column(c), line.reflection.rows(),
-                  reflected.column(static_cast<int>(falling_of[n]) + c) + rising_of[n]);
-      returned.push_back({fall + falling_of[n] + c, line.falling_at(0) + c, 1});
-    }
-    for (int r = 0; r < line.reflection.rows(); ++r) {
-      copied.push_back({line.rising_at(0) + r, rise + rising_of[n] + r, 1});
-    }
-    add_shares(line, fall + falling_of[n], shares);
-  }
+  const std::size_t falling = length_ - fall;
   RestChain rest = read_chain(matrix, rest_rows_);
   LinearSteps leaving;
   for (const auto& [level, column, rate] : rest.exits) {
     DenseMatrix left(static_cast<int>(rest_rows_.size()), 1);
     left(static_cast<int>(level), 0) = rate;
     rest.chain.solve(left.data(), false);
-    const auto [n, node] = exit_of(column);
-    for (const auto& share : shares) {
-      found(static_cast<int>(share.to - fall), static_cast<int>(rising_of[n] + node)) +=
-          share.weight * left(static_cast<int>(share.from - rest_), 0);
+    Scalars passed(falling, 0.0);
+    for (const auto& [from, to, share] : shares)
+      passed[to - fall] += share * left.data()[from - rest_];
+    const std::size_t exit = exit_at(column);
+    for (std::size_t n = 0; n < falling; ++n) {
+      if (passed[n] != 0.0) found.push_back({exit, fall + n, passed[n]});
     }
-    leaving.add(std::move(left), lines_[n].rising_at(0) + node, rest_);
+    leaving.add(std::move(left), exit, rest_);
   }
   DenseMatrix closed = identity(static_cast<int>(falling));
-  add_product(-1, found, reflected, closed.columns(), closed);
+  int first = 0;
+  for (const Line& line : lines_) {
+    for (const auto& [from, to, weight] : found) {
+      if (from < line.rising_at(0) || from >= line.falling_at(1)) continue;
+      const int n = static_cast<int>(from - line.rising_at(0)), row = static_cast<int>(to - fall);
+      for (int c = 0; c < line.rising[0]; ++c) {
+        closed(row, first + c) -= weight * line.reflection(n, c);
+      }
+    }
+    first += line.rising[0];
+  }
   between_.solve(std::move(rest.chain), rest_);
   between_.add(std::move(shares));
-  between_.add(std::move(copied));
-  between_.add(std::move(found), rise, fall);
+  between_.add(found);
   between_.solve(DenseFactors(std::move(closed)), fall);
   between_.add(std::move(returned));
   for (Line& line : lines_) between_.append(std::move(line.outwards));

@@ -58,8 +58,10 @@ class ElementElimination {
   [[nodiscard]] ElementSystem::Response response(Line& line, int e) const;
   [[nodiscard]] DenseMatrix hold(const Line& line);
   void reflect(Line& line);
-  void add_shares(const Line& line, std::size_t falling, Couplings& shares) const;
-  [[nodiscard]] std::pair<std::size_t, std::size_t> exit_of(PetscInt column) const;
+  [[nodiscard]] double sign() const { return data_->states.symmetry() == Symmetry::odd ? -1 : 1; }
+  void add_shares(const Line& line, std::size_t fall, Couplings& shares) const;
+  void add_crossings(const Line& line, std::size_t fall, Couplings& found) const;
+  [[nodiscard]] std::size_t exit_at(PetscInt column) const;
   void meet(Mat matrix);
 
   template <class Visit>
@@ -74,8 +76,8 @@ class ElementElimination {
   std::vector<Line> lines_;
   std::vector<PetscInt> rest_rows_;  // of states at rest, from the lowest level up
   int lowest_rest_ = 0;
-  // The list w: values between elements, holding states among them; states at rest; falling and
-  // rising values at v = 0 once more.
+  // The list w: values between elements, holding states among them; states at rest; what falling
+  // nodes find at v = 0.
   std::size_t rest_ = 0, length_ = 0;
   LinearSteps between_;  // (1 - S)^-1
   petsc::Handle<VecScatter, VecScatterDestroy> scatter_;

@@ -20,7 +20,7 @@ class LinearSteps {
   /// w[to] += weight w[from].
   struct Coupling {
     std::size_t from, to;
-    double weight;
+    PetscScalar weight;
   };
   /// LU factors of a tridiagonal matrix: pivots, multipliers, upper diagonal; below[0] and the last
   /// of `above` mean nothing.
