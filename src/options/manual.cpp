@@ -189,10 +189,8 @@ std::string completion() {
   text += fmt::format("  local names='{}'\n", fmt::join(all_names(), " "));
   text += "  COMPREPLY=()\n  case ${COMP_WORDS[COMP_CWORD - 1]} in\n";
   text += "    -options_file) _stickslip_files ;;\n";
-  for (const auto& group : table()) {
-    for (const auto& option : group.options) {
-      text += fmt::format("    -{}) {};;\n", option.name, completer(option));
-    }
+  for (const auto& option : all_options()) {
+    text += fmt::format("    -{}) {};;\n", option.name, completer(option));
   }
   return text + kCompletionEnd;
 }

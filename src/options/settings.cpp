@@ -113,13 +113,11 @@ void Problems::raise() const {
 
 Settings Settings::read(Problems& problems) {
   Settings settings;
-  for (const auto& group : table()) {
-    for (const auto& option : group.options) {
-      const auto given = value_in_database(option.name);
-      if (given) settings.text_[option.name] = *given;
-      if (!option.initial.empty()) settings.parse(option, option.initial, problems);
-      if (given) settings.parse(option, *given, problems);
-    }
+  for (const auto& option : all_options()) {
+    const auto given = value_in_database(option.name);
+    if (given) settings.text_[option.name] = *given;
+    if (!option.initial.empty()) settings.parse(option, option.initial, problems);
+    if (given) settings.parse(option, *given, problems);
   }
   return settings;
 }
