@@ -71,13 +71,11 @@ constexpr const char* kSynopsis = R"(.B stickslip
 )";
 
 std::string description() {
-  return paragraph(
-             "A body of unit mass slides on a rough floor, pushed by a random force X with a "
-             "finite "
-             "correlation time. The program computes the stationary distribution of the force and "
-             "the velocity, spectra, durations and more of this piecewise deterministic Markov "
-             "process, each number with an estimate of its error. A table goes to standard "
-             "output.") +
+  return paragraph("A body of unit mass slides on a rough floor, pushed by a random force X with a "
+                   "finite correlation time. The program computes the stationary distribution of "
+                   "the force and the velocity, spectra, durations and more of this piecewise "
+                   "deterministic Markov process, each number with an estimate of its error. A "
+                   "table goes to standard output.") +
          paragraph(
              "Every choice is a PETSc option, on the command line or in an options file; the last "
              "one given counts. stickslip-complex is the same program with complex scalars.");

@@ -27,8 +27,9 @@ Method read_method(const Settings& settings) {
   return method;
 }
 
-void check_writable(const Settings& settings, const std::string& name, Problems& problems) {
-  if (!settings.given(name) || settings.text(name).empty()) return;
+void check_writable(const Settings& settings, const Option& option, Problems& problems) {
+  const std::string& name = option.name;
+  if (option.kind != Kind::path || settings.text(name).empty()) return;
   const std::filesystem::path file = settings.text(name);
   const std::filesystem::path folder =
       file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
@@ -44,10 +45,9 @@ void check_writable(const Settings& settings, const std::string& name, Problems&
   }
 }
 
-Output read_output(const Settings& settings, Problems& problems) {
-  for (const auto& option : all_options()) {
-    if (option.kind == Kind::path) check_writable(settings, option.name, problems);
-  }
+}  // namespace
+
+Output read_output(const Settings& settings) {
   const auto shown = meaning(kProgress, settings.text("progress"));
   Output output;
   output.summary = settings.text("summary");
@@ -62,8 +62,6 @@ Output read_output(const Settings& settings, Problems& problems) {
   return output;
 }
 
-}  // namespace
-
 Request request_of(const Settings& settings, Problems& problems) {
   Request request;
   request.scene = read_scene(settings, problems);
@@ -71,9 +69,11 @@ Request request_of(const Settings& settings, Problems& problems) {
   read_question(settings, request, problems);
   request.study = {meaning(kStudies, settings.text("study")), settings.integer("study_steps"),
                    settings.integer("study_repeats").value_or(3)};
-  request.output = read_output(settings, problems);
+  request.output = read_output(settings);
+  request.sweep_ranks = settings.integer("sweep_ranks").value_or(1);
   request.plan_only = settings.flag("plan");
   check_rules(settings, request, problems);
+  for (const auto& option : all_options()) check_writable(settings, option, problems);
   if (request.method.route == Route::fluid_queue) request.method.scheme = Scheme::none;
   for (const auto& option : all_options()) {
     request.resolved.emplace_back(option.name, settings.text(option.name));

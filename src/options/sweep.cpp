@@ -195,9 +195,7 @@ Request Sweep::request(std::size_t point, Problems& problems) const {
   for (std::size_t a = 0; a < at.size(); ++a) settings.set(axes_[a].option, at[a], problems);
   Request request;
   if (problems.empty()) request = request_of(settings, problems);
-  for (std::string* file :
-       {&request.output.summary, &request.output.output, &request.output.checkpoint})
-    file->clear();
+  request.output = {};
   return request;
 }
 
@@ -225,11 +223,7 @@ Request read_sweep(const Settings& settings) {
   problems.raise();
   Request request = sweep->request(0);
   request.sweep = sweep;
-  request.output.summary = settings.text("summary");
-  request.output.output = settings.text("output");
-  request.output.checkpoint = settings.text("checkpoint");
-  request.output.sweep_csv = settings.text("sweep_csv");
-  request.sweep_ranks = settings.integer("sweep_ranks").value_or(1);
+  request.output = read_output(settings);
   for (auto& [name, value] : request.resolved) {
     if (is_axis(sweep->axes(), name)) value = kSwept;
   }
