@@ -21,8 +21,7 @@ class SceneReader {
     read_numbers();
     check_friction();
     check_noise();
-    const bool by_expression = meaning(kDragLaws, scene_.drag_name) == DragLaw::expression;
-    if (by_expression && problems_.empty()) read_expression();  // which looks at the noise
+    if (law_.expression && problems_.empty()) read_expression();  // which looks at the noise
     return scene_;
   }
 
@@ -36,24 +35,21 @@ class SceneReader {
     scene_.delta = settings_.real("delta");
     scene_.friction = {settings_.real("mu_s"), settings_.real("mu_d")};
     scene_.drag_name = settings_.text("drag");
-    const auto law = meaning(kDragLaws, scene_.drag_name);
-    const bool linear = law == DragLaw::linear || law == DragLaw::cubic;
-    scene_.drag = {linear ? settings_.real("drag_coefficient") : 0,
-                   law == DragLaw::cubic ? settings_.real("drag_cubic") : 0};
-    scene_.drag_expression = law == DragLaw::expression ? settings_.text("drag_expression") : "";
+    scene_.drag = {law_.linear ? settings_.real("drag_coefficient") : 0,
+                   law_.cubic ? settings_.real("drag_cubic") : 0};
+    if (law_.expression) scene_.drag_expression = settings_.text("drag_expression");
     scene_.bias = settings_.real("bias");
     scene_.noise_levels = settings_.integer("noise_levels");
     if (settings_.given("v_max")) scene_.v_max = settings_.real("v_max");
   }
 
   void check_friction() {
-    const auto [mu_s, mu_d] = scene_.friction;
-    if (mu_d > mu_s) {
+    const double mu_d = scene_.friction.mu_d;
+    if (mu_d > scene_.friction.mu_s) {
       report("mu_d", fmt::format("must be in (0, mu_s], and mu_s = {}", settings_.text("mu_s")),
              "friction cannot grow when the body starts to slide");
     }
-    const bool by_expression = meaning(kDragLaws, scene_.drag_name) == DragLaw::expression;
-    if (by_expression || !scene_.drag.is_none() || std::abs(scene_.bias) < mu_d) return;
+    if (law_.expression || !scene_.drag.is_none() || std::abs(scene_.bias) < mu_d) return;
     report("bias",
            fmt::format(
                "drives a sliding body for ever: without drag only mu_d = {:g} holds it back", mu_d),
@@ -72,7 +68,8 @@ class SceneReader {
       return report("delta", "gives more noise levels than can be counted", "take a larger step");
     }
     if (settings_.text("noise_levels") == "full") scene_.noise_levels = full;
-    const int levels = scene_.noise_levels.value_or(full);
+    const int levels = scene_.noise_levels.value_or(full), k = std::max(highest, -lowest);
+    const double largest = levels * delta;
     if (full < 1) {
       report("delta",
              fmt::format("leaves no noise level besides 0: tau delta^2 = {:g} must be at most 2",
@@ -84,28 +81,18 @@ class SceneReader {
                          "need at most 2",
                          tau * delta * delta * levels),
              fmt::format("take at most {}, or full", full));
-    } else {
-      check_static_levels(lowest, highest, levels, full);
-    }
-  }
-
-  // With bodies at rest on the levels from lowest to highest, out of `levels` on each side.
-  void check_static_levels(int lowest, int highest, int levels, int full) {
-    const double delta = scene_.delta, largest = levels * delta;
-    const int k = std::max(highest, -lowest);
-    if (k >= levels && scene_.bias == 0) {
-      report("mu_s",
-             fmt::format("is not below the largest noise level {:g}: nothing ever slides", largest),
-             levels < full
-                 ? fmt::format("take -noise_levels above {}", k)
-                 : fmt::format("take -mu_s below {:g}, or smaller -tau or -delta", largest));
-    } else if (k >= levels) {
+    } else if (k >= levels && scene_.bias != 0) {
       report("bias",
              fmt::format("is never overcome by the noise, which reaches {:g}: no body at rest "
                          "would ever start against it",
                          largest),
              fmt::format("take |bias| below {:g}, or smaller -tau or -delta",
                          largest - scene_.friction.mu_s));
+    } else if (k >= levels) {
+      const auto why =
+          fmt::format("is not below the largest noise level {:g}: nothing ever slides", largest);
+      if (levels < full) return report("mu_s", why, fmt::format("take -noise_levels above {}", k));
+      report("mu_s", why, fmt::format("take -mu_s below {:g}, or smaller -tau or -delta", largest));
     } else if (lowest > highest) {
       report("mu_s",
              fmt::format("holds the body on no noise level, which are {:g} apart and shifted by "
@@ -123,13 +110,14 @@ class SceneReader {
     try {
       scene_.drag = model::parse_drag(scene_.drag_expression, scene_.friction, scene_.tau,
                                       largest_force(scene_), scene_.bias);
-    } catch (const model::UnfitLaw& law) {
-      report("drag_expression", law.what(), law.fix());
+    } catch (const model::UnfitLaw& unfit) {
+      report("drag_expression", unfit.what(), unfit.fix());
     }
   }
 
   const Settings& settings_;
   Problems& problems_;
+  const DragLaw law_ = meaning(kDragLaws, settings_.text("drag"));
   model::Scene scene_;
 };
 

@@ -43,39 +43,30 @@ std::vector<Reference> read_compared(const Settings& settings, Problems& problem
   return references;
 }
 
-// Those named; else those of the file to compare with; else the default ones.
-std::set<Quantity> quantities_asked(const Settings& settings,
-                                    const std::vector<Reference>& references) {
-  std::set<Quantity> asked;
-  if (settings.given("quantities") || references.empty()) {
-    const auto words = settings.list("quantities");
-    for (const auto& row : quantity_table()) {
-      if (std::count(words.begin(), words.end(), row.word) > 0) asked.insert(row.quantity);
-    }
-    return asked;
-  }
-  for (const auto& reference : references) {
-    if (const auto quantity = asked_by(reference.quantity)) asked.insert(*quantity);
-  }
-  return asked;
-}
-
-// The quantities asked for; of those that nobody named, the ones that the route gives.
+// The quantities named; else those of the file to compare with; else the default ones. Of those
+// that nobody named, the ones that the route gives.
 void read_quantities(const Settings& settings, Request& request, Problems& problems) {
   const bool symmetric = request.scene.symmetric();
-  auto& quantities = request.question.quantities;
-  const auto asked = quantities_asked(settings, request.question.references);
+  auto& question = request.question;
+  const bool given = settings.given("quantities");
+  const auto words = settings.list("quantities");
+  const auto asked = [&](const QuantityRow& row) {
+    const auto& known = question.references;
+    if (given || known.empty()) return std::count(words.begin(), words.end(), row.word) > 0;
+    return std::any_of(known.begin(), known.end(), [&row](const Reference& reference) {
+      return asked_by(reference.quantity) == row.quantity;
+    });
+  };
   std::vector<std::string> given_by_route, refused;
   for (const auto& row : quantity_table()) {
     const auto& routes = symmetric ? row.routes : row.without_symmetry;
     const bool gives = std::count(routes.begin(), routes.end(), request.method.route) > 0;
     if (gives) given_by_route.emplace_back(row.word);
-    if (!asked.contains(row.quantity)) continue;
-    if (gives) quantities.insert(row.quantity);
+    if (!asked(row)) continue;
+    if (gives) question.quantities.insert(row.quantity);
     if (!gives) refused.emplace_back(row.word);
   }
-  const bool some = !quantities.empty() && !settings.given("quantities");
-  if (refused.empty() || some) return;
+  if (refused.empty() || (!given && !question.quantities.empty())) return;
   settings.report(
       problems, "quantities",
       fmt::format("{} cannot be had by -route {}{}, which gives {}", enumerate(refused, "and"),

@@ -11,20 +11,18 @@ namespace stickslip::options {
 namespace {
 
 Method read_method(const Settings& settings) {
-  Method method;
-  method.route = meaning(kRoutes, settings.text("route"));
-  method.scheme = meaning(kSchemes, settings.text("scheme"));
-  method.degree = settings.integer("degree");
-  method.layers = settings.integer("layers");
-  method.points = settings.integer("p");
-  method.noise_degree = settings.integer("noise_degree");
-  method.noise_grading = settings.real("noise_grading");
-  method.factors = read_factors();
-  method.spectrum_solver = meaning(kSpectrumSolvers, settings.text("spectrum_solver"));
-  method.transient_solver = meaning(kTransientSolvers, settings.text("transient_solver"));
-  method.excursions = settings.real("excursions");
-  method.seed = static_cast<std::uint64_t>(settings.real("seed"));
-  return method;
+  return {.route = meaning(kRoutes, settings.text("route")),
+          .scheme = meaning(kSchemes, settings.text("scheme")),
+          .degree = settings.integer("degree"),
+          .layers = settings.integer("layers"),
+          .points = settings.integer("p"),
+          .noise_degree = settings.integer("noise_degree"),
+          .noise_grading = settings.real("noise_grading"),
+          .factors = read_factors(),
+          .spectrum_solver = meaning(kSpectrumSolvers, settings.text("spectrum_solver")),
+          .transient_solver = meaning(kTransientSolvers, settings.text("transient_solver")),
+          .excursions = settings.real("excursions"),
+          .seed = static_cast<std::uint64_t>(settings.real("seed"))};
 }
 
 void check_writable(const Settings& settings, const Option& option, Problems& problems) {
@@ -48,18 +46,15 @@ void check_writable(const Settings& settings, const Option& option, Problems& pr
 }  // namespace
 
 Output read_output(const Settings& settings) {
-  const auto shown = meaning(kProgress, settings.text("progress"));
-  Output output;
-  output.summary = settings.text("summary");
-  output.output = settings.text("output");
-  output.trajectory = settings.text("trajectory");
-  output.checkpoint = settings.text("checkpoint");
-  output.compared = settings.text("compare");
-  output.study_csv = settings.text("study_csv");
-  output.sweep_csv = settings.text("sweep_csv");
-  output.progress =
-      shown == Progress::on || (shown == Progress::automatic && isatty(STDERR_FILENO) != 0);
-  return output;
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  return {.summary = settings.text("summary"),
+          .output = settings.text("output"),
+          .trajectory = settings.text("trajectory"),
+          .checkpoint = settings.text("checkpoint"),
+          .compared = settings.text("compare"),
+          .study_csv = settings.text("study_csv"),
+          .sweep_csv = settings.text("sweep_csv"),
+          .progress = meaning(kProgress, settings.text("progress")).value_or(terminal)};
 }
 
 Request request_of(const Settings& settings, Problems& problems) {

@@ -115,12 +115,13 @@ std::vector<std::string> given_names() {
 // such as shell and mg, need a program that sets them up, and crash without.
 const std::vector<std::pair<std::string, std::vector<std::string>>>& solver_types() {
   static const std::vector<std::pair<std::string, std::vector<std::string>>> types{
-      {"slide_pc_type",
-       {"elements", "lu", "cholesky", "qr", "svd", "redundant", "ksp", "ilu", "icc", "asm", "gasm",
-        "bjacobi", "jacobi", "pbjacobi", "gamg", "hypre", "none"}},
+      {"slide_pc_type", split("elements lu cholesky qr svd redundant ksp ilu icc asm gasm bjacobi "
+                              "jacobi pbjacobi gamg hypre none",
+                              ' ')},
       {"slide_ksp_type",
-       {"preonly", "gmres", "fgmres", "lgmres", "dgmres", "pgmres", "pipefgmres", "gcr", "bcgs",
-        "bcgsl", "ibcgs", "fbcgs", "fbcgsr", "cgs", "qmrcgs", "tfqmr", "tcqmr", "pipebcgs"}}};
+       split("preonly gmres fgmres lgmres dgmres pgmres pipefgmres gcr bcgs bcgsl "
+             "ibcgs fbcgs fbcgsr cgs qmrcgs tfqmr tcqmr pipebcgs",
+             ' ')}};
   return types;
 }
 

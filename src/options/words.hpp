@@ -1,6 +1,7 @@
 #pragma once
 /// Words of choices beside what they mean.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,16 +15,15 @@ struct Word {
   Value value;
 };
 
-/// Laws of -drag; the drag itself holds numbers or a formula.
-enum class DragLaw { linear, none, cubic, expression };
+/// What a law of -drag is made of.
+struct DragLaw {
+  bool linear, cubic, expression;
+};
 
-/// When progress is shown; `automatic`: on a terminal.
-enum class Progress { automatic, on, off };
-
-inline constexpr Word<DragLaw> kDragLaws[] = {{"linear", DragLaw::linear},
-                                              {"none", DragLaw::none},
-                                              {"cubic", DragLaw::cubic},
-                                              {"expression", DragLaw::expression}};
+inline constexpr Word<DragLaw> kDragLaws[] = {{"linear", {true, false, false}},
+                                              {"none", {false, false, false}},
+                                              {"cubic", {true, true, false}},
+                                              {"expression", {false, false, true}}};
 inline constexpr Word<Scheme> kSchemes[] = {{"hp", Scheme::hp}, {"upwind", Scheme::upwind}};
 inline constexpr Word<SpectrumSolver> kSpectrumSolvers[] = {{"krylov", SpectrumSolver::krylov},
                                                             {"direct", SpectrumSolver::direct}};
@@ -38,8 +38,9 @@ inline constexpr Word<StudyKind> kStudies[] = {{"none", StudyKind::none},
                                                {"delta", StudyKind::steps},
                                                {"heuristic", StudyKind::heuristic},
                                                {"cost", StudyKind::cost}};
-inline constexpr Word<Progress> kProgress[] = {
-    {"auto", Progress::automatic}, {"on", Progress::on}, {"off", Progress::off}};
+/// Whether progress is shown; where that is open, the terminal decides.
+inline constexpr Word<std::optional<bool>> kProgress[] = {
+    {"auto", std::nullopt}, {"on", true}, {"off", false}};
 
 /// The words in their order; `all` is a range of values with a member `word`.
 template <class Words>
