@@ -10,7 +10,28 @@
 
 namespace stickslip::options {
 
+// model.cpp
+
+/// The parameters of the model; v_max and the noise levels may stay open.
+[[nodiscard]] model::Scene read_scene(const Settings& settings, Problems& problems);
+
+/// The largest force that occurs: X passes mu_s by 12 standard deviations with probability e^-72.
+[[nodiscard]] double largest_force(const model::Scene& scene);
+
+// question.cpp
+
+/// What is asked for, for the scene and the method that the request holds already.
+void read_question(const Settings& settings, Request& request, Problems& problems);
+
+// rules.cpp
+
+/// Options that exclude one another, lack one another, or have no effect, which is a warning.
+void check_rules(const Settings& settings, Request& request, Problems& problems);
+
 // request.cpp
+
+/// Names of the files, and whether progress is shown.
+[[nodiscard]] Output read_output(const Settings& settings);
 
 /// The run that the settings ask for; what is wrong with it goes to `problems`.
 [[nodiscard]] Request request_of(const Settings& settings, Problems& problems);

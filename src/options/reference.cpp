@@ -139,18 +139,12 @@ std::vector<double> dataset(hid_t group, const std::string& name, bool* scalar =
 
 Values values_of(hid_t group) {
   Values v;
+  const std::map<std::string, std::vector<double>*> known{
+      {"value", &v.value}, {"error", &v.error}, {"low", &v.low}, {"high", &v.high}};
   for (const auto& name : names_in(group)) {
-    if (name == "value") {
-      v.value = dataset(group, name, &v.scalar);
-    } else if (name == "error") {
-      v.error = dataset(group, name);
-    } else if (name == "low") {
-      v.low = dataset(group, name);
-    } else if (name == "high") {
-      v.high = dataset(group, name);
-    } else {
-      v.argument = dataset(group, name);
-    }
+    const auto found = known.find(name);
+    auto& values = found == known.end() ? v.argument : *found->second;
+    values = dataset(group, name, name == "value" ? &v.scalar : nullptr);
   }
   return v;
 }
@@ -256,16 +250,16 @@ std::vector<Reference> read_references(const std::string& file) {
   if (!std::filesystem::is_regular_file(file, error) || !std::ifstream(file).good()) {
     throw std::invalid_argument("cannot be read");
   }
-  std::vector<Reference> all;
-  if (file.ends_with(".h5") || file.ends_with(".hdf5")) {
-    all = read_hdf5_apart(file);
-  } else if (file.ends_with(".json")) {
-    all = read_json(file);
-  } else if (file.ends_with(".csv")) {
-    all = read_csv(file);
-  } else {
+  using Reader = std::vector<Reference> (*)(const std::string&);
+  static const std::map<std::string, Reader> readers{{".h5", read_hdf5_apart},
+                                                     {".hdf5", read_hdf5_apart},
+                                                     {".json", read_json},
+                                                     {".csv", read_csv}};
+  const auto reader = readers.find(std::filesystem::path(file).extension());
+  if (reader == readers.end()) {
     throw std::invalid_argument("has none of the endings .h5, .json and .csv");
   }
+  auto all = reader->second(file);
   if (all.empty()) throw std::invalid_argument("holds no values");
   return all;
 }

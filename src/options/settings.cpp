@@ -44,14 +44,44 @@ void check_words(const Option& option, const std::string& value, Problems& probl
   }
 }
 
-void check_numbers(const Option& option, const std::string& value,
-                   const std::optional<std::vector<double>>& values, Problems& problems) {
+void check_numbers(const Option& option, const std::string& value, Problems& problems) {
   const std::string must = "must be " + allowed_values(option);
-  if (!values)
+  const auto numbers = parse_numbers(value);
+  if (!numbers)
     return problems.add(option, value, must, "write for example 0.1,1 or 0.01:10:31:log");
-  for (double v : *values) {
-    if (option.range.contains(v)) continue;
-    return problems.add(option, fmt::format("{:g}", v), must, option.fix);
+  const auto bad = std::find_if(numbers->begin(), numbers->end(),
+                                [&option](double v) { return !option.range.contains(v); });
+  if (bad != numbers->end()) problems.add(option, fmt::format("{:g}", *bad), must, option.fix);
+}
+
+void check_number(const Option& option, const std::string& value, Problems& problems) {
+  const bool is_word = std::count(option.words.begin(), option.words.end(), value) > 0;
+  const auto number = parse_number(value);
+  const bool fits = number && option.range.contains(*number) &&
+                    (option.kind == Kind::real || *number == std::floor(*number));
+  if (!is_word && !fits)
+    problems.add(option, value, "must be " + allowed_values(option), option.fix);
+}
+
+void check_value(const Option& option, const std::string& value, Problems& problems) {
+  const bool is_list = option.kind == Kind::list || option.kind == Kind::numbers;
+  if (is_list && value.ends_with(',')) {
+    return problems.add(option, value, "ends with a comma", "lists have no spaces, as in a,b");
+  }
+  switch (option.kind) {
+  case Kind::real:
+  case Kind::integer: return check_number(option, value, problems);
+  case Kind::choice:
+  case Kind::list: return check_words(option, value, problems);
+  case Kind::numbers: return check_numbers(option, value, problems);
+  case Kind::text: return;
+  case Kind::flag:
+    if (!value.empty()) check_words(option, value, problems);
+    return;
+  case Kind::path:
+  case Kind::input:
+    if (!value.empty()) return;
+    problems.add(option, value, "must be a file name", "name the file after the option");
   }
 }
 
@@ -113,55 +143,13 @@ void Problems::raise() const {
 
 Settings Settings::read(Problems& problems) {
   Settings settings;
-  for (const auto& group : table()) {
-    for (const auto& option : group.options) {
-      const auto given = value_in_database(option.name);
-      if (given) settings.text_[option.name] = *given;
-      if (!option.initial.empty()) settings.parse(option, option.initial, problems);
-      if (given) settings.parse(option, *given, problems);
-    }
+  for (const auto& option : all_options()) {
+    const auto given = value_in_database(option.name);
+    if (!given) continue;
+    settings.text_[option.name] = *given;
+    check_value(option, *given, problems);
   }
   return settings;
-}
-
-void Settings::parse(const Option& option, const std::string& value, Problems& problems) {
-  const bool is_list = option.kind == Kind::list || option.kind == Kind::numbers;
-  if (is_list && value.ends_with(',')) {
-    return problems.add(option, value, "ends with a comma", "lists have no spaces, as in a,b");
-  }
-  const std::string must = "must be " + allowed_values(option);
-  switch (option.kind) {
-  case Kind::real:
-  case Kind::integer: {
-    const bool is_word =
-        std::find(option.words.begin(), option.words.end(), value) != option.words.end();
-    if (is_word) break;
-    const auto number = parse_number(value);
-    const bool whole = number && (option.kind == Kind::real || *number == std::floor(*number));
-    if (whole && option.range.contains(*number)) {
-      numbers_[option.name] = *number;
-    } else {
-      problems.add(option, value, must, option.fix);
-    }
-    break;
-  }
-  case Kind::choice:
-  case Kind::list: check_words(option, value, problems); break;
-  case Kind::numbers: {
-    const auto values = parse_numbers(value);
-    check_numbers(option, value, values, problems);
-    if (values) lists_[option.name] = *values;
-    break;
-  }
-  case Kind::text: break;
-  case Kind::flag:
-    if (!value.empty()) check_words(option, value, problems);
-    break;
-  case Kind::path:
-  case Kind::input:
-    if (value.empty()) problems.add(option, value, must, "name the file after the option");
-    break;
-  }
 }
 
 std::string Settings::text(const std::string& name) const {
@@ -169,10 +157,11 @@ std::string Settings::text(const std::string& name) const {
   return found != text_.end() ? found->second : find(name)->initial;
 }
 
+double Settings::real(const std::string& name) const { return parse_number(text(name)).value(); }
+
 std::optional<int> Settings::integer(const std::string& name) const {
-  const auto found = numbers_.find(name);
-  if (found == numbers_.end()) return std::nullopt;
-  return static_cast<int>(found->second);
+  const auto number = parse_number(text(name));
+  return number ? std::optional(static_cast<int>(*number)) : std::nullopt;
 }
 
 std::vector<std::string> Settings::list(const std::string& name) const {
@@ -180,13 +169,12 @@ std::vector<std::string> Settings::list(const std::string& name) const {
 }
 
 std::vector<double> Settings::numbers(const std::string& name) const {
-  const auto found = lists_.find(name);
-  return found == lists_.end() ? std::vector<double>{} : found->second;
+  return parse_numbers(text(name)).value_or(std::vector<double>{});
 }
 
 void Settings::set(const std::string& name, double value, Problems& problems) {
   text_[name] = fmt::format("{}", value);  // reads back to the same bits
-  parse(*find(name), text_[name], problems);
+  check_value(*find(name), text_[name], problems);
 }
 
 void Settings::report(Problems& problems, const std::string& name, const std::string& why,

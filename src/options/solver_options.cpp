@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 
 #include "reading.hpp"
 #include "stickslip/petsc/check.hpp"
@@ -23,102 +22,76 @@ std::string solver_option(const std::string& name) {
 
 // Options of PETSc itself that it reads later, or reads and does not count as used.
 bool belongs_to_petsc(const std::string& name) {
-  static const std::vector<std::string> exact{"options_left",
-                                              "options_view",
-                                              "citations",
-                                              "skip_petscrc",
-                                              "log_view",
-                                              "log_view_memory",
-                                              "malloc_dump",
-                                              "malloc_debug",
-                                              "malloc",
-                                              "malloc_view",
-                                              "memory_view",
-                                              "objects_dump",
-                                              "info",
-                                              "options_file",
-                                              "no_signal_handler",
-                                              "nox",
-                                              "log",
-                                              "log_trace",
-                                              "log_summary",
-                                              "on_error_abort",
-                                              "fp_trap",
-                                              "debug",
-                                              "start_in_debugger",
-                                              "on_error_attach_debugger",
-                                              "viewfromoptions"};
+  static const auto exact =
+      split("options_left options_view citations skip_petscrc log_view log_view_memory malloc_dump "
+            "malloc_debug malloc malloc_view memory_view objects_dump info options_file "
+            "no_signal_handler nox log log_trace log_summary on_error_abort fp_trap debug "
+            "start_in_debugger on_error_attach_debugger viewfromoptions",
+            ' ');
   return std::find(exact.begin(), exact.end(), name) != exact.end();
 }
 
 /// A role of a solver, whose PETSc options carry a prefix.
 struct SolverRole {
-  const char* prefix;
+  std::string prefix;
   void (*probe_options)(const std::string& prefix);
-  std::string show;  // option that shows what the solver uses, without the prefix
-  // Options that are read when something is solved, not before.
+  // Options that are read when something is solved, not before, without the prefix; the first one
+  // shows what the solver uses.
   std::vector<std::string> read_later;
   std::vector<std::string> common;  // others that users give
 };
 
 const std::vector<SolverRole>& solver_roles() {
-  static const std::vector<std::string> ksp{"ksp_view", "ksp_view_pre", "ksp_converged_reason",
-                                            "ksp_converged_rate", "ksp_view_final_residual"};
-  static const std::vector<std::string> eps{
-      "eps_view",           "eps_view_pre",       "eps_view_values",    "eps_converged_reason",
-      "eps_error_relative", "eps_error_absolute", "eps_error_backward", "eps_view_vectors"};
-  static const std::vector<std::string> ts{"ts_view", "ts_view_pre", "ts_adapt_view", "snes_view",
-                                           "ksp_view"};
+  static const auto later =
+      split("eps_view eps_view_pre eps_view_values eps_converged_reason eps_error_relative "
+            "eps_error_absolute eps_error_backward eps_view_vectors",
+            ' ');
+  static const auto eps = split("eps_type eps_tol eps_nev eps_ncv eps_max_it eps_monitor", ' ');
   static const std::vector<SolverRole> roles{
-      {"slide_",
-       petsc::probe_linear_solver,
-       "ksp_view",
-       ksp,
-       {"pc_type", "pc_factor_mat_solver_type", "pc_factor_levels", "sub_pc_type",
-        "sub_pc_factor_levels", "ksp_type", "ksp_rtol", "ksp_max_it", "ksp_monitor"}},
-      {"null_",
-       petsc::probe_eigensolver,
-       "eps_view",
-       eps,
-       {"eps_type", "eps_tol", "eps_nev", "eps_ncv", "eps_max_it", "eps_monitor"}},
-      {"relax_",
-       petsc::probe_eigensolver,
-       "eps_view",
-       eps,
-       {"eps_type", "eps_tol", "eps_nev", "eps_ncv", "eps_max_it", "eps_monitor"}},
-      {"backward_",
-       petsc::probe_time_stepper,
-       "ts_view",
-       ts,
-       {"ts_type", "ts_max_steps", "ts_monitor", "ts_rtol", "ts_atol"}}};
+      {"slide_", petsc::probe_linear_solver,
+       split("ksp_view ksp_view_pre ksp_converged_reason ksp_converged_rate "
+             "ksp_view_final_residual",
+             ' '),
+       split("pc_type pc_factor_mat_solver_type pc_factor_levels sub_pc_type "
+             "sub_pc_factor_levels ksp_type ksp_rtol ksp_max_it ksp_monitor",
+             ' ')},
+      {"null_", petsc::probe_eigensolver, later, eps},
+      {"relax_", petsc::probe_eigensolver, later, eps},
+      {"backward_", petsc::probe_time_stepper,
+       split("ts_view ts_view_pre ts_adapt_view snes_view ksp_view", ' '),
+       split("ts_type ts_max_steps ts_monitor ts_rtol ts_atol", ' ')}};
   return roles;
 }
 
+// The role that has options of that name; nullptr if none has.
+const SolverRole* role_of(const std::string& name) {
+  for (const auto& role : solver_roles()) {
+    if (name.starts_with(role.prefix)) return &role;
+  }
+  return nullptr;
+}
+
 bool is_read_later(const std::string& name) {
-  const auto& roles = solver_roles();
-  return std::any_of(roles.begin(), roles.end(), [&name](const SolverRole& role) {
-    const auto& later = role.read_later;
-    return std::any_of(later.begin(), later.end(),
-                       [&](const std::string& option) { return name == role.prefix + option; });
-  });
+  const SolverRole* role = role_of(name);
+  return role != nullptr && std::count(role->read_later.begin(), role->read_later.end(),
+                                       name.substr(role->prefix.size())) > 0;
 }
 
 // The option of a role that the user may have meant, without the dash; empty if there is none.
 std::string nearest_option(const SolverRole& role, const std::string& name) {
   auto names = role.read_later;
   names.insert(names.end(), role.common.begin(), role.common.end());
-  const std::string near = nearest_word(name.substr(std::strlen(role.prefix)), names);
+  const std::string near = nearest_word(name.substr(role.prefix.size()), names);
   return near.empty() ? "" : role.prefix + near;
 }
 
 std::string unknown_option(const std::string& name) {
-  for (const auto& role : solver_roles()) {
-    if (!name.starts_with(role.prefix)) continue;
-    const std::string near = nearest_option(role, name);
+  if (const SolverRole* role = role_of(name)) {
+    const std::string near = nearest_option(*role, name);
     return fmt::format("-{}: the solver of this role knows no such option; {}-{}{} shows what it "
                        "uses",
                        name, near.empty() ? "" : fmt::format("did you mean -{}? ", near),
-                       role.prefix, role.show);
+                       role->prefix, role->read_later.front());
   }
   const auto names = all_names();
   const std::string near = nearest_word("-" + name, names);
@@ -142,12 +115,13 @@ std::vector<std::string> given_names() {
 // such as shell and mg, need a program that sets them up, and crash without.
 const std::vector<std::pair<std::string, std::vector<std::string>>>& solver_types() {
   static const std::vector<std::pair<std::string, std::vector<std::string>>> types{
-      {"slide_pc_type",
-       {"elements", "lu", "cholesky", "qr", "svd", "redundant", "ksp", "ilu", "icc", "asm", "gasm",
-        "bjacobi", "jacobi", "pbjacobi", "gamg", "hypre", "none"}},
+      {"slide_pc_type", split("elements lu cholesky qr svd redundant ksp ilu icc asm gasm bjacobi "
+                              "jacobi pbjacobi gamg hypre none",
+                              ' ')},
       {"slide_ksp_type",
-       {"preonly", "gmres", "fgmres", "lgmres", "dgmres", "pgmres", "pipefgmres", "gcr", "bcgs",
-        "bcgsl", "ibcgs", "fbcgs", "fbcgsr", "cgs", "qmrcgs", "tfqmr", "tcqmr", "pipebcgs"}}};
+       split("preonly gmres fgmres lgmres dgmres pgmres pipefgmres gcr bcgs bcgsl "
+             "ibcgs fbcgs fbcgsr cgs qmrcgs tfqmr tcqmr pipebcgs",
+             ' ')}};
   return types;
 }
 
@@ -180,7 +154,7 @@ void check_solver_options(Problems& problems) {
   const auto names = given_names();
   for (const auto& role : solver_roles()) {
     const bool used = std::any_of(names.begin(), names.end(), [&role](const std::string& name) {
-      return name.starts_with(role.prefix);
+      return role_of(name) == &role;
     });
     if (!used) continue;
     try {
@@ -216,11 +190,7 @@ Factors read_factors() {
 std::vector<std::pair<std::string, std::string>> solver_options() {
   std::vector<std::pair<std::string, std::string>> found;
   for (const auto& name : given_names()) {
-    const auto& roles = solver_roles();
-    const bool known = std::any_of(roles.begin(), roles.end(), [&name](const SolverRole& role) {
-      return name.starts_with(role.prefix);
-    });
-    if (known) found.emplace_back(name, solver_option("-" + name));
+    if (role_of(name) != nullptr) found.emplace_back(name, solver_option("-" + name));
   }
   std::sort(found.begin(), found.end());
   return found;

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 
+#include "quantities.hpp"
 #include "reading.hpp"
 #include "stickslip/petsc/session.hpp"
 
@@ -25,18 +26,15 @@ const Option* swept_by(const Option& option) {
 
 std::vector<SweepAxis> read_axes(const Settings& settings, Problems& problems) {
   std::vector<SweepAxis> axes;
-  for (const auto& group : table()) {
-    for (const auto& option : group.options) {
-      const Option* swept = swept_by(option);
-      if (swept == nullptr || !settings.given(option.name)) continue;
-      axes.push_back({swept->name, swept->unit, settings.numbers(option.name)});
-      auto sorted = axes.back().values;
-      std::sort(sorted.begin(), sorted.end());
-      const auto twin = std::adjacent_find(sorted.begin(), sorted.end());
-      if (twin == sorted.end()) continue;
-      settings.report(problems, option.name, fmt::format("names {:g} twice", *twin),
-                      "name it once");
-    }
+  for (const auto& option : all_options()) {
+    const Option* swept = swept_by(option);
+    if (swept == nullptr || !settings.given(option.name)) continue;
+    axes.push_back({swept->name, swept->unit, settings.numbers(option.name)});
+    auto sorted = axes.back().values;
+    std::sort(sorted.begin(), sorted.end());
+    const auto twin = std::adjacent_find(sorted.begin(), sorted.end());
+    if (twin == sorted.end()) continue;
+    settings.report(problems, option.name, fmt::format("names {:g} twice", *twin), "name it once");
   }
   return axes;
 }
@@ -52,23 +50,22 @@ void check_size(const std::vector<SweepAxis>& axes, Problems& problems) {
 
 // What is about one run alone, or makes a series of its own.
 void check_alone(const Settings& settings, Problems& problems) {
-  if (settings.text("study") != "none") {
-    settings.report(problems, "study", "makes a series of runs of its own",
-                    "leave it out, or the -sweep_ options");
-  }
-  if (settings.flag("plan")) {
-    settings.report(problems, "plan", "foretells one run, not a sweep",
-                    "leave the -sweep_ options out to foretell its scene");
-  }
+  const auto refuse = [&](const char* name, const char* why, const char* fix) {
+    const bool used = settings.given(name) && settings.text(name) != find(name)->initial;
+    if (used) settings.report(problems, name, why, fix);
+  };
+  constexpr const char* leave = "leave it out, or the -sweep_ options";
+  refuse("study", "makes a series of runs of its own", leave);
+  refuse("plan", "foretells one run, not a sweep",
+         "leave the -sweep_ options out to foretell its scene");
   for (const char* name : {"compare", "trajectory"}) {
-    if (!settings.given(name)) continue;
-    settings.report(problems, name, "is a file for one run, not for a sweep",
-                    "leave it out, or the -sweep_ options");
+    refuse(name, "is a file for one run, not for a sweep", leave);
   }
-  for (const auto& quantity : settings.list("quantities")) {
-    if (quantity != "density" && quantity != "trajectory") continue;
+  const auto asked = settings.list("quantities");
+  for (const auto& row : quantity_table()) {
+    if (!row.of_one_run || std::count(asked.begin(), asked.end(), row.word) == 0) continue;
     settings.report(problems, "quantities",
-                    fmt::format("asks for {}, which a sweep has no place for", quantity),
+                    fmt::format("asks for {}, which a sweep has no place for", row.word),
                     "run the scenes that you want to look at one by one");
   }
 }
@@ -198,9 +195,7 @@ Request Sweep::request(std::size_t point, Problems& problems) const {
   for (std::size_t a = 0; a < at.size(); ++a) settings.set(axes_[a].option, at[a], problems);
   Request request;
   if (problems.empty()) request = request_of(settings, problems);
-  for (std::string* file :
-       {&request.output.summary, &request.output.output, &request.output.checkpoint})
-    file->clear();
+  request.output = {};
   return request;
 }
 
@@ -210,12 +205,10 @@ Request Sweep::request(std::size_t point) const {
 }
 
 bool sweeps(const Settings& settings) {
-  for (const auto& group : table()) {
-    for (const auto& option : group.options) {
-      if (swept_by(option) != nullptr && settings.given(option.name)) return true;
-    }
-  }
-  return false;
+  const auto options = all_options();
+  return std::any_of(options.begin(), options.end(), [&settings](const Option& option) {
+    return swept_by(option) != nullptr && settings.given(option.name);
+  });
 }
 
 Request read_sweep(const Settings& settings) {
@@ -230,11 +223,7 @@ Request read_sweep(const Settings& settings) {
   problems.raise();
   Request request = sweep->request(0);
   request.sweep = sweep;
-  request.output.summary = settings.text("summary");
-  request.output.output = settings.text("output");
-  request.output.checkpoint = settings.text("checkpoint");
-  request.output.sweep_csv = settings.text("sweep_csv");
-  request.sweep_ranks = settings.integer("sweep_ranks").value_or(1);
+  request.output = read_output(settings);
   for (auto& [name, value] : request.resolved) {
     if (is_axis(sweep->axes(), name)) value = kSwept;
   }

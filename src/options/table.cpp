@@ -2,228 +2,181 @@
 
 #include <fmt/format.h>
 
+#include "quantities.hpp"
 #include "stickslip/support/text.hpp"
+#include "words.hpp"
 
 namespace stickslip::options {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr const char* kChosen = "leave it out to have it chosen from -accuracy";
 
 Range positive() { return {0, kInfinity, false, false}; }
 Range not_negative() { return {0, kInfinity, true, false}; }
 Range whole(double low, double high) { return {low, high, true, true}; }
 
-Option real(std::string name, std::string unit, std::string initial, Range range,
-            std::string sentence, std::string fix) {
-  return {std::move(name), Kind::real, std::move(unit),     std::move(initial),
-          range,           {},         std::move(sentence), std::move(fix)};
+Option real(const char* name, const char* unit, const char* initial, Range range,
+            const char* sentence, const char* fix = kChosen) {
+  return {name, Kind::real, unit, initial, range, {}, sentence, fix};
 }
 
-Option integer(std::string name, std::string initial, Range range, std::vector<std::string> words,
-               std::string sentence, std::string fix) {
-  return {std::move(name),     Kind::integer, "", std::move(initial), range, std::move(words),
-          std::move(sentence), std::move(fix)};
+Option integer(const char* name, const char* initial, Range range, const char* sentence,
+               const char* fix = kChosen, std::vector<std::string> words = {}) {
+  return {name, Kind::integer, "", initial, range, std::move(words), sentence, fix};
 }
 
-Option words(std::string name, Kind kind, std::string initial, std::vector<std::string> words,
-             std::string sentence) {
-  return {std::move(name),     kind, "", std::move(initial), {}, std::move(words),
-          std::move(sentence), ""};
+Option words(const char* name, Kind kind, const char* initial, std::vector<std::string> words,
+             const char* sentence) {
+  return {name, kind, "", initial, {}, std::move(words), sentence, ""};
 }
 
-Option numbers(std::string name, std::string unit, Range range, std::string sentence) {
-  return {std::move(name),
-          Kind::numbers,
-          std::move(unit),
-          "",
-          range,
-          {},
-          std::move(sentence),
-          "negative and missing values mean nothing here"};
+Option numbers(const char* name, const char* unit, const char* sentence) {
+  const char* fix = "negative and missing values mean nothing here";
+  return {name, Kind::numbers, unit, "", not_negative(), {}, sentence, fix};
 }
 
-Option text(std::string name, std::string initial, std::string sentence) {
-  return {std::move(name), Kind::text, "", std::move(initial), {}, {}, std::move(sentence), ""};
+Option text(const char* name, Kind kind, const char* initial, const char* sentence) {
+  return {name, kind, "", initial, {}, {}, sentence, ""};
 }
 
-Option path(std::string name, std::string sentence) {
-  return {std::move(name), Kind::path, "", "", {}, {}, std::move(sentence), ""};
-}
-
-Option flag(std::string name, std::string sentence) {
-  return {std::move(name), Kind::flag, "", "no", {}, {"yes", "no"}, std::move(sentence), ""};
-}
-
-Group scene_group() {
+std::vector<Option> scene_options() {
   return {
-      "Scene",
-      "What is simulated: dV/dt = X + b(V) - mu_d sign(V) while the body slides, V = 0 while it "
-      "sticks and |X| <= mu_s; forces are per unit mass",
-      {
-          real("mu_s", "force", "1", positive(), "static friction coefficient",
-               "friction must be able to hold the body"),
-          real("mu_d", "force", "1", positive(), "dynamic friction coefficient, at most mu_s",
-               "for sliding without friction take a small value such as 1e-8"),
-          real("tau", "time", "1", positive(), "correlation time of the noise X",
-               "for white noise take a small value such as 0.01"),
-          real("delta", "force", "0.125", positive(), "step between neighbouring noise levels",
-               "the continuous noise is the limit of small steps such as 0.125"),
-          integer("noise_levels", "", whole(1, 1e9), {"full"},
-                  "levels N of the noise on each side of 0; `full` is floor(2/(tau delta^2)). "
-                  "Without it, the full range is meant, and as much of it is kept as -accuracy "
-                  "needs",
-                  "leave it out to have it chosen from -accuracy"),
-          words("drag", Kind::choice, "linear", {"linear", "none", "cubic", "expression"},
-                "drag law b(v): -c v, 0, -c v - c3 v^3, or -drag_expression"),
-          real("drag_coefficient", "1/time", "1", not_negative(), "c in the drag law",
-               "the drag must not grow with the velocity, it would drive the body"),
-          real("drag_cubic", "time/length^2", "0", not_negative(), "c3 in the cubic drag law",
-               "the drag must not grow with the velocity, it would drive the body"),
-          text("drag_expression", "",
-               "b(v) of -drag expression in v, mu_s, mu_d, tau, such as \"-v - 0.1*v*abs(v)\"; "
-               "0 at rest, falling everywhere with bounded slopes; where it is not odd, both signs "
-               "of v are kept, as with a bias"),
-          real("bias", "force", "0", {-kInfinity, kInfinity, false, false},
-               "constant force added to X, such as the slope of an inclined plane; without "
-               "symmetry both signs of v are kept, and sticking, moments, noise_law, density, "
-               "spectrum "
-               "(S_0 about the mean) and trajectory can be asked for",
-               "take for example 0.1"),
-          real("v_max", "velocity", "", positive(),
-               "cut of the velocity axis; bodies that reach it wait there until the noise falls. "
-               "Without it, the largest velocity that matters at -accuracy is taken",
-               "leave it out to have it chosen from -accuracy"),
-      }};
+      real("mu_s", "force", "1", positive(), "static friction coefficient",
+           "friction must be able to hold the body"),
+      real("mu_d", "force", "1", positive(), "dynamic friction coefficient, at most mu_s",
+           "for sliding without friction take a small value such as 1e-8"),
+      real("tau", "time", "1", positive(), "correlation time of the noise X",
+           "for white noise take a small value such as 0.01"),
+      real("delta", "force", "0.125", positive(), "step between neighbouring noise levels",
+           "the continuous noise is the limit of small steps such as 0.125"),
+      integer("noise_levels", "", whole(1, 1e9),
+              "levels N of the noise on each side of 0; `full` is floor(2/(tau delta^2)). Without "
+              "it, the full range is meant, and as much of it is kept as -accuracy needs",
+              kChosen, {"full"}),
+      words("drag", Kind::choice, "linear", words_of(kDragLaws),
+            "drag law b(v): -c v, 0, -c v - c3 v^3, or -drag_expression"),
+      real("drag_coefficient", "1/time", "1", not_negative(), "c in the drag law",
+           "the drag must not grow with the velocity, it would drive the body"),
+      real("drag_cubic", "time/length^2", "0", not_negative(), "c3 in the cubic drag law",
+           "the drag must not grow with the velocity, it would drive the body"),
+      text("drag_expression", Kind::text, "",
+           "b(v) of -drag expression in v, mu_s, mu_d, tau, such as \"-v - 0.1*v*abs(v)\"; 0 at "
+           "rest, falling everywhere with bounded slopes; where it is not odd, both signs of v are "
+           "kept, as with a bias"),
+      real("bias", "force", "0", {-kInfinity, kInfinity, false, false},
+           "constant force added to X, such as the slope of an inclined plane; without symmetry "
+           "both signs of v are kept, and sticking, moments, noise_law, density, spectrum (S_0 "
+           "about the mean) and trajectory can be asked for",
+           "take for example 0.1"),
+      real("v_max", "velocity", "", positive(),
+           "cut of the velocity axis; bodies that reach it wait there until the noise falls. "
+           "Without it, the largest velocity that matters at -accuracy is taken"),
+  };
 }
 
-Group question_group() {
+std::vector<Option> question_options() {
   return {
-      "Question",
-      "What is asked for; only what is named is assembled, factored and solved",
-      {
-          words(
-              "quantities", Kind::list, "sticking,moments,noise_law",
-              {"sticking", "moments", "noise_law", "entry_law", "density", "laplace", "F_stick",
-               "resolvent", "relaxation", "spectrum", "duration_density", "autocorrelation",
-               "expectation", "trajectory", "sensitivity"},
-              "comma list. sticking: P_stick, P_slide, mean_stick, mean_slide, "
-              "mean_excursion. moments: E_V2, E_absV, E_XV, E_V. noise_law: P_X_le_mu_s, "
-              "E_X2. entry_law: the level at which sliding ends (an array), f_stick_0. "
-              "density: the stationary law as a field (needs -output). laplace: F_slide, "
-              "F_stick, F_excursion on -lambda. F_stick: that alone, from the noise at rest. "
-              "resolvent: h_plus, h_minus, w_one and for "
-              "each -observable u, w_plus, w_minus, pi, mu on -lambda. relaxation: leading "
-              "eigenvalues of -L for even and odd functions. spectrum: S_v on -omega, S_0, "
-              "diffusivity = S_0/2, fwhm, t_corr = 1/fwhm, variance_from_spectrum. "
-              "duration_density: f_slide, "
-              "f_stick, f_excursion and cdf_slide, cdf_stick, cdf_excursion on -time. "
-              "autocorrelation: C_vv = E[V_0 V_t] on -time. expectation: E[f(Z_t)] from -start for "
-              "each -observable on -time, and its limit pi(f). trajectory: one simulated path from "
-              "-start up to -horizon, to -output or -trajectory. sensitivity: derivatives of every "
-              "scalar of sticking, moments and noise_law, as far as these are asked for, with "
-              "respect to mu_d, tau (at a fixed number of noise levels) and drag_coefficient, by "
-              "adjoints: dP_stick_dmu_d and so on; between two noise levels nothing depends on "
-              "mu_s"),
-          numbers("lambda", "1/time", not_negative(),
-                  "values of lambda, as a,b,c or first:last:count or first:last:count:log. With "
-                  "-route lambda one value, chosen from -accuracy if it is left out"),
-          numbers("omega", "1/time", not_negative(),
-                  "angular frequencies of spectrum, in the forms of -lambda"),
-          numbers("time", "time", not_negative(),
-                  "times of duration_density, autocorrelation and expectation, in the forms of "
-                  "-lambda"),
-          text("start", "s+",
-               "state at time 0 of expectation: s+, s-, or x,v with x a noise level"),
-          text("observable", "",
-               "functions of the state for resolvent and expectation, separated by semicolons: 1, "
-               "x, v, v^2, "
-               "|v|, stick, slide, |x|<=mu_s, or expressions in x, y, v, mu_s, mu_d such as "
-               "\"x*v; abs(v)^3\"; with -scheme hp continuous in v except at v = 0"),
-          real("accuracy", "", "1e-6", {1e-15, 0.1, true, true},
-               "relative error wanted for every scalar asked for, at the given delta",
-               "double precision allows down to about 1e-14, case by case"),
-      }};
+      words("quantities", Kind::list, "sticking,moments,noise_law", words_of(quantity_table()),
+            "comma list. sticking: P_stick, P_slide, mean_stick, mean_slide, mean_excursion. "
+            "moments: E_V2, E_absV, E_XV, E_V. noise_law: P_X_le_mu_s, E_X2. entry_law: the level "
+            "at which sliding ends (an array), f_stick_0. density: the stationary law as a field "
+            "(needs -output). laplace: F_slide, F_stick, F_excursion on -lambda. F_stick: that "
+            "alone, from the noise at rest. resolvent: h_plus, h_minus, w_one and for each "
+            "-observable u, w_plus, w_minus, pi, mu on -lambda. relaxation: leading eigenvalues of "
+            "-L for even and odd functions. spectrum: S_v on -omega, S_0, diffusivity = S_0/2, "
+            "fwhm, t_corr = 1/fwhm, variance_from_spectrum. duration_density: f_slide, f_stick, "
+            "f_excursion and cdf_slide, cdf_stick, cdf_excursion on -time. autocorrelation: C_vv = "
+            "E[V_0 V_t] on -time. expectation: E[f(Z_t)] from -start for each -observable on "
+            "-time, and its limit pi(f). trajectory: one simulated path from -start up to "
+            "-horizon, to -output or -trajectory. sensitivity: derivatives of every scalar of "
+            "sticking, moments and noise_law, as far as these are asked for, with respect to mu_d, "
+            "tau (at a fixed number of noise levels) and drag_coefficient, by adjoints: "
+            "dP_stick_dmu_d and so on; between two noise levels nothing depends on mu_s"),
+      numbers("lambda", "1/time",
+              "values of lambda, as a,b,c or first:last:count or first:last:count:log. With -route "
+              "lambda one value, chosen from -accuracy if it is left out"),
+      numbers("omega", "1/time", "angular frequencies of spectrum, in the forms of -lambda"),
+      numbers(
+          "time", "time",
+          "times of duration_density, autocorrelation and expectation, in the forms of -lambda"),
+      text("start", Kind::text, "s+",
+           "state at time 0 of expectation: s+, s-, or x,v with x a noise level"),
+      text("observable", Kind::text, "",
+           "functions of the state for resolvent and expectation, separated by semicolons: 1, x, "
+           "v, v^2, |v|, stick, slide, |x|<=mu_s, or expressions in x, y, v, mu_s, mu_d such as "
+           "\"x*v; abs(v)^3\"; with -scheme hp continuous in v except at v = 0"),
+      real("accuracy", "", "1e-6", {1e-15, 0.1, true, true},
+           "relative error wanted for every scalar asked for, at the given delta",
+           "double precision allows down to about 1e-14, case by case"),
+  };
 }
 
-Group method_group() {
+std::vector<Option> method_options() {
   return {
-      "Method",
-      "How it is computed",
-      {
-          words("scheme", Kind::choice, "hp", {"hp", "upwind"},
-                "discretisation in v: hp discontinuous Galerkin elements, or the first-order "
-                "upwind differences of the paper"),
-          integer("degree", "", whole(1, 24), {},
-                  "largest polynomial degree of the hp elements; fixing it switches refinement off",
-                  "leave it out to have it chosen from -accuracy"),
-          integer("layers", "", whole(1, 200), {},
-                  "elements graded towards v = 0; fixing it switches refinement off",
-                  "leave it out to have it chosen from the scene"),
-          integer("noise_degree", "", whole(0, 20), {},
-                  "degree of the polynomials in x that stand for groups of noise levels; 0: every "
-                  "level is a node. Fixing it above 0 switches refinement off",
-                  "leave it out to have it chosen from -accuracy"),
-          real("noise_grading", "", "2", {0, 100, false, true},
-               "levels of a group for each level of distance from mu_d and mu_s, towards which "
-               "groups shrink",
-               "2 suits most scenes"),
-          integer("p", "", whole(1, 1e7), {},
-                  "points of the upwind scheme per noise step; fixing it switches refinement "
-                  "off",
-                  "leave it out to have it chosen from -accuracy"),
-          words("spectrum_solver", Kind::choice, "krylov", {"krylov", "direct"},
-                "krylov: two-sided rational Krylov projection, a few real factorisations for all "
-                "frequencies. direct: one complex factorisation for each frequency "
-                "(stickslip-complex), to check it; gives S_v, S_0 and diffusivity"),
-          words("transient_solver", Kind::choice, "krylov", {"krylov", "stepping"},
-                "krylov: reduced models, all times at once. stepping: the backward Kolmogorov "
-                "equation by PETSc's time steppers, to check it (-backward_ts_...)"),
-          words("route", Kind::choice, "excursion",
-                {"excursion", "lambda", "hitting", "null_vector", "fluid_queue", "monte_carlo"},
-                "excursion: one transposed solve with the sliding operator gives the whole "
-                "stationary law. The others work on both signs of v and check it. lambda: "
-                "lambda u_lambda for one small lambda. hitting: mean hitting times. null_vector: "
-                "the left null vector of the generator, by SLEPc. fluid_queue: b = 0 without any "
-                "discretisation in v. monte_carlo: simulated excursions, with 95 % confidence "
-                "intervals"),
-          flag("plan",
-               "print what would be assembled, factored and solved, with unknowns, non-zeros, "
-               "memory and time foretold by the analysis phase of the solver, and stop"),
-          integer("excursions", "1000000", whole(2, 1e15), {},
-                  "number of simulated excursions with -route monte_carlo; with -accuracy it stops "
-                  "before that when every interval is small enough",
-                  "a million gives about three digits"),
-          integer("seed", "1", whole(0, 9007199254740992), {},
-                  "seed of what is simulated; the same seed gives the same numbers on any number "
-                  "of ranks",
-                  "any whole number will do"),
-          real("horizon", "time", "100", positive(), "end of the trajectory",
-               "take for example 100"),
-          path("checkpoint",
-               "go on with the simulation of this file if it exists, and keep it there "
-               "every few seconds; more -excursions later add to it. With a sweep: keep every "
-               "point there as it is finished, and do only what the file does not hold yet"),
-      }};
+      words("scheme", Kind::choice, "hp", words_of(kSchemes),
+            "discretisation in v: hp discontinuous Galerkin elements, or the first-order upwind "
+            "differences of the paper"),
+      integer("degree", "", whole(1, 24),
+              "largest polynomial degree of the hp elements; fixing it switches refinement off"),
+      integer("layers", "", whole(1, 200),
+              "elements graded towards v = 0; fixing it switches refinement off",
+              "leave it out to have it chosen from the scene"),
+      integer("noise_degree", "", whole(0, 20),
+              "degree of the polynomials in x that stand for groups of noise levels; 0: every "
+              "level is a node. Fixing it above 0 switches refinement off"),
+      real("noise_grading", "", "2", {0, 100, false, true},
+           "levels of a group for each level of distance from mu_d and mu_s, towards which groups "
+           "shrink",
+           "2 suits most scenes"),
+      integer("p", "", whole(1, 1e7),
+              "points of the upwind scheme per noise step; fixing it switches refinement off"),
+      words("spectrum_solver", Kind::choice, "krylov", words_of(kSpectrumSolvers),
+            "krylov: two-sided rational Krylov projection, a few real factorisations for all "
+            "frequencies. direct: one complex factorisation for each frequency "
+            "(stickslip-complex), to check it; gives S_v, S_0 and diffusivity"),
+      words("transient_solver", Kind::choice, "krylov", words_of(kTransientSolvers),
+            "krylov: reduced models, all times at once. stepping: the backward Kolmogorov equation "
+            "by PETSc's time steppers, to check it (-backward_ts_...)"),
+      words("route", Kind::choice, "excursion", words_of(kRoutes),
+            "excursion: one transposed solve with the sliding operator gives the whole stationary "
+            "law. The others work on both signs of v and check it. lambda: lambda u_lambda for one "
+            "small lambda. hitting: mean hitting times. null_vector: the left null vector of the "
+            "generator, by SLEPc. fluid_queue: b = 0 without any discretisation in v. monte_carlo: "
+            "simulated excursions, with 95 % confidence intervals"),
+      words("plan", Kind::flag, "no", {"yes", "no"},
+            "print what would be assembled, factored and solved, with unknowns, non-zeros, memory "
+            "and time foretold by the analysis phase of the solver, and stop"),
+      integer("excursions", "1000000", whole(2, 1e15),
+              "number of simulated excursions with -route monte_carlo; with -accuracy it stops "
+              "before that when every interval is small enough",
+              "a million gives about three digits"),
+      integer(
+          "seed", "1", whole(0, 9007199254740992),
+          "seed of what is simulated; the same seed gives the same numbers on any number of ranks",
+          "any whole number will do"),
+      real("horizon", "time", "100", positive(), "end of the trajectory", "take for example 100"),
+      text("checkpoint", Kind::path, "",
+           "go on with the simulation of this file if it exists, and keep it there every few "
+           "seconds; more -excursions later add to it. With a sweep: keep every point there as it "
+           "is finished, and do only what the file does not hold yet"),
+  };
 }
 
-Group study_group() {
+std::vector<Option> study_options() {
   return {
-      "Study",
-      "A series of runs that looks at the accuracy itself",
-      {
-          words("study", Kind::choice, "none", {"none", "p", "delta", "heuristic", "cost"},
-                "p: the upwind scheme on p = 2, 4, ..., its "
-                "observed order and Richardson's limit. delta: falling noise steps with mu_s on a "
-                "level and between two, observed order and repeated Richardson's limit. heuristic: "
-                "the extrapolation of "
-                "the paper beside converged values. cost: error against time of all methods"),
-          integer("study_steps", "", whole(4, 20), {},
-                  "length of the series: number of values of p or delta (default 8)",
-                  "three values tell an order, a fourth how sure it is"),
-          integer("study_repeats", "3", whole(1, 99), {},
-                  "repetitions of each run of -study cost, of which the median time is taken",
-                  "an odd number is best"),
-      }};
+      words("study", Kind::choice, "none", words_of(kStudies),
+            "p: the upwind scheme on p = 2, 4, ..., its observed order and Richardson's limit. "
+            "delta: falling noise steps with mu_s on a level and between two, observed order and "
+            "repeated Richardson's limit. heuristic: the extrapolation of the paper beside "
+            "converged values. cost: error against time of all methods"),
+      integer("study_steps", "", whole(4, 20),
+              "length of the series: number of values of p or delta (default 8)",
+              "three values tell an order, a fourth how sure it is"),
+      integer("study_repeats", "3", whole(1, 99),
+              "repetitions of each run of -study cost, of which the median time is taken",
+              "an odd number is best"),
+  };
 }
 
 // The values of another option.
@@ -232,78 +185,46 @@ Option sweep_of(const Option& option) {
           "values of -" + option.name, option.fix};
 }
 
-Group sweep_group() {
-  Group group{
-      "Sweep",
-      "A run for each combination of the values given, as a,b,c or first:last:count or "
-      "first:last:count:log; the last option of this list changes fastest. -checkpoint keeps "
-      "what is finished",
-      {}};
-  for (const auto& option : scene_group().options) {
+std::vector<Option> sweep_options() {
+  std::vector<Option> options;
+  for (const auto& option : scene_options()) {
     const bool number = option.kind == Kind::real || option.kind == Kind::integer;
-    if (number) group.options.push_back(sweep_of(option));
+    if (number) options.push_back(sweep_of(option));
   }
-  group.options.push_back(
-      integer("sweep_ranks", "1", whole(1, 1e6), {},
-              "ranks that share the work of a point; groups of that many take the points one after "
-              "the other",
-              "one is best while a point fits into the memory of one"));
-  return group;
+  options.push_back(integer("sweep_ranks", "1", whole(1, 1e6),
+                            "ranks that share the work of a point; groups of that many take the "
+                            "points one after the other",
+                            "one is best while a point fits into the memory of one"));
+  return options;
 }
 
-Group output_group() {
+std::vector<Option> output_options() {
   return {
-      "Output",
-      "A table goes to standard output, progress to standard error",
-      {
-          path("summary", "write everything as JSON to this file"),
-          path("output", "write everything and the fields as HDF5 to this file; with density also "
-                         "FILE.xdmf, which ParaView opens"),
-          path("study_csv", "write every scalar of every run of a study as CSV to this file"),
-          path("sweep_csv",
-               "write a row for each point of a sweep as CSV to this file: its values, every "
-               "scalar with its error, and how it ended"),
-          path("trajectory", "write the trajectory as CSV (time, x, y, v) to this file"),
-          {"compare",
-           Kind::input,
-           "",
-           "",
-           {},
-           {},
+      text("summary", Kind::path, "", "write everything as JSON to this file"),
+      text("output", Kind::path, "",
+           "write everything and the fields as HDF5 to this file; with density also FILE.xdmf, "
+           "which ParaView opens"),
+      text("study_csv", Kind::path, "",
+           "write every scalar of every run of a study as CSV to this file"),
+      text("sweep_csv", Kind::path, "",
+           "write a row for each point of a sweep as CSV to this file: its values, every scalar "
+           "with its error, and how it ended"),
+      text("trajectory", Kind::path, "",
+           "write the trajectory as CSV (time, x, y, v) to this file"),
+      text("compare", Kind::input, "",
            "hold the results against the values of this file: HDF5 or JSON of this program, or CSV "
            "with columns quantity,argument,value,low,high (95 % intervals). Without -quantities, "
            "-lambda, -omega or -time, those of the file are taken. Exit status 3 when they "
-           "disagree "
-           "(family-wise level 1e-3)",
-           ""},
-          words("progress", Kind::choice, "auto", {"auto", "on", "off"},
-                "show what is being done; auto: when standard error is a terminal"),
-      }};
+           "disagree (family-wise level 1e-3)"),
+      words("progress", Kind::choice, "auto", words_of(kProgress),
+            "show what is being done; auto: when standard error is a terminal"),
+  };
 }
 
 std::string number(double value) {
   if (value == kInfinity) return "inf";
   if (value == -kInfinity) return "-inf";
   return fmt::format("{:g}", value);
-}
-
-// A cell of a Markdown table, where a bar would end it.
-std::string cell(const std::string& text) {
-  std::string escaped;
-  for (char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
-  return escaped.empty() ? " " : escaped;
-}
-
-std::string other_help() {
-  std::string text = "\nOther:\n";
-  for (const auto& other : other_options()) {
-    text += fmt::format("  {:<18} {}\n", other.name, wrap(other.sentence, 76, 21));
-  }
-  std::string meanings;
-  for (const auto& [status, meaning] : exit_meanings()) {
-    meanings += fmt::format("{}{} {}", meanings.empty() ? "" : "; ", status, meaning);
-  }
-  return text + fmt::format("\n{}.\n", wrap("Exit status: " + meanings, 88, 0));
 }
 
 }  // namespace
@@ -319,8 +240,21 @@ std::string Range::text() const {
 }
 
 std::span<const Group> table() {
-  static const std::vector<Group> groups{scene_group(), question_group(), method_group(),
-                                         study_group(), sweep_group(),    output_group()};
+  static const std::vector<Group> groups{
+      {"Scene",
+       "What is simulated: dV/dt = X + b(V) - mu_d sign(V) while the body slides, V = 0 while it "
+       "sticks and |X| <= mu_s; forces are per unit mass",
+       scene_options()},
+      {"Question", "What is asked for; only what is named is assembled, factored and solved",
+       question_options()},
+      {"Method", "How it is computed", method_options()},
+      {"Study", "A series of runs that looks at the accuracy itself", study_options()},
+      {"Sweep",
+       "A run for each combination of the values given, as a,b,c or first:last:count or "
+       "first:last:count:log; the last option of this list changes fastest. -checkpoint keeps what "
+       "is finished",
+       sweep_options()},
+      {"Output", "A table goes to standard output, progress to standard error", output_options()}};
   return groups;
 }
 
@@ -332,12 +266,10 @@ std::span<const OtherOption> other_options() {
       {"-reference", "print the reference page in Markdown and stop"},
       {"-man_page", "print the manual page in roff and stop"},
       {"-completion", "print the completion of the command line for bash and stop"},
-      {"-slide_...",
-       "PETSc options of the solver for the sliding operator, for example -slide_ksp_view, or "
-       "-slide_pc_type with elements or lu (by MUMPS)"},
-      {"-null_..., -relax_...",
-       "SLEPc options of the eigensolvers of -route null_vector and of relaxation, for example "
-       "-relax_eps_nev 10 or -null_eps_view"},
+      {"-slide_...", "PETSc options of the solver for the sliding operator, for example "
+                     "-slide_ksp_view, or -slide_pc_type with elements or lu (by MUMPS)"},
+      {"-null_..., -relax_...", "SLEPc options of the eigensolvers of -route null_vector and of "
+                                "relaxation, for example -relax_eps_nev 10 or -null_eps_view"},
       {"-log_view, ...", "PETSc's own options"},
   };
   return others;
@@ -353,11 +285,20 @@ std::span<const ExitMeaning> exit_meanings() {
   return meanings;
 }
 
-const Option* find(std::string_view name) {
-  for (const auto& group : table()) {
-    for (const auto& option : group.options) {
-      if (option.name == name) return &option;
+std::span<const Option> all_options() {
+  static const auto all = [] {
+    std::vector<Option> options;
+    for (const auto& group : table()) {
+      options.insert(options.end(), group.options.begin(), group.options.end());
     }
+    return options;
+  }();
+  return all;
+}
+
+const Option* find(std::string_view name) {
+  for (const auto& option : all_options()) {
+    if (option.name == name) return &option;
   }
   return nullptr;
 }
@@ -367,9 +308,7 @@ std::vector<std::string> all_names() {
   for (const auto& other : other_options()) {
     if (other.name.find("...") == std::string::npos) names.push_back(other.name);
   }
-  for (const auto& group : table()) {
-    for (const auto& option : group.options) names.push_back("-" + option.name);
-  }
+  for (const auto& option : all_options()) names.push_back("-" + option.name);
   return names;
 }
 
@@ -405,45 +344,6 @@ std::string allowed_values(const Option& option) {
   case Kind::input: return "a file name";
   }
   return "";
-}
-
-std::string help_text() {
-  std::string text =
-      "stickslip: dry friction under random forcing, to the digits you ask for\n\n"
-      "  stickslip -options_file scene.opts [-name value ...]\n\n"
-      "Every choice is a PETSc option, on the line or in an options file; the last one given "
-      "counts.\n";
-  for (const auto& group : table()) {
-    text += fmt::format("\n{}. {}\n", group.title, wrap(group.explanation, 88, 2));
-    for (const auto& option : group.options) {
-      const std::string initial =
-          option.initial.empty() ? "" : fmt::format(" (default {})", option.initial);
-      const std::string unit = option.unit.empty() ? "" : fmt::format(" [{}]", option.unit);
-      text += fmt::format(
-          "  -{:<17} {}\n", option.name,
-          wrap(fmt::format("{}{}{}; {}", option.sentence, unit, initial, allowed_values(option)),
-               76, 21));
-    }
-  }
-  return text + other_help();
-}
-
-std::string reference_page() {
-  std::string text =
-      "# Options\n\n"
-      "Generated by `stickslip -reference` from the table that also validates the options.\n"
-      "Give them on the command line or in an options file (`-options_file scene.opts`, one\n"
-      "`-name value` a line, `#` for comments); the last one given counts.\n";
-  for (const auto& group : table()) {
-    text += fmt::format("\n## {}\n\n{}.\n\n", group.title, group.explanation);
-    text += "| option | form | unit | default | allowed | meaning |\n";
-    text += "| --- | --- | --- | --- | --- | --- |\n";
-    for (const auto& o : group.options) {
-      text += fmt::format("| `-{}` | {} | {} | {} | {} | {} |\n", o.name, kind_name(o.kind),
-                          cell(o.unit), cell(o.initial), cell(allowed_values(o)), cell(o.sentence));
-    }
-  }
-  return text;
 }
 
 }  // namespace stickslip::options

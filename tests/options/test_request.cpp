@@ -274,6 +274,79 @@ TEST_CASE("request: arguments that nothing needs are told, and harmless") {
   }
 }
 
+TEST_CASE("request: an option that serves one purpose is told where it serves none") {
+  const std::vector<std::pair<std::string, std::string>> useless{
+      {"-drag none -drag_coefficient 2", "-drag_coefficient has no effect with -drag none"},
+      {"-drag_cubic 2", "-drag_cubic has no effect with -drag linear"},
+      {"-quantities laplace -lambda 1 -omega 1", "-omega has no effect on what is asked for"},
+      {"-time 1", "-time has no effect on what is asked for"},
+      {"-start s-", "-start has no effect on what is asked for"},
+      {"-horizon 5", "-horizon has no effect on what is asked for"},
+      {"-transient_solver krylov", "-transient_solver has no effect on what is asked for"},
+      {"-spectrum_solver krylov", "-spectrum_solver has no effect on what is asked for"},
+      {"-excursions 9", "-excursions has no effect on what is asked for"},
+      {"-checkpoint c", "-checkpoint has no effect on what is asked for"},
+      {"-sweep_csv c", "-sweep_csv has no effect on what is asked for"},
+      {"-sweep_ranks 2", "-sweep_ranks has no effect on what is asked for"},
+      {"-study_steps 4", "-study_steps has no effect without -study"},
+      {"-study_repeats 3", "-study_repeats has no effect without -study"},
+      {"-study_csv c", "-study_csv has no effect without -study"}};
+  for (const auto& [line, warning] : useless) {
+    CHECK(Given(line).read().warnings == std::vector<std::string>{warning});
+  }
+  for (const std::string line :
+       {"-route monte_carlo -excursions 9 -seed 7 -checkpoint c", "-study p -study_steps 4",
+        "-drag cubic -drag_coefficient 2 -drag_cubic 2",
+        "-quantities spectrum -omega 1 -spectrum_solver krylov",
+        "-quantities duration_density,autocorrelation -time 1 -transient_solver stepping",
+        "-quantities expectation -observable v -time 1 -start s- -transient_solver stepping",
+        "-quantities trajectory -output t.h5 -start s- -horizon 5 -seed 7"}) {
+    INFO(line);
+    CHECK(Given(line).read().warnings.empty());
+  }
+}
+
+TEST_CASE("request: a study chooses route, discretisation and noise levels itself") {
+  const std::string compared = std::string("-compare ") + STICKSLIP_SOURCE + "/no.csv";
+  for (const std::string chosen : {"-route excursion", "-scheme hp", "-degree 4", "-layers 4",
+                                   "-noise_degree 2", "-noise_grading 2", "-p 4", "-v_max 5",
+                                   "-checkpoint c", "-noise_levels 8", "-plan", compared.c_str()}) {
+    const std::string told = complaint("-study delta -delta 0.5 " + chosen);
+    INFO(told);
+    CHECK_THAT(told, Catch::Contains(chosen.substr(0, chosen.find(' ')) + " = "));
+    CHECK_THAT(told, Catch::Contains("is chosen by -study itself") || Catch::Contains("one run"));
+  }
+  check_refusal({"-study p -quantities sticking,density -output d.h5",
+                 {"-quantities = sticking,density", "of a study are sticking, moments"}});
+}
+
+TEST_CASE("request: quantities that need a file or frequencies, or derive nothing, are told") {
+  const std::vector<Refusal> refusals{
+      {"-quantities trajectory", {"needs a file", "-trajectory FILE.csv"}},
+      {"-quantities sensitivity,relaxation", {"for nothing to derive", "add sticking"}},
+      {"-quantities expectation -observable v", {"no times are given", "add for example -time"}},
+      {"-route monte_carlo -quantities spectrum", {"no frequencies are given", "0:10:41"}}};
+  for (const auto& refusal : refusals) check_refusal(refusal);
+}
+
+TEST_CASE("request: results in a file to compare with have names of this program") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "known.csv";
+  const auto told = [&](const std::string& key) {
+    std::ofstream(file) << "quantity,argument,value,low,high\n" << key << ",,1,,\n";
+    return complaint("-compare " + file);
+  };
+  for (const char* known : {"P_stick", "var_slide", "relaxation_odd", "h_plus", "pi(v^2)",
+                            "stationary(x)", "dP_stick_dmu_d", "dE_V2_ddrag_coefficient"}) {
+    INFO(known);
+    CHECK(told(known) == "nothing");
+  }
+  CHECK_THAT(told("P_stik"), Catch::Contains("names P_stik") && Catch::Contains("P_stick?"));
+  for (const char* unknown : {"foo(v)", "dP_stick_dmu", "dfoo_dtau", "d_dtau", "P_stick_dtau"}) {
+    CHECK_THAT(told(unknown), Catch::Contains("which is no result"));
+  }
+}
+
 TEST_CASE("request: the fluid queue has neither drag nor a grid in v") {
   const std::vector<Refusal> refusals{
       {"-route fluid_queue", {"-route = fluid_queue", "needs b = 0", "-drag none"}},

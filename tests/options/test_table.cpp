@@ -3,6 +3,7 @@
 #include <set>
 #include <sstream>
 
+#include "stickslip/options/manual.hpp"
 #include "stickslip/options/settings.hpp"
 #include "stickslip/options/table.hpp"
 #include "stickslip/support/text.hpp"

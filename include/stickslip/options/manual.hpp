@@ -1,10 +1,16 @@
 #pragma once
-/// The manual page and the completion of the command line, made from the table of options.
+/// Help, pages and the completion of the command line, made from the table of options.
 
 #include <string>
 #include <string_view>
 
 namespace stickslip::options {
+
+/// The text of -help.
+[[nodiscard]] std::string help_text();
+
+/// The reference page in Markdown (docs/options.md).
+[[nodiscard]] std::string reference_page();
 
 /// `text` as one line of running text in roff: no character acts as a command, and dashes can be
 /// copied from the page.

@@ -26,8 +26,8 @@ class Problems {
   std::vector<std::string> messages_;
 };
 
-/// Typed access to the options of the table. A value that cannot be read is reported to the
-/// Problems given to read() and replaced by its default, so that reading can go on.
+/// Typed access to the options of the table. Values that cannot be read are reported to the
+/// Problems given to read(); a number is not asked for before there are none.
 class Settings {
  public:
   /// Reads all options of the table from the PETSc options database, and marks them used. Local.
@@ -36,7 +36,7 @@ class Settings {
   [[nodiscard]] bool given(const std::string& name) const { return text_.contains(name); }
   /// The value as given or its default; empty if neither exists.
   [[nodiscard]] std::string text(const std::string& name) const;
-  [[nodiscard]] double real(const std::string& name) const { return numbers_.at(name); }
+  [[nodiscard]] double real(const std::string& name) const;
   /// The whole number given or the default; nothing if neither exists or a word was given.
   [[nodiscard]] std::optional<int> integer(const std::string& name) const;
   [[nodiscard]] std::vector<std::string> list(const std::string& name) const;
@@ -50,10 +50,7 @@ class Settings {
               const std::string& fix) const;
 
  private:
-  void parse(const Option& option, const std::string& value, Problems& problems);
   std::map<std::string, std::string> text_;
-  std::map<std::string, double> numbers_;
-  std::map<std::string, std::vector<double>> lists_;
 };
 
 /// A finite decimal number that fills the whole text.

@@ -1,5 +1,5 @@
 #pragma once
-/// The one table of options: help, reference page and validation are made from it.
+/// The one table of options: validation, help and pages are made from it.
 
 #include <limits>
 #include <optional>
@@ -66,6 +66,9 @@ struct ExitMeaning {
 /// All options by group, in the order of the help text.
 [[nodiscard]] std::span<const Group> table();
 
+/// The same without groups.
+[[nodiscard]] std::span<const Option> all_options();
+
 /// Options outside the table, in the order of the help text.
 [[nodiscard]] std::span<const OtherOption> other_options();
 
@@ -83,11 +86,5 @@ struct ExitMeaning {
 
 /// "a real number in (0, inf)", "one of linear, none or cubic", ...
 [[nodiscard]] std::string allowed_values(const Option& option);
-
-/// The text of -help.
-[[nodiscard]] std::string help_text();
-
-/// The reference page in Markdown (docs/options.md).
-[[nodiscard]] std::string reference_page();
 
 }  // namespace stickslip::options

@@ -1,0 +1,107 @@
+#include "quantities.hpp"
+
+#include <algorithm>
+#include <set>
+#include <string_view>
+
+namespace stickslip::options {
+namespace {
+
+using enum Quantity;
+
+/// Names of the results of a quantity, but for those of observables.
+struct QuantityKeys {
+  Quantity quantity;
+  std::vector<std::string> asking;  // that ask for it in a file to compare with
+  std::vector<std::string> others = {};
+};
+
+const std::vector<QuantityKeys>& key_table() {
+  static const std::vector<QuantityKeys> rows{
+      {sticking, {"P_stick", "P_slide", "mean_stick", "mean_slide", "mean_excursion"}},
+      {moments, {"E_V2", "E_absV", "E_XV", "E_V"}},
+      {noise_law, {"P_X_le_mu_s", "E_X2"}},
+      {entry_law, {"entry_law", "f_stick_0"}},
+      {laplace, {"F_slide", "F_stick", "F_excursion"}, {"f_slide_0"}},
+      {laplace, {}, {"var_slide", "var_stick", "var_excursion"}},
+      {resolvent, {}, {"h_plus", "h_minus", "w_one"}},
+      {relaxation, {}, {"relaxation_even", "relaxation_odd"}},
+      {relaxation, {}, {"relaxation_even_frequency", "relaxation_odd_frequency"}},
+      {spectrum, {"S_v", "S_0", "fwhm", "t_corr"}, {"diffusivity", "variance_from_spectrum"}},
+      {duration_density, {"f_slide", "f_stick", "f_excursion"}},
+      {duration_density, {"cdf_slide", "cdf_stick", "cdf_excursion"}},
+      {autocorrelation, {"C_vv"}}};
+  return rows;
+}
+
+}  // namespace
+
+const std::vector<QuantityRow>& quantity_table() {
+  using enum Route;
+  using Routes = std::vector<Route>;
+  static const Routes all{excursion, lambda, hitting, null_vector, fluid_queue, monte_carlo},
+      averages{excursion, lambda, null_vector, fluid_queue, monte_carlo},
+      biased{excursion, null_vector, monte_carlo}, renewal{excursion, fluid_queue, monte_carlo},
+      simulated{excursion, monte_carlo}, alone{excursion}, none{};
+  static const std::vector<QuantityRow> rows{
+      {"sticking", sticking, all, biased, {}},
+      {"moments", moments, averages, biased, {}},
+      {"noise_law", noise_law, averages, biased, {}},
+      {"entry_law", entry_law, renewal, none, {}},
+      {"density", density, alone, alone, {}, true},
+      {"laplace", laplace, renewal, none, {"lambda"}},
+      {"F_stick", stay_transform, alone, none, {"lambda"}},
+      {"resolvent", resolvent, alone, none, {"lambda", "observable"}},
+      {"relaxation", relaxation, alone, none, {}},
+      {"spectrum", spectrum, simulated, simulated, {"omega", "spectrum_solver"}},
+      {"duration_density", duration_density, simulated, none, {"time", "transient_solver"}},
+      {"autocorrelation", autocorrelation, alone, none, {"time", "transient_solver"}},
+      {"expectation",
+       expectation,
+       alone,
+       none,
+       {"observable", "time", "start", "transient_solver"}},
+      {"trajectory", trajectory, simulated, simulated, {"start", "horizon", "seed"}, true},
+      {"sensitivity", sensitivity, alone, none, {}}};
+  return rows;
+}
+
+std::optional<Quantity> asked_by(const std::string& key) {
+  for (const auto& row : key_table()) {
+    if (std::count(row.asking.begin(), row.asking.end(), key) > 0) return row.quantity;
+  }
+  return std::nullopt;
+}
+
+bool depends_on(const Question& question, const std::string& option) {
+  const auto& rows = quantity_table();
+  return std::any_of(rows.begin(), rows.end(), [&](const QuantityRow& row) {
+    return question.wants(row.quantity) &&
+           std::count(row.options.begin(), row.options.end(), option) > 0;
+  });
+}
+
+std::vector<std::string> plain_keys() {
+  std::vector<std::string> keys;
+  for (const auto& row : key_table()) {
+    keys.insert(keys.end(), row.asking.begin(), row.asking.end());
+    keys.insert(keys.end(), row.others.begin(), row.others.end());
+  }
+  return keys;
+}
+
+bool is_composed_key(const std::string& key) {
+  const auto open = key.find('(');
+  if (open != key.npos && key.ends_with(')')) {
+    static const std::set<std::string> of{"u", "w_plus", "w_minus", "pi", "mu", "E", "stationary"};
+    return of.contains(key.substr(0, open));
+  }
+  for (const std::string_view parameter : {"_dmu_d", "_dtau", "_ddrag_coefficient"}) {
+    if (!key.starts_with('d') || !key.ends_with(parameter)) continue;
+    const std::size_t ends = 1 + parameter.size();
+    if (key.size() > ends && asked_by(key.substr(1, key.size() - ends))) return true;
+  }
+  return false;
+}
+
+}  // namespace stickslip::options

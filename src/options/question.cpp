@@ -1,0 +1,223 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "quantities.hpp"
+#include "reading.hpp"
+#include "stickslip/support/text.hpp"
+#include "stickslip/velocity/mesh.hpp"
+
+namespace stickslip::options {
+namespace {
+
+// A misspelled name would be left out, and the rest agree.
+void check_keys(const Settings& settings, const std::vector<Reference>& references,
+                Problems& problems) {
+  const auto keys = plain_keys();
+  std::set<std::string> unknown;
+  for (const auto& reference : references) {
+    const std::string& key = reference.quantity;
+    const bool known = std::count(keys.begin(), keys.end(), key) > 0 || is_composed_key(key);
+    if (known || !unknown.insert(key).second) continue;
+    const std::string near = nearest_word(key, keys);
+    settings.report(problems, "compare", fmt::format("names {}, which is no result", key),
+                    near.empty() ? "-help tells the results of each of -quantities"
+                                 : fmt::format("did you mean {}?", near));
+  }
+}
+
+std::vector<Reference> read_compared(const Settings& settings, Problems& problems) {
+  if (!settings.given("compare")) return {};
+  std::vector<Reference> references;
+  try {
+    references = read_references(settings.text("compare"));
+  } catch (const std::invalid_argument& error) {
+    settings.report(problems, "compare", error.what(),
+                    "name a file written by -output or -summary, or CSV with the columns "
+                    "quantity,argument,value,low,high");
+  }
+  check_keys(settings, references, problems);
+  return references;
+}
+
+// The quantities named; else those of the file to compare with; else the default ones. Of those
+// that nobody named, the ones that the route gives.
+void read_quantities(const Settings& settings, Request& request, Problems& problems) {
+  const bool symmetric = request.scene.symmetric();
+  auto& question = request.question;
+  const bool given = settings.given("quantities");
+  const auto words = settings.list("quantities");
+  const auto asked = [&](const QuantityRow& row) {
+    const auto& known = question.references;
+    if (given || known.empty()) return std::count(words.begin(), words.end(), row.word) > 0;
+    return std::any_of(known.begin(), known.end(), [&row](const Reference& reference) {
+      return asked_by(reference.quantity) == row.quantity;
+    });
+  };
+  std::vector<std::string> given_by_route, refused;
+  for (const auto& row : quantity_table()) {
+    const auto& routes = symmetric ? row.routes : row.without_symmetry;
+    const bool gives = std::count(routes.begin(), routes.end(), request.method.route) > 0;
+    if (gives) given_by_route.emplace_back(row.word);
+    if (!asked(row)) continue;
+    if (gives) question.quantities.insert(row.quantity);
+    if (!gives) refused.emplace_back(row.word);
+  }
+  if (refused.empty() || (!given && !question.quantities.empty())) return;
+  settings.report(
+      problems, "quantities",
+      fmt::format("{} cannot be had by -route {}{}, which gives {}", enumerate(refused, "and"),
+                  settings.text("route"), symmetric ? "" : " without symmetry",
+                  given_by_route.empty() ? "nothing" : enumerate(given_by_route, "and")),
+      symmetric ? "take -route excursion, or other quantities"
+                : "take other quantities, or -bias 0 and an odd drag");
+}
+
+// The values given, or those of the file to compare with.
+std::vector<double> arguments(const Settings& settings, const std::vector<Reference>& references,
+                              const std::string& option, Quantity quantity) {
+  std::vector<double> values = settings.numbers(option);
+  if (settings.given(option)) return values;
+  for (const auto& reference : references) {
+    const bool asks = reference.argument && asked_by(reference.quantity) == quantity;
+    const double value = reference.argument.value_or(0);
+    if (asks && value >= 0 && std::count(values.begin(), values.end(), value) == 0) {
+      values.push_back(value);
+    }
+  }
+  return values;
+}
+
+std::vector<model::Observable>
+read_observables(const Settings& settings, const model::Friction& friction, Problems& problems) {
+  constexpr const char* example = "write for example \"v^2; x*v; stick\"";
+  std::vector<model::Observable> observables;
+  const auto texts = split(settings.text("observable"), ';');
+  if (settings.given("observable") && texts.empty()) {
+    settings.report(problems, "observable", "names no function of the state", example);
+  }
+  for (auto text = texts.begin(); text != texts.end(); ++text) {
+    if (std::find(texts.begin(), text, *text) != text) {
+      settings.report(problems, "observable", "names " + *text + " twice", "name it once");
+      continue;
+    }
+    try {
+      observables.push_back(model::parse_observable(*text, friction));
+    } catch (const std::invalid_argument& error) {
+      settings.report(problems, "observable", error.what(), example);
+    }
+  }
+  return observables;
+}
+
+// Up to 17 levels evenly, and those next to the numbers of f.
+std::vector<double> probed_levels(const model::Scene& scene, const model::Observable& f) {
+  const auto noise = scene.meant().noise;
+  const double seen = (largest_force(scene) + scene.friction.mu_d) / scene.delta;
+  const int highest = std::min<int>(noise.levels, static_cast<int>(std::min(seen, 1e9)));
+  constexpr int half = 8;
+  std::set<int> levels;
+  for (int n = -half; n <= half; ++n) levels.insert(static_cast<int>(highest * (n * 1.0 / half)));
+  for (double number : f.numbers) {
+    const double near = std::min<double>(number / scene.delta, highest - 1);
+    for (double level : {std::floor(near), std::ceil(near)}) {
+      for (int sign : {1, -1}) levels.insert(sign * static_cast<int>(level));
+    }
+  }
+  std::vector<double> x;
+  for (int level : levels) x.push_back(noise.level(level));
+  std::sort(x.begin(), x.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  return x;
+}
+
+// |v| beyond which nothing counts.
+double largest_speed(const model::Scene& scene) {
+  constexpr double rounding = 1e-16;
+  const double force = largest_force(scene);
+  double speed =
+      std::max(scene.drag.terminal_velocity(force), scene.drag.mirrored().terminal_velocity(force));
+  speed = std::min(speed, velocity::tail_velocity(scene.meant(), rounding));
+  return std::min(speed, scene.v_max.value_or(speed));
+}
+
+// Where f jumps within an element, its polynomials are wrong by more than refinement sees. At v = 0
+// elements end, and x has a level on each of its values.
+void check_observables(const Settings& settings, const Request& request, Problems& problems) {
+  const bool used = depends_on(request.question, "observable");
+  if (!used || request.method.scheme != Scheme::hp) return;
+  const double speed = largest_speed(request.scene);
+  for (const auto& f : request.question.observables) {
+    const auto jump = model::velocity_jump(f, probed_levels(request.scene, f), speed);
+    if (!jump) continue;
+    settings.report(problems, "observable",
+                    fmt::format("{} jumps at v = {:.9g} (seen at x = {:g}); -scheme hp takes "
+                                "functions that are continuous in v except at v = 0",
+                                f.name, jump->v, jump->x),
+                    "take -scheme upwind, or a smooth step such as tanh((v - 0.5)/0.2)");
+  }
+}
+
+// s+, s- or x,v with x on a noise level.
+void read_start(const Settings& settings, Request& request, Problems& problems) {
+  const std::string text = settings.text("start");
+  const auto& scene = request.scene;
+  auto& question = request.question;
+  const auto process = scene.process(1);
+  question.start_level = text == "s-" ? process.lowest_static() - 1 : process.static_index() + 1;
+  if (text == "s+" || text == "s-") return;
+  const auto numbers = parse_numbers(text);
+  if (!numbers || numbers->size() != 2) {
+    settings.report(problems, "start", "must be s+, s- or x,v", "write for example -start 0.5,0");
+    return;
+  }
+  const double place = (*numbers)[0] / scene.delta, level = std::round(place);
+  const int levels = scene.noise_levels.value_or(scene.full_levels());
+  const bool between = std::abs(place - level) > 1e-9 * std::max(1.0, std::abs(place));
+  if (between || std::abs(level) > levels) {
+    settings.report(
+        problems, "start",
+        fmt::format("starts between the noise levels, which are {:g} apart up to {:g}", scene.delta,
+                    levels * scene.delta),
+        fmt::format("take x = {:g}", std::clamp<double>(level, -levels, levels) * scene.delta));
+    return;
+  }
+  question.start_level = static_cast<int>(level);
+  question.start_v = (*numbers)[1];
+}
+
+// A path is kept in memory.
+void check_horizon(const Settings& settings, const Request& request, Problems& problems) {
+  const double horizon = request.question.horizon;
+  const double jumps = horizon * request.scene.process(1).noise.rate();
+  constexpr double most = 5e7;
+  if (!request.question.wants(Quantity::trajectory) || jumps <= most) return;
+  settings.report(
+      problems, "horizon",
+      fmt::format("means {:.1e} jumps of the noise, and {:.0e} can be kept", jumps, most),
+      fmt::format("take at most {:.3g}", horizon * most / jumps));
+}
+
+}  // namespace
+
+void read_question(const Settings& settings, Request& request, Problems& problems) {
+  Question& question = request.question;
+  question.references = read_compared(settings, problems);
+  read_quantities(settings, request, problems);
+  const auto& known = question.references;
+  question.lambda = arguments(settings, known, "lambda", Quantity::laplace);
+  question.omega = arguments(settings, known, "omega", Quantity::spectrum);
+  question.time = arguments(settings, known, "time", Quantity::duration_density);
+  question.observables = read_observables(settings, request.scene.friction, problems);
+  question.accuracy = settings.real("accuracy");
+  question.accuracy_given = settings.given("accuracy");
+  question.horizon = settings.real("horizon");
+  check_horizon(settings, request, problems);
+  if (!problems.empty()) return;  // the others look at states of the model
+  if (depends_on(question, "start")) read_start(settings, request, problems);
+  check_observables(settings, request, problems);
+}
+
+}  // namespace stickslip::options

@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "quantities.hpp"
+#include "reading.hpp"
+#include "stickslip/petsc/session.hpp"
+#include "words.hpp"
+
+namespace stickslip::options {
+namespace {
+
+/// The rules that relate options to one another. Each is a row: options, when it counts, message.
+class Rules {
+ public:
+  Rules(const Settings& settings, Request& request, Problems& problems)
+      : settings_(settings), r_(request), q_(request.question), problems_(problems) {}
+
+  // Options without effect.
+  void unused() {
+    const bool simulates = r_.method.route == Route::monte_carlo, swept = sweeps(settings_);
+    const std::string with_drag = "with -drag " + r_.scene.drag_name;
+    warn({"drag_coefficient"}, !law_.linear, with_drag);
+    warn({"drag_cubic"}, !law_.cubic, with_drag);
+    warn({"lambda"}, r_.method.route != Route::lambda && !asked("lambda"));
+    warn({"excursions"}, !simulates);
+    warn({"seed"}, !simulates && !asked("seed"));
+    warn({"checkpoint"}, !simulates && !swept);
+    warn({"sweep_csv", "sweep_ranks"}, !swept);
+    warn({"study_steps", "study_repeats", "study_csv"}, !study_, "without -study");
+    for (const char* option : {"observable", "time", "start", "horizon", "transient_solver",
+                               "omega", "spectrum_solver"}) {
+      warn({option}, !asked(option));
+    }
+  }
+
+  // Options that exclude one another.
+  void conflicts() {
+    const Route route = r_.method.route;
+    const bool hp = r_.method.scheme == Scheme::hp, queue = route == Route::fluid_queue;
+    const bool direct = r_.method.spectrum_solver == SpectrumSolver::direct;
+    const std::string no_choice = "is no choice of -route " + settings_.text("route");
+    refuse({"drag_expression"}, !law_.expression,
+           "is not the drag, which is that of -drag " + r_.scene.drag_name,
+           "add -drag expression, or leave it out");
+    refuse({"route"}, queue && !r_.scene.drag.is_none(),
+           "needs b = 0: only then is the model a fluid queue",
+           "add -drag none, or take -route excursion");
+    refuse({"v_max"}, route != Route::excursion, no_choice,
+           "leave it out, or take -route excursion");
+    refuse({"scheme", "degree", "layers", "noise_degree", "noise_grading", "p"},
+           queue || route == Route::monte_carlo, no_choice + ", which has no grid in v",
+           "leave it out");
+    refuse({"degree", "layers", "noise_degree", "noise_grading"}, !hp, "belongs to -scheme hp",
+           "leave it out, or take -scheme hp");
+    refuse({"p"}, hp, "belongs to -scheme upwind", "leave it out, or take -scheme upwind");
+    refuse({"spectrum_solver"}, direct && !petsc::complex_scalars(), "needs complex scalars",
+           "run stickslip-complex with the same options, or take krylov");
+    refuse({"route", "scheme", "degree", "layers", "noise_degree", "noise_grading", "p", "v_max",
+            "compare", "checkpoint", "noise_levels"},
+           study_, "is chosen by -study itself", "leave it out");
+    refuse({"plan"}, r_.plan_only && study_, "foretells one run, not a study", "leave -study out");
+  }
+
+  // What the question lacks, or cannot have.
+  void needs() {
+    using enum Quantity;
+    const bool symmetric = r_.scene.symmetric(), by_lambda = r_.method.route == Route::lambda;
+    const bool at_rates = q_.wants(spectrum) && !q_.omega.empty();
+    const bool simulated = q_.wants(spectrum) && r_.method.route == Route::monte_carlo;
+    const bool averages = q_.wants(sticking) || q_.wants(moments) || q_.wants(noise_law);
+    const bool others = std::any_of(q_.quantities.begin(), q_.quantities.end(), [](Quantity q) {
+      return q != sticking && q != moments && q != noise_law;
+    });
+    const bool one_lambda = q_.lambda.empty() || (q_.lambda.size() == 1 && q_.lambda[0] != 0);
+    require("lambda", asked("lambda") && q_.lambda.empty(),
+            "asks for functions of lambda and no values are given",
+            "add for example -lambda 0.1,1,10");
+    require("observable", asked("observable") && q_.observables.empty(),
+            "asks for functions of the state and none are given",
+            "add for example -observable \"v^2; stick\"");
+    require("time", asked("time") && q_.time.empty(),
+            "asks for functions of time and no times are given",
+            "add for example -time 0.01:10:31:log");
+    require("omega", simulated && symmetric && q_.omega.empty(),
+            "asks for the spectrum and no frequencies are given", "add for example -omega 0:10:41");
+    require("output", q_.wants(density), "asks for density, a field that needs a file",
+            "add -output FILE.h5");
+    require("trajectory", q_.wants(trajectory) && r_.output.output.empty(),
+            "asks for a trajectory, which needs a file",
+            "add -output FILE.h5 or -trajectory FILE.csv");
+    report("quantities", q_.wants(sensitivity) && !averages,
+           "asks for derivatives and for nothing to derive", "add sticking, moments or noise_law");
+    report("quantities", study_ && others, "of a study are sticking, moments and noise_law",
+           "leave the others out");
+    report("lambda", by_lambda && !one_lambda, "must be one positive number with -route lambda",
+           "leave it out to have it chosen from -accuracy");
+    report("omega", at_rates && !symmetric,
+           "has no meaning without symmetry, where spectrum gives S_0", "leave it out");
+  }
+
+ private:
+  using Options = std::initializer_list<const char*>;
+
+  [[nodiscard]] bool asked(const char* option) const { return depends_on(q_, option); }
+
+  void warn(Options options, bool when, const std::string& why = "on what is asked for") {
+    for (const char* option : options) {
+      if (!when || !settings_.given(option)) continue;
+      r_.warnings.push_back(fmt::format("-{} has no effect {}", option, why));
+    }
+  }
+
+  void refuse(Options options, bool when, const std::string& why, const char* fix) {
+    for (const char* option : options) report(option, when && settings_.given(option), why, fix);
+  }
+
+  // The question is refused, unless an option is given that may have been misread.
+  void require(const char* option, bool when, const char* why, const char* fix) {
+    report("quantities", when && !settings_.given(option), why, fix);
+  }
+
+  // Given or not: values may come from the file to compare with.
+  void report(const char* option, bool when, const std::string& why, const char* fix) {
+    if (when) settings_.report(problems_, option, why, fix);
+  }
+
+  const Settings& settings_;
+  Request& r_;
+  const Question& q_;
+  Problems& problems_;
+  const DragLaw law_ = meaning(kDragLaws, r_.scene.drag_name);
+  const bool study_ = r_.study.kind != StudyKind::none;
+};
+
+}  // namespace
+
+void check_rules(const Settings& settings, Request& request, Problems& problems) {
+  Rules rules(settings, request, problems);
+  rules.unused();
+  rules.conflicts();
+  rules.needs();
+}
+
+}  // namespace stickslip::options

@@ -1,0 +1,62 @@
+#pragma once
+/// Words of choices beside what they mean.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "stickslip/options/request.hpp"
+
+namespace stickslip::options {
+
+template <class Value>
+struct Word {
+  const char* word;
+  Value value;
+};
+
+/// What a law of -drag is made of.
+struct DragLaw {
+  bool linear, cubic, expression;
+};
+
+inline constexpr Word<DragLaw> kDragLaws[] = {{"linear", {true, false, false}},
+                                              {"none", {false, false, false}},
+                                              {"cubic", {true, true, false}},
+                                              {"expression", {false, false, true}}};
+inline constexpr Word<Scheme> kSchemes[] = {{"hp", Scheme::hp}, {"upwind", Scheme::upwind}};
+inline constexpr Word<SpectrumSolver> kSpectrumSolvers[] = {{"krylov", SpectrumSolver::krylov},
+                                                            {"direct", SpectrumSolver::direct}};
+inline constexpr Word<TransientSolver> kTransientSolvers[] = {
+    {"krylov", TransientSolver::krylov}, {"stepping", TransientSolver::stepping}};
+inline constexpr Word<Route> kRoutes[] = {
+    {"excursion", Route::excursion},     {"lambda", Route::lambda},
+    {"hitting", Route::hitting},         {"null_vector", Route::null_vector},
+    {"fluid_queue", Route::fluid_queue}, {"monte_carlo", Route::monte_carlo}};
+inline constexpr Word<StudyKind> kStudies[] = {{"none", StudyKind::none},
+                                               {"p", StudyKind::points},
+                                               {"delta", StudyKind::steps},
+                                               {"heuristic", StudyKind::heuristic},
+                                               {"cost", StudyKind::cost}};
+/// Whether progress is shown; where that is open, the terminal decides.
+inline constexpr Word<std::optional<bool>> kProgress[] = {
+    {"auto", std::nullopt}, {"on", true}, {"off", false}};
+
+/// The words in their order; `all` is a range of values with a member `word`.
+template <class Words>
+[[nodiscard]] std::vector<std::string> words_of(const Words& all) {
+  std::vector<std::string> words;
+  for (const auto& each : all) words.emplace_back(each.word);
+  return words;
+}
+
+/// What a word means that was found to be one of `all`.
+template <class Value, std::size_t N>
+[[nodiscard]] Value meaning(const Word<Value> (&all)[N], const std::string& word) {
+  for (const auto& each : all) {
+    if (each.word == word) return each.value;
+  }
+  return all[0].value;
+}
+
+}  // namespace stickslip::options
