@@ -111,6 +111,14 @@ studies::StudyProgress study_progress_of(const options::Request& request, bool f
   };
 }
 
+/// The table and the summary of what was found. By the first rank.
+template <class Found>
+void deliver(const options::Request& request, const Found& found, const io::RunTimes& times) {
+  const std::string& file = request.output.summary;
+  if (!file.empty()) write_text(file, summary(MPI_COMM_WORLD, request, found, times));
+  print(table(request, found, times));
+}
+
 int conduct_study(const options::Request& request, Clock::time_point start, double start_up) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const bool first_rank = petsc::rank(comm) == 0;
@@ -119,11 +127,8 @@ int conduct_study(const options::Request& request, Clock::time_point start, doub
   const io::RunTimes times{start_up, start_up + seconds_since(start)};
   if (!request.output.output.empty()) io::write_hdf5(comm, request, study, times);
   if (!first_rank) return 0;
-  if (!request.output.summary.empty()) {
-    write_text(request.output.summary, io::summary(comm, request, study, times));
-  }
   if (!request.output.study_csv.empty()) write_text(request.output.study_csv, io::csv(study));
-  print(io::table(request, study, times));
+  deliver(request, study, times);
   return 0;
 }
 
@@ -155,14 +160,11 @@ int conduct_sweep(const options::Request& request, Clock::time_point start, doub
   int status = sweeps::exit_status(sweep.runs);
   if (first_rank) {
     const io::RunTimes times{start_up, start_up + seconds_since(start)};
-    if (!request.output.summary.empty()) {
-      write_text(request.output.summary, sweeps::summary(comm, request, sweep, times));
-    }
     if (!request.output.output.empty()) sweeps::write_hdf5(comm, request, sweep, times);
     if (!request.output.sweep_csv.empty()) {
       write_text(request.output.sweep_csv, sweeps::csv(request, sweep));
     }
-    print(sweeps::table(request, sweep, times));
+    deliver(request, sweep, times);
     if (status != 0) say("stickslip: some points fell short; the table says which, and why");
   }
   MPI_Bcast(&status, 1, MPI_INT, 0, comm);
@@ -177,13 +179,10 @@ int compute(const options::Request& request, Clock::time_point start, double sta
   const io::RunTimes times{start_up, start_up + seconds_since(start)};
   if (!request.output.output.empty()) io::write_hdf5(comm, request, outcome, times);
   if (first_rank) {
-    if (!request.output.summary.empty()) {
-      write_text(request.output.summary, io::summary(comm, request, outcome, times));
-    }
     if (!request.output.trajectory.empty() && outcome.path) {
       write_text(request.output.trajectory, io::csv(*outcome.path));
     }
-    print(io::table(request, outcome, times));
+    deliver(request, outcome, times);
   }
   return status_of(outcome);
 }

@@ -81,8 +81,7 @@ void Hdf5File::make_group(const std::string& path) {
 }
 
 void Hdf5File::write_array(const std::string& path, std::span<const double> values) {
-  const std::array<std::size_t, 1> size{values.size()};
-  write_array(path, size, values);
+  write_array(path, std::array{values.size()}, values);
 }
 
 void Hdf5File::write_array(const std::string& path, std::span<const std::size_t> sizes,
@@ -95,10 +94,7 @@ void Hdf5File::write_array(const std::string& path, std::span<const std::size_t>
 }
 
 void Hdf5File::write_scalar(const std::string& path, double value) {
-  const Hdf5Id space = given(H5Screate(H5S_SCALAR), H5Sclose, path);
-  const Hdf5Id data = dataset(id_, path, space);
-  if (petsc::rank(comm_) != 0) return;
-  require(H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value), path);
+  write_array(path, std::span<const std::size_t>{}, {&value, 1});
 }
 
 void Hdf5File::write_rows(const std::string& path, std::size_t row_count, std::size_t columns,

@@ -93,8 +93,8 @@ class Estimates {
     if (question_.wants(Quantity::sticking)) append_sticking();
     if (question_.wants(Quantity::moments)) append_moments();
     if (question_.wants(Quantity::noise_law)) {
-      scalar("P_X_le_mu_s", "", tally_.within(), Kind::probability);
-      scalar("E_X2", "force^2", tally_.noise_square(), Kind::positive_mean);
+      scalar(quantities::kPWithin, tally_.within());
+      scalar(quantities::kEX2, tally_.noise_square());
     }
     if (question_.wants(Quantity::entry_law)) append_entry_law();
     if (question_.wants(Quantity::laplace)) append_laplace();
@@ -104,28 +104,28 @@ class Estimates {
   }
 
  private:
-  void scalar(const char* key, const char* unit, const Estimate& e, Kind kind = Kind::other) {
-    Result result{key, unit, "", {}, {}, {}, kind};
+  void scalar(const quantities::Name& name, const Estimate& e) {
+    Result result{name.key, name.unit, "", {}, {}, {}, name.kind};
     append_value(result, e);
     results_.push_back(std::move(result));
   }
 
   void append_sticking() {
-    scalar("P_stick", "", tally_.sticking(), Kind::share);
-    scalar("P_slide", "", tally_.sliding(), Kind::share);
-    scalar("mean_stick", "time", tally_.mean(Duration::stick), Kind::positive_mean);
-    scalar("mean_slide", "time", tally_.mean(Duration::slide), Kind::positive_mean);
-    scalar("mean_excursion", "time", tally_.mean(Duration::excursion), Kind::positive_mean);
+    scalar(quantities::kPStick, tally_.sticking());
+    scalar(quantities::kPSlide, tally_.sliding());
+    scalar(quantities::kMeanStick, tally_.mean(Duration::stick));
+    scalar(quantities::kMeanSlide, tally_.mean(Duration::slide));
+    scalar(quantities::kMeanExcursion, tally_.mean(Duration::excursion));
   }
 
   void append_moments() {
-    scalar("E_V2", "velocity^2", tally_.mean_square(), Kind::positive_mean);
-    scalar("E_absV", "velocity", tally_.mean_speed(), Kind::mean);
-    scalar("E_XV", "force*velocity", tally_.mean_product(), Kind::mean);
+    scalar(quantities::kEV2, tally_.mean_square());
+    scalar(quantities::kEAbsV, tally_.mean_speed());
+    scalar(quantities::kEXV, tally_.mean_product());
     if (process_.symmetric()) {
-      results_.push_back(quantities::scalar("E_V", "velocity", 0, 0, Kind::drift));
+      results_.push_back(quantities::scalar(quantities::kEV, 0, 0));
     } else {
-      scalar("E_V", "velocity", tally_.mean_velocity(), Kind::drift);
+      scalar(quantities::kEV, tally_.mean_velocity());
     }
   }
 
@@ -137,7 +137,7 @@ class Estimates {
       append_value(law, tally_.entry(i));
     }
     results_.push_back(std::move(law));
-    scalar("f_stick_0", "1/time",
+    scalar(quantities::kFStick0,
            tally_.entry_of_both(-k, k, process_.noise.rate() * process_.noise.up(k)));
   }
 
@@ -180,8 +180,8 @@ class Estimates {
 
   void append_spectrum_at_zero() {
     const Estimate s = tally_.spectrum_at_zero();
-    scalar("S_0", "velocity^2*time", s, Kind::spectrum);
-    scalar("diffusivity", "velocity^2*time", {s.value / 2, s.low / 2, s.high / 2});
+    scalar(quantities::kS0, s);
+    scalar(quantities::kDiffusivity, {s.value / 2, s.low / 2, s.high / 2});
   }
 
   static std::vector<std::pair<std::string, Duration>> names(const std::string& prefix) {

@@ -164,21 +164,20 @@ DurationMoments duration_moments(operators::Systems& systems, const std::vector<
 
 void append_duration_moments(const model::Process& process, const DurationMoments& moments,
                              const std::vector<Uncertain>& entry, Results& results) {
-  const auto append = [&](const char* key, const char* unit, Uncertain value,
-                          Kind kind = Kind::other) {
+  const auto append = [&](const Name& name, Uncertain value) {
     const bool there = std::any_of(results.begin(), results.end(),
-                                   [key](const Result& result) { return result.key == key; });
-    if (!there) results.push_back(scalar(key, unit, value, kind));
+                                   [&](const Result& result) { return result.key == name.key; });
+    if (!there) results.push_back(scalar(name, value));
   };
-  append("mean_slide", "time", moments.mean_slide, Kind::positive_mean);
-  append("mean_stick", "time", moments.mean_stick, Kind::positive_mean);
-  append("mean_excursion", "time", moments.mean_excursion, Kind::positive_mean);
-  append("var_slide", "time^2", moments.var_slide);
-  append("var_stick", "time^2", moments.var_stick);
-  append("var_excursion", "time^2", moments.var_excursion);
+  append(kMeanSlide, moments.mean_slide);
+  append(kMeanStick, moments.mean_stick);
+  append(kMeanExcursion, moments.mean_excursion);
+  append({"var_slide", "time^2"}, moments.var_slide);
+  append({"var_stick", "time^2"}, moments.var_stick);
+  append({"var_excursion", "time^2"}, moments.var_excursion);
   const double rate = process.noise.rate() * process.noise.up(process.static_index());
-  append("f_slide_0", "1/time", {slide_density_at_zero(process), 0});
-  append("f_stick_0", "1/time", rate * (entry.front() + entry.back()));
+  append({"f_slide_0", "1/time"}, {slide_density_at_zero(process), 0});
+  append(kFStick0, rate * (entry.front() + entry.back()));
 }
 
 void append_duration(const char* name, const std::vector<double>& time, const DurationLaw& law,

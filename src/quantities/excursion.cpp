@@ -36,11 +36,11 @@ double Excursion::conservation_defect(const operators::Discretisation& discretis
 void append_sticking(const Excursion& excursion, Results& results) {
   const double slide = excursion.mean_slide(), stick = excursion.mean_stick();
   const double total = excursion.mean_excursion();
-  results.push_back(scalar("P_stick", "", stick / total, 0, Kind::share));
-  results.push_back(scalar("P_slide", "", slide / total, 0, Kind::share));
-  results.push_back(scalar("mean_stick", "time", stick, 0, Kind::positive_mean));
-  results.push_back(scalar("mean_slide", "time", slide, 0, Kind::positive_mean));
-  results.push_back(scalar("mean_excursion", "time", total, 0, Kind::positive_mean));
+  results.push_back(scalar(kPStick, stick / total, 0));
+  results.push_back(scalar(kPSlide, slide / total, 0));
+  results.push_back(scalar(kMeanStick, stick, 0));
+  results.push_back(scalar(kMeanSlide, slide, 0));
+  results.push_back(scalar(kMeanExcursion, total, 0));
 }
 
 void append_moments(const operators::Discretisation& discretisation, const Excursion& excursion,
@@ -51,17 +51,14 @@ void append_moments(const operators::Discretisation& discretisation, const Excur
   for (int n = -half; n <= half; ++n) {
     force_times_velocity += discretisation.noise->x(n) * excursion.slide_distance[half + n];
   }
-  results.push_back(
-      scalar("E_V2", "velocity^2", sum(excursion.slide_square) / total, 0, Kind::positive_mean));
-  results.push_back(
-      scalar("E_absV", "velocity", sum(excursion.slide_distance) / total, 0, Kind::mean));
-  results.push_back(scalar("E_XV", "force*velocity", force_times_velocity / total, 0, Kind::mean));
+  results.push_back(scalar(kEV2, sum(excursion.slide_square) / total, 0));
+  results.push_back(scalar(kEAbsV, sum(excursion.slide_distance) / total, 0));
+  results.push_back(scalar(kEXV, force_times_velocity / total, 0));
   const auto& drift = excursion.slide_drift;
   // A difference of what the two half lines give: exact to the size of E|V|.
   const double rounding =
       excursion.conservation_defect(discretisation) * sum(excursion.slide_distance);
-  results.push_back(scalar("E_V", "velocity", sum(drift) / total,
-                           drift.empty() ? 0 : rounding / total, Kind::drift));
+  results.push_back(scalar(kEV, sum(drift) / total, drift.empty() ? 0 : rounding / total));
 }
 
 void append_entry_law(const model::Process& process, const Excursion& excursion, Results& results) {
@@ -79,16 +76,14 @@ void append_entry_law(const model::Process& process, const Excursion& excursion,
   }
   results.push_back(law);
   const double rate = process.noise.rate() * process.noise.up(k);
-  results.push_back(scalar("f_stick_0", "1/time", rate * (folded.back() + folded.front()), 0));
+  results.push_back(scalar(kFStick0, rate * (folded.back() + folded.front()), 0));
 }
 
 void append_noise_law(const model::Process& process, Results& results) {
   const auto moments = model::noise_moments(process.noise, process.threshold_index());
   const double rounding = model::rounding_of_sums(process.noise);
-  results.push_back(
-      scalar("P_X_le_mu_s", "", moments.within, rounding * moments.within, Kind::probability));
-  results.push_back(scalar("E_X2", "force^2", moments.variance, rounding * moments.variance,
-                           Kind::positive_mean));
+  results.push_back(scalar(kPWithin, moments.within, rounding * moments.within));
+  results.push_back(scalar(kEX2, moments.variance, rounding * moments.variance));
 }
 
 std::vector<double> marginal_of_noise(const operators::Discretisation& discretisation,

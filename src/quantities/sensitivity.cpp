@@ -1,5 +1,7 @@
 #include "stickslip/quantities/sensitivity.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numeric>
 
@@ -29,10 +31,10 @@ Naming naming(Parameter parameter) {
   return {"", ""};
 }
 
-Result derivative(const std::string& key, const std::string& unit, Parameter parameter,
-                  Uncertain value) {
+Result derivative(const Name& of, Parameter parameter, Uncertain value) {
   const auto [name, below] = naming(parameter);
-  return scalar("d" + key + "_d" + name, (unit.empty() ? "1" : unit) + "/(" + below + ")", value);
+  const std::string above = *of.unit == 0 ? "1" : of.unit;
+  return scalar(fmt::format("d{}_d{}", of.key, name), fmt::format("{}/({})", above, below), value);
 }
 
 // D_i = T_i - T_{i+1} > 0 for 0 <= i <= k, of the mean stays T with T_{k+1} = 0: from level i on,
@@ -131,10 +133,9 @@ Sensitivity::Gradient Sensitivity::ratio(double mean, const Gradient& of_mean) c
   return gradient;
 }
 
-void Sensitivity::append(const std::string& key, const std::string& unit, const Gradient& gradient,
-                         Results& results) const {
+void Sensitivity::append(const Name& name, const Gradient& gradient, Results& results) const {
   for (std::size_t n = 0; n < parameters_.size(); ++n) {
-    results.push_back(derivative(key, unit, parameters_[n], gradient[n]));
+    results.push_back(derivative(name, parameters_[n], gradient[n]));
   }
 }
 
@@ -149,23 +150,23 @@ void Sensitivity::append_sticking(Results& results) const {
     sliding.push_back((1 / total) * (down - up));
     whole.push_back(slide_[n] + stick_[n]);
   }
-  append("P_stick", "", sticking, results);
-  append("P_slide", "", sliding, results);
-  append("mean_stick", "time", stick_, results);
-  append("mean_slide", "time", slide_, results);
-  append("mean_excursion", "time", whole, results);
+  append(kPStick, sticking, results);
+  append(kPSlide, sliding, results);
+  append(kMeanStick, stick_, results);
+  append(kMeanSlide, slide_, results);
+  append(kMeanExcursion, whole, results);
 }
 
 void Sensitivity::append_moments(Results& results) const {
   const auto mean = [this](const KolmogorovOperator::Observable& f) {
     return petsc::dot(law_.occupation(), system_.a().values(f));
   };
-  const auto add = [&](const char* key, const char* unit, const KolmogorovOperator::Observable& f) {
-    append(key, unit, ratio(mean(f), slides(f)), results);
+  const auto add = [&](const Name& name, const KolmogorovOperator::Observable& f) {
+    append(name, ratio(mean(f), slides(f)), results);
   };
-  add("E_V2", "velocity^2", [](double, double, double v) { return v * v; });
-  add("E_absV", "velocity", [](double, double, double v) { return std::abs(v); });
-  add("E_XV", "force*velocity", [](double x, double, double v) { return x * v; });
+  add(kEV2, [](double, double, double v) { return v * v; });
+  add(kEAbsV, [](double, double, double v) { return std::abs(v); });
+  add(kEXV, [](double x, double, double v) { return x * v; });
 }
 
 // Weights w_i = prod_{j <= i} alpha_{j-1}/(1 - alpha_j), so that d log w_i/d tau is a sum of
@@ -191,9 +192,8 @@ void append_noise_sensitivity(const model::Process& process, Results& results) {
   const double rounding = model::rounding_of_sums(noise);
   const double size = std::abs(square_score) + std::abs(square * mean_score);
   const double within_size = std::abs(beyond * within_score) + std::abs(within * beyond_score);
-  results.push_back(
-      derivative("P_X_le_mu_s", "", Parameter::tau, {by_within, rounding * within_size}));
-  results.push_back(derivative("E_X2", "force^2", Parameter::tau, {by_square, rounding * size}));
+  results.push_back(derivative(kPWithin, Parameter::tau, {by_within, rounding * within_size}));
+  results.push_back(derivative(kEX2, Parameter::tau, {by_square, rounding * size}));
 }
 
 }  // namespace stickslip::quantities

@@ -243,8 +243,8 @@ void append_spectrum(const std::vector<double>& omega, const Spectrum& spectrum,
     for (const auto& value : spectrum.value) append_value(s, value);
     results.push_back(std::move(s));
   }
-  results.push_back(scalar("S_0", "velocity^2*time", spectrum.at_zero, Kind::spectrum));
-  results.push_back(scalar("diffusivity", "velocity^2*time", 0.5 * spectrum.at_zero));
+  results.push_back(scalar(kS0, spectrum.at_zero));
+  results.push_back(scalar(kDiffusivity, 0.5 * spectrum.at_zero));
 }
 
 void append_shape(const SpectrumShape& shape, Results& results) {

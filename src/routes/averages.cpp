@@ -11,34 +11,33 @@ using options::Quantity;
 using quantities::Kind;
 using quantities::Uncertain;
 
-Average average(const Setting& setting, const char* key, const char* unit, Kind kind,
-                const char* f) {
-  return {key, unit, kind, model::parse_observable(f, setting.discretisation.process.friction)};
+Average average(const Setting& setting, const quantities::Name& name, const char* f) {
+  return {name, model::parse_observable(f, setting.discretisation.process.friction)};
 }
 
 }  // namespace
 
 std::vector<Average> averages(const Setting& setting) {
   const options::Question& question = setting.given.question;
-  std::vector<Average> all{average(setting, "P_X_gt_mu_s", "", Kind::probability, "1")};
+  std::vector<Average> all{average(setting, {"P_X_gt_mu_s", ""}, "1")};
   const auto within = model::parse_observable("|x|<=mu_s", setting.discretisation.process.friction);
   all[0].f.value = [within](double x, double y, double v) { return 1 - within(x, y, v); };
-  const auto add = [&](const char* key, const char* unit, Kind kind, const char* f) {
-    all.push_back(average(setting, key, unit, kind, f));
+  const auto add = [&](const quantities::Name& name, const char* f) {
+    all.push_back(average(setting, name, f));
   };
   if (question.wants(Quantity::sticking)) {
-    add("P_stick", "", Kind::share, "stick");
-    add("P_slide", "", Kind::share, "slide");
+    add(quantities::kPStick, "stick");
+    add(quantities::kPSlide, "slide");
   }
   if (question.wants(Quantity::moments)) {
-    add("E_V2", "velocity^2", Kind::positive_mean, "v^2");
-    add("E_absV", "velocity", Kind::mean, "|v|");
-    add("E_XV", "force*velocity", Kind::mean, "x*v");
-    if (!setting.discretisation.process.symmetric()) add("E_V", "velocity", Kind::drift, "v");
+    add(quantities::kEV2, "v^2");
+    add(quantities::kEAbsV, "|v|");
+    add(quantities::kEXV, "x*v");
+    if (!setting.discretisation.process.symmetric()) add(quantities::kEV, "v");
   }
   if (question.wants(Quantity::noise_law)) {
-    add("P_X_le_mu_s", "", Kind::probability, "|x|<=mu_s");
-    add("E_X2", "force^2", Kind::positive_mean, "x^2");
+    add(quantities::kPWithin, "|x|<=mu_s");
+    add(quantities::kEX2, "x^2");
   }
   return all;
 }
@@ -51,13 +50,15 @@ void append_averages(const Setting& setting, const std::vector<Uncertain>& value
   const double defect = std::abs(values[0].value / beyond - 1);
   for (std::size_t n = 1; n < all.size(); ++n) {
     double share = std::abs(values[n].value);
-    if (all[n].key == "P_stick") share = std::min(share, std::abs(values[n + 1].value));
-    results.push_back(quantities::scalar(all[n].key, all[n].unit, values[n].value,
-                                         values[n].error + defect * share, all[n].kind));
+    const bool first_share = all[n].name.kind == Kind::share && n + 1 < all.size() &&
+                             all[n + 1].name.kind == Kind::share;
+    if (first_share) share = std::min(share, std::abs(values[n + 1].value));
+    results.push_back(
+        quantities::scalar(all[n].name, values[n].value, values[n].error + defect * share));
   }
   if (setting.given.question.wants(Quantity::moments) &&
       setting.discretisation.process.symmetric()) {
-    results.push_back(quantities::scalar("E_V", "velocity", 0, 0, Kind::drift));  // by symmetry
+    results.push_back(quantities::scalar(quantities::kEV, 0, 0));  // by symmetry
   }
 }
 

@@ -12,8 +12,7 @@
 namespace stickslip::routes {
 
 struct Average {
-  std::string key, unit;
-  quantities::Kind kind;
+  quantities::Name name;
   model::Observable f;
 };
 

@@ -61,10 +61,8 @@ void append_noise_law(const model::Process& process, const std::vector<double>& 
     if (std::abs(i) <= k) within += law[n + i];
     square += law[n + i] * process.noise.level(i) * process.noise.level(i);
   }
-  results.push_back(
-      quantities::scalar("P_X_le_mu_s", "", within, 0, quantities::Kind::probability));
-  results.push_back(
-      quantities::scalar("E_X2", "force^2", square, 0, quantities::Kind::positive_mean));
+  results.push_back(quantities::scalar(quantities::kPWithin, within, 0));
+  results.push_back(quantities::scalar(quantities::kEX2, square, 0));
 }
 
 void append_laplace(const Setting& setting, const Excursion& excursion, double rounding,

@@ -42,12 +42,10 @@ Evaluation by_hitting(const Setting& setting) {
   const double rounding = std::numeric_limits<double>::epsilon();
   const Uncertain p_stick{1 - p_slide.value, p_slide.error + rounding};
   Evaluation evaluation;
-  evaluation.results = {
-      scalar("P_stick", "", p_stick, quantities::Kind::share),
-      scalar("P_slide", "", p_slide, quantities::Kind::share),
-      scalar("mean_stick", "time", excursion - slide, quantities::Kind::positive_mean),
-      scalar("mean_slide", "time", slide, quantities::Kind::positive_mean),
-      scalar("mean_excursion", "time", excursion, quantities::Kind::positive_mean)};
+  evaluation.results = {scalar(quantities::kPStick, p_stick), scalar(quantities::kPSlide, p_slide),
+                        scalar(quantities::kMeanStick, excursion - slide),
+                        scalar(quantities::kMeanSlide, slide),
+                        scalar(quantities::kMeanExcursion, excursion)};
   evaluation.checks = {{"R_hat", slide.value}, {"R_check", to_edge.value}, {"R", from_edge.value}};
   return evaluation;
 }

@@ -77,9 +77,9 @@ void append_durations(Uncertain excursion, quantities::Results& results) {
     return Uncertain{r->value[0], r->error[0]};
   };
   const Uncertain stick = share("P_stick") * excursion, slide = share("P_slide") * excursion;
-  results.push_back(scalar("mean_stick", "time", stick, quantities::Kind::positive_mean));
-  results.push_back(scalar("mean_slide", "time", slide, quantities::Kind::positive_mean));
-  results.push_back(scalar("mean_excursion", "time", excursion, quantities::Kind::positive_mean));
+  results.push_back(scalar(quantities::kMeanStick, stick));
+  results.push_back(scalar(quantities::kMeanSlide, slide));
+  results.push_back(scalar(quantities::kMeanExcursion, excursion));
 }
 
 }  // namespace

@@ -60,50 +60,41 @@ TEST_CASE("estimates: without an earlier change the last one counts alone") {
 }
 
 TEST_CASE("estimates: a change through zero is no small error, as the other means show") {
-  Results results{scalar("mean_slide", "", 10, 0, Kind::positive_mean),
-                  scalar("E_V2", "", 4, 1e-9, Kind::positive_mean)};
-  const Results coarse{scalar("mean_slide", "", 8, 0, Kind::positive_mean),
-                       scalar("E_V2", "", 4, 0, Kind::positive_mean)};
+  Results results{scalar(quantities::kMeanSlide, 10, 0), scalar(quantities::kEV2, 4, 1e-9)};
+  const Results coarse{scalar(quantities::kMeanSlide, 8, 0), scalar(quantities::kEV2, 4, 0)};
   (void)add_discretisation({1, 0}, coarse, {}, results);
   check_errors(results, {2, 0.05 * 0.2 * 4});
 }
 
 TEST_CASE("estimates: means share a twentieth of the largest relative error") {
-  Results results{scalar("mean_stick", "", 10, 2, Kind::positive_mean),  // 0.2, the largest
-                  scalar("E_V2", "", -4, 1e-6, Kind::positive_mean),
-                  scalar("E_absV", "", 2, 0.1, Kind::mean),
-                  scalar("E_V", "", 0.5, 100, Kind::drift),
-                  scalar("f_stick_0", "", 1, 1e-6),
-                  scalar("mean_slide", "", 3, 2e-13, Kind::positive_mean)};
+  Results results{scalar(quantities::kMeanStick, 10, 2),  // 0.2, the largest
+                  scalar(quantities::kEV2, -4, 1e-6),      scalar(quantities::kEAbsV, 2, 0.1),
+                  scalar(quantities::kEV, 0.5, 100),       scalar(quantities::kFStick0, 1, 1e-6),
+                  scalar(quantities::kMeanSlide, 3, 2e-13)};
   accuracy::share_errors(results);
   // E_V may vanish: it takes its share, and gives none. A density is no mean. A mean that does not
   // change stays.
   check_errors(results, {2, 0.01 * 4, 0.1, 100, 1e-6, 2e-13});
-  Results drift{scalar("mean_stick", "", 10, 2, Kind::positive_mean),
-                scalar("E_V", "", 0.5, 1e-6, Kind::drift)};
+  Results drift{scalar(quantities::kMeanStick, 10, 2), scalar(quantities::kEV, 0.5, 1e-6)};
   accuracy::share_errors(drift);
   check_errors(drift, {2, 0.01 * 0.5});
 }
 
 TEST_CASE("estimates: a mean changes as soon as it does so by 1e-13") {
-  Results results{scalar("mean_stick", "", 10, 2, Kind::positive_mean),
-                  scalar("E_V2", "", 4, 4.1e-13, Kind::positive_mean),
-                  scalar("E_XV", "", 4, 3.9e-13, Kind::mean)};
+  Results results{scalar(quantities::kMeanStick, 10, 2), scalar(quantities::kEV2, 4, 4.1e-13),
+                  scalar(quantities::kEXV, 4, 3.9e-13)};
   accuracy::share_errors(results);
   check_errors(results, {2, 0.04, 3.9e-13});
 }
 
 // P_stick = 1/(1 + q), q = mean_slide/mean_stick: dP_stick = P_stick P_slide dq/q.
 TEST_CASE("estimates: probabilities of the phases share what their ratio does") {
-  Results results{scalar("P_stick", "", 0.2, 1e-6, Kind::share),
-                  scalar("P_slide", "", 0.8, 1e-6, Kind::share),
-                  scalar("mean_stick", "", 10, 5, Kind::positive_mean),
-                  scalar("P_X_le_mu_s", "", 0.5, 1e-6, Kind::probability)};
+  Results results{scalar(quantities::kPStick, 0.2, 1e-6), scalar(quantities::kPSlide, 0.8, 1e-6),
+                  scalar(quantities::kMeanStick, 10, 5), scalar(quantities::kPWithin, 0.5, 1e-6)};
   accuracy::share_errors(results);
   check_errors(results, {0.05 * 0.5 * 0.16, 0.05 * 0.5 * 0.16, 5, 1e-6});
-  Results exact{scalar("P_stick", "", 0.2, 0, Kind::share),
-                scalar("P_slide", "", 0.8, 0.7, Kind::share),
-                scalar("mean_stick", "", 10, 5, Kind::positive_mean)};
+  Results exact{scalar(quantities::kPStick, 0.2, 0), scalar(quantities::kPSlide, 0.8, 0.7),
+                scalar(quantities::kMeanStick, 10, 5)};
   accuracy::share_errors(exact);
   check_errors(exact, {0, 0.7, 5});
 }
@@ -111,7 +102,7 @@ TEST_CASE("estimates: probabilities of the phases share what their ratio does") 
 TEST_CASE("estimates: arrays keep their own errors") {
   Result array_of_means = modes({1, 2, 3}, {1e-6, 1e-6, 1e-6});
   array_of_means.kind = Kind::mean;
-  Results results{scalar("mean_stick", "", 10, 5, Kind::positive_mean), array_of_means};
+  Results results{scalar(quantities::kMeanStick, 10, 5), array_of_means};
   accuracy::share_errors(results);
   check_errors(results, {5, 1e-6, 1e-6, 1e-6});
 }

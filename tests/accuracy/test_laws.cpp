@@ -20,8 +20,8 @@ Result transform(std::vector<double> values, double error = 0) {
 TEST_CASE("laws: sound results pass") {
   CHECK(broken_law({}).empty());
   CHECK(
-      broken_law({quantities::scalar("P_stick", "", 1, 0, Kind::share),
-                  quantities::scalar("E_XV", "", -3, 0, Kind::mean),
+      broken_law({quantities::scalar(quantities::kPStick, 1, 0),
+                  quantities::scalar(quantities::kEXV, -3, 0),
                   transform({0.2, 0.6, 0.4}),
                   {"cdf_slide", "", "time", {1, 2, 3}, {0, 0.5, 1}, {0, 0, 0}, Kind::distribution}})
           .empty());
@@ -30,26 +30,24 @@ TEST_CASE("laws: sound results pass") {
 
 TEST_CASE("laws: errors excuse what they cover") {
   CHECK(broken_law({transform({0.41, 0.6, 0.4}, 0.006)}).empty());
-  CHECK(broken_law({quantities::scalar("P_slide", "", 1.01, 0.02, Kind::share)}).empty());
+  CHECK(broken_law({quantities::scalar(quantities::kPSlide, 1.01, 0.02)}).empty());
 }
 
 TEST_CASE("laws: every violation is told with its place") {
   CHECK(broken_law({transform({0.41, 0.6, 0.4})}) ==
         "F_slide rises from 0.4 at lambda = 1 to 0.41 at lambda = 2");
   CHECK(broken_law({transform({0.2, 1.5, 0.4})}) == "F_slide is 1.5 at lambda = 0.5");
-  CHECK(broken_law({quantities::scalar("P_stick", "", -0.1, 0.01, Kind::share)}) ==
-        "P_stick is -0.1");
+  CHECK(broken_law({quantities::scalar(quantities::kPStick, -0.1, 0.01)}) == "P_stick is -0.1");
   CHECK(broken_law({{"cdf_stick", "", "time", {1, 2}, {0.5, 0.4}, {0, 0}, Kind::distribution}}) ==
         "cdf_stick falls from 0.5 at time = 1 to 0.4 at time = 2");
-  CHECK(broken_law({quantities::scalar("E_V2", "", -1, 0, Kind::positive_mean)}) == "E_V2 is -1");
+  CHECK(broken_law({quantities::scalar(quantities::kEV2, -1, 0)}) == "E_V2 is -1");
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  CHECK(broken_law({quantities::scalar("mean_slide", "", nan, 0, Kind::positive_mean)}) ==
-        "mean_slide is nan");
+  CHECK(broken_law({quantities::scalar(quantities::kMeanSlide, nan, 0)}) == "mean_slide is nan");
 }
 
 TEST_CASE("laws: an error excuses its own size, and 1e-10, and no more") {
   const auto passes = [](Kind kind, double value, double error) {
-    return broken_law({quantities::scalar("a", "", value, error, kind)}).empty();
+    return broken_law({quantities::scalar({"a", "", kind}, value, error)}).empty();
   };
   for (Kind kind : {Kind::probability, Kind::share, Kind::transform, Kind::distribution}) {
     CHECK(passes(kind, 1.0099, 0.01));

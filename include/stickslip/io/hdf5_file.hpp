@@ -26,7 +26,7 @@ class Hdf5File {
   void make_group(const std::string& path);
   /// A dataset that every rank holds; written by rank 0.
   void write_array(const std::string& path, std::span<const double> values);
-  /// An array with several indices, the last one fastest, that every rank holds.
+  /// An array with several indices, the last one fastest, or with none: a scalar.
   void write_array(const std::string& path, std::span<const std::size_t> sizes,
                    std::span<const double> values);
   void write_scalar(const std::string& path, double value);

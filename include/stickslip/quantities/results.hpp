@@ -21,6 +21,29 @@ enum class Kind {
   spectrum        ///< a power spectral density, >= 0
 };
 
+/// What a scalar is called, in which unit, and what it is.
+struct Name {
+  const char* key;
+  const char* unit;
+  Kind kind = Kind::other;
+};
+
+// Those that several solution methods compute.
+inline constexpr Name kPStick{"P_stick", "", Kind::share};
+inline constexpr Name kPSlide{"P_slide", "", Kind::share};
+inline constexpr Name kPWithin{"P_X_le_mu_s", "", Kind::probability};
+inline constexpr Name kMeanStick{"mean_stick", "time", Kind::positive_mean};
+inline constexpr Name kMeanSlide{"mean_slide", "time", Kind::positive_mean};
+inline constexpr Name kMeanExcursion{"mean_excursion", "time", Kind::positive_mean};
+inline constexpr Name kEV2{"E_V2", "velocity^2", Kind::positive_mean};
+inline constexpr Name kEAbsV{"E_absV", "velocity", Kind::mean};
+inline constexpr Name kEXV{"E_XV", "force*velocity", Kind::mean};
+inline constexpr Name kEV{"E_V", "velocity", Kind::drift};
+inline constexpr Name kEX2{"E_X2", "force^2", Kind::positive_mean};
+inline constexpr Name kFStick0{"f_stick_0", "1/time"};
+inline constexpr Name kS0{"S_0", "velocity^2*time", Kind::spectrum};
+inline constexpr Name kDiffusivity{"diffusivity", "velocity^2*time"};
+
 /// A scalar (no abscissa, one value) or an array over an abscissa.
 struct Result {
   std::string key;            ///< name in table, JSON and HDF5
@@ -41,9 +64,11 @@ struct Result {
 using Results = std::vector<Result>;
 
 /// A scalar result.
-[[nodiscard]] inline Result scalar(std::string key, std::string unit, double value, double error,
-                                   Kind kind = Kind::other) {
-  return {std::move(key), std::move(unit), "", {}, {value}, {error}, kind};
+[[nodiscard]] inline Result scalar(std::string key, std::string unit, double value, double error) {
+  return {std::move(key), std::move(unit), "", {}, {value}, {error}};
+}
+[[nodiscard]] inline Result scalar(const Name& name, double value, double error) {
+  return {name.key, name.unit, "", {}, {value}, {error}, name.kind};
 }
 
 /// An array result without values yet. Transforms and spectra, which span decades, are meant

@@ -47,8 +47,7 @@ class Sensitivity {
   [[nodiscard]] Gradient through(const petsc::Solution& h, const std::vector<PetscScalar>& s) const;
   // value and mean of an integral over an excursion: the derivative of its ratio to mean_excursion.
   [[nodiscard]] Gradient ratio(double mean, const Gradient& of_mean) const;
-  void append(const std::string& key, const std::string& unit, const Gradient& gradient,
-              Results& results) const;
+  void append(const Name& name, const Gradient& gradient, Results& results) const;
 
   operators::System& system_;
   const StationaryLaw& law_;

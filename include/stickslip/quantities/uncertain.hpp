@@ -35,9 +35,11 @@ struct Uncertain {
 [[nodiscard]] Uncertain value_of(Vec functional, const petsc::Solution& solution);
 
 /// A scalar result.
-[[nodiscard]] inline Result scalar(std::string key, std::string unit, Uncertain value,
-                                   Kind kind = Kind::other) {
-  return scalar(std::move(key), std::move(unit), value.value, value.error, kind);
+[[nodiscard]] inline Result scalar(std::string key, std::string unit, Uncertain value) {
+  return scalar(std::move(key), std::move(unit), value.value, value.error);
+}
+[[nodiscard]] inline Result scalar(const Name& name, Uncertain value) {
+  return scalar(name, value.value, value.error);
 }
 
 inline void append_value(Result& array, Uncertain value) {
