@@ -5,9 +5,9 @@
 
 #include "stickslip/accuracy/ladder.hpp"
 #include "stickslip/accuracy/refinement.hpp"
-#include "stickslip/operators/element_pc.hpp"
 #include "stickslip/petsc/blas.hpp"
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/petsc/solver_choice.hpp"
 #include "stickslip/routes/evaluation.hpp"
 
 namespace stickslip::accuracy {
@@ -69,7 +69,7 @@ class Predictor {
   }
 
   [[nodiscard]] Foretold factored(const petsc::Analysis& analysis, double nonzeros) {
-    const Speed& speed = analysis.pc_type == operators::kElementsPc ? kByElements : kByMumps;
+    const Speed& speed = analysis.pc_type == petsc::kElementsPc ? kByElements : kByMumps;
     const int ranks = petsc::ranks(comm_), sharing = speed.on_all_ranks ? ranks : 1;
     Foretold f;
     f.factorization = kFixedSeconds + (analysis.operations / (speed.share * speed_) +

@@ -26,7 +26,7 @@ DenseMatrix identity(int size) {
 }
 
 // Sends a matrix from its owner to all ranks.
-void share(MPI_Comm comm, int owner, int rows, int columns, DenseMatrix& a) {
+void send(MPI_Comm comm, int owner, int rows, int columns, DenseMatrix& a) {
   if (petsc::rank(comm) != owner) a = DenseMatrix(rows, columns);
   MPI_Bcast(a.data(), rows * columns, MPIU_SCALAR, owner, comm);
 }
@@ -116,8 +116,9 @@ struct ElementElimination::Line {
   [[nodiscard]] std::size_t rising_at(int end) const { return falling_at(end) + rising[end]; }
 };
 
-ElementElimination::ElementElimination(Mat matrix, std::shared_ptr<const MatrixData> data)
-    : data_(std::move(data)), comm_(data_->states.comm()) {
+ElementElimination::ElementElimination(Mat matrix, std::shared_ptr<const MatrixData> data,
+                                       bool share)
+    : data_(std::move(data)), comm_(share ? data_->states.comm() : PETSC_COMM_SELF) {
   const StateSpace& states = data_->states;
   const auto& process = data_->discretisation.process;
   for (Half half : states.halves()) {
@@ -196,10 +197,10 @@ ElementSystem::Response ElementElimination::response(Line& line, int e) const {
   const int owner_of = owner(line, static_cast<std::size_t>(e)), all = line.count();
   const int inner = line.rising[e], outer = line.rising[e + 1];
   if (petsc::ranks(comm_) == 1) return s;
-  share(comm_, owner_of, all - inner, inner, s.inner_inner);
-  share(comm_, owner_of, all - inner, all - outer, s.inner_outer);
-  share(comm_, owner_of, outer, inner, s.outer_inner);
-  share(comm_, owner_of, outer, all - outer, s.outer_outer);
+  send(comm_, owner_of, all - inner, inner, s.inner_inner);
+  send(comm_, owner_of, all - inner, all - outer, s.inner_outer);
+  send(comm_, owner_of, outer, inner, s.outer_inner);
+  send(comm_, owner_of, outer, all - outer, s.outer_outer);
   return s;
 }
 
@@ -405,10 +406,10 @@ void ElementElimination::solve(Vec b, Vec x, bool transposed) const {
     if (petsc::rank(comm_) == 0) {
       for_each_unknown_between([&](std::size_t n, PetscInt row) { all[row] = w[n]; });
     }
+    MPI_Allreduce(MPI_IN_PLACE, all.data(), all.size(), MPIU_SCALAR, MPIU_SUM, comm_);
+    petsc::WriteView local(x);
+    std::copy_n(all.data() + data_->states.local_begin(), local.size(), local.data());
   }
-  check(VecSet(x, 0));
-  check(VecScatterBegin(scatter_, all_, x, ADD_VALUES, SCATTER_REVERSE));
-  check(VecScatterEnd(scatter_, all_, x, ADD_VALUES, SCATTER_REVERSE));
 }
 
 double ElementElimination::entries() const {

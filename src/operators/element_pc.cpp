@@ -31,6 +31,7 @@ Events& events() {
 /// What a PC of this type owns.
 struct Elements {
   std::unique_ptr<ElementElimination> factors;
+  PetscBool share = PETSC_TRUE;
 };
 
 Elements& elements_of(PC pc) { return *static_cast<Elements*>(pc->data); }
@@ -71,7 +72,8 @@ PetscErrorCode set_up(PC pc) {
   return guarded([pc] {
     const LoggedEvent logged(events().set_up, pc);
     elements_of(pc).factors.reset();  // before there are others
-    elements_of(pc).factors = std::make_unique<ElementElimination>(pc->pmat, data_for(pc));
+    elements_of(pc).factors = std::make_unique<ElementElimination>(
+        pc->pmat, data_for(pc), elements_of(pc).share == PETSC_TRUE);
   });
 }
 
@@ -81,6 +83,14 @@ PetscErrorCode apply(PC pc, Vec b, Vec x) {
     const LoggedEvent logged(events().solve, pc);
     elements_of(pc).factors->solve(b, x, transposed);
   });
+}
+
+// NOLINTNEXTLINE(readability-identifier-naming): the name that PETSc's macros expect
+PetscErrorCode set_from_options(PC pc, PetscOptionItems* PetscOptionsObject) {
+  PetscBool& share = elements_of(pc).share;
+  PetscOptionsHeadBegin(PetscOptionsObject, "Elimination of velocity elements");
+  return PetscOptionsBool("-pc_elements_share", "Ranks share the elements, or each factors all",
+                          nullptr, share, &share, nullptr);
 }
 
 PetscErrorCode reset(PC pc) {
@@ -110,6 +120,8 @@ PetscErrorCode view(PC pc, PetscViewer viewer) {
     line(fmt::format("elements {} on {} half line(s), noise nodes {} in {} groups",
                      on.axis->cells().size() - 1, data->states.halves().size(), on.noise->count(),
                      on.noise->groups().size()));
+    line(fmt::format("elements shared by {} rank(s)",
+                     elements_of(pc).share == PETSC_TRUE ? petsc::ranks(data->states.comm()) : 1));
     line(fmt::format("entries of the factors {:.4g}, operations of factoring {:.4g}", cost.entries,
                      cost.operations));
   });
@@ -119,7 +131,7 @@ PetscErrorCode analyse(PC pc, petsc::Analysis* analysis) {
   return guarded([=] {
     const auto data = data_for(pc);
     const FactorCost cost = cost_of(*data);
-    *analysis = {kElementsPc, cost.entries, cost.bytes / 1e6, cost.operations};
+    *analysis = {petsc::kElementsPc, cost.entries, cost.bytes / 1e6, cost.operations};
   });
 }
 
@@ -128,6 +140,7 @@ PetscErrorCode create(PC pc) {
   pc->ops->setup = set_up;
   pc->ops->apply = apply<false>;
   pc->ops->applytranspose = apply<true>;
+  pc->ops->setfromoptions = set_from_options;
   pc->ops->reset = reset;
   pc->ops->destroy = destroy;
   pc->ops->view = view;
@@ -137,7 +150,7 @@ PetscErrorCode create(PC pc) {
 }  // namespace
 
 void register_preconditioners() {
-  check(PCRegister(kElementsPc, create));
+  check(PCRegister(petsc::kElementsPc, create));
   check(PetscClassIdRegister("stickslip", &events().id));
   check(PetscLogEventRegister("PCElementsSetUp", events().id, &events().set_up));
   check(PetscLogEventRegister("PCElementsSolve", events().id, &events().solve));

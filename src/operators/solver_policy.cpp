@@ -6,8 +6,8 @@
 #include <cmath>
 #include <map>
 
-#include "stickslip/operators/element_pc.hpp"
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/petsc/solver_choice.hpp"
 
 namespace stickslip::operators {
 namespace {
@@ -55,7 +55,7 @@ const char* default_pc_type(const Discretisation& discretisation) {
   const bool hp = dynamic_cast<const velocity::HpAxis*>(axis.get()) != nullptr;
   const Factors factors = chosen_factors(Factors::own, hp ? Scheme::hp : Scheme::upwind,
                                          noise->count(), noise->all_levels());
-  return factors == Factors::elements ? kElementsPc : "lu";
+  return factors == Factors::elements ? petsc::kElementsPc : "lu";
 }
 
 // The blocks and couplings of groups inside of the elements, and those between elements.

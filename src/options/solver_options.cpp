@@ -52,7 +52,7 @@ const std::vector<SolverRole>& solver_roles() {
        split("ksp_view ksp_view_pre ksp_converged_reason ksp_converged_rate "
              "ksp_view_final_residual",
              ' '),
-       split("pc_type pc_factor_mat_solver_type pc_factor_levels sub_pc_type "
+       split("pc_type pc_elements_share pc_factor_mat_solver_type pc_factor_levels sub_pc_type "
              "sub_pc_factor_levels ksp_type ksp_rtol ksp_max_it ksp_monitor",
              ' ')},
       {"null_", petsc::probe_eigensolver, later, eps},
@@ -179,9 +179,11 @@ void check_unknown_options(Problems& problems) {
 }
 
 Factors read_factors() {
-  if (!petsc::chooses_solver("slide_")) return Factors::own;
-  const std::string pc = solver_option("-slide_pc_type");
-  if (pc == "elements") return Factors::elements;
+  const std::string implied = petsc::implied_pc_type("slide_");
+  if (implied.empty()) return Factors::own;
+  std::string pc = solver_option("-slide_pc_type");
+  if (pc.empty()) pc = implied;
+  if (pc == petsc::kElementsPc) return Factors::elements;
   if (!pc.empty() && pc != "lu" && pc != "cholesky") return Factors::incomplete;
   const bool on_disk = solver_option("-slide_mat_mumps_icntl_22") == "1";
   return on_disk ? Factors::on_disk : Factors::in_memory;

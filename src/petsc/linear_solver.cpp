@@ -140,17 +140,18 @@ Analysis own_analysis(KSP ksp) {
 
 }  // namespace
 
-bool chooses_solver(const std::string& prefix) {
+std::string implied_pc_type(const std::string& prefix) {
   char* text = nullptr;
   check(PetscOptionsGetAll(nullptr, &text));
   std::istringstream words(text);
   check(PetscFree(text));
+  const std::string pc = "-" + prefix + "pc_", own = pc + kElementsPc, mat = "-" + prefix + "mat_";
+  bool others = false;
   for (std::string word; words >> word;) {
-    if (word.starts_with("-" + prefix + "pc_") || word.starts_with("-" + prefix + "mat_")) {
-      return true;
-    }
+    if (word.starts_with(own)) return kElementsPc;
+    others = others || word.starts_with(pc) || word.starts_with(mat);
   }
-  return false;
+  return others ? PCLU : "";
 }
 
 void set_direct_solver(KSP ksp) {
@@ -177,7 +178,8 @@ KspHandle linear_solver(Mat matrix, const std::string& prefix, PCType pc_type) {
   check(KSPSetOptionsPrefix(ksp, prefix.c_str()));
   check(KSPSetOperators(ksp, matrix, matrix));
   set_direct_solver(ksp);
-  if (!chooses_solver(prefix)) check(PCSetType(preconditioner_of(ksp), pc_type));
+  const std::string implied = implied_pc_type(prefix);
+  check(PCSetType(preconditioner_of(ksp), implied.empty() ? pc_type : implied.c_str()));
   check(KSPSetFromOptions(ksp));
   return ksp;
 }

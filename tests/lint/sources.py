@@ -70,7 +70,7 @@ def without_comments(text):
 
 PETSC_CALL = re.compile(r"\b(?:Petsc|Slepc|Vec|Mat|KSP|PC|EPS|ST|IS|TS|BV)[A-Z]\w*\(")
 HARMLESS = re.compile(r"(PetscRealPart|PetscImaginaryPart|PetscAbsScalar|PetscObjectComm|PetscConj"
-                      r"|PetscDefined|PetscReal|PetscScalar|PetscFailure)\($")
+                      r"|PetscDefined|PetscReal|PetscScalar|PetscFailure|PetscOptionsHeadBegin)\($")
 
 
 def check_petsc_calls(root):

@@ -8,12 +8,12 @@
 
 #include "../common/options.hpp"
 #include "../common/scenes.hpp"
-#include "stickslip/operators/element_pc.hpp"
 #include "stickslip/operators/solver_policy.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/linear_solver.hpp"
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/petsc/solver_choice.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -62,7 +62,7 @@ TEST_CASE("solver policy: elements where few noise nodes stand for the levels", 
   CHECK(operators::chosen_factors(Factors::own, Scheme::hp, 701, true) == Factors::in_memory);
   CHECK(operators::chosen_factors(Factors::own, Scheme::upwind, 9, true) == Factors::in_memory);
   CHECK(operators::chosen_factors(Factors::on_disk, Scheme::hp, 9, false) == Factors::on_disk);
-  const std::string own = operators::kElementsPc;
+  const std::string own = petsc::kElementsPc;
   CHECK(operators::default_pc_type(test::on_nodes(with_step(1.0 / 64), 3, 3)) == own);
   CHECK(operators::default_pc_type(test::on_hp(with_step(1.0 / 64), 2)) == std::string("lu"));
   CHECK(operators::default_pc_type(test::on_upwind(with_step(0.25), 2)) == std::string("lu"));
@@ -71,17 +71,18 @@ TEST_CASE("solver policy: elements where few noise nodes stand for the levels", 
 TEST_CASE("solver policy: options choose another solver, with the same solution", "[parallel]") {
   const auto on = test::on_nodes(with_step(0.25), 4, 3);
   const auto [expected, type] = solved(on);
-  CHECK(type == operators::kElementsPc);
+  CHECK(type == petsc::kElementsPc);
   using Options = std::vector<std::pair<std::string, std::string>>;
   const bool alone = petsc::ranks(PETSC_COMM_WORLD) == 1;
   const std::string block = alone ? "ilu" : "bjacobi";
   const std::vector<std::pair<Options, std::string>> choices{
       {{{"-user_pc_type", "lu"}}, "lu"},
       {{{"-user_mat_mumps_icntl_7", "0"}}, "lu"},
+      {{{"-user_pc_elements_share", "no"}}, petsc::kElementsPc},
       {{{"-user_pc_type", "redundant"}, {"-user_redundant_pc_factor_mat_solver_type", "klu"}},
        "redundant"},
       {{{"-user_ksp_type", "gmres"}, {"-user_ksp_rtol", "1e-13"}, {"-user_pc_type", block}}, block},
-      {{{"-user_ksp_type", "fgmres"}, {"-user_ksp_rtol", "1e-13"}}, operators::kElementsPc},
+      {{{"-user_ksp_type", "fgmres"}, {"-user_ksp_rtol", "1e-13"}}, petsc::kElementsPc},
       {{{"-user_ksp_type", "gmres"}, {"-user_ksp_rtol", "1e-13"}, {"-user_pc_type", "asm"}},
        "asm"}};
   for (const auto& [options, chosen] : choices) {
@@ -96,7 +97,7 @@ TEST_CASE("solver policy: options choose another solver, with the same solution"
 TEST_CASE("PC elements: its view tells what it works on", "[parallel]") {
   const auto on = test::on_nodes(with_step(0.25), 4, 3);
   const auto a = sliding(on);
-  const auto ksp = petsc::linear_solver(a.matrix(), "user_", operators::kElementsPc);
+  const auto ksp = petsc::linear_solver(a.matrix(), "user_", petsc::kElementsPc);
   check(KSPSetUp(ksp));
   char* text = nullptr;
   std::size_t size = 0;
@@ -115,7 +116,7 @@ TEST_CASE("PC elements: its view tells what it works on", "[parallel]") {
 
 TEST_CASE("PC elements: a matrix of something else is refused", "[parallel]") {
   const auto upwind = sliding(test::on_upwind(with_step(0.25), 2));
-  const auto ksp = petsc::linear_solver(upwind.matrix(), "user_", operators::kElementsPc);
+  const auto ksp = petsc::linear_solver(upwind.matrix(), "user_", petsc::kElementsPc);
   CHECK_THROWS_AS(check(KSPSetUp(ksp)), BadInput);
 }
 

@@ -237,7 +237,7 @@ TEST_CASE("factorization: MUMPS orders by AMF unless told otherwise", "[parallel
   const MatHandle a = saddle(400);
   constexpr PetscInt amd = 0, amf = 2;
   CHECK(ordering_used(a, "order_") == amf);
-  CHECK_FALSE(chooses_solver("order_"));  // nothing stays behind
+  CHECK(implied_pc_type("order_").empty());  // nothing stays behind
   const test::Given given({{"-order_mat_mumps_icntl_7", "0"}});
   CHECK(ordering_used(a, "order_") == amd);
 }

@@ -30,14 +30,14 @@ namespace stickslip::operators {
 /// noise nodes and E elements of q velocity nodes, factors take some 1.5 E M^2 entries and 1.1 E
 /// M^3 operations, besides those of the elements.
 ///
-/// Elements are dealt out to the ranks; what is between them is eliminated by each rank alike, so
-/// that results do not depend on the number of ranks.
+/// Ranks share the elements; what is between them each rank eliminates alike, so that results do
+/// not depend on the number of ranks.
 class ElementElimination {
  public:
   /// Factors `matrix`, which carries `data`; of its entries the rows of states at rest are read,
-  /// the others follow from the discretisation. Collective. Throws NotReached where the matrix is
-  /// singular.
-  ElementElimination(Mat matrix, std::shared_ptr<const MatrixData> data);
+  /// the others follow from the discretisation. Without `share` each rank factors all elements.
+  /// Collective. Throws NotReached where the matrix is singular.
+  ElementElimination(Mat matrix, std::shared_ptr<const MatrixData> data, bool share = true);
   ~ElementElimination();
 
   /// x = A^-1 b, or A^-T b without conjugation. Collective.
@@ -72,7 +72,7 @@ class ElementElimination {
   void for_each_unknown_between(Visit visit) const;
 
   std::shared_ptr<const MatrixData> data_;
-  MPI_Comm comm_;
+  MPI_Comm comm_;  // of the ranks that share elements
   std::vector<Line> lines_;
   std::vector<PetscInt> rest_rows_;  // of states at rest, from the lowest level up
   int lowest_rest_ = 0;

@@ -34,9 +34,9 @@ class DefaultOrdering {
   PetscBool given_ = PETSC_FALSE;
 };
 
-/// KSP of type preonly around a PC of type `pc_type`; with PCLU around MUMPS. Every choice is a PETSc option under the prefix, e.g. -slide_pc_type lu or
-/// -slide_pc_factor_mat_solver_type klu; with any option of the PC or its matrices LU is the
-/// default. Collective.
+/// KSP of type preonly around a PC of type `pc_type`; with PCLU around MUMPS. Every choice is a
+/// PETSc option under the prefix, e.g. -slide_pc_type lu or -slide_pc_factor_mat_solver_type klu;
+/// with any option of the PC or its matrices LU is the default. Collective.
 [[nodiscard]] KspHandle linear_solver(Mat matrix, const std::string& prefix, PCType pc_type);
 
 /// Whether the PC of a KSP is of a type of this program: it needs the matrix of an operator.

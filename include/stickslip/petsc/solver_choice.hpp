@@ -5,8 +5,12 @@
 
 namespace stickslip::petsc {
 
-/// Whether options under the prefix say something about the preconditioner or its matrices.
-[[nodiscard]] bool chooses_solver(const std::string& prefix);
+/// The PC type of this program, which the operators register.
+inline constexpr const char* kElementsPc = "elements";
+
+/// What options under the prefix say about the preconditioner and its matrices, if anything: the
+/// default of -<prefix>pc_type is "elements" where its own options are given, and "lu" with others.
+[[nodiscard]] std::string implied_pc_type(const std::string& prefix);
 
 /// What an analysis predicts; zeros for solvers that report nothing.
 struct Analysis {
