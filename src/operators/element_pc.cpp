@@ -71,9 +71,11 @@ FactorCost cost_of(const MatrixData& data) {
 PetscErrorCode set_up(PC pc) {
   return guarded([pc] {
     const LoggedEvent logged(events().set_up, pc);
-    elements_of(pc).factors.reset();  // before there are others
-    elements_of(pc).factors = std::make_unique<ElementElimination>(
-        pc->pmat, data_for(pc), elements_of(pc).share == PETSC_TRUE);
+    const auto data = data_for(pc);
+    auto& [factors, share] = elements_of(pc);
+    factors.reset();  // before there are others
+    factors = std::make_unique<ElementElimination>(pc->pmat, data, share == PETSC_TRUE);
+    check(PetscLogFlops(cost_of(*data).operations / petsc::ranks(data->states.comm())));
   });
 }
 
@@ -82,6 +84,7 @@ PetscErrorCode apply(PC pc, Vec b, Vec x) {
   return guarded([=] {
     const LoggedEvent logged(events().solve, pc);
     elements_of(pc).factors->solve(b, x, transposed);
+    check(PetscLogFlops(2 * elements_of(pc).factors->entries()));
   });
 }
 
