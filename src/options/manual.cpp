@@ -33,10 +33,9 @@ std::string bold(std::string_view text) { return fmt::format("\\fB{}\\fR", roff(
 std::string item(const Option& option) {
   std::string text = option.sentence;
   if (!option.unit.empty()) text += fmt::format(" [{}]", option.unit);
-  text += "; " + allowed_values(option);
+  text += "; " + option.allowed;
   if (!option.initial.empty()) text += "; default " + option.initial;
-  return entry(fmt::format("{} \\fI{}\\fR", bold("-" + option.name), kind_name(option.kind)),
-               text + ".");
+  return entry(fmt::format("{} \\fI{}\\fR", bold("-" + option.name), option.form), text + ".");
 }
 
 std::string option_items() {
@@ -150,13 +149,8 @@ std::string completer(const Option& option) {
   case Kind::input: return "_stickslip_files ";
   case Kind::list: return fmt::format("_stickslip_list '{}' ", words);
   case Kind::flag: return fmt::format("_stickslip_words \"{} $names\" ", words);
-  case Kind::choice:
-  case Kind::integer: return words.empty() ? "" : fmt::format("_stickslip_words '{}' ", words);
-  case Kind::real:
-  case Kind::numbers:
-  case Kind::text: return "";
+  default: return words.empty() ? "" : fmt::format("_stickslip_words '{}' ", words);
   }
-  return "";
 }
 
 // A cell of a Markdown table, where a bar would end it.
@@ -194,8 +188,7 @@ std::string help_text() {
       const std::string unit = option.unit.empty() ? "" : fmt::format(" [{}]", option.unit);
       text += fmt::format(
           "  -{:<17} {}\n", option.name,
-          wrap(fmt::format("{}{}{}; {}", option.sentence, unit, initial, allowed_values(option)),
-               76, 21));
+          wrap(fmt::format("{}{}{}; {}", option.sentence, unit, initial, option.allowed), 76, 21));
     }
   }
   return text + other_help();
@@ -212,8 +205,8 @@ std::string reference_page() {
     text += "| option | form | unit | default | allowed | meaning |\n";
     text += "| --- | --- | --- | --- | --- | --- |\n";
     for (const auto& o : group.options) {
-      text += fmt::format("| `-{}` | {} | {} | {} | {} | {} |\n", o.name, kind_name(o.kind),
-                          cell(o.unit), cell(o.initial), cell(allowed_values(o)), cell(o.sentence));
+      text += fmt::format("| `-{}` | {} | {} | {} | {} | {} |\n", o.name, o.form, cell(o.unit),
+                          cell(o.initial), cell(o.allowed), cell(o.sentence));
     }
   }
   return text;

@@ -67,7 +67,8 @@ class SceneReader {
     } catch (const std::out_of_range&) {
       return report("delta", "gives more noise levels than can be counted", "take a larger step");
     }
-    if (settings_.text("noise_levels") == "full") scene_.noise_levels = full;
+    const bool word = settings_.given("noise_levels") && !scene_.noise_levels;
+    if (word) scene_.noise_levels = full;
     const int levels = scene_.noise_levels.value_or(full), k = std::max(highest, -lowest);
     const double largest = levels * delta;
     if (full < 1) {

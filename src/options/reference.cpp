@@ -39,15 +39,10 @@ void require_equal_sizes(const std::string& key, const Values& v) {
   }
 }
 
-bool finite(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(),
-                     [](double value) { return std::isfinite(value); });
-}
-
 void require_numbers(const std::string& key, const Values& v) {
   bool sound = true;
   for (const auto* values : {&v.argument, &v.value, &v.error, &v.low, &v.high}) {
-    sound = sound && finite(*values);
+    for (double value : *values) sound = sound && std::isfinite(value);
   }
   for (double error : v.error) sound = sound && error >= 0;
   for (std::size_t n = 0; n < v.low.size(); ++n) sound = sound && v.low[n] <= v.high[n];

@@ -25,19 +25,15 @@ std::optional<std::string> value_in_database(const std::string& name) {
   return value.substr(std::min(value.find_first_not_of(' '), value.size()));
 }
 
-std::string unknown_word(const Option& option, const std::string& word) {
-  const std::string near = nearest_word(word, option.words);
-  return near.empty() ? "" : fmt::format("did you mean {}?", near);
-}
-
 void check_words(const Option& option, const std::string& value, Problems& problems) {
   const auto given = option.kind == Kind::list ? split(value, ',') : std::vector{value};
-  const std::string must = "must be " + allowed_values(option);
+  const std::string must = "must be " + option.allowed;
   if (given.empty()) problems.add(option, value, must, "");
   for (auto word = given.begin(); word != given.end(); ++word) {
-    const bool known =
-        std::find(option.words.begin(), option.words.end(), *word) != option.words.end();
-    if (!known) problems.add(option, *word, must, unknown_word(option, *word));
+    if (std::count(option.words.begin(), option.words.end(), *word) == 0) {
+      const std::string near = nearest_word(*word, option.words);
+      problems.add(option, *word, must, near.empty() ? "" : "did you mean " + near + "?");
+    }
     if (std::find(given.begin(), word, *word) != word) {
       problems.add(option, value, "names " + *word + " twice", "name it once");
     }
@@ -45,7 +41,7 @@ void check_words(const Option& option, const std::string& value, Problems& probl
 }
 
 void check_numbers(const Option& option, const std::string& value, Problems& problems) {
-  const std::string must = "must be " + allowed_values(option);
+  const std::string must = "must be " + option.allowed;
   const auto numbers = parse_numbers(value);
   if (!numbers)
     return problems.add(option, value, must, "write for example 0.1,1 or 0.01:10:31:log");
@@ -59,8 +55,7 @@ void check_number(const Option& option, const std::string& value, Problems& prob
   const auto number = parse_number(value);
   const bool fits = number && option.range.contains(*number) &&
                     (option.kind == Kind::real || *number == std::floor(*number));
-  if (!is_word && !fits)
-    problems.add(option, value, "must be " + allowed_values(option), option.fix);
+  if (!is_word && !fits) problems.add(option, value, "must be " + option.allowed, option.fix);
 }
 
 void check_value(const Option& option, const std::string& value, Problems& problems) {
@@ -81,7 +76,7 @@ void check_value(const Option& option, const std::string& value, Problems& probl
   case Kind::path:
   case Kind::input:
     if (!value.empty()) return;
-    problems.add(option, value, "must be a file name", "name the file after the option");
+    problems.add(option, value, "must be " + option.allowed, "name the file after the option");
   }
 }
 

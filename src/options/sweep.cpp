@@ -77,44 +77,6 @@ void check_ranks(const Settings& settings, Problems& problems) {
                   "take fewer, or start more with mpiexec -n");
 }
 
-/// What is wrong with the points, each message once with the places it holds at.
-class PointProblems {
- public:
-  explicit PointProblems(const Sweep& sweep) : sweep_(sweep) {}
-
-  void add(std::size_t point, const Problems& problems) {
-    for (const auto& message : problems.messages()) {
-      auto [entry, is_new] = places_.try_emplace(message, Places{point, 0});
-      ++entry->second.count;
-      if (is_new) order_.push_back(message);
-    }
-  }
-
-  void report(Problems& problems) const {
-    for (std::size_t n = 0; n < std::min(order_.size(), kMostMessages); ++n) {
-      problems.add(where(places_.at(order_[n])) + order_[n]);
-    }
-    if (order_.size() <= kMostMessages) return;
-    problems.add(fmt::format("and {} more like these", order_.size() - kMostMessages));
-  }
-
- private:
-  struct Places {
-    std::size_t first, count;
-  };
-
-  [[nodiscard]] std::string where(const Places& places) const {
-    if (places.count == sweep_.size()) return "";
-    const std::string more =
-        places.count > 1 ? fmt::format(" and {} more points", places.count - 1) : "";
-    return fmt::format("at {}{}: ", sweep_.place(places.first), more);
-  }
-
-  const Sweep& sweep_;
-  std::map<std::string, Places> places_;
-  std::vector<std::string> order_;
-};
-
 // A swept option without effect would give the same numbers over and over.
 void check_effects(const Sweep& sweep, const Request& request, Problems& problems) {
   for (const auto& axis : sweep.axes()) {
@@ -125,15 +87,33 @@ void check_effects(const Sweep& sweep, const Request& request, Problems& problem
   }
 }
 
+// "at mu_d = 2 and 3 more points: "; nothing if these are all.
+std::string where(const Sweep& sweep, const std::vector<std::size_t>& points) {
+  if (points.size() == sweep.size()) return "";
+  const std::string more =
+      points.size() > 1 ? fmt::format(" and {} more points", points.size() - 1) : "";
+  return fmt::format("at {}{}: ", sweep.place(points.front()), more);
+}
+
+// What is wrong with the points, each message once with the places it holds at.
 void check_points(const Sweep& sweep, Problems& problems) {
-  PointProblems found(sweep);
+  std::map<std::string, std::vector<std::size_t>> points_of;
+  std::vector<std::string> messages;
   for (std::size_t point = 0; point < sweep.size(); ++point) {
     Problems own;
     const Request request = sweep.request(point, own);
-    found.add(point, own);
     if (point == 0) check_effects(sweep, request, problems);
+    for (const auto& message : own.messages()) {
+      auto& points = points_of[message];
+      if (points.empty()) messages.push_back(message);
+      points.push_back(point);
+    }
   }
-  found.report(problems);
+  for (std::size_t n = 0; n < std::min(messages.size(), kMostMessages); ++n) {
+    problems.add(where(sweep, points_of[messages[n]]) + messages[n]);
+  }
+  if (messages.size() <= kMostMessages) return;
+  problems.add(fmt::format("and {} more like these", messages.size() - kMostMessages));
 }
 
 bool is_axis(const std::vector<SweepAxis>& axes, const std::string& name) {

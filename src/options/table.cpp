@@ -16,28 +16,52 @@ Range positive() { return {0, kInfinity, false, false}; }
 Range not_negative() { return {0, kInfinity, true, false}; }
 Range whole(double low, double high) { return {low, high, true, true}; }
 
+using Words = std::vector<std::string>;
+
 Option real(const char* name, const char* unit, const char* initial, Range range,
             const char* sentence, const char* fix = kChosen) {
-  return {name, Kind::real, unit, initial, range, {}, sentence, fix};
+  const std::string allowed = "a number in " + range.text();
+  return {name, Kind::real, "number", allowed, unit, initial, range, {}, sentence, fix};
 }
 
 Option integer(const char* name, const char* initial, Range range, const char* sentence,
-               const char* fix = kChosen, std::vector<std::string> words = {}) {
-  return {name, Kind::integer, "", initial, range, std::move(words), sentence, fix};
+               const char* fix = kChosen, const Words& words = {}) {
+  const std::string or_words = words.empty() ? "" : " or " + enumerate(words, "or");
+  const std::string allowed = "a whole number in " + range.text() + or_words;
+  return {name, Kind::integer, "integer", allowed, "", initial, range, words, sentence, fix};
 }
 
-Option words(const char* name, Kind kind, const char* initial, std::vector<std::string> words,
-             const char* sentence) {
-  return {name, kind, "", initial, {}, std::move(words), sentence, ""};
+Option choice(const char* name, const char* initial, const Words& words, const char* sentence) {
+  return {name, Kind::choice, "word", enumerate(words, "or"), "", initial, {}, words, sentence, ""};
 }
 
-Option numbers(const char* name, const char* unit, const char* sentence) {
-  const char* fix = "negative and missing values mean nothing here";
-  return {name, Kind::numbers, unit, "", not_negative(), {}, sentence, fix};
+Option list(const char* name, const char* initial, const Words& words, const char* sentence) {
+  const std::string allowed = "a comma list of " + enumerate(words, "and");
+  return {name, Kind::list, "list", allowed, "", initial, {}, words, sentence, ""};
 }
 
-Option text(const char* name, Kind kind, const char* initial, const char* sentence) {
-  return {name, kind, "", initial, {}, {}, sentence, ""};
+Option flag(const char* name, const char* sentence) {
+  return {name, Kind::flag, "flag", "yes or no", "", "no", {}, {"yes", "no"}, sentence, ""};
+}
+
+Option numbers(const std::string& name, const std::string& unit, Range range,
+               const std::string& sentence, const std::string& fix) {
+  const std::string allowed = fmt::format(
+      "numbers in {} as a,b,c or first:last:count or first:last:count:log", range.text());
+  return {name, Kind::numbers, "numbers", allowed, unit, "", range, {}, sentence, fix};
+}
+
+Option arguments(const char* name, const char* unit, const char* sentence) {
+  return numbers(name, unit, not_negative(), sentence,
+                 "negative and missing values mean nothing here");
+}
+
+Option text(const char* name, const char* initial, const char* sentence) {
+  return {name, Kind::text, "text", "text", "", initial, {}, {}, sentence, ""};
+}
+
+Option file(const char* name, Kind kind, const char* sentence) {
+  return {name, kind, "file", "a file name", "", "", {}, {}, sentence, ""};
 }
 
 std::vector<Option> scene_options() {
@@ -54,13 +78,13 @@ std::vector<Option> scene_options() {
               "levels N of the noise on each side of 0; `full` is floor(2/(tau delta^2)). Without "
               "it, the full range is meant, and as much of it is kept as -accuracy needs",
               kChosen, {"full"}),
-      words("drag", Kind::choice, "linear", words_of(kDragLaws),
-            "drag law b(v): -c v, 0, -c v - c3 v^3, or -drag_expression"),
+      choice("drag", "linear", words_of(kDragLaws),
+             "drag law b(v): -c v, 0, -c v - c3 v^3, or -drag_expression"),
       real("drag_coefficient", "1/time", "1", not_negative(), "c in the drag law",
            "the drag must not grow with the velocity, it would drive the body"),
       real("drag_cubic", "time/length^2", "0", not_negative(), "c3 in the cubic drag law",
            "the drag must not grow with the velocity, it would drive the body"),
-      text("drag_expression", Kind::text, "",
+      text("drag_expression", "",
            "b(v) of -drag expression in v, mu_s, mu_d, tau, such as \"-v - 0.1*v*abs(v)\"; 0 at "
            "rest, falling everywhere with bounded slopes; where it is not odd, both signs of v are "
            "kept, as with a bias"),
@@ -77,32 +101,32 @@ std::vector<Option> scene_options() {
 
 std::vector<Option> question_options() {
   return {
-      words("quantities", Kind::list, "sticking,moments,noise_law", words_of(quantity_table()),
-            "comma list. sticking: P_stick, P_slide, mean_stick, mean_slide, mean_excursion. "
-            "moments: E_V2, E_absV, E_XV, E_V. noise_law: P_X_le_mu_s, E_X2. entry_law: the level "
-            "at which sliding ends (an array), f_stick_0. density: the stationary law as a field "
-            "(needs -output). laplace: F_slide, F_stick, F_excursion on -lambda. F_stick: that "
-            "alone, from the noise at rest. resolvent: h_plus, h_minus, w_one and for each "
-            "-observable u, w_plus, w_minus, pi, mu on -lambda. relaxation: leading eigenvalues of "
-            "-L for even and odd functions. spectrum: S_v on -omega, S_0, diffusivity = S_0/2, "
-            "fwhm, t_corr = 1/fwhm, variance_from_spectrum. duration_density: f_slide, f_stick, "
-            "f_excursion and cdf_slide, cdf_stick, cdf_excursion on -time. autocorrelation: C_vv = "
-            "E[V_0 V_t] on -time. expectation: E[f(Z_t)] from -start for each -observable on "
-            "-time, and its limit pi(f). trajectory: one simulated path from -start up to "
-            "-horizon, to -output or -trajectory. sensitivity: derivatives of every scalar of "
-            "sticking, moments and noise_law, as far as these are asked for, with respect to mu_d, "
-            "tau (at a fixed number of noise levels) and drag_coefficient, by adjoints: "
-            "dP_stick_dmu_d and so on; between two noise levels nothing depends on mu_s"),
-      numbers("lambda", "1/time",
-              "values of lambda, as a,b,c or first:last:count or first:last:count:log. With -route "
-              "lambda one value, chosen from -accuracy if it is left out"),
-      numbers("omega", "1/time", "angular frequencies of spectrum, in the forms of -lambda"),
-      numbers(
+      list("quantities", "sticking,moments,noise_law", words_of(quantity_table()),
+           "comma list. sticking: P_stick, P_slide, mean_stick, mean_slide, mean_excursion. "
+           "moments: E_V2, E_absV, E_XV, E_V. noise_law: P_X_le_mu_s, E_X2. entry_law: the level "
+           "at which sliding ends (an array), f_stick_0. density: the stationary law as a field "
+           "(needs -output). laplace: F_slide, F_stick, F_excursion on -lambda. F_stick: that "
+           "alone, from the noise at rest. resolvent: h_plus, h_minus, w_one and for each "
+           "-observable u, w_plus, w_minus, pi, mu on -lambda. relaxation: leading eigenvalues of "
+           "-L for even and odd functions. spectrum: S_v on -omega, S_0, diffusivity = S_0/2, "
+           "fwhm, t_corr = 1/fwhm, variance_from_spectrum. duration_density: f_slide, f_stick, "
+           "f_excursion and cdf_slide, cdf_stick, cdf_excursion on -time. autocorrelation: C_vv = "
+           "E[V_0 V_t] on -time. expectation: E[f(Z_t)] from -start for each -observable on "
+           "-time, and its limit pi(f). trajectory: one simulated path from -start up to "
+           "-horizon, to -output or -trajectory. sensitivity: derivatives of every scalar of "
+           "sticking, moments and noise_law, as far as these are asked for, with respect to mu_d, "
+           "tau (at a fixed number of noise levels) and drag_coefficient, by adjoints: "
+           "dP_stick_dmu_d and so on; between two noise levels nothing depends on mu_s"),
+      arguments(
+          "lambda", "1/time",
+          "values of lambda, as a,b,c or first:last:count or first:last:count:log. With -route "
+          "lambda one value, chosen from -accuracy if it is left out"),
+      arguments("omega", "1/time", "angular frequencies of spectrum, in the forms of -lambda"),
+      arguments(
           "time", "time",
           "times of duration_density, autocorrelation and expectation, in the forms of -lambda"),
-      text("start", Kind::text, "s+",
-           "state at time 0 of expectation: s+, s-, or x,v with x a noise level"),
-      text("observable", Kind::text, "",
+      text("start", "s+", "state at time 0 of expectation: s+, s-, or x,v with x a noise level"),
+      text("observable", "",
            "functions of the state for resolvent and expectation, separated by semicolons: 1, x, "
            "v, v^2, |v|, stick, slide, |x|<=mu_s, or expressions in x, y, v, mu_s, mu_d such as "
            "\"x*v; abs(v)^3\"; with -scheme hp continuous in v except at v = 0"),
@@ -114,9 +138,9 @@ std::vector<Option> question_options() {
 
 std::vector<Option> method_options() {
   return {
-      words("scheme", Kind::choice, "hp", words_of(kSchemes),
-            "discretisation in v: hp discontinuous Galerkin elements, or the first-order upwind "
-            "differences of the paper"),
+      choice("scheme", "hp", words_of(kSchemes),
+             "discretisation in v: hp discontinuous Galerkin elements, or the first-order upwind "
+             "differences of the paper"),
       integer("degree", "", whole(1, 24),
               "largest polynomial degree of the hp elements; fixing it switches refinement off"),
       integer("layers", "", whole(1, 200),
@@ -131,22 +155,24 @@ std::vector<Option> method_options() {
            "2 suits most scenes"),
       integer("p", "", whole(1, 1e7),
               "points of the upwind scheme per noise step; fixing it switches refinement off"),
-      words("spectrum_solver", Kind::choice, "krylov", words_of(kSpectrumSolvers),
-            "krylov: two-sided rational Krylov projection, a few real factorisations for all "
-            "frequencies. direct: one complex factorisation for each frequency "
-            "(stickslip-complex), to check it; gives S_v, S_0 and diffusivity"),
-      words("transient_solver", Kind::choice, "krylov", words_of(kTransientSolvers),
-            "krylov: reduced models, all times at once. stepping: the backward Kolmogorov equation "
-            "by PETSc's time steppers, to check it (-backward_ts_...)"),
-      words("route", Kind::choice, "excursion", words_of(kRoutes),
-            "excursion: one transposed solve with the sliding operator gives the whole stationary "
-            "law. The others work on both signs of v and check it. lambda: lambda u_lambda for one "
-            "small lambda. hitting: mean hitting times. null_vector: the left null vector of the "
-            "generator, by SLEPc. fluid_queue: b = 0 without any discretisation in v. monte_carlo: "
-            "simulated excursions, with 95 % confidence intervals"),
-      words("plan", Kind::flag, "no", {"yes", "no"},
-            "print what would be assembled, factored and solved, with unknowns, non-zeros, memory "
-            "and time foretold by the analysis phase of the solver, and stop"),
+      choice("spectrum_solver", "krylov", words_of(kSpectrumSolvers),
+             "krylov: two-sided rational Krylov projection, a few real factorisations for all "
+             "frequencies. direct: one complex factorisation for each frequency "
+             "(stickslip-complex), to check it; gives S_v, S_0 and diffusivity"),
+      choice(
+          "transient_solver", "krylov", words_of(kTransientSolvers),
+          "krylov: reduced models, all times at once. stepping: the backward Kolmogorov equation "
+          "by PETSc's time steppers, to check it (-backward_ts_...)"),
+      choice(
+          "route", "excursion", words_of(kRoutes),
+          "excursion: one transposed solve with the sliding operator gives the whole stationary "
+          "law. The others work on both signs of v and check it. lambda: lambda u_lambda for one "
+          "small lambda. hitting: mean hitting times. null_vector: the left null vector of the "
+          "generator, by SLEPc. fluid_queue: b = 0 without any discretisation in v. monte_carlo: "
+          "simulated excursions, with 95 % confidence intervals"),
+      flag("plan",
+           "print what would be assembled, factored and solved, with unknowns, non-zeros, memory "
+           "and time foretold by the analysis phase of the solver, and stop"),
       integer("excursions", "1000000", whole(2, 1e15),
               "number of simulated excursions with -route monte_carlo; with -accuracy it stops "
               "before that when every interval is small enough",
@@ -156,7 +182,7 @@ std::vector<Option> method_options() {
           "seed of what is simulated; the same seed gives the same numbers on any number of ranks",
           "any whole number will do"),
       real("horizon", "time", "100", positive(), "end of the trajectory", "take for example 100"),
-      text("checkpoint", Kind::path, "",
+      file("checkpoint", Kind::path,
            "go on with the simulation of this file if it exists, and keep it there every few "
            "seconds; more -excursions later add to it. With a sweep: keep every point there as it "
            "is finished, and do only what the file does not hold yet"),
@@ -165,11 +191,11 @@ std::vector<Option> method_options() {
 
 std::vector<Option> study_options() {
   return {
-      words("study", Kind::choice, "none", words_of(kStudies),
-            "p: the upwind scheme on p = 2, 4, ..., its observed order and Richardson's limit. "
-            "delta: falling noise steps with mu_s on a level and between two, observed order and "
-            "repeated Richardson's limit. heuristic: the extrapolation of the paper beside "
-            "converged values. cost: error against time of all methods"),
+      choice("study", "none", words_of(kStudies),
+             "p: the upwind scheme on p = 2, 4, ..., its observed order and Richardson's limit. "
+             "delta: falling noise steps with mu_s on a level and between two, observed order and "
+             "repeated Richardson's limit. heuristic: the extrapolation of the paper beside "
+             "converged values. cost: error against time of all methods"),
       integer("study_steps", "", whole(4, 20),
               "length of the series: number of values of p or delta (default 8)",
               "three values tell an order, a fourth how sure it is"),
@@ -179,17 +205,13 @@ std::vector<Option> study_options() {
   };
 }
 
-// The values of another option.
-Option sweep_of(const Option& option) {
-  return {"sweep_" + option.name,      Kind::numbers, option.unit, "", option.range, {},
-          "values of -" + option.name, option.fix};
-}
-
 std::vector<Option> sweep_options() {
   std::vector<Option> options;
   for (const auto& option : scene_options()) {
     const bool number = option.kind == Kind::real || option.kind == Kind::integer;
-    if (number) options.push_back(sweep_of(option));
+    if (!number) continue;
+    options.push_back(numbers("sweep_" + option.name, option.unit, option.range,
+                              "values of -" + option.name, option.fix));
   }
   options.push_back(integer("sweep_ranks", "1", whole(1, 1e6),
                             "ranks that share the work of a point; groups of that many take the "
@@ -200,31 +222,24 @@ std::vector<Option> sweep_options() {
 
 std::vector<Option> output_options() {
   return {
-      text("summary", Kind::path, "", "write everything as JSON to this file"),
-      text("output", Kind::path, "",
+      file("summary", Kind::path, "write everything as JSON to this file"),
+      file("output", Kind::path,
            "write everything and the fields as HDF5 to this file; with density also FILE.xdmf, "
            "which ParaView opens"),
-      text("study_csv", Kind::path, "",
+      file("study_csv", Kind::path,
            "write every scalar of every run of a study as CSV to this file"),
-      text("sweep_csv", Kind::path, "",
+      file("sweep_csv", Kind::path,
            "write a row for each point of a sweep as CSV to this file: its values, every scalar "
            "with its error, and how it ended"),
-      text("trajectory", Kind::path, "",
-           "write the trajectory as CSV (time, x, y, v) to this file"),
-      text("compare", Kind::input, "",
+      file("trajectory", Kind::path, "write the trajectory as CSV (time, x, y, v) to this file"),
+      file("compare", Kind::input,
            "hold the results against the values of this file: HDF5 or JSON of this program, or CSV "
            "with columns quantity,argument,value,low,high (95 % intervals). Without -quantities, "
            "-lambda, -omega or -time, those of the file are taken. Exit status 3 when they "
            "disagree (family-wise level 1e-3)"),
-      words("progress", Kind::choice, "auto", words_of(kProgress),
-            "show what is being done; auto: when standard error is a terminal"),
+      choice("progress", "auto", words_of(kProgress),
+             "show what is being done; auto: when standard error is a terminal"),
   };
-}
-
-std::string number(double value) {
-  if (value == kInfinity) return "inf";
-  if (value == -kInfinity) return "-inf";
-  return fmt::format("{:g}", value);
 }
 
 }  // namespace
@@ -235,7 +250,7 @@ bool Range::contains(double value) const {
 }
 
 std::string Range::text() const {
-  return fmt::format("{}{}, {}{}", low_included ? '[' : '(', number(low), number(high),
+  return fmt::format("{}{:g}, {:g}{}", low_included ? '[' : '(', low, high,
                      high_included ? ']' : ')');
 }
 
@@ -310,40 +325,6 @@ std::vector<std::string> all_names() {
   }
   for (const auto& option : all_options()) names.push_back("-" + option.name);
   return names;
-}
-
-std::string kind_name(Kind kind) {
-  switch (kind) {
-  case Kind::real: return "number";
-  case Kind::integer: return "integer";
-  case Kind::choice: return "word";
-  case Kind::list: return "list";
-  case Kind::numbers: return "numbers";
-  case Kind::text: return "text";
-  case Kind::flag: return "flag";
-  case Kind::path:
-  case Kind::input: return "file";
-  }
-  return "";
-}
-
-std::string allowed_values(const Option& option) {
-  switch (option.kind) {
-  case Kind::real: return "a number in " + option.range.text();
-  case Kind::integer:
-    return "a whole number in " + option.range.text() +
-           (option.words.empty() ? "" : " or " + enumerate(option.words, "or"));
-  case Kind::choice:
-  case Kind::flag: return enumerate(option.words, "or");
-  case Kind::list: return "a comma list of " + enumerate(option.words, "and");
-  case Kind::numbers:
-    return "numbers in " + option.range.text() +
-           " as a,b,c or first:last:count or first:last:count:log";
-  case Kind::text: return "text";
-  case Kind::path:
-  case Kind::input: return "a file name";
-  }
-  return "";
 }
 
 }  // namespace stickslip::options

@@ -274,7 +274,7 @@ TEST_CASE("request: arguments that nothing needs are told, and harmless") {
   }
 }
 
-TEST_CASE("request: an option that serves one purpose is told where it serves none") {
+TEST_CASE("request: an option that serves one purpose is reported where it serves none") {
   const std::vector<std::pair<std::string, std::string>> useless{
       {"-drag none -drag_coefficient 2", "-drag_coefficient has no effect with -drag none"},
       {"-drag_cubic 2", "-drag_cubic has no effect with -drag linear"},
@@ -311,16 +311,17 @@ TEST_CASE("request: a study chooses route, discretisation and noise levels itsel
   for (const std::string chosen : {"-route excursion", "-scheme hp", "-degree 4", "-layers 4",
                                    "-noise_degree 2", "-noise_grading 2", "-p 4", "-v_max 5",
                                    "-checkpoint c", "-noise_levels 8", "-plan", compared.c_str()}) {
-    const std::string told = complaint("-study delta -delta 0.5 " + chosen);
-    INFO(told);
-    CHECK_THAT(told, Catch::Contains(chosen.substr(0, chosen.find(' ')) + " = "));
-    CHECK_THAT(told, Catch::Contains("is chosen by -study itself") || Catch::Contains("one run"));
+    const std::string message = complaint("-study delta -delta 0.5 " + chosen);
+    INFO(message);
+    CHECK_THAT(message, Catch::Contains(chosen.substr(0, chosen.find(' ')) + " = "));
+    CHECK_THAT(message,
+               Catch::Contains("is chosen by -study itself") || Catch::Contains("one run"));
   }
   check_refusal({"-study p -quantities sticking,density -output d.h5",
                  {"-quantities = sticking,density", "of a study are sticking, moments"}});
 }
 
-TEST_CASE("request: quantities that need a file or frequencies, or derive nothing, are told") {
+TEST_CASE("request: quantities that need a file or frequencies, or derive nothing, are refused") {
   const std::vector<Refusal> refusals{
       {"-quantities trajectory", {"needs a file", "-trajectory FILE.csv"}},
       {"-quantities sensitivity,relaxation", {"for nothing to derive", "add sticking"}},
@@ -332,18 +333,19 @@ TEST_CASE("request: quantities that need a file or frequencies, or derive nothin
 TEST_CASE("request: results in a file to compare with have names of this program") {
   const test::TemporaryFolder folder;
   const std::string file = folder / "known.csv";
-  const auto told = [&](const std::string& key) {
+  const auto complaint_about = [&](const std::string& key) {
     std::ofstream(file) << "quantity,argument,value,low,high\n" << key << ",,1,,\n";
     return complaint("-compare " + file);
   };
   for (const char* known : {"P_stick", "var_slide", "relaxation_odd", "h_plus", "pi(v^2)",
                             "stationary(x)", "dP_stick_dmu_d", "dE_V2_ddrag_coefficient"}) {
     INFO(known);
-    CHECK(told(known) == "nothing");
+    CHECK(complaint_about(known) == "nothing");
   }
-  CHECK_THAT(told("P_stik"), Catch::Contains("names P_stik") && Catch::Contains("P_stick?"));
+  CHECK_THAT(complaint_about("P_stik"),
+             Catch::Contains("names P_stik") && Catch::Contains("P_stick?"));
   for (const char* unknown : {"foo(v)", "dP_stick_dmu", "dfoo_dtau", "d_dtau", "P_stick_dtau"}) {
-    CHECK_THAT(told(unknown), Catch::Contains("which is no result"));
+    CHECK_THAT(complaint_about(unknown), Catch::Contains("which is no result"));
   }
 }
 

@@ -38,6 +38,8 @@ struct Range {
 struct Option {
   std::string name;                ///< without the dash
   Kind kind;                       ///< form of the value
+  std::string form;                ///< "number", "word", "file", ...: what stands after the name
+  std::string allowed;             ///< "a number in (0, inf)", "linear, none or cubic", ...
   std::string unit;                ///< of a number; empty if it has none
   std::string initial;             ///< default as text; empty: see `sentence`
   Range range;                     ///< of a number
@@ -80,11 +82,5 @@ struct ExitMeaning {
 
 /// Names with their dash, for suggestions.
 [[nodiscard]] std::vector<std::string> all_names();
-
-/// "number", "word", "file", ...: what stands after the name.
-[[nodiscard]] std::string kind_name(Kind kind);
-
-/// "a real number in (0, inf)", "one of linear, none or cubic", ...
-[[nodiscard]] std::string allowed_values(const Option& option);
 
 }  // namespace stickslip::options
