@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 
-#include "stickslip/accuracy/ladder.hpp"
 #include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/accuracy/refinement_sequence.hpp"
 #include "stickslip/petsc/blas.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/solver_choice.hpp"
@@ -42,36 +42,36 @@ class Predictor {
   }
 
  private:
-  struct Foretold {
+  struct Predicted {
     double assembly = 0, factorization = 0, solve = 0;  // seconds of one
   };
 
-  [[nodiscard]] routes::Setting setting(petsc::Ledger& ledger) const {
-    return {comm_, given_, discretisation_, ledger};
+  [[nodiscard]] routes::Setting setting(petsc::SolverStatistics& statistics) const {
+    return {comm_, given_, discretisation_, statistics};
   }
 
-  const Foretold& assemble(const SystemKey& key) {
+  const Predicted& assemble(const SystemKey& key) {
     const auto known = systems_.find(key);
     if (known != systems_.end()) return known->second;
-    petsc::Ledger ledger;
-    const auto analysis = routes::analyse(setting(ledger), key);
-    step_.unknowns = std::max<std::int64_t>(step_.unknowns, ledger.unknowns);
-    step_.nonzeros = std::max(step_.nonzeros, ledger.nonzeros);
+    petsc::SolverStatistics statistics;
+    const auto analysis = routes::analyse(setting(statistics), key);
+    step_.unknowns = std::max<std::int64_t>(step_.unknowns, statistics.unknowns);
+    step_.nonzeros = std::max(step_.nonzeros, statistics.nonzeros);
     step_.factor_entries = std::max(step_.factor_entries, analysis.factor_entries);
     step_.megabytes = std::max(step_.megabytes, analysis.megabytes);
     step_.operations += analysis.operations;
-    Foretold f = factored(analysis, static_cast<double>(ledger.nonzeros));
-    f.assembly = ledger.assembly_seconds;
-    f.factorization += ledger.analysis_seconds;
+    Predicted f = factored(analysis, static_cast<double>(statistics.nonzeros));
+    f.assembly = statistics.assembly_seconds;
+    f.factorization += statistics.analysis_seconds;
     // The first task that uses it pays for it.
     step_.seconds += f.assembly + f.factorization;
     return systems_.emplace(key, f).first->second;
   }
 
-  [[nodiscard]] Foretold factored(const petsc::Analysis& analysis, double nonzeros) {
+  [[nodiscard]] Predicted factored(const petsc::Analysis& analysis, double nonzeros) {
     const Speed& speed = analysis.pc_type == petsc::kElementsPc ? kByElements : kByMumps;
     const int ranks = petsc::ranks(comm_), sharing = speed.on_all_ranks ? ranks : 1;
-    Foretold f;
+    Predicted f;
     f.factorization = kFixedSeconds + (analysis.operations / (speed.share * speed_) +
                                        speed.per_entry * analysis.factor_entries) /
                                           sharing;
@@ -89,7 +89,7 @@ class Predictor {
     }
     if (task.derivatives == 0 && !task.adaptive) return seconds;
     // Operators of its own look like the sliding operator.
-    const Foretold& like = assemble({0, operators::symmetry_of(discretisation_.process)});
+    const Predicted& like = assemble({0, operators::symmetry_of(discretisation_.process)});
     return seconds + task.derivatives * like.assembly +
            task.usual_factorizations * (like.assembly + like.factorization) +
            task.usual_solves * like.solve;
@@ -99,7 +99,7 @@ class Predictor {
   const options::Case& given_;
   operators::Discretisation discretisation_;
   PredictedStep step_;
-  std::map<SystemKey, Foretold> systems_;
+  std::map<SystemKey, Predicted> systems_;
   double speed_ = petsc::measured_speed();
 };
 
@@ -110,10 +110,10 @@ Prediction predict(MPI_Comm comm, const options::Case& given) {
   if (!needs_system(given)) return prediction;
   prediction.plan = routes::plan_of(given);
   if (given.method.route == options::Route::monte_carlo) return prediction;
-  const Ladder ladder(given);
-  require_memory(comm, given.scene, ladder.rung(1));
+  const RefinementSequence sequence(given);
+  require_memory(comm, given.scene, sequence.refinement_level(1));
   for (int n = 0; n <= 1; ++n) {
-    const Resolution& resolution = ladder.rung(n);
+    const Resolution& resolution = sequence.refinement_level(n);
     if (prediction.plan.tasks.empty()) {
       PredictedStep step{resolution, unknowns(given.scene, resolution)};
       step.megabytes = predicted_bytes(given.scene, resolution) / 1e6;

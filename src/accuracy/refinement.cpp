@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "stickslip/accuracy/estimates.hpp"
-#include "stickslip/accuracy/ladder.hpp"
-#include "stickslip/accuracy/laws.hpp"
+#include "stickslip/accuracy/refinement_sequence.hpp"
+#include "stickslip/accuracy/result_bounds.hpp"
 #include "stickslip/petsc/memory.hpp"
 #include "stickslip/quantities/excursion.hpp"
 #include "stickslip/support/errors.hpp"
@@ -21,7 +21,7 @@ namespace {
 
 using options::Quantity;
 using quantities::Results;
-using quantities::StationaryLaw;
+using quantities::StationaryDistribution;
 
 std::string gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / 1e9); }
 
@@ -30,7 +30,7 @@ Solved evaluated(MPI_Comm comm, const options::Case& given, const Resolution& re
   Step& step = solved.step;
   step.resolution = resolution;
   const double start = petsc::wall_seconds();
-  const routes::Setting setting{comm, given, discretise(given.scene, resolution), step.ledger};
+  const routes::Setting setting{comm, given, discretise(given.scene, resolution), step.statistics};
   solved.evaluation = routes::evaluate(setting);
   require_rounding(model::rounding_of_sums(setting.discretisation.process.noise),
                    solved.evaluation.results);
@@ -39,7 +39,8 @@ Solved evaluated(MPI_Comm comm, const options::Case& given, const Resolution& re
   return solved;
 }
 
-// Beyond the levels and the axis of the first discretisation there is nothing but extrapolation.
+// Beyond the levels and the velocity discretisation of the first discretisation there is nothing
+// but extrapolation.
 void require_start_within(const options::Case& given, const Resolution& first) {
   const options::Question& question = given.question;
   if (!question.wants(Quantity::expectation)) return;
@@ -64,27 +65,28 @@ class Refiner {
         given_(given),
         question_(given.question),
         progress_(progress),
-        ladder_(given) {}
+        sequence_(given) {}
 
   Outcome run() {
     climb();
-    if (question_.wants(Quantity::density)) outcome_.density = quantities::density_field(*law_);
+    if (question_.wants(Quantity::density))
+      outcome_.density = quantities::density_field(*distribution_);
     return std::move(outcome_);
   }
 
  private:
   void climb() {
-    require_start_within(given_, ladder_.rung(0));
-    require_memory(comm_, given_.scene, ladder_.rung(1));
-    for (int n = 0; n <= ladder_.last(); ++n) {
-      if (n >= 2 && !fits(ladder_.rung(n))) return short_of_memory(n);
+    require_start_within(given_, sequence_.refinement_level(0));
+    require_memory(comm_, given_.scene, sequence_.refinement_level(1));
+    for (int n = 0; n <= sequence_.last(); ++n) {
+      if (n >= 2 && !fits(sequence_.refinement_level(n))) return short_of_memory(n);
       solve(n);
       if (n == 0) continue;
       if (finished()) {
         if (outcome_.reached) outcome_.next_digit_seconds = next_digit(n);
         return;
       }
-      if (ladder_.first_order() && hopeless(n)) return;
+      if (sequence_.first_order() && hopeless(n)) return;
     }
     outcome_.shortfall = given_.method.fixed()
                              ? "the discretisation is fixed by hand; leave -degree, -layers and -p "
@@ -98,7 +100,7 @@ class Refiner {
   }
 
   void solve(int n) {
-    const Resolution& resolution = ladder_.rung(n);
+    const Resolution& resolution = sequence_.refinement_level(n);
     if (progress_) progress_(n, resolution, expected_seconds(resolution));
     auto [evaluation, step] = evaluated(comm_, given_, resolution);
     remember_rounding(evaluation.results);
@@ -106,8 +108,8 @@ class Refiner {
     outcome_.results = std::move(evaluation.results);
     outcome_.even = std::move(evaluation.even);
     outcome_.odd = std::move(evaluation.odd);
-    follow(std::move(evaluation.law));
-    outcome_.total += step.ledger;
+    follow(std::move(evaluation.distribution));
+    outcome_.total += step.statistics;
     outcome_.steps.push_back(std::move(step));
   }
 
@@ -125,19 +127,20 @@ class Refiner {
   }
 
   void add_discretisation(int n, Results& results) {
-    const ErrorPerChange factor{ladder_.error_per_change(n), ladder_.error_per_earlier_change()};
+    const ErrorPerChange factor{sequence_.error_per_change(n),
+                                sequence_.error_per_earlier_change()};
     changes_ = accuracy::add_discretisation(factor, outcome_.results, changes_, results);
   }
 
   // Whoever asks for the density, or cuts the velocity by hand, asks for the distribution of |V|.
   // How far its distribution function moved is the density's own measure. It converges slowly (the
   // density has corners), so the whole change is taken for the error.
-  void follow(std::shared_ptr<const StationaryLaw> law) {
+  void follow(std::shared_ptr<const StationaryDistribution> law) {
     if (!law || (!question_.wants(Quantity::density) && !given_.scene.v_max)) return;
     auto now = quantities::speed_distribution(*law);
     if (speed_) outcome_.speed_error = quantities::distance(*speed_, now);
     speed_ = std::move(now);
-    law_ = std::move(law);
+    distribution_ = std::move(law);
   }
 
   [[nodiscard]] bool finished() {
@@ -152,7 +155,7 @@ class Refiner {
     }
     outcome_.reached = step.estimate <= question_.accuracy;
     if (outcome_.reached) {
-      check_cut();
+      check_truncation();
       check_laws();
       return true;
     }
@@ -183,17 +186,19 @@ class Refiner {
     if (steps.size() >= 3 && steps.back().estimate > 0) {
       fall = std::log10(steps[steps.size() - 2].estimate / steps.back().estimate);
     }
-    if (ladder_.first_order()) fall = std::log10(2.0);
+    if (sequence_.first_order()) fall = std::log10(2.0);
     const int more = static_cast<int>(std::ceil(1 / std::clamp(fall, 0.2, 10.0)));
-    if (n + more > ladder_.last() || 0.1 * question_.accuracy < 1e-14) return 0;
+    if (n + more > sequence_.last() || 0.1 * question_.accuracy < 1e-14) return 0;
     double seconds = 0;
     for (const Step& step : steps) seconds += step.seconds;
-    const auto work = [this](int rung) { return relative_work(given_.scene, ladder_.rung(rung)); };
+    const auto work = [this](int refinement_level) {
+      return relative_work(given_.scene, sequence_.refinement_level(refinement_level));
+    };
     return seconds * work(n + more) / work(n);
   }
 
   // A velocity cut made by hand is no part of the model: what it holds back is an error.
-  void check_cut() {
+  void check_truncation() {
     if (!given_.scene.v_max || !speed_) return;
     const double held = speed_->at_top, sliding = 1 - speed_->at_rest;
     if (held <= question_.accuracy * sliding) return;
@@ -205,7 +210,7 @@ class Refiner {
 
   // Errors that are too small betray themselves where results break a law.
   void check_laws() {
-    const std::string broken = broken_law(outcome_.results);
+    const std::string broken = broken_bound(outcome_.results);
     if (broken.empty()) return;
     const int levels = outcome_.steps.back().resolution.levels;
     outcome_.reached = false;
@@ -214,7 +219,7 @@ class Refiner {
 
   // A first-order scheme tells early how many points it would take.
   [[nodiscard]] bool hopeless(int n) {
-    const Resolution now = ladder_.rung(n);
+    const Resolution now = sequence_.refinement_level(n);
     const double needed = now.points * outcome_.steps.back().estimate / question_.accuracy;
     if (n < 3 || given_.method.fixed()) return false;
     Resolution final = now;
@@ -229,26 +234,27 @@ class Refiner {
   }
 
   void short_of_memory(int n) {
-    outcome_.shortfall = fmt::format("the next refinement would need {} of memory",
-                                     gigabytes(predicted_bytes(given_.scene, ladder_.rung(n))));
+    outcome_.shortfall =
+        fmt::format("the next refinement would need {} of memory",
+                    gigabytes(predicted_bytes(given_.scene, sequence_.refinement_level(n))));
   }
 
   MPI_Comm comm_;
   const options::Case& given_;
   const options::Question& question_;
   const Progress& progress_;
-  Ladder ladder_;
+  RefinementSequence sequence_;
   Outcome outcome_;
   std::vector<double> rounding_;                                    // relative, of each result
   double last_rounding_ = std::numeric_limits<double>::infinity();  // of the limiting result
-  double last_omega_ = 0;                     // of waves that elements followed
-  Changes changes_;                           // of the last step
-  std::shared_ptr<const StationaryLaw> law_;  // of the last step, if needed
+  double last_omega_ = 0;                                       // of waves that elements followed
+  Changes changes_;                                             // of the last step
+  std::shared_ptr<const StationaryDistribution> distribution_;  // of the last step, if needed
   std::optional<quantities::SpeedDistribution> speed_;
 };
 
 // The law of the noise has a closed form; routes that check the model compute it all the same.
-bool closed_noise_law(const options::Case& given) {
+bool closed_noise_distribution(const options::Case& given) {
   return given.question.wants(Quantity::noise_law) &&
          given.method.route == options::Route::excursion;
 }
@@ -280,7 +286,7 @@ void require_memory(MPI_Comm comm, const model::Scene& scene, const Resolution& 
 bool needs_system(const options::Case& given) {
   const options::Question& question = given.question;
   std::size_t others = question.quantities.size();
-  for (bool closed : {closed_noise_law(given), question.wants(Quantity::trajectory),
+  for (bool closed : {closed_noise_distribution(given), question.wants(Quantity::trajectory),
                       question.wants(Quantity::sensitivity)}) {
     others -= closed ? 1 : 0;
   }
@@ -303,8 +309,8 @@ Outcome refine(MPI_Comm comm, const options::Case& given, const Progress& progre
                   ? by_simulation(comm, given, checkpoint, simulation_progress)
                   : Refiner(comm, given, progress).run();
   }
-  if (closed_noise_law(given)) {
-    quantities::append_noise_law(given.scene.meant(), outcome.results);
+  if (closed_noise_distribution(given)) {
+    quantities::append_noise_distribution(given.scene.meant(), outcome.results);
     if (question.wants(Quantity::sensitivity)) {
       quantities::append_noise_sensitivity(given.scene.meant(), outcome.results);
     }

@@ -11,9 +11,9 @@
 #include "stickslip/petsc/memory.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
-#include "stickslip/velocity/hp_axis.hpp"
+#include "stickslip/velocity/hp_discretisation.hpp"
 #include "stickslip/velocity/mesh.hpp"
-#include "stickslip/velocity/upwind_axis.hpp"
+#include "stickslip/velocity/upwind_discretisation.hpp"
 
 namespace stickslip::accuracy {
 namespace {
@@ -26,7 +26,7 @@ velocity::MeshRule mesh_rule(const Resolution& resolution) {
   return rule;
 }
 
-// Number of nodes of the upwind axis: the first at or beyond v_max is its last.
+// Number of nodes of the upwind velocity discretisation: the first at or beyond v_max is its last.
 double upwind_nodes(const model::Scene& scene, const Resolution& resolution) {
   const double ratio = resolution.v_max * resolution.points / scene.delta;
   return std::max(1.0, std::ceil(ratio * (1 - 1e-12)));
@@ -50,15 +50,15 @@ double tilt(const model::Scene& scene) {
   return 2 * scene.tau * std::min(mu_d, most);
 }
 
-std::shared_ptr<velocity::Axis> axis_of(const model::Scene& scene, const Resolution& resolution,
-                                        const model::Drag& drag) {
+std::shared_ptr<velocity::VelocityDiscretisation>
+velocities_of(const model::Scene& scene, const Resolution& resolution, const model::Drag& drag) {
   if (resolution.scheme == options::Scheme::upwind) {
     const double spacing = scene.delta / resolution.points;
     const auto count = static_cast<int>(upwind_nodes(scene, resolution));
-    return std::make_shared<velocity::UpwindAxis>(spacing, count, drag);
+    return std::make_shared<velocity::UpwindDiscretisation>(spacing, count, drag);
   }
   const auto ends = velocity::element_ends(scene.process(resolution.levels), mesh_rule(resolution));
-  return std::make_shared<velocity::HpAxis>(ends, hp_degrees(scene, resolution), drag);
+  return std::make_shared<velocity::HpDiscretisation>(ends, hp_degrees(scene, resolution), drag);
 }
 
 // Groups keep what stands for each of their levels.
@@ -93,8 +93,8 @@ int levels_for(const model::Scene& scene, double tolerance) {
 
 double velocity_end(const model::Scene& scene, int levels, double tolerance) {
   const auto process = scene.process(levels), mirrored = process.mirrored();
-  const double terminal = std::max(process.drag.terminal_velocity(process.excess(levels)),
-                                   mirrored.drag.terminal_velocity(mirrored.excess(levels)));
+  const double terminal = std::max(process.drag.terminal_velocity(process.net_force(levels)),
+                                   mirrored.drag.terminal_velocity(mirrored.net_force(levels)));
   if (scene.v_max) return std::min(*scene.v_max, terminal);
   const double tail = velocity::tail_velocity(process, tolerance);
   // Holding states cost a little: a cut must save something.
@@ -132,12 +132,13 @@ Resolution exact_resolution(const model::Scene& scene, double tolerance) {
 }
 
 operators::Discretisation discretise(const model::Scene& scene, const Resolution& resolution) {
-  std::shared_ptr<velocity::Axis> axis;
+  std::shared_ptr<velocity::VelocityDiscretisation> velocities;
   if (resolution.scheme != options::Scheme::none) {
-    axis = axis_of(scene, resolution, scene.drag);
-    if (!scene.drag.odd()) axis->set_mirrored(axis_of(scene, resolution, scene.drag.mirrored()));
+    velocities = velocities_of(scene, resolution, scene.drag);
+    if (!scene.drag.odd())
+      velocities->set_mirrored(velocities_of(scene, resolution, scene.drag.mirrored()));
   }
-  return {scene.process(resolution.levels), std::move(axis), resolution.noise};
+  return {scene.process(resolution.levels), std::move(velocities), resolution.noise};
 }
 
 std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution) {
@@ -163,10 +164,10 @@ operators::FactorCost factor_cost(const model::Scene& scene, const Resolution& r
   if (factors != options::Factors::elements) {
     return operators::sparse_cost(factors, r.scheme, n, noise);
   }
-  const auto axis = axis_of(scene, r, scene.drag);
-  const auto cost = operators::elimination_cost(scene.process(r.levels),
-                                                dynamic_cast<const velocity::HpAxis&>(*axis),
-                                                r.noise.get(), petsc::ranks(PETSC_COMM_WORLD));
+  const auto velocities = velocities_of(scene, r, scene.drag);
+  const auto cost = operators::elimination_cost(
+      scene.process(r.levels), dynamic_cast<const velocity::HpDiscretisation&>(*velocities),
+      r.noise.get(), petsc::ranks(PETSC_COMM_WORLD));
   return {r.halves * cost.entries, r.halves * cost.bytes, r.halves * cost.operations};
 }
 

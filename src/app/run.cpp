@@ -27,7 +27,7 @@
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/atomic_file.hpp"
 #include "stickslip/support/errors.hpp"
-#include "stickslip/sweeps/report.hpp"
+#include "stickslip/sweeps/sweep_report.hpp"
 
 namespace stickslip::app {
 namespace {
@@ -119,11 +119,11 @@ void deliver(const options::Request& request, const Found& found, const io::RunT
   print(table(request, found, times));
 }
 
-int conduct_study(const options::Request& request, Clock::time_point start, double start_up) {
+int run_study(const options::Request& request, Clock::time_point start, double start_up) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const bool first_rank = petsc::rank(comm) == 0;
   const auto study =
-      studies::conduct(comm, request, request.study, study_progress_of(request, first_rank));
+      studies::run_study(comm, request, request.study, study_progress_of(request, first_rank));
   const io::RunTimes times{start_up, start_up + seconds_since(start)};
   if (!request.output.output.empty()) io::write_hdf5(comm, request, study, times);
   if (!first_rank) return 0;
@@ -153,10 +153,10 @@ sweeps::SweepProgress sweep_progress_of(const options::Request& request) {
   };
 }
 
-int conduct_sweep(const options::Request& request, Clock::time_point start, double start_up) {
+int run_sweep(const options::Request& request, Clock::time_point start, double start_up) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const bool first_rank = petsc::rank(comm) == 0;
-  const auto sweep = sweeps::conduct(comm, request, sweep_progress_of(request));
+  const auto sweep = sweeps::run_sweep(comm, request, sweep_progress_of(request));
   int status = sweeps::exit_status(sweep.runs);
   if (first_rank) {
     const io::RunTimes times{start_up, start_up + seconds_since(start)};
@@ -232,9 +232,9 @@ int run_session(const std::vector<std::string>& words, double start_up) {
     if (request.plan_only) return tell_plan(request);
     if (rank == 0) warn(request);
     if (request.study.kind != options::StudyKind::none) {
-      return conduct_study(request, start, start_up);
+      return run_study(request, start, start_up);
     }
-    if (request.sweep) return conduct_sweep(request, start, start_up);
+    if (request.sweep) return run_sweep(request, start, start_up);
     return compute(request, start, start_up);
   } catch (const BadInput& failure) {
     return tell(failure, rank == 0);

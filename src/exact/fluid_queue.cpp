@@ -17,7 +17,7 @@ using Matrix = algebra::Matrix<double>;
 struct Phases {
   explicit Phases(const model::Process& process) {
     for (int i = -process.noise.levels; i <= process.noise.levels; ++i) {
-      const double rate = process.excess(i);
+      const double rate = process.net_force(i);
       (rate > 0 ? rising : rate < 0 ? falling : still).push_back(i);
     }
   }
@@ -39,18 +39,18 @@ class Jumps {
   }
   [[nodiscard]] double censored(int from, int to) const {
     double total = rate(from, to);
-    for (int s : phases_.still) total += rate(from, s) * stay() * rate(s, to);
+    for (int s : phases_.still) total += rate(from, s) * sticking() * rate(s, to);
     return total;
   }
   /// Mean discounted stay in the still phase.
-  [[nodiscard]] double stay() const { return 1 / (process_.noise.rate() + lambda_); }
+  [[nodiscard]] double sticking() const { return 1 / (process_.noise.rate() + lambda_); }
 
   /// diag(|x_i - mu_d|)^-1 T between two groups.
   [[nodiscard]] Matrix per_length(const std::vector<int>& from, const std::vector<int>& to) const {
     Matrix m(static_cast<int>(from.size()), static_cast<int>(to.size()));
     for (int r = 0; r < m.rows(); ++r) {
       for (int c = 0; c < m.columns(); ++c) {
-        m(r, c) = censored(from[r], to[c]) / std::abs(process_.excess(from[r]));
+        m(r, c) = censored(from[r], to[c]) / std::abs(process_.net_force(from[r]));
       }
     }
     return m;
@@ -194,9 +194,10 @@ FluidQueue::FluidQueue(const model::Process& process, double lambda) {
     const auto falling = moment * psi;
     const auto spend = [&](const std::vector<int>& group, const std::vector<double>& crossings) {
       for (std::size_t p = 0; p < group.size(); ++p) {
-        const double spent = factorial * crossings[p] / std::abs(process.excess(group[p]));
+        const double spent = factorial * crossings[p] / std::abs(process.net_force(group[p]));
         (*sums)[group[p] + n] += spent;
-        for (int s : phases.still) (*sums)[s + n] += spent * jumps.rate(group[p], s) * jumps.stay();
+        for (int s : phases.still)
+          (*sums)[s + n] += spent * jumps.rate(group[p], s) * jumps.sticking();
       }
     };
     spend(up, moment);

@@ -18,9 +18,9 @@ const char* symmetry_name(operators::Symmetry symmetry) {
 }
 
 std::string system_name(const operators::SystemKey& key) {
-  const bool folded = key.symmetry != operators::Symmetry::none;
+  const bool symmetry_reduced = key.symmetry != operators::Symmetry::none;
   return fmt::format("lambda = {:g}, {}", key.lambda,
-                     folded ? symmetry_name(key.symmetry) : "both half lines");
+                     symmetry_reduced ? symmetry_name(key.symmetry) : "both half lines");
 }
 
 std::string solves_text(const routes::Use& use) {

@@ -24,10 +24,10 @@ Json run_json(const model::Scene& meant, const studies::Run& run) {
   Json scene = scene_json(meant);
   scene["method"] = run.method;
   for (const auto& [name, value] : run.parameters) scene[name] = value;
-  Json cost = seconds_json(run.ledger);
+  Json cost = seconds_json(run.statistics);
   cost["seconds"] = run.seconds;
-  cost["unknowns"] = run.ledger.unknowns;
-  cost["factor_megabytes"] = run.ledger.factor_megabytes;
+  cost["unknowns"] = run.statistics.unknowns;
+  cost["factor_megabytes"] = run.statistics.factor_megabytes;
   return {{"scene", scene}, {"results", results_json(run.results)}, {"cost", cost}};
 }
 
@@ -71,7 +71,7 @@ std::string csv(const studies::Study& study) {
     for (const auto& [name, value] : run.parameters) {
       parameters += fmt::format("{}{}={:.17g}", parameters.empty() ? "" : ";", name, value);
     }
-    const auto& l = run.ledger;
+    const auto& l = run.statistics;
     for (const auto& r : run.results) {
       text += csv_line({run.method, parameters, r.key, fmt::format("{:.17g}", r.value[0]),
                         fmt::format("{:.3g}", r.error[0]), cell(run.seconds, 6),

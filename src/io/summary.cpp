@@ -45,11 +45,11 @@ Json provenance_json(MPI_Comm comm, const options::Request& request) {
   return json;
 }
 
-Json seconds_json(const petsc::Ledger& ledger) {
-  return {{"assembly_seconds", ledger.assembly_seconds},
-          {"analysis_seconds", ledger.analysis_seconds},
-          {"factorization_seconds", ledger.factorization_seconds},
-          {"solve_seconds", ledger.solve_seconds}};
+Json seconds_json(const petsc::SolverStatistics& statistics) {
+  return {{"assembly_seconds", statistics.assembly_seconds},
+          {"analysis_seconds", statistics.analysis_seconds},
+          {"factorization_seconds", statistics.factorization_seconds},
+          {"solve_seconds", statistics.solve_seconds}};
 }
 
 Json resolution_json(const accuracy::Resolution& r) {
@@ -111,12 +111,12 @@ Json scene_of(const model::Scene& meant, const accuracy::Outcome& outcome) {
 
 Json step_of(const accuracy::Step& step) {
   Json json = resolution_json(step.resolution);
-  json.update({{"unknowns", step.ledger.unknowns},
-               {"nonzeros", step.ledger.nonzeros},
-               {"factor_entries", step.ledger.factor_entries},
-               {"factor_megabytes", step.ledger.factor_megabytes},
-               {"backward_error", step.ledger.backward_error}});
-  json.update(seconds_json(step.ledger));
+  json.update({{"unknowns", step.statistics.unknowns},
+               {"nonzeros", step.statistics.nonzeros},
+               {"factor_entries", step.statistics.factor_entries},
+               {"factor_megabytes", step.statistics.factor_megabytes},
+               {"backward_error", step.statistics.backward_error}});
+  json.update(seconds_json(step.statistics));
   json["seconds"] = step.seconds;
   for (const auto& [name, value] : step.checks) json["checks"][name] = value;
   if (!step.limiting_key.empty()) {
@@ -146,7 +146,7 @@ Json cost_of(const accuracy::Outcome& outcome, const RunTimes& times) {
   return cost;
 }
 
-Json plan_of(const petsc::Ledger& total) {
+Json plan_of(const petsc::SolverStatistics& total) {
   return {{"assemblies", total.assemblies},
           {"factorizations_real", total.factorizations_real},
           {"factorizations_complex", total.factorizations_complex},

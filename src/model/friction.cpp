@@ -8,7 +8,7 @@ int Friction::static_index(double delta, double bias) const {
   return floor_index((mu_s - bias) / delta);
 }
 
-double Friction::excess(double level, double bias) const {
+double Friction::net_force(double level, double bias) const {
   return snapped_difference(level, mu_d - bias);
 }
 

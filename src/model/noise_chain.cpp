@@ -22,7 +22,7 @@ int full_range(double tau, double delta) { return floor_index(2 / (tau * delta *
 
 double weight_ratio(const NoiseChain& chain, int i) { return chain.up(i - 1) / chain.down(i); }
 
-std::vector<double> stationary_law(const NoiseChain& chain) {
+std::vector<double> stationary_distribution(const NoiseChain& chain) {
   const int n = chain.levels;
   std::vector<double> law(2 * static_cast<std::size_t>(n) + 1);
   double weight = 1;

@@ -96,7 +96,7 @@ class Estimates {
       scalar(quantities::kPWithin, tally_.within());
       scalar(quantities::kEX2, tally_.noise_square());
     }
-    if (question_.wants(Quantity::entry_law)) append_entry_law();
+    if (question_.wants(Quantity::entry_law)) append_hitting_distribution();
     if (question_.wants(Quantity::laplace)) append_laplace();
     if (question_.wants(Quantity::duration_density)) append_durations();
     if (question_.wants(Quantity::spectrum)) append_spectrum();
@@ -129,7 +129,7 @@ class Estimates {
     }
   }
 
-  void append_entry_law() {
+  void append_hitting_distribution() {
     const int k = process_.static_index();
     Result law = quantities::array("entry_law", "", "k", {});
     for (int i = -k; i <= k; ++i) {
@@ -274,9 +274,9 @@ class Campaign {
   // Every stay begins at most at the edge of the static levels.
   void require_time() const {
     const auto chain = operators::StaticChain::of(process_);
-    const auto stay = chain.integral(std::vector<double>(chain.size(), 1.0));
+    const auto sticking = chain.integral(std::vector<double>(chain.size(), 1.0));
     constexpr double jump = 15e-9, month = 30 * 86400.0;
-    const double jumps = process_.noise.rate() * std::min(stay.front(), stay.back());
+    const double jumps = process_.noise.rate() * std::min(sticking.front(), sticking.back());
     const double seconds = given_.method.excursions * jumps * jump / petsc::ranks(comm_);
     if (seconds < month) return;
     throw BadInput(fmt::format(

@@ -96,9 +96,9 @@ RestChain read_chain(Mat matrix, const std::vector<PetscInt>& rows) {
 
 /// A half line; lists by noise node count along it.
 struct ElementElimination::Line {
-  Half half = Half::upper;
-  const velocity::HpAxis* axis = nullptr;
-  std::vector<double> excess;
+  Branch half = Branch::positive;
+  const velocity::HpDiscretisation* velocities = nullptr;
+  std::vector<double> net_force;
   std::vector<StateSpace::NodeLine> nodes;  // of a noise node
   std::vector<PetscInt> holding;            // rows of holding states, of the highest nodes
   std::vector<int> rising;                  // by end of elements: first node that rises there
@@ -109,9 +109,9 @@ struct ElementElimination::Line {
   DenseMatrix reflection;                                // R at v = 0
   LinearSteps outwards;                                  // from the values that fall at v = 0
 
-  [[nodiscard]] int count() const { return static_cast<int>(excess.size()); }
+  [[nodiscard]] int count() const { return static_cast<int>(net_force.size()); }
   [[nodiscard]] std::size_t falling_at(int end) const {
-    return begin + static_cast<std::size_t>(end) * excess.size();
+    return begin + static_cast<std::size_t>(end) * net_force.size();
   }
   [[nodiscard]] std::size_t rising_at(int end) const { return falling_at(end) + rising[end]; }
 };
@@ -121,14 +121,14 @@ ElementElimination::ElementElimination(Mat matrix, std::shared_ptr<const MatrixD
     : data_(std::move(data)), comm_(share ? data_->states.comm() : PETSC_COMM_SELF) {
   const StateSpace& states = data_->states;
   const auto& process = data_->discretisation.process;
-  for (Half half : states.halves()) {
+  for (Branch half : states.halves()) {
     lines_.push_back(line_of(half));
-    length_ = lines_.back().falling_at(lines_.back().axis->elements() + 1);
+    length_ = lines_.back().falling_at(lines_.back().velocities->elements() + 1);
   }
   for (int i = process.lowest_static(); i <= process.static_index(); ++i) {
     if (!states.has_rest(i)) continue;
     if (rest_rows_.empty()) lowest_rest_ = i;
-    rest_rows_.push_back(states.index({StateKind::rest, Half::upper, i, 0}));
+    rest_rows_.push_back(states.index({StateKind::rest, Branch::positive, i, 0}));
   }
   rest_ = length_;
   length_ += rest_rows_.size();
@@ -142,28 +142,29 @@ ElementElimination::ElementElimination(Mat matrix, std::shared_ptr<const MatrixD
 
 ElementElimination::~ElementElimination() = default;
 
-ElementElimination::Line ElementElimination::line_of(Half half) const {
-  const auto& [process, noise, axis] = data_->discretisation;
+ElementElimination::Line ElementElimination::line_of(Branch half) const {
+  const auto& [process, noise, velocities] = data_->discretisation;
   const StateSpace& states = data_->states;
-  const bool upper = half == Half::upper;
+  const bool upper = half == Branch::positive;
   const model::Process along = upper ? process : process.mirrored();
   Line line;
   line.half = half;
-  line.axis = dynamic_cast<const velocity::HpAxis*>(upper ? axis.get() : &axis->mirrored());
+  line.velocities = dynamic_cast<const velocity::HpDiscretisation*>(
+      upper ? velocities.get() : &velocities->mirrored());
   if (!lines_.empty()) line.first_element = lines_.back().elements.size();
   line.begin = length_;
   for (int n = -noise->half(); n <= noise->half(); ++n) {
-    line.excess.push_back(along.excess_at(noise->x(n)));
+    line.net_force.push_back(along.net_force_at(noise->x(n)));
     line.nodes.push_back(states.nodes_of(half, n));
     if (states.has_holding(half, n)) {
       line.holding.push_back(states.index({StateKind::holding, half, n, 0}));
     }
   }
-  const int elements = line.axis->elements();
+  const int elements = line.velocities->elements();
   line.elements.resize(static_cast<std::size_t>(elements));
   line.responses.resize(static_cast<std::size_t>(elements));
   for (int e = 0; e <= elements; ++e) {
-    line.rising.push_back(first_rising(line.excess, line.axis->drag_at_end(e)));
+    line.rising.push_back(first_rising(line.net_force, line.velocities->drag_at_end(e)));
   }
   return line;
 }
@@ -180,9 +181,9 @@ void ElementElimination::make_elements() {
     for (std::size_t e = 0; e < line.elements.size() && failure.empty(); ++e) {
       if (owner(line, e) != petsc::rank(comm_)) continue;
       try {
-        line.elements[e] = std::make_unique<ElementSystem>(*data_->discretisation.noise, *line.axis,
-                                                           static_cast<int>(e), line.excess,
-                                                           data_->lambda, line.responses[e]);
+        line.elements[e] = std::make_unique<ElementSystem>(
+            *data_->discretisation.noise, *line.velocities, static_cast<int>(e), line.net_force,
+            data_->lambda, line.responses[e]);
       } catch (const NotReached& singular) {
         failure = singular.what();
       }
@@ -223,7 +224,7 @@ DenseMatrix ElementElimination::hold(const Line& line) {
   }
   DenseFactors factors(std::move(own));
   factors.solve(jumps);
-  between_.solve(std::move(factors), line.rising_at(line.axis->elements()));
+  between_.solve(std::move(factors), line.rising_at(line.velocities->elements()));
   return jumps;
 }
 
@@ -231,7 +232,7 @@ DenseMatrix ElementElimination::hold(const Line& line) {
 void ElementElimination::reflect(Line& line) {
   DenseMatrix reflection = hold(line);
   std::vector<std::pair<DenseMatrix, DenseMatrix>> outwards;
-  for (int e = line.axis->elements(); e-- > 0;) {
+  for (int e = line.velocities->elements(); e-- > 0;) {
     auto s = response(line, e);
     const int falling = line.rising[e + 1];
     DenseMatrix turns = identity(falling);
@@ -250,7 +251,7 @@ void ElementElimination::reflect(Line& line) {
   }
   line.reflection = reflection;
   line.outwards.add(std::move(reflection), line.falling_at(0), line.rising_at(0));
-  for (int e = 0; e < line.axis->elements(); ++e) {
+  for (int e = 0; e < line.velocities->elements(); ++e) {
     auto& [through, returned] = outwards[outwards.size() - 1 - static_cast<std::size_t>(e)];
     line.outwards.add(std::move(through), line.falling_at(e), line.falling_at(e + 1));
     line.outwards.add(std::move(returned), line.falling_at(e), line.rising_at(e + 1));
@@ -261,14 +262,14 @@ void ElementElimination::reflect(Line& line) {
 void ElementElimination::add_shares(const Line& line, std::size_t fall, Couplings& shares) const {
   const StateSpace& states = data_->states;
   const noise::Nodes& noise = *data_->discretisation.noise;
-  const Half other = states.folded() ? line.half : opposite(line.half);
+  const Branch other = states.symmetry_reduced() ? line.half : opposite(line.half);
   for (int l = 0; l < line.rising[0]; ++l) {
     const int node = l - noise.half();
     if (node < -states.last_static(other)) continue;
     const auto& group = noise.group_of(node);
     for (int along = group.first; along <= group.last; ++along) {
-      const int i = line.half == Half::upper ? along : -along;
-      const int kept = states.folded() ? std::abs(i) : i;
+      const int i = line.half == Branch::positive ? along : -along;
+      const int kept = states.symmetry_reduced() ? std::abs(i) : i;
       if (!states.has_rest(kept)) continue;  // an odd function vanishes at x = 0
       const double share = group.row(group.weight, along)[node - group.begin];
       shares.push_back({rest_ + static_cast<std::size_t>(kept - lowest_rest_),
@@ -279,7 +280,7 @@ void ElementElimination::add_shares(const Line& line, std::size_t fall, Coupling
 
 // What a line finds on the other side, or reflected.
 void ElementElimination::add_crossings(const Line& line, std::size_t fall, Couplings& found) const {
-  const Line& other = lines_[data_->states.folded() || &line != &lines_[0] ? 0 : 1];
+  const Line& other = lines_[data_->states.symmetry_reduced() || &line != &lines_[0] ? 0 : 1];
   const int crossing = data_->discretisation.noise->half() - data_->states.last_static(other.half);
   for (int l = 0; l < crossing; ++l) {
     found.push_back({other.falling_at(1) - 1 - l, fall + static_cast<std::size_t>(l), sign()});
@@ -291,7 +292,7 @@ std::size_t ElementElimination::exit_at(PetscInt column) const {
   for (const Line& line : lines_) {
     const int node = data_->states.last_static(line.half) + 1 + data_->discretisation.noise->half();
     const auto& [first, stride] = line.nodes[node];
-    const PetscInt from = column - first, q = line.axis->element(0).reference->size;
+    const PetscInt from = column - first, q = line.velocities->element(0).reference->size;
     const PetscInt place = stride == 0 ? 0 : from / stride;
     if (from == place * stride && place >= 0 && place < q) return line.begin + node;
   }
@@ -370,7 +371,7 @@ void ElementElimination::for_each_unknown(const Line& line, const ElementSystem&
 template <class Visit>
 void ElementElimination::for_each_unknown_between(Visit visit) const {
   for (const Line& line : lines_) {
-    std::size_t place = line.rising_at(line.axis->elements());
+    std::size_t place = line.rising_at(line.velocities->elements());
     for (PetscInt row : line.holding) visit(place++, row);
   }
   for (std::size_t n = 0; n < rest_rows_.size(); ++n) visit(rest_ + n, rest_rows_[n]);

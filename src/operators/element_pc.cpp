@@ -53,7 +53,9 @@ class LoggedEvent {
 
 std::shared_ptr<const MatrixData> data_for(PC pc) {
   auto data = data_of(pc->pmat);
-  if (data && dynamic_cast<const velocity::HpAxis*>(data->discretisation.axis.get())) return data;
+  if (data &&
+      dynamic_cast<const velocity::HpDiscretisation*>(data->discretisation.velocities.get()))
+    return data;
   const char* prefix = nullptr;
   check(PCGetOptionsPrefix(pc, &prefix));
   throw BadInput(fmt::format("-{}pc_type: elements needs the matrix of a sliding operator on an hp "
@@ -62,7 +64,7 @@ std::shared_ptr<const MatrixData> data_for(PC pc) {
 }
 
 FactorCost cost_of(const MatrixData& data) {
-  return elimination_cost(data.discretisation, data.states.folded(),
+  return elimination_cost(data.discretisation, data.states.symmetry_reduced(),
                           petsc::ranks(data.states.comm()));
 }
 
@@ -121,8 +123,8 @@ PetscErrorCode view(PC pc, PetscViewer viewer) {
     };
     line("block LU along the velocity, over elements condensed to the values at their ends");
     line(fmt::format("elements {} on {} half line(s), noise nodes {} in {} groups",
-                     on.axis->cells().size() - 1, data->states.halves().size(), on.noise->count(),
-                     on.noise->groups().size()));
+                     on.velocities->cells().size() - 1, data->states.halves().size(),
+                     on.noise->count(), on.noise->groups().size()));
     line(fmt::format("elements shared by {} rank(s)",
                      elements_of(pc).share == PETSC_TRUE ? petsc::ranks(data->states.comm()) : 1));
     line(fmt::format("entries of the factors {:.4g}, operations of factoring {:.4g}", cost.entries,

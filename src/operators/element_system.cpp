@@ -306,15 +306,17 @@ class ElementSystem::Elimination {
   std::vector<int> rows_;  // by group: outputs up to it
 };
 
-ElementSystem::ElementSystem(const noise::Nodes& noise, const velocity::HpAxis& axis, int element,
-                             std::span<const double> excess, PetscScalar lambda, Response& response)
+ElementSystem::ElementSystem(const noise::Nodes& noise,
+                             const velocity::HpDiscretisation& velocities, int element,
+                             std::span<const double> net_force, PetscScalar lambda,
+                             Response& response)
     : count_(noise.count()),
-      nodes_(axis.element(element).reference->size),
-      first_(axis.element(element).first) {
-  const auto& reference = *axis.element(element).reference;
-  const int rising_inner = first_rising(excess, axis.drag_at_end(element));
-  const int rising_outer = first_rising(excess, axis.drag_at_end(element + 1));
-  const auto q = static_cast<std::size_t>(nodes_), all = excess.size() * q;
+      nodes_(velocities.element(element).reference->size),
+      first_(velocities.element(element).first) {
+  const auto& reference = *velocities.element(element).reference;
+  const int rising_inner = first_rising(net_force, velocities.drag_at_end(element));
+  const int rising_outer = first_rising(net_force, velocities.drag_at_end(element + 1));
+  const auto q = static_cast<std::size_t>(nodes_), all = net_force.size() * q;
   std::vector<double> rates(all * q, 0.0);
   for (auto* port : {&taken_.inner, &taken_.outer, &given_.inner, &given_.outer}) {
     port->assign(all, 0.0);
@@ -322,7 +324,7 @@ ElementSystem::ElementSystem(const noise::Nodes& noise, const velocity::HpAxis& 
   velocity::TransportRow row;
   for (std::size_t place = 0; place < all; ++place) {
     const int l = static_cast<int>(place / q), m = static_cast<int>(place % q);
-    axis.transport(excess[l], first_ + m, row);
+    velocities.transport(net_force[l], first_ + m, row);
     double& inner = taken_.inner[place] = row.inflow;
     double& outer = taken_.outer[place] = row.outflow;
     for (const auto& [node, value] : row.entries) {

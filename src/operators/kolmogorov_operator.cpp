@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "row_assembler.hpp"
-#include "stickslip/operators/laws.hpp"
+#include "stickslip/operators/generator_checks.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
@@ -16,31 +16,31 @@ namespace stickslip::operators {
 using petsc::check;
 
 KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation,
-                                       PetscScalar lambda, Symmetry symmetry, Rest rest)
+                                       PetscScalar lambda, Symmetry symmetry, StaticPhase rest)
     : KolmogorovOperator(comm, discretisation, lambda, symmetry, rest, std::nullopt) {}
 
 KolmogorovOperator KolmogorovOperator::derivative(MPI_Comm comm,
                                                   const Discretisation& discretisation,
                                                   Symmetry symmetry, Parameter theta) {
-  return {comm, discretisation, 0, symmetry, Rest::killing, theta};
+  return {comm, discretisation, 0, symmetry, StaticPhase::killing, theta};
 }
 
 KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation,
-                                       PetscScalar lambda, Symmetry symmetry, Rest rest,
+                                       PetscScalar lambda, Symmetry symmetry, StaticPhase rest,
                                        std::optional<Parameter> derivative)
-    : data_(std::make_shared<MatrixData>(
-          MatrixData{discretisation,
-                     StateSpace(comm, discretisation, symmetry, rest != Rest::killing), lambda})) {
+    : data_(std::make_shared<MatrixData>(MatrixData{
+          discretisation, StateSpace(comm, discretisation, symmetry, rest != StaticPhase::killing),
+          lambda})) {
   RowAssembler rows(discretisation, states(), lambda, rest, derivative);
   rows.assemble();
-  trace_upper_ = rows.trace_at_exit(Half::upper);
-  if (!states().folded()) trace_lower_ = rows.trace_at_exit(Half::lower);
+  trace_upper_ = rows.trace_at_exit(Branch::positive);
+  if (!states().symmetry_reduced()) trace_lower_ = rows.trace_at_exit(Branch::negative);
   rest_coupling_ = std::move(rows.rest_coupling);
   exit_coupling_ = std::move(rows.exit_coupling);
   if (!derivative && symmetry != Symmetry::odd && PetscRealPart(lambda) >= 0) {
-    const bool nothing_killed = rest == Rest::kept && PetscAbsScalar(lambda) == 0;
+    const bool nothing_killed = rest == StaticPhase::kept && PetscAbsScalar(lambda) == 0;
     require_generator(comm, {states().local_begin(), rows.row_start, rows.columns, rows.values},
-                      {discretisation.axis->keeps_origin(), nothing_killed},
+                      {discretisation.velocities->keeps_origin(), nothing_killed},
                       discretisation.process);
   }
   nonzeros_ = rows.row_start.back();
@@ -70,10 +70,10 @@ petsc::VecHandle KolmogorovOperator::zeros() const {
   return x;
 }
 
-petsc::VecHandle KolmogorovOperator::trace_at_exit(Half half) const {
+petsc::VecHandle KolmogorovOperator::trace_at_exit(Branch half) const {
   petsc::VecHandle g = zeros();
   const PetscInt begin = states().local_begin(), end = begin + states().local_size();
-  for (const auto& [index, weight] : half == Half::upper ? trace_upper_ : trace_lower_) {
+  for (const auto& [index, weight] : half == Branch::positive ? trace_upper_ : trace_lower_) {
     if (index < begin || index >= end) continue;
     check(VecSetValue(g, index, weight, INSERT_VALUES));
   }
@@ -83,13 +83,13 @@ petsc::VecHandle KolmogorovOperator::trace_at_exit(Half half) const {
 }
 
 petsc::VecHandle KolmogorovOperator::value_at(int i, double v) const {
-  const auto& [process, noise, axis] = discretisation();
+  const auto& [process, noise, velocities] = discretisation();
   const int lowest = process.lowest_static();
   const bool rest = v == 0 && i >= lowest && i <= process.static_index();
   const bool below = v < 0 || (v == 0 && (rest ? i < 0 : i < lowest));
-  const bool mirrored = below && states().folded();
+  const bool mirrored = below && states().symmetry_reduced();
   const double sign = mirrored && states().symmetry() == Symmetry::odd ? -1 : 1;
-  const Half half = below && !mirrored ? Half::lower : Half::upper;
+  const Branch half = below && !mirrored ? Branch::negative : Branch::positive;
   petsc::VecHandle g = zeros();
   const PetscInt begin = states().local_begin(), end = begin + states().local_size();
   const auto add = [&](const State& state, double weight) {
@@ -105,13 +105,13 @@ petsc::VecHandle KolmogorovOperator::value_at(int i, double v) const {
       add({StateKind::origin, half, n, 0}, sign);
       continue;
     }
-    for (const auto& e : v == 0 ? axis->trace_at_zero() : axis->value_at(std::abs(v))) {
+    for (const auto& e : v == 0 ? velocities->trace_at_zero() : velocities->value_at(std::abs(v))) {
       add({StateKind::node, half, n, e.node}, sign * shares[l] * e.value);
     }
   }
   if (rest) {
-    const int kept = states().folded() ? std::abs(i) : i;
-    if (states().has_rest(kept)) add({StateKind::rest, Half::upper, kept, 0}, sign);
+    const int kept = states().symmetry_reduced() ? std::abs(i) : i;
+    if (states().has_rest(kept)) add({StateKind::rest, Branch::positive, kept, 0}, sign);
   }
   check(VecAssemblyBegin(g));
   check(VecAssemblyEnd(g));
@@ -137,8 +137,8 @@ petsc::VecHandle KolmogorovOperator::from_rest(const std::vector<PetscScalar>& s
   return f;
 }
 
-petsc::VecHandle KolmogorovOperator::exit_rates(Half half) const {
-  const int side = half == Half::upper ? 1 : -1;
+petsc::VecHandle KolmogorovOperator::exit_rates(Branch half) const {
+  const int side = half == Branch::positive ? 1 : -1;
   petsc::VecHandle f = zeros();
   petsc::WriteView local(f);
   for (const auto& c : exit_coupling_) {
@@ -151,17 +151,17 @@ petsc::VecHandle KolmogorovOperator::values(const Observable& f) const {
   petsc::VecHandle result = zeros();
   petsc::WriteView local(result);
   const model::NoiseChain& chain = discretisation().process.noise;
-  const velocity::Axis& axis = *discretisation().axis;
+  const velocity::VelocityDiscretisation& velocities = *discretisation().velocities;
   PetscInt at = 0;
   states().for_each_local([&](const State& s) {
-    const double sign = s.half == Half::upper ? 1 : -1;
+    const double sign = s.half == Branch::positive ? 1 : -1;
     if (s.kind == StateKind::rest) {
       local[at++] = f(chain.level(s.noise), 0, 0);
       return;
     }
     double v = 0;
-    if (s.kind == StateKind::node) v = sign * axis.nodes()[s.node];
-    if (s.kind == StateKind::holding) v = sign * axis.v_max();
+    if (s.kind == StateKind::node) v = sign * velocities.nodes()[s.node];
+    if (s.kind == StateKind::holding) v = sign * velocities.v_max();
     local[at++] = discretisation().noise->projected(
         s.noise, [&](int i) { return f(sign * chain.level(i), sign, v); });
   });

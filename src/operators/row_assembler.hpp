@@ -20,20 +20,20 @@ class RowAssembler {
   using Functional = std::vector<std::pair<PetscInt, double>>;
 
   RowAssembler(const Discretisation& discretisation, const StateSpace& states, PetscScalar lambda,
-               Rest rest, std::optional<Parameter> derivative)
+               StaticPhase rest, std::optional<Parameter> derivative)
       : derivative_(derivative),
         noise_(*discretisation.noise),
         chain_(discretisation.process.noise),
-        upper_{discretisation.process, *discretisation.axis},
-        lower_{discretisation.process.mirrored(), discretisation.axis->mirrored()},
+        upper_{discretisation.process, *discretisation.velocities},
+        lower_{discretisation.process.mirrored(), discretisation.velocities->mirrored()},
         states_(states),
         lambda_(lambda),
         rest_(rest),
-        zero_trace_(discretisation.axis->trace_at_zero()),
-        top_trace_(discretisation.axis->trace_at_top()),
+        zero_trace_(discretisation.velocities->trace_at_zero()),
+        top_trace_(discretisation.velocities->trace_at_top()),
         lines_(2 * static_cast<std::size_t>(noise_.count())) {
     for (int n = -noise_.half(); n <= noise_.half(); ++n) {
-      for (Half half : states.halves()) lines_[place_of_line(half, n)] = states.nodes_of(half, n);
+      for (Branch half : states.halves()) lines_[place_of_line(half, n)] = states.nodes_of(half, n);
     }
   }
 
@@ -43,7 +43,7 @@ class RowAssembler {
   }
 
   /// u(0+) on a noise node of a half that leaves v = 0, as global indices and coefficients.
-  [[nodiscard]] Functional trace_at_zero(Half half, int n) const {
+  [[nodiscard]] Functional trace_at_zero(Branch half, int n) const {
     if (states_.has_origin(half, n)) {
       return {{states_.index({StateKind::origin, half, n, 0}), 1.0}};
     }
@@ -53,7 +53,7 @@ class RowAssembler {
   }
 
   /// The same at s+ or s-: the level next to those at rest is a node.
-  [[nodiscard]] Functional trace_at_exit(Half half) const {
+  [[nodiscard]] Functional trace_at_exit(Branch half) const {
     return trace_at_zero(half, states_.last_static(half) + 1);
   }
 
@@ -66,20 +66,23 @@ class RowAssembler {
   // A half line, seen with its noise and velocities counted along it.
   struct Side {
     model::Process process;
-    const velocity::Axis& axis;
+    const velocity::VelocityDiscretisation& velocities;
   };
-  [[nodiscard]] const Side& side(Half half) const { return half == Half::upper ? upper_ : lower_; }
+  [[nodiscard]] const Side& side(Branch half) const {
+    return half == Branch::positive ? upper_ : lower_;
+  }
 
   // What rows on a node where all speeds are positive, and jumps, take: little more than there is.
   void reserve() {
     std::size_t entries = 0;
-    for (int j = 0; j < upper_.axis.size(); ++j) {
-      upper_.axis.transport(upper_.process.excess_at(noise_.x(noise_.half())), j, transport_);
+    for (int j = 0; j < upper_.velocities.size(); ++j) {
+      upper_.velocities.transport(upper_.process.net_force_at(noise_.x(noise_.half())), j,
+                                  transport_);
       entries += transport_.entries.size() + 1;
     }
     const std::vector<int>& local = states_.local_noise();
     entries *= local.size();
-    for (int n : local) entries += noise_.jumps(n).size() * upper_.axis.nodes().size();
+    for (int n : local) entries += noise_.jumps(n).size() * upper_.velocities.nodes().size();
     entries *= states_.halves().size();
     columns.reserve(entries);
     values.reserve(entries);
@@ -117,11 +120,11 @@ class RowAssembler {
 
   void rates_of_transport(const State& s) {
     const Side& here = side(s.half);
-    const double excess = here.process.excess_at(noise_.x(s.noise));
+    const double net_force = here.process.net_force_at(noise_.x(s.noise));
     if (derivative_) {
-      here.axis.transport_change(excess, speed_change(), s.node, transport_);
+      here.velocities.transport_change(net_force, speed_change(), s.node, transport_);
     } else {
-      here.axis.transport(excess, s.node, transport_);
+      here.velocities.transport(net_force, s.node, transport_);
     }
     for (const auto& e : transport_.entries) rate_to(node(s.half, s.noise, e.node), e.value);
     if (transport_.inflow != 0) rate_to_zero(s, transport_.inflow);
@@ -130,9 +133,9 @@ class RowAssembler {
 
   void rates_of_origin(const State& s) {
     const Side& here = side(s.half);
-    const double excess = here.process.excess_at(noise_.x(s.noise));
+    const double net_force = here.process.net_force_at(noise_.x(s.noise));
     rate_to(node(s.half, s.noise, 0),
-            here.axis.origin_rate(derivative_ ? speed_change().excess : excess));
+            here.velocities.origin_rate(derivative_ ? speed_change().net_force : net_force));
     for_each_jump(s.noise, [&](int to, double rate) {
       if (states_.has_origin(s.half, to)) {
         rate_to(states_.index({StateKind::origin, s.half, to, 0}), rate);
@@ -151,14 +154,14 @@ class RowAssembler {
 
   void rates_of_rest(int i) {
     const int highest = upper_.process.static_index(), lowest = upper_.process.lowest_static();
-    if (rest_ == Rest::killing_edges && (i == highest || i == lowest)) {
+    if (rest_ == StaticPhase::killing_edges && (i == highest || i == lowest)) {
       killing_ = chain_.rate();  // value 0 there: killed at once
       return;
     }
     if (i < highest) rate_to_rest(i + 1, up_rate(i));
-    if (i == highest) rate_to_exit(Half::upper, up_rate(i));
+    if (i == highest) rate_to_exit(Branch::positive, up_rate(i));
     if (i > lowest) rate_to_rest(i - 1, down_rate(i));
-    if (i == lowest) rate_to_exit(Half::lower, down_rate(i));
+    if (i == lowest) rate_to_exit(Branch::negative, down_rate(i));
   }
 
   // Where a sliding body meets v = 0.
@@ -168,7 +171,7 @@ class RowAssembler {
       rate_to(states_.index({StateKind::origin, s.half, s.noise, 0}), rate);
     } else if (s.noise >= -states_.last_static(opposite(s.half))) {
       rate_to_rest(s.half, s.noise, rate);
-    } else if (states_.folded()) {
+    } else if (states_.symmetry_reduced()) {
       rate_to_trace(trace_at_zero(s.half, -s.noise), rate, reflection());
     } else {
       rate_to_trace(trace_at_zero(opposite(s.half), -s.noise), rate, 1);
@@ -176,35 +179,36 @@ class RowAssembler {
   }
 
   // To rest on the levels for which a node stands, in the shares of T.
-  void rate_to_rest(Half half, int n, double rate) {
+  void rate_to_rest(Branch half, int n, double rate) {
     const noise::Nodes::Group& group = noise_.group_of(n);
     for (int i = group.first; i <= group.last; ++i) {
       const double share = group.row(group.weight, i)[n - group.begin];
-      rate_to_rest(half == Half::upper ? i : -i, rate * share);
+      rate_to_rest(half == Branch::positive ? i : -i, rate * share);
     }
   }
 
   void rate_to_rest(int i, double rate) {
-    if (rest_ == Rest::killing) {
+    if (rest_ == StaticPhase::killing) {
       killing_ += rate;
       rest_coupling.push_back({local_row(), i, rate});
       return;
     }
-    const int kept = states_.folded() ? std::abs(i) : i;
+    const int kept = states_.symmetry_reduced() ? std::abs(i) : i;
     if (!states_.has_rest(kept)) {
       killing_ += rate;  // an odd function vanishes at x = 0
       return;
     }
-    rate_to(states_.index({StateKind::rest, Half::upper, kept, 0}), rate,
+    rate_to(states_.index({StateKind::rest, Branch::positive, kept, 0}), rate,
             kept == i ? 1 : reflection());
   }
 
-  void rate_to_exit(Half half, double rate) {
-    if (rest_ == Rest::killed_on_exit) {
+  void rate_to_exit(Branch half, double rate) {
+    if (rest_ == StaticPhase::killed_on_exit) {
       killing_ += rate;
-      exit_coupling.push_back({local_row(), half == Half::upper ? 1 : -1, rate});
-    } else if (states_.folded()) {
-      rate_to_trace(trace_at_exit(Half::upper), rate, half == Half::upper ? 1 : reflection());
+      exit_coupling.push_back({local_row(), half == Branch::positive ? 1 : -1, rate});
+    } else if (states_.symmetry_reduced()) {
+      rate_to_trace(trace_at_exit(Branch::positive), rate,
+                    half == Branch::positive ? 1 : reflection());
     } else {
       rate_to_trace(trace_at_exit(half), rate, 1);
     }
@@ -249,14 +253,14 @@ class RowAssembler {
   }
 
   [[nodiscard]] PetscInt local_row() const { return static_cast<PetscInt>(row_start.size()) - 1; }
-  [[nodiscard]] PetscInt node(Half half, int n, int j) const {
+  [[nodiscard]] PetscInt node(Branch half, int n, int j) const {
     const auto& [first, stride] = lines_[place_of_line(half, n)];
     return first + j * stride;
   }
-  [[nodiscard]] std::size_t place_of_line(Half half, int n) const {
-    return 2 * static_cast<std::size_t>(noise_.half() + n) + (half == Half::upper ? 0 : 1);
+  [[nodiscard]] std::size_t place_of_line(Branch half, int n) const {
+    return 2 * static_cast<std::size_t>(noise_.half() + n) + (half == Branch::positive ? 0 : 1);
   }
-  [[nodiscard]] PetscInt holding(Half half, int n) const {
+  [[nodiscard]] PetscInt holding(Branch half, int n) const {
     return states_.index({StateKind::holding, half, n, 0});
   }
   [[nodiscard]] double reflection() const { return states_.symmetry() == Symmetry::odd ? -1 : 1; }
@@ -277,7 +281,7 @@ class RowAssembler {
   Side upper_, lower_;
   const StateSpace& states_;
   PetscScalar lambda_;
-  Rest rest_;
+  StaticPhase rest_;
   std::vector<velocity::Entry> zero_trace_, top_trace_;
   std::vector<StateSpace::NodeLine> lines_;  // by noise node and half
   // Derivatives of the jumps from the noise node that was asked for last.

@@ -24,7 +24,7 @@ double falling_nodes(const model::Process& process, const noise::Nodes* noise, d
   while (below < above) {
     const int n = below + (above - below) / 2;
     const double x = noise == nullptr ? process.noise.level(n) : noise->x(n);
-    if (process.excess_at(x) + drag > 0) {
+    if (process.net_force_at(x) + drag > 0) {
       above = n;
     } else {
       below = n + 1;
@@ -51,23 +51,24 @@ Factors chosen_factors(Factors asked, Scheme scheme, std::int64_t noise_nodes, b
 }
 
 const char* default_pc_type(const Discretisation& discretisation) {
-  const auto& [process, noise, axis] = discretisation;
-  const bool hp = dynamic_cast<const velocity::HpAxis*>(axis.get()) != nullptr;
+  const auto& [process, noise, velocities] = discretisation;
+  const bool hp = dynamic_cast<const velocity::HpDiscretisation*>(velocities.get()) != nullptr;
   const Factors factors = chosen_factors(Factors::own, hp ? Scheme::hp : Scheme::upwind,
                                          noise->count(), noise->all_levels());
   return factors == Factors::elements ? petsc::kElementsPc : "lu";
 }
 
 // The blocks and couplings of groups inside of the elements, and those between elements.
-FactorCost elimination_cost(const model::Process& process, const velocity::HpAxis& axis,
-                            const noise::Nodes* noise, int ranks) {
+FactorCost elimination_cost(const model::Process& process,
+                            const velocity::HpDiscretisation& velocities, const noise::Nodes* noise,
+                            int ranks) {
   const auto sizes = group_sizes(process, noise);
   const double all = noise == nullptr ? 2.0 * process.noise.levels + 1 : noise->count();
   double inside = 0, between = 0, operations = 0;
-  double inner = falling_nodes(process, noise, axis.drag_at_end(0));
-  for (int e = 0; e < axis.elements(); ++e) {
-    const double q = axis.element(e).reference->size;
-    const double outer = falling_nodes(process, noise, axis.drag_at_end(e + 1));
+  double inner = falling_nodes(process, noise, velocities.drag_at_end(0));
+  for (int e = 0; e < velocities.elements(); ++e) {
+    const double q = velocities.element(e).reference->size;
+    const double outer = falling_nodes(process, noise, velocities.drag_at_end(e + 1));
     for (const auto& [nodes, groups] : sizes) {
       const double n = nodes * q;
       inside += groups * (n * n + n * q);
@@ -84,14 +85,16 @@ FactorCost elimination_cost(const model::Process& process, const velocity::HpAxi
   return {entries, scalar_bytes() * entries, operations};
 }
 
-FactorCost elimination_cost(const Discretisation& discretisation, bool folded, int ranks) {
-  const auto& [process, noise, axis] = discretisation;
-  const auto of = [&](const model::Process& along, const velocity::Axis& side) {
-    return elimination_cost(along, dynamic_cast<const velocity::HpAxis&>(side), noise.get(), ranks);
+FactorCost elimination_cost(const Discretisation& discretisation, bool symmetry_reduced,
+                            int ranks) {
+  const auto& [process, noise, velocities] = discretisation;
+  const auto of = [&](const model::Process& along, const velocity::VelocityDiscretisation& side) {
+    return elimination_cost(along, dynamic_cast<const velocity::HpDiscretisation&>(side),
+                            noise.get(), ranks);
   };
-  FactorCost cost = of(process, *axis);
-  if (folded) return cost;
-  const FactorCost other = of(process.mirrored(), axis->mirrored());
+  FactorCost cost = of(process, *velocities);
+  if (symmetry_reduced) return cost;
+  const FactorCost other = of(process.mirrored(), velocities->mirrored());
   return {cost.entries + other.entries, cost.bytes + other.bytes,
           cost.operations + other.operations};
 }

@@ -16,11 +16,11 @@ namespace stickslip::operators {
 namespace {
 
 int first_holding_node(const model::Process& process, const noise::Nodes& noise,
-                       const velocity::Axis& axis) {
+                       const velocity::VelocityDiscretisation& velocities) {
   int first = noise.half() + 1;
-  if (!axis.needs_holding()) return first;
-  const double drag = process.drag(axis.v_max());
-  while (first > -noise.half() && process.excess_at(noise.x(first - 1)) + drag > 0) --first;
+  if (!velocities.needs_holding()) return first;
+  const double drag = process.drag(velocities.v_max());
+  while (first > -noise.half() && process.net_force_at(noise.x(first - 1)) + drag > 0) --first;
   return first;
 }
 
@@ -40,7 +40,7 @@ void require_countable(double states) {
 }
 
 // Of {-(last-1) ... -first, first ... last-1}, those below n.
-int below_in_shells(int first, int last, int n) {
+int below_in_pairs(int first, int last, int n) {
   if (last == first) return 0;
   const int negative = std::clamp(n - (1 - last), 0, last - std::max(first, 1));
   return negative + std::clamp(n - first, 0, last - first);
@@ -49,20 +49,20 @@ int below_in_shells(int first, int last, int n) {
 }  // namespace
 
 StateSpace::Side::Side(const model::Process& process, const noise::Nodes& noise,
-                       const velocity::Axis& axis)
+                       const velocity::VelocityDiscretisation& velocities)
     : last_static(noise.last_up_to(process.static_index())),
-      first_holding(first_holding_node(process, noise, axis)) {}
+      first_holding(first_holding_node(process, noise, velocities)) {}
 
 StateSpace::StateSpace(MPI_Comm comm, const Discretisation& discretisation, Symmetry symmetry,
                        bool with_rest)
     : comm_(comm),
       symmetry_(symmetry),
       with_rest_(with_rest),
-      keeps_origin_(discretisation.axis->keeps_origin()),
+      keeps_origin_(discretisation.velocities->keeps_origin()),
       half_(discretisation.noise->half()),
-      nodes_(discretisation.axis->size()),
-      upper_(discretisation.process, *discretisation.noise, *discretisation.axis),
-      lower_(discretisation.process.mirrored(), *discretisation.noise, *discretisation.axis),
+      nodes_(discretisation.velocities->size()),
+      upper_(discretisation.process, *discretisation.noise, *discretisation.velocities),
+      lower_(discretisation.process.mirrored(), *discretisation.noise, *discretisation.velocities),
       lowest_rest_(lowest_rest_level(symmetry, discretisation.process)),
       highest_rest_(discretisation.process.static_index()),
       rank_(petsc::rank(comm)) {
@@ -82,12 +82,12 @@ void StateSpace::distribute(const noise::Nodes& noise, int levels) {
   for (int shell = 0; shell <= half_; ++shell) {
     const int innermost = noise.group_of(shell).begin;
     const std::int64_t before = innermost == 0 ? 0 : 2LL * innermost - 1;
-    owner_of_shell_.push_back(static_cast<int>(before * ranks / all));
+    owner_of_pair_.push_back(static_cast<int>(before * ranks / all));
   }
   int first = 0, rest = 0;
   for (int r = 0; r < ranks; ++r) {
     int last = first, last_rest = rest;
-    while (last <= half_ && owner_of_shell_[last] == r) ++last;
+    while (last <= half_ && owner_of_pair_[last] == r) ++last;
     while (last_rest <= levels && noise.group_at(last_rest).begin < last) {
       last_rest = noise.group_at(last_rest).last + 1;
     }
@@ -98,19 +98,20 @@ void StateSpace::distribute(const noise::Nodes& noise, int levels) {
   }
 }
 
-std::span<const Half> StateSpace::halves() const {
-  static constexpr std::array<Half, 2> both{Half::lower, Half::upper};
-  return folded() ? std::span<const Half>(both).subspan(1) : std::span<const Half>(both);
+std::span<const Branch> StateSpace::halves() const {
+  static constexpr std::array<Branch, 2> both{Branch::negative, Branch::positive};
+  return symmetry_reduced() ? std::span<const Branch>(both).subspan(1)
+                            : std::span<const Branch>(both);
 }
 
 // Away from v = 0.
 bool StateSpace::has_state(int row, int n) const {
   if (std::abs(row) <= nodes_) return true;
-  return row > 0 ? has_holding(Half::upper, n) : has_holding(Half::lower, -n);
+  return row > 0 ? has_holding(Branch::positive, n) : has_holding(Branch::negative, -n);
 }
 
 State StateSpace::state_at(int row, int n) const {
-  const Half half = row < 0 ? Half::lower : Half::upper;
+  const Branch half = row < 0 ? Branch::negative : Branch::positive;
   const int along = row < 0 ? -n : n;
   if (std::abs(row) <= nodes_) return {StateKind::node, half, along, std::abs(row) - 1};
   return {StateKind::holding, half, along, 0};
@@ -125,14 +126,14 @@ int StateSpace::owner_of_rest(int level) const {
 }
 
 int StateSpace::nodes_below(const Block& block, int n) {
-  return below_in_shells(block.first, block.last, n);
+  return below_in_pairs(block.first, block.last, n);
 }
 
 // States at rest of a rank below a level.
 int StateSpace::rest_below(const Block& block, int level) const {
   if (!with_rest_ || highest_rest_ < lowest_rest_) return 0;
   const auto below = [&block](int i) {
-    return below_in_shells(block.first_rest, block.last_rest, i);
+    return below_in_pairs(block.first_rest, block.last_rest, i);
   };
   return below(std::clamp(level, lowest_rest_, highest_rest_ + 1)) - below(lowest_rest_);
 }
@@ -141,9 +142,9 @@ int StateSpace::rest_below(const Block& block, int level) const {
 // rest, origins of the upper half.
 int StateSpace::position(const Block& block, int row, const State& state) const {
   const auto below = [&](int n) { return nodes_below(block, n); };
-  const int n = state.half == Half::upper ? state.noise : -state.noise;
+  const int n = state.half == Branch::positive ? state.noise : -state.noise;
   const int first_lower = -lower_.last_static, first_upper = upper_.last_static + 1;
-  const int lower_origins = keeps_origin_ && !folded() ? below(first_lower) : 0;
+  const int lower_origins = keeps_origin_ && !symmetry_reduced() ? below(first_lower) : 0;
   switch (state.kind) {
   case StateKind::node: return below(n);
   case StateKind::holding:
@@ -152,7 +153,7 @@ int StateSpace::position(const Block& block, int row, const State& state) const 
   case StateKind::rest: return lower_origins + rest_below(block, state.noise);
   case StateKind::origin: break;
   }
-  if (state.half == Half::lower) return below(n);
+  if (state.half == Branch::negative) return below(n);
   const int rest = rest_below(block, highest_rest_ + 1);
   return lower_origins + rest + below(n) - below(first_upper);
 }
@@ -161,7 +162,7 @@ int StateSpace::size_at_zero(const Block& block) const {
   int count = rest_below(block, highest_rest_ + 1);
   if (!keeps_origin_) return count;
   const int all = nodes_below(block, half_ + 1);
-  if (!folded()) count += nodes_below(block, -lower_.last_static);
+  if (!symmetry_reduced()) count += nodes_below(block, -lower_.last_static);
   return count + all - nodes_below(block, upper_.last_static + 1);
 }
 
@@ -176,7 +177,7 @@ int StateSpace::count(const Block& block, int row) const {
 PetscInt StateSpace::row_offset(const Block& block, int row) const {
   const PetscInt node_row = nodes_below(block, half_ + 1);
   PetscInt offset = 0;
-  if (!folded()) {
+  if (!symmetry_reduced()) {
     if (row > -last_row()) offset += count(block, -last_row());
     offset += node_row * (std::clamp(row, -nodes_, 0) + nodes_);
   }
@@ -188,15 +189,15 @@ PetscInt StateSpace::size(const Block& block) const {
   return row_offset(block, last_row()) + count(block, last_row());
 }
 
-StateSpace::NodeLine StateSpace::nodes_of(Half half, int noise) const {
+StateSpace::NodeLine StateSpace::nodes_of(Branch half, int noise) const {
   const PetscInt first = index({StateKind::node, half, noise, 0});
   return {first, nodes_ > 1 ? index({StateKind::node, half, noise, 1}) - first : 0};
 }
 
 PetscInt StateSpace::index(const State& state) const {
-  const int sign = state.half == Half::upper ? 1 : -1;
+  const int sign = state.half == Branch::positive ? 1 : -1;
   const int owner = state.kind == StateKind::rest ? owner_of_rest(state.noise)
-                                                  : owner_of_shell_[std::abs(state.noise)];
+                                                  : owner_of_pair_[std::abs(state.noise)];
   const Block& block = blocks_[owner];
   int row = 0;
   if (state.kind == StateKind::node) row = sign * (state.node + 1);

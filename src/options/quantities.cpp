@@ -50,7 +50,7 @@ const std::vector<QuantityRow>& quantity_table() {
       {"entry_law", entry_law, renewal, none, {}},
       {"density", density, alone, alone, {}, true},
       {"laplace", laplace, renewal, none, {"lambda"}},
-      {"F_stick", stay_transform, alone, none, {"lambda"}},
+      {"F_stick", stick_duration_transform, alone, none, {"lambda"}},
       {"resolvent", resolvent, alone, none, {"lambda", "observable"}},
       {"relaxation", relaxation, alone, none, {}},
       {"spectrum", spectrum, simulated, simulated, {"omega", "spectrum_solver"}},

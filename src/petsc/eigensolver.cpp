@@ -57,7 +57,7 @@ EpsHandle configured_eigensolver(Mat matrix, const std::string& prefix, double t
 }  // namespace
 
 Eigensolver::Eigensolver(Mat matrix, const std::string& prefix, double target, int wanted,
-                         Ledger& ledger)
+                         SolverStatistics& statistics)
     : matrix_(matrix), prefix_(prefix) {
   double total = 0;
   const double symbolic_before = logged_seconds("MatLUFactorSym");
@@ -73,14 +73,14 @@ Eigensolver::Eigensolver(Mat matrix, const std::string& prefix, double target, i
   }
   const double symbolic = logged_seconds("MatLUFactorSym") - symbolic_before;
   const double numeric = logged_seconds("MatLUFactorNum") - numeric_before;
-  ledger.analysis_seconds += symbolic;
-  ledger.factorization_seconds += numeric;
-  ledger.solve_seconds += total - symbolic - numeric;
-  ++(kComplex ? ledger.factorizations_complex : ledger.factorizations_real);
+  statistics.analysis_seconds += symbolic;
+  statistics.factorization_seconds += numeric;
+  statistics.solve_seconds += total - symbolic - numeric;
+  ++(kComplex ? statistics.factorizations_complex : statistics.factorizations_real);
   PetscInt solves = 0;
   check(KSPGetTotalIterations(solver_of(eps_), &solves));
-  ledger.solves += static_cast<int>(solves);
-  record_factors(solver_of(eps_), ledger);
+  statistics.solves += static_cast<int>(solves);
+  record_factors(solver_of(eps_), statistics);
 }
 
 void Eigensolver::collect_pairs() {

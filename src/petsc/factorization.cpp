@@ -21,8 +21,9 @@ constexpr bool kComplex = PetscDefined(USE_COMPLEX);
 
 }  // namespace
 
-Factorization::Factorization(Mat matrix, const std::string& prefix, Ledger& ledger, PCType pc_type)
-    : measure_(matrix), prefix_(prefix), ledger_(ledger) {
+Factorization::Factorization(Mat matrix, const std::string& prefix, SolverStatistics& statistics,
+                             PCType pc_type)
+    : measure_(matrix), prefix_(prefix), statistics_(statistics) {
   check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
   matrix_ = MatHandle(matrix);
   ksp_ = linear_solver(matrix_, prefix_, pc_type);
@@ -43,29 +44,29 @@ void Factorization::factor() {
     petsc::factor(ksp_, matrix_, prefix_);
   }
   const double symbolic = logged_seconds("MatLUFactorSym") - symbolic_before;
-  ledger_.analysis_seconds += symbolic;
-  ledger_.factorization_seconds += total - symbolic;
-  record_factors(ksp_, ledger_);
-  ++(kComplex ? ledger_.factorizations_complex : ledger_.factorizations_real);
+  statistics_.analysis_seconds += symbolic;
+  statistics_.factorization_seconds += total - symbolic;
+  record_factors(ksp_, statistics_);
+  ++(kComplex ? statistics_.factorizations_complex : statistics_.factorizations_real);
 }
 
 void Factorization::solve_once(Vec b, Vec x) {
-  const PhaseTimer timer("solve", ledger_.solve_seconds);
+  const PhaseTimer timer("solve", statistics_.solve_seconds);
   apply(b, x, false);
-  ++ledger_.solves;
+  ++statistics_.solves;
 }
 
 void Factorization::solve_transposed_once(Vec b, Vec x) {
-  const PhaseTimer timer("solve", ledger_.solve_seconds);
+  const PhaseTimer timer("solve", statistics_.solve_seconds);
   apply(b, x, true);
-  ++ledger_.solves;
+  ++statistics_.solves;
 }
 
 void Factorization::apply(Vec b, Vec x, bool transposed) {
   check(transposed ? KSPSolveTranspose(ksp_, b, x) : KSPSolve(ksp_, b, x));
   PetscInt iterations = 0;
   check(KSPGetIterationNumber(ksp_, &iterations));
-  if (iterations > 1) ledger_.iterations += static_cast<int>(iterations);
+  if (iterations > 1) statistics_.iterations += static_cast<int>(iterations);
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check(KSPGetConvergedReason(ksp_, &reason));
   if (reason < 0) {
@@ -75,7 +76,7 @@ void Factorization::apply(Vec b, Vec x, bool transposed) {
 }
 
 Solution Factorization::solve(Vec b, bool transposed) {
-  const PhaseTimer timer("solve", ledger_.solve_seconds);
+  const PhaseTimer timer("solve", statistics_.solve_seconds);
   Solution s;
   VecHandle residual, step;
   for (VecHandle* vector : {&s.x, &s.correction, &residual, &step}) {
@@ -87,7 +88,7 @@ Solution Factorization::solve(Vec b, bool transposed) {
     check(VecAYPX(residual, -1, b));
   };
   apply(b, s.x, transposed);
-  ++ledger_.solves;
+  ++statistics_.solves;
   bool sound = false;
   for (int n = 0; n < kMostCorrections && !sound; ++n) {
     compute_residual();  // again, as backward_error may overwrite it
@@ -98,15 +99,15 @@ Solution Factorization::solve(Vec b, bool transposed) {
     s.backward_error =
         transposed ? measure_.transposed(residual, b, s.x) : measure_.plain(residual, b, s.x);
     sound = s.backward_error <= kBackwardErrorLimit;
-    ++ledger_.corrections;
+    ++statistics_.corrections;
   }
   if (!sound) {
     throw NotReached(fmt::format("the solver -{} left a backward error of {:.1e} (limit {:.0e}){}",
                                  prefix_, s.backward_error, kBackwardErrorLimit, advice()));
   }
-  Ledger seen;
+  SolverStatistics seen;
   seen.backward_error = s.backward_error;
-  ledger_ += seen;
+  statistics_ += seen;
   return s;
 }
 
@@ -114,9 +115,9 @@ std::string Factorization::advice() const {
   return is_own(ksp_) ? fmt::format("; -{}pc_type lu exchanges more rows", prefix_) : "";
 }
 
-Analysis Factorization::analyse(Mat matrix, const std::string& prefix, Ledger& ledger,
+Analysis Factorization::analyse(Mat matrix, const std::string& prefix, SolverStatistics& statistics,
                                 PCType pc_type) {
-  const PhaseTimer timer("analysis", ledger.analysis_seconds);
+  const PhaseTimer timer("analysis", statistics.analysis_seconds);
   const KspHandle ksp = linear_solver(matrix, prefix, pc_type);
   return petsc::analyse(ksp, matrix, prefix);
 }

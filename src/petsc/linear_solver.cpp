@@ -203,14 +203,14 @@ void require_factored(KSP ksp, const std::string& prefix) {
   throw NotReached(fmt::format("the solver -{} failed: {}", prefix, what));
 }
 
-void record_factors(KSP ksp, Ledger& ledger) {
+void record_factors(KSP ksp, SolverStatistics& statistics) {
   constexpr PetscInt entries = 29, megabytes = 22;  // of all ranks
   const Analysis sizes =
       uses_mumps(ksp) ? counted_by_mumps(ksp, entries, megabytes) : own_analysis(ksp);
-  Ledger seen;
+  SolverStatistics seen;
   seen.factor_entries = static_cast<std::int64_t>(sizes.factor_entries);
   seen.factor_megabytes = sizes.megabytes;
-  ledger += seen;
+  statistics += seen;
 }
 
 Analysis analyse(KSP ksp, Mat matrix, const std::string& prefix) {

@@ -56,8 +56,9 @@ void configure(TS ts, const std::string& prefix, double tolerance) {
 
 }  // namespace
 
-TimeStepper::TimeStepper(Mat a, Vec u, const std::string& prefix, double tolerance, Ledger& ledger)
-    : prefix_(prefix), ledger_(ledger) {
+TimeStepper::TimeStepper(Mat a, Vec u, const std::string& prefix, double tolerance,
+                         SolverStatistics& statistics)
+    : prefix_(prefix), statistics_(statistics) {
   check(PetscObjectReference(reinterpret_cast<PetscObject>(a)));
   a_ = MatHandle(a);
   check(PetscObjectReference(reinterpret_cast<PetscObject>(u)));
@@ -73,7 +74,7 @@ TimeStepper::TimeStepper(Mat a, Vec u, const std::string& prefix, double toleran
 
 void TimeStepper::advance(double time) {
   if (time <= now_) return;
-  const PhaseTimer timer("time stepping", ledger_.solve_seconds);
+  const PhaseTimer timer("time stepping", statistics_.solve_seconds);
   const DefaultOrdering amf(prefix_);
   check(TSSetMaxTime(ts_, time));
   check(TSSolve(ts_, u_));
@@ -85,7 +86,7 @@ void TimeStepper::advance(double time) {
   }
   PetscInt solves = 0;
   check(TSGetKSPIterations(ts_, &solves));
-  ledger_.iterations = static_cast<int>(solves);
+  statistics_.iterations = static_cast<int>(solves);
   now_ = time;
 }
 
@@ -103,9 +104,9 @@ void probe_time_stepper(const std::string& prefix) {
   check(MatAssemblyEnd(unit, MAT_FINAL_ASSEMBLY));
   VecHandle u;
   check(MatCreateVecs(unit, u.out(), nullptr));
-  Ledger ledger;
+  SolverStatistics statistics;
   check(VecSet(u, 1));
-  TimeStepper stepper(unit, u, prefix, 1e-6, ledger);
+  TimeStepper stepper(unit, u, prefix, 1e-6, statistics);
   check(TSSetTime(stepper.ts_, 0));
   check(TSSetMaxTime(stepper.ts_, kFirstStep));
   check(TSSolve(stepper.ts_, u));  // some options are read by the first step

@@ -10,35 +10,35 @@
 namespace stickslip::quantities {
 namespace {
 
-using operators::Half;
+using operators::Branch;
 using operators::State;
 using operators::StateKind;
 
-// Calls visit(half, state, probability) for the local sliding states; what is folded stands for
-// two places, each with half of the mass.
+// Calls visit(half, state, probability) for the local sliding states; what is symmetry-reduced
+// stands for two places, each with half of the mass.
 template <class Visit>
-void for_each_place(const StationaryLaw& law, Visit visit) {
-  const double total = law.excursion().mean_excursion();
-  const petsc::ReadView local(law.occupation());
+void for_each_place(const StationaryDistribution& distribution, Visit visit) {
+  const double total = distribution.excursion().mean_excursion();
+  const petsc::ReadView local(distribution.occupation());
   PetscInt at = 0;
-  law.states().for_each_local([&](const State& state) {
+  distribution.states().for_each_local([&](const State& state) {
     const double probability = PetscRealPart(local[at++]) / total;
-    if (!law.states().folded()) return visit(state.half, state, probability);
-    visit(Half::upper, state, probability / 2);
-    visit(Half::lower, state, probability / 2);
+    if (!distribution.states().symmetry_reduced()) return visit(state.half, state, probability);
+    visit(Branch::positive, state, probability / 2);
+    visit(Branch::negative, state, probability / 2);
   });
 }
 
-std::vector<double> atoms(const StationaryLaw& law) {
-  const auto& process = law.process();
+std::vector<double> atoms(const StationaryDistribution& distribution) {
+  const auto& process = distribution.process();
   const int n = process.noise.levels;
   const int lowest = process.lowest_static(), highest = process.static_index();
-  const auto& stick = law.excursion().stick_time;
-  const double total = law.excursion().mean_excursion();
+  const auto& stick = distribution.excursion().stick_time;
+  const double total = distribution.excursion().mean_excursion();
   std::vector<double> atom(2 * static_cast<std::size_t>(n) + 1, 0.0);
   for (int i = lowest; i <= highest; ++i) {
     atom[n + i] = stick[i - lowest] / total;
-    if (law.states().folded()) {
+    if (distribution.states().symmetry_reduced()) {
       atom[n + i] = (stick[i - lowest] + stick[highest - i]) / (2 * total);
     }
   }
@@ -47,18 +47,19 @@ std::vector<double> atoms(const StationaryLaw& law) {
 
 }  // namespace
 
-DensityField density_field(const StationaryLaw& law) {
-  const auto& [process, noise, axis] = law.discretisation();
-  const auto weights = axis->weights();
-  const int nodes = axis->size(), half = noise->half();
+DensityField density_field(const StationaryDistribution& distribution) {
+  const auto& [process, noise, velocities] = distribution.discretisation();
+  const auto weights = velocities->weights();
+  const int nodes = velocities->size(), half = noise->half();
   std::vector<double> noise_marginal(static_cast<std::size_t>(noise->count()), 0.0);
-  DensityField field{PhaseField(law.discretisation(), law.states(), PhaseField::Kind::measure),
-                     atoms(law),
-                     {},
-                     std::vector<double>(2 * static_cast<std::size_t>(nodes), 0.0),
-                     speed_distribution(law).at_top};
-  for_each_place(law, [&](Half side, const State& state, double probability) {
-    const bool upper = side == Half::upper;
+  DensityField field{
+      PhaseField(distribution.discretisation(), distribution.states(), PhaseField::Kind::measure),
+      atoms(distribution),
+      {},
+      std::vector<double>(2 * static_cast<std::size_t>(nodes), 0.0),
+      speed_distribution(distribution).at_top};
+  for_each_place(distribution, [&](Branch side, const State& state, double probability) {
+    const bool upper = side == Branch::positive;
     noise_marginal[half + (upper ? state.noise : -state.noise)] += probability;
     if (state.kind == StateKind::holding) return;
     // The node of a state at the origin is 0.
@@ -67,36 +68,36 @@ DensityField density_field(const StationaryLaw& law) {
     field.velocity_marginal[upper ? nodes + state.node : nodes - 1 - state.node] += density;
   });
   for (auto* marginal : {&noise_marginal, &field.velocity_marginal}) {
-    petsc::sum_over_ranks(law.states().comm(), *marginal);
+    petsc::sum_over_ranks(distribution.states().comm(), *marginal);
   }
   field.noise_marginal = noise->spread(noise_marginal);
   for (std::size_t i = 0; i < field.atom.size(); ++i) field.noise_marginal[i] += field.atom[i];
   return field;
 }
 
-SpeedDistribution speed_distribution(const StationaryLaw& law) {
-  const double total = law.excursion().mean_excursion();
-  const std::size_t nodes = law.discretisation().axis->size();
+SpeedDistribution speed_distribution(const StationaryDistribution& distribution) {
+  const double total = distribution.excursion().mean_excursion();
+  const std::size_t nodes = distribution.discretisation().velocities->size();
   std::vector<double> sums(nodes + 2, 0.0);  // of the nodes, the origin and the holding states
-  const petsc::ReadView local(law.occupation());
+  const petsc::ReadView local(distribution.occupation());
   PetscInt at = 0;
-  law.states().for_each_local([&](const State& state) {
+  distribution.states().for_each_local([&](const State& state) {
     std::size_t place = static_cast<std::size_t>(state.node);
     if (state.kind != StateKind::node) place = nodes + (state.kind == StateKind::holding ? 1 : 0);
     sums[place] += PetscRealPart(local[at++]) / total;
   });
-  petsc::sum_over_ranks(law.states().comm(), sums);
-  return {law.discretisation().axis,
+  petsc::sum_over_ranks(distribution.states().comm(), sums);
+  return {distribution.discretisation().velocities,
           {sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(nodes)},
-          sums[nodes] + law.excursion().mean_stick() / total,
+          sums[nodes] + distribution.excursion().mean_stick() / total,
           sums[nodes + 1]};
 }
 
 double distance(const SpeedDistribution& a, const SpeedDistribution& b) {
   double largest = std::abs(a.at_rest - b.at_rest);
-  for (double v : b.axis->cells()) {
-    const double below_a = a.at_rest + a.axis->mass_below(a.mass, v);
-    const double below_b = b.at_rest + b.axis->mass_below(b.mass, v);
+  for (double v : b.velocities->cells()) {
+    const double below_a = a.at_rest + a.velocities->mass_below(a.mass, v);
+    const double below_b = b.at_rest + b.velocities->mass_below(b.mass, v);
     largest = std::max(largest, std::abs(below_a - below_b));
   }
   return largest;

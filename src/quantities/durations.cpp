@@ -12,15 +12,15 @@
 namespace stickslip::quantities {
 namespace {
 
-using operators::Rest;
+using operators::StaticPhase;
 using operators::Symmetry;
 using petsc::check;
 
 /// exp(Q t) for the static chain: at rate Lambda the noise jumps, up or down.
-class StayFlow {
+class StickingFlow {
  public:
-  StayFlow(const model::Process& process, std::vector<double> start)
-      : noise_(process.noise), k_(process.static_index()), law_(std::move(start)) {}
+  StickingFlow(const model::Process& process, std::vector<double> start)
+      : noise_(process.noise), k_(process.static_index()), distribution_(std::move(start)) {}
 
   void advance(double time) {
     // Steps of at most 64 expected jumps, whose weights do not underflow.
@@ -30,7 +30,7 @@ class StayFlow {
   }
 
   [[nodiscard]] double exit_rate() const {
-    return noise_.rate() * noise_.up(k_) * (law_.back() + law_.front());
+    return noise_.rate() * noise_.up(k_) * (distribution_.back() + distribution_.front());
   }
   [[nodiscard]] double left() const { return left_; }
 
@@ -38,7 +38,7 @@ class StayFlow {
   // Poisson-weighted sum over the number of jumps; all terms are positive.
   void step(double jumps) {
     double weight = std::exp(-jumps);
-    std::vector<double> chain = law_, sum(law_.size(), 0.0);
+    std::vector<double> chain = distribution_, sum(distribution_.size(), 0.0);
     double gone = 0;  // left after that many jumps
     for (int n = 0;; ++n) {
       for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * chain[i];
@@ -47,7 +47,7 @@ class StayFlow {
       gone += jump(chain);
       weight *= jumps / (n + 1);
     }
-    law_ = std::move(sum);
+    distribution_ = std::move(sum);
   }
 
   // One jump of the noise; returns what leaves.
@@ -65,14 +65,15 @@ class StayFlow {
 
   model::NoiseChain noise_;
   int k_;
-  std::vector<double> law_;
+  std::vector<double> distribution_;
   double left_ = 0;
 };
 
 }  // namespace
 
-DurationLaw stick_law(const model::Process& process, const std::vector<Uncertain>& entry,
-                      const std::vector<double>& time) {
+DurationDistribution stick_distribution(const model::Process& process,
+                                        const std::vector<Uncertain>& entry,
+                                        const std::vector<double>& time) {
   std::vector<double> start;
   double relative = 0;
   for (const auto& p : entry) {
@@ -83,10 +84,10 @@ DurationLaw stick_law(const model::Process& process, const std::vector<Uncertain
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return time[a] < time[b]; });
-  DurationLaw law;
+  DurationDistribution law;
   law.density.resize(time.size());
   law.distribution.resize(time.size());
-  StayFlow flow(process, std::move(start));
+  StickingFlow flow(process, std::move(start));
   double now = 0;
   for (std::size_t n : order) {
     flow.advance(time[n] - now);
@@ -102,12 +103,14 @@ DurationLaw stick_law(const model::Process& process, const std::vector<Uncertain
 namespace {
 
 // f(t) = g exp(L t) r from s+, r = -L 1 the rate of ending where `rest` kills.
-DurationLaw law_until(operators::Systems& systems, Rest rest, const StationaryLaw& law,
-                      const std::vector<double>& time, double mean, double tolerance) {
+DurationDistribution distribution_until(operators::Systems& systems, StaticPhase rest,
+                                        const StationaryDistribution& stationary,
+                                        const std::vector<double>& time, double mean,
+                                        double tolerance) {
   auto a = operators::assemble(systems.comm(), systems.discretisation(), 0, Symmetry::even, rest,
-                               systems.ledger());
+                               systems.statistics());
   const petsc::VecHandle one = a.values([](double, double, double) { return 1.0; }), b = a.zeros(),
-                         c = a.trace_at_exit(), d = law.weight_on(a);
+                         c = a.trace_at_exit(), d = stationary.weight_on(a);
   check(MatMult(a.matrix(), one, b));
   auto curve = time_curve(systems, std::move(a), rest, {b, c, d}, ReducedModel::Nature::rough,
                           Integral::wanted, time, 1 / mean, tolerance);
@@ -116,20 +119,23 @@ DurationLaw law_until(operators::Systems& systems, Rest rest, const StationaryLa
 
 }  // namespace
 
-DurationLaw slide_law(operators::Systems& systems, const StationaryLaw& law,
-                      const std::vector<double>& time, double tolerance) {
-  return law_until(systems, Rest::killing, law, time, law.excursion().mean_slide(), tolerance);
+DurationDistribution slide_distribution(operators::Systems& systems,
+                                        const StationaryDistribution& stationary,
+                                        const std::vector<double>& time, double tolerance) {
+  return distribution_until(systems, StaticPhase::killing, stationary, time,
+                            stationary.excursion().mean_slide(), tolerance);
 }
 
-DurationLaw excursion_law(operators::Systems& systems, const StationaryLaw& law,
-                          const std::vector<double>& time, double tolerance) {
-  return law_until(systems, Rest::killed_on_exit, law, time, law.excursion().mean_excursion(),
-                   tolerance);
+DurationDistribution excursion_distribution(operators::Systems& systems,
+                                            const StationaryDistribution& stationary,
+                                            const std::vector<double>& time, double tolerance) {
+  return distribution_until(systems, StaticPhase::killed_on_exit, stationary, time,
+                            stationary.excursion().mean_excursion(), tolerance);
 }
 
 double slide_density_at_zero(const model::Process& process) {
   const int k = process.static_index();
-  const double up = process.excess(k + 1), down = -process.excess(k);
+  const double up = process.net_force(k + 1), down = -process.net_force(k);
   if (down <= 0) return 0;
   return process.noise.rate() * process.noise.down(k + 1) * down / (up + down);
 }
@@ -149,10 +155,10 @@ DurationMoments duration_moments(operators::Systems& systems, const std::vector<
   const petsc::VecHandle ones = system.a().values([](double, double, double) { return 1.0; });
   const auto slide = system.factors().solve(ones);
   const auto square = system.factors().solve(slide.x);
-  const auto stay = system.factors().solve(
+  const auto sticking = system.factors().solve(
       system.a().from_rest(std::vector<PetscScalar>(once.begin(), once.end())));
   const Uncertain s = value_of(at_exit, slide), s2 = 2.0 * value_of(at_exit, square);
-  const Uncertain st = value_of(at_exit, system.factors().solve(stay.x));
+  const Uncertain st = value_of(at_exit, system.factors().solve(sticking.x));
   const Uncertain excursion = s + stick;
   return {s,
           stick,
@@ -180,8 +186,8 @@ void append_duration_moments(const model::Process& process, const DurationMoment
   append(kFStick0, rate * (entry.front() + entry.back()));
 }
 
-void append_duration(const char* name, const std::vector<double>& time, const DurationLaw& law,
-                     Results& results) {
+void append_duration(const char* name, const std::vector<double>& time,
+                     const DurationDistribution& law, Results& results) {
   Result density = array(std::string("f_") + name, "1/time", "time", time);
   Result distribution = array(std::string("cdf_") + name, "", "time", time, Kind::distribution);
   for (const auto& value : law.density) append_value(density, value);

@@ -61,25 +61,28 @@ void append_moments(const operators::Discretisation& discretisation, const Excur
   results.push_back(scalar(kEV, sum(drift) / total, drift.empty() ? 0 : rounding / total));
 }
 
-void append_entry_law(const model::Process& process, const Excursion& excursion, Results& results) {
-  const auto& folded = excursion.entry;
+void append_hitting_distribution(const model::Process& process, const Excursion& excursion,
+                                 Results& results) {
+  const auto& symmetry_reduced = excursion.entry;
   const auto& oriented = excursion.entry_orientation;
   const int k = process.static_index();
-  Result law{"entry_law", "", "k", {}, {}, {}};
+  Result distribution{"entry_law", "", "k", {}, {}, {}};
   for (int i = -k; i <= k; ++i) {
-    // Slides that end with V > 0 on level i, and with V < 0 on level -i in folded coordinates.
-    const double same = (folded[k + i] + oriented[k + i]) / 2;
-    const double mirrored = (folded[k - i] - oriented[k - i]) / 2;
-    law.abscissa.push_back(i);
-    law.value.push_back(same + mirrored);
-    law.error.push_back(0);
+    // Slides that end with V > 0 on level i, and with V < 0 on level -i in symmetry-reduced
+    // coordinates.
+    const double same = (symmetry_reduced[k + i] + oriented[k + i]) / 2;
+    const double mirrored = (symmetry_reduced[k - i] - oriented[k - i]) / 2;
+    distribution.abscissa.push_back(i);
+    distribution.value.push_back(same + mirrored);
+    distribution.error.push_back(0);
   }
-  results.push_back(law);
+  results.push_back(distribution);
   const double rate = process.noise.rate() * process.noise.up(k);
-  results.push_back(scalar(kFStick0, rate * (folded.back() + folded.front()), 0));
+  results.push_back(
+      scalar(kFStick0, rate * (symmetry_reduced.back() + symmetry_reduced.front()), 0));
 }
 
-void append_noise_law(const model::Process& process, Results& results) {
+void append_noise_distribution(const model::Process& process, Results& results) {
   const auto moments = model::noise_moments(process.noise, process.threshold_index());
   const double rounding = model::rounding_of_sums(process.noise);
   results.push_back(scalar(kPWithin, moments.within, rounding * moments.within));
@@ -92,14 +95,15 @@ std::vector<double> marginal_of_noise(const operators::Discretisation& discretis
   const int n = process.noise.levels, k = process.static_index();
   const double total = excursion.mean_excursion();
   const auto slide_time = discretisation.noise->spread(excursion.slide_time);
-  std::vector<double> law(slide_time.size());
+  std::vector<double> distribution(slide_time.size());
   for (int i = -n; i <= n; ++i) {
-    law[n + i] = (slide_time[n + i] + slide_time[n - i]) / (2 * total);
+    distribution[n + i] = (slide_time[n + i] + slide_time[n - i]) / (2 * total);
     if (std::abs(i) <= k) {
-      law[n + i] += (excursion.stick_time[k + i] + excursion.stick_time[k - i]) / (2 * total);
+      distribution[n + i] +=
+          (excursion.stick_time[k + i] + excursion.stick_time[k - i]) / (2 * total);
     }
   }
-  return law;
+  return distribution;
 }
 
 }  // namespace stickslip::quantities

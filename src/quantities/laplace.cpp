@@ -5,7 +5,7 @@
 namespace stickslip::quantities {
 namespace {
 
-std::vector<double> stay_transforms(const model::Process& process, double lambda) {
+std::vector<double> stick_duration_transforms(const model::Process& process, double lambda) {
   return operators::StaticChain(process.noise, process.static_index(), lambda).exit_transform();
 }
 
@@ -13,21 +13,21 @@ std::vector<double> stay_transforms(const model::Process& process, double lambda
 
 Uncertain stick_transform(const model::Process& process, double lambda,
                           const std::vector<Uncertain>& entry) {
-  const auto stay = stay_transforms(process, lambda);
+  const auto sticking = stick_duration_transforms(process, lambda);
   Uncertain sum;
-  for (std::size_t n = 0; n < stay.size(); ++n) sum = sum + stay[n] * entry[n];
+  for (std::size_t n = 0; n < sticking.size(); ++n) sum = sum + sticking[n] * entry[n];
   return sum;
 }
 
 SlideTransforms slide_transforms(operators::Systems& systems, double lambda) {
-  const auto stay = stay_transforms(systems.process(), lambda);
+  const auto sticking = stick_duration_transforms(systems.process(), lambda);
   auto& system = systems.at(lambda, operators::Symmetry::even);
   const petsc::VecHandle at_exit = system.a().trace_at_exit();
   const auto transform = [&](const std::vector<double>& values) {
     const std::vector<PetscScalar> s(values.begin(), values.end());
     return value_of(at_exit, system.factors().solve(system.a().from_rest(s)));
   };
-  return {transform(std::vector<double>(stay.size(), 1.0)), transform(stay)};
+  return {transform(std::vector<double>(sticking.size(), 1.0)), transform(sticking)};
 }
 
 void append_laplace(const std::vector<double>& lambda,

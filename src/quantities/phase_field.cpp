@@ -12,7 +12,7 @@ PhaseField::PhaseField(const operators::Discretisation& discretisation,
     : noise_(discretisation.noise), kind_(kind), local_noise_(states.local_noise()) {
   const auto& chain = discretisation.process.noise;
   for (int i = -chain.levels; i <= chain.levels; ++i) x_.push_back(chain.level(i));
-  const auto nodes = discretisation.axis->nodes();
+  const auto nodes = discretisation.velocities->nodes();
   std::transform(nodes.rbegin(), nodes.rend(), std::back_inserter(v_),
                  [](double node) { return -node; });
   v_.insert(v_.end(), nodes.begin(), nodes.end());
@@ -24,9 +24,9 @@ std::size_t PhaseField::row_start(int noise) const {
   return static_cast<std::size_t>(place - local_noise_.begin()) * v_.size();
 }
 
-void PhaseField::add(operators::Half half, int noise, int node, double value) {
+void PhaseField::add(operators::Branch half, int noise, int node, double value) {
   const std::size_t nodes = v_.size() / 2;
-  const bool upper = half == operators::Half::upper;
+  const bool upper = half == operators::Branch::positive;
   by_node_[upper ? row_start(noise) + nodes + node : row_start(-noise) + nodes - 1 - node] += value;
 }
 

@@ -75,7 +75,8 @@ std::vector<double> products(BV y, Vec v, int size) {
 }  // namespace
 
 ReducedModel::ReducedModel(operators::Systems& systems, operators::KolmogorovOperator minus_l,
-                           operators::Rest rest, const Ends& ends, Nature nature, int most_pairs)
+                           operators::StaticPhase rest, const Ends& ends, Nature nature,
+                           int most_pairs)
     : systems_(systems),
       rest_(rest),
       nature_(nature),

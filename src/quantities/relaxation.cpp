@@ -9,7 +9,7 @@
 namespace stickslip::quantities {
 namespace {
 
-using operators::Half;
+using operators::Branch;
 using operators::State;
 using operators::StateKind;
 using operators::Symmetry;
@@ -78,7 +78,8 @@ RelaxationMode mode_of(const operators::Systems& systems, const operators::State
     auto value = scale * entry(real, imaginary, at++);
     if (real_rate) value = value.real();
     if (state.kind == StateKind::node) {
-      for (const auto& [half, factor] : {std::pair{Half::upper, 1.0}, {Half::lower, sign}}) {
+      for (const auto& [half, factor] :
+           {std::pair{Branch::positive, 1.0}, {Branch::negative, sign}}) {
         mode.real.add(half, state.noise, state.node, factor * value.real());
         mode.imaginary.add(half, state.noise, state.node, factor * value.imag());
       }
@@ -117,10 +118,11 @@ std::vector<const Eigenpair*> chosen(const std::vector<Eigenpair>& pairs, Symmet
 std::vector<RelaxationMode> relaxation_modes(operators::Systems& systems, Symmetry symmetry) {
   const auto& process = systems.process();
   const auto a = operators::assemble(systems.comm(), systems.discretisation(), 0, symmetry,
-                                     operators::Rest::kept, systems.ledger());
+                                     operators::StaticPhase::kept, systems.statistics());
   // All rates have real parts >= 0; a target left of them, on the scale of the noise.
   const double target = -0.1 / process.noise.tau;
-  const petsc::Eigensolver solver(a.matrix(), kRelaxPrefix, target, kAskedFor, systems.ledger());
+  const petsc::Eigensolver solver(a.matrix(), kRelaxPrefix, target, kAskedFor,
+                                  systems.statistics());
   std::vector<RelaxationMode> modes;
   for (const auto* pair : chosen(solver.pairs(), symmetry)) {
     modes.push_back(mode_of(systems, a.states(), *pair));

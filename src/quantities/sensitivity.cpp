@@ -75,25 +75,27 @@ std::vector<Parameter> parameters_of(const model::Scene& scene) {
   return parameters;
 }
 
-Sensitivity::Sensitivity(operators::Systems& systems, const StationaryLaw& law,
+Sensitivity::Sensitivity(operators::Systems& systems, const StationaryDistribution& distribution,
                          std::vector<Parameter> parameters)
-    : system_(systems.at(0, Symmetry::even)), law_(law), parameters_(std::move(parameters)) {
+    : system_(systems.at(0, Symmetry::even)),
+      distribution_(distribution),
+      parameters_(std::move(parameters)) {
   for (Parameter theta : parameters_) {
     changes_.push_back(operators::assemble_derivative(systems.comm(), systems.discretisation(),
-                                                      Symmetry::even, theta, systems.ledger()));
+                                                      Symmetry::even, theta, systems.statistics()));
   }
   slide_ = slides([](double, double, double) { return 1.0; });
   stick_ = stays();
 }
 
 Sensitivity::Gradient Sensitivity::slides(const KolmogorovOperator::Observable& f) const {
-  const std::vector<PetscScalar> none(law_.excursion().stick_time.size(), 0.0);
+  const std::vector<PetscScalar> none(distribution_.excursion().stick_time.size(), 0.0);
   return through(system_.factors().solve(system_.a().values(f)), none);
 }
 
 Sensitivity::Gradient Sensitivity::stays() const {
-  const auto& process = law_.process();
-  const auto& stick_time = law_.excursion().stick_time;
+  const auto& process = distribution_.process();
+  const auto& stick_time = distribution_.excursion().stick_time;
   const auto chain = operators::StaticChain::of(process);
   const auto mean = chain.integral(std::vector<double>(stick_time.size(), 1.0));
   const std::vector<PetscScalar> s(mean.begin(), mean.end());
@@ -104,7 +106,8 @@ Sensitivity::Gradient Sensitivity::stays() const {
     if (parameters_[n] != Parameter::tau) continue;
     const double by_tau = stays_by_tau(process, stick_time);
     gradient[n].value += by_tau;
-    gradient[n].error += std::abs(stays_by_tau(process, law_.uncorrected().stick_time) - by_tau);
+    gradient[n].error +=
+        std::abs(stays_by_tau(process, distribution_.uncorrected().stick_time) - by_tau);
   }
   return gradient;
 }
@@ -116,16 +119,16 @@ Sensitivity::Gradient Sensitivity::through(const petsc::Solution& h,
     petsc::VecHandle image = change.zeros();
     const auto flux = [&](Vec function) {
       petsc::check(MatMult(change.matrix(), function, image));
-      return -petsc::dot(law_.occupation(), image);
+      return -petsc::dot(distribution_.occupation(), image);
     };
-    const double moved = petsc::dot(law_.occupation(), change.from_rest(s));
+    const double moved = petsc::dot(distribution_.occupation(), change.from_rest(s));
     gradient.push_back({flux(h.x) + moved, std::abs(flux(h.correction))});
   }
   return gradient;
 }
 
 Sensitivity::Gradient Sensitivity::ratio(double mean, const Gradient& of_mean) const {
-  const double total = law_.excursion().mean_excursion();
+  const double total = distribution_.excursion().mean_excursion();
   Gradient gradient;
   for (std::size_t n = 0; n < of_mean.size(); ++n) {
     gradient.push_back((1 / total) * (of_mean[n] - (mean / total) * (slide_[n] + stick_[n])));
@@ -140,7 +143,7 @@ void Sensitivity::append(const Name& name, const Gradient& gradient, Results& re
 }
 
 void Sensitivity::append_sticking(Results& results) const {
-  const auto& excursion = law_.excursion();
+  const auto& excursion = distribution_.excursion();
   const double slide = excursion.mean_slide(), stick = excursion.mean_stick();
   const double total = excursion.mean_excursion();
   Gradient sticking, sliding, whole;
@@ -159,7 +162,7 @@ void Sensitivity::append_sticking(Results& results) const {
 
 void Sensitivity::append_moments(Results& results) const {
   const auto mean = [this](const KolmogorovOperator::Observable& f) {
-    return petsc::dot(law_.occupation(), system_.a().values(f));
+    return petsc::dot(distribution_.occupation(), system_.a().values(f));
   };
   const auto add = [&](const Name& name, const KolmogorovOperator::Observable& f) {
     append(name, ratio(mean(f), slides(f)), results);
@@ -174,13 +177,13 @@ void Sensitivity::append_moments(Results& results) const {
 void append_noise_sensitivity(const model::Process& process, Results& results) {
   const auto& noise = process.noise;
   const int k = process.threshold_index();
-  const auto law = model::stationary_law(noise);
+  const auto distribution = model::stationary_distribution(noise);
   double score = 0;
-  double within = law[noise.levels], within_score = 0, beyond = 0, beyond_score = 0;
+  double within = distribution[noise.levels], within_score = 0, beyond = 0, beyond_score = 0;
   double square = 0, square_score = 0;
   for (int i = 1; i <= noise.levels && noise.up(i - 1) > 0; ++i) {
     score += noise.up_change(i - 1) / noise.up(i - 1) - noise.down_change(i) / noise.down(i);
-    const double p = 2 * law[noise.levels + i], x2 = noise.level(i) * noise.level(i);
+    const double p = 2 * distribution[noise.levels + i], x2 = noise.level(i) * noise.level(i);
     (i <= k ? within : beyond) += p;
     (i <= k ? within_score : beyond_score) += p * score;
     square += p * x2;

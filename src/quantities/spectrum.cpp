@@ -19,7 +19,7 @@ namespace stickslip::quantities {
 namespace {
 
 using operators::KolmogorovOperator;
-using operators::Rest;
+using operators::StaticPhase;
 using operators::Symmetry;
 using petsc::check;
 
@@ -123,13 +123,13 @@ Uncertain integral(const Density& s, double tau, double relative_error) {
 /// S_v at single frequencies by complex solves.
 class DirectSpectrum {
  public:
-  DirectSpectrum(operators::Systems& systems, const StationaryLaw& law)
+  DirectSpectrum(operators::Systems& systems, const StationaryDistribution& distribution)
       : a_(operators::assemble(systems.comm(), systems.discretisation(), 0, Symmetry::odd,
-                               Rest::kept, systems.ledger())),
-        ledger_(systems.ledger()),
+                               StaticPhase::kept, systems.statistics())),
+        statistics_(systems.statistics()),
         turn_(1 / systems.process().noise.tau),
         b_(a_.values(velocity)),
-        c_(law.weighted_velocity(a_)),
+        c_(distribution.weighted_velocity(a_)),
         acceleration_(a_.zeros()),
         cl_(a_.zeros()) {
     check(MatMult(a_.matrix(), b_, acceleration_));
@@ -147,11 +147,11 @@ class DirectSpectrum {
   void shift_to(double omega) {
     a_.shift(imaginary(omega - std::exchange(omega_, omega)));
     if (factors_) return factors_->update();
-    factors_ = operators::factorization(a_, ledger_);
+    factors_ = operators::factorization(a_, statistics_);
   }
 
   KolmogorovOperator a_;
-  petsc::Ledger& ledger_;
+  petsc::SolverStatistics& statistics_;
   double turn_, omega_ = 0;
   petsc::VecHandle b_, c_, acceleration_, cl_;
   std::unique_ptr<petsc::Factorization> factors_;
@@ -163,16 +163,17 @@ SpectrumShape shape_of(const Density& s, double tau, double bulk_error, double e
   return {full_width(s, tau, bulk_error), integral(s, tau, error)};
 }
 
-ReducedSpectrum reduced_spectrum(operators::Systems& systems, const StationaryLaw& law,
+ReducedSpectrum reduced_spectrum(operators::Systems& systems,
+                                 const StationaryDistribution& distribution,
                                  const std::vector<double>& omega, double tolerance) {
   const auto& noise = systems.process().noise;
   const double turn = 1 / noise.tau;
   auto odd = operators::assemble(systems.comm(), systems.discretisation(), 0, Symmetry::odd,
-                                 Rest::kept, systems.ledger());
-  const petsc::VecHandle b = odd.values(velocity), c = law.weighted_velocity(odd),
-                         d = law.weight_on(odd);
-  ReducedModel model(systems, std::move(odd), Rest::kept, {b, c, d}, ReducedModel::Nature::smooth,
-                     kMostPairs);
+                                 StaticPhase::kept, systems.statistics());
+  const petsc::VecHandle b = odd.values(velocity), c = distribution.weighted_velocity(odd),
+                         d = distribution.weight_on(odd);
+  ReducedModel model(systems, std::move(odd), StaticPhase::kept, {b, c, d},
+                     ReducedModel::Nature::smooth, kMostPairs);
   const std::vector<double> frequencies = judged(omega, noise.tau);
   Questions questions;
   questions.values = [&](const Reduced& reduced) {
@@ -216,9 +217,10 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems, const StationaryLa
   return result;
 }
 
-Spectrum direct_spectrum(MPI_Comm comm, operators::Systems& systems, const StationaryLaw& law,
+Spectrum direct_spectrum(MPI_Comm comm, operators::Systems& systems,
+                         const StationaryDistribution& distribution,
                          const std::vector<double>& omega) {
-  DirectSpectrum direct(systems, law);
+  DirectSpectrum direct(systems, distribution);
   const std::size_t count = omega.size() + 1;  // and omega = 0
   std::vector<double> value(count, 0.0), error(count, 0.0);
   const auto rank = static_cast<std::size_t>(petsc::rank(comm));

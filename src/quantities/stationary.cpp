@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "stickslip/operators/laws.hpp"
+#include "stickslip/operators/generator_checks.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
@@ -16,7 +16,7 @@
 namespace stickslip::quantities {
 namespace {
 
-using operators::Half;
+using operators::Branch;
 using operators::KolmogorovOperator;
 using operators::State;
 using operators::StateKind;
@@ -29,9 +29,9 @@ std::vector<double> real_parts(const std::vector<PetscScalar>& values) {
   return parts;
 }
 
-double speed(const State& state, const velocity::Axis& axis) {
-  if (state.kind == StateKind::node) return axis.nodes()[state.node];
-  return state.kind == StateKind::holding ? axis.v_max() : 0;
+double speed(const State& state, const velocity::VelocityDiscretisation& velocities) {
+  if (state.kind == StateKind::node) return velocities.nodes()[state.node];
+  return state.kind == StateKind::holding ? velocities.v_max() : 0;
 }
 
 // Scales nu such that sliding ends somewhere: sum_i P_i = 1 holds on every discretisation. Where
@@ -52,22 +52,24 @@ double normalise(const KolmogorovOperator& a, Vec nu) {
 
 // Means over excursions of which nu is the occupation, normalised.
 Excursion excursion_of(const KolmogorovOperator& a, Vec nu, double lost) {
-  const auto& [process, noise, axis] = a.discretisation();
+  const auto& [process, noise, velocities] = a.discretisation();
   const auto nodes = static_cast<std::size_t>(noise->count());
-  const bool folded = a.states().folded();
+  const bool symmetry_reduced = a.states().symmetry_reduced();
   Excursion e;
   for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square}) sums->resize(nodes);
-  if (!folded) e.slide_drift.resize(nodes);
+  if (!symmetry_reduced) e.slide_drift.resize(nodes);
   const petsc::ReadView local(nu);
   PetscInt at = 0;
-  a.states().for_each_local([&, &v_axis = *axis, half = noise->half()](const State& state) {
-    const double mass = PetscRealPart(local[at++]), v = speed(state, v_axis);
-    const int node = half + state.noise;
-    e.slide_time[node] += mass;
-    e.slide_distance[node] += mass * v;
-    e.slide_square[node] += mass * v * v;
-    if (!folded) e.slide_drift[node] += state.half == Half::upper ? mass * v : -mass * v;
-  });
+  a.states().for_each_local(
+      [&, &velocities_of_v = *velocities, half = noise->half()](const State& state) {
+        const double mass = PetscRealPart(local[at++]), v = speed(state, velocities_of_v);
+        const int node = half + state.noise;
+        e.slide_time[node] += mass;
+        e.slide_distance[node] += mass * v;
+        e.slide_square[node] += mass * v * v;
+        if (!symmetry_reduced)
+          e.slide_drift[node] += state.half == Branch::positive ? mass * v : -mass * v;
+      });
   // The nodes n and -n live on one rank, so that the sums do not depend on the distribution.
   for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square, &e.slide_drift}) {
     petsc::sum_over_ranks(a.states().comm(), *sums);
@@ -118,22 +120,22 @@ void mix(const Turns& turns, Vec upper, Vec lower) {
 
 }  // namespace
 
-StationaryLaw::StationaryLaw(Systems& systems)
+StationaryDistribution::StationaryDistribution(Systems& systems)
     : discretisation_(systems.discretisation()),
       states_(systems.at(0, operators::symmetry_of(systems.process())).a().states()) {
   auto& system = systems.at(0, operators::symmetry_of(process()));
   const KolmogorovOperator& a = system.a();
-  const auto from = [&](Half side) {
+  const auto from = [&](Branch side) {
     auto s = system.factors().solve_transposed(a.trace_at_exit(side));
-    const bool monotone = discretisation_.axis->keeps_origin();
+    const bool monotone = discretisation_.velocities->keeps_origin();
     if (monotone) operators::require_occupation(s.x, process());
     return normalised(a, std::move(s));
   };
-  Occupation o = from(Half::upper);
+  Occupation o = from(Branch::positive);
   if (!process().symmetric()) {
-    const Occupation lower = from(Half::lower);
+    const Occupation lower = from(Branch::negative);
     const Turns now = turns(process(), a, o.nu, lower.nu);
-    chance_of_falling_ = now.falling;
+    reversal_probability_ = now.falling;
     mix(now, o.nu, lower.nu);
     mix(turns(process(), a, o.uncorrected, lower.uncorrected), o.uncorrected, lower.uncorrected);
     o.lost = std::max(std::abs(o.lost), std::abs(lower.lost));
@@ -143,7 +145,7 @@ StationaryLaw::StationaryLaw(Systems& systems)
   occupation_ = std::move(o.nu);
 }
 
-void StationaryLaw::orient(Systems& systems) {
+void StationaryDistribution::orient(Systems& systems) {
   auto& system = systems.at(0, Symmetry::odd);
   const petsc::Solution nu = system.factors().solve_transposed(system.a().trace_at_exit());
   excursion_.entry_orientation = real_parts(system.a().entry_rates(nu.x));
@@ -151,8 +153,8 @@ void StationaryLaw::orient(Systems& systems) {
   uncorrected_.entry_orientation = real_parts(system.a().entry_rates(nu.correction));
 }
 
-// All folded operators list the sliding states of a rank in the same order.
-petsc::VecHandle StationaryLaw::occupation_on(const KolmogorovOperator& a) const {
+// All symmetry-reduced operators list the sliding states of a rank in the same order.
+petsc::VecHandle StationaryDistribution::occupation_on(const KolmogorovOperator& a) const {
   petsc::VecHandle all = a.zeros();
   petsc::WriteView local(all);
   const petsc::ReadView nu(occupation_);
@@ -170,7 +172,7 @@ petsc::VecHandle StationaryLaw::occupation_on(const KolmogorovOperator& a) const
   return all;
 }
 
-petsc::VecHandle StationaryLaw::weighted_velocity(const KolmogorovOperator& a) const {
+petsc::VecHandle StationaryDistribution::weighted_velocity(const KolmogorovOperator& a) const {
   petsc::VecHandle c = a.values([](double, double, double v) { return v; });
   petsc::check(VecPointwiseMult(c, c, occupation_on(a)));
   petsc::check(VecScale(c, 1 / excursion_.mean_excursion()));
@@ -178,7 +180,7 @@ petsc::VecHandle StationaryLaw::weighted_velocity(const KolmogorovOperator& a) c
 }
 
 // High order leaves far tails with signs of their own.
-petsc::VecHandle StationaryLaw::weight_on(const KolmogorovOperator& a) const {
+petsc::VecHandle StationaryDistribution::weight_on(const KolmogorovOperator& a) const {
   petsc::VecHandle weight = occupation_on(a);
   PetscReal largest = 0;
   petsc::check(VecAbs(weight));

@@ -56,7 +56,7 @@ TimeFunction evaluate(const Reduced& reduced, const std::vector<double>& time) {
 }
 
 TimeCurve time_curve(operators::Systems& systems, operators::KolmogorovOperator minus_l,
-                     operators::Rest rest, const Ends& ends, ReducedModel::Nature nature,
+                     operators::StaticPhase rest, const Ends& ends, ReducedModel::Nature nature,
                      Integral integral, const std::vector<double>& time, double unit,
                      double tolerance) {
   constexpr int most_pairs = 80;

@@ -13,14 +13,14 @@ namespace stickslip::quantities {
 namespace {
 
 using operators::KolmogorovOperator;
-using operators::Rest;
+using operators::StaticPhase;
 using operators::Symmetry;
 using petsc::check;
 using petsc::dot;
 
 KolmogorovOperator kept(operators::Systems& systems, Symmetry symmetry) {
-  return operators::assemble(systems.comm(), systems.discretisation(), 0, symmetry, Rest::kept,
-                             systems.ledger());
+  return operators::assemble(systems.comm(), systems.discretisation(), 0, symmetry,
+                             StaticPhase::kept, systems.statistics());
 }
 
 std::vector<std::size_t> rising(const std::vector<double>& time) {
@@ -36,7 +36,7 @@ std::vector<double> stepped(operators::Systems& systems, const KolmogorovOperato
   petsc::VecHandle u;
   check(VecDuplicate(b, u.out()));
   check(VecCopy(b, u));
-  petsc::TimeStepper stepper(a.matrix(), u, kBackwardPrefix, tolerance, systems.ledger());
+  petsc::TimeStepper stepper(a.matrix(), u, kBackwardPrefix, tolerance, systems.statistics());
   std::vector<double> values(time.size());
   for (std::size_t n : rising(time)) {
     stepper.advance(time[n]);
@@ -46,14 +46,15 @@ std::vector<double> stepped(operators::Systems& systems, const KolmogorovOperato
 }
 
 // c exp(L t) b; errors in units of `unit`.
-std::vector<Uncertain> curve(operators::Systems& systems, const StationaryLaw& law,
-                             KolmogorovOperator a, Vec b, Vec c, ReducedModel::Nature nature,
+std::vector<Uncertain> curve(operators::Systems& systems,
+                             const StationaryDistribution& distribution, KolmogorovOperator a,
+                             Vec b, Vec c, ReducedModel::Nature nature,
                              const std::vector<double>& time, double unit, TransientMethod method,
                              double tolerance) {
   if (method == TransientMethod::krylov) {
-    const petsc::VecHandle weight = law.weight_on(a);
-    return time_curve(systems, std::move(a), Rest::kept, {b, c, weight}, nature, Integral::left_out,
-                      time, unit, tolerance)
+    const petsc::VecHandle weight = distribution.weight_on(a);
+    return time_curve(systems, std::move(a), StaticPhase::kept, {b, c, weight}, nature,
+                      Integral::left_out, time, unit, tolerance)
         .value;
   }
   // Errors of steps add up; a run with coarser steps shows how far.
@@ -69,18 +70,19 @@ std::vector<Uncertain> curve(operators::Systems& systems, const StationaryLaw& l
 
 }  // namespace
 
-std::vector<Uncertain> autocorrelation(operators::Systems& systems, const StationaryLaw& law,
+std::vector<Uncertain> autocorrelation(operators::Systems& systems,
+                                       const StationaryDistribution& distribution,
                                        const std::vector<double>& time, TransientMethod method,
                                        double tolerance) {
   KolmogorovOperator a = kept(systems, Symmetry::odd);
   const petsc::VecHandle b = a.values([](double, double, double v) { return v; }),
-                         c = law.weighted_velocity(a);
+                         c = distribution.weighted_velocity(a);
   const double variance = dot(c, b);
-  return curve(systems, law, std::move(a), b, c, ReducedModel::Nature::smooth, time, variance,
-               method, tolerance);
+  return curve(systems, distribution, std::move(a), b, c, ReducedModel::Nature::smooth, time,
+               variance, method, tolerance);
 }
 
-Expectation expectation(operators::Systems& systems, const StationaryLaw& law,
+Expectation expectation(operators::Systems& systems, const StationaryDistribution& distribution,
                         const model::Observable& f, const StartState& start,
                         const std::vector<double>& time, TransientMethod method, double tolerance) {
   Expectation result;
@@ -90,8 +92,8 @@ Expectation expectation(operators::Systems& systems, const StationaryLaw& law,
     const petsc::VecHandle b = a.values([&](double x, double y, double v) {
       return symmetry == Symmetry::even ? f.even(x, y, v) : f.odd(x, y, v);
     });
-    const petsc::VecHandle pi = law.occupation_on(a), square = a.zeros();
-    check(VecScale(pi, 1 / law.excursion().mean_excursion()));
+    const petsc::VecHandle pi = distribution.occupation_on(a), square = a.zeros();
+    check(VecScale(pi, 1 / distribution.excursion().mean_excursion()));
     check(VecPointwiseMult(square, b, b));
     const double unit = std::sqrt(std::abs(dot(pi, square)));
     if (symmetry == Symmetry::even) result.stationary = dot(pi, b);
@@ -100,8 +102,8 @@ Expectation expectation(operators::Systems& systems, const StationaryLaw& law,
     PetscReal seen = 0;
     check(VecNorm(c, NORM_INFINITY, &seen));
     if (seen == 0) continue;  // odd functions vanish at rest at x = 0
-    const auto part = curve(systems, law, std::move(a), b, c, ReducedModel::Nature::rough, time,
-                            unit, method, tolerance);
+    const auto part = curve(systems, distribution, std::move(a), b, c, ReducedModel::Nature::rough,
+                            time, unit, method, tolerance);
     for (std::size_t n = 0; n < time.size(); ++n) result.value[n] = result.value[n] + part[n];
   }
   return result;

@@ -16,11 +16,11 @@ using options::Case;
 using options::Quantity;
 
 // Anything but resolvents, modes and closed forms.
-bool needs_law(const Case& given) {
+bool needs_distribution(const Case& given) {
   for (Quantity q :
        {Quantity::sticking, Quantity::moments, Quantity::entry_law, Quantity::density,
-        Quantity::laplace, Quantity::stay_transform, Quantity::spectrum, Quantity::duration_density,
-        Quantity::autocorrelation, Quantity::expectation}) {
+        Quantity::laplace, Quantity::stick_duration_transform, Quantity::spectrum,
+        Quantity::duration_density, Quantity::autocorrelation, Quantity::expectation}) {
     if (given.question.wants(q)) return true;
   }
   return given.scene.v_max.has_value();  // what the cut holds back is judged by the law
@@ -32,7 +32,7 @@ class Planner {
   explicit Planner(const Case& given) : given_(given), question_(given.question) {}
 
   Plan plan() {
-    if (needs_law(given_)) plan_law();
+    if (needs_distribution(given_)) plan_distribution();
     if (question_.wants(Quantity::sensitivity)) plan_sensitivity();
     plan_transforms();
     if (question_.wants(Quantity::spectrum)) plan_spectrum();
@@ -59,9 +59,9 @@ class Planner {
     add(std::move(task));
   }
 
-  void plan_law() {
+  void plan_distribution() {
     const bool symmetric = given_.scene.symmetric();
-    add({Work::stationary_law, 0, {{ground(), 0, symmetric ? 1 : 2}}});
+    add({Work::stationary_distribution, 0, {{ground(), 0, symmetric ? 1 : 2}}});
     if (question_.wants(Quantity::entry_law)) {
       add({Work::orientation, 0, {{{0, Symmetry::odd}, 0, 1}}});
     }
@@ -80,7 +80,8 @@ class Planner {
 
   void plan_transforms() {
     const bool laplace = question_.wants(Quantity::laplace);
-    if (question_.wants(Quantity::stay_transform) && !laplace) add({Work::stay_transforms});
+    if (question_.wants(Quantity::stick_duration_transform) && !laplace)
+      add({Work::stick_duration_transforms});
     if (laplace) add({Work::duration_moments, 0, {{ground(), 4, 0}}});
     if (!laplace && !question_.wants(Quantity::resolvent)) return;
     // Both sectors for the exits, the even one for their discounted time.
@@ -176,12 +177,12 @@ std::string task_name(const options::Question& question, const Task& task) {
     return fmt::format("{} at lambda = {:g}", what, question.lambda[task.at]);
   };
   switch (task.work) {
-  case Work::stationary_law: return "stationary law";
+  case Work::stationary_distribution: return "stationary law";
   case Work::orientation: return "entry law";
   case Work::sensitivity: return "sensitivity";
   case Work::duration_moments: return "moments of durations";
   case Work::duration_transforms: return at_lambda("Laplace transforms");
-  case Work::stay_transforms: return "Laplace transforms of stays";
+  case Work::stick_duration_transforms: return "Laplace transforms of stays";
   case Work::resolvent: return at_lambda("resolvent");
   case Work::spectrum: return "spectrum";
   case Work::spectrum_at_zero: return "spectrum at 0";

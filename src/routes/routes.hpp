@@ -5,7 +5,8 @@
 
 namespace stickslip::routes {
 
-/// Everything from the sliding operator and the static chain; see quantities::StationaryLaw.
+/// Everything from the sliding operator and the static chain; see
+/// quantities::StationaryDistribution.
 [[nodiscard]] Evaluation by_excursion(const Setting& setting);
 
 /// pi(f) = lambda u_lambda(s+; f) + O(lambda) with (lambda - M) u_lambda = f on the full grid; one

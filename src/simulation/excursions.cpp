@@ -23,8 +23,8 @@ class Levels {
     const auto mirrored = process.mirrored();
     for (int i = -reach_; i <= reach_; ++i) {
       level_.push_back(process.noise.level(i));
-      upper_force_.push_back(process.excess(i));
-      lower_force_.push_back(mirrored.excess(i));
+      upper_force_.push_back(process.net_force(i));
+      lower_force_.push_back(mirrored.net_force(i));
       // 2^-32 is far below what any number of excursions resolves.
       up_.push_back(static_cast<std::uint64_t>(std::llround(process.noise.up(i) * 0x1p32)));
     }
@@ -91,7 +91,7 @@ class Source : public ExcursionSource {
     do {
       double wait = levels_.wait(random);
       slide(random, e, wait, sign);
-      stay(random, e, wait);
+      sticking(random, e, wait);
       ++e.count;
       sign = e.turned ? -1 : 1;
     } while (!symmetric_ && sign != start_);
@@ -146,7 +146,7 @@ class Source : public ExcursionSource {
   }
 
   // Until the static levels are left.
-  void stay(RandomStream& random, Excursion& e, double wait) const {
+  void sticking(RandomStream& random, Excursion& e, double wait) const {
     int i = e.entry;
     for (;;) {
       e.stick += wait;

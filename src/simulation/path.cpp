@@ -70,8 +70,8 @@ class Walker {
   }
 
   [[nodiscard]] Piece move_on(double time) const {
-    if (y_ > 0) return flow_.move(speed_, process_.excess(i_), time, false);
-    return backward_flow_.move(speed_, mirrored_.excess(-i_), time, false);
+    if (y_ > 0) return flow_.move(speed_, process_.net_force(i_), time, false);
+    return backward_flow_.move(speed_, mirrored_.net_force(-i_), time, false);
   }
 
   void jump_once() {

@@ -15,7 +15,7 @@ constexpr int kFinestDegree = 16;
 /// One point of a work-precision picture.
 struct Point {
   double parameter, error, seconds;
-  petsc::Ledger ledger;
+  petsc::SolverStatistics statistics;
 };
 
 /// The points of one method.
@@ -40,7 +40,7 @@ class CostStudy {
     study_.kind = "cost";
   }
 
-  Study conduct() {
+  Study run_study() {
     require_upwind_memory(setting_, setting_.given, kFirstPoints << (upwind_steps() - 1));
     count_ = 1 + kLastDegree - kFirstDegree + 1 + upwind_steps() + kSimulations;
     reference_ = reference();
@@ -84,7 +84,7 @@ class CostStudy {
   }
 
   void add(Curve& curve, const Run& run, double parameter, double error) {
-    curve.points.push_back({parameter, error, run.seconds, run.ledger});
+    curve.points.push_back({parameter, error, run.seconds, run.statistics});
     study_.runs.push_back(run);
   }
 
@@ -101,7 +101,7 @@ class CostStudy {
                    {{"degree", degree}, {"layers", resolution.layers}},
                    scalars(evaluation.results),
                    step.seconds,
-                   step.ledger};
+                   step.statistics};
       });
       set_errors(reference_, run.results);
       add(curve, run, degree, error_of(run.results));
@@ -129,8 +129,8 @@ class CostStudy {
     for (auto& result : results) {
       result.value[0] = 2 * result.value[0] - value_of(coarse.results, result.key);
     }
-    petsc::Ledger both = coarse.ledger;
-    both += fine.ledger;
+    petsc::SolverStatistics both = coarse.statistics;
+    both += fine.statistics;
     curve.points.push_back({points, error_of(results), coarse.seconds + fine.seconds, both});
   }
 
@@ -168,7 +168,7 @@ class CostStudy {
                  "factorization", "solve"},
                 {}};
     for (const Point& p : curve.points) {
-      const auto& l = p.ledger;
+      const auto& l = p.statistics;
       table.rows.push_back({p.parameter, p.error, p.seconds, l.factor_megabytes, l.assembly_seconds,
                             l.analysis_seconds, l.factorization_seconds, l.solve_seconds});
     }
@@ -209,6 +209,6 @@ class CostStudy {
 
 }  // namespace
 
-Study study_cost(const Setting& setting) { return CostStudy(setting).conduct(); }
+Study study_cost(const Setting& setting) { return CostStudy(setting).run_study(); }
 
 }  // namespace stickslip::studies

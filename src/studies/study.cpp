@@ -7,8 +7,8 @@
 
 namespace stickslip::studies {
 
-Study conduct(MPI_Comm comm, const options::Case& given, const options::StudyOptions& study,
-              const StudyProgress& progress) {
+Study run_study(MPI_Comm comm, const options::Case& given, const options::StudyOptions& study,
+                const StudyProgress& progress) {
   const Setting setting{comm, given, study, progress};
   switch (study.kind) {
   case options::StudyKind::points: return study_points(setting);
@@ -82,7 +82,7 @@ Run upwind_run(const Setting& setting, const options::Case& given, int points, d
           {{"delta", upwind.scene.delta}, {"p", points}},
           scalars(evaluation.results),
           step.seconds,
-          step.ledger};
+          step.statistics};
 }
 
 Run converged_run(const Setting& setting, const options::Case& given, double accuracy) {

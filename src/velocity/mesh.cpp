@@ -35,7 +35,7 @@ double upper_gap_below(const model::Process& process) {
   const double delta = process.noise.delta;
   const auto level = static_cast<int>(std::floor((process.friction.mu_d - process.bias) / delta));
   for (int i = level + 1; i >= level - 1; --i) {
-    if (process.excess(i) < 0) return -process.excess(i);
+    if (process.net_force(i) < 0) return -process.net_force(i);
   }
   return delta;
 }
@@ -73,11 +73,11 @@ double killed_layer(const model::Process& process, double lambda) {
   return (counts ? gap : gap + noise.delta) / (rate + lambda);
 }
 
-// Speed that a body which leaves v = 0 has when the noise might turn it back: at the excess g it
+// Speed that a body which leaves v = 0 has when the noise might turn it back: at the net force g it
 // does so after the time g^2 tau^2/2. On the half line where that is less.
 double speed_of_leaving(const model::Process& process) {
   const auto cubed = [](const model::Process& half) {
-    return std::pow(half.excess(half.static_index() + 1), 3);
+    return std::pow(half.net_force(half.static_index() + 1), 3);
   };
   const double tau = process.noise.tau;
   return 0.3 * tau * tau * std::min(cubed(process), cubed(process.mirrored()));
@@ -157,9 +157,9 @@ std::vector<double> element_ends(const model::Process& process, const MeshRule& 
 // so for bodies that come to rest. Those that leave it pass all speeds above `speed_of_leaving`,
 // where they might turn back, so that errors there multiply: at mu_d = mu_s and delta = 1/256 they
 // were 1e4 times larger with degrees falling by eight, and as small as ever with two. With
-// less than degree 2 the first rungs were wrong by more than they said (mu_d = 0.9). Waves are
-// as steep in every element, and what ends within 1/lambda before the noise changes comes from
-// small v.
+// less than degree 2 the first refinement levels were wrong by more than they said (mu_d = 0.9).
+// Waves are as steep in every element, and what ends within 1/lambda before the noise changes comes
+// from small v.
 std::vector<int> element_degrees(const model::Process& process, const MeshRule& rule, int degree) {
   constexpr int most_where_left = 2;  // degrees less
   const int layers = rule.layers > 0 ? rule.layers : natural_layers(process, rule);

@@ -7,8 +7,8 @@
 
 #include "../common/near.hpp"
 #include "stickslip/accuracy/estimates.hpp"
-#include "stickslip/accuracy/ladder.hpp"
 #include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/accuracy/refinement_sequence.hpp"
 #include "stickslip/support/errors.hpp"
 
 using namespace stickslip;
@@ -42,7 +42,7 @@ double value(const Outcome& outcome, const std::string& key) {
 }
 
 quantities::Results solved_alone(const options::Case& r, int step) {
-  const auto resolution = accuracy::Ladder(r).rung(step);
+  const auto resolution = accuracy::RefinementSequence(r).refinement_level(step);
   return accuracy::solve_on(PETSC_COMM_WORLD, r, resolution).evaluation.results;
 }
 
@@ -51,13 +51,13 @@ quantities::Results estimated(const options::Case& r, int step) {
   auto found = solved_alone(r, step);
   const auto before = solved_alone(r, step - 1);
   const auto first = step > 1 ? solved_alone(r, step - 2) : before;
-  const accuracy::Ladder ladder(r);
+  const accuracy::RefinementSequence sequence(r);
   for (std::size_t n = 0; n < found.size(); ++n) {
     for (std::size_t e = 0; e < found[n].value.size(); ++e) {
       const double last = std::abs(found[n].value[e] - before[n].value[e]);
       const double earlier = std::abs(before[n].value[e] - first[n].value[e]);
-      found[n].error[e] += std::max(ladder.error_per_change(step) * last,
-                                    ladder.error_per_earlier_change() * earlier);
+      found[n].error[e] += std::max(sequence.error_per_change(step) * last,
+                                    sequence.error_per_earlier_change() * earlier);
     }
   }
   accuracy::share_errors(found);
@@ -74,7 +74,7 @@ std::vector<double> expected_seconds(const options::Case& r, Outcome& outcome) {
 }
 
 double work(const options::Case& r, int step) {
-  return accuracy::relative_work(r.scene, accuracy::Ladder(r).rung(step));
+  return accuracy::relative_work(r.scene, accuracy::RefinementSequence(r).refinement_level(step));
 }
 
 // The value of one hand-made discretisation.
@@ -399,9 +399,10 @@ TEST_CASE("refinement: the density is judged by the distribution of |V|", "[para
   options::Case r = given(1, 0.25, 1, 0.5, {1, 0});
   r.question.quantities = {Quantity::density};
   r.method.degree = 4;
-  const accuracy::Ladder ladder(r);
+  const accuracy::RefinementSequence sequence(r);
   const auto at = [&](int step) {
-    return accuracy::solve_on(PETSC_COMM_WORLD, r, ladder.rung(step)).evaluation.law;
+    return accuracy::solve_on(PETSC_COMM_WORLD, r, sequence.refinement_level(step))
+        .evaluation.distribution;
   };
   const auto coarse = at(0), fine = at(1);
   const double distance = quantities::distance(quantities::speed_distribution(*coarse),
@@ -419,7 +420,7 @@ TEST_CASE("refinement: a velocity cut by hand is an error of the time spent at i
   const Outcome outcome = solve(r);
   CHECK(outcome.reached);
   const auto solved = accuracy::solve_on(PETSC_COMM_WORLD, r, outcome.steps.back().resolution);
-  const auto speed = quantities::speed_distribution(*solved.evaluation.law);
+  const auto speed = quantities::speed_distribution(*solved.evaluation.distribution);
   const double share = speed.at_top / (1 - speed.at_rest);
   CHECK(share > 0.01);
   r.question.accuracy = 1.02 * share;
@@ -470,8 +471,8 @@ TEST_CASE("refinement: the ledger of a run is that of its steps") {
   options::Case r = given(1, 0.25, 1, 0.5, {1, 0});
   r.question.quantities = {Quantity::sticking, Quantity::moments};
   const Outcome outcome = solve(r);
-  petsc::Ledger sum;
-  for (const auto& step : outcome.steps) sum += step.ledger;
+  petsc::SolverStatistics sum;
+  for (const auto& step : outcome.steps) sum += step.statistics;
   CHECK(outcome.total.solves == sum.solves);
   CHECK(outcome.total.corrections == sum.corrections);
   CHECK(outcome.total.factorization_seconds == sum.factorization_seconds);

@@ -2,13 +2,13 @@
 #include <cmath>
 
 #include "../common/options.hpp"
-#include "stickslip/accuracy/ladder.hpp"
 #include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/accuracy/refinement_sequence.hpp"
 #include "stickslip/accuracy/resolution.hpp"
 #include "stickslip/model/drag_law.hpp"
 #include "stickslip/operators/solver_policy.hpp"
 #include "stickslip/petsc/session.hpp"
-#include "stickslip/velocity/axis.hpp"
+#include "stickslip/velocity/velocity_discretisation.hpp"
 
 using namespace stickslip;
 using accuracy::hp_resolution;
@@ -38,7 +38,7 @@ TEST_CASE("noise range: beyond mu_s by as much as the tolerance asks, within the
       CHECK(levels >= before);
       before = levels;
       // What is cut off weighs less than the tolerance against the level slides start from.
-      const auto law = model::stationary_law(s.process(32).noise);
+      const auto law = model::stationary_distribution(s.process(32).noise);
       double cut = 0;
       for (int i = levels + 1; i <= 32; ++i) cut += law[32 + i];
       CHECK(cut <= tolerance * law[32 + k + 1]);
@@ -68,7 +68,7 @@ TEST_CASE("noise range: the first level whose weight with second moments is belo
     s.bias = c.bias;
     // With a bias bodies start from the farther edge, at |x| = mu_s + |g|.
     const int first = static_cast<int>(std::floor((1 + std::abs(c.bias)) / c.delta + 1e-9)) + 1;
-    const auto law = model::stationary_law(s.process(s.full_levels()).noise);
+    const auto law = model::stationary_distribution(s.process(s.full_levels()).noise);
     const auto weight = [&](int i) {
       const double share = law[s.full_levels() + i] / law[s.full_levels() + first];
       const double square = static_cast<double>(i) / first;
@@ -111,11 +111,11 @@ TEST_CASE("resolution: unknowns are levels times nodes, on each half line") {
   CHECK(accuracy::unknowns(s, upwind) == 11 * 50);
   upwind.v_max = 3.13;
   CHECK(accuracy::unknowns(s, upwind) == 11 * 51);
-  CHECK(accuracy::discretise(s, upwind).axis->size() == 51);
+  CHECK(accuracy::discretise(s, upwind).velocities->size() == 51);
   upwind.halves = 2;
   CHECK(accuracy::unknowns(s, upwind) == 2 * 11 * 51);
   const auto hp = hp_resolution(s, 7, 0, 1e-6);
-  const int nodes = accuracy::discretise(s, hp).axis->size();
+  const int nodes = accuracy::discretise(s, hp).velocities->size();
   CHECK(accuracy::unknowns(s, hp) == (2 * hp.levels + 1) * nodes);
   const auto grouped = hp_resolution(s, 7, 0, 1e-6, {}, {3});
   CHECK(grouped.noise_nodes() < 2 * grouped.levels + 1);
@@ -129,7 +129,7 @@ TEST_CASE("resolution: the work of a band, or of blocks of noise nodes") {
   const auto s = scene(1, 0.25, 1, 0.25);
   const auto hp = hp_resolution(s, 7, 0, 1e-6);
   const double levels = 2.0 * hp.levels + 1;
-  const double nodes = accuracy::discretise(s, hp).axis->size(), n = levels * nodes;
+  const double nodes = accuracy::discretise(s, hp).velocities->size(), n = levels * nodes;
   const double band = n * nodes * std::min(levels, nodes);
   const auto blocks = operators::elimination_cost(accuracy::discretise(s, hp), true, 1);
   CHECK(accuracy::relative_work(s, hp) == Approx(blocks.operations));
@@ -153,10 +153,10 @@ TEST_CASE("resolution: the axis of the other sign has the drag of the other sign
   s.noise_levels = 8;
   for (const auto& resolution :
        {accuracy::upwind_resolution(s, 2, 1e-6), hp_resolution(s, 4, 0, 1e-6)}) {
-    const auto axis = accuracy::discretise(s, resolution).axis;
+    const auto velocities = accuracy::discretise(s, resolution).velocities;
     velocity::TransportRow upper, lower;
-    axis->transport(0.1, axis->size() / 2, upper);
-    axis->mirrored().transport(0.1, axis->size() / 2, lower);
+    velocities->transport(0.1, velocities->size() / 2, upper);
+    velocities->mirrored().transport(0.1, velocities->size() / 2, lower);
     double up = 0, down = 0;
     for (const auto& e : upper.entries) up += std::abs(e.value);
     for (const auto& e : lower.entries) down += std::abs(e.value);
@@ -178,15 +178,15 @@ TEST_CASE("ladder: every rung is finer in every respect") {
   given.scene.drag = {0.01, 0};
   const auto quantity = GENERATE(options::Quantity::sticking, options::Quantity::entry_law);
   given.question.quantities = {quantity};
-  const accuracy::Ladder ladder(given);
-  REQUIRE(ladder.last() > 3);
-  for (int n = 1; n <= ladder.last(); ++n) {
-    const auto coarse = ladder.rung(n - 1), fine = ladder.rung(n);
+  const accuracy::RefinementSequence sequence(given);
+  REQUIRE(sequence.last() > 3);
+  for (int n = 1; n <= sequence.last(); ++n) {
+    const auto coarse = sequence.refinement_level(n - 1), fine = sequence.refinement_level(n);
     CHECK(fine.degree > coarse.degree);
     CHECK(fine.levels >= coarse.levels);
     CHECK(fine.v_max >= coarse.v_max);
     CHECK(fine.grouping.degree > coarse.grouping.degree);
-    CHECK(ladder.tail_tolerance(n) <= ladder.tail_tolerance(n - 1));
+    CHECK(sequence.tail_tolerance(n) <= sequence.tail_tolerance(n - 1));
   }
 }
 
@@ -194,14 +194,14 @@ TEST_CASE("ladder: a discretisation fixed by hand has one companion and no more"
   options::Case given;
   given.scene = scene(1, 0.25, 1, 0.25);
   given.method.degree = 4;
-  CHECK(accuracy::Ladder(given).last() == 1);
-  CHECK(accuracy::Ladder(given).rung(1).degree == 4);
-  CHECK(accuracy::Ladder(given).rung(0).degree == 3);
+  CHECK(accuracy::RefinementSequence(given).last() == 1);
+  CHECK(accuracy::RefinementSequence(given).refinement_level(1).degree == 4);
+  CHECK(accuracy::RefinementSequence(given).refinement_level(0).degree == 3);
 
   given.method = {.scheme = options::Scheme::upwind, .points = 1};
-  const accuracy::Ladder one_point(given);
-  CHECK(one_point.rung(1).points == 1);
-  CHECK(one_point.rung(0).points == 2);  // nothing coarser exists
+  const accuracy::RefinementSequence one_point(given);
+  CHECK(one_point.refinement_level(1).points == 1);
+  CHECK(one_point.refinement_level(0).points == 2);  // nothing coarser exists
   // u^p = u + C/p: the change C/2 is half the error at p = 1.
   CHECK(one_point.error_per_change(1) >= 2);
 }
@@ -211,19 +211,21 @@ TEST_CASE("ladder: first-order changes are extrapolated, with a margin") {
   options::Case given;
   given.scene = scene(1, 0.25, 1, 0.25);
   given.method.scheme = options::Scheme::upwind;
-  const accuracy::Ladder ladder(given);
+  const accuracy::RefinementSequence sequence(given);
   for (int n = 1; n < 6; ++n) {
-    const double coarse = 1.0 / ladder.rung(n - 1).points, fine = 1.0 / ladder.rung(n).points;
-    const double estimate = ladder.error_per_change(n) * (coarse - fine);
+    const double coarse = 1.0 / sequence.refinement_level(n - 1).points,
+                 fine = 1.0 / sequence.refinement_level(n).points;
+    const double estimate = sequence.error_per_change(n) * (coarse - fine);
     CHECK(estimate == Approx(1.5 * (1 + 2 * fine) * fine));
   }
-  CHECK(ladder.error_per_earlier_change() == 0);
-  CHECK(ladder.first_order());
-  CHECK(ladder.last() == 20);
+  CHECK(sequence.error_per_earlier_change() == 0);
+  CHECK(sequence.first_order());
+  CHECK(sequence.last() == 20);
   for (int points : {7, 32}) {
     given.method.points = points;
-    const accuracy::Ladder fixed(given);
-    const double coarse = 1.0 / fixed.rung(0).points, fine = 1.0 / fixed.rung(1).points;
+    const accuracy::RefinementSequence fixed(given);
+    const double coarse = 1.0 / fixed.refinement_level(0).points,
+                 fine = 1.0 / fixed.refinement_level(1).points;
     CHECK(fixed.error_per_change(1) * (coarse - fine) == Approx(1.5 * (1 + 2 * fine) * fine));
   }
 }
@@ -231,10 +233,10 @@ TEST_CASE("ladder: first-order changes are extrapolated, with a margin") {
 TEST_CASE("ladder: an hp change counts whole, and three per cent of the one before") {
   options::Case given;
   given.scene = scene(1, 0.25, 1, 0.25);
-  const accuracy::Ladder ladder(given);
-  CHECK(ladder.error_per_change(1) == 1);
-  CHECK(ladder.error_per_earlier_change() == 0.03);
-  CHECK_FALSE(ladder.first_order());
+  const accuracy::RefinementSequence sequence(given);
+  CHECK(sequence.error_per_change(1) == 1);
+  CHECK(sequence.error_per_earlier_change() == 0.03);
+  CHECK_FALSE(sequence.first_order());
 }
 
 TEST_CASE("ladder: the first estimate is expected at the accuracy, within degrees 3 to 19") {
@@ -243,7 +245,7 @@ TEST_CASE("ladder: the first estimate is expected at the accuracy, within degree
   const auto first = [&](double accuracy, options::Quantity quantity) {
     given.question.accuracy = accuracy;
     given.question.quantities = {quantity};
-    return accuracy::Ladder(given).rung(1).degree;
+    return accuracy::RefinementSequence(given).refinement_level(1).degree;
   };
   // Errors are 10^-d at degree d, and the estimate is that of a degree less; ten times that for
   // densities at 0+.
@@ -253,8 +255,8 @@ TEST_CASE("ladder: the first estimate is expected at the accuracy, within degree
   CHECK(first(0.1, options::Quantity::sticking) == 3);
   CHECK(first(1e-30, options::Quantity::sticking) == 19);
   given.question.accuracy = 1e-6;
-  const accuracy::Ladder ladder(given);
-  CHECK(ladder.rung(ladder.last()).degree == 19);
+  const accuracy::RefinementSequence sequence(given);
+  CHECK(sequence.refinement_level(sequence.last()).degree == 19);
 }
 
 TEST_CASE("ladder: truncation is allowed a part of what the discretisation leaves") {
@@ -262,64 +264,64 @@ TEST_CASE("ladder: truncation is allowed a part of what the discretisation leave
   given.scene = scene(1, 0.25, 1, 0.25);
   given.question.quantities = {options::Quantity::entry_law};
   given.question.accuracy = 1e-6;
-  const accuracy::Ladder hp(given);
+  const accuracy::RefinementSequence hp(given);
   for (int n = 0; n < 4; ++n) {
-    const double expected = std::pow(10.0, -hp.rung(n).degree);
+    const double expected = std::pow(10.0, -hp.refinement_level(n).degree);
     CHECK(hp.tail_tolerance(n) == Approx(1e-3 * expected));
   }
   given.method.scheme = options::Scheme::upwind;
-  CHECK(accuracy::Ladder(given).tail_tolerance(1) == Approx(1e-9));
+  CHECK(accuracy::RefinementSequence(given).tail_tolerance(1) == Approx(1e-9));
   given.question.accuracy = 1e-3;
-  CHECK(accuracy::Ladder(given).tail_tolerance(3) == Approx(1e-9));
+  CHECK(accuracy::RefinementSequence(given).tail_tolerance(3) == Approx(1e-9));
   given.question.accuracy = 1e-8;
-  CHECK(accuracy::Ladder(given).tail_tolerance(3) == Approx(1e-11));
+  CHECK(accuracy::RefinementSequence(given).tail_tolerance(3) == Approx(1e-11));
   given.method.scheme = options::Scheme::none;
-  CHECK(accuracy::Ladder(given).tail_tolerance(0) == Approx(1e-8));
-  CHECK(accuracy::Ladder(given).tail_tolerance(2) == Approx(1e-12));
-  CHECK(accuracy::Ladder(given).tail_tolerance(20) == Approx(1e-18));
+  CHECK(accuracy::RefinementSequence(given).tail_tolerance(0) == Approx(1e-8));
+  CHECK(accuracy::RefinementSequence(given).tail_tolerance(2) == Approx(1e-12));
+  CHECK(accuracy::RefinementSequence(given).tail_tolerance(20) == Approx(1e-18));
 }
 
 TEST_CASE("ladder: the noise is on nodes, of a degree by hand, or on all levels") {
   options::Case given;
   given.scene = scene(1, 0.25, 1, 1.0 / 32);
   given.method.noise_grading = 3;
-  const accuracy::Ladder free(given);
-  CHECK(2 * free.rung(1).noise_nodes() < 2 * free.rung(1).levels + 1);
-  CHECK(free.rung(1).grouping.grading == 3);
+  const accuracy::RefinementSequence free(given);
+  CHECK(2 * free.refinement_level(1).noise_nodes() < 2 * free.refinement_level(1).levels + 1);
+  CHECK(free.refinement_level(1).grouping.grading == 3);
   given.method.noise_degree = 0;
-  const accuracy::Ladder levels(given);
+  const accuracy::RefinementSequence levels(given);
   CHECK(levels.last() > 1);
-  CHECK(levels.rung(1).noise_nodes() == 2 * levels.rung(1).levels + 1);
+  CHECK(levels.refinement_level(1).noise_nodes() == 2 * levels.refinement_level(1).levels + 1);
   given.method.noise_degree = 5;
-  const accuracy::Ladder fixed(given);
+  const accuracy::RefinementSequence fixed(given);
   CHECK(fixed.last() == 1);
-  CHECK(fixed.rung(1).grouping.degree == 5);
-  CHECK(fixed.rung(0).grouping.degree == 4);
+  CHECK(fixed.refinement_level(1).grouping.degree == 5);
+  CHECK(fixed.refinement_level(0).grouping.degree == 4);
   given.method.noise_degree.reset();
   // The routes of the paper know single levels alone.
   for (auto route :
        {options::Route::lambda, options::Route::hitting, options::Route::null_vector}) {
     given.method.route = route;
-    CHECK_FALSE(accuracy::Ladder(given).rung(1).noise);
+    CHECK_FALSE(accuracy::RefinementSequence(given).refinement_level(1).noise);
   }
   given.method.route = options::Route::excursion;
   given.question.quantities = {options::Quantity::relaxation};
-  CHECK_FALSE(accuracy::Ladder(given).rung(1).noise);
+  CHECK_FALSE(accuracy::RefinementSequence(given).refinement_level(1).noise);
   given.question.quantities = {options::Quantity::sticking};
-  CHECK(accuracy::Ladder(given).rung(1).noise);
+  CHECK(accuracy::RefinementSequence(given).refinement_level(1).noise);
   given.method.scheme = options::Scheme::upwind;
-  CHECK_FALSE(accuracy::Ladder(given).rung(1).noise);
+  CHECK_FALSE(accuracy::RefinementSequence(given).refinement_level(1).noise);
 }
 
 TEST_CASE("ladder: both signs of v where there is no symmetry, or none is used") {
   options::Case given;
   given.scene = scene(1, 0.25, 1, 0.25);
-  CHECK(accuracy::Ladder(given).rung(1).halves == 1);
+  CHECK(accuracy::RefinementSequence(given).refinement_level(1).halves == 1);
   given.method.route = options::Route::null_vector;
-  CHECK(accuracy::Ladder(given).rung(1).halves == 2);
+  CHECK(accuracy::RefinementSequence(given).refinement_level(1).halves == 2);
   given.method.route = options::Route::excursion;
   given.scene.bias = 0.2;
-  CHECK(accuracy::Ladder(given).rung(1).halves == 2);
+  CHECK(accuracy::RefinementSequence(given).refinement_level(1).halves == 2);
 }
 
 TEST_CASE("ladder: elements resolve the fastest rate of what is asked for, and no other") {
@@ -328,9 +330,9 @@ TEST_CASE("ladder: elements resolve the fastest rate of what is asked for, and n
   given.scene = scene(1, 0.25, 1, 0.25);
   given.question.lambda = {3, 700, 2};
   given.question.omega = {1, 90, 5};
-  const auto rates = [&](std::set<options::Quantity> quantities, int rung = 1) {
+  const auto rates = [&](std::set<options::Quantity> quantities, int refinement_level = 1) {
     given.question.quantities = std::move(quantities);
-    const auto found = accuracy::Ladder(given).rung(rung).rates;
+    const auto found = accuracy::RefinementSequence(given).refinement_level(refinement_level).rates;
     return std::pair{found.lambda, found.omega};
   };
   CHECK(rates({sticking}) == std::pair{0.0, 0.0});
@@ -362,15 +364,15 @@ TEST_CASE("memory: predicted within a factor 2.5 of what MUMPS counts", "[slow]"
     options::Case given;
     given.scene = s;
     given.question.quantities = {options::Quantity::sticking};
-    const auto ledger = accuracy::solve_on(MPI_COMM_WORLD, given, resolution).step.ledger;
+    const auto statistics = accuracy::solve_on(MPI_COMM_WORLD, given, resolution).step.statistics;
     const double predicted = accuracy::predicted_bytes(s, resolution);
     const double scalars = petsc::complex_scalars() ? 2 : 1;
-    const double counted =
-        1e6 * ledger.factor_megabytes + 50.0 * scalars * static_cast<double>(ledger.nonzeros);
+    const double counted = 1e6 * statistics.factor_megabytes +
+                           50.0 * scalars * static_cast<double>(statistics.nonzeros);
     INFO("delta " << c.delta << " degree " << c.degree << " p " << c.points);
     CHECK(predicted > counted / 2.5);
     CHECK(predicted < counted * 2.5);
-    CHECK(std::abs(static_cast<double>(accuracy::unknowns(s, resolution) - ledger.unknowns)) <
+    CHECK(std::abs(static_cast<double>(accuracy::unknowns(s, resolution) - statistics.unknowns)) <
           2.0 * resolution.levels + 2);
   }
 }

@@ -39,7 +39,7 @@ class Simulation {
     for (int n = 0; n < count; ++n) {
       jumps_ = 0;
       const double slide = slide_on();
-      const double stick = stay();
+      const double stick = sticking();
       all.slide.push_back(slide);
       all.stick.push_back(stick);
       all.excursion.push_back(slide + stick);
@@ -76,7 +76,7 @@ class Simulation {
   }
 
   // Until |X| > mu_s.
-  double stay() {
+  double sticking() {
     double time = 0;
     while (std::abs(i_) <= k_) {
       time += waiting_time();

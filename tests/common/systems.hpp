@@ -11,11 +11,11 @@ namespace stickslip::test {
 struct System {
   model::Scene scene;
   operators::Symmetry symmetry;
-  operators::Rest rest;
+  operators::StaticPhase rest;
 };
 
 inline std::vector<System> killed_systems() {
-  using operators::Rest;
+  using operators::StaticPhase;
   using operators::Symmetry;
   const auto plain = scene(1, 0.25, 1, 0.25, {1, 0});
   auto biased = plain, driven = plain;
@@ -24,16 +24,16 @@ inline std::vector<System> killed_systems() {
   driven.bias = 1.4;
   three_levels.noise_levels = 1;
   five_levels.noise_levels = 2;
-  return {{plain, Symmetry::even, Rest::killing},
-          {plain, Symmetry::odd, Rest::killing},
-          {plain, Symmetry::even, Rest::killed_on_exit},
-          {plain, Symmetry::none, Rest::killing},
-          {biased, Symmetry::none, Rest::killing},
-          {driven, Symmetry::none, Rest::killing_edges},
-          {three_levels, Symmetry::even, Rest::killing},
-          {five_levels, Symmetry::none, Rest::killing},
-          {scene(0.1, 0.1, 1, 0.125, {1, 3}), Symmetry::even, Rest::killing},
-          {scene(1, 1, 0.1, 0.5, {0, 0}), Symmetry::even, Rest::killing}};
+  return {{plain, Symmetry::even, StaticPhase::killing},
+          {plain, Symmetry::odd, StaticPhase::killing},
+          {plain, Symmetry::even, StaticPhase::killed_on_exit},
+          {plain, Symmetry::none, StaticPhase::killing},
+          {biased, Symmetry::none, StaticPhase::killing},
+          {driven, Symmetry::none, StaticPhase::killing_edges},
+          {three_levels, Symmetry::even, StaticPhase::killing},
+          {five_levels, Symmetry::none, StaticPhase::killing},
+          {scene(0.1, 0.1, 1, 0.125, {1, 3}), Symmetry::even, StaticPhase::killing},
+          {scene(1, 1, 0.1, 0.5, {0, 0}), Symmetry::even, StaticPhase::killing}};
 }
 
 }  // namespace stickslip::test

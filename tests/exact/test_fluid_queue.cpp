@@ -47,7 +47,7 @@ TEST_CASE("fluid queue: slides end, and the noise keeps its law beyond mu_s") {
     CHECK(queue.residual() < 1e-14);
     CHECK(std::abs(queue.slide_transform() - 1) < 1e-11);
     // Between two exits the noise spends pi(x_i) of the time on |x_i| > mu_s: ratios are known.
-    const auto law = model::stationary_law(process.noise);
+    const auto law = model::stationary_distribution(process.noise);
     const auto at = [&](int i) { return queue.time()[32 + i] + queue.time()[32 - i]; };
     for (int i = 6; i <= 20; ++i) {
       CHECK(relative_difference(at(i) / at(5), law[32 + i] / law[37]) < 1e-10);

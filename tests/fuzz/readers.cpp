@@ -31,7 +31,7 @@
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/seal.hpp"
 #include "stickslip/support/text.hpp"
-#include "stickslip/sweeps/report.hpp"
+#include "stickslip/sweeps/sweep_report.hpp"
 
 using namespace stickslip;
 using Json = nlohmann::ordered_json;
@@ -196,7 +196,7 @@ class Corpus {
   std::string record() const {
     options::Request request = sweep();
     request.output.checkpoint = folder_ / "seed.record";
-    (void)sweeps::conduct(PETSC_COMM_SELF, request, {});
+    (void)sweeps::run_sweep(PETSC_COMM_SELF, request, {});
     return test::content(request.output.checkpoint);
   }
   static options::Request sweep() {
@@ -279,7 +279,7 @@ void use(const model::Drag& drag) {
 // What the reports do with a finished point that was read.
 void report(const std::string& file) {
   static const options::Request request = Corpus::sweep();
-  sweeps::Conducted conducted;
+  sweeps::SweepResult conducted;
   try {
     conducted.runs.push_back(sweeps::read_run(test::content(file)));
   } catch (const std::exception& refusal) {
@@ -306,7 +306,7 @@ void go_on_with(options::Request request, const std::string& file) {
   request.output.checkpoint = file;
   keeps_file_when_refused(file, [&] {
     if (request.sweep) {
-      (void)sweeps::conduct(PETSC_COMM_SELF, request, {});
+      (void)sweeps::run_sweep(PETSC_COMM_SELF, request, {});
     } else {
       (void)monte_carlo::simulate(PETSC_COMM_SELF, request, file, {});
     }

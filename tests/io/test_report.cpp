@@ -24,15 +24,15 @@ accuracy::Step step(double offset) {
   s.resolution.layers = 5;
   s.resolution.levels = 40;
   s.resolution.v_max = 7.5;
-  s.ledger.unknowns = 1001;
-  s.ledger.nonzeros = 20002;
-  s.ledger.factor_entries = 300003;
-  s.ledger.factor_megabytes = 12;
-  s.ledger.backward_error = 3e-16;
-  s.ledger.assembly_seconds = 0.125 + offset;
-  s.ledger.analysis_seconds = 0.25 + offset;
-  s.ledger.factorization_seconds = 0.5 + offset;
-  s.ledger.solve_seconds = 0.75 + offset;
+  s.statistics.unknowns = 1001;
+  s.statistics.nonzeros = 20002;
+  s.statistics.factor_entries = 300003;
+  s.statistics.factor_megabytes = 12;
+  s.statistics.backward_error = 3e-16;
+  s.statistics.assembly_seconds = 0.125 + offset;
+  s.statistics.analysis_seconds = 0.25 + offset;
+  s.statistics.factorization_seconds = 0.5 + offset;
+  s.statistics.solve_seconds = 0.75 + offset;
   s.seconds = 2 + offset;
   s.checks = {{"lambda", 0.0625}};
   return s;
@@ -123,7 +123,7 @@ using Numbers = std::vector<double>;
 studies::Study study() {
   studies::Study s;
   s.kind = "p";
-  s.runs = {{"upwind", {{"delta", 0.5}, {"p", 4}}, results(), 2, step(0).ledger}};
+  s.runs = {{"upwind", {{"delta", 0.5}, {"p", 4}}, results(), 2, step(0).statistics}};
   s.tables = {{"P_stick on a level", "a title", {"p", "kappa"}, {{4, std::nan("")}, {8, 1.5}}}};
   s.conclusions = {"so it is"};
   return s;
@@ -403,8 +403,9 @@ TEST_CASE("study reports: CSV, JSON and HDF5 hold the same numbers") {
 
 TEST_CASE("plan reports: sizes, solves and seconds in their places") {
   accuracy::Prediction p;
-  p.plan.tasks = {{routes::Work::stationary_law, 0, {{{0, operators::Symmetry::even}, 3, 0}}},
-                  {routes::Work::orientation, 0, {{{0.5, operators::Symmetry::none}, 0, 2}}}};
+  p.plan.tasks = {
+      {routes::Work::stationary_distribution, 0, {{{0, operators::Symmetry::even}, 3, 0}}},
+      {routes::Work::orientation, 0, {{{0.5, operators::Symmetry::none}, 0, 2}}}};
   p.steps = {{step(0).resolution, 1001, 20002, 3e5, 12, 4e6, 0.25, 0.125}};
   p.seconds = 7;
   auto r = request();

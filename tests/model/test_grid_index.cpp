@@ -38,9 +38,9 @@ TEST_CASE("floor index: refuses what an int cannot hold") {
 TEST_CASE("excess: a level that equals mu_d in decimals has none") {
   const Friction friction{1, 0.3};
   CHECK(3 * 0.1 != 0.3);  // why snapping is needed
-  CHECK(friction.excess(3 * 0.1) == 0);
-  CHECK(friction.excess(0.3 * (1 + 1e-12)) > 0);
-  CHECK(friction.excess(0.3 * (1 - 1e-12)) < 0);
+  CHECK(friction.net_force(3 * 0.1) == 0);
+  CHECK(friction.net_force(0.3 * (1 + 1e-12)) > 0);
+  CHECK(friction.net_force(0.3 * (1 - 1e-12)) < 0);
   CHECK(snapped_difference(1, 0.25) == 0.75);
 }
 

@@ -42,7 +42,7 @@ TEST_CASE("noise law: binomial on the full range, with relative accuracy in the 
   const NoiseChain chain = full_chain(1, delta);
   const int n = chain.levels;
   const boost::math::binomial_distribution<double> urn(2 * n, 0.5);
-  const auto law = stationary_law(chain);
+  const auto law = stationary_distribution(chain);
   for (int i = -n; i <= n; ++i) {
     CHECK(relative_difference(law[n + i], boost::math::pdf(urn, n + i)) < 1e-12);
   }
@@ -51,7 +51,7 @@ TEST_CASE("noise law: binomial on the full range, with relative accuracy in the 
 
 TEST_CASE("noise law: detailed balance on a truncated range") {
   const NoiseChain chain{0.8, 0.2, 17};
-  const auto law = stationary_law(chain);
+  const auto law = stationary_distribution(chain);
   for (int i = -17; i < 17; ++i) {
     CHECK(relative_difference(law[17 + i] * chain.up(i), law[18 + i] * chain.down(i + 1)) < 1e-14);
   }

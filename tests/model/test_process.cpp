@@ -42,7 +42,7 @@ TEST_CASE("process: the mirror swaps directions, and its own mirror is the proce
   CHECK(mirrored.static_index() == -process.lowest_static());
   CHECK(mirrored.drag(0.7) == -process.drag(-0.7));
   // Sliding downwards at -v: dv/dt = x + g + mu_d + b(-v), seen from below.
-  CHECK(mirrored.excess(-2) == Approx(-0.5 - 0.3 - 0.5));
+  CHECK(mirrored.net_force(-2) == Approx(-0.5 - 0.3 - 0.5));
   const Process back = mirrored.mirrored();
   CHECK(back.bias == process.bias);
   for (double v : {-2.0, 0.4, 3.0}) CHECK(back.drag(v) == process.drag(v));
@@ -56,6 +56,6 @@ TEST_CASE("process: bias and drag can break the symmetry") {
 
 TEST_CASE("process: an excess that vanishes but for rounding is 0, with a bias too") {
   const Process process{{1, 0.1, 100}, {1, 0.7}, {1, 0}, 0.4};
-  CHECK(process.excess(3) == 0);  // 0.3 + 0.4 - 0.7
-  CHECK(process.excess(4) > 0.09);
+  CHECK(process.net_force(3) == 0);  // 0.3 + 0.4 - 0.7
+  CHECK(process.net_force(4) > 0.09);
 }

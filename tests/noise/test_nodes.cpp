@@ -158,7 +158,7 @@ TEST_CASE("noise nodes: polynomials up to the degree have their exact images") {
 TEST_CASE("noise nodes: the stationary law of the chain is theirs") {
   for (const auto& p : processes()) {
     const Nodes nodes(p, {4, 2});
-    const auto law = model::stationary_law(p.noise);
+    const auto law = model::stationary_distribution(p.noise);
     // gamma, the law on the nodes: P^T w.
     std::vector<double> gamma(static_cast<std::size_t>(nodes.count()), 0.0);
     for (const auto& g : nodes.groups()) {

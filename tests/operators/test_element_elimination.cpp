@@ -18,7 +18,7 @@
 using namespace stickslip;
 using operators::ElementElimination;
 using operators::KolmogorovOperator;
-using operators::Rest;
+using operators::StaticPhase;
 using operators::Symmetry;
 using petsc::check;
 
@@ -98,7 +98,8 @@ void check_solves(const KolmogorovOperator& a, bool share = true) {
 
 TEST_CASE("element elimination: solves every kind of system, plain and transposed", "[parallel]") {
   for (const auto& c : cases()) {
-    for (Rest rest : {Rest::killing, Rest::kept, Rest::killed_on_exit, Rest::killing_edges}) {
+    for (StaticPhase rest : {StaticPhase::killing, StaticPhase::kept, StaticPhase::killed_on_exit,
+                             StaticPhase::killing_edges}) {
       INFO(c.name << ", symmetry " << static_cast<int>(c.symmetry) << ", rest "
                   << static_cast<int>(rest));
       const KolmogorovOperator a(PETSC_COMM_WORLD, c.on, 0.4, c.symmetry, rest);
@@ -114,7 +115,7 @@ TEST_CASE("element elimination: follows a shift of the operator", "[parallel]") 
 #endif
   for (const auto& c : cases()) {
     INFO(c.name);
-    KolmogorovOperator a(PETSC_COMM_WORLD, c.on, 0.1, c.symmetry, Rest::kept);
+    KolmogorovOperator a(PETSC_COMM_WORLD, c.on, 0.1, c.symmetry, StaticPhase::kept);
     a.shift(shift);
     check_solves(a);
   }
@@ -123,17 +124,17 @@ TEST_CASE("element elimination: follows a shift of the operator", "[parallel]") 
 TEST_CASE("element elimination: what is kept was predicted", "[parallel]") {
   const auto on = test::on_nodes(plain(0.25, 1.0 / 64), 8, 6);
   for (Symmetry symmetry : {Symmetry::even, Symmetry::none}) {
-    const KolmogorovOperator a(PETSC_COMM_WORLD, on, 0.0, symmetry, Rest::killing);
+    const KolmogorovOperator a(PETSC_COMM_WORLD, on, 0.0, symmetry, StaticPhase::killing);
     const ElementElimination elimination(a.matrix(), operators::data_of(a.matrix()));
     const int ranks = petsc::ranks(PETSC_COMM_WORLD);
     double kept = elimination.entries();
     MPI_Allreduce(MPI_IN_PLACE, &kept, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
-    const auto cost = operators::elimination_cost(on, a.states().folded(), ranks);
+    const auto cost = operators::elimination_cost(on, a.states().symmetry_reduced(), ranks);
     CHECK(cost.entries < kept);  // the meeting at v = 0, couplings of groups
     CHECK(cost.entries > 0.8 * kept);
     CHECK(cost.bytes == sizeof(PetscScalar) * cost.entries);
     const double noise = on.noise->count();
-    const double elements = static_cast<double>(on.axis->cells().size()) - 1;
+    const double elements = static_cast<double>(on.velocities->cells().size()) - 1;
     CHECK(cost.operations > elements * noise * noise * noise / 2);
   }
 }

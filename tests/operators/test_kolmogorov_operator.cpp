@@ -10,15 +10,15 @@
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
-#include "stickslip/velocity/hp_axis.hpp"
-#include "stickslip/velocity/upwind_axis.hpp"
+#include "stickslip/velocity/hp_discretisation.hpp"
+#include "stickslip/velocity/upwind_discretisation.hpp"
 
 using namespace stickslip;
-using operators::Half;
+using operators::Branch;
 using operators::KolmogorovOperator;
-using operators::Rest;
 using operators::State;
 using operators::StateKind;
+using operators::StaticPhase;
 using operators::Symmetry;
 using petsc::check;
 
@@ -87,9 +87,9 @@ struct Named {
 // The last one with groups of noise levels, on which functions up to degree 3 are exact.
 std::vector<Named> discretisations(const model::Process& process, double v_max) {
   const auto& drag = process.drag;
-  const auto hp =
-      std::make_shared<velocity::HpAxis>(std::vector<double>{0, 0.02, 0.1, 0.5, v_max}, 3, drag);
-  const auto grid = std::make_shared<velocity::UpwindAxis>(0.05, 40, drag);
+  const auto hp = std::make_shared<velocity::HpDiscretisation>(
+      std::vector<double>{0, 0.02, 0.1, 0.5, v_max}, 3, drag);
+  const auto grid = std::make_shared<velocity::UpwindDiscretisation>(0.05, 40, drag);
   const auto nodes = std::make_shared<noise::Nodes>(process, noise::Grouping{3, 50});
   return {{"hp", {process, hp}}, {"upwind", {process, grid}}, {"nodes", {process, hp, nodes}}};
 }
@@ -105,13 +105,15 @@ TEST_CASE("kolmogorov operator: the unfolded upwind operator is -M of the paper"
     const double spacing = 0.11;
     const int nodes = 5;
     const test::FullGrid grid(process, spacing, nodes);
-    const auto axis = std::make_shared<velocity::UpwindAxis>(spacing, nodes, process.drag);
-    const KolmogorovOperator a(PETSC_COMM_SELF, {process, axis}, 0.0, Symmetry::none, Rest::kept);
+    const auto velocities =
+        std::make_shared<velocity::UpwindDiscretisation>(spacing, nodes, process.drag);
+    const KolmogorovOperator a(PETSC_COMM_SELF, {process, velocities}, 0.0, Symmetry::none,
+                               StaticPhase::kept);
     const auto& m = grid.generator();
     REQUIRE(a.states().global_size() == grid.size());
     std::map<PetscInt, int> place;  // in the grid's numbering
     a.states().for_each_local([&](const State& s) {
-      const int sign = s.half == Half::upper ? 1 : -1;
+      const int sign = s.half == Branch::positive ? 1 : -1;
       const int j = s.kind == StateKind::node ? s.node + 1 : 0;
       place[a.states().index(s)] = grid.index(sign * s.noise, sign * j);
     });
@@ -127,11 +129,12 @@ TEST_CASE("kolmogorov operator: the unfolded upwind operator is -M of the paper"
 }
 
 TEST_CASE("kolmogorov operator: constants are harmonic for the whole process", "[parallel]") {
-  const double v_max = GENERATE(8.0, 1.0);  // the second cuts the axis: holding states
+  const double v_max =
+      GENERATE(8.0, 1.0);  // the second cuts the velocity discretisation: holding states
   const auto process = process_on(11, 1, 0.25);
   for (const auto& d : discretisations(process, v_max)) {
     for (Symmetry symmetry : {Symmetry::even, Symmetry::none}) {
-      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0.0, symmetry, Rest::kept);
+      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0.0, symmetry, StaticPhase::kept);
       INFO(d.name);
       CHECK(largest(row_sums(a)) < 1e-14 * largest_entry(a.matrix()));
     }
@@ -146,7 +149,7 @@ TEST_CASE("kolmogorov operator: rows conserve probability up to killing", "[para
   for (const auto& d : discretisations(process, v_max)) {
     for (Symmetry symmetry : {Symmetry::even, Symmetry::none}) {
       INFO(d.name << " lambda " << lambda << " v_max " << v_max);
-      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, lambda, symmetry, Rest::killing);
+      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, lambda, symmetry, StaticPhase::killing);
       const auto nu = test_vector(a);
       PetscScalar left = 0, mass = 0, sent = 0;
       check(VecTDot(nu, row_sums(a), &left));
@@ -168,7 +171,8 @@ TEST_CASE("kolmogorov operator: folded and unfolded agree on functions of their 
   const auto odd = [](double x, double y, double v) { return x + v * v * v + y; };
   for (const auto& d : discretisations(process, 8)) {
     for (Symmetry symmetry : {Symmetry::even, Symmetry::odd}) {
-      for (Rest rest : {Rest::killing, Rest::kept, Rest::killing_edges}) {
+      for (StaticPhase rest :
+           {StaticPhase::killing, StaticPhase::kept, StaticPhase::killing_edges}) {
         const auto f = symmetry == Symmetry::even ? KolmogorovOperator::Observable(even)
                                                   : KolmogorovOperator::Observable(odd);
         const KolmogorovOperator half(PETSC_COMM_SELF, d.on, 0.3, symmetry, rest);
@@ -191,8 +195,9 @@ TEST_CASE("kolmogorov operator: folded and unfolded agree on functions of their 
 TEST_CASE("kolmogorov operator: parity enters through levels below -k alone", "[parallel]") {
   const auto process = process_on(11, 1, 0.25);
   for (const auto& d : discretisations(process, 8)) {
-    const KolmogorovOperator even(PETSC_COMM_WORLD, d.on, 0.0, Symmetry::even, Rest::killing);
-    const KolmogorovOperator odd(PETSC_COMM_WORLD, d.on, 0.0, Symmetry::odd, Rest::killing);
+    const KolmogorovOperator even(PETSC_COMM_WORLD, d.on, 0.0, Symmetry::even,
+                                  StaticPhase::killing);
+    const KolmogorovOperator odd(PETSC_COMM_WORLD, d.on, 0.0, Symmetry::odd, StaticPhase::killing);
     petsc::VecHandle change = row_sums(odd);
     check(VecAXPY(change, -1, row_sums(even)));
     const petsc::ReadView difference(change);
@@ -200,7 +205,7 @@ TEST_CASE("kolmogorov operator: parity enters through levels below -k alone", "[
     even.states().for_each_local([&](const State& s) {
       // hp lifts the value at v = 0 into the lowest element, upwind into the lowest node.
       const int lowest = d.name == "upwind" ? 1 : 4;
-      const bool falls_far = s.noise < -even.states().last_static(Half::upper);
+      const bool falls_far = s.noise < -even.states().last_static(Branch::positive);
       const bool reflects = s.kind == StateKind::node && falls_far && s.node < lowest;
       const double size = std::abs(difference[at++]);
       CHECK((reflects ? size > 1 : size < 1e-8));
@@ -210,9 +215,10 @@ TEST_CASE("kolmogorov operator: parity enters through levels below -k alone", "[
 
 TEST_CASE("kolmogorov operator: upwind is an M-matrix of at most five entries a row") {
   const auto process = process_on(11, 1, 0.25);
-  const auto axis = std::make_shared<velocity::UpwindAxis>(0.05, 160, process.drag);
+  const auto velocities = std::make_shared<velocity::UpwindDiscretisation>(0.05, 160, process.drag);
   for (Symmetry symmetry : {Symmetry::even, Symmetry::none}) {
-    const KolmogorovOperator a(PETSC_COMM_SELF, {process, axis}, 0.0, symmetry, Rest::kept);
+    const KolmogorovOperator a(PETSC_COMM_SELF, {process, velocities}, 0.0, symmetry,
+                               StaticPhase::kept);
     for_each_row(a.matrix(), [](PetscInt row, const Row& entries) {
       CHECK(entries.size() <= 5);
       for (const auto& [column, value] : entries) CHECK((column == row ? value > 0 : value <= 0));
@@ -225,9 +231,10 @@ TEST_CASE("kolmogorov operator: upwind is an M-matrix of at most five entries a 
 TEST_CASE("kolmogorov operator: unfolded and kept, upwind is minus a generator to the last bit",
           "[parallel]") {
   for (const auto& process : {process_on(9, 1, 0.25, {1, 0.4}), rough_process(53)}) {
-    const auto axis =
-        std::make_shared<velocity::UpwindAxis>(process.noise.delta / 3, 40, process.drag);
-    const KolmogorovOperator a(PETSC_COMM_WORLD, {process, axis}, 0.0, Symmetry::none, Rest::kept);
+    const auto velocities =
+        std::make_shared<velocity::UpwindDiscretisation>(process.noise.delta / 3, 40, process.drag);
+    const KolmogorovOperator a(PETSC_COMM_WORLD, {process, velocities}, 0.0, Symmetry::none,
+                               StaticPhase::kept);
     for_each_row(a.matrix(), [](PetscInt row, const Row& entries) {
       double off_diagonal = 0, diagonal = 0;
       for (const auto& [column, value] : entries) {
@@ -243,9 +250,10 @@ TEST_CASE("kolmogorov operator: unfolded and kept, upwind is minus a generator t
 // N = 1, k = 0, one upwind node, all rates by hand: Lambda = 2/(1 * 1)^2 = 2, alpha_0 = 1/2.
 TEST_CASE("kolmogorov operator: three noise levels by hand") {
   const model::Process process{{1, 1, 1}, {0.5, 0.5}, {1, 0}};
-  const auto axis = std::make_shared<velocity::UpwindAxis>(0.25, 1, process.drag);
+  const auto velocities = std::make_shared<velocity::UpwindDiscretisation>(0.25, 1, process.drag);
   for (const Symmetry symmetry : {Symmetry::even, Symmetry::odd}) {
-    const KolmogorovOperator a(PETSC_COMM_SELF, {process, axis}, 0.0, symmetry, Rest::killing);
+    const KolmogorovOperator a(PETSC_COMM_SELF, {process, velocities}, 0.0, symmetry,
+                               StaticPhase::killing);
     REQUIRE(a.states().global_size() == 4);
     const double sign = symmetry == Symmetry::even ? 1 : -1;
     // Order: (1, v = 0), (-1, v), (0, v), (1, v). B_1(0) = 0.5 goes on at rate 2; B_-1(v) = -1.75
@@ -277,9 +285,10 @@ TEST_CASE("kolmogorov operator: three noise levels by hand") {
 TEST_CASE("kolmogorov operator: exits of the static states carry their rates", "[parallel]") {
   const auto process = process_on(11, 1, 0.25);
   for (const auto& d : discretisations(process, 8)) {
-    const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0.7, Symmetry::none, Rest::killed_on_exit);
-    petsc::VecHandle rates = a.exit_rates(Half::upper);
-    check(VecAXPY(rates, 1, a.exit_rates(Half::lower)));
+    const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0.7, Symmetry::none,
+                               StaticPhase::killed_on_exit);
+    petsc::VecHandle rates = a.exit_rates(Branch::positive);
+    check(VecAXPY(rates, 1, a.exit_rates(Branch::negative)));
     const auto transform = operators::StaticChain(process.noise, 4, 0.7).exit_transform();
     petsc::VecHandle u = a.zeros(), residual = a.zeros();
     {
@@ -337,17 +346,18 @@ std::vector<Symmetric> symmetric_samples() {
 
 }  // namespace
 
-// Every level at rest, at s+ and s- and beyond, and at velocities of both signs; folded, from the
-// half that is kept, with the sign of the symmetry.
+// Every level at rest, at s+ and s- and beyond, and at velocities of both signs; symmetry-reduced,
+// from the half that is kept, with the sign of the symmetry.
 TEST_CASE("kolmogorov operator: values at single states", "[parallel]") {
   const auto process = process_on(11, 1, 0.25);
   for (const auto& d : discretisations(process, 2)) {
     for (const auto& [symmetry, f] : symmetric_samples()) {
-      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0.0, symmetry, Rest::kept);
+      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0.0, symmetry, StaticPhase::kept);
       const auto values = a.values(f);
       for (int i = -11; i <= 11; ++i) {
         for (double v : {0.0, 0.05, 0.333, 2.0, -0.05, -0.1234, -2.0}) {
-          INFO(d.name << " level " << i << " v " << v << " folded " << a.states().folded());
+          INFO(d.name << " level " << i << " v " << v << " folded "
+                      << a.states().symmetry_reduced());
           const double expected = at_state(process, f, i, v);
           CHECK(applied(a.value_at(i, v), values) == Approx(expected).margin(1e-11));
         }
@@ -365,10 +375,10 @@ TEST_CASE("kolmogorov operator: values at s+ and s- are the traces at the exits"
   };
   for (const auto& d : discretisations(process, 2)) {
     for (Symmetry symmetry : {Symmetry::even, Symmetry::odd, Symmetry::none}) {
-      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0.0, symmetry, Rest::kept);
-      const bool folded = a.states().folded();
+      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0.0, symmetry, StaticPhase::kept);
+      const bool symmetry_reduced = a.states().symmetry_reduced();
       const double sign = symmetry == Symmetry::odd ? -1 : 1;
-      const auto lower = a.trace_at_exit(folded ? Half::upper : Half::lower);
+      const auto lower = a.trace_at_exit(symmetry_reduced ? Branch::positive : Branch::negative);
       CHECK(distance(a.value_at(5, 0), a.trace_at_exit(), 1) == 0);
       CHECK(distance(a.value_at(-5, 0), lower, sign) == 0);
     }
@@ -381,7 +391,7 @@ TEST_CASE("kolmogorov operator: a value at rest is one entry", "[parallel]") {
   const auto process = process_on(11, 1, 0.25);
   for (const auto& d : discretisations(process, 2)) {
     for (Symmetry symmetry : {Symmetry::even, Symmetry::odd, Symmetry::none}) {
-      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0.0, symmetry, Rest::kept);
+      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0.0, symmetry, StaticPhase::kept);
       for (int i = -4; i <= 4; ++i) {
         const auto g = a.value_at(i, 0);
         PetscReal entries = 0;
@@ -401,13 +411,14 @@ TEST_CASE("kolmogorov operator: with a bias rows of the whole process sum to 0",
   for (double bias : {0.23, -0.4}) {
     process.bias = bias;
     for (const auto& d : discretisations(process, 1.4)) {
-      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0, Symmetry::none, Rest::kept);
+      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0, Symmetry::none, StaticPhase::kept);
       CHECK(largest(row_sums(a)) < 1e-14 * largest_entry(a.matrix()));
     }
   }
 }
 
-// dA by a difference of A on the same axis: A is linear in mu_d and c, and smooth in tau.
+// dA by a difference of A on the same velocity discretisation: A is linear in mu_d and c, and
+// smooth in tau.
 TEST_CASE("kolmogorov operator: derivatives are limits of differences", "[parallel]") {
   using operators::Parameter;
   const auto process = rough_process(9);
@@ -429,20 +440,22 @@ TEST_CASE("kolmogorov operator: derivatives are limits of differences", "[parall
       {Parameter::tau, changed(0, h, 0), changed(0, -h, 0), 2 * h},
       {Parameter::drag_coefficient, changed(0, 0, h), changed(0, 0, -h), 2 * h}};
   const auto on = [](const model::Process& p, bool hp) {
-    std::shared_ptr<velocity::Axis> axis;
+    std::shared_ptr<velocity::VelocityDiscretisation> velocities;
     if (hp) {
-      axis = std::make_shared<velocity::HpAxis>(std::vector{0.0, 0.1, 0.5, 1.43}, 5, p.drag);
+      velocities =
+          std::make_shared<velocity::HpDiscretisation>(std::vector{0.0, 0.1, 0.5, 1.43}, 5, p.drag);
     } else {
-      axis = std::make_shared<velocity::UpwindAxis>(0.053, 25, p.drag);
+      velocities = std::make_shared<velocity::UpwindDiscretisation>(0.053, 25, p.drag);
     }
-    return operators::Discretisation(p, axis);
+    return operators::Discretisation(p, velocities);
   };
   for (const Step& step : steps) {
     for (bool hp : {true, false}) {
       const auto derivative = KolmogorovOperator::derivative(PETSC_COMM_WORLD, on(process, hp),
                                                              Symmetry::even, step.parameter);
       const auto at = [&](const model::Process& p) {
-        return KolmogorovOperator(PETSC_COMM_WORLD, on(p, hp), 0, Symmetry::even, Rest::killing);
+        return KolmogorovOperator(PETSC_COMM_WORLD, on(p, hp), 0, Symmetry::even,
+                                  StaticPhase::killing);
       };
       const auto upper = at(step.above), lower = at(step.below);
       const auto x = test_vector(derivative);

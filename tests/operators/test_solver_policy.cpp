@@ -19,7 +19,7 @@
 
 using namespace stickslip;
 using operators::KolmogorovOperator;
-using operators::Rest;
+using operators::StaticPhase;
 using operators::Symmetry;
 using options::Factors;
 using options::Scheme;
@@ -30,7 +30,7 @@ namespace {
 model::Scene with_step(double delta) { return test::scene(1, 0.25, 1, delta, {1, 0}); }
 
 KolmogorovOperator sliding(const operators::Discretisation& on, double lambda = 0) {
-  return {PETSC_COMM_WORLD, on, lambda, Symmetry::even, Rest::killing};
+  return {PETSC_COMM_WORLD, on, lambda, Symmetry::even, StaticPhase::killing};
 }
 
 // The solution of (lambda - L) u = 1 by what the options choose, and the type of its PC.

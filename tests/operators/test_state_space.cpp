@@ -4,12 +4,12 @@
 #include "stickslip/operators/state_space.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
-#include "stickslip/velocity/hp_axis.hpp"
-#include "stickslip/velocity/upwind_axis.hpp"
+#include "stickslip/velocity/hp_discretisation.hpp"
+#include "stickslip/velocity/upwind_discretisation.hpp"
 
 using namespace stickslip;
+using operators::Branch;
 using operators::Discretisation;
-using operators::Half;
 using operators::State;
 using operators::StateKind;
 using operators::StateSpace;
@@ -23,14 +23,15 @@ model::Process process_on(int levels, double mu_s, double mu_d) {
 
 // Number of states of each kind by counting what the model says exists.
 PetscInt expected_size(const Discretisation& d, Symmetry symmetry, bool with_rest) {
-  const auto& [process, noise, axis] = d;
+  const auto& [process, noise, velocities] = d;
   const int k = process.static_index();
   const int halves = symmetry == Symmetry::none ? 2 : 1;
-  int size = halves * noise->count() * axis->size();
-  if (axis->keeps_origin()) size += halves * (noise->half() - k);
+  int size = halves * noise->count() * velocities->size();
+  if (velocities->keeps_origin()) size += halves * (noise->half() - k);
   for (int n = -noise->half(); n <= noise->half(); ++n) {
-    const bool accelerates = process.excess_at(noise->x(n)) + process.drag(axis->v_max()) > 0;
-    if (axis->needs_holding() && accelerates) size += halves;
+    const bool accelerates =
+        process.net_force_at(noise->x(n)) + process.drag(velocities->v_max()) > 0;
+    if (velocities->needs_holding() && accelerates) size += halves;
   }
   if (with_rest) size += symmetry == Symmetry::none ? 2 * k + 1 : (symmetry == Symmetry::even) + k;
   return size;
@@ -41,9 +42,9 @@ PetscInt expected_size(const Discretisation& d, Symmetry symmetry, bool with_res
 TEST_CASE("state space: every state has one index, ranks follow one another", "[parallel]") {
   const auto process = process_on(14, 1, 0.25);
   const std::vector<double> low{0, 0.1, 0.5, 1}, high{0, 0.1, 0.5, 8};
-  const auto tall = std::make_shared<velocity::HpAxis>(high, 2, process.drag);
-  const auto cut = std::make_shared<velocity::HpAxis>(low, 2, process.drag);
-  const auto grid = std::make_shared<velocity::UpwindAxis>(0.05, 40, process.drag);
+  const auto tall = std::make_shared<velocity::HpDiscretisation>(high, 2, process.drag);
+  const auto cut = std::make_shared<velocity::HpDiscretisation>(low, 2, process.drag);
+  const auto grid = std::make_shared<velocity::UpwindDiscretisation>(0.05, 40, process.drag);
   const auto nodes = std::make_shared<noise::Nodes>(process, noise::Grouping{1, 50});
   REQUIRE(nodes->half() < 14);
   for (const Discretisation& d :
@@ -66,15 +67,15 @@ TEST_CASE("state space: every state has one index, ranks follow one another", "[
 
 TEST_CASE("state space: all ranks know the index of every state", "[parallel]") {
   const auto process = process_on(6, 0.6, 0.25);
-  const auto axis = std::make_shared<velocity::UpwindAxis>(0.1, 3, process.drag);
-  const StateSpace states(PETSC_COMM_WORLD, {process, axis}, Symmetry::none, true);
+  const auto velocities = std::make_shared<velocity::UpwindDiscretisation>(0.1, 3, process.drag);
+  const StateSpace states(PETSC_COMM_WORLD, {process, velocities}, Symmetry::none, true);
   std::set<PetscInt> seen;
   for (int l = -6; l <= 6; ++l) {
-    for (Half half : {Half::upper, Half::lower}) {
+    for (Branch half : {Branch::positive, Branch::negative}) {
       for (int j = 0; j < 3; ++j) seen.insert(states.index({StateKind::node, half, l, j}));
       if (states.has_origin(half, l)) seen.insert(states.index({StateKind::origin, half, l, 0}));
     }
-    if (states.has_rest(l)) seen.insert(states.index({StateKind::rest, Half::upper, l, 0}));
+    if (states.has_rest(l)) seen.insert(states.index({StateKind::rest, Branch::positive, l, 0}));
   }
   CHECK(static_cast<PetscInt>(seen.size()) == states.global_size());
   CHECK(*seen.begin() == 0);
@@ -83,8 +84,8 @@ TEST_CASE("state space: all ranks know the index of every state", "[parallel]") 
 
 TEST_CASE("state space: a rank owns i together with -i", "[parallel]") {
   const auto process = process_on(9, 1, 0.25);
-  const auto axis = std::make_shared<velocity::UpwindAxis>(0.1, 3, process.drag);
-  const StateSpace states(PETSC_COMM_WORLD, {process, axis}, Symmetry::even, false);
+  const auto velocities = std::make_shared<velocity::UpwindDiscretisation>(0.1, 3, process.drag);
+  const StateSpace states(PETSC_COMM_WORLD, {process, velocities}, Symmetry::even, false);
   const auto& levels = states.local_noise();
   CHECK(std::is_sorted(levels.begin(), levels.end()));
   for (int i : levels) CHECK(std::binary_search(levels.begin(), levels.end(), -i));
@@ -92,23 +93,25 @@ TEST_CASE("state space: a rank owns i together with -i", "[parallel]") {
 
 TEST_CASE("state space: more ranks than shells leaves some ranks empty", "[parallel]") {
   const auto process = process_on(1, 0.1, 0.1);
-  const auto axis = std::make_shared<velocity::UpwindAxis>(0.1, 2, process.drag);
-  const StateSpace states(PETSC_COMM_WORLD, {process, axis}, Symmetry::even, false);
+  const auto velocities = std::make_shared<velocity::UpwindDiscretisation>(0.1, 2, process.drag);
+  const StateSpace states(PETSC_COMM_WORLD, {process, velocities}, Symmetry::even, false);
   CHECK(states.global_size() == 7);  // three levels of two nodes, and the origin of level 1
 }
 
 TEST_CASE("state space: too many states are refused before anything is allocated") {
   const auto process = process_on(200000, 1, 0.25);
-  const auto axis = std::make_shared<velocity::UpwindAxis>(0.001, 20000, process.drag);
-  CHECK_THROWS_AS(StateSpace(PETSC_COMM_WORLD, {process, axis}, Symmetry::even, false), NoMemory);
+  const auto velocities =
+      std::make_shared<velocity::UpwindDiscretisation>(0.001, 20000, process.drag);
+  CHECK_THROWS_AS(StateSpace(PETSC_COMM_WORLD, {process, velocities}, Symmetry::even, false),
+                  NoMemory);
 }
 
 TEST_CASE("state space: with a bias every state has one index, too", "[parallel]") {
   for (double bias : {0.3, -0.55, 1.1}) {
     auto process = process_on(8, 0.6, 0.25);
     process.bias = bias;
-    const auto axis = std::make_shared<velocity::UpwindAxis>(0.1, 3, process.drag);
-    const StateSpace states(PETSC_COMM_WORLD, {process, axis}, Symmetry::none, true);
+    const auto velocities = std::make_shared<velocity::UpwindDiscretisation>(0.1, 3, process.drag);
+    const StateSpace states(PETSC_COMM_WORLD, {process, velocities}, Symmetry::none, true);
     PetscInt next = states.local_begin();
     states.for_each_local([&](const State& state) {
       REQUIRE(states.index(state) == next);
@@ -121,8 +124,8 @@ TEST_CASE("state space: with a bias every state has one index, too", "[parallel]
       const bool rest = std::abs(force) <= 0.6 + 1e-12;
       CHECK(states.has_rest(i) == rest);
       rests += rest ? 1 : 0;
-      CHECK(states.has_origin(Half::upper, i) == (force > 0.6 + 1e-12));
-      CHECK(states.has_origin(Half::lower, -i) == (force < -0.6 - 1e-12));
+      CHECK(states.has_origin(Branch::positive, i) == (force > 0.6 + 1e-12));
+      CHECK(states.has_origin(Branch::negative, -i) == (force < -0.6 - 1e-12));
       origins += rest ? 0 : 1;
     }
     CHECK(states.global_size() == 2 * 17 * 3 + rests + origins);

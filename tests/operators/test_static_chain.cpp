@@ -139,11 +139,11 @@ TEST_CASE("static chain: the odd chain is the odd part of the full one") {
 
 TEST_CASE("static chain: integrals and occupations are adjoint") {
   const model::NoiseChain chain{1, 0.25, 32};
-  const StaticChain stay(chain, 4, 0.3);
+  const StaticChain sticking(chain, 4, 0.3);
   std::vector<double> f, entry = entry_law(4);
   for (int i = -4; i <= 4; ++i) f.push_back(1 + 0.1 * i * i);
-  const auto m = stay.occupation(entry);
-  const auto u = stay.integral(f);
+  const auto m = sticking.occupation(entry);
+  const auto u = sticking.integral(f);
   const double left = std::inner_product(m.begin(), m.end(), f.begin(), 0.0);
   const double right = std::inner_product(entry.begin(), entry.end(), u.begin(), 0.0);
   CHECK(left == Approx(right).epsilon(1e-14));

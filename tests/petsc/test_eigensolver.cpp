@@ -79,8 +79,8 @@ double residual(Mat a, const Eigenpair& pair) {
 TEST_CASE("eigensolver: complex pairs of a ring, nearest to the target first", "[parallel]") {
   const PetscInt n = 12;
   const MatHandle a = ring(n);
-  Ledger ledger;
-  const Eigensolver solver(a, "test_", -0.1, 5, ledger);
+  SolverStatistics statistics;
+  const Eigensolver solver(a, "test_", -0.1, 5, statistics);
   REQUIRE(solver.pairs().size() >= 5);
   const auto found = values(solver);
   for (int m : {0, 1, -1, 2, -2}) {
@@ -96,8 +96,8 @@ TEST_CASE("eigensolver: complex pairs of a ring, nearest to the target first", "
 
 TEST_CASE("eigensolver: conjugate pairs of a matrix far from normal", "[parallel]") {
   const MatHandle a = rotations(20);
-  Ledger ledger;
-  const Eigensolver solver(a, "test_", -0.1, 4, ledger);
+  SolverStatistics statistics;
+  const Eigensolver solver(a, "test_", -0.1, 4, statistics);
   const auto found = values(solver);
   REQUIRE(found.size() >= 4);
   for (std::size_t p = 0; p < 4; ++p) {
@@ -112,8 +112,8 @@ TEST_CASE("eigensolver: conjugate pairs of a matrix far from normal", "[parallel
 TEST_CASE("eigensolver: residuals are those of its vectors", "[parallel]") {
   const MatHandle a = ring(300);
   const Given given{{"-loose_eps_tol", "1e-3"}, {"-loose_eps_ncv", "12"}};
-  Ledger ledger;
-  const Eigensolver solver(a, "loose_", -0.1, 4, ledger);
+  SolverStatistics statistics;
+  const Eigensolver solver(a, "loose_", -0.1, 4, statistics);
   double largest = 0;
   for (const auto& pair : solver.pairs()) {
     CHECK(pair.residual == Approx(residual(a, pair)).epsilon(1e-6).margin(1e-13));
@@ -124,15 +124,15 @@ TEST_CASE("eigensolver: residuals are those of its vectors", "[parallel]") {
 
 TEST_CASE("eigensolver: what it did is entered in the ledger", "[parallel]") {
   const MatHandle a = ring(12);
-  Ledger ledger;
-  const Eigensolver solver(a, "test_", -0.1, 1, ledger);
-  CHECK(ledger.factorizations_real == (kComplex ? 0 : 1));
-  CHECK(ledger.factorizations_complex == (kComplex ? 1 : 0));
+  SolverStatistics statistics;
+  const Eigensolver solver(a, "test_", -0.1, 1, statistics);
+  CHECK(statistics.factorizations_real == (kComplex ? 0 : 1));
+  CHECK(statistics.factorizations_complex == (kComplex ? 1 : 0));
   // Vectors of the space, each from one solve, at most as many as there are rows.
-  CHECK(ledger.solves >= 2);
-  CHECK(ledger.solves <= 4 * 12);
-  CHECK(ledger.factor_entries >= 2 * 12);  // the diagonal and one coupling of each row
-  CHECK(ledger.factor_entries <= 12 * 12);
+  CHECK(statistics.solves >= 2);
+  CHECK(statistics.solves <= 4 * 12);
+  CHECK(statistics.factor_entries >= 2 * 12);  // the diagonal and one coupling of each row
+  CHECK(statistics.factor_entries <= 12 * 12);
 }
 
 TEST_CASE("eigensolver: options of the role override number and target", "[parallel]") {
@@ -141,8 +141,8 @@ TEST_CASE("eigensolver: options of the role override number and target", "[paral
                     {"-own_eps_target", "7.1"},
                     // The default; given here, it also goes with the others.
                     {"-own_st_mat_mumps_icntl_7", "2"}};
-  Ledger ledger;
-  const Eigensolver solver(a, "own_", -0.1, 1, ledger);
+  SolverStatistics statistics;
+  const Eigensolver solver(a, "own_", -0.1, 1, statistics);
   REQUIRE(solver.pairs().size() >= 4);
   CHECK(solver.pairs()[0].value.real() == Approx(7).epsilon(1e-8));
   CHECK(solver.pairs()[2].value.real() == Approx(8).epsilon(1e-8));
@@ -152,9 +152,9 @@ TEST_CASE("eigensolver: too few eigenvalues are refused, and the options that he
   // Eigenvalues crowd around the target, and one small Krylov space must do.
   const MatHandle a = ring(300);
   const Given given{{"-few_eps_max_it", "1"}, {"-few_eps_ncv", "6"}, {"-few_eps_tol", "1e-15"}};
-  Ledger ledger;
+  SolverStatistics statistics;
   try {
-    const Eigensolver solver(a, "few_", -0.1, 4, ledger);
+    const Eigensolver solver(a, "few_", -0.1, 4, statistics);
     FAIL("found " << solver.pairs().size());
   } catch (const NotReached& failure) {
     CHECK_THAT(failure.what(), Catch::Contains("of 4") && Catch::Contains("-few_eps_max_it"));
@@ -164,8 +164,8 @@ TEST_CASE("eigensolver: too few eigenvalues are refused, and the options that he
 // The constants: A 1 = 0, so that (A - target)^-1 1 = -1/target.
 TEST_CASE("eigensolver: iterate is one step of inverse iteration", "[parallel]") {
   const MatHandle a = ring(12);
-  Ledger ledger;
-  Eigensolver solver(a, "test_", -0.25, 1, ledger);
+  SolverStatistics statistics;
+  Eigensolver solver(a, "test_", -0.25, 1, statistics);
   VecHandle x;
   check(MatCreateVecs(a, x.out(), nullptr));
   check(VecSet(x, 1));
@@ -207,9 +207,9 @@ TEST_CASE("eigensolver: probing takes any number of eigenvalues and any space") 
 TEST_CASE("eigensolver: one eigenvalue takes few solves, unless a larger space is given") {
   const MatHandle a = ring(300);
   const auto solves = [&a](double target) {
-    Ledger ledger;
-    (void)Eigensolver(a, "one_", target, 1, ledger);
-    return ledger.solves;
+    SolverStatistics statistics;
+    (void)Eigensolver(a, "one_", target, 1, statistics);
+    return statistics.solves;
   };
   const int few = solves(-1e-8);
   CHECK(few <= 8);
@@ -219,8 +219,8 @@ TEST_CASE("eigensolver: one eigenvalue takes few solves, unless a larger space i
 
 TEST_CASE("eigensolver: a real pair has no imaginary part") {
   const MatHandle a = matrix(6, [](PetscInt r) { return Row{{r, static_cast<double>(r + 1)}}; });
-  Ledger ledger;
-  const Eigensolver solver(a, "test_", 0.5, 2, ledger);
+  SolverStatistics statistics;
+  const Eigensolver solver(a, "test_", 0.5, 2, statistics);
   for (const auto& pair : solver.pairs()) {
     PetscReal size = 1;
     check(VecNorm(pair.imaginary, NORM_INFINITY, &size));

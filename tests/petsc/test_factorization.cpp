@@ -70,20 +70,20 @@ double distance_from_one(Vec x) {
 
 TEST_CASE("factorization: plain and transposed solves, counted", "[parallel]") {
   const MatHandle a = bidiagonal(20);
-  Ledger ledger;
-  Factorization factors(a, "test_", ledger);
+  SolverStatistics statistics;
+  Factorization factors(a, "test_", statistics);
   CHECK(distance_from_one(factors.solve(image_of_one(a, Side::right)).x) < 1e-14);
   const auto transposed = factors.solve_transposed(image_of_one(a, Side::left));
   CHECK(transposed.backward_error < 1e-15);
   CHECK(distance_from_one(transposed.x) < 1e-14);
 
   const bool complex = PetscDefined(USE_COMPLEX);
-  CHECK(ledger.factorizations_real == (complex ? 0 : 1));
-  CHECK(ledger.factorizations_complex == (complex ? 1 : 0));
-  CHECK(ledger.solves == 2);
-  CHECK(ledger.corrections == 2);
-  CHECK(ledger.factor_entries >= 2 * 20 - 1);  // those of the matrix; no more than a dense one
-  CHECK(ledger.factor_entries <= 20 * 20);
+  CHECK(statistics.factorizations_real == (complex ? 0 : 1));
+  CHECK(statistics.factorizations_complex == (complex ? 1 : 0));
+  CHECK(statistics.solves == 2);
+  CHECK(statistics.corrections == 2);
+  CHECK(statistics.factor_entries >= 2 * 20 - 1);  // those of the matrix; no more than a dense one
+  CHECK(statistics.factor_entries <= 20 * 20);
 }
 
 TEST_CASE("factorization: a second step of refinement where one is not enough", "[parallel]") {
@@ -96,18 +96,18 @@ TEST_CASE("factorization: a second step of refinement where one is not enough", 
   };
   {
     const test::Given fair = iterated_to("1e-5");
-    Ledger ledger;
-    Factorization solver(a, "rough_", ledger);
+    SolverStatistics statistics;
+    Factorization solver(a, "rough_", statistics);
     const Solution s = solver.solve(b);
-    CHECK(ledger.corrections == 2);
+    CHECK(statistics.corrections == 2);
     CHECK(s.backward_error < 1e-12);
-    CHECK(ledger.backward_error == s.backward_error);
+    CHECK(statistics.backward_error == s.backward_error);
     check(VecAXPY(s.x, -1, s.correction));  // what one solve alone gave
     CHECK(distance_from_one(s.x) > 1e-9);
   }
   const test::Given poor = iterated_to("1e-2");
-  Ledger ledger;
-  Factorization solver(a, "rough_", ledger);
+  SolverStatistics statistics;
+  Factorization solver(a, "rough_", statistics);
   CHECK_THROWS_WITH(solver.solve(b), Catch::Contains("-rough_ left a backward error"));
 }
 
@@ -118,8 +118,8 @@ TEST_CASE("factorization: an iteration that stops early ends every kind of solve
                               {"-short_ksp_max_it", "3"}});
   const MatHandle a = bidiagonal(50);
   const VecHandle b = image_of_one(a, Side::right), x = image_of_one(a, Side::right);
-  Ledger ledger;
-  Factorization solver(a, "short_", ledger);
+  SolverStatistics statistics;
+  Factorization solver(a, "short_", statistics);
   const auto stopped = Catch::Contains("-short_ stopped: DIVERGED_ITS");
   CHECK_THROWS_WITH(solver.solve(b), stopped);
   CHECK_THROWS_WITH(solver.solve_once(b, x), stopped);
@@ -139,8 +139,8 @@ TEST_CASE("factorization: a singular matrix is refused, whatever the package rep
   VecHandle b;
   check(MatCreateVecs(a, b.out(), nullptr));
   check(VecSet(b, 1));
-  Ledger ledger;
-  const auto solve = [&] { return Factorization(a, "test_", ledger).solve(b); };
+  SolverStatistics statistics;
+  const auto solve = [&] { return Factorization(a, "test_", statistics).solve(b); };
   CHECK_THROWS_AS(solve(), NotReached);
 }
 
@@ -176,9 +176,9 @@ test::Given tight_workspace() {
 }
 
 std::string complaint(Mat a, const std::string& prefix) {
-  Ledger ledger;
+  SolverStatistics statistics;
   try {
-    const Factorization factors(a, prefix, ledger);
+    const Factorization factors(a, prefix, statistics);
   } catch (const Failure& failure) {
     return failure.what();
   }
@@ -190,8 +190,8 @@ std::string complaint(Mat a, const std::string& prefix) {
 TEST_CASE("factorization: MUMPS gets more workspace once when it runs out of it", "[parallel]") {
   const test::Given tight = tight_workspace();
   const MatHandle a = saddle(400);
-  Ledger ledger;
-  Factorization factors(a, "tight_", ledger);
+  SolverStatistics statistics;
+  Factorization factors(a, "tight_", statistics);
   CHECK(distance_from_one(factors.solve(image_of_one(a, Side::right)).x) < 1e-12);
   CHECK(distance_from_one(factors.solve_transposed(image_of_one(a, Side::left)).x) < 1e-12);
 }
@@ -209,10 +209,10 @@ TEST_CASE("factorization: a failure is told with what MUMPS means by it") {
 TEST_CASE("factorization: options of the role override its defaults") {
   check(PetscOptionsSetValue(nullptr, "-own_pc_factor_mat_solver_type", "petsc"));
   const MatHandle a = bidiagonal(6);
-  Ledger ledger;
-  Factorization factors(a, "own_", ledger);
+  SolverStatistics statistics;
+  Factorization factors(a, "own_", statistics);
   CHECK(distance_from_one(factors.solve(image_of_one(a, Side::right)).x) < 1e-14);
-  CHECK(ledger.factor_entries == 0);  // MUMPS's count; another package ran
+  CHECK(statistics.factor_entries == 0);  // MUMPS's count; another package ran
   check(PetscOptionsClearValue(nullptr, "-own_pc_factor_mat_solver_type"));
 }
 

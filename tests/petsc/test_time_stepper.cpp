@@ -81,7 +81,7 @@ double distance(Vec u, const std::vector<double>& expected) {
 /// A run of a stepper on the stiff matrix.
 struct Run {
   explicit Run(const std::string& prefix, double tolerance)
-      : a(distributed(stiff())), u(start_on(a)), stepper(a, u, prefix, tolerance, ledger) {}
+      : a(distributed(stiff())), u(start_on(a)), stepper(a, u, prefix, tolerance, statistics) {}
 
   double error_at(double time) {
     stepper.advance(time);
@@ -90,7 +90,7 @@ struct Run {
 
   MatHandle a;
   VecHandle u;
-  Ledger ledger;
+  SolverStatistics statistics;
   TimeStepper stepper;
 };
 
@@ -140,8 +140,8 @@ TEST_CASE("time stepper: constants of a generator stay constant", "[parallel]") 
   const MatHandle a = distributed(ring);
   const VecHandle u = start_on(a);
   check(VecSet(u, 1));
-  Ledger ledger;
-  TimeStepper stepper(a, u, "test_", 1e-6, ledger);
+  SolverStatistics statistics;
+  TimeStepper stepper(a, u, "test_", 1e-6, statistics);
   stepper.advance(100);
   CHECK(distance(u, std::vector<double>(kSize, 1.0)) < 1e-12);
 }
@@ -150,8 +150,8 @@ TEST_CASE("time stepper: constants of a generator stay constant", "[parallel]") 
 TEST_CASE("time stepper: linear systems are counted in the ledger", "[parallel]") {
   Run run("test_", 1e-6);
   run.stepper.advance(1);
-  CHECK(run.ledger.iterations >= run.stepper.steps());
-  CHECK(run.ledger.iterations <= 10 * run.stepper.steps());
+  CHECK(run.statistics.iterations >= run.stepper.steps());
+  CHECK(run.statistics.iterations <= 10 * run.stepper.steps());
 }
 
 // Backward Euler with fixed steps is known in closed form: (1 + h A)^-n u.

@@ -36,15 +36,16 @@ const std::vector<model::Scene>& sample_scenes() {
 
 std::map<std::string, double> scalars(const Solved& solved) {
   Results results;
-  quantities::append_sticking(solved.law.excursion(), results);
-  quantities::append_moments(solved.law.discretisation(), solved.law.excursion(), results);
+  quantities::append_sticking(solved.distribution.excursion(), results);
+  quantities::append_moments(solved.distribution.discretisation(), solved.distribution.excursion(),
+                             results);
   std::map<std::string, double> values;
   for (const auto& r : results) values[r.key] = r.value[0];
   return values;
 }
 
 double spectrum_at_zero(Solved& solved) {
-  return quantities::spectrum_at_zero(solved.systems, solved.law).value;
+  return quantities::spectrum_at_zero(solved.systems, solved.distribution).value;
 }
 
 }  // namespace
@@ -55,28 +56,30 @@ TEST_CASE("bias: without one both half lines give what one of them gives", "[par
       const auto on = [&](const model::Scene& any) {
         return hp ? test::on_hp(any, 8) : test::on_upwind(any, 4);
       };
-      const Solved folded(on(s));
+      const Solved symmetry_reduced(on(s));
       Solved whole(on(biased(s, kNothing)));
-      REQUIRE_FALSE(whole.law.process().symmetric());
-      const auto one = scalars(folded), both = scalars(whole);
+      REQUIRE_FALSE(whole.distribution.process().symmetric());
+      const auto one = scalars(symmetry_reduced), both = scalars(whole);
       INFO("mu_s " << s.friction.mu_s << " delta " << s.delta << " hp " << hp);
       for (const auto& [key, value] : one) {
         INFO(key);
         if (key != "E_V") CHECK(relative_difference(both.at(key), value) < 1e-11);
       }
       CHECK(std::abs(both.at("E_V")) < 1e-12 * one.at("E_absV"));
-      CHECK(whole.law.chance_of_falling() > 0);
-      CHECK(whole.law.chance_of_falling() < 1);
-      CHECK(whole.law.excursion().conservation_defect(whole.law.discretisation()) < 1e-10);
+      CHECK(whole.distribution.reversal_probability() > 0);
+      CHECK(whole.distribution.reversal_probability() < 1);
+      CHECK(whole.distribution.excursion().conservation_defect(
+                whole.distribution.discretisation()) < 1e-10);
     }
   }
 }
 
 TEST_CASE("bias: the spectrum at 0 is that of odd functions where there is symmetry") {
   for (const auto& s : sample_scenes()) {
-    Solved folded(test::on_hp(s, 8)), whole(test::on_hp(biased(s, kNothing), 8));
-    const auto reduced =
-        quantities::reduced_spectrum(folded.systems, folded.law, {}, 1e-12).spectrum.at_zero;
+    Solved symmetry_reduced(test::on_hp(s, 8)), whole(test::on_hp(biased(s, kNothing), 8));
+    const auto reduced = quantities::reduced_spectrum(symmetry_reduced.systems,
+                                                      symmetry_reduced.distribution, {}, 1e-12)
+                             .spectrum.at_zero;
     CHECK(relative_difference(spectrum_at_zero(whole), reduced.value) < 1e-10);
   }
 }
@@ -111,9 +114,9 @@ TEST_CASE("bias: the density integrates to the law and to its drift") {
   for (double bias : {0.2, -1.4}) {
     const auto s = biased(scene(1, 0.6, 1, 0.25, {1, 0}), bias);
     const Solved solved(test::on_hp(s, 8));
-    const auto field = quantities::density_field(solved.law);
+    const auto field = quantities::density_field(solved.distribution);
     const auto values = scalars(solved);
-    const auto weights = solved.law.discretisation().axis->weights();
+    const auto weights = solved.distribution.discretisation().velocities->weights();
     const std::size_t half = field.pdf.v().size() / 2;
     double sliding = 0, drift = 0, noise = 0, stick = 0;
     for (std::size_t j = 0; j < half; ++j) {
@@ -131,9 +134,9 @@ TEST_CASE("bias: the density integrates to the law and to its drift") {
     CHECK(drift == Approx(values.at("E_V")).epsilon(1e-9));
     CHECK(noise == Approx(1).epsilon(1e-11));
     // The law of the noise, level by level.
-    const auto law = model::stationary_law(solved.law.process().noise);
-    for (std::size_t i = 0; i < law.size(); ++i) {
-      CHECK(field.noise_marginal[i] == Approx(law[i]).epsilon(1e-7).margin(1e-12));
+    const auto distribution = model::stationary_distribution(solved.distribution.process().noise);
+    for (std::size_t i = 0; i < distribution.size(); ++i) {
+      CHECK(field.noise_marginal[i] == Approx(distribution[i]).epsilon(1e-7).margin(1e-12));
     }
   }
 }
@@ -147,10 +150,10 @@ TEST_CASE("bias: the excursions agree with the null vector") {
       options::Case r;
       r.scene = s;
       r.question.quantities = {options::Quantity::sticking, options::Quantity::moments};
-      petsc::Ledger ledger;
+      petsc::SolverStatistics statistics;
       const auto evaluate = [&](options::Route route) {
         r.method.route = route;
-        return routes::evaluate({PETSC_COMM_WORLD, r, d, ledger}).results;
+        return routes::evaluate({PETSC_COMM_WORLD, r, d, statistics}).results;
       };
       const auto excursions = evaluate(options::Route::excursion);
       std::map<std::string, double> found;

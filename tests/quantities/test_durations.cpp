@@ -12,15 +12,15 @@
 #include "stickslip/petsc/time_stepper.hpp"
 #include "stickslip/quantities/durations.hpp"
 #include "stickslip/quantities/laplace.hpp"
-#include "stickslip/velocity/upwind_axis.hpp"
+#include "stickslip/velocity/upwind_discretisation.hpp"
 
 using namespace stickslip;
-using operators::Half;
+using operators::Branch;
 using operators::KolmogorovOperator;
-using operators::Rest;
+using operators::StaticPhase;
 using operators::Symmetry;
 using petsc::check;
-using quantities::DurationLaw;
+using quantities::DurationDistribution;
 using quantities::Uncertain;
 using test::Matrix;
 using test::relative_difference;
@@ -46,16 +46,16 @@ std::vector<Sample> samples() {
 
 /// The laws of all durations at the same times.
 struct Laws {
-  DurationLaw slide, stick, excursion;
+  DurationDistribution slide, stick, excursion;
 };
 
 Laws laws(Solved& s, const std::vector<double>& time, double tolerance) {
-  return {quantities::slide_law(s.systems, s.law, time, tolerance),
-          quantities::stick_law(s.systems.process(), s.entry(), time),
-          quantities::excursion_law(s.systems, s.law, time, tolerance)};
+  return {quantities::slide_distribution(s.systems, s.distribution, time, tolerance),
+          quantities::stick_distribution(s.systems.process(), s.entry(), time),
+          quantities::excursion_distribution(s.systems, s.distribution, time, tolerance)};
 }
 
-constexpr DurationLaw Laws::*kAll[] = {&Laws::slide, &Laws::stick, &Laws::excursion};
+constexpr DurationDistribution Laws::*kAll[] = {&Laws::slide, &Laws::stick, &Laws::excursion};
 constexpr const char* kNames[] = {"slide", "stick", "excursion"};
 
 constexpr double kFirstTime = 1e-9;  // densities are constant before
@@ -64,7 +64,7 @@ test::Quadrature all_times(double last) { return test::logarithmic_panels(kFirst
 
 /// int weight f over all times, and the errors that the density states.
 template <class Weight>
-Uncertain integral(const test::Quadrature& q, const DurationLaw& law, Weight weight) {
+Uncertain integral(const test::Quadrature& q, const DurationDistribution& law, Weight weight) {
   const auto sum_of = [&](double Uncertain::*part) {
     return q.sum([&](std::size_t n) { return weight(q.node[n]) * law.density[n].*part; });
   };
@@ -81,8 +81,8 @@ void check_moment(Uncertain found, double known, double relative) {
 // c exp(-A t) b by time steps.
 std::vector<double> stepped(const KolmogorovOperator& a, const petsc::VecHandle& b, Vec c,
                             const std::vector<double>& time, double tolerance) {
-  petsc::Ledger ledger;
-  petsc::TimeStepper stepper(a.matrix(), b, "test_", tolerance, ledger);
+  petsc::SolverStatistics statistics;
+  petsc::TimeStepper stepper(a.matrix(), b, "test_", tolerance, statistics);
   std::vector<double> values;
   for (double t : time) {
     PetscScalar value = 0;
@@ -96,7 +96,7 @@ std::vector<double> stepped(const KolmogorovOperator& a, const petsc::VecHandle&
 std::vector<double> stepped_slide(Solved& s, const std::vector<double>& time, double tolerance) {
   const auto& process = s.systems.process();
   const KolmogorovOperator a(s.systems.comm(), s.systems.discretisation(), 0.0, Symmetry::even,
-                             Rest::killing);
+                             StaticPhase::killing);
   const auto levels = 2 * static_cast<std::size_t>(process.static_index()) + 1;
   const auto ends = a.from_rest(std::vector<PetscScalar>(levels, 1.0));
   return stepped(a, ends, a.trace_at_exit(), time, tolerance);
@@ -105,8 +105,8 @@ std::vector<double> stepped_slide(Solved& s, const std::vector<double>& time, do
 std::vector<double> stepped_excursion(Solved& s, const std::vector<double>& time,
                                       double tolerance) {
   const KolmogorovOperator a(s.systems.comm(), s.systems.discretisation(), 0.0, Symmetry::even,
-                             Rest::killed_on_exit);
-  const auto ends = a.exit_rates(Half::upper), down = a.exit_rates(Half::lower);
+                             StaticPhase::killed_on_exit);
+  const auto ends = a.exit_rates(Branch::positive), down = a.exit_rates(Branch::negative);
   check(VecAXPY(ends, 1, down));
   return stepped(a, ends, a.trace_at_exit(), time, tolerance);
 }
@@ -243,8 +243,8 @@ TEST_CASE("durations: errors of distributions and densities cover finer models",
           return std::abs(one.value - other.value) / (one.error + other.error + 1e-12);
         };
         INFO(name << ", " << kNames[which] << " at " << time[n]);
-        CHECK(change(&DurationLaw::density) < 10);
-        CHECK(change(&DurationLaw::distribution) < 10);
+        CHECK(change(&DurationDistribution::density) < 10);
+        CHECK(change(&DurationDistribution::distribution) < 10);
       }
     }
   }
@@ -265,7 +265,7 @@ TEST_CASE("durations: upwind equals dense exponentials on the whole grid", "[par
     const int k = process.static_index();
     const DenseDurations slide(grid, k, DenseDurations::Ends::at_rest);
     const DenseDurations excursion(grid, k, DenseDurations::Ends::after_rest);
-    Solved s({process, std::make_shared<velocity::UpwindAxis>(spacing, c.nodes, c.drag)});
+    Solved s({process, std::make_shared<velocity::UpwindDiscretisation>(spacing, c.nodes, c.drag)});
     const auto all = laws(s, time, 1e-10);
     for (std::size_t n = 0; n < time.size(); ++n) {
       INFO("mu_d " << c.mu_d << " time " << time[n]);
@@ -297,7 +297,7 @@ TEST_CASE("durations: time steps give the same densities") {
 TEST_CASE("durations: time steps on hp elements give the same excursions") {
   const std::vector<double> time{0.1, 0.5, 2, 8};
   Solved s(test::on_hp(scene(1, 0.25, 1, 0.5, {1, 0}), 7, 1e-9));
-  const auto law = quantities::excursion_law(s.systems, s.law, time, 1e-8);
+  const auto law = quantities::excursion_distribution(s.systems, s.distribution, time, 1e-8);
   const auto steps = stepped_excursion(s, time, 1e-8);
   for (std::size_t n = 0; n < time.size(); ++n) {
     INFO("time " << time[n]);
@@ -312,7 +312,7 @@ TEST_CASE("durations: a stay starts to end at the rate of its edges") {
     const auto entry = s.entry();
     const double rate = d.process.noise.rate() * (d.process.noise.up(k) * entry.back().value +
                                                   d.process.noise.down(-k) * entry[0].value);
-    const auto law = quantities::stick_law(d.process, entry, {0});
+    const auto law = quantities::stick_distribution(d.process, entry, {0});
     INFO(name);
     CHECK(relative_difference(law.density[0].value, rate) < 1e-14);
     CHECK(law.distribution[0].value == 0);
@@ -338,7 +338,7 @@ TEST_CASE("durations: stays by dense exponentials, right relative to their size"
     std::vector<Uncertain> entry(static_cast<std::size_t>(left), Uncertain{0, 0});
     entry[middle] = {1, 0};
     const std::vector<double> time{20, 0.5, 3, 1e-3, 0.02};  // in any order
-    const auto law = quantities::stick_law(process, entry, time);
+    const auto law = quantities::stick_distribution(process, entry, time);
     for (std::size_t n = 0; n < time.size(); ++n) {
       const auto flow = test::exponential(q, time[n]);
       const double shift = std::exp(-rate * time[n]);
@@ -359,7 +359,7 @@ TEST_CASE("durations: stays end in the end, and errors of the entry law go on") 
   const auto k = static_cast<std::size_t>(process.static_index());
   const double even = 1 / (2 * static_cast<double>(k) + 1);
   const std::vector<Uncertain> entry(2 * k + 1, Uncertain{even, 1e-9 * even});
-  const auto law = quantities::stick_law(process, entry, {1e4, 1, 10});
+  const auto law = quantities::stick_distribution(process, entry, {1e4, 1, 10});
   CHECK(law.distribution[0].value == Approx(1).epsilon(1e-11));
   CHECK(law.distribution[1].value < law.distribution[2].value);
   CHECK(law.distribution[2].value < law.distribution[0].value);
@@ -386,13 +386,16 @@ TEST_CASE("durations: the density of slides tends to its value at 0") {
   for (double mu : {1.1, 1.25}) {
     Solved s(test::on_hp(scene(mu, mu, 1, 0.5, {1, 0}), 16));
     const double t = 1e-3;
-    const auto f = quantities::slide_law(s.systems, s.law, {t, 2 * t, 4 * t, 0.1, 1}, 1e-8).density;
+    const auto f =
+        quantities::slide_distribution(s.systems, s.distribution, {t, 2 * t, 4 * t, 0.1, 1}, 1e-8)
+            .density;
     const double limit = (8 * f[0].value - 6 * f[1].value + f[2].value) / 3;
     CHECK(relative_difference(limit, f_slide_at(s.systems.process())) < 1e-5);
   }
   // With mu_d on a level of the noise nothing ends at once.
   Solved s(test::on_hp(scene(1, 1, 1, 0.5, {1, 0}), 12));
-  const auto f = quantities::slide_law(s.systems, s.law, {1e-5, 1e-3, 0.1, 1}, 1e-8).density;
+  const auto f =
+      quantities::slide_distribution(s.systems, s.distribution, {1e-5, 1e-3, 0.1, 1}, 1e-8).density;
   CHECK(std::abs(f[0].value) < 1e-3);
   CHECK(f[1].value > 50 * f[0].value);
 }
@@ -403,7 +406,7 @@ TEST_CASE("durations: means are those of the stationary law, and moments are pos
                         test::on_upwind(scene(1, 1, 1, 0.5, {0, 0}), 2)}) {
     Solved s(d);
     const auto m = quantities::duration_moments(s.systems, s.entry());
-    const auto& e = s.law.excursion();
+    const auto& e = s.distribution.excursion();
     CHECK(relative_difference(m.mean_slide.value, e.mean_slide()) < 1e-12);
     CHECK(relative_difference(m.mean_stick.value, e.mean_stick()) < 1e-12);
     CHECK(relative_difference(m.mean_excursion.value, e.mean_excursion()) < 1e-12);

@@ -77,10 +77,10 @@ TEST_CASE("excursion: ratios of sums, by hand") {
 
 TEST_CASE("excursion: a drift is a difference, exact to the size of E|V|") {
   Excursion e = by_hand();
-  Results folded, both;
-  quantities::append_moments(on_levels(), e, folded);
-  CHECK(folded.back().value[0] == 0);
-  CHECK(folded.back().error[0] == 0);
+  Results symmetry_reduced, both;
+  quantities::append_moments(on_levels(), e, symmetry_reduced);
+  CHECK(symmetry_reduced.back().value[0] == 0);
+  CHECK(symmetry_reduced.back().error[0] == 0);
   e.slide_drift = {0.5, 0, 0, 0, 0, 0, -1};
   quantities::append_moments(on_levels(), e, both);
   CHECK(both.back().value[0] == Approx(-0.5 / 118));
@@ -89,7 +89,7 @@ TEST_CASE("excursion: a drift is a difference, exact to the size of E|V|") {
 
 TEST_CASE("excursion: closed forms of the noise have the rounding of its sums") {
   Results results;
-  quantities::append_noise_law(process(), results);
+  quantities::append_noise_distribution(process(), results);
   const double rounding = model::rounding_of_sums(process().noise);
   CHECK(rounding >= std::numeric_limits<double>::epsilon());
   for (const auto& r : results) CHECK(r.error[0] == Approx(rounding * r.value[0]));

@@ -21,21 +21,21 @@ namespace {
 class Durations {
  public:
   explicit Durations(const test::Discrete& d)
-      : systems_(PETSC_COMM_WORLD, d, ledger_), law_(systems_) {}
+      : systems_(PETSC_COMM_WORLD, d, statistics_), distribution_(systems_) {}
 
   [[nodiscard]] DurationTransforms at(double lambda) {
     std::vector<Uncertain> entry;
-    for (double p : law_.excursion().entry) entry.push_back({p, 0});
+    for (double p : distribution_.excursion().entry) entry.push_back({p, 0});
     const auto t = quantities::slide_transforms(systems_, lambda);
     systems_.release(lambda, operators::Symmetry::even);
     return {t.slide, quantities::stick_transform(systems_.process(), lambda, entry), t.excursion};
   }
-  [[nodiscard]] const quantities::Excursion& means() const { return law_.excursion(); }
+  [[nodiscard]] const quantities::Excursion& means() const { return distribution_.excursion(); }
 
  private:
-  petsc::Ledger ledger_;
+  petsc::SolverStatistics statistics_;
   Systems systems_;
-  quantities::StationaryLaw law_;
+  quantities::StationaryDistribution distribution_;
 };
 
 const std::vector<model::Scene>& sample_scenes() {
@@ -57,10 +57,10 @@ std::vector<test::Discrete> sample_discretisations() {
 // Durations without drag, with nothing of the discretisations in v.
 DurationTransforms exact_transforms(const model::Process& process, double lambda) {
   const exact::FluidQueue queue(process), killed(process, lambda);
-  const auto stay =
+  const auto sticking =
       operators::StaticChain(process.noise, process.static_index(), lambda).exit_transform();
   const auto dot = [&](const std::vector<double>& p) {
-    return Uncertain{std::inner_product(p.begin(), p.end(), stay.begin(), 0.0), 0};
+    return Uncertain{std::inner_product(p.begin(), p.end(), sticking.begin(), 0.0), 0};
   };
   return {{killed.slide_transform(), 0}, dot(queue.entry()), dot(killed.entry())};
 }

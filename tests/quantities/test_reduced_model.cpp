@@ -6,7 +6,7 @@
 #include "stickslip/quantities/reduced_model.hpp"
 
 using namespace stickslip;
-using operators::Rest;
+using operators::StaticPhase;
 using operators::Symmetry;
 using quantities::Answers;
 using quantities::Questions;
@@ -41,11 +41,11 @@ class Scripted {
  private:
   std::unique_ptr<ReducedModel> made(int most_pairs) {
     auto odd = operators::assemble(PETSC_COMM_WORLD, solved_.systems.discretisation(), 0,
-                                   Symmetry::odd, Rest::kept, solved_.ledger);
+                                   Symmetry::odd, StaticPhase::kept, solved_.statistics);
     const petsc::VecHandle b = odd.values([](double, double, double v) { return v; }),
-                           c = solved_.law.weighted_velocity(odd),
-                           weight = solved_.law.weight_on(odd);
-    return std::make_unique<ReducedModel>(solved_.systems, std::move(odd), Rest::kept,
+                           c = solved_.distribution.weighted_velocity(odd),
+                           weight = solved_.distribution.weight_on(odd);
+    return std::make_unique<ReducedModel>(solved_.systems, std::move(odd), StaticPhase::kept,
                                           quantities::Ends{b, c, weight},
                                           ReducedModel::Nature::smooth, most_pairs);
   }

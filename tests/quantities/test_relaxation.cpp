@@ -26,8 +26,8 @@ struct Case {
 };
 
 std::vector<RelaxationMode> solve(const Case& c) {
-  petsc::Ledger ledger;
-  Systems systems(PETSC_COMM_WORLD, c.discrete, ledger);
+  petsc::SolverStatistics statistics;
+  Systems systems(PETSC_COMM_WORLD, c.discrete, statistics);
   return quantities::relaxation_modes(systems, c.symmetry);
 }
 
@@ -110,9 +110,10 @@ double largest_modulus(const RelaxationMode& mode) {
 }
 
 // pi(phi) by the density of the stationary law; no state may be missing there.
-std::complex<double> average(const quantities::DensityField& density, const velocity::Axis& axis,
+std::complex<double> average(const quantities::DensityField& density,
+                             const velocity::VelocityDiscretisation& velocities,
                              const RelaxationMode& mode) {
-  const std::size_t half = axis.nodes().size();
+  const std::size_t half = velocities.nodes().size();
   const int n = static_cast<int>(density.atom.size() / 2);
   const int k = static_cast<int>(mode.at_rest.size() / 2);
   const auto& pdf = density.pdf.local_rows();
@@ -120,7 +121,7 @@ std::complex<double> average(const quantities::DensityField& density, const velo
   std::size_t at = 0;
   std::complex<double> sum = 0;
   for_each_value(mode.real, [&](int, std::size_t j, double value) {
-    const double weight = axis.weights()[j < half ? half - 1 - j : j - half];
+    const double weight = velocities.weights()[j < half ? half - 1 - j : j - half];
     sum += weight * pdf[at] * std::complex<double>(value, imaginary[at]);
     ++at;
   });
@@ -172,13 +173,13 @@ TEST_CASE("relaxation: slowest modes first, of one parity and largest modulus 1"
 // pi(L f) = 0 for every f, so that pi(phi) = 0 for every mode; odd ones have no average anyway.
 TEST_CASE("relaxation: modes have no stationary average", "[parallel]") {
   for (const auto& c : sample_cases()) {
-    const auto& axis = c.discrete.axis;
-    if (axis->keeps_origin() || c.symmetry == Symmetry::odd) continue;
-    petsc::Ledger ledger;
-    Systems systems(PETSC_COMM_WORLD, c.discrete, ledger);
-    const auto density = quantities::density_field(quantities::StationaryLaw(systems));
+    const auto& velocities = c.discrete.velocities;
+    if (velocities->keeps_origin() || c.symmetry == Symmetry::odd) continue;
+    petsc::SolverStatistics statistics;
+    Systems systems(PETSC_COMM_WORLD, c.discrete, statistics);
+    const auto density = quantities::density_field(quantities::StationaryDistribution(systems));
     REQUIRE(std::abs(density.cut_mass) < 1e-12);
-    for (const auto& mode : solve(c)) CHECK(std::abs(average(density, *axis, mode)) < 1e-11);
+    for (const auto& mode : solve(c)) CHECK(std::abs(average(density, *velocities, mode)) < 1e-11);
   }
 }
 

@@ -10,8 +10,8 @@
 #include "stickslip/quantities/stationary.hpp"
 
 using namespace stickslip;
-using operators::Half;
-using operators::Rest;
+using operators::Branch;
+using operators::StaticPhase;
 using operators::Symmetry;
 using operators::Systems;
 using petsc::check;
@@ -36,9 +36,9 @@ class Direct {
  public:
   Direct(Systems& systems, double lambda)
       : lambda_(lambda),
-        system_(systems.at(lambda, Symmetry::none, Rest::kept)),
-        upper_(system_.a().trace_at_exit(Half::upper)),
-        lower_(system_.a().trace_at_exit(Half::lower)) {}
+        system_(systems.at(lambda, Symmetry::none, StaticPhase::kept)),
+        upper_(system_.a().trace_at_exit(Branch::positive)),
+        lower_(system_.a().trace_at_exit(Branch::negative)) {}
 
   struct Parts {
     double even_by_lambda, odd;
@@ -79,8 +79,8 @@ const std::vector<model::Scene>& sample_scenes() {
 
 /// Systems of one discretisation, with what must outlive them.
 struct Discretised {
-  explicit Discretised(const test::Discrete& d) : systems(PETSC_COMM_WORLD, d, ledger) {}
-  petsc::Ledger ledger;
+  explicit Discretised(const test::Discrete& d) : systems(PETSC_COMM_WORLD, d, statistics) {}
+  petsc::SolverStatistics statistics;
   Systems systems;
 };
 
@@ -95,7 +95,8 @@ std::vector<test::Discrete> sample_discretisations() {
 
 }  // namespace
 
-// The folded problems of Prop. 3.1, static values first, against one unfolded solve.
+// The symmetry-reduced problems of Prop. 3.1, static values first, against one with both branches
+// solve.
 TEST_CASE("resolvent: the representation formula gives the resolvent of the whole process") {
   const auto f = observables({"v^2", "stick", "v", "x*v+v"});
   for (const auto& d : sample_discretisations()) {
@@ -134,10 +135,10 @@ TEST_CASE("resolvent: pi at lambda = 0 are the stationary averages", "[parallel]
   const auto f = observables({"stick", "v^2", "|v|", "x*v"});
   for (const auto& d : sample_discretisations()) {
     Discretised made(d);
-    const quantities::StationaryLaw law(made.systems);
+    const quantities::StationaryDistribution distribution(made.systems);
     quantities::Results known;
-    quantities::append_sticking(law.excursion(), known);
-    quantities::append_moments(d, law.excursion(), known);
+    quantities::append_sticking(distribution.excursion(), known);
+    quantities::append_moments(d, distribution.excursion(), known);
     const auto value = [&known](const std::string& key) {
       const auto same = [&key](const auto& result) { return result.key == key; };
       return std::find_if(known.begin(), known.end(), same)->value[0];

@@ -29,20 +29,21 @@ Values by_key(const Results& results) {
 Values scalars(const model::Scene& s) {
   const Solved solved(test::on_hp(s, kDegree));
   Results results;
-  quantities::append_sticking(solved.law.excursion(), results);
-  quantities::append_moments(solved.law.discretisation(), solved.law.excursion(), results);
-  quantities::append_noise_law(solved.law.process(), results);
+  quantities::append_sticking(solved.distribution.excursion(), results);
+  quantities::append_moments(solved.distribution.discretisation(), solved.distribution.excursion(),
+                             results);
+  quantities::append_noise_distribution(solved.distribution.process(), results);
   return by_key(results);
 }
 
 Values derivatives(const model::Scene& s) {
   Solved solved(test::on_hp(s, kDegree));
-  const quantities::Sensitivity sensitivity(solved.systems, solved.law,
+  const quantities::Sensitivity sensitivity(solved.systems, solved.distribution,
                                             quantities::parameters_of(s));
   Results results;
   sensitivity.append_sticking(results);
   sensitivity.append_moments(results);
-  quantities::append_noise_sensitivity(solved.law.process(), results);
+  quantities::append_noise_sensitivity(solved.distribution.process(), results);
   return by_key(results);
 }
 
@@ -103,15 +104,15 @@ TEST_CASE("sensitivity: adjoints agree with extrapolated differences", "[slow][r
 TEST_CASE("sensitivity: one factorisation, one solve a functional") {
   const auto s = scene(1, 0.25, 1, 0.5, {1, 0});
   Solved solved(test::on_hp(s, 4));
-  const auto before = solved.ledger;
-  const quantities::Sensitivity sensitivity(solved.systems, solved.law,
+  const auto before = solved.statistics;
+  const quantities::Sensitivity sensitivity(solved.systems, solved.distribution,
                                             quantities::parameters_of(s));
-  CHECK(solved.ledger.solves - before.solves == 2);
-  CHECK(solved.ledger.assemblies - before.assemblies == 3);
-  CHECK(solved.ledger.factorizations_real + solved.ledger.factorizations_complex == 1);
+  CHECK(solved.statistics.solves - before.solves == 2);
+  CHECK(solved.statistics.assemblies - before.assemblies == 3);
+  CHECK(solved.statistics.factorizations_real + solved.statistics.factorizations_complex == 1);
   Results results;
   sensitivity.append_moments(results);
-  CHECK(solved.ledger.solves - before.solves == 5);
+  CHECK(solved.statistics.solves - before.solves == 5);
   CHECK(results.size() == 9);
 }
 

@@ -10,7 +10,7 @@
 #include "stickslip/quantities/spectrum.hpp"
 
 using namespace stickslip;
-using quantities::DurationLaw;
+using quantities::DurationDistribution;
 using test::Excursions;
 using test::scene;
 using test::SimulatedProcess;
@@ -69,9 +69,10 @@ double p_value(const std::vector<double>& values, const std::vector<double>& end
 std::vector<double> p_values(Solved& s, const Excursions& pilot, const Excursions& judged) {
   const auto slide = bin_ends(pilot.slide), stick = bin_ends(pilot.stick),
              excursion = bin_ends(pilot.excursion);
-  const auto of_slide = quantities::slide_law(s.systems, s.law, slide, 1e-7);
-  const auto of_stick = quantities::stick_law(s.systems.process(), s.entry(), stick);
-  const auto of_excursion = quantities::excursion_law(s.systems, s.law, excursion, 1e-7);
+  const auto of_slide = quantities::slide_distribution(s.systems, s.distribution, slide, 1e-7);
+  const auto of_stick = quantities::stick_distribution(s.systems.process(), s.entry(), stick);
+  const auto of_excursion =
+      quantities::excursion_distribution(s.systems, s.distribution, excursion, 1e-7);
   return {p_value(judged.slide, slide, of_slide.distribution),
           p_value(judged.stick, stick, of_stick.distribution),
           p_value(judged.excursion, excursion, of_excursion.distribution)};
@@ -129,14 +130,14 @@ TEST_CASE("simulation: time at rest, means, and the tail of the spectrum within 
     Solved s(discrete(c.process, 10));
     const auto found = Simulation(c.process, 10 + c.seed).run(kCount / 2);
     const std::vector<double> ones(found.slide.size(), 1.0);
-    const auto& e = s.law.excursion();
+    const auto& e = s.distribution.excursion();
     INFO(c.name);
     CHECK(deviation(ratio(found.stick, found.excursion), e.mean_stick() / e.mean_excursion()) < 4);
     CHECK(deviation(ratio(found.slide, ones), e.mean_slide()) < 4);
     CHECK(deviation(ratio(found.stick, ones), e.mean_stick()) < 4);
     // omega^4 S_v far out: squared jumps of the acceleration by time.
     const double omega = 1e7;
-    const auto r = quantities::reduced_spectrum(s.systems, s.law, {omega}, 1e-7);
+    const auto r = quantities::reduced_spectrum(s.systems, s.distribution, {omega}, 1e-7);
     const double tail = r.spectrum.value[0].value * std::pow(omega, 4);
     CHECK(deviation(ratio(found.square_of_jumps, found.excursion), tail) < 4);
   }

@@ -9,7 +9,7 @@
 #include "../common/solved.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/quantities/spectrum.hpp"
-#include "stickslip/velocity/upwind_axis.hpp"
+#include "stickslip/velocity/upwind_discretisation.hpp"
 
 using namespace stickslip;
 using quantities::ReducedSpectrum;
@@ -23,7 +23,7 @@ namespace {
 constexpr bool kComplex = PetscDefined(USE_COMPLEX);
 
 ReducedSpectrum reduced(Solved& s, const std::vector<double>& omega, double tolerance) {
-  return quantities::reduced_spectrum(s.systems, s.law, omega, tolerance);
+  return quantities::reduced_spectrum(s.systems, s.distribution, omega, tolerance);
 }
 
 // Digits as printed: off by no more than half a unit of the last one, and a little.
@@ -138,14 +138,14 @@ TEST_CASE("spectrum: known values by complex solves") {
   if (!kComplex) return;
   for (const auto& table : known_values()) {
     Solved s(test::on_hp(scene(1, 0.25, 1, table.delta, {1, 0}), 9));
-    const auto direct =
-        quantities::direct_spectrum(PETSC_COMM_WORLD, s.systems, s.law, frequencies(table));
+    const auto direct = quantities::direct_spectrum(PETSC_COMM_WORLD, s.systems, s.distribution,
+                                                    frequencies(table));
     for (std::size_t n = 0; n < table.values.size(); ++n) {
       INFO("delta " << table.delta << " omega " << table.values[n].omega);
       CHECK(is(direct.value[n].value, table.values[n]));
     }
     CHECK(direct.at_zero.value == Approx(direct.value[0].value).epsilon(1e-14));
-    CHECK(s.ledger.factorizations_complex >= 5);
+    CHECK(s.statistics.factorizations_complex >= 5);
   }
 }
 
@@ -155,7 +155,8 @@ TEST_CASE("spectrum: the reduced model agrees with complex solves, within its er
   for (const auto& [name, d] : samples()) {
     Solved s(d);
     const auto r = reduced(s, omega, 1e-9);
-    const auto direct = quantities::direct_spectrum(PETSC_COMM_WORLD, s.systems, s.law, omega);
+    const auto direct =
+        quantities::direct_spectrum(PETSC_COMM_WORLD, s.systems, s.distribution, omega);
     for (std::size_t n = 0; n < omega.size(); ++n) {
       const Uncertain one = r.spectrum.value[n], other = direct.value[n];
       INFO(name << " omega " << omega[n] << " error " << one.error / one.value);
@@ -178,8 +179,9 @@ TEST_CASE("spectrum: complex solves on several ranks give what one gives", "[par
   const auto d = test::on_hp(scene(1, 0.25, 1, 0.5, {1, 0}), 6, 1e-9);
   Solved alone(d, PETSC_COMM_SELF), together(d);
   const auto shared =
-      quantities::direct_spectrum(PETSC_COMM_WORLD, alone.systems, alone.law, omega);
-  const auto own = quantities::direct_spectrum(PETSC_COMM_SELF, alone.systems, alone.law, omega);
+      quantities::direct_spectrum(PETSC_COMM_WORLD, alone.systems, alone.distribution, omega);
+  const auto own =
+      quantities::direct_spectrum(PETSC_COMM_SELF, alone.systems, alone.distribution, omega);
   const auto r = reduced(together, omega, 1e-9);
   REQUIRE(shared.value.size() == omega.size());
   for (std::size_t n = 0; n < omega.size(); ++n) {
@@ -201,7 +203,7 @@ TEST_CASE("spectrum: upwind equals dense solves on the whole grid") {
     const model::Process process{{c.tau, 0.5, c.levels}, {c.mu_s, c.mu_d}, c.drag};
     const double spacing = 0.25;
     const DenseSpectrum dense(process, spacing, c.nodes);
-    Solved s({process, std::make_shared<velocity::UpwindAxis>(spacing, c.nodes, c.drag)});
+    Solved s({process, std::make_shared<velocity::UpwindDiscretisation>(spacing, c.nodes, c.drag)});
     const std::vector<double> omega{0.05, 0.9 / c.tau, 1.1 / c.tau, 8};
     const auto r = reduced(s, omega, 1e-11);
     for (std::size_t n = 0; n < omega.size(); ++n) {
@@ -227,7 +229,7 @@ TEST_CASE("spectrum: omega^4 S_v is constant far out") {
       CHECK(relative_difference(scaled(n), scaled(4)) < 1e-6);
     }
     // Every noise jump while the body slides, and more: 2/tau^2 P_slide at least.
-    const auto& e = s.law.excursion();
+    const auto& e = s.distribution.excursion();
     const double tau = d.process.noise.tau;
     CHECK(scaled(4) > 2 / (tau * tau) * e.mean_slide() / e.mean_excursion());
   }

@@ -7,11 +7,11 @@
 #include "stickslip/accuracy/resolution.hpp"
 #include "stickslip/quantities/density.hpp"
 #include "stickslip/quantities/stationary.hpp"
-#include "stickslip/velocity/upwind_axis.hpp"
+#include "stickslip/velocity/upwind_discretisation.hpp"
 
 using namespace stickslip;
 using operators::Systems;
-using quantities::StationaryLaw;
+using quantities::StationaryDistribution;
 using test::relative_difference;
 
 namespace {
@@ -29,22 +29,22 @@ double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-double moment(const StationaryLaw& law, const char* key) {
+double moment(const StationaryDistribution& distribution, const char* key) {
   quantities::Results results;
-  quantities::append_sticking(law.excursion(), results);
-  quantities::append_moments(law.discretisation(), law.excursion(), results);
+  quantities::append_sticking(distribution.excursion(), results);
+  quantities::append_moments(distribution.discretisation(), distribution.excursion(), results);
   for (const auto& r : results) {
     if (r.key == key) return r.value[0];
   }
   throw std::invalid_argument(key);
 }
 
-StationaryLaw solve(const model::Scene& s, const accuracy::Resolution& resolution) {
-  petsc::Ledger ledger;
-  Systems systems(PETSC_COMM_WORLD, accuracy::discretise(s, resolution), ledger);
-  StationaryLaw law(systems);
-  law.orient(systems);
-  return law;
+StationaryDistribution solve(const model::Scene& s, const accuracy::Resolution& resolution) {
+  petsc::SolverStatistics statistics;
+  Systems systems(PETSC_COMM_WORLD, accuracy::discretise(s, resolution), statistics);
+  StationaryDistribution distribution(systems);
+  distribution.orient(systems);
+  return distribution;
 }
 
 const std::vector<model::Scene>& sample_scenes() {
@@ -66,7 +66,8 @@ std::vector<accuracy::Resolution> sample_resolutions(const model::Scene& s) {
 
 }  // namespace
 
-// The folded excursion against the whole grid of the paper: no folding, no excursions, no PETSc.
+// The symmetry-reduced excursion against the whole grid of the paper: no folding, no excursions, no
+// PETSc.
 TEST_CASE("stationary law: upwind equals the null vector of the unfolded generator") {
   struct Case {
     double mu_s, mu_d, delta;
@@ -77,7 +78,7 @@ TEST_CASE("stationary law: upwind equals the null vector of the unfolded generat
                         Case{1, 1, 0.5, 5, 2, {1, 0.5}}, Case{0.9, 0.6, 0.5, 4, 2, {3, 0}}}) {
     const model::Process process{{1, c.delta, c.levels}, {c.mu_s, c.mu_d}, c.drag};
     const double spacing = c.delta / c.points;
-    const double end = process.drag.terminal_velocity(process.excess(c.levels));
+    const double end = process.drag.terminal_velocity(process.net_force(c.levels));
     const int nodes = static_cast<int>(std::ceil(end / spacing * (1 - 1e-12)));
     const test::FullGrid grid(process, spacing, nodes);
     const auto pi = grid.stationary();
@@ -87,16 +88,17 @@ TEST_CASE("stationary law: upwind equals the null vector of the unfolded generat
       square += pi[state] * v * v;
     });
 
-    petsc::Ledger ledger;
-    const auto axis = std::make_shared<velocity::UpwindAxis>(spacing, nodes, process.drag);
-    Systems systems(PETSC_COMM_WORLD, {process, axis}, ledger);
-    StationaryLaw law(systems);
-    law.orient(systems);
-    CHECK(relative_difference(moment(law, "P_stick"), stick) < 1e-11);
-    CHECK(relative_difference(moment(law, "E_V2"), square) < 1e-11);
+    petsc::SolverStatistics statistics;
+    const auto velocities =
+        std::make_shared<velocity::UpwindDiscretisation>(spacing, nodes, process.drag);
+    Systems systems(PETSC_COMM_WORLD, {process, velocities}, statistics);
+    StationaryDistribution distribution(systems);
+    distribution.orient(systems);
+    CHECK(relative_difference(moment(distribution, "P_stick"), stick) < 1e-11);
+    CHECK(relative_difference(moment(distribution, "E_V2"), square) < 1e-11);
 
     quantities::Results entry;
-    quantities::append_entry_law(process, law.excursion(), entry);
+    quantities::append_hitting_distribution(process, distribution.excursion(), entry);
     const int k = process.static_index();
     for (int i = -k; i <= k; ++i) {
       const double expected = grid.mean_at_rest([&](int at) { return at == i ? 1.0 : 0.0; });
@@ -108,13 +110,14 @@ TEST_CASE("stationary law: upwind equals the null vector of the unfolded generat
 TEST_CASE("stationary law: sliding ends somewhere, and X keeps its own law", "[parallel]") {
   for (const auto& s : sample_scenes()) {
     for (const auto& resolution : sample_resolutions(s)) {
-      const auto law = solve(s, resolution);
+      const auto distribution = solve(s, resolution);
       INFO("mu_d " << s.friction.mu_d << " degree " << resolution.degree << " p "
                    << resolution.points);
-      CHECK(std::abs(sum(law.excursion().entry) - 1) < 1e-11);
-      CHECK(law.excursion().conservation_defect(law.discretisation()) < 1e-11);
-      const auto marginal = marginal_of_noise(law.discretisation(), law.excursion());
-      const auto noise = model::stationary_law(law.process().noise);
+      CHECK(std::abs(sum(distribution.excursion().entry) - 1) < 1e-11);
+      CHECK(distribution.excursion().conservation_defect(distribution.discretisation()) < 1e-11);
+      const auto marginal =
+          marginal_of_noise(distribution.discretisation(), distribution.excursion());
+      const auto noise = model::stationary_distribution(distribution.process().noise);
       for (std::size_t n = 0; n < noise.size(); ++n) {
         CHECK(marginal[n] == Approx(noise[n]).epsilon(1e-10).margin(1e-14));
       }
@@ -126,10 +129,10 @@ TEST_CASE("stationary law: sliding ends somewhere, and X keeps its own law", "[p
 TEST_CASE("stationary law: power put in by the noise equals power dissipated", "[parallel]") {
   for (const auto& s : sample_scenes()) {
     if (s.drag.cubic > 0) continue;  // would need E[V^4]
-    const auto law = solve(s, accuracy::hp_resolution(s, 13, 0, 1e-15));
-    const double dissipated =
-        s.friction.mu_d * moment(law, "E_absV") + s.drag.linear * moment(law, "E_V2");
-    CHECK(relative_difference(moment(law, "E_XV"), dissipated) < 1e-11);
+    const auto distribution = solve(s, accuracy::hp_resolution(s, 13, 0, 1e-15));
+    const double dissipated = s.friction.mu_d * moment(distribution, "E_absV") +
+                              s.drag.linear * moment(distribution, "E_V2");
+    CHECK(relative_difference(moment(distribution, "E_XV"), dissipated) < 1e-11);
   }
 }
 
@@ -143,8 +146,9 @@ TEST_CASE("stationary law: P(|X| <= mu_s) summed over the grid at every scheme a
                                                 accuracy::hp_resolution(s, 8, 0, 1e-8)};
   for (int p : {1, 2, 7, 64}) resolutions.push_back(accuracy::upwind_resolution(s, p, 1e-8));
   for (const auto& resolution : resolutions) {
-    const auto law = solve(s, resolution);
-    const auto marginal = marginal_of_noise(law.discretisation(), law.excursion());
+    const auto distribution = solve(s, resolution);
+    const auto marginal =
+        marginal_of_noise(distribution.discretisation(), distribution.excursion());
     double within = 0;
     for (int i = -k; i <= k; ++i) within += marginal[*s.noise_levels + i];
     CHECK(std::abs(within - closed) < 1e-12);
@@ -154,12 +158,13 @@ TEST_CASE("stationary law: P(|X| <= mu_s) summed over the grid at every scheme a
 TEST_CASE("density: integrates to the law it came from", "[parallel]") {
   const auto s = scene(1, 0.25, 1, 0.25, {1, 0});
   for (const auto& resolution : sample_resolutions(s)) {
-    const auto law = solve(s, resolution);
-    const auto field = quantities::density_field(law);
+    const auto distribution = solve(s, resolution);
+    const auto field = quantities::density_field(distribution);
     const std::size_t half = field.pdf.v().size() / 2;
     std::vector<double> weights(field.pdf.v().size());
     for (std::size_t j = 0; j < half; ++j) {
-      weights[half + j] = weights[half - 1 - j] = law.discretisation().axis->weights()[j];
+      weights[half + j] = weights[half - 1 - j] =
+          distribution.discretisation().velocities->weights()[j];
     }
     CHECK(std::is_sorted(field.pdf.v().begin(), field.pdf.v().end()));
     double sliding = 0;
@@ -167,11 +172,12 @@ TEST_CASE("density: integrates to the law it came from", "[parallel]") {
       sliding += weights[j] * field.velocity_marginal[j];
     }
     const double stick = sum(field.atom);
-    CHECK(stick == Approx(moment(law, "P_stick")).epsilon(1e-12));
-    if (law.discretisation().axis->keeps_origin()) continue;  // its states at v = 0 are no density
+    CHECK(stick == Approx(moment(distribution, "P_stick")).epsilon(1e-12));
+    if (distribution.discretisation().velocities->keeps_origin())
+      continue;  // its states at v = 0 are no density
     CHECK(sliding + stick + field.cut_mass == Approx(1).epsilon(1e-11));
     // Each row integrates to P(X = x_i) less its atom, from both halves.
-    const int n = law.process().noise.levels;
+    const int n = distribution.process().noise.levels;
     for (std::size_t r = 0; r < field.pdf.local_levels().size(); ++r) {
       const std::size_t level = static_cast<std::size_t>(field.pdf.local_levels()[r] + n);
       double mass = field.atom[level];

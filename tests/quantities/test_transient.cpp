@@ -8,7 +8,7 @@
 #include "../common/solved.hpp"
 #include "stickslip/quantities/spectrum.hpp"
 #include "stickslip/quantities/transient.hpp"
-#include "stickslip/velocity/upwind_axis.hpp"
+#include "stickslip/velocity/upwind_discretisation.hpp"
 
 using namespace stickslip;
 using quantities::StartState;
@@ -47,7 +47,8 @@ double at_start(const model::Process& process, const model::Observable& f, const
 std::vector<Uncertain> expectation(Solved& s, const model::Observable& f, const StartState& start,
                                    const std::vector<double>& time, TransientMethod method,
                                    double tolerance) {
-  return quantities::expectation(s.systems, s.law, f, start, time, method, tolerance).value;
+  return quantities::expectation(s.systems, s.distribution, f, start, time, method, tolerance)
+      .value;
 }
 
 test::Discrete small_hp(double mu_d = 0.25) {
@@ -64,7 +65,7 @@ TEST_CASE("transient: at time 0 the autocorrelation is the variance", "[parallel
   for (const auto& d : {small_hp(), small_upwind()}) {
     Solved s(d);
     for (const auto method : kMethods) {
-      const auto c = quantities::autocorrelation(s.systems, s.law, {1, 0}, method, 1e-6);
+      const auto c = quantities::autocorrelation(s.systems, s.distribution, {1, 0}, method, 1e-6);
       CHECK(relative_difference(c[1].value, s.mean_square_velocity()) < 1e-12);
       CHECK(c[0].value < c[1].value);
     }
@@ -78,9 +79,9 @@ TEST_CASE("transient: time steps and reduced models give the same autocorrelatio
         test::on_hp(scene(1, 0.25, 0.25, 1, {1, 0}), 5, 1e-7)}) {
     Solved s(d);
     const auto reduced =
-        quantities::autocorrelation(s.systems, s.law, time, TransientMethod::krylov, 1e-8);
-    const auto steps =
-        quantities::autocorrelation(s.systems, s.law, time, TransientMethod::stepping, 1e-6);
+        quantities::autocorrelation(s.systems, s.distribution, time, TransientMethod::krylov, 1e-8);
+    const auto steps = quantities::autocorrelation(s.systems, s.distribution, time,
+                                                   TransientMethod::stepping, 1e-6);
     const double unit = s.mean_square_velocity();
     for (std::size_t n = 0; n < time.size(); ++n) {
       INFO("mu_d " << d.process.friction.mu_d << " time " << time[n]);
@@ -99,9 +100,10 @@ TEST_CASE("transient: the cosine transform of the autocorrelation is the spectru
     Solved s(d);
     const double end = d.process.drag.bounds_velocity() ? 30 : 80;
     const auto q = test::panels(0, end, static_cast<int>(2 * end));
-    const auto c =
-        quantities::autocorrelation(s.systems, s.law, q.node, TransientMethod::krylov, 1e-9);
-    const auto known = quantities::reduced_spectrum(s.systems, s.law, omega, 1e-9).spectrum;
+    const auto c = quantities::autocorrelation(s.systems, s.distribution, q.node,
+                                               TransientMethod::krylov, 1e-9);
+    const auto known =
+        quantities::reduced_spectrum(s.systems, s.distribution, omega, 1e-9).spectrum;
     for (std::size_t w = 0; w < omega.size(); ++w) {
       const double transform =
           2 * q.sum([&](std::size_t n) { return c[n].value * std::cos(omega[w] * q.node[n]); });
@@ -146,9 +148,10 @@ TEST_CASE("transient: rest is known at rest only") {
 TEST_CASE("transient: late expectations are the stationary ones") {
   for (const auto& d : {small_hp(), small_upwind()}) {
     Solved s(d);
-    const auto& e = s.law.excursion();
+    const auto& e = s.distribution.excursion();
     const auto late = [&](const char* name, const StartState& start, TransientMethod method) {
-      return quantities::expectation(s.systems, s.law, observable(name), start, {60}, method, 1e-6);
+      return quantities::expectation(s.systems, s.distribution, observable(name), start, {60},
+                                     method, 1e-6);
     };
     for (const auto& start : {StartState{-2, 0}, {3, 0}, {-2, -0.5}}) {
       const auto square = late("v^2", start, TransientMethod::krylov);
@@ -293,7 +296,8 @@ TEST_CASE("transient: upwind equals dense exponentials on the whole grid", "[par
       values[s] = at_start(process, f, {i, j * spacing});
       CHECK(v == j * spacing);
     });
-    Solved s({process, std::make_shared<velocity::UpwindAxis>(spacing, nodes, process.drag)});
+    Solved s(
+        {process, std::make_shared<velocity::UpwindDiscretisation>(spacing, nodes, process.drag)});
     const std::vector<double> time{0.05, 0.6, 3};
     std::vector<std::vector<double>> known;
     for (double t : time) {

@@ -62,7 +62,7 @@ const std::vector<Example>& cases() {
       {"sticking and moments", {sticking, moments, noise_law}, {1, 1, 1}},
       {"with the density", {sticking, moments, noise_law, density}, {1, 1, 1}},
       {"the entry law asks for odd functions", {sticking, entry_law}, {2, 2, 2}},
-      {"stays alone", {stay_transform}, {1, 1, 1}, cut(), {0.1, 1, 10}},
+      {"stays alone", {stick_duration_transform}, {1, 1, 1}, cut(), {0.1, 1, 10}},
       {"transforms of durations", {laplace}, {3, 3, 9}, cut(), {0.5, 2}},
       {"transforms at 0 share the system of the law", {laplace}, {2, 2, 9}, cut(), {0, 2}},
       {"a resolvent", {resolvent}, {2, 2, 6}, without_drag(), {0.5}, {"v^2", "x*v", "stick"}},
@@ -104,8 +104,8 @@ TEST_CASE("plan: what is foretold is what is done") {
     const Case r = given(c);
     const auto plan = accuracy::needs_system(r) ? routes::plan_of(r) : routes::Plan{};
     CHECK_FALSE(plan.adaptive());
-    const Counts foretold{plan.assemblies(), plan.factorizations(), plan.solves()};
-    CHECK(foretold == c.expected);
+    const Counts predicted{plan.assemblies(), plan.factorizations(), plan.solves()};
+    CHECK(predicted == c.expected);
     const auto outcome = accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
     if (c.expected.factorizations == 0) {
       CHECK(outcome.steps.empty());
@@ -113,7 +113,7 @@ TEST_CASE("plan: what is foretold is what is done") {
     }
     REQUIRE(outcome.steps.size() >= 2);
     for (const auto& step : outcome.steps) {
-      const auto& l = step.ledger;
+      const auto& l = step.statistics;
       const Counts done{l.assemblies, l.factorizations_real + l.factorizations_complex, l.solves};
       CHECK(done == c.expected);
     }
@@ -130,7 +130,7 @@ TEST_CASE("plan: what is adaptive says so, and takes no complex arithmetic") {
     CHECK(plan.adaptive());
     CHECK(plan.factorizations() == (q == relaxation ? 0 : 1));
     const auto outcome = accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
-    const auto& l = outcome.steps.front().ledger;
+    const auto& l = outcome.steps.front().statistics;
     CHECK(l.factorizations_real + l.factorizations_complex >= plan.factorizations() + 1);
     CHECK(l.solves >= plan.solves());
     if (!PetscDefined(USE_COMPLEX)) CHECK(l.factorizations_complex == 0);
@@ -145,16 +145,16 @@ TEST_CASE("plan: sizes are those of the run, by the analysis alone") {
     const auto outcome = accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
     REQUIRE(prediction.steps.size() == 2);
     for (std::size_t n = 0; n < 2; ++n) {
-      const auto& foretold = prediction.steps[n];
-      const auto& l = outcome.steps[n].ledger;
-      CHECK(foretold.unknowns == l.unknowns);
-      CHECK(foretold.nonzeros == l.nonzeros);
+      const auto& predicted = prediction.steps[n];
+      const auto& l = outcome.steps[n].statistics;
+      CHECK(predicted.unknowns == l.unknowns);
+      CHECK(predicted.nonzeros == l.nonzeros);
       CHECK(l.nonzeros > 3 * l.unknowns);  // a diagonal, two jumps and transport
       CHECK(l.nonzeros < 40 * l.unknowns);
-      CHECK(foretold.factor_entries > 0.5 * static_cast<double>(l.factor_entries));
-      CHECK(foretold.factor_entries < 2 * static_cast<double>(l.factor_entries));
-      CHECK(foretold.megabytes <= 2 * l.factor_megabytes + 2);
-      CHECK(foretold.megabytes >= 0.5 * l.factor_megabytes - 2);
+      CHECK(predicted.factor_entries > 0.5 * static_cast<double>(l.factor_entries));
+      CHECK(predicted.factor_entries < 2 * static_cast<double>(l.factor_entries));
+      CHECK(predicted.megabytes <= 2 * l.factor_megabytes + 2);
+      CHECK(predicted.megabytes >= 0.5 * l.factor_megabytes - 2);
     }
     CHECK(prediction.seconds ==
           Approx(prediction.steps[0].seconds + prediction.steps[1].seconds).epsilon(1e-14));
@@ -164,8 +164,9 @@ TEST_CASE("plan: sizes are those of the run, by the analysis alone") {
 // The odd operator has the size of the even one.
 TEST_CASE("plan: operations of all systems are foretold, sizes of the largest") {
   using enum Quantity;
-  const auto even = accuracy::predict(PETSC_COMM_WORLD, given({"", {density, stay_transform}, {}}));
-  auto both = given({"", {density, stay_transform, entry_law}, {}});
+  const auto even =
+      accuracy::predict(PETSC_COMM_WORLD, given({"", {density, stick_duration_transform}, {}}));
+  auto both = given({"", {density, stick_duration_transform, entry_law}, {}});
   const auto two = accuracy::predict(PETSC_COMM_WORLD, both);
   // Densities at 0+ ask for a degree more.
   const double growth =

@@ -35,8 +35,8 @@ Case given(const model::Scene& s, std::set<Quantity> quantities) {
 }
 
 Evaluation evaluate(const Case& r, const test::Discrete& d) {
-  petsc::Ledger ledger;
-  return routes::evaluate({PETSC_COMM_WORLD, r, d, ledger});
+  petsc::SolverStatistics statistics;
+  return routes::evaluate({PETSC_COMM_WORLD, r, d, statistics});
 }
 
 const Result& result(const Results& results, const std::string& key) {
@@ -125,7 +125,7 @@ TEST_CASE("rounding: what an identity lacks is added to every number of the stat
   const auto r = given(scene(0.15, 0.005, 1.0 / 256, 0.25, {1, 0}), {sticking, moments, entry_law});
   const auto d = test::on_hp(r.scene, 6, 1e-9);
   const auto found = evaluate(r, d);
-  const double defect = found.law->excursion().conservation_defect(d);
+  const double defect = found.distribution->excursion().conservation_defect(d);
   REQUIRE(defect > 1e-14);  // the noise is far faster than slides
   const auto& results = found.results;
   const double stick = value(results, "mean_stick");
@@ -139,8 +139,8 @@ TEST_CASE("rounding: what an identity lacks is added to every number of the stat
 TEST_CASE("rounding: averages by hand, with the error of a probability that is known") {
   const Case r = given(plain(), {Quantity::sticking, Quantity::moments, Quantity::noise_law});
   const auto process = r.scene.process(8);
-  petsc::Ledger ledger;
-  const routes::Setting setting{PETSC_COMM_WORLD, r, {process, nullptr}, ledger};
+  petsc::SolverStatistics statistics;
+  const routes::Setting setting{PETSC_COMM_WORLD, r, {process, nullptr}, statistics};
   const double beyond = model::noise_moments(process.noise, 2).beyond;
   for (const auto& [stick, slide] : {std::pair{0.3, 0.7}, {0.9, 0.1}}) {
     const std::vector<Uncertain> values{{beyond * (1 - 1e-3), 0},

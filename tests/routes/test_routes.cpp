@@ -28,8 +28,8 @@ options::Case given(const model::Scene& s, Route route, std::set<Quantity> quant
 }
 
 Evaluation evaluate(const options::Case& r, const test::Discrete& d) {
-  petsc::Ledger ledger;
-  return routes::evaluate({PETSC_COMM_WORLD, r, d, ledger});
+  petsc::SolverStatistics statistics;
+  return routes::evaluate({PETSC_COMM_WORLD, r, d, statistics});
 }
 
 const Result& result(const Evaluation& evaluation, const std::string& key) {
@@ -46,7 +46,7 @@ double check_value(const Evaluation& evaluation, const std::string& name) {
   throw std::invalid_argument(name);
 }
 
-bool is_on_grid(const test::Discrete& d) { return d.axis->keeps_origin(); }  // upwind
+bool is_on_grid(const test::Discrete& d) { return d.velocities->keeps_origin(); }  // upwind
 
 const std::vector<model::Scene>& sample_scenes() {
   static const std::vector<model::Scene> scenes{
@@ -253,7 +253,7 @@ TEST_CASE("routes: only what is asked for is given, with what fields need", "[pa
                             "relaxation_odd_frequency"});
   CHECK(modes.even.size() == 4);
   CHECK(modes.odd.size() == 4);
-  CHECK_FALSE(modes.law);
+  CHECK_FALSE(modes.distribution);
   auto r = given(s, Route::excursion, {Quantity::resolvent});
   r.question.lambda = {2};
   r.question.observables = {model::parse_observable("stick", s.friction)};
@@ -264,5 +264,5 @@ TEST_CASE("routes: only what is asked for is given, with what fields need", "[pa
   CHECK(keys(laplace) == Keys{"F_slide", "F_stick", "F_excursion", "mean_slide", "mean_stick",
                               "mean_excursion", "var_slide", "var_stick", "var_excursion",
                               "f_slide_0", "f_stick_0"});
-  CHECK(laplace.law);
+  CHECK(laplace.distribution);
 }

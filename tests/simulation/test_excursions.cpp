@@ -67,7 +67,7 @@ double binomial(int levels, int i) {
 /// Mean time from each level |i| <= k until |X| > x_k, by sums over the scale of the chain.
 std::vector<double> mean_stays(const model::NoiseChain& noise, int k) {
   // d_i = h_i - h_{i+1}: alpha_i d_i = (1 - alpha_i) d_{i-1} + 1/Lambda, d_{-i-1} = -d_i.
-  std::vector<double> stay(2 * static_cast<std::size_t>(k) + 1);
+  std::vector<double> sticking(2 * static_cast<std::size_t>(k) + 1);
   double d = 1 / noise.rate() / (noise.up(0) + noise.down(0)), sum = 0;
   std::vector<double> steps{d};
   for (int i = 1; i <= k; ++i) {
@@ -76,9 +76,9 @@ std::vector<double> mean_stays(const model::NoiseChain& noise, int k) {
   }
   for (int i = k; i >= 0; --i) {
     sum += steps[static_cast<std::size_t>(i)];
-    stay[static_cast<std::size_t>(k + i)] = stay[static_cast<std::size_t>(k - i)] = sum;
+    sticking[static_cast<std::size_t>(k + i)] = sticking[static_cast<std::size_t>(k - i)] = sum;
   }
-  return stay;
+  return sticking;
 }
 
 /// Probability of leaving |i| <= k downwards.
@@ -130,7 +130,7 @@ std::vector<Excursion> cycles_along(const model::Process& p, int start, double h
     if (path.y[n] == 0) continue;
     const auto half = path.y[n] > 0 ? p : p.mirrored();
     const double force =
-        half.excess(static_cast<int>(std::lround(path.y[n] * path.x[n] / p.noise.delta)));
+        half.net_force(static_cast<int>(std::lround(path.y[n] * path.x[n] / p.noise.delta)));
     const auto piece =
         simulation::GeneralFlow(half.drag).move(std::abs(path.v[n]), force, time, true);
     e.drift += path.y[n] * piece.path;
@@ -276,7 +276,7 @@ TEST_CASE("excursions: stays and turns follow from the entry by closed sums, wit
   for (const auto& c : cases()) {
     INFO(c.name);
     const int k = c.process.static_index();
-    const auto stay = mean_stays(c.process.noise, k), turn = turns(c.process.noise, k);
+    const auto sticking = mean_stays(c.process.noise, k), turn = turns(c.process.noise, k);
     const auto all = draw(c.process, {}, 100000);
     for (int i = -k; i <= k; ++i) {
       const auto at = static_cast<std::size_t>(i + k);
@@ -286,8 +286,9 @@ TEST_CASE("excursions: stays and turns follow from the entry by closed sums, wit
                           [&](double sum, const Excursion& e) { return sum + from_here(e); });
       if (count < 100) continue;
       INFO("from level " << i);
-      CHECK(std::abs(deviation_of_mean(
-                all, [&](const Excursion& e) { return from_here(e) * (e.stick - stay[at]); })) < 4);
+      CHECK(std::abs(deviation_of_mean(all, [&](const Excursion& e) {
+              return from_here(e) * (e.stick - sticking[at]);
+            })) < 4);
       CHECK(std::abs(deviation_of_mean(all, [&](const Excursion& e) {
               return from_here(e) * (e.turned - turn[at]);
             })) < 4);

@@ -32,7 +32,7 @@ Request request(StudyKind kind, double mu_d, double delta, int steps) {
   return r;
 }
 
-Study conducted(const Request& r) { return studies::conduct(PETSC_COMM_WORLD, r, r.study, {}); }
+Study result(const Request& r) { return studies::run_study(PETSC_COMM_WORLD, r, r.study, {}); }
 
 const Table& table(const Study& study, const std::string& name) {
   for (const auto& t : study.tables) {
@@ -55,7 +55,7 @@ std::vector<double> column(const Table& t, const std::string& name) {
 
 TEST_CASE("studies: the upwind scheme is of order 1, and Richardson's limit is better",
           "[parallel]") {
-  const Study study = conducted(request(StudyKind::points, 0.25, 0.5, 7));
+  const Study study = result(request(StudyKind::points, 0.25, 0.5, 7));
   for (const char* key : {"P_stick", "E_V2"}) {
     const Table& t = table(study, key);
     const auto kappa = column(t, "kappa"), error = column(t, "error"),
@@ -75,9 +75,9 @@ TEST_CASE("studies: the upwind scheme is of order 1, and Richardson's limit is b
 }
 
 TEST_CASE("studies: the table of p holds differences of its values, and errors against hp") {
-  const Study study = conducted(request(StudyKind::points, 0.25, 0.5, 4));
+  const Study study = result(request(StudyKind::points, 0.25, 0.5, 4));
   const auto& hp = study.runs.back();
-  CHECK(hp.seconds >= hp.ledger.seconds());  // of all steps
+  CHECK(hp.seconds >= hp.statistics.seconds());  // of all steps
   for (std::size_t r = 0; r < hp.results.size(); ++r) {
     const double limit = hp.results[r].value[0];
     CHECK(hp.results[r].error[0] <= 1e-10 * std::abs(limit));
@@ -108,14 +108,14 @@ TEST_CASE("studies: the table of p holds differences of its values, and errors a
 TEST_CASE("studies: without -study_steps there are eight values of p") {
   Request r = request(StudyKind::points, 0.25, 1, 8);
   r.study.steps.reset();
-  CHECK(conducted(r).runs.size() == 9);
+  CHECK(result(r).runs.size() == 9);
 }
 
 TEST_CASE("studies: steps put mu_s on a level or in the middle, and extrapolate what they found") {
   for (double mu_d : {1.0, 0.5}) {
     Request r = request(StudyKind::steps, mu_d, 0.45, 3);
     r.question.accuracy = 1e-6;
-    const Study study = conducted(r);
+    const Study study = result(r);
     REQUIRE(study.runs.size() == 6);
     const std::vector<double> places{2, 4, 8, 2.5, 4.5, 8.5};  // mu_s/delta, nearest to 1/0.45
     for (std::size_t n = 0; n < 6; ++n) {
@@ -152,7 +152,7 @@ TEST_CASE("studies: orders in delta, with mu_s on a level and between two", "[sl
     double order, tolerance;
   };
   for (double mu_d : {1.0, 0.25}) {
-    const Study study = conducted(request(StudyKind::steps, mu_d, 0.25, 4));
+    const Study study = result(request(StudyKind::steps, mu_d, 0.25, 4));
     for (const Case& c : {Case{1, "E_V2", 2, 0.1},
                           {1, "P_stick", 1.5, 0.15},
                           {0.25, "E_V2", 1, 0.2},
@@ -168,7 +168,7 @@ TEST_CASE("studies: orders in delta, with mu_s on a level and between two", "[sl
 }
 
 TEST_CASE("studies: both families have the same limit in delta", "[slow][real]") {
-  const Study study = conducted(request(StudyKind::steps, 0.5, 0.25, 5));
+  const Study study = result(request(StudyKind::steps, 0.5, 0.25, 5));
   for (const std::string key : {"P_stick", "E_V2"}) {
     const Table &on = table(study, key + " on a level"),
                 &off = table(study, key + " between levels");
@@ -182,7 +182,7 @@ namespace {
 
 /// Of some seconds, and needed twice.
 const Study& costs() {
-  static const Study study = conducted(request(StudyKind::cost, 0.25, 0.5, 4));
+  static const Study study = result(request(StudyKind::cost, 0.25, 0.5, 4));
   return study;
 }
 
@@ -271,7 +271,7 @@ TEST_CASE("studies: errors and prices of each method follow from its runs", "[sl
           Approx(largest_error(extrapolated, known)).epsilon(1e-4));
     CHECK(column(richardson, "seconds")[n] == upwind[n]->seconds + upwind[n + 1]->seconds);
     CHECK(column(richardson, "solve")[n] ==
-          upwind[n]->ledger.solve_seconds + upwind[n + 1]->ledger.solve_seconds);
+          upwind[n]->statistics.solve_seconds + upwind[n + 1]->statistics.solve_seconds);
   }
   const Table& monte_carlo = table(study, "monte_carlo");
   for (std::size_t n = 0; n < simulated.size(); ++n) {
@@ -349,7 +349,7 @@ TEST_CASE("studies: one whose largest run would not fit is refused before the fi
     int runs = 0;
     const auto count = [&runs](int, int, const std::string&) { ++runs; };
     const Request r = request(kind, 0.25, 1.0 / 64, 20);
-    CHECK_THROWS_AS(studies::conduct(PETSC_COMM_WORLD, r, r.study, count), NoMemory);
+    CHECK_THROWS_AS(studies::run_study(PETSC_COMM_WORLD, r, r.study, count), NoMemory);
     CHECK(runs == 0);
   }
 }

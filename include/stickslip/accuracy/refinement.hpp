@@ -11,7 +11,7 @@
 #include "stickslip/accuracy/resolution.hpp"
 #include "stickslip/monte_carlo/simulate.hpp"
 #include "stickslip/options/case.hpp"
-#include "stickslip/petsc/ledger.hpp"
+#include "stickslip/petsc/solver_statistics.hpp"
 #include "stickslip/quantities/density.hpp"
 #include "stickslip/quantities/relaxation.hpp"
 #include "stickslip/routes/evaluation.hpp"
@@ -22,7 +22,7 @@ namespace stickslip::accuracy {
 /// One discretisation that was solved, with what it cost and how accurate it was.
 struct Step {
   Resolution resolution;
-  petsc::Ledger ledger;
+  petsc::SolverStatistics statistics;
   double seconds = 0;        ///< wall time of the whole step
   double estimate = 0;       ///< largest relative error estimate of a scalar; 0 if none yet
   std::string limiting_key;  ///< the scalar that has it
@@ -57,7 +57,7 @@ struct Outcome {
   std::string shortfall;   ///< why not, and what would help
   double next_digit_seconds = 0;  ///< predicted time of a run at a tenth of the error; 0: unknown
   std::vector<Step> steps;
-  petsc::Ledger total;
+  petsc::SolverStatistics total;
   std::optional<monte_carlo::Simulated> simulation;  ///< of -route monte_carlo
   std::optional<simulation::Path> path;              ///< of trajectory
   std::optional<Comparison> comparison;              ///< of -compare
@@ -67,15 +67,15 @@ struct Outcome {
 /// (0 for the first, of which nothing is known).
 using Progress = std::function<void(int, const Resolution&, double)>;
 
-/// All that is asked for. Deterministic routes climb the ladder of the case; the error
+/// All that is asked for. Deterministic routes climb the refinement sequence of the case; the error
 /// estimate of a value is
 ///
 ///   max(error_per_change |last change|, error_per_earlier_change |change before|)
 ///   + error of the route on this discretisation,
 ///
 /// where the second line is mostly rounding; see routes::Evaluation. Stops when every scalar meets
-/// the accuracy, when rounding forbids it, or at the end of the ladder. Collective. Throws NoMemory
-/// before anything is allocated that would not fit, NotReached when a solver fails.
+/// the accuracy, when rounding forbids it, or at the end of the refinement sequence. Collective.
+/// Throws NoMemory before anything is allocated that would not fit, NotReached when a solver fails.
 [[nodiscard]] Outcome refine(MPI_Comm comm, const options::Case& given, const Progress& progress,
                              const monte_carlo::SimulationProgress& simulation_progress = {},
                              const std::string& checkpoint = {});

@@ -7,9 +7,9 @@
 
 namespace stickslip::exact {
 
-/// Without drag, |V| changes at the constant rate x_i - mu_d on each noise level (folded): a fluid
-/// queue with the noise as its phase, whose boundary v = 0 is sticky for |i| <= k and sends a phase
-/// i < -k back as -i. Its law follows from the first-return matrix
+/// Without drag, |V| changes at the constant rate x_i - mu_d on each noise level
+/// (symmetry-reduced): a fluid queue with the noise as its phase, whose boundary v = 0 is sticky
+/// for |i| <= k and sends a phase i < -k back as -i. Its law follows from the first-return matrix
 ///
 ///   Psi(i, j) = E[exp(-lambda T); phase j at the return to 0 | start at 0 in phase i],
 ///
@@ -26,12 +26,12 @@ class FluidQueue {
   /// sum over k of E[exp(-lambda T); the slide from s+ ends on static level k]: F_slide(lambda).
   [[nodiscard]] double slide_transform() const;
 
-  /// Means over one slide from s+ (lambda = 0), folded; index i + N.
+  /// Means over one slide from s+ (lambda = 0), symmetry-reduced; index i + N.
   [[nodiscard]] const std::vector<double>& time() const { return time_; }          ///< [time]
   [[nodiscard]] const std::vector<double>& distance() const { return distance_; }  ///< int |V| dt
   [[nodiscard]] const std::vector<double>& square() const { return square_; }      ///< int V^2 dt
-  /// Probability (discounted) that the slide ends on each folded static level, index i + k; and the
-  /// same counted negative for slides that end with V < 0.
+  /// Probability (discounted) that the slide ends on each symmetry-reduced static level, index i +
+  /// k; and the same counted negative for slides that end with V < 0.
   [[nodiscard]] const std::vector<double>& entry() const { return entry_; }
   [[nodiscard]] const std::vector<double>& entry_orientation() const { return orientation_; }
 

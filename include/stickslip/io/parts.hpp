@@ -38,7 +38,7 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json comparison_json(const accuracy::Comparison& comparison,
                                    const std::string& compared);
 [[nodiscard]] Json provenance_json(MPI_Comm comm, const options::Request& request);
-[[nodiscard]] Json seconds_json(const petsc::Ledger& ledger);
+[[nodiscard]] Json seconds_json(const petsc::SolverStatistics& statistics);
 /// The text of a summary: the tree, and where it comes from.
 [[nodiscard]] std::string summary_text(MPI_Comm comm, const options::Request& request, Json tree);
 

@@ -13,7 +13,7 @@ struct Friction {
 
   /// x_i + g - mu_d, the acceleration of a body that starts to slide upwards; exactly 0 for a level
   /// that equals mu_d - g up to rounding.
-  [[nodiscard]] double excess(double level, double bias = 0) const;
+  [[nodiscard]] double net_force(double level, double bias = 0) const;
 };
 
 }  // namespace stickslip::model

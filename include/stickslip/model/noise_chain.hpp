@@ -41,7 +41,7 @@ struct NoiseChain {
 
 /// Stationary probabilities of x_-N ... x_N (index i + N). Positive products and sums only, so
 /// that every entry has full relative accuracy down to underflow. O(N).
-[[nodiscard]] std::vector<double> stationary_law(const NoiseChain& chain);
+[[nodiscard]] std::vector<double> stationary_distribution(const NoiseChain& chain);
 
 /// Relative rounding of sums of positive terms over levels: weights are products of up to N
 /// factors, each rounded, and the bulk of the law holds about sqrt(N) of them.

@@ -30,9 +30,9 @@ struct Process {
   /// The highest level with x_i <= mu_s, whatever the bias.
   [[nodiscard]] int threshold_index() const { return friction.static_index(noise.delta); }
   /// x_i + g - mu_d: the speed of V at v = 0+ on level i.
-  [[nodiscard]] double excess(int i) const { return excess_at(noise.level(i)); }
+  [[nodiscard]] double net_force(int i) const { return net_force_at(noise.level(i)); }
   /// The same for any x.
-  [[nodiscard]] double excess_at(double x) const { return friction.excess(x, bias); }
+  [[nodiscard]] double net_force_at(double x) const { return friction.net_force(x, bias); }
 };
 
 /// "; this should not happen: please report it with the scene mu_s = ...".

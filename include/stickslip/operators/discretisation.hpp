@@ -6,22 +6,23 @@
 
 #include "stickslip/model/process.hpp"
 #include "stickslip/noise/nodes.hpp"
-#include "stickslip/velocity/axis.hpp"
+#include "stickslip/velocity/velocity_discretisation.hpp"
 
 namespace stickslip::operators {
 
 /// A process with the nodes of its noise and of its velocity.
 struct Discretisation {
   /// On all levels of the noise unless nodes are given.
-  Discretisation(model::Process of, std::shared_ptr<const velocity::Axis> velocity_axis,
+  Discretisation(model::Process of,
+                 std::shared_ptr<const velocity::VelocityDiscretisation> velocity_axis,
                  std::shared_ptr<const noise::Nodes> noise_nodes = nullptr)
       : process(std::move(of)),
         noise(noise_nodes ? std::move(noise_nodes) : std::make_shared<noise::Nodes>(process)),
-        axis(std::move(velocity_axis)) {}
+        velocities(std::move(velocity_axis)) {}
 
   model::Process process;
   std::shared_ptr<const noise::Nodes> noise;
-  std::shared_ptr<const velocity::Axis> axis;  ///< none for the fluid queue
+  std::shared_ptr<const velocity::VelocityDiscretisation> velocities;  ///< none for the fluid queue
 };
 
 }  // namespace stickslip::operators

@@ -14,8 +14,9 @@
 
 namespace stickslip::operators {
 
-/// LU factors of the matrix A of a KolmogorovOperator on an hp axis. With A_E its elements alone,
-/// cut off from each other, G what they give at their ends and T what they take there,
+/// LU factors of the matrix A of a KolmogorovOperator on an hp velocity discretisation. With A_E
+/// its elements alone, cut off from each other, G what they give at their ends and T what they take
+/// there,
 ///
 ///   A^-1 = A_E^-1 + A_E^-1 T (1 - S)^-1 G A_E^-1,   S = G A_E^-1 T;
 ///
@@ -52,7 +53,7 @@ class ElementElimination {
   using Couplings = std::vector<LinearSteps::Coupling>;
   struct Line;
 
-  [[nodiscard]] Line line_of(Half half) const;
+  [[nodiscard]] Line line_of(Branch half) const;
   [[nodiscard]] int owner(const Line& line, std::size_t e) const;
   void make_elements();
   [[nodiscard]] ElementSystem::Response response(Line& line, int e) const;

@@ -6,8 +6,8 @@
 
 #include "stickslip/noise/nodes.hpp"
 #include "stickslip/operators/linear_steps.hpp"
-#include "stickslip/petsc/dense.hpp"
-#include "stickslip/velocity/hp_axis.hpp"
+#include "stickslip/petsc/scalars.hpp"
+#include "stickslip/velocity/hp_discretisation.hpp"
 
 namespace stickslip::operators {
 
@@ -35,14 +35,16 @@ class ElementSystem {
     petsc::DenseMatrix inner_inner, inner_outer, outer_inner, outer_outer;
   };
 
-  /// For the speeds x_l + g - mu_d + b(v), `excess` being x_l + g - mu_d by node; the response goes
-  /// to `response`. O(M q^3 groups' sizes^2 + M^2 q). Throws NotReached if a block is singular.
-  ElementSystem(const noise::Nodes& noise, const velocity::HpAxis& axis, int element,
-                std::span<const double> excess, PetscScalar lambda, Response& response);
+  /// For the speeds x_l + g - mu_d + b(v), `net force` being x_l + g - mu_d by node; the response
+  /// goes to `response`. O(M q^3 groups' sizes^2 + M^2 q). Throws NotReached if a block is
+  /// singular.
+  ElementSystem(const noise::Nodes& noise, const velocity::HpDiscretisation& velocities,
+                int element, std::span<const double> net_force, PetscScalar lambda,
+                Response& response);
 
   [[nodiscard]] int size() const { return count_ * nodes_; }
   [[nodiscard]] int nodes() const { return nodes_; }       ///< q
-  [[nodiscard]] int first_node() const { return first_; }  ///< on the axis
+  [[nodiscard]] int first_node() const { return first_; }  ///< on the velocity discretisation
 
   /// x <- A^-1 x, or A^-T x.
   void solve(Scalars& x, bool transposed) const;

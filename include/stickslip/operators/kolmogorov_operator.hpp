@@ -28,22 +28,23 @@ struct RestCoupling {
 ///
 /// and where the flow reaches v = 0 the value met there is
 ///   static l:    sum_i T_il s_i of the static values s,
-///   l below:     u(0+) on node -l of the other half, or +- that on the same half when folded.
+///   l below:     u(0+) on node -l of the other half, or +- that on the same half when
+///   symmetry-reduced.
 /// Nodes that leave v = 0 need no condition. Static values live on all their levels and follow the
 /// noise until they leave to s+- = (x, +-1, 0), x the level next to them, x_{+-(k+1)} without bias.
 ///
 /// Diagonals are summed from the off-diagonals of their row in the order of columns, so that with
-/// Rest::kept and lambda = 0 row sums are exactly zero. On an upwind axis the off-diagonals of -A
-/// are >= 0 and a row has at most five entries if every level is a node: unfolded and kept, -A then
-/// is the generator M of the paper's section 5.
+/// StaticPhase::kept and lambda = 0 row sums are exactly zero. On an upwind velocity discretisation
+/// the off-diagonals of -A are >= 0 and a row has at most five entries if every level is a node:
+/// with both branches and kept, -A then is the generator M of the paper's section 5.
 class KolmogorovOperator {
  public:
   /// Assembles the local rows. The matrix lives as long as the operator. Collective.
   /// O(local nonzeros).
   KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda,
-                     Symmetry symmetry, Rest rest);
+                     Symmetry symmetry, StaticPhase rest);
 
-  /// dA/dtheta with all members, for Rest::killing: entry_rates and from_rest are those of
+  /// dA/dtheta with all members, for StaticPhase::killing: entry_rates and from_rest are those of
   /// -dA_us/dtheta. Elements, nodes and upwind directions stay as they are: what is projected is
   /// the derivative of the process. Collective.
   [[nodiscard]] static KolmogorovOperator derivative(MPI_Comm comm,
@@ -58,24 +59,25 @@ class KolmogorovOperator {
   void shift(PetscScalar by);
   [[nodiscard]] PetscInt64 nonzeros() const { return nonzeros_; }
 
-  /// The functional u -> u(s+) (upper) or u(s-) (lower; unfolded only) as a vector. Collective.
-  [[nodiscard]] petsc::VecHandle trace_at_exit(Half half = Half::upper) const;
+  /// The functional u -> u(s+) (upper) or u(s-) (lower; with both branches only) as a vector.
+  /// Collective.
+  [[nodiscard]] petsc::VecHandle trace_at_exit(Branch half = Branch::positive) const;
 
-  /// The functional u -> u(x_i, v), v = 0 being s+- for |i| > k and rest for |i| <= k; folded, from
-  /// the half that is kept. Static states must be kept. Collective.
+  /// The functional u -> u(x_i, v), v = 0 being s+- for |i| > k and rest for |i| <= k;
+  /// symmetry-reduced, from the half that is kept. Static states must be kept. Collective.
   [[nodiscard]] petsc::VecHandle value_at(int i, double v) const;
 
   /// nu -> -nu A_us, from the lowest static level up: the rate at which an occupation flows into
-  /// each static level; the same on all ranks. Rest::killing only. Collective.
+  /// each static level; the same on all ranks. StaticPhase::killing only. Collective.
   [[nodiscard]] std::vector<PetscScalar> entry_rates(Vec nu) const;
   /// -A_us s, a right-hand side: what static values s, from the lowest level up, send into the
   /// sliding states.
-  /// Rest::killing only. Collective.
+  /// StaticPhase::killing only. Collective.
   [[nodiscard]] petsc::VecHandle from_rest(const std::vector<PetscScalar>& s) const;
 
   /// Rates of leaving the static states upwards or downwards, a right-hand side for the probability
-  /// of doing so. Rest::killed_on_exit only. Collective.
-  [[nodiscard]] petsc::VecHandle exit_rates(Half half) const;
+  /// of doing so. StaticPhase::killed_on_exit only. Collective.
+  [[nodiscard]] petsc::VecHandle exit_rates(Branch half) const;
 
   /// f(x, y, v) on all states, projected on noise nodes: products with occupations are those of
   /// the measures that they stand for, whatever f is. Collective. O(levels velocity nodes).
@@ -86,7 +88,7 @@ class KolmogorovOperator {
 
  private:
   KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda,
-                     Symmetry symmetry, Rest rest, std::optional<Parameter> derivative);
+                     Symmetry symmetry, StaticPhase rest, std::optional<Parameter> derivative);
 
   std::shared_ptr<MatrixData> data_;
   std::vector<std::pair<PetscInt, double>> trace_upper_, trace_lower_;

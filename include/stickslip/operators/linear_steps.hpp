@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "stickslip/petsc/dense.hpp"
+#include "stickslip/petsc/scalars.hpp"
 
 namespace stickslip::operators {
 

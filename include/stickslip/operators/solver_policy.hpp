@@ -6,7 +6,7 @@
 #include "stickslip/noise/nodes.hpp"
 #include "stickslip/operators/discretisation.hpp"
 #include "stickslip/options/case.hpp"
-#include "stickslip/velocity/hp_axis.hpp"
+#include "stickslip/velocity/hp_discretisation.hpp"
 
 namespace stickslip::operators {
 
@@ -32,18 +32,18 @@ struct FactorCost {
 /// node. The elements are dealt out to the ranks, what is between them each rank has. Local.
 /// O(elements (groups + log nodes)).
 [[nodiscard]] FactorCost elimination_cost(const model::Process& process,
-                                          const velocity::HpAxis& axis, const noise::Nodes* noise,
-                                          int ranks);
+                                          const velocity::HpDiscretisation& velocities,
+                                          const noise::Nodes* noise, int ranks);
 
-/// Of both half lines, or of the upper one if folded.
-[[nodiscard]] FactorCost elimination_cost(const Discretisation& discretisation, bool folded,
-                                          int ranks);
+/// Of both half lines, or of the upper one if symmetry-reduced.
+[[nodiscard]] FactorCost elimination_cost(const Discretisation& discretisation,
+                                          bool symmetry_reduced, int ranks);
 
 /// Of MUMPS, or of what stands in its place, from counts: 2.7 to 3.2 n n_v entries (n unknowns, n_v
-/// of them on a noise node) on hp axes with all levels. The upwind matrix is a two-dimensional grid
-/// to MUMPS, where the shorter side m decides: 4.5 n m^0.52 entries were counted for m = 65 ...
-/// 257. 9 to 12 bytes a real entry, of which a third stays in memory when factors go to disk;
-/// incomplete factors count as none. Operations up to a factor.
+/// of them on a noise node) on hp velocity discretisations with all levels. The upwind matrix is a
+/// two-dimensional grid to MUMPS, where the shorter side m decides: 4.5 n m^0.52 entries were
+/// counted for m = 65 ... 257. 9 to 12 bytes a real entry, of which a third stays in memory when
+/// factors go to disk; incomplete factors count as none. Operations up to a factor.
 [[nodiscard]] FactorCost sparse_cost(options::Factors factors, options::Scheme scheme,
                                      double unknowns, double noise_nodes);
 

@@ -23,9 +23,9 @@ enum class StateKind {
 /// stands for the node -n, so that both halves look alike. A state at rest has a noise level.
 struct State {
   StateKind kind;
-  Half half;  ///< upper for states at rest
-  int noise;  ///< number of the noise node; at rest the level
-  int node;   ///< index on the velocity axis, for nodes
+  Branch half;  ///< upper for states at rest
+  int noise;    ///< number of the noise node; at rest the level
+  int node;     ///< index on the velocity velocity discretisation, for nodes
 };
 
 /// All states of a discretisation: for each half and noise node its velocity nodes and, if it has
@@ -46,9 +46,9 @@ class StateSpace {
   [[nodiscard]] MPI_Comm comm() const { return comm_; }
   [[nodiscard]] Symmetry symmetry() const { return symmetry_; }
   [[nodiscard]] bool with_rest() const { return with_rest_; }
-  [[nodiscard]] bool folded() const { return symmetry_ != Symmetry::none; }
+  [[nodiscard]] bool symmetry_reduced() const { return symmetry_ != Symmetry::none; }
   /// Halves that are kept.
-  [[nodiscard]] std::span<const Half> halves() const;
+  [[nodiscard]] std::span<const Branch> halves() const;
 
   [[nodiscard]] PetscInt global_size() const { return global_size_; }
   [[nodiscard]] PetscInt local_size() const { return local_size_; }
@@ -58,11 +58,11 @@ class StateSpace {
   [[nodiscard]] const std::vector<int>& local_noise() const { return local_noise_; }
 
   /// The highest noise node that can stick.
-  [[nodiscard]] int last_static(Half half) const { return side(half).last_static; }
-  [[nodiscard]] bool has_origin(Half half, int noise) const {
+  [[nodiscard]] int last_static(Branch half) const { return side(half).last_static; }
+  [[nodiscard]] bool has_origin(Branch half, int noise) const {
     return keeps_origin_ && noise > side(half).last_static;
   }
-  [[nodiscard]] bool has_holding(Half half, int noise) const {
+  [[nodiscard]] bool has_holding(Branch half, int noise) const {
     return noise >= side(half).first_holding;
   }
   /// Whether the static level i is an unknown of its own.
@@ -78,7 +78,7 @@ class StateSpace {
     PetscInt first, stride;
   };
   /// O(1).
-  [[nodiscard]] NodeLine nodes_of(Half half, int noise) const;
+  [[nodiscard]] NodeLine nodes_of(Branch half, int noise) const;
 
   /// Calls visit(state) for the local states in the order of their indices.
   template <class Visit>
@@ -97,11 +97,14 @@ class StateSpace {
  private:
   // Noise nodes of a half, counted along it.
   struct Side {
-    Side(const model::Process& process, const noise::Nodes& noise, const velocity::Axis& axis);
+    Side(const model::Process& process, const noise::Nodes& noise,
+         const velocity::VelocityDiscretisation& velocities);
     int last_static;
     int first_holding;  // holding states exist from here on; half() + 1 if there are none
   };
-  [[nodiscard]] const Side& side(Half half) const { return half == Half::upper ? upper_ : lower_; }
+  [[nodiscard]] const Side& side(Branch half) const {
+    return half == Branch::positive ? upper_ : lower_;
+  }
 
   // Shells [first, last) of a rank, the levels at rest with first_rest <= |i| < last_rest, and its
   // first global index.
@@ -114,21 +117,21 @@ class StateSpace {
   template <class Visit>
   void visit_local_at_zero(Visit visit) const {
     for (int n : local_noise_) {
-      if (!folded() && has_origin(Half::lower, -n)) {
-        visit(State{StateKind::origin, Half::lower, -n, 0});
+      if (!symmetry_reduced() && has_origin(Branch::negative, -n)) {
+        visit(State{StateKind::origin, Branch::negative, -n, 0});
       }
     }
     for (int i = lowest_rest_; with_rest_ && i <= highest_rest_; ++i) {
-      if (owner_of_rest(i) == rank_) visit(State{StateKind::rest, Half::upper, i, 0});
+      if (owner_of_rest(i) == rank_) visit(State{StateKind::rest, Branch::positive, i, 0});
     }
     for (int n : local_noise_) {
-      if (has_origin(Half::upper, n)) visit(State{StateKind::origin, Half::upper, n, 0});
+      if (has_origin(Branch::positive, n)) visit(State{StateKind::origin, Branch::positive, n, 0});
     }
   }
 
   // Rows of equal velocity: 0 is v = 0, +-1 ... +-n the nodes, +-(n+1) the holding states.
   [[nodiscard]] int last_row() const { return nodes_ + 1; }
-  [[nodiscard]] int first_row() const { return folded() ? 0 : -last_row(); }
+  [[nodiscard]] int first_row() const { return symmetry_reduced() ? 0 : -last_row(); }
   [[nodiscard]] bool has_state(int row, int n) const;
   [[nodiscard]] State state_at(int row, int n) const;
   [[nodiscard]] int owner_of_rest(int level) const;
@@ -147,8 +150,8 @@ class StateSpace {
   Side upper_, lower_;
   int lowest_rest_, highest_rest_;
   int rank_;
-  std::vector<Block> blocks_;        // by rank
-  std::vector<int> owner_of_shell_;  // rank
+  std::vector<Block> blocks_;       // by rank
+  std::vector<int> owner_of_pair_;  // rank
   std::vector<int> local_noise_;
   PetscInt global_size_ = 0, local_size_ = 0;
 };

@@ -8,7 +8,7 @@
 namespace stickslip::operators {
 
 /// Functions under (x, y, v) -> (-x, -y, -v): even or odd, for which the half y = +1 is enough
-/// ("folded"), or of no symmetry, for which both halves are kept.
+/// ("symmetry-reduced"), or of no symmetry, for which both halves are kept.
 enum class Symmetry { even, odd, none };
 
 /// The symmetry of densities and constants: even where the process is symmetric.
@@ -17,13 +17,13 @@ enum class Symmetry { even, odd, none };
 }
 
 /// The two half lines of the velocity.
-enum class Half { upper, lower };
-[[nodiscard]] inline Half opposite(Half half) {
-  return half == Half::upper ? Half::lower : Half::upper;
+enum class Branch { positive, negative };
+[[nodiscard]] inline Branch opposite(Branch half) {
+  return half == Branch::positive ? Branch::negative : Branch::positive;
 }
 
 /// The part of the static states in an operator.
-enum class Rest {
+enum class StaticPhase {
   killing,         ///< no unknowns: the process is killed on reaching them, A_us is kept apart
   kept,            ///< unknowns like all others: the whole process
   killed_on_exit,  ///< unknowns; the process is killed on leaving them (L' of Prop. 3.1)
@@ -41,7 +41,7 @@ enum class Parameter {
 struct SystemKey {
   double lambda = 0;
   Symmetry symmetry = Symmetry::even;
-  Rest rest = Rest::killing;
+  StaticPhase rest = StaticPhase::killing;
   friend bool operator<(const SystemKey& a, const SystemKey& b) {
     return std::tie(a.lambda, a.symmetry, a.rest) < std::tie(b.lambda, b.symmetry, b.rest);
   }

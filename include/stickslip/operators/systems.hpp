@@ -10,35 +10,35 @@
 #include "stickslip/operators/discretisation.hpp"
 #include "stickslip/operators/kolmogorov_operator.hpp"
 #include "stickslip/petsc/factorization.hpp"
-#include "stickslip/petsc/ledger.hpp"
+#include "stickslip/petsc/solver_statistics.hpp"
 
 namespace stickslip::operators {
 
 /// Prefix of the PETSc options of the solver for these operators.
 inline const std::string kSlidePrefix = "slide_";
 
-/// Assembles an operator and enters it in the ledger. Collective.
+/// Assembles an operator and enters it in the statistics. Collective.
 [[nodiscard]] KolmogorovOperator assemble(MPI_Comm comm, const Discretisation& discretisation,
-                                          PetscScalar lambda, Symmetry symmetry, Rest rest,
-                                          petsc::Ledger& ledger);
+                                          PetscScalar lambda, Symmetry symmetry, StaticPhase rest,
+                                          petsc::SolverStatistics& statistics);
 
 /// The same for its derivative. Collective.
 [[nodiscard]] KolmogorovOperator assemble_derivative(MPI_Comm comm,
                                                      const Discretisation& discretisation,
                                                      Symmetry symmetry, Parameter theta,
-                                                     petsc::Ledger& ledger);
+                                                     petsc::SolverStatistics& statistics);
 
 /// The solver of an operator, which must live as long: by default what default_pc_type() says.
 /// Collective. Throws NoMemory or NotReached.
-[[nodiscard]] std::unique_ptr<petsc::Factorization> factorization(const KolmogorovOperator& a,
-                                                                  petsc::Ledger& ledger);
+[[nodiscard]] std::unique_ptr<petsc::Factorization>
+factorization(const KolmogorovOperator& a, petsc::SolverStatistics& statistics);
 
 /// lambda - L with its solver.
 class System {
  public:
   /// Collective. Throws NoMemory or NotReached.
-  System(KolmogorovOperator a, petsc::Ledger& ledger)
-      : a_(std::move(a)), factors_(factorization(a_, ledger)) {}
+  System(KolmogorovOperator a, petsc::SolverStatistics& statistics)
+      : a_(std::move(a)), factors_(factorization(a_, statistics)) {}
 
   [[nodiscard]] const KolmogorovOperator& a() const { return a_; }
   [[nodiscard]] petsc::Factorization& factors() { return *factors_; }
@@ -52,16 +52,17 @@ class System {
 /// and factored once and serves every solve, plain, transposed or with several right-hand sides.
 class Systems {
  public:
-  /// `ledger` must outlive this object.
-  Systems(MPI_Comm comm, Discretisation discretisation, petsc::Ledger& ledger)
-      : comm_(comm), discretisation_(std::move(discretisation)), ledger_(ledger) {}
+  /// `statistics` must outlive this object.
+  Systems(MPI_Comm comm, Discretisation discretisation, petsc::SolverStatistics& statistics)
+      : comm_(comm), discretisation_(std::move(discretisation)), statistics_(statistics) {}
 
   /// Collective at first use of a key.
-  [[nodiscard]] System& at(double lambda, Symmetry symmetry, Rest rest = Rest::killing);
+  [[nodiscard]] System& at(double lambda, Symmetry symmetry,
+                           StaticPhase rest = StaticPhase::killing);
   /// Assembles and analyses as that would, and keeps nothing. Collective.
   [[nodiscard]] petsc::Analysis analyse(const SystemKey& key);
   /// Frees a system that is not needed any more. Collective.
-  void release(double lambda, Symmetry symmetry, Rest rest = Rest::killing) {
+  void release(double lambda, Symmetry symmetry, StaticPhase rest = StaticPhase::killing) {
     systems_.erase({lambda, symmetry, rest});
   }
   /// Frees all others. Collective.
@@ -72,12 +73,12 @@ class Systems {
   [[nodiscard]] MPI_Comm comm() const { return comm_; }
   [[nodiscard]] const Discretisation& discretisation() const { return discretisation_; }
   [[nodiscard]] const model::Process& process() const { return discretisation_.process; }
-  [[nodiscard]] petsc::Ledger& ledger() { return ledger_; }
+  [[nodiscard]] petsc::SolverStatistics& statistics() { return statistics_; }
 
  private:
   MPI_Comm comm_;
   Discretisation discretisation_;
-  petsc::Ledger& ledger_;
+  petsc::SolverStatistics& statistics_;
   std::map<SystemKey, std::unique_ptr<System>> systems_;
 };
 

@@ -20,7 +20,7 @@ enum class Quantity {
   entry_law,
   density,
   laplace,
-  stay_transform,
+  stick_duration_transform,
   resolvent,
   relaxation,
   spectrum,
@@ -47,7 +47,7 @@ enum class TransientSolver { krylov, stepping };
 /// How the spectrum is computed.
 enum class SpectrumSolver { krylov, direct };
 
-/// Whether a route works on both signs of v, unfolded.
+/// Whether a route works on both signs of v, with both branches.
 [[nodiscard]] inline bool on_full_grid(Route route) {
   return route == Route::lambda || route == Route::hitting || route == Route::null_vector;
 }

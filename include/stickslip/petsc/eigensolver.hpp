@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "stickslip/petsc/handle.hpp"
-#include "stickslip/petsc/ledger.hpp"
+#include "stickslip/petsc/solver_statistics.hpp"
 
 namespace stickslip::petsc {
 
@@ -28,7 +28,8 @@ class Eigensolver {
   /// Finds `wanted` eigenpairs nearest to `target` (-..._eps_nev and -..._eps_target override),
   /// which must not be an eigenvalue. `matrix` must outlive this object. Throws NotReached when
   /// fewer converge, NoMemory when the factors do not fit.
-  Eigensolver(Mat matrix, const std::string& prefix, double target, int wanted, Ledger& ledger);
+  Eigensolver(Mat matrix, const std::string& prefix, double target, int wanted,
+              SolverStatistics& statistics);
 
   /// In the order found, nearest to the target first.
   [[nodiscard]] const std::vector<Eigenpair>& pairs() const { return pairs_; }

@@ -7,8 +7,8 @@
 
 #include "stickslip/petsc/backward_error.hpp"
 #include "stickslip/petsc/handle.hpp"
-#include "stickslip/petsc/ledger.hpp"
 #include "stickslip/petsc/linear_solver.hpp"
+#include "stickslip/petsc/solver_statistics.hpp"
 
 namespace stickslip::petsc {
 
@@ -26,11 +26,12 @@ struct Solution {
 class Factorization {
  public:
   /// Analyses and factors `matrix` (kept by reference count). `prefix` without the dash, with the
-  /// trailing underscore. Times and counts go to `ledger`, which must outlive this object.
+  /// trailing underscore. Times and counts go to `statistics`, which must outlive this object.
   /// Where MUMPS runs out of the workspace that it set aside (INFOG(1) = -8, -9), it is given more
   /// once. Throws NoMemory when the factors do not fit, NotReached when the factorisation fails.
   /// `pc_type`: default of -<prefix>pc_type.
-  Factorization(Mat matrix, const std::string& prefix, Ledger& ledger, PCType pc_type = PCLU);
+  Factorization(Mat matrix, const std::string& prefix, SolverStatistics& statistics,
+                PCType pc_type = PCLU);
 
   /// A x = b. Throws NotReached when the backward error stays above 1e-12.
   [[nodiscard]] Solution solve(Vec b) { return solve(b, false); }
@@ -46,8 +47,8 @@ class Factorization {
   void update();
 
   /// Orders and analyses `matrix` as the constructor would, and stops there. Collective.
-  [[nodiscard]] static Analysis analyse(Mat matrix, const std::string& prefix, Ledger& ledger,
-                                        PCType pc_type = PCLU);
+  [[nodiscard]] static Analysis analyse(Mat matrix, const std::string& prefix,
+                                        SolverStatistics& statistics, PCType pc_type = PCLU);
 
  private:
   void factor();
@@ -59,7 +60,7 @@ class Factorization {
   BackwardError measure_;
   KspHandle ksp_;
   std::string prefix_;
-  Ledger& ledger_;
+  SolverStatistics& statistics_;
 };
 
 }  // namespace stickslip::petsc

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "stickslip/petsc/handle.hpp"
-#include "stickslip/petsc/ledger.hpp"
 #include "stickslip/petsc/solver_choice.hpp"
+#include "stickslip/petsc/solver_statistics.hpp"
 
 namespace stickslip::petsc {
 
@@ -52,7 +52,7 @@ void require_factored(KSP ksp, const std::string& prefix);
 
 /// Adds memory and entries of the factors of a KSP, as MUMPS or kAnalyse count them; nothing for
 /// other solvers.
-void record_factors(KSP ksp, Ledger& ledger);
+void record_factors(KSP ksp, SolverStatistics& statistics);
 
 /// Orders and analyses `matrix` as the PC would, and stops there; zeros for solvers that report
 /// nothing. Collective.

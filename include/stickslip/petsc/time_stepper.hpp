@@ -7,8 +7,8 @@
 #include <string>
 
 #include "stickslip/petsc/handle.hpp"
-#include "stickslip/petsc/ledger.hpp"
 #include "stickslip/petsc/solver_choice.hpp"
+#include "stickslip/petsc/solver_statistics.hpp"
 
 namespace stickslip::petsc {
 
@@ -21,9 +21,10 @@ using TsHandle = Handle<TS, TSDestroy>;
 class TimeStepper {
  public:
   /// Starts at u(0) = `u`, which holds the solution from then on. `tolerance` is absolute, for each
-  /// step. `a` is kept by reference count. Times and counts go to `ledger`, which must outlive
+  /// step. `a` is kept by reference count. Times and counts go to `statistics`, which must outlive
   /// this.
-  TimeStepper(Mat a, Vec u, const std::string& prefix, double tolerance, Ledger& ledger);
+  TimeStepper(Mat a, Vec u, const std::string& prefix, double tolerance,
+              SolverStatistics& statistics);
 
   /// Goes on to `time`, not before the present one. Throws NotReached when steps fail.
   void advance(double time);
@@ -44,7 +45,7 @@ class TimeStepper {
   VecHandle u_;
   TsHandle ts_;
   std::string prefix_;
-  Ledger& ledger_;
+  SolverStatistics& statistics_;
   double now_ = 0;
 };
 

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "stickslip/quantities/phase_field.hpp"
-#include "stickslip/velocity/axis.hpp"
+#include "stickslip/velocity/velocity_discretisation.hpp"
 
 namespace stickslip::quantities {
 
-class StationaryLaw;
+class StationaryDistribution;
 
 /// pi on the whole grid. Marginals and atoms are on all ranks.
 struct DensityField {
@@ -21,20 +21,21 @@ struct DensityField {
 };
 
 /// Collective. The state at v = 0 of a grid scheme is counted with the first node.
-[[nodiscard]] DensityField density_field(const StationaryLaw& law);
+[[nodiscard]] DensityField density_field(const StationaryDistribution& distribution);
 
 /// The stationary distribution of |V| as point masses, the same on all ranks.
 struct SpeedDistribution {
-  std::shared_ptr<const velocity::Axis> axis;
+  std::shared_ptr<const velocity::VelocityDiscretisation> velocities;
   std::vector<double> mass;  ///< of the velocity nodes
   double at_rest = 0;        ///< P_stick, and the origin states of a grid scheme
   double at_top = 0;         ///< holding states: what the velocity cut keeps back
 };
 
 /// Collective.
-[[nodiscard]] SpeedDistribution speed_distribution(const StationaryLaw& law);
+[[nodiscard]] SpeedDistribution speed_distribution(const StationaryDistribution& distribution);
 
-/// sup |F_1 - F_2| over the cells of the axis of `b`, F the distribution functions.
+/// sup |F_1 - F_2| over the cells of the velocity discretisation of `b`, F the distribution
+/// functions.
 [[nodiscard]] double distance(const SpeedDistribution& a, const SpeedDistribution& b);
 
 }  // namespace stickslip::quantities

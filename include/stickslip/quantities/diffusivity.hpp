@@ -11,6 +11,7 @@ namespace stickslip::quantities {
 /// u = 0 at s-, u = w + d h, h the probability of the next start being s+ and w the mean of
 /// int (V - m) dt up to it, where u(s+) = d gives d P(s+ to s-) = w(s+). Two plain solves with the
 /// system of the law, which must not be symmetric. Collective.
-[[nodiscard]] Uncertain spectrum_at_zero(operators::Systems& systems, const StationaryLaw& law);
+[[nodiscard]] Uncertain spectrum_at_zero(operators::Systems& systems,
+                                         const StationaryDistribution& distribution);
 
 }  // namespace stickslip::quantities

@@ -11,7 +11,7 @@
 namespace stickslip::quantities {
 
 /// Of one duration, by time.
-struct DurationLaw {
+struct DurationDistribution {
   std::vector<Uncertain> density;       ///< [1/time]
   std::vector<Uncertain> distribution;  ///< P(duration <= t)
   int pairs = 0;                        ///< of vectors of the reduced model, 0 if there is none
@@ -19,19 +19,23 @@ struct DurationLaw {
 
 /// Stays, from the entry law by the static chain alone: exp(Q t) as a sum of positive terms
 /// (uniformisation), so that every value keeps its relative accuracy. O(Lambda t_max k).
-[[nodiscard]] DurationLaw stick_law(const model::Process& process,
-                                    const std::vector<Uncertain>& entry,
-                                    const std::vector<double>& time);
+[[nodiscard]] DurationDistribution stick_distribution(const model::Process& process,
+                                                      const std::vector<Uncertain>& entry,
+                                                      const std::vector<double>& time);
 
 /// Slides: f(t) = g exp(-A t) r with A = A(0, even), r = A 1 = -A_us 1 the rate of coming to rest,
 /// g the value at s+; by a reduced model, to about 1e-8 to 2e-7 of 1/mean. Errors of densities are
 /// relative to 1/mean. Collective.
-[[nodiscard]] DurationLaw slide_law(operators::Systems& systems, const StationaryLaw& law,
-                                    const std::vector<double>& time, double tolerance);
+[[nodiscard]] DurationDistribution slide_distribution(operators::Systems& systems,
+                                                      const StationaryDistribution& stationary,
+                                                      const std::vector<double>& time,
+                                                      double tolerance);
 
 /// Excursions: the same with the static states kept and killed when they are left.
-[[nodiscard]] DurationLaw excursion_law(operators::Systems& systems, const StationaryLaw& law,
-                                        const std::vector<double>& time, double tolerance);
+[[nodiscard]] DurationDistribution excursion_distribution(operators::Systems& systems,
+                                                          const StationaryDistribution& stationary,
+                                                          const std::vector<double>& time,
+                                                          double tolerance);
 
 /// f_slide(0+): a slide can only end at once if one jump down from level k+1 reverses it.
 [[nodiscard]] double slide_density_at_zero(const model::Process& process);
@@ -53,7 +57,7 @@ void append_duration_moments(const model::Process& process, const DurationMoment
                              const std::vector<Uncertain>& entry, Results& results);
 
 /// f_NAME and cdf_NAME by time.
-void append_duration(const char* name, const std::vector<double>& time, const DurationLaw& law,
-                     Results& results);
+void append_duration(const char* name, const std::vector<double>& time,
+                     const DurationDistribution& law, Results& results);
 
 }  // namespace stickslip::quantities

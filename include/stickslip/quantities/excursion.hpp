@@ -9,20 +9,19 @@
 namespace stickslip::quantities {
 
 /// Means over one excursion, which starts at s+ = (x_{k+1}, +1, 0), slides, sticks and ends at
-/// the next exit. Positions are folded: (x, y, v) stands for (-x, -y, -v) as well, such that y >=
-/// 0. Arrays over noise nodes have the index n + H, H = noise::Nodes::half(), those over static
-/// levels i + k. Without
-/// symmetry, the means are over excursions from s+ and from s- in the shares in which they occur,
-/// and static levels are those of the noise, counted from the lowest.
+/// the next exit. Positions are symmetry-reduced: (x, y, v) stands for (-x, -y, -v) as well, such
+/// that y >= 0. Arrays over noise nodes have the index n + H, H = noise::Nodes::half(), those over
+/// static levels i + k. Without symmetry, the means are over excursions from s+ and from s- in the
+/// shares in which they occur, and static levels are those of the noise, counted from the lowest.
 struct Excursion {
-  std::vector<double> slide_time;         ///< time spent sliding on node n [time]
-  std::vector<double> slide_distance;     ///< int |V| dt on node n [length]
-  std::vector<double> slide_square;       ///< int V^2 dt on node n
-  std::vector<double> slide_drift;        ///< int V dt on node n [length]; empty if folded
-  std::vector<double> entry;              ///< probability that sliding ends on folded level i
+  std::vector<double> slide_time;      ///< time spent sliding on node n [time]
+  std::vector<double> slide_distance;  ///< int |V| dt on node n [length]
+  std::vector<double> slide_square;    ///< int V^2 dt on node n
+  std::vector<double> slide_drift;     ///< int V dt on node n [length]; empty if symmetry-reduced
+  std::vector<double> entry;  ///< probability that sliding ends on symmetry-reduced level i
   std::vector<double> entry_orientation;  ///< the same, counted negative if V < 0 then; or empty
-  std::vector<double> stick_time;         ///< time spent sticking on folded level i [time]
-  double lost_probability = 0;            ///< sum of entry less 1, before it was scaled to 1
+  std::vector<double> stick_time;  ///< time spent sticking on symmetry-reduced level i [time]
+  double lost_probability = 0;     ///< sum of entry less 1, before it was scaled to 1
 
   [[nodiscard]] double mean_slide() const;      ///< E[tau_hat_1], section 4.3 of the paper [time]
   [[nodiscard]] double mean_stick() const;      ///< E[tau_1 - tau_hat_1] [time]
@@ -44,10 +43,11 @@ void append_moments(const operators::Discretisation& discretisation, const Excur
 
 /// entry_law: P(X = x_k when the first slide from s+ ends), k = -K ... K, and
 /// f_stick_0 = Lambda alpha_K (entry_K + entry_-K), the density of sticking times at 0+.
-void append_entry_law(const model::Process& process, const Excursion& excursion, Results& results);
+void append_hitting_distribution(const model::Process& process, const Excursion& excursion,
+                                 Results& results);
 
 /// P_X_le_mu_s and E_X2 of the noise alone, from its closed law.
-void append_noise_law(const model::Process& process, Results& results);
+void append_noise_distribution(const model::Process& process, Results& results);
 
 /// dP_X_le_mu_s_dtau and dE_X2_dtau, at the number of levels of the process. Local. O(N).
 void append_noise_sensitivity(const model::Process& process, Results& results);

@@ -29,7 +29,7 @@ class PhaseField {
 
   /// Adds to the velocity node of a half on a noise node counted along it: (x_n, v) of the upper
   /// one, (-x_n, -v) of the lower one. A noise node of this rank.
-  void add(operators::Half half, int noise, int node, double value);
+  void add(operators::Branch half, int noise, int node, double value);
 
   [[nodiscard]] const std::vector<double>& x() const { return x_; }
   [[nodiscard]] const std::vector<double>& v() const { return v_; }

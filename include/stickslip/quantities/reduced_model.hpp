@@ -42,7 +42,7 @@ class ReducedModel {
   enum class Nature { smooth, rough };
   /// `minus_l` is -L with the static states as `rest` says; `ends.weight` > 0. Collective.
   ReducedModel(operators::Systems& systems, operators::KolmogorovOperator minus_l,
-               operators::Rest rest, const Ends& ends, Nature nature, int most_pairs);
+               operators::StaticPhase rest, const Ends& ends, Nature nature, int most_pairs);
   /// Releases the factors it had made. Collective.
   ~ReducedModel();
   ReducedModel(const ReducedModel&) = delete;
@@ -64,7 +64,7 @@ class ReducedModel {
   void resolve(petsc::Factorization& factors, Vec v, Vec w) const;
 
   operators::Systems& systems_;
-  operators::Rest rest_;
+  operators::StaticPhase rest_;
   Nature nature_;
   petsc::VecHandle root_, inverse_root_;   // D^1/2, D^-1/2
   operators::KolmogorovOperator minus_l_;  // D^1/2 (-L) D^-1/2

@@ -29,7 +29,7 @@ namespace stickslip::quantities {
 class Sensitivity {
  public:
   /// Solves for the durations. Collective.
-  Sensitivity(operators::Systems& systems, const StationaryLaw& law,
+  Sensitivity(operators::Systems& systems, const StationaryDistribution& distribution,
               std::vector<operators::Parameter> parameters);
 
   /// dKEY_dPARAMETER for each KEY of the functions of excursion.hpp with these names. Collective.
@@ -50,7 +50,7 @@ class Sensitivity {
   void append(const Name& name, const Gradient& gradient, Results& results) const;
 
   operators::System& system_;
-  const StationaryLaw& law_;
+  const StationaryDistribution& distribution_;
   std::vector<operators::Parameter> parameters_;
   std::vector<operators::KolmogorovOperator> changes_;  // dA, by parameter
   Gradient slide_, stick_;

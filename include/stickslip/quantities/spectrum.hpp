@@ -12,7 +12,7 @@
 namespace stickslip::quantities {
 
 /// S_v(omega) = int E[V_0 V_t] exp(-i omega t) dt = 2 Re c (i omega - L)^-1 v, with c = pi v on the
-/// folded grid: odd functions only, so that omega = 0 is no special case.
+/// symmetry-reduced grid: odd functions only, so that omega = 0 is no special case.
 ///
 /// Far out S_v falls as omega^-4, and the formula above subtracts terms of order omega^-2 that
 /// cancel because E[V dV/dt] = 0. There, with a = L v the acceleration,
@@ -48,14 +48,15 @@ struct ReducedSpectrum {
 /// error at each frequency is what the last vectors changed there; shifts are added where it is
 /// largest, until all relative errors are below `tolerance` or nothing improves. Collective.
 [[nodiscard]] ReducedSpectrum reduced_spectrum(operators::Systems& systems,
-                                               const StationaryLaw& law,
+                                               const StationaryDistribution& distribution,
                                                const std::vector<double>& omega, double tolerance);
 
 /// By one factorisation of i omega - L for each frequency, its analysis done once. Complex scalars
 /// only. Collective; on several ranks each takes its share of the frequencies, alone: `systems` and
 /// `law` then live on one rank each, and `comm` has all of them.
 [[nodiscard]] Spectrum direct_spectrum(MPI_Comm comm, operators::Systems& systems,
-                                       const StationaryLaw& law, const std::vector<double>& omega);
+                                       const StationaryDistribution& distribution,
+                                       const std::vector<double>& omega);
 
 /// S_v by omega, S_0, diffusivity = S_0/2.
 void append_spectrum(const std::vector<double>& omega, const Spectrum& spectrum, Results& results);

@@ -19,11 +19,11 @@ namespace stickslip::quantities {
 ///
 /// h+-(i) the probability that a stay that begins on level i ends upwards or downwards, all sums
 /// positive, nu = p+ nu+ + p- nu- takes the place of the nu above.
-class StationaryLaw {
+class StationaryDistribution {
  public:
   /// One transposed solve with systems.at(0, even), or two with systems.at(0, none). Collective.
   /// Throws NotReached or NoMemory.
-  explicit StationaryLaw(operators::Systems& systems);
+  explicit StationaryDistribution(operators::Systems& systems);
 
   /// Adds Excursion::entry_orientation. It is no even functional: one more transposed solve, with
   /// systems.at(0, odd). Collective.
@@ -39,13 +39,13 @@ class StationaryLaw {
   [[nodiscard]] const Excursion& uncorrected() const { return uncorrected_; }
 
   /// Probability that an excursion from s+ ends at s-, as entry+ . h-. Without symmetry only.
-  [[nodiscard]] double chance_of_falling() const { return chance_of_falling_; }
+  [[nodiscard]] double reversal_probability() const { return reversal_probability_; }
 
   /// nu, distributed as states() says [time]: the time spent in each sliding state.
   [[nodiscard]] Vec occupation() const { return occupation_; }
 
   /// Time spent per excursion in each state of an even or odd operator, its static states too, if
-  /// it has any: rest is counted folded, i and -i together [time]. Collective.
+  /// it has any: rest is counted symmetry-reduced, i and -i together [time]. Collective.
   [[nodiscard]] petsc::VecHandle occupation_on(const operators::KolmogorovOperator& a) const;
   /// About the same, but positive everywhere: a weight for ReducedModel. Collective.
   [[nodiscard]] petsc::VecHandle weight_on(const operators::KolmogorovOperator& a) const;
@@ -58,7 +58,7 @@ class StationaryLaw {
   operators::StateSpace states_;
   petsc::VecHandle occupation_;
   Excursion excursion_, uncorrected_;
-  double chance_of_falling_ = 0;
+  double reversal_probability_ = 0;
 };
 
 }  // namespace stickslip::quantities

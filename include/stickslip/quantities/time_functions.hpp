@@ -30,8 +30,9 @@ struct TimeCurve {
 };
 /// `minus_l` is -L with the static states as `rest` says. Collective.
 [[nodiscard]] TimeCurve time_curve(operators::Systems& systems,
-                                   operators::KolmogorovOperator minus_l, operators::Rest rest,
-                                   const Ends& ends, ReducedModel::Nature nature, Integral integral,
+                                   operators::KolmogorovOperator minus_l,
+                                   operators::StaticPhase rest, const Ends& ends,
+                                   ReducedModel::Nature nature, Integral integral,
                                    const std::vector<double>& time, double unit, double tolerance);
 
 }  // namespace stickslip::quantities

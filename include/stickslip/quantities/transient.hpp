@@ -28,7 +28,7 @@ struct StartState {
 /// C_vv(t) = E[V_0 V_t] = c exp(L t) v with c = pi v, odd functions only. Errors are relative to
 /// C_vv(0). Collective.
 [[nodiscard]] std::vector<Uncertain> autocorrelation(operators::Systems& systems,
-                                                     const StationaryLaw& law,
+                                                     const StationaryDistribution& distribution,
                                                      const std::vector<double>& time,
                                                      TransientMethod method, double tolerance);
 
@@ -38,7 +38,8 @@ struct Expectation {
   std::vector<Uncertain> value;
   double stationary = 0;
 };
-[[nodiscard]] Expectation expectation(operators::Systems& systems, const StationaryLaw& law,
+[[nodiscard]] Expectation expectation(operators::Systems& systems,
+                                      const StationaryDistribution& distribution,
                                       const model::Observable& f, const StartState& start,
                                       const std::vector<double>& time, TransientMethod method,
                                       double tolerance);

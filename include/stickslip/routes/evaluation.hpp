@@ -11,13 +11,13 @@
 #include "stickslip/operators/discretisation.hpp"
 #include "stickslip/operators/system_key.hpp"
 #include "stickslip/options/case.hpp"
-#include "stickslip/petsc/ledger.hpp"
 #include "stickslip/petsc/solver_choice.hpp"
+#include "stickslip/petsc/solver_statistics.hpp"
 #include "stickslip/quantities/relaxation.hpp"
 #include "stickslip/quantities/results.hpp"
 
 namespace stickslip::quantities {
-class StationaryLaw;
+class StationaryDistribution;
 }
 
 namespace stickslip::routes {
@@ -27,7 +27,7 @@ struct Setting {
   MPI_Comm comm;
   const options::Case& given;
   operators::Discretisation discretisation;
-  petsc::Ledger& ledger;
+  petsc::SolverStatistics& statistics;
 };
 
 struct Evaluation {
@@ -35,7 +35,8 @@ struct Evaluation {
   quantities::Results results;
   /// What the route tells about itself, by name, such as the lambda it used.
   std::vector<std::pair<std::string, double>> checks;
-  std::shared_ptr<quantities::StationaryLaw> law;     ///< excursion route, if it was needed
+  std::shared_ptr<quantities::StationaryDistribution>
+      distribution;                                   ///< excursion route, if it was needed
   std::vector<quantities::RelaxationMode> even, odd;  ///< modes, if asked for
 };
 
@@ -44,7 +45,7 @@ struct Evaluation {
 [[nodiscard]] Evaluation evaluate(const Setting& setting);
 
 /// Assembles the system of a key and has its solver analyse it; nothing is factored. Sizes and
-/// times go to the ledger. Collective. Throws NoMemory.
+/// times go to the statistics. Collective. Throws NoMemory.
 [[nodiscard]] petsc::Analysis analyse(const Setting& setting, const operators::SystemKey& key);
 
 }  // namespace stickslip::routes

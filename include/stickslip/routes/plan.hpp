@@ -12,13 +12,13 @@ namespace stickslip::routes {
 
 /// What a task computes.
 enum class Work {
-  stationary_law,       ///< occupations, and with them sticking, moments and density
-  orientation,          ///< the entry law, which is no even functional
-  sensitivity,          ///< adjoints of the scalars
-  duration_moments,     ///< variances of durations
-  duration_transforms,  ///< of one lambda
-  stay_transforms,      ///< F_stick by itself
-  resolvent,            ///< of one lambda
+  stationary_distribution,    ///< occupations, and with them sticking, moments and density
+  orientation,                ///< the entry law, which is no even functional
+  sensitivity,                ///< adjoints of the scalars
+  duration_moments,           ///< variances of durations
+  duration_transforms,        ///< of one lambda
+  stick_duration_transforms,  ///< F_stick by itself
+  resolvent,                  ///< of one lambda
   spectrum,
   spectrum_at_zero,  ///< without symmetry
   durations,         ///< densities and distribution functions

@@ -17,7 +17,7 @@ struct Run {
   std::vector<std::pair<std::string, double>> parameters;  ///< what sets it apart, by option
   quantities::Results results;                             ///< scalars
   double seconds = 0;                                      ///< median of the repeated runs
-  petsc::Ledger ledger;  ///< of the run that took this long; empty for a simulation
+  petsc::SolverStatistics statistics;  ///< of the run that took this long; empty for a simulation
 };
 
 /// Numbers in rows and named columns; NaN where there is none.
@@ -50,7 +50,7 @@ using StudyProgress = std::function<void(int, int, const std::string&)>;
 /// cost: error against time for upwind, Richardson, hp and Monte Carlo.
 ///
 /// Collective. Throws what the runs throw.
-[[nodiscard]] Study conduct(MPI_Comm comm, const options::Case& given,
-                            const options::StudyOptions& study, const StudyProgress& progress);
+[[nodiscard]] Study run_study(MPI_Comm comm, const options::Case& given,
+                              const options::StudyOptions& study, const StudyProgress& progress);
 
 }  // namespace stickslip::studies

@@ -15,7 +15,7 @@ struct Rates {
 
 /// What fixes the elements. See mesh.cpp for the reasons behind the numbers.
 struct MeshRule {
-  double v_max = 1;    ///< end of the axis
+  double v_max = 1;    ///< end of the velocity discretisation
   double ratio = 0.3;  ///< quotient of neighbouring element ends near v = 0
   double decay = 8;    ///< largest drop of log-density over one element
   int layers = 0;      ///< elements of the graded part; 0: from smallest_scale

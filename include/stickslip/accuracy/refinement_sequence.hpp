@@ -1,0 +1,52 @@
+#pragma once
+/// Discretisations in the order in which refinement tries them.
+
+#include <map>
+
+#include "stickslip/accuracy/resolution.hpp"
+#include "stickslip/options/case.hpp"
+
+namespace stickslip::accuracy {
+
+/// Rung 0 is only there to be compared with; each further refinement level is finer in every
+/// respect (degrees or points, noise range, velocity cut), so that the change from one refinement
+/// level to the next shows the error of the coarser one, whatever its cause.
+class RefinementSequence {
+ public:
+  explicit RefinementSequence(const options::Case& given);
+
+  /// Number of the last refinement level that may be tried.
+  [[nodiscard]] int last() const { return last_; }
+  [[nodiscard]] const Resolution& refinement_level(int n) const;
+
+  /// Bound for error(refinement level n) / |change from refinement level n-1 to refinement level
+  /// n|, n >= 1.
+  [[nodiscard]] double error_per_change(int n) const;
+  /// The same for the change from refinement level n-2 to refinement level n-1; 0 where it tells
+  /// nothing.
+  [[nodiscard]] double error_per_earlier_change() const;
+  /// Whether the error falls only as a power of the unknowns.
+  [[nodiscard]] bool first_order() const { return method_.scheme == options::Scheme::upwind; }
+  /// Truncation error allowed on refinement level n, relative.
+  [[nodiscard]] double tail_tolerance(int n) const;
+
+ private:
+  [[nodiscard]] int free_refinement_levels() const;
+  [[nodiscard]] Resolution made(int n) const;
+  [[nodiscard]] noise::Grouping grouping(int n) const;
+  [[nodiscard]] velocity::Rates rates(int n) const;
+  [[nodiscard]] int degree(int n) const;
+  [[nodiscard]] int points(int n) const;
+
+  model::Scene scene_;
+  options::Method method_;
+  double accuracy_;
+  int first_degree_ = 0;   // of refinement level 1
+  velocity::Rates rates_;  // of the equations to be solved
+  int halves_ = 1;
+  bool all_levels_ = false;  // every noise level is a node
+  int last_;
+  mutable std::map<int, Resolution> refinement_levels_;  // those asked for so far
+};
+
+}  // namespace stickslip::accuracy

@@ -1,0 +1,93 @@
+#pragma once
+/// A discretised half line v > 0, seen by the operators through a few rows and weights.
+
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace stickslip::velocity {
+
+/// One entry of a sparse row over the nodes of an velocity discretisation.
+struct Entry {
+  int node;
+  double value;
+};
+
+/// A row of the transport operator T with (T u)_j ~ B(v_j) u'(v_j), upwinded for the backward
+/// equation (information comes from where the flow goes). Besides the nodes it may refer to the
+/// inflow, the value of u where a body comes to rest at v = 0, and to the outflow, the value of u
+/// on the holding state at v_max. With both and the diagonal that is left out, a row sums to zero.
+struct TransportRow {
+  std::vector<Entry> entries;  ///< sorted by node, without the diagonal
+  double inflow = 0;           ///< coefficient of u(0)
+  double outflow = 0;          ///< coefficient of the holding state
+};
+
+/// The derivative of the speed B(v) with respect to a parameter: dB(v) = net force + per_speed v.
+struct SpeedChange {
+  double net_force = 0;
+  double per_speed = 0;
+  [[nodiscard]] double operator()(double v) const { return net_force + per_speed * v; }
+};
+
+/// A velocity discretisation on [0, v_max] for the speeds B(v) = net force + b(v).
+/// Implementations are immutable; all members are local and cost O(size) unless said.
+class VelocityDiscretisation {
+ public:
+  virtual ~VelocityDiscretisation() = default;
+
+  /// Nodes v_j > 0 in rising order [velocity].
+  [[nodiscard]] virtual std::span<const double> nodes() const = 0;
+  /// Weights with sum_j w_j f(v_j) ~ int_0^v_max f(v) dv.
+  [[nodiscard]] virtual std::span<const double> weights() const = 0;
+  /// End of the velocity discretisation [velocity].
+  [[nodiscard]] virtual double v_max() const = 0;
+  /// Ends 0 = e_0 < e_1 < ... of the cells by which fields are compared between discretisations.
+  [[nodiscard]] virtual std::span<const double> cells() const = 0;
+
+  /// Row j of T for the speed B(v) = net force + b(v), into the storage of `row`. O(its entries).
+  virtual void transport(double net_force, int j, TransportRow& row) const = 0;
+  /// Derivative of that row where B changes by dB, upwinded as B is. O(its entries).
+  virtual void transport_change(double net_force, const SpeedChange& change, int j,
+                                TransportRow& row) const = 0;
+  /// u(0+) as a combination of nodal values; empty when the velocity discretisation keeps a state
+  /// of its own at v = 0 on the levels that leave it (`keeps_origin`).
+  [[nodiscard]] virtual std::vector<Entry> trace_at_zero() const = 0;
+  /// u(v_max) as a combination of nodal values.
+  [[nodiscard]] virtual std::vector<Entry> trace_at_top() const = 0;
+
+  /// u(v) for 0 < v <= v_max as a combination of nodal values.
+  [[nodiscard]] virtual std::vector<Entry> value_at(double v) const = 0;
+
+  /// Mass on (0, v] of a measure given by the masses of the nodes. O(size).
+  [[nodiscard]] virtual double mass_below(std::span<const double> mass, double v) const = 0;
+
+  /// Whether the levels above the static threshold own a state at v = 0 (a grid scheme does).
+  [[nodiscard]] virtual bool keeps_origin() const = 0;
+  /// Rate at which such a state moves on to the first node: speed over spacing.
+  [[nodiscard]] virtual double origin_rate(double net_force) const = 0;
+  /// Whether levels that still accelerate at v_max need a holding state there.
+  [[nodiscard]] virtual bool needs_holding() const = 0;
+
+  /// The velocity discretisation of the lower half line, where speeds are net force - b(-v); this
+  /// one for an odd b. It has the same nodes.
+  [[nodiscard]] const VelocityDiscretisation& mirrored() const {
+    return mirrored_ ? *mirrored_ : *this;
+  }
+  void set_mirrored(std::shared_ptr<const VelocityDiscretisation> lower) {
+    mirrored_ = std::move(lower);
+  }
+
+  [[nodiscard]] int size() const { return static_cast<int>(nodes().size()); }
+
+ protected:
+  VelocityDiscretisation() = default;
+  VelocityDiscretisation(const VelocityDiscretisation&) = default;
+  VelocityDiscretisation& operator=(const VelocityDiscretisation&) = default;
+
+ private:
+  std::shared_ptr<const VelocityDiscretisation> mirrored_;
+};
+
+}  // namespace stickslip::velocity

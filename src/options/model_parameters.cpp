@@ -1,0 +1,139 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "reading.hpp"
+#include "stickslip/model/drag_law.hpp"
+#include "words.hpp"
+
+namespace stickslip::options {
+namespace {
+
+/// Reads the parameters of the model one after the other, as far as they make sense.
+class SceneReader {
+ public:
+  SceneReader(const Settings& settings, Problems& problems)
+      : settings_(settings), problems_(problems) {}
+
+  model::Scene read() {
+    read_numbers();
+    check_friction();
+    check_noise();
+    if (distribution_.expression && problems_.empty())
+      read_expression();  // which looks at the noise
+    return scene_;
+  }
+
+ private:
+  void report(const char* option, const std::string& why, const std::string& fix) {
+    settings_.report(problems_, option, why, fix);
+  }
+
+  void read_numbers() {
+    scene_.tau = settings_.real("tau");
+    scene_.delta = settings_.real("delta");
+    scene_.friction = {settings_.real("mu_s"), settings_.real("mu_d")};
+    scene_.drag_name = settings_.text("drag");
+    scene_.drag = {distribution_.linear ? settings_.real("drag_coefficient") : 0,
+                   distribution_.cubic ? settings_.real("drag_cubic") : 0};
+    if (distribution_.expression) scene_.drag_expression = settings_.text("drag_expression");
+    scene_.bias = settings_.real("bias");
+    scene_.noise_levels = settings_.integer("noise_levels");
+    if (settings_.given("v_max")) scene_.v_max = settings_.real("v_max");
+  }
+
+  void check_friction() {
+    const double mu_d = scene_.friction.mu_d;
+    if (mu_d > scene_.friction.mu_s) {
+      report("mu_d", fmt::format("must be in (0, mu_s], and mu_s = {}", settings_.text("mu_s")),
+             "friction cannot grow when the body starts to slide");
+    }
+    if (distribution_.expression || !scene_.drag.is_none() || std::abs(scene_.bias) < mu_d) return;
+    report("bias",
+           fmt::format(
+               "drives a sliding body for ever: without drag only mu_d = {:g} holds it back", mu_d),
+           "take a bias smaller than mu_d, or add drag");
+  }
+
+  // The levels that exist, and that on some of them bodies stick and on some they slide.
+  void check_noise() {
+    const double tau = scene_.tau, delta = scene_.delta;
+    int full = 0, highest = 0, lowest = 0;
+    try {
+      full = scene_.full_levels();
+      highest = scene_.process(1).static_index();
+      lowest = scene_.process(1).lowest_static();
+    } catch (const std::out_of_range&) {
+      return report("delta", "gives more noise levels than can be counted", "take a larger step");
+    }
+    const bool word = settings_.given("noise_levels") && !scene_.noise_levels;
+    if (word) scene_.noise_levels = full;
+    const int levels = scene_.noise_levels.value_or(full), k = std::max(highest, -lowest);
+    const double largest = levels * delta;
+    if (full < 1) {
+      report("delta",
+             fmt::format("leaves no noise level besides 0: tau delta^2 = {:g} must be at most 2",
+                         tau * delta * delta),
+             fmt::format("take -delta at most {:g}", std::sqrt(2 / tau)));
+    } else if (levels > full) {
+      report("noise_levels",
+             fmt::format("gives tau delta L_X = {:g} with L_X = N delta, but jump probabilities "
+                         "need at most 2",
+                         tau * delta * delta * levels),
+             fmt::format("take at most {}, or full", full));
+    } else if (k >= levels && scene_.bias != 0) {
+      report("bias",
+             fmt::format("is never overcome by the noise, which reaches {:g}: no body at rest "
+                         "would ever start against it",
+                         largest),
+             fmt::format("take |bias| below {:g}, or smaller -tau or -delta",
+                         largest - scene_.friction.mu_s));
+    } else if (k >= levels) {
+      const auto why =
+          fmt::format("is not below the largest noise level {:g}: nothing ever slides", largest);
+      if (levels < full) return report("mu_s", why, fmt::format("take -noise_levels above {}", k));
+      report("mu_s", why, fmt::format("take -mu_s below {:g}, or smaller -tau or -delta", largest));
+    } else if (lowest > highest) {
+      report("mu_s",
+             fmt::format("holds the body on no noise level, which are {:g} apart and shifted by "
+                         "the bias {:g}: nothing ever sticks",
+                         delta, scene_.bias),
+             "take a smaller -delta");
+    }
+  }
+
+  void read_expression() {
+    if (scene_.drag_expression.empty()) {
+      return report("drag", "needs a law in -drag_expression",
+                    "add for example -drag_expression \"-v - 0.1*v*abs(v)\"");
+    }
+    try {
+      scene_.drag = model::parse_drag(scene_.drag_expression, scene_.friction, scene_.tau,
+                                      largest_force(scene_), scene_.bias);
+    } catch (const model::UnfitLaw& unfit) {
+      report("drag_expression", unfit.what(), unfit.fix());
+    }
+  }
+
+  const Settings& settings_;
+  Problems& problems_;
+  const DragLaw distribution_ = meaning(kDragLaws, settings_.text("drag"));
+  model::Scene scene_;
+};
+
+}  // namespace
+
+double largest_force(const model::Scene& scene) {
+  const auto process = scene.meant();
+  const double highest = process.noise.level(process.noise.levels);
+  const double seen = scene.friction.mu_s + scene.delta + 12 / std::sqrt(scene.tau);
+  return std::min(highest, seen) + std::abs(scene.bias) - scene.friction.mu_d;
+}
+
+model::Scene read_scene(const Settings& settings, Problems& problems) {
+  return SceneReader(settings, problems).read();
+}
+
+}  // namespace stickslip::options

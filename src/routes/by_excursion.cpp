@@ -1,0 +1,268 @@
+#include <cmath>
+
+#include "routes.hpp"
+#include "stickslip/operators/systems.hpp"
+#include "stickslip/petsc/session.hpp"
+#include "stickslip/quantities/diffusivity.hpp"
+#include "stickslip/quantities/durations.hpp"
+#include "stickslip/quantities/laplace.hpp"
+#include "stickslip/quantities/resolvent.hpp"
+#include "stickslip/quantities/sensitivity.hpp"
+#include "stickslip/quantities/spectrum.hpp"
+#include "stickslip/quantities/stationary.hpp"
+#include "stickslip/quantities/transient.hpp"
+#include "stickslip/routes/plan.hpp"
+
+namespace stickslip::routes {
+namespace {
+
+using operators::Symmetry;
+using options::Case;
+using options::Quantity;
+using options::Question;
+using quantities::Results;
+using quantities::StationaryDistribution;
+using quantities::Uncertain;
+
+// Appends what `append` makes of the excursion, with rounding for error: the effect of the last
+// correction of the solve, and the defect of an exact identity.
+template <class Append>
+void append_with_rounding(const StationaryDistribution& distribution, Results& results,
+                          Append append) {
+  Results corrected, uncorrected;
+  append(distribution.excursion(), corrected);
+  append(distribution.uncorrected(), uncorrected);
+  const double defect = distribution.excursion().conservation_defect(distribution.discretisation());
+  for (std::size_t r = 0; r < corrected.size(); ++r) {
+    auto& result = corrected[r];
+    for (std::size_t n = 0; n < result.value.size(); ++n) {
+      const double value = result.value[n];
+      result.error[n] += std::abs(value - uncorrected[r].value[n]) + defect * std::abs(value);
+    }
+    results.push_back(std::move(result));
+  }
+}
+
+void append_distribution(const Question& question, const StationaryDistribution& distribution,
+                         Results& results) {
+  append_with_rounding(distribution, results, [&](const auto& excursion, Results& found) {
+    if (question.wants(Quantity::sticking)) quantities::append_sticking(excursion, found);
+    if (!question.wants(Quantity::moments)) return;
+    quantities::append_moments(distribution.discretisation(), excursion, found);
+  });
+}
+
+std::vector<Uncertain> entry_law(const StationaryDistribution& distribution) {
+  const auto& p = distribution.excursion().entry;
+  const auto& before = distribution.uncorrected().entry;
+  std::vector<Uncertain> entry;
+  for (std::size_t n = 0; n < p.size(); ++n) entry.push_back({p[n], std::abs(p[n] - before[n])});
+  return entry;
+}
+
+// On several ranks each computes the law for itself, then its share of the frequencies.
+quantities::Spectrum direct_spectrum(const Setting& setting) {
+  const MPI_Comm comm = petsc::ranks(setting.comm) > 1 ? PETSC_COMM_SELF : setting.comm;
+  operators::Systems systems(comm, setting.discretisation, setting.statistics);
+  const StationaryDistribution distribution(systems);
+  systems.release(0, Symmetry::even);
+  return quantities::direct_spectrum(setting.comm, systems, distribution,
+                                     setting.given.question.omega);
+}
+
+void append_spectrum(operators::Systems& systems, const Setting& setting, Evaluation& evaluation) {
+  const Question& question = setting.given.question;
+  if (setting.given.method.spectrum_solver == options::SpectrumSolver::direct) {
+    quantities::append_spectrum(question.omega, direct_spectrum(setting), evaluation.results);
+    return;
+  }
+  // A tenth of the accuracy, so that the projection does not rule the error.
+  const auto reduced = quantities::reduced_spectrum(systems, *evaluation.distribution,
+                                                    question.omega, 0.1 * question.accuracy);
+  quantities::append_spectrum(question.omega, reduced.spectrum, evaluation.results);
+  quantities::append_shape(reduced.shape, evaluation.results);
+  evaluation.checks.emplace_back("krylov_pairs", reduced.pairs);
+  evaluation.checks.emplace_back("krylov_shifts", static_cast<double>(reduced.shifts.size()));
+}
+
+void append_durations(operators::Systems& systems, const Setting& setting, Evaluation& evaluation) {
+  const auto& time = setting.given.question.time;
+  const auto& distribution = *evaluation.distribution;
+  const double tolerance = 0.1 * setting.given.question.accuracy;
+  const auto slide = quantities::slide_distribution(systems, distribution, time, tolerance);
+  const auto stick =
+      quantities::stick_distribution(setting.discretisation.process, entry_law(distribution), time);
+  const auto excursion = quantities::excursion_distribution(systems, distribution, time, tolerance);
+  quantities::append_duration("slide", time, slide, evaluation.results);
+  quantities::append_duration("stick", time, stick, evaluation.results);
+  quantities::append_duration("excursion", time, excursion, evaluation.results);
+  evaluation.checks.emplace_back("slide_pairs", slide.pairs);
+  evaluation.checks.emplace_back("excursion_pairs", excursion.pairs);
+}
+
+quantities::TransientMethod transient_method(const options::Method& method) {
+  return method.transient_solver == options::TransientSolver::krylov
+             ? quantities::TransientMethod::krylov
+             : quantities::TransientMethod::stepping;
+}
+
+void append_function_of_time(const std::vector<double>& time, const std::string& key,
+                             const std::string& unit, const std::vector<Uncertain>& values,
+                             Results& results) {
+  auto result = quantities::array(key, unit, "time", time);
+  for (const auto& value : values) quantities::append_value(result, value);
+  results.push_back(std::move(result));
+}
+
+void append_autocorrelation(operators::Systems& systems, const Setting& setting,
+                            Evaluation& evaluation) {
+  const Question& question = setting.given.question;
+  const auto method = transient_method(setting.given.method);
+  const auto values = quantities::autocorrelation(systems, *evaluation.distribution, question.time,
+                                                  method, 0.1 * question.accuracy);
+  append_function_of_time(question.time, "C_vv", "velocity^2", values, evaluation.results);
+}
+
+void append_expectations(operators::Systems& systems, const Setting& setting,
+                         Evaluation& evaluation) {
+  const Question& question = setting.given.question;
+  const auto method = transient_method(setting.given.method);
+  for (const auto& f : question.observables) {
+    const auto expectation = quantities::expectation(
+        systems, *evaluation.distribution, f, {question.start_level, question.start_v},
+        question.time, method, 0.1 * question.accuracy);
+    append_function_of_time(question.time, "E(" + f.name + ")", "", expectation.value,
+                            evaluation.results);
+    evaluation.results.push_back(
+        quantities::scalar("stationary(" + f.name + ")", "", expectation.stationary, 0));
+  }
+}
+
+/// Carries out the tasks of a plan on one discretisation.
+class Execution {
+ public:
+  explicit Execution(const Setting& setting)
+      : setting_(setting),
+        given_(setting.given),
+        question_(given_.question),
+        systems_(setting.comm, setting.discretisation, setting.statistics) {}
+
+  Evaluation run() {
+    const Plan plan = plan_of(given_);
+    for (std::size_t n = 0; n < plan.tasks.size(); ++n) {
+      carry_out(plan.tasks[n]);
+      systems_.keep(plan.used_from(n + 1));
+    }
+    append_arrays();
+    return std::move(evaluation_);
+  }
+
+ private:
+  void carry_out(const Task& task) {
+    switch (task.work) {
+    case Work::stationary_distribution: return find_distribution();
+    case Work::orientation: return find_hitting_distribution();
+    case Work::sensitivity: return find_sensitivity();
+    case Work::duration_moments: return find_duration_moments();
+    case Work::duration_transforms: return transform_durations(question_.lambda[task.at]);
+    case Work::stick_duration_transforms: return transform_stick_durations();
+    case Work::resolvent:
+      resolvents_.push_back(
+          quantities::resolvent(systems_, question_.lambda[task.at], question_.observables));
+      return;
+    case Work::spectrum: return append_spectrum(systems_, setting_, evaluation_);
+    case Work::spectrum_at_zero: return find_spectrum_at_zero();
+    case Work::durations: return append_durations(systems_, setting_, evaluation_);
+    case Work::autocorrelation: return append_autocorrelation(systems_, setting_, evaluation_);
+    case Work::expectation: return append_expectations(systems_, setting_, evaluation_);
+    case Work::relaxation: return find_modes();
+    }
+  }
+
+  [[nodiscard]] const StationaryDistribution& distribution() const {
+    return *evaluation_.distribution;
+  }
+  [[nodiscard]] Results& results() { return evaluation_.results; }
+
+  void find_distribution() {
+    evaluation_.distribution = std::make_shared<StationaryDistribution>(systems_);
+    append_distribution(question_, distribution(), results());
+  }
+
+  void find_hitting_distribution() {
+    evaluation_.distribution->orient(systems_);
+    append_with_rounding(distribution(), results(), [this](const auto& excursion, Results& found) {
+      quantities::append_hitting_distribution(setting_.discretisation.process, excursion, found);
+    });
+  }
+
+  void find_sensitivity() {
+    const quantities::Sensitivity sensitivity(systems_, distribution(),
+                                              quantities::parameters_of(given_.scene));
+    if (question_.wants(Quantity::sticking)) sensitivity.append_sticking(results());
+    if (question_.wants(Quantity::moments)) sensitivity.append_moments(results());
+  }
+
+  void find_duration_moments() {
+    const auto entry = entry_law(distribution());
+    const auto moments = quantities::duration_moments(systems_, entry);
+    quantities::append_duration_moments(setting_.discretisation.process, moments, entry, results());
+  }
+
+  void transform_durations(double lambda) {
+    const auto t = quantities::slide_transforms(systems_, lambda);
+    const auto stick = quantities::stick_transform(setting_.discretisation.process, lambda,
+                                                   entry_law(distribution()));
+    transforms_.push_back({t.slide, stick, t.excursion});
+  }
+
+  void transform_stick_durations() {
+    const auto entry = entry_law(distribution());
+    auto result =
+        quantities::array("F_stick", "", "lambda", question_.lambda, quantities::Kind::transform);
+    for (double lambda : question_.lambda) {
+      quantities::append_value(
+          result, quantities::stick_transform(setting_.discretisation.process, lambda, entry));
+    }
+    results().push_back(std::move(result));
+  }
+
+  void find_spectrum_at_zero() {
+    const quantities::Spectrum spectrum{quantities::spectrum_at_zero(systems_, distribution()), {}};
+    quantities::append_spectrum({}, spectrum, results());
+  }
+
+  void find_modes() {
+    evaluation_.even = quantities::relaxation_modes(systems_, Symmetry::even);
+    evaluation_.odd = quantities::relaxation_modes(systems_, Symmetry::odd);
+    quantities::append_relaxation(Symmetry::even, evaluation_.even, results());
+    quantities::append_relaxation(Symmetry::odd, evaluation_.odd, results());
+  }
+
+  // What was found one lambda at a time.
+  void append_arrays() {
+    const auto& lambda = question_.lambda;
+    if (!transforms_.empty()) quantities::append_laplace(lambda, transforms_, results());
+    if (resolvents_.empty()) return;
+    quantities::append_resolvent(lambda, question_.observables, resolvents_, results());
+  }
+
+  const Setting& setting_;
+  const Case& given_;
+  const Question& question_;
+  operators::Systems systems_;
+  Evaluation evaluation_;
+  std::vector<quantities::DurationTransforms> transforms_;
+  std::vector<quantities::Resolvent> resolvents_;
+};
+
+}  // namespace
+
+Evaluation by_excursion(const Setting& setting) { return Execution(setting).run(); }
+
+petsc::Analysis analyse(const Setting& setting, const operators::SystemKey& key) {
+  operators::Systems systems(setting.comm, setting.discretisation, setting.statistics);
+  return systems.analyse(key);
+}
+
+}  // namespace stickslip::routes

@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <cmath>
+
+#include "averages.hpp"
+#include "routes.hpp"
+#include "stickslip/operators/systems.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/eigensolver.hpp"
+#include "stickslip/petsc/vectors.hpp"
+
+namespace stickslip::routes {
+namespace {
+
+using operators::KolmogorovOperator;
+using operators::Symmetry;
+using petsc::check;
+using quantities::Uncertain;
+
+// Prefix of the PETSc options of this eigensolver.
+constexpr const char* kNullPrefix = "null_";
+
+void normalise(Vec pi) {
+  PetscScalar mass = 0;
+  check(VecSum(pi, &mass));
+  check(VecScale(pi, 1.0 / mass));
+}
+
+// Smallest entry, 0 if none is negative; on an upwind grid pi is a probability.
+double most_negative(MPI_Comm comm, Vec pi) {
+  double smallest = 0;
+  {
+    const petsc::ReadView local(pi);
+    for (PetscInt n = 0; n < local.size(); ++n) {
+      smallest = std::min(smallest, static_cast<double>(PetscRealPart(local[n])));
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &smallest, 1, MPI_DOUBLE, MPI_MIN, comm);
+  return smallest;
+}
+
+// ||pi M||_1 / max row sum of |M|.
+double relative_residual(Mat transposed, Vec pi) {
+  petsc::VecHandle residual;
+  check(VecDuplicate(pi, residual.out()));
+  check(MatMult(transposed, pi, residual));
+  PetscReal size = 0, norm = 0;
+  check(VecNorm(residual, NORM_1, &size));
+  check(MatNorm(transposed, NORM_1, &norm));
+  return size / norm;
+}
+
+double integral(const KolmogorovOperator& a, Vec pi, const model::Observable& f) {
+  return petsc::dot(a.values(f.value), pi);
+}
+
+// By renewal, excursions end at the rates Lambda alpha pi of the highest static level upwards and
+// Lambda (1 - alpha) pi of the lowest one downwards.
+Uncertain mean_excursion(const Setting& setting, const KolmogorovOperator& a, Vec pi, Vec before) {
+  const auto& process = setting.discretisation.process;
+  const auto& noise = process.noise;
+  const model::Observable exits{"", [&](double x, double y, double) {
+                                  if (y != 0) return 0.0;
+                                  const auto i = static_cast<int>(std::lround(x / noise.delta));
+                                  const bool high = i == process.static_index();
+                                  const bool low = i == process.lowest_static();
+                                  return noise.rate() *
+                                         ((high ? noise.up(i) : 0) + (low ? noise.down(i) : 0));
+                                }};
+  const double value = 1 / integral(a, pi, exits);
+  return {value, std::abs(value - 1 / integral(a, before, exits))};
+}
+
+void append_durations(Uncertain excursion, quantities::Results& results) {
+  const auto share = [&](const char* key) {
+    const auto r = std::find_if(results.begin(), results.end(),
+                                [key](const auto& result) { return result.key == key; });
+    return Uncertain{r->value[0], r->error[0]};
+  };
+  const Uncertain stick = share("P_stick") * excursion, slide = share("P_slide") * excursion;
+  results.push_back(scalar(quantities::kMeanStick, stick));
+  results.push_back(scalar(quantities::kMeanSlide, slide));
+  results.push_back(scalar(quantities::kMeanExcursion, excursion));
+}
+
+}  // namespace
+
+Evaluation by_null_vector(const Setting& setting) {
+  const auto a = operators::assemble(setting.comm, setting.discretisation, 0, Symmetry::none,
+                                     operators::StaticPhase::kept, setting.statistics);
+  petsc::MatHandle transposed;  // of -M; its null vector is pi
+  check(MatTranspose(a.matrix(), MAT_INITIAL_MATRIX, transposed.out()));
+  // All eigenvalues of -M have real parts >= 0, and 0 is the one nearest to a small negative
+  // target.
+  const double target = -1e-6 / setting.discretisation.process.noise.tau;
+  petsc::Eigensolver solver(transposed, kNullPrefix, target, 1, setting.statistics);
+  const Vec before = solver.pairs()[0].real;
+  normalise(before);
+  petsc::VecHandle pi;
+  check(VecDuplicate(before, pi.out()));
+  check(VecCopy(before, pi));
+  solver.iterate(pi);
+  normalise(pi);
+
+  Evaluation evaluation;
+  std::vector<Uncertain> values;
+  for (const auto& average : averages(setting)) {
+    const double value = integral(a, pi, average.f);
+    values.push_back({value, std::abs(value - integral(a, before, average.f))});
+  }
+  append_averages(setting, values, evaluation.results);
+  if (setting.given.question.wants(options::Quantity::sticking)) {
+    append_durations(mean_excursion(setting, a, pi, before), evaluation.results);
+  }
+  evaluation.checks = {{"norm_pi_M_over_norm_M", relative_residual(transposed, pi)},
+                       {"most_negative_pi", most_negative(setting.comm, pi)}};
+  return evaluation;
+}
+
+}  // namespace stickslip::routes

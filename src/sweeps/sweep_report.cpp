@@ -1,0 +1,276 @@
+#include "stickslip/sweeps/sweep_report.hpp"
+
+#include <fmt/format.h>
+#include <petscsys.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "stickslip/io/hdf5_file.hpp"
+#include "stickslip/io/parts.hpp"
+#include "stickslip/support/text.hpp"
+
+namespace stickslip::sweeps {
+namespace {
+
+using io::Json;
+using quantities::Result;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Numbers of one result at all points: a column of tables and CSV, a dataset of HDF5.
+struct Column {
+  const Result* result;  // of the first point that has it
+  std::string name;      // its key, with _error, _low, _high or its abscissa behind it
+  std::vector<std::vector<double>> at;  // by point: one number of a scalar; none where it lacks
+
+  [[nodiscard]] bool is_values() const { return name == result->key; }
+  [[nodiscard]] double number(const SweepPoint& run) const {
+    return at[run.point].empty() ? kNone : at[run.point][0];
+  }
+};
+
+/// Columns of all results, the values of each followed by its errors.
+std::vector<Column> columns_of(const std::vector<SweepPoint>& runs) {
+  std::vector<Column> columns;
+  std::size_t points = 0;
+  for (const auto& run : runs) points = std::max(points, run.point + 1);
+  const auto put = [&](const SweepPoint& run, const Result& r, const std::string& part,
+                       auto values) {
+    const std::string name = r.key + part;
+    auto found = std::find_if(columns.begin(), columns.end(),
+                              [&](const Column& column) { return column.name == name; });
+    if (found == columns.end()) {
+      found = columns.insert(found, {&r, name, std::vector<std::vector<double>>(points)});
+    }
+    found->at[run.point] = std::move(values);
+  };
+  for (const auto& run : runs) {
+    for (const auto& r : run.results) {
+      put(run, r, "", r.value);
+      put(run, r, "_error", r.error);
+      if (!r.is_scalar()) put(run, r, "_" + r.abscissa_name, r.abscissa);
+      if (r.ci95.empty()) continue;
+      std::vector<double> low, high;
+      for (const auto& interval : r.ci95) {
+        low.push_back(interval.first);
+        high.push_back(interval.second);
+      }
+      put(run, r, "_low", std::move(low));
+      put(run, r, "_high", std::move(high));
+    }
+  }
+  return columns;
+}
+
+/// Values and errors of scalars, one after the other.
+std::vector<Column> scalars_of(const std::vector<SweepPoint>& runs) {
+  auto columns = columns_of(runs);
+  std::erase_if(columns, [](const Column& c) {
+    return !c.result->is_scalar() || !(c.is_values() || c.name == c.result->key + "_error");
+  });
+  return columns;
+}
+
+// The options of the scene that stay.
+std::string fixed_options(const options::Request& request) {
+  std::string text;
+  for (const auto& option : options::table().front().options) {
+    for (const auto& [name, value] : request.resolved) {
+      if (name != option.name || value.empty() || value == "swept") continue;
+      text += fmt::format("{}{} = {}", text.empty() ? "" : "   ", name, value);
+    }
+  }
+  return text + "\n";
+}
+
+std::string title(const options::Sweep& sweep) {
+  std::vector<std::string> axes;
+  for (const auto& axis : sweep.axes()) {
+    axes.push_back(fmt::format("{} ({} values)", axis.option, axis.values.size()));
+  }
+  return fmt::format("sweep of {}: {} points\n", enumerate(axes, "and"), sweep.size());
+}
+
+// Of the column of an axis.
+std::size_t width(const options::SweepAxis& axis) {
+  return std::max<std::size_t>(11, axis.option.size() + 2);
+}
+
+std::string row(const options::Sweep& sweep, const SweepPoint& run,
+                std::span<const Column> scalars) {
+  std::string text;
+  const auto values = sweep.values(run.point);
+  for (std::size_t a = 0; a < values.size(); ++a) {
+    text += fmt::format("{:>{}.6g}", values[a], width(sweep.axes()[a]));
+  }
+  for (const Column& scalar : scalars) {
+    const double number = scalar.number(run);
+    const std::string error = std::isnan(number) ? "" : fmt::format("{:.1e}", number);
+    text += scalar.is_values() ? fmt::format("  {:>17}", io::cell(number, 10))
+                               : fmt::format(" {:>8}", error);
+  }
+  if (run.status != Status::reached) text += fmt::format("  {}", status_text(run.status));
+  return text + "\n";
+}
+
+// Some scalars of all points; an empty line where the last but one axis moves on.
+std::string block(const options::Sweep& sweep, const std::vector<SweepPoint>& runs,
+                  std::span<const Column> scalars) {
+  std::string text = "\n";
+  for (const auto& axis : sweep.axes()) text += fmt::format("{:>{}}", axis.option, width(axis));
+  for (const Column& scalar : scalars) {
+    text +=
+        scalar.is_values() ? fmt::format("  {:>17}", scalar.name) : fmt::format(" {:>8}", "error");
+  }
+  text += "\n";
+  const std::size_t fastest = sweep.axes().back().values.size();
+  for (const auto& run : runs) {
+    const bool moves_on = sweep.axes().size() > 1 && run.point > 0 && run.point % fastest == 0;
+    if (moves_on) text += "\n";
+    text += row(sweep, run, scalars);
+  }
+  return text;
+}
+
+std::string shortfalls(const options::Sweep& sweep, const std::vector<SweepPoint>& runs) {
+  constexpr int most = 10;  // the files hold all
+  std::string text;
+  int count = 0;
+  for (const auto& run : runs) {
+    if (run.status == Status::reached || ++count > most) continue;
+    text +=
+        fmt::format("{}: {}: {}\n", sweep.place(run.point), status_text(run.status), run.message);
+  }
+  return count > most ? text + fmt::format("and {} more like these\n", count - most) : text;
+}
+
+std::string counts(const SweepResult& result, const io::RunTimes& times) {
+  const auto reached =
+      std::count_if(result.runs.begin(), result.runs.end(),
+                    [](const SweepPoint& run) { return run.status == Status::reached; });
+  std::string text =
+      fmt::format("{} of {} points reached the accuracy; ", reached, result.runs.size());
+  if (result.resumed > 0) text += fmt::format("{} from the record; ", result.resumed);
+  return text +
+         fmt::format("{:.2f} s in all, {:.2f} s of it start-up\n", times.total, times.start_up);
+}
+
+/// Datasets over the axes of the sweep, the last index within a result.
+class Grid {
+ public:
+  Grid(io::Hdf5File& file, const options::Sweep& sweep) : file_(file) {
+    std::string names;
+    for (const auto& axis : sweep.axes()) {
+      sizes_.push_back(axis.values.size());
+      file_.write_array("/sweep/" + axis.option, axis.values);
+      if (!axis.unit.empty()) file_.attribute("/sweep/" + axis.option, "unit", axis.unit);
+      names += (names.empty() ? "" : ",") + axis.option;
+    }
+    file_.attribute("/sweep", "axes", names);
+  }
+
+  void write(const std::string& name, const std::vector<double>& values) {
+    file_.write_array("/sweep/" + name, sizes_, values);
+  }
+
+  // Arrays may differ in length from point to point, as the levels at which slides end do; NaN
+  // where there is nothing.
+  void write(const Column& column) {
+    const Result& r = *column.result;
+    const std::string path = "/sweep/" + io::hdf5_name(column.name);
+    std::size_t length = 0;
+    for (const auto& numbers : column.at) length = std::max(length, numbers.size());
+    std::vector<double> all;
+    for (auto numbers : column.at) {
+      numbers.resize(length, kNone);
+      all.insert(all.end(), numbers.begin(), numbers.end());
+    }
+    auto sizes = sizes_;
+    if (!r.is_scalar()) sizes.push_back(length);
+    file_.write_array(path, sizes, all);
+    if (!column.is_values()) return;
+    if (!r.unit.empty()) file_.attribute(path, "unit", r.unit);
+    if (!r.is_scalar()) file_.attribute(path, "abscissa", r.abscissa_name);
+  }
+
+ private:
+  io::Hdf5File& file_;
+  std::vector<std::size_t> sizes_;
+};
+
+}  // namespace
+
+std::string table(const options::Request& request, const SweepResult& result,
+                  const io::RunTimes& times) {
+  const auto& sweep = *request.sweep;
+  std::string text = title(sweep) + fixed_options(request);
+  const auto scalars = scalars_of(result.runs);
+  constexpr std::size_t side_by_side = 4;
+  const std::size_t count = scalars.size() / 2;
+  const std::size_t blocks = std::max<std::size_t>(1, (count + side_by_side - 1) / side_by_side);
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::size_t first = count * b / blocks, end = count * (b + 1) / blocks;
+    text += block(sweep, result.runs, {scalars.data() + 2 * first, 2 * (end - first)});
+  }
+  text += "\n";
+  for (const auto& column : columns_of(result.runs)) {
+    if (column.result->is_scalar() || !column.is_values()) continue;
+    text += fmt::format("{} by {}: in the files of -summary and -output\n", column.name,
+                        column.result->abscissa_name);
+  }
+  return text + shortfalls(sweep, result.runs) + counts(result, times);
+}
+
+std::string csv(const options::Request& request, const SweepResult& result) {
+  const auto& sweep = *request.sweep;
+  const auto scalars = scalars_of(result.runs);
+  std::vector<std::string> cells;
+  for (const auto& axis : sweep.axes()) cells.push_back(axis.option);
+  for (const auto& scalar : scalars) cells.push_back(scalar.name);
+  cells.emplace_back("status");
+  std::string text = io::csv_line(cells);
+  for (const auto& run : result.runs) {
+    cells.clear();
+    for (double value : sweep.values(run.point)) cells.push_back(io::cell(value, 17));
+    for (const auto& scalar : scalars) cells.push_back(io::cell(scalar.number(run), 17));
+    cells.emplace_back(status_text(run.status));
+    text += io::csv_line(cells);
+  }
+  return text;
+}
+
+std::string summary(MPI_Comm comm, const options::Request& request, const SweepResult& result,
+                    const io::RunTimes& times) {
+  Json tree;
+  for (const auto& axis : request.sweep->axes()) tree["sweep"]["axes"][axis.option] = axis.values;
+  tree["sweep"]["points"] = result.runs.size();
+  tree["sweep"]["from_record"] = result.resumed;
+  tree["runs"] = Json::array();
+  for (const auto& run : result.runs) tree["runs"].push_back(Json::parse(run.entry));
+  tree["cost"] = {{"seconds", times.total}, {"start_up_seconds", times.start_up}};
+  return io::summary_text(comm, request, std::move(tree));
+}
+
+void write_hdf5(MPI_Comm comm, const options::Request& request, const SweepResult& result,
+                const io::RunTimes& times) {
+  io::Hdf5File file(PETSC_COMM_SELF, request.output.output);
+  file.make_group("/sweep");
+  Grid grid(file, *request.sweep);
+  for (const auto& column : columns_of(result.runs)) grid.write(column);
+  std::vector<double> status, seconds;
+  for (const auto& run : result.runs) {
+    status.push_back(static_cast<double>(run.status));
+    seconds.push_back(run.seconds);
+  }
+  grid.write("status", status);
+  file.attribute("/sweep/status", "meaning", "0 reached, 1 not reached, 2 failed, 3 no memory");
+  grid.write("seconds", seconds);
+  io::write_record(file, comm, request, times);
+  file.commit();
+}
+
+}  // namespace stickslip::sweeps
