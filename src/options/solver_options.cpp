@@ -112,7 +112,7 @@ std::vector<std::string> given_names() {
 }
 
 // Of the types that PETSc has, those that work from options alone and apply transposes. Others,
-// such as level pair and mg, need a program that sets them up, and crash without.
+// such as shell and mg, need a program that sets them up, and crash without.
 const std::vector<std::pair<std::string, std::vector<std::string>>>& solver_types() {
   static const std::vector<std::pair<std::string, std::vector<std::string>>> types{
       {"slide_pc_type", split("elements lu cholesky qr svd redundant ksp ilu icc asm gasm bjacobi "

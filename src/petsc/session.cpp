@@ -51,7 +51,7 @@ Session::Session(int& argc, char**& argv) : arguments_(argv, argv + argc) {
   collect_error_messages();
   const PetscErrorCode code = SlepcInitialize(&count, &values, nullptr, nullptr);
   if (code != 0) refuse_start(code);
-  check(PetscLogDefaultBegin());  // the statistics reads event times
+  check(PetscLogDefaultBegin());  // the statistics read event times
   (void)ranks_on_node();          // all ranks are here
   take_blas_space();
   std::signal(SIGPIPE, SIG_DFL);  // a closed pipe (| head) is no crash

@@ -5,6 +5,9 @@
 3. Every call of PETSc, SLEPc is checked: inside check(...), assigned, returned or cast to void.
 4. Functions are short: median at most 8 lines, nine in ten at most 30, none above 60.
 5. The sources name neither folders of one machine nor who works on them.
+6. Identifiers are the field's: words that have been replaced do not come back.
+7. No two modules have files of one name.
+8. No file is longer than 450 lines.
 """
 
 import pathlib
@@ -16,6 +19,7 @@ MODULES = ("support", "algebra", "model", "exact", "noise", "velocity", "simulat
            "checkpoint", "options", "operators", "quantities", "routes", "monte_carlo", "accuracy", "studies", "io", "sweeps", "app")
 SCALAR_MODULES = ("petsc", "operators", "quantities", "routes")
 LONGEST, LONG, MEDIAN = 60, 30, 8
+LONGEST_FILE = 450
 
 
 def source_files(root, *folders):
@@ -125,10 +129,34 @@ def check_words(root):
                 yield f"{path}:{number}: {line.strip()}"
 
 
+REPLACED = re.compile(r"\b(StationaryLaw|DurationLaw|Ladder|rung|rungs_|Ledger|ledger_?|folded|Rest|Half|excess(_at)?"
+                      r"|HpAxis|UpwindAxis|Conducted|conduct|chance_of_falling|[Ff]oretold|StayFlow|HighModes)\b")
+
+
+def check_vocabulary(root):
+    for path in source_files(root, "include", "src", "tests"):
+        for number, line in enumerate(without_comments(path.read_text()).splitlines(), 1):
+            found = REPLACED.search(line)
+            if found:
+                yield f"{path}:{number}: {found.group(0)} has another name now"
+
+
+def check_files(root):
+    modules = {}
+    for path in source_files(root, "include", "src"):
+        modules.setdefault(path.stem, set()).add(module_of(path, root))
+        length = len(path.read_text().splitlines())
+        if length > LONGEST_FILE:
+            yield f"{path}: {length} lines"
+    for stem, where in sorted(modules.items()):
+        if len(where) > 1:
+            yield f"files named {stem} in {' and '.join(sorted(where))}"
+
+
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     complaints = [text for rule in (check_order, check_scalars, check_petsc_calls, check_function_lengths,
-                                    check_words) for text in rule(root)]
+                                    check_words, check_vocabulary, check_files) for text in rule(root)]
     print("\n".join(complaints) or "sources follow the rules")
     sys.exit(1 if complaints else 0)
 

@@ -161,7 +161,7 @@ TEST_CASE("hp axis: a value takes the nodes of its own element, a node itself") 
   }
 }
 
-// B + h dB with dB = 1 + 0.5 v is the row of net force + h and drag -(1 - 0.5 h) v.
+// B + h dB with dB = 1 + 0.5 v is the row of net_force + h and drag -(1 - 0.5 h) v.
 TEST_CASE("hp transport: the derivative of a row is the difference of rows") {
   const double h = 1e-6;
   const std::vector<double> ends{0, 0.5, 1.5};

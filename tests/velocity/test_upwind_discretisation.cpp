@@ -82,7 +82,7 @@ TEST_CASE("upwind axis: below the first node, its value") {
   CHECK(one.value_at(0.1)[0].value == 1);
 }
 
-// B + h dB with dB = 1 + 0.5 v is the row of net force + h and drag -(1 - 0.5 h) v.
+// B + h dB with dB = 1 + 0.5 v is the row of net_force + h and drag -(1 - 0.5 h) v.
 TEST_CASE("upwind transport: the derivative of a row is the difference of rows") {
   const double h = 1e-6;
   const UpwindDiscretisation velocities(0.1, 20, model::Drag{1, 0}),

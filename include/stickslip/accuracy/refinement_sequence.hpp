@@ -8,9 +8,9 @@
 
 namespace stickslip::accuracy {
 
-/// Rung 0 is only there to be compared with; each further refinement level is finer in every
-/// respect (degrees or points, noise range, velocity cut), so that the change from one refinement
-/// level to the next shows the error of the coarser one, whatever its cause.
+/// Refinement level 0 is only there to be compared with; each further refinement level is finer in
+/// every respect (degrees or points, noise range, velocity cut), so that the change from one
+/// refinement level to the next shows the error of the coarser one, whatever its cause.
 class RefinementSequence {
  public:
   explicit RefinementSequence(const options::Case& given);

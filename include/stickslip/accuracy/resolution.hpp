@@ -21,8 +21,8 @@ struct Resolution {
   int levels = 0;                             ///< N, noise levels on each side of 0
   noise::Grouping grouping;                   ///< of the noise levels
   std::shared_ptr<const noise::Nodes> noise;  ///< of that grouping; none: every level is a node
-  double v_max = 0;  ///< end of the velocity velocity discretisation [velocity]
-  int halves = 1;    ///< 1: symmetry-reduced by symmetry, v > 0 only; 2: both signs of v
+  double v_max = 0;                           ///< end of the velocity discretisation [velocity]
+  int halves = 1;  ///< 1: reduced by symmetry, v > 0 only; 2: both signs of v
   options::Factors factors = options::Factors::own;
 
   [[nodiscard]] std::int64_t noise_nodes() const {
@@ -36,7 +36,7 @@ struct Resolution {
 /// there the law of X is shifted upwards, and the range with it.
 [[nodiscard]] int levels_for(const model::Scene& scene, double tolerance);
 
-/// End of the velocity velocity discretisation: the terminal velocity of the highest level, or
+/// End of the velocity discretisation: the terminal velocity of the highest level, or
 /// where the density has fallen below `tolerance` if that comes first. What the user fixed goes
 /// before.
 [[nodiscard]] double velocity_end(const model::Scene& scene, int levels, double tolerance);
@@ -54,7 +54,7 @@ struct Resolution {
 /// No discretisation in v: only the noise range is chosen.
 [[nodiscard]] Resolution exact_resolution(const model::Scene& scene, double tolerance);
 
-/// Without a velocity velocity discretisation if the scheme has none.
+/// Without a velocity discretisation if the scheme has none.
 [[nodiscard]] operators::Discretisation discretise(const model::Scene& scene,
                                                    const Resolution& resolution);
 

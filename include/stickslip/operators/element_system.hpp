@@ -35,7 +35,7 @@ class ElementSystem {
     petsc::DenseMatrix inner_inner, inner_outer, outer_inner, outer_outer;
   };
 
-  /// For the speeds x_l + g - mu_d + b(v), `net force` being x_l + g - mu_d by node; the response
+  /// For the speeds x_l + g - mu_d + b(v), `net_force` being x_l + g - mu_d by node; the response
   /// goes to `response`. O(M q^3 groups' sizes^2 + M^2 q). Throws NotReached if a block is
   /// singular.
   ElementSystem(const noise::Nodes& noise, const velocity::HpDiscretisation& velocities,

@@ -25,7 +25,7 @@ struct State {
   StateKind kind;
   Branch half;  ///< upper for states at rest
   int noise;    ///< number of the noise node; at rest the level
-  int node;     ///< index on the velocity velocity discretisation, for nodes
+  int node;     ///< index on the velocity discretisation, for nodes
 };
 
 /// All states of a discretisation: for each half and noise node its velocity nodes and, if it has

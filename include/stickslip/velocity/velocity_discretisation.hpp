@@ -8,7 +8,7 @@
 
 namespace stickslip::velocity {
 
-/// One entry of a sparse row over the nodes of an velocity discretisation.
+/// One entry of a sparse row over the nodes of a velocity discretisation.
 struct Entry {
   int node;
   double value;
@@ -24,14 +24,14 @@ struct TransportRow {
   double outflow = 0;          ///< coefficient of the holding state
 };
 
-/// The derivative of the speed B(v) with respect to a parameter: dB(v) = net force + per_speed v.
+/// The derivative of the speed B(v) with respect to a parameter: dB(v) = net_force + per_speed v.
 struct SpeedChange {
   double net_force = 0;
   double per_speed = 0;
   [[nodiscard]] double operator()(double v) const { return net_force + per_speed * v; }
 };
 
-/// A velocity discretisation on [0, v_max] for the speeds B(v) = net force + b(v).
+/// A velocity discretisation on [0, v_max] for the speeds B(v) = net_force + b(v).
 /// Implementations are immutable; all members are local and cost O(size) unless said.
 class VelocityDiscretisation {
  public:
@@ -46,7 +46,7 @@ class VelocityDiscretisation {
   /// Ends 0 = e_0 < e_1 < ... of the cells by which fields are compared between discretisations.
   [[nodiscard]] virtual std::span<const double> cells() const = 0;
 
-  /// Row j of T for the speed B(v) = net force + b(v), into the storage of `row`. O(its entries).
+  /// Row j of T for the speed B(v) = net_force + b(v), into the storage of `row`. O(its entries).
   virtual void transport(double net_force, int j, TransportRow& row) const = 0;
   /// Derivative of that row where B changes by dB, upwinded as B is. O(its entries).
   virtual void transport_change(double net_force, const SpeedChange& change, int j,
@@ -70,7 +70,7 @@ class VelocityDiscretisation {
   /// Whether levels that still accelerate at v_max need a holding state there.
   [[nodiscard]] virtual bool needs_holding() const = 0;
 
-  /// The velocity discretisation of the lower half line, where speeds are net force - b(-v); this
+  /// The velocity discretisation of the lower half line, where speeds are net_force - b(-v); this
   /// one for an odd b. It has the same nodes.
   [[nodiscard]] const VelocityDiscretisation& mirrored() const {
     return mirrored_ ? *mirrored_ : *this;
