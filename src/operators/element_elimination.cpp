@@ -105,7 +105,7 @@ struct ElementElimination::Line {
   std::size_t first_element = 0;            // counted over all lines
   std::size_t begin = 0;                    // in w: of the values at v = 0, those at v_1 ...
   std::vector<std::unique_ptr<ElementSystem>> elements;  // those of this rank
-  std::vector<ElementSystem::Response> responses;        // of these, until they are used
+  std::vector<ElementSystem::Response> responses;        // of shared ones, until they are used
   DenseMatrix reflection;                                // R at v = 0
   LinearSteps outwards;                                  // from the values that fall at v = 0
 
@@ -132,7 +132,7 @@ ElementElimination::ElementElimination(Mat matrix, std::shared_ptr<const MatrixD
   }
   rest_ = length_;
   length_ += rest_rows_.size();
-  make_elements();
+  if (petsc::ranks(comm_) > 1) make_shared_elements();
   for (Line& line : lines_) reflect(line);
   meet(matrix);
   petsc::VecHandle any;
@@ -162,7 +162,6 @@ ElementElimination::Line ElementElimination::line_of(Branch half) const {
   }
   const int elements = line.velocities->elements();
   line.elements.resize(static_cast<std::size_t>(elements));
-  line.responses.resize(static_cast<std::size_t>(elements));
   for (int e = 0; e <= elements; ++e) {
     line.rising.push_back(first_rising(line.net_force, line.velocities->drag_at_end(e)));
   }
@@ -174,16 +173,23 @@ int ElementElimination::owner(const Line& line, std::size_t e) const {
   return static_cast<int>((line.first_element + e) % static_cast<std::size_t>(petsc::ranks(comm_)));
 }
 
-// One that fails ends all ranks alike.
-void ElementElimination::make_elements() {
+ElementSystem::Response ElementElimination::make_element(Line& line, std::size_t e) const {
+  ElementSystem::Response response;
+  line.elements[e] =
+      std::make_unique<ElementSystem>(*data_->discretisation.noise, *line.velocities,
+                                      static_cast<int>(e), line.net_force, data_->lambda, response);
+  return response;
+}
+
+// All before the first is sent: one that fails ends all ranks alike.
+void ElementElimination::make_shared_elements() {
   std::string failure;
   for (Line& line : lines_) {
+    line.responses.resize(line.elements.size());
     for (std::size_t e = 0; e < line.elements.size() && failure.empty(); ++e) {
       if (owner(line, e) != petsc::rank(comm_)) continue;
       try {
-        line.elements[e] = std::make_unique<ElementSystem>(
-            *data_->discretisation.noise, *line.velocities, static_cast<int>(e), line.net_force,
-            data_->lambda, line.responses[e]);
+        line.responses[e] = make_element(line, e);
       } catch (const NotReached& singular) {
         failure = singular.what();
       }
@@ -193,15 +199,14 @@ void ElementElimination::make_elements() {
 }
 
 // What an element makes of the values beyond its ends, on all ranks.
-ElementSystem::Response ElementElimination::response(Line& line, int e) const {
+ElementSystem::Response ElementElimination::response(Line& line, std::size_t e) const {
+  if (petsc::ranks(comm_) == 1) return make_element(line, e);
   ElementSystem::Response s = std::move(line.responses[e]);
-  const int owner_of = owner(line, static_cast<std::size_t>(e)), all = line.count();
-  const int inner = line.rising[e], outer = line.rising[e + 1];
-  if (petsc::ranks(comm_) == 1) return s;
-  send(comm_, owner_of, all - inner, inner, s.inner_inner);
-  send(comm_, owner_of, all - inner, all - outer, s.inner_outer);
-  send(comm_, owner_of, outer, inner, s.outer_inner);
-  send(comm_, owner_of, outer, all - outer, s.outer_outer);
+  const int all = line.count(), inner = line.rising[e], outer = line.rising[e + 1];
+  send(comm_, owner(line, e), all - inner, inner, s.inner_inner);
+  send(comm_, owner(line, e), all - inner, all - outer, s.inner_outer);
+  send(comm_, owner(line, e), outer, inner, s.outer_inner);
+  send(comm_, owner(line, e), outer, all - outer, s.outer_outer);
   return s;
 }
 
@@ -233,7 +238,7 @@ void ElementElimination::reflect(Line& line) {
   DenseMatrix reflection = hold(line);
   std::vector<std::pair<DenseMatrix, DenseMatrix>> outwards;
   for (int e = line.velocities->elements(); e-- > 0;) {
-    auto s = response(line, e);
+    auto s = response(line, static_cast<std::size_t>(e));
     const int falling = line.rising[e + 1];
     DenseMatrix turns = identity(falling);
     add_product(-1, s.outer_outer, reflection, falling, turns);

@@ -95,18 +95,15 @@ class ElementSystem::Elimination {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       Group& group = groups_[g];
       if (g > 0) {
-        auto couplings = into_place(groups_[g - 1], groups_[g - 1].noise->at_last(), last(g - 1));
-        for (auto& c : into_place(group, group.noise->to_below, last(g - 1))) {
-          std::swap(c.from, c.to);
-          couplings.push_back(c);
-        }
-        steps.add(std::move(couplings));
+        const Group& below = groups_[g - 1];
+        steps.contract(below.noise->at_last(), q_, at(below), last(g - 1));
+        steps.spread(group.noise->to_below, q_, last(g - 1), at(group));
       }
       steps.solve(std::move(group.factors), at(group));
     }
     for (std::size_t g = groups_.size() - 1; g-- > 0;) {
       const Group& above = groups_[g + 1];
-      steps.add(into_place(above, above.noise->at_first(), first(g + 1)));
+      steps.contract(above.noise->at_first(), q_, at(above), first(g + 1));
       steps.add(std::move(groups_[g].to_next), first(g + 1), at(groups_[g]));
     }
     return steps;
@@ -139,16 +136,6 @@ class ElementSystem::Elimination {
     return static_cast<std::size_t>(s_.size()) + 2 * group * q_;
   }
   [[nodiscard]] std::size_t last(std::size_t group) const { return first(group) + q_; }
-
-  // c^T of a group, node by node of the element.
-  [[nodiscard]] std::vector<LinearSteps::Coupling>
-  into_place(const Group& group, std::span<const double> c, std::size_t place) const {
-    std::vector<LinearSteps::Coupling> couplings;
-    for (std::size_t l = 0; l < c.size(); ++l) {
-      for (int m = 0; m < q_; ++m) couplings.push_back({at(group) + l * q_ + m, place + m, c[l]});
-    }
-    return couplings;
-  }
 
   // The rows and columns of a group.
   [[nodiscard]] DenseMatrix block(const Group& group) const {

@@ -47,6 +47,26 @@ void LinearSteps::add(std::vector<Coupling> couplings) {
   steps_.emplace_back(std::move(couplings));
 }
 
+void LinearSteps::contract(std::span<const double> c, int block, std::size_t from, std::size_t to) {
+  steps_.emplace_back(Contraction{{c.begin(), c.end()}, block, to, from, false});
+}
+
+void LinearSteps::spread(std::span<const double> c, int block, std::size_t from, std::size_t to) {
+  steps_.emplace_back(Contraction{{c.begin(), c.end()}, block, from, to, true});
+}
+
+void LinearSteps::Contraction::run(PetscScalar* w, bool transposed) const {
+  PetscScalar *const single = w + one, *row = w + many;
+  for (const double weight : c) {
+    if (spreads != transposed) {
+      for (int m = 0; m < block; ++m) row[m] += weight * single[m];
+    } else {
+      for (int m = 0; m < block; ++m) single[m] += weight * row[m];
+    }
+    row += block;
+  }
+}
+
 void LinearSteps::solve(petsc::DenseFactors a, std::size_t at) {
   steps_.emplace_back(Solve<petsc::DenseFactors>{std::move(a), at});
 }
@@ -74,6 +94,7 @@ void LinearSteps::run(Scalars& w, bool transposed) const {
           w[c->from] += c->weight * w[c->to];
         }
       },
+      [&](const Contraction& contraction) { contraction.run(w.data(), transposed); },
       [&](const auto& solve) { solve.a.solve(w.data() + solve.at, transposed); }};
   if (transposed) {
     for (auto step = steps_.rbegin(); step != steps_.rend(); ++step) std::visit(carry_out, *step);
@@ -89,6 +110,7 @@ double LinearSteps::entries() const {
       [&](const std::vector<Coupling>& couplings) {
         count += static_cast<double>(2 * couplings.size());
       },
+      [&](const Contraction& contraction) { count += static_cast<double>(contraction.c.size()); },
       [&](const Solve<petsc::DenseFactors>& s) { count += 1.0 * s.a.size() * s.a.size(); },
       [&](const Solve<Tridiagonal>& s) { count += static_cast<double>(3 * s.a.diagonal.size()); }};
   for (const Step& step : steps_) std::visit(add, step);

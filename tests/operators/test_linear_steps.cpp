@@ -27,6 +27,8 @@ LinearSteps every_kind() {
   LinearSteps::Tridiagonal chain{{2.0, 3.0, 4.0}, {0.0, 1.0, -1.0}, {0.5, 0.25, 0.0}};
   chain.factor();
   steps.solve(std::move(chain), 2);
+  steps.contract(std::vector{0.5, -2.0}, 2, 2, 0);
+  steps.spread(std::vector{1.5, 0.25, 3.0}, 1, 0, 2);
   LinearSteps more;
   more.add(matrix(1, 2, 1.5), 0, 5);
   steps.append(std::move(more));
@@ -66,6 +68,18 @@ TEST_CASE("linear steps: each does what it says, in its order") {
   steps.run(w, false);
   CHECK(w == Scalars{0.5, 3.0, 10.0, 2.0});
   CHECK(steps.entries() == 2 * 2 + 1 + 1);
+}
+
+TEST_CASE("linear steps: contractions and their opposite, block by block") {
+  LinearSteps steps;
+  steps.contract(std::vector{2.0, 3.0}, 2, 2, 0);
+  Scalars w{1, 1, 1, 2, 3, 4};
+  steps.run(w, false);
+  CHECK(w == Scalars{12, 17, 1, 2, 3, 4});
+  LinearSteps back;
+  back.spread(std::vector{2.0, 3.0}, 2, 0, 2);
+  back.run(w, false);
+  CHECK(w == Scalars{12, 17, 25, 36, 39, 55});
 }
 
 TEST_CASE("linear steps: a tridiagonal system, both ways") {

@@ -55,8 +55,9 @@ class ElementElimination {
 
   [[nodiscard]] Line line_of(Branch half) const;
   [[nodiscard]] int owner(const Line& line, std::size_t e) const;
-  void make_elements();
-  [[nodiscard]] ElementSystem::Response response(Line& line, int e) const;
+  [[nodiscard]] ElementSystem::Response make_element(Line& line, std::size_t e) const;
+  void make_shared_elements();
+  [[nodiscard]] ElementSystem::Response response(Line& line, std::size_t e) const;
   [[nodiscard]] DenseMatrix hold(const Line& line);
   void reflect(Line& line);
   [[nodiscard]] double sign() const { return data_->states.symmetry() == Symmetry::odd ? -1 : 1; }

@@ -2,6 +2,7 @@
 /// A linear map as a sequence of small steps.
 
 #include <cstddef>
+#include <span>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -35,6 +36,10 @@ class LinearSteps {
   void add(petsc::DenseMatrix a, std::size_t from, std::size_t to);
   /// One after the other.
   void add(std::vector<Coupling> couplings);
+  /// w[to ...] += sum_l c_l w[from + l block ...], of `block` entries; and w[to + l block ...] +=
+  /// c_l w[from ...] for all l.
+  void contract(std::span<const double> c, int block, std::size_t from, std::size_t to);
+  void spread(std::span<const double> c, int block, std::size_t from, std::size_t to);
   /// w[at ...] <- A^-1 w[at ...].
   void solve(petsc::DenseFactors a, std::size_t at);
   void solve(Tridiagonal a, std::size_t at);
@@ -52,13 +57,20 @@ class LinearSteps {
     petsc::DenseMatrix a;
     std::size_t from, to;
   };
+  struct Contraction {
+    std::vector<double> c;
+    int block;
+    std::size_t one, many;  // places of the block and of its multiples
+    bool spreads;
+    void run(PetscScalar* w, bool transposed) const;
+  };
   template <class Factors>
   struct Solve {
     Factors a;
     std::size_t at;
   };
-  using Step =
-      std::variant<Product, std::vector<Coupling>, Solve<petsc::DenseFactors>, Solve<Tridiagonal>>;
+  using Step = std::variant<Product, std::vector<Coupling>, Contraction, Solve<petsc::DenseFactors>,
+                            Solve<Tridiagonal>>;
   std::vector<Step> steps_;
 };
 
