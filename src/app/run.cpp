@@ -25,6 +25,7 @@
 #include "stickslip/petsc/blas.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/petsc/solver_choice.hpp"
 #include "stickslip/support/atomic_file.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/sweeps/sweep_report.hpp"
@@ -51,11 +52,13 @@ void print(const std::string& text) {
   if (!printed(text)) throw std::runtime_error("standard output cannot be written");
 }
 
+bool contains(const std::vector<std::string>& words, const char* word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
 /// Texts that need neither PETSc nor a scene; empty when none is asked for.
 std::string text_asked_for(const std::vector<std::string>& words) {
-  const auto asked = [&](const char* word) {
-    return std::find(words.begin(), words.end(), word) != words.end();
-  };
+  const auto asked = [&](const char* word) { return contains(words, word); };
   if (asked("-help") || asked("--help") || asked("-h")) return options::help_text();
   if (asked("-version") || asked("--version")) return io::version_text();
   if (asked("-reference")) return options::reference_page();
@@ -272,6 +275,10 @@ int run(int argc, char** argv) {
     const petsc::Session session(argc, values);
     petsc::keep_blas_to_one_thread();
     operators::register_preconditioners();
+    if (contains(words, "-help_solvers")) {
+      petsc::print_linear_solver_options("slide_");
+      return static_cast<int>(ExitStatus::done);
+    }
     return run_session(words, seconds_since(start));
   } catch (const Failure& failure) {
     return tell(failure, true);

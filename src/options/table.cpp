@@ -277,6 +277,8 @@ std::span<const OtherOption> other_options() {
   static const std::vector<OtherOption> others{
       {"-options_file", "read options from a file, one -name value a line, # for comments"},
       {"-help", "print all options and stop"},
+      {"-help_solvers", "print PETSc's options of the solver -slide_, as -slide_pc_type chooses it, and "
+                         "stop"},
       {"-version", "print the versions of the program and its libraries and stop"},
       {"-reference", "print the reference page in Markdown and stop"},
       {"-man_page", "print the manual page in roff and stop"},

@@ -122,7 +122,10 @@ Analysis Factorization::analyse(Mat matrix, const std::string& prefix, SolverSta
   return petsc::analyse(ksp, matrix, prefix);
 }
 
-void probe_linear_solver(const std::string& prefix) {
+namespace {
+
+// What a solver of that type reads, on a small matrix.
+void read_all_options(const std::string& prefix, PCType pc_type) {
   MatHandle unit;
   check(MatCreate(PETSC_COMM_SELF, unit.out()));
   check(MatSetSizes(unit, 2, 2, 2, 2));
@@ -131,8 +134,19 @@ void probe_linear_solver(const std::string& prefix) {
   for (PetscInt i = 0; i < 2; ++i) check(MatSetValue(unit, i, i, 1, INSERT_VALUES));
   check(MatAssemblyBegin(unit, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(unit, MAT_FINAL_ASSEMBLY));
-  const KspHandle ksp = linear_solver(unit, prefix, PCLU);
+  const KspHandle ksp = linear_solver(unit, prefix, pc_type);
+  const DefaultOrdering amf(prefix);
   if (!is_own(ksp)) check(KSPSetUp(ksp));
+}
+
+}  // namespace
+
+void probe_linear_solver(const std::string& prefix) { read_all_options(prefix, PCLU); }
+
+void print_linear_solver_options(const std::string& prefix) {
+  check(PetscOptionsSetValue(nullptr, "-help", nullptr));
+  read_all_options(prefix, kElementsPc);
+  check(PetscOptionsClearValue(nullptr, "-help"));
 }
 
 }  // namespace stickslip::petsc

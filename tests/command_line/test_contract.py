@@ -181,6 +181,14 @@ class Texts(Case):
             self.assertIn("-mu_d", done.stdout)
         self.assertIn("PETSc 3.", run("-version").stdout)
 
+    def test_help_of_solvers(self):
+        own = run("-help_solvers")
+        self.assertEqual((own.returncode, own.stderr), (0, ""))
+        self.assertIn("-slide_pc_elements_share", own.stdout)
+        self.assertNotIn("-slide_mat_mumps_icntl_14", own.stdout)
+        lu = run("-help_solvers", "-slide_pc_type", "lu").stdout
+        self.assertIn("-slide_mat_mumps_icntl_7 <now 2", lu)
+
     def test_later_options_win(self):
         scene = self.folder / "scene.opts"
         scene.write_text("-mu_d 0.25\n-delta 0.5\n")

@@ -20,6 +20,10 @@ struct Analysis {
   double operations = 0;  ///< of factoring
 };
 
+/// Prints PETSc's help of a KSP with that prefix, around the PC "elements" unless options choose
+/// another, to standard output. Collective on PETSC_COMM_SELF.
+void print_linear_solver_options(const std::string& prefix);
+
 /// Each reads all options of a role once, on a small matrix, so that unknown ones can be reported
 /// before any work. Collective on PETSC_COMM_SELF only.
 void probe_linear_solver(const std::string& prefix);
