@@ -85,7 +85,7 @@ class Predictor {
   double seconds_of(const routes::Task& task) {
     double seconds = 0;
     for (const auto& use : task.uses) {
-      seconds += (use.plain + use.transposed) * assemble(use.system).solve;
+      seconds += (use.forward + use.transposed) * assemble(use.system).solve;
     }
     if (task.derivatives == 0 && !task.adaptive) return seconds;
     // Operators of its own look like the sliding operator.

@@ -135,12 +135,12 @@ class Refiner {
   // Whoever asks for the density, or cuts the velocity by hand, asks for the distribution of |V|.
   // How far its distribution function moved is the density's own measure. It converges slowly (the
   // density has corners), so the whole change is taken for the error.
-  void follow(std::shared_ptr<const StationaryDistribution> law) {
-    if (!law || (!question_.wants(Quantity::density) && !given_.scene.v_max)) return;
-    auto now = quantities::speed_distribution(*law);
+  void follow(std::shared_ptr<const StationaryDistribution> distribution) {
+    if (!distribution || (!question_.wants(Quantity::density) && !given_.scene.v_max)) return;
+    auto now = quantities::speed_distribution(*distribution);
     if (speed_) outcome_.speed_error = quantities::distance(*speed_, now);
     speed_ = std::move(now);
-    distribution_ = std::move(law);
+    distribution_ = std::move(distribution);
   }
 
   [[nodiscard]] bool finished() {
@@ -156,7 +156,7 @@ class Refiner {
     outcome_.reached = step.estimate <= question_.accuracy;
     if (outcome_.reached) {
       check_truncation();
-      check_laws();
+      check_bounds();
       return true;
     }
     // What a finer discretisation still improves is no limit yet, and one that only now resolves
@@ -208,8 +208,8 @@ class Refiner {
         *given_.scene.v_max, held / sliding);
   }
 
-  // Errors that are too small betray themselves where results break a law.
-  void check_laws() {
+  // Errors that are too small betray themselves where results leave their bounds.
+  void check_bounds() {
     const std::string broken = broken_bound(outcome_.results);
     if (broken.empty()) return;
     const int levels = outcome_.steps.back().resolution.levels;

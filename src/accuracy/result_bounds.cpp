@@ -18,19 +18,19 @@ constexpr double kRounding = 1e-10;  // where errors are smaller, they are estim
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What a result has to keep to.
-struct Law {
+struct Bounds {
   double highest;     // the lowest is 0
   int direction = 0;  // along the abscissa: -1 falls, 1 rises, 0 either
 };
 
-std::optional<Law> law_of(Kind kind) {
+std::optional<Bounds> bounds_of(Kind kind) {
   switch (kind) {
   case Kind::probability:
-  case Kind::share: return Law{1};
-  case Kind::transform: return Law{1, -1};
-  case Kind::distribution: return Law{1, 1};
+  case Kind::share: return Bounds{1};
+  case Kind::transform: return Bounds{1, -1};
+  case Kind::distribution: return Bounds{1, 1};
   case Kind::positive_mean:
-  case Kind::spectrum: return Law{kInfinity};
+  case Kind::spectrum: return Bounds{kInfinity};
   case Kind::other:
   case Kind::mean:
   case Kind::drift: break;
@@ -69,11 +69,11 @@ std::string wrong_way(const Result& result, int direction) {
 }
 
 std::string broken_by(const Result& result) {
-  const auto law = law_of(result.kind);
-  if (!law || !result.ci95.empty()) return "";
-  std::string broken = out_of_range(result, law->highest);
-  const bool ordered = law->direction != 0 && !result.is_scalar();
-  if (broken.empty() && ordered) broken = wrong_way(result, law->direction);
+  const auto bounds = bounds_of(result.kind);
+  if (!bounds || !result.ci95.empty()) return "";
+  std::string broken = out_of_range(result, bounds->highest);
+  const bool ordered = bounds->direction != 0 && !result.is_scalar();
+  if (broken.empty() && ordered) broken = wrong_way(result, bounds->direction);
   return broken;
 }
 

@@ -39,7 +39,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void say(const std::string& text) {
+void print_error(const std::string& text) {
   std::fputs((text + "\n").c_str(), stderr);
   std::fflush(stderr);
 }
@@ -68,12 +68,12 @@ std::string text_asked_for(const std::vector<std::string>& words) {
 }
 
 void warn(const options::Request& request) {
-  for (const auto& warning : request.warnings) say("stickslip: " + warning);
+  for (const auto& warning : request.warnings) print_error("stickslip: " + warning);
   const auto blas = petsc::loaded_blas();
   if (blas.reference) {
-    say("stickslip: slow BLAS in use (" + blas.library +
-        "); factorisations take several times longer than with OpenBLAS, which "
-        "`apt install libopenblas0-pthread` provides");
+    print_error("stickslip: slow BLAS in use (" + blas.library +
+                "); factorisations take several times longer than with OpenBLAS, which "
+                "`apt install libopenblas0-pthread` provides");
   }
 }
 
@@ -84,8 +84,8 @@ accuracy::Progress progress_of(const options::Request& request, bool first_rank)
     if (r.scheme == options::Scheme::hp) axis = fmt::format("degree {}", r.degree);
     if (r.scheme == options::Scheme::upwind) axis = fmt::format("p = {}", r.points);
     const std::string time = seconds < 1 ? "" : fmt::format(", about {:.0f} s", seconds);
-    say(fmt::format("step {}: {}, {} noise levels on each side, {} unknowns{}", step + 1, axis,
-                    r.levels, accuracy::unknowns(request.scene, r), time));
+    print_error(fmt::format("step {}: {}, {} noise levels on each side, {} unknowns{}", step + 1,
+                            axis, r.levels, accuracy::unknowns(request.scene, r), time));
   };
 }
 
@@ -93,7 +93,7 @@ monte_carlo::SimulationProgress simulation_progress_of(const options::Request& r
   if (!request.output.progress) return {};
   return [](const monte_carlo::SimulationState& s) {
     const double share = 100 * s.excursions / s.wanted;
-    say(fmt::format(
+    print_error(fmt::format(
         "simulated {:.3g} of {:.3g} excursions ({:.0f} %), {:.2g} jumps/s, about {:.0f} "
         "s left",
         s.excursions, s.wanted, share, s.jumps / s.seconds, s.seconds_left));
@@ -109,8 +109,8 @@ int status_of(const accuracy::Outcome& outcome) {
 studies::StudyProgress study_progress_of(const options::Request& request, bool first_rank) {
   if (!request.output.progress || !first_rank) return {};
   return [start = Clock::now()](int number, int count, const std::string& what) {
-    say(fmt::format("study, run {} of {}: {} ({:.0f} s so far)", number, count, what,
-                    seconds_since(start)));
+    print_error(fmt::format("study, run {} of {}: {} ({:.0f} s so far)", number, count, what,
+                            seconds_since(start)));
   };
 }
 
@@ -135,7 +135,7 @@ int run_study(const options::Request& request, Clock::time_point start, double s
   return 0;
 }
 
-int tell_plan(const options::Request& request) {
+int report_plan(const options::Request& request) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const auto prediction = accuracy::predict(comm, request);
   if (petsc::rank(comm) != 0) return 0;
@@ -151,8 +151,9 @@ sweeps::SweepProgress sweep_progress_of(const options::Request& request) {
   return [&request, last = Clock::time_point()](const sweeps::State& s) mutable {
     if (s.status == "reached" && s.done < s.count && seconds_since(last) < 1) return;
     last = Clock::now();
-    say(fmt::format("{} of {} points; {}: {} after {:.2g} s; about {:.0f} s left", s.done, s.count,
-                    request.sweep->place(s.point), s.status, s.seconds_of_point, s.seconds_left));
+    print_error(fmt::format("{} of {} points; {}: {} after {:.2g} s; about {:.0f} s left", s.done,
+                            s.count, request.sweep->place(s.point), s.status, s.seconds_of_point,
+                            s.seconds_left));
   };
 }
 
@@ -168,7 +169,8 @@ int run_sweep(const options::Request& request, Clock::time_point start, double s
       write_text(request.output.sweep_csv, sweeps::csv(request, sweep));
     }
     deliver(request, sweep, times);
-    if (status != 0) say("stickslip: some points fell short; the table says which, and why");
+    if (status != 0)
+      print_error("stickslip: some points fell short; the table says which, and why");
   }
   MPI_Bcast(&status, 1, MPI_INT, 0, comm);
   return status;
@@ -190,8 +192,8 @@ int compute(const options::Request& request, Clock::time_point start, double sta
   return status_of(outcome);
 }
 
-int tell(const Failure& failure, bool first_rank) {
-  if (first_rank) say(fmt::format("stickslip: {}", failure.what()));
+int report_failure(const Failure& failure, bool first_rank) {
+  if (first_rank) print_error(fmt::format("stickslip: {}", failure.what()));
   return static_cast<int>(failure.status());
 }
 
@@ -232,7 +234,7 @@ int run_session(const std::vector<std::string>& words, double start_up) {
   int status = static_cast<int>(ExitStatus::other);
   try {
     const auto request = agreed_request(words);
-    if (request.plan_only) return tell_plan(request);
+    if (request.plan_only) return report_plan(request);
     if (rank == 0) warn(request);
     if (request.study.kind != options::StudyKind::none) {
       return run_study(request, start, start_up);
@@ -240,19 +242,19 @@ int run_session(const std::vector<std::string>& words, double start_up) {
     if (request.sweep) return run_sweep(request, start, start_up);
     return compute(request, start, start_up);
   } catch (const BadInput& failure) {
-    return tell(failure, rank == 0);
+    return report_failure(failure, rank == 0);
   } catch (const Failure& failure) {
-    status = tell(failure, true);
+    status = report_failure(failure, true);
   } catch (const std::bad_alloc&) {
-    status = tell(out_of_memory(), true);
+    status = report_failure(out_of_memory(), true);
   } catch (const petsc::PetscFailure& failure) {
     if (failure.code() == PETSC_ERR_MEM) {
-      status = tell(out_of_memory(), true);
+      status = report_failure(out_of_memory(), true);
     } else {
-      say(fmt::format("stickslip: {}", failure.what()));
+      print_error(fmt::format("stickslip: {}", failure.what()));
     }
   } catch (const std::exception& failure) {
-    say(fmt::format("stickslip: {}", failure.what()));
+    print_error(fmt::format("stickslip: {}", failure.what()));
   }
   end_at_once(status);
 }
@@ -281,9 +283,9 @@ int run(int argc, char** argv) {
     }
     return run_session(words, seconds_since(start));
   } catch (const Failure& failure) {
-    return tell(failure, true);
+    return report_failure(failure, true);
   } catch (const std::exception& failure) {
-    say(fmt::format("stickslip: {}", failure.what()));
+    print_error(fmt::format("stickslip: {}", failure.what()));
     return static_cast<int>(ExitStatus::bad_input);
   }
 }

@@ -39,11 +39,11 @@ class Jumps {
   }
   [[nodiscard]] double censored(int from, int to) const {
     double total = rate(from, to);
-    for (int s : phases_.still) total += rate(from, s) * sticking() * rate(s, to);
+    for (int s : phases_.still) total += rate(from, s) * sojourn() * rate(s, to);
     return total;
   }
   /// Mean discounted stay in the still phase.
-  [[nodiscard]] double sticking() const { return 1 / (process_.noise.rate() + lambda_); }
+  [[nodiscard]] double sojourn() const { return 1 / (process_.noise.rate() + lambda_); }
 
   /// diag(|x_i - mu_d|)^-1 T between two groups.
   [[nodiscard]] Matrix per_length(const std::vector<int>& from, const std::vector<int>& to) const {
@@ -197,7 +197,7 @@ FluidQueue::FluidQueue(const model::Process& process, double lambda) {
         const double spent = factorial * crossings[p] / std::abs(process.net_force(group[p]));
         (*sums)[group[p] + n] += spent;
         for (int s : phases.still)
-          (*sums)[s + n] += spent * jumps.rate(group[p], s) * jumps.sticking();
+          (*sums)[s + n] += spent * jumps.rate(group[p], s) * jumps.sojourn();
       }
     };
     spend(up, moment);

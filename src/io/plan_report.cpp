@@ -24,8 +24,8 @@ std::string system_name(const operators::SystemKey& key) {
 }
 
 std::string solves_text(const routes::Use& use) {
-  if (use.plain == 0) return fmt::format("{} transposed", use.transposed);
-  return fmt::format("{} plain", use.plain);
+  if (use.forward == 0) return fmt::format("{} transposed", use.transposed);
+  return fmt::format("{} plain", use.forward);
 }
 
 std::string task_lines(const options::Question& question, const routes::Task& task) {
@@ -66,7 +66,7 @@ Json task_json(const options::Question& question, const routes::Task& task) {
   for (const auto& use : task.uses) {
     json["systems"].push_back({{"lambda", use.system.lambda},
                                {"symmetry", symmetry_name(use.system.symmetry)},
-                               {"plain_solves", use.plain},
+                               {"plain_solves", use.forward},
                                {"transposed_solves", use.transposed}});
   }
   json["derivatives"] = task.derivatives;

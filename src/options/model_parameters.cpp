@@ -21,8 +21,7 @@ class SceneReader {
     read_numbers();
     check_friction();
     check_noise();
-    if (distribution_.expression && problems_.empty())
-      read_expression();  // which looks at the noise
+    if (drag_law_.expression && problems_.empty()) read_expression();  // which looks at the noise
     return scene_;
   }
 
@@ -36,9 +35,9 @@ class SceneReader {
     scene_.delta = settings_.real("delta");
     scene_.friction = {settings_.real("mu_s"), settings_.real("mu_d")};
     scene_.drag_name = settings_.text("drag");
-    scene_.drag = {distribution_.linear ? settings_.real("drag_coefficient") : 0,
-                   distribution_.cubic ? settings_.real("drag_cubic") : 0};
-    if (distribution_.expression) scene_.drag_expression = settings_.text("drag_expression");
+    scene_.drag = {drag_law_.linear ? settings_.real("drag_coefficient") : 0,
+                   drag_law_.cubic ? settings_.real("drag_cubic") : 0};
+    if (drag_law_.expression) scene_.drag_expression = settings_.text("drag_expression");
     scene_.bias = settings_.real("bias");
     scene_.noise_levels = settings_.integer("noise_levels");
     if (settings_.given("v_max")) scene_.v_max = settings_.real("v_max");
@@ -50,7 +49,7 @@ class SceneReader {
       report("mu_d", fmt::format("must be in (0, mu_s], and mu_s = {}", settings_.text("mu_s")),
              "friction cannot grow when the body starts to slide");
     }
-    if (distribution_.expression || !scene_.drag.is_none() || std::abs(scene_.bias) < mu_d) return;
+    if (drag_law_.expression || !scene_.drag.is_none() || std::abs(scene_.bias) < mu_d) return;
     report("bias",
            fmt::format(
                "drives a sliding body for ever: without drag only mu_d = {:g} holds it back", mu_d),
@@ -119,7 +118,7 @@ class SceneReader {
 
   const Settings& settings_;
   Problems& problems_;
-  const DragLaw distribution_ = meaning(kDragLaws, settings_.text("drag"));
+  const DragLaw drag_law_ = meaning(kDragLaws, settings_.text("drag"));
   model::Scene scene_;
 };
 

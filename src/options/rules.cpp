@@ -20,8 +20,8 @@ class Rules {
   void unused() {
     const bool simulates = r_.method.route == Route::monte_carlo, swept = sweeps(settings_);
     const std::string with_drag = "with -drag " + r_.scene.drag_name;
-    warn({"drag_coefficient"}, !distribution_.linear, with_drag);
-    warn({"drag_cubic"}, !distribution_.cubic, with_drag);
+    warn({"drag_coefficient"}, !drag_law_.linear, with_drag);
+    warn({"drag_cubic"}, !drag_law_.cubic, with_drag);
     warn({"lambda"}, r_.method.route != Route::lambda && !asked("lambda"));
     warn({"excursions"}, !simulates);
     warn({"seed"}, !simulates && !asked("seed"));
@@ -40,7 +40,7 @@ class Rules {
     const bool hp = r_.method.scheme == Scheme::hp, queue = route == Route::fluid_queue;
     const bool direct = r_.method.spectrum_solver == SpectrumSolver::direct;
     const std::string no_choice = "is no choice of -route " + settings_.text("route");
-    refuse({"drag_expression"}, !distribution_.expression,
+    refuse({"drag_expression"}, !drag_law_.expression,
            "is not the drag, which is that of -drag " + r_.scene.drag_name,
            "add -drag expression, or leave it out");
     refuse({"route"}, queue && !r_.scene.drag.is_none(),
@@ -129,7 +129,7 @@ class Rules {
   Request& r_;
   const Question& q_;
   Problems& problems_;
-  const DragLaw distribution_ = meaning(kDragLaws, r_.scene.drag_name);
+  const DragLaw drag_law_ = meaning(kDragLaws, r_.scene.drag_name);
   const bool study_ = r_.study.kind != StudyKind::none;
 };
 

@@ -65,7 +65,7 @@ VecHandle absolute(Vec x) {
 
 }  // namespace
 
-double BackwardError::plain(Vec residual, Vec b, Vec x) {
+double BackwardError::forward(Vec residual, Vec b, Vec x) {
   if (magnitude_ == nullptr) magnitude_ = magnitudes(matrix_);
   const VecHandle size = absolute(x), bound = absolute(b);
   PetscReal largest = 0, error = 0;

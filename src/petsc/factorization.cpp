@@ -97,7 +97,7 @@ Solution Factorization::solve(Vec b, bool transposed) {
     check(VecAXPY(s.correction, 1, step));
     compute_residual();
     s.backward_error =
-        transposed ? measure_.transposed(residual, b, s.x) : measure_.plain(residual, b, s.x);
+        transposed ? measure_.transposed(residual, b, s.x) : measure_.forward(residual, b, s.x);
     sound = s.backward_error <= kBackwardErrorLimit;
     ++statistics_.corrections;
   }

@@ -158,7 +158,7 @@ int Plan::assemblies() const {
 int Plan::solves() const {
   int count = 0;
   for (const Task& task : tasks) {
-    for (const Use& use : task.uses) count += use.plain + use.transposed;
+    for (const Use& use : task.uses) count += use.forward + use.transposed;
   }
   return count;
 }

@@ -47,7 +47,7 @@ class CostStudy {
     hp();
     upwind();
     simulations();
-    for (const Curve& curve : curves_) tell(curve);
+    for (const Curve& curve : curves_) report(curve);
     return std::move(study_);
   }
 
@@ -55,7 +55,7 @@ class CostStudy {
   static constexpr int kFirstDegree = 2, kLastDegree = 12, kSimulations = 6, kFirstPoints = 4;
 
   [[nodiscard]] int upwind_steps() const { return setting_.study.steps.value_or(7); }
-  void announce(const std::string& what) { setting_.tell(++number_, count_, what); }
+  void announce(const std::string& what) { setting_.report(++number_, count_, what); }
 
   [[nodiscard]] static options::Case hp_case(const options::Case& given) {
     options::Case hp = given;
@@ -161,7 +161,7 @@ class CostStudy {
             {}};
   }
 
-  void tell(const Curve& curve) {
+  void report(const Curve& curve) {
     Table table{curve.method,
                 curve.method + ": error is the largest relative one of a scalar",
                 {curve.parameter, "error", "seconds", "megabytes", "assembly", "analysis",

@@ -44,11 +44,11 @@ class Grid {
       ++count;
     });
     each([&](int k, int l) {
-      setting_.tell(++number, count, fmt::format("p = {}, delta = 1/{}", 1 << k, 1 << l));
+      setting_.report(++number, count, fmt::format("p = {}, delta = 1/{}", 1 << k, 1 << l));
       runs_[{k, l}] = upwind_run(setting_, case_at(l), 1 << k, kTail);
     });
     for (int l : {5, 6}) {
-      setting_.tell(++number, count, fmt::format("hp, delta = 1/{}", 1 << l));
+      setting_.report(++number, count, fmt::format("hp, delta = 1/{}", 1 << l));
       converged_[l] = converged_run(setting_, case_at(l), 1e-9);
     }
   }

@@ -43,10 +43,10 @@ Study study_points(const Setting& setting) {
   const int steps = setting.study.steps.value_or(8);
   require_upwind_memory(setting, setting.given, 1 << steps);
   for (int n = 1; n <= steps; ++n) {
-    setting.tell(n, steps + 1, fmt::format("p = {}", 1 << n));
+    setting.report(n, steps + 1, fmt::format("p = {}", 1 << n));
     study.runs.push_back(upwind_run(setting, setting.given, 1 << n));
   }
-  setting.tell(steps + 1, steps + 1, "hp to compare with");
+  setting.report(steps + 1, steps + 1, "hp to compare with");
   const Run converged = converged_run(setting, setting.given, 1e-10);
   for (auto& run : study.runs) set_errors(converged.results, run.results);
   for (const auto& result : converged.results) {

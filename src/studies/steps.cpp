@@ -28,7 +28,7 @@ class Family {
 
   void run(int& number, int count) {
     for (double delta : deltas_) {
-      setting_.tell(++number, count, fmt::format("{}, delta = {:.6g}", name_, delta));
+      setting_.report(++number, count, fmt::format("{}, delta = {:.6g}", name_, delta));
       runs_.push_back(converged_run(setting_, with_delta(setting_.given, delta),
                                     std::min(setting_.given.question.accuracy, 1e-9)));
     }

@@ -16,7 +16,7 @@ struct Setting {
   const StudyProgress& progress;
 
   /// The progress line of run `number` of `count`.
-  void tell(int number, int count, const std::string& what) const {
+  void report(int number, int count, const std::string& what) const {
     if (progress) progress(number, count, what);
   }
 };

@@ -42,7 +42,7 @@ class Group {
   [[nodiscard]] MPI_Comm comm() const { return comm_; }
   [[nodiscard]] bool leads() const { return works() && petsc::rank(comm_) == 0; }
   /// What the first rank of the group says.
-  [[nodiscard]] long told(long value) const {
+  [[nodiscard]] long shared(long value) const {
     if (ranks_ > 1) MPI_Bcast(&value, 1, MPI_LONG, 0, comm_);
     return value;
   }
@@ -123,7 +123,7 @@ class Worker {
     SharedCounter taken(comm_), done(comm_);
     start_ = petsc::wall_seconds();
     while (group.works()) {
-      const auto n = static_cast<std::size_t>(group.told(group.leads() ? taken.next() : 0));
+      const auto n = static_cast<std::size_t>(group.shared(group.leads() ? taken.next() : 0));
       if (n >= open_.size()) break;
       const std::size_t point = open_[n];
       const SweepPoint run = compute_run(group.comm(), sweep_.request(point), point);

@@ -35,7 +35,7 @@ struct Measured {
 
 Measured measured(BackwardError& measure, Mat a, const std::vector<double>& r,
                   const std::vector<double>& b, const std::vector<double>& x) {
-  const double plain = measure.plain(vector(a, r), vector(a, b), vector(a, x));
+  const double plain = measure.forward(vector(a, r), vector(a, b), vector(a, x));
   return {plain, measure.transposed(vector(a, r), vector(a, b), vector(a, x))};
 }
 

@@ -20,7 +20,7 @@ class BackwardError {
 
   /// max_i |r|_i / (|A| |x| + |b|)_i with r = b - A x, which is overwritten; to |x| is added 1e-13
   /// of its largest component. Collective.
-  [[nodiscard]] double plain(Vec residual, Vec b, Vec x);
+  [[nodiscard]] double forward(Vec residual, Vec b, Vec x);
   /// sum_i |r|_i / sum_i (|A|^T |x| + |b|)_i with r = b - A^T x. Collective.
   [[nodiscard]] double transposed(Vec residual, Vec b, Vec x);
 

@@ -30,7 +30,7 @@ enum class Work {
 /// A system that a task solves with, and the right-hand sides.
 struct Use {
   operators::SystemKey system;
-  int plain = 0, transposed = 0;
+  int forward = 0, transposed = 0;
 };
 
 struct Task {
