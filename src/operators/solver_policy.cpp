@@ -87,11 +87,11 @@ FactorCost elimination_cost(const model::Process& process,
 
 FactorCost elimination_cost(const Discretisation& discretisation, bool symmetry_reduced,
                             int ranks) {
-  const auto& [process, noise, velocities] = discretisation;
   const auto of = [&](const model::Process& along, const velocity::VelocityDiscretisation& side) {
     return elimination_cost(along, dynamic_cast<const velocity::HpDiscretisation&>(side),
-                            noise.get(), ranks);
+                            discretisation.noise.get(), ranks);
   };
+  const auto& [process, noise, velocities] = discretisation;
   FactorCost cost = of(process, *velocities);
   if (symmetry_reduced) return cost;
   const FactorCost other = of(process.mirrored(), velocities->mirrored());
