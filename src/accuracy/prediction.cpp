@@ -116,7 +116,7 @@ Prediction predict(MPI_Comm comm, const options::Case& given) {
     const Resolution& resolution = sequence.refinement_level(n);
     if (prediction.plan.tasks.empty()) {
       PredictedStep step{resolution, unknowns(given.scene, resolution)};
-      step.megabytes = predicted_bytes(given.scene, resolution) / 1e6;
+      step.megabytes = predicted_bytes(given.scene, resolution, petsc::ranks(comm)) / 1e6;
       prediction.steps.push_back(step);
     } else {
       prediction.steps.push_back(Predictor(comm, given, resolution).follow(prediction.plan));

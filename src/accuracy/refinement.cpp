@@ -13,6 +13,7 @@
 #include "stickslip/accuracy/refinement_sequence.hpp"
 #include "stickslip/accuracy/result_bounds.hpp"
 #include "stickslip/petsc/memory.hpp"
+#include "stickslip/petsc/session.hpp"
 #include "stickslip/quantities/excursion.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -95,7 +96,7 @@ class Refiner {
   }
 
   [[nodiscard]] bool fits(const Resolution& resolution) const {
-    const double need = predicted_bytes(given_.scene, resolution);
+    const double need = predicted_bytes(given_.scene, resolution, petsc::ranks(comm_));
     return need <= petsc::available_bytes(comm_, need);
   }
 
@@ -274,7 +275,7 @@ Outcome by_simulation(MPI_Comm comm, const options::Case& given, const std::stri
 }  // namespace
 
 void require_memory(MPI_Comm comm, const model::Scene& scene, const Resolution& resolution) {
-  const double need = predicted_bytes(scene, resolution);
+  const double need = predicted_bytes(scene, resolution, petsc::ranks(comm));
   const double have = petsc::available_bytes(comm, need);
   if (need <= have) return;
   throw NoMemory(fmt::format(

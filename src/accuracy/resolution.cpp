@@ -158,16 +158,17 @@ namespace {
 
 // By the solver that will serve it.
 operators::FactorCost factor_cost(const model::Scene& scene, const Resolution& r,
-                                  options::Factors factors) {
+                                  options::Factors factors, int ranks) {
   const auto n = static_cast<double>(unknowns(scene, r));
   const auto noise = static_cast<double>(r.noise_nodes());
-  if (factors != options::Factors::elements) {
+  constexpr double countable = 1e8;  // beyond, the matrix alone fills a machine
+  if (factors != options::Factors::elements || n > countable) {
     return operators::sparse_cost(factors, r.scheme, n, noise);
   }
   const auto velocities = velocities_of(scene, r, scene.drag);
   const auto cost = operators::elimination_cost(
       scene.process(r.levels), dynamic_cast<const velocity::HpDiscretisation&>(*velocities),
-      r.noise.get(), petsc::ranks(PETSC_COMM_WORLD));
+      r.noise.get(), ranks);
   return {r.halves * cost.entries, r.halves * cost.bytes, r.halves * cost.operations};
 }
 
@@ -178,7 +179,7 @@ options::Factors factors_of(const Resolution& r) {
 }  // namespace
 
 // The matrix, its magnitudes and what a solver copies come on top of the factors.
-double predicted_bytes(const model::Scene& scene, const Resolution& resolution) {
+double predicted_bytes(const model::Scene& scene, const Resolution& resolution, int ranks) {
   const auto n = static_cast<double>(unknowns(scene, resolution));
   if (resolution.scheme == options::Scheme::none) {
     constexpr double dense_matrices = 30;
@@ -191,13 +192,13 @@ double predicted_bytes(const model::Scene& scene, const Resolution& resolution) 
   if (factors == options::Factors::elements) copies = 40;
   if (factors == options::Factors::incomplete) copies = 120;
   const double scalars = petsc::complex_scalars() ? 2 : 1;
-  return factor_cost(scene, resolution, factors).bytes + scalars * copies * row * n;
+  return factor_cost(scene, resolution, factors, ranks).bytes + scalars * copies * row * n;
 }
 
 double relative_work(const model::Scene& scene, const Resolution& resolution) {
   const auto n = static_cast<double>(unknowns(scene, resolution));
   if (resolution.scheme == options::Scheme::none) return n * n * n;
-  return factor_cost(scene, resolution, factors_of(resolution)).operations;
+  return factor_cost(scene, resolution, factors_of(resolution), 1).operations;
 }
 
 }  // namespace stickslip::accuracy

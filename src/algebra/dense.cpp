@@ -44,7 +44,6 @@ void zgees_(const char* vectors, const char* sort, int (*select)(const Complex*)
 void dstev_(const char* vectors, const int* n, double* diagonal, double* beside, double* z,
             const int* ldz, double* work, int* info);
 }
-// NOLINTEND(readability-identifier-naming)
 
 namespace stickslip::algebra {
 namespace {
@@ -65,6 +64,7 @@ struct Routines<Complex> {
   static constexpr auto getrf = zgetrf_;
   static constexpr auto getrs = zgetrs_;
 };
+// NOLINTEND(readability-identifier-naming)
 
 void expect_success(int info, const char* complaint) {
   if (info != 0) throw NotReached(complaint);

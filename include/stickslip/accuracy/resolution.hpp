@@ -62,9 +62,10 @@ struct Resolution {
 /// its phases.
 [[nodiscard]] std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution);
 
-/// Memory that assembly and factorisation take, all ranks together [bytes]; fitted to counts (notes
-/// in resolution.cpp), within a factor 2. Incomplete factors are taken for ILU(12).
-[[nodiscard]] double predicted_bytes(const model::Scene& scene, const Resolution& resolution);
+/// Memory that assembly and factorisation take, all ranks together [bytes], within a factor 2 (see
+/// operators/solver_policy.hpp). Incomplete factors are taken for ILU(12). O(elements groups).
+[[nodiscard]] double predicted_bytes(const model::Scene& scene, const Resolution& resolution,
+                                     int ranks = 1);
 
 /// Arithmetic of the factorisation up to a common factor, to scale measured times with.
 [[nodiscard]] double relative_work(const model::Scene& scene, const Resolution& resolution);

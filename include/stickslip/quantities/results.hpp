@@ -7,7 +7,7 @@
 
 namespace stickslip::quantities {
 
-/// What a result is, whatever it is called: its range and direction (accuracy/laws.hpp), and with
+/// What a result is, whatever it is called: its range and direction (accuracy/result_bounds.hpp), and with
 /// which others it shares errors (accuracy/estimates.hpp), follow from it.
 enum class Kind {
   other,          ///< nothing more is known
