@@ -25,6 +25,7 @@
 #include "stickslip/model/drag_law.hpp"
 #include "stickslip/model/observable.hpp"
 #include "stickslip/monte_carlo/simulate.hpp"
+#include "stickslip/operators/element_pc.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
@@ -419,6 +420,7 @@ int main(int argc, char** argv) {
   const std::uint64_t seed = argc > 2 ? std::stoul(argv[2]) : 1;
   int petsc_argc = 1;
   const petsc::Session session(petsc_argc, argv);
+  operators::register_preconditioners();
   (void)std::signal(SIGALRM, tell_hang);
   const test::TemporaryFolder folder;
   std::cout << fmt::format("{:14} {:>7} {:>7} {:>7} {:>7}\n", "input", "all", "taken", "refused",
