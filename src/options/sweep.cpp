@@ -32,9 +32,9 @@ std::vector<SweepAxis> read_axes(const Settings& settings, Problems& problems) {
     axes.push_back({swept->name, swept->unit, settings.numbers(option.name)});
     auto sorted = axes.back().values;
     std::sort(sorted.begin(), sorted.end());
-    const auto twin = std::adjacent_find(sorted.begin(), sorted.end());
-    if (twin == sorted.end()) continue;
-    settings.report(problems, option.name, fmt::format("names {:g} twice", *twin), "name it once");
+    const auto repeated = std::adjacent_find(sorted.begin(), sorted.end());
+    if (repeated == sorted.end()) continue;
+    settings.report(problems, option.name, fmt::format("names {:g} twice", *repeated), "name it once");
   }
   return axes;
 }

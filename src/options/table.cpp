@@ -172,7 +172,7 @@ std::vector<Option> method_options() {
           "simulated excursions, with 95 % confidence intervals"),
       flag("plan",
            "print what would be assembled, factored and solved, with unknowns, non-zeros, memory "
-           "and time foretold by the analysis phase of the solver, and stop"),
+           "and time predicted by the analysis phase of the solver, and stop"),
       integer("excursions", "1000000", whole(2, 1e15),
               "number of simulated excursions with -route monte_carlo; with -accuracy it stops "
               "before that when every interval is small enough",
@@ -277,8 +277,9 @@ std::span<const OtherOption> other_options() {
   static const std::vector<OtherOption> others{
       {"-options_file", "read options from a file, one -name value a line, # for comments"},
       {"-help", "print all options and stop"},
-      {"-help_solvers", "print PETSc's options of the solver -slide_, as -slide_pc_type chooses it, and "
-                         "stop"},
+      {"-help_solvers",
+       "print PETSc's options of the solver -slide_, as -slide_pc_type chooses it, and "
+       "stop"},
       {"-version", "print the versions of the program and its libraries and stop"},
       {"-reference", "print the reference page in Markdown and stop"},
       {"-man_page", "print the manual page in roff and stop"},

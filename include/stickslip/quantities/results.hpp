@@ -7,8 +7,8 @@
 
 namespace stickslip::quantities {
 
-/// What a result is, whatever it is called: its range and direction (accuracy/result_bounds.hpp), and with
-/// which others it shares errors (accuracy/estimates.hpp), follow from it.
+/// What a result is, whatever it is called: its range and direction (accuracy/result_bounds.hpp),
+/// and with which others it shares errors (accuracy/estimates.hpp), follow from it.
 enum class Kind {
   other,          ///< nothing more is known
   probability,    ///< in [0, 1]
