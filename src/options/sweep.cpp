@@ -34,7 +34,8 @@ std::vector<SweepAxis> read_axes(const Settings& settings, Problems& problems) {
     std::sort(sorted.begin(), sorted.end());
     const auto repeated = std::adjacent_find(sorted.begin(), sorted.end());
     if (repeated == sorted.end()) continue;
-    settings.report(problems, option.name, fmt::format("names {:g} twice", *repeated), "name it once");
+    settings.report(problems, option.name, fmt::format("names {:g} twice", *repeated),
+                    "name it once");
   }
   return axes;
 }
