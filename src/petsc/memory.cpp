@@ -6,12 +6,10 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
-#include <new>
 #include <sstream>
 #include <string>
 
 #include "stickslip/petsc/session.hpp"
-#include "stickslip/support/errors.hpp"
 
 namespace stickslip::petsc {
 namespace {
@@ -95,17 +93,6 @@ double available_bytes(MPI_Comm comm, double wanted) {
   if (found >= wanted) return found;
   (void)malloc_trim(0);
   return available_now(comm);
-}
-
-void take_together(MPI_Comm comm, const std::function<void()>& take) {
-  int failed = 0;
-  try {
-    take();
-  } catch (const std::bad_alloc&) {
-    failed = 1;
-  }
-  MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, comm);
-  if (failed != 0) throw NoMemory(kFactorsTooLarge);
 }
 
 double peak_resident_bytes() {

@@ -3,8 +3,6 @@
 
 #include <mpi.h>
 
-#include <functional>
-
 namespace stickslip::petsc {
 
 /// What is said when there is no room for them.
@@ -20,10 +18,6 @@ inline constexpr const char* kFactorsTooLarge =
 
 /// Bytes that the limit of the address space (ulimit -v) leaves this process; infinity without one.
 [[nodiscard]] double left_in_address_space();
-
-/// Calls `take`, which allocates factors. Where it fails on one rank it throws NoMemory on all: a
-/// rank that failed alone would leave the others waiting. Collective.
-void take_together(MPI_Comm comm, const std::function<void()>& take);
 
 /// Ranks of this run on this machine. The first call is collective on MPI_COMM_WORLD; Session makes
 /// it.
