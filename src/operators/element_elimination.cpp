@@ -19,12 +19,6 @@ using petsc::DenseMatrix;
 using petsc::Scalars;
 using Couplings = std::vector<LinearSteps::Coupling>;
 
-DenseMatrix identity(int size) {
-  DenseMatrix one(size, size);
-  for (int n = 0; n < size; ++n) one(n, n) = 1;
-  return one;
-}
-
 // Sends a matrix from its owner to all ranks.
 void send(MPI_Comm comm, int owner, int rows, int columns, DenseMatrix& a) {
   if (petsc::rank(comm) != owner) a = DenseMatrix(rows, columns);
@@ -240,7 +234,7 @@ void ElementElimination::reflect(Line& line) {
   for (int e = line.velocities->elements(); e-- > 0;) {
     auto s = response(line, static_cast<std::size_t>(e));
     const int falling = line.rising[e + 1];
-    DenseMatrix turns = identity(falling);
+    DenseMatrix turns = DenseMatrix::identity(falling);
     add_product(-1, s.outer_outer, reflection, falling, turns);
     DenseFactors factors(std::move(turns));
     DenseMatrix through = std::move(s.outer_inner);
@@ -330,7 +324,7 @@ void ElementElimination::meet(Mat matrix) {
     }
     leaving.add(std::move(left), exit, rest_);
   }
-  DenseMatrix closed = identity(static_cast<int>(falling));
+  DenseMatrix closed = DenseMatrix::identity(static_cast<int>(falling));
   int first = 0;
   for (const Line& line : lines_) {
     for (const auto& [from, to, weight] : found) {
@@ -344,7 +338,7 @@ void ElementElimination::meet(Mat matrix) {
   }
   between_.solve(std::move(rest.chain), rest_);
   between_.add(std::move(shares));
-  between_.add(found);
+  between_.add(std::move(found));
   between_.solve(DenseFactors(std::move(closed)), fall);
   between_.add(std::move(returned));
   for (Line& line : lines_) between_.append(std::move(line.outwards));

@@ -32,6 +32,7 @@ Events& events() {
 struct Elements {
   std::unique_ptr<ElementElimination> factors;
   PetscBool share = PETSC_TRUE;
+  double entries = 0;  // of this rank, when factored
 };
 
 Elements& elements_of(PC pc) { return *static_cast<Elements*>(pc->data); }
@@ -63,9 +64,13 @@ std::shared_ptr<const MatrixData> data_for(PC pc) {
                              prefix == nullptr ? "" : prefix));
 }
 
-FactorCost cost_of(const MatrixData& data) {
-  return elimination_cost(data.discretisation, data.states.symmetry_reduced(),
-                          petsc::ranks(data.states.comm()));
+// Of all ranks; those that do not share elements have them all.
+FactorCost cost_of(PC pc, const MatrixData& data) {
+  const int ranks = petsc::ranks(data.states.comm());
+  const bool share = elements_of(pc).share == PETSC_TRUE, reduced = data.states.symmetry_reduced();
+  if (share) return elimination_cost(data.discretisation, reduced, ranks);
+  const FactorCost one = elimination_cost(data.discretisation, reduced, 1);
+  return {ranks * one.entries, ranks * one.bytes, ranks * one.operations};
 }
 
 // Called by PETSc.
@@ -74,10 +79,11 @@ PetscErrorCode set_up(PC pc) {
   return guarded([pc] {
     const LoggedEvent logged(events().set_up, pc);
     const auto data = data_for(pc);
-    auto& [factors, share] = elements_of(pc);
-    factors.reset();  // before there are others
-    factors = std::make_unique<ElementElimination>(pc->pmat, data, share == PETSC_TRUE);
-    check(PetscLogFlops(cost_of(*data).operations / petsc::ranks(data->states.comm())));
+    Elements& own = elements_of(pc);
+    own.factors.reset();  // before there are others
+    own.factors = std::make_unique<ElementElimination>(pc->pmat, data, own.share == PETSC_TRUE);
+    own.entries = own.factors->entries();
+    check(PetscLogFlops(cost_of(pc, *data).operations / petsc::ranks(data->states.comm())));
   });
 }
 
@@ -86,7 +92,7 @@ PetscErrorCode apply(PC pc, Vec b, Vec x) {
   return guarded([=] {
     const LoggedEvent logged(events().solve, pc);
     elements_of(pc).factors->solve(b, x, transposed);
-    check(PetscLogFlops(2 * elements_of(pc).factors->entries()));
+    check(PetscLogFlops(2 * elements_of(pc).entries));
   });
 }
 
@@ -117,7 +123,7 @@ PetscErrorCode view(PC pc, PetscViewer viewer) {
     const auto data = data_of(pc->pmat);
     if (!data) return;
     const Discretisation& on = data->discretisation;
-    const FactorCost cost = cost_of(*data);
+    const FactorCost cost = cost_of(pc, *data);
     const auto line = [viewer](const std::string& text) {
       check(PetscViewerASCIIPrintf(viewer, "  %s\n", text.c_str()));
     };
@@ -135,7 +141,7 @@ PetscErrorCode view(PC pc, PetscViewer viewer) {
 PetscErrorCode analyse(PC pc, petsc::Analysis* analysis) {
   return guarded([=] {
     const auto data = data_for(pc);
-    const FactorCost cost = cost_of(*data);
+    const FactorCost cost = cost_of(pc, *data);
     *analysis = {petsc::kElementsPc, cost.entries, cost.bytes / 1e6, cost.operations};
   });
 }

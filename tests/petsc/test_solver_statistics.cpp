@@ -18,7 +18,7 @@ SolverStatistics numbered(int first) {
 
 }  // namespace
 
-TEST_CASE("ledger: work adds up") {
+TEST_CASE("solver statistics: work adds up") {
   SolverStatistics sum = numbered(1);
   sum += numbered(10);
   CHECK(sum.assemblies == 11);
@@ -29,7 +29,7 @@ TEST_CASE("ledger: work adds up") {
   CHECK(sum.iterations == 21);
 }
 
-TEST_CASE("ledger: seconds add up, each for its phase") {
+TEST_CASE("solver statistics: seconds add up, each for its phase") {
   SolverStatistics one, other;
   one.assembly_seconds = 1;
   one.analysis_seconds = 2;
@@ -46,7 +46,8 @@ TEST_CASE("ledger: seconds add up, each for its phase") {
   CHECK(one.solve_seconds == 136);
 }
 
-TEST_CASE("ledger: of sizes and backward errors the largest counts, whichever came first") {
+TEST_CASE(
+    "solver statistics: of sizes and backward errors the largest counts, whichever came first") {
   SolverStatistics small, large;
   large.unknowns = 5;
   large.nonzeros = 6;
