@@ -45,13 +45,13 @@ Solved evaluated(MPI_Comm comm, const options::Case& given, const Resolution& re
 void require_start_within(const options::Case& given, const Resolution& first) {
   const options::Question& question = given.question;
   if (!question.wants(Quantity::expectation)) return;
-  const double delta = given.scene.delta, x = question.start_level * delta, v = question.start_v;
+  const double delta = given.scene.delta, x = question.start.level * delta, v = question.start.v;
   const auto refuse = [&](const char* what, double largest, const char* more) {
     throw BadInput(fmt::format("-start = {:g},{:g}: starts beyond the largest {} on which the mean "
                                "is computed at -accuracy {:g}; take |{}| at most {:g}, or {}",
                                x, v, what, question.accuracy, what, largest, more));
   };
-  if (std::abs(question.start_level) > first.levels) {
+  if (std::abs(question.start.level) > first.levels) {
     refuse("x", first.levels * delta, "-noise_levels full");
   }
   if (std::abs(v) > first.v_max) {
@@ -317,8 +317,8 @@ Outcome refine(MPI_Comm comm, const options::Case& given, const Progress& progre
     }
   }
   if (question.wants(Quantity::trajectory)) {
-    outcome.path = simulation::simulate_path(given.scene.meant(), question.start_level,
-                                             question.start_v, question.horizon, given.method.seed);
+    outcome.path = simulation::simulate_path(given.scene.meant(), question.start.level,
+                                             question.start.v, question.horizon, given.method.seed);
   }
   if (!question.references.empty()) {
     outcome.comparison = compare(question.references, outcome.results);

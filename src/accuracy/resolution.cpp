@@ -42,7 +42,7 @@ std::vector<int> hp_degrees(const model::Scene& scene, const Resolution& resolut
 // (less where mu_d exceeds the noise, of standard deviation 1/sqrt(tau)). Drag that saturates adds
 // to mu_d.
 double tilt(const model::Scene& scene) {
-  const double mu_d = scene.friction.mu_d;
+  const double mu_d = std::max(scene.friction.mu_d, scene.friction.mirrored().mu_d);
   const double drag_time = -scene.drag.slope_at_rest() / (mu_d * mu_d);
   const double most = 1 / std::sqrt(scene.tau);
   if (scene.drag.law && !scene.drag.bounds_velocity()) return 2 * scene.tau * most;
@@ -80,7 +80,8 @@ std::shared_ptr<const noise::Nodes> grouped(const model::Process& process,
 int levels_for(const model::Scene& scene, double tolerance) {
   const int full = scene.full_levels();
   const model::NoiseChain chain{scene.tau, scene.delta, full};
-  const int first = scene.friction.static_index(scene.delta, -std::abs(scene.bias)) + 1;
+  const auto process = scene.process(full);
+  const int first = std::max(process.static_index(), -process.lowest_static()) + 1;
   const double shift = tilt(scene) * scene.delta;
   double log_weight = 0;  // of level i against level `first`
   int i = first;

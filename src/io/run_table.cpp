@@ -13,9 +13,15 @@ std::string scene_line(const model::Scene& s) {
   if (s.drag.linear > 0) drag += fmt::format(", c = {:g}", s.drag.linear);
   if (s.drag.law) drag = "b(v) = " + s.drag_expression;
   if (s.drag.cubic > 0) drag += fmt::format(", c3 = {:g}", s.drag.cubic);
+  std::string minus;
+  if (!s.friction.symmetric()) {
+    const auto backwards = s.friction.mirrored();
+    minus =
+        fmt::format("   mu_s_minus = {:g}   mu_d_minus = {:g}", backwards.mu_s, backwards.mu_d);
+  }
   const std::string bias = s.bias == 0 ? "" : fmt::format("   bias = {:g}", s.bias);
-  return fmt::format("mu_s = {:g}   mu_d = {:g}   tau = {:g}   delta = {:g}   drag {}{}\n",
-                     s.friction.mu_s, s.friction.mu_d, s.tau, s.delta, drag, bias);
+  return fmt::format("mu_s = {:g}   mu_d = {:g}{}   tau = {:g}   delta = {:g}   drag {}{}\n",
+                     s.friction.mu_s, s.friction.mu_d, minus, s.tau, s.delta, drag, bias);
 }
 
 std::string size_cells(const accuracy::Resolution& r, std::int64_t unknowns,

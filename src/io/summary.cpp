@@ -12,6 +12,10 @@ Json scene_json(const model::Scene& s) {
              {"tau", s.tau},
              {"delta", s.delta},
              {"drag", s.drag_name}};
+  if (!s.friction.symmetric()) {
+    scene["mu_s_minus"] = s.friction.mirrored().mu_s;
+    scene["mu_d_minus"] = s.friction.mirrored().mu_d;
+  }
   if (s.drag.law) {
     scene["drag_expression"] = s.drag_expression;
   } else {

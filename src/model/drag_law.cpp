@@ -144,11 +144,12 @@ Drag parse_drag(const std::string& text, const Friction& friction, double tau, d
                 double bias) {
   const Expression b = read(text, friction, tau);
   Drag drag{0, 0, [b](double v) { return b({v}); }, 0};
-  require_zero_at_rest(drag, friction.mu_d);
+  const double mu_d = std::min(friction.mu_d, friction.mirrored().mu_d);
+  require_zero_at_rest(drag, mu_d);
   for (double sign : {1.0, -1.0}) {
-    drag.reach = std::max(drag.reach, reach_of({drag, sign}, force, friction.mu_d, bias));
+    drag.reach = std::max(drag.reach, reach_of({drag, sign}, force, mu_d, bias));
   }
-  for (double sign : {1.0, -1.0}) require_sound({drag, sign}, drag.reach, friction.mu_d);
+  for (double sign : {1.0, -1.0}) require_sound({drag, sign}, drag.reach, mu_d);
   drag.law_is_odd = !drag.asymmetry();
   return drag;
 }

@@ -4,6 +4,14 @@
 
 namespace stickslip::model {
 
+bool Friction::symmetric() const {
+  return mu_s_minus.value_or(mu_s) == mu_s && mu_d_minus.value_or(mu_d) == mu_d;
+}
+
+Friction Friction::mirrored() const {
+  return {mu_s_minus.value_or(mu_s), mu_d_minus.value_or(mu_d), mu_s, mu_d};
+}
+
 int Friction::static_index(double delta, double bias) const {
   return floor_index((mu_s - bias) / delta);
 }

@@ -203,6 +203,8 @@ checkpoint::Identity identity(const Case& given) {
   const auto& s = given.scene;
   checkpoint::Identity found{{"-mu_s", text(s.friction.mu_s)},
                              {"-mu_d", text(s.friction.mu_d)},
+                             {"-mu_s_minus", text(s.friction.mirrored().mu_s)},
+                             {"-mu_d_minus", text(s.friction.mirrored().mu_d)},
                              {"-tau", text(s.tau)},
                              {"-delta", text(s.delta)},
                              {"-noise_levels", s.noise_levels ? text(*s.noise_levels) : ""},

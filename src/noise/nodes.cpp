@@ -14,9 +14,8 @@ namespace {
 class SpecialPoints {
  public:
   explicit SpecialPoints(const model::Process& process) {
-    const double delta = process.noise.delta, mu_d = process.friction.mu_d;
-    for (double bias : {process.bias, -process.bias}) {
-      graded_.push_back(std::abs(mu_d - bias) / delta);
+    for (const auto& half : {process, process.mirrored()}) {
+      graded_.push_back(std::abs(half.friction.mu_d - half.bias) / half.noise.delta);
     }
     graded_.push_back(std::abs(process.static_index() + 0.5));
     graded_.push_back(std::abs(process.lowest_static() - 0.5));

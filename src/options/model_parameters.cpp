@@ -34,6 +34,11 @@ class SceneReader {
     scene_.tau = settings_.real("tau");
     scene_.delta = settings_.real("delta");
     scene_.friction = {settings_.real("mu_s"), settings_.real("mu_d")};
+    const auto by_direction = [this](const char* option) {
+      return settings_.given(option) ? std::optional(settings_.real(option)) : std::nullopt;
+    };
+    scene_.friction.mu_s_minus = by_direction("mu_s_minus");
+    scene_.friction.mu_d_minus = by_direction("mu_d_minus");
     scene_.drag_name = settings_.text("drag");
     scene_.drag = {drag_law_.linear ? settings_.real("drag_coefficient") : 0,
                    drag_law_.cubic ? settings_.real("drag_cubic") : 0};
@@ -44,11 +49,19 @@ class SceneReader {
   }
 
   void check_friction() {
-    const double mu_d = scene_.friction.mu_d;
-    if (mu_d > scene_.friction.mu_s) {
-      report("mu_d", fmt::format("must be in (0, mu_s], and mu_s = {}", settings_.text("mu_s")),
-             "friction cannot grow when the body starts to slide");
+    const auto& forwards = scene_.friction;
+    const auto backwards = forwards.mirrored();
+    const char* grows = "friction cannot grow when the body starts to slide";
+    if (forwards.mu_d > forwards.mu_s) {
+      report("mu_d", fmt::format("must be in (0, mu_s], and mu_s = {:g}", forwards.mu_s), grows);
     }
+    if (!forwards.symmetric() && backwards.mu_d > backwards.mu_s) {
+      report(forwards.mu_d_minus ? "mu_d_minus" : "mu_s_minus",
+             fmt::format("must keep mu_d_minus in (0, mu_s_minus]; they are {:g} and {:g}",
+                         backwards.mu_d, backwards.mu_s),
+             grows);
+    }
+    const double mu_d = scene_.bias > 0 ? forwards.mu_d : backwards.mu_d;
     if (drag_law_.expression || !scene_.drag.is_none() || std::abs(scene_.bias) < mu_d) return;
     report("bias",
            fmt::format(
@@ -82,13 +95,16 @@ class SceneReader {
                          "need at most 2",
                          tau * delta * delta * levels),
              fmt::format("take at most {}, or full", full));
-    } else if (k >= levels && scene_.bias != 0) {
-      report("bias",
+    } else if (k >= levels && lowest + highest != 0) {
+      const bool backwards = -lowest > highest;
+      const auto& friction = scene_.friction;
+      const double mu_s = backwards ? friction.mirrored().mu_s : friction.mu_s;
+      report(scene_.bias != 0 ? "bias" : backwards ? "mu_s_minus" : "mu_s",
              fmt::format("is never overcome by the noise, which reaches {:g}: no body at rest "
-                         "would ever start against it",
-                         largest),
-             fmt::format("take |bias| below {:g}, or smaller -tau or -delta",
-                         largest - scene_.friction.mu_s));
+                         "would ever start towards {} v",
+                         largest, backwards ? "negative" : "positive"),
+             fmt::format("keep threshold and bias {} below {:g}, or take a smaller -tau or -delta",
+                         mu_s + (backwards ? 1 : -1) * scene_.bias, largest));
     } else if (k >= levels) {
       const auto why =
           fmt::format("is not below the largest noise level {:g}: nothing ever slides", largest);
@@ -127,8 +143,9 @@ class SceneReader {
 double largest_force(const model::Scene& scene) {
   const auto process = scene.meant();
   const double highest = process.noise.level(process.noise.levels);
-  const double seen = scene.friction.mu_s + scene.delta + 12 / std::sqrt(scene.tau);
-  return std::min(highest, seen) + std::abs(scene.bias) - scene.friction.mu_d;
+  const auto &along = scene.friction, against = along.mirrored();
+  const double seen = std::max(along.mu_s, against.mu_s) + scene.delta + 12 / std::sqrt(scene.tau);
+  return std::min(highest, seen) + std::abs(scene.bias) - std::min(along.mu_d, against.mu_d);
 }
 
 model::Scene read_scene(const Settings& settings, Problems& problems) {

@@ -19,6 +19,7 @@ struct QuantityKeys {
 const std::vector<QuantityKeys>& key_table() {
   static const std::vector<QuantityKeys> rows{
       {sticking, {"P_stick", "P_slide", "mean_stick", "mean_slide", "mean_excursion"}},
+      {averages, {"slip_rate", "friction_power"}},
       {moments, {"E_V2", "E_absV", "E_XV", "E_V"}},
       {noise_law, {"P_X_le_mu_s", "E_X2"}},
       {entry_law, {"entry_law", "f_stick_0"}},
@@ -40,30 +41,44 @@ const std::vector<QuantityRow>& quantity_table() {
   using enum Route;
   using Routes = std::vector<Route>;
   static const Routes all{excursion, lambda, hitting, null_vector, fluid_queue, monte_carlo},
-      averages{excursion, lambda, null_vector, fluid_queue, monte_carlo},
-      biased{excursion, null_vector, monte_carlo}, renewal{excursion, fluid_queue, monte_carlo},
-      simulated{excursion, monte_carlo}, alone{excursion}, none{};
+      powers{excursion, lambda, null_vector, fluid_queue, monte_carlo},
+      means{excursion, lambda, null_vector, monte_carlo},
+      renewal{excursion, fluid_queue, monte_carlo}, simulated{excursion, monte_carlo},
+      alone{excursion};
   static const std::vector<QuantityRow> rows{
-      {"sticking", sticking, all, biased, {}},
-      {"moments", moments, averages, biased, {}},
-      {"noise_law", noise_law, averages, biased, {}},
-      {"entry_law", entry_law, renewal, none, {}},
-      {"density", density, alone, alone, {}, true},
-      {"laplace", laplace, renewal, none, {"lambda"}},
-      {"F_stick", stick_duration_transform, alone, none, {"lambda"}},
-      {"resolvent", resolvent, alone, none, {"lambda", "observable"}},
-      {"relaxation", relaxation, alone, none, {}},
-      {"spectrum", spectrum, simulated, simulated, {"omega", "spectrum_solver"}},
-      {"duration_density", duration_density, simulated, none, {"time", "transient_solver"}},
-      {"autocorrelation", autocorrelation, alone, none, {"time", "transient_solver"}},
-      {"expectation",
-       expectation,
-       alone,
-       none,
-       {"observable", "time", "start", "transient_solver"}},
-      {"trajectory", trajectory, simulated, simulated, {"start", "horizon", "seed"}, true},
-      {"sensitivity", sensitivity, alone, none, {}}};
+      {"sticking", sticking, all, {}},
+      {"moments", moments, powers, {}},
+      {"averages", averages, means, {"observable"}},
+      {"noise_law", noise_law, powers, {}},
+      {"entry_law", entry_law, renewal, {}},
+      {"density", density, alone, {}, true},
+      {"laplace", laplace, renewal, {"lambda"}},
+      {"F_stick", stick_duration_transform, renewal, {"lambda"}},
+      {"resolvent", resolvent, simulated, {"lambda", "observable"}},
+      {"relaxation", relaxation, alone, {}},
+      {"spectrum", spectrum, simulated, {"omega", "spectrum_solver"}},
+      {"duration_density", duration_density, simulated, {"time", "transient_solver"}},
+      {"autocorrelation", autocorrelation, simulated, {"time", "transient_solver"}},
+      {"expectation", expectation, simulated, {"observable", "time", "start", "transient_solver"}},
+      {"trajectory", trajectory, simulated, {"start", "horizon", "seed"}, true},
+      {"sensitivity", sensitivity, alone, {}}};
   return rows;
+}
+
+const char* limit_of(Route route) {
+  switch (route) {
+  case Route::excursion: return "";
+  case Route::lambda: return "lambda u_lambda tends to stationary averages and to nothing else";
+  case Route::hitting: return "mean hitting times hold mean durations and nothing else";
+  case Route::null_vector:
+    return "a null vector holds averages of the stationary distribution and nothing else";
+  case Route::fluid_queue:
+    return "the queue tells where and when slides end, and powers of v up to the second";
+  case Route::monte_carlo:
+    return "a sample has no eigenvalues, no derivatives, and no density at a point (ask for "
+           "averages of indicator functions such as abs(v)>0.5)";
+  }
+  return "";
 }
 
 std::optional<Quantity> asked_by(const std::string& key) {

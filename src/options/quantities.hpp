@@ -13,11 +13,13 @@ namespace stickslip::options {
 struct QuantityRow {
   const char* word;  ///< of -quantities
   Quantity quantity;
-  std::vector<Route> routes;            ///< that give it
-  std::vector<Route> without_symmetry;  ///< of these, those that need none
-  std::vector<std::string> options;     ///< that it depends on
-  bool of_one_run = false;              ///< a field or a path, which has no place in a sweep
+  std::vector<Route> routes;         ///< that give it, for every scene
+  std::vector<std::string> options;  ///< that it depends on
+  bool of_one_run = false;           ///< a field or a path, which has no place in a sweep
 };
+
+/// Why a route does not give the quantities that it does not give.
+[[nodiscard]] const char* limit_of(Route route);
 
 /// All quantities, in the order of the help text.
 [[nodiscard]] const std::vector<QuantityRow>& quantity_table();

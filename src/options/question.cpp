@@ -46,7 +46,6 @@ std::vector<Reference> read_compared(const Settings& settings, Problems& problem
 // The quantities named; else those of the file to compare with; else the default ones. Of those
 // that nobody named, the ones that the route gives.
 void read_quantities(const Settings& settings, Request& request, Problems& problems) {
-  const bool symmetric = request.scene.symmetric();
   auto& question = request.question;
   const bool given = settings.given("quantities");
   const auto words = settings.list("quantities");
@@ -59,7 +58,7 @@ void read_quantities(const Settings& settings, Request& request, Problems& probl
   };
   std::vector<std::string> given_by_route, refused;
   for (const auto& row : quantity_table()) {
-    const auto& routes = symmetric ? row.routes : row.without_symmetry;
+    const auto& routes = row.routes;
     const bool gives = std::count(routes.begin(), routes.end(), request.method.route) > 0;
     if (gives) given_by_route.emplace_back(row.word);
     if (!asked(row)) continue;
@@ -67,13 +66,11 @@ void read_quantities(const Settings& settings, Request& request, Problems& probl
     if (!gives) refused.emplace_back(row.word);
   }
   if (refused.empty() || (!given && !question.quantities.empty())) return;
-  settings.report(
-      problems, "quantities",
-      fmt::format("{} cannot be had by -route {}{}, which gives {}", enumerate(refused, "and"),
-                  settings.text("route"), symmetric ? "" : " without symmetry",
-                  given_by_route.empty() ? "nothing" : enumerate(given_by_route, "and")),
-      symmetric ? "take -route excursion, or other quantities"
-                : "take other quantities, or -bias 0 and an odd drag");
+  settings.report(problems, "quantities",
+                  fmt::format("{} cannot be had by -route {}: {}; it gives {}",
+                              enumerate(refused, "and"), settings.text("route"),
+                              limit_of(request.method.route), enumerate(given_by_route, "and")),
+                  "take -route excursion, or other quantities");
 }
 
 // The values given, or those of the file to compare with.
@@ -160,32 +157,50 @@ void check_observables(const Settings& settings, const Request& request, Problem
   }
 }
 
-// s+, s- or x,v with x on a noise level.
+// A state that can occur: a noise level, and a velocity below the largest terminal one.
+model::Start read_state(const Settings& settings, const model::Scene& scene, double x, double v,
+                        Problems& problems) {
+  const auto process = scene.meant();
+  const double place = x / scene.delta, level = std::round(place), levels = process.noise.levels;
+  if (std::abs(place - level) > 1e-9 * std::max(1.0, std::abs(place)) || std::abs(level) > levels) {
+    settings.report(problems, "start",
+                    fmt::format("starts on no noise level, which are {:g} apart up to {:g}",
+                                scene.delta, levels * scene.delta),
+                    fmt::format("take x = {:g}", std::clamp(level, -levels, levels) * scene.delta));
+    return {};
+  }
+  const auto half = v < 0 ? process.mirrored() : process;
+  const double largest =
+      half.drag.terminal_velocity(half.net_force(process.noise.levels)) * (v < 0 ? -1 : 1);
+  if (std::abs(v) > std::abs(largest)) {
+    settings.report(problems, "start",
+                    fmt::format("starts at a velocity that no body reaches: on the highest level "
+                                "of the noise it tends to {:g}",
+                                largest),
+                    fmt::format("take v in [{:g}, {:g}]", std::min(0.0, largest),
+                                std::max(0.0, largest)));
+  }
+  return {static_cast<int>(level), v};
+}
+
+// stationary, rest, s+, s- or x,v with x on a noise level.
 void read_start(const Settings& settings, Request& request, Problems& problems) {
+  using enum model::Start::Kind;
   const std::string text = settings.text("start");
-  const auto& scene = request.scene;
-  auto& question = request.question;
-  const auto process = scene.process(1);
-  question.start_level = text == "s-" ? process.lowest_static() - 1 : process.static_index() + 1;
-  if (text == "s+" || text == "s-") return;
-  const auto numbers = parse_numbers(text);
-  if (!numbers || numbers->size() != 2) {
-    settings.report(problems, "start", "must be s+, s- or x,v", "write for example -start 0.5,0");
-    return;
+  model::Start& start = request.question.start;
+  const auto process = request.scene.process(1);
+  if (text == "s+") {
+    start = {process.static_index() + 1};
+  } else if (text == "s-") {
+    start = {process.lowest_static() - 1};
+  } else if (text == "rest" || text == "stationary") {
+    start.kind = text == "rest" ? rest : stationary;
+  } else if (const auto state = parse_numbers(text); state && state->size() == 2) {
+    start = read_state(settings, request.scene, (*state)[0], (*state)[1], problems);
+  } else {
+    settings.report(problems, "start", "must be s+, s-, stationary, rest or x,v",
+                    "write for example -start 0.5,0");
   }
-  const double place = (*numbers)[0] / scene.delta, level = std::round(place);
-  const int levels = scene.noise_levels.value_or(scene.full_levels());
-  const bool between = std::abs(place - level) > 1e-9 * std::max(1.0, std::abs(place));
-  if (between || std::abs(level) > levels) {
-    settings.report(
-        problems, "start",
-        fmt::format("starts between the noise levels, which are {:g} apart up to {:g}", scene.delta,
-                    levels * scene.delta),
-        fmt::format("take x = {:g}", std::clamp<double>(level, -levels, levels) * scene.delta));
-    return;
-  }
-  question.start_level = static_cast<int>(level);
-  question.start_v = (*numbers)[1];
 }
 
 // A path is kept in memory.

@@ -65,10 +65,9 @@ class Rules {
   // What the question lacks, or cannot have.
   void needs() {
     using enum Quantity;
-    const bool symmetric = r_.scene.symmetric(), by_lambda = r_.method.route == Route::lambda;
-    const bool at_rates = q_.wants(spectrum) && !q_.omega.empty();
+    const bool by_lambda = r_.method.route == Route::lambda;
     const bool simulated = q_.wants(spectrum) && r_.method.route == Route::monte_carlo;
-    const bool averages = q_.wants(sticking) || q_.wants(moments) || q_.wants(noise_law);
+    const bool derivable = q_.wants(sticking) || q_.wants(moments) || q_.wants(noise_law);
     const bool others = std::any_of(q_.quantities.begin(), q_.quantities.end(), [](Quantity q) {
       return q != sticking && q != moments && q != noise_law;
     });
@@ -76,27 +75,25 @@ class Rules {
     require("lambda", asked("lambda") && q_.lambda.empty(),
             "asks for functions of lambda and no values are given",
             "add for example -lambda 0.1,1,10");
-    require("observable", asked("observable") && q_.observables.empty(),
+    require("observable", (q_.wants(resolvent) || q_.wants(expectation)) && q_.observables.empty(),
             "asks for functions of the state and none are given",
             "add for example -observable \"v^2; stick\"");
     require("time", asked("time") && q_.time.empty(),
             "asks for functions of time and no times are given",
             "add for example -time 0.01:10:31:log");
-    require("omega", simulated && symmetric && q_.omega.empty(),
+    require("omega", simulated && q_.omega.empty(),
             "asks for the spectrum and no frequencies are given", "add for example -omega 0:10:41");
     require("output", q_.wants(density), "asks for density, a field that needs a file",
             "add -output FILE.h5");
     require("trajectory", q_.wants(trajectory) && r_.output.output.empty(),
             "asks for a trajectory, which needs a file",
             "add -output FILE.h5 or -trajectory FILE.csv");
-    report("quantities", q_.wants(sensitivity) && !averages,
+    report("quantities", q_.wants(sensitivity) && !derivable,
            "asks for derivatives and for nothing to derive", "add sticking, moments or noise_law");
     report("quantities", study_ && others, "of a study are sticking, moments and noise_law",
            "leave the others out");
     report("lambda", by_lambda && !one_lambda, "must be one positive number with -route lambda",
            "leave it out to have it chosen from -accuracy");
-    report("omega", at_rates && !symmetric,
-           "has no meaning without symmetry, where spectrum gives S_0", "leave it out");
   }
 
  private:

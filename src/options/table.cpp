@@ -70,6 +70,14 @@ std::vector<Option> scene_options() {
            "friction must be able to hold the body"),
       real("mu_d", "force", "1", positive(), "dynamic friction coefficient, at most mu_s",
            "for sliding without friction take a small value such as 1e-8"),
+      real("mu_s_minus", "force", "", positive(),
+           "static friction coefficient against motion towards negative v; that of -mu_s unless "
+           "given. Where directions differ, both signs of v are kept",
+           "friction must be able to hold the body"),
+      real("mu_d_minus", "force", "", positive(),
+           "dynamic friction coefficient while v < 0, at most mu_s_minus; that of -mu_d unless "
+           "given",
+           "for sliding without friction take a small value such as 1e-8"),
       real("tau", "time", "1", positive(), "correlation time of the noise X",
            "for white noise take a small value such as 0.01"),
       real("delta", "force", "0.125", positive(), "step between neighbouring noise levels",

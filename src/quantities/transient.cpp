@@ -83,7 +83,7 @@ std::vector<Uncertain> autocorrelation(operators::Systems& systems,
 }
 
 Expectation expectation(operators::Systems& systems, const StationaryDistribution& distribution,
-                        const model::Observable& f, const StartState& start,
+                        const model::Observable& f, const model::Start& start,
                         const std::vector<double>& time, TransientMethod method, double tolerance) {
   Expectation result;
   result.value.resize(time.size());

@@ -129,7 +129,7 @@ void append_expectations(operators::Systems& systems, const Setting& setting,
   const auto method = transient_method(setting.given.method);
   for (const auto& f : question.observables) {
     const auto expectation = quantities::expectation(
-        systems, *evaluation.distribution, f, {question.start_level, question.start_v},
+        systems, *evaluation.distribution, f, question.start,
         question.time, method, 0.1 * question.accuracy);
     append_function_of_time(question.time, "E(" + f.name + ")", "", expectation.value,
                             evaluation.results);

@@ -15,7 +15,8 @@ namespace {
 double decay_rate(const model::Process& process, double v) {
   const double drag =
       process.drag.odd() ? -process.drag(v) : std::max(-process.drag(v), process.drag(-v));
-  return process.friction.mu_d + std::abs(process.bias) + drag;
+  const double mu_d = process.friction.mu_d;
+  return std::max(mu_d, process.friction.mu_d_minus.value_or(mu_d)) + std::abs(process.bias) + drag;
 }
 
 // Where geometric growth stops because an element would span more than `decay` of log-density.

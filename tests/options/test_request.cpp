@@ -144,7 +144,7 @@ TEST_CASE("request: without symmetry") {
   const Request down = Given("-bias 0.3 -delta 0.25 -quantities trajectory -trajectory t.csv "
                              "-start s-")
                            .read();
-  CHECK(down.question.start_level == -6);  // x = -1.25 holds, -1.5 does not
+  CHECK(down.question.start.level == -6);  // x = -1.25 holds, -1.5 does not
   const std::vector<Refusal> refusals{
       {"-bias 0.5 -quantities entry_law", {"-quantities", "entry_law", "without symmetry"}},
       {"-bias 0.5 -route lambda", {"-quantities", "-route lambda", "-bias 0"}},
@@ -463,11 +463,11 @@ TEST_CASE("request: a cubic coefficient counts with cubic drag only") {
 
 TEST_CASE("request: starts lie on noise levels, with any velocity") {
   const std::string path = "-quantities trajectory -trajectory t.csv -start ";
-  CHECK(Given(path + "s+").read().question.start_level == 9);  // x = 1 holds at delta = 1/8
-  CHECK(Given(path + "s-").read().question.start_level == -9);
+  CHECK(Given(path + "s+").read().question.start.level == 9);  // x = 1 holds at delta = 1/8
+  CHECK(Given(path + "s-").read().question.start.level == -9);
   const Request r = Given(path + "-0.5,0.25").read();
-  CHECK(r.question.start_level == -4);
-  CHECK(r.question.start_v == 0.25);
+  CHECK(r.question.start.level == -4);
+  CHECK(r.question.start.v == 0.25);
   check_refusal({path + "0.3,0", {"-start = 0.3,0", "0.125 apart", "take x = 0.25"}});
   check_refusal({path + "-99,0", {"up to 16", "take x = -16"}});
 }

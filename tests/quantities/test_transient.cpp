@@ -11,7 +11,7 @@
 #include "stickslip/velocity/upwind_discretisation.hpp"
 
 using namespace stickslip;
-using quantities::StartState;
+using model::Start;
 using quantities::TransientMethod;
 using quantities::Uncertain;
 using test::relative_difference;
@@ -23,8 +23,8 @@ namespace {
 constexpr TransientMethod kMethods[] = {TransientMethod::krylov, TransientMethod::stepping};
 
 // At rest, at s+ and s-, beyond mu_s at v = 0, and in motion: mu_s = 1, delta = 1/2.
-const std::vector<StartState>& starts() {
-  static const std::vector<StartState> all{{1, 0},  {-2, 0},  {3, 0},     {-3, 0}, {4, 0},
+const std::vector<Start>& starts() {
+  static const std::vector<Start> all{{1, 0},  {-2, 0},  {3, 0},     {-3, 0}, {4, 0},
                                            {-4, 0}, {1, 0.5}, {-2, -0.5}, {4, -1}, {-1, 0.75}};
   return all;
 }
@@ -38,13 +38,13 @@ model::Observable sample_observable() {
   return {"sample", [](double x, double y, double v) { return 1 + x - x * x + 2 * v + y * v * x; }};
 }
 
-double at_start(const model::Process& process, const model::Observable& f, const StartState& s) {
+double at_start(const model::Process& process, const model::Observable& f, const Start& s) {
   const bool rest = s.v == 0 && std::abs(s.level) <= process.static_index();
   const double y = s.v > 0 || (s.v == 0 && s.level > 0) ? 1 : -1;
   return f(process.noise.level(s.level), rest ? 0 : y, s.v);
 }
 
-std::vector<Uncertain> expectation(Solved& s, const model::Observable& f, const StartState& start,
+std::vector<Uncertain> expectation(Solved& s, const model::Observable& f, const Start& start,
                                    const std::vector<double>& time, TransientMethod method,
                                    double tolerance) {
   return quantities::expectation(s.systems, s.distribution, f, start, time, method, tolerance)
@@ -123,7 +123,7 @@ TEST_CASE("transient: at time 0 expectations are the values at the start", "[par
       INFO("level " << start.level << " v " << start.v);
       CHECK(u[0].value == Approx(at_start(d.process, f, start)).margin(1e-6));
     }
-    for (const auto& start : {StartState{1, 0}, {3, 0}, {-2, -0.5}}) {
+    for (const auto& start : {Start{1, 0}, {3, 0}, {-2, -0.5}}) {
       const auto u = expectation(s, f, start, {0}, TransientMethod::stepping, 1e-4);
       CHECK(u[0].value == Approx(at_start(d.process, f, start)).margin(1e-11));
     }
@@ -149,11 +149,11 @@ TEST_CASE("transient: late expectations are the stationary ones") {
   for (const auto& d : {small_hp(), small_upwind()}) {
     Solved s(d);
     const auto& e = s.distribution.excursion();
-    const auto late = [&](const char* name, const StartState& start, TransientMethod method) {
+    const auto late = [&](const char* name, const Start& start, TransientMethod method) {
       return quantities::expectation(s.systems, s.distribution, observable(name), start, {60},
                                      method, 1e-6);
     };
-    for (const auto& start : {StartState{-2, 0}, {3, 0}, {-2, -0.5}}) {
+    for (const auto& start : {Start{-2, 0}, {3, 0}, {-2, -0.5}}) {
       const auto square = late("v^2", start, TransientMethod::krylov);
       const auto stick = late("stick", start, TransientMethod::krylov);
       const auto mean = late("v", start, TransientMethod::krylov);
@@ -175,7 +175,7 @@ TEST_CASE("transient: the noise forgets its start in closed form", "[parallel]")
   for (double tau : {1.0, 2.0}) {
     const auto d = on_all_levels(scene(1, 0.25, tau, 0.5, {1, 0}));
     Solved s(d);
-    for (const auto& start : {StartState{1, 0}, {-3, 0}, {-2, 0.5}}) {
+    for (const auto& start : {Start{1, 0}, {-3, 0}, {-2, 0.5}}) {
       const double x = d.process.noise.level(start.level);
       const auto first =
           expectation(s, observable("x"), start, time, TransientMethod::krylov, 1e-9);
@@ -196,7 +196,7 @@ TEST_CASE("transient: time steps forget the start of the noise too, within their
   for (double tau : {1.0, 2.0}) {
     const auto d = on_all_levels(scene(1, 0.25, tau, 0.5, {1, 0}));
     Solved s(d);
-    for (const auto& start : {StartState{1, 0}, {-3, 0}}) {
+    for (const auto& start : {Start{1, 0}, {-3, 0}}) {
       const double x = d.process.noise.level(start.level);
       const auto u = expectation(s, observable("x"), start, time, TransientMethod::stepping, 1e-6);
       for (std::size_t n = 0; n < time.size(); ++n) {
@@ -213,7 +213,7 @@ TEST_CASE("transient: 1 stays 1", "[parallel]") {
   for (const auto& d : {small_hp(), small_upwind()}) {
     Solved s(d);
     for (const auto method : kMethods) {
-      for (const auto& start : {StartState{0, 0}, {3, 0}, {-2, -0.5}}) {
+      for (const auto& start : {Start{0, 0}, {3, 0}, {-2, -0.5}}) {
         const auto u = expectation(s, observable("1"), start, {0, 0.1, 5, 100}, method, 1e-6);
         for (const auto& value : u) CHECK(std::abs(value.value - 1) < 1e-11);
       }
@@ -321,7 +321,7 @@ TEST_CASE("transient: time steps and reduced models give the same expectations",
   const std::vector<double> time{0.01, 0.3, 1, 5};
   struct Case {
     test::Discrete d;
-    std::vector<StartState> from;
+    std::vector<Start> from;
   };
   for (const auto& c :
        {Case{small_hp(), {{1, 0}, {3, 0}}}, Case{small_upwind(), {{-3, 0}, {-2, -0.5}}}}) {

@@ -1,13 +1,22 @@
 #pragma once
-/// Coulomb friction: a static threshold and a dynamic force.
+/// Coulomb friction: a static threshold and a dynamic force, each by direction.
+
+#include <optional>
 
 namespace stickslip::model {
 
 struct Friction {
-  double mu_s = 1;  ///< static coefficient [force]
-  double mu_d = 1;  ///< dynamic coefficient [force], 0 < mu_d <= mu_s
+  double mu_s = 1;  ///< static coefficient against motion towards positive v [force]
+  double mu_d = 1;  ///< dynamic coefficient while v > 0 [force], 0 < mu_d <= mu_s
+  /// The same towards negative v, where they differ.
+  std::optional<double> mu_s_minus = {}, mu_d_minus = {};
 
-  /// k with x_k + g <= mu_s < x_{k+1} + g for a constant force g: without it, the static phase
+  /// Whether both directions are alike.
+  [[nodiscard]] bool symmetric() const;
+  /// The directions exchanged.
+  [[nodiscard]] Friction mirrored() const;
+
+  /// k with x_k + g <= mu_s < x_{k+1} + g for a constant force g: with symmetry, the static phase
   /// holds the levels |i| <= k. Rounding never moves it. Throws std::out_of_range beyond int.
   [[nodiscard]] int static_index(double delta, double bias = 0) const;
 

@@ -9,8 +9,8 @@
 
 namespace stickslip::model {
 
-/// dV/dt = X + g + b(V) - mu_d Y while Y = sign V is +-1; V = 0 and |X + g| <= mu_s is the static
-/// phase.
+/// dV/dt = X + g + b(V) - mu_d Y while Y = sign V is +-1; V = 0 and -mu_s- <= X + g <= mu_s is the
+/// static phase. On v < 0 mu_d- takes the place of mu_d.
 struct Process {
   NoiseChain noise;
   Friction friction;
@@ -18,15 +18,19 @@ struct Process {
   double bias = 0;  ///< g, a constant force
 
   /// Whether (-X, -Y, -V) has the same law.
-  [[nodiscard]] bool symmetric() const { return bias == 0 && drag.odd(); }
+  [[nodiscard]] bool symmetric() const { return bias == 0 && drag.odd() && friction.symmetric(); }
   /// The process (-X, -Y, -V): what is true of sliding upwards here is true of sliding downwards
   /// there.
-  [[nodiscard]] Process mirrored() const { return {noise, friction, drag.mirrored(), -bias}; }
+  [[nodiscard]] Process mirrored() const {
+    return {noise, friction.mirrored(), drag.mirrored(), -bias};
+  }
 
-  /// The highest level that can stick; k without bias, where the levels |i| <= k stick.
+  /// The highest level that can stick; k with symmetry, where the levels |i| <= k stick.
   [[nodiscard]] int static_index() const { return friction.static_index(noise.delta, bias); }
-  /// The lowest level that can stick; -k without bias.
-  [[nodiscard]] int lowest_static() const { return -friction.static_index(noise.delta, -bias); }
+  /// The lowest level that can stick; -k with symmetry.
+  [[nodiscard]] int lowest_static() const {
+    return -friction.mirrored().static_index(noise.delta, -bias);
+  }
   /// The highest level with x_i <= mu_s, whatever the bias.
   [[nodiscard]] int threshold_index() const { return friction.static_index(noise.delta); }
   /// x_i + g - mu_d: the speed of V at v = 0+ on level i.

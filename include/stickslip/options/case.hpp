@@ -8,6 +8,7 @@
 
 #include "stickslip/model/observable.hpp"
 #include "stickslip/model/scene.hpp"
+#include "stickslip/model/start.hpp"
 #include "stickslip/options/reference.hpp"
 
 namespace stickslip::options {
@@ -16,6 +17,7 @@ namespace stickslip::options {
 enum class Quantity {
   sticking,
   moments,
+  averages,
   noise_law,
   entry_law,
   density,
@@ -56,11 +58,10 @@ enum class SpectrumSolver { krylov, direct };
 struct Question {
   std::set<Quantity> quantities;
   std::vector<double> lambda;  ///< of laplace and resolvent; one for -route lambda [1/time]
-  std::vector<model::Observable> observables;  ///< of resolvent and expectation
+  std::vector<model::Observable> observables;  ///< of averages, resolvent and expectation
   std::vector<double> omega;                   ///< of spectrum [1/time]
   std::vector<double> time;                    ///< of functions of time [time]
-  int start_level = 0;                         ///< of expectation: x_i and v at time 0
-  double start_v = 0;
+  model::Start start;                          ///< of expectation and trajectory
   double horizon = 100;  ///< end of the trajectory [time]
   double accuracy = 1e-6;
   bool accuracy_given = false;        ///< by the user

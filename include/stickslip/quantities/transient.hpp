@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "stickslip/model/observable.hpp"
+#include "stickslip/model/start.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/quantities/results.hpp"
 #include "stickslip/quantities/stationary.hpp"
@@ -18,12 +19,6 @@ inline const std::string kBackwardPrefix = "backward_";
 /// Reduced models for all times at once, or the backward Kolmogorov equation step by step (PETSc's
 /// TS), which shares nothing with them but L.
 enum class TransientMethod { krylov, stepping };
-
-/// The state (x_level, v) at time 0; v = 0 is rest for |level| <= k, and s+- and beyond otherwise.
-struct StartState {
-  int level = 0;
-  double v = 0;
-};
 
 /// C_vv(t) = E[V_0 V_t] = c exp(L t) v with c = pi v, odd functions only. Errors are relative to
 /// C_vv(0). Collective.
@@ -40,7 +35,7 @@ struct Expectation {
 };
 [[nodiscard]] Expectation expectation(operators::Systems& systems,
                                       const StationaryDistribution& distribution,
-                                      const model::Observable& f, const StartState& start,
+                                      const model::Observable& f, const model::Start& start,
                                       const std::vector<double>& time, TransientMethod method,
                                       double tolerance);
 
