@@ -55,7 +55,7 @@ void require_start_within(const options::Case& given, const Resolution& first) {
     refuse("x", first.levels * delta, "-noise_levels full");
   }
   if (std::abs(v) > first.v_max) {
-    refuse("v", first.v_max, "-quantities trajectory, which starts anywhere");
+    refuse("v", first.v_max, "-route monte_carlo, which starts at any state that occurs");
   }
 }
 
@@ -107,8 +107,7 @@ class Refiner {
     remember_rounding(evaluation.results);
     if (n >= 1) add_discretisation(n, evaluation.results);
     outcome_.results = std::move(evaluation.results);
-    outcome_.even = std::move(evaluation.even);
-    outcome_.odd = std::move(evaluation.odd);
+    outcome_.modes = std::move(evaluation.modes);
     follow(std::move(evaluation.distribution));
     outcome_.total += step.statistics;
     outcome_.steps.push_back(std::move(step));

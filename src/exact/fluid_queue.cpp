@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 
 #include "stickslip/algebra/dense.hpp"
@@ -13,7 +14,7 @@ namespace {
 using algebra::LuFactors;
 using Matrix = algebra::Matrix<double>;
 
-/// Noise levels by the sign of their fluid rate x_i - mu_d.
+/// Noise levels by the sign of their fluid rate x_i + g - mu_d.
 struct Phases {
   explicit Phases(const model::Process& process) {
     for (int i = -process.noise.levels; i <= process.noise.levels; ++i) {
@@ -21,7 +22,7 @@ struct Phases {
       (rate > 0 ? rising : rate < 0 ? falling : still).push_back(i);
     }
   }
-  std::vector<int> rising, falling, still;  // `still`: mu_d on the grid
+  std::vector<int> rising, falling, still;  // `still`: mu_d - g on the grid
 };
 
 /// T - lambda between groups of phases, the still one censored: what passes through it counts as a
@@ -45,7 +46,7 @@ class Jumps {
   /// Mean discounted stay in the still phase.
   [[nodiscard]] double sojourn() const { return 1 / (process_.noise.rate() + lambda_); }
 
-  /// diag(|x_i - mu_d|)^-1 T between two groups.
+  /// diag(|x_i + g - mu_d|)^-1 T between two groups.
   [[nodiscard]] Matrix per_length(const std::vector<int>& from, const std::vector<int>& to) const {
     Matrix m(static_cast<int>(from.size()), static_cast<int>(to.size()));
     for (int r = 0; r < m.rows(); ++r) {
@@ -126,88 +127,140 @@ struct Riccati {
   }
 };
 
-/// Starts at v = 0 in the rising phases k+1 ... N, and what a return to 0 leads to.
-struct Boundary {
-  Boundary(const model::Process& process, const Phases& phases, const Matrix& psi)
-      : k(process.static_index()),
-        starts(process.noise.levels - k),
-        rising_starts(starts),
-        restart(starts, starts),
-        rest(starts, 2 * k + 1) {
-    const int first = static_cast<int>(phases.rising.size()) - starts;
-    for (int s = 0; s < starts; ++s) {
-      rising_starts[s] = first + s;
-      for (std::size_t c = 0; c < phases.falling.size(); ++c) {
-        const int i = phases.falling[c];
-        const double p = psi(first + s, static_cast<int>(c));
-        if (i < -k) {
-          restart(s, -i - k - 1) += p;
-        } else {
-          rest(s, i + k) += p;
-        }
-      }
+/// The queue of one half line, seen along its motion.
+class Queue {
+ public:
+  Queue(const model::Process& process, double lambda)
+      : process_(process),
+        phases_(process_),
+        jumps_(process_, phases_, lambda),
+        riccati_{-1.0 * jumps_.per_length(phases_.rising, phases_.rising),
+                 jumps_.per_length(phases_.rising, phases_.falling),
+                 jumps_.per_length(phases_.falling, phases_.rising),
+                 -1.0 * jumps_.per_length(phases_.falling, phases_.falling)},
+        psi_(riccati_.solve()),
+        minus_k_(riccati_.a - psi_ * riccati_.c) {}
+  Queue(const Queue&) = delete;
+  Queue& operator=(const Queue&) = delete;
+
+  [[nodiscard]] double residual() const { return riccati_.residual(psi_); }
+  /// Bodies start in the phases static_index + 1 ... N.
+  [[nodiscard]] int starts() const { return process_.noise.levels - process_.static_index(); }
+  [[nodiscard]] int lowest_static() const { return process_.lowest_static(); }
+  [[nodiscard]] int count_static() const { return process_.static_index() - lowest_static() + 1; }
+
+  /// Probability that a body that starts in phase static_index + 1 + start is back at 0 in phase i;
+  /// calls visit(i, p).
+  template <class Visit>
+  void for_each_return(int start, Visit visit) const {
+    for (std::size_t c = 0; c < phases_.falling.size(); ++c) {
+      visit(phases_.falling[c], psi_(row(start), static_cast<int>(c)));
     }
   }
 
-  /// Mean number of starts in each phase k+1 ... N during a slide from s+, each counted with `sign`
-  /// to the power of the number of crossings before.
-  [[nodiscard]] std::vector<double> visits(double sign) const {
-    std::vector<double> number(static_cast<std::size_t>(starts), 0.0);
-    number[0] = 1;
-    LuFactors(Matrix::identity(starts) - sign * restart).solve(number, true);
-    return number;
+  /// Adds what a body does that starts `number` times in each phase. The density of upcrossings of
+  /// v by phase is starts exp(K v), K = C_u^-1 T_uu + Psi C_d^-1 T_du; its moments are powers of
+  /// (-K)^-1.
+  void follow(const double* number, double sign, QueuedSlide& slide) const {
+    std::vector<double> moment(phases_.rising.size(), 0.0);
+    for (int s = 0; s < starts(); ++s) moment[row(s)] = number[s];
+    double factorial = 1;
+    for (auto* sums : {&slide.time, &slide.distance, &slide.square}) {
+      minus_k_.solve(moment, true);
+      double spent = spend(phases_.rising, moment, factorial, *sums);
+      spent += spend(phases_.falling, moment * psi_, factorial, *sums);
+      if (sums == &slide.distance) slide.drift += sign * spent;
+      factorial *= sums == &slide.time ? 1 : 2;
+    }
   }
 
-  int k, starts;
-  std::vector<int> rising_starts;  // rows of Psi
-  Matrix restart, rest;
+ private:
+  [[nodiscard]] int row(int start) const {
+    return static_cast<int>(phases_.rising.size()) - starts() + start;
+  }
+
+  double spend(const std::vector<int>& group, const std::vector<double>& crossings,
+               double factorial, std::vector<double>& sums) const {
+    double all = 0;
+    const auto add = [&](int phase, double spent) {
+      sums[phase + process_.noise.levels] += spent;
+      all += spent;
+    };
+    for (std::size_t p = 0; p < group.size(); ++p) {
+      const double spent = factorial * crossings[p] / std::abs(process_.net_force(group[p]));
+      add(group[p], spent);
+      for (int s : phases_.still) add(s, spent * jumps_.rate(group[p], s) * jumps_.sojourn());
+    }
+    return all;
+  }
+
+  model::Process process_;
+  Phases phases_;
+  Jumps jumps_;
+  Riccati riccati_;
+  Matrix psi_;
+  LuFactors<double> minus_k_;
+};
+
+/// Both half lines, and what a return to v = 0 leads to.
+class Boundary {
+ public:
+  Boundary(const Queue& upper, const Queue& lower)
+      : upper_(upper),
+        lower_(lower),
+        restart_(upper.starts() + lower.starts(), upper.starts() + lower.starts()),
+        rest_(restart_.rows(), upper.count_static()) {
+    fill(upper, 0, upper.starts(), 1);
+    fill(lower, upper.starts(), 0, -1);
+  }
+
+  /// The slide that begins with start number `first`: those of the upper half come first.
+  [[nodiscard]] QueuedSlide slide(int first, int levels) const {
+    std::vector<double> number(static_cast<std::size_t>(restart_.rows()), 0.0);
+    number[first] = 1;
+    LuFactors(Matrix::identity(restart_.rows()) - restart_).solve(number, true);
+    QueuedSlide slide;
+    for (auto* sums : {&slide.time, &slide.distance, &slide.square}) {
+      sums->assign(2 * static_cast<std::size_t>(levels) + 1, 0.0);
+    }
+    slide.entry = number * rest_;
+    slide.turns = std::accumulate(number.begin(), number.end(), -1.0);
+    upper_.follow(number.data(), 1, slide);
+    lower_.follow(number.data() + upper_.starts(), -1, slide);
+    return slide;
+  }
+
+ private:
+  // Returns of a half whose starts have the numbers from `from` on; `sign` turns its phases into
+  // levels.
+  void fill(const Queue& half, int from, int others_from, int sign) {
+    for (int s = 0; s < half.starts(); ++s) {
+      half.for_each_return(s, [&](int i, double p) {
+        if (i < half.lowest_static()) {
+          restart_(from + s, others_from + half.lowest_static() - 1 - i) += p;
+        } else {
+          rest_(from + s, sign * i - upper_.lowest_static()) += p;
+        }
+      });
+    }
+  }
+
+  const Queue &upper_, &lower_;
+  Matrix restart_, rest_;
 };
 
 }  // namespace
 
 FluidQueue::FluidQueue(const model::Process& process, double lambda) {
   if (!process.drag.is_none()) throw std::invalid_argument("a fluid queue has no drag");
-  const Phases phases(process);
-  const Jumps jumps(process, phases, lambda);
-  const auto& up = phases.rising;
-  const auto& down = phases.falling;
-  const Riccati riccati{-1.0 * jumps.per_length(up, up), jumps.per_length(up, down),
-                        jumps.per_length(down, up), -1.0 * jumps.per_length(down, down)};
-  const Matrix psi = riccati.solve();
-  residual_ = riccati.residual(psi);
-
-  const Boundary boundary(process, phases, psi);
-  const auto visits = boundary.visits(1);
-  entry_ = visits * boundary.rest;
-  orientation_ = boundary.visits(-1) * boundary.rest;
-
-  // Density of upcrossings of v by phase: starts exp(K v), K = C_u^-1 T_uu + Psi C_d^-1 T_du; its
-  // moments are powers of (-K)^-1.
-  const LuFactors minus_k(riccati.a - psi * riccati.c);
-  std::vector<double> moment(up.size(), 0.0);
-  for (int s = 0; s < boundary.starts; ++s) moment[boundary.rising_starts[s]] = visits[s];
-  const int n = process.noise.levels;
-  double factorial = 1;
-  for (auto* sums : {&time_, &distance_, &square_}) {
-    minus_k.solve(moment, true);
-    sums->assign(2 * static_cast<std::size_t>(n) + 1, 0.0);
-    const auto falling = moment * psi;
-    const auto spend = [&](const std::vector<int>& group, const std::vector<double>& crossings) {
-      for (std::size_t p = 0; p < group.size(); ++p) {
-        const double spent = factorial * crossings[p] / std::abs(process.net_force(group[p]));
-        (*sums)[group[p] + n] += spent;
-        for (int s : phases.still)
-          (*sums)[s + n] += spent * jumps.rate(group[p], s) * jumps.sojourn();
-      }
-    };
-    spend(up, moment);
-    spend(down, falling);
-    factorial *= sums == &time_ ? 1 : 2;
-  }
-}
-
-double FluidQueue::slide_transform() const {
-  return std::accumulate(entry_.begin(), entry_.end(), 0.0);
+  const Queue upper(process, lambda);
+  std::optional<Queue> lower;
+  if (!process.symmetric()) lower.emplace(process.mirrored(), lambda);
+  const Queue& other = lower ? *lower : upper;
+  residual_ = std::max(upper.residual(), other.residual());
+  const Boundary boundary(upper, other);
+  plus_ = boundary.slide(0, process.noise.levels);
+  minus_ = boundary.slide(upper.starts(), process.noise.levels);
 }
 
 }  // namespace stickslip::exact

@@ -63,10 +63,10 @@ void write_comparison(Hdf5File& file, const Json& comparison) {
   write_tree(file, "/comparison", tree);
 }
 
-void write_modes(Hdf5File& file, const std::string& parity,
-                 const std::vector<quantities::RelaxationMode>& modes) {
+void write_modes(Hdf5File& file, const quantities::RelaxationSector& sector) {
+  const auto& modes = sector.modes;
   if (modes.empty()) return;
-  const std::string group = "/relaxation_" + parity;
+  const std::string group = "/" + quantities::relaxation_key(sector.symmetry);
   write_axes(file, group, modes[0].real);
   for (std::size_t n = 0; n < modes.size(); ++n) {
     const std::string name = fmt::format("{}/mode_{}", group, n + 1);
@@ -154,8 +154,7 @@ void write_hdf5(MPI_Comm comm, const options::Request& request, const accuracy::
   write_tree(file, "/results", results_json(outcome.results));
   write_record(file, comm, request, times);
   file.attribute("/record", "accuracy_reached", outcome.reached ? "yes" : "no");
-  write_modes(file, "even", outcome.even);
-  write_modes(file, "odd", outcome.odd);
+  for (const auto& sector : outcome.modes) write_modes(file, sector);
   if (outcome.path) write_path(file, *outcome.path);
   if (outcome.comparison) {
     write_comparison(file, comparison_json(*outcome.comparison, request.output.compared));

@@ -82,19 +82,18 @@ petsc::VecHandle KolmogorovOperator::trace_at_exit(Branch half) const {
   return g;
 }
 
-petsc::VecHandle KolmogorovOperator::value_at(int i, double v) const {
+void KolmogorovOperator::add_value_at(int i, double v, double weight, Vec functional) const {
   const auto& [process, noise, velocities] = discretisation();
   const int lowest = process.lowest_static();
   const bool rest = v == 0 && i >= lowest && i <= process.static_index();
   const bool below = v < 0 || (v == 0 && (rest ? i < 0 : i < lowest));
   const bool mirrored = below && states().symmetry_reduced();
-  const double sign = mirrored && states().symmetry() == Symmetry::odd ? -1 : 1;
+  const double sign = mirrored && states().symmetry() == Symmetry::odd ? -weight : weight;
   const Branch half = below && !mirrored ? Branch::negative : Branch::positive;
-  petsc::VecHandle g = zeros();
   const PetscInt begin = states().local_begin(), end = begin + states().local_size();
-  const auto add = [&](const State& state, double weight) {
+  const auto add = [&](const State& state, double share) {
     const PetscInt index = states().index(state);
-    if (index >= begin && index < end) check(VecSetValue(g, index, weight, ADD_VALUES));
+    if (index >= begin && index < end) check(VecSetValue(functional, index, share, ADD_VALUES));
   };
   // A level as a combination of noise nodes, of those as combinations of velocity nodes.
   const auto& group = noise->group_at(below ? -i : i);
@@ -113,6 +112,20 @@ petsc::VecHandle KolmogorovOperator::value_at(int i, double v) const {
     const int kept = states().symmetry_reduced() ? std::abs(i) : i;
     if (states().has_rest(kept)) add({StateKind::rest, Branch::positive, kept, 0}, sign);
   }
+}
+
+petsc::VecHandle KolmogorovOperator::value_at(int i, double v) const {
+  petsc::VecHandle g = zeros();
+  add_value_at(i, v, 1, g);
+  check(VecAssemblyBegin(g));
+  check(VecAssemblyEnd(g));
+  return g;
+}
+
+petsc::VecHandle KolmogorovOperator::mean_at_zero(const std::vector<double>& p) const {
+  petsc::VecHandle g = zeros();
+  const int levels = discretisation().process.noise.levels;
+  for (int i = -levels; i <= levels; ++i) add_value_at(i, 0, p[levels + i], g);
   check(VecAssemblyBegin(g));
   check(VecAssemblyEnd(g));
   return g;

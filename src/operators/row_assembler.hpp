@@ -122,7 +122,7 @@ class RowAssembler {
     const Side& here = side(s.half);
     const double net_force = here.process.net_force_at(noise_.x(s.noise));
     if (derivative_) {
-      here.velocities.transport_change(net_force, speed_change(), s.node, transport_);
+      here.velocities.transport_change(net_force, speed_change(s.half), s.node, transport_);
     } else {
       here.velocities.transport(net_force, s.node, transport_);
     }
@@ -135,7 +135,7 @@ class RowAssembler {
     const Side& here = side(s.half);
     const double net_force = here.process.net_force_at(noise_.x(s.noise));
     rate_to(node(s.half, s.noise, 0),
-            here.velocities.origin_rate(derivative_ ? speed_change().net_force : net_force));
+            here.velocities.origin_rate(derivative_ ? speed_change(s.half).net_force : net_force));
     for_each_jump(s.noise, [&](int to, double rate) {
       if (states_.has_origin(s.half, to)) {
         rate_to(states_.index({StateKind::origin, s.half, to, 0}), rate);
@@ -266,9 +266,11 @@ class RowAssembler {
   [[nodiscard]] double reflection() const { return states_.symmetry() == Symmetry::odd ? -1 : 1; }
   [[nodiscard]] double up_rate(int level) const { return chain_.rate() * chain_.up(level); }
   [[nodiscard]] double down_rate(int level) const { return chain_.rate() * chain_.down(level); }
-  [[nodiscard]] velocity::SpeedChange speed_change() const {
+  [[nodiscard]] velocity::SpeedChange speed_change(Branch half) const {
+    const bool own = half == Branch::negative && upper_.process.friction.mu_d_minus.has_value();
     switch (*derivative_) {
-    case Parameter::mu_d: return {-1, 0};
+    case Parameter::mu_d: return {own ? 0.0 : -1.0, 0};
+    case Parameter::mu_d_minus: return {own ? -1.0 : 0.0, 0};
     case Parameter::tau: return {0, 0};
     case Parameter::drag_coefficient: return {0, -1};
     }

@@ -99,12 +99,15 @@ class SceneReader {
       const bool backwards = -lowest > highest;
       const auto& friction = scene_.friction;
       const double mu_s = backwards ? friction.mirrored().mu_s : friction.mu_s;
-      report(scene_.bias != 0 ? "bias" : backwards ? "mu_s_minus" : "mu_s",
+      const bool biased = scene_.bias != 0;
+      const char* threshold = backwards && friction.mu_s_minus ? "mu_s_minus" : "mu_s";
+      report(biased ? "bias" : threshold,
              fmt::format("is never overcome by the noise, which reaches {:g}: no body at rest "
                          "would ever start towards {} v",
                          largest, backwards ? "negative" : "positive"),
-             fmt::format("keep threshold and bias {} below {:g}, or take a smaller -tau or -delta",
-                         mu_s + (backwards ? 1 : -1) * scene_.bias, largest));
+             fmt::format("take {} below {:g}, or smaller -tau or -delta",
+                         biased ? "|bias|" : fmt::format("-{}", threshold),
+                         biased ? largest - mu_s : largest));
     } else if (k >= levels) {
       const auto why =
           fmt::format("is not below the largest noise level {:g}: nothing ever slides", largest);

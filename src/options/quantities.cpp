@@ -22,12 +22,14 @@ const std::vector<QuantityKeys>& key_table() {
       {averages, {"slip_rate", "friction_power"}},
       {moments, {"E_V2", "E_absV", "E_XV", "E_V"}},
       {noise_law, {"P_X_le_mu_s", "E_X2"}},
-      {entry_law, {"entry_law", "f_stick_0"}},
+      {entry_law, {"entry_law", "f_stick_0"}, {"entry_law_minus"}},
       {laplace, {"F_slide", "F_stick", "F_excursion"}, {"f_slide_0"}},
       {laplace, {}, {"var_slide", "var_stick", "var_excursion"}},
       {resolvent, {}, {"h_plus", "h_minus", "w_one"}},
+      {resolvent, {}, {"h_plus_from_minus", "h_minus_from_minus", "w_one_from_minus"}},
       {relaxation, {}, {"relaxation_even", "relaxation_odd"}},
       {relaxation, {}, {"relaxation_even_frequency", "relaxation_odd_frequency"}},
+      {relaxation, {}, {"relaxation", "relaxation_frequency"}},
       {spectrum, {"S_v", "S_0", "fwhm", "t_corr"}, {"diffusivity", "variance_from_spectrum"}},
       {duration_density, {"f_slide", "f_stick", "f_excursion"}},
       {duration_density, {"cdf_slide", "cdf_stick", "cdf_excursion"}},
@@ -108,10 +110,12 @@ std::vector<std::string> plain_keys() {
 bool is_composed_key(const std::string& key) {
   const auto open = key.find('(');
   if (open != key.npos && key.ends_with(')')) {
-    static const std::set<std::string> of{"u", "w_plus", "w_minus", "pi", "mu", "E", "stationary"};
+    static const std::set<std::string> of{"u", "w_plus",  "w_minus",  "pi",        "mu",
+                                          "E", "u_minus", "mu_minus", "stationary"};
     return of.contains(key.substr(0, open));
   }
-  for (const std::string_view parameter : {"_dmu_d", "_dtau", "_ddrag_coefficient"}) {
+  for (const std::string_view parameter :
+       {"_dmu_d", "_dmu_d_minus", "_dtau", "_ddrag_coefficient"}) {
     if (!key.starts_with('d') || !key.ends_with(parameter)) continue;
     const std::size_t ends = 1 + parameter.size();
     if (key.size() > ends && asked_by(key.substr(1, key.size() - ends))) return true;

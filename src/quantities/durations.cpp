@@ -20,7 +20,10 @@ using petsc::check;
 class StickingFlow {
  public:
   StickingFlow(const model::Process& process, std::vector<double> start)
-      : noise_(process.noise), k_(process.static_index()), distribution_(std::move(start)) {}
+      : noise_(process.noise),
+        lowest_(process.lowest_static()),
+        highest_(process.static_index()),
+        distribution_(std::move(start)) {}
 
   void advance(double time) {
     // Steps of at most 64 expected jumps, whose weights do not underflow.
@@ -30,7 +33,8 @@ class StickingFlow {
   }
 
   [[nodiscard]] double exit_rate() const {
-    return noise_.rate() * noise_.up(k_) * (distribution_.back() + distribution_.front());
+    return noise_.rate() * (noise_.up(highest_) * distribution_.back() +
+                            noise_.down(lowest_) * distribution_.front());
   }
   [[nodiscard]] double left() const { return left_; }
 
@@ -54,17 +58,17 @@ class StickingFlow {
   double jump(std::vector<double>& chain) const {
     std::vector<double> next(chain.size(), 0.0);
     double leaving = 0;
-    for (int i = -k_; i <= k_; ++i) {
-      const double mass = chain[k_ + i];
-      (i < k_ ? next[k_ + i + 1] : leaving) += mass * noise_.up(i);
-      (i > -k_ ? next[k_ + i - 1] : leaving) += mass * noise_.down(i);
+    for (int i = lowest_; i <= highest_; ++i) {
+      const int at = i - lowest_;
+      (i < highest_ ? next[at + 1] : leaving) += chain[at] * noise_.up(i);
+      (i > lowest_ ? next[at - 1] : leaving) += chain[at] * noise_.down(i);
     }
     chain = std::move(next);
     return leaving;
   }
 
   model::NoiseChain noise_;
-  int k_;
+  int lowest_, highest_;
   std::vector<double> distribution_;
   double left_ = 0;
 };
@@ -102,15 +106,16 @@ DurationDistribution stick_distribution(const model::Process& process,
 
 namespace {
 
-// f(t) = g exp(L t) r from s+, r = -L 1 the rate of ending where `rest` kills.
+// f(t) = g exp(L t) r, g where excursions start, r = -L 1 the rate of ending where `rest` kills.
 DurationDistribution distribution_until(operators::Systems& systems, StaticPhase rest,
                                         const StationaryDistribution& stationary,
                                         const std::vector<double>& time, double mean,
                                         double tolerance) {
-  auto a = operators::assemble(systems.comm(), systems.discretisation(), 0, Symmetry::even, rest,
-                               systems.statistics());
+  auto a =
+      operators::assemble(systems.comm(), systems.discretisation(), 0,
+                          operators::symmetry_of(systems.process()), rest, systems.statistics());
   const petsc::VecHandle one = a.values([](double, double, double) { return 1.0; }), b = a.zeros(),
-                         c = a.trace_at_exit(), d = stationary.weight_on(a);
+                         c = stationary.starts(a), d = stationary.weight_on(a);
   check(MatMult(a.matrix(), one, b));
   auto curve = time_curve(systems, std::move(a), rest, {b, c, d}, ReducedModel::Nature::rough,
                           Integral::wanted, time, 1 / mean, tolerance);
@@ -133,16 +138,22 @@ DurationDistribution excursion_distribution(operators::Systems& systems,
                             stationary.excursion().mean_excursion(), tolerance);
 }
 
-double slide_density_at_zero(const model::Process& process) {
-  const int k = process.static_index();
-  const double up = process.net_force(k + 1), down = -process.net_force(k);
-  if (down <= 0) return 0;
-  return process.noise.rate() * process.noise.down(k + 1) * down / (up + down);
+double slide_density_at_zero(const model::Process& process, const SideChain& sides) {
+  const auto from_plus = [](const model::Process& seen) {
+    const int k = seen.static_index();
+    const double up = seen.net_force(k + 1), down = -seen.net_force(k);
+    if (down <= 0) return 0.0;
+    return seen.noise.rate() * seen.noise.down(k + 1) * down / (up + down);
+  };
+  return sides.share_of_plus() * from_plus(process) +
+         sides.share_of_minus() * from_plus(process.mirrored());
 }
 
-DurationMoments duration_moments(operators::Systems& systems, const std::vector<Uncertain>& entry) {
+DurationMoments duration_moments(operators::Systems& systems,
+                                 const StationaryDistribution& distribution,
+                                 const std::vector<Uncertain>& entry) {
   const auto& process = systems.process();
-  const operators::StaticChain chain(process.noise, process.static_index());
+  const auto chain = operators::StaticChain::of(process);
   const auto once = chain.integral(std::vector<double>(entry.size(), 1.0));
   const auto twice = chain.integral(once);
   Uncertain stick, stick_square;
@@ -150,15 +161,15 @@ DurationMoments duration_moments(operators::Systems& systems, const std::vector<
     stick = stick + once[n] * entry[n];
     stick_square = stick_square + 2 * twice[n] * entry[n];
   }
-  auto& system = systems.at(0, Symmetry::even);
-  const petsc::VecHandle at_exit = system.a().trace_at_exit();
+  auto& system = systems.at(0, operators::symmetry_of(process));
+  const petsc::VecHandle starts = distribution.starts(system.a());
   const petsc::VecHandle ones = system.a().values([](double, double, double) { return 1.0; });
   const auto slide = system.factors().solve(ones);
   const auto square = system.factors().solve(slide.x);
   const auto sticking = system.factors().solve(
       system.a().from_rest(std::vector<PetscScalar>(once.begin(), once.end())));
-  const Uncertain s = value_of(at_exit, slide), s2 = 2.0 * value_of(at_exit, square);
-  const Uncertain st = value_of(at_exit, system.factors().solve(sticking.x));
+  const Uncertain s = value_of(starts, slide), s2 = 2.0 * value_of(starts, square);
+  const Uncertain st = value_of(starts, system.factors().solve(sticking.x));
   const Uncertain excursion = s + stick;
   return {s,
           stick,
@@ -168,8 +179,9 @@ DurationMoments duration_moments(operators::Systems& systems, const std::vector<
           s2 + 2.0 * st + stick_square - excursion * excursion};
 }
 
-void append_duration_moments(const model::Process& process, const DurationMoments& moments,
-                             const std::vector<Uncertain>& entry, Results& results) {
+void append_duration_moments(const model::Process& process, const SideChain& sides,
+                             const DurationMoments& moments, const std::vector<Uncertain>& entry,
+                             Results& results) {
   const auto append = [&](const Name& name, Uncertain value) {
     const bool there = std::any_of(results.begin(), results.end(),
                                    [&](const Result& result) { return result.key == name.key; });
@@ -181,9 +193,9 @@ void append_duration_moments(const model::Process& process, const DurationMoment
   append({"var_slide", "time^2"}, moments.var_slide);
   append({"var_stick", "time^2"}, moments.var_stick);
   append({"var_excursion", "time^2"}, moments.var_excursion);
-  const double rate = process.noise.rate() * process.noise.up(process.static_index());
-  append({"f_slide_0", "1/time"}, {slide_density_at_zero(process), 0});
-  append(kFStick0, rate * (entry.front() + entry.back()));
+  append({"f_slide_0", "1/time"}, {slide_density_at_zero(process, sides), 0});
+  append(kFStick0, {stick_density_at_zero(process, entry.front().value, entry.back().value),
+                    stick_density_at_zero(process, entry.front().error, entry.back().error)});
 }
 
 void append_duration(const char* name, const std::vector<double>& time,

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "stickslip/operators/static_chain.hpp"
+
 namespace stickslip::quantities {
 namespace {
 
@@ -31,6 +33,32 @@ double Excursion::conservation_defect(const operators::Discretisation& discretis
   }
   const double expected = model::noise_moments(process.noise, k).beyond * mean_excursion();
   return std::abs(beyond / expected - 1) + lost_probability * lost_probability;
+}
+
+SideChain side_chain(const model::Process& process, const std::vector<double>& entry_plus,
+                     const std::vector<double>& entry_minus) {
+  const auto chain = operators::StaticChain::of(process);
+  const auto mean = [](const std::vector<double>& entry, const std::vector<double>& h) {
+    return std::inner_product(entry.begin(), entry.end(), h.begin(), 0.0);
+  };
+  return {mean(entry_plus, chain.downward_exit_transform()),
+          mean(entry_minus, chain.upward_exit_transform())};
+}
+
+Excursion joined(const SideChain& sides, const Excursion& plus, const Excursion& minus) {
+  Excursion all = plus;
+  for (auto member : {&Excursion::slide_time, &Excursion::slide_distance, &Excursion::slide_square,
+                      &Excursion::slide_drift, &Excursion::entry, &Excursion::stick_time}) {
+    for (std::size_t n = 0; n < (all.*member).size(); ++n) {
+      (all.*member)[n] =
+          sides.share_of_plus() * (plus.*member)[n] + sides.share_of_minus() * (minus.*member)[n];
+    }
+  }
+  all.entry_plus = plus.entry;
+  all.entry_minus = minus.entry;
+  all.lost_probability =
+      std::max(std::abs(plus.lost_probability), std::abs(minus.lost_probability));
+  return all;
 }
 
 void append_sticking(const Excursion& excursion, Results& results) {
@@ -63,23 +91,25 @@ void append_moments(const operators::Discretisation& discretisation, const Excur
 
 void append_hitting_distribution(const model::Process& process, const Excursion& excursion,
                                  Results& results) {
-  const auto& symmetry_reduced = excursion.entry;
-  const auto& oriented = excursion.entry_orientation;
-  const int k = process.static_index();
-  Result distribution{"entry_law", "", "k", {}, {}, {}};
-  for (int i = -k; i <= k; ++i) {
-    // Slides that end with V > 0 on level i, and with V < 0 on level -i in symmetry-reduced
-    // coordinates.
-    const double same = (symmetry_reduced[k + i] + oriented[k + i]) / 2;
-    const double mirrored = (symmetry_reduced[k - i] - oriented[k - i]) / 2;
-    distribution.abscissa.push_back(i);
-    distribution.value.push_back(same + mirrored);
-    distribution.error.push_back(0);
-  }
-  results.push_back(distribution);
-  const double rate = process.noise.rate() * process.noise.up(k);
+  std::vector<double> levels;
+  for (int i = process.lowest_static(); i <= process.static_index(); ++i) levels.push_back(i);
+  const auto append = [&](const char* key, const std::vector<double>& entry) {
+    Result distribution = array(key, "", "k", levels);
+    distribution.value = entry;
+    distribution.error.assign(entry.size(), 0.0);
+    results.push_back(std::move(distribution));
+  };
+  append("entry_law", excursion.entry_plus);
+  if (!excursion.entry_minus.empty()) append("entry_law_minus", excursion.entry_minus);
   results.push_back(
-      scalar(kFStick0, rate * (symmetry_reduced.back() + symmetry_reduced.front()), 0));
+      scalar(kFStick0,
+             stick_density_at_zero(process, excursion.entry.front(), excursion.entry.back()), 0));
+}
+
+double stick_density_at_zero(const model::Process& process, double lowest, double highest) {
+  const auto& noise = process.noise;
+  return noise.rate() * (noise.up(process.static_index()) * highest +
+                         noise.down(process.lowest_static()) * lowest);
 }
 
 void append_noise_distribution(const model::Process& process, Results& results) {
@@ -92,18 +122,16 @@ void append_noise_distribution(const model::Process& process, Results& results) 
 std::vector<double> marginal_of_noise(const operators::Discretisation& discretisation,
                                       const Excursion& excursion) {
   const auto& process = discretisation.process;
-  const int n = process.noise.levels, k = process.static_index();
-  const double total = excursion.mean_excursion();
-  const auto slide_time = discretisation.noise->spread(excursion.slide_time);
-  std::vector<double> distribution(slide_time.size());
-  for (int i = -n; i <= n; ++i) {
-    distribution[n + i] = (slide_time[n + i] + slide_time[n - i]) / (2 * total);
-    if (std::abs(i) <= k) {
-      distribution[n + i] +=
-          (excursion.stick_time[k + i] + excursion.stick_time[k - i]) / (2 * total);
-    }
+  auto time = discretisation.noise->spread(excursion.slide_time);
+  const int lowest = process.noise.levels + process.lowest_static();
+  for (std::size_t k = 0; k < excursion.stick_time.size(); ++k) {
+    time[lowest + k] += excursion.stick_time[k];
   }
-  return distribution;
+  const std::vector<double> mirrored(time.rbegin(), time.rend());
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    time[i] = (time[i] + mirrored[i]) / (2 * excursion.mean_excursion());
+  }
+  return time;
 }
 
 }  // namespace stickslip::quantities

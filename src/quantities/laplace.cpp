@@ -6,7 +6,7 @@ namespace stickslip::quantities {
 namespace {
 
 std::vector<double> stick_duration_transforms(const model::Process& process, double lambda) {
-  return operators::StaticChain(process.noise, process.static_index(), lambda).exit_transform();
+  return operators::StaticChain::of(process, lambda).exit_transform();
 }
 
 }  // namespace
@@ -19,13 +19,21 @@ Uncertain stick_transform(const model::Process& process, double lambda,
   return sum;
 }
 
-SlideTransforms slide_transforms(operators::Systems& systems, double lambda) {
+void append_stick_transform(const model::Process& process, const std::vector<double>& lambda,
+                            const std::vector<Uncertain>& entry, Results& results) {
+  Result result = array("F_stick", "", "lambda", lambda, Kind::transform);
+  for (double value : lambda) append_value(result, stick_transform(process, value, entry));
+  results.push_back(std::move(result));
+}
+
+SlideTransforms slide_transforms(operators::Systems& systems,
+                                 const StationaryDistribution& distribution, double lambda) {
   const auto sticking = stick_duration_transforms(systems.process(), lambda);
-  auto& system = systems.at(lambda, operators::Symmetry::even);
-  const petsc::VecHandle at_exit = system.a().trace_at_exit();
+  auto& system = systems.at(lambda, operators::symmetry_of(systems.process()));
+  const petsc::VecHandle starts = distribution.starts(system.a());
   const auto transform = [&](const std::vector<double>& values) {
     const std::vector<PetscScalar> s(values.begin(), values.end());
-    return value_of(at_exit, system.factors().solve(system.a().from_rest(s)));
+    return value_of(starts, system.factors().solve(system.a().from_rest(s)));
   };
   return {transform(std::vector<double>(sticking.size(), 1.0)), transform(sticking)};
 }

@@ -66,11 +66,11 @@ RelaxationMode mode_of(const operators::Systems& systems, const operators::State
                        const Eigenpair& pair) {
   const bool real_rate = !oscillates(pair.value);
   const double sign = states.symmetry() == Symmetry::odd ? -1 : 1;
-  const int k = systems.process().static_index();
+  const int lowest = systems.process().lowest_static();
   const PhaseField empty(systems.discretisation(), states, PhaseField::Kind::function);
   RelaxationMode mode{pair.value, pair.residual, 0, empty, empty, {}};
   if (real_rate) mode.rate = pair.value.real();
-  mode.at_rest.resize(2 * static_cast<std::size_t>(k) + 1);
+  mode.at_rest.resize(systems.process().static_index() - lowest + 1);
   const petsc::ReadView real(pair.real), imaginary(pair.imaginary);
   const auto scale = scale_of(systems.comm(), real, imaginary);
   PetscInt at = 0;
@@ -78,14 +78,15 @@ RelaxationMode mode_of(const operators::Systems& systems, const operators::State
     auto value = scale * entry(real, imaginary, at++);
     if (real_rate) value = value.real();
     if (state.kind == StateKind::node) {
-      for (const auto& [half, factor] :
-           {std::pair{Branch::positive, 1.0}, {Branch::negative, sign}}) {
+      const auto add = [&](Branch half, double factor) {
         mode.real.add(half, state.noise, state.node, factor * value.real());
         mode.imaginary.add(half, state.noise, state.node, factor * value.imag());
-      }
+      };
+      add(state.half, 1);
+      if (states.symmetry_reduced()) add(operators::opposite(state.half), sign);
     } else if (state.kind == StateKind::rest) {
-      mode.at_rest[k + state.noise] = value;
-      mode.at_rest[k - state.noise] = sign * value;
+      mode.at_rest[state.noise - lowest] = value;
+      if (states.symmetry_reduced()) mode.at_rest[-state.noise - lowest] = sign * value;
     }
   });
   MPI_Allreduce(MPI_IN_PLACE, mode.at_rest.data(), static_cast<int>(mode.at_rest.size()),
@@ -97,7 +98,7 @@ RelaxationMode mode_of(const operators::Systems& systems, const operators::State
 std::vector<const Eigenpair*> chosen(const std::vector<Eigenpair>& pairs, Symmetry symmetry) {
   std::vector<const Eigenpair*> kept;
   for (const auto& pair : pairs) kept.push_back(&pair);
-  if (symmetry == Symmetry::even) {
+  if (symmetry != Symmetry::odd) {
     kept.erase(std::min_element(kept.begin(), kept.end(), [](const auto* a, const auto* b) {
       return std::abs(a->value) < std::abs(b->value);
     }));
@@ -115,7 +116,7 @@ std::vector<const Eigenpair*> chosen(const std::vector<Eigenpair>& pairs, Symmet
 
 }  // namespace
 
-std::vector<RelaxationMode> relaxation_modes(operators::Systems& systems, Symmetry symmetry) {
+RelaxationSector relaxation_modes(operators::Systems& systems, Symmetry symmetry) {
   const auto& process = systems.process();
   const auto a = operators::assemble(systems.comm(), systems.discretisation(), 0, symmetry,
                                      operators::StaticPhase::kept, systems.statistics());
@@ -128,12 +129,21 @@ std::vector<RelaxationMode> relaxation_modes(operators::Systems& systems, Symmet
     modes.push_back(mode_of(systems, a.states(), *pair));
     modes.back().spread = spread_of(pair->value, solver.pairs());
   }
-  return modes;
+  return {symmetry, std::move(modes)};
 }
 
-void append_relaxation(Symmetry symmetry, const std::vector<RelaxationMode>& modes,
-                       Results& results) {
-  const std::string key = symmetry == Symmetry::even ? "relaxation_even" : "relaxation_odd";
+std::string relaxation_key(Symmetry symmetry) {
+  switch (symmetry) {
+  case Symmetry::even: return "relaxation_even";
+  case Symmetry::odd: return "relaxation_odd";
+  case Symmetry::none: break;
+  }
+  return "relaxation";
+}
+
+void append_relaxation(const RelaxationSector& sector, Results& results) {
+  const auto& modes = sector.modes;
+  const std::string key = relaxation_key(sector.symmetry);
   std::vector<double> number;
   for (std::size_t n = 0; n < modes.size(); ++n) number.push_back(static_cast<double>(n + 1));
   Result decay = array(key, "1/time", "mode", number);

@@ -9,6 +9,7 @@
 namespace stickslip::quantities {
 namespace {
 
+using operators::Branch;
 using operators::StaticChain;
 using operators::Symmetry;
 using Function = operators::KolmogorovOperator::Observable;
@@ -24,52 +25,72 @@ std::vector<double> spread_odd(const std::vector<double>& upper) {
   return all;
 }
 
-/// The problems of one parity.
+/// The problems of one symmetry.
 class Sector {
  public:
   Sector(operators::Systems& systems, double lambda, Symmetry symmetry)
       : systems_(systems), lambda_(lambda), symmetry_(symmetry) {}
 
-  /// h^+ + h^- of even symmetry, h^+ - h^- of odd symmetry, at s+.
-  [[nodiscard]] Uncertain exit_transform() {
+  /// At s+ and, where both halves are kept, at s-.
+  struct Values {
+    Uncertain plus, minus;
+  };
+
+  /// h^+ or h^- by the exits of the static chain; with symmetry h^+ + h^- of even functions and
+  /// h^+ - h^- of odd ones.
+  [[nodiscard]] Values exit_transform(Branch side) {
     const auto& process = systems_.process();
-    const int k = process.static_index();
-    const auto values =
-        even() ? StaticChain(process.noise, k, lambda_).exit_transform()
-               : spread_odd(StaticChain::odd(process.noise, k, lambda_).upward_exit_transform());
-    return solve(values, nullptr);
+    const auto chain = StaticChain::of(process, lambda_);
+    switch (symmetry_) {
+    case Symmetry::even: return solve(chain.exit_transform(), nullptr);
+    case Symmetry::odd: {
+      const int k = process.static_index();
+      return solve(spread_odd(StaticChain::odd(process.noise, k, lambda_).upward_exit_transform()),
+                   nullptr);
+    }
+    case Symmetry::none: break;
+    }
+    return solve(side == Branch::positive ? chain.upward_exit_transform()
+                                          : chain.downward_exit_transform(),
+                 nullptr);
   }
 
-  /// w(s+; f) for an f of this parity.
-  [[nodiscard]] Uncertain integral(const Function& f) {
+  /// w(s+-; f) for an f of this symmetry.
+  [[nodiscard]] Values integral(const Function& f) {
     const auto values = static_integral(f);
     const petsc::VecHandle source = systems_.at(lambda_, symmetry_).a().values(f);
     PetscReal size = 0;
     petsc::check(VecNorm(source, NORM_INFINITY, &size));
     for (double v : values) size = std::max<PetscReal>(size, std::abs(v));
-    return size == 0 ? Uncertain{} : solve(values, source);
+    return size == 0 ? Values{} : solve(values, source);
   }
 
  private:
-  [[nodiscard]] bool even() const { return symmetry_ == Symmetry::even; }
-
-  // int exp(-lambda s) f(X_s, 0, 0) ds over a stay, by its first level, index i + k.
+  // int exp(-lambda s) f(X_s, 0, 0) ds over a stay, by its first level from the lowest up.
   [[nodiscard]] std::vector<double> static_integral(const Function& f) const {
     const auto& process = systems_.process();
-    const int k = process.static_index();
+    const int highest = process.static_index();
+    const bool odd = symmetry_ == Symmetry::odd;
     std::vector<double> values;
-    for (int i = even() ? -k : 1; i <= k; ++i) values.push_back(f(process.noise.level(i), 0, 0));
-    if (even()) return StaticChain(process.noise, k, lambda_).integral(std::move(values));
-    return spread_odd(StaticChain::odd(process.noise, k, lambda_).integral(std::move(values)));
+    for (int i = odd ? 1 : process.lowest_static(); i <= highest; ++i) {
+      values.push_back(f(process.noise.level(i), 0, 0));
+    }
+    if (!odd) return StaticChain::of(process, lambda_).integral(std::move(values));
+    return spread_odd(
+        StaticChain::odd(process.noise, highest, lambda_).integral(std::move(values)));
   }
 
-  // u(s+) where (lambda - L) u = source on the sliding states, with the static values given.
-  [[nodiscard]] Uncertain solve(const std::vector<double>& values, Vec source) {
+  // u(s+-) where (lambda - L) u = source on the sliding states, with the static values given.
+  [[nodiscard]] Values solve(const std::vector<double>& values, Vec source) {
     auto& system = systems_.at(lambda_, symmetry_);
     const std::vector<PetscScalar> s(values.begin(), values.end());
     const petsc::VecHandle rhs = system.a().from_rest(s);
     if (source != nullptr) petsc::check(VecAXPY(rhs, 1, source));
-    return value_of(system.a().trace_at_exit(), system.factors().solve(rhs));
+    const auto u = system.factors().solve(rhs);
+    Values at{value_of(system.a().trace_at_exit(), u), {}};
+    if (symmetry_ != Symmetry::none) return at;
+    at.minus = value_of(system.a().trace_at_exit(Branch::negative), u);
+    return at;
   }
 
   operators::Systems& systems_;
@@ -77,44 +98,83 @@ class Sector {
   Symmetry symmetry_;
 };
 
+Function one() {
+  return [](double, double, double) { return 1.0; };
+}
+
+// From s- everything is the same for even functions, and the opposite for odd ones.
+Resolvent by_parity(operators::Systems& systems, double lambda,
+                    const std::vector<model::Observable>& observables) {
+  Sector even(systems, lambda, Symmetry::even), odd(systems, lambda, Symmetry::odd);
+  const Uncertain h_even = even.exit_transform(Branch::positive).plus;
+  const Uncertain w_one = even.integral(one()).plus;
+  std::vector<Uncertain> w_even;
+  for (const auto& f : observables) {
+    w_even.push_back(
+        even.integral([&f](double x, double y, double v) { return f.even(x, y, v); }).plus);
+  }
+  systems.release(lambda, Symmetry::even);
+  const Uncertain h_odd = odd.exit_transform(Branch::positive).plus;
+  const Uncertain same = 0.5 * (h_even + h_odd), other = 0.5 * (h_even - h_odd);
+  Resolvent r{{same, other, w_one}, {other, same, w_one}, {}};
+  // 1 - h_o = (1 - h_e) + 2 h^- and 1 - h_e = lambda w(s+; 1): a positive sum.
+  const Uncertain one_minus_h_odd = lambda * w_one + 2.0 * other;
+  for (std::size_t n = 0; n < observables.size(); ++n) {
+    const auto& f = observables[n];
+    const Uncertain w_odd =
+        odd.integral([&f](double x, double y, double v) { return f.odd(x, y, v); }).plus;
+    const Uncertain mu = w_odd / one_minus_h_odd;
+    r.of.push_back(
+        {w_even[n] + w_odd, w_even[n] - w_odd, w_even[n] / w_one, mu, -1.0 * mu, {}, {}});
+  }
+  systems.release(lambda, Symmetry::odd);
+  return r;
+}
+
+// The sides from which excursions start by the chain with discounted steps h.
+Resolvent by_side(operators::Systems& systems, double lambda,
+                  const std::vector<model::Observable>& observables) {
+  Sector all(systems, lambda, Symmetry::none);
+  const auto up = all.exit_transform(Branch::positive), down = all.exit_transform(Branch::negative);
+  const auto w_one = all.integral(one());
+  Resolvent r{{up.plus, down.plus, w_one.plus}, {up.minus, down.minus, w_one.minus}, {}};
+  const Uncertain a = down.plus, b = up.minus;
+  // The determinant of 1 - h is lambda times this sum; both are positive.
+  const Uncertain cycle = b * w_one.plus + a * w_one.minus;
+  const Uncertain discounted = cycle + lambda * (w_one.plus * w_one.minus);
+  for (const auto& f : observables) {
+    const auto w = all.integral(f.value);
+    const Uncertain difference = w_one.minus * w.plus - w_one.plus * w.minus;
+    r.of.push_back({w.plus,
+                    w.minus,
+                    (b * w.plus + a * w.minus) / cycle,
+                    (a * w_one.minus / cycle) * (difference / discounted),
+                    -1.0 * ((b * w_one.plus / cycle) * (difference / discounted)),
+                    {},
+                    {}});
+  }
+  systems.release(lambda, Symmetry::none);
+  return r;
+}
+
 }  // namespace
 
 Resolvent resolvent(operators::Systems& systems, double lambda,
                     const std::vector<model::Observable>& observables) {
-  Sector even(systems, lambda, Symmetry::even), odd(systems, lambda, Symmetry::odd);
-  Resolvent r;
-  r.of.resize(observables.size());
-  const Uncertain h_even = even.exit_transform();
-  r.exits.w_one = even.integral([](double, double, double) { return 1.0; });
-  std::vector<Uncertain> w_even, w_odd;
-  for (const auto& f : observables) {
-    w_even.push_back(even.integral([&f](double x, double y, double v) { return f.even(x, y, v); }));
-  }
-  systems.release(lambda, Symmetry::even);
-  const Uncertain h_odd = odd.exit_transform();
-  for (const auto& f : observables) {
-    w_odd.push_back(odd.integral([&f](double x, double y, double v) { return f.odd(x, y, v); }));
-  }
-  systems.release(lambda, Symmetry::odd);
-
-  r.exits.h_plus = 0.5 * (h_even + h_odd);
-  r.exits.h_minus = 0.5 * (h_even - h_odd);
-  // 1 - h_o = (1 - h_e) + 2 h^- and 1 - h_e = lambda w(s+; 1): a positive sum.
-  const Uncertain one_minus_h_odd = lambda * r.exits.w_one + 2.0 * r.exits.h_minus;
-  for (std::size_t n = 0; n < observables.size(); ++n) {
-    auto& t = r.of[n];
-    t.w_plus = w_even[n] + w_odd[n];
-    t.w_minus = w_even[n] - w_odd[n];
-    t.pi_lambda = w_even[n] / r.exits.w_one;
-    t.mu_lambda = w_odd[n] / one_minus_h_odd;
-    if (lambda > 0) t.u = (1 / lambda) * t.pi_lambda + t.mu_lambda;
+  const bool symmetric = systems.process().symmetric();
+  Resolvent r =
+      symmetric ? by_parity(systems, lambda, observables) : by_side(systems, lambda, observables);
+  for (auto& t : r.of) {
+    if (lambda == 0) continue;
+    t.u = (1 / lambda) * t.pi_lambda + t.mu_lambda;
+    t.u_from_minus = (1 / lambda) * t.pi_lambda + t.mu_from_minus;
   }
   return r;
 }
 
 void append_resolvent(const std::vector<double>& lambda,
                       const std::vector<model::Observable>& observables,
-                      const std::vector<Resolvent>& resolvents, Results& results) {
+                      const std::vector<Resolvent>& resolvents, bool symmetric, Results& results) {
   // Differences of the two parities have no accuracy of their own size where they nearly cancel.
   const auto append = [&](const std::string& key, bool each_by_its_size, const auto& value) {
     Result result = array(key, "", "lambda", lambda);
@@ -122,9 +182,14 @@ void append_resolvent(const std::vector<double>& lambda,
     result.each_by_its_size = each_by_its_size;
     results.push_back(std::move(result));
   };
-  append("h_plus", true, [](const Resolvent& r) { return r.exits.h_plus; });
-  append("h_minus", false, [](const Resolvent& r) { return r.exits.h_minus; });
-  append("w_one", true, [](const Resolvent& r) { return r.exits.w_one; });
+  append("h_plus", true, [](const Resolvent& r) { return r.from_plus.h_plus; });
+  append("h_minus", !symmetric, [](const Resolvent& r) { return r.from_plus.h_minus; });
+  append("w_one", true, [](const Resolvent& r) { return r.from_plus.w_one; });
+  if (!symmetric) {
+    append("h_plus_from_minus", true, [](const Resolvent& r) { return r.from_minus.h_plus; });
+    append("h_minus_from_minus", true, [](const Resolvent& r) { return r.from_minus.h_minus; });
+    append("w_one_from_minus", true, [](const Resolvent& r) { return r.from_minus.w_one; });
+  }
   const bool finite = std::all_of(lambda.begin(), lambda.end(), [](double l) { return l > 0; });
   for (std::size_t n = 0; n < observables.size(); ++n) {
     const auto key = [&](const char* what) { return what + ("(" + observables[n].name + ")"); };
@@ -136,6 +201,9 @@ void append_resolvent(const std::vector<double>& lambda,
     append(key("w_minus"), false, member(&ObservableTransforms::w_minus));
     append(key("pi"), true, member(&ObservableTransforms::pi_lambda));
     append(key("mu"), false, member(&ObservableTransforms::mu_lambda));
+    if (symmetric) continue;
+    if (finite) append(key("u_minus"), true, member(&ObservableTransforms::u_from_minus));
+    append(key("mu_minus"), false, member(&ObservableTransforms::mu_from_minus));
   }
 }
 

@@ -25,6 +25,7 @@ struct Naming {
 Naming naming(Parameter parameter) {
   switch (parameter) {
   case Parameter::mu_d: return {"mu_d", "force"};
+  case Parameter::mu_d_minus: return {"mu_d_minus", "force"};
   case Parameter::tau: return {"tau", "time"};
   case Parameter::drag_coefficient: return {"drag_coefficient", "1/time"};
   }
@@ -37,30 +38,48 @@ Result derivative(const Name& of, Parameter parameter, Uncertain value) {
   return scalar(fmt::format("d{}_d{}", of.key, name), fmt::format("{}/({})", above, below), value);
 }
 
-// D_i = T_i - T_{i+1} > 0 for 0 <= i <= k, of the mean stays T with T_{k+1} = 0: from level i on,
-// up_i D_i = 1 + down_i D_{i-1}, and T is even. Sums of positive terms.
-std::vector<double> falls_of_mean_stay(const model::NoiseChain& noise, int k) {
-  std::vector<double> fall{1 / noise.rate()};
-  for (int i = 1; i <= k; ++i) {
-    fall.push_back((1 / noise.rate() + noise.down(i) * fall.back()) / noise.up(i));
-  }
-  return fall;
-}
+/// Differences between neighbouring static levels, those beyond the ends included, of the mean stay
+/// T and of the probability h of leaving upwards: from Q T = -1 and Q h = 0,
+///
+///   up_i (T_i - T_{i+1}) = 1/Lambda + down_i (T_{i-1} - T_i),  up_i (h_{i+1} - h_i) = down_i (h_i
+///   - h_{i-1}),
+///
+/// T = 0 at both ends, h = 0 and 1. Sums of positive terms but for one difference for each level,
+/// of numbers that are alike only where T is largest.
+struct StayDifferences {
+  std::vector<double> fall, rise;  // of T and of h; index i + 1 - lowest of the pair i, i + 1
 
-// stick_time . (dQ T) for the mean stays T, by tau: with Q T = -1,
-// (dQ T)_i = -(dLambda/Lambda) + Lambda dalpha_i (T_{i+1} - T_{i-1}), where both terms are >= 0.
-double stays_by_tau(const model::Process& process, const std::vector<double>& stick_time) {
-  const auto& noise = process.noise;
-  const int k = process.static_index();
-  const auto fall = falls_of_mean_stay(noise, k);
-  double sum = 0;
-  for (int i = -k; i <= k; ++i) {
-    double change = -noise.rate_change() / noise.rate();
-    const int level = std::abs(i);
-    if (level > 0) {
-      change -= noise.rate() * noise.up_change(level) * (fall[level] + fall[level - 1]);
+  explicit StayDifferences(const model::Process& process) {
+    const auto& noise = process.noise;
+    std::vector<double> from_below{0}, weight{1};
+    for (int i = process.lowest_static(); i <= process.static_index(); ++i) {
+      from_below.push_back((1 / noise.rate() + noise.down(i) * from_below.back()) / noise.up(i));
+      weight.push_back(noise.down(i) / noise.up(i) * weight.back());
     }
-    sum += stick_time[k + i] * change;
+    const double all = std::accumulate(weight.begin(), weight.end(), 0.0);
+    const double first = std::accumulate(from_below.begin(), from_below.end(), 0.0) / all;
+    for (std::size_t n = 0; n < weight.size(); ++n) {
+      fall.push_back(from_below[n] - first * weight[n]);
+      rise.push_back(weight[n] / all);
+    }
+  }
+};
+
+// stick_time . (dQ T) and stick_time . (dQ h) by tau, as
+// (dQ s)_i = (dLambda/Lambda) (Q s)_i + Lambda dalpha_i (s_{i+1} - s_{i-1}).
+struct ByTau {
+  double stay = 0, upwards = 0;
+};
+ByTau stays_by_tau(const model::Process& process, const std::vector<double>& stick_time) {
+  const auto& noise = process.noise;
+  const StayDifferences differences(process);
+  ByTau sum;
+  for (std::size_t n = 0; n < stick_time.size(); ++n) {
+    const double change =
+        noise.rate() * noise.up_change(process.lowest_static() + static_cast<int>(n));
+    sum.stay -= stick_time[n] * (noise.rate_change() / noise.rate() +
+                                 change * (differences.fall[n] + differences.fall[n + 1]));
+    sum.upwards += stick_time[n] * change * (differences.rise[n] + differences.rise[n + 1]);
   }
   return sum;
 }
@@ -69,6 +88,7 @@ double stays_by_tau(const model::Process& process, const std::vector<double>& st
 
 std::vector<Parameter> parameters_of(const model::Scene& scene) {
   std::vector<Parameter> parameters{Parameter::mu_d, Parameter::tau};
+  if (scene.friction.mu_d_minus) parameters.push_back(Parameter::mu_d_minus);
   if (scene.drag_name == "linear" || scene.drag_name == "cubic") {
     parameters.push_back(Parameter::drag_coefficient);
   }
@@ -77,19 +97,24 @@ std::vector<Parameter> parameters_of(const model::Scene& scene) {
 
 Sensitivity::Sensitivity(operators::Systems& systems, const StationaryDistribution& distribution,
                          std::vector<Parameter> parameters)
-    : system_(systems.at(0, Symmetry::even)),
+    : system_(systems.at(0, operators::symmetry_of(systems.process()))),
       distribution_(distribution),
-      parameters_(std::move(parameters)) {
+      parameters_(std::move(parameters)),
+      upwards_(operators::StaticChain::of(systems.process()).upward_exit_transform()) {
+  const Symmetry symmetry = operators::symmetry_of(systems.process());
   for (Parameter theta : parameters_) {
     changes_.push_back(operators::assemble_derivative(systems.comm(), systems.discretisation(),
-                                                      Symmetry::even, theta, systems.statistics()));
+                                                      symmetry, theta, systems.statistics()));
+  }
+  if (symmetry == Symmetry::none) {
+    rising_ = system_.factors().solve(system_.a().from_rest({upwards_.begin(), upwards_.end()}));
   }
   slide_ = slides([](double, double, double) { return 1.0; });
   stick_ = stays();
 }
 
 Sensitivity::Gradient Sensitivity::slides(const KolmogorovOperator::Observable& f) const {
-  const std::vector<PetscScalar> none(distribution_.excursion().stick_time.size(), 0.0);
+  const std::vector<double> none(upwards_.size(), 0.0);
   return through(system_.factors().solve(system_.a().values(f)), none);
 }
 
@@ -98,31 +123,52 @@ Sensitivity::Gradient Sensitivity::stays() const {
   const auto& stick_time = distribution_.excursion().stick_time;
   const auto chain = operators::StaticChain::of(process);
   const auto mean = chain.integral(std::vector<double>(stick_time.size(), 1.0));
-  const std::vector<PetscScalar> s(mean.begin(), mean.end());
   // On a single static level all stays are alike, whatever the slides do.
   Gradient gradient(parameters_.size());
-  if (s.size() > 1) gradient = through(system_.factors().solve(system_.a().from_rest(s)), s);
+  if (mean.size() > 1) {
+    gradient =
+        through(system_.factors().solve(system_.a().from_rest({mean.begin(), mean.end()})), mean);
+  }
+  const double by_tau = stays_by_tau(process, stick_time).stay;
+  const double uncorrected = stays_by_tau(process, distribution_.uncorrected().stick_time).stay;
   for (std::size_t n = 0; n < parameters_.size(); ++n) {
     if (parameters_[n] != Parameter::tau) continue;
-    const double by_tau = stays_by_tau(process, stick_time);
-    gradient[n].value += by_tau;
-    gradient[n].error +=
-        std::abs(stays_by_tau(process, distribution_.uncorrected().stick_time) - by_tau);
+    gradient[n] = gradient[n] + Uncertain{by_tau, std::abs(uncorrected - by_tau)};
   }
   return gradient;
 }
 
-Sensitivity::Gradient Sensitivity::through(const petsc::Solution& h,
-                                           const std::vector<PetscScalar>& s) const {
+// What the next excursion's side adds: h at s+ less h at s-, over the rates of changing sides.
+double Sensitivity::worth_of_upper_side(const petsc::Solution& h) const {
+  if (distribution_.process().symmetric()) return 0;
+  const auto& sides = distribution_.sides();
+  const auto& a = system_.a();
+  return (petsc::dot(a.trace_at_exit(), h.x) -
+          petsc::dot(a.trace_at_exit(operators::Branch::negative), h.x)) /
+         (sides.falling + sides.rising);
+}
+
+Sensitivity::Gradient Sensitivity::through(petsc::Solution h, const std::vector<double>& s) const {
+  const double worth = worth_of_upper_side(h);
+  std::vector<PetscScalar> values;
+  for (std::size_t n = 0; n < s.size(); ++n) values.emplace_back(s[n] + worth * upwards_[n]);
+  if (worth != 0) {
+    petsc::check(VecAXPY(h.x, worth, rising_.x));
+    petsc::check(VecAXPY(h.correction, worth, rising_.correction));
+  }
+  const double by_tau =
+      worth * stays_by_tau(distribution_.process(), distribution_.excursion().stick_time).upwards;
   Gradient gradient;
-  for (const auto& change : changes_) {
+  for (std::size_t n = 0; n < changes_.size(); ++n) {
+    const auto& change = changes_[n];
     petsc::VecHandle image = change.zeros();
     const auto flux = [&](Vec function) {
       petsc::check(MatMult(change.matrix(), function, image));
       return -petsc::dot(distribution_.occupation(), image);
     };
-    const double moved = petsc::dot(distribution_.occupation(), change.from_rest(s));
-    gradient.push_back({flux(h.x) + moved, std::abs(flux(h.correction))});
+    const double moved = petsc::dot(distribution_.occupation(), change.from_rest(values));
+    const double chain = parameters_[n] == Parameter::tau ? by_tau : 0;
+    gradient.push_back({flux(h.x) + moved + chain, std::abs(flux(h.correction))});
   }
   return gradient;
 }
@@ -170,6 +216,9 @@ void Sensitivity::append_moments(Results& results) const {
   add(kEV2, [](double, double, double v) { return v * v; });
   add(kEAbsV, [](double, double, double v) { return std::abs(v); });
   add(kEXV, [](double x, double, double v) { return x * v; });
+  if (!distribution_.process().symmetric()) {
+    add(kEV, [](double, double, double v) { return v; });
+  }
 }
 
 // Weights w_i = prod_{j <= i} alpha_{j-1}/(1 - alpha_j), so that d log w_i/d tau is a sum of

@@ -20,7 +20,6 @@ namespace {
 
 using operators::KolmogorovOperator;
 using operators::StaticPhase;
-using operators::Symmetry;
 using petsc::check;
 
 // Waves that the noise hardly damps (delta = tau = 1, omega tau above 10) take up to 150 pairs, and
@@ -35,8 +34,6 @@ PetscScalar imaginary([[maybe_unused]] double w) {
   return 0;
 #endif
 }
-
-double velocity(double, double, double v) { return v; }
 
 /// S_v of a reduced model.
 class ReducedFunction {
@@ -120,26 +117,31 @@ Uncertain integral(const Density& s, double tau, double relative_error) {
   return {sum / std::numbers::pi, (doubt + relative_error * sum) / std::numbers::pi};
 }
 
+// Without symmetry L is singular. S_v, an even function of omega, is the same there as at 0 to
+// rounding, and what rounding adds to the solution is a multiple of 1, which c does not see.
+constexpr double kNearZero = 1e-10;  // of 1/tau
+
 /// S_v at single frequencies by complex solves.
 class DirectSpectrum {
  public:
   DirectSpectrum(operators::Systems& systems, const StationaryDistribution& distribution)
-      : a_(operators::assemble(systems.comm(), systems.discretisation(), 0, Symmetry::odd,
-                               StaticPhase::kept, systems.statistics())),
+      : a_(operators::assemble(systems.comm(), systems.discretisation(), 0,
+                               distribution.velocity_symmetry(), StaticPhase::kept,
+                               systems.statistics())),
         statistics_(systems.statistics()),
         turn_(1 / systems.process().noise.tau),
-        b_(a_.values(velocity)),
-        c_(distribution.weighted_velocity(a_)),
+        least_(distribution.process().symmetric() ? 0 : kNearZero * turn_),
+        velocity_(distribution.velocity(a_)),
         acceleration_(a_.zeros()),
         cl_(a_.zeros()) {
-    check(MatMult(a_.matrix(), b_, acceleration_));
-    check(MatMultTranspose(a_.matrix(), c_, cl_));
+    check(MatMult(a_.matrix(), velocity_.b, acceleration_));
+    check(MatMultTranspose(a_.matrix(), velocity_.c, cl_));
     check(VecScale(acceleration_, -1));
   }
 
   [[nodiscard]] Uncertain operator()(double omega) {
-    shift_to(omega);
-    if (omega <= turn_) return 2.0 * value_of(c_, factors_->solve(b_));
+    shift_to(std::max(omega, least_));
+    if (omega <= turn_) return 2.0 * value_of(velocity_.c, factors_->solve(velocity_.b));
     return (2 / (omega * omega)) * value_of(cl_, factors_->solve(acceleration_));
   }
 
@@ -152,8 +154,9 @@ class DirectSpectrum {
 
   KolmogorovOperator a_;
   petsc::SolverStatistics& statistics_;
-  double turn_, omega_ = 0;
-  petsc::VecHandle b_, c_, acceleration_, cl_;
+  double turn_, least_, omega_ = 0;
+  StationaryDistribution::Velocity velocity_;
+  petsc::VecHandle acceleration_, cl_;
   std::unique_ptr<petsc::Factorization> factors_;
 };
 
@@ -168,11 +171,12 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems,
                                  const std::vector<double>& omega, double tolerance) {
   const auto& noise = systems.process().noise;
   const double turn = 1 / noise.tau;
-  auto odd = operators::assemble(systems.comm(), systems.discretisation(), 0, Symmetry::odd,
-                                 StaticPhase::kept, systems.statistics());
-  const petsc::VecHandle b = odd.values(velocity), c = distribution.weighted_velocity(odd),
-                         d = distribution.weight_on(odd);
-  ReducedModel model(systems, std::move(odd), StaticPhase::kept, {b, c, d},
+  auto a = operators::assemble(systems.comm(), systems.discretisation(), 0,
+                               distribution.velocity_symmetry(), StaticPhase::kept,
+                               systems.statistics());
+  const auto [b, c] = distribution.velocity(a);
+  const petsc::VecHandle d = distribution.weight_on(a);
+  ReducedModel model(systems, std::move(a), StaticPhase::kept, {b, c, d},
                      ReducedModel::Nature::smooth, kMostPairs);
   const std::vector<double> frequencies = judged(omega, noise.tau);
   Questions questions;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "stickslip/operators/generator_checks.hpp"
 #include "stickslip/operators/static_chain.hpp"
@@ -94,30 +96,6 @@ Occupation normalised(const KolmogorovOperator& a, petsc::Solution s) {
   return o;
 }
 
-/// Chances that an excursion ends on the other side.
-struct Turns {
-  double falling, rising;  ///< from s+ to s-, from s- to s+
-  /// Share of excursions that start at s+.
-  [[nodiscard]] double share_of_upper() const { return rising / (rising + falling); }
-  [[nodiscard]] double share_of_lower() const { return falling / (rising + falling); }
-};
-
-Turns turns(const model::Process& process, const KolmogorovOperator& a, Vec from_upper,
-            Vec from_lower) {
-  const auto chain = operators::StaticChain::of(process);
-  const auto up = chain.upward_exit_transform(), down = chain.downward_exit_transform();
-  const auto mean = [&](Vec nu, const std::vector<double>& h) {
-    const auto entry = real_parts(a.entry_rates(nu));
-    return std::inner_product(entry.begin(), entry.end(), h.begin(), 0.0);
-  };
-  return {mean(from_upper, down), mean(from_lower, up)};
-}
-
-// upper <- share_of_upper upper + share_of_lower lower.
-void mix(const Turns& turns, Vec upper, Vec lower) {
-  petsc::check(VecAXPBY(upper, turns.share_of_lower(), turns.share_of_upper(), lower));
-}
-
 }  // namespace
 
 StationaryDistribution::StationaryDistribution(Systems& systems)
@@ -131,52 +109,85 @@ StationaryDistribution::StationaryDistribution(Systems& systems)
     if (monotone) operators::require_occupation(s.x, process());
     return normalised(a, std::move(s));
   };
-  Occupation o = from(Branch::positive);
-  if (!process().symmetric()) {
-    const Occupation lower = from(Branch::negative);
-    const Turns now = turns(process(), a, o.nu, lower.nu);
-    reversal_probability_ = now.falling;
-    mix(now, o.nu, lower.nu);
-    mix(turns(process(), a, o.uncorrected, lower.uncorrected), o.uncorrected, lower.uncorrected);
-    o.lost = std::max(std::abs(o.lost), std::abs(lower.lost));
+  Occupation plus = from(Branch::positive);
+  if (process().symmetric()) {
+    excursion_ = excursion_of(a, plus.nu, plus.lost);
+    uncorrected_ = excursion_of(a, plus.uncorrected, plus.uncorrected_lost);
+  } else {
+    const Occupation minus = from(Branch::negative);
+    const auto both = [&](Vec upper, Vec lower, double lost_upper, double lost_lower) {
+      const Excursion from_plus = excursion_of(a, upper, lost_upper),
+                      from_minus = excursion_of(a, lower, lost_lower);
+      const SideChain sides = side_chain(process(), from_plus.entry, from_minus.entry);
+      petsc::check(VecAXPBY(upper, sides.share_of_minus(), sides.share_of_plus(), lower));
+      return std::pair{joined(sides, from_plus, from_minus), sides};
+    };
+    std::tie(excursion_, sides_) = both(plus.nu, minus.nu, plus.lost, minus.lost);
+    uncorrected_ =
+        both(plus.uncorrected, minus.uncorrected, plus.uncorrected_lost, minus.uncorrected_lost)
+            .first;
   }
-  excursion_ = excursion_of(a, o.nu, o.lost);
-  uncorrected_ = excursion_of(a, o.uncorrected, o.uncorrected_lost);
-  occupation_ = std::move(o.nu);
+  occupation_ = std::move(plus.nu);
+  uncorrected_occupation_ = std::move(plus.uncorrected);
 }
 
+// Slides that end with V > 0 on level i, and with V < 0 on level -i in symmetry-reduced
+// coordinates: halves of the sum and of the difference of both.
 void StationaryDistribution::orient(Systems& systems) {
+  if (!excursion_.entry_plus.empty()) return;
   auto& system = systems.at(0, Symmetry::odd);
   const petsc::Solution nu = system.factors().solve_transposed(system.a().trace_at_exit());
-  excursion_.entry_orientation = real_parts(system.a().entry_rates(nu.x));
   petsc::check(VecAYPX(nu.correction, -1, nu.x));
-  uncorrected_.entry_orientation = real_parts(system.a().entry_rates(nu.correction));
+  const auto set = [&](Vec odd, Excursion& e) {
+    const auto oriented = real_parts(system.a().entry_rates(odd));
+    const std::size_t last = e.entry.size() - 1;
+    e.entry_plus.resize(e.entry.size());
+    for (std::size_t i = 0; i <= last; ++i) {
+      e.entry_plus[i] =
+          (e.entry[i] + oriented[i]) / 2 + (e.entry[last - i] - oriented[last - i]) / 2;
+    }
+  };
+  set(nu.x, excursion_);
+  set(nu.correction, uncorrected_);
 }
 
-// All symmetry-reduced operators list the sliding states of a rank in the same order.
+petsc::VecHandle StationaryDistribution::starts(const KolmogorovOperator& a) const {
+  petsc::VecHandle g = a.trace_at_exit(Branch::positive);
+  if (a.states().symmetry_reduced()) return g;
+  petsc::check(VecAXPBY(g, sides_.share_of_minus(), sides_.share_of_plus(),
+                        a.trace_at_exit(Branch::negative)));
+  return g;
+}
+
+// All operators that keep the same halves list the sliding states of a rank in the same order.
 petsc::VecHandle StationaryDistribution::occupation_on(const KolmogorovOperator& a) const {
   petsc::VecHandle all = a.zeros();
   petsc::WriteView local(all);
   const petsc::ReadView nu(occupation_);
   const auto& stick = excursion_.stick_time;
-  const std::size_t k = stick.size() / 2;
+  const int lowest = process().lowest_static();
+  const bool both = a.states().symmetry_reduced();
   PetscInt at = 0, sliding = 0;
   a.states().for_each_local([&](const State& state) {
     if (state.kind != StateKind::rest) {
       local[at++] = nu[sliding++];
     } else {
-      const double here = stick[k + state.noise];
-      local[at++] = state.noise == 0 ? here : here + stick[k - state.noise];
+      const double here = stick[state.noise - lowest];
+      local[at++] = both && state.noise != 0 ? here + stick[-state.noise - lowest] : here;
     }
   });
   return all;
 }
 
-petsc::VecHandle StationaryDistribution::weighted_velocity(const KolmogorovOperator& a) const {
-  petsc::VecHandle c = a.values([](double, double, double v) { return v; });
-  petsc::check(VecPointwiseMult(c, c, occupation_on(a)));
-  petsc::check(VecScale(c, 1 / excursion_.mean_excursion()));
-  return c;
+StationaryDistribution::Velocity
+StationaryDistribution::velocity(const KolmogorovOperator& a) const {
+  const auto& drift = excursion_.slide_drift;
+  const double total = excursion_.mean_excursion();
+  const double mean = std::accumulate(drift.begin(), drift.end(), 0.0) / total;
+  Velocity velocity{a.values([mean](double, double, double v) { return v - mean; }), a.zeros()};
+  petsc::check(VecPointwiseMult(velocity.c, velocity.b, occupation_on(a)));
+  petsc::check(VecScale(velocity.c, 1 / total));
+  return velocity;
 }
 
 // High order leaves far tails with signs of their own.

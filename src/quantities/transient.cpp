@@ -68,15 +68,32 @@ std::vector<Uncertain> curve(operators::Systems& systems,
   return result;
 }
 
+KolmogorovOperator::Observable part_of(const model::Observable& f, Symmetry symmetry) {
+  switch (symmetry) {
+  case Symmetry::even: return [&f](double x, double y, double v) { return f.even(x, y, v); };
+  case Symmetry::odd: return [&f](double x, double y, double v) { return f.odd(x, y, v); };
+  case Symmetry::none: break;
+  }
+  return f.value;
+}
+
+// Probabilities of mirror images add up to 0 on odd functions, up to rounding.
+constexpr double kNothing = 1e-15;
+
+// u -> E[u(Z_0)].
+petsc::VecHandle start_on(const KolmogorovOperator& a, const model::Start& start) {
+  if (start.kind == model::Start::Kind::state) return a.value_at(start.level, start.v);
+  return a.mean_at_zero(model::stationary_distribution(a.discretisation().process.noise));
+}
+
 }  // namespace
 
 std::vector<Uncertain> autocorrelation(operators::Systems& systems,
                                        const StationaryDistribution& distribution,
                                        const std::vector<double>& time, TransientMethod method,
                                        double tolerance) {
-  KolmogorovOperator a = kept(systems, Symmetry::odd);
-  const petsc::VecHandle b = a.values([](double, double, double v) { return v; }),
-                         c = distribution.weighted_velocity(a);
+  KolmogorovOperator a = kept(systems, distribution.velocity_symmetry());
+  const auto [b, c] = distribution.velocity(a);
   const double variance = dot(c, b);
   return curve(systems, distribution, std::move(a), b, c, ReducedModel::Nature::smooth, time,
                variance, method, tolerance);
@@ -87,21 +104,23 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
                         const std::vector<double>& time, TransientMethod method, double tolerance) {
   Expectation result;
   result.value.resize(time.size());
-  for (Symmetry symmetry : {Symmetry::even, Symmetry::odd}) {
+  for (Symmetry symmetry : operators::sectors_of(systems.process())) {
     KolmogorovOperator a = kept(systems, symmetry);
-    const petsc::VecHandle b = a.values([&](double x, double y, double v) {
-      return symmetry == Symmetry::even ? f.even(x, y, v) : f.odd(x, y, v);
-    });
+    const petsc::VecHandle b = a.values(part_of(f, symmetry));
     const petsc::VecHandle pi = distribution.occupation_on(a), square = a.zeros();
     check(VecScale(pi, 1 / distribution.excursion().mean_excursion()));
     check(VecPointwiseMult(square, b, b));
     const double unit = std::sqrt(std::abs(dot(pi, square)));
-    if (symmetry == Symmetry::even) result.stationary = dot(pi, b);
+    if (symmetry != Symmetry::odd) result.stationary = dot(pi, b);
     if (unit == 0) continue;
-    const petsc::VecHandle c = a.value_at(start.level, start.v);
+    if (start.kind == model::Start::Kind::stationary) {
+      for (auto& value : result.value) value = {result.stationary, 0};
+      continue;
+    }
+    const petsc::VecHandle c = start_on(a, start);
     PetscReal seen = 0;
     check(VecNorm(c, NORM_INFINITY, &seen));
-    if (seen == 0) continue;  // odd functions vanish at rest at x = 0
+    if (seen <= kNothing) continue;  // as odd functions at rest at x = 0
     const auto part = curve(systems, distribution, std::move(a), b, c, ReducedModel::Nature::rough,
                             time, unit, method, tolerance);
     for (std::size_t n = 0; n < time.size(); ++n) result.value[n] = result.value[n] + part[n];

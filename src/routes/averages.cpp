@@ -1,8 +1,10 @@
 #include "averages.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "stickslip/model/noise_chain.hpp"
+#include "stickslip/quantities/state_averages.hpp"
 
 namespace stickslip::routes {
 namespace {
@@ -11,53 +13,72 @@ using options::Quantity;
 using quantities::Kind;
 using quantities::Uncertain;
 
-Average average(const Setting& setting, const quantities::Name& name, const char* f) {
-  return {name, model::parse_observable(f, setting.discretisation.process.friction)};
-}
+// Numbers of those that are not always results; those of the phases are there for others, too.
+constexpr int kBeyond = 0, kStick = 1, kSlide = 2;
 
 }  // namespace
 
 std::vector<Average> averages(const Setting& setting) {
   const options::Question& question = setting.given.question;
-  std::vector<Average> all{average(setting, {"P_X_gt_mu_s", ""}, "1")};
-  const auto within = model::parse_observable("|x|<=mu_s", setting.discretisation.process.friction);
-  all[0].f.value = [within](double x, double y, double v) { return 1 - within(x, y, v); };
-  const auto add = [&](const quantities::Name& name, const char* f) {
-    all.push_back(average(setting, name, f));
+  const auto& process = setting.discretisation.process;
+  const auto named = [&](const char* f) {
+    return model::parse_observable(f, process.friction).value;
   };
-  if (question.wants(Quantity::sticking)) {
-    add(quantities::kPStick, "stick");
-    add(quantities::kPSlide, "slide");
+  std::vector<Average> all;
+  const auto add = [&all](const quantities::Name& name, const model::Observable::Function& f) {
+    all.push_back({name.key, name.unit, name.kind, f});
+  };
+  const auto within = named("|x|<=mu_s"), stick = named("stick"), slide = named("slide");
+  add({"P_X_gt_mu_s", ""}, [=](double x, double y, double v) { return 1 - within(x, y, v); });
+  if (question.wants(Quantity::sticking) || question.wants(Quantity::averages)) {
+    add(quantities::kPStick, stick);
+    add(quantities::kPSlide, slide);
   }
   if (question.wants(Quantity::moments)) {
-    add(quantities::kEV2, "v^2");
-    add(quantities::kEAbsV, "|v|");
-    add(quantities::kEXV, "x*v");
-    if (!setting.discretisation.process.symmetric()) add(quantities::kEV, "v");
+    add(quantities::kEV2, named("v^2"));
+    add(quantities::kEAbsV, named("|v|"));
+    add(quantities::kEXV, named("x*v"));
+    if (!process.symmetric()) add(quantities::kEV, named("v"));
   }
   if (question.wants(Quantity::noise_law)) {
-    add(quantities::kPWithin, "|x|<=mu_s");
-    add(quantities::kEX2, "x^2");
+    add(quantities::kPWithin, within);
+    add(quantities::kEX2, named("x^2"));
   }
+  if (!question.wants(Quantity::averages)) return all;
+  for (const auto& observable : question.observables) {
+    const auto f = observable.value;
+    const auto given = [&](const char* phase, const model::Observable::Function& in, int number) {
+      const auto part = [=](double x, double y, double v) { return f(x, y, v) * in(x, y, v); };
+      all.push_back({"pi(" + observable.name + phase + ")", "", Kind::drift, part, number});
+    };
+    all.push_back({"pi(" + observable.name + ")", "", Kind::drift, f});
+    given("|stick", stick, kStick);
+    given("|slide", slide, kSlide);
+  }
+  add(quantities::kFrictionPower, quantities::friction_power(process).value);
   return all;
 }
 
 void append_averages(const Setting& setting, const std::vector<Uncertain>& values,
                      quantities::Results& results) {
   const auto all = averages(setting);
-  const int k = setting.discretisation.process.threshold_index();
-  const double beyond = model::noise_moments(setting.discretisation.process.noise, k).beyond;
-  const double defect = std::abs(values[0].value / beyond - 1);
-  for (std::size_t n = 1; n < all.size(); ++n) {
-    double share = std::abs(values[n].value);
-    const bool first_share = all[n].name.kind == Kind::share && n + 1 < all.size() &&
-                             all[n + 1].name.kind == Kind::share;
-    if (first_share) share = std::min(share, std::abs(values[n + 1].value));
-    results.push_back(
-        quantities::scalar(all[n].name, values[n].value, values[n].error + defect * share));
+  const options::Question& question = setting.given.question;
+  const auto& process = setting.discretisation.process;
+  const double beyond = model::noise_moments(process.noise, process.threshold_index()).beyond;
+  const double defect = std::abs(values[kBeyond].value / beyond - 1);
+  for (int n = kBeyond + 1; n < static_cast<int>(all.size()); ++n) {
+    Uncertain value = values[n];
+    const bool phase = all[n].kind == Kind::share;
+    if (phase && !question.wants(Quantity::sticking)) continue;
+    if (all[n].given >= 0) value = value / values[all[n].given];
+    double share = std::abs(value.value);
+    if (phase && n == kStick) share = std::min(share, std::abs(values[kSlide].value));
+    value.error += defect * share;
+    auto result = scalar(all[n].key, all[n].unit, value);
+    result.kind = all[n].kind;
+    results.push_back(std::move(result));
   }
-  if (setting.given.question.wants(Quantity::moments) &&
-      setting.discretisation.process.symmetric()) {
+  if (question.wants(Quantity::moments) && process.symmetric()) {
     results.push_back(quantities::scalar(quantities::kEV, 0, 0));  // by symmetry
   }
 }

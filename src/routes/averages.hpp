@@ -1,6 +1,6 @@
 #pragma once
-/// Stationary averages pi(f) behind sticking, moments and noise_law, for routes that compute pi(f)
-/// for one f after the other.
+/// Stationary averages pi(f) behind sticking, moments, noise_law and averages, for routes that
+/// compute pi(f) for one f after the other.
 
 #include <string>
 #include <vector>
@@ -12,11 +12,13 @@
 namespace stickslip::routes {
 
 struct Average {
-  quantities::Name name;
-  model::Observable f;
+  std::string key, unit;
+  quantities::Kind kind;
+  model::Observable::Function f;
+  int given = -1;  ///< number of the average that it is divided by, of a phase; -1: none
 };
 
-/// Those that are asked for, and P_X_gt_mu_s, which check_averages needs.
+/// Those that are asked for, after P_X_gt_mu_s, which append_averages needs.
 [[nodiscard]] std::vector<Average> averages(const Setting& setting);
 
 /// Turns pi(f) of averages(setting) into results.

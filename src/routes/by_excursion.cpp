@@ -3,12 +3,12 @@
 #include "routes.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/session.hpp"
-#include "stickslip/quantities/diffusivity.hpp"
 #include "stickslip/quantities/durations.hpp"
 #include "stickslip/quantities/laplace.hpp"
 #include "stickslip/quantities/resolvent.hpp"
 #include "stickslip/quantities/sensitivity.hpp"
 #include "stickslip/quantities/spectrum.hpp"
+#include "stickslip/quantities/state_averages.hpp"
 #include "stickslip/quantities/stationary.hpp"
 #include "stickslip/quantities/transient.hpp"
 #include "stickslip/routes/plan.hpp"
@@ -65,7 +65,7 @@ quantities::Spectrum direct_spectrum(const Setting& setting) {
   const MPI_Comm comm = petsc::ranks(setting.comm) > 1 ? PETSC_COMM_SELF : setting.comm;
   operators::Systems systems(comm, setting.discretisation, setting.statistics);
   const StationaryDistribution distribution(systems);
-  systems.release(0, Symmetry::even);
+  systems.release(0, operators::symmetry_of(systems.process()));
   return quantities::direct_spectrum(setting.comm, systems, distribution,
                                      setting.given.question.omega);
 }
@@ -128,9 +128,9 @@ void append_expectations(operators::Systems& systems, const Setting& setting,
   const Question& question = setting.given.question;
   const auto method = transient_method(setting.given.method);
   for (const auto& f : question.observables) {
-    const auto expectation = quantities::expectation(
-        systems, *evaluation.distribution, f, question.start,
-        question.time, method, 0.1 * question.accuracy);
+    const auto expectation =
+        quantities::expectation(systems, *evaluation.distribution, f, question.start, question.time,
+                                method, 0.1 * question.accuracy);
     append_function_of_time(question.time, "E(" + f.name + ")", "", expectation.value,
                             evaluation.results);
     evaluation.results.push_back(
@@ -161,6 +161,7 @@ class Execution {
   void carry_out(const Task& task) {
     switch (task.work) {
     case Work::stationary_distribution: return find_distribution();
+    case Work::averages: return find_averages();
     case Work::orientation: return find_hitting_distribution();
     case Work::sensitivity: return find_sensitivity();
     case Work::duration_moments: return find_duration_moments();
@@ -171,7 +172,6 @@ class Execution {
           quantities::resolvent(systems_, question_.lambda[task.at], question_.observables));
       return;
     case Work::spectrum: return append_spectrum(systems_, setting_, evaluation_);
-    case Work::spectrum_at_zero: return find_spectrum_at_zero();
     case Work::durations: return append_durations(systems_, setting_, evaluation_);
     case Work::autocorrelation: return append_autocorrelation(systems_, setting_, evaluation_);
     case Work::expectation: return append_expectations(systems_, setting_, evaluation_);
@@ -187,6 +187,12 @@ class Execution {
   void find_distribution() {
     evaluation_.distribution = std::make_shared<StationaryDistribution>(systems_);
     append_distribution(question_, distribution(), results());
+  }
+
+  void find_averages() {
+    const Symmetry symmetry = operators::symmetry_of(setting_.discretisation.process);
+    quantities::append_averages(distribution(), systems_.at(0, symmetry).a(), question_.observables,
+                                results());
   }
 
   void find_hitting_distribution() {
@@ -205,38 +211,28 @@ class Execution {
 
   void find_duration_moments() {
     const auto entry = entry_law(distribution());
-    const auto moments = quantities::duration_moments(systems_, entry);
-    quantities::append_duration_moments(setting_.discretisation.process, moments, entry, results());
+    const auto moments = quantities::duration_moments(systems_, distribution(), entry);
+    quantities::append_duration_moments(setting_.discretisation.process, distribution().sides(),
+                                        moments, entry, results());
   }
 
   void transform_durations(double lambda) {
-    const auto t = quantities::slide_transforms(systems_, lambda);
+    const auto t = quantities::slide_transforms(systems_, distribution(), lambda);
     const auto stick = quantities::stick_transform(setting_.discretisation.process, lambda,
                                                    entry_law(distribution()));
     transforms_.push_back({t.slide, stick, t.excursion});
   }
 
   void transform_stick_durations() {
-    const auto entry = entry_law(distribution());
-    auto result =
-        quantities::array("F_stick", "", "lambda", question_.lambda, quantities::Kind::transform);
-    for (double lambda : question_.lambda) {
-      quantities::append_value(
-          result, quantities::stick_transform(setting_.discretisation.process, lambda, entry));
-    }
-    results().push_back(std::move(result));
-  }
-
-  void find_spectrum_at_zero() {
-    const quantities::Spectrum spectrum{quantities::spectrum_at_zero(systems_, distribution()), {}};
-    quantities::append_spectrum({}, spectrum, results());
+    quantities::append_stick_transform(setting_.discretisation.process, question_.lambda,
+                                       entry_law(distribution()), results());
   }
 
   void find_modes() {
-    evaluation_.even = quantities::relaxation_modes(systems_, Symmetry::even);
-    evaluation_.odd = quantities::relaxation_modes(systems_, Symmetry::odd);
-    quantities::append_relaxation(Symmetry::even, evaluation_.even, results());
-    quantities::append_relaxation(Symmetry::odd, evaluation_.odd, results());
+    for (Symmetry symmetry : operators::sectors_of(setting_.discretisation.process)) {
+      evaluation_.modes.push_back(quantities::relaxation_modes(systems_, symmetry));
+      quantities::append_relaxation(evaluation_.modes.back(), results());
+    }
   }
 
   // What was found one lambda at a time.
@@ -244,7 +240,8 @@ class Execution {
     const auto& lambda = question_.lambda;
     if (!transforms_.empty()) quantities::append_laplace(lambda, transforms_, results());
     if (resolvents_.empty()) return;
-    quantities::append_resolvent(lambda, question_.observables, resolvents_, results());
+    quantities::append_resolvent(lambda, question_.observables, resolvents_,
+                                 setting_.discretisation.process.symmetric(), results());
   }
 
   const Setting& setting_;

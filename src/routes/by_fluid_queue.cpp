@@ -1,5 +1,6 @@
 #include "stickslip/exact/fluid_queue.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -31,15 +32,15 @@ double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-Excursion excursion_of(const model::Process& process, const FluidQueue& queue) {
+Excursion excursion_of(const model::Process& process, const exact::QueuedSlide& slide) {
   Excursion e;
-  e.slide_time = queue.time();
-  e.slide_distance = queue.distance();
-  e.slide_square = queue.square();
-  e.entry = queue.entry();
-  e.entry_orientation = queue.entry_orientation();
+  e.slide_time = slide.time;
+  e.slide_distance = slide.distance;
+  e.slide_square = slide.square;
+  if (!process.symmetric()) e.slide_drift = {slide.drift};
+  e.entry = e.entry_plus = slide.entry;
   e.lost_probability = sum(e.entry) - 1;
-  e.stick_time = operators::StaticChain(process.noise, process.static_index()).occupation(e.entry);
+  e.stick_time = operators::StaticChain::of(process).occupation(e.entry);
   return e;
 }
 
@@ -66,22 +67,42 @@ void append_noise_distribution(const model::Process& process,
   results.push_back(quantities::scalar(quantities::kEX2, square, 0));
 }
 
-void append_laplace(const Setting& setting, const Excursion& excursion, double rounding,
+/// What the queue tells about excursions as they follow one another.
+struct Excursions {
+  Excursion mean;
+  quantities::SideChain sides;
+};
+
+Excursions excursions_of(const model::Process& process, const FluidQueue& queue) {
+  Excursions e{excursion_of(process, queue.plus()), {}};
+  if (process.symmetric()) return e;
+  const Excursion minus = excursion_of(process, queue.minus());
+  e.sides = quantities::side_chain(process, e.mean.entry, minus.entry);
+  e.mean = quantities::joined(e.sides, e.mean, minus);
+  return e;
+}
+
+std::vector<Uncertain> uncertain(const std::vector<double>& p, double rounding) {
+  std::vector<Uncertain> all;
+  for (double value : p) all.push_back({value, rounding * value});
+  return all;
+}
+
+void append_laplace(const Setting& setting, const Excursions& excursions, double rounding,
                     quantities::Results& results) {
-  const auto uncertain = [rounding](const std::vector<double>& p) {
-    std::vector<Uncertain> all;
-    for (double value : p) all.push_back({value, rounding * value});
-    return all;
+  const auto& process = setting.discretisation.process;
+  const auto transform = [&](double lambda, const std::vector<double>& entry) {
+    return quantities::stick_transform(process, lambda, uncertain(entry, rounding));
   };
   std::vector<quantities::DurationTransforms> transforms;
   for (double lambda : setting.given.question.lambda) {
-    const FluidQueue killed = solve(setting.discretisation.process, lambda);
-    const double slide = killed.slide_transform();
+    const FluidQueue killed = solve(process, lambda);
+    const double plus = excursions.sides.share_of_plus(), minus = excursions.sides.share_of_minus();
+    const double slide = plus * sum(killed.plus().entry) + minus * sum(killed.minus().entry);
     transforms.push_back({{slide, rounding * slide},
-                          quantities::stick_transform(setting.discretisation.process, lambda,
-                                                      uncertain(excursion.entry)),
-                          quantities::stick_transform(setting.discretisation.process, lambda,
-                                                      uncertain(killed.entry()))});
+                          transform(lambda, excursions.mean.entry),
+                          plus * transform(lambda, killed.plus().entry) +
+                              minus * transform(lambda, killed.minus().entry)});
   }
   quantities::append_laplace(setting.given.question.lambda, transforms, results);
 }
@@ -93,7 +114,8 @@ Evaluation by_fluid_queue(const Setting& setting) {
   const auto& process = setting.discretisation.process;
   const petsc::PhaseTimer timer("fluid queue", setting.statistics.factorization_seconds);
   const FluidQueue queue = solve(process, 0);
-  const Excursion excursion = excursion_of(process, queue);
+  const Excursions excursions = excursions_of(process, queue);
+  const Excursion& excursion = excursions.mean;
   const double rounding = relative_rounding(excursion, queue);
   Evaluation evaluation;
   auto& results = evaluation.results;
@@ -108,9 +130,19 @@ Evaluation by_fluid_queue(const Setting& setting) {
         process, quantities::marginal_of_noise(setting.discretisation, excursion), results);
   }
   for (auto& r : results) {
-    for (std::size_t n = 0; n < r.value.size(); ++n) r.error[n] = rounding * std::abs(r.value[n]);
+    // E_V is a difference of what the two half lines give.
+    const double least = r.kind == quantities::Kind::drift && !process.symmetric()
+                             ? sum(excursion.slide_distance) / excursion.mean_excursion()
+                             : 0;
+    for (std::size_t n = 0; n < r.value.size(); ++n) {
+      r.error[n] = rounding * std::max(std::abs(r.value[n]), least);
+    }
   }
-  if (question.wants(Quantity::laplace)) append_laplace(setting, excursion, rounding, results);
+  if (question.wants(Quantity::laplace)) append_laplace(setting, excursions, rounding, results);
+  if (question.wants(Quantity::stick_duration_transform) && !question.wants(Quantity::laplace)) {
+    quantities::append_stick_transform(process, question.lambda,
+                                       uncertain(excursion.entry, rounding), results);
+  }
   evaluation.checks = {{"riccati_residual", queue.residual()},
                        {"lost_probability", excursion.lost_probability}};
   return evaluation;

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 
 #include "routes.hpp"
@@ -14,31 +13,81 @@ using operators::StaticPhase;
 using operators::Symmetry;
 using quantities::Uncertain;
 
-// E_{s+} of the time until `rest` kills.
-Uncertain mean_time(const Setting& setting, StaticPhase rest) {
-  operators::Systems systems(setting.comm, setting.discretisation, setting.statistics);
-  auto& system = systems.at(0, Symmetry::none, rest);
-  // Where the process is killed at once the time is 0.
-  const auto edge = [&](double x, double y) {
-    return rest == StaticPhase::killing_edges && y == 0 &&
-           std::abs(std::lround(x / setting.discretisation.process.noise.delta)) ==
-               setting.discretisation.process.static_index();
-  };
-  const petsc::VecHandle source =
-      system.a().values([&](double x, double y, double) { return edge(x, y) ? 0.0 : 1.0; });
-  return quantities::value_of(system.a().trace_at_exit(), system.factors().solve(source));
-}
+/// A mean from s+ and, without symmetry, from s-.
+struct Means {
+  Uncertain plus, minus;
+};
+
+/// Problems on the full grid up to the time at which `rest` kills.
+class Hitting {
+ public:
+  Hitting(const Setting& setting, StaticPhase rest)
+      : process_(setting.discretisation.process),
+        rest_(rest),
+        systems_(setting.comm, setting.discretisation, setting.statistics),
+        system_(systems_.at(0, Symmetry::none, rest)) {}
+
+  /// Means of that time; where the process is killed at once it is 0.
+  [[nodiscard]] Means time() {
+    return solve([this](int i, bool at_rest) { return at_rest && is_edge(i) ? 0.0 : 1.0; });
+  }
+  /// Probabilities of reaching the highest static level before the lowest one; 1 if they are one.
+  [[nodiscard]] Means upwards() {
+    const double rate = process_.noise.rate();
+    return solve([this, rate](int i, bool at_rest) {
+      return at_rest && i == process_.static_index() ? rate : 0.0;
+    });
+  }
+
+ private:
+  [[nodiscard]] bool is_edge(int i) const {
+    return rest_ == StaticPhase::killing_edges &&
+           (i == process_.static_index() || i == process_.lowest_static());
+  }
+
+  template <class Source>
+  Means solve(Source source) {
+    const auto& a = system_.a();
+    const auto u = system_.factors().solve(a.values([&](double x, double y, double) {
+      return source(static_cast<int>(std::lround(x / process_.noise.delta)), y == 0);
+    }));
+    return {quantities::value_of(a.trace_at_exit(), u),
+            quantities::value_of(a.trace_at_exit(operators::Branch::negative), u)};
+  }
+
+  const model::Process& process_;
+  StaticPhase rest_;
+  operators::Systems systems_;
+  operators::System& system_;
+};
 
 }  // namespace
 
 Evaluation by_hitting(const Setting& setting) {
-  const int k = setting.discretisation.process.static_index();
-  const Uncertain slide = mean_time(setting, StaticPhase::killing);
-  const Uncertain to_edge = mean_time(setting, StaticPhase::killing_edges);
-  const operators::StaticChain chain(setting.discretisation.process.noise, k);
-  const std::vector<double> ones(static_cast<std::size_t>(chain.size()), 1.0);
-  const Uncertain from_edge{chain.integral(ones).back(), 0};
-  const Uncertain excursion = to_edge + from_edge, p_slide = slide / excursion;
+  const auto& process = setting.discretisation.process;
+  const auto chain = operators::StaticChain::of(process);
+  const auto from_edge = chain.integral(std::vector<double>(chain.size(), 1.0));
+  const Means slides = Hitting(setting, StaticPhase::killing).time();
+  Hitting edges(setting, StaticPhase::killing_edges);
+  const Means to_edge = edges.time();
+  Uncertain slide = slides.plus, reaching = to_edge.plus, leaving{from_edge.back(), 0};
+  if (!process.symmetric()) {
+    // From the edges on the static chain alone decides; s+ and s- are taken in their shares.
+    const Means top = edges.upwards();
+    const auto up = chain.upward_exit_transform(), down = chain.downward_exit_transform();
+    const auto mean = [](Uncertain at_top, const std::vector<double>& f) {
+      return at_top * Uncertain{f.back(), 0} +
+             Uncertain{1 - at_top.value, at_top.error} * Uncertain{f.front(), 0};
+    };
+    const Uncertain falling = mean(top.plus, down), rising = mean(top.minus, up);
+    const auto joined = [&](Uncertain plus, Uncertain minus) {
+      return (rising * plus + falling * minus) / (rising + falling);
+    };
+    slide = joined(slides.plus, slides.minus);
+    reaching = joined(to_edge.plus, to_edge.minus);
+    leaving = joined(mean(top.plus, from_edge), mean(top.minus, from_edge));
+  }
+  const Uncertain excursion = reaching + leaving, p_slide = slide / excursion;
   const double rounding = std::numeric_limits<double>::epsilon();
   const Uncertain p_stick{1 - p_slide.value, p_slide.error + rounding};
   Evaluation evaluation;
@@ -46,7 +95,7 @@ Evaluation by_hitting(const Setting& setting) {
                         scalar(quantities::kMeanStick, excursion - slide),
                         scalar(quantities::kMeanSlide, slide),
                         scalar(quantities::kMeanExcursion, excursion)};
-  evaluation.checks = {{"R_hat", slide.value}, {"R_check", to_edge.value}, {"R", from_edge.value}};
+  evaluation.checks = {{"R_hat", slide.value}, {"R_check", reaching.value}, {"R", leaving.value}};
   return evaluation;
 }
 

@@ -72,7 +72,7 @@ Trial average_at(const Setting& setting, double lambda) {
   trial.lambda = lambda;
   std::vector<Uncertain> values;
   for (const auto& average : averages(setting)) {
-    const auto mean = grid.of(average.f.value);
+    const auto mean = grid.of(average.f);
     values.push_back(mean.value);
     trial.largest_bias = std::max(trial.largest_bias, mean.bias / std::abs(mean.value.value));
   }

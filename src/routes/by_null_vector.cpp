@@ -49,8 +49,8 @@ double relative_residual(Mat transposed, Vec pi) {
   return size / norm;
 }
 
-double integral(const KolmogorovOperator& a, Vec pi, const model::Observable& f) {
-  return petsc::dot(a.values(f.value), pi);
+double integral(const KolmogorovOperator& a, Vec pi, const KolmogorovOperator::Observable& f) {
+  return petsc::dot(a.values(f), pi);
 }
 
 // By renewal, excursions end at the rates Lambda alpha pi of the highest static level upwards and
@@ -58,14 +58,12 @@ double integral(const KolmogorovOperator& a, Vec pi, const model::Observable& f)
 Uncertain mean_excursion(const Setting& setting, const KolmogorovOperator& a, Vec pi, Vec before) {
   const auto& process = setting.discretisation.process;
   const auto& noise = process.noise;
-  const model::Observable exits{"", [&](double x, double y, double) {
-                                  if (y != 0) return 0.0;
-                                  const auto i = static_cast<int>(std::lround(x / noise.delta));
-                                  const bool high = i == process.static_index();
-                                  const bool low = i == process.lowest_static();
-                                  return noise.rate() *
-                                         ((high ? noise.up(i) : 0) + (low ? noise.down(i) : 0));
-                                }};
+  const auto exits = [&](double x, double y, double) {
+    if (y != 0) return 0.0;
+    const auto i = static_cast<int>(std::lround(x / noise.delta));
+    const bool high = i == process.static_index(), low = i == process.lowest_static();
+    return noise.rate() * ((high ? noise.up(i) : 0) + (low ? noise.down(i) : 0));
+  };
   const double value = 1 / integral(a, pi, exits);
   return {value, std::abs(value - 1 / integral(a, before, exits))};
 }
@@ -108,8 +106,14 @@ Evaluation by_null_vector(const Setting& setting) {
     values.push_back({value, std::abs(value - integral(a, before, average.f))});
   }
   append_averages(setting, values, evaluation.results);
-  if (setting.given.question.wants(options::Quantity::sticking)) {
-    append_durations(mean_excursion(setting, a, pi, before), evaluation.results);
+  using options::Quantity;
+  const auto& question = setting.given.question;
+  if (question.wants(Quantity::sticking) || question.wants(Quantity::averages)) {
+    const Uncertain excursion = mean_excursion(setting, a, pi, before);
+    if (question.wants(Quantity::sticking)) append_durations(excursion, evaluation.results);
+    if (question.wants(Quantity::averages)) {
+      evaluation.results.push_back(scalar(quantities::kSlipRate, Uncertain{1, 0} / excursion));
+    }
   }
   evaluation.checks = {{"norm_pi_M_over_norm_M", relative_residual(transposed, pi)},
                        {"most_negative_pi", most_negative(setting.comm, pi)}};

@@ -17,10 +17,10 @@ using options::Quantity;
 
 // Anything but resolvents, modes and closed forms.
 bool needs_distribution(const Case& given) {
-  for (Quantity q :
-       {Quantity::sticking, Quantity::moments, Quantity::entry_law, Quantity::density,
-        Quantity::laplace, Quantity::stick_duration_transform, Quantity::spectrum,
-        Quantity::duration_density, Quantity::autocorrelation, Quantity::expectation}) {
+  for (Quantity q : {Quantity::sticking, Quantity::moments, Quantity::averages, Quantity::entry_law,
+                     Quantity::density, Quantity::laplace, Quantity::stick_duration_transform,
+                     Quantity::spectrum, Quantity::duration_density, Quantity::autocorrelation,
+                     Quantity::expectation}) {
     if (given.question.wants(q)) return true;
   }
   return given.scene.v_max.has_value();  // what the cut holds back is judged by the law
@@ -42,7 +42,10 @@ class Planner {
     if (question_.wants(Quantity::expectation)) {
       add_adaptive(Work::expectation, 6 * observables, 36 * observables);
     }
-    if (question_.wants(Quantity::relaxation)) add_adaptive(Work::relaxation, 2, 70);
+    const int sectors = symmetric_ ? 2 : 1;
+    if (question_.wants(Quantity::relaxation)) {
+      add_adaptive(Work::relaxation, sectors, 35 * sectors);
+    }
     return std::move(plan_);
   }
 
@@ -60,11 +63,12 @@ class Planner {
   }
 
   void plan_distribution() {
-    const bool symmetric = given_.scene.symmetric();
-    add({Work::stationary_distribution, 0, {{ground(), 0, symmetric ? 1 : 2}}});
-    if (question_.wants(Quantity::entry_law)) {
-      add({Work::orientation, 0, {{{0, Symmetry::odd}, 0, 1}}});
-    }
+    add({Work::stationary_distribution, 0, {{ground(), 0, symmetric_ ? 1 : 2}}});
+    if (question_.wants(Quantity::averages)) add({Work::averages, 0, {{ground(), 0, 0}}});
+    if (!question_.wants(Quantity::entry_law)) return;
+    Task orientation{Work::orientation};
+    if (symmetric_) orientation.uses = {{{0, Symmetry::odd}, 0, 1}};
+    add(std::move(orientation));
   }
 
   // Adjoints of mean_slide and mean_stick, which every derivative needs, and of three moments.
@@ -73,7 +77,10 @@ class Planner {
     const bool moments = question_.wants(Quantity::moments);
     if (!moments && !question_.wants(Quantity::sticking)) return;
     const int durations = given_.scene.process(1).static_index() > 0 ? 2 : 1;
-    Task task{Work::sensitivity, 0, {{ground(), durations + (moments ? 3 : 0), 0}}};
+    // Without symmetry the side of the next excursion, and E_V.
+    const int sides = symmetric_ ? 0 : 1;
+    const int adjoints = durations + sides + (moments ? 3 + sides : 0);
+    Task task{Work::sensitivity, 0, {{ground(), adjoints, 0}}};
     task.derivatives = static_cast<int>(quantities::parameters_of(given_.scene).size());
     add(std::move(task));
   }
@@ -84,23 +91,29 @@ class Planner {
       add({Work::stick_duration_transforms});
     if (laplace) add({Work::duration_moments, 0, {{ground(), 4, 0}}});
     if (!laplace && !question_.wants(Quantity::resolvent)) return;
-    // Both sectors for the exits, the even one for their discounted time.
-    const int even = 2 + observables_with(&model::Observable::even);
-    const int odd = 1 + observables_with(&model::Observable::odd);
     for (std::size_t n = 0; n < question_.lambda.size(); ++n) {
       const double lambda = question_.lambda[n];
-      if (laplace) add({Work::duration_transforms, n, {{{lambda, Symmetry::even}, 2, 0}}});
-      if (!question_.wants(Quantity::resolvent)) continue;
-      add({Work::resolvent,
-           n,
-           {{{lambda, Symmetry::even}, even, 0}, {{lambda, Symmetry::odd}, odd, 0}}});
+      if (laplace) add({Work::duration_transforms, n, {{{lambda, ground().symmetry}, 2, 0}}});
+      if (question_.wants(Quantity::resolvent)) add(resolvent(n));
     }
   }
 
+  // Both sectors for the exits, the even one for their discounted time.
+  [[nodiscard]] Task resolvent(std::size_t n) const {
+    const double lambda = question_.lambda[n];
+    const auto& f = question_.observables;
+    if (!symmetric_) {
+      return {Work::resolvent, n, {{{lambda, Symmetry::none}, 3 + static_cast<int>(f.size()), 0}}};
+    }
+    const int even = 2 + observables_with(&model::Observable::even);
+    const int odd = 1 + observables_with(&model::Observable::odd);
+    return {Work::resolvent,
+            n,
+            {{{lambda, Symmetry::even}, even, 0}, {{lambda, Symmetry::odd}, odd, 0}}};
+  }
+
   void plan_spectrum() {
-    if (!given_.scene.symmetric()) {
-      add({Work::spectrum_at_zero, 0, {{ground(), 2, 0}}});
-    } else if (given_.method.spectrum_solver == options::SpectrumSolver::direct) {
+    if (given_.method.spectrum_solver == options::SpectrumSolver::direct) {
       const int frequencies = static_cast<int>(question_.omega.size()) + 1;  // and 0
       add_adaptive(Work::spectrum, frequencies + 1, frequencies + 1);        // and the law alone
     } else {
@@ -133,6 +146,7 @@ class Planner {
 
   const Case& given_;
   const options::Question& question_;
+  const bool symmetric_ = given_.scene.symmetric();
   Plan plan_;
 };
 
@@ -178,6 +192,7 @@ std::string task_name(const options::Question& question, const Task& task) {
   };
   switch (task.work) {
   case Work::stationary_distribution: return "stationary law";
+  case Work::averages: return "averages";
   case Work::orientation: return "entry law";
   case Work::sensitivity: return "sensitivity";
   case Work::duration_moments: return "moments of durations";
@@ -185,7 +200,6 @@ std::string task_name(const options::Question& question, const Task& task) {
   case Work::stick_duration_transforms: return "Laplace transforms of stays";
   case Work::resolvent: return at_lambda("resolvent");
   case Work::spectrum: return "spectrum";
-  case Work::spectrum_at_zero: return "spectrum at 0";
   case Work::durations: return "laws of durations";
   case Work::autocorrelation: return "autocorrelation";
   case Work::expectation: return "expectations";

@@ -84,12 +84,11 @@ class Refusals(Case):
         self.assertEqual(s["comparison"]["left_out"], ["var_slide"])
 
     def test_every_result_can_be_compared(self):
-        every = ("sticking,moments,noise_law,entry_law,laplace,resolvent,relaxation,spectrum,"
-                 "duration_density,autocorrelation,expectation,sensitivity")
+        every = ("sticking,moments,averages,noise_law,entry_law,laplace,resolvent,relaxation,"
+                 "spectrum,duration_density,autocorrelation,expectation,sensitivity")
         every = (*SMALL, "-quantities", every, "-lambda", "1", "-omega", "1", "-time", "1",
                  "-observable", "v^2; x*v", "-accuracy", "1e-3")
-        asymmetric = (*SMALL, "-bias", "0.1", "-quantities", "sticking,moments,spectrum",
-                      "-accuracy", "1e-3")
+        asymmetric = (*every, "-mu_d_minus", "0.3", "-bias", "0.1")
         for asks in (every, asymmetric):
             self.run_ok(*asks, "-summary", "all.json")
             s = self.summary(*asks, "-compare", "all.json")
@@ -98,16 +97,19 @@ class Refusals(Case):
     def test_starts_off_the_grid(self):
         asks = ("-mu_d", "0.25", "-delta", "0.25", "-quantities", "expectation", "-observable",
                 "v^2", "-time", "1", "-start")
-        for start in ("1.25,100", "1.25,-100", "0,7.2"):
-            for scheme in (("-scheme", "hp"), ("-scheme", "upwind", "-p", "16")):
-                self.refuse(*asks, start, *scheme,
-                            told=(f"-start = {start}: starts beyond the largest v", "take |v| at most"))
+        for start, end in (("1.25,100", "[0, 7.75]"), ("1.25,-100", "[-7.75, 0]")):
+            self.refuse(*asks, start, told=(f"-start = {start}: starts at a velocity that no body",
+                                            f"take v in {end}"))
+        for scheme in (("-scheme", "hp"), ("-scheme", "upwind", "-p", "16")):
+            self.refuse(*asks, "0,7.2", *scheme,
+                        told=("-start = 0,7.2: starts beyond the largest v", "take |v| at most"))
         self.refuse(*asks, "8,0", told=("-start = 8,0: starts beyond the largest x",
                                         "take |x| at most 6.75, or -noise_levels full"))
         self.run_ok(*asks, "8,0", "-noise_levels", "full", "-accuracy", "0.1")
         self.run_ok(*asks, "1.25,5", "-accuracy", "1e-4")
         trajectory = (*SMALL, "-quantities", "trajectory", "-trajectory", "t.csv", "-horizon", "1")
-        self.run_ok(*trajectory, "-start", "1,100")
+        self.refuse(*trajectory, "-start", "1,100", told=("no body reaches",))
+        self.run_ok(*trajectory, "-start", "1,100", "-drag", "none")
 
     def test_files(self):
         self.refuse("-options_file", "/no/such/file", told=("cannot be read",))

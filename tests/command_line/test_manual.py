@@ -34,7 +34,7 @@ class Completion(Case):
         return done.stdout.split()
 
     def test_names(self):
-        self.assertEqual(self.offered("-mu"), ["-mu_s", "-mu_d"])
+        self.assertEqual(self.offered("-mu"), ["-mu_s", "-mu_d", "-mu_s_minus", "-mu_d_minus"])
         self.assertEqual(self.offered("-mu_d", "0.5", "-options_"), ["-options_file"])
         self.assertIn("-version", self.offered(""))
 

@@ -30,11 +30,11 @@ TEST_CASE("fluid queue: three phases satisfy their equations by hand") {
   const model::Process process{{1, 1, 1}, {0.5, 0.5}, {0, 0}};
   const FluidQueue queue(process);
   // Every slide ends at rest in phase 0, after restarts in phase 1.
-  CHECK(queue.entry().size() == 1);
-  CHECK(queue.entry()[0] == Approx(1).epsilon(1e-14));
-  // Restarts change the side: the entry law counted by sides is p/(1 + q).
-  const double ratio = queue.entry_orientation()[0];
-  const double p = 2 * ratio / (1 + ratio), q = 1 - p;
+  CHECK(queue.plus().entry.size() == 1);
+  CHECK(queue.plus().entry[0] == Approx(1).epsilon(1e-14));
+  // Each restart turns the body round: q/p of them in the mean.
+  const double turns = queue.plus().turns;
+  const double q = turns / (1 + turns), p = 1 - q;
   CHECK(4 - 8 * p + 4 * q / 3 + 2 * p * p == Approx(0).margin(1e-13));
   CHECK(-4 * q + 2 * p - 4 * q / 3 + 2 * p * q == Approx(0).margin(1e-13));
 }
@@ -45,10 +45,10 @@ TEST_CASE("fluid queue: slides end, and the noise keeps its law beyond mu_s") {
     const FluidQueue queue(process);
     INFO("mu_d " << mu_d);
     CHECK(queue.residual() < 1e-14);
-    CHECK(std::abs(queue.slide_transform() - 1) < 1e-11);
+    CHECK(std::abs(sum(queue.plus().entry) - 1) < 1e-11);
     // Between two exits the noise spends pi(x_i) of the time on |x_i| > mu_s: ratios are known.
     const auto law = model::stationary_distribution(process.noise);
-    const auto at = [&](int i) { return queue.time()[32 + i] + queue.time()[32 - i]; };
+    const auto at = [&](int i) { return queue.plus().time[32 + i] + queue.plus().time[32 - i]; };
     for (int i = 6; i <= 20; ++i) {
       CHECK(relative_difference(at(i) / at(5), law[32 + i] / law[37]) < 1e-10);
     }
@@ -61,20 +61,21 @@ TEST_CASE("fluid queue: power put in by the noise equals power dissipated") {
     const auto process = without_drag(0.25, mu_d);
     const FluidQueue queue(process);
     double put_in = 0;
-    for (int i = -32; i <= 32; ++i) put_in += process.noise.level(i) * queue.distance()[32 + i];
-    CHECK(relative_difference(put_in, mu_d * sum(queue.distance())) < 1e-11);
+    for (int i = -32; i <= 32; ++i)
+      put_in += process.noise.level(i) * queue.plus().distance[32 + i];
+    CHECK(relative_difference(put_in, mu_d * sum(queue.plus().distance)) < 1e-11);
   }
 }
 
 TEST_CASE("fluid queue: the transform falls from 1 with the mean slide as its slope") {
   const auto process = without_drag(0.25, 0.5);
-  const double mean = sum(FluidQueue(process).time());
+  const double mean = sum(FluidQueue(process).plus().time);
   const double h = 1e-5;
-  const double slope = (1 - FluidQueue(process, h).slide_transform()) / h;
+  const double slope = (1 - sum(FluidQueue(process, h).plus().entry)) / h;
   CHECK(relative_difference(slope, mean) < 1e-3);
   double before = 1;
   for (double lambda : {0.01, 0.1, 1.0, 10.0, 1e3}) {
-    const double now = FluidQueue(process, lambda).slide_transform();
+    const double now = sum(FluidQueue(process, lambda).plus().entry);
     CHECK(now < before);
     CHECK(now > 0);
     before = now;
@@ -95,11 +96,11 @@ TEST_CASE("fluid queue: moments follow one another through the equations of moti
     for (int i = -32; i <= 32; ++i) {
       const double x = process.noise.level(i), speed = x - mu_d;
       const auto at = static_cast<std::size_t>(32 + i);
-      first += x * speed * queue.time()[at] - x * queue.distance()[at];
-      second += 2 * x * speed * queue.distance()[at] - x * queue.square()[at];
-      size += std::abs(x) * queue.square()[at];
+      first += x * speed * queue.plus().time[at] - x * queue.plus().distance[at];
+      second += 2 * x * speed * queue.plus().distance[at] - x * queue.plus().square[at];
+      size += std::abs(x) * queue.plus().square[at];
     }
-    CHECK(std::abs(first) < 1e-10 * sum(queue.distance()));
+    CHECK(std::abs(first) < 1e-10 * sum(queue.plus().distance));
     CHECK(std::abs(second) < 1e-10 * size);
   }
 }

@@ -130,8 +130,6 @@ TEST_CASE("request: drag that is no drag is told with place and way out") {
       {law + "0.1*v", {"-drag_expression", "grows from", "must not grow", "check the signs"}},
       {law + "v/(-1-v^2)", {"-drag_expression", "grows from", "is no drag"}},
       {law + "0-v-sign(v)", {"-drag_expression", "slope", "smooth it"}},
-      {law + "(v>0?1:2)*(0-v) -quantities laplace -lambda 1",
-       {"-quantities = laplace", "without symmetry", "odd drag"}},
       {law + "0-tanh(v) -bias 3", {"-drag_expression", "the bias 3 drives", "a drag that grows"}},
       {law + "0-v -route fluid_queue", {"-route = fluid_queue", "needs b = 0"}}};
   for (const auto& refusal : refusals) check_refusal(refusal);
@@ -141,16 +139,22 @@ TEST_CASE("request: without symmetry") {
   CHECK(Given("-bias 0").read().scene.symmetric());
   CHECK_FALSE(Given("-bias 0.1").read().scene.symmetric());
   CHECK_FALSE(Given("-drag expression -drag_expression (v>0?1:2)*(0-v)").read().scene.symmetric());
+  CHECK_FALSE(Given("-mu_s_minus 1.5").read().scene.symmetric());
+  CHECK(Given("-mu_s_minus 1 -mu_d_minus 1").read().scene.symmetric());
+  for (const char* route : {"lambda", "hitting", "null_vector", "monte_carlo"}) {
+    CHECK_NOTHROW(Given(std::string("-bias 0.5 -quantities sticking -route ") + route).read());
+  }
   const Request down = Given("-bias 0.3 -delta 0.25 -quantities trajectory -trajectory t.csv "
                              "-start s-")
                            .read();
   CHECK(down.question.start.level == -6);  // x = -1.25 holds, -1.5 does not
   const std::vector<Refusal> refusals{
-      {"-bias 0.5 -quantities entry_law", {"-quantities", "entry_law", "without symmetry"}},
-      {"-bias 0.5 -route lambda", {"-quantities", "-route lambda", "-bias 0"}},
-      {"-bias 0.5 -quantities spectrum -omega 1", {"-omega = 1", "leave it out"}},
       {"-bias 1 -drag none", {"-bias = 1", "for ever", "smaller than mu_d"}},
-      {"-bias 8 -delta 0.25", {"-bias = 8", "never overcome", "below 7"}},
+      {"-bias -0.6 -mu_d_minus 0.5 -drag none", {"-bias = -0.6", "only mu_d = 0.5", "for ever"}},
+      {"-bias 8 -delta 0.25", {"-bias = 8", "never overcome", "towards negative v", "below 7"}},
+      {"-mu_s_minus 9 -delta 0.25", {"-mu_s_minus = 9", "never overcome", "negative", "below 8"}},
+      {"-mu_s_minus 0.5 -mu_d 0.75", {"-mu_s_minus = 0.5", "they are 0.75 and 0.5"}},
+      {"-mu_d_minus 1.25", {"-mu_d_minus = 1.25", "(0, mu_s_minus]", "cannot grow"}},
       {"-bias 0.2 -mu_s 0.1 -mu_d 0.1 -delta 0.5", {"-mu_s = 0.1", "nothing ever sticks"}}};
   for (const auto& refusal : refusals) check_refusal(refusal);
 }
@@ -200,18 +204,18 @@ TEST_CASE("request: a route refuses what it does not give, and names what it giv
   const std::vector<Refusal> refusals{
       {"-route hitting -quantities sticking,moments",
        {"-quantities = sticking,moments", "moments cannot be had by -route hitting",
-        "which gives sticking;", excursion}},
+        "mean hitting times hold mean durations", "it gives sticking;", excursion}},
       {"-route lambda -quantities sticking,entry_law,density",
-       {"entry_law and density cannot be had by -route lambda",
-        "which gives sticking, moments and noise_law;", excursion}},
+       {"entry_law and density cannot be had by -route lambda", "tends to stationary averages",
+        "it gives sticking, moments, averages and noise_law;", excursion}},
       {"-route null_vector -quantities laplace -lambda 1",
-       {"laplace cannot be had by -route null_vector",
-        "which gives sticking, moments and noise_law;"}},
+       {"laplace cannot be had by -route null_vector", "a null vector holds averages",
+        "it gives sticking, moments, averages and noise_law;"}},
       {"-route null_vector -quantities relaxation",
        {"relaxation cannot be had by -route null_vector"}},
       {"-drag none -route fluid_queue -quantities resolvent -lambda 1 -observable v",
-       {"resolvent cannot be had by -route fluid_queue",
-        "which gives sticking, moments, noise_law, entry_law and laplace;"}},
+       {"resolvent cannot be had by -route fluid_queue", "powers of v up to the second",
+        "it gives sticking, moments, noise_law, entry_law, laplace and F_stick;"}},
       {"-route nul_vector", {"-route = nul_vector", "did you mean null_vector?"}}};
   for (const auto& refusal : refusals) check_refusal(refusal);
 }
@@ -461,7 +465,7 @@ TEST_CASE("request: a cubic coefficient counts with cubic drag only") {
   CHECK(r.warnings.size() == 1);
 }
 
-TEST_CASE("request: starts lie on noise levels, with any velocity") {
+TEST_CASE("request: starts are states that occur, or distributions") {
   const std::string path = "-quantities trajectory -trajectory t.csv -start ";
   CHECK(Given(path + "s+").read().question.start.level == 9);  // x = 1 holds at delta = 1/8
   CHECK(Given(path + "s-").read().question.start.level == -9);
@@ -470,6 +474,13 @@ TEST_CASE("request: starts lie on noise levels, with any velocity") {
   CHECK(r.question.start.v == 0.25);
   check_refusal({path + "0.3,0", {"-start = 0.3,0", "0.125 apart", "take x = 0.25"}});
   check_refusal({path + "-99,0", {"up to 16", "take x = -16"}});
+  check_refusal({path + "0.5,100", {"-start = 0.5,100", "no body reaches", "take v in [0, 15]"}});
+  check_refusal({path + "0.5,-15.1", {"tends to -15", "take v in [-15, 0]"}});
+  CHECK_NOTHROW(Given(path + "0.5,100 -drag none").read());
+  using enum model::Start::Kind;
+  CHECK(Given(path + "rest").read().question.start.kind == rest);
+  CHECK(Given(path + "stationary").read().question.start.kind == stationary);
+  check_refusal({path + "nowhere", {"-start = nowhere", "stationary, rest or x,v"}});
 }
 
 // Lambda = 128 at delta = 1/8.

@@ -152,7 +152,7 @@ class DenseDurations {
 };
 
 double f_slide_at(const model::Process& process) {
-  return quantities::slide_density_at_zero(process);
+  return quantities::slide_density_at_zero(process, {});
 }
 
 model::Process process_with(double mu_s, double mu_d, int levels = 8) {
@@ -165,7 +165,7 @@ TEST_CASE("durations: densities integrate to 1, with the means and variances of 
           "[slow]") {
   for (const auto& [name, d] : samples()) {
     Solved s(d);
-    const auto m = quantities::duration_moments(s.systems, s.entry());
+    const auto m = quantities::duration_moments(s.systems, s.distribution, s.entry());
     const std::vector<Uncertain> mean{m.mean_slide, m.mean_stick, m.mean_excursion},
         variance{m.var_slide, m.var_stick, m.var_excursion};
     const auto q = all_times(100 * d.process.noise.tau);
@@ -187,7 +187,7 @@ TEST_CASE("durations: densities have the transforms of the operators", "[paralle
   const auto q = all_times(150);
   const auto all = laws(s, q.node, 1e-9);
   for (double lambda : {0.1, 1.0, 10.0, 100.0}) {
-    const auto known = quantities::slide_transforms(s.systems, lambda);
+    const auto known = quantities::slide_transforms(s.systems, s.distribution, lambda);
     const auto stick = quantities::stick_transform(d.process, lambda, s.entry());
     s.systems.release(lambda, Symmetry::even);
     const auto weight = [lambda](double t) { return std::exp(-lambda * t); };
@@ -405,7 +405,7 @@ TEST_CASE("durations: means are those of the stationary law, and moments are pos
   for (const auto& d : {test::on_hp(scene(1, 0.25, 1, 0.25, {1, 0}), 6, 1e-9),
                         test::on_upwind(scene(1, 1, 1, 0.5, {0, 0}), 2)}) {
     Solved s(d);
-    const auto m = quantities::duration_moments(s.systems, s.entry());
+    const auto m = quantities::duration_moments(s.systems, s.distribution, s.entry());
     const auto& e = s.distribution.excursion();
     CHECK(relative_difference(m.mean_slide.value, e.mean_slide()) < 1e-12);
     CHECK(relative_difference(m.mean_stick.value, e.mean_stick()) < 1e-12);
@@ -422,9 +422,9 @@ TEST_CASE("durations: means are those of the stationary law, and moments are pos
 TEST_CASE("durations: variances are what transforms say at small lambda") {
   const auto d = test::on_hp(scene(1, 0.25, 1, 0.5, {1, 0}), 8);
   Solved s(d);
-  const auto m = quantities::duration_moments(s.systems, s.entry());
+  const auto m = quantities::duration_moments(s.systems, s.distribution, s.entry());
   const auto logs = [&](double lambda) {
-    const auto t = quantities::slide_transforms(s.systems, lambda);
+    const auto t = quantities::slide_transforms(s.systems, s.distribution, lambda);
     const double stick = quantities::stick_transform(d.process, lambda, s.entry()).value;
     s.systems.release(lambda, Symmetry::even);
     return std::vector<double>{std::log(t.slide.value), std::log(stick),
@@ -446,7 +446,7 @@ TEST_CASE("durations: named results, means only where there are none yet") {
   const quantities::DurationMoments m{{1, 0.1}, {2, 0.1}, {3, 0.1}, {4, 0.1}, {5, 0.1}, {6, 0.1}};
   const std::vector<Uncertain> entry(5, Uncertain{0.2, 0});
   quantities::Results results{quantities::scalar("mean_stick", "time", 7, 0)};
-  quantities::append_duration_moments(process, m, entry, results);
+  quantities::append_duration_moments(process, {}, m, entry, results);
   const auto value = [&](const std::string& key) {
     const auto same = [&key](const auto& result) { return result.key == key; };
     CHECK(std::count_if(results.begin(), results.end(), same) == 1);

@@ -26,7 +26,7 @@ class Durations {
   [[nodiscard]] DurationTransforms at(double lambda) {
     std::vector<Uncertain> entry;
     for (double p : distribution_.excursion().entry) entry.push_back({p, 0});
-    const auto t = quantities::slide_transforms(systems_, lambda);
+    const auto t = quantities::slide_transforms(systems_, distribution_, lambda);
     systems_.release(lambda, operators::Symmetry::even);
     return {t.slide, quantities::stick_transform(systems_.process(), lambda, entry), t.excursion};
   }
@@ -62,7 +62,8 @@ DurationTransforms exact_transforms(const model::Process& process, double lambda
   const auto dot = [&](const std::vector<double>& p) {
     return Uncertain{std::inner_product(p.begin(), p.end(), sticking.begin(), 0.0), 0};
   };
-  return {{killed.slide_transform(), 0}, dot(queue.entry()), dot(killed.entry())};
+  const auto& ends = killed.plus().entry;
+  return {{std::accumulate(ends.begin(), ends.end(), 0.0), 0}, dot(queue.plus().entry), dot(ends)};
 }
 
 constexpr Uncertain DurationTransforms::*kAll[] = {

@@ -42,9 +42,8 @@ class Scripted {
   std::unique_ptr<ReducedModel> made(int most_pairs) {
     auto odd = operators::assemble(PETSC_COMM_WORLD, solved_.systems.discretisation(), 0,
                                    Symmetry::odd, StaticPhase::kept, solved_.statistics);
-    const petsc::VecHandle b = odd.values([](double, double, double v) { return v; }),
-                           c = solved_.distribution.weighted_velocity(odd),
-                           weight = solved_.distribution.weight_on(odd);
+    const auto [b, c] = solved_.distribution.velocity(odd);
+    const petsc::VecHandle weight = solved_.distribution.weight_on(odd);
     return std::make_unique<ReducedModel>(solved_.systems, std::move(odd), StaticPhase::kept,
                                           quantities::Ends{b, c, weight},
                                           ReducedModel::Nature::smooth, most_pairs);

@@ -28,7 +28,7 @@ struct Case {
 std::vector<RelaxationMode> solve(const Case& c) {
   petsc::SolverStatistics statistics;
   Systems systems(PETSC_COMM_WORLD, c.discrete, statistics);
-  return quantities::relaxation_modes(systems, c.symmetry);
+  return quantities::relaxation_modes(systems, c.symmetry).modes;
 }
 
 std::vector<Case> sample_cases() {
@@ -191,7 +191,7 @@ TEST_CASE("relaxation: half as many modes as the eigensolver is asked for") {
   CHECK(modes.size() == 2);
 
   quantities::Results results;
-  quantities::append_relaxation(Symmetry::even, modes, results);
+  quantities::append_relaxation({Symmetry::even, modes}, results);
   REQUIRE(results.size() == 2);
   CHECK(results[0].key == "relaxation_even");
   CHECK(results[1].key == "relaxation_even_frequency");
@@ -210,7 +210,7 @@ TEST_CASE("relaxation: a defective double rate has no frequency, and an error th
   for (int degree = 6; degree <= 12; ++degree) {
     const auto modes = solve({test::on_hp(s, degree), Symmetry::even});
     quantities::Results results;
-    quantities::append_relaxation(Symmetry::even, modes, results);
+    quantities::append_relaxation({Symmetry::even, modes}, results);
     INFO("degree " << degree);
     REQUIRE(modes.size() == 4);
     for (std::size_t n = 2; n < 4; ++n) {
@@ -238,7 +238,7 @@ TEST_CASE("relaxation: of conjugate rates the one that turns forwards") {
   CHECK(modes[2].spread == 0);
   CHECK(modes[3].rate.imag() == 0);
   quantities::Results results;
-  quantities::append_relaxation(Symmetry::even, modes, results);
+  quantities::append_relaxation({Symmetry::even, modes}, results);
   CHECK(modes[2].residual > 0);
   for (const auto& found : results) CHECK(found.error[2] == modes[2].residual);
   CHECK(results[1].error[3] == 0);  // no frequency, and no error of one

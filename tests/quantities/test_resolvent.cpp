@@ -119,13 +119,15 @@ TEST_CASE("resolvent: the representation formula gives the resolvent of the whol
 TEST_CASE("resolvent: an excursion ends at s+ or s-, now or later", "[parallel]") {
   for (const auto& d : sample_discretisations()) {
     Discretised made(d);
+    const quantities::StationaryDistribution law(made.systems);
     for (double lambda : {0.0, 1.0, 1e2}) {
-      const auto exits = quantities::resolvent(made.systems, lambda, {}).exits;
+      const auto exits = quantities::resolvent(made.systems, lambda, {}).from_plus;
       const double ends = exits.h_plus.value + exits.h_minus.value;
       CHECK(std::abs(1 - ends - lambda * exits.w_one.value) < 1e-11);
       CHECK(exits.h_plus.value > 0);
       CHECK(exits.h_minus.value > 0);
-      const double excursion = quantities::slide_transforms(made.systems, lambda).excursion.value;
+      const double excursion =
+          quantities::slide_transforms(made.systems, law, lambda).excursion.value;
       CHECK(relative_difference(ends, excursion) < 1e-11);
     }
   }
@@ -144,7 +146,7 @@ TEST_CASE("resolvent: pi at lambda = 0 are the stationary averages", "[parallel]
       return std::find_if(known.begin(), known.end(), same)->value[0];
     };
     const auto r = quantities::resolvent(made.systems, 0, f);
-    CHECK(relative_difference(r.exits.w_one.value, value("mean_excursion")) < 1e-11);
+    CHECK(relative_difference(r.from_plus.w_one.value, value("mean_excursion")) < 1e-11);
     const std::vector<std::string> keys{"P_stick", "E_V2", "E_absV", "E_XV"};
     for (std::size_t n = 0; n < keys.size(); ++n) {
       INFO(keys[n]);
@@ -199,7 +201,7 @@ TEST_CASE("resolvent: u is given where all lambda are positive", "[parallel]") {
     std::vector<quantities::Resolvent> all;
     for (double l : lambda) all.push_back(quantities::resolvent(made.systems, l, f));
     quantities::Results results;
-    quantities::append_resolvent(lambda, f, all, results);
+    quantities::append_resolvent(lambda, f, all, true, results);
     const auto is_u = [](const auto& result) { return result.key == "u(v^2)"; };
     CHECK(std::count_if(results.begin(), results.end(), is_u) == (first > 0 ? 1 : 0));
     for (const auto& result : results) CHECK(result.value.size() == 2);

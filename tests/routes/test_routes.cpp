@@ -251,8 +251,8 @@ TEST_CASE("routes: only what is asked for is given, with what fields need", "[pa
   const auto modes = evaluate(given(s, Route::excursion, {Quantity::relaxation}), d);
   CHECK(keys(modes) == Keys{"relaxation_even", "relaxation_even_frequency", "relaxation_odd",
                             "relaxation_odd_frequency"});
-  CHECK(modes.even.size() == 4);
-  CHECK(modes.odd.size() == 4);
+  REQUIRE(modes.modes.size() == 2);
+  for (const auto& sector : modes.modes) CHECK(sector.modes.size() == 4);
   CHECK_FALSE(modes.distribution);
   auto r = given(s, Route::excursion, {Quantity::resolvent});
   r.question.lambda = {2};

@@ -50,8 +50,8 @@ struct Solved {
 struct Outcome {
   /// Values of the last step, with their error estimates.
   quantities::Results results;
-  std::vector<quantities::RelaxationMode> even, odd;  ///< modes, if asked for
-  std::optional<quantities::DensityField> density;    ///< if asked for
+  std::vector<quantities::RelaxationSector> modes;  ///< if asked for
+  std::optional<quantities::DensityField> density;  ///< if asked for
   double speed_error = 0;  ///< of the distribution function of |V|, if the density is asked for
   bool reached = false;    ///< whether all estimates are within the accuracy
   std::string shortfall;   ///< why not, and what would help

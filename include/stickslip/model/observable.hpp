@@ -12,8 +12,9 @@ namespace stickslip::model {
 
 /// An observable of the process: x the noise, y = sign of the motion (0 at rest), v the velocity.
 struct Observable {
+  using Function = std::function<double(double x, double y, double v)>;
   std::string name;  ///< as given by the user
-  std::function<double(double x, double y, double v)> value;
+  Function value;
   std::vector<double> numbers = {};  ///< that stand in an expression, mu_s and mu_d included
 
   [[nodiscard]] double operator()(double x, double y, double v) const { return value(x, y, v); }

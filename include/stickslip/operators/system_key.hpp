@@ -2,6 +2,7 @@
 /// What an operator is of: the part that plans and reports need, independent of the scalar type.
 
 #include <tuple>
+#include <vector>
 
 #include "stickslip/model/process.hpp"
 
@@ -14,6 +15,12 @@ enum class Symmetry { even, odd, none };
 /// The symmetry of densities and constants: even where the process is symmetric.
 [[nodiscard]] inline Symmetry symmetry_of(const model::Process& process) {
   return process.symmetric() ? Symmetry::even : Symmetry::none;
+}
+
+/// The symmetries into which all functions fall apart.
+[[nodiscard]] inline std::vector<Symmetry> sectors_of(const model::Process& process) {
+  if (process.symmetric()) return {Symmetry::even, Symmetry::odd};
+  return {Symmetry::none};
 }
 
 /// The two half lines of the velocity.
@@ -32,7 +39,8 @@ enum class StaticPhase {
 
 /// Parameters of the process by which operators can be differentiated.
 enum class Parameter {
-  mu_d,
+  mu_d,             ///< in both directions, unless they have their own
+  mu_d_minus,       ///< of motion towards negative v alone
   tau,              ///< at a fixed number of noise levels
   drag_coefficient  ///< c of the linear part of the drag
 };

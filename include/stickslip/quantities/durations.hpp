@@ -23,9 +23,9 @@ struct DurationDistribution {
                                                       const std::vector<Uncertain>& entry,
                                                       const std::vector<double>& time);
 
-/// Slides: f(t) = g exp(-A t) r with A = A(0, even), r = A 1 = -A_us 1 the rate of coming to rest,
-/// g the value at s+; by a reduced model, to about 1e-8 to 2e-7 of 1/mean. Errors of densities are
-/// relative to 1/mean. Collective.
+/// Slides: f(t) = g exp(-A t) r with A = A(0, even or none), r = A 1 = -A_us 1 the rate of coming
+/// to rest, g the value where excursions start; by a reduced model, to about 1e-8 to 2e-7 of
+/// 1/mean. Errors of densities are relative to 1/mean. Collective.
 [[nodiscard]] DurationDistribution slide_distribution(operators::Systems& systems,
                                                       const StationaryDistribution& stationary,
                                                       const std::vector<double>& time,
@@ -37,8 +37,9 @@ struct DurationDistribution {
                                                           const std::vector<double>& time,
                                                           double tolerance);
 
-/// f_slide(0+): a slide can only end at once if one jump down from level k+1 reverses it.
-[[nodiscard]] double slide_density_at_zero(const model::Process& process);
+/// f_slide(0+): a slide can only end at once if one jump back from the level of its start reverses
+/// it.
+[[nodiscard]] double slide_density_at_zero(const model::Process& process, const SideChain& sides);
 
 /// Means and variances of the durations: what their transforms say at lambda -> 0.
 struct DurationMoments {
@@ -47,14 +48,16 @@ struct DurationMoments {
 };
 /// E[S^2] = 2 g A^-2 1 for slides S, E[T^2] = 2 P R^2 1 for stays T with R = (-Q)^-1, and
 /// E[S T] = g A^-2 (-A_us R 1), since where a slide ends and how long it took go together. Three
-/// solves with systems.at(0, even). Collective.
+/// solves with systems.at(0, even or none). Collective.
 [[nodiscard]] DurationMoments duration_moments(operators::Systems& systems,
+                                               const StationaryDistribution& distribution,
                                                const std::vector<Uncertain>& entry);
 
 /// var_slide, var_stick, var_excursion, f_slide_0 and, unless they are there already, mean_slide,
 /// mean_stick, mean_excursion, f_stick_0.
-void append_duration_moments(const model::Process& process, const DurationMoments& moments,
-                             const std::vector<Uncertain>& entry, Results& results);
+void append_duration_moments(const model::Process& process, const SideChain& sides,
+                             const DurationMoments& moments, const std::vector<Uncertain>& entry,
+                             Results& results);
 
 /// f_NAME and cdf_NAME by time.
 void append_duration(const char* name, const std::vector<double>& time,

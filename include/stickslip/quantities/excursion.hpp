@@ -19,9 +19,11 @@ struct Excursion {
   std::vector<double> slide_square;    ///< int V^2 dt on node n
   std::vector<double> slide_drift;     ///< int V dt on node n [length]; empty if symmetry-reduced
   std::vector<double> entry;  ///< probability that sliding ends on symmetry-reduced level i
-  std::vector<double> entry_orientation;  ///< the same, counted negative if V < 0 then; or empty
-  std::vector<double> stick_time;  ///< time spent sticking on symmetry-reduced level i [time]
-  double lost_probability = 0;     ///< sum of entry less 1, before it was scaled to 1
+  /// The same of slides from s+ alone, by level of the noise; empty unless it is known.
+  std::vector<double> entry_plus;
+  std::vector<double> entry_minus;  ///< of slides from s-; empty if symmetry-reduced
+  std::vector<double> stick_time;   ///< time spent sticking on symmetry-reduced level i [time]
+  double lost_probability = 0;      ///< sum of entry less 1, before it was scaled to 1
 
   [[nodiscard]] double mean_slide() const;      ///< E[tau_hat_1], section 4.3 of the paper [time]
   [[nodiscard]] double mean_stick() const;      ///< E[tau_1 - tau_hat_1] [time]
@@ -34,6 +36,24 @@ struct Excursion {
   [[nodiscard]] double conservation_defect(const operators::Discretisation& discretisation) const;
 };
 
+/// The sides from which excursions start, a Markov chain.
+struct SideChain {
+  double falling = 0;  ///< P(an excursion from s+ ends at s-)
+  double rising = 1;   ///< P(an excursion from s- ends at s+)
+  /// Share of excursions that start at s+ or s-.
+  [[nodiscard]] double share_of_plus() const { return rising / (rising + falling); }
+  [[nodiscard]] double share_of_minus() const { return falling / (rising + falling); }
+};
+
+/// That chain, given where slides from s+ and s- end.
+[[nodiscard]] SideChain side_chain(const model::Process& process,
+                                   const std::vector<double>& entry_plus,
+                                   const std::vector<double>& entry_minus);
+
+/// Means over all excursions from those over excursions from s+ and from s-.
+[[nodiscard]] Excursion joined(const SideChain& sides, const Excursion& plus,
+                               const Excursion& minus);
+
 /// P_stick, P_slide, mean_stick, mean_slide, mean_excursion; ratios of positive sums.
 void append_sticking(const Excursion& excursion, Results& results);
 
@@ -41,10 +61,15 @@ void append_sticking(const Excursion& excursion, Results& results);
 void append_moments(const operators::Discretisation& discretisation, const Excursion& excursion,
                     Results& results);
 
-/// entry_law: P(X = x_k when the first slide from s+ ends), k = -K ... K, and
-/// f_stick_0 = Lambda alpha_K (entry_K + entry_-K), the density of sticking times at 0+.
+/// entry_law: P(X = x_k when the first slide from s+ ends) on the static levels k, without symmetry
+/// entry_law_minus, the same from s-, and f_stick_0.
 void append_hitting_distribution(const model::Process& process, const Excursion& excursion,
                                  Results& results);
+
+/// The density of sticking times at 0+ [1/time]: the rate of leaving at once, where slides end on
+/// the lowest and on the highest static level with these probabilities.
+[[nodiscard]] double stick_density_at_zero(const model::Process& process, double lowest,
+                                           double highest);
 
 /// P_X_le_mu_s and E_X2 of the noise alone, from its closed law.
 void append_noise_distribution(const model::Process& process, Results& results);
@@ -52,7 +77,8 @@ void append_noise_distribution(const model::Process& process, Results& results);
 /// dP_X_le_mu_s_dtau and dE_X2_dtau, at the number of levels of the process. Local. O(N).
 void append_noise_sensitivity(const model::Process& process, Results& results);
 
-/// The stationary law of X as the excursion sees it, summed over the grid; index i + N.
+/// The stationary law of |X| as the excursion sees it, summed over the grid and halved for x and
+/// -x; index i + N.
 [[nodiscard]] std::vector<double> marginal_of_noise(const operators::Discretisation& discretisation,
                                                     const Excursion& excursion);
 

@@ -24,10 +24,20 @@ struct RelaxationMode {
   double residual = 0;         ///< of the eigensolver
   double spread = 0;           ///< distance to rates that rounding cannot tell from this one
   PhaseField real, imaginary;  ///< phi on the grid, largest modulus 1
-  std::vector<std::complex<double>> at_rest;  ///< phi(x_i, 0, 0), index i + k, on all ranks
+  std::vector<std::complex<double>>
+      at_rest;  ///< phi(x_i, 0, 0), from the lowest level up, on all ranks
 };
 
-/// The modes of even or odd functions with the smallest decay rates, the constant function left
+/// The modes of functions of one symmetry, slowest first.
+struct RelaxationSector {
+  operators::Symmetry symmetry;
+  std::vector<RelaxationMode> modes;
+};
+
+/// relaxation_even, relaxation_odd, or relaxation where there is no symmetry.
+[[nodiscard]] std::string relaxation_key(operators::Symmetry symmetry);
+
+/// The modes of functions of one symmetry with the smallest decay rates, the constant function left
 /// out: half as many as the eigensolver is asked for (-relax_eps_nev, 8 unless given), since those
 /// come in conjugate pairs, of which the member with frequency >= 0 is kept. One assembly and one
 /// factorisation. Collective. Throws NotReached or NoMemory.
@@ -36,11 +46,10 @@ struct RelaxationMode {
 /// conjugate, at times real. So a frequency below 1e-5 |rate| counts as none: both members of such
 /// a pair are kept, as two real modes whose fields agree to about as many digits as the rates do.
 /// `spread`, part of the error of a rate, is its distance to the rates that are as close as that.
-[[nodiscard]] std::vector<RelaxationMode> relaxation_modes(operators::Systems& systems,
-                                                           operators::Symmetry symmetry);
+[[nodiscard]] RelaxationSector relaxation_modes(operators::Systems& systems,
+                                                operators::Symmetry symmetry);
 
-/// relaxation_even and relaxation_even_frequency, or relaxation_odd and ..., by number of the mode.
-void append_relaxation(operators::Symmetry symmetry, const std::vector<RelaxationMode>& modes,
-                       Results& results);
+/// relaxation_key() and the same with _frequency, by number of the mode.
+void append_relaxation(const RelaxationSector& sector, Results& results);
 
 }  // namespace stickslip::quantities

@@ -41,6 +41,8 @@ inline constexpr Name kEXV{"E_XV", "force*velocity", Kind::mean};
 inline constexpr Name kEV{"E_V", "velocity", Kind::drift};
 inline constexpr Name kEX2{"E_X2", "force^2", Kind::positive_mean};
 inline constexpr Name kFStick0{"f_stick_0", "1/time"};
+inline constexpr Name kSlipRate{"slip_rate", "1/time", Kind::positive_mean};
+inline constexpr Name kFrictionPower{"friction_power", "force*velocity", Kind::positive_mean};
 inline constexpr Name kS0{"S_0", "velocity^2*time", Kind::spectrum};
 inline constexpr Name kDiffusivity{"diffusivity", "velocity^2*time"};
 

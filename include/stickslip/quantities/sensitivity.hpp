@@ -12,7 +12,7 @@
 
 namespace stickslip::quantities {
 
-/// mu_d and tau, and drag_coefficient where `drag` is linear or cubic.
+/// mu_d, mu_d_minus where it is given, tau, and drag_coefficient where `drag` is linear or cubic.
 [[nodiscard]] std::vector<operators::Parameter> parameters_of(const model::Scene& scene);
 
 /// Derivatives of means over an excursion, M = nu f + entry . s, for a function f of the sliding
@@ -24,8 +24,12 @@ namespace stickslip::quantities {
 /// changes by dB, the jumps by d(Lambda alpha). One plain solve with systems.at(0, even) for each
 /// M, whatever the number of parameters; one assembly for each parameter. Elements and upwind
 /// directions are kept: what that leaves out is an error of the discretisation, and falls with it.
-/// Symmetric processes only. With a single static level mean_stick takes no solve, and has no
-/// derivative but that by tau.
+///
+/// Without symmetry the shares of excursions from s+ and s- change as well. The side on which an
+/// excursion ends then counts like a static value: h and s get z times those of the probability of
+/// leaving upwards, z = (h(s+) - h(s-))/(P(s+ to s-) + P(s- to s+)), which solves (1 - P) z = h - M
+/// for the chain P of the sides. One more plain solve in all. With a single static level mean_stick
+/// takes no solve, and has no derivative but that by tau.
 class Sensitivity {
  public:
   /// Solves for the durations. Collective.
@@ -43,8 +47,9 @@ class Sensitivity {
 
   [[nodiscard]] Gradient slides(const operators::KolmogorovOperator::Observable& f) const;
   [[nodiscard]] Gradient stays() const;
-  // nu dL (h, s) by parameter.
-  [[nodiscard]] Gradient through(const petsc::Solution& h, const std::vector<PetscScalar>& s) const;
+  [[nodiscard]] double worth_of_upper_side(const petsc::Solution& h) const;
+  // nu dL (h, s) by parameter, and what the sides change.
+  [[nodiscard]] Gradient through(petsc::Solution h, const std::vector<double>& s) const;
   // value and mean of an integral over an excursion: the derivative of its ratio to mean_excursion.
   [[nodiscard]] Gradient ratio(double mean, const Gradient& of_mean) const;
   void append(const Name& name, const Gradient& gradient, Results& results) const;
@@ -52,6 +57,8 @@ class Sensitivity {
   operators::System& system_;
   const StationaryDistribution& distribution_;
   std::vector<operators::Parameter> parameters_;
+  std::vector<double> upwards_;                         // h of leaving upwards, by static level
+  petsc::Solution rising_;                              // the same of the sliding states, if needed
   std::vector<operators::KolmogorovOperator> changes_;  // dA, by parameter
   Gradient slide_, stick_;
 };

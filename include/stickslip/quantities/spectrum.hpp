@@ -11,8 +11,10 @@
 
 namespace stickslip::quantities {
 
-/// S_v(omega) = int E[V_0 V_t] exp(-i omega t) dt = 2 Re c (i omega - L)^-1 v, with c = pi v on the
-/// symmetry-reduced grid: odd functions only, so that omega = 0 is no special case.
+/// S_v(omega) = int E[(V_0 - m)(V_t - m)] exp(-i omega t) dt = 2 Re c (i omega - L)^-1 b, with b
+/// and c of StationaryDistribution::velocity(). By symmetry they are odd, and omega = 0 is no
+/// special case; without it both are orthogonal to the null vectors of L, and all that is made from
+/// them.
 ///
 /// Far out S_v falls as omega^-4, and the formula above subtracts terms of order omega^-2 that
 /// cancel because E[V dV/dt] = 0. There, with a = L v the acceleration,

@@ -25,8 +25,8 @@ class StationaryDistribution {
   /// Throws NotReached or NoMemory.
   explicit StationaryDistribution(operators::Systems& systems);
 
-  /// Adds Excursion::entry_orientation. It is no even functional: one more transposed solve, with
-  /// systems.at(0, odd). Collective.
+  /// Adds Excursion::entry_plus, where it is not there. It is no even functional: one more
+  /// transposed solve, with systems.at(0, odd). Collective.
   void orient(operators::Systems& systems);
 
   [[nodiscard]] const operators::Discretisation& discretisation() const { return discretisation_; }
@@ -38,27 +38,39 @@ class StationaryDistribution {
   /// The same before the last correction of the solve: the difference shows rounding.
   [[nodiscard]] const Excursion& uncorrected() const { return uncorrected_; }
 
-  /// Probability that an excursion from s+ ends at s-, as entry+ . h-. Without symmetry only.
-  [[nodiscard]] double reversal_probability() const { return reversal_probability_; }
+  /// How excursions follow one another; with symmetry all start at s+.
+  [[nodiscard]] const SideChain& sides() const { return sides_; }
+  /// u -> the mean of u over the states in which excursions start, on any operator. Collective.
+  [[nodiscard]] petsc::VecHandle starts(const operators::KolmogorovOperator& a) const;
 
   /// nu, distributed as states() says [time]: the time spent in each sliding state.
   [[nodiscard]] Vec occupation() const { return occupation_; }
+  /// The same before the last correction.
+  [[nodiscard]] Vec uncorrected_occupation() const { return uncorrected_occupation_; }
 
-  /// Time spent per excursion in each state of an even or odd operator, its static states too, if
-  /// it has any: rest is counted symmetry-reduced, i and -i together [time]. Collective.
+  /// Time spent per excursion in each state of any operator, its static states too, if it has any:
+  /// symmetry-reduced, i and -i at rest are counted together [time]. Collective.
   [[nodiscard]] petsc::VecHandle occupation_on(const operators::KolmogorovOperator& a) const;
   /// About the same, but positive everywhere: a weight for ReducedModel. Collective.
   [[nodiscard]] petsc::VecHandle weight_on(const operators::KolmogorovOperator& a) const;
 
-  /// c with c f = E[V f(X, Y, V)] for odd f on an odd operator. Collective.
-  [[nodiscard]] petsc::VecHandle weighted_velocity(const operators::KolmogorovOperator& a) const;
+  /// b = v - m, m = E[V], and c with c f = E[(V - m) f(X, Y, V)], for functions of
+  /// velocity_symmetry on such an operator. Collective.
+  struct Velocity {
+    petsc::VecHandle b, c;
+  };
+  [[nodiscard]] Velocity velocity(const operators::KolmogorovOperator& a) const;
+  /// Odd where the process is symmetric.
+  [[nodiscard]] operators::Symmetry velocity_symmetry() const {
+    return process().symmetric() ? operators::Symmetry::odd : operators::Symmetry::none;
+  }
 
  private:
   operators::Discretisation discretisation_;
   operators::StateSpace states_;
-  petsc::VecHandle occupation_;
+  petsc::VecHandle occupation_, uncorrected_occupation_;
   Excursion excursion_, uncorrected_;
-  double reversal_probability_ = 0;
+  SideChain sides_;
 };
 
 }  // namespace stickslip::quantities

@@ -20,15 +20,15 @@ inline const std::string kBackwardPrefix = "backward_";
 /// TS), which shares nothing with them but L.
 enum class TransientMethod { krylov, stepping };
 
-/// C_vv(t) = E[V_0 V_t] = c exp(L t) v with c = pi v, odd functions only. Errors are relative to
-/// C_vv(0). Collective.
+/// C_vv(t) = E[(V_0 - m)(V_t - m)], m = E[V], as c exp(L t) b with the vectors of
+/// StationaryDistribution::velocity(). Errors are relative to C_vv(0). Collective.
 [[nodiscard]] std::vector<Uncertain> autocorrelation(operators::Systems& systems,
                                                      const StationaryDistribution& distribution,
                                                      const std::vector<double>& time,
                                                      TransientMethod method, double tolerance);
 
-/// E[f(Z_t) | Z_0 = start] = (exp(L t) f)(start), its even and odd parts apart, and pi(f), to which
-/// it tends. Errors are relative to the root of pi(f^2), part by part. Collective.
+/// E[f(Z_t)] = mean of exp(L t) f over the start, with symmetry by its even and odd parts, and
+/// pi(f), to which it tends. Errors are relative to the root of pi(f^2), part by part. Collective.
 struct Expectation {
   std::vector<Uncertain> value;
   double stationary = 0;

@@ -36,8 +36,8 @@ struct Evaluation {
   /// What the route tells about itself, by name, such as the lambda it used.
   std::vector<std::pair<std::string, double>> checks;
   std::shared_ptr<quantities::StationaryDistribution>
-      distribution;                                   ///< excursion route, if it was needed
-  std::vector<quantities::RelaxationMode> even, odd;  ///< modes, if asked for
+      distribution;                                 ///< excursion route, if it was needed
+  std::vector<quantities::RelaxationSector> modes;  ///< if asked for
 };
 
 /// Assembles, factors and solves what the question needs and nothing else. Collective. Throws

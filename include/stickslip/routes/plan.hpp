@@ -13,6 +13,7 @@ namespace stickslip::routes {
 /// What a task computes.
 enum class Work {
   stationary_distribution,    ///< occupations, and with them sticking, moments and density
+  averages,                   ///< of observables
   orientation,                ///< the entry law, which is no even functional
   sensitivity,                ///< adjoints of the scalars
   duration_moments,           ///< variances of durations
@@ -20,8 +21,7 @@ enum class Work {
   stick_duration_transforms,  ///< F_stick by itself
   resolvent,                  ///< of one lambda
   spectrum,
-  spectrum_at_zero,  ///< without symmetry
-  durations,         ///< densities and distribution functions
+  durations,  ///< densities and distribution functions
   autocorrelation,
   expectation,
   relaxation
