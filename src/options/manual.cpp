@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
+#include "quantities.hpp"
 #include "stickslip/options/table.hpp"
 #include "stickslip/support/text.hpp"
+#include "words.hpp"
 
 namespace stickslip::options {
 namespace {
@@ -160,6 +163,36 @@ std::string cell(const std::string& text) {
   return escaped.empty() ? " " : escaped;
 }
 
+// What each route gives, from the rules that refuse the rest.
+std::string table_of_routes() {
+  std::string text =
+      "\n## What each route gives\n\n"
+      "For every scene: with symmetry, with a bias, with drag that is not odd, with thresholds that\n"
+      "differ by direction; fluid_queue for those without drag. By either scheme where the route has\n"
+      "one. A number is the reason why there is nothing to be had.\n\n| quantity |";
+  std::string rule = "| --- |", reasons;
+  int number = 0;
+  for (const auto& route : kRoutes) {
+    text += fmt::format(" {} |", route.word);
+    rule += " --- |";
+    if (route.value == Route::excursion) continue;  // gives all
+    reasons += fmt::format("{}. `-route {}`: {}.\n", ++number, route.word, limit_of(route.value));
+  }
+  text += "\n" + rule + "\n";
+  for (const auto& row : quantity_table()) {
+    text += fmt::format("| {} |", row.word);
+    int reason = 0;
+    for (const auto& route : kRoutes) {
+      const bool gives =
+          std::find(row.routes.begin(), row.routes.end(), route.value) != row.routes.end();
+      text += gives ? " yes |" : fmt::format(" {} |", reason);
+      ++reason;
+    }
+    text += "\n";
+  }
+  return text + "\n" + reasons;
+}
+
 std::string other_help() {
   std::string text = "\nOther:\n";
   for (const auto& other : other_options()) {
@@ -209,7 +242,7 @@ std::string reference_page() {
                           cell(o.initial), cell(o.allowed), cell(o.sentence));
     }
   }
-  return text;
+  return text + table_of_routes();
 }
 
 std::string roff(std::string_view text) {

@@ -49,6 +49,7 @@ Values derivatives(const model::Scene& s) {
 
 model::Scene changed(model::Scene s, const std::string& parameter, double by) {
   if (parameter == "mu_d") s.friction.mu_d += by;
+  if (parameter == "mu_d_minus") *s.friction.mu_d_minus += by;
   if (parameter == "tau") s.tau += by;
   if (parameter == "drag_coefficient") s.drag.linear += by;
   return s;
@@ -80,13 +81,19 @@ TEST_CASE("sensitivity: adjoints agree with extrapolated differences", "[slow][r
   auto strong = scene(1, 0.9, 0.5, 0.5, {0.5, 0.3});
   auto small = scene(0.2, 0.13, 1, 0.5, {1, 0});  // k = 0
   auto long_stays = scene(2.6, 0.6, 1, 0.25, {1, 0});
+  auto biased = scene(1, 0.4, 1, 0.5, {1, 0});
+  biased.bias = 0.3;
+  auto lopsided = scene(1, 0.4, 1, 0.5, {1, 0});
+  lopsided.friction.mu_s_minus = 2.2;
+  lopsided.friction.mu_d_minus = 0.7;
   strong.drag_name = "cubic";
-  for (auto s : {weak, strong, small, long_stays}) {
+  for (auto s : {weak, strong, small, long_stays, biased, lopsided}) {
     s.noise_levels = s.full_levels() - 1;  // tau changes no number of levels
     const Values exact = derivatives(s);
-    for (const auto& [parameter, h] : {std::pair<std::string, double>{"mu_d", 0.004},
-                                       {"tau", 0.02 * s.tau},
-                                       {"drag_coefficient", 0.05 * s.drag.linear}}) {
+    std::vector<std::pair<std::string, double>> parameters{
+        {"mu_d", 0.004}, {"tau", 0.02 * s.tau}, {"drag_coefficient", 0.05 * s.drag.linear}};
+    if (s.friction.mu_d_minus) parameters.emplace_back("mu_d_minus", 0.004);
+    for (const auto& [parameter, h] : parameters) {
       for (const auto& [key, value] : extrapolated(s, parameter, h)) {
         const auto found = exact.find("d" + key + "_d" + parameter);
         if (found == exact.end() || found->second == 0) {

@@ -1,0 +1,296 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+
+#include "../common/near.hpp"
+#include "../common/scenes.hpp"
+#include "stickslip/exact/fluid_queue.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/quantities/resolvent.hpp"
+#include "stickslip/quantities/stationary.hpp"
+#include "stickslip/routes/evaluation.hpp"
+
+using namespace stickslip;
+using options::Quantity;
+using options::Route;
+using test::relative_difference;
+using test::scene;
+
+namespace {
+
+using Values = std::map<std::string, std::vector<double>>;
+
+// So small that it moves nothing, and yet no symmetry is made use of.
+constexpr double kNothing = 1e-300;
+
+const std::set<Quantity> kAll{
+    Quantity::sticking,        Quantity::moments,     Quantity::averages,
+    Quantity::entry_law,       Quantity::laplace,     Quantity::resolvent,
+    Quantity::spectrum,        Quantity::relaxation,  Quantity::duration_density,
+    Quantity::autocorrelation, Quantity::expectation, Quantity::sensitivity};
+
+// In pairs of mirror images.
+constexpr const char* kObservables[][2] = {
+    {"v^2", "v^2"}, {"x*v + v", "x*v - v"}, {"y == 0 ? x + 1 : v*v*v", "y == 0 ? 1 - x : -v*v*v"}};
+
+options::Case everything(const model::Scene& s, bool mirrored = false) {
+  options::Case c;
+  c.scene = s;
+  c.question.quantities = kAll;
+  c.question.lambda = {0.3, 3};
+  c.question.omega = {0, 0.5, 4};
+  c.question.time = {0.5, 2};
+  c.question.start.level = mirrored ? -1 : 1;
+  for (const auto& [f, image] : kObservables) {
+    auto observable = model::parse_observable(mirrored ? image : f, s.friction);
+    observable.name = f;
+    c.question.observables.push_back(observable);
+  }
+  c.question.accuracy = 1e-8;
+  return c;
+}
+
+Values evaluated(const options::Case& c, const test::Discrete& d) {
+  petsc::SolverStatistics statistics;
+  Values values;
+  for (const auto& r : routes::evaluate({PETSC_COMM_WORLD, c, d, statistics}).results) {
+    values[r.key] = r.value;
+  }
+  return values;
+}
+
+Values everything_on_hp(const model::Scene& s, bool mirrored = false) {
+  return evaluated(everything(s, mirrored), test::on_hp(test::on_full_noise(s), 7));
+}
+
+// Reduced models leave six or seven digits of the largest value of what is rough, others ten or
+// more.
+void check_alike(const Values& found, const Values& expected, double tolerance) {
+  for (const auto& [key, values] : expected) {
+    REQUIRE(found.count(key) == 1);
+    const bool rough = key.starts_with("f_") || key.starts_with("cdf_") || key.starts_with("E(");
+    double size = 0;
+    for (double value : values) size = std::max(size, std::abs(value));
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      INFO(key << " " << n << " " << found.at(key)[n] << " " << values[n]);
+      CHECK(std::abs(found.at(key)[n] - values[n]) <= (rough ? 2e-6 : tolerance) * size + 1e-13);
+    }
+  }
+}
+
+model::Scene asymmetric() {
+  auto s = scene(1, 0.4, 1, 0.5, {1, 0});
+  s.friction.mu_s_minus = 1.3;
+  s.friction.mu_d_minus = 0.7;
+  s.bias = 0.2;
+  return s;
+}
+
+model::Scene mirrored(model::Scene s) {
+  s.friction = s.friction.mirrored();
+  s.drag = s.drag.mirrored();
+  s.bias = -s.bias;
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("asymmetry: as it vanishes everything has its symmetric value", "[slow]") {
+  for (const auto& s : {scene(1, 0.4, 1, 0.5, {1, 0}), scene(0.7, 0.7, 1, 0.5, {0.5, 0.2})}) {
+    auto expected = everything_on_hp(s);
+    auto nearly = s;
+    nearly.bias = kNothing;
+    auto found = everything_on_hp(nearly);
+    // Even and odd modes, in one list.
+    std::vector<double> rates = expected["relaxation_even"];
+    for (double rate : expected["relaxation_odd"]) rates.push_back(rate);
+    std::sort(rates.begin(), rates.end());
+    rates.resize(3);
+    found["relaxation"].resize(3);
+    CHECK(found["relaxation"][0] == Approx(rates[0]).epsilon(1e-9));
+    CHECK(found["relaxation"][1] == Approx(rates[1]).epsilon(1e-9));
+    for (const char* parity : {"even", "odd"}) {
+      expected.erase(std::string("relaxation_") + parity);
+      expected.erase(std::string("relaxation_") + parity + "_frequency");
+    }
+    check_alike(found, expected, 1e-10);
+  }
+}
+
+TEST_CASE("asymmetry: mirror images mirror", "[slow]") {
+  auto lopsided = asymmetric();
+  lopsided.drag = {};
+  lopsided.drag.law = [](double v) { return v > 0 ? -v - 0.5 * v * v : -0.7 * v; };
+  lopsided.drag.law_is_odd = false;
+  for (const auto& s : {asymmetric(), lopsided}) {
+    const auto here = everything_on_hp(s);
+    auto there = everything_on_hp(mirrored(s), true);
+    // The sides exchange their names.
+    const auto exchange = [&](const std::string& a, const std::string& b) {
+      std::swap(there.at(a), there.at(b));
+    };
+    exchange("h_plus", "h_minus_from_minus");
+    exchange("h_minus", "h_plus_from_minus");
+    exchange("w_one", "w_one_from_minus");
+    exchange("entry_law", "entry_law_minus");
+    for (const char* law : {"entry_law", "entry_law_minus"}) {
+      std::reverse(there.at(law).begin(), there.at(law).end());
+    }
+    for (const auto& pair : kObservables) {
+      const std::string f = std::string("(") + pair[0] + ")";
+      exchange("w_plus" + f, "w_minus" + f);
+      exchange("u" + f, "u_minus" + f);
+      exchange("mu" + f, "mu_minus" + f);
+    }
+    for (auto& [key, values] : there) {
+      if (!key.starts_with("E_V") && !key.starts_with("dE_V_")) continue;
+      if (key == "E_V2") continue;
+      for (double& value : values) value = -value;
+    }
+    // Derivatives by thresholds of the directions.
+    for (auto& [key, values] : there) {
+      const std::string minus = key + "_minus";
+      if (key.ends_with("_dmu_d")) std::swap(values, there.at(minus));
+    }
+    check_alike(here, there, 1e-9);
+  }
+}
+
+// If mu_s+ - mu_s- = mu_d+ - mu_d- = d, the mean thresholds with the bias -d/2 are the same
+// process.
+TEST_CASE("asymmetry: thresholds that differ alike are a bias", "[parallel]") {
+  auto by_direction = scene(1, 0.4, 1, 0.5, {1, 0});
+  by_direction.friction.mu_s_minus = 1.3;
+  by_direction.friction.mu_d_minus = 0.7;
+  auto by_bias = scene(1.15, 0.55, 1, 0.5, {1, 0});
+  by_bias.bias = 0.15;
+  auto c = everything(by_direction), b = everything(by_bias);
+  for (auto* one : {&c, &b}) {
+    one->question.quantities = {Quantity::sticking,  Quantity::moments, Quantity::entry_law,
+                                Quantity::resolvent, Quantity::laplace, Quantity::spectrum};
+  }
+  const auto found = evaluated(c, test::on_hp(by_direction, 7)),
+             expected = evaluated(b, test::on_hp(by_bias, 7));
+  check_alike(found, expected, 1e-12);
+}
+
+// Four routes that share the matrix at most, and the queue that shares nothing.
+TEST_CASE("asymmetry: the routes agree") {
+  auto s = asymmetric();
+  for (bool drag : {true, false}) {
+    if (!drag) s.drag = {0, 0};
+    options::Case c;
+    c.scene = s;
+    c.question.accuracy = 1e-9;
+    c.question.lambda = {0.3, 3};
+    const auto d = test::on_hp(test::on_full_noise(s), drag ? 5 : 10);
+    const auto of = [&](Route route, std::set<Quantity> quantities) {
+      auto asked = c;
+      asked.question.quantities = std::move(quantities);
+      asked.method.route = route;
+      if (route == Route::lambda) asked.question.lambda = {};
+      return evaluated(asked, d);
+    };
+    const std::set<Quantity> averages{Quantity::sticking, Quantity::moments, Quantity::averages};
+    const auto excursions = of(Route::excursion, averages);
+    check_alike(excursions, of(Route::lambda, averages), 1e-7);
+    check_alike(excursions, of(Route::null_vector, averages), 1e-9);
+    check_alike(excursions, of(Route::hitting, {Quantity::sticking}), 1e-10);
+    if (drag) continue;
+    const std::set<Quantity> renewal{Quantity::sticking, Quantity::moments, Quantity::entry_law,
+                                     Quantity::laplace};
+    check_alike(of(Route::excursion, renewal), of(Route::fluid_queue, renewal), 1e-10);
+  }
+}
+
+// u = f/lambda + ... of the whole process, solved at once.
+TEST_CASE("asymmetry: the representation formula gives the resolvent of the whole process") {
+  const auto s = asymmetric();
+  for (const auto& d : {test::on_hp(s, 5, 1e-9), test::on_upwind(s, 3)}) {
+    petsc::SolverStatistics statistics;
+    operators::Systems systems(PETSC_COMM_WORLD, d, statistics);
+    std::vector<model::Observable> f;
+    for (const auto& pair : kObservables) {
+      f.push_back(model::parse_observable(pair[0], s.friction));
+    }
+    for (double lambda : {1e-3, 1.0, 1e2}) {
+      const auto r = quantities::resolvent(systems, lambda, f);
+      auto& whole = systems.at(lambda, operators::Symmetry::none, operators::StaticPhase::kept);
+      for (std::size_t n = 0; n < f.size(); ++n) {
+        const auto u = whole.factors().solve(whole.a().values(f[n].value));
+        INFO(f[n].name << " at lambda " << lambda);
+        CHECK(relative_difference(quantities::value_of(whole.a().trace_at_exit(), u).value,
+                                  r.of[n].u.value) < 1e-10);
+        CHECK(
+            relative_difference(
+                quantities::value_of(whole.a().trace_at_exit(operators::Branch::negative), u).value,
+                r.of[n].u_from_minus.value) < 1e-10);
+      }
+      systems.release(lambda, operators::Symmetry::none, operators::StaticPhase::kept);
+    }
+  }
+}
+
+// mu_d |V| and the drag take what the noise and the bias put in.
+TEST_CASE("asymmetry: friction takes the power that drag leaves", "[parallel]") {
+  const auto s = asymmetric();
+  const auto v = evaluated(everything(s), test::on_hp(s, 9));
+  const double in = v.at("E_XV")[0] + s.bias * v.at("E_V")[0];
+  CHECK(relative_difference(in, v.at("friction_power")[0] + v.at("E_V2")[0]) < 1e-9);
+  CHECK(relative_difference(v.at("slip_rate")[0] * v.at("mean_excursion")[0], 1) < 1e-14);
+}
+
+TEST_CASE("averages: of the phases, and what symmetry makes zero", "[parallel]") {
+  const auto s = scene(1, 0.4, 1, 0.5, {1, 0});
+  auto c = everything(s);
+  c.question.quantities = {Quantity::sticking, Quantity::moments, Quantity::averages};
+  c.question.observables.clear();
+  for (const char* f : {"v^2", "x", "y == 0 ? 2 : 3", "x*x"}) {
+    c.question.observables.push_back(model::parse_observable(f, s.friction));
+  }
+  const auto v = evaluated(c, test::on_hp(s, 8));
+  CHECK(relative_difference(v.at("pi(v^2)")[0], v.at("E_V2")[0]) < 1e-13);
+  CHECK(v.at("pi(v^2|stick)")[0] == 0);
+  CHECK(relative_difference(v.at("pi(v^2|slide)")[0] * v.at("P_slide")[0], v.at("E_V2")[0]) <
+        1e-13);
+  CHECK(v.at("pi(x)")[0] == 0);
+  CHECK(v.at("pi(y == 0 ? 2 : 3|stick)")[0] == Approx(2).epsilon(1e-13));
+  CHECK(v.at("pi(y == 0 ? 2 : 3|slide)")[0] == Approx(3).epsilon(1e-12));
+  CHECK(v.at("pi(x*x)")[0] == Approx(1 / s.tau).epsilon(1e-9));
+}
+
+// A start is a measure: in the stationary one nothing changes, and rest is a mixture of starts.
+TEST_CASE("expectation: from rest and from the stationary distribution", "[parallel]") {
+  for (double bias : {0.0, 0.2}) {
+    auto s = test::on_full_noise(scene(1, 0.4, 1, 0.5, {1, 0}));
+    s.bias = bias;
+    const auto d = test::on_hp(s, 6);
+    auto c = everything(s);
+    c.question.quantities = {Quantity::expectation};
+    c.question.time = {0, 0.7, 30};
+    c.question.observables.resize(2);
+    const auto from = [&](model::Start start) {
+      c.question.start = start;
+      return evaluated(c, d);
+    };
+    const auto stationary = from({0, 0, model::Start::Kind::stationary}),
+               rest = from({0, 0, model::Start::Kind::rest});
+    const auto weights = model::stationary_distribution(d.process.noise);
+    for (const auto& f : c.question.observables) {
+      const std::string key = "E(" + f.name + ")", limit = "stationary(" + f.name + ")";
+      std::vector<double> mixed(3, 0.0);
+      for (int i = -s.full_levels(); i <= s.full_levels(); ++i) {
+        const auto one = from({i, 0});
+        for (std::size_t n = 0; n < 3; ++n) {
+          mixed[n] += weights[s.full_levels() + i] * one.at(key)[n];
+        }
+      }
+      for (std::size_t n = 0; n < 3; ++n) {
+        INFO(key << " " << n);
+        CHECK(stationary.at(key)[n] == rest.at(limit)[0]);
+        CHECK(rest.at(key)[n] == Approx(mixed[n]).margin(1e-7));
+      }
+      CHECK(rest.at(key)[2] == Approx(rest.at(limit)[0]).margin(1e-7));
+    }
+  }
+}
