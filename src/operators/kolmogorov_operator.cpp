@@ -36,7 +36,6 @@ KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& disc
   trace_upper_ = rows.trace_at_exit(Branch::positive);
   if (!states().symmetry_reduced()) trace_lower_ = rows.trace_at_exit(Branch::negative);
   rest_coupling_ = std::move(rows.rest_coupling);
-  exit_coupling_ = std::move(rows.exit_coupling);
   if (!derivative && symmetry != Symmetry::odd && PetscRealPart(lambda) >= 0) {
     const bool nothing_killed = rest == StaticPhase::kept && PetscAbsScalar(lambda) == 0;
     require_generator(comm, {states().local_begin(), rows.row_start, rows.columns, rows.values},
@@ -147,16 +146,6 @@ petsc::VecHandle KolmogorovOperator::from_rest(const std::vector<PetscScalar>& s
   petsc::VecHandle f = zeros();
   petsc::WriteView local(f);
   for (const auto& c : rest_coupling_) local[c.row] += c.rate * s[c.level - lowest];
-  return f;
-}
-
-petsc::VecHandle KolmogorovOperator::exit_rates(Branch half) const {
-  const int side = half == Branch::positive ? 1 : -1;
-  petsc::VecHandle f = zeros();
-  petsc::WriteView local(f);
-  for (const auto& c : exit_coupling_) {
-    if (c.level == side) local[c.row] += c.rate;
-  }
   return f;
 }
 

@@ -60,7 +60,7 @@ class RowAssembler {
   std::vector<PetscInt> row_start{0};
   std::vector<PetscInt> columns;
   std::vector<PetscScalar> values;
-  std::vector<RestCoupling> rest_coupling, exit_coupling;
+  std::vector<RestCoupling> rest_coupling;
 
  private:
   // A half line, seen with its noise and velocities counted along it.
@@ -205,7 +205,6 @@ class RowAssembler {
   void rate_to_exit(Branch half, double rate) {
     if (rest_ == StaticPhase::killed_on_exit) {
       killing_ += rate;
-      exit_coupling.push_back({local_row(), half == Branch::positive ? 1 : -1, rate});
     } else if (states_.symmetry_reduced()) {
       rate_to_trace(trace_at_exit(Branch::positive), rate,
                     half == Branch::positive ? 1 : reflection());

@@ -71,7 +71,10 @@ void check_alike(const Values& found, const Values& expected, double tolerance) 
     const bool rough = key.starts_with("f_") || key.starts_with("cdf_") || key.starts_with("E(");
     double size = 0;
     for (double value : values) size = std::max(size, std::abs(value));
-    for (std::size_t n = 0; n < values.size(); ++n) {
+    // How many of the faster modes are found depends on the scalar type.
+    const std::size_t count = key.starts_with("relaxation") ? 3 : values.size();
+    REQUIRE(found.at(key).size() >= count);
+    for (std::size_t n = 0; n < count; ++n) {
       INFO(key << " " << n << " " << found.at(key)[n] << " " << values[n]);
       CHECK(std::abs(found.at(key)[n] - values[n]) <= (rough ? 2e-6 : tolerance) * size + 1e-13);
     }

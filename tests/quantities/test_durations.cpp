@@ -106,8 +106,8 @@ std::vector<double> stepped_excursion(Solved& s, const std::vector<double>& time
                                       double tolerance) {
   const KolmogorovOperator a(s.systems.comm(), s.systems.discretisation(), 0.0, Symmetry::even,
                              StaticPhase::killed_on_exit);
-  const auto ends = a.exit_rates(Branch::positive), down = a.exit_rates(Branch::negative);
-  check(VecAXPY(ends, 1, down));
+  const auto one = a.values([](double, double, double) { return 1.0; }), ends = a.zeros();
+  check(MatMult(a.matrix(), one, ends));
   return stepped(a, ends, a.trace_at_exit(), time, tolerance);
 }
 

@@ -17,7 +17,7 @@ namespace stickslip::operators {
 /// What a row has to do with a state at rest.
 struct RestCoupling {
   PetscInt row;  ///< local
-  int level;     ///< static level i; of an exit +1 upwards and -1 downwards
+  int level;     ///< static level i
   double rate;
 };
 
@@ -77,10 +77,6 @@ class KolmogorovOperator {
   /// StaticPhase::killing only. Collective.
   [[nodiscard]] petsc::VecHandle from_rest(const std::vector<PetscScalar>& s) const;
 
-  /// Rates of leaving the static states upwards or downwards, a right-hand side for the probability
-  /// of doing so. StaticPhase::killed_on_exit only. Collective.
-  [[nodiscard]] petsc::VecHandle exit_rates(Branch half) const;
-
   /// f(x, y, v) on all states, projected on noise nodes: products with occupations are those of
   /// the measures that they stand for, whatever f is. Collective. O(levels velocity nodes).
   using Observable = std::function<double(double x, double y, double v)>;
@@ -98,7 +94,6 @@ class KolmogorovOperator {
   std::shared_ptr<MatrixData> data_;
   std::vector<std::pair<PetscInt, double>> trace_upper_, trace_lower_;
   std::vector<RestCoupling> rest_coupling_;  // -A_us
-  std::vector<RestCoupling> exit_coupling_;
   // The matrix of a single rank lives in these.
   std::vector<PetscInt> row_start_, columns_;
   std::vector<PetscScalar> values_;
