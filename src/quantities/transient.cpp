@@ -89,14 +89,16 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
   result.value.resize(time.size());
   for (Symmetry symmetry : {Symmetry::even, Symmetry::odd}) {
     KolmogorovOperator a = kept(systems, symmetry);
-    const petsc::VecHandle b = a.values([&](double x, double y, double v) {
+    const auto part_of = [&](double x, double y, double v) {
       return symmetry == Symmetry::even ? f.even(x, y, v) : f.odd(x, y, v);
-    });
+    };
+    const petsc::VecHandle b = a.values(part_of);
     const petsc::VecHandle pi = distribution.occupation_on(a), square = a.zeros();
     check(VecScale(pi, 1 / distribution.excursion().mean_excursion()));
     check(VecPointwiseMult(square, b, b));
     const double unit = std::sqrt(std::abs(dot(pi, square)));
     if (symmetry == Symmetry::even) result.stationary = dot(pi, b);
+    result.unseen += std::abs(dot(pi, a.overlooked(part_of)));
     if (unit == 0) continue;
     const petsc::VecHandle c = a.value_at(start.level, start.v);
     PetscReal seen = 0;
@@ -106,6 +108,7 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
                             time, unit, method, tolerance);
     for (std::size_t n = 0; n < time.size(); ++n) result.value[n] = result.value[n] + part[n];
   }
+  for (auto& value : result.value) value.error += result.unseen;
   return result;
 }
 

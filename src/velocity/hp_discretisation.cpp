@@ -21,15 +21,20 @@ std::vector<double> legendre_zeros(int q) {
   return zeros;
 }
 
+// Of a zero x of P_q, on [-1, 1].
+double gauss_weight(int q, double x) {
+  const double slope = boost::math::legendre_p_prime(q, x);
+  return 2 / ((1 - x * x) * slope * slope);
+}
+
 }  // namespace
 
 ReferenceElement::ReferenceElement(int degree) : size(degree + 1) {
   if (degree < 0) throw std::invalid_argument("polynomial degree below 0");
   const std::vector<double> zeros = legendre_zeros(size);
-  for (int n = 0; n < size; ++n) {
-    const double x = zeros[n];
-    const double slope = boost::math::legendre_p_prime(size, x);
-    const double w = 2 / ((1 - x * x) * slope * slope);
+  for (double x : zeros) {
+    const double w = gauss_weight(size, x);
+    const auto n = node.size();
     node.push_back((1 + x) / 2);
     weight.push_back(w / 2);
     barycentric_.push_back((n % 2 ? -1 : 1) * std::sqrt((1 - x * x) * w));
@@ -43,6 +48,20 @@ ReferenceElement::ReferenceElement(int degree) : size(degree + 1) {
   }
   at_left = basis(0);
   at_right = basis(1);
+  project();
+}
+
+void ReferenceElement::project() {
+  const int others = 2 * size;
+  projection.resize(static_cast<std::size_t>(size) * others);
+  for (double x : legendre_zeros(others)) {
+    const auto at = basis((1 + x) / 2);
+    const auto k = other_node.size();
+    other_node.push_back((1 + x) / 2);
+    for (int m = 0; m < size; ++m) {
+      projection[m * others + k] = at[m] * gauss_weight(others, x) / 2 / weight[m];
+    }
+  }
 }
 
 // Second barycentric formula.
@@ -163,6 +182,22 @@ std::vector<Entry> HpDiscretisation::value_at(double v) const {
   const int e = static_cast<int>(above - ends_.begin()) - 1;
   const auto& [reference, first, length] = elements_[e];
   return entries(e, reference->basis((v - ends_[e]) / length));
+}
+
+// Points on which a jump within an element lies otherwise than on the nodes see another integral.
+std::vector<double> HpDiscretisation::overlooked(const std::function<double(double)>& f) const {
+  std::vector<double> by_node;
+  for (int e = 0; e < elements(); ++e) {
+    const auto& [reference, first, length] = elements_[e];
+    std::vector<double> values;
+    for (double t : reference->other_node) values.push_back(f(ends_[e] + length * t));
+    auto row = reference->projection.begin();
+    for (int m = 0; m < reference->size; ++m, row += std::ssize(values)) {
+      by_node.push_back(
+          std::inner_product(values.begin(), values.end(), row, -f(nodes_[first + m])));
+    }
+  }
+  return by_node;
 }
 
 double HpDiscretisation::mass_below(std::span<const double> mass, double v) const {
