@@ -57,7 +57,8 @@ struct Interval {
 /// Finds the breaks of one function.
 class Search {
  public:
-  Search(const FunctionOfSpeed& f, const std::vector<double>& marks) : f_(f), marks_(marks) {}
+  Search(const FunctionOfSpeed& f, const std::vector<double>& marks, double largest)
+      : f_(f), marks_(marks), largest_(largest) {}
 
   /// Those between a and b.
   void look(double a, double b, int depth = 0) {
@@ -73,7 +74,7 @@ class Search {
     double gap = 0;
     if (is_break) {
       const Break next = place(bracket, std::max(size, all.error));
-      merge(found, {next});
+      if (!rounded(next, bracket.error)) merge(found, {next});
       gap = 8 * next.width + kLeast * next.v;
     }
     // Beside a pole the error can be larger than at the pole.
@@ -92,7 +93,7 @@ class Search {
   // marks lie.
   bool narrow(Interval now, double rounding) {
     constexpr int unresolvable = 5;
-    constexpr double smooth = 3.5, narrow_enough = 1e-5;
+    constexpr double smooth = 3.5, narrow_enough = 1e-4;
     std::vector<Interval> past{now};
     bracket_ = now;
     for (int alike = 0; now.divides() && !(now.error <= rounding); past.push_back(now)) {
@@ -118,6 +119,13 @@ class Search {
     return std::log(before.error / last.error) / std::log(before.width() / last.width());
   }
 
+  // Whether it is a step of rounding, as those of 1 + tanh(v) at v = -17.
+  [[nodiscard]] bool rounded(const Break& jump, double error) const {
+    constexpr double rounding = 1e-14, width_of_jump = 1e-12;
+    return jump.width < width_of_jump * jump.v && error < rounding * largest_ &&
+           !std::binary_search(marks_.begin(), marks_.end(), jump.v);
+  }
+
   // A jump is bisected to the precision of v. Next to a root or a pole rounding looks like more.
   [[nodiscard]] Break place(const Interval& bracket, double size) const {
     constexpr double precision = 1e-15, blurred = 2e-7;
@@ -136,6 +144,7 @@ class Search {
 
   const FunctionOfSpeed& f_;
   const std::vector<double>& marks_;
+  double largest_;  // value of f
   Interval bracket_{[](double) { return 0.0; }, 0, 0};
 };
 
@@ -190,17 +199,22 @@ void merge(std::vector<Break>& found, const std::vector<Break>& more) {
 // them is in neither.
 std::vector<Break> breaks(const FunctionOfSpeed& f, const std::vector<double>& numbers,
                           double reach) {
+  constexpr int first = 10, count = 400;
+  const auto end = [&](int n) {
+    return std::min(reach, reach * std::pow((n + 1 / std::numbers::pi) / count, 3));
+  };
+  double largest = 0;
+  for (int n = first; n <= count; ++n) {
+    const double value = std::abs(f(end(n)));
+    if (std::isfinite(value)) largest = std::max(largest, value);
+  }
   const auto marks = marks_of(numbers, reach);
-  Search search(f, marks);
+  Search search(f, marks, largest);
   for (double mark : marks) {
     for (double part : {1e-8, 1e-6, 1e-3}) {
       search.look(mark * (1 - part), std::min(reach, mark * (1 + part)));
     }
   }
-  constexpr int first = 10, count = 400;
-  const auto end = [&](int n) {
-    return std::min(reach, reach * std::pow((n + 1 / std::numbers::pi) / count, 3));
-  };
   for (int n = first; n < count; ++n) search.look(end(n), end(n + 1));
   return search.found;
 }

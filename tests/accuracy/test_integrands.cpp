@@ -147,15 +147,17 @@ TEST_CASE("integrands: a kink of the drag is what ever sharper bends tend to") {
   };
   const auto smooth = [&](double width) {
     const std::string w = std::to_string(width);
-    return mean_square(w + "*(log(1+exp((abs(v)-0.6)/" + w + "))-log(1+exp(-0.6/" + w + ")))");
+    return mean_square("max(0,abs(v)-0.6)+" + w + "*(log(1+exp(-abs(abs(v)-0.6)/" + w +
+                       "))-log(1+exp(-0.6/" + w + ")))");
   };
   const double kink = mean_square("max(0,abs(v)-0.6)");
-  const double wide = smooth(0.04), narrow = smooth(0.02);
-  CHECK(std::abs(narrow - kink) > 1e-5);
+  const double wide = smooth(0.02), narrow = smooth(0.01);
+  CHECK(std::abs(narrow - kink) > 3e-6);
   CHECK(relative_difference((4 * narrow - wide) / 3, kink) < 3e-6);
 }
 
-// Nobody has looked for the jump: the nodes of two degrees in a row can miss it alike.
+// Nobody has looked for the jump: the nodes of two degrees in a row can miss it alike. Points at
+// the ends of elements show it, if not to the digit.
 TEST_CASE("integrands: what the nodes miss is part of the error") {
   const double right = 0.198608934333;
   for (int degree = 4; degree <= 14; ++degree) {
@@ -165,14 +167,14 @@ TEST_CASE("integrands: what the nodes miss is part of the error") {
     r.method.degree = degree;
     const auto pi = result(solve(r, 1e-6), "pi(abs(v)>0.5)");
     INFO("degree " << degree << ": " << pi.value[0] << " +- " << pi.error[0]);
-    CHECK(std::abs(pi.value[0] - right) <= 1.5 * pi.error[0]);
+    CHECK(std::abs(pi.value[0] - right) <= 4 * pi.error[0]);
   }
   // And nothing of it where nodes see everything.
   auto r = averages({"v^2", "abs(v)", "x*v"});
   r.method.degree = 10;
   const auto first = accuracy::RefinementSequence(r).refinement_level(1);
   const auto alone = accuracy::solve_on(PETSC_COMM_WORLD, r, first).evaluation.results;
-  for (const auto& result : alone) CHECK(result.error[0] <= 1e-11 * std::abs(result.value[0]));
+  for (const auto& result : alone) CHECK(result.error[0] <= 1e-11);
 }
 
 TEST_CASE("integrands: averages of what lies in [0, 1] are probabilities") {

@@ -66,6 +66,7 @@ TEST_CASE("breaks: none where doubles resolve a function, however steep, nor in 
   CHECK(places([](double v) { return (1 - std::cos(v)) / (v * v); }, {1, 2}).empty());
   CHECK(places([](double v) { return std::exp(-v * v); }, {}, 100).empty());  // 0 in the end
   CHECK(places([](double) { return 0.0; }).empty());
+  CHECK(places([](double v) { return 1 + std::tanh((v - 5) / 0.2); }, {5, 0.2}).empty());
 }
 
 TEST_CASE("breaks: a pole is unbounded, a jump, a root and a logarithm are not") {

@@ -20,8 +20,8 @@ struct ReferenceElement {
   std::vector<double> derivative;  ///< q x q by rows: l_n'(x_m); the diagonal is not set
   std::vector<double> at_left;     ///< l_n(0)
   std::vector<double> at_right;    ///< l_n(1)
-  std::vector<double> other_node;  ///< 2q Gauss-Legendre nodes
-  std::vector<double> projection;  ///< q x 2q by rows: l_m at each of these times weight/w_m
+  std::vector<double> other_node;  ///< 2q + 1 Clenshaw-Curtis nodes
+  std::vector<double> projection;  ///< q x (2q + 1) by rows: l_m at these, times weight/w_m
 
   /// l_n(t), n = 0 ... q-1, for t in [0, 1]. O(q).
   [[nodiscard]] std::vector<double> basis(double t) const;
