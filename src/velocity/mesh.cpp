@@ -172,6 +172,12 @@ std::vector<double> regular_ends(const model::Process& process, const MeshRule& 
   return has_waves(process, rule) ? cut_for_waves(process, rule.rates.omega, ends) : ends;
 }
 
+std::vector<double> sorted(std::vector<double> ends) {
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  return ends;
+}
+
 // A regular end that would leave a sliver beside a break gives way to it.
 std::vector<double> with_breaks(const std::vector<double>& regular,
                                 const std::vector<double>& breaks) {
@@ -184,9 +190,7 @@ std::vector<double> with_breaks(const std::vector<double>& regular,
                                        [&](double b) { return std::abs(b - regular[n]) < least; });
     if (!gives_way) ends.push_back(regular[n]);
   }
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  return ends;
+  return sorted(ends);
 }
 
 // Beyond a break the drag or the integrand is another one, and what happens within the next jump of
@@ -194,21 +198,18 @@ std::vector<double> with_breaks(const std::vector<double>& regular,
 // two elements for them on either side errors fell twofold a degree (tenfold with them), at delta =
 // 1/2 as at 1/64. Elements short beside v need none.
 std::vector<double> graded_towards(const std::vector<double>& breaks, double ratio,
-                                   std::vector<double> ends) {
+                                   const std::vector<double>& ends) {
   constexpr int layers = 2;
   constexpr double is_short = 0.5;
-  std::vector<double> more;
+  std::vector<double> all = ends;
   for (double b : breaks) {
     const auto at = std::lower_bound(ends.begin(), ends.end(), b);
     for (double neighbour : {at[-1], at[1]}) {
       if (std::abs(neighbour - b) < is_short * b) continue;
-      for (int n = 1; n <= layers; ++n) more.push_back(b + std::pow(ratio, n) * (neighbour - b));
+      for (int n = 1; n <= layers; ++n) all.push_back(b + std::pow(ratio, n) * (neighbour - b));
     }
   }
-  ends.insert(ends.end(), more.begin(), more.end());
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  return ends;
+  return sorted(all);
 }
 
 // Grading makes polynomials of degree d on an element as accurate as 3^-d where functions are
@@ -219,79 +220,58 @@ class Halving {
  public:
   Halving(const model::Process& process, const MeshRule& rule)
       : functions_(rule.integrands.functions), upper_(process), lower_(process.mirrored()) {
-    const auto drag_on = [](const model::Drag& b) { return [b](double v) { return b(v); }; };
-    if (process.drag.law) functions_.emplace_back(drag_on(process.drag));
-    if (!process.drag.odd()) functions_.emplace_back(drag_on(lower_.drag));
+    if (process.drag.law) functions_.emplace_back(process.drag.law);
+    if (!process.drag.odd()) functions_.emplace_back(lower_.drag.law);
+    sizes_.assign(functions_.size(), 0);
   }
 
-  [[nodiscard]] std::vector<double> halved(const std::vector<double>& ends) {
+  [[nodiscard]] std::vector<double> halved(std::vector<double> ends) {
     if (functions_.empty()) return ends;
-    find_sizes(ends);
-    for (std::size_t e = 1; e < ends.size(); ++e)
-      elements_.push_back(element(ends[e - 1], ends[e]));
+    std::vector<Element> elements;
+    for (int pass = 0; pass < 2; ++pass) {  // sizes are known after the first
+      elements.clear();
+      for (std::size_t e = 1; e < ends.size(); ++e) elements.push_back(seen(ends[e - 1], ends[e]));
+    }
     constexpr int most = 100;
     for (int n = 0; n < most; ++n) {
-      const auto worst =
-          std::max_element(elements_.begin(), elements_.end(),
-                           [](const Element& p, const Element& q) { return p.misfit < q.misfit; });
+      const auto worst = std::max_element(elements.begin(), elements.end());
       if (!(worst->misfit > 1)) break;
-      const auto [low, high, misfit] = *worst;
-      const double middle = low + (high - low) / 2;
-      *worst = element(low, middle);
-      elements_.push_back(element(middle, high));
+      const auto [misfit, low, high] = *worst;
+      ends.push_back(low + (high - low) / 2);
+      *worst = seen(low, ends.back());
+      elements.push_back(seen(ends.back(), high));
     }
-    std::vector<double> all{ends.front()};
-    for (const Element& e : elements_) all.push_back(e.high);
-    std::sort(all.begin(), all.end());
-    return all;
+    return sorted(ends);
   }
 
  private:
   struct Element {
-    double low, high;
     double misfit;  // above 1 where it is to be halved
+    double low, high;
+    bool operator<(const Element& other) const { return misfit < other.misfit; }
   };
-
-  // At a jump f has the value of one side.
-  static double error_inside(const model::FunctionOfSpeed& f, double low, double high) {
-    const double margin = 1e-6 * (high - low);
-    return model::interpolation_error(f, low + margin, high - margin);
-  }
 
   // Of the side with the larger density.
   [[nodiscard]] double weight(double v) const { return std::exp(std::max(upper_(v), lower_(v))); }
 
-  // An error shows values between the places looked at.
-  void find_sizes(const std::vector<double>& ends) {
-    sizes_.assign(functions_.size(), 0);
-    for (std::size_t e = 1; e < ends.size(); ++e) {
-      const double middle = (ends[e - 1] + ends[e]) / 2, weighted = weight(middle);
-      for (std::size_t f = 0; f < functions_.size(); ++f) {
-        const auto& function = functions_[f];
-        const double error = error_inside(function, ends[e - 1], ends[e]);
-        const double value = std::max(std::abs(function(middle)), std::abs(function(ends[e])));
-        const double size = weighted * std::max(value, error);
-        if (size > sizes_[f]) sizes_[f] = size;
-      }
-    }
-  }
-
-  [[nodiscard]] Element element(double low, double high) const {
+  // Inside: at a jump f has the value of one side. An error shows values between the places.
+  Element seen(double low, double high) {
     static const double accepted = std::pow(3, -7);
-    Element made{low, high, 0};
-    const double weighted = weight(low);
-    for (std::size_t f = 0; f < functions_.size(); ++f) {
-      const double error = error_inside(functions_[f], low, high);
-      const double misfit = weighted * error / (accepted * sizes_[f]);
-      if (misfit > made.misfit) made.misfit = misfit;
+    const double margin = 1e-6 * (high - low), middle = (low + high) / 2;
+    const double at_middle = weight(middle), at_low = weight(low);
+    Element element{0, low, high};
+    for (std::size_t n = 0; n < functions_.size(); ++n) {
+      const auto& f = functions_[n];
+      const double error = model::interpolation_error(f, low + margin, high - margin);
+      sizes_[n] = std::fmax(sizes_[n], at_middle * std::fmax(std::abs(f(middle)), error));
+      element.misfit = std::fmax(element.misfit, at_low * error / (accepted * sizes_[n]));
     }
-    return made;
+    return element;
   }
 
   std::vector<model::FunctionOfSpeed> functions_;
-  std::vector<double> sizes_;  // largest weighted value
+  std::vector<double> sizes_;  // largest weighted values
   LogDensity upper_, lower_;
-  std::vector<Element> elements_;
 };
 
 }  // namespace
