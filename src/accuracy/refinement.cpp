@@ -167,16 +167,24 @@ class Refiner {
     }
     const bool falls = rounding < 0.5 * std::exchange(last_rounding_, rounding);
     if (rounding <= question_.accuracy || falls) return false;
+    // What sums over nodes overlook of an observable falls by fits and starts.
+    constexpr int patience = 3;
+    if (!question_.observables.empty() && ++refinements_in_vain_ < patience) return false;
     const bool by_lambda = given_.method.route == options::Route::lambda;
     const double least = std::max(rounding, step.estimate);
     const std::string looser = least < 0.05
                                    ? fmt::format("take {}-accuracy {:.0e}",
                                                  by_lambda ? "another -lambda or " : "", 2 * least)
                                    : "no digit of it is left: leave it out";
-    outcome_.shortfall = fmt::format(
-        "{} {} to {:.1e}; {}", by_lambda ? "lambda > 0 or rounding limits" : "rounding limits",
-        step.limiting_key, least, looser);
+    outcome_.shortfall =
+        fmt::format("{} {} to {:.1e}; {}", what_limits(), step.limiting_key, least, looser);
     return true;
+  }
+
+  [[nodiscard]] const char* what_limits() const {
+    if (given_.method.route == options::Route::lambda) return "lambda > 0 or rounding limits";
+    if (question_.observables.empty()) return "rounding limits";
+    return "rounding, or an observable too steep for the elements, limits";
   }
 
   // Time of the run that would find one digit more, from how fast estimates fell.
@@ -247,6 +255,7 @@ class Refiner {
   Outcome outcome_;
   std::vector<double> rounding_;                                    // relative, of each result
   double last_rounding_ = std::numeric_limits<double>::infinity();  // of the limiting result
+  int refinements_in_vain_ = 0;
   double last_omega_ = 0;                                       // of waves that elements followed
   Changes changes_;                                             // of the last step
   std::shared_ptr<const StationaryDistribution> distribution_;  // of the last step, if needed

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace stickslip::accuracy {
 namespace {
@@ -48,12 +49,28 @@ velocity::Rates fastest_rates(const options::Case& given) {
   return rates;
 }
 
+// Observables on the levels on which they were looked at, once each whatever is done with them.
+velocity::Integrands integrands_of(const options::Question& question) {
+  velocity::Integrands integrands;
+  for (const auto& observable : question.observables) {
+    const auto f = std::make_shared<const model::Observable>(observable);
+    integrands.breaks.insert(integrands.breaks.end(), f->breaks.begin(), f->breaks.end());
+    for (double x : f->levels) {
+      for (double sign : {1.0, -1.0}) {
+        integrands.functions.emplace_back(model::section(f, x, sign));
+      }
+    }
+  }
+  return integrands;
+}
+
 }  // namespace
 
 RefinementSequence::RefinementSequence(const options::Case& given)
     : scene_(given.scene), method_(given.method), accuracy_(given.question.accuracy) {
   first_degree_ = method_.degree.value_or(starting_degree(given.question));
   rates_ = fastest_rates(given);
+  integrands_ = integrands_of(given.question);
   halves_ = options::on_full_grid(given.method.route) || !given.scene.symmetric() ? 2 : 1;
   // On nodes the residuals of eigenvectors, which stand for errors, stay five times larger.
   all_levels_ = options::on_full_grid(given.method.route) || method_.noise_degree == 0 ||
@@ -116,6 +133,7 @@ Resolution RefinementSequence::made(int n) const {
   case options::Scheme::hp:
     r = hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n), rates(n),
                       grouping(n));
+    r.integrands = integrands_;
     break;
   case options::Scheme::upwind: r = upwind_resolution(scene_, points(n), tail_tolerance(n)); break;
   case options::Scheme::none: r = exact_resolution(scene_, tail_tolerance(n)); break;

@@ -23,6 +23,7 @@ velocity::MeshRule mesh_rule(const Resolution& resolution) {
   rule.v_max = resolution.v_max;
   rule.layers = resolution.layers;
   rule.rates = resolution.rates;
+  rule.integrands = resolution.integrands;
   return rule;
 }
 

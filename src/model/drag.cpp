@@ -132,7 +132,7 @@ std::optional<double> Drag::asymmetry() const {
 
 Drag Drag::mirrored() const {
   if (!law) return *this;
-  return {linear, cubic, [b = law](double v) { return -b(-v); }, reach, law_is_odd};
+  return {linear, cubic, [b = law](double v) { return -b(-v); }, reach, law_is_odd, breaks};
 }
 
 }  // namespace stickslip::model

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "stickslip/model/breaks.hpp"
 #include "stickslip/model/expression.hpp"
 
 namespace stickslip::model {
@@ -87,8 +88,8 @@ void require_falling(const Side& b, const std::vector<double>& v, double mu_d) {
 }
 
 [[noreturn]] void refuse_slope(const Side& b, double v, double slope) {
-  throw UnfitLaw(fmt::format("has a slope of {:.1e} or more at v = {:.9g}, where it jumps or is "
-                             "infinitely steep; motion needs a bounded slope",
+  throw UnfitLaw(fmt::format("has a slope of {:.1e} or more at v = {:.9g}, where it is infinitely "
+                             "steep; motion needs a bounded slope",
                              -slope, b.sign * v),
                  "smooth it, for example v/sqrt(abs(v) + 0.01) for sqrt(abs(v)), or tanh(v/0.01) "
                  "for sign(v)");
@@ -101,12 +102,21 @@ void require_slope_at_rest(const Side& b, double reach) {
   if (slope > 1.02 * before && slope > 1e-6) refuse_slope(b, near, slope);
 }
 
+[[noreturn]] void refuse_jump(const Side& b, double v, double before, double after) {
+  throw UnfitLaw(
+      fmt::format("jumps from {:.9g} to {:.9g} at v = {:.9g}; there forces on both sides "
+                  "can hold a body, and no density shows how long",
+                  b.sign * before, b.sign * after, b.sign * v),
+      "smooth it, for example tanh((v - 0.5)/0.01) for sign(v - 0.5)");
+}
+
 // Follows the steeper half of an interval 25 times: there a jump or a root betrays itself by a
-// slope far above that of the interval and of the whole.
+// slope far above that of the interval and of the whole. What is left of a jump is all of it.
 void require_bounded_slope(const Side& b, double low, double high, double mean) {
-  double at_low = b(low), at_high = b(high);
+  constexpr int halvings = 25, late = 15;
+  double at_low = b(low), at_high = b(high), drop = 0;
   const double secant = (at_low - at_high) / (high - low);
-  for (int n = 0; n < 25; ++n) {
+  for (int n = 0; n < halvings; ++n) {
     const double middle = (low + high) / 2, value = b(middle);
     if (at_low - value > value - at_high) {
       high = middle;
@@ -115,9 +125,12 @@ void require_bounded_slope(const Side& b, double low, double high, double mean) 
       low = middle;
       at_low = value;
     }
+    if (n == late) drop = at_low - at_high;
   }
   const double slope = (at_low - at_high) / (high - low);
-  if (slope > 1e3 * (std::max(secant, 0.0) + mean)) refuse_slope(b, low, slope);
+  if (!(slope > 1e3 * (std::max(secant, 0.0) + mean))) return;
+  if (at_low - at_high > 0.5 * drop) refuse_jump(b, low, at_low, at_high);
+  refuse_slope(b, low, slope);
 }
 
 void require_sound(const Side& b, double reach, double mu_d) {
@@ -127,6 +140,20 @@ void require_sound(const Side& b, double reach, double mu_d) {
   require_slope_at_rest(b, reach);
   const double mean = -b(reach) / reach;
   for (std::size_t n = 1; n < v.size(); ++n) require_bounded_slope(b, v[n - 1], v[n], mean);
+}
+
+// Kinks, on either side.
+std::vector<double> breaks_of(const Drag& drag, std::vector<double> numbers) {
+  std::vector<Break> found;
+  for (double sign : {1.0, -1.0}) merge(found, breaks(Side{drag, sign}, numbers, drag.reach));
+  constexpr std::size_t most = 64;
+  if (found.size() > most) {
+    throw UnfitLaw(fmt::format("has more than {} kinks", most),
+                   "take one with fewer, or smooth it");
+  }
+  std::vector<double> speeds;
+  for (const Break& b : found) speeds.push_back(b.v);
+  return speeds;
 }
 
 Expression read(const std::string& text, const Friction& friction, double tau) {
@@ -151,6 +178,9 @@ Drag parse_drag(const std::string& text, const Friction& friction, double tau, d
   }
   for (double sign : {1.0, -1.0}) require_sound({drag, sign}, drag.reach, mu_d);
   drag.law_is_odd = !drag.asymmetry();
+  auto numbers = numbers_in(text);
+  numbers.insert(numbers.end(), {friction.mu_s, friction.mu_d, tau});
+  drag.breaks = breaks_of(drag, numbers);
   return drag;
 }
 

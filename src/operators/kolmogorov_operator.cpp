@@ -170,4 +170,27 @@ petsc::VecHandle KolmogorovOperator::values(const Observable& f) const {
   return result;
 }
 
+petsc::VecHandle KolmogorovOperator::overlooked(const Observable& f) const {
+  petsc::VecHandle result = zeros();
+  petsc::WriteView local(result);
+  const noise::Nodes& noise = *discretisation().noise;
+  for (const Branch half : states().halves()) {
+    const double sign = half == Branch::positive ? 1 : -1;
+    for (const int n : states().local_noise()) {
+      const auto [first, stride] = states().nodes_of(half, n);
+      PetscInt at = first - states().local_begin();
+      const auto of_speed = [&](double speed) {
+        return noise.projected(n, [&](int i) {
+          return f(sign * discretisation().process.noise.level(i), sign, sign * speed);
+        });
+      };
+      for (const double value : discretisation().velocities->overlooked(of_speed)) {
+        local[at] = value;
+        at += stride;
+      }
+    }
+  }
+  return result;
+}
+
 }  // namespace stickslip::operators

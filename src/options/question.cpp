@@ -110,8 +110,9 @@ read_observables(const Settings& settings, const model::Friction& friction, Prob
   return observables;
 }
 
-// Up to 17 levels evenly, and those next to the numbers of f.
-std::vector<double> probed_levels(const model::Scene& scene, const model::Observable& f) {
+// Up to 17 levels evenly, and those next to the numbers of f; each raised by `raised`.
+std::vector<double> probed_levels(const model::Scene& scene, const model::Observable& f,
+                                  int raised) {
   const auto noise = scene.meant().noise;
   const double seen = (largest_force(scene) + scene.friction.mu_d) / scene.delta;
   const int highest = std::min<int>(noise.levels, static_cast<int>(std::min(seen, 1e9)));
@@ -125,7 +126,9 @@ std::vector<double> probed_levels(const model::Scene& scene, const model::Observ
     }
   }
   std::vector<double> x;
-  for (int level : levels) x.push_back(noise.level(level));
+  for (int level : levels) {
+    if (level + raised <= highest) x.push_back(noise.level(level + raised));
+  }
   std::sort(x.begin(), x.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
   return x;
 }
@@ -140,20 +143,21 @@ double largest_speed(const model::Scene& scene) {
   return std::min(speed, scene.v_max.value_or(speed));
 }
 
-// Where f jumps within an element, its polynomials are wrong by more than refinement sees. At v = 0
-// elements end, and x has a level on each of its values.
-void check_observables(const Settings& settings, const Request& request, Problems& problems) {
+// Elements end where functions of the state jump or have kinks, on all levels of x alike. At v = 0
+// they end in any case, and x has a level on each of its values.
+void examine_observables(const Settings& settings, Request& request, Problems& problems) {
   const bool used = depends_on(request.question, "observable");
   if (!used || request.method.scheme != Scheme::hp) return;
-  const double speed = largest_speed(request.scene);
-  for (const auto& f : request.question.observables) {
-    const auto jump = model::velocity_jump(f, probed_levels(request.scene, f), speed);
-    if (!jump) continue;
-    settings.report(problems, "observable",
-                    fmt::format("{} jumps at v = {:.9g} (seen at x = {:g}); -scheme hp takes "
-                                "functions that are continuous in v except at v = 0",
-                                f.name, jump->v, jump->x),
-                    "take -scheme upwind, or a smooth step such as tanh((v - 0.5)/0.2)");
+  const auto& scene = request.scene;
+  const double speed = largest_speed(scene);
+  for (auto& f : request.question.observables) {
+    try {
+      model::examine(f, probed_levels(scene, f, 0), probed_levels(scene, f, 1), speed);
+    } catch (const std::invalid_argument& error) {
+      settings.report(problems, "observable", error.what(),
+                      "take -scheme upwind, or another formula: elements of -scheme hp end at up "
+                      "to 64 jumps and kinks in v that are the same for all x");
+    }
   }
 }
 
@@ -232,7 +236,7 @@ void read_question(const Settings& settings, Request& request, Problems& problem
   check_horizon(settings, request, problems);
   if (!problems.empty()) return;  // the others look at states of the model
   if (depends_on(question, "start")) read_start(settings, request, problems);
-  check_observables(settings, request, problems);
+  examine_observables(settings, request, problems);
 }
 
 }  // namespace stickslip::options

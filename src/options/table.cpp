@@ -94,8 +94,9 @@ std::vector<Option> scene_options() {
            "the drag must not grow with the velocity, it would drive the body"),
       text("drag_expression", "",
            "b(v) of -drag expression in v, mu_s, mu_d, tau, such as \"-v - 0.1*v*abs(v)\"; 0 at "
-           "rest, falling everywhere with bounded slopes; where it is not odd, both signs of v are "
-           "kept, as with a bias"),
+           "rest, falling everywhere with bounded slopes (kinks are fine, jumps not); where it is "
+           "not "
+           "odd, both signs of v are kept, as with a bias"),
       real("bias", "force", "0", {-kInfinity, kInfinity, false, false},
            "constant force added to X, such as the slope of an inclined plane; without symmetry "
            "both signs of v are kept, and everything can be asked for all the same",
@@ -140,7 +141,9 @@ std::vector<Option> question_options() {
       text("observable", "",
            "functions of the state for averages, resolvent and expectation, separated by semicolons: 1, x, "
            "v, v^2, |v|, stick, slide, |x|<=mu_s, or expressions in x, y, v, mu_s, mu_d such as "
-           "\"x*v; abs(v)^3\"; with -scheme hp continuous in v except at v = 0"),
+           "\"x*v; abs(v) > 0.5\"; with -scheme hp elements end at jumps and kinks in v, up to 64 "
+           "that "
+           "are the same for all x"),
       real("accuracy", "", "1e-6", {1e-15, 0.1, true, true},
            "relative error wanted for every scalar asked for, at the given delta",
            "double precision allows down to about 1e-14, case by case"),

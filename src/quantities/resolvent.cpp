@@ -25,6 +25,12 @@ std::vector<double> spread_odd(const std::vector<double>& upper) {
   return all;
 }
 
+PetscReal largest(Vec values) {
+  PetscReal size = 0;
+  petsc::check(VecNorm(values, NORM_INFINITY, &size));
+  return size;
+}
+
 /// The problems of one symmetry.
 class Sector {
  public:
@@ -58,11 +64,18 @@ class Sector {
   /// w(s+-; f) for an f of this symmetry.
   [[nodiscard]] Values integral(const Function& f) {
     const auto values = static_integral(f);
-    const petsc::VecHandle source = systems_.at(lambda_, symmetry_).a().values(f);
-    PetscReal size = 0;
-    petsc::check(VecNorm(source, NORM_INFINITY, &size));
+    const auto& a = systems_.at(lambda_, symmetry_).a();
+    const petsc::VecHandle source = a.values(f), overlooked = a.overlooked(f);
+    PetscReal size = largest(source);
     for (double v : values) size = std::max<PetscReal>(size, std::abs(v));
-    return size == 0 ? Values{} : solve(values, source);
+    if (size == 0) return {};
+    constexpr double rounding = 1e-12;
+    Values found = solve(values, source);
+    if (largest(overlooked) <= rounding * size) return found;
+    const Values more = solve(std::vector<double>(values.size(), 0.0), overlooked);
+    found.plus.error += std::abs(more.plus.value);
+    found.minus.error += std::abs(more.minus.value);
+    return found;
   }
 
  private:
@@ -176,8 +189,9 @@ void append_resolvent(const std::vector<double>& lambda,
                       const std::vector<model::Observable>& observables,
                       const std::vector<Resolvent>& resolvents, bool symmetric, Results& results) {
   // Differences of the two parities have no accuracy of their own size where they nearly cancel.
-  const auto append = [&](const std::string& key, bool each_by_its_size, const auto& value) {
-    Result result = array(key, "", "lambda", lambda);
+  const auto append = [&](const std::string& key, bool each_by_its_size, const auto& value,
+                          Kind kind = Kind::other) {
+    Result result = array(key, "", "lambda", lambda, kind);
     for (const auto& r : resolvents) append_value(result, value(r));
     result.each_by_its_size = each_by_its_size;
     results.push_back(std::move(result));
@@ -199,7 +213,8 @@ void append_resolvent(const std::vector<double>& lambda,
     if (finite) append(key("u"), true, member(&ObservableTransforms::u));
     append(key("w_plus"), false, member(&ObservableTransforms::w_plus));
     append(key("w_minus"), false, member(&ObservableTransforms::w_minus));
-    append(key("pi"), true, member(&ObservableTransforms::pi_lambda));
+    append(key("pi"), true, member(&ObservableTransforms::pi_lambda),
+           observables[n].within_unit() ? Kind::probability : Kind::other);
     append(key("mu"), false, member(&ObservableTransforms::mu_lambda));
     if (symmetric) continue;
     if (finite) append(key("u_minus"), true, member(&ObservableTransforms::u_from_minus));

@@ -4,30 +4,58 @@
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
+#include "stickslip/quantities/uncertain.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
 using operators::KolmogorovOperator;
 
-/// Integrals of f over an excursion, and of |f|, which rounding is relative to.
+/// Integrals of f over an excursion.
 struct Integral {
-  double stick = 0, slide = 0, stick_size = 0, slide_size = 0;
+  Uncertain stick, slide;
 };
 
-Integral integral(const KolmogorovOperator& a, Vec f, const std::vector<double>& f_at_rest,
-                  const Excursion& excursion, Vec occupation) {
-  Integral sum;
-  for (std::size_t n = 0; n < f_at_rest.size(); ++n) {
-    sum.stick += excursion.stick_time[n] * f_at_rest[n];
-    sum.stick_size += excursion.stick_time[n] * std::abs(f_at_rest[n]);
+/// f on a discretisation: its values, those at rest from the lowest level up, and what the nodes
+/// overlook.
+struct Function {
+  petsc::VecHandle sliding, overlooked;
+  std::vector<double> at_rest;
+};
+
+Function function_on(const KolmogorovOperator& a, const model::Observable& f) {
+  const auto& process = a.discretisation().process;
+  KolmogorovOperator::Observable part = f.value;
+  if (process.symmetric()) part = [&f](double x, double y, double v) { return f.even(x, y, v); };
+  Function function{a.values(part), a.overlooked(part), {}};
+  for (int i = process.lowest_static(); i <= process.static_index(); ++i) {
+    function.at_rest.push_back(part(process.noise.level(i), 0, 0));
   }
-  petsc::VecHandle product = a.zeros();
-  petsc::check(VecPointwiseMult(product, f, occupation));
-  sum.slide = petsc::dot(f, occupation);
-  PetscReal size = 0;
-  petsc::check(VecNorm(product, NORM_1, &size));
-  sum.slide_size = size;
+  return function;
+}
+
+// Rounding is the effect of the last correction, and the defect of an exact identity, relative to
+// the size of what is summed.
+Integral integral(const StationaryDistribution& distribution, double defect, const Function& f) {
+  const auto &now = distribution.excursion().stick_time,
+             &before = distribution.uncorrected().stick_time;
+  Integral sum;
+  double change = 0, size = 0;
+  for (std::size_t n = 0; n < now.size(); ++n) {
+    sum.stick.value += now[n] * f.at_rest[n];
+    change += (now[n] - before[n]) * f.at_rest[n];
+    size += now[n] * std::abs(f.at_rest[n]);
+  }
+  sum.stick.error = std::abs(change) + defect * size;
+  petsc::VecHandle product;
+  petsc::check(VecDuplicate(f.sliding, product.out()));
+  petsc::check(VecPointwiseMult(product, f.sliding, distribution.occupation()));
+  PetscReal sliding_size = 0;
+  petsc::check(VecNorm(product, NORM_1, &sliding_size));
+  sum.slide.value = petsc::dot(f.sliding, distribution.occupation());
+  sum.slide.error =
+      std::abs(sum.slide.value - petsc::dot(f.sliding, distribution.uncorrected_occupation())) +
+      std::abs(petsc::dot(f.overlooked, distribution.occupation())) + defect * sliding_size;
   return sum;
 }
 
@@ -41,42 +69,29 @@ model::Observable friction_power(const model::Process& process) {
 
 void append_averages(const StationaryDistribution& distribution, const KolmogorovOperator& a,
                      const std::vector<model::Observable>& observables, Results& results) {
-  const auto& process = distribution.process();
-  const auto &last = distribution.excursion(), &before = distribution.uncorrected();
-  const double defect = last.conservation_defect(distribution.discretisation());
-  const auto append = [&](const Name& name, double value, double uncorrected, double size) {
-    results.push_back(scalar(name, value, std::abs(value - uncorrected) + defect * size));
+  const double defect = distribution.excursion().conservation_defect(distribution.discretisation());
+  const auto mean = [&](double (Excursion::*time)() const) {
+    const double value = (distribution.excursion().*time)();
+    return Uncertain{value,
+                     std::abs(value - (distribution.uncorrected().*time)()) + defect * value};
   };
-  const auto values = [&](const model::Observable& f) {
-    KolmogorovOperator::Observable part = f.value;
-    if (process.symmetric()) {
-      part = [&f](double x, double y, double v) { return f.even(x, y, v); };
-    }
-    std::vector<double> at_rest;
-    for (int i = process.lowest_static(); i <= process.static_index(); ++i) {
-      at_rest.push_back(part(process.noise.level(i), 0, 0));
-    }
-    const petsc::VecHandle sliding = a.values(part);
-    return std::pair{integral(a, sliding, at_rest, last, distribution.occupation()),
-                     integral(a, sliding, at_rest, before, distribution.uncorrected_occupation())};
-  };
+  const Uncertain stick = mean(&Excursion::mean_stick), slide = mean(&Excursion::mean_slide),
+                  excursion = mean(&Excursion::mean_excursion);
   for (const auto& f : observables) {
-    const auto [now, then] = values(f);
-    const auto key = [&f](const char* given) { return "pi(" + f.name + given + ")"; };
-    const std::string all = key(""), stick = key("|stick"), slide = key("|slide");
-    append({all.c_str(), "", Kind::drift}, (now.stick + now.slide) / last.mean_excursion(),
-           (then.stick + then.slide) / before.mean_excursion(),
-           (now.stick_size + now.slide_size) / last.mean_excursion());
-    append({stick.c_str(), "", Kind::drift}, now.stick / last.mean_stick(),
-           then.stick / before.mean_stick(), now.stick_size / last.mean_stick());
-    append({slide.c_str(), "", Kind::drift}, now.slide / last.mean_slide(),
-           then.slide / before.mean_slide(), now.slide_size / last.mean_slide());
+    const Integral sum = integral(distribution, defect, function_on(a, f));
+    const Kind kind = f.within_unit() ? Kind::probability : Kind::drift;
+    const auto append = [&](const char* given, Uncertain value) {
+      const std::string key = "pi(" + f.name + given + ")";
+      results.push_back(scalar({key.c_str(), "", kind}, value));
+    };
+    append("", (sum.stick + sum.slide) / excursion);
+    append("|stick", sum.stick / stick);
+    append("|slide", sum.slide / slide);
   }
-  const auto [now, then] = values(friction_power(process));
-  append(kFrictionPower, now.slide / last.mean_excursion(), then.slide / before.mean_excursion(),
-         now.slide_size / last.mean_excursion());
-  append(kSlipRate, 1 / last.mean_excursion(), 1 / before.mean_excursion(),
-         1 / last.mean_excursion());
+  const Integral power =
+      integral(distribution, defect, function_on(a, friction_power(distribution.process())));
+  results.push_back(scalar(kFrictionPower, power.slide / excursion));
+  results.push_back(scalar(kSlipRate, Uncertain{1, 0} / excursion));
 }
 
 }  // namespace stickslip::quantities

@@ -106,12 +106,14 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
   result.value.resize(time.size());
   for (Symmetry symmetry : operators::sectors_of(systems.process())) {
     KolmogorovOperator a = kept(systems, symmetry);
-    const petsc::VecHandle b = a.values(part_of(f, symmetry));
+    const auto part = part_of(f, symmetry);
+    const petsc::VecHandle b = a.values(part);
     const petsc::VecHandle pi = distribution.occupation_on(a), square = a.zeros();
     check(VecScale(pi, 1 / distribution.excursion().mean_excursion()));
     check(VecPointwiseMult(square, b, b));
     const double unit = std::sqrt(std::abs(dot(pi, square)));
     if (symmetry != Symmetry::odd) result.stationary = dot(pi, b);
+    result.unseen += std::abs(dot(pi, a.overlooked(part)));
     if (unit == 0) continue;
     if (start.kind == model::Start::Kind::stationary) {
       for (auto& value : result.value) value = {result.stationary, 0};
@@ -121,10 +123,12 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
     PetscReal seen = 0;
     check(VecNorm(c, NORM_INFINITY, &seen));
     if (seen <= kNothing) continue;  // as odd functions at rest at x = 0
-    const auto part = curve(systems, distribution, std::move(a), b, c, ReducedModel::Nature::rough,
-                            time, unit, method, tolerance);
-    for (std::size_t n = 0; n < time.size(); ++n) result.value[n] = result.value[n] + part[n];
+    const auto of_part = curve(systems, distribution, std::move(a), b, c,
+                               ReducedModel::Nature::rough, time, unit, method, tolerance);
+    for (std::size_t n = 0; n < time.size(); ++n) result.value[n] = result.value[n] + of_part[n];
   }
+  for (auto& value : result.value) value.error += result.unseen;
+  for (auto& value : result.value) value.error += result.unseen;
   return result;
 }
 

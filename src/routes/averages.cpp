@@ -47,11 +47,12 @@ std::vector<Average> averages(const Setting& setting) {
   if (!question.wants(Quantity::averages)) return all;
   for (const auto& observable : question.observables) {
     const auto f = observable.value;
+    const Kind kind = observable.within_unit() ? Kind::probability : Kind::drift;
     const auto given = [&](const char* phase, const model::Observable::Function& in, int number) {
       const auto part = [=](double x, double y, double v) { return f(x, y, v) * in(x, y, v); };
-      all.push_back({"pi(" + observable.name + phase + ")", "", Kind::drift, part, number});
+      all.push_back({"pi(" + observable.name + phase + ")", "", kind, part, number});
     };
-    all.push_back({"pi(" + observable.name + ")", "", Kind::drift, f});
+    all.push_back({"pi(" + observable.name + ")", "", kind, f});
     given("|stick", stick, kStick);
     given("|slide", slide, kSlide);
   }

@@ -108,8 +108,8 @@ quantities::TransientMethod transient_method(const options::Method& method) {
 
 void append_function_of_time(const std::vector<double>& time, const std::string& key,
                              const std::string& unit, const std::vector<Uncertain>& values,
-                             Results& results) {
-  auto result = quantities::array(key, unit, "time", time);
+                             Results& results, quantities::Kind kind = quantities::Kind::other) {
+  auto result = quantities::array(key, unit, "time", time, kind);
   for (const auto& value : values) quantities::append_value(result, value);
   results.push_back(std::move(result));
 }
@@ -131,10 +131,12 @@ void append_expectations(operators::Systems& systems, const Setting& setting,
     const auto expectation =
         quantities::expectation(systems, *evaluation.distribution, f, question.start, question.time,
                                 method, 0.1 * question.accuracy);
+    const auto kind = f.within_unit() ? quantities::Kind::probability : quantities::Kind::other;
     append_function_of_time(question.time, "E(" + f.name + ")", "", expectation.value,
-                            evaluation.results);
-    evaluation.results.push_back(
-        quantities::scalar("stationary(" + f.name + ")", "", expectation.stationary, 0));
+                            evaluation.results, kind);
+    const std::string stationary = "stationary(" + f.name + ")";
+    evaluation.results.push_back(quantities::scalar({stationary.c_str(), "", kind},
+                                                    expectation.stationary, expectation.unseen));
   }
 }
 

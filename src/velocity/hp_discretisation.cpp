@@ -4,6 +4,7 @@
 #include <boost/math/special_functions/legendre.hpp>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <stdexcept>
 
@@ -26,10 +27,10 @@ std::vector<double> legendre_zeros(int q) {
 ReferenceElement::ReferenceElement(int degree) : size(degree + 1) {
   if (degree < 0) throw std::invalid_argument("polynomial degree below 0");
   const std::vector<double> zeros = legendre_zeros(size);
-  for (int n = 0; n < size; ++n) {
-    const double x = zeros[n];
+  for (double x : zeros) {
     const double slope = boost::math::legendre_p_prime(size, x);
     const double w = 2 / ((1 - x * x) * slope * slope);
+    const auto n = node.size();
     node.push_back((1 + x) / 2);
     weight.push_back(w / 2);
     barycentric_.push_back((n % 2 ? -1 : 1) * std::sqrt((1 - x * x) * w));
@@ -43,6 +44,24 @@ ReferenceElement::ReferenceElement(int degree) : size(degree + 1) {
   }
   at_left = basis(0);
   at_right = basis(1);
+  project();
+}
+
+// Clenshaw-Curtis: ends are among its points, where a jump beside an end shows.
+void ReferenceElement::project() {
+  const int last = 2 * size, others = last + 1;
+  projection.resize(static_cast<std::size_t>(size) * others);
+  for (int k = 0; k <= last; ++k) {
+    const double angle = k * std::numbers::pi / last;
+    double w = 1;
+    for (int j = 1; j <= size; ++j) {
+      w -= (j == size ? 1.0 : 2.0) * std::cos(2 * j * angle) / (4.0 * j * j - 1);
+    }
+    w /= k == 0 || k == last ? 2 * last : last;
+    other_node.push_back((1 - std::cos(angle)) / 2);
+    const auto at = basis(other_node.back());
+    for (int m = 0; m < size; ++m) projection[m * others + k] = at[m] * w / weight[m];
+  }
 }
 
 // Second barycentric formula.
@@ -163,6 +182,28 @@ std::vector<Entry> HpDiscretisation::value_at(double v) const {
   const int e = static_cast<int>(above - ends_.begin()) - 1;
   const auto& [reference, first, length] = elements_[e];
   return entries(e, reference->basis((v - ends_[e]) / length));
+}
+
+// Points on which a jump within an element lies otherwise than on the nodes see another integral.
+std::vector<double> HpDiscretisation::overlooked(const std::function<double(double)>& f) const {
+  constexpr double rounding = 4e-16, least = 1e-300;
+  std::vector<double> by_node;
+  for (int e = 0; e < elements(); ++e) {
+    const auto& [reference, first, length] = elements_[e];
+    std::vector<double> values;
+    // A jump at an end is outside.
+    const double low = std::max(least, ends_[e] * (1 + rounding)),
+                 high = ends_[e + 1] * (1 - rounding);
+    for (double t : reference->other_node) {
+      values.push_back(f(std::clamp(ends_[e] + length * t, low, high)));
+    }
+    auto row = reference->projection.begin();
+    for (int m = 0; m < reference->size; ++m, row += std::ssize(values)) {
+      by_node.push_back(
+          std::inner_product(values.begin(), values.end(), row, -f(nodes_[first + m])));
+    }
+  }
+  return by_node;
 }
 
 double HpDiscretisation::mass_below(std::span<const double> mass, double v) const {

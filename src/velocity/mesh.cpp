@@ -84,6 +84,25 @@ double speed_of_leaving(const model::Process& process) {
   return 0.3 * tau * tau * std::min(cubed(process), cubed(process.mirrored()));
 }
 
+// log of the stationary density of white noise on the upper half line, exp(-slope v + int b) with
+// slope = mu_d - bias, against its largest value.
+struct LogDensity {
+  explicit LogDensity(const model::Process& process)
+      : drag(process.drag),
+        slope(process.friction.mu_d - process.bias),
+        peak(drag.terminal_velocity(-slope)),
+        highest(-slope * peak + drag.potential(peak)) {}
+  /// Raised by `by`.
+  [[nodiscard]] double operator()(double v, double by = 0) const {
+    return by - highest - slope * v + drag.potential(v);
+  }
+
+  model::Drag drag;
+  double slope;
+  double peak;  // a bias beyond mu_d moves it to where drag balances it
+  double highest;
+};
+
 bool has_waves(const model::Process& process, const MeshRule& rule) {
   return rule.rates.omega > 4 * process.noise.rate();
 }
@@ -137,7 +156,10 @@ int natural_layers(const model::Process& process, const MeshRule& rule) {
   return span <= 1 ? 1 : 1 + static_cast<int>(std::ceil(std::log(span) / -std::log(rule.ratio)));
 }
 
-std::vector<double> element_ends(const model::Process& process, const MeshRule& rule) {
+namespace {
+
+// Without regard to what the drag and the integrands are like.
+std::vector<double> regular_ends(const model::Process& process, const MeshRule& rule) {
   const int layers = rule.layers > 0 ? rule.layers : natural_layers(process, rule);
   const double graded = graded_end(process, rule);
   std::vector<double> ends{0};
@@ -151,6 +173,122 @@ std::vector<double> element_ends(const model::Process& process, const MeshRule& 
   return has_waves(process, rule) ? cut_for_waves(process, rule.rates.omega, ends) : ends;
 }
 
+std::vector<double> sorted(std::vector<double> ends) {
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  return ends;
+}
+
+// A regular end that would leave a sliver beside a break gives way to it.
+std::vector<double> with_breaks(const std::vector<double>& regular,
+                                const std::vector<double>& breaks) {
+  constexpr double sliver = 0.2;
+  std::vector<double> ends = breaks;
+  for (std::size_t n = 0; n < regular.size(); ++n) {
+    const bool inner = n > 0 && n + 1 < regular.size();
+    const double least = inner ? sliver * (regular[n] - regular[n - 1]) : 0;
+    const bool gives_way = std::any_of(breaks.begin(), breaks.end(),
+                                       [&](double b) { return std::abs(b - regular[n]) < least; });
+    if (!gives_way) ends.push_back(regular[n]);
+  }
+  return sorted(ends);
+}
+
+// Beyond a break the drag or the integrand is another one, and what happens within the next jump of
+// the noise changes at once: layers as at v = 0, but weak, as nothing comes to rest there. Without
+// two elements for them on either side errors fell twofold a degree (tenfold with them), at delta =
+// 1/2 as at 1/64. Elements short beside v need none.
+std::vector<double> graded_towards(const std::vector<double>& breaks, double ratio,
+                                   const std::vector<double>& ends) {
+  constexpr int layers = 2;
+  constexpr double is_short = 0.5;
+  std::vector<double> all = ends;
+  for (double b : breaks) {
+    const auto at = std::lower_bound(ends.begin(), ends.end(), b);
+    for (double neighbour : {at[-1], at[1]}) {
+      if (std::abs(neighbour - b) < is_short * b) continue;
+      for (int n = 1; n <= layers; ++n) all.push_back(b + std::pow(ratio, n) * (neighbour - b));
+    }
+  }
+  return sorted(all);
+}
+
+// Grading makes polynomials of degree d on an element as accurate as 3^-d where functions are
+// singular at v = 0 alone. What bends on a scale of its own is no better resolved by higher degrees
+// until elements are as short as that scale: they are halved, the worst first, until polynomials of
+// degree 7 reach 3^-7 of the largest value, both weighted with the density.
+class Halving {
+ public:
+  Halving(const model::Process& process, const MeshRule& rule)
+      : functions_(rule.integrands.functions), upper_(process), lower_(process.mirrored()) {
+    if (process.drag.law) functions_.emplace_back(process.drag.law);
+    if (!process.drag.odd()) functions_.emplace_back(lower_.drag.law);
+    sizes_.assign(functions_.size(), 0);
+  }
+
+  [[nodiscard]] std::vector<double> halved(std::vector<double> ends) {
+    if (functions_.empty()) return ends;
+    std::vector<Element> elements;
+    for (int pass = 0; pass < 2; ++pass) {  // sizes are known after the first
+      elements.clear();
+      for (std::size_t e = 1; e < ends.size(); ++e) elements.push_back(seen(ends[e - 1], ends[e]));
+    }
+    constexpr int most = 100;
+    for (int n = 0; n < most; ++n) {
+      const auto worst = std::max_element(elements.begin(), elements.end());
+      if (!(worst->misfit > 1)) break;
+      const auto [misfit, low, high] = *worst;
+      ends.push_back(low + (high - low) / 2);
+      *worst = seen(low, ends.back());
+      elements.push_back(seen(ends.back(), high));
+    }
+    return sorted(ends);
+  }
+
+ private:
+  struct Element {
+    double misfit;  // above 1 where it is to be halved
+    double low, high;
+    bool operator<(const Element& other) const { return misfit < other.misfit; }
+  };
+
+  // Of the side with the larger density.
+  [[nodiscard]] double weight(double v) const { return std::exp(std::max(upper_(v), lower_(v))); }
+
+  // Inside: at a jump f has the value of one side. An error shows values between the places.
+  Element seen(double low, double high) {
+    static const double accepted = std::pow(3, -7);
+    const double margin = 1e-6 * (high - low), middle = (low + high) / 2;
+    const double at_middle = weight(middle), at_low = weight(low);
+    Element element{0, low, high};
+    for (std::size_t n = 0; n < functions_.size(); ++n) {
+      const auto& f = functions_[n];
+      const double error = model::interpolation_error(f, low + margin, high - margin);
+      sizes_[n] = std::fmax(sizes_[n], at_middle * std::fmax(std::abs(f(middle)), error));
+      element.misfit = std::fmax(element.misfit, at_low * error / (accepted * sizes_[n]));
+    }
+    return element;
+  }
+
+  std::vector<model::FunctionOfSpeed> functions_;
+  std::vector<double> sizes_;  // largest weighted values
+  LogDensity upper_, lower_;
+};
+
+}  // namespace
+
+std::vector<double> element_ends(const model::Process& process, const MeshRule& rule) {
+  std::vector<double> breaks = rule.integrands.breaks;
+  breaks.insert(breaks.end(), process.drag.breaks.begin(), process.drag.breaks.end());
+  const auto regular = regular_ends(process, rule);
+  constexpr double rounding = 1e-9;
+  std::erase_if(breaks, [&](double b) { return b >= (1 - rounding) * regular.back(); });
+  const auto ends = with_breaks(regular, breaks);
+  return Halving(process, rule).halved(graded_towards(breaks, rule.ratio, ends));
+}
+
+namespace {
+
 // An element at v holds a share of what is asked for that falls like v^0.8 to v (levels that it
 // concerns times how far the solution is from constant there), half a digit from one element to the
 // next, and a degree is worth a digit. One degree for two elements changed no error of seven scenes
@@ -161,10 +299,10 @@ std::vector<double> element_ends(const model::Process& process, const MeshRule& 
 // less than degree 2 the first refinement levels were wrong by more than they said (mu_d = 0.9).
 // Waves are as steep in every element, and what ends within 1/lambda before the noise changes comes
 // from small v.
-std::vector<int> element_degrees(const model::Process& process, const MeshRule& rule, int degree) {
+std::vector<int> regular_degrees(const model::Process& process, const MeshRule& rule,
+                                 const std::vector<double>& ends, int degree) {
   constexpr int most_where_left = 2;  // degrees less
   const int layers = rule.layers > 0 ? rule.layers : natural_layers(process, rule);
-  const auto ends = element_ends(process, rule);
   std::vector<int> degrees(ends.size() - 1, degree);
   const bool early = rule.rates.lambda * process.noise.tau > 1;
   if (early || has_waves(process, rule)) return degrees;
@@ -180,25 +318,35 @@ std::vector<int> element_degrees(const model::Process& process, const MeshRule& 
   return degrees;
 }
 
+}  // namespace
+
+// Of the regular element in which an element ends.
+std::vector<int> element_degrees(const model::Process& process, const MeshRule& rule, int degree) {
+  const auto regular = regular_ends(process, rule), ends = element_ends(process, rule);
+  const auto of_regular = regular_degrees(process, rule, regular, degree);
+  std::vector<int> degrees;
+  for (std::size_t e = 1; e < ends.size(); ++e) {
+    const auto end = std::lower_bound(regular.begin() + 1, regular.end(), ends[e]);
+    degrees.push_back(of_regular[end - regular.begin() - 1]);
+  }
+  return degrees;
+}
+
 namespace {
 
 // Of the upper half line.
 double upper_tail(const model::Process& process, double tolerance) {
   const double drop = -std::log(tolerance) + 5;  // 5: polynomial factors of the moments
-  // A bias beyond mu_d moves the largest density to where drag balances it.
-  const double slope = process.friction.mu_d - process.bias;
-  const double peak = process.drag.terminal_velocity(-slope);
-  const double highest = -slope * peak + process.drag.potential(peak);
-  const auto left = [&](double v) {
-    return drop - highest - slope * v + process.drag.potential(v);
-  };
-  double end = slope > 0 ? drop / slope : std::max(2 * peak, 1.0);
+  const LogDensity log_density(process);
+  const double slope = log_density.slope;
+  const auto left = [&](double v) { return log_density(v, drop); };
+  double end = slope > 0 ? drop / slope : std::max(2 * log_density.peak, 1.0);
   while (slope <= 0 && left(end) > 0 && end < process.drag.reach) end *= 2;
   end = std::min(end, process.drag.reach);
   if (process.drag.is_none() || !std::isfinite(left(end)) || left(end) > 0) return end;
   std::uintmax_t iterations = 200;
   const auto bracket = boost::math::tools::toms748_solve(
-      left, peak, end, boost::math::tools::eps_tolerance<double>(20), iterations);
+      left, log_density.peak, end, boost::math::tools::eps_tolerance<double>(20), iterations);
   return bracket.second;
 }
 

@@ -59,15 +59,20 @@ class Refusals(Case):
             self.run_ok(*SMALL, "-slide_pc_type", pc, "-accuracy", "1e-3")
         self.run_ok(*SMALL, "-slide_ksp_type", "gmres", "-accuracy", "1e-3")
 
-    def test_observables_that_jump_in_v(self):
+    def test_observables_with_jumps_and_kinks_in_v(self):
         asks = ("-mu_d", "0.5", "-delta", "0.25", "-lambda", "0", "-time", "1", "-observable")
         for quantity in ("resolvent", "expectation"):
-            self.refuse(*asks, "v^2; abs(v)>0.5", "-quantities", quantity,
-                        told=("-observable = v^2; abs(v)>0.5", "abs(v)>0.5 jumps at v = 0.5",
-                              "-scheme upwind"))
-        self.refuse(*asks, "x==1.25 && v<-3", "-quantities", "resolvent", told=("v = -3",))
-        for smooth in ("tanh(50*v)", "x>0.5", "v>0", "(x>0.5)*abs(v)", "v>50"):
-            self.run_ok(*asks, smooth, "-quantities", "resolvent", "-accuracy", "1e-3")
+            for observable, told in (("v^2; v>x", "v>x jumps or has a kink at v = "), ("1/(v-2)", "unbounded at v = 2"),
+                                     ("rint(40*v)", "65 or more")):
+                self.refuse(*asks, observable, "-quantities", quantity,
+                            told=(f"-observable = {observable}", told, "-scheme upwind"))
+        for fine in ("tanh(50*v)", "x>0.5", "v>0", "(x>0.5)*abs(v)", "v>50", "x==1.25 && v<-3"):
+            self.run_ok(*asks, fine, "-quantities", "resolvent", "-accuracy", "1e-3")
+        right = (("abs(v)>0.5", 0.198608934333), ("min(abs(v),0.5)", 0.202385358765))
+        for observable, value in right:
+            pi = self.summary(*asks, observable, "-quantities", "resolvent",
+                              "-accuracy", "1e-8")["results"][f"pi({observable})"]
+            self.assertLess(abs(pi["value"][0] - value), max(1e-11, pi["error"][0]))
         upwind = self.summary(*asks, "abs(v)>0.5", "-quantities", "resolvent", "-scheme", "upwind",
                               "-p", "16", status=3)["results"]["pi(abs(v)>0.5)"]
         self.assertLess(abs(upwind["value"][0] - 0.198608934333), upwind["error"][0])

@@ -81,10 +81,25 @@ TEST_CASE("drag laws: jumps and infinite slopes are refused, with the place") {
   CHECK_THAT(refusal("-sign(v)"), Catch::Contains("slope"));
   CHECK_THAT(refusal("-v - 0.1*sign(v)"), Catch::Contains("slope"));
   CHECK_THAT(refusal("-sign(v)*abs(v)^0.98"), Catch::Contains("slope"));
-  CHECK_THAT(refusal("abs(v) < 1 ? -v : -1.1*v"), Catch::Contains("at v = 1,"));
-  CHECK_THAT(refusal("v > -2 ? -v : -v + 0.1"), Catch::Contains("at v = -2,"));
+  CHECK_THAT(refusal("abs(v) < 1 ? -v : -1.1*v"),
+             Catch::Contains("jumps from -1 to -1.1 at v = 1;") && Catch::Contains("hold a body"));
+  CHECK_THAT(refusal("v > -2 ? -v : -v + 0.1"), Catch::Contains("jumps from 2 to 2.1 at v = -2;"));
   CHECK_THAT(refusal("abs(v) < 1 ? -v : -v - sign(v)*(abs(v) - 1)^0.3"),
              Catch::Contains("at v = 1,"));
+}
+
+TEST_CASE("drag laws: kinks on either side are breaks, and none else") {
+  using Speeds = std::vector<double>;
+  CHECK(read("-v - max(0, abs(v) - 0.5)*sign(v)").breaks == Speeds{0.5});
+  CHECK(read("-min(abs(v), mu_s + mu_d)*sign(v) - 0.1*v").breaks == Speeds{0.75});
+  CHECK(read("-v - max(0, v - 0.3) + max(0, -v - 1.5)").breaks == Speeds{0.3, 1.5});
+  CHECK(read("-v - max(0, v - 0.3) + max(0, -v - 1.5)").mirrored().breaks == Speeds{0.3, 1.5});
+  for (const char* smooth : {"-v - 0.1*v*abs(v)", "-tanh(v)", "-tanh(1000*v)", "-v^5", "0*v",
+                             "-0.2*v - atan(20*(v - 0.5)) - atan(20*(v + 0.5))"}) {
+    INFO(smooth);
+    CHECK(read(smooth).breaks.empty());
+  }
+  CHECK_THAT(refusal("-rint(20*v)/20 - v - 0*max(0, v)"), Catch::Contains("jumps"));
 }
 
 // Where (mu_d - |bias|) v + drag has cost 51 in the logarithm of the density.

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <optional>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
@@ -8,10 +8,9 @@
 #include "stickslip/support/errors.hpp"
 
 using stickslip::model::Friction;
-using stickslip::model::Jump;
+using stickslip::model::Observable;
 using stickslip::model::observable_names;
 using stickslip::model::parse_observable;
-using stickslip::model::velocity_jump;
 
 namespace {
 
@@ -115,92 +114,84 @@ TEST_CASE("observables: not finite somewhere, and where is told") {
 
 namespace {
 
-std::optional<Jump> jump_of(const std::string& text, double reach = 20) {
+// On the levels k/4, |k| <= 8, and those between, raised by `raised`.
+std::vector<double> levels(double raised) {
   std::vector<double> x;
-  for (int i = -8; i <= 8; ++i) x.push_back(i * 0.25);
-  return velocity_jump(parse_observable(text, kFriction), x, reach);
+  for (int i = -8; i <= 8; ++i) x.push_back(i * 0.25 + raised);
+  return x;
 }
 
-struct Jumping {
-  const char* text;
-  double speed;
-};
+Observable examined(const std::string& text, double reach = 20) {
+  auto f = parse_observable(text, kFriction);
+  examine(f, levels(0), levels(0.125), reach);
+  return f;
+}
+
+std::string reason(const std::string& text) {
+  try {
+    (void)examined(text);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+using Speeds = std::vector<double>;
 
 }  // namespace
 
-TEST_CASE("observables: jumps in v are found to the precision of v") {
-  const std::vector<Jumping> all{{"abs(v)>0.5", 0.5},
-                                 {"v >= 0.5", 0.5},
-                                 {"abs(v) < 3.7 ? 1 : 1.1", 3.7},
-                                 {"v < -12 ? x : 0", 12},
-                                 {"sign(v - 0.731)", 0.731},
-                                 {"v^4 + 0.1*(v > 1.5)", 1.5},
-                                 {"v - 0.01*(v > 2)", 2},
-                                 {"rint(v)", 0.5},
-                                 {"v^2 > 2", std::sqrt(2.0)},
-                                 {"1/(v - 0.7310585)", 0.7310585},
-                                 {"(x == 2) * (v > 4)", 4},
-                                 {"v > mu_s + mu_d", 0.5},
-                                 {"atan2(v - 0.5, -1)", 0.5}};
-  for (const auto& [text, speed] : all) {
-    INFO(text);
-    const auto jump = jump_of(text);
-    REQUIRE(jump);
-    CHECK(std::abs(jump->v) == Approx(speed).epsilon(1e-14));
-    CHECK(jump->y == (jump->v > 0 ? 1 : -1));
-  }
+TEST_CASE("observables: their breaks in v, on either side and whatever the level") {
+  CHECK(examined("abs(v) > 0.5").breaks == Speeds{0.5});
+  CHECK(examined("v < -12 ? x : 0").breaks == Speeds{12});
+  CHECK(examined("v > mu_s + mu_d").breaks == Speeds{0.5});
+  CHECK(examined("min(v, 1) + max(v, -2)").breaks == Speeds{1, 2});
+  CHECK(examined("(x == 2)*(v > 4)").breaks == Speeds{4});
+  CHECK(examined("(x > 1) ? abs(v) > 3 : v > 4").breaks == Speeds{3, 4});
+  CHECK(examined("abs(abs(v) - 0.5) < 0.01").breaks == Speeds{0.49, 0.51});
+  CHECK(examined("rint(v)", 3).breaks.size() == 3);
+  CHECK(examined("v > 5", 4).breaks.empty());
 }
 
-TEST_CASE("observables: narrow windows in v are jumps") {
-  for (const char* text :
-       {"(v>0.5)*(v<0.51)", "(v>0.5)*(v<0.5000001)", "abs(v - 11.1) < 1e-6",
-        "abs(abs(v) - mu_s) < 1e-5", "abs(v-x)<1e-4", "(v>17.3333)&&(v<17.3334)"}) {
+TEST_CASE("observables: what is smooth, jumps at v = 0 or in x has no breaks in v") {
+  for (const char* text : {"tanh(50*v)", "tanh(1e6*(v-0.5))", "abs(v)", "v >= 0 ? 2 : -1",
+                           "sign(v)*v^2", "x > 0.5", "(x>0.5)*v", "y*x*v", "y == 0 ? v > 0.5 : v",
+                           "abs(x - 0.5)*v", "exp(-1000*(v-3)^2)", "1e20*v^3", "1e-20*v"}) {
     INFO(text);
-    CHECK(jump_of(text));
-  }
-}
-
-TEST_CASE("observables: a jump at a velocity that depends on x") {
-  const auto jump = jump_of("v > x");
-  REQUIRE(jump);
-  CHECK(jump->v == Approx(jump->x).epsilon(1e-14));
-}
-
-TEST_CASE("observables: what is steep, bent or jumps at v = 0 or in x does not jump in v") {
-  for (const char* text : {"tanh(50*v)",
-                           "tanh(1e6*(v-0.5))",
-                           "abs(v)",
-                           "min(v,1)",
-                           "max(0,abs(v)-1.3)^2",
-                           "v>0",
-                           "v >= 0 ? 2 : -1",
-                           "sign(v)*v^2",
-                           "x > 0.5",
-                           "(x>0.5)*v",
-                           "y*x*v",
-                           "y == 0 ? v > 0.5 : v",
-                           "sqrt(abs(v-0.5))",
-                           "abs(v-0.5)^(1/3)",
-                           "exp(-1000*(v-3)^2)",
-                           "sin(300*v)",
-                           "v^9",
-                           "exp(v)",
-                           "log(1+v^2)",
-                           "1e-20*v",
-                           "1e20*v^3",
-                           "1",
-                           "abs(v - x)",
-                           "abs(v)/(1+abs(v))"}) {
-    INFO(text);
-    CHECK_FALSE(jump_of(text));
+    CHECK(examined(text).breaks.empty());
   }
   for (const auto& name : observable_names()) {
     INFO(name);
-    CHECK_FALSE(jump_of(name));
+    CHECK(examined(name).breaks.empty());
   }
 }
 
-TEST_CASE("observables: a jump out of reach does not count") {
-  CHECK_FALSE(jump_of("v > 5", 4));
-  CHECK(jump_of("v > 5", 6));
+TEST_CASE("observables: breaks at which no element can end are refused, with the place") {
+  CHECK_THAT(reason("v > x"), Catch::Contains("at v = ") && Catch::Contains("for other x"));
+  CHECK_THAT(reason("abs(v - x)"), Catch::Contains("for other x"));
+  CHECK_THAT(reason("abs(v) < 1e-4 + abs(x)"), Catch::Contains("for other x"));
+  CHECK_THAT(reason("1/(v - 0.7310585)"), Catch::Contains("unbounded at v = 0.7310585"));
+  CHECK_THAT(reason("1/(abs(v) + x - 5)"), Catch::Contains("unbounded"));
+  CHECK_THAT(reason("rint(10*v)"), Catch::Contains("65 or more"));
+  CHECK(reason("log(abs(abs(v) - 0.7310585))") == "none");
+}
+
+TEST_CASE("observables: the values seen tell what is a probability") {
+  for (const char* text : {"abs(v) > 0.5", "stick", "1", "x > 0 && v < 3", "exp(-v^2)"}) {
+    INFO(text);
+    CHECK(examined(text).within_unit());
+  }
+  // On one level only, at rest only, in a narrow window only.
+  for (const char* text : {"v", "x == 2 ? -1 : 1", "y == 0 ? 2 : 0", "1 + (abs(v-3) < 1e-4)"}) {
+    INFO(text);
+    CHECK_FALSE(examined(text).within_unit());
+  }
+  CHECK_FALSE(parse_observable("stick", kFriction).within_unit());
+}
+
+TEST_CASE("observables: a section goes along |v|, with the signs of y and v") {
+  const auto f = std::make_shared<const Observable>(
+      parse_observable("y*v + x + (abs(v) == 3 ? log(-1) : 0)", kFriction));
+  CHECK(stickslip::model::section(f, 2, -1)(5) == 7);
+  CHECK(stickslip::model::section(f, 2, 1)(5) == 7);
+  CHECK(std::isnan(stickslip::model::section(f, 2, 1)(3)));
 }

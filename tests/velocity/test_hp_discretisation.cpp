@@ -183,3 +183,28 @@ TEST_CASE("hp transport: the derivative of a row is the difference of rows") {
     }
   }
 }
+
+TEST_CASE("hp axis: what sums over nodes overlook is nothing for polynomials, and a jump's error") {
+  const HpDiscretisation hp({0, 0.5, 2}, std::vector{3, 5}, {});
+  for (int n = 0; n <= 3; ++n) {
+    for (double d : hp.overlooked([n](double v) { return power(v, n); })) {
+      CHECK(std::abs(d) < 1e-13);
+    }
+  }
+  const auto sum = [&hp](const std::vector<double>& values) {
+    return std::inner_product(values.begin(), values.end(), hp.weights().begin(), 0.0);
+  };
+  // Summed with the weights: 13 points against 6.
+  const auto smooth = [](double v) { return power(v, 13); };
+  double seen = 0;
+  for (int j = 0; j < hp.size(); ++j) seen += hp.weights()[j] * smooth(hp.nodes()[j]);
+  CHECK(sum(hp.overlooked(smooth)) == Approx(power(2, 14) / 14 - seen).epsilon(1e-5));
+  // At no place of a jump both rules agree unless both are right.
+  for (double at = 0.6; at < 2; at += 0.01) {
+    const auto jump = [at](double v) { return v > at ? 1.0 : 0.0; };
+    double by_nodes = 0;
+    for (int j = 0; j < hp.size(); ++j) by_nodes += hp.weights()[j] * jump(hp.nodes()[j]);
+    const double wrong = std::abs(by_nodes - (2 - at));
+    if (wrong > 0.15) CHECK(std::abs(sum(hp.overlooked(jump))) > 0.3 * wrong);
+  }
+}

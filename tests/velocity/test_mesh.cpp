@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 
 #include "stickslip/velocity/mesh.hpp"
 
@@ -299,5 +300,100 @@ TEST_CASE("tail velocity: at its end the density is below the tolerance, not abo
     const auto p = process(mu_d, 1, 0.25, {0.3, 0.1});
     const double v = velocity::tail_velocity(p, 1e-10);
     CHECK(mu_d * v - p.drag.potential(v) >= (std::log(1e10) + 5) * (1 - 1e-15));
+  }
+}
+
+namespace {
+
+std::vector<double> with_law(std::function<double(double)> law, std::vector<double> breaks = {}) {
+  model::Drag drag{0, 0, std::move(law), 100, true, std::move(breaks)};
+  return velocity::element_ends(process(0.25, 1, 0.25, drag), rule_to(7));
+}
+
+bool has(const std::vector<double>& ends, double v) {
+  return std::find(ends.begin(), ends.end(), v) != ends.end();
+}
+
+}  // namespace
+
+TEST_CASE("mesh: smooth laws and polynomials leave the elements as they are") {
+  const auto p = process(0.25, 1, 0.25, {1, 0});
+  const auto plain = velocity::element_ends(p, rule_to(7));
+  CHECK(with_law([](double v) { return -v; }) == plain);
+  auto rule = rule_to(7);
+  for (int n = 0; n <= 6; ++n) {
+    rule.integrands.functions.emplace_back([n](double v) { return std::pow(v, n); });
+  }
+  rule.integrands.functions.emplace_back([](double v) { return std::exp(-v); });
+  rule.integrands.breaks = {7, 50};
+  CHECK(velocity::element_ends(p, rule) == plain);
+}
+
+TEST_CASE("mesh: elements end at breaks, with shorter ones beside and no slivers") {
+  const auto p = process(0.25, 1, 0.25, {1, 0});
+  auto rule = rule_to(7);
+  const auto plain = velocity::element_ends(p, rule);
+  for (double v : {1e-5, 0.01, 0.3, 0.5, plain[4] * 1.01, plain[5] * 0.99, 2.0, 6.9}) {
+    INFO(v);
+    rule.integrands.breaks = {v};
+    const auto ends = velocity::element_ends(p, rule);
+    CHECK(has(ends, v));
+    CHECK(ends.back() == 7);
+    CHECK(std::adjacent_find(ends.begin(), ends.end(), std::greater_equal<>()) == ends.end());
+    CHECK(ends.size() <= plain.size() + 5);
+    for (std::size_t n = 1; n + 1 < plain.size(); ++n) {
+      const bool near = std::abs(plain[n] - v) < 0.2 * (plain[n] - plain[n - 1]);
+      CHECK(has(ends, plain[n]) == !near);
+    }
+  }
+  rule.integrands.breaks = {1.9, 2.0};
+  const auto window = velocity::element_ends(p, rule);
+  CHECK(std::count_if(window.begin(), window.end(), [](double e) { return e > 1.9 && e < 2; }) ==
+        0);
+  // The drag counts as the integrands do.
+  const auto bent = [](double v) { return -v - std::max(0.0, v - 2); };
+  rule.integrands.breaks = {2};
+  CHECK(has(with_law(bent, {2.0}), 2));
+  CHECK(with_law(bent, {2.0}).size() < with_law(bent).size());
+}
+
+TEST_CASE("mesh: what is steep is halved until it is resolved, and not elsewhere") {
+  const auto p = process(0.25, 1, 0.25, {1, 0});
+  auto rule = rule_to(7);
+  const auto plain = velocity::element_ends(p, rule);
+  for (double width : {0.2, 0.02, 1e-3}) {
+    INFO(width);
+    const model::FunctionOfSpeed step = [=](double v) { return std::tanh((v - 0.5) / width); };
+    rule.integrands.functions = {step};
+    const auto ends = velocity::element_ends(p, rule);
+    for (std::size_t n = 1; n < ends.size(); ++n) {
+      CHECK(model::interpolation_error(step, ends[n - 1], ends[n]) < 1e-3);
+    }
+    const auto added = static_cast<double>(ends.size() - plain.size());
+    CHECK(added <= 4 + 4 * std::log2(1 / width));
+    CHECK(std::includes(ends.begin(), ends.end(), plain.begin(), plain.end()));
+  }
+  CHECK(with_law([](double v) {
+          return -v - std::atan(50 * (v - 2)) - std::atan(50 * (v + 2));
+        }).size() > plain.size() + 4);
+  // Where no body goes nothing is halved.
+  rule.integrands.functions = {[](double v) { return 3 + std::tanh((v - 6.5) / 0.01); }};
+  CHECK(velocity::element_ends(p, rule) == plain);
+  rule.integrands.functions = {[](double v) { return std::sin(1e5 * v); }};
+  CHECK(velocity::element_ends(p, rule).size() == plain.size() + 100);
+}
+
+TEST_CASE("mesh: degrees of added elements are those of the regular one") {
+  const auto p = process(0.25, 1, 0.25, {1, 0});
+  auto rule = rule_to(7, 8);
+  const auto plain = velocity::element_ends(p, rule);
+  rule.integrands.breaks = {plain[1] / 2, plain[3] * 1.001, 0.9};
+  const auto ends = velocity::element_ends(p, rule);
+  const auto degrees = velocity::element_degrees(p, rule, 9);
+  REQUIRE(degrees.size() + 1 == ends.size());
+  const std::vector expected{6, 6, 7, 7, 8, 8, 9, 9, 9, 9};
+  for (std::size_t e = 0; e < degrees.size(); ++e) {
+    const auto above = std::lower_bound(plain.begin() + 1, plain.end(), ends[e + 1]);
+    CHECK(degrees[e] == expected[above - plain.begin() - 1]);
   }
 }

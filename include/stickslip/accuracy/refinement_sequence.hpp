@@ -43,6 +43,7 @@ class RefinementSequence {
   double accuracy_;
   int first_degree_ = 0;   // of refinement level 1
   velocity::Rates rates_;  // of the equations to be solved
+  velocity::Integrands integrands_;
   int halves_ = 1;
   bool all_levels_ = false;  // every noise level is a node
   int last_;

@@ -17,6 +17,7 @@ struct Resolution {
   int degree = 0;                             ///< hp: largest polynomial degree of an element
   int layers = 0;                             ///< hp: elements graded towards v = 0
   velocity::Rates rates;                      ///< hp: fastest rates that the elements resolve
+  velocity::Integrands integrands;            ///< hp: that the elements resolve
   int points = 0;                             ///< upwind: nodes per noise step
   int levels = 0;                             ///< N, noise levels on each side of 0
   noise::Grouping grouping;                   ///< of the noise levels

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <vector>
 
 namespace stickslip::model {
 
@@ -16,7 +17,8 @@ struct Drag {
   /// |v| up to which a law is known to be sound: twice the largest terminal velocity, or far in the
   /// tail.
   double reach = std::numeric_limits<double>::infinity();
-  bool law_is_odd = true;  ///< b(-v) = -b(v)
+  bool law_is_odd = true;           ///< b(-v) = -b(v)
+  std::vector<double> breaks = {};  ///< |v| > 0 at which a law has kinks, rising
 
   /// b(v) [force].
   [[nodiscard]] double operator()(double v) const {

@@ -2,10 +2,12 @@
 /// Functions f(x, y, v) of the state, by name or as an expression.
 
 #include <functional>
-#include <optional>
+#include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "stickslip/model/breaks.hpp"
 #include "stickslip/model/friction.hpp"
 
 namespace stickslip::model {
@@ -16,7 +18,14 @@ struct Observable {
   std::string name;  ///< as given by the user
   Function value;
   std::vector<double> numbers = {};  ///< that stand in an expression, mu_s and mu_d included
+  // Set by examine().
+  std::vector<double> levels = {};  ///< x on which it has been looked at
+  std::vector<double> breaks = {};  ///< |v| at which it jumps or has a kink on any of them, rising
+  double least = -std::numeric_limits<double>::infinity();  ///< of the values seen
+  double most = std::numeric_limits<double>::infinity();
 
+  /// Whether all values seen lie in [0, 1], as those of an indicator do.
+  [[nodiscard]] bool within_unit() const { return least >= 0 && most <= 1; }
   [[nodiscard]] double operator()(double x, double y, double v) const { return value(x, y, v); }
   /// (f(x, y, v) + f(-x, -y, -v))/2 and the odd counterpart.
   [[nodiscard]] double even(double x, double y, double v) const {
@@ -38,17 +47,15 @@ struct Observable {
 /// input.
 [[nodiscard]] Observable parse_observable(const std::string& text, const Friction& friction);
 
-/// A state at which an observable jumps in v, to the precision of v.
-struct Jump {
-  double x, y, v;
-};
+/// |v| -> f(x, sign, sign |v|); not a number where f is not finite.
+[[nodiscard]] FunctionOfSpeed section(std::shared_ptr<const Observable> f, double x, double sign);
 
-/// Where f(x, sign v, v) jumps in v, found on the given levels x and those v, 0 < |v| <= reach,
-/// that 2000 places on each side and places around the numbers of f show; nothing if it is
-/// continuous there. Jumps at v = 0 do not count. A steep function that doubles resolve does not
-/// jump, a kink neither. Narrow windows are found if their ends are numbers of f or levels, sums or
-/// differences of two of these.
-[[nodiscard]] std::optional<Jump> velocity_jump(const Observable& f, const std::vector<double>& x,
-                                                double reach);
+/// Finds the breaks of f in v, 0 < |v| <= reach, on the levels x and for both signs of v, as
+/// breaks() does. Throws std::invalid_argument, with the reason, where f is unbounded, for more
+/// than 64 breaks, and for one on a level of `next` that no level of x shows: it moves with x, and
+/// elements cannot end there on all levels. Jumps at v = 0 and in x do not count. About 14 000
+/// values of f a level and sign.
+void examine(Observable& f, const std::vector<double>& x, const std::vector<double>& next,
+             double reach);
 
 }  // namespace stickslip::model

@@ -81,6 +81,11 @@ class KolmogorovOperator {
   /// the measures that they stand for, whatever f is. Collective. O(levels velocity nodes).
   using Observable = std::function<double(double x, double y, double v)>;
   [[nodiscard]] petsc::VecHandle values(const Observable& f) const;
+  /// What sums over velocity nodes overlook of f, by VelocityDiscretisation::overlooked: the
+  /// product with an occupation, or u(s+) where (lambda - L) u is this, is an error of what
+  /// values(f) gives. Other nodes would see it, and no refinement need. Zero where f is a
+  /// polynomial in v of the degree of the elements. Collective. Three times the cost of values().
+  [[nodiscard]] petsc::VecHandle overlooked(const Observable& f) const;
   /// A vector of the operator's layout, zero. Collective.
   [[nodiscard]] petsc::VecHandle zeros() const;
 

@@ -32,6 +32,7 @@ enum class TransientMethod { krylov, stepping };
 struct Expectation {
   std::vector<Uncertain> value;
   double stationary = 0;
+  double unseen = 0;  ///< error of pi(f) and, at large times, of all: see overlooked()
 };
 [[nodiscard]] Expectation expectation(operators::Systems& systems,
                                       const StationaryDistribution& distribution,

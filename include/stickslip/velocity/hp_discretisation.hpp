@@ -20,6 +20,8 @@ struct ReferenceElement {
   std::vector<double> derivative;  ///< q x q by rows: l_n'(x_m); the diagonal is not set
   std::vector<double> at_left;     ///< l_n(0)
   std::vector<double> at_right;    ///< l_n(1)
+  std::vector<double> other_node;  ///< 2q + 1 Clenshaw-Curtis nodes
+  std::vector<double> projection;  ///< q x (2q + 1) by rows: l_m at these, times weight/w_m
 
   /// l_n(t), n = 0 ... q-1, for t in [0, 1]. O(q).
   [[nodiscard]] std::vector<double> basis(double t) const;
@@ -27,6 +29,8 @@ struct ReferenceElement {
   [[nodiscard]] std::vector<double> integral(double t) const;
 
  private:
+  void project();
+
   std::vector<double> barycentric_;
 };
 
@@ -59,6 +63,8 @@ class HpDiscretisation final : public VelocityDiscretisation {
   [[nodiscard]] std::vector<Entry> trace_at_top() const override;
   [[nodiscard]] std::vector<Entry> value_at(double v) const override;
   [[nodiscard]] double mass_below(std::span<const double> mass, double v) const override;
+  [[nodiscard]] std::vector<double>
+  overlooked(const std::function<double(double)>& f) const override;
   [[nodiscard]] bool keeps_origin() const override { return false; }
   [[nodiscard]] double origin_rate(double) const override { return 0; }
   [[nodiscard]] bool needs_holding() const override { return true; }

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "stickslip/model/breaks.hpp"
 #include "stickslip/model/process.hpp"
 
 namespace stickslip::velocity {
@@ -13,6 +14,12 @@ struct Rates {
   double omega = 0;   ///< largest |Im z|
 };
 
+/// Functions of |v| that are seen on the nodes of the elements, as the drag is.
+struct Integrands {
+  std::vector<double> breaks;                     ///< where elements end [velocity]
+  std::vector<model::FunctionOfSpeed> functions;  ///< that elements resolve between the breaks
+};
+
 /// What fixes the elements. See mesh.cpp for the reasons behind the numbers.
 struct MeshRule {
   double v_max = 1;    ///< end of the velocity discretisation
@@ -20,6 +27,7 @@ struct MeshRule {
   double decay = 8;    ///< largest drop of log-density over one element
   int layers = 0;      ///< elements of the graded part; 0: from smallest_scale
   Rates rates;
+  Integrands integrands;
 };
 
 /// Thickness of the finest layer at v = 0 that a solution of (lambda - L) u = f shows, or one for
@@ -29,7 +37,8 @@ struct MeshRule {
 /// Number of graded elements that resolve smallest_scale under `rule`.
 [[nodiscard]] int natural_layers(const model::Process& process, const MeshRule& rule);
 
-/// Element ends 0 = e_0 < e_1 < ... < e_E = v_max.
+/// Element ends 0 = e_0 < e_1 < ... < e_E = v_max, the breaks of the drag and of the integrands
+/// among them. Elements on which a drag law or an integrand is steep are halved, up to 100 times.
 [[nodiscard]] std::vector<double> element_ends(const model::Process& process, const MeshRule& rule);
 
 /// Polynomial degree of each of these elements, at most `degree`: what happens at v concerns levels

@@ -1,6 +1,7 @@
 #pragma once
 /// A discretised half line v > 0, seen by the operators through a few rows and weights.
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <utility>
@@ -62,6 +63,17 @@ class VelocityDiscretisation {
 
   /// Mass on (0, v] of a measure given by the masses of the nodes. O(size).
   [[nodiscard]] virtual double mass_below(std::span<const double> mass, double v) const = 0;
+
+  /// By node, what sums over nodes overlook of a function: (1/w_j) int l_j f - f(v_j), the integral
+  /// by a rule with other points. A product with a measure on the nodes is the error of the sum
+  /// with f, as far as these points see it; 0 for polynomials of the degrees of the elements, and
+  /// where nodes are all there is, on a grid. Evaluates f at twice as many points as there are
+  /// nodes.
+  [[nodiscard]] virtual std::vector<double>
+  overlooked(const std::function<double(double)>& f) const {
+    (void)f;
+    return std::vector<double>(static_cast<std::size_t>(size()), 0.0);
+  }
 
   /// Whether the levels above the static threshold own a state at v = 0 (a grid scheme does).
   [[nodiscard]] virtual bool keeps_origin() const = 0;
