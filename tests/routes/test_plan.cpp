@@ -80,7 +80,10 @@ const std::vector<Example>& cases() {
        scene(0.2, 0.15, 1, 0.5, {1, 0})},
       {"derivatives without drag", {sticking, sensitivity}, {3, 1, 3}, without_drag()},
       {"a bias", {sticking, moments}, {1, 1, 2}, inclined()},
-      {"a bias and the diffusivity", {moments, spectrum}, {1, 1, 4}, inclined()}};
+      {"a bias and averages", {moments, averages, entry_law}, {1, 1, 2}, inclined(), {}, {"x*v"}},
+      {"averages cost nothing more", {moments, averages}, {1, 1, 1}, cut(), {}, {"v^2", "abs(v)"}},
+      {"a bias and transforms", {laplace, resolvent}, {2, 2, 13}, inclined(), {1}, {"v", "x*v"}},
+      {"a bias and derivatives", {sticking, moments, sensitivity}, {4, 1, 9}, inclined()}};
   return all;
 }
 

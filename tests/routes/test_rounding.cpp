@@ -80,7 +80,7 @@ TEST_CASE("rounding: every number says how far its solves were corrected") {
   inclined.bias = 0.3;
   for (const auto& r :
        {given(plain(), {sticking, moments, entry_law, laplace, resolvent, sensitivity}),
-        given(inclined, {sticking, moments, spectrum})}) {
+        given(inclined, {sticking, moments, entry_law, laplace, resolvent, sensitivity})}) {
     const auto d = test::on_hp(r.scene, 5, 1e-8);
     const auto exact = evaluate(r, d).results;
     const auto rough = rough_solves();
@@ -91,7 +91,7 @@ TEST_CASE("rounding: every number says how far its solves were corrected") {
         INFO(found[n].key << " number " << e << ", bias " << r.scene.bias);
         CHECK(relative_difference(found[n].value[e], exact[n].value[e]) < 1e-11);
         CHECK(exact[n].error[e] <= 1e-13 * size);
-        CHECK(found[n].error[e] <= 1e-5 * size);
+        CHECK(found[n].error[e] <= 2e-5 * size);
         if (found[n].key != "f_slide_0" && size > 0) CHECK(found[n].error[e] > 1e-9 * size);
       }
     }
