@@ -68,7 +68,7 @@ void check_state(const model::Process& p, double x, double y, double v) {
 
 TEST_CASE("path: every state is one of the process and follows from the one before") {
   for (const auto& p : processes()) {
-    const auto path = simulate_path(p, 0, 0, 200, 1);
+    const auto path = simulate_path(p, {0, 0}, 200, 1);
     REQUIRE(path.time.size() > 100);
     int rests = 0;
     for (std::size_t n = 0; n < path.time.size(); ++n) {
@@ -83,7 +83,7 @@ TEST_CASE("path: every state is one of the process and follows from the one befo
 
 TEST_CASE("path: an event is a jump by one step or an end of motion, and the end is the horizon") {
   for (const auto& p : processes()) {
-    const auto path = simulate_path(p, 0, 0, 200, 2);
+    const auto path = simulate_path(p, {0, 0}, 200, 2);
     CHECK(path.time.front() == 0);
     CHECK(path.time.back() == 200);
     for (std::size_t n = 0; n + 2 < path.time.size(); ++n) {
@@ -99,14 +99,14 @@ TEST_CASE("path: an event is a jump by one step or an end of motion, and the end
 
 TEST_CASE("path: starts where it is told, in motion, pushed or at rest") {
   const auto p = processes()[0];
-  const auto moving = simulate_path(p, 1, -0.75, 1, 1);
+  const auto moving = simulate_path(p, {1, -0.75}, 1, 1);
   CHECK(moving.x[0] == 0.5);
   CHECK(moving.y[0] == -1);
   CHECK(moving.v[0] == -0.75);
-  const auto pushed = simulate_path(p, -3, 0, 1, 1);
+  const auto pushed = simulate_path(p, {-3, 0}, 1, 1);
   CHECK(pushed.y[0] == -1);
   CHECK(pushed.v[0] == 0);
-  const auto resting = simulate_path(p, 2, 0, 1, 1);  // x = mu_s is held
+  const auto resting = simulate_path(p, {2, 0}, 1, 1);  // x = mu_s is held
   CHECK(resting.y[0] == 0);
 }
 
@@ -115,7 +115,7 @@ TEST_CASE("path: a body in motion comes to rest where it should") {
   const auto p = process(1, 0.25, 1, 0.5, {1, 0});
   int seen = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    const auto path = simulate_path(p, 0, -0.01, 10, seed);
+    const auto path = simulate_path(p, {0, -0.01}, 10, seed);
     if (path.x[1] != 0) continue;
     ++seen;
     CHECK(path.time[1] == Approx(std::log1p(0.01 / 0.25)).epsilon(1e-12));
@@ -126,9 +126,9 @@ TEST_CASE("path: a body in motion comes to rest where it should") {
 
 TEST_CASE("path: seeds repeat and differ, a longer horizon goes on from the same path") {
   const auto p = processes()[0];
-  const auto path = simulate_path(p, 0, 0, 20, 1), longer = simulate_path(p, 0, 0, 40, 1);
-  CHECK(path.v == simulate_path(p, 0, 0, 20, 1).v);
-  CHECK(path.time != simulate_path(p, 0, 0, 20, 2).time);
+  const auto path = simulate_path(p, {0, 0}, 20, 1), longer = simulate_path(p, {0, 0}, 40, 1);
+  CHECK(path.v == simulate_path(p, {0, 0}, 20, 1).v);
+  CHECK(path.time != simulate_path(p, {0, 0}, 20, 2).time);
   for (std::size_t n = 0; n + 1 < path.time.size(); ++n) {
     REQUIRE(longer.time[n] == path.time[n]);
     REQUIRE(longer.v[n] == path.v[n]);
@@ -138,7 +138,7 @@ TEST_CASE("path: seeds repeat and differ, a longer horizon goes on from the same
 TEST_CASE("path: the noise jumps as often as it should, and has the variance it should") {
   const auto p = process(1, 0.25, 1, 0.5, {1, 0});
   constexpr double horizon = 20000;
-  const auto path = simulate_path(p, 0, 0, horizon, 3);
+  const auto path = simulate_path(p, {0, 0}, horizon, 3);
   double jumps = 0, square = 0;
   for (std::size_t n = 0; n + 1 < path.time.size(); ++n) {
     jumps += path.x[n + 1] != path.x[n];
