@@ -10,7 +10,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "estimates.hpp"
+#include "simulated_results.hpp"
 #include "stickslip/checkpoint/checkpoint.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/session.hpp"

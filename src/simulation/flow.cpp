@@ -58,28 +58,27 @@ class Series {
       : speed_(speed), reach_(room) {
     auto b = panel.coefficient;
     const double shift = speed - panel.centre;
-#pragma GCC unroll 8
-    for (std::size_t k = 0; k + 1 < kDragTerms; ++k) {
-#pragma GCC unroll 8
-      for (std::size_t n = kDragTerms - 1; n-- > k;) b[n] += shift * b[n + 1];
+    _Pragma("GCC unroll 8") for (std::size_t k = 0; k + 1 < kDragTerms; ++k) {
+      _Pragma("GCC unroll 8") for (std::size_t n = kDragTerms - 1; n-- > k;) {
+        b[n] += shift * b[n + 1];
+      }
     }
     if (std::abs(b[1]) * room > 3) reach_ = 3 / std::abs(b[1]);
     x_[1] = force + b[0];
     std::array<std::array<double, kOrder>, kDragTerms> power;  // [k][n]: of t^n in (u - u(0))^k
-#pragma GCC unroll 8
-    for (std::size_t n = 1; n < kOrder; ++n) {
+    _Pragma("GCC unroll 8") for (std::size_t n = 1; n < kOrder; ++n) {
       power[1][n] = x_[n];
       double sum = b[1] * x_[n];
-#pragma GCC unroll 8
-      for (std::size_t k = 2; k <= n; ++k) {
+      _Pragma("GCC unroll 8") for (std::size_t k = 2; k <= n; ++k) {
         double product = 0;
-#pragma GCC unroll 8
-        for (std::size_t m = 1; m <= n - k + 1; ++m) product += x_[m] * power[k - 1][n - m];
+        _Pragma("GCC unroll 8") for (std::size_t m = 1; m <= n - k + 1; ++m) {
+          product += x_[m] * power[k - 1][n - m];
+        }
         power[k][n] = product;
         sum += b[k] * product;
       }
       x_[n + 1] = sum * kInverse[n + 1];
-      if (n + 1 == kLowOrder && excess<kLowOrder>(reach_) + missing(b, reach_) <= 1) return;
+      if (n + 1 == kLowOrder && remainder<kLowOrder>(reach_) + missing(b, reach_) <= 1) return;
     }
     shorten();
   }
@@ -120,11 +119,10 @@ class Series {
  private:
   // The last terms over what is allowed of them. Some may be 0 by chance, and earlier ones tell.
   template <std::size_t order>
-  [[nodiscard]] double excess(double h) const {
+  [[nodiscard]] double remainder(double h) const {
     constexpr double fall = 3e-3;  // of one term to the next
     double power = order == kOrder ? h * h * h * h * h : h * h * h, size = 0;
-#pragma GCC unroll 4
-    for (std::size_t n = order - 3; n <= order; ++n, power *= h) {
+    _Pragma("GCC unroll 4") for (std::size_t n = order - 3; n <= order; ++n, power *= h) {
       size = fall * size + power * std::abs(x_[n]);
     }
     return size / (kTolerance * (speed_ + h * std::abs(x_[1])));
@@ -136,7 +134,7 @@ class Series {
     return h * force / (kTolerance * (speed_ + change));
   }
   void shorten() {
-    for (double e = excess<kOrder>(reach_); e > 1; e = excess<kOrder>(reach_)) {
+    for (double e = remainder<kOrder>(reach_); e > 1; e = remainder<kOrder>(reach_)) {
       reach_ *= 0.95 * std::max(0.1, std::sqrt(std::sqrt(std::sqrt(1 / e))));
     }
   }

@@ -1,4 +1,4 @@
-#include "estimates.hpp"
+#include "simulated_results.hpp"
 
 #include <algorithm>
 #include <string>
