@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "stickslip/simulation/path.hpp"
+#include "stickslip/simulation/sampler.hpp"
 
 using namespace stickslip;
 using simulation::Path;
@@ -148,4 +149,53 @@ TEST_CASE("path: the noise jumps as often as it should, and has the variance it 
   CHECK(std::abs(jumps - expected) < 4 * std::sqrt(expected));
   // Var[X^2] = 2 and its correlation decays as exp(-2 t/tau): sigma^2 = 2 tau Var/(2 horizon).
   CHECK(std::abs(square / horizon - 1) < 4 * std::sqrt(2 / horizon));
+}
+
+TEST_CASE(
+    "path: from rest the noise has its stationary distribution, and only pushed bodies move") {
+  const auto p = process(1, 0.25, 1, 0.5, {1, 0});
+  double square = 0;
+  constexpr int count = 4000;
+  for (std::uint64_t seed = 1; seed <= count; ++seed) {
+    const auto path = simulate_path(p, {0, 0, model::Start::Kind::rest}, 0.01, seed);
+    const double x = path.x[0];
+    square += x * x / count;
+    REQUIRE(path.v[0] == 0);
+    REQUIRE(path.y[0] == (std::abs(x) <= 1 ? 0 : x > 0 ? 1 : -1));
+  }
+  CHECK(std::abs(square - 1) < 4 * std::sqrt(2.0 / count));
+}
+
+TEST_CASE("path: levels are drawn in proportion to their probabilities") {
+  const model::NoiseChain noise{1, 0.5, 8};
+  const auto weight = model::stationary_distribution(noise);
+  const simulation::NoiseLevels levels(noise);
+  std::vector<double> share(weight.size(), 0.0);
+  constexpr int count = 100000;
+  for (int n = 0; n < count; ++n) {
+    share[static_cast<std::size_t>(levels.draw((n + 0.5) / count) + 8)] += 1.0 / count;
+  }
+  for (std::size_t i = 0; i < weight.size(); ++i) CHECK(std::abs(share[i] - weight[i]) < 2e-5);
+}
+
+// Of starts at times within long paths, with means over time known from excursions.
+TEST_CASE("path: a stationary start has the stationary distribution within 4 sigma") {
+  const auto p = process(1, 0.25, 1, 0.5, {1, 0});
+  simulation::Wanted wanted;
+  wanted.moments = true;
+  const auto known = simulation::Sampler(p, wanted).batch(1, 0, 50000);
+  constexpr int count = 1000;
+  double square = 0, fourth = 0, resting = 0;
+  for (std::uint64_t seed = 1; seed <= count; ++seed) {
+    const auto path = simulate_path(p, {0, 0, model::Start::Kind::stationary}, 0.01, seed);
+    REQUIRE(path.time[0] == 0);
+    REQUIRE(path.time.back() == 0.01);
+    square += path.v[0] * path.v[0] / count;
+    fourth += std::pow(path.v[0], 4) / count;
+    resting += path.y[0] == 0 ? 1.0 / count : 0;
+  }
+  const double share = known.sticking().value;
+  CHECK(std::abs(square - known.mean_square().value) <
+        4 * std::sqrt((fourth - square * square) / count));
+  CHECK(std::abs(resting - share) < 4 * std::sqrt(share * (1 - share) / count));
 }
