@@ -325,8 +325,8 @@ Outcome refine(MPI_Comm comm, const options::Case& given, const Progress& progre
     }
   }
   if (question.wants(Quantity::trajectory)) {
-    outcome.path = simulation::simulate_path(given.scene.meant(), question.start.level,
-                                             question.start.v, question.horizon, given.method.seed);
+    outcome.path = simulation::simulate_path(given.scene.meant(), question.start, question.horizon,
+                                             given.method.seed);
   }
   if (!question.references.empty()) {
     outcome.comparison = compare(question.references, outcome.results);

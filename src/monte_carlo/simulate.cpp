@@ -10,22 +10,18 @@
 #include <optional>
 #include <stdexcept>
 
+#include "simulated_results.hpp"
 #include "stickslip/checkpoint/checkpoint.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/session.hpp"
-#include "stickslip/simulation/tally.hpp"
+#include "stickslip/simulation/sampler.hpp"
 #include "stickslip/support/errors.hpp"
 
 namespace stickslip::monte_carlo {
 namespace {
 
 using options::Case;
-using options::Quantity;
-using quantities::Kind;
-using quantities::Result;
 using quantities::Results;
-using simulation::Duration;
-using simulation::Estimate;
 using simulation::Tally;
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
@@ -33,168 +29,6 @@ using Json = nlohmann::ordered_json;
 constexpr int kBatch = 256;  // excursions with one random stream
 constexpr int kRound = 64;   // batches between merges
 constexpr double kSecondsBetweenFiles = 3, kSecondsBetweenReports = 1;
-
-/// Cell of a histogram around one time of -time.
-struct Cell {
-  double low, high;
-};
-
-// Up to the middle between neighbours, and as far on the other side at the ends.
-std::vector<Cell> cells_around(const std::vector<double>& time) {
-  std::vector<double> sorted = time;
-  std::sort(sorted.begin(), sorted.end());
-  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-  std::vector<Cell> cells;
-  for (double t : time) {
-    const auto at = std::lower_bound(sorted.begin(), sorted.end(), t);
-    const bool first = at == sorted.begin(), last = at + 1 == sorted.end();
-    const double alone = t > 0 ? 0.05 * t : 1;
-    const double up = last ? 0 : (*(at + 1) - t) / 2, down = first ? 0 : (t - *(at - 1)) / 2;
-    const double above = last ? (first ? alone : down) : up;
-    const double below = first ? (last ? alone : up) : down;
-    cells.push_back({std::max(0.0, t - below), t + above});
-  }
-  return cells;
-}
-
-simulation::Wanted wanted_of(const Case& given) {
-  simulation::Wanted wanted;
-  const options::Question& question = given.question;
-  wanted.moments = question.wants(Quantity::moments);
-  wanted.noise = question.wants(Quantity::noise_law);
-  wanted.cycles = !given.scene.symmetric();
-  if (question.wants(Quantity::spectrum)) wanted.omega = question.omega;
-  if (question.wants(Quantity::laplace)) wanted.lambda = question.lambda;
-  if (!question.wants(Quantity::duration_density)) return wanted;
-  auto& edges = wanted.edges;
-  for (double t : question.time) edges.push_back(t);
-  for (const Cell& cell : cells_around(question.time)) {
-    edges.push_back(cell.low);
-    edges.push_back(cell.high);
-  }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  return wanted;
-}
-
-void append_value(Result& result, const Estimate& e) {
-  result.value.push_back(e.value);
-  result.error.push_back(std::max(e.high - e.value, e.value - e.low));
-  result.ci95.emplace_back(e.low, e.high);
-}
-
-/// Turns a tally into results.
-class Estimates {
- public:
-  Estimates(const options::Question& question, const model::Process& process, const Tally& tally)
-      : question_(question), process_(process), tally_(tally) {}
-
-  Results all() {
-    if (question_.wants(Quantity::sticking)) append_sticking();
-    if (question_.wants(Quantity::moments)) append_moments();
-    if (question_.wants(Quantity::noise_law)) {
-      scalar(quantities::kPWithin, tally_.within());
-      scalar(quantities::kEX2, tally_.noise_square());
-    }
-    if (question_.wants(Quantity::entry_law)) append_hitting_distribution();
-    if (question_.wants(Quantity::laplace)) append_laplace();
-    if (question_.wants(Quantity::duration_density)) append_durations();
-    if (question_.wants(Quantity::spectrum)) append_spectrum();
-    return std::move(results_);
-  }
-
- private:
-  void scalar(const quantities::Name& name, const Estimate& e) {
-    Result result{name.key, name.unit, "", {}, {}, {}, name.kind};
-    append_value(result, e);
-    results_.push_back(std::move(result));
-  }
-
-  void append_sticking() {
-    scalar(quantities::kPStick, tally_.sticking());
-    scalar(quantities::kPSlide, tally_.sliding());
-    scalar(quantities::kMeanStick, tally_.mean(Duration::stick));
-    scalar(quantities::kMeanSlide, tally_.mean(Duration::slide));
-    scalar(quantities::kMeanExcursion, tally_.mean(Duration::excursion));
-  }
-
-  void append_moments() {
-    scalar(quantities::kEV2, tally_.mean_square());
-    scalar(quantities::kEAbsV, tally_.mean_speed());
-    scalar(quantities::kEXV, tally_.mean_product());
-    if (process_.symmetric()) {
-      results_.push_back(quantities::scalar(quantities::kEV, 0, 0));
-    } else {
-      scalar(quantities::kEV, tally_.mean_velocity());
-    }
-  }
-
-  void append_hitting_distribution() {
-    const int k = process_.static_index();
-    Result law = quantities::array("entry_law", "", "k", {});
-    for (int i = -k; i <= k; ++i) {
-      law.abscissa.push_back(i);
-      append_value(law, tally_.entry(i));
-    }
-    results_.push_back(std::move(law));
-    scalar(quantities::kFStick0,
-           tally_.entry_of_both(-k, k, process_.noise.rate() * process_.noise.up(k)));
-  }
-
-  void append_laplace() {
-    for (const auto& [key, duration] : names("F_")) {
-      Result result = quantities::array(key, "", "lambda", question_.lambda, Kind::transform);
-      for (std::size_t n = 0; n < question_.lambda.size(); ++n) {
-        append_value(result, tally_.laplace(n, duration));
-      }
-      results_.push_back(std::move(result));
-    }
-  }
-
-  void append_durations() {
-    const auto cells = cells_around(question_.time);
-    for (const auto& [key, duration] : names("f_")) {
-      Result density = quantities::array(key, "1/time", "time", question_.time);
-      for (const auto& cell : cells) {
-        const Estimate e = tally_.probability(duration, cell.low, cell.high);
-        const double width = cell.high - cell.low;
-        append_value(density, {e.value / width, e.low / width, e.high / width});
-      }
-      results_.push_back(std::move(density));
-      Result distribution =
-          quantities::array("cd" + key, "", "time", question_.time, Kind::distribution);
-      for (double t : question_.time) {
-        append_value(distribution, tally_.probability(duration, 0, t));
-      }
-      results_.push_back(std::move(distribution));
-    }
-  }
-
-  void append_spectrum() {
-    if (!process_.symmetric()) return append_spectrum_at_zero();
-    Result s =
-        quantities::array("S_v", "velocity^2*time", "omega", question_.omega, Kind::spectrum);
-    for (std::size_t n = 0; n < question_.omega.size(); ++n) append_value(s, tally_.spectrum(n));
-    results_.push_back(std::move(s));
-  }
-
-  void append_spectrum_at_zero() {
-    const Estimate s = tally_.spectrum_at_zero();
-    scalar(quantities::kS0, s);
-    scalar(quantities::kDiffusivity, {s.value / 2, s.low / 2, s.high / 2});
-  }
-
-  static std::vector<std::pair<std::string, Duration>> names(const std::string& prefix) {
-    return {{prefix + "slide", Duration::slide},
-            {prefix + "stick", Duration::stick},
-            {prefix + "excursion", Duration::excursion}};
-  }
-
-  const options::Question& question_;
-  const model::Process& process_;
-  const Tally& tally_;
-  Results results_;
-};
 
 // What fixes the numbers of a simulation, but for how many excursions there are: as understood, not
 // as written, since questions may come from the file of -compare.
@@ -214,17 +48,33 @@ checkpoint::Identity identity(const Case& given) {
   if (s.drag.law) found.emplace_back("-drag_expression", s.drag_expression);
   found.emplace_back("-bias", text(s.bias));
   found.emplace_back("-seed", text(given.method.seed));
-  const auto wanted = wanted_of(given);
+  const auto wanted = wanted_of(given.question);
   const auto add = [&](const char* name, const auto& values) {
     found.emplace_back(name, values.empty() ? "none" : fmt::format("{}", fmt::join(values, ",")));
   };
-  std::vector<std::string> followed;
-  if (wanted.moments) followed.emplace_back("moments");
-  if (wanted.noise) followed.emplace_back("noise_law");
+  std::vector<std::string> followed, observables;
+  const auto follow = [&](const char* name, bool whether) {
+    if (whether) followed.emplace_back(name);
+  };
+  follow("moments", wanted.moments);
+  follow("noise_law", wanted.noise);
+  follow("spectrum", wanted.displacement);
+  follow("laplace", !wanted.lambda.empty());
+  follow("resolvent", !wanted.discount.empty());
+  follow("duration_density", !wanted.edges.empty());
+  follow("expectation", wanted.start.has_value());
+  follow("autocorrelation", wanted.autocorrelation);
+  for (const auto& f : wanted.observables) observables.push_back(f.name);
   add("-quantities", followed);
-  add("-lambda", wanted.lambda);
+  add("-observable", observables);
+  add("-lambda", wanted.discount.empty() ? wanted.lambda : wanted.discount);
   add("-omega", wanted.omega);
-  add("-time", wanted.edges.empty() ? wanted.edges : given.question.time);
+  const bool timed = !wanted.edges.empty() || !wanted.time.empty();
+  add("-time", timed ? given.question.time : wanted.time);
+  if (const auto& start = wanted.start) {
+    found.emplace_back(
+        "-start", fmt::format("{} {} {}", static_cast<int>(start->kind), start->level, start->v));
+  }
   return found;
 }
 
@@ -237,9 +87,9 @@ class Campaign {
         question_(given.question),
         progress_(progress),
         process_(given.scene.meant()),
-        wanted_(wanted_of(given)),
-        source_(simulation::make_source(process_, wanted_)),
-        tally_(wanted_, process_.static_index()) {
+        wanted_(wanted_of(given.question)),
+        sampler_(process_, wanted_),
+        tally_(sampler_.empty()) {
     if (file.empty()) return;
     checkpoint_.emplace(file, checkpoint::Kind::simulation, identity(given));
   }
@@ -273,18 +123,24 @@ class Campaign {
   }
   [[nodiscard]] bool first_rank() const { return petsc::rank(comm_) == 0; }
 
-  // Every stay begins at most at the edge of the static levels.
+  // Every stay begins at most at the edge of the static levels, and a path lasts as long as asked.
   void require_time() const {
     const auto chain = operators::StaticChain::of(process_);
     const auto sticking = chain.integral(std::vector<double>(chain.size(), 1.0));
+    const Paths paths = paths_of(wanted_);
+    const double sides = process_.symmetric() ? 1 : 2, stays = sides * (paths.stationary ? 2 : 1),
+                 walks = (paths.from_start ? 1 : 0) + (paths.stationary ? sides : 0),
+                 longest =
+                     walks > 0 ? *std::max_element(wanted_.time.begin(), wanted_.time.end()) : 0;
     constexpr double jump = 15e-9, month = 30 * 86400.0;
-    const double jumps = process_.noise.rate() * std::min(sticking.front(), sticking.back());
+    const double jumps = process_.noise.rate() *
+                         (stays * std::min(sticking.front(), sticking.back()) + walks * longest);
     const double seconds = given_.method.excursions * jumps * jump / petsc::ranks(comm_);
     if (seconds < month) return;
     throw BadInput(fmt::format(
-        "-excursions = {:g}: bodies stick for {:.1e} jumps of the noise and more, so that this "
-        "would take {:.0e} days; take fewer excursions, or -route excursion",
-        given_.method.excursions, jumps, seconds / 86400));
+        "-excursions = {:g}: a sample has {:.1e} jumps of the noise and more, so that this "
+        "would take {:.0e} days; take fewer excursions{}, or -route excursion",
+        given_.method.excursions, jumps, seconds / 86400, longest > 0 ? ", a shorter -time" : ""));
   }
 
   void load() {
@@ -324,8 +180,7 @@ class Campaign {
     for (long b = petsc::rank(comm_); b < batches; b += ranks) {
       const auto count = static_cast<int>(std::min<long>(kBatch, excursions - b * kBatch));
       const auto number = static_cast<std::uint64_t>(rounds_ * kRound + b);
-      const auto part = simulation::simulate_batch(*source_, wanted_, process_.static_index(),
-                                                   given_.method.seed, number, count);
+      const auto part = sampler_.batch(given_.method.seed, number, count);
       const auto packed = part.pack();
       own.insert(own.end(), packed.begin(), packed.end());
       if (!predicted_) predict(part);
@@ -360,7 +215,7 @@ class Campaign {
     std::vector<double> all(static_cast<std::size_t>(total));
     MPI_Allgatherv(own.data(), static_cast<int>(own.size()), MPI_DOUBLE, all.data(), counts.data(),
                    starts.data(), MPI_DOUBLE, comm_);
-    Tally part(wanted_, process_.static_index());
+    Tally part = sampler_.empty();
     for (long b = 0; b < batches; ++b) {
       const double* packed = all.data() + starts[b % ranks] + b / ranks * size;
       part.unpack({packed, static_cast<std::size_t>(size)});
@@ -368,7 +223,7 @@ class Campaign {
     }
   }
 
-  [[nodiscard]] Results results() const { return Estimates(question_, process_, tally_).all(); }
+  [[nodiscard]] Results results() const { return estimates(question_, process_, tally_); }
 
   [[nodiscard]] std::pair<double, std::string> worst(const Results& results) const {
     std::pair<double, std::string> worst{0, ""};
@@ -425,7 +280,7 @@ class Campaign {
   const SimulationProgress& progress_;
   model::Process process_;
   simulation::Wanted wanted_;
-  std::unique_ptr<simulation::ExcursionSource> source_;
+  simulation::Sampler sampler_;
   Tally tally_;
   std::optional<checkpoint::Checkpoint> checkpoint_;
   SimulationState state_;

@@ -66,7 +66,6 @@ class Rules {
   void needs() {
     using enum Quantity;
     const bool by_lambda = r_.method.route == Route::lambda;
-    const bool simulated = q_.wants(spectrum) && r_.method.route == Route::monte_carlo;
     const bool derivable = q_.wants(sticking) || q_.wants(moments) || q_.wants(noise_law);
     const bool others = std::any_of(q_.quantities.begin(), q_.quantities.end(), [](Quantity q) {
       return q != sticking && q != moments && q != noise_law;
@@ -81,8 +80,6 @@ class Rules {
     require("time", asked("time") && q_.time.empty(),
             "asks for functions of time and no times are given",
             "add for example -time 0.01:10:31:log");
-    require("omega", simulated && q_.omega.empty(),
-            "asks for the spectrum and no frequencies are given", "add for example -omega 0:10:41");
     require("output", q_.wants(density), "asks for density, a field that needs a file",
             "add -output FILE.h5");
     require("trajectory", q_.wants(trajectory) && r_.output.output.empty(),

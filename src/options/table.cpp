@@ -187,10 +187,12 @@ std::vector<Option> method_options() {
       flag("plan",
            "print what would be assembled, factored and solved, with unknowns, non-zeros, memory "
            "and time predicted by the analysis phase of the solver, and stop"),
-      integer("excursions", "1000000", whole(2, 1e15),
-              "number of simulated excursions with -route monte_carlo; with -accuracy it stops "
-              "before that when every interval is small enough",
-              "a million gives about three digits"),
+      integer(
+          "excursions", "1000000", whole(2, 1e15),
+          "number of simulated excursions with -route monte_carlo, without symmetry of pairs of "
+          "them and with functions of time of paths; with -accuracy it stops "
+          "before that when every interval is small enough",
+          "a million gives about three digits"),
       integer(
           "seed", "1", whole(0, 9007199254740992),
           "seed of what is simulated; the same seed gives the same numbers on any number of ranks",

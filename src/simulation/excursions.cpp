@@ -76,36 +76,36 @@ class Source : public ExcursionSource {
         flow_(process.drag),
         backward_flow_(process.mirrored().drag),
         wanted_(wanted),
-        symmetric_(process.symmetric()),
-        start_(process.bias < 0 ? -1 : 1) {
+        symmetric_(process.symmetric()) {
     piece_transform_.resize(wanted.omega.size());
     phase_.resize(wanted.omega.size());
   }
 
-  void draw(RandomStream& random, Excursion& e) override {
-    e = {.transform = std::move(e.transform)};
-    e.count = 0;
+  void draw(RandomStream& random, std::size_t side, double place, Excursion& e) override {
+    e = {.transform = std::move(e.transform),
+         .integrals = std::move(e.integrals),
+         .discounted = std::move(e.discounted)};
     e.transform.assign(wanted_.omega.size(), 0.0);
+    e.integrals.assign(wanted_.observables.size(), {});
+    e.discounted.assign(wanted_.observables.size() * wanted_.discount.size(), {});
     std::fill(phase_.begin(), phase_.end(), 1.0);
-    int sign = start_;
-    do {
-      double wait = levels_.wait(random);
-      slide(random, e, wait, sign);
-      sticking(random, e, wait);
-      ++e.count;
-      sign = e.turned ? -1 : 1;
-    } while (!symmetric_ && sign != start_);
+    place_ = place;
+    double wait = levels_.wait(random);
+    slide(random, e, wait, side == 0 ? 1 : -1);
+    sticking(random, e, wait);
+    if (side == 1) e.turned = !e.turned;
   }
 
  private:
   // Until rest; `wait` is the time to the next jump of the noise.
   void slide(RandomStream& random, Excursion& e, double& wait, int sign) {
-    const bool integrals = wanted_.moments || wanted_.cycles || !wanted_.omega.empty();
+    const bool integrals = wanted_.moments || wanted_.displacement || !wanted_.omega.empty();
     int j = levels_.exit(sign);
     double speed = 0;
     for (;;) {
       const double force = levels_.force(sign, j);
       const Piece piece = flow(sign).move(speed, force, wait, integrals);
+      if (!wanted_.observables.empty()) observe_slide(e, piece.time, speed, j, sign);
       follow(e, piece, j, sign);
       if (!wanted_.omega.empty()) follow_transform(e, piece, speed, force, sign);
       speed = piece.end;
@@ -145,10 +145,41 @@ class Source : public ExcursionSource {
     }
   }
 
+  // Places along the golden ratio spread evenly, and each is uniformly distributed.
+  void observe_slide(Excursion& e, double time, double speed, int j, int sign) {
+    place_ = std::fmod(place_ + 0.6180339887498949, 1);
+    const double at = place_ * time;
+    const double then = flow(sign).move(speed, levels_.force(sign, j), at, false).end;
+    observe(e, &Integrals::slide, time, at, sign * levels_.level(j), sign, sign * then);
+  }
+
+  // A piece of `time`, with the state at `at` after its start; at rest nothing changes.
+  void observe(Excursion& e, double Integrals::*part, double time, double at, double x, double y,
+               double v) const {
+    const double begun = e.slide + e.stick;
+    for (std::size_t f = 0; f < wanted_.observables.size(); ++f) {
+      const double value = wanted_.observables[f](x, y, v);
+      const double mirrored = symmetric_ ? wanted_.observables[f](-x, -y, -v) : value;
+      e.integrals[f].*part += time * (value + mirrored) / 2;
+      for (std::size_t l = 0; l < wanted_.discount.size(); ++l) {
+        const double lambda = wanted_.discount[l];
+        const double weight =
+            y == 0 ? time * detail::phi_one(lambda * time) * std::exp(-lambda * begun)
+                   : time * std::exp(-lambda * (begun + at));
+        auto& discounted = e.discounted[l * wanted_.observables.size() + f];
+        discounted.value += weight * value;
+        discounted.mirrored += weight * mirrored;
+      }
+    }
+  }
+
   // Until the static levels are left.
   void sticking(RandomStream& random, Excursion& e, double wait) const {
     int i = e.entry;
     for (;;) {
+      if (!wanted_.observables.empty()) {
+        observe(e, &Integrals::stick, wait, 0, levels_.level(i), 0, 0);
+      }
       e.stick += wait;
       if (wanted_.noise) e.noise_square += levels_.level(i) * levels_.level(i) * wait;
       if (levels_.within(i)) e.within += wait;
@@ -164,7 +195,7 @@ class Source : public ExcursionSource {
   Flow flow_, backward_flow_;
   Wanted wanted_;
   bool symmetric_;
-  int start_;  // sign of the motion
+  double place_ = 0;
   std::vector<std::complex<double>> piece_transform_, phase_;
 };
 

@@ -4,8 +4,9 @@
 #include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/tools/roots.hpp>
-#include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 namespace stickslip::simulation {
 
@@ -39,88 +40,153 @@ void LinearFlow::transform(double speed, double force, const Piece& piece,
 
 namespace {
 
-namespace odeint = boost::numeric::odeint;
+constexpr std::size_t kOrder = kDragTerms, kLowOrder = 6;
+constexpr double kTolerance = 1e-11;  // of the last term of a series: what follows is far smaller
 
-using State = std::array<double, 3>;  // speed, path, square
-using Stepper = odeint::runge_kutta_fehlberg78<State>;
+// 1/n.
+constexpr std::array<double, kOrder + 4> kInverse = [] {
+  std::array<double, kOrder + 4> inverse{};
+  for (std::size_t n = 1; n < inverse.size(); ++n) inverse[n] = 1 / static_cast<double>(n);
+  return inverse;
+}();
 
-constexpr double kTolerance = 1e-13;
-
-/// Steps from state to state, cut where the body stops.
-class Motion {
+/// u(t) - u(0) = sum_{n=1}^{8} x_n t^n, where u' = force + sum_k b_k (u - u(0))^k; fewer terms
+/// where they do up to `room`.
+class Series {
  public:
-  Motion(const model::Drag& drag, double force, double speed)
-      : drag_(drag), force_(force), state_{speed, 0, 0}, stopped_(speed <= 0 && force < 0) {}
+  Series(const DragPanel& panel, double speed, double force, double room)
+      : speed_(speed), reach_(room) {
+    auto b = panel.coefficient;
+    const double shift = speed - panel.centre;
+    _Pragma("GCC unroll 8") for (std::size_t k = 0; k + 1 < kDragTerms; ++k) {
+      _Pragma("GCC unroll 8") for (std::size_t n = kDragTerms - 1; n-- > k;) {
+        b[n] += shift * b[n + 1];
+      }
+    }
+    if (std::abs(b[1]) * room > 3) reach_ = 3 / std::abs(b[1]);
+    x_[1] = force + b[0];
+    std::array<std::array<double, kOrder>, kDragTerms> power;  // [k][n]: of t^n in (u - u(0))^k
+    _Pragma("GCC unroll 8") for (std::size_t n = 1; n < kOrder; ++n) {
+      power[1][n] = x_[n];
+      double sum = b[1] * x_[n];
+      _Pragma("GCC unroll 8") for (std::size_t k = 2; k <= n; ++k) {
+        double product = 0;
+        _Pragma("GCC unroll 8") for (std::size_t m = 1; m <= n - k + 1; ++m) {
+          product += x_[m] * power[k - 1][n - m];
+        }
+        power[k][n] = product;
+        sum += b[k] * product;
+      }
+      x_[n + 1] = sum * kInverse[n + 1];
+      if (n + 1 == kLowOrder && remainder<kLowOrder>(reach_) + missing(b, reach_) <= 1) return;
+    }
+    shorten();
+  }
 
-  [[nodiscard]] const State& state() const { return state_; }
-  [[nodiscard]] double time() const { return time_; }
-  [[nodiscard]] bool stopped() const { return stopped_; }
-
-  void advance(double end) {
-    while (!stopped_ && time_ < end) step(end);
+  [[nodiscard]] double rate() const { return x_[1]; }
+  /// The time over which the series is right.
+  [[nodiscard]] double reach() const { return reach_; }
+  [[nodiscard]] double change(double t) const {
+    double sum = 0;
+    for (std::size_t n = kOrder; n > 0; --n) sum = (sum + x_[n]) * t;
+    return sum;
+  }
+  /// When the speed has changed by `change`, which it does before `latest`.
+  [[nodiscard]] double time_of(double change, double latest) const {
+    std::uintmax_t iterations = 60;
+    const auto distance = [&](double t) {
+      double rate = 0;
+      for (std::size_t n = kOrder; n > 0; --n) rate = rate * t + static_cast<double>(n) * x_[n];
+      return std::pair(this->change(t) - change, rate);
+    };
+    return boost::math::tools::newton_raphson_iterate(distance, std::min(change / rate(), latest),
+                                                      0.0, latest, 50, iterations);
+  }
+  /// int u dt and int u^2 dt over [0, t].
+  [[nodiscard]] std::pair<double, double> integrals(double t) const {
+    double path = 0, square = 0;
+    for (std::size_t n = kOrder; n > 0; --n) path = (path + x_[n] * kInverse[n + 1]) * t;
+    for (std::size_t n = kOrder + 2; n > 1; --n) {
+      double product = 0;
+      for (std::size_t m = n > kOrder ? n - kOrder : 1; m <= std::min(n - 1, kOrder); ++m) {
+        product += x_[m] * x_[n - m];
+      }
+      square = (square + product * kInverse[n + 1]) * t;
+    }
+    return {t * (speed_ + path), t * (speed_ * (speed_ + 2 * path) + square * t)};
   }
 
  private:
-  [[nodiscard]] auto rates() const {
-    return [this](const State& s, State& rate, double) {
-      rate = {force_ + drag_(s[0]), s[0], s[0] * s[0]};
-    };
-  }
-
-  void step(double end) {
-    const double room = end - time_;
-    double h = step_ > 0 ? std::min(step_, room) : room;
-    State next{}, error{};
-    for (;;) {
-      Stepper().do_step(rates(), state_, 0.0, next, h, error);
-      double ratio = 1e-8;  // of the error to what is allowed; a step grows tenfold at most
-      for (std::size_t n = 0; n < error.size(); ++n) {
-        const double share = std::abs(error[n]) / (kTolerance * (1 + std::abs(next[n])));
-        const bool overflows = !std::isfinite(share) || !std::isfinite(next[n]);
-        ratio = std::max(ratio, overflows ? 1e8 : share);
-      }
-      step_ = 0.9 * h / std::pow(ratio, 1.0 / 8);
-      if (ratio <= 1) break;
-      h = step_;
+  // The last terms over what is allowed of them. Some may be 0 by chance, and earlier ones tell.
+  template <std::size_t order>
+  [[nodiscard]] double remainder(double h) const {
+    constexpr double fall = 3e-3;  // of one term to the next
+    double power = order == kOrder ? h * h * h * h * h : h * h * h, size = 0;
+    _Pragma("GCC unroll 4") for (std::size_t n = order - 3; n <= order; ++n, power *= h) {
+      size = fall * size + power * std::abs(x_[n]);
     }
-    const State before = state_;
-    state_ = next;
-    time_ = h == room ? end : time_ + h;
-    if (state_[0] > 0) return;
+    return size / (kTolerance * (speed_ + h * std::abs(x_[1])));
+  }
+  // The same of what b has in its highest powers alone.
+  [[nodiscard]] double missing(const std::array<double, kDragTerms>& b, double h) const {
+    const double change = h * std::abs(x_[1]), square = change * change;
+    const double force = square * square * square * (std::abs(b[6]) + change * std::abs(b[7]));
+    return h * force / (kTolerance * (speed_ + change));
+  }
+  void shorten() {
+    for (double e = remainder<kOrder>(reach_); e > 1; e = remainder<kOrder>(reach_)) {
+      reach_ *= 0.95 * std::max(0.1, std::sqrt(std::sqrt(std::sqrt(1 / e))));
+    }
+  }
+
+  double speed_, reach_;
+  std::array<double, kOrder + 1> x_{};
+};
+
+/// Steps by series, each within a panel of the drag, cut where the body stops.
+class Motion {
+ public:
+  Motion(DragTable& drag, double force, double speed)
+      : drag_(drag), force_(force), speed_(speed), stopped_(speed <= 0 && force < 0) {}
+
+  [[nodiscard]] Piece piece() const { return {time_, speed_, path_, square_, stopped_}; }
+  void advance(double end, bool integrals) {
+    while (!stopped_ && time_ < end) step(end, integrals);
+  }
+
+ private:
+  void step(double end, bool integrals) {
+    const DragPanel& panel = drag_.at(speed_);
+    const double room = end - time_;
+    const Series series(panel, speed_, force_, room);
+    double h = series.reach(), next = speed_ + series.change(h);
     // Only a body that is pushed back stops; else the rest of the speed is below the tolerance.
-    if (force_ < 0) return stop_after(before, h);
-    state_[0] = 0;
+    const bool bottom = panel.low == 0;
+    stopped_ = bottom && next <= 0 && force_ < 0;
+    if (stopped_ || next > panel.to || (next < panel.from && !bottom)) {
+      next = next > panel.to ? panel.to : panel.from;
+      h = series.time_of(next - speed_, h);
+    }
+    if (integrals) {
+      const auto [path, square] = series.integrals(h);
+      path_ += path;
+      square_ += square;
+    }
+    time_ = h == room ? end : time_ + h;
+    speed_ = std::max(next, 0.0);
   }
 
-  // Stopped within the step of size h that was made last.
-  void stop_after(const State& before, double h) {
-    const auto after = [&](double t) {
-      State s = before;
-      Stepper().do_step(rates(), s, 0.0, t);
-      return s;
-    };
-    std::uintmax_t iterations = 60;
-    const auto root = boost::math::tools::toms748_solve(
-        [&](double t) { return after(t)[0]; }, 0.0, h, before[0], state_[0],
-        boost::math::tools::eps_tolerance<double>(50), iterations);
-    state_ = after(root.first);
-    time_ -= h - root.first;
-    stopped_ = true;
-  }
-
-  const model::Drag& drag_;
-  double force_, time_ = 0, step_ = 0;
-  State state_;
-  bool stopped_ = false;
+  DragTable& drag_;
+  double force_, speed_, time_ = 0, path_ = 0, square_ = 0;
+  bool stopped_;
 };
 
 }  // namespace
 
-Piece GeneralFlow::move(double speed, double force, double time, bool) const {
-  Motion motion(drag_, force, speed);
-  motion.advance(time);
-  const auto& [end, path, square] = motion.state();
-  return {motion.time(), motion.stopped() ? 0 : end, path, square, motion.stopped()};
+Piece GeneralFlow::move(double speed, double force, double time, bool integrals) const {
+  Motion motion(table_, force, speed);
+  motion.advance(time, integrals);
+  return motion.piece();
 }
 
 void GeneralFlow::transform(double speed, double force, const Piece& piece,
@@ -134,15 +200,15 @@ void GeneralFlow::transform(double speed, double force, const Piece& piece,
   const double decay = drag_.steepest(std::max(speed, piece.end));
   const int panels = 1 + static_cast<int>((highest + decay) * piece.time / 3);
   const double half = piece.time / (2 * panels);
-  Motion motion(drag_, force, speed);
+  Motion motion(table_, force, speed);
   for (int p = 0; p < panels; ++p) {
     for (int n = -5; n <= 5; ++n) {
       if (n == 0) continue;
       const auto at = static_cast<std::size_t>(std::abs(n) - 1);
       const double node = std::copysign(Rule::abscissa()[at], n);
       const double t = half * (2 * p + 1 + node);
-      motion.advance(t);
-      const double weighted = half * Rule::weights()[at] * motion.state()[0];
+      motion.advance(t, false);
+      const double weighted = half * Rule::weights()[at] * motion.piece().end;
       for (std::size_t w = 0; w < omega.size(); ++w) {
         result[w] +=
             weighted * std::complex<double>(std::cos(omega[w] * t), -std::sin(omega[w] * t));

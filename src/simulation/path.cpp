@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <numeric>
 
 #include "stickslip/simulation/flow.hpp"
-#include "stickslip/simulation/random_stream.hpp"
 
 namespace stickslip::simulation {
 namespace {
@@ -15,85 +15,135 @@ namespace {
 constexpr std::uint64_t kPathStream = std::numeric_limits<std::uint64_t>::max();
 
 template <class Flow>
-class Walker {
+class Walker : public Walk {
  public:
-  Walker(const model::Process& process, int level, double v, std::uint64_t seed)
+  explicit Walker(const model::Process& process)
       : process_(process),
         mirrored_(process.mirrored()),
         flow_(process_.drag),
         backward_flow_(mirrored_.drag),
-        random_(seed, kPathStream),
         lowest_(process.lowest_static()),
-        highest_(process.static_index()),
-        i_(level),
-        speed_(std::abs(v)) {
-    if (v != 0) y_ = v > 0 ? 1 : -1;
+        highest_(process.static_index()) {}
+
+  void begin(const RandomStream& random, int level, double v) override {
+    random_ = random;
+    i_ = level;
+    speed_ = std::abs(v);
+    y_ = v == 0 ? 0 : (v > 0 ? 1 : -1);
+    time_ = jumps_ = 0;
     start_if_pushed();
+    wait();
   }
 
-  Path run(double horizon) {
-    record();
-    while (time_ < horizon) {
-      const double jump = random_.exponential() / process_.noise.rate();
-      move_to(std::min(horizon, time_ + jump));
-      if (time_ >= horizon) break;
-      jump_once();
-      record();
+  void step(double limit) override {
+    const double end = std::min(limit, next_jump_);
+    if (y_ != 0) {
+      const Piece piece = move_on(end - time_);
+      speed_ = piece.end;
+      if (piece.stopped) {
+        time_ += piece.time;
+        y_ = 0;
+        return start_if_pushed();
+      }
     }
-    record();
-    return std::move(path_);
+    time_ = end;
+    if (end < next_jump_) return;
+    i_ += random_.half_word() * 0x1p-32 < process_.noise.up(i_) ? 1 : -1;
+    ++jumps_;
+    start_if_pushed();
+    wait();
   }
+
+  [[nodiscard]] State state() const override {
+    return {time_, process_.noise.level(i_), static_cast<double>(y_), y_ * speed_};
+  }
+  [[nodiscard]] double jumps() const override { return jumps_; }
 
  private:
-  void record() {
-    path_.time.push_back(time_);
-    path_.x.push_back(process_.noise.level(i_));
-    path_.y.push_back(y_);
-    path_.v.push_back(y_ * speed_);
-  }
-
   void start_if_pushed() {
     if (y_ == 0 && (i_ < lowest_ || i_ > highest_)) y_ = i_ > highest_ ? 1 : -1;
   }
-
-  void move_to(double end) {
-    while (y_ != 0 && time_ < end) {
-      const Piece piece = move_on(end - time_);
-      speed_ = piece.end;
-      if (!piece.stopped) break;
-      time_ += piece.time;
-      y_ = 0;
-      start_if_pushed();
-      record();
-    }
-    time_ = end;
-  }
+  void wait() { next_jump_ = time_ + random_.exponential() / process_.noise.rate(); }
 
   [[nodiscard]] Piece move_on(double time) const {
     if (y_ > 0) return flow_.move(speed_, process_.net_force(i_), time, false);
     return backward_flow_.move(speed_, mirrored_.net_force(-i_), time, false);
   }
 
-  void jump_once() {
-    const double up = process_.noise.up(i_);
-    i_ += random_.half_word() * 0x1p-32 < up ? 1 : -1;
-    start_if_pushed();
-  }
-
   model::Process process_, mirrored_;
   Flow flow_, backward_flow_;
-  RandomStream random_;
-  int lowest_, highest_, i_, y_ = 0;
-  double speed_, time_ = 0;
-  Path path_;
+  RandomStream random_{0, 0};
+  int lowest_, highest_, i_ = 0, y_ = 0;
+  double speed_ = 0, time_ = 0, next_jump_ = 0, jumps_ = 0;
 };
+
+// The same numbers again up to a time of the first thousand excursions.
+void begin_stationary(Walk& walk, const model::Process& process, RandomStream& random) {
+  constexpr int excursions = 1000;
+  const double share = random.uniform();
+  const int level = process.static_index() + 1;
+  walk.begin(random, level, 0);
+  for (int n = 0; n < excursions; ++n) walk.end_excursion();
+  const double time = share * walk.state().time;
+  walk.begin(random, level, 0);
+  walk.advance(time);
+}
 
 }  // namespace
 
-Path simulate_path(const model::Process& process, int level, double v, double horizon,
+State Walk::advance(double time) {
+  while (state().time < time) step(time);
+  return state();
+}
+
+double Walk::end_excursion() {
+  bool rested = false;
+  for (;; step(std::numeric_limits<double>::infinity())) {
+    const State now = state();
+    if (rested && now.y != 0) return now.time;
+    rested = rested || now.y == 0;
+  }
+}
+
+std::unique_ptr<Walk> make_walk(const model::Process& process) {
+  if (process.drag.is_linear()) return std::make_unique<Walker<LinearFlow>>(process);
+  return std::make_unique<Walker<GeneralFlow>>(process);
+}
+
+NoiseLevels::NoiseLevels(const model::NoiseChain& noise)
+    : below_(model::stationary_distribution(noise)) {
+  std::partial_sum(below_.begin(), below_.end(), below_.begin());
+}
+
+int NoiseLevels::draw(double uniform) const {
+  const auto found = std::upper_bound(below_.begin(), below_.end() - 1, uniform * below_.back());
+  return static_cast<int>(found - below_.begin()) - static_cast<int>(below_.size() / 2);
+}
+
+Path simulate_path(const model::Process& process, const model::Start& start, double horizon,
                    std::uint64_t seed) {
-  if (process.drag.is_linear()) return Walker<LinearFlow>(process, level, v, seed).run(horizon);
-  return Walker<GeneralFlow>(process, level, v, seed).run(horizon);
+  using Kind = model::Start::Kind;
+  const auto walk = make_walk(process);
+  RandomStream random(seed, kPathStream);
+  if (start.kind == Kind::stationary) {
+    begin_stationary(*walk, process, random);
+  } else if (start.kind == Kind::rest) {
+    const int level = NoiseLevels(process.noise).draw(random.uniform());
+    walk->begin(random, level, 0);
+  } else {
+    walk->begin(random, start.level, start.v);
+  }
+  Path path;
+  const double begun = walk->state().time, end = begun + horizon;
+  const auto record = [&] {
+    const State now = walk->state();
+    path.time.push_back(now.time < end ? now.time - begun : horizon);
+    path.x.push_back(now.x);
+    path.y.push_back(now.y);
+    path.v.push_back(now.v);
+  };
+  for (record(); walk->state().time < end; record()) walk->step(end);
+  return path;
 }
 
 }  // namespace stickslip::simulation

@@ -325,12 +325,11 @@ TEST_CASE("request: a study chooses route, discretisation and noise levels itsel
                  {"-quantities = sticking,density", "of a study are sticking, moments"}});
 }
 
-TEST_CASE("request: quantities that need a file or frequencies, or derive nothing, are refused") {
+TEST_CASE("request: quantities that need a file or times, or derive nothing, are refused") {
   const std::vector<Refusal> refusals{
       {"-quantities trajectory", {"needs a file", "-trajectory FILE.csv"}},
       {"-quantities sensitivity,relaxation", {"for nothing to derive", "add sticking"}},
-      {"-quantities expectation -observable v", {"no times are given", "add for example -time"}},
-      {"-route monte_carlo -quantities spectrum", {"no frequencies are given", "0:10:41"}}};
+      {"-quantities expectation -observable v", {"no times are given", "add for example -time"}}};
   for (const auto& refusal : refusals) check_refusal(refusal);
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
@@ -8,6 +9,7 @@
 #include "stickslip/simulation/excursions.hpp"
 #include "stickslip/simulation/flow.hpp"
 #include "stickslip/simulation/path.hpp"
+#include "stickslip/simulation/sampler.hpp"
 
 using namespace stickslip;
 using simulation::Excursion;
@@ -37,11 +39,11 @@ std::vector<Case> cases() {
 }
 
 std::vector<Excursion> draw(const model::Process& p, const Wanted& wanted, int count,
-                            std::uint64_t seed = 1) {
+                            std::uint64_t seed = 1, std::size_t side = 0) {
   const auto source = simulation::make_source(p, wanted);
-  RandomStream random(seed, 0);
+  RandomStream random(seed, 0), places(seed, 1);
   std::vector<Excursion> all(static_cast<std::size_t>(count));
-  for (auto& e : all) source->draw(random, e);
+  for (auto& e : all) source->draw(random, side, places.uniform(), e);
   return all;
 }
 
@@ -99,7 +101,7 @@ std::vector<double> turns(const model::NoiseChain& noise, int k) {
 
 /// Levels on which the slides of a path end, in the frame of their beginnings.
 std::vector<int> entries_along(const model::Process& p, double horizon) {
-  const auto path = simulation::simulate_path(p, p.static_index() + 1, 0, horizon, 1);
+  const auto path = simulation::simulate_path(p, {p.static_index() + 1}, horizon, 1);
   std::vector<int> entries;
   double begun = path.y[0];
   for (std::size_t n = 1; n + 1 < path.y.size(); ++n) {
@@ -112,19 +114,19 @@ std::vector<int> entries_along(const model::Process& p, double horizon) {
   return entries;
 }
 
-/// Durations, displacements and numbers of excursions of the cycles of a path, which begin where a
-/// body at rest is pushed to the side `start`.
-std::vector<Excursion> cycles_along(const model::Process& p, int start, double horizon) {
-  const int level = start > 0 ? p.static_index() + 1 : p.lowest_static() - 1;
-  const auto path = simulation::simulate_path(p, level, 0, horizon, 3);
-  Excursion none;
-  none.count = 0;
-  std::vector<Excursion> cycles{none};
+/// Durations, displacements and turns of the excursions of a path, by the side of their beginning.
+std::array<std::vector<Excursion>, 2> excursions_along(const model::Process& p, double horizon) {
+  const auto path = simulation::simulate_path(p, {p.static_index() + 1}, horizon, 3);
+  std::array<std::vector<Excursion>, 2> all;
+  double start = 1;
+  Excursion e;
   for (std::size_t n = 0; n + 1 < path.time.size(); ++n) {
-    const bool starts = path.y[n] != 0 && (n == 0 || path.y[n - 1] == 0);
-    if (starts && path.y[n] == start && n > 0) cycles.push_back(none);
-    auto& e = cycles.back();
-    e.count += starts;
+    if (n > 0 && path.y[n] != 0 && path.y[n - 1] == 0) {
+      e.turned = path.y[n] != start;
+      all[start > 0 ? 0 : 1].push_back(e);
+      start = path.y[n];
+      e = {};
+    }
     const double time = path.time[n + 1] - path.time[n];
     (path.y[n] == 0 ? e.stick : e.slide) += time;
     if (path.y[n] == 0) continue;
@@ -135,8 +137,7 @@ std::vector<Excursion> cycles_along(const model::Process& p, int start, double h
         simulation::GeneralFlow(half.drag).move(std::abs(path.v[n]), force, time, true);
     e.drift += path.y[n] * piece.path;
   }
-  cycles.pop_back();
-  return cycles;
+  return all;
 }
 
 /// Difference of two means in units of its standard deviation.
@@ -337,57 +338,114 @@ std::vector<Case> cases_without_symmetry() {
 
 }  // namespace
 
-// v^2/2 is back at 0 after each cycle: power of the noise and of the bias, less that of friction.
-TEST_CASE("excursions: a cycle without symmetry conserves energy") {
+// v^2/2 is back at 0: power of the noise and of the bias, less that of friction and drag.
+TEST_CASE("excursions: energy is conserved without symmetry, from both sides") {
   for (const auto& c : cases_without_symmetry()) {
     if (!c.process.drag.is_linear()) continue;
     INFO(c.name);
-    Wanted wanted = kAll;
-    wanted.cycles = true;
-    int several = 0;
-    for (const auto& e : draw(c.process, wanted, 2000)) {
-      const double lost = c.process.friction.mu_d * e.path + c.process.drag.linear * e.square;
-      REQUIRE(e.product + c.process.bias * e.drift ==
-              Approx(lost).epsilon(1e-9).margin(1e-14 + 1e-9 * e.path));
-      REQUIRE(std::abs(e.transform[0] - e.drift) <= 1e-11 * e.path);
-      REQUIRE(std::abs(e.drift) <= e.path * (1 + 1e-12));
-      several += e.count > 1;
+    for (std::size_t side : {0, 1}) {
+      for (const auto& e : draw(c.process, kAll, 1000, 1, side)) {
+        const double lost = c.process.friction.mu_d * e.path + c.process.drag.linear * e.square;
+        REQUIRE(e.product + c.process.bias * e.drift ==
+                Approx(lost).epsilon(1e-9).margin(1e-14 + 1e-9 * e.path));
+        REQUIRE(std::abs(e.transform[0] - e.drift) <= 1e-11 * e.path);
+        REQUIRE(std::abs(e.drift) <= e.path * (1 + 1e-12));
+      }
     }
-    CHECK(several > 50);
   }
 }
 
-TEST_CASE("excursions: cycles without symmetry are those along a path, within 4 sigma") {
+TEST_CASE("excursions: without symmetry they are those along a path, within 4 sigma") {
+  Wanted wanted;
+  wanted.displacement = true;
   for (const auto& c : cases_without_symmetry()) {
-    INFO(c.name);
-    const auto along = cycles_along(c.process, c.process.bias < 0 ? -1 : 1, 20000);
-    Wanted wanted;
-    wanted.cycles = true;
-    const auto drawn = draw(c.process, wanted, 10000);
-    REQUIRE(along.size() > 300);
-    CHECK(std::abs(difference_of_means(along, drawn, [](const auto& e) { return e.slide; })) < 4);
-    CHECK(std::abs(difference_of_means(along, drawn, [](const auto& e) { return e.stick; })) < 4);
-    CHECK(std::abs(difference_of_means(along, drawn, [](const auto& e) { return e.drift; })) < 4);
-    CHECK(std::abs(difference_of_means(along, drawn, [](const auto& e) { return e.count; })) < 4);
+    const auto along = excursions_along(c.process, 20000);
+    for (std::size_t side : {0, 1}) {
+      INFO(c.name << " from side " << side);
+      const auto drawn = draw(c.process, wanted, 10000, 1, side);
+      const auto apart = [&](const auto& f) {
+        return std::abs(difference_of_means(along[side], drawn, f));
+      };
+      REQUIRE(along[side].size() > 50);
+      CHECK(apart([](const auto& e) { return e.slide; }) < 4);
+      CHECK(apart([](const auto& e) { return e.stick; }) < 4);
+      CHECK(apart([](const auto& e) { return e.drift; }) < 4);
+      CHECK(apart([](const auto& e) { return e.turned ? 1.0 : 0.0; }) < 4);
+    }
   }
 }
 
-TEST_CASE("excursions: the noise keeps its law in cycles, whatever the bias, within 4 sigma") {
+// The bias mirrored, with the same numbers.
+TEST_CASE("excursions: from s- they are those of the mirrored process from s+") {
+  auto p = process(1, 0.25, 1, 0.5, {1, 0.3});
+  p.bias = 0.3;
+  p.friction.mu_d_minus = 0.5;
+  auto wanted = kAll;
+  wanted.observables = {model::parse_observable("v^3 + x*y", p.friction)};
+  wanted.discount = {0.5};
+  auto mirrored = wanted;
+  mirrored.observables = {model::parse_observable("-v^3 + x*y", p.friction)};
+  const auto here = draw(p, wanted, 20000, 1, 1), there = draw(p.mirrored(), mirrored, 20000, 2, 0);
+  const auto apart = [&](const auto& f) { return std::abs(difference_of_means(here, there, f)); };
+  CHECK(apart([](const auto& e) { return e.slide; }) < 4);
+  CHECK(apart([](const auto& e) { return e.turned ? 1.0 : 0.0; }) < 4);
+  CHECK(apart([](const auto& e) { return e.integrals[0].slide; }) < 4);
+  CHECK(apart([](const auto& e) { return e.discounted[0].value; }) < 4);
+  const auto drift = [](const auto& all) {
+    return std::accumulate(all.begin(), all.end(), 0.0,
+                           [](double sum, const auto& e) { return sum + e.drift; });
+  };
+  CHECK(drift(here) * drift(there) < 0);
+}
+
+// v^2, x v and 1, whose integrals are followed exactly as well; steps and jumps in time.
+TEST_CASE("excursions: integrals of observables are right in the mean, within 4 sigma") {
+  auto biased = process(1, 0.25, 1, 0.5, {1, 0.3});
+  biased.bias = 0.3;
+  for (const auto& p : {process(1, 0.25, 1, 0.5, {1, 0}), biased}) {
+    Wanted wanted = kAll;
+    wanted.displacement = true;
+    for (const char* f : {"1", "v^2", "x*v", "abs(x) <= 1 ? 1 : 0", "stick", "v"}) {
+      wanted.observables.push_back(model::parse_observable(f, p.friction));
+    }
+    wanted.discount = {0, 0.5};
+    const auto all = draw(p, wanted, 20000);
+    for (const auto& e : all) {
+      REQUIRE(e.integrals[0].slide == Approx(e.slide).epsilon(1e-12));
+      REQUIRE(e.integrals[0].stick == Approx(e.stick).epsilon(1e-12));
+      REQUIRE(e.integrals[4].stick == Approx(e.stick).epsilon(1e-12));
+      REQUIRE(e.integrals[4].slide == 0);
+      REQUIRE(e.discounted[0].value == Approx(e.slide + e.stick).epsilon(1e-12));
+      REQUIRE(e.discounted[2].mirrored == Approx(e.discounted[2].value).epsilon(1e-12));
+      const double within = e.integrals[3].slide + e.integrals[3].stick;
+      REQUIRE(within == Approx(e.within).epsilon(1e-12).margin(1e-12));
+    }
+    const auto off = [&](const auto& f) { return std::abs(deviation_of_mean(all, f)); };
+    CHECK(off([](const auto& e) { return e.integrals[1].slide - e.square; }) < 4);
+    CHECK(off([](const auto& e) { return e.integrals[2].slide - e.product; }) < 4);
+    CHECK(off([](const auto& e) { return e.discounted[5].value - e.drift; }) < 4);
+    const auto one = [](const Excursion& e) {
+      return (1 - std::exp(-0.5 * (e.slide + e.stick))) * 2;
+    };
+    CHECK(off([&](const auto& e) { return e.discounted[6].value - one(e); }) < 4);
+  }
+}
+
+TEST_CASE("excursions: the noise keeps its law in the mean over both sides, within 4 sigma") {
   for (const auto& c : cases_without_symmetry()) {
     INFO(c.name);
     const int levels = c.process.noise.levels, k = c.process.threshold_index();
     double within = 0;
     for (int i = -k; i <= k; ++i) within += binomial(levels, i);
     Wanted wanted;
-    wanted.noise = wanted.cycles = true;
-    const auto all = draw(c.process, wanted, 10000);
-    const auto off = [&](double mean, double Excursion::*total) {
-      return std::abs(deviation_of_mean(
-          all, [&](const Excursion& e) { return e.*total - mean * (e.slide + e.stick); }));
+    wanted.noise = true;
+    simulation::Sampler sampler(c.process, wanted);
+    const auto tally = sampler.batch(1, 0, 10000);
+    const auto holds = [](const simulation::Estimate& e, double value) {
+      return std::abs(e.value - value) < 4 * (e.high - e.value) / 1.96;
     };
-    CHECK(off(within, &Excursion::within) < 4);
-    CHECK(off(1 / c.process.noise.tau, &Excursion::noise_square) < 4);
-    CHECK(off(c.process.noise.rate(), &Excursion::jumps) < 4);
+    CHECK(holds(tally.within(), within));
+    CHECK(holds(tally.noise_square(), 1 / c.process.noise.tau));
   }
 }
 

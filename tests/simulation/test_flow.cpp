@@ -249,6 +249,60 @@ TEST_CASE("flow: any law gives what the closed forms and the built-in laws give"
   }
 }
 
+// Powers whose series about u = 0 lack many terms: a step must not be too long for that.
+TEST_CASE("flow: steep powers from rest against integrals over the speed") {
+  for (double power : {1.5, 3.0, 5.0, 6.0, 7.0, 9.0}) {
+    const GeneralFlow flow({0, 0, [power](double v) { return -std::pow(v, power); }});
+    for (double time : {0.01, 0.1, 0.3, 0.6}) {
+      INFO("power " << power << " time " << time);
+      const auto piece = flow.move(0, 1, time, true);
+      const auto q = test::panels(0, piece.end, 200);
+      const auto integral = [&](int n) {
+        return q.sum([&](std::size_t i) {
+          return std::pow(q.node[i], n) / (1 - std::pow(q.node[i], power));
+        });
+      };
+      CHECK(integral(0) == Approx(time).epsilon(1e-11));
+      CHECK(integral(1) == Approx(piece.path).epsilon(1e-10));
+      CHECK(integral(2) == Approx(piece.square).epsilon(1e-10));
+    }
+  }
+}
+
+// -min(u, 0.3) has its kink between the numbers of any grid of halves.
+TEST_CASE("flow: a kink of the drag ends a step from either side") {
+  const GeneralFlow flow({0, 0, [](double v) { return -std::min(v, 0.3); }});
+  for (double force : {0.5, 2.0}) {
+    const double reached = std::log(force / (force - 0.3));
+    const auto piece = flow.move(0, force, reached + 1, true);
+    CHECK(piece.end == Approx(force).epsilon(1e-12));
+    CHECK(piece.path == Approx(force * reached + (force - 0.3) / 2).epsilon(1e-11));
+  }
+  const auto falling = flow.move(0.6, -0.1, 10, true);
+  CHECK(falling.stopped);
+  CHECK(falling.time == Approx(0.3 / 0.4 + std::log(4.0)).epsilon(1e-12));
+}
+
+TEST_CASE("flow: the table of a law holds it everywhere, to rounding") {
+  const std::vector<std::function<double(double)>> laws{
+      [](double v) { return -std::tanh(v); }, [](double v) { return -std::pow(v, 1.5); },
+      [](double v) { return -v - std::max(0.0, v - 0.7) * 5; },
+      [](double v) { return 0.3 * (1 - std::exp(-10 * v)) - v; }};
+  for (const auto& law : laws) {
+    simulation::DragTable table({0, 0, law});
+    for (double u = 0; u < 20; u += 0.00737) {
+      const auto& panel = table.at(u);
+      REQUIRE(panel.low <= u);
+      REQUIRE(u < panel.high);
+      double sum = 0;
+      for (std::size_t n = simulation::kDragTerms; n-- > 0;) {
+        sum = panel.coefficient[n] + (u - panel.centre) * sum;
+      }
+      REQUIRE(std::abs(sum - law(u)) <= 2e-13 * (1 + std::abs(law(u))));
+    }
+  }
+}
+
 // A step as long as the wait makes the stages of the integrator overflow.
 TEST_CASE("flow: strong cubic drag over long times ends at the terminal velocity") {
   for (double cubic : {1.0, 100.0, 1e4}) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "stickslip/simulation/path.hpp"
+#include "stickslip/simulation/sampler.hpp"
 
 using namespace stickslip;
 using simulation::Path;
@@ -68,7 +69,7 @@ void check_state(const model::Process& p, double x, double y, double v) {
 
 TEST_CASE("path: every state is one of the process and follows from the one before") {
   for (const auto& p : processes()) {
-    const auto path = simulate_path(p, 0, 0, 200, 1);
+    const auto path = simulate_path(p, {0, 0}, 200, 1);
     REQUIRE(path.time.size() > 100);
     int rests = 0;
     for (std::size_t n = 0; n < path.time.size(); ++n) {
@@ -83,7 +84,7 @@ TEST_CASE("path: every state is one of the process and follows from the one befo
 
 TEST_CASE("path: an event is a jump by one step or an end of motion, and the end is the horizon") {
   for (const auto& p : processes()) {
-    const auto path = simulate_path(p, 0, 0, 200, 2);
+    const auto path = simulate_path(p, {0, 0}, 200, 2);
     CHECK(path.time.front() == 0);
     CHECK(path.time.back() == 200);
     for (std::size_t n = 0; n + 2 < path.time.size(); ++n) {
@@ -99,14 +100,14 @@ TEST_CASE("path: an event is a jump by one step or an end of motion, and the end
 
 TEST_CASE("path: starts where it is told, in motion, pushed or at rest") {
   const auto p = processes()[0];
-  const auto moving = simulate_path(p, 1, -0.75, 1, 1);
+  const auto moving = simulate_path(p, {1, -0.75}, 1, 1);
   CHECK(moving.x[0] == 0.5);
   CHECK(moving.y[0] == -1);
   CHECK(moving.v[0] == -0.75);
-  const auto pushed = simulate_path(p, -3, 0, 1, 1);
+  const auto pushed = simulate_path(p, {-3, 0}, 1, 1);
   CHECK(pushed.y[0] == -1);
   CHECK(pushed.v[0] == 0);
-  const auto resting = simulate_path(p, 2, 0, 1, 1);  // x = mu_s is held
+  const auto resting = simulate_path(p, {2, 0}, 1, 1);  // x = mu_s is held
   CHECK(resting.y[0] == 0);
 }
 
@@ -115,7 +116,7 @@ TEST_CASE("path: a body in motion comes to rest where it should") {
   const auto p = process(1, 0.25, 1, 0.5, {1, 0});
   int seen = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    const auto path = simulate_path(p, 0, -0.01, 10, seed);
+    const auto path = simulate_path(p, {0, -0.01}, 10, seed);
     if (path.x[1] != 0) continue;
     ++seen;
     CHECK(path.time[1] == Approx(std::log1p(0.01 / 0.25)).epsilon(1e-12));
@@ -126,9 +127,9 @@ TEST_CASE("path: a body in motion comes to rest where it should") {
 
 TEST_CASE("path: seeds repeat and differ, a longer horizon goes on from the same path") {
   const auto p = processes()[0];
-  const auto path = simulate_path(p, 0, 0, 20, 1), longer = simulate_path(p, 0, 0, 40, 1);
-  CHECK(path.v == simulate_path(p, 0, 0, 20, 1).v);
-  CHECK(path.time != simulate_path(p, 0, 0, 20, 2).time);
+  const auto path = simulate_path(p, {0, 0}, 20, 1), longer = simulate_path(p, {0, 0}, 40, 1);
+  CHECK(path.v == simulate_path(p, {0, 0}, 20, 1).v);
+  CHECK(path.time != simulate_path(p, {0, 0}, 20, 2).time);
   for (std::size_t n = 0; n + 1 < path.time.size(); ++n) {
     REQUIRE(longer.time[n] == path.time[n]);
     REQUIRE(longer.v[n] == path.v[n]);
@@ -138,7 +139,7 @@ TEST_CASE("path: seeds repeat and differ, a longer horizon goes on from the same
 TEST_CASE("path: the noise jumps as often as it should, and has the variance it should") {
   const auto p = process(1, 0.25, 1, 0.5, {1, 0});
   constexpr double horizon = 20000;
-  const auto path = simulate_path(p, 0, 0, horizon, 3);
+  const auto path = simulate_path(p, {0, 0}, horizon, 3);
   double jumps = 0, square = 0;
   for (std::size_t n = 0; n + 1 < path.time.size(); ++n) {
     jumps += path.x[n + 1] != path.x[n];
@@ -148,4 +149,53 @@ TEST_CASE("path: the noise jumps as often as it should, and has the variance it 
   CHECK(std::abs(jumps - expected) < 4 * std::sqrt(expected));
   // Var[X^2] = 2 and its correlation decays as exp(-2 t/tau): sigma^2 = 2 tau Var/(2 horizon).
   CHECK(std::abs(square / horizon - 1) < 4 * std::sqrt(2 / horizon));
+}
+
+TEST_CASE(
+    "path: from rest the noise has its stationary distribution, and only pushed bodies move") {
+  const auto p = process(1, 0.25, 1, 0.5, {1, 0});
+  double square = 0;
+  constexpr int count = 4000;
+  for (std::uint64_t seed = 1; seed <= count; ++seed) {
+    const auto path = simulate_path(p, {0, 0, model::Start::Kind::rest}, 0.01, seed);
+    const double x = path.x[0];
+    square += x * x / count;
+    REQUIRE(path.v[0] == 0);
+    REQUIRE(path.y[0] == (std::abs(x) <= 1 ? 0 : x > 0 ? 1 : -1));
+  }
+  CHECK(std::abs(square - 1) < 4 * std::sqrt(2.0 / count));
+}
+
+TEST_CASE("path: levels are drawn in proportion to their probabilities") {
+  const model::NoiseChain noise{1, 0.5, 8};
+  const auto weight = model::stationary_distribution(noise);
+  const simulation::NoiseLevels levels(noise);
+  std::vector<double> share(weight.size(), 0.0);
+  constexpr int count = 100000;
+  for (int n = 0; n < count; ++n) {
+    share[static_cast<std::size_t>(levels.draw((n + 0.5) / count) + 8)] += 1.0 / count;
+  }
+  for (std::size_t i = 0; i < weight.size(); ++i) CHECK(std::abs(share[i] - weight[i]) < 2e-5);
+}
+
+// Of starts at times within long paths, with means over time known from excursions.
+TEST_CASE("path: a stationary start has the stationary distribution within 4 sigma") {
+  const auto p = process(1, 0.25, 1, 0.5, {1, 0});
+  simulation::Wanted wanted;
+  wanted.moments = true;
+  const auto known = simulation::Sampler(p, wanted).batch(1, 0, 50000);
+  constexpr int count = 1000;
+  double square = 0, fourth = 0, resting = 0;
+  for (std::uint64_t seed = 1; seed <= count; ++seed) {
+    const auto path = simulate_path(p, {0, 0, model::Start::Kind::stationary}, 0.01, seed);
+    REQUIRE(path.time[0] == 0);
+    REQUIRE(path.time.back() == 0.01);
+    square += path.v[0] * path.v[0] / count;
+    fourth += std::pow(path.v[0], 4) / count;
+    resting += path.y[0] == 0 ? 1.0 / count : 0;
+  }
+  const double share = known.sticking().value;
+  CHECK(std::abs(square - known.mean_square().value) <
+        4 * std::sqrt((fourth - square * square) / count));
+  CHECK(std::abs(resting - share) < 4 * std::sqrt(share * (1 - share) / count));
 }

@@ -30,8 +30,9 @@ struct Simulated {
   std::string shortfall;
 };
 
-/// Simulates given.method.excursions excursions (without symmetry, cycles of them), or fewer if
-/// -accuracy is given and met before. Batches of them have random streams of their own, are dealt
+/// Simulates given.method.excursions excursions, or fewer if -accuracy is given and met before;
+/// without symmetry pairs of them, one from each side, and with each a path for functions of time.
+/// Batches of them have random streams of their own, are dealt
 /// out to the ranks, and merged in their order: the numbers depend on the scene, the seed and the
 /// excursions alone. With a file name in `checkpoint` the tally is read from that file if it
 /// exists, and written to it every few seconds. Collective. Throws BadInput when the checkpoint

@@ -3,10 +3,14 @@
 /// sign of motion kept at a jump of the noise and taken from it where a body at v = 0 is pushed on.
 
 #include <complex>
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "stickslip/model/observable.hpp"
 #include "stickslip/model/process.hpp"
+#include "stickslip/model/start.hpp"
 #include "stickslip/simulation/random_stream.hpp"
 
 namespace stickslip::simulation {
@@ -18,11 +22,26 @@ struct Wanted {
   std::vector<double> omega;   ///< spectrum at these frequencies [1/time]
   std::vector<double> lambda;  ///< Laplace transforms of durations [1/time]
   std::vector<double> edges;   ///< rising edges of the cells of histograms of durations [time]
-  bool cycles = false;         ///< without symmetry: the drift of cycles and its spread
+  bool displacement = false;   ///< int v dt and its spread
+  std::vector<model::Observable> observables = {};  ///< integrals of them, and values along paths
+  std::vector<double> discount = {};                ///< resolvent of them at these lambda [1/time]
+  std::vector<double> time = {};                    ///< along paths [time]
+  std::optional<model::Start> start = {};           ///< of paths along which observables are taken
+  bool autocorrelation = false;                     ///< of v along stationary paths
 };
 
-/// One excursion: a slide from (x_{k+1}, v = 0) to rest, and the stay until |X| > mu_s again.
-/// Without symmetry a cycle of excursions, from one side until the next one starts there again.
+/// Integrals of f over the slide and the stay of an excursion; with symmetry of its even part.
+struct Integrals {
+  double slide = 0, stick = 0;
+};
+
+/// int exp(-lambda t) f dt, t from the start of the excursion, and that of f(-x, -y, -v).
+struct Discounted {
+  double value = 0, mirrored = 0;
+};
+
+/// One excursion: a slide from (x_{k+1}, v = 0) or its counterpart below to rest, and the stay
+/// until the static levels are left again.
 struct Excursion {
   double slide = 0, stick = 0;  ///< durations [time]
   double square = 0;            ///< int v^2 dt
@@ -30,26 +49,29 @@ struct Excursion {
   double product = 0;           ///< int x v dt
   double within = 0;            ///< time with |X| <= mu_s
   double noise_square = 0;      ///< int x^2 dt
-  int entry = 0;                ///< level i at which the last slide came to rest
-  bool turned = false;          ///< whether it ends at s-
+  int entry = 0;                ///< level i at which the slide came to rest
+  bool turned = false;          ///< whether the next one starts from the other side
   double jumps = 0;             ///< of the noise
   /// int v exp(-i omega t) dt, t from the start of the excursion.
-  std::vector<std::complex<double>> transform;
-  double count = 1;  ///< of excursions, in a cycle
-  double drift = 0;  ///< int v dt
+  std::vector<std::complex<double>> transform = {};
+  double drift = 0;                         ///< int v dt
+  std::vector<Integrals> integrals = {};    ///< by observable
+  std::vector<Discounted> discounted = {};  ///< by lambda and observable
 };
 
-/// Draws independent excursions. By symmetry those from s- are mirror images, so that a path is a
-/// sequence of excursions from s+ with signs. Without symmetry it is a sequence of cycles, from the
-/// side to which the bias pushes. Exact for linear and no drag, else to 1e-13.
+/// Draws independent excursions from s+ (side 0) or s- (side 1); with symmetry those from s- are
+/// mirror images of the others. Exact for linear and no drag, else to 1e-11. Integrals of
+/// observables are their values at one uniformly distributed time in each piece of the motion,
+/// times its duration: right in the mean whatever the function.
 class ExcursionSource {
  public:
   virtual ~ExcursionSource() = default;
-  /// The next one, with the numbers of `random`.
-  virtual void draw(RandomStream& random, Excursion& excursion) = 0;
+  /// The next one, with the numbers of `random`; `place` in [0, 1) moves the times at which
+  /// observables are taken, and nothing else.
+  virtual void draw(RandomStream& random, std::size_t side, double place, Excursion& excursion) = 0;
 };
 
-/// Closed forms where b is linear, an integrator otherwise. Local.
+/// Closed forms where b is linear, a series otherwise. Local.
 [[nodiscard]] std::unique_ptr<ExcursionSource> make_source(const model::Process& process,
                                                            const Wanted& wanted);
 

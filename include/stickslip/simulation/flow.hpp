@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "stickslip/model/drag.hpp"
+#include "stickslip/simulation/drag_table.hpp"
 
 namespace stickslip::simulation {
 
@@ -96,11 +97,12 @@ inline Piece LinearFlow::move(double speed, double force, double time, bool inte
   return piece;
 }
 
-/// Any other drag, by Runge-Kutta-Fehlberg steps of order 7(8) from Boost.Odeint, whose errors are
-/// held to 1e-13; where the speed changes sign within a step, the step is cut there.
+/// Any other drag: Taylor series of order 6 or 8 in time, from piecewise polynomials for b, whose
+/// last terms are below 1e-11 of the speed; where the speed vanishes or b has another polynomial, a
+/// step is cut. Not to be shared by threads.
 class GeneralFlow {
  public:
-  explicit GeneralFlow(const model::Drag& drag) : drag_(drag) {}
+  explicit GeneralFlow(const model::Drag& drag) : drag_(drag), table_(drag) {}
 
   /// As LinearFlow::move.
   [[nodiscard]] Piece move(double speed, double force, double time, bool integrals) const;
@@ -110,6 +112,7 @@ class GeneralFlow {
 
  private:
   model::Drag drag_;
+  mutable DragTable table_;  // grows with the speeds that occur
 };
 
 }  // namespace stickslip::simulation

@@ -1,22 +1,60 @@
 #pragma once
-/// One simulated path.
+/// Simulated paths, event by event.
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "stickslip/model/process.hpp"
+#include "stickslip/model/start.hpp"
+#include "stickslip/simulation/random_stream.hpp"
 
 namespace stickslip::simulation {
 
-/// The state at time 0, just after every event, and at the end: jumps of the noise, and a body that
-/// comes to rest or is turned round. Between events X and Y stay and V follows the flow.
-struct Path {
-  std::vector<double> time, x, y, v;  ///< y = sign of the motion, 0 at rest
+/// The process at some time; y = sign of the motion, 0 at rest.
+struct State {
+  double time = 0, x = 0, y = 0, v = 0;
 };
 
-/// The path from level `level` and velocity `v` up to `horizon` [time]. At v = 0 a body on
-/// |X + g| <= mu_s rests. Local. O(horizon/Lambda) memory.
-[[nodiscard]] Path simulate_path(const model::Process& process, int level, double v, double horizon,
-                                 std::uint64_t seed);
+/// The process on its way. Between events X and Y stay and V follows the flow. Local.
+class Walk {
+ public:
+  virtual ~Walk() = default;
+  /// Begins at time 0 with the numbers of `random`. At v = 0 a body on static levels rests.
+  virtual void begin(const RandomStream& random, int level, double v) = 0;
+  /// On to the next event, a jump of the noise or a body that comes to rest or is turned round, at
+  /// most to the time `limit`.
+  virtual void step(double limit) = 0;
+  [[nodiscard]] virtual State state() const = 0;
+  [[nodiscard]] virtual double jumps() const = 0;  ///< of the noise since the beginning
+
+  /// On to a time that is not past.
+  State advance(double time);
+  /// On to the end of the excursion, where a body at rest is pushed. The time.
+  double end_excursion();
+};
+
+[[nodiscard]] std::unique_ptr<Walk> make_walk(const model::Process& process);
+
+/// Draws levels of the noise from its stationary distribution. Local.
+class NoiseLevels {
+ public:
+  explicit NoiseLevels(const model::NoiseChain& noise);
+  [[nodiscard]] int draw(double uniform) const;
+
+ private:
+  std::vector<double> below_;  // probability of a level and all below
+};
+
+/// A path: the state at time 0, just after every event, and at the end.
+struct Path {
+  std::vector<double> time, x, y, v;
+};
+
+/// The path from `start` up to `horizon` [time]. A stationary one starts at a uniformly distributed
+/// time within 1000 excursions after s+, which is stationary but for about a thousandth. Local.
+/// O(horizon/Lambda) memory.
+[[nodiscard]] Path simulate_path(const model::Process& process, const model::Start& start,
+                                 double horizon, std::uint64_t seed);
 
 }  // namespace stickslip::simulation

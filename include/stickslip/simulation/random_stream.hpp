@@ -38,6 +38,8 @@ class RandomStream {
     kept_ = true;
     return static_cast<std::uint32_t>(word);
   }
+  /// Uniform in [0, 1).
+  double uniform() { return static_cast<double>((*this)() >> 11) * 0x1p-53; }
   /// Exponentially distributed with mean 1, by Boost.Random's ziggurat.
   double exponential() { return exponential_(*this); }
 

@@ -1,61 +1,83 @@
 #pragma once
-/// What is kept of many excursions, and the estimates made from it.
+/// What is kept of many excursions and paths, and the estimates made from it.
 
 #include <array>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "stickslip/simulation/comoments.hpp"
 #include "stickslip/simulation/excursions.hpp"
+#include "stickslip/simulation/histogram.hpp"
+#include "stickslip/simulation/means.hpp"
+#include "stickslip/simulation/path.hpp"
 
 namespace stickslip::simulation {
-
-/// An estimate with its 95 % confidence interval.
-struct Estimate {
-  double value = 0, low = 0, high = 0;
-};
 
 /// Durations whose laws are asked for.
 enum class Duration { slide, stick, excursion };
 
-/// Counts and co-moments of excursions. Tallies of parts, merged in a fixed order, give the same
-/// bits however the parts were dealt out.
+/// Estimates by their names.
+using Named = std::vector<std::pair<std::string, Estimate>>;
+
+/// Counts and co-moments of excursions from both sides, or with symmetry from s+. Tallies of parts,
+/// merged in a fixed order, give the same bits however the parts were dealt out.
 ///
-/// A stationary mean is the ratio of mean integrals over an excursion, E[G]/E[T]; its interval is
-/// that of the delta method. Local.
+/// Excursions of a long path start from s+ and s- in turn by a Markov chain. Whatever is said of
+/// one of them is a mean over all, so that a stationary mean is E[G]/E[T], with G the integral over
+/// an excursion and T its duration. Intervals are those of the delta method. Local.
 class Tally {
  public:
-  /// `k`: levels |i| <= k can stick. Entries are not counted for cycles.
-  Tally(const Wanted& wanted, int k);
+  Tally(const model::Process& process, const Wanted& wanted);
 
-  void add(const Excursion& excursion);
+  void add(std::size_t side, const Excursion& excursion);
+  /// The states at wanted.time of a path from wanted.start, or of a stationary one: such a path
+  /// begins at a uniformly distributed time of an excursion from one side, and counts with the
+  /// duration of that.
+  void add_path(const std::vector<State>& states);
+  void add_stationary(std::size_t side, bool turned, double duration, const State& start,
+                      const std::vector<State>& states);
+  void add_jumps(double jumps) { jumps_ += jumps; }
   void merge(const Tally& other);
 
-  /// Excursions, or cycles of them.
-  [[nodiscard]] double samples() const { return totals_.count(); }
+  /// Excursions, or pairs of one from each side.
+  [[nodiscard]] double samples() const { return members(totals)[0][0].count(); }
   [[nodiscard]] double jumps() const { return jumps_; }
 
   [[nodiscard]] Estimate sticking() const;  ///< P_stick
   [[nodiscard]] Estimate sliding() const;   ///< P_slide
   [[nodiscard]] Estimate mean(Duration duration) const;
+  [[nodiscard]] Estimate variance(Duration duration) const;
+  [[nodiscard]] Estimate slip_rate() const;      ///< 1/E[T]
   [[nodiscard]] Estimate mean_square() const;    ///< E[V^2]
   [[nodiscard]] Estimate mean_speed() const;     ///< E[|V|]
   [[nodiscard]] Estimate mean_product() const;   ///< E[X V]
-  [[nodiscard]] Estimate mean_velocity() const;  ///< E[V]; of cycles
-  /// S_v(0) about E[V], of cycles; see tally.cpp.
-  [[nodiscard]] Estimate spectrum_at_zero() const;
+  [[nodiscard]] Estimate mean_velocity() const;  ///< E[V]
+  /// up E[V+] + down E[V-].
+  [[nodiscard]] Estimate mean_of_speeds(double up, double down) const;
   [[nodiscard]] Estimate within() const;        ///< P(|X| <= mu_s)
   [[nodiscard]] Estimate noise_square() const;  ///< E[X^2]
-  /// Probability that a slide comes to rest on level i, by Jeffreys' interval.
-  [[nodiscard]] Estimate entry(int i) const;
-  /// Probability that it does on one of two levels, both times `factor`.
-  [[nodiscard]] Estimate entry_of_both(int i, int j, double factor) const;
+  /// Probability that a slide from one side comes to rest on level i.
+  [[nodiscard]] Estimate entry(std::size_t side, int i) const;
+  /// Rate at which a body leaves rest as it has come there: `up` on the highest level, `down` on
+  /// the lowest.
+  [[nodiscard]] Estimate first_exit(double up, double down) const;
   /// E[exp(-lambda D)] for the n-th lambda.
   [[nodiscard]] Estimate laplace(std::size_t n, Duration duration) const;
   /// P(low <= D < high); low and high are edges, or 0 and infinity.
   [[nodiscard]] Estimate probability(Duration duration, double low, double high) const;
-  /// S_v at the n-th omega, see spectrum() in tally.cpp.
+  /// S_v at the n-th omega, and at 0, of V - E[V]; see tally.cpp.
   [[nodiscard]] Estimate spectrum(std::size_t n) const;
+  [[nodiscard]] Estimate spectrum_at_zero() const;
+  /// pi, pi given rest and pi given motion of the f-th observable.
+  [[nodiscard]] Named averages(std::size_t f) const;
+  /// h and w_one at the l-th lambda of the resolvent, and what there is of the f-th observable.
+  [[nodiscard]] Named exits(std::size_t l) const;
+  [[nodiscard]] Named resolvent(std::size_t l, std::size_t f) const;
+  /// E[f(Z_t)] for the f-th observable at the n-th time, and E[(V_0 - m)(V_t - m)].
+  [[nodiscard]] Estimate expectation(std::size_t f, std::size_t n) const;
+  [[nodiscard]] Estimate autocorrelation(std::size_t n) const;
 
   /// All numbers in a row, and back. `unpack` expects a tally of the same questions, and throws
   /// std::invalid_argument if the size is another.
@@ -64,22 +86,25 @@ class Tally {
   void unpack(std::span<const double> numbers);
 
  private:
-  [[nodiscard]] Estimate ratio(std::size_t total) const;
-  [[nodiscard]] std::size_t place(int level) const;  // in entries_
-  void count_cells(const Excursion& excursion);
-  void add_transforms(const Excursion& excursion);
+  enum Group { totals, displacement, laplaces, spectra, observed, discounted, expected, lagged };
+  static constexpr std::size_t kGroups = 8;
+  using Sides = std::vector<Comoments>;  // one with symmetry
 
-  int k_;
+  [[nodiscard]] const std::vector<Sides>& members(Group group) const { return groups_[group]; }
+  [[nodiscard]] Means means(Group group, std::size_t n = 0) const {
+    return Means(members(group)[n]);
+  }
+  [[nodiscard]] Estimate over_time(std::size_t total, double parity = 1) const;
+  [[nodiscard]] std::size_t bin(int level) const;
+  void add_transforms(std::size_t side, const Excursion& e);
+  void add_integrals(std::size_t side, const Excursion& e);
+
+  int lowest_;
   Wanted wanted_;
-  Comoments totals_, displacement_;
-  std::vector<Comoments> laplace_, spectrum_;
-  std::vector<double> entries_;
-  std::array<std::vector<double>, 3> cells_;  // counts between edges, by duration
+  bool symmetric_;
+  std::array<std::vector<Sides>, kGroups> groups_;
+  std::vector<Histogram> histograms_;  // of entries, then of durations
   double jumps_ = 0;
 };
-
-/// The tally of one batch of `count` excursions, by the random stream of its number.
-[[nodiscard]] Tally simulate_batch(ExcursionSource& source, const Wanted& wanted, int k,
-                                   std::uint64_t seed, std::uint64_t batch, int count);
 
 }  // namespace stickslip::simulation

@@ -1,0 +1,41 @@
+#pragma once
+/// Batches of samples.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "stickslip/simulation/excursions.hpp"
+#include "stickslip/simulation/path.hpp"
+#include "stickslip/simulation/tally.hpp"
+
+namespace stickslip::simulation {
+
+/// A sample is an excursion from s+ and, without symmetry, another one from s-, together with the
+/// paths that are wanted. Local.
+class Sampler {
+ public:
+  Sampler(const model::Process& process, const Wanted& wanted);
+
+  /// No samples yet.
+  [[nodiscard]] Tally empty() const { return {process_, wanted_}; }
+  /// `count` < 2^16 samples by the random streams of their batch, at most 2^44 of them.
+  [[nodiscard]] Tally batch(std::uint64_t seed, std::uint64_t batch, int count);
+
+ private:
+  void add_chosen(const RandomStream& random, Tally& tally);
+  void add_stationary(const RandomStream& random, std::size_t side, double place, Tally& tally);
+  void follow(double begun);
+
+  model::Process process_;
+  Wanted wanted_;
+  bool chosen_, stationary_;  // whether paths from a state or from rest, and stationary ones
+  std::unique_ptr<ExcursionSource> source_;
+  std::unique_ptr<Walk> walk_;
+  std::optional<NoiseLevels> noise_;
+  std::vector<std::size_t> order_;  // of times
+  std::vector<State> states_;
+};
+
+}  // namespace stickslip::simulation

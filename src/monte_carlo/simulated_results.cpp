@@ -1,0 +1,266 @@
+#include "simulated_results.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace stickslip::monte_carlo {
+namespace {
+
+using options::Quantity;
+using quantities::Kind;
+using quantities::Result;
+using quantities::Results;
+using simulation::Duration;
+using simulation::Estimate;
+using simulation::Tally;
+
+/// Cell of a histogram around one time of -time.
+struct Cell {
+  double low, high;
+};
+
+// Up to the middle between neighbours, and as far on the other side at the ends.
+std::vector<Cell> cells_around(const std::vector<double>& time) {
+  std::vector<double> sorted = time;
+  std::sort(sorted.begin(), sorted.end());
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  std::vector<Cell> cells;
+  for (double t : time) {
+    const auto at = std::lower_bound(sorted.begin(), sorted.end(), t);
+    const bool first = at == sorted.begin(), last = at + 1 == sorted.end();
+    const double alone = t > 0 ? 0.05 * t : 1;
+    const double up = last ? 0 : (*(at + 1) - t) / 2, down = first ? 0 : (t - *(at - 1)) / 2;
+    const double above = last ? (first ? alone : down) : up;
+    const double below = first ? (last ? alone : up) : down;
+    cells.push_back({std::max(0.0, t - below), t + above});
+  }
+  return cells;
+}
+
+std::vector<double> edges_of(const std::vector<double>& time) {
+  std::vector<double> edges = time;
+  for (const Cell& cell : cells_around(time)) {
+    edges.push_back(cell.low);
+    edges.push_back(cell.high);
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+void append_value(Result& result, const Estimate& e) {
+  result.value.push_back(e.value);
+  result.error.push_back(std::max(e.high - e.value, e.value - e.low));
+  result.ci95.emplace_back(e.low, e.high);
+}
+
+/// Turns a tally into results.
+class Estimates {
+ public:
+  Estimates(const options::Question& question, const model::Process& process, const Tally& tally)
+      : question_(question), process_(process), tally_(tally) {}
+
+  Results all() {
+    using enum Quantity;
+    const auto wants = [this](Quantity q) { return question_.wants(q); };
+    if (wants(sticking)) append_sticking();
+    if (wants(moments)) append_moments();
+    if (wants(averages)) append_averages();
+    if (wants(noise_law)) {
+      scalar(quantities::kPWithin, tally_.within());
+      scalar(quantities::kEX2, tally_.noise_square());
+    }
+    if (wants(entry_law)) append_hitting_distribution();
+    if (wants(laplace)) append_laplace();
+    if (wants(stick_duration_transform) && !wants(laplace)) transform("F_stick", Duration::stick);
+    if (wants(duration_density)) append_durations();
+    if (wants(spectrum)) append_spectrum();
+    if (wants(resolvent)) append_resolvent();
+    if (wants(autocorrelation)) {
+      over("C_vv", "velocity^2", "time", question_.time,
+           [&](std::size_t n) { return tally_.autocorrelation(n); });
+    }
+    if (wants(expectation)) append_expectations();
+    return std::move(results_);
+  }
+
+ private:
+  void scalar(const quantities::Name& name, const Estimate& e) { scalar(name.key, name, e); }
+  void scalar(const std::string& key, const quantities::Name& name, const Estimate& e) {
+    Result result{key, name.unit, "", {}, {}, {}, name.kind};
+    append_value(result, e);
+    results_.push_back(std::move(result));
+  }
+  // An array of estimate(n) over the n-th abscissa.
+  template <class Estimates>
+  void over(const std::string& key, const char* unit, const char* name,
+            const std::vector<double>& abscissa, const Estimates& estimate,
+            Kind kind = Kind::other) {
+    Result result = quantities::array(key, unit, name, abscissa, kind);
+    for (std::size_t n = 0; n < abscissa.size(); ++n) append_value(result, estimate(n));
+    results_.push_back(std::move(result));
+  }
+
+  void append_sticking() {
+    scalar(quantities::kPStick, tally_.sticking());
+    scalar(quantities::kPSlide, tally_.sliding());
+    scalar(quantities::kMeanStick, tally_.mean(Duration::stick));
+    scalar(quantities::kMeanSlide, tally_.mean(Duration::slide));
+    scalar(quantities::kMeanExcursion, tally_.mean(Duration::excursion));
+  }
+
+  void append_moments() {
+    scalar(quantities::kEV2, tally_.mean_square());
+    scalar(quantities::kEAbsV, tally_.mean_speed());
+    scalar(quantities::kEXV, tally_.mean_product());
+    if (process_.symmetric()) {
+      results_.push_back(quantities::scalar(quantities::kEV, 0, 0));
+    } else {
+      scalar(quantities::kEV, tally_.mean_velocity());
+    }
+  }
+
+  void append_averages() {
+    const auto& friction = process_.friction;
+    for (std::size_t f = 0; f < question_.observables.size(); ++f) {
+      for (const auto& [given, e] : tally_.averages(f)) {
+        scalar("pi(" + question_.observables[f].name + given + ")", {"", ""}, e);
+      }
+    }
+    scalar({"slip_rate", "1/time"}, tally_.slip_rate());
+    scalar({"friction_power", "force*velocity"},
+           tally_.mean_of_speeds(friction.mu_d, friction.mirrored().mu_d));
+  }
+
+  void append_hitting_distribution() {
+    const auto& noise = process_.noise;
+    const int lowest = process_.lowest_static(), highest = process_.static_index();
+    std::vector<double> levels;
+    for (int i = lowest; i <= highest; ++i) levels.push_back(i);
+    for (std::size_t side = 0; side < (process_.symmetric() ? 1 : 2); ++side) {
+      over(side == 0 ? "entry_law" : "entry_law_minus", "", "k", levels,
+           [&](std::size_t n) { return tally_.entry(side, static_cast<int>(levels[n])); });
+    }
+    scalar(quantities::kFStick0,
+           tally_.first_exit(noise.rate() * noise.up(highest), noise.rate() * noise.down(lowest)));
+  }
+
+  void append_laplace() {
+    for (const auto& [key, duration] : names("F_")) transform(key, duration);
+    for (const auto& [key, duration] : names("var_")) {
+      scalar(key, {"", "time^2"}, tally_.variance(duration));
+    }
+  }
+
+  void transform(const std::string& key, Duration duration) {
+    over(
+        key, "", "lambda", question_.lambda,
+        [&, duration = duration](std::size_t n) { return tally_.laplace(n, duration); },
+        Kind::transform);
+  }
+
+  void append_durations() {
+    const auto cells = cells_around(question_.time);
+    for (const auto& [key, duration] : names("f_")) {
+      Result density = quantities::array(key, "1/time", "time", question_.time);
+      for (const auto& cell : cells) {
+        const Estimate e = tally_.probability(duration, cell.low, cell.high);
+        const double width = cell.high - cell.low;
+        append_value(density, {e.value / width, e.low / width, e.high / width});
+      }
+      results_.push_back(std::move(density));
+      Result distribution =
+          quantities::array("cd" + key, "", "time", question_.time, Kind::distribution);
+      for (double t : question_.time) {
+        append_value(distribution, tally_.probability(duration, 0, t));
+      }
+      results_.push_back(std::move(distribution));
+    }
+  }
+
+  void append_spectrum() {
+    if (!question_.omega.empty()) {
+      over(
+          "S_v", "velocity^2*time", "omega", question_.omega,
+          [&](std::size_t n) { return tally_.spectrum(n); }, Kind::spectrum);
+    }
+    const Estimate s = tally_.spectrum_at_zero();
+    scalar(quantities::kS0, s);
+    scalar(quantities::kDiffusivity, {s.value / 2, s.low / 2, s.high / 2});
+  }
+
+  void append_resolvent() {
+    const auto& lambda = question_.lambda;
+    const auto append = [&](const simulation::Named& first, const std::string& f, const auto& at) {
+      for (std::size_t which = 0; which < first.size(); ++which) {
+        const std::string key = first[which].first + f;
+        if (key.starts_with("u") && *std::min_element(lambda.begin(), lambda.end()) == 0) continue;
+        over(key, "", "lambda", lambda, [&](std::size_t n) { return at(n)[which].second; });
+      }
+    };
+    append(tally_.exits(0), "", [&](std::size_t n) { return tally_.exits(n); });
+    const std::size_t largest =
+        static_cast<std::size_t>(std::max_element(lambda.begin(), lambda.end()) - lambda.begin());
+    for (std::size_t f = 0; f < question_.observables.size(); ++f) {
+      append(tally_.resolvent(largest, f), "(" + question_.observables[f].name + ")",
+             [&](std::size_t n) { return tally_.resolvent(n, f); });
+    }
+  }
+
+  void append_expectations() {
+    for (std::size_t f = 0; f < question_.observables.size(); ++f) {
+      const std::string of = "(" + question_.observables[f].name + ")";
+      over("E" + of, "", "time", question_.time,
+           [&](std::size_t n) { return tally_.expectation(f, n); });
+      scalar("stationary" + of, {"", ""}, tally_.averages(f)[0].second);
+    }
+  }
+
+  static std::vector<std::pair<std::string, Duration>> names(const std::string& prefix) {
+    return {{prefix + "slide", Duration::slide},
+            {prefix + "stick", Duration::stick},
+            {prefix + "excursion", Duration::excursion}};
+  }
+
+  const options::Question& question_;
+  const model::Process& process_;
+  const Tally& tally_;
+  Results results_;
+};
+
+}  // namespace
+
+simulation::Wanted wanted_of(const options::Question& question) {
+  const auto wants = [&](Quantity q) { return question.wants(q); };
+  simulation::Wanted wanted;
+  wanted.moments = wants(Quantity::moments) || wants(Quantity::averages);
+  wanted.noise = wants(Quantity::noise_law);
+  wanted.displacement = wants(Quantity::spectrum);
+  if (wants(Quantity::spectrum)) wanted.omega = question.omega;
+  if (wants(Quantity::laplace) || wants(Quantity::stick_duration_transform)) {
+    wanted.lambda = question.lambda;
+  }
+  if (wants(Quantity::averages) || wants(Quantity::resolvent) || wants(Quantity::expectation)) {
+    wanted.observables = question.observables;
+  }
+  if (wants(Quantity::resolvent)) wanted.discount = question.lambda;
+  if (wants(Quantity::expectation)) wanted.start = question.start;
+  wanted.autocorrelation = wants(Quantity::autocorrelation);
+  if (wanted.start || wanted.autocorrelation) wanted.time = question.time;
+  if (wants(Quantity::duration_density)) wanted.edges = edges_of(question.time);
+  return wanted;
+}
+
+Paths paths_of(const simulation::Wanted& wanted) {
+  using Kind = model::Start::Kind;
+  const bool chosen = wanted.start && wanted.start->kind != Kind::stationary;
+  return {chosen, wanted.autocorrelation || (wanted.start && !chosen)};
+}
+
+Results estimates(const options::Question& question, const model::Process& process,
+                  const Tally& tally) {
+  return Estimates(question, process, tally).all();
+}
+
+}  // namespace stickslip::monte_carlo
