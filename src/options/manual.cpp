@@ -165,11 +165,12 @@ std::string cell(const std::string& text) {
 
 // What each route gives, from the rules that refuse the rest.
 std::string table_of_routes() {
-  std::string text =
-      "\n## What each route gives\n\n"
-      "For every scene: with symmetry, with a bias, with drag that is not odd, with thresholds that\n"
-      "differ by direction; fluid_queue for those without drag. By either scheme where the route has\n"
-      "one. A number is the reason why there is nothing to be had.\n\n| quantity |";
+  std::string text = "\n## What each route gives\n\n"
+                     "For every scene: with symmetry, with a bias, with drag that is not odd, with "
+                     "thresholds that\n"
+                     "differ by direction; fluid_queue for those without drag. By either scheme "
+                     "where the route has\n"
+                     "one. A number is the reason why there is nothing to be had.\n\n| quantity |";
   std::string rule = "| --- |", reasons;
   int number = 0;
   for (const auto& route : kRoutes) {

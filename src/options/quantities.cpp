@@ -110,8 +110,8 @@ std::vector<std::string> plain_keys() {
 bool is_composed_key(const std::string& key) {
   const auto open = key.find('(');
   if (open != key.npos && key.ends_with(')')) {
-    static const std::set<std::string> of{"u", "w_plus",  "w_minus",  "pi",        "mu",
-                                          "E", "u_minus", "mu_minus", "stationary"};
+    static const std::set<std::string> of{"u", "w_plus",  "w_minus",  "pi",         "mu",
+                                          "E", "u_minus", "mu_minus", "stationary", "pi_lambda"};
     return of.contains(key.substr(0, open));
   }
   for (const std::string_view parameter :

@@ -144,16 +144,20 @@ double largest_speed(const model::Scene& scene) {
 }
 
 // Elements end where functions of the state jump or have kinks, on all levels of x alike. At v = 0
-// they end in any case, and x has a level on each of its values.
+// they end in any case, and x has a level on each of its values. Where there are no elements the
+// values seen tell the range of a function.
 void examine_observables(const Settings& settings, Request& request, Problems& problems) {
   const bool used = depends_on(request.question, "observable");
-  if (!used || request.method.scheme != Scheme::hp) return;
+  if (!used) return;
+  const bool elements =
+      request.method.scheme == Scheme::hp && request.method.route != Route::monte_carlo;
   const auto& scene = request.scene;
   const double speed = largest_speed(scene);
   for (auto& f : request.question.observables) {
     try {
       model::examine(f, probed_levels(scene, f, 0), probed_levels(scene, f, 1), speed);
     } catch (const std::invalid_argument& error) {
+      if (!elements) continue;
       settings.report(problems, "observable", error.what(),
                       "take -scheme upwind, or another formula: elements of -scheme hp end at up "
                       "to 64 jumps and kinks in v that are the same for all x");
@@ -177,12 +181,12 @@ model::Start read_state(const Settings& settings, const model::Scene& scene, dou
   const double largest =
       half.drag.terminal_velocity(half.net_force(process.noise.levels)) * (v < 0 ? -1 : 1);
   if (std::abs(v) > std::abs(largest)) {
-    settings.report(problems, "start",
-                    fmt::format("starts at a velocity that no body reaches: on the highest level "
-                                "of the noise it tends to {:g}",
-                                largest),
-                    fmt::format("take v in [{:g}, {:g}]", std::min(0.0, largest),
-                                std::max(0.0, largest)));
+    settings.report(
+        problems, "start",
+        fmt::format("starts at a velocity that no body reaches: on the highest level "
+                    "of the noise it tends to {:g}",
+                    largest),
+        fmt::format("take v in [{:g}, {:g}]", std::min(0.0, largest), std::max(0.0, largest)));
   }
   return {static_cast<int>(level), v};
 }

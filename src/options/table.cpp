@@ -114,18 +114,23 @@ std::vector<Option> question_options() {
            "moments: E_V2, E_absV, E_XV, E_V. averages: pi(f), pi(f|stick), pi(f|slide) for each "
            "-observable f, slip_rate = 1/mean_excursion, friction_power = E[mu_d |V|]. noise_law: "
            "P_X_le_mu_s, E_X2. entry_law: the level at which a slide from s+ ends (an array; "
-           "without symmetry also entry_law_minus, from s-), f_stick_0. density: the stationary law as a field "
+           "without symmetry also entry_law_minus, from s-), f_stick_0. density: the stationary "
+           "law as a field "
            "(needs -output). laplace: F_slide, F_stick, F_excursion on -lambda. F_stick: that "
            "alone, from the noise at rest. resolvent: h_plus, h_minus, w_one and for each "
-           "-observable u, w_plus, w_minus, pi, mu on -lambda. relaxation: leading eigenvalues of "
-           "-L, with symmetry for even and odd functions. spectrum: S_v of V - E[V] on -omega, S_0, diffusivity = S_0/2, "
+           "-observable u, w_plus, w_minus, pi, mu on -lambda (pi_lambda beside averages). "
+           "relaxation: leading eigenvalues of "
+           "-L, with symmetry for even and odd functions. spectrum: S_v of V - E[V] on -omega, "
+           "S_0, diffusivity = S_0/2, "
            "fwhm, t_corr = 1/fwhm, variance_from_spectrum. duration_density: f_slide, f_stick, "
            "f_excursion and cdf_slide, cdf_stick, cdf_excursion on -time. autocorrelation: C_vv = "
-           "E[(V_0 - m)(V_t - m)], m = E[V], on -time. expectation: E[f(Z_t)] from -start for each -observable on "
+           "E[(V_0 - m)(V_t - m)], m = E[V], on -time. expectation: E[f(Z_t)] from -start for each "
+           "-observable on "
            "-time, and its limit pi(f). trajectory: one simulated path from -start up to "
            "-horizon, to -output or -trajectory. sensitivity: derivatives of every scalar of "
            "sticking, moments and noise_law, as far as these are asked for, with respect to mu_d, "
-           "mu_d_minus (if given), tau (at a fixed number of noise levels) and drag_coefficient, by adjoints: "
+           "mu_d_minus (if given), tau (at a fixed number of noise levels) and drag_coefficient, "
+           "by adjoints: "
            "dP_stick_dmu_d and so on; between two noise levels nothing depends on mu_s"),
       arguments(
           "lambda", "1/time",
@@ -139,7 +144,8 @@ std::vector<Option> question_options() {
            "at time 0 of expectation and trajectory: s+, s-, x,v with x a noise level, rest (X in "
            "its stationary distribution, V = 0) or stationary"),
       text("observable", "",
-           "functions of the state for averages, resolvent and expectation, separated by semicolons: 1, x, "
+           "functions of the state for averages, resolvent and expectation, separated by "
+           "semicolons: 1, x, "
            "v, v^2, |v|, stick, slide, |x|<=mu_s, or expressions in x, y, v, mu_s, mu_d such as "
            "\"x*v; abs(v) > 0.5\"; with -scheme hp elements end at jumps and kinks in v, up to 64 "
            "that "

@@ -213,7 +213,10 @@ void append_resolvent(const std::vector<double>& lambda,
     if (finite) append(key("u"), true, member(&ObservableTransforms::u));
     append(key("w_plus"), false, member(&ObservableTransforms::w_plus));
     append(key("w_minus"), false, member(&ObservableTransforms::w_minus));
-    append(key("pi"), true, member(&ObservableTransforms::pi_lambda),
+    // Beside averages it may not take their name.
+    const bool taken = std::any_of(results.begin(), results.end(),
+                                   [&](const Result& r) { return r.key == key("pi"); });
+    append(key(taken ? "pi_lambda" : "pi"), true, member(&ObservableTransforms::pi_lambda),
            observables[n].within_unit() ? Kind::probability : Kind::other);
     append(key("mu"), false, member(&ObservableTransforms::mu_lambda));
     if (symmetric) continue;

@@ -49,7 +49,7 @@ QUESTIONS = {
 CHOICES = {
     "question": list(QUESTIONS),
     "drag": list(DRAGS),
-    "bias": [0, 0.2, -0.35],
+    "bias": [0, 0.15, -0.2],
     "directions": ["alike", "static", "dynamic", "both"],
     "mu": [(1, 1), (1, 0.5), (0.8, 0.45), (0.4, 0.3)],
     "noise": [(1, 0.5), (0.5, 0.5), (2, 0.25)],
