@@ -104,6 +104,7 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
                         const std::vector<double>& time, TransientMethod method, double tolerance) {
   Expectation result;
   result.value.resize(time.size());
+  double unseen = 0;
   for (Symmetry symmetry : operators::sectors_of(systems.process())) {
     KolmogorovOperator a = kept(systems, symmetry);
     const auto part = part_of(f, symmetry);
@@ -112,8 +113,12 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
     check(VecScale(pi, 1 / distribution.excursion().mean_excursion()));
     check(VecPointwiseMult(square, b, b));
     const double unit = std::sqrt(std::abs(dot(pi, square)));
-    if (symmetry != Symmetry::odd) result.stationary = dot(pi, b);
-    result.unseen += std::abs(dot(pi, a.overlooked(part)));
+    const double overlooked = std::abs(dot(pi, a.overlooked(part)));
+    unseen += overlooked;
+    if (symmetry != Symmetry::odd) {
+      result.stationary = dot(pi, b);
+      result.unseen = overlooked;
+    }
     if (unit == 0) continue;
     if (start.kind == model::Start::Kind::stationary) {
       for (auto& value : result.value) value = {result.stationary, 0};
@@ -127,8 +132,8 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
                                ReducedModel::Nature::rough, time, unit, method, tolerance);
     for (std::size_t n = 0; n < time.size(); ++n) result.value[n] = result.value[n] + of_part[n];
   }
-  for (auto& value : result.value) value.error += result.unseen;
-  for (auto& value : result.value) value.error += result.unseen;
+  for (auto& value : result.value) value.error += unseen;
+  for (auto& value : result.value) value.error += unseen;
   return result;
 }
 

@@ -481,6 +481,7 @@ Results computed(Case r, double accuracy = 1e-8) {
   r.method.route = options::Route::excursion;
   r.question.accuracy = accuracy;
   const auto outcome = accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
+  INFO(outcome.shortfall);
   REQUIRE(outcome.reached);
   return outcome.results;
 }
