@@ -28,6 +28,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kBatch = 256;  // excursions with one random stream
 constexpr int kRound = 64;   // batches between merges
+constexpr long kWhole = long{kRound} * kBatch;
 constexpr double kSecondsBetweenFiles = 3, kSecondsBetweenReports = 1;
 
 // What fixes the numbers of a simulation, but for how many excursions there are: as understood, not
@@ -53,17 +54,16 @@ checkpoint::Identity identity(const Case& given) {
     found.emplace_back(name, values.empty() ? "none" : fmt::format("{}", fmt::join(values, ",")));
   };
   std::vector<std::string> followed, observables;
-  const auto follow = [&](const char* name, bool whether) {
+  for (const auto& [name, whether] : {std::pair{"moments", wanted.moments},
+                                      {"noise_law", wanted.noise},
+                                      {"spectrum", wanted.displacement},
+                                      {"laplace", !wanted.lambda.empty()},
+                                      {"resolvent", !wanted.discount.empty()},
+                                      {"duration_density", !wanted.edges.empty()},
+                                      {"expectation", wanted.start.has_value()},
+                                      {"autocorrelation", wanted.autocorrelation}}) {
     if (whether) followed.emplace_back(name);
-  };
-  follow("moments", wanted.moments);
-  follow("noise_law", wanted.noise);
-  follow("spectrum", wanted.displacement);
-  follow("laplace", !wanted.lambda.empty());
-  follow("resolvent", !wanted.discount.empty());
-  follow("duration_density", !wanted.edges.empty());
-  follow("expectation", wanted.start.has_value());
-  follow("autocorrelation", wanted.autocorrelation);
+  }
   for (const auto& f : wanted.observables) observables.push_back(f.name);
   add("-quantities", followed);
   add("-observable", observables);
@@ -98,19 +98,18 @@ class Campaign {
     require_time();
     load();
     const double all = given_.method.excursions;
-    state_.wanted = all;
+    needed_ = all;
     while (!met() && done() < all) {
       const auto left = static_cast<long>(all - done());
-      const bool whole = left >= static_cast<long>(kRound) * kBatch;
-      if (!whole) {
+      if (left < kWhole) {
         save(0);  // whole rounds, from which another run resumes
         round(left);
         return outcome();
       }
-      round(static_cast<long>(kRound) * kBatch);
+      round(kWhole);
       ++rounds_;
       save(kSecondsBetweenFiles);
-      if (since(last_report_) > kSecondsBetweenReports) report();
+      if (since(last_report_) > kSecondsBetweenReports) report(now());
     }
     save(0);
     return outcome();
@@ -127,9 +126,9 @@ class Campaign {
   void require_time() const {
     const auto chain = operators::StaticChain::of(process_);
     const auto sticking = chain.integral(std::vector<double>(chain.size(), 1.0));
-    const Paths paths = paths_of(wanted_);
-    const double sides = process_.symmetric() ? 1 : 2, stays = sides * (paths.stationary ? 2 : 1),
-                 walks = (paths.from_start ? 1 : 0) + (paths.stationary ? sides : 0),
+    const double sides = process_.symmetric() ? 1 : 2,
+                 stationary = wanted_.stationary_paths() ? sides : 0, stays = sides + stationary,
+                 walks = (wanted_.chosen_paths() ? 1 : 0) + stationary,
                  longest =
                      walks > 0 ? *std::max_element(wanted_.time.begin(), wanted_.time.end()) : 0;
     constexpr double jump = 15e-9, month = 30 * 86400.0;
@@ -191,13 +190,11 @@ class Campaign {
   // The first batch tells how long it will take.
   void predict(const Tally& batch) {
     predicted_ = true;
-    state_.excursions = done() + batch.samples();
-    state_.jumps = tally_.jumps() + batch.jumps();
-    state_.seconds = since(start_);
-    state_.seconds_left = (state_.wanted - state_.excursions) / batch.samples() * state_.seconds /
-                          petsc::ranks(comm_);
-    if (progress_ && first_rank()) progress_(state_);
-    last_report_ = Clock::now();
+    SimulationState s = now();
+    s.excursions += batch.samples();
+    s.jumps += batch.jumps();
+    s.seconds_left = (s.wanted - s.excursions) / batch.samples() * s.seconds / petsc::ranks(comm_);
+    report(s);
   }
 
   // Batches in their order, whoever made them.
@@ -234,29 +231,28 @@ class Campaign {
     return worst;
   }
 
+  // Excursions that would meet the accuracy.
+  [[nodiscard]] double needed(double error) const {
+    return done() * std::pow(error / question_.accuracy, 2);
+  }
+
   // Whether -accuracy is given and met.
   [[nodiscard]] bool met() {
     if (!question_.accuracy_given || done() == 0) return false;
     const double error = worst(results()).first;
-    const double needed = done() * std::pow(error / question_.accuracy, 2);
-    state_.wanted = std::clamp(needed, done(), given_.method.excursions);
+    needed_ = std::clamp(needed(error), done(), given_.method.excursions);
     return error <= question_.accuracy;
   }
 
-  void report() {
-    if (!progress_ || !first_rank()) return;
-    progress_(now());
+  void report(const SimulationState& state) {
+    if (progress_ && first_rank()) progress_(state);
     last_report_ = Clock::now();
   }
 
   [[nodiscard]] SimulationState now() const {
-    SimulationState s = state_;
-    s.excursions = done();
-    s.jumps = tally_.jumps() - jumps_before_;
-    s.seconds = since(start_);
-    const double here = done() - continued_from_;
-    s.seconds_left = here > 0 ? s.seconds * std::max(0.0, s.wanted - done()) / here : 0;
-    return s;
+    const double seconds = since(start_), here = done() - continued_from_;
+    const double left = here > 0 ? seconds * std::max(0.0, needed_ - done()) / here : 0;
+    return {done(), needed_, tally_.jumps() - jumps_before_, seconds, left};
   }
 
   Simulated outcome() {
@@ -269,7 +265,7 @@ class Campaign {
     if (!simulated.reached) {
       simulated.shortfall =
           fmt::format("the interval of {} is +-{:.1e}; it would take about -excursions {:.0e}", key,
-                      error, done() * std::pow(error / question_.accuracy, 2));
+                      error, needed(error));
     }
     return simulated;
   }
@@ -283,8 +279,8 @@ class Campaign {
   simulation::Sampler sampler_;
   Tally tally_;
   std::optional<checkpoint::Checkpoint> checkpoint_;
-  SimulationState state_;
-  long rounds_ = 0;  // whole ones in the tally
+  double needed_ = 0;  // excursions, as far as known
+  long rounds_ = 0;    // whole ones in the tally
   double continued_from_ = 0, jumps_before_ = 0;
   bool predicted_ = false;
   Clock::time_point start_ = Clock::now(), last_report_ = start_, last_file_ = start_;

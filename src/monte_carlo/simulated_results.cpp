@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -14,6 +16,7 @@ using quantities::Result;
 using quantities::Results;
 using simulation::Duration;
 using simulation::Estimate;
+using simulation::Integrand;
 using simulation::Tally;
 
 /// Cell of a histogram around one time of -time.
@@ -23,31 +26,25 @@ struct Cell {
 
 // Up to the middle between neighbours, and as far on the other side at the ends.
 std::vector<Cell> cells_around(const std::vector<double>& time) {
-  std::vector<double> sorted = time;
-  std::sort(sorted.begin(), sorted.end());
-  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  const std::set<double> sorted(time.begin(), time.end());
   std::vector<Cell> cells;
   for (double t : time) {
-    const auto at = std::lower_bound(sorted.begin(), sorted.end(), t);
-    const bool first = at == sorted.begin(), last = at + 1 == sorted.end();
+    const auto at = sorted.find(t);
+    const bool first = at == sorted.begin(), last = std::next(at) == sorted.end();
     const double alone = t > 0 ? 0.05 * t : 1;
-    const double up = last ? 0 : (*(at + 1) - t) / 2, down = first ? 0 : (t - *(at - 1)) / 2;
-    const double above = last ? (first ? alone : down) : up;
-    const double below = first ? (last ? alone : up) : down;
+    double below = first ? alone : (t - *std::prev(at)) / 2;
+    double above = last ? alone : (*std::next(at) - t) / 2;
+    if (first && !last) below = above;
+    if (last && !first) above = below;
     cells.push_back({std::max(0.0, t - below), t + above});
   }
   return cells;
 }
 
 std::vector<double> edges_of(const std::vector<double>& time) {
-  std::vector<double> edges = time;
-  for (const Cell& cell : cells_around(time)) {
-    edges.push_back(cell.low);
-    edges.push_back(cell.high);
-  }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  return edges;
+  std::set<double> edges(time.begin(), time.end());
+  for (const Cell& cell : cells_around(time)) edges.insert({cell.low, cell.high});
+  return {edges.begin(), edges.end()};
 }
 
 void append_value(Result& result, const Estimate& e) {
@@ -55,6 +52,8 @@ void append_value(Result& result, const Estimate& e) {
   result.error.push_back(std::max(e.high - e.value, e.value - e.low));
   result.ci95.emplace_back(e.low, e.high);
 }
+
+Estimate divided(const Estimate& e, double by) { return {e.value / by, e.low / by, e.high / by}; }
 
 /// Turns a tally into results.
 class Estimates {
@@ -69,8 +68,8 @@ class Estimates {
     if (wants(moments)) append_moments();
     if (wants(averages)) append_averages();
     if (wants(noise_law)) {
-      scalar(quantities::kPWithin, tally_.within());
-      scalar(quantities::kEX2, tally_.noise_square());
+      scalar(quantities::kPWithin, tally_.stationary(Integrand::inside));
+      scalar(quantities::kEX2, tally_.stationary(Integrand::x_square));
     }
     if (wants(entry_law)) append_hitting_distribution();
     if (wants(laplace)) append_laplace();
@@ -104,21 +103,21 @@ class Estimates {
   }
 
   void append_sticking() {
-    scalar(quantities::kPStick, tally_.sticking());
-    scalar(quantities::kPSlide, tally_.sliding());
+    scalar(quantities::kPStick, tally_.share(Duration::stick));
+    scalar(quantities::kPSlide, tally_.share(Duration::slide));
     scalar(quantities::kMeanStick, tally_.mean(Duration::stick));
     scalar(quantities::kMeanSlide, tally_.mean(Duration::slide));
     scalar(quantities::kMeanExcursion, tally_.mean(Duration::excursion));
   }
 
   void append_moments() {
-    scalar(quantities::kEV2, tally_.mean_square());
-    scalar(quantities::kEAbsV, tally_.mean_speed());
-    scalar(quantities::kEXV, tally_.mean_product());
+    scalar(quantities::kEV2, tally_.stationary(Integrand::v_square));
+    scalar(quantities::kEAbsV, tally_.stationary(Integrand::v_size));
+    scalar(quantities::kEXV, tally_.stationary(Integrand::x_v));
     if (process_.symmetric()) {
       results_.push_back(quantities::scalar(quantities::kEV, 0, 0));
     } else {
-      scalar(quantities::kEV, tally_.mean_velocity());
+      scalar(quantities::kEV, tally_.stationary(Integrand::v));
     }
   }
 
@@ -173,21 +172,18 @@ class Estimates {
   }
 
   void append_durations() {
-    const auto cells = cells_around(question_.time);
-    for (const auto& [key, duration] : names("f_")) {
-      Result density = quantities::array(key, "1/time", "time", question_.time);
-      for (const auto& cell : cells) {
-        const Estimate e = tally_.probability(duration, cell.low, cell.high);
-        const double width = cell.high - cell.low;
-        append_value(density, {e.value / width, e.low / width, e.high / width});
-      }
-      results_.push_back(std::move(density));
-      Result distribution =
-          quantities::array("cd" + key, "", "time", question_.time, Kind::distribution);
-      for (double t : question_.time) {
-        append_value(distribution, tally_.probability(duration, 0, t));
-      }
-      results_.push_back(std::move(distribution));
+    const auto& time = question_.time;
+    const auto cells = cells_around(time);
+    for (const auto& [key, which] : names("f_")) {
+      const Duration duration = which;
+      over(key, "1/time", "time", time, [&](std::size_t n) {
+        const auto [low, high] = cells[n];
+        return divided(tally_.probability(duration, low, high), high - low);
+      });
+      const auto distribution = [&](std::size_t n) {
+        return tally_.probability(duration, 0, time[n]);
+      };
+      over("cd" + key, "", "time", time, distribution, Kind::distribution);
     }
   }
 
@@ -199,7 +195,7 @@ class Estimates {
     }
     const Estimate s = tally_.spectrum_at_zero();
     scalar(quantities::kS0, s);
-    scalar(quantities::kDiffusivity, {s.value / 2, s.low / 2, s.high / 2});
+    scalar(quantities::kDiffusivity, divided(s, 2));
   }
 
   void append_resolvent() {
@@ -267,12 +263,6 @@ simulation::Wanted wanted_of(const options::Question& question) {
   if (wanted.start || wanted.autocorrelation) wanted.time = question.time;
   if (wants(Quantity::duration_density)) wanted.edges = edges_of(question.time);
   return wanted;
-}
-
-Paths paths_of(const simulation::Wanted& wanted) {
-  using Kind = model::Start::Kind;
-  const bool chosen = wanted.start && wanted.start->kind != Kind::stationary;
-  return {chosen, wanted.autocorrelation || (wanted.start && !chosen)};
 }
 
 Results estimates(const options::Question& question, const model::Process& process,

@@ -9,12 +9,6 @@ namespace stickslip::monte_carlo {
 
 [[nodiscard]] simulation::Wanted wanted_of(const options::Question& question);
 
-/// Whether the question has paths up to the largest of its times, from its start or stationary.
-struct Paths {
-  bool from_start = false, stationary = false;
-};
-[[nodiscard]] Paths paths_of(const simulation::Wanted& wanted);
-
 /// Local.
 [[nodiscard]] quantities::Results estimates(const options::Question& question,
                                             const model::Process& process,

@@ -5,58 +5,44 @@
 
 namespace stickslip::simulation {
 
-void Comoments::add(std::span<const double> sample) {
-  ++count_;
-  for (std::size_t n = 0; n < size(); ++n) {
-    deviation_[n] = sample[n] - mean_[n];
-    mean_[n] += deviation_[n] / count_;
+void Comoments::add(std::span<const double> sample, double times) {
+  double* const mean = numbers_.data() + 1;
+  double* product = mean + size_;
+  const double count = numbers_[0] += times, weight = times * (count - times) / count;
+  for (std::size_t n = 0; n < size_; ++n) {
+    deviation_[n] = sample[n] - mean[n];
+    mean[n] += times * deviation_[n] / count;
   }
-  const double weight = (count_ - 1) / count_;
-  double* product = product_.data();
-  for (std::size_t r = 0; r < size(); ++r) {
+  for (std::size_t r = 0; r < size_; ++r) {
     for (std::size_t c = 0; c <= r; ++c) *product++ += weight * deviation_[r] * deviation_[c];
   }
 }
 
 void Comoments::merge(const Comoments& other) {
-  if (other.count_ == 0) return;
-  const double total = count_ + other.count_, weight = count_ * (other.count_ / total);
-  for (std::size_t n = 0; n < size(); ++n) deviation_[n] = other.mean_[n] - mean_[n];
-  std::size_t at = 0;
-  for (std::size_t r = 0; r < size(); ++r) {
+  if (other.count() == 0) return;
+  const double total = count() + other.count(), share = other.count() / total;
+  const double weight = count() * share;
+  for (std::size_t n = 0; n < size_; ++n) deviation_[n] = other.mean(n) - mean(n);
+  std::size_t at = 1 + size_;
+  for (std::size_t r = 0; r < size_; ++r) {
     for (std::size_t c = 0; c <= r; ++c, ++at) {
-      product_[at] += other.product_[at] + weight * deviation_[r] * deviation_[c];
+      numbers_[at] += other.numbers_[at] + weight * deviation_[r] * deviation_[c];
     }
-    mean_[r] += deviation_[r] * (other.count_ / total);
+    numbers_[1 + r] += deviation_[r] * share;
   }
-  count_ = total;
+  numbers_[0] = total;
 }
 
 double Comoments::variance_of_mean(std::span<const double> weight) const {
-  if (count_ < 2) return std::numeric_limits<double>::infinity();
+  if (count() < 2) return std::numeric_limits<double>::infinity();
   double sum = 0;
-  std::size_t at = 0;
-  for (std::size_t r = 0; r < size(); ++r) {
+  std::size_t at = 1 + size_;
+  for (std::size_t r = 0; r < size_; ++r) {
     for (std::size_t c = 0; c <= r; ++c, ++at) {
-      sum += (c < r ? 2 : 1) * weight[r] * weight[c] * product_[at];
+      sum += (c < r ? 2 : 1) * weight[r] * weight[c] * numbers_[at];
     }
   }
-  return std::max(sum, 0.0) / (count_ * (count_ - 1));
-}
-
-void Comoments::pack(std::vector<double>& numbers) const {
-  numbers.push_back(count_);
-  numbers.insert(numbers.end(), mean_.begin(), mean_.end());
-  numbers.insert(numbers.end(), product_.begin(), product_.end());
-}
-
-void Comoments::unpack(std::span<const double>& numbers) {
-  count_ = numbers[0];
-  numbers = numbers.subspan(1);
-  for (auto* part : {&mean_, &product_}) {
-    std::copy_n(numbers.begin(), part->size(), part->begin());
-    numbers = numbers.subspan(part->size());
-  }
+  return std::max(sum, 0.0) / (count() * (count() - 1));
 }
 
 }  // namespace stickslip::simulation

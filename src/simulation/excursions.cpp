@@ -132,9 +132,12 @@ class Source : public ExcursionSource {
     e.square += piece.square;
     const double x = levels_.level(j);
     e.product += x * piece.path;
-    if (!wanted_.noise) return;
-    e.noise_square += x * x * piece.time;
-    if (levels_.within(j)) e.within += piece.time;
+    if (wanted_.noise) follow_noise(e, j, piece.time);
+  }
+
+  void follow_noise(Excursion& e, int i, double time) const {
+    e.noise_square += levels_.level(i) * levels_.level(i) * time;
+    if (levels_.within(i)) e.within += time;
   }
 
   void follow_transform(Excursion& e, const Piece& piece, double speed, double force, int sign) {
@@ -181,8 +184,7 @@ class Source : public ExcursionSource {
         observe(e, &Integrals::stick, wait, 0, levels_.level(i), 0, 0);
       }
       e.stick += wait;
-      if (wanted_.noise) e.noise_square += levels_.level(i) * levels_.level(i) * wait;
-      if (levels_.within(i)) e.within += wait;
+      if (wanted_.noise) follow_noise(e, i, wait);
       i = levels_.next(i, random);
       ++e.jumps;
       if (!levels_.rests(i)) break;

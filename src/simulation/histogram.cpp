@@ -1,6 +1,7 @@
 #include "stickslip/simulation/histogram.hpp"
 
 #include <algorithm>
+#include <array>
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 
@@ -20,37 +21,23 @@ Estimate proportion(double successes, double trials) {
 
 }  // namespace
 
-Histogram::Side Histogram::summary(std::size_t side, const Weight& weight) const {
-  Side s;
+Comoments Histogram::moments(std::size_t side, const Weight& weight) const {
+  Comoments moments(2);
   for (std::size_t n = 0; n < 2 * bins_; ++n) {
     const double count = counts_[2 * side * bins_ + n];
-    s.count += count;
-    s.turned += n >= bins_ ? count : 0;
-    s.mean += count * weight(n % bins_);
+    if (count > 0) moments.add(std::array{n < bins_ ? 0.0 : 1.0, weight(n % bins_)}, count);
   }
-  s.turned /= s.count;
-  s.mean /= s.count;
-  return s;
+  return moments;
 }
 
-double Histogram::variance(std::size_t side, const Weight& weight, double scale,
-                           double by_turned) const {
-  double count = 0, sum = 0, squares = 0;
-  for (std::size_t n = 0; n < 2 * bins_; ++n) {
-    const double here = counts_[2 * side * bins_ + n];
-    const double value = scale * weight(n % bins_) + (n >= bins_ ? by_turned : 0);
-    count += here;
-    sum += here * value;
-    squares += here * value * value;
-  }
-  return (squares - sum * sum / count) / (count * count);
-}
-
-Estimate Histogram::jeffreys(double mean, double variance, double count,
-                             const Weight& weight) const {
+Estimate Histogram::jeffreys(std::span<const Comoments> sides, const Weight& weight) const {
   double largest = 0;
   for (std::size_t n = 0; n < bins_; ++n) largest = std::max(largest, weight(n));
   if (largest == 0) return {};
+  const Means means(sides);
+  const Smooth of_weight = means.overall(1);
+  const double mean = of_weight.value.real(), count = sides[0].count();
+  const double variance = count > 1 ? means.variance(of_weight) * (count - 1) / count : 0;
   const double p = std::min(1.0, mean / largest), v = variance / (largest * largest);
   const double certain = 1e-14 / count;  // where all weights are alike
   const double trials = v > certain ? p * (1 - p) / v : count;
@@ -59,22 +46,12 @@ Estimate Histogram::jeffreys(double mean, double variance, double count,
 }
 
 Estimate Histogram::mean(std::size_t side, const Weight& weight) const {
-  const Side s = summary(side, weight);
-  return jeffreys(s.mean, variance(side, weight, 1, 0), s.count, weight);
+  return jeffreys(std::array{moments(side, weight)}, weight);
 }
 
-// a- M+ + a+ M- over a+ + a-, with M the means and a the shares of those that turn.
 Estimate Histogram::mean(const Weight& weight) const {
   if (counts_.size() == 2 * bins_) return mean(0, weight);
-  const std::array side{summary(0, weight), summary(1, weight)};
-  const double turns = side[0].turned + side[1].turned;
-  const double value = (side[1].turned * side[0].mean + side[0].turned * side[1].mean) / turns;
-  double spread = 0;
-  for (std::size_t s : {0, 1}) {
-    const Side& other = side[1 - s];
-    spread += variance(s, weight, other.turned / turns, (other.mean - value) / turns);
-  }
-  return jeffreys(value, spread, side[0].count, weight);
+  return jeffreys(std::array{moments(0, weight), moments(1, weight)}, weight);
 }
 
 }  // namespace stickslip::simulation

@@ -48,7 +48,7 @@ Smooth Means::overall(std::size_t n, double parity) const {
   return share(0) * at(0, n) + share(1) * at(1, n, parity);
 }
 
-Estimate Means::estimate(const Smooth& f) const {
+double Means::variance(const Smooth& f) const {
   double variance = 0;
   std::vector<double> weight(sides_[0].size());
   for (std::size_t side = 0; side < sides_.size() && f.slope.size() > 0; ++side) {
@@ -57,7 +57,11 @@ Estimate Means::estimate(const Smooth& f) const {
     }
     variance += sides_[side].variance_of_mean(weight);
   }
-  const double half = kNormalQuantile * std::sqrt(variance), value = f.value.real();
+  return variance;
+}
+
+Estimate Means::estimate(const Smooth& f) const {
+  const double half = kNormalQuantile * std::sqrt(variance(f)), value = f.value.real();
   return {value, value - half, value + half};
 }
 

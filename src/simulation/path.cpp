@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "stickslip/simulation/flow.hpp"
 
@@ -25,11 +26,11 @@ class Walker : public Walk {
         lowest_(process.lowest_static()),
         highest_(process.static_index()) {}
 
-  void begin(const RandomStream& random, int level, double v) override {
+  void begin(const RandomStream& random, const model::Start& start) override {
     random_ = random;
-    i_ = level;
-    speed_ = std::abs(v);
-    y_ = v == 0 ? 0 : (v > 0 ? 1 : -1);
+    i_ = start.kind == model::Start::Kind::rest ? stationary_level() : start.level;
+    speed_ = std::abs(start.v);
+    y_ = start.v == 0 ? 0 : (start.v > 0 ? 1 : -1);
     time_ = jumps_ = 0;
     start_if_pushed();
     wait();
@@ -60,6 +61,10 @@ class Walker : public Walk {
   [[nodiscard]] double jumps() const override { return jumps_; }
 
  private:
+  [[nodiscard]] int stationary_level() {
+    if (!noise_) noise_.emplace(process_.noise);
+    return noise_->draw(random_.uniform());
+  }
   void start_if_pushed() {
     if (y_ == 0 && (i_ < lowest_ || i_ > highest_)) y_ = i_ > highest_ ? 1 : -1;
   }
@@ -72,6 +77,7 @@ class Walker : public Walk {
 
   model::Process process_, mirrored_;
   Flow flow_, backward_flow_;
+  std::optional<NoiseLevels> noise_;  // where it has been of use
   RandomStream random_{0, 0};
   int lowest_, highest_, i_ = 0, y_ = 0;
   double speed_ = 0, time_ = 0, next_jump_ = 0, jumps_ = 0;
@@ -81,11 +87,11 @@ class Walker : public Walk {
 void begin_stationary(Walk& walk, const model::Process& process, RandomStream& random) {
   constexpr int excursions = 1000;
   const double share = random.uniform();
-  const int level = process.static_index() + 1;
-  walk.begin(random, level, 0);
+  const model::Start start{process.static_index() + 1};
+  walk.begin(random, start);
   for (int n = 0; n < excursions; ++n) walk.end_excursion();
   const double time = share * walk.state().time;
-  walk.begin(random, level, 0);
+  walk.begin(random, start);
   walk.advance(time);
 }
 
@@ -122,16 +128,12 @@ int NoiseLevels::draw(double uniform) const {
 
 Path simulate_path(const model::Process& process, const model::Start& start, double horizon,
                    std::uint64_t seed) {
-  using Kind = model::Start::Kind;
   const auto walk = make_walk(process);
   RandomStream random(seed, kPathStream);
-  if (start.kind == Kind::stationary) {
+  if (start.kind == model::Start::Kind::stationary) {
     begin_stationary(*walk, process, random);
-  } else if (start.kind == Kind::rest) {
-    const int level = NoiseLevels(process.noise).draw(random.uniform());
-    walk->begin(random, level, 0);
   } else {
-    walk->begin(random, start.level, start.v);
+    walk->begin(random, start);
   }
   Path path;
   const double begun = walk->state().time, end = begun + horizon;

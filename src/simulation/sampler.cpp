@@ -6,8 +6,6 @@
 namespace stickslip::simulation {
 namespace {
 
-using Kind = model::Start::Kind;
-
 // Excursions take the streams from 0 on.
 std::uint64_t places_stream(std::uint64_t batch) { return std::uint64_t{1} << 62 | batch; }
 std::uint64_t path_stream(std::uint64_t batch, int sample, std::uint64_t which) {
@@ -19,13 +17,10 @@ std::uint64_t path_stream(std::uint64_t batch, int sample, std::uint64_t which) 
 Sampler::Sampler(const model::Process& process, const Wanted& wanted)
     : process_(process),
       wanted_(wanted),
-      chosen_(wanted.start && wanted.start->kind != Kind::stationary),
-      stationary_(wanted.autocorrelation || (wanted.start && !chosen_)),
       source_(make_source(process, wanted)),
       walk_(make_walk(process)),
       order_(wanted.time.size()),
       states_(wanted.time.size()) {
-  if (chosen_ && wanted.start->kind == Kind::rest) noise_.emplace(process.noise);
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::sort(order_.begin(), order_.end(),
             [&](std::size_t a, std::size_t b) { return wanted_.time[a] < wanted_.time[b]; });
@@ -40,40 +35,36 @@ Tally Sampler::batch(std::uint64_t seed, std::uint64_t batch, int count) {
     for (std::size_t side = 0; side < sides; ++side) {
       source_->draw(random, side, places.uniform(), excursion);
       tally.add(side, excursion);
-      if (!stationary_) continue;
+      if (!wanted_.stationary_paths()) continue;
       add_stationary({seed, path_stream(batch, n, side)}, side, places.uniform(), tally);
     }
-    if (chosen_) add_chosen({seed, path_stream(batch, n, 2)}, tally);
+    if (!wanted_.chosen_paths()) continue;
+    walk_->begin({seed, path_stream(batch, n, 2)}, *wanted_.start);
+    tally.add_path(0, false, 1, follow(0));
+    tally.add_jumps(walk_->jumps());
   }
   return tally;
 }
 
-void Sampler::follow(double begun) {
+const std::vector<State>& Sampler::follow(double begun) {
   for (std::size_t n : order_) states_[n] = walk_->advance(begun + wanted_.time[n]);
-}
-
-void Sampler::add_chosen(const RandomStream& random, Tally& tally) {
-  RandomStream rest = random;
-  const double place = noise_ ? rest.uniform() : 0;
-  walk_->begin(rest, noise_ ? noise_->draw(place) : wanted_.start->level, wanted_.start->v);
-  follow(0);
-  tally.add_path(states_);
-  tally.add_jumps(walk_->jumps());
+  return states_;
 }
 
 // Twice by the same numbers: until the duration is known, and from a time within it on.
 void Sampler::add_stationary(const RandomStream& random, std::size_t side, double place,
                              Tally& tally) {
   const int sign = side == 0 ? 1 : -1;
-  const int level = side == 0 ? process_.static_index() + 1 : process_.lowest_static() - 1;
-  walk_->begin(random, level, 0);
+  const model::Start start{side == 0 ? process_.static_index() + 1 : process_.lowest_static() - 1};
+  walk_->begin(random, start);
   const double duration = walk_->end_excursion();
   const bool turned = walk_->state().y != sign;
-  double jumps = walk_->jumps();
-  walk_->begin(random, level, 0);
-  const State start = walk_->advance(place * duration);
-  follow(place * duration);
-  tally.add_stationary(side, turned, duration, start, states_);
+  const double jumps = walk_->jumps();
+  walk_->begin(random, start);
+  const State first = walk_->advance(place * duration);
+  const auto& states = follow(place * duration);
+  if (!wanted_.chosen_paths()) tally.add_path(side, turned, duration, states);
+  tally.add_lagged(side, turned, duration, first, states);
   tally.add_jumps(jumps + walk_->jumps());
 }
 

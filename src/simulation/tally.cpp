@@ -15,12 +15,9 @@ enum Total : std::size_t {
   square_of_slide,
   square_of_stick,
   square_of_excursion,
-  square,
-  path,
-  product,
-  within_threshold,
-  square_of_noise,
-  drift,
+  first_integral,  // in the order of Integrand
+  path = first_integral + 1,
+  drift = first_integral + 5,
   size_of_totals
 };
 // D, T and products of them, and what of them belongs to excursions that turn.
@@ -42,19 +39,24 @@ enum Discount : std::size_t { h_same = 1, h_other, w_one, w_f, w_mirrored, size_
 enum Expected : std::size_t { weight = 1, weighted, size_of_expected };
 enum Lagged : std::size_t { duration_of_lagged = 1, v_start, v_end, v_v, size_of_lagged };
 
-std::array<double, 3> durations(const Excursion& e) {
-  return {e.slide, e.stick, e.slide + e.stick};
+Smooth mean_of(const Means& m, Duration duration) {
+  if (duration == Duration::excursion) return m.overall(slide) + m.overall(stick);
+  return m.overall(duration == Duration::slide ? slide : stick);
+}
+
+Estimate over_time(const Means& m, const Smooth& total) {
+  return m.estimate(total / mean_of(m, Duration::excursion));
 }
 
 }  // namespace
 
 Tally::Tally(const model::Process& process, const Wanted& wanted)
     : lowest_(process.lowest_static()), wanted_(wanted), symmetric_(process.symmetric()) {
-  const auto group = [&](Group which, std::size_t count, std::size_t size, std::size_t sides) {
-    groups_[which].assign(count, Sides(sides, Comoments(size)));
+  const auto group = [&](Group which, std::size_t members, std::size_t size, std::size_t sides) {
+    places_[which] = {comoments_.size(), members, sides};
+    comoments_.insert(comoments_.end(), members * sides, Comoments(size));
   };
   const std::size_t sides = symmetric_ ? 1 : 2, functions = wanted.observables.size();
-  const bool chosen = wanted.start && wanted.start->kind != model::Start::Kind::stationary;
   group(totals, 1, size_of_totals, sides);
   group(displacement, wanted.displacement ? 1 : 0, size_of_displacements, sides);
   group(laplaces, wanted.lambda.size(), size_of_laplaces, sides);
@@ -62,7 +64,7 @@ Tally::Tally(const model::Process& process, const Wanted& wanted)
   group(observed, functions, size_of_observed, sides);
   group(discounted, functions * wanted.discount.size(), size_of_discounts, sides);
   group(expected, wanted.start ? functions * wanted.time.size() : 0, size_of_expected,
-        chosen ? 1 : sides);
+        wanted.chosen_paths() ? 1 : sides);
   group(lagged, wanted.autocorrelation ? wanted.time.size() : 0, size_of_lagged, sides);
   const auto levels = static_cast<std::size_t>(process.static_index() - lowest_ + 1);
   histograms_.emplace_back(symmetric_, levels);
@@ -76,25 +78,27 @@ std::size_t Tally::bin(int level) const {
 
 void Tally::add(std::size_t side, const Excursion& e) {
   const double turned = e.turned ? 1 : 0, whole = e.slide + e.stick;
-  groups_[totals][0][side].add(std::array{turned, e.slide, e.stick, e.slide * e.slide,
-                                          e.stick * e.stick, whole * whole, e.square, e.path,
-                                          e.product, e.within, e.noise_square, e.drift});
+  keep(totals, 0, side,
+       {turned, e.slide, e.stick, e.slide * e.slide, e.stick * e.stick, whole * whole, e.square,
+        e.path, e.product, e.within, e.noise_square, e.drift});
   jumps_ += e.jumps;
-  for (auto& sides : groups_[displacement]) {
-    sides[side].add(std::array{turned, e.drift, whole, e.drift * e.drift, e.drift * whole,
-                               whole * whole, turned * e.drift, turned * whole});
+  if (wanted_.displacement) {
+    keep(displacement, 0, side,
+         {turned, e.drift, whole, e.drift * e.drift, e.drift * whole, whole * whole,
+          turned * e.drift, turned * whole});
   }
   for (std::size_t n = 0; n < wanted_.lambda.size(); ++n) {
     const double f = std::exp(-wanted_.lambda[n] * e.slide),
                  s = std::exp(-wanted_.lambda[n] * e.stick);
-    groups_[laplaces][n][side].add(std::array{turned, f, s, f * s});
+    keep(laplaces, n, side, {turned, f, s, f * s});
   }
   add_transforms(side, e);
   add_integrals(side, e);
   histograms_[0].add(side, e.turned, bin(e.entry));
   const auto& edges = wanted_.edges;
+  const std::array durations{e.slide, e.stick, whole};
   for (std::size_t n = 1; n < histograms_.size(); ++n) {
-    const auto above = std::upper_bound(edges.begin(), edges.end(), durations(e)[n - 1]);
+    const auto above = std::upper_bound(edges.begin(), edges.end(), durations[n - 1]);
     histograms_[n].add(side, e.turned, static_cast<std::size_t>(above - edges.begin()));
   }
 }
@@ -104,10 +108,10 @@ void Tally::add_transforms(std::size_t side, const Excursion& e) {
   for (std::size_t n = 0; n < wanted_.omega.size(); ++n) {
     const auto c = e.transform[n], turn = std::polar(1.0, -wanted_.omega[n] * whole);
     const auto both = std::conj(c) * turn;
-    groups_[spectra][n][side].add(
-        std::array{turned, std::norm(c), c.real(), c.imag(), kept * turn.real(), kept * turn.imag(),
-                   turned * turn.real(), turned * turn.imag(), kept * both.real(),
-                   kept * both.imag(), turned * both.real(), turned * both.imag(), whole});
+    keep(spectra, n, side,
+         {turned, std::norm(c), c.real(), c.imag(), kept * turn.real(), kept * turn.imag(),
+          turned * turn.real(), turned * turn.imag(), kept * both.real(), kept * both.imag(),
+          turned * both.real(), turned * both.imag(), whole});
   }
 }
 
@@ -115,106 +119,76 @@ void Tally::add_integrals(std::size_t side, const Excursion& e) {
   const double whole = e.slide + e.stick, turned = e.turned ? 1 : 0;
   const std::size_t functions = wanted_.observables.size();
   for (std::size_t f = 0; f < functions; ++f) {
-    groups_[observed][f][side].add(
-        std::array{turned, e.slide, e.stick, e.integrals[f].slide, e.integrals[f].stick});
+    keep(observed, f, side, {turned, e.slide, e.stick, e.integrals[f].slide, e.integrals[f].stick});
   }
-  for (std::size_t n = 0; n < groups_[discounted].size(); ++n) {
+  for (std::size_t n = 0; n < places_[discounted].members; ++n) {
     const double lambda = wanted_.discount[n / functions], h = std::exp(-lambda * whole);
     const double one = lambda > 0 ? -std::expm1(-lambda * whole) / lambda : whole;
-    groups_[discounted][n][side].add(std::array{turned, (1 - turned) * h, turned * h, one,
-                                                e.discounted[n].value, e.discounted[n].mirrored});
+    keep(discounted, n, side,
+         {turned, (1 - turned) * h, turned * h, one, e.discounted[n].value,
+          e.discounted[n].mirrored});
   }
 }
 
-void Tally::add_path(const std::vector<State>& states) {
+void Tally::add_path(std::size_t side, bool turned, double weight,
+                     const std::vector<State>& states) {
   const std::size_t times = states.size();
-  for (std::size_t n = 0; n < groups_[expected].size(); ++n) {
-    const State& z = states[n % times];
-    groups_[expected][n][0].add(
-        std::array{0.0, 1.0, wanted_.observables[n / times](z.x, z.y, z.v)});
-  }
-}
-
-void Tally::add_stationary(std::size_t side, bool turned, double duration, const State& start,
-                           const std::vector<State>& states) {
-  const std::size_t times = states.size();
-  const bool here = wanted_.start && wanted_.start->kind == model::Start::Kind::stationary;
-  const double turns = turned ? 1 : 0;
-  for (std::size_t n = 0; here && n < groups_[expected].size(); ++n) {
+  const bool even = symmetric_ && !wanted_.chosen_paths();
+  for (std::size_t n = 0; n < places_[expected].members; ++n) {
     const auto& f = wanted_.observables[n / times];
     const State& z = states[n % times];
-    const double value = symmetric_ ? f.even(z.x, z.y, z.v) : f(z.x, z.y, z.v);
-    groups_[expected][n][side].add(std::array{turns, duration, duration * value});
+    const double value = even ? f.even(z.x, z.y, z.v) : f(z.x, z.y, z.v);
+    keep(expected, n, side, {turned ? 1.0 : 0.0, weight, weight * value});
   }
-  for (std::size_t n = 0; n < groups_[lagged].size(); ++n) {
+}
+
+void Tally::add_lagged(std::size_t side, bool turned, double duration, const State& start,
+                       const std::vector<State>& states) {
+  for (std::size_t n = 0; n < places_[lagged].members; ++n) {
     const double first = duration * start.v, last = duration * states[n].v;
-    groups_[lagged][n][side].add(std::array{turns, duration, first, last, start.v * last});
+    keep(lagged, n, side, {turned ? 1.0 : 0.0, duration, first, last, start.v * last});
   }
 }
 
 void Tally::merge(const Tally& other) {
   jumps_ += other.jumps_;
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    for (std::size_t n = 0; n < groups_[g].size(); ++n) {
-      auto& sides = groups_[g][n];
-      for (std::size_t s = 0; s < sides.size(); ++s) sides[s].merge(other.groups_[g][n][s]);
-    }
-  }
+  for (std::size_t n = 0; n < comoments_.size(); ++n) comoments_[n].merge(other.comoments_[n]);
   for (std::size_t h = 0; h < histograms_.size(); ++h) {
-    auto& counts = histograms_[h].counts();
-    const auto& more = other.histograms_[h].counts();
+    const auto counts = histograms_[h].counts();
+    const auto more = other.histograms_[h].counts();
     for (std::size_t n = 0; n < counts.size(); ++n) counts[n] += more[n];
   }
 }
 
-Estimate Tally::over_time(std::size_t total, double parity) const {
-  const Means m = means(totals);
-  return m.estimate(m.overall(total, parity) / (m.overall(slide) + m.overall(stick)));
-}
-
 // Without differences of nearly equal numbers.
-Estimate Tally::sliding() const {
+Estimate Tally::share(Duration duration) const {
   const Means m = means(totals);
-  return m.estimate(1 / (1 + m.overall(stick) / m.overall(slide)));
-}
-
-Estimate Tally::sticking() const {
-  const Means m = means(totals);
-  return m.estimate(1 / (1 + m.overall(slide) / m.overall(stick)));
+  const auto other = duration == Duration::slide ? Duration::stick : Duration::slide;
+  return m.estimate(1 / (1 + mean_of(m, other) / mean_of(m, duration)));
 }
 
 Estimate Tally::mean(Duration duration) const {
   const Means m = means(totals);
-  const Smooth sum = m.overall(slide) + m.overall(stick);
-  if (duration == Duration::excursion) return m.estimate(sum);
-  return m.estimate(m.overall(duration == Duration::slide ? slide : stick));
+  return m.estimate(mean_of(m, duration));
 }
 
 Estimate Tally::variance(Duration duration) const {
   const Means m = means(totals);
-  const auto which = static_cast<std::size_t>(duration);
-  const Smooth of_slide = m.overall(slide), of_stick = m.overall(stick);
-  const std::array mean{of_slide, of_stick, of_slide + of_stick};
-  return m.estimate(m.overall(square_of_slide + which) - mean[which] * mean[which]);
+  const Smooth mean = mean_of(m, duration);
+  return m.estimate(m.overall(square_of_slide + static_cast<std::size_t>(duration)) - mean * mean);
 }
 
-Estimate Tally::slip_rate() const {
+Estimate Tally::slip_rate() const { return over_time(means(totals), 1); }
+
+Estimate Tally::stationary(Integrand integrand) const {
   const Means m = means(totals);
-  return m.estimate(1 / (m.overall(slide) + m.overall(stick)));
+  const double parity = integrand == Integrand::v ? -1 : 1;
+  return over_time(m, m.overall(first_integral + static_cast<std::size_t>(integrand), parity));
 }
-
-Estimate Tally::mean_square() const { return over_time(square); }
-Estimate Tally::mean_speed() const { return over_time(path); }
-Estimate Tally::mean_product() const { return over_time(product); }
-Estimate Tally::mean_velocity() const { return over_time(drift, -1); }
-Estimate Tally::within() const { return over_time(within_threshold); }
-Estimate Tally::noise_square() const { return over_time(square_of_noise); }
 
 Estimate Tally::mean_of_speeds(double up, double down) const {
   const Means m = means(totals);
-  const Smooth weighted =
-      (up + down) / 2 * m.overall(path) + (up - down) / 2 * m.overall(drift, -1);
-  return m.estimate(weighted / (m.overall(slide) + m.overall(stick)));
+  return over_time(m, (up + down) / 2 * m.overall(path) + (up - down) / 2 * m.overall(drift, -1));
 }
 
 // With D the displacement and T the duration of an excursion, m = E[D]/E[T] and W = D - m T, the
@@ -293,7 +267,7 @@ Estimate Tally::spectrum(std::size_t n) const {
 Named Tally::averages(std::size_t f) const {
   const Means m = means(observed, f);
   const Smooth sliding = m.overall(f_slide), sticking = m.overall(f_stick);
-  return {{"", m.estimate((sliding + sticking) / (m.overall(slide) + m.overall(stick)))},
+  return {{"", over_time(m, sliding + sticking)},
           {"|stick", m.estimate(sticking / m.overall(stick))},
           {"|slide", m.estimate(sliding / m.overall(slide))}};
 }
@@ -343,42 +317,32 @@ Estimate Tally::autocorrelation(std::size_t n) const {
                     m.overall(v_start, -1) * m.overall(v_end, -1) / (duration * duration));
 }
 
+// All that is kept, row by row.
+template <class Self, class Action>
+void Tally::each_row(Self& tally, const Action& action) {
+  action(std::span(&tally.jumps_, 1));
+  for (auto& comoments : tally.comoments_) action(comoments.numbers());
+  for (auto& histogram : tally.histograms_) action(histogram.counts());
+}
+
 std::vector<double> Tally::pack() const {
-  std::vector<double> numbers{jumps_};
-  for (const auto& group : groups_) {
-    for (const auto& sides : group) {
-      for (const auto& comoments : sides) comoments.pack(numbers);
-    }
-  }
-  for (const auto& histogram : histograms_) {
-    numbers.insert(numbers.end(), histogram.counts().begin(), histogram.counts().end());
-  }
+  std::vector<double> numbers;
+  each_row(*this, [&](auto row) { numbers.insert(numbers.end(), row.begin(), row.end()); });
   return numbers;
 }
 
 std::size_t Tally::packed_size() const {
-  std::size_t size = 1;
-  for (const auto& group : groups_) {
-    for (const auto& sides : group) size += sides.size() * sides[0].packed_size();
-  }
-  for (const auto& histogram : histograms_) size += histogram.counts().size();
+  std::size_t size = 0;
+  each_row(*this, [&](auto row) { size += row.size(); });
   return size;
 }
 
 void Tally::unpack(std::span<const double> numbers) {
   if (numbers.size() != packed_size()) throw std::invalid_argument("a tally of other questions");
-  jumps_ = numbers[0];
-  numbers = numbers.subspan(1);
-  for (auto& group : groups_) {
-    for (auto& sides : group) {
-      for (auto& comoments : sides) comoments.unpack(numbers);
-    }
-  }
-  for (auto& histogram : histograms_) {
-    auto& counts = histogram.counts();
-    std::copy_n(numbers.begin(), counts.size(), counts.begin());
-    numbers = numbers.subspan(counts.size());
-  }
+  each_row(*this, [&](auto row) {
+    std::copy_n(numbers.begin(), row.size(), row.begin());
+    numbers = numbers.subspan(row.size());
+  });
 }
 
 }  // namespace stickslip::simulation

@@ -444,8 +444,8 @@ TEST_CASE("excursions: the noise keeps its law in the mean over both sides, with
     const auto holds = [](const simulation::Estimate& e, double value) {
       return std::abs(e.value - value) < 4 * (e.high - e.value) / 1.96;
     };
-    CHECK(holds(tally.within(), within));
-    CHECK(holds(tally.noise_square(), 1 / c.process.noise.tau));
+    CHECK(holds(tally.stationary(simulation::Integrand::inside), within));
+    CHECK(holds(tally.stationary(simulation::Integrand::x_square), 1 / c.process.noise.tau));
   }
 }
 

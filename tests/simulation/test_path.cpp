@@ -194,8 +194,8 @@ TEST_CASE("path: a stationary start has the stationary distribution within 4 sig
     fourth += std::pow(path.v[0], 4) / count;
     resting += path.y[0] == 0 ? 1.0 / count : 0;
   }
-  const double share = known.sticking().value;
-  CHECK(std::abs(square - known.mean_square().value) <
+  const double share = known.share(simulation::Duration::stick).value;
+  CHECK(std::abs(square - known.stationary(simulation::Integrand::v_square).value) <
         4 * std::sqrt((fourth - square * square) / count));
   CHECK(std::abs(resting - share) < 4 * std::sqrt(share * (1 - share) / count));
 }

@@ -13,6 +13,7 @@ using namespace stickslip;
 using simulation::Duration;
 using simulation::Estimate;
 using simulation::Excursion;
+using simulation::Integrand;
 using simulation::Tally;
 using simulation::Wanted;
 
@@ -139,11 +140,11 @@ TEST_CASE("tally: a sample of four by hand") {
   const auto t = of(sample());
   CHECK(t.samples() == 4);
   CHECK(t.jumps() == 40);
-  CHECK(t.sliding().value == Approx(6.5 / 14.5).epsilon(1e-14));
-  CHECK(t.sticking().value == Approx(8.0 / 14.5).epsilon(1e-14));
+  CHECK(t.share(Duration::slide).value == Approx(6.5 / 14.5).epsilon(1e-14));
+  CHECK(t.share(Duration::stick).value == Approx(8.0 / 14.5).epsilon(1e-14));
   CHECK(t.mean(Duration::slide).value == Approx(6.5 / 4).epsilon(1e-14));
   CHECK(t.mean(Duration::excursion).value == Approx(14.5 / 4).epsilon(1e-14));
-  CHECK(t.mean_square().value == Approx(4.25 / 14.5).epsilon(1e-14));
+  CHECK(t.stationary(Integrand::v_square).value == Approx(4.25 / 14.5).epsilon(1e-14));
   CHECK(t.probability(Duration::slide, 1, 2).value == 0.25);
   CHECK(t.laplace(0, Duration::excursion).value == 1);
 }
@@ -151,13 +152,14 @@ TEST_CASE("tally: a sample of four by hand") {
 TEST_CASE("tally: stationary means with intervals of the delta method") {
   const auto all = sample();
   const auto t = of(all);
-  check_ratio(t.sliding(), all, [](const Excursion& e) { return e.slide; });
-  check_ratio(t.sticking(), all, [](const Excursion& e) { return e.stick; });
-  check_ratio(t.mean_square(), all, [](const Excursion& e) { return e.square; });
-  check_ratio(t.mean_speed(), all, [](const Excursion& e) { return e.path; });
-  check_ratio(t.mean_product(), all, [](const Excursion& e) { return e.product; });
-  check_ratio(t.within(), all, [](const Excursion& e) { return e.within; });
-  check_ratio(t.noise_square(), all, [](const Excursion& e) { return e.noise_square; });
+  check_ratio(t.share(Duration::slide), all, [](const Excursion& e) { return e.slide; });
+  check_ratio(t.share(Duration::stick), all, [](const Excursion& e) { return e.stick; });
+  check_ratio(t.stationary(Integrand::v_square), all, [](const Excursion& e) { return e.square; });
+  check_ratio(t.stationary(Integrand::v_size), all, [](const Excursion& e) { return e.path; });
+  check_ratio(t.stationary(Integrand::x_v), all, [](const Excursion& e) { return e.product; });
+  check_ratio(t.stationary(Integrand::inside), all, [](const Excursion& e) { return e.within; });
+  check_ratio(t.stationary(Integrand::x_square), all,
+              [](const Excursion& e) { return e.noise_square; });
 }
 
 TEST_CASE("tally: means of durations and of their exponentials") {
@@ -240,8 +242,8 @@ TEST_CASE("tally: one static level is left by both ways") {
   check_proportion(t.entry(0, 0), 3, 3);
   CHECK(t.first_exit(5, 5).value == 10);
   CHECK(t.first_exit(5, 5).high == 10);
-  CHECK(t.sticking().value == 0.5);
-  CHECK(t.sticking().high == Approx(0.5).epsilon(1e-14));
+  CHECK(t.share(Duration::stick).value == 0.5);
+  CHECK(t.share(Duration::stick).high == Approx(0.5).epsilon(1e-14));
 }
 
 TEST_CASE("tally: merged parts are the whole") {
@@ -362,8 +364,8 @@ TEST_CASE("tally: means over both sides are those of a long path") {
   const Value slide = [](const Excursion& e) { return e.slide; };
   check_sides(t.mean(Duration::slide), mean(slide));
   check_sides(t.mean(Duration::excursion), mean(duration));
-  check_sides(t.sliding(), over_time(slide));
-  check_sides(t.mean_velocity(), over_time([](const Excursion& e) { return e.drift; }));
+  check_sides(t.share(Duration::slide), over_time(slide));
+  check_sides(t.stationary(Integrand::v), over_time([](const Excursion& e) { return e.drift; }));
   check_sides(t.mean_of_speeds(2, 3), over_time([](const Excursion& e) {
                 return (e.path + e.drift) + 1.5 * (e.path - e.drift);
               }));
@@ -474,7 +476,8 @@ TEST_CASE("tally: two sides that mirror each other give what symmetry gives") {
     CHECK(two.spectrum(w).value == Approx(one.spectrum(w).value).epsilon(1e-12));
   }
   CHECK(two.spectrum_at_zero().value == Approx(one.spectrum_at_zero().value).epsilon(1e-12));
-  CHECK(two.sliding().value == Approx(one.sliding().value).epsilon(1e-13));
+  CHECK(two.share(Duration::slide).value ==
+        Approx(one.share(Duration::slide).value).epsilon(1e-13));
   CHECK(two.probability(Duration::slide, 1, 2).value == 0.25);
 }
 

@@ -12,30 +12,28 @@ namespace stickslip::simulation {
 class Comoments {
  public:
   explicit Comoments(std::size_t size)
-      : mean_(size, 0.0), product_(size * (size + 1) / 2, 0.0), deviation_(size) {}
+      : size_(size), numbers_(1 + size + size * (size + 1) / 2, 0.0), deviation_(size) {}
 
-  [[nodiscard]] std::size_t size() const { return mean_.size(); }
-  [[nodiscard]] double count() const { return count_; }
-  [[nodiscard]] double mean(std::size_t n) const { return mean_[n]; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] double count() const { return numbers_[0]; }
+  [[nodiscard]] double mean(std::size_t n) const { return numbers_[1 + n]; }
 
-  /// O(size^2).
-  void add(std::span<const double> sample);
+  /// As many samples as `times` tells, all alike. O(size^2).
+  void add(std::span<const double> sample, double times = 1);
   /// As if all samples of `other` had been added.
   void merge(const Comoments& other);
 
   /// Variance of the mean of sum_n weight_n sample_n; infinite for fewer than two samples.
   [[nodiscard]] double variance_of_mean(std::span<const double> weight) const;
 
-  /// How many numbers pack() appends.
-  [[nodiscard]] std::size_t packed_size() const { return 1 + mean_.size() + product_.size(); }
-  /// Appends all to `numbers`; unpack takes it from `at` on and moves it.
-  void pack(std::vector<double>& numbers) const;
-  void unpack(std::span<const double>& numbers);
+  /// All that is kept, in a row.
+  [[nodiscard]] std::span<double> numbers() { return numbers_; }
+  [[nodiscard]] std::span<const double> numbers() const { return numbers_; }
 
  private:
-  double count_ = 0;
-  std::vector<double> mean_, product_;  // lower triangle by rows
-  std::vector<double> deviation_;       // scratch
+  std::size_t size_;
+  std::vector<double> numbers_;    // count, means, products: the lower triangle by rows
+  std::vector<double> deviation_;  // scratch
 };
 
 }  // namespace stickslip::simulation

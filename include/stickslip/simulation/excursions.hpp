@@ -28,6 +28,14 @@ struct Wanted {
   std::vector<double> time = {};                    ///< along paths [time]
   std::optional<model::Start> start = {};           ///< of paths along which observables are taken
   bool autocorrelation = false;                     ///< of v along stationary paths
+
+  /// Whether there are paths that start from a state or from rest, and stationary ones.
+  [[nodiscard]] bool chosen_paths() const {
+    return start && start->kind != model::Start::Kind::stationary;
+  }
+  [[nodiscard]] bool stationary_paths() const {
+    return autocorrelation || (start && !chosen_paths());
+  }
 };
 
 /// Integrals of f over the slide and the stay of an excursion; with symmetry of its even part.

@@ -67,14 +67,8 @@ class LinearFlow {
                  std::vector<std::complex<double>>& result) const;
 
  private:
-  [[nodiscard]] double time_to_stop(double speed, double force) const;
-
   double c_;
 };
-
-inline double LinearFlow::time_to_stop(double speed, double force) const {
-  return c_ > 0 ? std::log1p(-c_ * speed / force) / c_ : -speed / force;
-}
 
 inline Piece LinearFlow::move(double speed, double force, double time, bool integrals) const {
   Piece piece;
@@ -86,7 +80,8 @@ inline Piece LinearFlow::move(double speed, double force, double time, bool inte
     piece.stopped = force < 0;  // else the rest of the speed is below rounding
   }
   if (piece.stopped) {
-    piece.time = std::min(time, time_to_stop(speed, force));
+    const double stop = c_ > 0 ? std::log1p(-c_ * speed / force) / c_ : -speed / force;
+    piece.time = std::min(time, stop);
     one = detail::phi_one(c_ * piece.time);
   }
   if (!integrals) return piece;

@@ -1,11 +1,12 @@
 #pragma once
 /// How many excursions fall into each of some bins.
 
-#include <array>
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <vector>
 
+#include "stickslip/simulation/comoments.hpp"
 #include "stickslip/simulation/means.hpp"
 
 namespace stickslip::simulation {
@@ -20,8 +21,8 @@ class Histogram {
     counts_[(2 * side + (turned ? 1 : 0)) * bins_ + bin] += 1;
   }
   [[nodiscard]] std::size_t bins() const { return bins_; }
-  [[nodiscard]] std::vector<double>& counts() { return counts_; }
-  [[nodiscard]] const std::vector<double>& counts() const { return counts_; }
+  [[nodiscard]] std::span<double> counts() { return counts_; }
+  [[nodiscard]] std::span<const double> counts() const { return counts_; }
 
   /// Mean of weight(bin) >= 0 over all excursions of a long path, or over those from one side.
   /// Jeffreys' interval for as many trials as give the variance of the delta method.
@@ -30,15 +31,9 @@ class Histogram {
   [[nodiscard]] Estimate mean(std::size_t side, const Weight& weight) const;
 
  private:
-  struct Side {
-    double count = 0, turned = 0, mean = 0;  ///< excursions; shares and mean of them
-  };
-  [[nodiscard]] Side summary(std::size_t side, const Weight& weight) const;
-  /// Of the mean of scale weight(bin) + by_turned 1{turned}.
-  [[nodiscard]] double variance(std::size_t side, const Weight& weight, double scale,
-                                double by_turned) const;
-  [[nodiscard]] Estimate jeffreys(double mean, double variance, double count,
-                                  const Weight& weight) const;
+  /// Of 1{turned} and weight(bin) over the excursions from one side.
+  [[nodiscard]] Comoments moments(std::size_t side, const Weight& weight) const;
+  [[nodiscard]] Estimate jeffreys(std::span<const Comoments> sides, const Weight& weight) const;
 
   std::size_t bins_;
   std::vector<double> counts_;

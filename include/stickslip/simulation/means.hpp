@@ -50,7 +50,8 @@ class Means {
   [[nodiscard]] Smooth share(std::size_t side) const;
   /// Mean n over all excursions of a long path.
   [[nodiscard]] Smooth overall(std::size_t n, double parity = 1) const;
-  /// The real part of f.
+  /// Of the real part of f, as all that follows.
+  [[nodiscard]] double variance(const Smooth& f) const;
   [[nodiscard]] Estimate estimate(const Smooth& f) const;
 
  private:

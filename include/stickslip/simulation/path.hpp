@@ -20,8 +20,9 @@ struct State {
 class Walk {
  public:
   virtual ~Walk() = default;
-  /// Begins at time 0 with the numbers of `random`. At v = 0 a body on static levels rests.
-  virtual void begin(const RandomStream& random, int level, double v) = 0;
+  /// Begins at time 0 with the numbers of `random`, in a state or with the noise at rest. At v = 0
+  /// a body on static levels rests.
+  virtual void begin(const RandomStream& random, const model::Start& start) = 0;
   /// On to the next event, a jump of the noise or a body that comes to rest or is turned round, at
   /// most to the time `limit`.
   virtual void step(double limit) = 0;

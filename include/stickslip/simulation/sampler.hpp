@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "stickslip/simulation/excursions.hpp"
@@ -24,16 +23,13 @@ class Sampler {
   [[nodiscard]] Tally batch(std::uint64_t seed, std::uint64_t batch, int count);
 
  private:
-  void add_chosen(const RandomStream& random, Tally& tally);
   void add_stationary(const RandomStream& random, std::size_t side, double place, Tally& tally);
-  void follow(double begun);
+  [[nodiscard]] const std::vector<State>& follow(double begun);
 
   model::Process process_;
   Wanted wanted_;
-  bool chosen_, stationary_;  // whether paths from a state or from rest, and stationary ones
   std::unique_ptr<ExcursionSource> source_;
   std::unique_ptr<Walk> walk_;
-  std::optional<NoiseLevels> noise_;
   std::vector<std::size_t> order_;  // of times
   std::vector<State> states_;
 };

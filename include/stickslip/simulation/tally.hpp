@@ -2,6 +2,7 @@
 /// What is kept of many excursions and paths, and the estimates made from it.
 
 #include <array>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <utility>
@@ -17,6 +18,9 @@ namespace stickslip::simulation {
 
 /// Durations whose laws are asked for.
 enum class Duration { slide, stick, excursion };
+
+/// Functions of the state whose integrals over excursions are kept; inside is 1{|x| <= mu_s}.
+enum class Integrand { v_square, v_size, x_v, inside, x_square, v };
 
 /// Estimates by their names.
 using Named = std::vector<std::pair<std::string, Estimate>>;
@@ -34,30 +38,25 @@ class Tally {
   void add(std::size_t side, const Excursion& excursion);
   /// The states at wanted.time of a path from wanted.start, or of a stationary one: such a path
   /// begins at a uniformly distributed time of an excursion from one side, and counts with the
-  /// duration of that.
-  void add_path(const std::vector<State>& states);
-  void add_stationary(std::size_t side, bool turned, double duration, const State& start,
-                      const std::vector<State>& states);
+  /// duration of that. The others have side 0 and weight 1.
+  void add_path(std::size_t side, bool turned, double weight, const std::vector<State>& states);
+  /// The same of a stationary path for the autocorrelation.
+  void add_lagged(std::size_t side, bool turned, double duration, const State& start,
+                  const std::vector<State>& states);
   void add_jumps(double jumps) { jumps_ += jumps; }
   void merge(const Tally& other);
 
   /// Excursions, or pairs of one from each side.
-  [[nodiscard]] double samples() const { return members(totals)[0][0].count(); }
+  [[nodiscard]] double samples() const { return comoments_[0].count(); }
   [[nodiscard]] double jumps() const { return jumps_; }
 
-  [[nodiscard]] Estimate sticking() const;  ///< P_stick
-  [[nodiscard]] Estimate sliding() const;   ///< P_slide
+  [[nodiscard]] Estimate share(Duration duration) const;  ///< P_slide or P_stick
   [[nodiscard]] Estimate mean(Duration duration) const;
   [[nodiscard]] Estimate variance(Duration duration) const;
-  [[nodiscard]] Estimate slip_rate() const;      ///< 1/E[T]
-  [[nodiscard]] Estimate mean_square() const;    ///< E[V^2]
-  [[nodiscard]] Estimate mean_speed() const;     ///< E[|V|]
-  [[nodiscard]] Estimate mean_product() const;   ///< E[X V]
-  [[nodiscard]] Estimate mean_velocity() const;  ///< E[V]
+  [[nodiscard]] Estimate slip_rate() const;                      ///< 1/E[T]
+  [[nodiscard]] Estimate stationary(Integrand integrand) const;  ///< E[V^2] and the like
   /// up E[V+] + down E[V-].
   [[nodiscard]] Estimate mean_of_speeds(double up, double down) const;
-  [[nodiscard]] Estimate within() const;        ///< P(|X| <= mu_s)
-  [[nodiscard]] Estimate noise_square() const;  ///< E[X^2]
   /// Probability that a slide from one side comes to rest on level i.
   [[nodiscard]] Estimate entry(std::size_t side, int i) const;
   /// Rate at which a body leaves rest as it has come there: `up` on the highest level, `down` on
@@ -88,13 +87,21 @@ class Tally {
  private:
   enum Group { totals, displacement, laplaces, spectra, observed, discounted, expected, lagged };
   static constexpr std::size_t kGroups = 8;
-  using Sides = std::vector<Comoments>;  // one with symmetry
+  /// Where a group begins, and how many comoments it has for each side; one side with symmetry.
+  struct Place {
+    std::size_t first = 0, members = 0, sides = 0;
+  };
 
-  [[nodiscard]] const std::vector<Sides>& members(Group group) const { return groups_[group]; }
-  [[nodiscard]] Means means(Group group, std::size_t n = 0) const {
-    return Means(members(group)[n]);
+  void keep(Group group, std::size_t n, std::size_t side, std::initializer_list<double> sample) {
+    const Place& place = places_[group];
+    comoments_[place.first + n * place.sides + side].add({sample.begin(), sample.size()});
   }
-  [[nodiscard]] Estimate over_time(std::size_t total, double parity = 1) const;
+  [[nodiscard]] Means means(Group group, std::size_t n = 0) const {
+    const Place& place = places_[group];
+    return Means(std::span(comoments_).subspan(place.first + n * place.sides, place.sides));
+  }
+  template <class Self, class Action>
+  static void each_row(Self& tally, const Action& action);
   [[nodiscard]] std::size_t bin(int level) const;
   void add_transforms(std::size_t side, const Excursion& e);
   void add_integrals(std::size_t side, const Excursion& e);
@@ -102,7 +109,8 @@ class Tally {
   int lowest_;
   Wanted wanted_;
   bool symmetric_;
-  std::array<std::vector<Sides>, kGroups> groups_;
+  std::array<Place, kGroups> places_;
+  std::vector<Comoments> comoments_;   // by group, member and side
   std::vector<Histogram> histograms_;  // of entries, then of durations
   double jumps_ = 0;
 };
