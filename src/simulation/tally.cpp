@@ -301,7 +301,9 @@ Named Tally::resolvent(std::size_t l, std::size_t f) const {
             {"pi", m.estimate(pi)},
             {"mu", m.estimate(mu)}};
   if (lambda > 0) all.emplace_back("u", m.estimate(pi / lambda + mu));
-  if (lambda > 0 && !symmetric_) all.emplace_back("u_minus", m.estimate(pi / lambda + below));
+  if (symmetric_) return all;
+  all.emplace_back("mu_minus", m.estimate(below));
+  if (lambda > 0) all.emplace_back("u_minus", m.estimate(pi / lambda + below));
   return all;
 }
 
