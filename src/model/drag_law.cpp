@@ -102,13 +102,14 @@ void require_slope_at_rest(const Side& b, double reach) {
   if (slope > 1.02 * before && slope > 1e-6) refuse_slope(b, near, slope);
 }
 
-// Kinks have the order 1, rounding apart.
+// Kinks have the order 1, rounding apart. What is left of a jump nearby is all of it.
 void require_bounded_slope(const Side& b, const Break& at) {
-  constexpr double of_jumps = 0.2, of_roots = 0.75;
+  constexpr double of_roots = 0.75;
   if (at.order > of_roots) return;
-  const double low = at.v - 4 * at.width, high = at.v + 4 * at.width;
-  const double before = b(low), after = b(high);
-  if (at.order > of_jumps) refuse_slope(b, at.v, (before - after) / (high - low));
+  const double near = 4 * at.width, far = 1000 * near;
+  const double before = b(at.v - near), after = b(at.v + near);
+  const bool jumps = before - after > 0.5 * (b(at.v - far) - b(at.v + far));
+  if (!jumps) refuse_slope(b, at.v, (before - after) / (2 * near));
   throw UnfitLaw(
       fmt::format("jumps from {:.9g} to {:.9g} at v = {:.9g}; there forces on both sides "
                   "can hold a body, and no density shows how long",
@@ -127,6 +128,8 @@ std::vector<double> kinks(const Drag& drag, const std::vector<double>& numbers) 
   std::vector<Break> found;
   for (double sign : {1.0, -1.0}) {
     const Side side{drag, sign};
+    constexpr double slow = 1e-3;  // intervals on the whole reach leave out the slowest speeds
+    for (const Break& b : breaks(side, numbers, slow * drag.reach)) require_bounded_slope(side, b);
     const auto of_side = breaks(side, numbers, drag.reach);
     for (const Break& b : of_side) require_bounded_slope(side, b);
     merge(found, of_side);
