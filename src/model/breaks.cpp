@@ -2,42 +2,19 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <numbers>
+#include <regex>
 
 namespace stickslip::model {
 namespace {
 
-constexpr int kNodes = 8;
 constexpr double kLeast = 1e-9;  // distance of two breaks, relative
 // Below this part of the reach functions such as 1 - cos(v) consist of rounding.
 constexpr double kSlowest = 1e-6;
 constexpr std::size_t kSteps = 5;  // that show an order
-
-/// Places on [-1, 1] where a function is interpolated and where it is tried, the middle not among
-/// them, and the values of the cardinal functions there.
-struct Interpolation {
-  std::array<double, kNodes> node{}, place{};
-  std::array<std::array<double, kNodes>, kNodes> cardinal{};
-
-  Interpolation() {
-    for (int n = 0; n < kNodes; ++n) {
-      node[n] = std::cos((2 * n + 1) * std::numbers::pi / (2 * kNodes));
-      place[n] = std::cos((n < kNodes / 2 ? n : n + 1) * std::numbers::pi / kNodes);
-    }
-    for (int m = 0; m < kNodes; ++m) {
-      for (int n = 0; n < kNodes; ++n) cardinal[m][n] = cardinal_function(n, place[m]);
-    }
-  }
-  [[nodiscard]] double cardinal_function(int n, double t) const {
-    double value = 1;
-    for (int k = 0; k < kNodes; ++k) value *= k == n ? 1 : (t - node[k]) / (node[n] - node[k]);
-    return value;
-  }
-};
 
 struct Interval {
   double low, high, error, rise;
@@ -69,17 +46,17 @@ class Search {
     const double size = std::max(std::abs(f_(0.99 * a)), std::abs(f_(b)));
     constexpr double seen = 1e-7, rounding = 1e-11, smallest = 1e-200;
     if (!(all.error > seen * size + smallest)) return;
-    const bool is_break = narrow(all, rounding * std::max(size, all.error));
-    const Interval bracket = bracket_;
+    const auto [bracket, order] = narrow(all, rounding * std::max(size, all.error));
+    constexpr double smooth = 3.5;
     double gap = 0;
-    if (is_break) {
-      const Break next = place(bracket, std::max(size, all.error));
+    if (order < smooth) {
+      const Break next = place(bracket, order, std::max(size, all.error));
       if (!rounded(next, bracket.error)) merge(found, {next});
       gap = 8 * next.width + kLeast * next.v;
     }
     // Beside a pole the error can be larger than at the pole.
     constexpr int more_for_smooth = 7;
-    const int next_depth = depth + (is_break ? 1 : more_for_smooth);
+    const int next_depth = depth + (order < smooth ? 1 : more_for_smooth);
     look(a, bracket.low - gap, next_depth);
     look(bracket.high + gap, b, next_depth);
   }
@@ -87,16 +64,21 @@ class Search {
   std::vector<Break> found;
 
  private:
+  struct Bracket {
+    Interval interval;
+    double order;  // of the error in its width; infinity where it has none
+  };
+
   // Follows the part with the largest error; where f is not finite that counts as largest. Where f
   // is smooth the error falls like width^8 in the end, at a break like width^order, and rounding
   // or waves too short for doubles show in every part alike. No part ends in the middle, where
   // marks lie.
-  bool narrow(Interval now, double rounding) {
+  [[nodiscard]] Bracket narrow(const Interval& all, double rounding) const {
     constexpr int unresolvable = 5;
-    constexpr double smooth = 3.5, narrow_enough = 1e-4;
-    std::vector<Interval> past{now};
-    bracket_ = now;
-    for (int alike = 0; now.divides() && !(now.error <= rounding); past.push_back(now)) {
+    constexpr double none = std::numeric_limits<double>::infinity(), narrow_enough = 1e-4;
+    std::vector<Interval> past{all};
+    for (int alike = 0; past.back().divides() && !(past.back().error <= rounding);) {
+      const Interval now = past.back();
       rounding = std::max(rounding, now.rounding());
       const std::array parts{Interval(f_, now.low, now.at(0.4)),
                              Interval(f_, now.at(0.2), now.at(0.7)),
@@ -106,17 +88,14 @@ class Search {
             return p.size() < q.size();
           });
       alike = least->error > 0.1 * now.error ? alike + 1 : 0;
-      if (alike == unresolvable) return false;
-      now = *most;
+      if (alike == unresolvable) return {all, none};
+      past.push_back(*most);
     }
-    bracket_ = now;
-    return past.size() > kSteps && now.width() < narrow_enough * now.high && order(past) < smooth;
-  }
-
-  static double order(const std::vector<Interval>& past) {
-    const Interval &last = past.back(), &before = past[past.size() - 1 - kSteps];
-    if (std::isnan(last.error)) return 0;
-    return std::log(before.error / last.error) / std::log(before.width() / last.width());
+    const Interval& last = past.back();
+    if (past.size() <= kSteps || !(last.width() < narrow_enough * last.high)) return {last, none};
+    if (std::isnan(last.error)) return {last, 0};
+    const Interval& before = past[past.size() - 1 - kSteps];
+    return {last, std::log(before.error / last.error) / std::log(before.width() / last.width())};
   }
 
   // Whether it is a step of rounding, as those of 1 + tanh(v) at v = -17.
@@ -127,7 +106,7 @@ class Search {
   }
 
   // A jump is bisected to the precision of v. Next to a root or a pole rounding looks like more.
-  [[nodiscard]] Break place(const Interval& bracket, double size) const {
+  [[nodiscard]] Break place(const Interval& bracket, double order, double size) const {
     constexpr double precision = 1e-15, blurred = 2e-7;
     double low = bracket.low, high = bracket.high;
     for (double v = bracket.at(0.5); low < v && v < high; v = low + (high - low) / 2) {
@@ -139,13 +118,12 @@ class Search {
     const bool exact = mark != marks_.end() && *mark <= v + 2 * near;
     const double most = std::max(std::abs(f_(bracket.low)), std::abs(f_(bracket.high)));
     return {exact ? *mark : v, std::max(near, jumps ? 0 : blurred * v),
-            std::isnan(bracket.error) || !(most < 30 * size)};
+            std::isnan(bracket.error) || !(most < 30 * size), order};
   }
 
   const FunctionOfSpeed& f_;
   const std::vector<double>& marks_;
   double largest_;  // value of f
-  Interval bracket_{[](double) { return 0.0; }, 0, 0};
 };
 
 // Ends of windows such as abs(v - 0.5) < 0.01, places where floor(3*v) jumps.
@@ -166,17 +144,28 @@ bool Break::same_as(const Break& other) const {
   return std::abs(v - other.v) <= 4 * (width + other.width);
 }
 
+// By the barycentric formula. The middle, where marks lie, is not among the places.
 double interpolation_error(const FunctionOfSpeed& f, double a, double b) {
-  static const Interpolation rule;
+  constexpr int count = 8;
   const auto value = [&](double t) { return f(a + (b - a) * (1 + t) / 2); };
-  std::array<double, kNodes> at_node{};
-  std::transform(rule.node.begin(), rule.node.end(), at_node.begin(), value);
+  std::array<double, count> node{}, weight{}, at_node{};
+  for (int n = 0; n < count; ++n) {
+    const double angle = (2 * n + 1) * std::numbers::pi / (2 * count);
+    node[n] = std::cos(angle);
+    weight[n] = (n % 2 ? -1 : 1) * std::sin(angle);
+    at_node[n] = value(node[n]);
+  }
   double largest = 0;
-  for (int m = 0; m < kNodes; ++m) {
-    double error = -value(rule.place[m]);
-    for (int n = 0; n < kNodes; ++n) error += rule.cardinal[m][n] * at_node[n];
-    if (!(std::abs(error) <= largest)) largest = std::abs(error);
-    if (!std::isfinite(largest)) return std::numeric_limits<double>::quiet_NaN();
+  for (int m : {0, 1, 2, 3, 5, 6, 7, 8}) {
+    const double place = std::cos(m * std::numbers::pi / count);
+    double sum = 0, weights = 0;
+    for (int n = 0; n < count; ++n) {
+      sum += weight[n] / (place - node[n]) * at_node[n];
+      weights += weight[n] / (place - node[n]);
+    }
+    const double error = std::abs(sum / weights - value(place));
+    if (!std::isfinite(error)) return std::numeric_limits<double>::quiet_NaN();
+    largest = std::max(largest, error);
   }
   return largest;
 }
@@ -220,18 +209,11 @@ std::vector<Break> breaks(const FunctionOfSpeed& f, const std::vector<double>& n
 }
 
 std::vector<double> numbers_in(const std::string& formula) {
+  static const std::regex number(R"((\b\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)");
   std::vector<double> numbers;
-  const auto letter = [&](std::size_t n) {
-    return std::isalnum(static_cast<unsigned char>(formula[n])) != 0 || formula[n] == '_';
-  };
-  for (std::size_t n = 0; n < formula.size();) {
-    const char* begin = formula.c_str() + n;
-    const bool digit =
-        std::isdigit(static_cast<unsigned char>(formula[n])) != 0 || formula[n] == '.';
-    char* end = nullptr;
-    const double value = digit && (n == 0 || !letter(n - 1)) ? std::strtod(begin, &end) : 0;
-    if (end != nullptr && end != begin) numbers.push_back(value);
-    n += end != nullptr && end != begin ? static_cast<std::size_t>(end - begin) : 1;
+  for (std::sregex_iterator next(formula.begin(), formula.end(), number), end; next != end;
+       ++next) {
+    numbers.push_back(std::strtod(next->str().c_str(), nullptr));
   }
   return numbers;
 }

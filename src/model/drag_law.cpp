@@ -102,50 +102,38 @@ void require_slope_at_rest(const Side& b, double reach) {
   if (slope > 1.02 * before && slope > 1e-6) refuse_slope(b, near, slope);
 }
 
-[[noreturn]] void refuse_jump(const Side& b, double v, double before, double after) {
+// Kinks have the order 1, rounding apart. What is left of a jump nearby is all of it.
+void require_bounded_slope(const Side& b, const Break& at) {
+  constexpr double of_roots = 0.75;
+  if (at.order > of_roots) return;
+  const double near = 4 * at.width, far = 1000 * near;
+  const double before = b(at.v - near), after = b(at.v + near);
+  const bool jumps = before - after > 0.5 * (b(at.v - far) - b(at.v + far));
+  if (!jumps) refuse_slope(b, at.v, (before - after) / (2 * near));
   throw UnfitLaw(
       fmt::format("jumps from {:.9g} to {:.9g} at v = {:.9g}; there forces on both sides "
                   "can hold a body, and no density shows how long",
-                  b.sign * before, b.sign * after, b.sign * v),
+                  b.sign * before, b.sign * after, b.sign * at.v),
       "smooth it, for example tanh((v - 0.5)/0.01) for sign(v - 0.5)");
 }
 
-// Follows the steeper half of an interval 25 times: there a jump or a root betrays itself by a
-// slope far above that of the interval and of the whole. What is left of a jump is all of it.
-void require_bounded_slope(const Side& b, double low, double high, double mean) {
-  constexpr int halvings = 25, late = 15;
-  double at_low = b(low), at_high = b(high), drop = 0;
-  const double secant = (at_low - at_high) / (high - low);
-  for (int n = 0; n < halvings; ++n) {
-    const double middle = (low + high) / 2, value = b(middle);
-    if (at_low - value > value - at_high) {
-      high = middle;
-      at_high = value;
-    } else {
-      low = middle;
-      at_low = value;
-    }
-    if (n == late) drop = at_low - at_high;
-  }
-  const double slope = (at_low - at_high) / (high - low);
-  if (!(slope > 1e3 * (std::max(secant, 0.0) + mean))) return;
-  if (at_low - at_high > 0.5 * drop) refuse_jump(b, low, at_low, at_high);
-  refuse_slope(b, low, slope);
-}
-
 void require_sound(const Side& b, double reach, double mu_d) {
-  const auto v = places(reach);
   require_falling(b, even_places(reach, 50), mu_d);  // tells of plain mistakes where they are seen
-  require_falling(b, v, mu_d);
+  require_falling(b, places(reach), mu_d);
   require_slope_at_rest(b, reach);
-  const double mean = -b(reach) / reach;
-  for (std::size_t n = 1; n < v.size(); ++n) require_bounded_slope(b, v[n - 1], v[n], mean);
 }
 
 // Kinks, on either side.
-std::vector<double> breaks_of(const Drag& drag, std::vector<double> numbers) {
+std::vector<double> kinks(const Drag& drag, const std::vector<double>& numbers) {
   std::vector<Break> found;
-  for (double sign : {1.0, -1.0}) merge(found, breaks(Side{drag, sign}, numbers, drag.reach));
+  for (double sign : {1.0, -1.0}) {
+    const Side side{drag, sign};
+    constexpr double slow = 1e-3;  // intervals on the whole reach leave out the slowest speeds
+    for (const Break& b : breaks(side, numbers, slow * drag.reach)) require_bounded_slope(side, b);
+    const auto of_side = breaks(side, numbers, drag.reach);
+    for (const Break& b : of_side) require_bounded_slope(side, b);
+    merge(found, of_side);
+  }
   constexpr std::size_t most = 64;
   if (found.size() > most) {
     throw UnfitLaw(fmt::format("has more than {} kinks", most),
@@ -180,7 +168,7 @@ Drag parse_drag(const std::string& text, const Friction& friction, double tau, d
   drag.law_is_odd = !drag.asymmetry();
   auto numbers = numbers_in(text);
   numbers.insert(numbers.end(), {friction.mu_s, friction.mu_d, tau});
-  drag.breaks = breaks_of(drag, numbers);
+  drag.breaks = kinks(drag, numbers);
   return drag;
 }
 

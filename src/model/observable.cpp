@@ -110,56 +110,51 @@ class Examination {
       most = std::max(most, value);
       return value;
     };
-    return breaks(seen, numbers, reach_);
-  }
-
-  void add(double x, double sign) {
-    constexpr std::size_t too_many = 65;
-    merge(found, look(x, sign));
-    if (found.size() >= too_many)
-      refuse(fmt::format("has {} or more jumps and kinks in v", too_many));
+    const auto found = breaks(seen, numbers, reach_);
     for (const Break& b : found) {
       if (b.unbounded) refuse(fmt::format("is unbounded at v = {:.9g} (x = {:g})", sign * b.v, x));
     }
+    return found;
   }
 
-  void require_known(double x, double sign) {
-    for (const Break& b : look(x, sign)) {
-      const auto same = [&b](const Break& other) { return b.same_as(other); };
-      if (std::any_of(found.begin(), found.end(), same)) continue;
-      refuse(
-          fmt::format("jumps or has a kink at v = {:.9g} where x = {:g}, and elsewhere for other x",
-                      sign * b.v, x));
-    }
-  }
-
-  std::vector<Break> found;
-  double least = kInfinity, most = -kInfinity;
-
- private:
   [[noreturn]] void refuse(const std::string& why) const {
     throw std::invalid_argument(f_->name + " " + why);
   }
 
+  double least = kInfinity, most = -kInfinity;
+
+ private:
   std::shared_ptr<const Observable> f_;
   double reach_;
 };
 
 }  // namespace
 
-void examine(Observable& f, const std::vector<double>& x, const std::vector<double>& next,
-             double reach) {
+void examine(Observable& f, const std::vector<double>& x, double step, double reach) {
   Examination examination(f, reach);
   constexpr std::array signs{1.0, -1.0};
+  constexpr std::size_t too_many = 65;
+  std::vector<Break> found;
   for (double level : x) {
-    for (double sign : signs) examination.add(level, sign);
+    for (double sign : signs) merge(found, examination.look(level, sign));
+    if (found.size() < too_many) continue;
+    examination.refuse(fmt::format("has {} or more jumps and kinks in v", too_many));
   }
-  for (double level : next) {
-    for (double sign : signs) examination.require_known(level, sign);
+  for (double level : x) {
+    const double next = level > 0 ? level - step : level + step;
+    for (double sign : signs) {
+      for (const Break& b : examination.look(next, sign)) {
+        const auto same = [&b](const Break& other) { return b.same_as(other); };
+        if (std::any_of(found.begin(), found.end(), same)) continue;
+        examination.refuse(fmt::format(
+            "jumps or has a kink at v = {:.9g} where x = {:g}, and elsewhere for other x",
+            sign * b.v, next));
+      }
+    }
   }
   f.levels = x;
   f.breaks.clear();
-  for (const Break& b : examination.found) f.breaks.push_back(b.v);
+  for (const Break& b : found) f.breaks.push_back(b.v);
   f.least = examination.least;
   f.most = examination.most;
   for (double level : x) {

@@ -110,9 +110,8 @@ read_observables(const Settings& settings, const model::Friction& friction, Prob
   return observables;
 }
 
-// Up to 17 levels evenly, and those next to the numbers of f; each raised by `raised`.
-std::vector<double> probed_levels(const model::Scene& scene, const model::Observable& f,
-                                  int raised) {
+// Up to 17 levels evenly, and those next to the numbers of f.
+std::vector<double> probed_levels(const model::Scene& scene, const model::Observable& f) {
   const auto noise = scene.meant().noise;
   const double seen = (largest_force(scene) + scene.friction.mu_d) / scene.delta;
   const int highest = std::min<int>(noise.levels, static_cast<int>(std::min(seen, 1e9)));
@@ -120,15 +119,13 @@ std::vector<double> probed_levels(const model::Scene& scene, const model::Observ
   std::set<int> levels;
   for (int n = -half; n <= half; ++n) levels.insert(static_cast<int>(highest * (n * 1.0 / half)));
   for (double number : f.numbers) {
-    const double near = std::min<double>(number / scene.delta, highest - 1);
+    const double near = std::min<double>(number / scene.delta, highest);
     for (double level : {std::floor(near), std::ceil(near)}) {
       for (int sign : {1, -1}) levels.insert(sign * static_cast<int>(level));
     }
   }
   std::vector<double> x;
-  for (int level : levels) {
-    if (level + raised <= highest) x.push_back(noise.level(level + raised));
-  }
+  for (int level : levels) x.push_back(noise.level(level));
   std::sort(x.begin(), x.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
   return x;
 }
@@ -155,7 +152,7 @@ void examine_observables(const Settings& settings, Request& request, Problems& p
   const double speed = largest_speed(scene);
   for (auto& f : request.question.observables) {
     try {
-      model::examine(f, probed_levels(scene, f, 0), probed_levels(scene, f, 1), speed);
+      model::examine(f, probed_levels(scene, f), scene.delta, speed);
     } catch (const std::invalid_argument& error) {
       if (!elements) continue;
       settings.report(problems, "observable", error.what(),

@@ -48,17 +48,15 @@ class Sector {
     const auto& process = systems_.process();
     const auto chain = StaticChain::of(process, lambda_);
     switch (symmetry_) {
-    case Symmetry::even: return solve(chain.exit_transform(), nullptr);
+    case Symmetry::even: return solve(chain.exit_transform());
     case Symmetry::odd: {
       const int k = process.static_index();
-      return solve(spread_odd(StaticChain::odd(process.noise, k, lambda_).upward_exit_transform()),
-                   nullptr);
+      return solve(spread_odd(StaticChain::odd(process.noise, k, lambda_).upward_exit_transform()));
     }
     case Symmetry::none: break;
     }
     return solve(side == Branch::positive ? chain.upward_exit_transform()
-                                          : chain.downward_exit_transform(),
-                 nullptr);
+                                          : chain.downward_exit_transform());
   }
 
   /// w(s+-; f) for an f of this symmetry.
@@ -94,7 +92,7 @@ class Sector {
   }
 
   // u(s+-) where (lambda - L) u = source on the sliding states, with the static values given.
-  [[nodiscard]] Values solve(const std::vector<double>& values, Vec source) {
+  [[nodiscard]] Values solve(const std::vector<double>& values, Vec source = nullptr) {
     auto& system = systems_.at(lambda_, symmetry_);
     const std::vector<PetscScalar> s(values.begin(), values.end());
     const petsc::VecHandle rhs = system.a().from_rest(s);

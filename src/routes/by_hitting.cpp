@@ -70,23 +70,21 @@ Evaluation by_hitting(const Setting& setting) {
   const Means slides = Hitting(setting, StaticPhase::killing).time();
   Hitting edges(setting, StaticPhase::killing_edges);
   const Means to_edge = edges.time();
-  Uncertain slide = slides.plus, reaching = to_edge.plus, leaving{from_edge.back(), 0};
-  if (!process.symmetric()) {
-    // From the edges on the static chain alone decides; s+ and s- are taken in their shares.
-    const Means top = edges.upwards();
-    const auto up = chain.upward_exit_transform(), down = chain.downward_exit_transform();
-    const auto mean = [](Uncertain at_top, const std::vector<double>& f) {
-      return at_top * Uncertain{f.back(), 0} +
-             Uncertain{1 - at_top.value, at_top.error} * Uncertain{f.front(), 0};
-    };
-    const Uncertain falling = mean(top.plus, down), rising = mean(top.minus, up);
-    const auto joined = [&](Uncertain plus, Uncertain minus) {
-      return (rising * plus + falling * minus) / (rising + falling);
-    };
-    slide = joined(slides.plus, slides.minus);
-    reaching = joined(to_edge.plus, to_edge.minus);
-    leaving = joined(mean(top.plus, from_edge), mean(top.minus, from_edge));
-  }
+  // From the edges on the static chain alone decides; s+ and s- are taken in their shares, which
+  // with symmetry are equal, as all means are.
+  const Means top = process.symmetric() ? Means{{0.5, 0}, {0.5, 0}} : edges.upwards();
+  const auto up = chain.upward_exit_transform(), down = chain.downward_exit_transform();
+  const auto mean = [](Uncertain at_top, const std::vector<double>& f) {
+    return at_top * Uncertain{f.back(), 0} +
+           Uncertain{1 - at_top.value, at_top.error} * Uncertain{f.front(), 0};
+  };
+  const Uncertain falling = mean(top.plus, down), rising = mean(top.minus, up);
+  const auto joined = [&](Uncertain plus, Uncertain minus) {
+    return (rising * plus + falling * minus) / (rising + falling);
+  };
+  const Uncertain slide = joined(slides.plus, slides.minus);
+  const Uncertain reaching = joined(to_edge.plus, to_edge.minus);
+  const Uncertain leaving = joined(mean(top.plus, from_edge), mean(top.minus, from_edge));
   const Uncertain excursion = reaching + leaving, p_slide = slide / excursion;
   const double rounding = std::numeric_limits<double>::epsilon();
   const Uncertain p_stick{1 - p_slide.value, p_slide.error + rounding};

@@ -44,24 +44,6 @@ ReferenceElement::ReferenceElement(int degree) : size(degree + 1) {
   }
   at_left = basis(0);
   at_right = basis(1);
-  project();
-}
-
-// Clenshaw-Curtis: ends are among its points, where a jump beside an end shows.
-void ReferenceElement::project() {
-  const int last = 2 * size, others = last + 1;
-  projection.resize(static_cast<std::size_t>(size) * others);
-  for (int k = 0; k <= last; ++k) {
-    const double angle = k * std::numbers::pi / last;
-    double w = 1;
-    for (int j = 1; j <= size; ++j) {
-      w -= (j == size ? 1.0 : 2.0) * std::cos(2 * j * angle) / (4.0 * j * j - 1);
-    }
-    w /= k == 0 || k == last ? 2 * last : last;
-    other_node.push_back((1 - std::cos(angle)) / 2);
-    const auto at = basis(other_node.back());
-    for (int m = 0; m < size; ++m) projection[m * others + k] = at[m] * w / weight[m];
-  }
 }
 
 // Second barycentric formula.
@@ -102,6 +84,7 @@ HpDiscretisation::HpDiscretisation(std::vector<double> ends, const std::vector<i
   for (int e = 0; e < elements(); ++e) {
     auto& reference = references[degrees[e]];
     if (!reference) reference = std::make_shared<const ReferenceElement>(degrees[e]);
+    finer_.try_emplace(reference->size, 2 * reference->size);
     const double length = ends_[e + 1] - ends_[e];
     elements_.push_back({reference, static_cast<int>(nodes_.size()), length});
     for (int m = 0; m < reference->size; ++m) {
@@ -184,23 +167,19 @@ std::vector<Entry> HpDiscretisation::value_at(double v) const {
   return entries(e, reference->basis((v - ends_[e]) / length));
 }
 
-// Points on which a jump within an element lies otherwise than on the nodes see another integral.
+// Nodes on which a jump within an element lies otherwise than on its own see another integral.
 std::vector<double> HpDiscretisation::overlooked(const std::function<double(double)>& f) const {
-  constexpr double rounding = 4e-16, least = 1e-300;
   std::vector<double> by_node;
+  for (double v : nodes_) by_node.push_back(-f(v));
   for (int e = 0; e < elements(); ++e) {
     const auto& [reference, first, length] = elements_[e];
-    std::vector<double> values;
-    // A jump at an end is outside.
-    const double low = std::max(least, ends_[e] * (1 + rounding)),
-                 high = ends_[e + 1] * (1 - rounding);
-    for (double t : reference->other_node) {
-      values.push_back(f(std::clamp(ends_[e] + length * t, low, high)));
-    }
-    auto row = reference->projection.begin();
-    for (int m = 0; m < reference->size; ++m, row += std::ssize(values)) {
-      by_node.push_back(
-          std::inner_product(values.begin(), values.end(), row, -f(nodes_[first + m])));
+    const ReferenceElement& other = finer_.at(reference->size);
+    for (int k = 0; k < other.size; ++k) {
+      const double value = f(ends_[e] + length * other.node[k]) * other.weight[k];
+      const auto basis = reference->basis(other.node[k]);
+      for (int m = 0; m < reference->size; ++m) {
+        by_node[first + m] += value * basis[m] / reference->weight[m];
+      }
     }
   }
   return by_node;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <set>
 
 namespace stickslip::velocity {
 namespace {
@@ -173,44 +174,38 @@ std::vector<double> regular_ends(const model::Process& process, const MeshRule& 
   return has_waves(process, rule) ? cut_for_waves(process, rule.rates.omega, ends) : ends;
 }
 
-std::vector<double> sorted(std::vector<double> ends) {
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  return ends;
-}
-
 // A regular end that would leave a sliver beside a break gives way to it.
-std::vector<double> with_breaks(const std::vector<double>& regular,
-                                const std::vector<double>& breaks) {
+std::set<double> with_breaks(const std::vector<double>& regular,
+                             const std::vector<double>& breaks) {
   constexpr double sliver = 0.2;
-  std::vector<double> ends = breaks;
+  std::set<double> ends(breaks.begin(), breaks.end());
   for (std::size_t n = 0; n < regular.size(); ++n) {
     const bool inner = n > 0 && n + 1 < regular.size();
     const double least = inner ? sliver * (regular[n] - regular[n - 1]) : 0;
     const bool gives_way = std::any_of(breaks.begin(), breaks.end(),
                                        [&](double b) { return std::abs(b - regular[n]) < least; });
-    if (!gives_way) ends.push_back(regular[n]);
+    if (!gives_way) ends.insert(regular[n]);
   }
-  return sorted(ends);
+  return ends;
 }
 
 // Beyond a break the drag or the integrand is another one, and what happens within the next jump of
 // the noise changes at once: layers as at v = 0, but weak, as nothing comes to rest there. Without
 // two elements for them on either side errors fell twofold a degree (tenfold with them), at delta =
 // 1/2 as at 1/64. Elements short beside v need none.
-std::vector<double> graded_towards(const std::vector<double>& breaks, double ratio,
-                                   const std::vector<double>& ends) {
+std::set<double> graded_towards(const std::vector<double>& breaks, double ratio,
+                                const std::set<double>& ends) {
   constexpr int layers = 2;
   constexpr double is_short = 0.5;
-  std::vector<double> all = ends;
+  std::set<double> all = ends;
   for (double b : breaks) {
-    const auto at = std::lower_bound(ends.begin(), ends.end(), b);
-    for (double neighbour : {at[-1], at[1]}) {
+    const auto at = ends.find(b);
+    for (double neighbour : {*std::prev(at), *std::next(at)}) {
       if (std::abs(neighbour - b) < is_short * b) continue;
-      for (int n = 1; n <= layers; ++n) all.push_back(b + std::pow(ratio, n) * (neighbour - b));
+      for (int n = 1; n <= layers; ++n) all.insert(b + std::pow(ratio, n) * (neighbour - b));
     }
   }
-  return sorted(all);
+  return all;
 }
 
 // Grading makes polynomials of degree d on an element as accurate as 3^-d where functions are
@@ -226,8 +221,8 @@ class Halving {
     sizes_.assign(functions_.size(), 0);
   }
 
-  [[nodiscard]] std::vector<double> halved(std::vector<double> ends) {
-    if (functions_.empty()) return ends;
+  [[nodiscard]] std::vector<double> halved(const std::set<double>& given) {
+    std::vector<double> ends(given.begin(), given.end());
     std::vector<Element> elements;
     for (int pass = 0; pass < 2; ++pass) {  // sizes are known after the first
       elements.clear();
@@ -242,7 +237,8 @@ class Halving {
       *worst = seen(low, ends.back());
       elements.push_back(seen(ends.back(), high));
     }
-    return sorted(ends);
+    std::sort(ends.begin(), ends.end());
+    return ends;
   }
 
  private:

@@ -86,6 +86,9 @@ TEST_CASE("drag laws: jumps and infinite slopes are refused, with the place") {
   CHECK_THAT(refusal("v > -2 ? -v : -v + 0.1"), Catch::Contains("jumps from 2 to 2.1 at v = -2;"));
   CHECK_THAT(refusal("abs(v) < 1 ? -v : -v - sign(v)*(abs(v) - 1)^0.3"),
              Catch::Contains("at v = 1,"));
+  CHECK_THAT(refusal("-v - sign(v)*0.1*(abs(v) > sqrt(2)*1e-6)"),
+             Catch::Contains("at v = 1.41421356e-06;"));
+  CHECK_THAT(refusal("-v - sign(v)*max(0, abs(v) - 1)^0.7"), Catch::Contains("at v = 1,"));
 }
 
 TEST_CASE("drag laws: kinks on either side are breaks, and none else") {

@@ -114,16 +114,12 @@ TEST_CASE("observables: not finite somewhere, and where is told") {
 
 namespace {
 
-// On the levels k/4, |k| <= 8, and those between, raised by `raised`.
-std::vector<double> levels(double raised) {
-  std::vector<double> x;
-  for (int i = -8; i <= 8; ++i) x.push_back(i * 0.25 + raised);
-  return x;
-}
-
+// On the levels k/4, |k| <= 8, and those between.
 Observable examined(const std::string& text, double reach = 20) {
   auto f = parse_observable(text, kFriction);
-  examine(f, levels(0), levels(0.125), reach);
+  std::vector<double> x;
+  for (int i = -8; i <= 8; ++i) x.push_back(i * 0.25);
+  examine(f, x, 0.125, reach);
   return f;
 }
 

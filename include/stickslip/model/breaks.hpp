@@ -14,6 +14,8 @@ struct Break {
   double v;
   double width;    ///< of the interval that it was found in, at least the spacing of doubles
   bool unbounded;  ///< whether the function is
+  /// About 0 for a jump, the power for a root, 1 for a kink.
+  double order = 1;
   [[nodiscard]] bool same_as(const Break& other) const;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 /// hp discontinuous Galerkin discretisation of the half line.
 
+#include <map>
 #include <memory>
 #include <span>
 #include <vector>
@@ -20,8 +21,6 @@ struct ReferenceElement {
   std::vector<double> derivative;  ///< q x q by rows: l_n'(x_m); the diagonal is not set
   std::vector<double> at_left;     ///< l_n(0)
   std::vector<double> at_right;    ///< l_n(1)
-  std::vector<double> other_node;  ///< 2q + 1 Clenshaw-Curtis nodes
-  std::vector<double> projection;  ///< q x (2q + 1) by rows: l_m at these, times weight/w_m
 
   /// l_n(t), n = 0 ... q-1, for t in [0, 1]. O(q).
   [[nodiscard]] std::vector<double> basis(double t) const;
@@ -29,8 +28,6 @@ struct ReferenceElement {
   [[nodiscard]] std::vector<double> integral(double t) const;
 
  private:
-  void project();
-
   std::vector<double> barycentric_;
 };
 
@@ -94,7 +91,8 @@ class HpDiscretisation final : public VelocityDiscretisation {
 
   std::vector<double> ends_;
   std::vector<Element> elements_;
-  std::vector<int> element_of_;  // by node
+  std::map<int, ReferenceElement> finer_;  // with 2q + 1 nodes, by q
+  std::vector<int> element_of_;            // by node
   std::vector<double> nodes_, weights_;
   model::Drag drag_;
   std::vector<double> drag_at_nodes_, drag_at_ends_;
