@@ -78,7 +78,7 @@ Observable parse_observable(const std::string& text, const Friction& friction) {
       {"slide", [](double, double y, double) { return y == 0 ? 0.0 : 1.0; }},
       {"|x|<=mu_s", [mu_s](double x, double, double) { return within(x, mu_s) ? 1.0 : 0.0; }}};
   const auto found = named.find(text);
-  if (found != named.end()) return {text, found->second};
+  if (found != named.end()) return {text, found->second, {}, true};
   return from_expression(text, friction);
 }
 

@@ -60,15 +60,17 @@ class Sector {
   }
 
   /// w(s+-; f) for an f of this symmetry.
-  [[nodiscard]] Values integral(const Function& f) {
+  [[nodiscard]] Values integral(const Function& f, bool quadratic) {
     const auto values = static_integral(f);
     const auto& a = systems_.at(lambda_, symmetry_).a();
-    const petsc::VecHandle source = a.values(f), overlooked = a.overlooked(f);
+    const petsc::VecHandle source = a.values(f);
     PetscReal size = largest(source);
     for (double v : values) size = std::max<PetscReal>(size, std::abs(v));
     if (size == 0) return {};
-    constexpr double rounding = 1e-12;
     Values found = solve(values, source);
+    if (quadratic) return found;
+    constexpr double rounding = 1e-12;
+    const petsc::VecHandle overlooked = a.overlooked(f);
     if (largest(overlooked) <= rounding * size) return found;
     const Values more = solve(std::vector<double>(values.size(), 0.0), overlooked);
     found.plus.error += std::abs(more.plus.value);
@@ -118,11 +120,12 @@ Resolvent by_parity(operators::Systems& systems, double lambda,
                     const std::vector<model::Observable>& observables) {
   Sector even(systems, lambda, Symmetry::even), odd(systems, lambda, Symmetry::odd);
   const Uncertain h_even = even.exit_transform(Branch::positive).plus;
-  const Uncertain w_one = even.integral(one()).plus;
+  const Uncertain w_one = even.integral(one(), true).plus;
   std::vector<Uncertain> w_even;
   for (const auto& f : observables) {
     w_even.push_back(
-        even.integral([&f](double x, double y, double v) { return f.even(x, y, v); }).plus);
+        even.integral([&f](double x, double y, double v) { return f.even(x, y, v); }, f.quadratic)
+            .plus);
   }
   systems.release(lambda, Symmetry::even);
   const Uncertain h_odd = odd.exit_transform(Branch::positive).plus;
@@ -133,7 +136,8 @@ Resolvent by_parity(operators::Systems& systems, double lambda,
   for (std::size_t n = 0; n < observables.size(); ++n) {
     const auto& f = observables[n];
     const Uncertain w_odd =
-        odd.integral([&f](double x, double y, double v) { return f.odd(x, y, v); }).plus;
+        odd.integral([&f](double x, double y, double v) { return f.odd(x, y, v); }, f.quadratic)
+            .plus;
     const Uncertain mu = w_odd / one_minus_h_odd;
     r.of.push_back(
         {w_even[n] + w_odd, w_even[n] - w_odd, w_even[n] / w_one, mu, -1.0 * mu, {}, {}});
@@ -147,14 +151,14 @@ Resolvent by_side(operators::Systems& systems, double lambda,
                   const std::vector<model::Observable>& observables) {
   Sector all(systems, lambda, Symmetry::none);
   const auto up = all.exit_transform(Branch::positive), down = all.exit_transform(Branch::negative);
-  const auto w_one = all.integral(one());
+  const auto w_one = all.integral(one(), true);
   Resolvent r{{up.plus, down.plus, w_one.plus}, {up.minus, down.minus, w_one.minus}, {}};
   const Uncertain a = down.plus, b = up.minus;
   // The determinant of 1 - h is lambda times this sum; both are positive.
   const Uncertain cycle = b * w_one.plus + a * w_one.minus;
   const Uncertain discounted = cycle + lambda * (w_one.plus * w_one.minus);
   for (const auto& f : observables) {
-    const auto w = all.integral(f.value);
+    const auto w = all.integral(f.value, f.quadratic);
     const Uncertain difference = w_one.minus * w.plus - w_one.plus * w.minus;
     r.of.push_back({w.plus,
                     w.minus,

@@ -42,7 +42,10 @@ Integral integral(const StationaryDistribution& distribution, double defect,
   sum.slide.value = petsc::dot(sliding, distribution.occupation());
   sum.slide.error =
       std::abs(sum.slide.value - petsc::dot(sliding, distribution.uncorrected_occupation())) +
-      std::abs(petsc::dot(a.overlooked(part), distribution.occupation())) + defect * sliding_size;
+      defect * sliding_size;
+  if (!f.quadratic) {
+    sum.slide.error += std::abs(petsc::dot(a.overlooked(part), distribution.occupation()));
+  }
   return sum;
 }
 
@@ -51,7 +54,9 @@ Integral integral(const StationaryDistribution& distribution, double defect,
 model::Observable friction_power(const model::Process& process) {
   const double mu_d = process.friction.mu_d, backwards = process.friction.mirrored().mu_d;
   return {"friction_power",
-          [=](double, double, double v) { return v > 0 ? mu_d * v : -backwards * v; }};
+          [=](double, double, double v) { return v > 0 ? mu_d * v : -backwards * v; },
+          {},
+          true};
 }
 
 void append_averages(const StationaryDistribution& distribution, const KolmogorovOperator& a,

@@ -18,6 +18,7 @@ struct Observable {
   std::string name;  ///< as given by the user
   Function value;
   std::vector<double> numbers = {};  ///< that stand in an expression, mu_s and mu_d included
+  bool quadratic = false;  ///< a polynomial in |v|, of degree 2 at most, which every element holds
   // Set by examine().
   std::vector<double> levels = {};  ///< x on which it has been looked at
   std::vector<double> breaks = {};  ///< |v| at which it jumps or has a kink on any of them, rising
