@@ -16,8 +16,7 @@ std::string scene_line(const model::Scene& s) {
   std::string minus;
   if (!s.friction.symmetric()) {
     const auto backwards = s.friction.mirrored();
-    minus =
-        fmt::format("   mu_s_minus = {:g}   mu_d_minus = {:g}", backwards.mu_s, backwards.mu_d);
+    minus = fmt::format("   mu_s_minus = {:g}   mu_d_minus = {:g}", backwards.mu_s, backwards.mu_d);
   }
   const std::string bias = s.bias == 0 ? "" : fmt::format("   bias = {:g}", s.bias);
   return fmt::format("mu_s = {:g}   mu_d = {:g}{}   tau = {:g}   delta = {:g}   drag {}{}\n",

@@ -25,7 +25,7 @@ constexpr TransientMethod kMethods[] = {TransientMethod::krylov, TransientMethod
 // At rest, at s+ and s-, beyond mu_s at v = 0, and in motion: mu_s = 1, delta = 1/2.
 const std::vector<Start>& starts() {
   static const std::vector<Start> all{{1, 0},  {-2, 0},  {3, 0},     {-3, 0}, {4, 0},
-                                           {-4, 0}, {1, 0.5}, {-2, -0.5}, {4, -1}, {-1, 0.75}};
+                                      {-4, 0}, {1, 0.5}, {-2, -0.5}, {4, -1}, {-1, 0.75}};
   return all;
 }
 

@@ -6,8 +6,8 @@ namespace stickslip::model {
 /// A state, or a distribution over states.
 struct Start {
   enum class Kind {
-    state,      ///< (x_level, v); v = 0 is rest on the static levels, and s+, s- or beyond otherwise
-    rest,       ///< X in its stationary distribution, V = 0
+    state,  ///< (x_level, v); v = 0 is rest on the static levels, and s+, s- or beyond otherwise
+    rest,   ///< X in its stationary distribution, V = 0
     stationary  ///< the whole process in its stationary distribution
   };
   int level = 0;

@@ -62,7 +62,7 @@ struct Question {
   std::vector<double> omega;                   ///< of spectrum [1/time]
   std::vector<double> time;                    ///< of functions of time [time]
   model::Start start;                          ///< of expectation and trajectory
-  double horizon = 100;  ///< end of the trajectory [time]
+  double horizon = 100;                        ///< end of the trajectory [time]
   double accuracy = 1e-6;
   bool accuracy_given = false;        ///< by the user
   std::vector<Reference> references;  ///< of -compare
