@@ -110,7 +110,7 @@ class Examination {
       most = std::max(most, value);
       return value;
     };
-    const auto found = breaks(seen, numbers, reach_);
+    auto found = breaks(seen, numbers, reach_);
     for (const Break& b : found) {
       if (b.unbounded) refuse(fmt::format("is unbounded at v = {:.9g} (x = {:g})", sign * b.v, x));
     }

@@ -134,8 +134,10 @@ class Series {
     return h * force / (kTolerance * (speed_ + change));
   }
   void shorten() {
-    for (double e = remainder<kOrder>(reach_); e > 1; e = remainder<kOrder>(reach_)) {
-      reach_ *= 0.95 * std::max(0.1, std::sqrt(std::sqrt(std::sqrt(1 / e))));
+    double excess = remainder<kOrder>(reach_);
+    while (excess > 1) {
+      reach_ *= 0.95 * std::max(0.1, std::pow(excess, -1.0 / 8));
+      excess = remainder<kOrder>(reach_);
     }
   }
 

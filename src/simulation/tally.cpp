@@ -66,8 +66,7 @@ Tally::Tally(const model::Process& process, const Wanted& wanted)
   group(expected, wanted.start ? functions * wanted.time.size() : 0, size_of_expected,
         wanted.chosen_paths() ? 1 : sides);
   group(lagged, wanted.autocorrelation ? wanted.time.size() : 0, size_of_lagged, sides);
-  const auto levels = static_cast<std::size_t>(process.static_index() - lowest_ + 1);
-  histograms_.emplace_back(symmetric_, levels);
+  histograms_.emplace_back(symmetric_, bin(process.static_index()) + 1);
   histograms_.resize(wanted.edges.empty() ? 1 : 4, Histogram(symmetric_, wanted.edges.size() + 1));
 }
 
@@ -121,12 +120,14 @@ void Tally::add_integrals(std::size_t side, const Excursion& e) {
   for (std::size_t f = 0; f < functions; ++f) {
     keep(observed, f, side, {turned, e.slide, e.stick, e.integrals[f].slide, e.integrals[f].stick});
   }
-  for (std::size_t n = 0; n < places_[discounted].members; ++n) {
-    const double lambda = wanted_.discount[n / functions], h = std::exp(-lambda * whole);
+  std::size_t n = 0;
+  for (double lambda : wanted_.discount) {
+    const double h = std::exp(-lambda * whole);
     const double one = lambda > 0 ? -std::expm1(-lambda * whole) / lambda : whole;
-    keep(discounted, n, side,
-         {turned, (1 - turned) * h, turned * h, one, e.discounted[n].value,
-          e.discounted[n].mirrored});
+    for (std::size_t f = 0; f < functions; ++f, ++n) {
+      const auto& w = e.discounted[n];
+      keep(discounted, n, side, {turned, (1 - turned) * h, turned * h, one, w.value, w.mirrored});
+    }
   }
 }
 
