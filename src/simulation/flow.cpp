@@ -134,10 +134,10 @@ class Series {
     return h * force / (kTolerance * (speed_ + change));
   }
   void shorten() {
-    double excess = remainder<kOrder>(reach_);
-    while (excess > 1) {
-      reach_ *= 0.95 * std::max(0.1, std::pow(excess, -1.0 / 8));
-      excess = remainder<kOrder>(reach_);
+    double remaining = remainder<kOrder>(reach_);
+    while (remaining > 1) {
+      reach_ *= 0.95 * std::max(0.1, std::pow(remaining, -1.0 / 8));
+      remaining = remainder<kOrder>(reach_);
     }
   }
 
