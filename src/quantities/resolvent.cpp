@@ -123,9 +123,7 @@ Resolvent by_parity(operators::Systems& systems, double lambda,
   const Uncertain w_one = even.integral(one(), true).plus;
   std::vector<Uncertain> w_even;
   for (const auto& f : observables) {
-    w_even.push_back(
-        even.integral([&f](double x, double y, double v) { return f.even(x, y, v); }, f.quadratic)
-            .plus);
+    w_even.push_back(even.integral(operators::part_of(f, Symmetry::even), f.quadratic).plus);
   }
   systems.release(lambda, Symmetry::even);
   const Uncertain h_odd = odd.exit_transform(Branch::positive).plus;
@@ -135,9 +133,7 @@ Resolvent by_parity(operators::Systems& systems, double lambda,
   const Uncertain one_minus_h_odd = lambda * w_one + 2.0 * other;
   for (std::size_t n = 0; n < observables.size(); ++n) {
     const auto& f = observables[n];
-    const Uncertain w_odd =
-        odd.integral([&f](double x, double y, double v) { return f.odd(x, y, v); }, f.quadratic)
-            .plus;
+    const Uncertain w_odd = odd.integral(operators::part_of(f, Symmetry::odd), f.quadratic).plus;
     const Uncertain mu = w_odd / one_minus_h_odd;
     r.of.push_back(
         {w_even[n] + w_odd, w_even[n] - w_odd, w_even[n] / w_one, mu, -1.0 * mu, {}, {}});

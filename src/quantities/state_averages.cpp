@@ -21,8 +21,7 @@ struct Integral {
 Integral integral(const StationaryDistribution& distribution, double defect,
                   const KolmogorovOperator& a, const model::Observable& f) {
   const auto& process = distribution.process();
-  KolmogorovOperator::Observable part = f.value;
-  if (process.symmetric()) part = [&f](double x, double y, double v) { return f.even(x, y, v); };
+  const auto part = operators::part_of(f, operators::symmetry_of(process));
   Integral sum;
   const auto &now = distribution.excursion().stick_time,
              &before = distribution.uncorrected().stick_time;

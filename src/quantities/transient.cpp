@@ -68,15 +68,6 @@ std::vector<Uncertain> curve(operators::Systems& systems,
   return result;
 }
 
-KolmogorovOperator::Observable part_of(const model::Observable& f, Symmetry symmetry) {
-  switch (symmetry) {
-  case Symmetry::even: return [&f](double x, double y, double v) { return f.even(x, y, v); };
-  case Symmetry::odd: return [&f](double x, double y, double v) { return f.odd(x, y, v); };
-  case Symmetry::none: break;
-  }
-  return f.value;
-}
-
 // Probabilities of mirror images add up to 0 on odd functions, up to rounding.
 constexpr double kNothing = 1e-15;
 
@@ -107,7 +98,7 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
   double unseen = 0;
   for (Symmetry symmetry : operators::sectors_of(systems.process())) {
     KolmogorovOperator a = kept(systems, symmetry);
-    const auto part = part_of(f, symmetry);
+    const auto part = operators::part_of(f, symmetry);
     const petsc::VecHandle b = a.values(part);
     const petsc::VecHandle pi = distribution.occupation_on(a), square = a.zeros();
     check(VecScale(pi, 1 / distribution.excursion().mean_excursion()));

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "stickslip/model/observable.hpp"
 #include "stickslip/operators/matrix_data.hpp"
 #include "stickslip/petsc/handle.hpp"
 
@@ -105,5 +106,16 @@ class KolmogorovOperator {
   petsc::MatHandle matrix_;
   PetscInt64 nonzeros_ = 0;
 };
+
+/// The part of f that belongs to a symmetry; f itself where there is none. It refers to f.
+[[nodiscard]] inline KolmogorovOperator::Observable part_of(const model::Observable& f,
+                                                            Symmetry symmetry) {
+  switch (symmetry) {
+  case Symmetry::even: return [&f](double x, double y, double v) { return f.even(x, y, v); };
+  case Symmetry::odd: return [&f](double x, double y, double v) { return f.odd(x, y, v); };
+  case Symmetry::none: break;
+  }
+  return f.value;
+}
 
 }  // namespace stickslip::operators
