@@ -15,7 +15,7 @@ class SpecialPoints {
  public:
   explicit SpecialPoints(const model::Process& process) {
     for (const auto& half : {process, process.mirrored()}) {
-      graded_.push_back(std::abs(half.friction.mu_d - half.bias) / half.noise.delta);
+      graded_.push_back(std::abs(half.friction.at_rest() - half.bias) / half.noise.delta);
     }
     graded_.push_back(std::abs(process.static_index() + 0.5));
     graded_.push_back(std::abs(process.lowest_static() - 0.5));

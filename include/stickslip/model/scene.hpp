@@ -24,7 +24,7 @@ struct Scene {
   [[nodiscard]] int full_levels() const { return full_range(tau, delta); }
   /// The process on `levels` noise levels.
   [[nodiscard]] Process process(int levels) const {
-    return {{tau, delta, levels}, friction, drag, bias};
+    return {{tau, delta, levels}, friction, with_weakening(drag, friction), bias};
   }
   /// The process that is meant: on noise_levels if fixed, else on the full range.
   [[nodiscard]] Process meant() const { return process(noise_levels.value_or(full_levels())); }
