@@ -54,7 +54,7 @@ double reach_of(const Side& b, double force, const Friction& friction, double bi
     if (holds) held = v;
   }
   const std::string driven =
-      bias == 0 ? fmt::format("drives a body for ever from v = {:g} on", b.sign * held)
+      bias == 0 ? fmt::format("drives a body for ever from about v = {:.2g} on", b.sign * held)
                 : fmt::format("does not hold a body that the bias {:g} drives", bias);
   throw UnfitLaw(fmt::format("{}: it is {:g} at v = {:g}, and friction takes {:g}", driven,
                              b.sign * b(far / mu_d) + 0.0, b.sign * far / mu_d, mu_d),

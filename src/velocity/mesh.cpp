@@ -172,8 +172,9 @@ int layers_towards(double power, const MeshRule& rule) {
 
 constexpr double kSmooth = 10;  // powers from which on elements of any length do
 
-// The power in v with which solutions are rough at rest, kSmooth at most. A level of no net force
-// there is left at the rate Lambda as by a speed b'(0) v, or at once where b is like a root of v.
+// The power in v with which solutions are rough below all other scales, kSmooth at most. A level of
+// no net force there is left at the rate Lambda as by a speed b'(0) v, or at once where b is like a
+// root of v.
 double power_at_rest(const model::Process& process) {
   const auto& friction = process.friction;
   const double exponent = friction.weakens() ? friction.stribeck->exponent : 1;
@@ -238,7 +239,7 @@ int natural_layers(const model::Process& process, const MeshRule& rule) {
   const int smooth =
       span <= 1 ? 1 : 1 + static_cast<int>(std::ceil(std::log(span) / -std::log(rule.ratio)));
   const double power = std::min(power_at_rest(process), power_at_rest(process.mirrored()));
-  return power < kSmooth ? std::max(smooth, layers_towards(power, rule)) : smooth;
+  return power < kSmooth ? smooth + layers_towards(power, rule) : smooth;
 }
 
 namespace {

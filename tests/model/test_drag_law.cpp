@@ -56,12 +56,12 @@ TEST_CASE("drag laws: what is none is refused, with the place") {
   CHECK_THAT(refusal("-c*v"), Catch::Contains("\"c\""));
   CHECK_THAT(refusal("0.5 - v"), Catch::Contains("is 0.5 at v = 0"));
   CHECK_THAT(refusal("-cosh(v)"), Catch::Contains("is -1 at v = 0"));
-  CHECK_THAT(refusal("v"), Catch::Contains("drives a body for ever from v = 0.2"));
+  CHECK_THAT(refusal("v"), Catch::Contains("drives a body for ever from about v = 0.2"));
   CHECK_THAT(refusal("-1/v"), Catch::Contains("infinite at v = 0"));
   CHECK_THAT(refusal("-v^1.5"), Catch::Contains("not a number at v = "));
   CHECK_THAT(refusal("-v/(5 - abs(v))"), Catch::Contains("at v = 5"));
   // On the other side only.
-  CHECK_THAT(refusal("v > 0 ? -v : v"), Catch::Contains("from v = -0.2"));
+  CHECK_THAT(refusal("v > 0 ? -v : v"), Catch::Contains("from about v = -0.2"));
   for (const char* one_sided : {"v < -3 ? sqrt(-5 - v) : -v", "v < -3 ? 1/0*v : -v"}) {
     CHECK_THAT(refusal(one_sided), Catch::Contains("at v = -3"));
   }
@@ -78,9 +78,10 @@ TEST_CASE("drag laws: one that rises is sound where friction and drag still slow
     CHECK(read(text).rises_until == read(text).reach);
   }
   CHECK(read("-v - v^3").rises_until == 0);
-  CHECK_THAT(refusal("0.26*tanh(v)"), Catch::Contains("drives a body for ever from v = 1.9") &&
-                                          Catch::Contains("friction takes 0.25"));
-  CHECK_THAT(refusal("-v + 0.2*v*abs(v)"), Catch::Contains("for ever from v = 5.2"));
+  CHECK_THAT(refusal("0.26*tanh(v)"),
+             Catch::Contains("drives a body for ever from about v = 1.9") &&
+                 Catch::Contains("friction takes 0.25"));
+  CHECK_THAT(refusal("-v + 0.2*v*abs(v)"), Catch::Contains("for ever from about v = 5.1"));
   CHECK_THAT(refusal("0.2*tanh(v)", 0.1), Catch::Contains("the bias 0.1 drives"));
   CHECK_THAT(refusal("sqrt(abs(v))*sign(v)/10 - v"), Catch::Contains("infinitely steep"));
   CHECK_THAT(refusal("abs(v) < 1 ? -v : -0.9*v"), Catch::Contains("at v = 1,"));
