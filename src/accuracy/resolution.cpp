@@ -140,9 +140,8 @@ operators::Discretisation discretise(const model::Scene& scene, const Resolution
   std::shared_ptr<velocity::VelocityDiscretisation> velocities;
   if (resolution.scheme != options::Scheme::none) {
     velocities = velocities_of(scene, resolution);
-    if (!scene.process(1).drag.odd()) {
-      velocities->set_mirrored(velocities_of(scene, resolution, true));
-    }
+    const bool odd = scene.process(1).drag.odd();
+    if (!odd) velocities->set_mirrored(velocities_of(scene, resolution, true));
   }
   return {scene.process(resolution.levels), std::move(velocities), resolution.noise};
 }

@@ -12,6 +12,7 @@ namespace stickslip::model {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kFine = 1.01;  // ratio of speeds at which laws that rise are looked at
 
 // b(h)/h at h = 2^-n, extrapolated to h = 0 in powers of h (Romberg, Ridders), from one side only:
 // b may have a kink at 0, as v |v| has. Of all entries the one that agrees best with its
@@ -58,20 +59,21 @@ double integral(const Drag& b, double v) {
 // Halving rather than a root finder: b may be constant from some velocity on. `pushed` tells the
 // sign of force + b at `low`, which is another one at `high`.
 double change_between(double low, double high, bool pushed, const Drag& b, double force) {
-  for (double middle = low + (high - low) / 2; low < middle && middle < high;
-       middle = low + (high - low) / 2) {
+  for (;;) {
+    const double middle = low + (high - low) / 2;
+    if (!(low < middle && middle < high)) return high;
     (force + b(middle) > 0 == pushed ? low : high) = middle;
   }
-  return high;
 }
 
 double smallest_balance(const Drag& b, double force) {
+  const double ratio = b.rises_until > 0 ? kFine : 2;
   double high = 0x1p-200;
   while (force + b(high) > 0) {
-    high *= 2;
+    high *= ratio;
     if (high > 0x1p300) return kInfinity;
   }
-  return change_between(high / 2, high, true, b, force);
+  return change_between(high / ratio, high, true, b, force);
 }
 
 }  // namespace
@@ -102,10 +104,6 @@ bool Drag::bounds_velocity() const {
 
 double Drag::terminal_velocity(double force) const {
   if (force <= 0) return 0;
-  if (rises_until > 0) {
-    const auto all = balances(force);
-    return all.empty() ? kInfinity : all.front();
-  }
   if (law) return smallest_balance(*this, force);
   if (!bounds_velocity()) return kInfinity;
   const auto net = [&](double v) { return force + (*this)(v); };
@@ -125,11 +123,11 @@ double Drag::terminal_velocity(double force) const {
 }
 
 std::vector<double> Drag::balances(double force) const {
-  constexpr double smallest = 1e-30, fine = 1.01;
+  constexpr double smallest = 1e-30;
   std::vector<double> found;
   bool pushed = force > 0;
   for (double low = smallest * rises_until, high = low; high < 0x1p300; low = high) {
-    high *= low < rises_until ? fine : 2;
+    high *= low < rises_until ? kFine : 2;
     if (force + (*this)(high) > 0 == pushed) continue;
     found.push_back(change_between(low, high, pushed, *this, force));
     pushed = !pushed;

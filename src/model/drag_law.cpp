@@ -42,16 +42,14 @@ struct Side {
 double reach_of(const Side& b, double force, const Friction& friction, double bias) {
   constexpr double drop = 51, ratio = 1.02, far = 1e6, farthest = 1e100;
   const double mu_d = friction.mu_d;
-  double left = drop, held = 0;
-  bool holds = true;
-  for (double v = 1e-12 / mu_d; v < far / mu_d || (holds && v < farthest); v *= ratio) {
+  double left = drop, slope = 1, held = 0;
+  for (double v = 1e-12 / mu_d; v < far / mu_d || (slope > 0 && v < farthest); v *= ratio) {
     const double drag = -b(v);
     if (force <= drag) return 2 * v;
-    const double slope = friction(v) - std::abs(bias) + drag;
+    slope = friction(v) - std::abs(bias) + drag;
     left = std::min(drop, left - slope * v * (1 - 1 / ratio));
     if (left < 0) return v;
-    holds = slope > 0;
-    if (holds) held = v;
+    if (slope > 0) held = v;
   }
   const std::string driven =
       bias == 0 ? fmt::format("drives a body for ever from about v = {:.2g} on", b.sign * held)
@@ -95,10 +93,8 @@ bool rises(const Side& b, double reach, double mu_d) {
 // At rest, where b/v settles unless it grows without bound, as that of v^0.99 does.
 void require_slope_at_rest(const Side& b, double reach) {
   const double far = 1e-8 * std::min(reach, 1.0), near = far / 100;
-  const double slope = -b(near) / near, before = -b(far) / far;
-  if (std::abs(slope) > 1.02 * std::abs(before) && std::abs(slope) > 1e-6) {
-    refuse_slope(b, near, slope);
-  }
+  const double slope = std::abs(b(near) / near), before = std::abs(b(far) / far);
+  if (slope > 1.02 * before && slope > 1e-6) refuse_slope(b, near, -b(near) / near);
 }
 
 // Kinks have the order 1, rounding apart. What is left of a jump nearby is all of it.

@@ -267,26 +267,20 @@ class RowAssembler {
   [[nodiscard]] double down_rate(int level) const { return chain_.rate() * chain_.down(level); }
   [[nodiscard]] velocity::SpeedChange speed_change(Branch half) const {
     const auto& given = upper_.process.friction;
-    const bool lower = half == Branch::negative, own = lower && given.mu_d_minus.has_value();
-    const model::Friction along = side(half).process.friction;
-    switch (*derivative_) {
-    case Parameter::mu_d:
-      if (!own) return [along](double v) { return -along.share(v); };
-      break;
-    case Parameter::mu_d_minus:
-      if (own) return [along](double v) { return -along.share(v); };
-      break;
-    case Parameter::mu_s:
-      if (!lower || !given.mu_s_minus) return [along](double v) { return along.share(v) - 1; };
-      break;
-    case Parameter::stribeck_velocity:
-      return [along](double v) {
-        return (along.mu_s - along.mu_d) * along.stribeck->share_by_velocity(v);
-      };
-    case Parameter::tau: break;
-    case Parameter::drag_coefficient: return [](double v) { return -v; };
-    }
-    return [](double) { return 0.0; };
+    const bool lower = half == Branch::negative, own_d = lower && given.mu_d_minus,
+               own_s = lower && given.mu_s_minus;
+    return [=, theta = *derivative_, f = side(half).process.friction](double v) {
+      switch (theta) {
+      case Parameter::mu_d: return own_d ? 0.0 : -f.share(v);
+      case Parameter::mu_d_minus: return own_d ? -f.share(v) : 0.0;
+      case Parameter::mu_s: return own_s ? 0.0 : f.share(v) - 1;
+      case Parameter::stribeck_velocity:
+        return (f.mu_s - f.mu_d) * f.stribeck->share_by_velocity(v);
+      case Parameter::tau: break;
+      case Parameter::drag_coefficient: return -v;
+      }
+      return 0.0;
+    };
   }
 
   std::optional<Parameter> derivative_;

@@ -50,12 +50,12 @@ class SceneReader {
   }
 
   void read_stribeck() {
-    if (!settings_.given("stribeck_velocity")) {
-      return report("friction", "needs the speed at which friction weakens",
-                    "add for example -stribeck_velocity 0.1");
+    const char* velocity = "stribeck_velocity";
+    if (settings_.given(velocity)) {
+      scene_.friction.stribeck = {settings_.real(velocity), settings_.real("stribeck_exponent")};
+    } else {
+      report("friction", "needs a -stribeck_velocity", "add for example -stribeck_velocity 0.1");
     }
-    scene_.friction.stribeck = {settings_.real("stribeck_velocity"),
-                                settings_.real("stribeck_exponent")};
   }
 
   void check_friction() {

@@ -139,8 +139,7 @@ std::vector<Option> question_options() {
            "sticking, moments and noise_law, as far as these are asked for, with respect to mu_d, "
            "mu_d_minus (if given), tau (at a fixed number of noise levels) and drag_coefficient, "
            "with -friction stribeck also mu_s and stribeck_velocity, by adjoints: "
-           "dP_stick_dmu_d and so on; between two noise levels the static threshold changes "
-           "nothing"),
+           "dP_stick_dmu_d and so on; between two noise levels no threshold of rest counts"),
       arguments(
           "lambda", "1/time",
           "values of lambda, as a,b,c or first:last:count or first:last:count:log. With -route "

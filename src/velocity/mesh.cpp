@@ -99,12 +99,8 @@ double speed_of_leaving(const model::Process& process) {
 struct LogDensity {
   explicit LogDensity(const model::Process& process)
       : drag(process.drag), slope(process.friction.at_rest() - process.bias) {
-    if (drag.rises_until == 0) {
-      extrema = {drag.terminal_velocity(-slope)};
-    } else {
-      extrema = drag.balances(-slope);
-      extrema.insert(extrema.begin(), 0);
-    }
+    extrema.push_back(drag.terminal_velocity(-slope));
+    if (drag.rises_until > 0) extrema = drag.balances(-slope);
     for (double v : extrema) highest = std::max(highest, -slope * v + drag.potential(v));
   }
   /// Raised by `by`.
@@ -114,10 +110,10 @@ struct LogDensity {
 
   model::Drag drag;
   double slope;
-  // Rising. A bias beyond mu_d moves the peak to where drag balances it; where the whole force
-  // weakens there may be several, and minima between them.
+  // Rising: a bias beyond mu_d moves the peak to where drag balances it, and where the whole force
+  // weakens there may be more peaks, with minima between them.
   std::vector<double> extrema;
-  double highest = -std::numeric_limits<double>::infinity();
+  double highest = 0;  // at v = 0
 };
 
 bool has_waves(const model::Process& process, const MeshRule& rule) {
@@ -181,7 +177,9 @@ double power_at_rest(const model::Process& process) {
   const bool whole = exponent == std::round(exponent);
   const double power = whole ? kSmooth : 1 + exponent;
   const double slope = process.drag.slope_at_rest();
-  if (process.drag.rises_until == 0 || process.net_force(process.static_index()) != 0) return power;
+  const double level = std::round((friction.at_rest() - process.bias) / process.noise.delta);
+  if (process.drag.rises_until == 0 || process.net_force(static_cast<int>(level)) != 0)
+    return power;
   if (exponent < 1) return 1 - exponent;
   return slope > 0 && exponent == 1 ? std::min(kSmooth, process.noise.rate() / slope) : power;
 }
@@ -189,40 +187,34 @@ double power_at_rest(const model::Process& process) {
 /// Elements towards a place, by place.
 using Layers = std::map<double, int>;
 
-// Where a level does not move but is left for both sides, at speeds beta (v - v*) with beta > 0:
-// solutions are like |v - v*|^(Lambda/beta).
-void add_partings(const model::Process& process, const MeshRule& rule, Layers& partings) {
+// Where a level does not move but is left for both sides, at speeds beta (v - v*) with beta > 0, on
+// either half line: solutions are like |v - v*|^(Lambda/beta).
+Layers partings(const model::Process& process, const MeshRule& rule) {
   constexpr double fine = 1.01, smallest = 1e-12;
-  const auto& [noise, friction, drag, bias] = process;
-  const double end = std::min(rule.v_max, drag.rises_until), rest = friction.at_rest() - bias;
-  for (double low = smallest * end, high = fine * low; low < end; low = high, high *= fine) {
-    const double from = drag(low), rise = drag(high) - from;
-    const double power = noise.rate() * (high - low) / rise;
-    if (!(rise > 0) || power > kSmooth) continue;
-    const double level = std::floor((rest - from) / noise.delta);
-    for (int i = static_cast<int>(std::clamp<double>(level, -noise.levels, noise.levels));
-         process.net_force(i) + from + rise > 0; --i) {
-      const auto speed = [&](double v) { return process.net_force(i) + drag(v); };
-      std::uintmax_t iterations = 200;
-      if (speed(low) <= 0) {
-        const double v =
-            boost::math::tools::toms748_solve(
-                speed, low, high, boost::math::tools::eps_tolerance<double>(52), iterations)
-                .first;
-        if (v < rule.v_max) partings[v] = layers_towards(power, rule);
+  Layers found;
+  std::vector<model::Process> halves{process};
+  if (!process.symmetric()) halves.push_back(process.mirrored());
+  for (const auto& [noise, friction, drag, bias] : halves) {
+    const double end = std::min(rule.v_max, drag.rises_until), rest = friction.at_rest() - bias;
+    for (double low = smallest * end, high = fine * low; low < end; low = high, high *= fine) {
+      const double from = drag(low), rise = drag(high) - from;
+      const double power = noise.rate() * (high - low) / rise;
+      if (!(rise > 0) || power > kSmooth) continue;
+      const auto levels = static_cast<double>(noise.levels);
+      const double highest = std::clamp(std::floor((rest - from) / noise.delta), -levels, levels);
+      for (int i = static_cast<int>(highest); i >= -noise.levels; --i) {
+        const double force = friction.net_force(noise.level(i), bias);
+        if (force + from > 0) continue;  // by rounding
+        if (force + from + rise <= 0) break;
+        std::uintmax_t iterations = 200;
+        const auto at = boost::math::tools::toms748_solve(
+            [&, &b = drag](double v) { return force + b(v); }, low, high,
+            boost::math::tools::eps_tolerance<double>(52), iterations);
+        if (at.first < rule.v_max) found[at.first] = layers_towards(power, rule);
       }
-      if (i == -noise.levels) break;
     }
   }
-}
-
-// On both half lines, which share the elements.
-Layers partings(const model::Process& process, const MeshRule& rule) {
-  Layers all;
-  if (process.drag.rises_until == 0) return all;
-  add_partings(process, rule, all);
-  if (!process.symmetric()) add_partings(process.mirrored(), rule, all);
-  return all;
+  return found;
 }
 
 }  // namespace
@@ -236,10 +228,10 @@ double smallest_scale(const model::Process& process, double lambda) {
 
 int natural_layers(const model::Process& process, const MeshRule& rule) {
   const double span = graded_end(process, rule) / smallest_scale(process, rule.rates.lambda);
-  const int smooth =
-      span <= 1 ? 1 : 1 + static_cast<int>(std::ceil(std::log(span) / -std::log(rule.ratio)));
   const double power = std::min(power_at_rest(process), power_at_rest(process.mirrored()));
-  return power < kSmooth ? smooth + layers_towards(power, rule) : smooth;
+  const int more = power < kSmooth ? layers_towards(power, rule) : 0;
+  if (span <= 1) return 1 + more;
+  return 1 + more + static_cast<int>(std::ceil(std::log(span) / -std::log(rule.ratio)));
 }
 
 namespace {
@@ -432,7 +424,7 @@ double upper_tail(const model::Process& process, double tolerance) {
   const LogDensity log_density(process);
   const double slope = log_density.slope;
   const auto left = [&](double v) { return log_density(v, drop); };
-  double last = log_density.extrema.front();  // with a density that counts
+  double last = 0;  // with a density that counts
   for (double v : log_density.extrema) last = left(v) > 0 ? v : last;
   double end = std::max(slope > 0 ? drop / slope : 1.0, 2 * last);
   const bool open = slope <= 0 || process.drag.rises_until > 0;

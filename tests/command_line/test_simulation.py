@@ -84,6 +84,22 @@ class Expressions(Case):
                     difference = abs(result["value"] - elements["results"][key]["value"])
                     self.assertLessEqual(difference, 1.1 * result["error"] + 1e-9, key)
 
+    def test_friction_that_weakens(self):
+        options = (*SMALL, "-friction", "stribeck", "-stribeck_velocity", "0.1", "-quantities",
+                   "sticking,moments,averages,entry_law,spectrum", "-omega", "0,1", "-observable",
+                   "abs(v)>0.3")
+        for more, other in ((("-stribeck_exponent", "2"), ("-stribeck_exponent", "0.8")),
+                            (("-bias", "0.2", "-mu_s_minus", "1.3"), ("-bias", "0.3"))):
+            with self.subTest(more=more):
+                s = self.summary(*options, *more)
+                self.assertEqual(s["scene"]["friction"], "stribeck")
+                self.assertEqual(s["scene"]["stribeck_velocity"], 0.1)
+                (self.folder / "summary.json").rename(self.folder / "elements.json")
+                simulate = ("-route", "monte_carlo", "-excursions", "20000", "-compare",
+                            "elements.json")
+                self.run_ok(*options, *more, *simulate)
+                self.run_ok(*options, *other, *simulate, status=3)
+
     def test_records_hold_the_law(self):
         s = self.summary(*self.LAW, "-tanh(v)", "-output", "out.h5")
         self.assertEqual(s["scene"]["drag_expression"], "-tanh(v)")
@@ -97,6 +113,13 @@ class Expressions(Case):
         self.run_ok(*self.LAW, "-tanh(v)", *options)
         other = self.run_ok(*self.LAW, "-tanh(2*v)", *options, status=2)
         self.assertIn('-drag_expression "-tanh(v)", not "-tanh(2*v)"', other.stderr)
+
+    def test_a_checkpoint_of_other_friction(self):
+        options = (*SMALL, "-route", "monte_carlo", "-excursions", "2000", "-checkpoint",
+                   "run.checkpoint", "-friction", "stribeck", "-stribeck_velocity")
+        self.run_ok(*options, "0.1")
+        other = self.run_ok(*options, "0.2", status=2)
+        self.assertIn("-stribeck_velocity", other.stderr)
 
 
 class Refusals(Case):

@@ -397,3 +397,46 @@ TEST_CASE("mesh: degrees of added elements are those of the regular one") {
     CHECK(degrees[e] == expected[above - plain.begin() - 1]);
   }
 }
+
+TEST_CASE("mesh: elements end where a level leaves a velocity for both sides, and shrink to it") {
+  const model::Friction friction{1, 0.2, {}, {}, model::Stribeck{0.02}};
+  model::Process p{{1, 0.25, 30}, friction, with_weakening({1, 0}, friction)};
+  const auto distance = [&](int level) {  // of the two ends next to where the level parts
+    const auto ends = velocity::element_ends(p, rule_to(7));
+    const double v = p.drag.balances(p.net_force(level)).front();
+    const auto at = std::min_element(ends.begin() + 1, ends.end(), [v](double a, double b) {
+      return std::abs(a - v) < std::abs(b - v);
+    });
+    const auto degrees = velocity::element_degrees(p, rule_to(7), 10);
+    CHECK(degrees.size() + 1 == ends.size());
+    CHECK(std::abs(*at - v) <= 1e-12 * v + (at[1] - *at));
+    return std::abs(*at - v) < 1e-12 * v ? std::max(at[1] - v, v - at[-1]) / v : 1;
+  };
+  for (int level : {2, 3}) CHECK(distance(level) < 1e-3);
+  p.noise.tau = 0.01;  // jumps are much faster than they part
+  for (int level : {2, 3}) CHECK(distance(level) > 1e-2);
+}
+
+TEST_CASE("mesh: friction that is rough at rest takes more layers there") {
+  const auto layers = [](double exponent) {
+    const model::Friction friction{0.9, 0.2, {}, {}, model::Stribeck{0.1, exponent}};
+    return velocity::natural_layers({{1, 0.25, 30}, friction, with_weakening({1, 0}, friction)},
+                                    rule_to(7));
+  };
+  CHECK(layers(0.5) >= layers(1) + 8);
+  CHECK(layers(1.5) >= layers(2) + 6);
+}
+
+TEST_CASE("tail velocity: beyond the last maximum of a density that falls and rises") {
+  auto p = process(0.5, 1, 0.25, {0, 0});
+  p.drag.law = [](double v) {
+    return 1.5 * std::copysign(std::exp(-4 * (std::abs(v) - 3) * (std::abs(v) - 3)), v) - 0.1 * v;
+  };
+  p.drag.rises_until = 4;
+  p.drag.reach = 100;
+  const double v = velocity::tail_velocity(p, 1e-10), drop = std::log(1e10) + 5;
+  const double from_rest = p.drag.potential(v) - 0.5 * v;
+  CHECK(v > 3);
+  CHECK(from_rest <= -drop);  // the density at rest is the largest
+  CHECK(from_rest >= -drop - 0.1);
+}

@@ -81,10 +81,12 @@ def identity(words, apart, error, size):
 
 
 def power(f):
-    """E[(X + g) V] = mu_d E|V| - E[b(V) V]."""
+    """E[(X + g) V] = E[F |V|] - E[b(V) V]."""
     linear = f.used["drag_coefficient"] if f.used["drag"] == "linear" else 0
     terms = [(1, *f.number("E_XV")), (f.used["bias"], *f.number("E_V")),
-             (-f.used["mu_d"], *f.number("E_absV")), (-linear, *f.number("E_V2"))]
+             (-linear, *f.number("E_V2"))]
+    terms += ([(-1, *f.number("friction_power"))] if "friction" in f.used else
+              [(-f.used["mu_d"], *f.number("E_absV"))])
     yield identity("power", abs(math.fsum(c * v for c, v, _ in terms)),
                    sum(abs(c) * e for c, _, e in terms), f.number("E_XV")[0])
 
@@ -264,6 +266,11 @@ def near_no_drag(f):
         yield words, apart, 1e-3 * value, value
 
 
+def finer(f):
+    """A run to two more digits."""
+    yield from compared(f, f.again(accuracy=1e-2 * f.options["accuracy"]))
+
+
 def transforms(f):
     """F(0) = 1, bounds, order, log-convexity, both ends in lambda."""
     _, rate, _, _, _ = f.exact()
@@ -339,6 +346,6 @@ def direct(f):
 
 PROPERTIES = {f.__name__: f for f in (
     power, probability, noise, entry, stay, reference, by_hand, null_vector, lambda_route, hitting,
-    fluid_queue, monte_carlo, scaled, neighbour, near_no_drag, transforms, resolvent, spectrum, direct)}
+    fluid_queue, monte_carlo, scaled, neighbour, near_no_drag, finer, transforms, resolvent, spectrum, direct)}
 PROPERTIES["same"] = as_if_plain
 BALANCES = ("power", "probability", "noise", "entry", "stay")

@@ -29,6 +29,7 @@ def scene(name, why, properties, long=False, quantities=STATIONARY, misses=False
 BASE = {"mu_s": 1, "mu_d": 0.25, "tau": 1, "delta": 0.25, "accuracy": 1e-9}
 NO_ENTRY = "sticking,moments,noise_law"  # without symmetry there is no entry law
 BALANCE = "power probability noise entry stay "
+STRIBECK = {"friction": "stribeck", "mu_d": 0.5, "quantities": STATIONARY + ",averages"}
 ONE_SIDED = "v>0 ? (0-3)*v : (0-0.5)*v"
 
 SCENES = (
@@ -114,6 +115,27 @@ SCENES = (
           "probability noise entry stay reference", misses=True, mu_d=0.3, delta=0.5,
           drag="cubic", drag_coefficient=0, drag_cubic=1e9),
 
+    # Friction that weakens with the speed, and drag that rises: levels leave a velocity v* for both sides.
+    scene("weakening", "the level at mu_s parts at rest", BALANCE + "finer null_vector",
+          **STRIBECK, stribeck_velocity=0.1),
+    scene("weakening within 1e-3", "one level parts at v* = 7e-4, one at rest: solutions like |v - v*|^0.06",
+          BALANCE + "finer", **STRIBECK, stribeck_velocity=1e-3),
+    scene("weakening within 1e-3, delta = 1/16", "eight levels that part, like |v - v*|^1 and more",
+          BALANCE + "finer", **{**STRIBECK, "delta": 0.0625}, stribeck_velocity=1e-3, long=True),
+    scene("weakening, gamma = 1/2", "friction falls from rest with an infinite slope",
+          BALANCE + "finer", **STRIBECK, stribeck_velocity=0.1, stribeck_exponent=0.5),
+    scene("weakening, gamma = 2, off the grid", "flat at rest, and no level has mu_s",
+          BALANCE + "finer", **{**STRIBECK, "mu_s": 0.9}, stribeck_velocity=0.2, stribeck_exponent=2),
+    scene("weakening without drag", "friction falls tenfold, and nothing else holds fast bodies",
+          BALANCE + "finer", **{**STRIBECK, "mu_d": 0.1}, stribeck_velocity=0.1, drag="none"),
+    scene("weakening in slow noise", "bodies cross v* by drift alone",
+          BALANCE + "finer", **{**STRIBECK, "mu_s": 0.5, "mu_d": 0.1}, tau=10, stribeck_velocity=0.02),
+    scene("weakening and bias", "two half lines with their own v*", "power probability noise finer",
+          **{**STRIBECK, "quantities": NO_ENTRY + ",averages"}, stribeck_velocity=0.1, bias=0.3),
+    scene("drag that rises to friction", "F - b falls from 1/2 to 0.02 before drag takes over",
+          "probability noise entry finer", mu_d=0.5, drag="expression",
+          drag_expression="0.5*tanh(3*v) - 0.1*v"),
+
     # Without symmetry.
     scene("one-sided drag", "two half lines that differ", "probability noise reference",
           delta=0.5, drag="expression", drag_expression=ONE_SIDED, quantities=NO_ENTRY),
@@ -174,6 +196,7 @@ REFUSED = (
     ("tau = 0", {"tau": 0}, 2, "tau"),
     ("delta too large for a chain", {"delta": 2}, 2, "delta"),
     ("drag that grows", {"drag": "expression", "drag_expression": "v"}, 2, "drag_expression"),
+    ("drag that outgrows friction", {"drag": "expression", "drag_expression": "0.3*tanh(v)"}, 2, "for ever"),
     ("delta = 2^-12, upwind", {"delta": 2.0**-12, "scheme": "upwind", "p": 64}, 4, "memory"),
     ("bias beyond static levels", {"bias": 20}, 2, "bias"),
 )

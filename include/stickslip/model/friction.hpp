@@ -31,9 +31,7 @@ struct Friction {
 
   /// F(0+), F(0+) - F(v) >= 0 and F(v), the force that friction takes at the speed v > 0.
   [[nodiscard]] double at_rest() const { return stribeck ? mu_s : mu_d; }
-  [[nodiscard]] double weakening(double v) const {
-    return stribeck ? (mu_s - mu_d) * stribeck->share(v) : 0;
-  }
+  [[nodiscard]] double weakening(double v) const { return (at_rest() - mu_d) * share(v); }
   [[nodiscard]] double operator()(double v) const { return at_rest() - weakening(v); }
   /// Whether it does so in a direction.
   [[nodiscard]] bool weakens() const;
