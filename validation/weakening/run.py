@@ -104,7 +104,7 @@ def between(entry):
 
 
 def distribution(entry):
-    entry.run(**SLOW, quantities="density,sticking", accuracy=1e-5, output="slow.h5")
+    entry.run(**SLOW, quantities="density,sticking", accuracy=1e-8, output="slow.h5")
     entry.drawn("density.py", "slow.png", "The stationary distribution in slow noise (tau = 10) "
                 "under friction that weakens: bodies move at speeds of their own, and leave those "
                 "between them and rest.", entry.file("slow.h5"))
