@@ -12,8 +12,8 @@
 namespace stickslip::velocity {
 namespace {
 
-// Local rate F(v) - b(v) at which log-density falls in white noise, or grows. A bias g changes it by
-// -g on one half line and by g on the other; elements serve both.
+// Local rate F(v) - b(v) at which log-density falls in white noise, or grows. A bias g changes it
+// by -g on one half line and by g on the other; elements serve both.
 double decay_rate(const model::Process& process, double v) {
   const double drag =
       process.drag.odd() ? -process.drag(v) : std::max(-process.drag(v), process.drag(-v));
