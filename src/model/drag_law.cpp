@@ -56,8 +56,7 @@ double reach_of(const Side& b, double force, const Friction& friction, double bi
                 : fmt::format("does not hold a body that the bias {:g} drives", bias);
   throw UnfitLaw(fmt::format("{}: it is {:g} at v = {:g}, and friction takes {:g}", driven,
                              b.sign * b(far / mu_d) + 0.0, b.sign * far / mu_d, mu_d),
-                 "check the signs, as in \"-v - 0.1*v*abs(v)\"; take a smaller bias, or a drag "
-                 "that grows");
+                 "check the signs, as in \"-v - 0.1*v*abs(v)\", or take a smaller bias");
 }
 
 // Evenly spaced, and in even ratios down to 1e-10 of the reach.

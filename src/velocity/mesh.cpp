@@ -168,13 +168,11 @@ int layers_towards(double power, const MeshRule& rule) {
 constexpr double kSmooth = 10;  // powers from which on elements of any length do
 
 // The power in v with which solutions are rough below all other scales, kSmooth at most. A level of
-// no net force there is left at the rate Lambda as by a speed b'(0) v, or at once where b is like a
-// root of v.
+// no net force there is left at the speed b'(0) v, or at once where b is like a root of v.
 double power_at_rest(const model::Process& process) {
   const auto& friction = process.friction;
   const double exponent = friction.weakens() ? friction.stribeck->exponent : 1;
-  const bool whole = exponent == std::round(exponent);
-  const double power = whole ? kSmooth : 1 + exponent;
+  const double power = exponent == std::round(exponent) ? kSmooth : 1 + exponent;
   const double slope = process.drag.slope_at_rest();
   const double level = std::round((friction.at_rest() - process.bias) / process.noise.delta);
   if (process.drag.rises_until == 0 || process.net_force(static_cast<int>(level)) != 0)
