@@ -27,9 +27,11 @@ velocity::MeshRule mesh_rule(const Resolution& resolution) {
   return rule;
 }
 
+double upwind_step(const model::Scene& scene) { return scene.process(1).noise.step(); }
+
 // Number of nodes of the upwind velocity discretisation: the first at or beyond v_max is its last.
 double upwind_nodes(const model::Scene& scene, const Resolution& resolution) {
-  const double ratio = resolution.v_max * resolution.points / scene.delta;
+  const double ratio = resolution.v_max * resolution.points / upwind_step(scene);
   return std::max(1.0, std::ceil(ratio * (1 - 1e-12)));
 }
 
@@ -39,22 +41,22 @@ std::vector<int> hp_degrees(const model::Scene& scene, const Resolution& resolut
 }
 
 // Exponential tilt of the law of X, per unit of x, that comes with large velocities: without drag
-// the velocity decays at the rate mu_d and X conditioned on it is shifted by up to twice mu_d
-// (less where mu_d exceeds the noise, of standard deviation 1/sqrt(tau)). Drag that saturates adds
-// to mu_d.
+// X conditioned on it is shifted by up to twice mu_d (less where mu_d exceeds the noise). Drag that
+// saturates adds to mu_d.
 double tilt(const model::Scene& scene) {
   const double mu_d = std::max(scene.friction.mu_d, scene.friction.mirrored().mu_d);
-  const double drag_time = -scene.drag.slope_at_rest() / (mu_d * mu_d);
-  const double most = 1 / std::sqrt(scene.tau);
-  if (scene.drag.law && !scene.drag.bounds_velocity()) return 2 * scene.tau * most;
+  const auto noise = scene.process(1).noise;
+  const double drag_time = -scene.drag.slope_at_rest() * noise.intensity() / (mu_d * mu_d);
+  const double most = noise.standard_deviation(), variance = noise.intensity() / scene.tau;
+  if (scene.drag.law && !scene.drag.bounds_velocity()) return 2 * most / variance;
   if (drag_time > 1) return 0;
-  return 2 * scene.tau * std::min(mu_d, most);
+  return 2 * std::min(mu_d, most) / variance;
 }
 
 std::shared_ptr<velocity::VelocityDiscretisation>
 velocities_of(const model::Scene& scene, const Resolution& resolution, const model::Drag& drag) {
   if (resolution.scheme == options::Scheme::upwind) {
-    const double spacing = scene.delta / resolution.points;
+    const double spacing = upwind_step(scene) / resolution.points;
     const auto count = static_cast<int>(upwind_nodes(scene, resolution));
     return std::make_shared<velocity::UpwindDiscretisation>(spacing, count, drag);
   }
@@ -66,7 +68,7 @@ velocities_of(const model::Scene& scene, const Resolution& resolution, const mod
 std::shared_ptr<const noise::Nodes> grouped(const model::Process& process,
                                             const noise::Grouping& grouping) {
   if (grouping.degree == 0) return nullptr;
-  const double levels = 2.0 * process.noise.levels + 1;
+  const double levels = process.noise.count();
   const double need = 24 * levels * (grouping.degree + 2);
   if (need > petsc::available_bytes(PETSC_COMM_SELF, need)) {
     throw NoMemory(fmt::format("{:.3g} noise levels would need {:.2g} GB of memory; take fewer "
@@ -80,23 +82,32 @@ std::shared_ptr<const noise::Nodes> grouped(const model::Process& process,
 
 int levels_for(const model::Scene& scene, double tolerance) {
   const int full = scene.full_levels();
-  const model::NoiseChain chain{scene.tau, scene.delta, full};
   const auto process = scene.process(full);
+  if (process.noise.table) return full;
   const int first = std::max(process.static_index(), -process.lowest_static()) + 1;
   const double shift = tilt(scene) * scene.delta;
   double log_weight = 0;  // of level i against level `first`
   int i = first;
   while (i < full && log_weight > std::log(tolerance)) {
     ++i;
-    log_weight += std::log(model::weight_ratio(chain, i)) + shift + 2 * std::log1p(1.0 / (i - 1));
+    log_weight += std::log(model::weight_ratio(process.noise, i)) + shift + 2 * std::log1p(1.0 / (i - 1));
   }
   return i;
 }
 
+namespace {
+
+void set_levels(const model::Scene& scene, double tolerance, Resolution& r) {
+  r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
+  r.noise_nodes = scene.process(r.levels).noise.count();
+}
+
+}  // namespace
+
 double velocity_end(const model::Scene& scene, int levels, double tolerance) {
   const auto process = scene.process(levels), mirrored = process.mirrored();
-  const double terminal = std::max(process.drag.terminal_velocity(process.net_force(levels)),
-                                   mirrored.drag.terminal_velocity(mirrored.net_force(levels)));
+  const double terminal = std::max(process.drag.terminal_velocity(process.net_force(process.noise.highest())),
+                                   mirrored.drag.terminal_velocity(mirrored.net_force(mirrored.noise.highest())));
   if (scene.v_max) return std::min(*scene.v_max, terminal);
   const double tail = velocity::tail_velocity(process, tolerance);
   // Holding states cost a little: a cut must save something.
@@ -109,11 +120,12 @@ Resolution hp_resolution(const model::Scene& scene, int degree, int layers, doub
   r.scheme = options::Scheme::hp;
   r.degree = degree;
   r.rates = rates;
-  r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
+  set_levels(scene, tolerance, r);
   r.v_max = velocity_end(scene, r.levels, tolerance);
   r.layers = layers > 0 ? layers : velocity::natural_layers(scene.process(r.levels), mesh_rule(r));
   r.grouping = grouping;
   r.noise = grouped(scene.process(r.levels), grouping);
+  if (r.noise) r.noise_nodes = r.noise->count();
   return r;
 }
 
@@ -121,7 +133,7 @@ Resolution upwind_resolution(const model::Scene& scene, int points, double toler
   Resolution r;
   r.scheme = options::Scheme::upwind;
   r.points = points;
-  r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
+  set_levels(scene, tolerance, r);
   r.v_max = velocity_end(scene, r.levels, tolerance);
   return r;
 }
@@ -129,7 +141,7 @@ Resolution upwind_resolution(const model::Scene& scene, int points, double toler
 Resolution exact_resolution(const model::Scene& scene, double tolerance) {
   Resolution r;
   r.scheme = options::Scheme::none;
-  r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
+  set_levels(scene, tolerance, r);
   return r;
 }
 
@@ -151,7 +163,7 @@ std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution) {
   } else if (resolution.scheme == options::Scheme::upwind) {
     nodes = upwind_nodes(scene, resolution);
   }
-  const double total = static_cast<double>(resolution.noise_nodes()) * nodes * resolution.halves;
+  const double total = static_cast<double>(resolution.noise_nodes) * nodes * resolution.halves;
   constexpr double most = 9e18;
   return static_cast<std::int64_t>(std::min(total, most));
 }
@@ -162,7 +174,7 @@ namespace {
 operators::FactorCost factor_cost(const model::Scene& scene, const Resolution& r,
                                   options::Factors factors, int ranks) {
   const auto n = static_cast<double>(unknowns(scene, r));
-  const auto noise = static_cast<double>(r.noise_nodes());
+  const auto noise = static_cast<double>(r.noise_nodes);
   constexpr double countable = 1e8;  // beyond, the matrix alone fills a machine
   if (factors != options::Factors::elements || n > countable) {
     return operators::sparse_cost(factors, r.scheme, n, noise);
@@ -175,7 +187,7 @@ operators::FactorCost factor_cost(const model::Scene& scene, const Resolution& r
 }
 
 options::Factors factors_of(const Resolution& r) {
-  return operators::chosen_factors(r.factors, r.scheme, r.noise_nodes(), r.noise == nullptr);
+  return operators::chosen_factors(r.factors, r.scheme, r.noise_nodes, r.noise == nullptr);
 }
 
 }  // namespace

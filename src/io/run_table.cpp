@@ -28,7 +28,7 @@ std::string size_cells(const accuracy::Resolution& r, std::int64_t unknowns,
   std::string axis = fmt::format("{:>13}", "exact");
   if (r.scheme == options::Scheme::hp) axis = fmt::format("{:>6} {:>6}", r.degree, r.layers);
   if (r.scheme == options::Scheme::upwind) axis = fmt::format("{:>13}", r.points);
-  return fmt::format("{} {:>7} {:>6} {:>8.4g} {:>9} {:>10}", axis, r.levels, r.noise_nodes(),
+  return fmt::format("{} {:>7} {:>6} {:>8.4g} {:>9} {:>10}", axis, r.levels, r.noise_nodes,
                      r.v_max, unknowns, nonzeros);
 }
 

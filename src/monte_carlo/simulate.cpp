@@ -47,6 +47,15 @@ checkpoint::Identity identity(const Case& given) {
                              {"-drag_coefficient", text(s.drag.linear)},
                              {"-drag_cubic", text(s.drag.cubic)}};
   if (s.drag.law) found.emplace_back("-drag_expression", s.drag_expression);
+  if (s.noise.deviation) found.emplace_back("-noise_deviation", text(*s.noise.deviation));
+  if (const auto& table = s.noise.table) {
+    std::string levels;
+    for (int i = table->lowest(); i <= table->highest(); ++i) {
+      const auto& [x, up, down] = table->at(i);
+      levels += fmt::format("{},{},{};", x, up, down);
+    }
+    found.emplace_back("-noise", std::move(levels));
+  }
   found.emplace_back("-bias", text(s.bias));
   found.emplace_back("-seed", text(given.method.seed));
   const auto wanted = wanted_of(given.question);

@@ -154,7 +154,7 @@ class Estimates {
            [&](std::size_t n) { return tally_.entry(side, static_cast<int>(levels[n])); });
     }
     scalar(quantities::kFStick0,
-           tally_.first_exit(noise.rate() * noise.up(highest), noise.rate() * noise.down(lowest)));
+           tally_.first_exit(noise.up_rate(highest), noise.down_rate(lowest)));
   }
 
   void append_laplace() {

@@ -24,6 +24,7 @@ inline constexpr Word<DragLaw> kDragLaws[] = {{"linear", {true, false, false}},
                                               {"none", {false, false, false}},
                                               {"cubic", {true, true, false}},
                                               {"expression", {false, false, true}}};
+inline constexpr Word<int> kNoises[] = {{"ou", 0}, {"telegraph", 1}, {"file", 2}};
 inline constexpr Word<Scheme> kSchemes[] = {{"hp", Scheme::hp}, {"upwind", Scheme::upwind}};
 inline constexpr Word<SpectrumSolver> kSpectrumSolvers[] = {{"krylov", SpectrumSolver::krylov},
                                                             {"direct", SpectrumSolver::direct}};

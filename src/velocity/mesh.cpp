@@ -34,12 +34,12 @@ double graded_end(const model::Process& process, const MeshRule& rule) {
 // Distance from mu_d - g down to the nearest level below it, for levels that can come to rest on
 // the upper half line.
 double upper_gap_below(const model::Process& process) {
-  const double delta = process.noise.delta;
-  const auto level = static_cast<int>(std::floor((process.friction.mu_d - process.bias) / delta));
-  for (int i = level + 1; i >= level - 1; --i) {
+  const auto& noise = process.noise;
+  const int level = noise.last_up_to(process.friction.mu_d - process.bias);
+  for (int i = std::min(level + 1, noise.highest()); i >= std::max(level - 1, noise.lowest()); --i) {
     if (process.net_force(i) < 0) return -process.net_force(i);
   }
-  return delta;
+  return noise.step();
 }
 
 // The smaller one of the two half lines.
@@ -48,13 +48,13 @@ double gap_below(const model::Process& process) {
 }
 
 // At lambda = 0 two layers can form at v = 0. The kinetic layer around x = mu_d mixes levels delta
-// apart, at speeds about delta, in the time 1/Lambda = tau^2 delta^2/2 between jumps: 0.3 delta^3
-// tau^2 is fine enough at every degree tried. A level at a distance g below mu_d comes to rest
+// apart, at speeds about delta, in the time 1/Lambda between jumps: 0.6 delta/Lambda is fine enough
+// at every degree tried. A level at a distance g below mu_d comes to rest
 // through the factor (1 + v/s)^(-Lambda/c), s = g/c, c = -b'(0): with fast jumps it is over before
 // it matters (the first test), with slow ones it is a feature of its own on the scale s.
 double free_layer(const model::Process& process) {
   const auto& noise = process.noise;
-  const double kinetic = 0.3 * noise.delta * noise.delta * noise.delta * noise.tau * noise.tau;
+  const double kinetic = 0.6 * noise.step() / noise.rate();
   double slope = -process.drag.slope_at_rest();
   if (!process.drag.odd()) slope = std::max(slope, -process.drag.mirrored().slope_at_rest());
   if (slope == 0) return kinetic;
@@ -71,18 +71,21 @@ double free_layer(const model::Process& process) {
 double killed_layer(const model::Process& process, double lambda) {
   const auto& noise = process.noise;
   const double rate = noise.rate(), gap = gap_below(process);
-  const bool counts = lambda * gap > 1e-3 * rate * noise.delta;
-  return (counts ? gap : gap + noise.delta) / (rate + lambda);
+  const bool counts = lambda * gap > 1e-3 * rate * noise.step();
+  return (counts ? gap : gap + noise.step()) / (rate + lambda);
 }
 
 // Speed that a body which leaves v = 0 has when the noise might turn it back: at the net force g it
-// does so after the time g^2 tau^2/2. On the half line where that is less.
+// does so after the time g^2/D, D = Lambda delta^2 the diffusivity of the noise. On the half line
+// where that is less.
 double speed_of_leaving(const model::Process& process) {
   const auto cubed = [](const model::Process& half) {
+    if (!half.starts_upwards()) return std::numeric_limits<double>::infinity();
     return std::pow(half.net_force(half.static_index() + 1), 3);
   };
-  const double tau = process.noise.tau;
-  return 0.3 * tau * tau * std::min(cubed(process), cubed(process.mirrored()));
+  const double step = process.noise.step();
+  return 0.6 * std::min(cubed(process), cubed(process.mirrored())) /
+         (process.noise.rate() * step * step);
 }
 
 // log of the stationary density of white noise on the upper half line, exp(-slope v + int b) with
@@ -122,7 +125,7 @@ double end_of_thinnest_waves(const model::Process& process) {
 double wave_width(const model::Process& process, double omega, double v) {
   const double rate = process.noise.rate(), gap = gap_below(process);
   const double slowest =
-      v < end_of_thinnest_waves(process) ? gap : std::max(gap + process.noise.delta, rate * v / 20);
+      v < end_of_thinnest_waves(process) ? gap : std::max(gap + process.noise.step(), rate * v / 20);
   return 4 * std::numbers::pi * slowest / std::min(omega, 40 * rate);
 }
 
@@ -300,7 +303,7 @@ std::vector<int> regular_degrees(const model::Process& process, const MeshRule& 
   constexpr int most_where_left = 2;  // degrees less
   const int layers = rule.layers > 0 ? rule.layers : natural_layers(process, rule);
   std::vector<int> degrees(ends.size() - 1, degree);
-  const bool early = rule.rates.lambda * process.noise.tau > 1;
+  const bool early = rule.rates.lambda * process.noise.correlation_time() > 1;
   if (early || has_waves(process, rule)) return degrees;
   const double leaving = speed_of_leaving(process);
   const int graded = std::min(layers, static_cast<int>(degrees.size()));

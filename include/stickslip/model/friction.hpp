@@ -16,10 +16,6 @@ struct Friction {
   /// The directions exchanged.
   [[nodiscard]] Friction mirrored() const;
 
-  /// k with x_k + g <= mu_s < x_{k+1} + g for a constant force g: with symmetry, the static phase
-  /// holds the levels |i| <= k. Rounding never moves it. Throws std::out_of_range beyond int.
-  [[nodiscard]] int static_index(double delta, double bias = 0) const;
-
   /// x_i + g - mu_d, the acceleration of a body that starts to slide upwards; exactly 0 for a level
   /// that equals mu_d - g up to rounding.
   [[nodiscard]] double net_force(double level, double bias = 0) const;
