@@ -33,6 +33,7 @@ Solved evaluated(MPI_Comm comm, const options::Case& given, const Resolution& re
   const double start = petsc::wall_seconds();
   const routes::Setting setting{comm, given, discretise(given.scene, resolution), step.statistics};
   solved.evaluation = routes::evaluate(setting);
+  quantities::leave_out_missing_side(setting.discretisation.process, solved.evaluation.results);
   require_rounding(model::rounding_of_sums(setting.discretisation.process.noise),
                    solved.evaluation.results);
   step.checks = std::move(solved.evaluation.checks);

@@ -90,7 +90,8 @@ int levels_for(const model::Scene& scene, double tolerance) {
   int i = first;
   while (i < full && log_weight > std::log(tolerance)) {
     ++i;
-    log_weight += std::log(model::weight_ratio(process.noise, i)) + shift + 2 * std::log1p(1.0 / (i - 1));
+    log_weight +=
+        std::log(model::weight_ratio(process.noise, i)) + shift + 2 * std::log1p(1.0 / (i - 1));
   }
   return i;
 }
@@ -99,15 +100,17 @@ namespace {
 
 void set_levels(const model::Scene& scene, double tolerance, Resolution& r) {
   r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
-  r.noise_nodes = scene.process(r.levels).noise.count();
+  if (const auto& table = scene.noise.table)
+    r.table_levels = table->highest() - table->lowest() + 1;
 }
 
 }  // namespace
 
 double velocity_end(const model::Scene& scene, int levels, double tolerance) {
   const auto process = scene.process(levels), mirrored = process.mirrored();
-  const double terminal = std::max(process.drag.terminal_velocity(process.net_force(process.noise.highest())),
-                                   mirrored.drag.terminal_velocity(mirrored.net_force(mirrored.noise.highest())));
+  const double terminal =
+      std::max(process.drag.terminal_velocity(process.net_force(process.noise.highest())),
+               mirrored.drag.terminal_velocity(mirrored.net_force(mirrored.noise.highest())));
   if (scene.v_max) return std::min(*scene.v_max, terminal);
   const double tail = velocity::tail_velocity(process, tolerance);
   // Holding states cost a little: a cut must save something.
@@ -125,7 +128,6 @@ Resolution hp_resolution(const model::Scene& scene, int degree, int layers, doub
   r.layers = layers > 0 ? layers : velocity::natural_layers(scene.process(r.levels), mesh_rule(r));
   r.grouping = grouping;
   r.noise = grouped(scene.process(r.levels), grouping);
-  if (r.noise) r.noise_nodes = r.noise->count();
   return r;
 }
 
@@ -163,7 +165,7 @@ std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution) {
   } else if (resolution.scheme == options::Scheme::upwind) {
     nodes = upwind_nodes(scene, resolution);
   }
-  const double total = static_cast<double>(resolution.noise_nodes) * nodes * resolution.halves;
+  const double total = static_cast<double>(resolution.noise_nodes()) * nodes * resolution.halves;
   constexpr double most = 9e18;
   return static_cast<std::int64_t>(std::min(total, most));
 }
@@ -174,7 +176,7 @@ namespace {
 operators::FactorCost factor_cost(const model::Scene& scene, const Resolution& r,
                                   options::Factors factors, int ranks) {
   const auto n = static_cast<double>(unknowns(scene, r));
-  const auto noise = static_cast<double>(r.noise_nodes);
+  const auto noise = static_cast<double>(r.noise_nodes());
   constexpr double countable = 1e8;  // beyond, the matrix alone fills a machine
   if (factors != options::Factors::elements || n > countable) {
     return operators::sparse_cost(factors, r.scheme, n, noise);
@@ -187,7 +189,7 @@ operators::FactorCost factor_cost(const model::Scene& scene, const Resolution& r
 }
 
 options::Factors factors_of(const Resolution& r) {
-  return operators::chosen_factors(r.factors, r.scheme, r.noise_nodes, r.noise == nullptr);
+  return operators::chosen_factors(r.factors, r.scheme, r.noise_nodes(), r.noise == nullptr);
 }
 
 }  // namespace

@@ -181,9 +181,11 @@ class Queue {
     return static_cast<int>(phases_.rising.size()) - starts() + start;
   }
 
-  void spend(const std::vector<int>& group, const std::vector<double>& crossings,
-             double factorial, double* sums) const {
-    const auto add = [&](int phase, double spent) { sums[phase - process_.noise.lowest()] += spent; };
+  void spend(const std::vector<int>& group, const std::vector<double>& crossings, double factorial,
+             double* sums) const {
+    const auto add = [&](int phase, double spent) {
+      sums[phase - process_.noise.lowest()] += spent;
+    };
     for (std::size_t p = 0; p < group.size(); ++p) {
       const double spent = factorial * crossings[p] / std::abs(process_.net_force(group[p]));
       add(group[p], spent);
@@ -261,7 +263,8 @@ FluidQueue::FluidQueue(const model::Process& process, double lambda) {
   const std::size_t below = lower ? levels : 0;
   plus_ = boundary.slide(0, levels + below, below);
   // Of one side alone both are the same.
-  minus_ = boundary.slide(upper.starts() % (upper.starts() + other.starts()), levels + below, below);
+  minus_ =
+      boundary.slide(upper.starts() % (upper.starts() + other.starts()), levels + below, below);
 }
 
 }  // namespace stickslip::exact

@@ -8,6 +8,20 @@
 
 namespace stickslip::io {
 
+namespace {
+
+std::string noise_text(const model::Scene& s) {
+  const auto& noise = s.noise;
+  if (noise.name == "file") return "levels of " + noise.file;
+  if (noise.name == "telegraph") {
+    return fmt::format("telegraph a = {:g}, rate = {:g}", noise.amplitude, noise.rate);
+  }
+  const auto own = noise.deviation ? fmt::format("   deviation = {:g}", *noise.deviation) : "";
+  return fmt::format("tau = {:g}   delta = {:g}{}", s.tau, s.delta, own);
+}
+
+}  // namespace
+
 std::string scene_line(const model::Scene& s) {
   std::string drag = s.drag_name;
   if (s.drag.linear > 0) drag += fmt::format(", c = {:g}", s.drag.linear);
@@ -19,8 +33,8 @@ std::string scene_line(const model::Scene& s) {
     minus = fmt::format("   mu_s_minus = {:g}   mu_d_minus = {:g}", backwards.mu_s, backwards.mu_d);
   }
   const std::string bias = s.bias == 0 ? "" : fmt::format("   bias = {:g}", s.bias);
-  return fmt::format("mu_s = {:g}   mu_d = {:g}{}   tau = {:g}   delta = {:g}   drag {}{}\n",
-                     s.friction.mu_s, s.friction.mu_d, minus, s.tau, s.delta, drag, bias);
+  return fmt::format("mu_s = {:g}   mu_d = {:g}{}   {}   drag {}{}\n", s.friction.mu_s,
+                     s.friction.mu_d, minus, noise_text(s), drag, bias);
 }
 
 std::string size_cells(const accuracy::Resolution& r, std::int64_t unknowns,
@@ -28,7 +42,7 @@ std::string size_cells(const accuracy::Resolution& r, std::int64_t unknowns,
   std::string axis = fmt::format("{:>13}", "exact");
   if (r.scheme == options::Scheme::hp) axis = fmt::format("{:>6} {:>6}", r.degree, r.layers);
   if (r.scheme == options::Scheme::upwind) axis = fmt::format("{:>13}", r.points);
-  return fmt::format("{} {:>7} {:>6} {:>8.4g} {:>9} {:>10}", axis, r.levels, r.noise_nodes,
+  return fmt::format("{} {:>7} {:>6} {:>8.4g} {:>9} {:>10}", axis, r.levels, r.noise_nodes(),
                      r.v_max, unknowns, nonzeros);
 }
 

@@ -7,9 +7,7 @@
 namespace stickslip::io {
 
 Json scene_json(const model::Scene& s) {
-  Json scene{{"mu_s", s.friction.mu_s},
-             {"mu_d", s.friction.mu_d},
-             {"drag", s.drag_name}};
+  Json scene{{"mu_s", s.friction.mu_s}, {"mu_d", s.friction.mu_d}, {"drag", s.drag_name}};
   const auto& noise = s.noise;
   if (noise.name == "telegraph") {
     scene["telegraph_amplitude"] = noise.amplitude;
@@ -82,7 +80,7 @@ Json resolution_json(const accuracy::Resolution& r) {
   case options::Scheme::none: json = {{"scheme", "none"}}; break;
   }
   json["noise_levels"] = r.levels;
-  json["noise_nodes"] = r.noise_nodes;
+  json["noise_nodes"] = r.noise_nodes();
   return json;
 }
 

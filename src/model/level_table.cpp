@@ -25,8 +25,8 @@ void require_chain(const std::vector<Level>& levels) {
     const auto& [x, up, down] = levels[n];
     if (!std::isfinite(x)) throw UnfitTable(n, fmt::format("x = {:g} must be a number", x));
     if (n > 0 && x <= levels[n - 1].x) {
-      throw UnfitTable(n, fmt::format("x = {:g} must be above the level before, {:g}", x,
-                                      levels[n - 1].x));
+      throw UnfitTable(
+          n, fmt::format("x = {:g} must be above the level before, {:g}", x, levels[n - 1].x));
     }
     require_rate(up, n + 1 == levels.size(), n, "rate_up");
     require_rate(down, n == 0, n, "rate_down");

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "stickslip/quantities/excursion.hpp"
+
 namespace stickslip::monte_carlo {
 namespace {
 
@@ -267,7 +269,9 @@ simulation::Wanted wanted_of(const options::Question& question) {
 
 Results estimates(const options::Question& question, const model::Process& process,
                   const Tally& tally) {
-  return Estimates(question, process, tally).all();
+  Results all = Estimates(question, process, tally).all();
+  quantities::leave_out_missing_side(process, all);
+  return all;
 }
 
 }  // namespace stickslip::monte_carlo

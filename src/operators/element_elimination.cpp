@@ -171,9 +171,8 @@ int ElementElimination::owner(const Line& line, std::size_t e) const {
 
 ElementSystem::Response ElementElimination::make_element(Line& line, std::size_t e) const {
   ElementSystem::Response response;
-  line.elements[e] =
-      std::make_unique<ElementSystem>(*line.noise, *line.velocities,
-                                      static_cast<int>(e), line.net_force, data_->lambda, response);
+  line.elements[e] = std::make_unique<ElementSystem>(
+      *line.noise, *line.velocities, static_cast<int>(e), line.net_force, data_->lambda, response);
   return response;
 }
 

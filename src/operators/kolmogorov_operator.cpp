@@ -95,7 +95,8 @@ void KolmogorovOperator::add_value_at(int i, double v, double weight, Vec functi
     if (index >= begin && index < end) check(VecSetValue(functional, index, share, ADD_VALUES));
   };
   // A level as a combination of noise nodes, of those as combinations of velocity nodes.
-  const auto& group = nodes_along(below ? Branch::negative : Branch::positive).group_at(below ? -i : i);
+  const auto& group =
+      nodes_along(below ? Branch::negative : Branch::positive).group_at(below ? -i : i);
   const auto shares = group.row(group.value, below ? -i : i);
   for (int l = 0; !rest && l < group.count; ++l) {
     const int n = group.begin + l;

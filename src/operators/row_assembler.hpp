@@ -123,7 +123,8 @@ class RowAssembler {
 
   void rates_of_node(const State& s) {
     rates_of_transport(s);
-    for_each_jump(s.half, s.noise, [&](int to, double rate) { rate_to(node(s.half, to, s.node), rate); });
+    for_each_jump(s.half, s.noise,
+                  [&](int to, double rate) { rate_to(node(s.half, to, s.node), rate); });
   }
 
   void rates_of_transport(const State& s) {

@@ -87,7 +87,9 @@ void StateSpace::distribute(const noise::Nodes& noise, const model::NoiseChain& 
   const std::int64_t ranks = petsc::ranks(comm_), all = noise.count();
   const bool together = !chain.symmetric() && !noise.all_levels();
   const int pairs = std::max(-first_, last_), levels = std::max(-chain.lowest(), chain.highest());
-  const auto innermost = [&](int pair) { return noise.all_levels() ? pair : noise.group_of(pair).begin; };
+  const auto innermost = [&](int pair) {
+    return noise.all_levels() ? pair : noise.group_of(pair).begin;
+  };
   for (int pair = 0; pair <= pairs; ++pair) {
     const std::int64_t before = together || pair == 0 ? 0 : 2LL * innermost(pair) - 1;
     owner_of_pair_.push_back(static_cast<int>(std::min(before * ranks / all, ranks - 1)));

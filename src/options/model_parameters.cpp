@@ -55,7 +55,8 @@ class SceneReader {
     noise.name = settings_.text("noise");
     const auto require = [this](const char* option, const char* example) {
       if (settings_.given(option)) return true;
-      report("noise", fmt::format("needs -{}", option), fmt::format("add for example -{} {}", option, example));
+      report("noise", fmt::format("needs -{}", option),
+             fmt::format("add for example -{} {}", option, example));
       return false;
     };
     if (noise.name == "telegraph") {
@@ -96,20 +97,20 @@ class SceneReader {
     const double force = scene_.bias + mean, mu_d = force > 0 ? forwards.mu_d : backwards.mu_d;
     if (drag_law_.expression || !scene_.drag.is_none() || std::abs(force) < mu_d) return;
     const auto noise = mean == 0 ? "" : fmt::format("with the mean {:g} of the noise ", mean);
-    report("bias",
-           fmt::format(
-               "{}drives a sliding body for ever: without drag only mu_d = {:g} holds it back",
-               noise, mu_d),
-           "take a bias smaller than mu_d, or add drag");
+    report(
+        "bias",
+        fmt::format("{}drives a sliding body for ever: without drag only mu_d = {:g} holds it back",
+                    noise, mu_d),
+        "take a bias smaller than mu_d, or add drag");
   }
 
   // The levels that exist, and that on some of them bodies stick and on some they slide.
   void check_table() {
     const auto process = scene_.process(1);
     const auto& noise = process.noise;
-    const auto range = fmt::format("levels, from {:g} to {:g}, shifted by the bias {:g}",
-                                   noise.level(noise.lowest()), noise.level(noise.highest()),
-                                   scene_.bias);
+    const auto range =
+        fmt::format("levels, from {:g} to {:g}, shifted by the bias {:g}",
+                    noise.level(noise.lowest()), noise.level(noise.highest()), scene_.bias);
     if (process.lowest_static() > process.static_index()) {
       report("mu_s", "holds the body on none of the noise's " + range + ": nothing ever sticks",
              "take a larger -mu_s or another -bias");
@@ -199,9 +200,10 @@ double largest_force(const model::Scene& scene) {
   const auto& noise = process.noise;
   const double highest = std::max(noise.level(noise.highest()), -noise.level(noise.lowest()));
   const auto &along = scene.friction, against = along.mirrored();
-  const double seen = std::max(along.mu_s, against.mu_s) + noise.step() +
-                      12 * noise.standard_deviation();
-  return std::min(highest, noise.table ? highest : seen) + std::abs(scene.bias) - std::min(along.mu_d, against.mu_d);
+  const double seen =
+      std::max(along.mu_s, against.mu_s) + noise.step() + 12 * noise.standard_deviation();
+  return std::min(highest, noise.table ? highest : seen) + std::abs(scene.bias) -
+         std::min(along.mu_d, against.mu_d);
 }
 
 model::Scene read_scene(const Settings& settings, Problems& problems) {

@@ -37,8 +37,8 @@ std::shared_ptr<const model::LevelTable> read_levels(const std::string& file) {
     return std::make_shared<const model::LevelTable>(levels);
   } catch (const model::UnfitTable& unfit) {
     const bool at_line = unfit.row() < lines.size();
-    throw std::invalid_argument(
-        (at_line ? fmt::format("line {}: ", lines[unfit.row()]) : "") + unfit.what());
+    throw std::invalid_argument((at_line ? fmt::format("line {}: ", lines[unfit.row()]) : "") +
+                                unfit.what());
   }
 }
 

@@ -176,9 +176,10 @@ model::Start read_state(const Settings& settings, const model::Scene& scene, dou
     const double lowest = noise.level(noise.lowest()), highest = noise.level(noise.highest());
     settings.report(
         problems, "start",
-        noise.table ? fmt::format("starts on no noise level, which lie in [{:g}, {:g}]", lowest, highest)
-                    : fmt::format("starts on no noise level, which are {:g} apart up to {:g}",
-                                  scene.delta, highest),
+        noise.table
+            ? fmt::format("starts on no noise level, which lie in [{:g}, {:g}]", lowest, highest)
+            : fmt::format("starts on no noise level, which are {:g} apart up to {:g}", scene.delta,
+                          highest),
         fmt::format("take x = {:g}", noise.level(static_cast<int>(std::round(place)))));
     return {};
   }
@@ -204,7 +205,8 @@ void read_start(const Settings& settings, Request& request, Problems& problems) 
   const auto process = request.scene.process(1);
   const bool up = process.starts_upwards(), down = process.starts_downwards();
   if ((text == "s+" && !up) || (text == "s-" && !down)) {
-    settings.report(problems, "start", "is no state: the noise has no level beyond those that stick",
+    settings.report(problems, "start",
+                    "is no state: the noise has no level beyond those that stick",
                     up ? "take -start s+" : "take -start s-");
   } else if (text == "s+") {
     start = {process.static_index() + 1};

@@ -68,7 +68,8 @@ class Rules {
     refuse({"route", "scheme", "degree", "layers", "noise_degree", "noise_grading", "p", "v_max",
             "compare", "checkpoint", "noise_levels"},
            study_, "is chosen by -study itself", "leave it out");
-    const bool of_steps = r_.study.kind == StudyKind::steps || r_.study.kind == StudyKind::heuristic;
+    const bool of_steps =
+        r_.study.kind == StudyKind::steps || r_.study.kind == StudyKind::heuristic;
     refuse({"study"}, of_steps && r_.scene.noise.name != "ou",
            "takes smaller and smaller -delta, which -noise " + r_.scene.noise.name + " has not",
            "leave it out, or take -noise ou");

@@ -78,13 +78,22 @@ std::vector<Option> scene_options() {
            "dynamic friction coefficient while v < 0, at most mu_s_minus; that of -mu_d unless "
            "given",
            "for sliding without friction take a small value such as 1e-8"),
-      choice("noise", "ou", words_of(kNoises),
-             "the noise X: ou, an Ornstein-Uhlenbeck process on the levels of -delta; telegraph, two "
-             "values; file, any birth-death chain"),
+      choice(
+          "noise", "ou", words_of(kNoises),
+          "the noise X: ou, an Ornstein-Uhlenbeck process on the levels of -delta; telegraph, two "
+          "values; file, any birth-death chain"),
       real("tau", "time", "1", positive(), "correlation time of -noise ou",
            "for white noise take a small value such as 0.01"),
+      real("delta", "force", "0.125", positive(), "step between neighbouring noise levels",
+           "the continuous noise is the limit of small steps such as 0.125"),
+      integer("noise_levels", "", whole(1, 1e9),
+              "levels N of the noise on each side of 0; `full` is the most that there can be, 2 "
+              "(deviation/delta)^2. Without "
+              "it, the full range is meant, and as much of it is kept as -accuracy needs",
+              kChosen, {"full"}),
       real("noise_deviation", "force", "", positive(),
-           "standard deviation of X with -noise ou; 1/sqrt(tau) unless given, so that X tends to white "
+           "standard deviation of X with -noise ou; 1/sqrt(tau) unless given, so that X tends to "
+           "white "
            "noise of one strength as tau -> 0",
            "take the standard deviation of the measured force"),
       real("telegraph_amplitude", "force", "", positive(), "a of -noise telegraph, X = +a or -a",
@@ -95,13 +104,6 @@ std::vector<Option> scene_options() {
       file("noise_file", Kind::input,
            "CSV with the columns x,rate_up,rate_down: the levels of -noise file, rising, with the "
            "rates of jumps to their neighbours; 0 for those below the first and above the last"),
-      real("delta", "force", "0.125", positive(), "step between neighbouring noise levels",
-           "the continuous noise is the limit of small steps such as 0.125"),
-      integer("noise_levels", "", whole(1, 1e9),
-              "levels N of the noise on each side of 0; `full` is the most that there can be, 2 "
-              "(deviation/delta)^2. Without "
-              "it, the full range is meant, and as much of it is kept as -accuracy needs",
-              kChosen, {"full"}),
       choice("drag", "linear", words_of(kDragLaws),
              "drag law b(v): -c v, 0, -c v - c3 v^3, or -drag_expression"),
       real("drag_coefficient", "1/time", "1", not_negative(), "c in the drag law",

@@ -16,8 +16,8 @@ using operators::StaticPhase;
 using operators::Symmetry;
 using petsc::check;
 
-/// exp(Q t) for the static chain: at rate Lambda the noise jumps, up or down, or stays where it does
-/// so more slowly.
+/// exp(Q t) for the static chain: at rate Lambda the noise jumps, up or down, or stays where it
+/// does so more slowly.
 class StickingFlow {
  public:
   StickingFlow(const model::Process& process, std::vector<double> start)

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <span>
+#include <string>
 
 #include "stickslip/operators/static_chain.hpp"
 
@@ -127,11 +129,23 @@ double stick_density_at_zero(const model::Process& process, double lowest, doubl
 void append_noise_distribution(const model::Process& process, Results& results) {
   const auto& noise = process.noise;
   const double mu_s = process.friction.mu_s;
-  const auto moments =
-      model::noise_moments(noise, noise.first_from(-mu_s), noise.last_up_to(mu_s));
+  const auto moments = model::noise_moments(noise, noise.first_from(-mu_s), noise.last_up_to(mu_s));
   const double rounding = model::rounding_of_sums(noise);
   results.push_back(scalar(kPWithin, moments.within, rounding * moments.within));
   results.push_back(scalar(kEX2, moments.square, rounding * moments.square));
+}
+
+void leave_out_missing_side(const model::Process& process, Results& results) {
+  static const std::set<std::string> of_plus{"entry_law", "h_plus", "h_minus", "w_one",
+                                             "w_plus",    "u",      "mu"},
+      of_minus{"entry_law_minus",  "h_plus_from_minus", "h_minus_from_minus",
+               "w_one_from_minus", "w_minus",           "u_minus",
+               "mu_minus"};
+  std::erase_if(results, [&](const Result& result) {
+    const std::string word = result.key.substr(0, result.key.find('('));
+    return (!process.starts_upwards() && of_plus.contains(word)) ||
+           (!process.starts_downwards() && of_minus.contains(word));
+  });
 }
 
 std::vector<double> marginal_of_noise(const operators::Discretisation& discretisation,

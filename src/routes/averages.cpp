@@ -31,7 +31,8 @@ std::vector<Average> averages(const Setting& setting) {
   const auto within = named("|x|<=mu_s"), stick = named("stick"), slide = named("slide");
   const double low = process.noise.level(process.lowest_static()),
                high = process.noise.level(process.static_index());
-  add({"P_moving_levels", ""}, [=](double x, double, double) { return x < low || x > high ? 1 : 0; });
+  add({"P_moving_levels", ""},
+      [=](double x, double, double) { return x < low || x > high ? 1 : 0; });
   if (question.wants(Quantity::sticking) || question.wants(Quantity::averages)) {
     add(quantities::kPStick, stick);
     add(quantities::kPSlide, slide);

@@ -42,16 +42,15 @@ class Hitting {
  private:
   [[nodiscard]] bool is_edge(double x) const {
     const auto& noise = process_.noise;
-    return rest_ == StaticPhase::killing_edges &&
-           (x == noise.level(process_.static_index()) || x == noise.level(process_.lowest_static()));
+    return rest_ == StaticPhase::killing_edges && (x == noise.level(process_.static_index()) ||
+                                                   x == noise.level(process_.lowest_static()));
   }
 
   template <class Source>
   Means solve(Source source) {
     const auto& a = system_.a();
-    const auto u = system_.factors().solve(a.values([&](double x, double y, double) {
-      return source(x, y == 0);
-    }));
+    const auto u = system_.factors().solve(
+        a.values([&](double x, double y, double) { return source(x, y == 0); }));
     return {quantities::value_of(a.trace_at_exit(), u),
             quantities::value_of(a.trace_at_exit(operators::Branch::negative), u)};
   }

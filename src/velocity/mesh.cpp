@@ -36,7 +36,8 @@ double graded_end(const model::Process& process, const MeshRule& rule) {
 double upper_gap_below(const model::Process& process) {
   const auto& noise = process.noise;
   const int level = noise.last_up_to(process.friction.mu_d - process.bias);
-  for (int i = std::min(level + 1, noise.highest()); i >= std::max(level - 1, noise.lowest()); --i) {
+  for (int i = std::min(level + 1, noise.highest()); i >= std::max(level - 1, noise.lowest());
+       --i) {
     if (process.net_force(i) < 0) return -process.net_force(i);
   }
   return noise.step();
@@ -124,8 +125,9 @@ double end_of_thinnest_waves(const model::Process& process) {
 // beside the smooth part, so that they are followed up to 40 Lambda only.
 double wave_width(const model::Process& process, double omega, double v) {
   const double rate = process.noise.rate(), gap = gap_below(process);
-  const double slowest =
-      v < end_of_thinnest_waves(process) ? gap : std::max(gap + process.noise.step(), rate * v / 20);
+  const double slowest = v < end_of_thinnest_waves(process)
+                             ? gap
+                             : std::max(gap + process.noise.step(), rate * v / 20);
   return 4 * std::numbers::pi * slowest / std::min(omega, 40 * rate);
 }
 

@@ -22,10 +22,15 @@ struct Resolution {
   int levels = 0;                             ///< N, noise levels on each side of 0, if not a table
   noise::Grouping grouping;                   ///< of the noise levels
   std::shared_ptr<const noise::Nodes> noise;  ///< of that grouping; none: every level is a node
-  std::int64_t noise_nodes = 0;               ///< how many nodes of the noise there are
+  int table_levels = 0;                       ///< of a noise from a table
   double v_max = 0;                           ///< end of the velocity discretisation [velocity]
   int halves = 1;  ///< 1: reduced by symmetry, v > 0 only; 2: both signs of v
   options::Factors factors = options::Factors::own;
+
+  [[nodiscard]] std::int64_t noise_nodes() const {
+    if (noise) return noise->count();
+    return table_levels > 0 ? table_levels : 2LL * levels + 1;
+  }
 };
 
 /// Noise levels on each side of 0 whose tail beyond weighs less than `tolerance` against the level

@@ -9,8 +9,8 @@
 
 namespace stickslip::model {
 
-/// A chain on levels x_i, lowest() <= i <= highest(), that jumps to neighbouring levels. Its members
-/// are all that the discretisations and the simulation know of the noise. Two kinds:
+/// A chain on levels x_i, lowest() <= i <= highest(), that jumps to neighbouring levels. Its
+/// members are all that the discretisations and the simulation know of the noise. Two kinds:
 ///
 /// A discrete Ornstein-Uhlenbeck process (eq. (2.2) of the paper, with the factor x restored in
 /// alpha), x_i = i delta, |i| <= N, of standard deviation sigma, without its own 1/sqrt(tau):
@@ -19,15 +19,16 @@ namespace stickslip::model {
 ///   Lambda = 2 sigma^2/(tau delta^2),  alpha_i = (1 - delta x_i/(2 sigma^2))/2,
 ///   alpha_N = 0, alpha_-N = 1.
 ///
-/// It tends to the Ornstein-Uhlenbeck process as delta -> 0. With the full range N = 2 sigma^2/delta^2
-/// it is the Ehrenfest urn of 2N balls: a binomial distribution of variance sigma^2.
+/// It tends to the Ornstein-Uhlenbeck process as delta -> 0. With the full range N = 2
+/// sigma^2/delta^2 it is the Ehrenfest urn of 2N balls: a binomial distribution of variance
+/// sigma^2.
 ///
 /// Or the chain of a table.
 struct NoiseChain {
-  double tau = 1;                        ///< correlation time [time]
-  double delta = 1;                      ///< step of the noise [force]
-  int levels = 1;                        ///< N, number of levels on each side of 0
-  std::optional<double> deviation = {};  ///< sigma [force]
+  double tau = 1;                                ///< correlation time [time]
+  double delta = 1;                              ///< step of the noise [force]
+  int levels = 1;                                ///< N, number of levels on each side of 0
+  std::optional<double> deviation = {};          ///< sigma [force]
   std::shared_ptr<const LevelTable> table = {};  ///< what counts instead, if there is one
 
   [[nodiscard]] int lowest() const { return table ? table->lowest() : -levels; }
@@ -37,9 +38,13 @@ struct NoiseChain {
   [[nodiscard]] double level(int i) const { return table ? table->at(i).x : i * delta; }
   /// Rates of jumps from level i [1/time].
   [[nodiscard]] double up_rate(int i) const { return table ? table->at(i).up : rate() * up(i); }
-  [[nodiscard]] double down_rate(int i) const { return table ? table->at(i).down : rate() * down(i); }
+  [[nodiscard]] double down_rate(int i) const {
+    return table ? table->at(i).down : rate() * down(i);
+  }
   /// Rate of leaving level i; the largest of them, Lambda.
-  [[nodiscard]] double rate(int i) const { return table ? table->at(i).up + table->at(i).down : rate(); }
+  [[nodiscard]] double rate(int i) const {
+    return table ? table->at(i).up + table->at(i).down : rate();
+  }
   [[nodiscard]] double rate() const {
     return table ? table->rate() : 2 / (tau * delta * precision() * delta);
   }

@@ -33,10 +33,14 @@ struct Process {
   [[nodiscard]] int lowest_static() const {
     return noise.first_from(-friction.mirrored().mu_s - bias);
   }
-  /// Whether bodies at rest can start upwards: there is a level s+. A chain that ends at those that
-  /// stick has none, and excursions have one side.
-  [[nodiscard]] bool starts_upwards() const { return static_index() < noise.highest(); }
-  [[nodiscard]] bool starts_downwards() const { return lowest_static() > noise.lowest(); }
+  /// Whether bodies at rest can start upwards: there is a level s+. A table that ends at the levels
+  /// that stick has none, and excursions have one side.
+  [[nodiscard]] bool starts_upwards() const {
+    return !noise.table || static_index() < noise.highest();
+  }
+  [[nodiscard]] bool starts_downwards() const {
+    return !noise.table || lowest_static() > noise.lowest();
+  }
   /// x_i + g - mu_d: the speed of V at v = 0+ on level i.
   [[nodiscard]] double net_force(int i) const { return net_force_at(noise.level(i)); }
   /// The same for any x.

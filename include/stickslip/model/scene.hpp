@@ -13,9 +13,9 @@ namespace stickslip::model {
 /// The noise as the user gave it: word of -noise, and what belongs to it.
 struct NoiseChoice {
   std::string name = "ou";
-  std::optional<double> deviation = {};  ///< of "ou", if it has its own [force]
-  double amplitude = 0, rate = 0;        ///< of "telegraph" [force], [1/time]
-  std::string file = {};                 ///< of "file"
+  std::optional<double> deviation = {};          ///< of "ou", if it has its own [force]
+  double amplitude = 0, rate = 0;                ///< of "telegraph" [force], [1/time]
+  std::string file = {};                         ///< of "file"
   std::shared_ptr<const LevelTable> table = {};  ///< the levels of all but "ou"
 };
 
@@ -23,7 +23,7 @@ struct Scene {
   double tau = 1;        ///< noise correlation time [time]
   double delta = 0.125;  ///< noise step [force]
   NoiseChoice noise;
-  Friction friction;     ///< mu_s, mu_d [force]
+  Friction friction;  ///< mu_s, mu_d [force]
   std::string drag_name = "linear";
   std::string drag_expression;  ///< b(v) as text, of the law "expression"
   Drag drag;

@@ -31,9 +31,9 @@ struct Excursion {
   [[nodiscard]] double mean_excursion() const;  ///< E[tau_1] [time]
 
   /// Relative violation of an identity that holds exactly on every discretisation: by renewal,
-  /// the time spent on levels that do not stick is their probability times E[tau_1]. What is left is rounding, of the matrix
-  /// entries too, which residuals do not see. The square of lost_probability is added: scaling has
-  /// removed its first order.
+  /// the time spent on levels that do not stick is their probability times E[tau_1]. What is left
+  /// is rounding, of the matrix entries too, which residuals do not see. The square of
+  /// lost_probability is added: scaling has removed its first order.
   [[nodiscard]] double conservation_defect(const operators::Discretisation& discretisation) const;
 };
 
@@ -78,6 +78,9 @@ void append_noise_distribution(const model::Process& process, Results& results);
 /// dP_X_le_mu_s_dtau and dE_X2_dtau, at the number of levels of the process; nothing for a noise
 /// from a table. Local. O(N).
 void append_noise_sensitivity(const model::Process& process, Results& results);
+
+/// Leaves out the results that are about excursions from s+ or s- if the noise has no such level.
+void leave_out_missing_side(const model::Process& process, Results& results);
 
 /// The stationary distribution of X as the excursion sees it, summed over the grid, from the lowest
 /// level up; with symmetry halved for x and -x.
