@@ -22,6 +22,7 @@ velocity::MeshRule mesh_rule(const Resolution& resolution) {
   velocity::MeshRule rule;
   rule.v_max = resolution.v_max;
   rule.layers = resolution.layers;
+  rule.tolerance = std::pow(10.0, -(resolution.degree + 1));
   rule.rates = resolution.rates;
   rule.integrands = resolution.integrands;
   return rule;
@@ -54,13 +55,15 @@ double tilt(const model::Scene& scene) {
 }
 
 std::shared_ptr<velocity::VelocityDiscretisation>
-velocities_of(const model::Scene& scene, const Resolution& resolution, const model::Drag& drag) {
+velocities_of(const model::Scene& scene, const Resolution& resolution, bool mirrored = false) {
+  const auto process = scene.process(resolution.levels);
+  const model::Drag drag = mirrored ? process.drag.mirrored() : process.drag;
   if (resolution.scheme == options::Scheme::upwind) {
     const double spacing = upwind_step(scene) / resolution.points;
     const auto count = static_cast<int>(upwind_nodes(scene, resolution));
     return std::make_shared<velocity::UpwindDiscretisation>(spacing, count, drag);
   }
-  const auto ends = velocity::element_ends(scene.process(resolution.levels), mesh_rule(resolution));
+  const auto ends = velocity::element_ends(process, mesh_rule(resolution));
   return std::make_shared<velocity::HpDiscretisation>(ends, hp_degrees(scene, resolution), drag);
 }
 
@@ -150,9 +153,10 @@ Resolution exact_resolution(const model::Scene& scene, double tolerance) {
 operators::Discretisation discretise(const model::Scene& scene, const Resolution& resolution) {
   std::shared_ptr<velocity::VelocityDiscretisation> velocities;
   if (resolution.scheme != options::Scheme::none) {
-    velocities = velocities_of(scene, resolution, scene.drag);
-    if (!scene.drag.odd())
-      velocities->set_mirrored(velocities_of(scene, resolution, scene.drag.mirrored()));
+    velocities = velocities_of(scene, resolution);
+    if (!scene.process(1).drag.odd()) {
+      velocities->set_mirrored(velocities_of(scene, resolution, true));
+    }
   }
   return {scene.process(resolution.levels), std::move(velocities), resolution.noise};
 }
@@ -181,7 +185,7 @@ operators::FactorCost factor_cost(const model::Scene& scene, const Resolution& r
   if (factors != options::Factors::elements || n > countable) {
     return operators::sparse_cost(factors, r.scheme, n, noise);
   }
-  const auto velocities = velocities_of(scene, r, scene.drag);
+  const auto velocities = velocities_of(scene, r);
   const auto cost = operators::elimination_cost(
       scene.process(r.levels), dynamic_cast<const velocity::HpDiscretisation&>(*velocities),
       r.noise.get(), ranks);

@@ -32,6 +32,10 @@ std::string scene_line(const model::Scene& s) {
     const auto backwards = s.friction.mirrored();
     minus = fmt::format("   mu_s_minus = {:g}   mu_d_minus = {:g}", backwards.mu_s, backwards.mu_d);
   }
+  if (const auto& stribeck = s.friction.stribeck) {
+    minus += fmt::format("   stribeck_velocity = {:g}   stribeck_exponent = {:g}",
+                         stribeck->velocity, stribeck->exponent);
+  }
   const std::string bias = s.bias == 0 ? "" : fmt::format("   bias = {:g}", s.bias);
   return fmt::format("mu_s = {:g}   mu_d = {:g}{}   {}   drag {}{}\n", s.friction.mu_s,
                      s.friction.mu_d, minus, noise_text(s), drag, bias);

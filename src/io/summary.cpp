@@ -25,6 +25,11 @@ Json scene_json(const model::Scene& s) {
     scene["mu_s_minus"] = s.friction.mirrored().mu_s;
     scene["mu_d_minus"] = s.friction.mirrored().mu_d;
   }
+  if (const auto& stribeck = s.friction.stribeck) {
+    scene["friction"] = "stribeck";
+    scene["stribeck_velocity"] = stribeck->velocity;
+    scene["stribeck_exponent"] = stribeck->exponent;
+  }
   if (s.drag.law) {
     scene["drag_expression"] = s.drag_expression;
   } else {

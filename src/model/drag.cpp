@@ -32,7 +32,7 @@ double extrapolated_slope(const Drag& b) {
       best = row[m];
     }
   }
-  return std::min(best, 0.0);
+  return b.rises_until > 0 ? best : std::min(best, 0.0);
 }
 
 // Secants over intervals of one ratio down to the scale of rounding.
@@ -40,7 +40,7 @@ double steepest_secant(const Drag& b, double v) {
   double steepest = 0;
   for (int n = 0; n < 40 && v > 0; ++n) {
     const double below = 0.7 * v;
-    steepest = std::max(steepest, (b(below) - b(v)) / (v - below));
+    steepest = std::max(steepest, std::abs(b(below) - b(v)) / (v - below));
     v = below;
   }
   return steepest;
@@ -55,19 +55,23 @@ double integral(const Drag& b, double v) {
   return sum;
 }
 
-// Halving rather than a root finder: b may be constant from some velocity on.
+// Halving rather than a root finder: b may be constant from some velocity on. `pushed` tells the
+// sign of force + b at `low`, which is another one at `high`.
+double change_between(double low, double high, bool pushed, const Drag& b, double force) {
+  for (double middle = low + (high - low) / 2; low < middle && middle < high;
+       middle = low + (high - low) / 2) {
+    (force + b(middle) > 0 == pushed ? low : high) = middle;
+  }
+  return high;
+}
+
 double smallest_balance(const Drag& b, double force) {
-  const auto pushed = [&](double v) { return force + b(v) > 0; };
   double high = 0x1p-200;
-  while (pushed(high)) {
+  while (force + b(high) > 0) {
     high *= 2;
     if (high > 0x1p300) return kInfinity;
   }
-  double low = high / 2;
-  for (double middle = 0.75 * high; low < middle && middle < high; middle = (low + high) / 2) {
-    (pushed(middle) ? low : high) = middle;
-  }
-  return high;
+  return change_between(high / 2, high, true, b, force);
 }
 
 }  // namespace
@@ -91,13 +95,17 @@ bool Drag::bounds_velocity() const {
     const double far = (*this)(v);
     if (std::isnan(far)) continue;
     if (std::isinf(far)) return far < 0;
-    return far < 1.01 * (*this)(std::sqrt(v));
+    return far < 0 && far < 1.01 * (*this)(std::sqrt(v));
   }
   return false;
 }
 
 double Drag::terminal_velocity(double force) const {
   if (force <= 0) return 0;
+  if (rises_until > 0) {
+    const auto all = balances(force);
+    return all.empty() ? kInfinity : all.front();
+  }
   if (law) return smallest_balance(*this, force);
   if (!bounds_velocity()) return kInfinity;
   const auto net = [&](double v) { return force + (*this)(v); };
@@ -116,6 +124,20 @@ double Drag::terminal_velocity(double force) const {
   return v;
 }
 
+std::vector<double> Drag::balances(double force) const {
+  constexpr double smallest = 1e-30, fine = 1.01;
+  std::vector<double> found;
+  bool pushed = force > 0;
+  for (double low = smallest * rises_until, high = low; high < 0x1p300; low = high) {
+    high *= low < rises_until ? fine : 2;
+    if (force + (*this)(high) > 0 == pushed) continue;
+    found.push_back(change_between(low, high, pushed, *this, force));
+    pushed = !pushed;
+    if (!pushed && low >= rises_until) break;
+  }
+  return found;
+}
+
 std::optional<double> Drag::asymmetry() const {
   if (!law) return std::nullopt;
   constexpr double rounding = 1e-12;
@@ -132,7 +154,23 @@ std::optional<double> Drag::asymmetry() const {
 
 Drag Drag::mirrored() const {
   if (!law) return *this;
-  return {linear, cubic, [b = law](double v) { return -b(-v); }, reach, law_is_odd, breaks};
+  return {linear, cubic,      [b = law](double v) { return -b(-v); }, reach, law_is_odd,
+          breaks, rises_until};
+}
+
+Drag with_weakening(const Drag& drag, const Friction& friction) {
+  if (!friction.weakens()) return drag;
+  const Friction backwards = friction.mirrored();
+  constexpr double rounding = 40;  // exp(-40)
+  const auto& [velocity, exponent] = *friction.stribeck;
+  Drag sum = drag;
+  sum.law = [=](double v) {
+    return drag(v) + (v < 0 ? -backwards.weakening(-v) : friction.weakening(v));
+  };
+  sum.linear = sum.cubic = 0;
+  sum.law_is_odd = drag.odd() && friction.symmetric();
+  sum.rises_until = std::max(drag.rises_until, velocity * std::pow(rounding, 1 / exponent));
+  return sum;
 }
 
 }  // namespace stickslip::model

@@ -38,53 +38,50 @@ struct Side {
 };
 
 // Where `force` no longer accelerates, with as much again for steps that overshoot; or where
-// exp(-(mu_d - |bias|) v + int b), which bounds the density, is below exp(-51) of its largest
-// value.
-double reach_of(const Side& b, double force, double mu_d, double bias) {
-  constexpr double drop = 51, ratio = 1.02, far = 1e6;
-  const double slope = mu_d - std::abs(bias);
-  double left = drop;
-  double v = 1e-12 / mu_d;
-  while (v < far / mu_d || slope > 0) {
+// exp(-int (F - |bias| - b)), which bounds the density, is below exp(-51) of its largest value.
+double reach_of(const Side& b, double force, const Friction& friction, double bias) {
+  constexpr double drop = 51, ratio = 1.02, far = 1e6, farthest = 1e100;
+  const double mu_d = friction.mu_d;
+  double left = drop, held = 0;
+  bool holds = true;
+  for (double v = 1e-12 / mu_d; v < far / mu_d || (holds && v < farthest); v *= ratio) {
     const double drag = -b(v);
     if (force <= drag) return 2 * v;
-    left = std::min(drop, left - (slope + drag) * v * (1 - 1 / ratio));
-    if (left < 0 || slope * v > drop) return v;
-    v *= ratio;
+    const double slope = friction(v) - std::abs(bias) + drag;
+    left = std::min(drop, left - slope * v * (1 - 1 / ratio));
+    if (left < 0) return v;
+    holds = slope > 0;
+    if (holds) held = v;
   }
-  throw UnfitLaw(fmt::format("does not hold a body that the bias {:g} drives: it is {:g} at "
-                             "v = {:g}, and friction takes {:g}",
-                             bias, b.sign * b(far / mu_d) + 0.0, b.sign * far / mu_d, mu_d),
-                 "take a smaller bias, or a drag that grows");
-}
-
-std::vector<double> even_places(double reach, int count) {
-  std::vector<double> v;
-  for (int n = 0; n <= count; ++n) v.push_back(reach * n / count);
-  return v;
+  const std::string driven =
+      bias == 0 ? fmt::format("drives a body for ever from about v = {:.2g} on", b.sign * held)
+                : fmt::format("does not hold a body that the bias {:g} drives", bias);
+  throw UnfitLaw(fmt::format("{}: it is {:g} at v = {:g}, and friction takes {:g}", driven,
+                             b.sign * b(far / mu_d) + 0.0, b.sign * far / mu_d, mu_d),
+                 "check the signs, as in \"-v - 0.1*v*abs(v)\"; take a smaller bias, or a drag "
+                 "that grows");
 }
 
 // Evenly spaced, and in even ratios down to 1e-10 of the reach.
 std::vector<double> places(double reach) {
   constexpr int even = 2000, ratios = 1000;
-  auto v = even_places(reach, even);
+  std::vector<double> v;
+  for (int n = 0; n <= even; ++n) v.push_back(reach * n / even);
   for (int n = 1; n < ratios; ++n) v.push_back(reach * std::pow(1e-10, n * 1.0 / ratios));
   std::sort(v.begin(), v.end());
   return v;
 }
 
-void require_falling(const Side& b, const std::vector<double>& v, double mu_d) {
-  for (std::size_t n = 1; n < v.size(); ++n) {
-    const double before = b(v[n - 1]), after = b(v[n]);
-    if (after <= before + kRounding * (std::abs(before) + mu_d)) continue;
-    const double low = b.sign * v[n - 1] + 0.0, high = b.sign * v[n];  // 0, not -0
-    throw UnfitLaw(fmt::format("{} from {:.9g} at v = {:.9g} to {:.9g} at v = {:.9g}; drag must "
-                               "not grow with the velocity, it would drive the body",
-                               b.sign > 0 ? "grows" : "falls", b.sign * before, low, b.sign * after,
-                               high),
-                   "check the signs, as in \"-v - 0.1*v*abs(v)\"; friction that weakens with "
-                   "speed is no drag");
+// Looks at all places: b must be finite there.
+bool rises(const Side& b, double reach, double mu_d) {
+  bool found = false;
+  double before = 0;
+  for (double v : places(reach)) {
+    const double now = b(v);
+    found = found || now > before + kRounding * (std::abs(before) + mu_d);
+    before = now;
   }
+  return found;
 }
 
 [[noreturn]] void refuse_slope(const Side& b, double v, double slope) {
@@ -99,7 +96,9 @@ void require_falling(const Side& b, const std::vector<double>& v, double mu_d) {
 void require_slope_at_rest(const Side& b, double reach) {
   const double far = 1e-8 * std::min(reach, 1.0), near = far / 100;
   const double slope = -b(near) / near, before = -b(far) / far;
-  if (slope > 1.02 * before && slope > 1e-6) refuse_slope(b, near, slope);
+  if (std::abs(slope) > 1.02 * std::abs(before) && std::abs(slope) > 1e-6) {
+    refuse_slope(b, near, slope);
+  }
 }
 
 // Kinks have the order 1, rounding apart. What is left of a jump nearby is all of it.
@@ -115,12 +114,6 @@ void require_bounded_slope(const Side& b, const Break& at) {
                   "can hold a body, and no density shows how long",
                   b.sign * before, b.sign * after, b.sign * at.v),
       "smooth it, for example tanh((v - 0.5)/0.01) for sign(v - 0.5)");
-}
-
-void require_sound(const Side& b, double reach, double mu_d) {
-  require_falling(b, even_places(reach, 50), mu_d);  // tells of plain mistakes where they are seen
-  require_falling(b, places(reach), mu_d);
-  require_slope_at_rest(b, reach);
 }
 
 // Kinks, on either side.
@@ -159,12 +152,18 @@ Drag parse_drag(const std::string& text, const Friction& friction, double tau, d
                 double bias) {
   const Expression b = read(text, friction, tau);
   Drag drag{0, 0, [b](double v) { return b({v}); }, 0};
-  const double mu_d = std::min(friction.mu_d, friction.mirrored().mu_d);
+  const Friction backwards = friction.mirrored();
+  const double mu_d = std::min(friction.mu_d, backwards.mu_d);
+  const Friction least{std::min(friction.mu_s, backwards.mu_s), mu_d, {}, {}, friction.stribeck};
   require_zero_at_rest(drag, mu_d);
   for (double sign : {1.0, -1.0}) {
-    drag.reach = std::max(drag.reach, reach_of({drag, sign}, force, mu_d, bias));
+    drag.reach = std::max(drag.reach, reach_of({drag, sign}, force, least, bias));
   }
-  for (double sign : {1.0, -1.0}) require_sound({drag, sign}, drag.reach, mu_d);
+  for (double sign : {1.0, -1.0}) {
+    const Side side{drag, sign};
+    if (rises(side, drag.reach, mu_d)) drag.rises_until = drag.reach;
+    require_slope_at_rest(side, drag.reach);
+  }
   drag.law_is_odd = !drag.asymmetry();
   auto numbers = numbers_in(text);
   numbers.insert(numbers.end(), {friction.mu_s, friction.mu_d, tau});

@@ -130,6 +130,15 @@ class Examination {
 
 }  // namespace
 
+Observable friction_power(const Friction& friction) {
+  return {"friction_power",
+          [along = friction, backwards = friction.mirrored()](double, double, double v) {
+            return v > 0 ? along(v) * v : -backwards(-v) * v;
+          },
+          {},
+          !friction.weakens()};
+}
+
 void examine(Observable& f, const std::vector<double>& x, double step, double reach) {
   Examination examination(f, reach);
   constexpr std::array signs{1.0, -1.0};

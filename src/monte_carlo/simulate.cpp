@@ -56,9 +56,14 @@ checkpoint::Identity identity(const Case& given) {
     }
     found.emplace_back("-noise", std::move(levels));
   }
+  if (const auto& stribeck = s.friction.stribeck) {
+    found.emplace_back("-friction", "stribeck");
+    found.emplace_back("-stribeck_velocity", text(stribeck->velocity));
+    found.emplace_back("-stribeck_exponent", text(stribeck->exponent));
+  }
   found.emplace_back("-bias", text(s.bias));
   found.emplace_back("-seed", text(given.method.seed));
-  const auto wanted = wanted_of(given.question);
+  const auto wanted = wanted_of(given.question, s.process(1));
   const auto add = [&](const char* name, const auto& values) {
     found.emplace_back(name, values.empty() ? "none" : fmt::format("{}", fmt::join(values, ",")));
   };
@@ -96,7 +101,7 @@ class Campaign {
         question_(given.question),
         progress_(progress),
         process_(given.scene.meant()),
-        wanted_(wanted_of(given.question)),
+        wanted_(wanted_of(given.question, process_)),
         sampler_(process_, wanted_),
         tally_(sampler_.empty()) {
     if (file.empty()) return;

@@ -142,8 +142,9 @@ class Estimates {
       }
     }
     scalar({"slip_rate", "1/time"}, tally_.slip_rate());
-    scalar({"friction_power", "force*velocity"},
-           tally_.mean_of_speeds(friction.mu_d, friction.mirrored().mu_d));
+    scalar(quantities::kFrictionPower,
+           friction.weakens() ? tally_.averages(question_.observables.size())[0].second
+                              : tally_.mean_of_speeds(friction.mu_d, friction.mirrored().mu_d));
   }
 
   void append_hitting_distribution() {
@@ -246,7 +247,7 @@ class Estimates {
 
 }  // namespace
 
-simulation::Wanted wanted_of(const options::Question& question) {
+simulation::Wanted wanted_of(const options::Question& question, const model::Process& process) {
   const auto wants = [&](Quantity q) { return question.wants(q); };
   simulation::Wanted wanted;
   wanted.moments = wants(Quantity::moments) || wants(Quantity::averages);
@@ -258,6 +259,9 @@ simulation::Wanted wanted_of(const options::Question& question) {
   }
   if (wants(Quantity::averages) || wants(Quantity::resolvent) || wants(Quantity::expectation)) {
     wanted.observables = question.observables;
+  }
+  if (wants(Quantity::averages) && process.friction.weakens()) {  // after all that are asked for
+    wanted.observables.push_back(model::friction_power(process.friction));
   }
   if (wants(Quantity::resolvent)) wanted.discount = question.lambda;
   if (wants(Quantity::expectation)) wanted.start = question.start;

@@ -7,7 +7,8 @@
 
 namespace stickslip::monte_carlo {
 
-[[nodiscard]] simulation::Wanted wanted_of(const options::Question& question);
+[[nodiscard]] simulation::Wanted wanted_of(const options::Question& question,
+                                           const model::Process& process);
 
 /// Local.
 [[nodiscard]] quantities::Results estimates(const options::Question& question,

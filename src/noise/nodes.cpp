@@ -17,7 +17,7 @@ class SpecialPoints {
     const auto& noise = process.noise;
     const auto mirrored = process.mirrored();
     const auto standing = [](const model::Process& half) {
-      return half.noise.place(half.friction.mu_d - half.bias);
+      return half.noise.place(half.friction.at_rest() - half.bias);
     };
     const double mu_s = process.friction.mu_s;
     graded_ = {standing(process), -standing(mirrored), process.static_index() + 0.5,

@@ -144,7 +144,7 @@ class RowAssembler {
     const Side& here = side(s.half);
     const double net_force = here.process.net_force_at(here.noise.x(s.noise));
     rate_to(node(s.half, s.noise, 0),
-            here.velocities.origin_rate(derivative_ ? speed_change(s.half).net_force : net_force));
+            here.velocities.origin_rate(derivative_ ? speed_change(s.half)(0) : net_force));
     for_each_jump(s.half, s.noise, [&](int to, double rate) {
       if (states_.has_origin(s.half, to)) {
         rate_to(states_.index({StateKind::origin, s.half, to, 0}), rate);
@@ -275,14 +275,27 @@ class RowAssembler {
   }
   [[nodiscard]] double reflection() const { return states_.symmetry() == Symmetry::odd ? -1 : 1; }
   [[nodiscard]] velocity::SpeedChange speed_change(Branch half) const {
-    const bool own = half == Branch::negative && upper_.process.friction.mu_d_minus.has_value();
+    const auto& given = upper_.process.friction;
+    const bool lower = half == Branch::negative, own = lower && given.mu_d_minus.has_value();
+    const model::Friction along = side(half).process.friction;
     switch (*derivative_) {
-    case Parameter::mu_d: return {own ? 0.0 : -1.0, 0};
-    case Parameter::mu_d_minus: return {own ? -1.0 : 0.0, 0};
-    case Parameter::tau: return {0, 0};
-    case Parameter::drag_coefficient: return {0, -1};
+    case Parameter::mu_d:
+      if (!own) return [along](double v) { return -along.share(v); };
+      break;
+    case Parameter::mu_d_minus:
+      if (own) return [along](double v) { return -along.share(v); };
+      break;
+    case Parameter::mu_s:
+      if (!lower || !given.mu_s_minus) return [along](double v) { return along.share(v) - 1; };
+      break;
+    case Parameter::stribeck_velocity:
+      return [along](double v) {
+        return (along.mu_s - along.mu_d) * along.stribeck->share_by_velocity(v);
+      };
+    case Parameter::tau: break;
+    case Parameter::drag_coefficient: return [](double v) { return -v; };
     }
-    return {};
+    return [](double) { return 0.0; };
   }
 
   std::optional<Parameter> derivative_;

@@ -41,6 +41,7 @@ class SceneReader {
     };
     scene_.friction.mu_s_minus = by_direction("mu_s_minus");
     scene_.friction.mu_d_minus = by_direction("mu_d_minus");
+    if (meaning(kFrictionLaws, settings_.text("friction"))) read_stribeck();
     scene_.drag_name = settings_.text("drag");
     scene_.drag = {drag_law_.linear ? settings_.real("drag_coefficient") : 0,
                    drag_law_.cubic ? settings_.real("drag_cubic") : 0};
@@ -78,6 +79,15 @@ class SceneReader {
     } else if (settings_.given("noise_deviation")) {
       noise.deviation = settings_.real("noise_deviation");
     }
+  }
+
+  void read_stribeck() {
+    if (!settings_.given("stribeck_velocity")) {
+      return report("friction", "needs the speed at which friction weakens",
+                    "add for example -stribeck_velocity 0.1");
+    }
+    scene_.friction.stribeck = {settings_.real("stribeck_velocity"),
+                                settings_.real("stribeck_exponent")};
   }
 
   void check_friction() {

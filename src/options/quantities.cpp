@@ -115,7 +115,7 @@ bool is_composed_key(const std::string& key) {
     return of.contains(key.substr(0, open));
   }
   for (const std::string_view parameter :
-       {"_dmu_d", "_dmu_d_minus", "_dtau", "_ddrag_coefficient"}) {
+       {"_dmu_d", "_dmu_d_minus", "_dmu_s", "_dstribeck_velocity", "_dtau", "_ddrag_coefficient"}) {
     if (!key.starts_with('d') || !key.ends_with(parameter)) continue;
     const std::size_t ends = 1 + parameter.size();
     if (key.size() > ends && asked_by(key.substr(1, key.size() - ends))) return true;

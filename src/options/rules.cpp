@@ -41,6 +41,7 @@ class Rules {
     const Route route = r_.method.route;
     const bool hp = r_.method.scheme == Scheme::hp, queue = route == Route::fluid_queue;
     const bool direct = r_.method.spectrum_solver == SpectrumSolver::direct;
+    const bool weakens = meaning(kFrictionLaws, settings_.text("friction"));
     const std::string no_choice = "is no choice of -route " + settings_.text("route");
     refuse({"drag_expression"}, !drag_law_.expression,
            "is not the drag, which is that of -drag " + r_.scene.drag_name,
@@ -52,9 +53,11 @@ class Rules {
              "is not of the noise, which is that of -noise " + r_.scene.noise.name,
              "name its -noise, or leave it out");
     }
-    refuse({"route"}, queue && !r_.scene.drag.is_none(),
-           "needs b = 0: only then is the model a fluid queue",
-           "add -drag none, or take -route excursion");
+    refuse({"stribeck_velocity", "stribeck_exponent"}, !weakens, "belongs to -friction stribeck",
+           "add -friction stribeck, or leave it out");
+    refuse({"route"}, queue && !r_.scene.process(1).drag.is_none(),
+           "needs b = 0 and Coulomb friction: only then is the model a fluid queue",
+           "add -drag none, leave -friction out, or take -route excursion");
     refuse({"v_max"}, route != Route::excursion, no_choice,
            "leave it out, or take -route excursion");
     refuse({"scheme", "degree", "layers", "noise_degree", "noise_grading", "p"},

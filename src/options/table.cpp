@@ -78,8 +78,16 @@ std::vector<Option> scene_options() {
            "dynamic friction coefficient while v < 0, at most mu_s_minus; that of -mu_d unless "
            "given",
            "for sliding without friction take a small value such as 1e-8"),
+      choice("friction", "coulomb", words_of(kFrictionLaws),
+             "friction of a sliding body: mu_d at every speed, or mu_d + (mu_s - mu_d) "
+             "exp(-(|v|/v_s)^gamma), by direction as these are"),
+      real("stribeck_velocity", "velocity", "", positive(),
+           "v_s of -friction stribeck, the speeds within which friction falls from mu_s to mu_d",
+           "for a fall at once take -friction coulomb"),
+      real("stribeck_exponent", "", "1", positive(), "gamma of -friction stribeck",
+           "take 1, or 2 for friction that is flat at rest"),
       choice(
-          "noise", "ou", words_of(kNoises),
+          "noise", "ou", {"ou", "telegraph", "file"},
           "the noise X: ou, an Ornstein-Uhlenbeck process on the levels of -delta; telegraph, two "
           "values; file, any birth-death chain"),
       real("tau", "time", "1", positive(), "correlation time of -noise ou",
@@ -112,9 +120,9 @@ std::vector<Option> scene_options() {
            "the drag must not grow with the velocity, it would drive the body"),
       text("drag_expression", "",
            "b(v) of -drag expression in v, mu_s, mu_d, tau, such as \"-v - 0.1*v*abs(v)\"; 0 at "
-           "rest, falling everywhere with bounded slopes (kinks are fine, jumps not); where it is "
-           "not "
-           "odd, both signs of v are kept, as with a bias"),
+           "rest, with bounded slopes (kinks are fine, jumps not). It may rise where drag and "
+           "friction together still slow a fast body; where it is not odd, both signs of v are "
+           "kept, as with a bias"),
       real("bias", "force", "0", {-kInfinity, kInfinity, false, false},
            "constant force added to X, such as the slope of an inclined plane; without symmetry "
            "both signs of v are kept, and everything can be asked for all the same",
@@ -130,7 +138,7 @@ std::vector<Option> question_options() {
       list("quantities", "sticking,moments,noise_law", words_of(quantity_table()),
            "comma list. sticking: P_stick, P_slide, mean_stick, mean_slide, mean_excursion. "
            "moments: E_V2, E_absV, E_XV, E_V. averages: pi(f), pi(f|stick), pi(f|slide) for each "
-           "-observable f, slip_rate = 1/mean_excursion, friction_power = E[mu_d |V|]. noise_law: "
+           "-observable f, slip_rate = 1/mean_excursion, friction_power = E[F(V) |V|]. noise_law: "
            "P_X_le_mu_s, E_X2. entry_law: the level at which a slide from s+ ends (an array; "
            "without symmetry also entry_law_minus, from s-), f_stick_0. density: the stationary "
            "law as a field "
@@ -148,8 +156,9 @@ std::vector<Option> question_options() {
            "-horizon, to -output or -trajectory. sensitivity: derivatives of every scalar of "
            "sticking, moments and noise_law, as far as these are asked for, with respect to mu_d, "
            "mu_d_minus (if given), tau (at a fixed number of noise levels) and drag_coefficient, "
-           "by adjoints: "
-           "dP_stick_dmu_d and so on; between two noise levels nothing depends on mu_s"),
+           "with -friction stribeck also mu_s and stribeck_velocity, by adjoints: "
+           "dP_stick_dmu_d and so on; between two noise levels the static threshold changes "
+           "nothing"),
       arguments(
           "lambda", "1/time",
           "values of lambda, as a,b,c or first:last:count or first:last:count:log. With -route "

@@ -24,7 +24,8 @@ inline constexpr Word<DragLaw> kDragLaws[] = {{"linear", {true, false, false}},
                                               {"none", {false, false, false}},
                                               {"cubic", {true, true, false}},
                                               {"expression", {false, false, true}}};
-inline constexpr Word<int> kNoises[] = {{"ou", 0}, {"telegraph", 1}, {"file", 2}};
+/// Whether friction weakens with the speed.
+inline constexpr Word<bool> kFrictionLaws[] = {{"coulomb", false}, {"stribeck", true}};
 inline constexpr Word<Scheme> kSchemes[] = {{"hp", Scheme::hp}, {"upwind", Scheme::upwind}};
 inline constexpr Word<SpectrumSolver> kSpectrumSolvers[] = {{"krylov", SpectrumSolver::krylov},
                                                             {"direct", SpectrumSolver::direct}};

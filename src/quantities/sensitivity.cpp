@@ -26,6 +26,8 @@ Naming naming(Parameter parameter) {
   switch (parameter) {
   case Parameter::mu_d: return {"mu_d", "force"};
   case Parameter::mu_d_minus: return {"mu_d_minus", "force"};
+  case Parameter::mu_s: return {"mu_s", "force"};
+  case Parameter::stribeck_velocity: return {"stribeck_velocity", "velocity"};
   case Parameter::tau: return {"tau", "time"};
   case Parameter::drag_coefficient: return {"drag_coefficient", "1/time"};
   }
@@ -90,6 +92,9 @@ std::vector<Parameter> parameters_of(const model::Scene& scene) {
   std::vector<Parameter> parameters{Parameter::mu_d};
   if (!scene.noise.table) parameters.push_back(Parameter::tau);
   if (scene.friction.mu_d_minus) parameters.push_back(Parameter::mu_d_minus);
+  if (scene.friction.stribeck) {
+    parameters.insert(parameters.end(), {Parameter::mu_s, Parameter::stribeck_velocity});
+  }
   if (scene.drag_name == "linear" || scene.drag_name == "cubic") {
     parameters.push_back(Parameter::drag_coefficient);
   }

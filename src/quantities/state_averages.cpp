@@ -50,14 +50,6 @@ Integral integral(const StationaryDistribution& distribution, double defect,
 
 }  // namespace
 
-model::Observable friction_power(const model::Process& process) {
-  const double mu_d = process.friction.mu_d, backwards = process.friction.mirrored().mu_d;
-  return {"friction_power",
-          [=](double, double, double v) { return v > 0 ? mu_d * v : -backwards * v; },
-          {},
-          true};
-}
-
 void append_averages(const StationaryDistribution& distribution, const KolmogorovOperator& a,
                      const std::vector<model::Observable>& observables, Results& results) {
   const double defect = distribution.excursion().conservation_defect(distribution.discretisation());
@@ -79,7 +71,8 @@ void append_averages(const StationaryDistribution& distribution, const Kolmogoro
     append("|stick", sum.stick / stick);
     append("|slide", sum.slide / slide);
   }
-  const Integral power = integral(distribution, defect, a, friction_power(distribution.process()));
+  const Integral power =
+      integral(distribution, defect, a, model::friction_power(distribution.process().friction));
   results.push_back(scalar(kFrictionPower, power.slide / excursion));
   results.push_back(scalar(kSlipRate, Uncertain{1, 0} / excursion));
 }

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "stickslip/model/noise_chain.hpp"
-#include "stickslip/quantities/state_averages.hpp"
 
 namespace stickslip::routes {
 namespace {
@@ -59,7 +58,7 @@ std::vector<Average> averages(const Setting& setting) {
     given("|stick", stick, kStick);
     given("|slide", slide, kSlide);
   }
-  add(quantities::kFrictionPower, quantities::friction_power(process).value);
+  add(quantities::kFrictionPower, model::friction_power(process.friction).value);
   return all;
 }
 

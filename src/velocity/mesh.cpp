@@ -5,19 +5,21 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <set>
 
 namespace stickslip::velocity {
 namespace {
 
-// Local decay rate of log-density in white noise, -d/dv log exp(-mu_d v + int b) = mu_d - b(v). A
-// bias g changes it by -g on one half line and by g on the other; elements serve both.
+// Local decay rate of log-density in white noise, -d/dv log exp(-int (F - b)) = F(v) - b(v), or of
+// its growth. A bias g changes it by -g on one half line and by g on the other; elements serve
+// both.
 double decay_rate(const model::Process& process, double v) {
   const double drag =
       process.drag.odd() ? -process.drag(v) : std::max(-process.drag(v), process.drag(-v));
-  const double mu_d = process.friction.mu_d;
-  return std::max(mu_d, process.friction.mu_d_minus.value_or(mu_d)) + std::abs(process.bias) + drag;
+  const double rest = std::max(process.friction.at_rest(), process.friction.mirrored().at_rest());
+  return std::abs(rest + drag) + std::abs(process.bias);
 }
 
 // Where geometric growth stops because an element would span more than `decay` of log-density.
@@ -31,11 +33,11 @@ double graded_end(const model::Process& process, const MeshRule& rule) {
   return bracket.first;
 }
 
-// Distance from mu_d - g down to the nearest level below it, for levels that can come to rest on
+// Distance from F(0+) - g down to the nearest level below it, for levels that can come to rest on
 // the upper half line.
 double upper_gap_below(const model::Process& process) {
   const auto& noise = process.noise;
-  const int level = noise.last_up_to(process.friction.mu_d - process.bias);
+  const int level = noise.last_up_to(process.friction.at_rest() - process.bias);
   for (int i = std::min(level + 1, noise.highest()); i >= std::max(level - 1, noise.lowest());
        --i) {
     if (process.net_force(i) < 0) return -process.net_force(i);
@@ -48,6 +50,14 @@ double gap_below(const model::Process& process) {
   return std::min(upper_gap_below(process), upper_gap_below(process.mirrored()));
 }
 
+// Where the drag has changed the speed of the level at the distance `gap` below rest by as much: on
+// the scale of its slope at rest c = -b'(0), or where a rising law first balances it.
+double speed_of_bend(const model::Drag& drag, double gap) {
+  if (drag.rises_until == 0) return gap / std::abs(drag.slope_at_rest());
+  const auto balances = drag.balances(-gap);
+  return balances.empty() ? std::numeric_limits<double>::infinity() : balances.front();
+}
+
 // At lambda = 0 two layers can form at v = 0. The kinetic layer around x = mu_d mixes levels delta
 // apart, at speeds about delta, in the time 1/Lambda between jumps: 0.6 delta/Lambda is fine enough
 // at every degree tried. A level at a distance g below mu_d comes to rest
@@ -56,12 +66,11 @@ double gap_below(const model::Process& process) {
 double free_layer(const model::Process& process) {
   const auto& noise = process.noise;
   const double kinetic = 0.6 * noise.step() / noise.rate();
-  double slope = -process.drag.slope_at_rest();
-  if (!process.drag.odd()) slope = std::max(slope, -process.drag.mirrored().slope_at_rest());
-  if (slope == 0) return kinetic;
-  const double rest = gap_below(process) / slope;
+  const double gap = gap_below(process);
+  double rest = speed_of_bend(process.drag, gap);
+  if (!process.drag.odd()) rest = std::min(rest, speed_of_bend(process.drag.mirrored(), gap));
   if (rest >= kinetic) return kinetic;
-  const double left = std::log(rest / kinetic) * noise.rate() / slope;
+  const double left = std::log(rest / kinetic) * noise.rate() * rest / gap;
   return left < std::log(1e-16) ? kinetic : rest;
 }
 
@@ -90,13 +99,18 @@ double speed_of_leaving(const model::Process& process) {
 }
 
 // log of the stationary density of white noise on the upper half line, exp(-slope v + int b) with
-// slope = mu_d - bias, against its largest value.
+// slope = F(0+) - bias, against its largest value.
 struct LogDensity {
   explicit LogDensity(const model::Process& process)
-      : drag(process.drag),
-        slope(process.friction.mu_d - process.bias),
-        peak(drag.terminal_velocity(-slope)),
-        highest(-slope * peak + drag.potential(peak)) {}
+      : drag(process.drag), slope(process.friction.at_rest() - process.bias) {
+    if (drag.rises_until == 0) {
+      extrema = {drag.terminal_velocity(-slope)};
+    } else {
+      extrema = drag.balances(-slope);
+      extrema.insert(extrema.begin(), 0);
+    }
+    for (double v : extrema) highest = std::max(highest, -slope * v + drag.potential(v));
+  }
   /// Raised by `by`.
   [[nodiscard]] double operator()(double v, double by = 0) const {
     return by - highest - slope * v + drag.potential(v);
@@ -104,8 +118,10 @@ struct LogDensity {
 
   model::Drag drag;
   double slope;
-  double peak;  // a bias beyond mu_d moves it to where drag balances it
-  double highest;
+  // Rising. A bias beyond mu_d moves the peak to where drag balances it; where the whole force
+  // weakens there may be several, and minima between them.
+  std::vector<double> extrema;
+  double highest = -std::numeric_limits<double>::infinity();
 };
 
 bool has_waves(const model::Process& process, const MeshRule& rule) {
@@ -150,6 +166,72 @@ std::vector<double> cut_for_waves(const model::Process& process, double omega,
 
 }  // namespace
 
+namespace {
+
+// How many elements, graded towards a place where the solution is like |v - v*|^power, leave an
+// error below the tolerance: that of the smallest one is its length to the power + 1.
+int layers_towards(double power, const MeshRule& rule) {
+  const double needed = std::log(rule.tolerance) / ((1 + power) * std::log(rule.ratio));
+  return std::max(1, static_cast<int>(std::ceil(needed)));
+}
+
+constexpr double kSmooth = 10;  // powers from which on elements of any length do
+
+// The power in v with which solutions are rough below all other scales, kSmooth at most. A level of
+// no net force there is left at the rate Lambda as by a speed b'(0) v, or at once where b is like a
+// root of v.
+double power_at_rest(const model::Process& process) {
+  const auto& friction = process.friction;
+  const double exponent = friction.weakens() ? friction.stribeck->exponent : 1;
+  const bool whole = exponent == std::round(exponent);
+  const double power = whole ? kSmooth : 1 + exponent;
+  const double slope = process.drag.slope_at_rest();
+  if (process.drag.rises_until == 0 || process.net_force(process.static_index()) != 0) return power;
+  if (exponent < 1) return 1 - exponent;
+  return slope > 0 && exponent == 1 ? std::min(kSmooth, process.noise.rate() / slope) : power;
+}
+
+/// Elements towards a place, by place.
+using Layers = std::map<double, int>;
+
+// Where a level does not move but is left for both sides, at speeds beta (v - v*) with beta > 0:
+// solutions are like |v - v*|^(Lambda/beta).
+void add_partings(const model::Process& process, const MeshRule& rule, Layers& partings) {
+  constexpr double fine = 1.01, smallest = 1e-12;
+  const auto& [noise, friction, drag, bias] = process;
+  const double end = std::min(rule.v_max, drag.rises_until), rest = friction.at_rest() - bias;
+  for (double low = smallest * end, high = fine * low; low < end; low = high, high *= fine) {
+    const double from = drag(low), rise = drag(high) - from;
+    const double power = noise.rate() * (high - low) / rise;
+    if (!(rise > 0) || power > kSmooth) continue;
+    const double level = std::floor((rest - from) / noise.delta);
+    for (int i = static_cast<int>(std::clamp<double>(level, -noise.levels, noise.levels));
+         process.net_force(i) + from + rise > 0; --i) {
+      const auto speed = [&](double v) { return process.net_force(i) + drag(v); };
+      std::uintmax_t iterations = 200;
+      if (speed(low) <= 0) {
+        const double v =
+            boost::math::tools::toms748_solve(
+                speed, low, high, boost::math::tools::eps_tolerance<double>(52), iterations)
+                .first;
+        if (v < rule.v_max) partings[v] = layers_towards(power, rule);
+      }
+      if (i == -noise.levels) break;
+    }
+  }
+}
+
+// On both half lines, which share the elements.
+Layers partings(const model::Process& process, const MeshRule& rule) {
+  Layers all;
+  if (process.drag.rises_until == 0) return all;
+  add_partings(process, rule, all);
+  if (!process.symmetric()) add_partings(process.mirrored(), rule, all);
+  return all;
+}
+
+}  // namespace
+
 // Grading with one ratio down to the finest layer resolves exponentials of every scale alike, so
 // that a large lambda asks for more elements at v = 0 and for none above.
 double smallest_scale(const model::Process& process, double lambda) {
@@ -159,7 +241,10 @@ double smallest_scale(const model::Process& process, double lambda) {
 
 int natural_layers(const model::Process& process, const MeshRule& rule) {
   const double span = graded_end(process, rule) / smallest_scale(process, rule.rates.lambda);
-  return span <= 1 ? 1 : 1 + static_cast<int>(std::ceil(std::log(span) / -std::log(rule.ratio)));
+  const int smooth =
+      span <= 1 ? 1 : 1 + static_cast<int>(std::ceil(std::log(span) / -std::log(rule.ratio)));
+  const double power = std::min(power_at_rest(process), power_at_rest(process.mirrored()));
+  return power < kSmooth ? smooth + layers_towards(power, rule) : smooth;
 }
 
 namespace {
@@ -180,15 +265,16 @@ std::vector<double> regular_ends(const model::Process& process, const MeshRule& 
 }
 
 // A regular end that would leave a sliver beside a break gives way to it.
-std::set<double> with_breaks(const std::vector<double>& regular,
-                             const std::vector<double>& breaks) {
+std::set<double> with_breaks(const std::vector<double>& regular, const Layers& breaks) {
   constexpr double sliver = 0.2;
-  std::set<double> ends(breaks.begin(), breaks.end());
+  std::set<double> ends;
+  for (const auto& [v, layers] : breaks) ends.insert(v);
   for (std::size_t n = 0; n < regular.size(); ++n) {
     const bool inner = n > 0 && n + 1 < regular.size();
     const double least = inner ? sliver * (regular[n] - regular[n - 1]) : 0;
-    const bool gives_way = std::any_of(breaks.begin(), breaks.end(),
-                                       [&](double b) { return std::abs(b - regular[n]) < least; });
+    const bool gives_way = std::any_of(breaks.begin(), breaks.end(), [&](const auto& b) {
+      return std::abs(b.first - regular[n]) < least;
+    });
     if (!gives_way) ends.insert(regular[n]);
   }
   return ends;
@@ -198,15 +284,14 @@ std::set<double> with_breaks(const std::vector<double>& regular,
 // the noise changes at once: layers as at v = 0, but weak, as nothing comes to rest there. Without
 // two elements for them on either side errors fell twofold a degree (tenfold with them), at delta =
 // 1/2 as at 1/64. Elements short beside v need none.
-std::set<double> graded_towards(const std::vector<double>& breaks, double ratio,
-                                const std::set<double>& ends) {
-  constexpr int layers = 2;
+constexpr int kLayersAtBreaks = 2;
+std::set<double> graded_towards(const Layers& breaks, double ratio, const std::set<double>& ends) {
   constexpr double is_short = 0.5;
   std::set<double> all = ends;
-  for (double b : breaks) {
+  for (const auto& [b, layers] : breaks) {
     const auto at = ends.find(b);
     for (double neighbour : {*std::prev(at), *std::next(at)}) {
-      if (std::abs(neighbour - b) < is_short * b) continue;
+      if (layers == kLayersAtBreaks && std::abs(neighbour - b) < is_short * b) continue;
       for (int n = 1; n <= layers; ++n) all.insert(b + std::pow(ratio, n) * (neighbour - b));
     }
   }
@@ -279,11 +364,13 @@ class Halving {
 }  // namespace
 
 std::vector<double> element_ends(const model::Process& process, const MeshRule& rule) {
-  std::vector<double> breaks = rule.integrands.breaks;
-  breaks.insert(breaks.end(), process.drag.breaks.begin(), process.drag.breaks.end());
+  Layers breaks = partings(process, rule);
+  for (const auto& kinks : {rule.integrands.breaks, process.drag.breaks}) {
+    for (double v : kinks) breaks.try_emplace(v, kLayersAtBreaks);
+  }
   const auto regular = regular_ends(process, rule);
   constexpr double rounding = 1e-9;
-  std::erase_if(breaks, [&](double b) { return b >= (1 - rounding) * regular.back(); });
+  std::erase_if(breaks, [&](const auto& b) { return b.first >= (1 - rounding) * regular.back(); });
   const auto ends = with_breaks(regular, breaks);
   return Halving(process, rule).halved(graded_towards(breaks, rule.ratio, ends));
 }
@@ -321,7 +408,7 @@ std::vector<int> regular_degrees(const model::Process& process, const MeshRule& 
 
 }  // namespace
 
-// Of the regular element in which an element ends.
+// Of the regular element in which an element ends; towards a parting degrees fall as towards v = 0.
 std::vector<int> element_degrees(const model::Process& process, const MeshRule& rule, int degree) {
   const auto regular = regular_ends(process, rule), ends = element_ends(process, rule);
   const auto of_regular = regular_degrees(process, rule, regular, degree);
@@ -329,6 +416,15 @@ std::vector<int> element_degrees(const model::Process& process, const MeshRule& 
   for (std::size_t e = 1; e < ends.size(); ++e) {
     const auto end = std::lower_bound(regular.begin() + 1, regular.end(), ends[e]);
     degrees.push_back(of_regular[end - regular.begin() - 1]);
+  }
+  const int most = degree - std::min(2, degree), all = static_cast<int>(degrees.size());
+  for (const auto& [v, layers] : partings(process, rule)) {
+    const auto at = static_cast<int>(std::lower_bound(ends.begin(), ends.end(), v) - ends.begin());
+    for (int n = 0; n < layers; ++n) {
+      const int at_most = degree - std::min((layers - n) / 2, most);
+      if (at + n < all) degrees[at + n] = std::min(degrees[at + n], at_most);
+      if (at - 1 - n >= 0) degrees[at - 1 - n] = std::min(degrees[at - 1 - n], at_most);
+    }
   }
   return degrees;
 }
@@ -341,13 +437,16 @@ double upper_tail(const model::Process& process, double tolerance) {
   const LogDensity log_density(process);
   const double slope = log_density.slope;
   const auto left = [&](double v) { return log_density(v, drop); };
-  double end = slope > 0 ? drop / slope : std::max(2 * log_density.peak, 1.0);
-  while (slope <= 0 && left(end) > 0 && end < process.drag.reach) end *= 2;
+  double last = log_density.extrema.front();  // with a density that counts
+  for (double v : log_density.extrema) last = left(v) > 0 ? v : last;
+  double end = std::max(slope > 0 ? drop / slope : 1.0, 2 * last);
+  const bool open = slope <= 0 || process.drag.rises_until > 0;
+  while (open && left(end) > 0 && end < process.drag.reach) end *= 2;
   end = std::min(end, process.drag.reach);
   if (process.drag.is_none() || !std::isfinite(left(end)) || left(end) > 0) return end;
   std::uintmax_t iterations = 200;
   const auto bracket = boost::math::tools::toms748_solve(
-      left, log_density.peak, end, boost::math::tools::eps_tolerance<double>(20), iterations);
+      left, last, end, boost::math::tools::eps_tolerance<double>(20), iterations);
   return bracket.second;
 }
 

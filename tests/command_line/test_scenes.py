@@ -23,6 +23,12 @@ class Scenes(Case):
         if not exact or "ci95" in results["E_XV"]:
             return
         put_in = results["E_XV"]["value"] + scene["bias"] * results["E_V"]["value"]
+        if "friction" in scene:
+            if "friction_power" in results:
+                dissipated = (results["friction_power"]["value"]
+                              + scene["drag_coefficient"] * results["E_V2"]["value"])
+                self.assert_close(put_in, dissipated, 1e-5)
+            return
         up, down = scene["mu_d"], scene.get("mu_d_minus", scene["mu_d"])
         by_friction = ((up + down) * results["E_absV"]["value"]
                        + (up - down) * results["E_V"]["value"]) / 2

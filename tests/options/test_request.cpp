@@ -127,8 +127,8 @@ TEST_CASE("request: drag that is no drag is told with place and way out") {
       {"-drag expression", {"-drag = expression", "-drag_expression", "add for example"}},
       {law + "v*(", {"-drag_expression = v*(", "for example \"-v - 0.1*v*abs(v)\""}},
       {law + "1-v", {"-drag_expression = 1-v", "is 1 at v = 0", "-mu_d"}},
-      {law + "0.1*v", {"-drag_expression", "grows from", "must not grow", "check the signs"}},
-      {law + "v/(-1-v^2)", {"-drag_expression", "grows from", "is no drag"}},
+      {law + "0.1*v", {"-drag_expression", "for ever from about v = 9.9", "check the signs"}},
+      {law + "2*v/(1+abs(v))", {"-drag_expression", "for ever", "friction takes 1"}},
       {law + "0-v-sign(v)", {"-drag_expression", "slope", "smooth it"}},
       {law + "0-tanh(v) -bias 3", {"-drag_expression", "the bias 3 drives", "a drag that grows"}},
       {law + "0-v -route fluid_queue", {"-route = fluid_queue", "needs b = 0"}}};
@@ -523,4 +523,24 @@ TEST_CASE("request: arguments come from the file to compare with, each once") {
   CHECK(r.question.quantities == std::set{Quantity::sticking, Quantity::laplace, Quantity::spectrum,
                                           Quantity::duration_density});
   CHECK(Given("-lambda 7 -compare " + file).read().question.lambda == std::vector<double>{7});
+}
+
+TEST_CASE("request: friction that weakens needs its speed, and Coulomb friction has none") {
+  const auto friction = Given("-friction stribeck -mu_d 0.5 -stribeck_velocity 0.1").read();
+  REQUIRE(friction.scene.friction.stribeck);
+  CHECK(friction.scene.friction.stribeck->velocity == 0.1);
+  CHECK(friction.scene.friction.stribeck->exponent == 1);
+  CHECK_FALSE(Given("-mu_d 0.5").read().scene.friction.stribeck);
+  const std::string law = "-friction stribeck -mu_d 0.5 -stribeck_velocity ";
+  const std::vector<Refusal> refusals{
+      {"-friction stribeck", {"-friction = stribeck", "add for example -stribeck_velocity"}},
+      {"-stribeck_velocity 1", {"-stribeck_velocity = 1", "belongs to -friction stribeck"}},
+      {"-stribeck_exponent 2 -friction coulomb", {"-stribeck_exponent = 2", "-friction stribeck"}},
+      {law + "0", {"-stribeck_velocity = 0", "(0, inf)", "-friction coulomb"}},
+      {law + "1 -stribeck_exponent -1", {"-stribeck_exponent = -1", "(0, inf)"}},
+      {law + "1 -mu_d 2", {"-mu_d = 2", "(0, mu_s]"}},
+      {law + "1 -drag none -bias 0.5", {"-bias = 0.5", "for ever"}},
+      {law + "1 -drag none -route fluid_queue", {"needs b = 0 and Coulomb friction"}},
+      {"-friction viscous", {"-friction = viscous", "coulomb or stribeck"}}};
+  for (const auto& refusal : refusals) check_refusal(refusal);
 }

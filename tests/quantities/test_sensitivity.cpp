@@ -49,6 +49,8 @@ Values derivatives(const model::Scene& s) {
 
 model::Scene changed(model::Scene s, const std::string& parameter, double by) {
   if (parameter == "mu_d") s.friction.mu_d += by;
+  if (parameter == "mu_s") s.friction.mu_s += by;
+  if (parameter == "stribeck_velocity") s.friction.stribeck->velocity += by;
   if (parameter == "mu_d_minus") *s.friction.mu_d_minus += by;
   if (parameter == "tau") s.tau += by;
   if (parameter == "drag_coefficient") s.drag.linear += by;
@@ -87,12 +89,19 @@ TEST_CASE("sensitivity: adjoints agree with extrapolated differences", "[slow][r
   lopsided.friction.mu_s_minus = 2.2;
   lopsided.friction.mu_d_minus = 0.7;
   strong.drag_name = "cubic";
-  for (auto s : {weak, strong, small, long_stays, biased, lopsided}) {
+  auto weakening = scene(1.1, 0.4, 1, 0.5, {1, 0}), by_side = lopsided;
+  weakening.friction.stribeck = {0.3, 1};
+  by_side.friction.stribeck = {0.5, 2};
+  by_side.friction.mu_s = 1.1;
+  for (auto s : {weak, strong, small, long_stays, biased, lopsided, weakening, by_side}) {
     s.noise_levels = s.full_levels() - 1;  // tau changes no number of levels
     const Values exact = derivatives(s);
     std::vector<std::pair<std::string, double>> parameters{
         {"mu_d", 0.004}, {"tau", 0.02 * s.tau}, {"drag_coefficient", 0.05 * s.drag.linear}};
     if (s.friction.mu_d_minus) parameters.emplace_back("mu_d_minus", 0.004);
+    if (s.friction.stribeck) {
+      parameters.insert(parameters.end(), {{"mu_s", 0.004}, {"stribeck_velocity", 0.01}});
+    }
     for (const auto& [parameter, h] : parameters) {
       for (const auto& [key, value] : extrapolated(s, parameter, h)) {
         const auto found = exact.find("d" + key + "_d" + parameter);

@@ -48,6 +48,12 @@ double check_value(const Evaluation& evaluation, const std::string& name) {
 
 bool is_on_grid(const test::Discrete& d) { return d.velocities->keeps_origin(); }  // upwind
 
+model::Scene weakening() {
+  auto s = scene(1, 0.5, 1, 0.5, {1, 0});
+  s.friction.stribeck = {0.1, 1};
+  return s;
+}
+
 const std::vector<model::Scene>& sample_scenes() {
   static const std::vector<model::Scene> scenes{
       scene(1, 0.25, 1, 0.25, {1, 0}),    // mu_d on a noise level
@@ -56,7 +62,8 @@ const std::vector<model::Scene>& sample_scenes() {
       scene(3, 0.25, 1, 0.5, {1, 0}),     // long stays
       scene(0.2, 0.15, 1, 0.5, {1, 0}),   // k = 0
       scene(0.7, 0.4, 2, 0.5, {0.5, 1}),  // cubic drag
-      scene(1, 0.5, 1, 0.5, {0, 0})};     // no drag: holding states at the velocity cut
+      scene(1, 0.5, 1, 0.5, {0, 0}),      // no drag: holding states at the velocity cut
+      weakening()};                       // levels that leave a speed to both sides
   return scenes;
 }
 

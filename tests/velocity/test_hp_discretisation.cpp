@@ -170,7 +170,8 @@ TEST_CASE("hp transport: the derivative of a row is the difference of rows") {
   velocity::TransportRow row, plus, minus;
   for (double net_force : {-0.7, 0.2, 0.9, 2.0}) {
     for (int j = 0; j < here.size(); ++j) {
-      here.transport_change(net_force, {1, 0.5}, j, row);
+      here.transport_change(
+          net_force, [](double v) { return 1 + 0.5 * v; }, j, row);
       more.transport(net_force + h, j, plus);
       less.transport(net_force - h, j, minus);
       std::vector<double> change(here.size(), 0.0);

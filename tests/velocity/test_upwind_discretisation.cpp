@@ -90,7 +90,8 @@ TEST_CASE("upwind transport: the derivative of a row is the difference of rows")
   velocity::TransportRow row, here, changed;
   for (double net_force : {-0.55, 0.55, 3.0}) {
     for (int j = 0; j < velocities.size(); ++j) {
-      velocities.transport_change(net_force, {1, 0.5}, j, row);
+      velocities.transport_change(
+          net_force, [](double v) { return 1 + 0.5 * v; }, j, row);
       velocities.transport(net_force, j, here);
       more.transport(net_force + h, j, changed);
       REQUIRE(row.entries.size() == here.entries.size());
@@ -103,7 +104,8 @@ TEST_CASE("upwind transport: the derivative of a row is the difference of rows")
     }
   }
   // Also where a speed falls that is upwards.
-  velocities.transport_change(3, {-1, 0}, 2, row);
+  velocities.transport_change(
+      3, [](double) { return -1.0; }, 2, row);
   REQUIRE(row.entries.size() == 1);
   CHECK(row.entries[0].node == 3);
   CHECK(row.entries[0].value == Approx(-10));

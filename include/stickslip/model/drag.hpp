@@ -1,10 +1,12 @@
 #pragma once
-/// Drag b(v): a non-increasing force with b(0) = 0.
+/// Drag b(v): a force with b(0) = 0, as a rule falling with v.
 
 #include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
+
+#include "stickslip/model/friction.hpp"
 
 namespace stickslip::model {
 
@@ -19,6 +21,7 @@ struct Drag {
   double reach = std::numeric_limits<double>::infinity();
   bool law_is_odd = true;           ///< b(-v) = -b(v)
   std::vector<double> breaks = {};  ///< |v| > 0 at which a law has kinks, rising
+  double rises_until = 0;           ///< |v| beyond which a law falls; 0: it falls everywhere
 
   /// b(v) [force].
   [[nodiscard]] double operator()(double v) const {
@@ -30,7 +33,7 @@ struct Drag {
   [[nodiscard]] bool is_none() const { return is_linear() && linear == 0; }
   /// b'(0+), by extrapolated differences for a law.
   [[nodiscard]] double slope_at_rest() const;
-  /// Largest -b' on (0, v), for a law an estimate within a factor of about 2.
+  /// Largest |b'| on (0, v), for a law an estimate within a factor of about 2.
   [[nodiscard]] double steepest(double v) const;
   /// int_0^v b(s) ds, by quadrature for a law.
   [[nodiscard]] double potential(double v) const;
@@ -40,6 +43,9 @@ struct Drag {
   /// Smallest v >= 0 with force + b(v) <= 0, to rounding and on that side of it; infinity when
   /// there is none.
   [[nodiscard]] double terminal_velocity(double force) const;
+  /// For a law that rises somewhere: all v > 0 at which force + b(v) changes its sign, rising, each
+  /// to rounding and beyond it. Between two there is a factor of 1.01 at least.
+  [[nodiscard]] std::vector<double> balances(double force) const;
 
   [[nodiscard]] bool odd() const { return !law || law_is_odd; }
   /// A v > 0 with b(-v) != -b(v) beyond rounding; nothing if b is odd. Samples the law.
@@ -47,5 +53,8 @@ struct Drag {
   /// v -> -b(-v), the drag in the mirror.
   [[nodiscard]] Drag mirrored() const;
 };
+
+/// b(v) + F(0+) - F(v) on v > 0, and likewise on v < 0: b itself where friction does not weaken.
+[[nodiscard]] Drag with_weakening(const Drag& drag, const Friction& friction);
 
 }  // namespace stickslip::model

@@ -21,10 +21,10 @@ class UnfitLaw : public std::invalid_argument {
 };
 
 /// b(v) from an expression in v, mu_s, mu_d and tau, known to be sound on both sides: b(0) = 0,
-/// finite, non-increasing and with bounded slopes on the velocities that can occur. They end at
-/// twice the terminal velocity under `force`, or where the density is below exp(-51); b is
-/// sampled there at 3000 places. `force` is the largest that occurs, with the bias. Throws
-/// UnfitLaw.
+/// finite and with bounded slopes on the velocities that can occur. They end at twice the terminal
+/// velocity under `force`, or where the density is below exp(-51); a law that lets a body run away
+/// has no such end. b is sampled there at 3000 places. `force` is the largest that occurs, with the
+/// bias and less mu_d. Throws UnfitLaw.
 [[nodiscard]] Drag parse_drag(const std::string& text, const Friction& friction, double tau,
                               double force, double bias = 0);
 

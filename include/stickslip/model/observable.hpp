@@ -51,6 +51,9 @@ struct Observable {
 /// |v| -> f(x, sign, sign |v|); not a number where f is not finite.
 [[nodiscard]] FunctionOfSpeed section(std::shared_ptr<const Observable> f, double x, double sign);
 
+/// F(v) |v| with the F of the direction: the power that dry friction takes.
+[[nodiscard]] Observable friction_power(const Friction& friction);
+
 /// Finds the breaks of f in v, 0 < |v| <= reach, on the levels x and for both signs of v, as
 /// breaks() does. Throws std::invalid_argument, with the reason, where f is unbounded, for more
 /// than 64 breaks, and for one on a level `step` nearer to 0 that no level of x shows: it moves

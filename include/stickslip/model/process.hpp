@@ -9,12 +9,13 @@
 
 namespace stickslip::model {
 
-/// dV/dt = X + g + b(V) - mu_d Y while Y = sign V is +-1; V = 0 and -mu_s- <= X + g <= mu_s is the
-/// static phase. On v < 0 mu_d- takes the place of mu_d.
+/// dV/dt = X + g + b(V) - F(|V|) Y while Y = sign V is +-1; V = 0 and -mu_s- <= X + g <= mu_s is
+/// the static phase. F is mu_d, or friction that weakens with the speed; on v < 0 that of mu_s-,
+/// mu_d-.
 struct Process {
   NoiseChain noise;
   Friction friction;
-  Drag drag;
+  Drag drag;        ///< with what friction loses to the speed: b(v) + F(0+) - F(v) on v > 0
   double bias = 0;  ///< g, a constant force
 
   /// Whether (-X, -Y, -V) has the same law.
@@ -41,7 +42,7 @@ struct Process {
   [[nodiscard]] bool starts_downwards() const {
     return !noise.table || lowest_static() > noise.lowest();
   }
-  /// x_i + g - mu_d: the speed of V at v = 0+ on level i.
+  /// x_i + g - F(0+): the speed of V at v = 0+ on level i.
   [[nodiscard]] double net_force(int i) const { return net_force_at(noise.level(i)); }
   /// The same for any x.
   [[nodiscard]] double net_force_at(double x) const { return friction.net_force(x, bias); }

@@ -39,7 +39,10 @@ struct Scene {
   }
   /// The process on `levels` noise levels, or on all those of a table.
   [[nodiscard]] Process process(int levels) const {
-    return {{tau, delta, levels, noise.deviation, noise.table}, friction, drag, bias};
+    return {{tau, delta, levels, noise.deviation, noise.table},
+            friction,
+            with_weakening(drag, friction),
+            bias};
   }
   /// The process that is meant: on noise_levels if fixed, else on the full range.
   [[nodiscard]] Process meant() const { return process(noise_levels.value_or(full_levels())); }

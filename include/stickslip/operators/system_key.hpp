@@ -39,8 +39,10 @@ enum class StaticPhase {
 
 /// Parameters of the process by which operators can be differentiated.
 enum class Parameter {
-  mu_d,             ///< in both directions, unless they have their own
-  mu_d_minus,       ///< of motion towards negative v alone
+  mu_d,        ///< in both directions, unless they have their own
+  mu_d_minus,  ///< of motion towards negative v alone
+  mu_s,        ///< of friction that weakens, at fixed static levels; as mu_d by direction
+  stribeck_velocity,
   tau,              ///< at a fixed number of noise levels
   drag_coefficient  ///< c of the linear part of the drag
 };

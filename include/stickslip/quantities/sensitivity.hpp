@@ -12,7 +12,8 @@
 
 namespace stickslip::quantities {
 
-/// mu_d, mu_d_minus where it is given, tau, and drag_coefficient where `drag` is linear or cubic.
+/// mu_d, mu_d_minus where it is given, tau, mu_s and stribeck_velocity where friction has one, and
+/// drag_coefficient where `drag` is linear or cubic.
 [[nodiscard]] std::vector<operators::Parameter> parameters_of(const model::Scene& scene);
 
 /// Derivatives of means over an excursion, M = nu f + entry . s, for a function f of the sliding

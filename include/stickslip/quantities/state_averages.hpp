@@ -8,9 +8,6 @@
 
 namespace stickslip::quantities {
 
-/// mu_d |v| with the mu_d of the direction: the power that dry friction takes.
-[[nodiscard]] model::Observable friction_power(const model::Process& process);
-
 /// For each observable pi(f) = E[f], pi(f|stick) and pi(f|slide), in the stationary distribution
 /// and given the phase; then friction_power and slip_rate = 1/mean_excursion. What symmetry makes
 /// zero is exactly 0. `a` is an operator of the distribution. No solves: O(states) each.

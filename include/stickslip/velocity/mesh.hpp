@@ -22,10 +22,11 @@ struct Integrands {
 
 /// What fixes the elements. See mesh.cpp for the reasons behind the numbers.
 struct MeshRule {
-  double v_max = 1;    ///< end of the velocity discretisation
-  double ratio = 0.3;  ///< quotient of neighbouring element ends near v = 0
-  double decay = 8;    ///< largest drop of log-density over one element
-  int layers = 0;      ///< elements of the graded part; 0: from smallest_scale
+  double v_max = 1;          ///< end of the velocity discretisation
+  double ratio = 0.3;        ///< quotient of neighbouring element ends near v = 0
+  double decay = 8;          ///< largest drop of log-density over one element
+  int layers = 0;            ///< elements of the graded part; 0: from smallest_scale
+  double tolerance = 1e-12;  ///< relative error that the smallest elements may leave
   Rates rates;
   Integrands integrands;
 };
@@ -38,7 +39,8 @@ struct MeshRule {
 [[nodiscard]] int natural_layers(const model::Process& process, const MeshRule& rule);
 
 /// Element ends 0 = e_0 < e_1 < ... < e_E = v_max, the breaks of the drag and of the integrands
-/// among them. Elements on which a drag law or an integrand is steep are halved, up to 100 times.
+/// among them, and where a level leaves its speed to both sides, unless jumps of the noise are much
+/// faster. Elements on which a drag law or an integrand is steep are halved, up to 100 times.
 [[nodiscard]] std::vector<double> element_ends(const model::Process& process, const MeshRule& rule);
 
 /// Polynomial degree of each of these elements, at most `degree`: what happens at v concerns levels

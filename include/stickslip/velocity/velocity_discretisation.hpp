@@ -25,12 +25,8 @@ struct TransportRow {
   double outflow = 0;          ///< coefficient of the holding state
 };
 
-/// The derivative of the speed B(v) with respect to a parameter: dB(v) = net_force + per_speed v.
-struct SpeedChange {
-  double net_force = 0;
-  double per_speed = 0;
-  [[nodiscard]] double operator()(double v) const { return net_force + per_speed * v; }
-};
+/// The derivative of the speed B(v) with respect to a parameter.
+using SpeedChange = std::function<double(double v)>;
 
 /// A velocity discretisation on [0, v_max] for the speeds B(v) = net_force + b(v).
 /// Implementations are immutable; all members are local and cost O(size) unless said.
