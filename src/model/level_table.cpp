@@ -93,6 +93,36 @@ LevelTable::LevelTable(std::vector<Level> levels, int lowest)
   symmetric_ = symmetric_ && count % 2 == 1;
 }
 
+// Whether theta (X - m - f) + Q has negative eigenvalues alone: the pivots of its negative are
+// positive.
+bool LevelTable::decays(double theta, double force) const {
+  double pivot = 1, above = 0;  // of the level before, and its rate upwards
+  for (const auto& [x, up, down] : levels_) {
+    pivot = up + down - theta * (x - mean_ - force) - above * down / pivot;
+    if (!(pivot > 0)) return false;
+    above = up;
+  }
+  return true;
+}
+
+double LevelTable::tail_intensity(double least) const {
+  const double top = levels_.back().x - mean_, from = std::max(least, 1e-3 * top);
+  constexpr int forces = 24, halvings = 20;
+  double largest = intensity_;
+  for (int n = 0; n < forces && from < top; ++n) {
+    const double force = from + (top - from) * n / forces;
+    double low = force / intensity_, high = low;
+    while (!decays(low, force) && low > 1e-6 * high) low /= 2;
+    while (decays(high, force)) high *= 2;
+    for (int k = 0; k < halvings; ++k) {
+      const double middle = (low + high) / 2;
+      (decays(middle, force) ? low : high) = middle;
+    }
+    largest = std::max(largest, force / low);
+  }
+  return largest;
+}
+
 LevelTable LevelTable::mirrored() const {
   std::vector<Level> levels;
   for (auto level = levels_.rbegin(); level != levels_.rend(); ++level) {

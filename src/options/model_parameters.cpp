@@ -189,9 +189,11 @@ class SceneReader {
       return report("drag", "needs a law in -drag_expression",
                     "add for example -drag_expression \"-v - 0.1*v*abs(v)\"");
     }
+    const auto process = scene_.process(1);
     try {
       scene_.drag = model::parse_drag(scene_.drag_expression, scene_.friction, scene_.tau,
-                                      largest_force(scene_), scene_.bias);
+                                      largest_force(scene_), process.mean_force(),
+                                      process.noise.tail_intensity(0));
     } catch (const model::UnfitLaw& unfit) {
       report("drag_expression", unfit.what(), unfit.fix());
     }

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -13,6 +15,10 @@
 namespace stickslip::options {
 
 std::shared_ptr<const model::LevelTable> read_levels(const std::string& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error) || !std::ifstream(file).good()) {
+    throw std::invalid_argument("cannot be read");
+  }
   std::vector<model::Level> levels;
   std::vector<unsigned> lines;
   try {

@@ -12,14 +12,14 @@
 namespace stickslip::velocity {
 namespace {
 
-// Local decay rate of log-density in white noise, -d/dv log exp(-int (F - b)) = F(v) - b(v), or of
-// its growth. A bias g changes it by -g on one half line and by g on the other; elements serve
-// both.
+// Local decay rate of log-density in white noise of intensity D, -d/dv log exp(-int (F - b)/D) =
+// (F(v) - b(v))/D, or of its growth. A mean force g changes it by -g on one half line and by g on
+// the other; elements serve both.
 double decay_rate(const model::Process& process, double v) {
   const double drag =
       process.drag.odd() ? -process.drag(v) : std::max(-process.drag(v), process.drag(-v));
   const double rest = std::max(process.friction.at_rest(), process.friction.mirrored().at_rest());
-  return std::abs(rest + drag) + std::abs(process.bias);
+  return (std::abs(rest + drag) + std::abs(process.mean_force())) / process.noise.intensity();
 }
 
 // Where geometric growth stops because an element would span more than `decay` of log-density.
@@ -98,22 +98,28 @@ double speed_of_leaving(const model::Process& process) {
          (process.noise.rate() * step * step);
 }
 
-// log of the stationary density of white noise on the upper half line, exp(-slope v + int b) with
-// slope = F(0+) - bias, against its largest value.
+// log of the stationary density of white noise of intensity D on the upper half line, exp((-slope v
+// + int b)/D) with slope = F(0+) - g, g the mean force, against its largest value. Large speeds
+// make of some noises a stronger one.
 struct LogDensity {
   explicit LogDensity(const model::Process& process)
-      : drag(process.drag), slope(process.friction.at_rest() - process.bias) {
+      : drag(process.drag), slope(process.friction.at_rest() - process.mean_force()) {
     if (drag.rises_until == 0) {
       extrema = {drag.terminal_velocity(-slope)};
     } else {
       extrema = drag.balances(-slope);
       extrema.insert(extrema.begin(), 0);
     }
+    double least = slope;
+    for (double v = drag.rises_until; v > 1e-9 * drag.rises_until; v *= 0.95) {
+      least = std::min(least, slope - drag(v));
+    }
+    intensity = process.noise.tail_intensity(least);
     for (double v : extrema) highest = std::max(highest, -slope * v + drag.potential(v));
   }
   /// Raised by `by`.
   [[nodiscard]] double operator()(double v, double by = 0) const {
-    return by - highest - slope * v + drag.potential(v);
+    return by - (highest + slope * v - drag.potential(v)) / intensity;
   }
 
   model::Drag drag;
@@ -122,6 +128,7 @@ struct LogDensity {
   // weakens there may be several, and minima between them.
   std::vector<double> extrema;
   double highest = -std::numeric_limits<double>::infinity();
+  double intensity;
 };
 
 bool has_waves(const model::Process& process, const MeshRule& rule) {
@@ -202,11 +209,11 @@ void add_partings(const model::Process& process, const MeshRule& rule, Layers& p
   const double end = std::min(rule.v_max, drag.rises_until), rest = friction.at_rest() - bias;
   for (double low = smallest * end, high = fine * low; low < end; low = high, high *= fine) {
     const double from = drag(low), rise = drag(high) - from;
-    const double power = noise.rate() * (high - low) / rise;
-    if (!(rise > 0) || power > kSmooth) continue;
-    const double level = std::floor((rest - from) / noise.delta);
-    for (int i = static_cast<int>(std::clamp<double>(level, -noise.levels, noise.levels));
-         process.net_force(i) + from + rise > 0; --i) {
+    if (!(rise > 0)) continue;
+    for (int i = std::min(noise.last_up_to(rest - from), noise.highest());
+         i >= noise.lowest() && process.net_force(i) + from + rise > 0; --i) {
+      const double power = noise.rate(i) * (high - low) / rise;
+      if (power > kSmooth) continue;
       const auto speed = [&](double v) { return process.net_force(i) + drag(v); };
       std::uintmax_t iterations = 200;
       if (speed(low) <= 0) {
@@ -216,7 +223,6 @@ void add_partings(const model::Process& process, const MeshRule& rule, Layers& p
                 .first;
         if (v < rule.v_max) partings[v] = layers_towards(power, rule);
       }
-      if (i == -noise.levels) break;
     }
   }
 }
@@ -439,7 +445,7 @@ double upper_tail(const model::Process& process, double tolerance) {
   const auto left = [&](double v) { return log_density(v, drop); };
   double last = log_density.extrema.front();  // with a density that counts
   for (double v : log_density.extrema) last = left(v) > 0 ? v : last;
-  double end = std::max(slope > 0 ? drop / slope : 1.0, 2 * last);
+  double end = std::max(slope > 0 ? drop * log_density.intensity / slope : 1.0, 2 * last);
   const bool open = slope <= 0 || process.drag.rises_until > 0;
   while (open && left(end) > 0 && end < process.drag.reach) end *= 2;
   end = std::min(end, process.drag.reach);

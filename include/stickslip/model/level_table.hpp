@@ -34,6 +34,10 @@ class LevelTable {
   [[nodiscard]] double variance() const { return variance_; }
   /// int_0^infinity Cov(X_0, X_t) dt [force^2 time].
   [[nodiscard]] double intensity() const { return intensity_; }
+  /// What intensity() is to speeds that need X to stay high: where a force f >= `least` slows a
+  /// body, its density falls like exp(-theta v), theta the root of log E[exp(theta int_0^t (X - m -
+  /// f))]/t -> 0; the largest f/theta. O(levels).
+  [[nodiscard]] double tail_intensity(double least) const;
   [[nodiscard]] double rate() const { return rate_; }  ///< largest rate of leaving a level
   [[nodiscard]] double step() const { return step_; }  ///< smallest distance of neighbours
   /// Whether -X is the same chain and x = 0 a level.
@@ -43,6 +47,7 @@ class LevelTable {
 
  private:
   LevelTable(std::vector<Level> levels, int lowest);
+  [[nodiscard]] bool decays(double theta, double force) const;
 
   std::vector<Level> levels_;
   int lowest_, mode_ = 0;

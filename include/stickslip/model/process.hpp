@@ -42,6 +42,8 @@ struct Process {
   [[nodiscard]] bool starts_downwards() const {
     return !noise.table || lowest_static() > noise.lowest();
   }
+  /// g + E[X]: what drives bodies over long times.
+  [[nodiscard]] double mean_force() const { return bias + noise.mean(); }
   /// x_i + g - F(0+): the speed of V at v = 0+ on level i.
   [[nodiscard]] double net_force(int i) const { return net_force_at(noise.level(i)); }
   /// The same for any x.
