@@ -33,6 +33,7 @@ Solved evaluated(MPI_Comm comm, const options::Case& given, const Resolution& re
   const double start = petsc::wall_seconds();
   const routes::Setting setting{comm, given, discretise(given.scene, resolution), step.statistics};
   solved.evaluation = routes::evaluate(setting);
+  quantities::leave_out_missing_side(setting.discretisation.process, solved.evaluation.results);
   require_rounding(model::rounding_of_sums(setting.discretisation.process.noise),
                    solved.evaluation.results);
   step.checks = std::move(solved.evaluation.checks);
@@ -45,14 +46,16 @@ Solved evaluated(MPI_Comm comm, const options::Case& given, const Resolution& re
 void require_start_within(const options::Case& given, const Resolution& first) {
   const options::Question& question = given.question;
   if (!question.wants(Quantity::expectation)) return;
-  const double delta = given.scene.delta, x = question.start.level * delta, v = question.start.v;
+  const auto noise = given.scene.process(first.levels).noise;
+  const int level = question.start.level;
+  const double x = given.scene.meant().noise.level(level), v = question.start.v;
   const auto refuse = [&](const char* what, double largest, const char* more) {
     throw BadInput(fmt::format("-start = {:g},{:g}: starts beyond the largest {} on which the mean "
                                "is computed at -accuracy {:g}; take |{}| at most {:g}, or {}",
                                x, v, what, question.accuracy, what, largest, more));
   };
-  if (std::abs(question.start.level) > first.levels) {
-    refuse("x", first.levels * delta, "-noise_levels full");
+  if (level < noise.lowest() || level > noise.highest()) {
+    refuse("x", noise.level(noise.highest()), "-noise_levels full");
   }
   if (std::abs(v) > first.v_max) {
     refuse("v", first.v_max, "-route monte_carlo, which starts at any state that occurs");

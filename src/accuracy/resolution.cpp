@@ -28,9 +28,11 @@ velocity::MeshRule mesh_rule(const Resolution& resolution) {
   return rule;
 }
 
+double upwind_step(const model::Scene& scene) { return scene.process(1).noise.step(); }
+
 // Number of nodes of the upwind velocity discretisation: the first at or beyond v_max is its last.
 double upwind_nodes(const model::Scene& scene, const Resolution& resolution) {
-  const double ratio = resolution.v_max * resolution.points / scene.delta;
+  const double ratio = resolution.v_max * resolution.points / upwind_step(scene);
   return std::max(1.0, std::ceil(ratio * (1 - 1e-12)));
 }
 
@@ -40,16 +42,16 @@ std::vector<int> hp_degrees(const model::Scene& scene, const Resolution& resolut
 }
 
 // Exponential tilt of the law of X, per unit of x, that comes with large velocities: without drag
-// the velocity decays at the rate mu_d and X conditioned on it is shifted by up to twice mu_d
-// (less where mu_d exceeds the noise, of standard deviation 1/sqrt(tau)). Drag that saturates adds
-// to mu_d.
+// X conditioned on it is shifted by up to twice mu_d (less where mu_d exceeds the noise). Drag that
+// saturates adds to mu_d.
 double tilt(const model::Scene& scene) {
   const double mu_d = std::max(scene.friction.mu_d, scene.friction.mirrored().mu_d);
-  const double drag_time = -scene.drag.slope_at_rest() / (mu_d * mu_d);
-  const double most = 1 / std::sqrt(scene.tau);
-  if (scene.drag.law && !scene.drag.bounds_velocity()) return 2 * scene.tau * most;
+  const auto noise = scene.process(1).noise;
+  const double drag_time = -scene.drag.slope_at_rest() * noise.intensity() / (mu_d * mu_d);
+  const double most = noise.standard_deviation(), variance = noise.intensity() / scene.tau;
+  if (scene.drag.law && !scene.drag.bounds_velocity()) return 2 * most / variance;
   if (drag_time > 1) return 0;
-  return 2 * scene.tau * std::min(mu_d, most);
+  return 2 * std::min(mu_d, most) / variance;
 }
 
 std::shared_ptr<velocity::VelocityDiscretisation>
@@ -57,7 +59,7 @@ velocities_of(const model::Scene& scene, const Resolution& resolution, bool mirr
   const auto process = scene.process(resolution.levels);
   const model::Drag drag = mirrored ? process.drag.mirrored() : process.drag;
   if (resolution.scheme == options::Scheme::upwind) {
-    const double spacing = scene.delta / resolution.points;
+    const double spacing = upwind_step(scene) / resolution.points;
     const auto count = static_cast<int>(upwind_nodes(scene, resolution));
     return std::make_shared<velocity::UpwindDiscretisation>(spacing, count, drag);
   }
@@ -69,7 +71,7 @@ velocities_of(const model::Scene& scene, const Resolution& resolution, bool mirr
 std::shared_ptr<const noise::Nodes> grouped(const model::Process& process,
                                             const noise::Grouping& grouping) {
   if (grouping.degree == 0) return nullptr;
-  const double levels = 2.0 * process.noise.levels + 1;
+  const double levels = process.noise.count();
   const double need = 24 * levels * (grouping.degree + 2);
   if (need > petsc::available_bytes(PETSC_COMM_SELF, need)) {
     throw NoMemory(fmt::format("{:.3g} noise levels would need {:.2g} GB of memory; take fewer "
@@ -83,23 +85,35 @@ std::shared_ptr<const noise::Nodes> grouped(const model::Process& process,
 
 int levels_for(const model::Scene& scene, double tolerance) {
   const int full = scene.full_levels();
-  const model::NoiseChain chain{scene.tau, scene.delta, full};
   const auto process = scene.process(full);
+  if (process.noise.table) return full;
   const int first = std::max(process.static_index(), -process.lowest_static()) + 1;
   const double shift = tilt(scene) * scene.delta;
   double log_weight = 0;  // of level i against level `first`
   int i = first;
   while (i < full && log_weight > std::log(tolerance)) {
     ++i;
-    log_weight += std::log(model::weight_ratio(chain, i)) + shift + 2 * std::log1p(1.0 / (i - 1));
+    log_weight +=
+        std::log(model::weight_ratio(process.noise, i)) + shift + 2 * std::log1p(1.0 / (i - 1));
   }
   return i;
 }
 
+namespace {
+
+void set_levels(const model::Scene& scene, double tolerance, Resolution& r) {
+  r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
+  if (const auto& table = scene.noise.table)
+    r.table_levels = table->highest() - table->lowest() + 1;
+}
+
+}  // namespace
+
 double velocity_end(const model::Scene& scene, int levels, double tolerance) {
   const auto process = scene.process(levels), mirrored = process.mirrored();
-  const double terminal = std::max(process.drag.terminal_velocity(process.net_force(levels)),
-                                   mirrored.drag.terminal_velocity(mirrored.net_force(levels)));
+  const double terminal =
+      std::max(process.drag.terminal_velocity(process.net_force(process.noise.highest())),
+               mirrored.drag.terminal_velocity(mirrored.net_force(mirrored.noise.highest())));
   if (scene.v_max) return std::min(*scene.v_max, terminal);
   const double tail = velocity::tail_velocity(process, tolerance);
   // Holding states cost a little: a cut must save something.
@@ -112,7 +126,7 @@ Resolution hp_resolution(const model::Scene& scene, int degree, int layers, doub
   r.scheme = options::Scheme::hp;
   r.degree = degree;
   r.rates = rates;
-  r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
+  set_levels(scene, tolerance, r);
   r.v_max = velocity_end(scene, r.levels, tolerance);
   r.layers = layers > 0 ? layers : velocity::natural_layers(scene.process(r.levels), mesh_rule(r));
   r.grouping = grouping;
@@ -124,7 +138,7 @@ Resolution upwind_resolution(const model::Scene& scene, int points, double toler
   Resolution r;
   r.scheme = options::Scheme::upwind;
   r.points = points;
-  r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
+  set_levels(scene, tolerance, r);
   r.v_max = velocity_end(scene, r.levels, tolerance);
   return r;
 }
@@ -132,7 +146,7 @@ Resolution upwind_resolution(const model::Scene& scene, int points, double toler
 Resolution exact_resolution(const model::Scene& scene, double tolerance) {
   Resolution r;
   r.scheme = options::Scheme::none;
-  r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
+  set_levels(scene, tolerance, r);
   return r;
 }
 

@@ -17,7 +17,7 @@ using Matrix = algebra::Matrix<double>;
 /// Noise levels by the sign of their fluid rate x_i + g - mu_d.
 struct Phases {
   explicit Phases(const model::Process& process) {
-    for (int i = -process.noise.levels; i <= process.noise.levels; ++i) {
+    for (int i = process.noise.lowest(); i <= process.noise.highest(); ++i) {
       const double rate = process.net_force(i);
       (rate > 0 ? rising : rate < 0 ? falling : still).push_back(i);
     }
@@ -34,17 +34,19 @@ class Jumps {
 
   [[nodiscard]] double rate(int from, int to) const {
     const auto& noise = process_.noise;
-    if (to == from + 1) return noise.rate() * noise.up(from);
-    if (to == from - 1) return noise.rate() * noise.down(from);
-    return to == from ? -(noise.rate() + lambda_) : 0;
+    if (to == from + 1) return noise.up_rate(from);
+    if (to == from - 1) return noise.down_rate(from);
+    return to == from ? -(noise.rate(from) + lambda_) : 0;
   }
   [[nodiscard]] double censored(int from, int to) const {
     double total = rate(from, to);
-    for (int s : phases_.still) total += rate(from, s) * sojourn() * rate(s, to);
+    for (int s : phases_.still) total += rate(from, s) * sojourn(s) * rate(s, to);
     return total;
   }
   /// Mean discounted stay in the still phase.
-  [[nodiscard]] double sojourn() const { return 1 / (process_.noise.rate() + lambda_); }
+  [[nodiscard]] double sojourn(int still) const {
+    return 1 / (process_.noise.rate(still) + lambda_);
+  }
 
   /// diag(|x_i + g - mu_d|)^-1 T between two groups.
   [[nodiscard]] Matrix per_length(const std::vector<int>& from, const std::vector<int>& to) const {
@@ -127,7 +129,7 @@ struct Riccati {
   }
 };
 
-/// The queue of one half line, seen along its motion.
+/// The queue of one half line, seen along its motion; empty where no body starts.
 class Queue {
  public:
   Queue(const model::Process& process, double lambda)
@@ -138,14 +140,14 @@ class Queue {
                  jumps_.per_length(phases_.rising, phases_.falling),
                  jumps_.per_length(phases_.falling, phases_.rising),
                  -1.0 * jumps_.per_length(phases_.falling, phases_.falling)},
-        psi_(riccati_.solve()),
-        minus_k_(riccati_.a - psi_ * riccati_.c) {}
+        psi_(starts() == 0 ? Matrix(0, 0) : riccati_.solve()),
+        minus_k_(starts() == 0 ? Matrix::identity(1) : riccati_.a - psi_ * riccati_.c) {}
   Queue(const Queue&) = delete;
   Queue& operator=(const Queue&) = delete;
 
-  [[nodiscard]] double residual() const { return riccati_.residual(psi_); }
-  /// Bodies start in the phases static_index + 1 ... N.
-  [[nodiscard]] int starts() const { return process_.noise.levels - process_.static_index(); }
+  [[nodiscard]] double residual() const { return starts() == 0 ? 0 : riccati_.residual(psi_); }
+  /// Bodies start in the phases static_index + 1 ... highest.
+  [[nodiscard]] int starts() const { return process_.noise.highest() - process_.static_index(); }
   [[nodiscard]] int lowest_static() const { return process_.lowest_static(); }
   [[nodiscard]] int count_static() const { return process_.static_index() - lowest_static() + 1; }
 
@@ -161,15 +163,15 @@ class Queue {
   /// Adds what a body does that starts `number` times in each phase. The density of upcrossings of
   /// v by phase is starts exp(K v), K = C_u^-1 T_uu + Psi C_d^-1 T_du; its moments are powers of
   /// (-K)^-1.
-  void follow(const double* number, double sign, QueuedSlide& slide) const {
+  void follow(const double* number, std::size_t first, QueuedSlide& slide) const {
+    if (starts() == 0) return;
     std::vector<double> moment(phases_.rising.size(), 0.0);
     for (int s = 0; s < starts(); ++s) moment[row(s)] = number[s];
     double factorial = 1;
     for (auto* sums : {&slide.time, &slide.distance, &slide.square}) {
       minus_k_.solve(moment, true);
-      double spent = spend(phases_.rising, moment, factorial, *sums);
-      spent += spend(phases_.falling, moment * psi_, factorial, *sums);
-      if (sums == &slide.distance) slide.drift += sign * spent;
+      spend(phases_.rising, moment, factorial, &(*sums)[first]);
+      spend(phases_.falling, moment * psi_, factorial, &(*sums)[first]);
       factorial *= sums == &slide.time ? 1 : 2;
     }
   }
@@ -179,19 +181,16 @@ class Queue {
     return static_cast<int>(phases_.rising.size()) - starts() + start;
   }
 
-  double spend(const std::vector<int>& group, const std::vector<double>& crossings,
-               double factorial, std::vector<double>& sums) const {
-    double all = 0;
+  void spend(const std::vector<int>& group, const std::vector<double>& crossings, double factorial,
+             double* sums) const {
     const auto add = [&](int phase, double spent) {
-      sums[phase + process_.noise.levels] += spent;
-      all += spent;
+      sums[phase - process_.noise.lowest()] += spent;
     };
     for (std::size_t p = 0; p < group.size(); ++p) {
       const double spent = factorial * crossings[p] / std::abs(process_.net_force(group[p]));
       add(group[p], spent);
-      for (int s : phases_.still) add(s, spent * jumps_.rate(group[p], s) * jumps_.sojourn());
+      for (int s : phases_.still) add(s, spent * jumps_.rate(group[p], s) * jumps_.sojourn(s));
     }
-    return all;
   }
 
   model::Process process_;
@@ -214,19 +213,20 @@ class Boundary {
     fill(lower, upper.starts(), 0, -1);
   }
 
-  /// The slide that begins with start number `first`: those of the upper half come first.
-  [[nodiscard]] QueuedSlide slide(int first, int levels) const {
+  /// The slide that begins with start number `first`: those of the upper half come first. The lower
+  /// half is counted in `sums` from `below` on.
+  [[nodiscard]] QueuedSlide slide(int first, std::size_t sums_of_both, std::size_t below) const {
     std::vector<double> number(static_cast<std::size_t>(restart_.rows()), 0.0);
     number[first] = 1;
     LuFactors(Matrix::identity(restart_.rows()) - restart_).solve(number, true);
     QueuedSlide slide;
     for (auto* sums : {&slide.time, &slide.distance, &slide.square}) {
-      sums->assign(2 * static_cast<std::size_t>(levels) + 1, 0.0);
+      sums->assign(sums_of_both, 0.0);
     }
     slide.entry = number * rest_;
     slide.turns = std::accumulate(number.begin(), number.end(), -1.0);
-    upper_.follow(number.data(), 1, slide);
-    lower_.follow(number.data() + upper_.starts(), -1, slide);
+    upper_.follow(number.data(), 0, slide);
+    lower_.follow(number.data() + upper_.starts(), below, slide);
     return slide;
   }
 
@@ -259,8 +259,12 @@ FluidQueue::FluidQueue(const model::Process& process, double lambda) {
   const Queue& other = lower ? *lower : upper;
   residual_ = std::max(upper.residual(), other.residual());
   const Boundary boundary(upper, other);
-  plus_ = boundary.slide(0, process.noise.levels);
-  minus_ = boundary.slide(upper.starts(), process.noise.levels);
+  const auto levels = static_cast<std::size_t>(process.noise.count());
+  const std::size_t below = lower ? levels : 0;
+  plus_ = boundary.slide(0, levels + below, below);
+  // Of one side alone both are the same.
+  minus_ =
+      boundary.slide(upper.starts() % (upper.starts() + other.starts()), levels + below, below);
 }
 
 }  // namespace stickslip::exact

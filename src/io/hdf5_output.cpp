@@ -13,10 +13,8 @@ namespace stickslip::io {
 namespace {
 
 void write_field(Hdf5File& file, const std::string& name, const quantities::PhaseField& field) {
-  const int n = static_cast<int>(field.x().size()) / 2;
-  std::vector<std::size_t> rows;
-  for (int i : field.local_levels()) rows.push_back(static_cast<std::size_t>(i + n));
-  file.write_rows(name, field.x().size(), field.v().size(), rows, field.local_rows());
+  file.write_rows(name, field.x().size(), field.v().size(), field.local_levels(),
+                  field.local_rows());
 }
 
 void write_axes(Hdf5File& file, const std::string& group, const quantities::PhaseField& field) {

@@ -8,6 +8,20 @@
 
 namespace stickslip::io {
 
+namespace {
+
+std::string noise_text(const model::Scene& s) {
+  const auto& noise = s.noise;
+  if (noise.name == "file") return "levels of " + noise.file;
+  if (noise.name == "telegraph") {
+    return fmt::format("telegraph a = {:g}, rate = {:g}", noise.amplitude, noise.rate);
+  }
+  const auto own = noise.deviation ? fmt::format("   deviation = {:g}", *noise.deviation) : "";
+  return fmt::format("tau = {:g}   delta = {:g}{}", s.tau, s.delta, own);
+}
+
+}  // namespace
+
 std::string scene_line(const model::Scene& s) {
   std::string drag = s.drag_name;
   if (s.drag.linear > 0) drag += fmt::format(", c = {:g}", s.drag.linear);
@@ -23,8 +37,8 @@ std::string scene_line(const model::Scene& s) {
                          stribeck->velocity, stribeck->exponent);
   }
   const std::string bias = s.bias == 0 ? "" : fmt::format("   bias = {:g}", s.bias);
-  return fmt::format("mu_s = {:g}   mu_d = {:g}{}   tau = {:g}   delta = {:g}   drag {}{}\n",
-                     s.friction.mu_s, s.friction.mu_d, minus, s.tau, s.delta, drag, bias);
+  return fmt::format("mu_s = {:g}   mu_d = {:g}{}   {}   drag {}{}\n", s.friction.mu_s,
+                     s.friction.mu_d, minus, noise_text(s), drag, bias);
 }
 
 std::string size_cells(const accuracy::Resolution& r, std::int64_t unknowns,

@@ -7,11 +7,20 @@
 namespace stickslip::io {
 
 Json scene_json(const model::Scene& s) {
-  Json scene{{"mu_s", s.friction.mu_s},
-             {"mu_d", s.friction.mu_d},
-             {"tau", s.tau},
-             {"delta", s.delta},
-             {"drag", s.drag_name}};
+  Json scene{{"mu_s", s.friction.mu_s}, {"mu_d", s.friction.mu_d}, {"drag", s.drag_name}};
+  const auto& noise = s.noise;
+  if (noise.name == "telegraph") {
+    scene["telegraph_amplitude"] = noise.amplitude;
+    scene["telegraph_rate"] = noise.rate;
+  } else if (noise.name == "file") {
+    scene["noise_file"] = noise.file;
+  } else {
+    scene["tau"] = s.tau;
+    scene["delta"] = s.delta;
+    scene["noise_levels_meant"] = s.meant().noise.levels;
+    if (noise.deviation) scene["noise_deviation"] = *noise.deviation;
+  }
+  if (noise.name != "ou") scene["noise"] = noise.name;
   if (!s.friction.symmetric()) {
     scene["mu_s_minus"] = s.friction.mirrored().mu_s;
     scene["mu_d_minus"] = s.friction.mirrored().mu_d;
@@ -28,7 +37,6 @@ Json scene_json(const model::Scene& s) {
     scene["drag_cubic"] = s.drag.cubic;
   }
   scene["bias"] = s.bias;
-  scene["noise_levels_meant"] = s.meant().noise.levels;
   return scene;
 }
 

@@ -38,10 +38,12 @@ struct Side {
 };
 
 // Where `force` no longer accelerates, with as much again for steps that overshoot; or where
-// exp(-int (F - |bias| - b)), which bounds the density, is below exp(-51) of its largest value.
-double reach_of(const Side& b, double force, const Friction& friction, double bias) {
-  constexpr double drop = 51, ratio = 1.02, far = 1e6, farthest = 1e100;
-  const double mu_d = friction.mu_d;
+// exp(-int (F - |bias| - b)/intensity), which bounds the density, is below exp(-51) of its largest
+// value.
+double reach_of(const Side& b, double force, const Friction& friction, double bias,
+                double intensity) {
+  constexpr double ratio = 1.02, far = 1e6, farthest = 1e100;
+  const double mu_d = friction.mu_d, drop = 51 * intensity;
   double left = drop, slope = 1, held = 0;
   for (double v = 1e-12 / mu_d; v < far / mu_d || (slope > 0 && v < farthest); v *= ratio) {
     const double drag = -b(v);
@@ -56,7 +58,8 @@ double reach_of(const Side& b, double force, const Friction& friction, double bi
                 : fmt::format("does not hold a body that the bias {:g} drives", bias);
   throw UnfitLaw(fmt::format("{}: it is {:g} at v = {:g}, and friction takes {:g}", driven,
                              b.sign * b(far / mu_d) + 0.0, b.sign * far / mu_d, mu_d),
-                 "check the signs, as in \"-v - 0.1*v*abs(v)\", or take a smaller bias");
+                 "check the signs, as in \"-v - 0.1*v*abs(v)\"; take a smaller bias, or a drag "
+                 "that grows");
 }
 
 // Evenly spaced, and in even ratios down to 1e-10 of the reach.
@@ -144,7 +147,7 @@ Expression read(const std::string& text, const Friction& friction, double tau) {
 }  // namespace
 
 Drag parse_drag(const std::string& text, const Friction& friction, double tau, double force,
-                double bias) {
+                double bias, double intensity) {
   const Expression b = read(text, friction, tau);
   Drag drag{0, 0, [b](double v) { return b({v}); }, 0};
   const Friction backwards = friction.mirrored();
@@ -152,7 +155,7 @@ Drag parse_drag(const std::string& text, const Friction& friction, double tau, d
   const Friction least{std::min(friction.mu_s, backwards.mu_s), mu_d, {}, {}, friction.stribeck};
   require_zero_at_rest(drag, mu_d);
   for (double sign : {1.0, -1.0}) {
-    drag.reach = std::max(drag.reach, reach_of({drag, sign}, force, least, bias));
+    drag.reach = std::max(drag.reach, reach_of({drag, sign}, force, least, bias, intensity));
   }
   for (double sign : {1.0, -1.0}) {
     const Side side{drag, sign};

@@ -26,10 +26,6 @@ Friction Friction::mirrored() const {
   return {mu_s_minus.value_or(mu_s), mu_d_minus.value_or(mu_d), mu_s, mu_d, stribeck};
 }
 
-int Friction::static_index(double delta, double bias) const {
-  return floor_index((mu_s - bias) / delta);
-}
-
 double Friction::net_force(double level, double bias) const {
   return snapped_difference(level, at_rest() - bias);
 }

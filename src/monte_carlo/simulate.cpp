@@ -47,6 +47,15 @@ checkpoint::Identity identity(const Case& given) {
                              {"-drag_coefficient", text(s.drag.linear)},
                              {"-drag_cubic", text(s.drag.cubic)}};
   if (s.drag.law) found.emplace_back("-drag_expression", s.drag_expression);
+  if (s.noise.deviation) found.emplace_back("-noise_deviation", text(*s.noise.deviation));
+  if (const auto& table = s.noise.table) {
+    std::string levels;
+    for (int i = table->lowest(); i <= table->highest(); ++i) {
+      const auto& [x, up, down] = table->at(i);
+      levels += fmt::format("{},{},{};", x, up, down);
+    }
+    found.emplace_back("-noise", std::move(levels));
+  }
   if (const auto& stribeck = s.friction.stribeck) {
     found.emplace_back("-friction", "stribeck");
     found.emplace_back("-stribeck_velocity", text(stribeck->velocity));

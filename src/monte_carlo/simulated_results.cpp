@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "stickslip/quantities/excursion.hpp"
+
 namespace stickslip::monte_carlo {
 namespace {
 
@@ -155,7 +157,7 @@ class Estimates {
            [&](std::size_t n) { return tally_.entry(side, static_cast<int>(levels[n])); });
     }
     scalar(quantities::kFStick0,
-           tally_.first_exit(noise.rate() * noise.up(highest), noise.rate() * noise.down(lowest)));
+           tally_.first_exit(noise.up_rate(highest), noise.down_rate(lowest)));
   }
 
   void append_laplace() {
@@ -271,7 +273,9 @@ simulation::Wanted wanted_of(const options::Question& question, const model::Pro
 
 Results estimates(const options::Question& question, const model::Process& process,
                   const Tally& tally) {
-  return Estimates(question, process, tally).all();
+  Results all = Estimates(question, process, tally).all();
+  quantities::leave_out_missing_side(process, all);
+  return all;
 }
 
 }  // namespace stickslip::monte_carlo

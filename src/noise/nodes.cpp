@@ -14,13 +14,21 @@ namespace {
 class SpecialPoints {
  public:
   explicit SpecialPoints(const model::Process& process) {
-    for (const auto& half : {process, process.mirrored()}) {
-      graded_.push_back(std::abs(half.friction.at_rest() - half.bias) / half.noise.delta);
+    const auto& noise = process.noise;
+    const auto mirrored = process.mirrored();
+    const auto standing = [](const model::Process& half) {
+      return half.noise.place(half.friction.at_rest() - half.bias);
+    };
+    const double mu_s = process.friction.mu_s;
+    graded_ = {standing(process), -standing(mirrored), process.static_index() + 0.5,
+               process.lowest_static() - 0.5};
+    ends_ = {noise.last_up_to(mu_s) + 0.5, noise.first_from(-mu_s) - 0.5};
+    for (auto* points : {&graded_, &ends_}) {
+      for (double& s : *points) {
+        if (noise.symmetric()) s = std::abs(s);
+      }
     }
-    graded_.push_back(std::abs(process.static_index() + 0.5));
-    graded_.push_back(std::abs(process.lowest_static() - 0.5));
-    ends_ = graded_;
-    ends_.push_back(process.threshold_index() + 0.5);
+    ends_.insert(ends_.end(), graded_.begin(), graded_.end());
   }
 
   /// Whether the levels first ... last may be one group.
@@ -59,91 +67,106 @@ std::vector<double> reversed(const std::vector<double>& values) {
 
 }  // namespace
 
+/// The levels i >= 1 in groups.
+struct Nodes::Upper {
+  Upper(const model::Process& process, const Grouping& grouping) : noise(process.noise) {
+    const SpecialPoints special(process);
+    constexpr double rounding = 1e-9;
+    const double widest = (1 - rounding) * grouping.width * noise.standard_deviation();
+    const int size = grouping.degree == 0 ? std::numeric_limits<int>::max() : grouping.degree + 1;
+    for (int first = 1; first <= noise.highest();) {
+      int last = first;
+      while (grouping.degree > 0 && last < noise.highest() &&
+             noise.level(last + 1) - noise.level(first) < widest &&
+             special.allow(first, last + 1, grouping.grading)) {
+        ++last;
+      }
+      last - first + 1 <= size ? add_levels(first, last) : add_group(first, last, size);
+      first = last + 1;
+    }
+  }
+
+  void add_levels(int first, int last) {
+    for (int i = first; i <= last; ++i) {
+      groups.push_back({i, i, 0, 1, {1}, {1}, {noise.up_rate(i)}, {noise.down_rate(i)}});
+      inner.emplace_back();
+      x.push_back(noise.level(i));
+    }
+  }
+
+  void add_group(int first, int last, int size) {
+    const std::vector<double> w = weights_within(noise, first, last);
+    std::vector<double> points;
+    for (int i = first; i <= last; ++i) points.push_back(noise.level(i));
+    GaussRule rule(points, w, size);
+    const auto n = static_cast<std::size_t>(size);
+    Group g{first, last, 0, size, std::move(rule.cardinal), {}, {}, {}};
+    g.weight = g.value;
+    for (std::size_t i = 0; i < w.size(); ++i) {
+      for (std::size_t l = 0; l < n; ++l) g.weight[i * n + l] *= w[i] / rule.weight[l];
+    }
+    for (double t : g.row(g.weight, last)) g.to_above.push_back(t * noise.up_rate(last));
+    for (double t : g.row(g.weight, first)) g.to_below.push_back(t * noise.down_rate(first));
+    std::vector<double> within(n * n, 0.0);
+    for (std::size_t i = 0; i + 1 < w.size(); ++i) {
+      const double* step = rule.step.data() + i * n;
+      const double flow = w[i] * noise.up_rate(first + static_cast<int>(i));
+      for (std::size_t l = 0; l < n; ++l) {
+        for (std::size_t m = 0; m < n; ++m) within[l * n + m] -= flow * step[l] * step[m];
+      }
+    }
+    for (std::size_t l = 0; l < n; ++l) {
+      for (std::size_t m = 0; m < n; ++m) within[l * n + m] /= rule.weight[l];
+    }
+    groups.push_back(std::move(g));
+    inner.push_back(std::move(within));
+    x.insert(x.end(), rule.node.begin(), rule.node.end());
+  }
+
+  model::NoiseChain noise;
+  std::vector<Group> groups;
+  std::vector<std::vector<double>> inner;
+  std::vector<double> x;
+};
+
 Nodes::Nodes(const model::Process& process, const Grouping& grouping)
-    : noise_(process.noise), levels_(process.noise.levels) {
+    : Nodes(process, grouping, Mirror::made) {}
+
+Nodes::Nodes(const model::Process& process, const Grouping& grouping, Mirror mirror)
+    : noise_(process.noise) {
   if (grouping.degree < 0 || !(grouping.grading > 0) || !(grouping.width > 0)) {
     throw std::invalid_argument("noise groups need a degree >= 0, a grading and a width > 0");
   }
-  const SpecialPoints special(process);
-  const double widest = grouping.width / (noise_.delta * std::sqrt(noise_.tau));
-  const int size = grouping.degree == 0 ? std::numeric_limits<int>::max() : grouping.degree + 1;
-  for (int first = 1; first <= levels_;) {
-    int last = first;
-    while (grouping.degree > 0 && last < levels_ && last + 1 - first < widest &&
-           special.allow(first, last + 1, grouping.grading)) {
-      ++last;
+  const Upper above(process, grouping);
+  if (noise_.symmetric()) {
+    join(above, above);
+  } else {
+    join(above, Upper(process.mirrored(), grouping));
+    if (mirror == Mirror::made) {
+      mirrored_.reset(new Nodes(process.mirrored(), grouping, Mirror::left_out));
     }
-    last - first + 1 <= size ? add_levels(first, last) : add_group(first, last, size);
-    first = last + 1;
   }
-  mirror();
-  number();
   find_jumps();
 }
 
-void Nodes::add_levels(int first, int last) {
-  for (int i = first; i <= last; ++i) {
-    groups_.push_back({i, i, 0, 1, {1}, {1}, {up(i)}, {down(i)}});
-    inner_.emplace_back();
-    x_.push_back(noise_.level(i));
-  }
-}
-
-void Nodes::add_group(int first, int last, int size) {
-  const std::vector<double> w = weights_within(noise_, first, last);
-  std::vector<double> points;
-  for (int i = first; i <= last; ++i) points.push_back(noise_.level(i));
-  GaussRule rule(points, w, size);
-  const auto n = static_cast<std::size_t>(size);
-  Group g{first, last, 0, size, std::move(rule.cardinal), {}, {}, {}};
-  g.weight = g.value;
-  for (std::size_t i = 0; i < w.size(); ++i) {
-    for (std::size_t l = 0; l < n; ++l) g.weight[i * n + l] *= w[i] / rule.weight[l];
-  }
-  for (double t : g.row(g.weight, last)) g.to_above.push_back(t * up(last));
-  for (double t : g.row(g.weight, first)) g.to_below.push_back(t * down(first));
-  std::vector<double> inner(n * n, 0.0);
-  for (std::size_t i = 0; i + 1 < w.size(); ++i) {
-    const double* step = rule.step.data() + i * n;
-    const double flow = w[i] * up(first + static_cast<int>(i));
-    for (std::size_t l = 0; l < n; ++l) {
-      for (std::size_t m = 0; m < n; ++m) inner[l * n + m] -= flow * step[l] * step[m];
-    }
-  }
-  for (std::size_t l = 0; l < n; ++l) {
-    for (std::size_t m = 0; m < n; ++m) inner[l * n + m] /= rule.weight[l];
-  }
-  groups_.push_back(std::move(g));
-  inner_.push_back(std::move(inner));
-  x_.insert(x_.end(), rule.node.begin(), rule.node.end());
-}
-
-// So far there are the levels i >= 1.
-void Nodes::mirror() {
-  const std::vector<double> above = x_;
-  half_ = static_cast<int>(above.size());
-  const auto upper = std::move(groups_);
-  const auto inner = std::move(inner_);
-  groups_.clear();
-  inner_.clear();
-  x_ = reversed(above);
+// Around level 0, those below as the mirror shows them.
+void Nodes::join(const Upper& above, const Upper& below) {
+  first_ = -static_cast<int>(below.x.size());
+  x_ = reversed(below.x);
   for (double& x : x_) x = -x;
-  for (std::size_t g = upper.size(); g-- > 0;) {
-    const Group& other = upper[g];
+  for (std::size_t g = below.groups.size(); g-- > 0;) {
+    const Group& other = below.groups[g];
     groups_.push_back({-other.last, -other.first, 0, other.count, reversed(other.value),
                        reversed(other.weight), reversed(other.to_below), reversed(other.to_above)});
-    inner_.push_back(reversed(inner[g]));
+    inner_.push_back(reversed(below.inner[g]));
   }
-  groups_.push_back({0, 0, 0, 1, {1}, {1}, {up(0)}, {down(0)}});
+  groups_.push_back({0, 0, 0, 1, {1}, {1}, {noise_.up_rate(0)}, {noise_.down_rate(0)}});
   inner_.emplace_back();
-  groups_.insert(groups_.end(), upper.begin(), upper.end());
-  inner_.insert(inner_.end(), inner.begin(), inner.end());
-  x_.push_back(0);
-  x_.insert(x_.end(), above.begin(), above.end());
-}
-
-void Nodes::number() {
-  int next = -half_;
+  groups_.insert(groups_.end(), above.groups.begin(), above.groups.end());
+  inner_.insert(inner_.end(), above.inner.begin(), above.inner.end());
+  x_.push_back(noise_.level(0));
+  x_.insert(x_.end(), above.x.begin(), above.x.end());
+  int next = first_;
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     groups_[g].begin = next;
     next += groups_[g].count;
@@ -209,8 +232,8 @@ std::vector<Nodes::Rate> Nodes::jumps_by_tau(int node) const {
     for (int m = 0; m < other.count; ++m) row.push_back({other.begin + m, flow * values[m]});
   };
   for (int i = here.first; i <= here.last; ++i) {
-    if (i > -levels_) add(i, i - 1, change(noise_.down(i), noise_.down_change(i)));
-    if (i < levels_) add(i, i + 1, change(noise_.up(i), noise_.up_change(i)));
+    if (i > noise_.lowest()) add(i, i - 1, change(noise_.down(i), noise_.down_change(i)));
+    if (i < noise_.highest()) add(i, i + 1, change(noise_.up(i), noise_.up_change(i)));
   }
   for (int m = 0; m < here.count; ++m) {
     if (here.begin + m != node) row.push_back({here.begin + m, own[m]});
@@ -219,10 +242,10 @@ std::vector<Nodes::Rate> Nodes::jumps_by_tau(int node) const {
 }
 
 std::vector<double> Nodes::spread(std::span<const double> by_node) const {
-  std::vector<double> by_level(2 * static_cast<std::size_t>(levels_) + 1, 0.0);
+  std::vector<double> by_level(static_cast<std::size_t>(noise_.count()), 0.0);
   for (const Group& g : groups_) {
     for (int i = g.first; i <= g.last; ++i) {
-      double& sum = by_level[i + levels_];
+      double& sum = by_level[i - noise_.lowest()];
       const auto weights = g.row(g.weight, i);
       for (int l = 0; l < g.count; ++l) sum += weights[l] * by_node[at(g.begin + l)];
     }

@@ -92,6 +92,7 @@ RestChain read_chain(Mat matrix, const std::vector<PetscInt>& rows) {
 struct ElementElimination::Line {
   Branch half = Branch::positive;
   const velocity::HpDiscretisation* velocities = nullptr;
+  const noise::Nodes* noise;
   std::vector<double> net_force;
   std::vector<StateSpace::NodeLine> nodes;  // of a noise node
   std::vector<PetscInt> holding;            // rows of holding states, of the highest nodes
@@ -147,8 +148,9 @@ ElementElimination::Line ElementElimination::line_of(Branch half) const {
       upper ? velocities.get() : &velocities->mirrored());
   if (!lines_.empty()) line.first_element = lines_.back().elements.size();
   line.begin = length_;
-  for (int n = -noise->half(); n <= noise->half(); ++n) {
-    line.net_force.push_back(along.net_force_at(noise->x(n)));
+  line.noise = upper ? noise.get() : &noise->mirrored();
+  for (int n = line.noise->first(); n <= line.noise->last(); ++n) {
+    line.net_force.push_back(along.net_force_at(line.noise->x(n)));
     line.nodes.push_back(states.nodes_of(half, n));
     if (states.has_holding(half, n)) {
       line.holding.push_back(states.index({StateKind::holding, half, n, 0}));
@@ -169,9 +171,8 @@ int ElementElimination::owner(const Line& line, std::size_t e) const {
 
 ElementSystem::Response ElementElimination::make_element(Line& line, std::size_t e) const {
   ElementSystem::Response response;
-  line.elements[e] =
-      std::make_unique<ElementSystem>(*data_->discretisation.noise, *line.velocities,
-                                      static_cast<int>(e), line.net_force, data_->lambda, response);
+  line.elements[e] = std::make_unique<ElementSystem>(
+      *line.noise, *line.velocities, static_cast<int>(e), line.net_force, data_->lambda, response);
   return response;
 }
 
@@ -206,13 +207,13 @@ ElementSystem::Response ElementElimination::response(Line& line, std::size_t e) 
 
 // What holding states make of the values that fall at v_max.
 DenseMatrix ElementElimination::hold(const Line& line) {
-  const noise::Nodes& noise = *data_->discretisation.noise;
+  const noise::Nodes& noise = *line.noise;
   const int held = static_cast<int>(line.holding.size()), below = line.count() - held;
   DenseMatrix own(held, held), jumps(held, below);
   for (int l = 0; l < held; ++l) {
     own(l, l) = data_->lambda;
-    for (const auto& [to, rate] : noise.jumps(below + l - noise.half())) {
-      const int place = to + noise.half();
+    for (const auto& [to, rate] : noise.jumps(noise.first() + below + l)) {
+      const int place = to - noise.first();
       own(l, l) += rate;
       if (place < below) {
         jumps(l, place) = rate;
@@ -260,10 +261,10 @@ void ElementElimination::reflect(Line& line) {
 // What a line finds at rest, of its nodes that fall to v = 0 from `fall` on.
 void ElementElimination::add_shares(const Line& line, std::size_t fall, Couplings& shares) const {
   const StateSpace& states = data_->states;
-  const noise::Nodes& noise = *data_->discretisation.noise;
+  const noise::Nodes& noise = *line.noise;
   const Branch other = states.symmetry_reduced() ? line.half : opposite(line.half);
   for (int l = 0; l < line.rising[0]; ++l) {
-    const int node = l - noise.half();
+    const int node = l + noise.first();
     if (node < -states.last_static(other)) continue;
     const auto& group = noise.group_of(node);
     for (int along = group.first; along <= group.last; ++along) {
@@ -280,7 +281,7 @@ void ElementElimination::add_shares(const Line& line, std::size_t fall, Coupling
 // What a line finds on the other side, or reflected.
 void ElementElimination::add_crossings(const Line& line, std::size_t fall, Couplings& found) const {
   const Line& other = lines_[data_->states.symmetry_reduced() || &line != &lines_[0] ? 0 : 1];
-  const int crossing = data_->discretisation.noise->half() - data_->states.last_static(other.half);
+  const int crossing = -data_->states.last_static(other.half) - line.noise->first();
   for (int l = 0; l < crossing; ++l) {
     found.push_back({other.falling_at(1) - 1 - l, fall + static_cast<std::size_t>(l), sign()});
   }
@@ -289,7 +290,8 @@ void ElementElimination::add_crossings(const Line& line, std::size_t fall, Coupl
 // The place in w of the node next to those at rest to which an entry of a row at rest belongs.
 std::size_t ElementElimination::exit_at(PetscInt column) const {
   for (const Line& line : lines_) {
-    const int node = data_->states.last_static(line.half) + 1 + data_->discretisation.noise->half();
+    const int node = data_->states.last_static(line.half) + 1 - line.noise->first();
+    if (node == line.count()) continue;
     const auto& [first, stride] = line.nodes[node];
     const PetscInt from = column - first, q = line.velocities->element(0).reference->size;
     const PetscInt place = stride == 0 ? 0 : from / stride;

@@ -95,7 +95,8 @@ void KolmogorovOperator::add_value_at(int i, double v, double weight, Vec functi
     if (index >= begin && index < end) check(VecSetValue(functional, index, share, ADD_VALUES));
   };
   // A level as a combination of noise nodes, of those as combinations of velocity nodes.
-  const auto& group = noise->group_at(below ? -i : i);
+  const auto& group =
+      nodes_along(below ? Branch::negative : Branch::positive).group_at(below ? -i : i);
   const auto shares = group.row(group.value, below ? -i : i);
   for (int l = 0; !rest && l < group.count; ++l) {
     const int n = group.begin + l;
@@ -123,8 +124,10 @@ petsc::VecHandle KolmogorovOperator::value_at(int i, double v) const {
 
 petsc::VecHandle KolmogorovOperator::mean_at_zero(const std::vector<double>& p) const {
   petsc::VecHandle g = zeros();
-  const int levels = discretisation().process.noise.levels;
-  for (int i = -levels; i <= levels; ++i) add_value_at(i, 0, p[levels + i], g);
+  const auto& chain = discretisation().process.noise;
+  for (int i = chain.lowest(); i <= chain.highest(); ++i) {
+    add_value_at(i, 0, p[i - chain.lowest()], g);
+  }
   check(VecAssemblyBegin(g));
   check(VecAssemblyEnd(g));
   return g;
@@ -156,7 +159,7 @@ petsc::VecHandle KolmogorovOperator::values(const Observable& f) const {
   const velocity::VelocityDiscretisation& velocities = *discretisation().velocities;
   PetscInt at = 0;
   states().for_each_local([&](const State& s) {
-    const double sign = s.half == Branch::positive ? 1 : -1;
+    const int sign = s.half == Branch::positive ? 1 : -1;
     if (s.kind == StateKind::rest) {
       local[at++] = f(chain.level(s.noise), 0, 0);
       return;
@@ -164,8 +167,8 @@ petsc::VecHandle KolmogorovOperator::values(const Observable& f) const {
     double v = 0;
     if (s.kind == StateKind::node) v = sign * velocities.nodes()[s.node];
     if (s.kind == StateKind::holding) v = sign * velocities.v_max();
-    local[at++] = discretisation().noise->projected(
-        s.noise, [&](int i) { return f(sign * chain.level(i), sign, v); });
+    local[at++] = nodes_along(s.half).projected(
+        s.noise, [&](int i) { return f(chain.level(sign * i), sign, v); });
   });
   return result;
 }
@@ -173,15 +176,15 @@ petsc::VecHandle KolmogorovOperator::values(const Observable& f) const {
 petsc::VecHandle KolmogorovOperator::overlooked(const Observable& f) const {
   petsc::VecHandle result = zeros();
   petsc::WriteView local(result);
-  const noise::Nodes& noise = *discretisation().noise;
   for (const Branch half : states().halves()) {
-    const double sign = half == Branch::positive ? 1 : -1;
-    for (const int n : states().local_noise()) {
+    const int sign = half == Branch::positive ? 1 : -1;
+    for (const int node : states().local_noise()) {
+      const int n = sign * node;
       const auto [first, stride] = states().nodes_of(half, n);
       PetscInt at = first - states().local_begin();
       const auto of_speed = [&](double speed) {
-        return noise.projected(n, [&](int i) {
-          return f(sign * discretisation().process.noise.level(i), sign, sign * speed);
+        return nodes_along(half).projected(n, [&](int i) {
+          return f(discretisation().process.noise.level(sign * i), sign, sign * speed);
         });
       };
       for (const double value : discretisation().velocities->overlooked(of_speed)) {

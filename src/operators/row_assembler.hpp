@@ -24,16 +24,20 @@ class RowAssembler {
       : derivative_(derivative),
         noise_(*discretisation.noise),
         chain_(discretisation.process.noise),
-        upper_{discretisation.process, *discretisation.velocities},
-        lower_{discretisation.process.mirrored(), discretisation.velocities->mirrored()},
+        upper_{discretisation.process, noise_, *discretisation.velocities},
+        lower_{discretisation.process.mirrored(), noise_.mirrored(),
+               discretisation.velocities->mirrored()},
         states_(states),
         lambda_(lambda),
         rest_(rest),
         zero_trace_(discretisation.velocities->trace_at_zero()),
         top_trace_(discretisation.velocities->trace_at_top()),
         lines_(2 * static_cast<std::size_t>(noise_.count())) {
-    for (int n = -noise_.half(); n <= noise_.half(); ++n) {
-      for (Branch half : states.halves()) lines_[place_of_line(half, n)] = states.nodes_of(half, n);
+    for (Branch half : states.halves()) {
+      const auto& nodes = side(half).noise;
+      for (int n = nodes.first(); n <= nodes.last(); ++n) {
+        lines_[place_of_line(half, n)] = states.nodes_of(half, n);
+      }
     }
   }
 
@@ -52,9 +56,12 @@ class RowAssembler {
     return trace;
   }
 
-  /// The same at s+ or s-: the level next to those at rest is a node.
+  /// The same at s+ or s-: the level next to those at rest is a node. Where the noise has none, the
+  /// other one stands for it: excursions that never happen.
   [[nodiscard]] Functional trace_at_exit(Branch half) const {
-    return trace_at_zero(half, states_.last_static(half) + 1);
+    const int next = states_.last_static(half) + 1;
+    return next <= side(half).noise.last() ? trace_at_zero(half, next)
+                                           : trace_at_exit(opposite(half));
   }
 
   std::vector<PetscInt> row_start{0};
@@ -66,6 +73,7 @@ class RowAssembler {
   // A half line, seen with its noise and velocities counted along it.
   struct Side {
     model::Process process;
+    const noise::Nodes& noise;
     const velocity::VelocityDiscretisation& velocities;
   };
   [[nodiscard]] const Side& side(Branch half) const {
@@ -76,7 +84,7 @@ class RowAssembler {
   void reserve() {
     std::size_t entries = 0;
     for (int j = 0; j < upper_.velocities.size(); ++j) {
-      upper_.velocities.transport(upper_.process.net_force_at(noise_.x(noise_.half())), j,
+      upper_.velocities.transport(upper_.process.net_force_at(noise_.x(noise_.last())), j,
                                   transport_);
       entries += transport_.entries.size() + 1;
     }
@@ -99,11 +107,11 @@ class RowAssembler {
     finish_row(states_.index(state));
   }
 
-  // Calls visit(node, rate) for the jumps from a noise node, which are alike on both halves.
+  // Calls visit(node, rate) for the jumps from a noise node. By tau they are alike on both halves.
   template <class Visit>
-  void for_each_jump(int n, Visit visit) const {
+  void for_each_jump(Branch half, int n, Visit visit) const {
     if (!derivative_) {
-      for (const auto& [to, rate] : noise_.jumps(n)) visit(to, rate);
+      for (const auto& [to, rate] : side(half).noise.jumps(n)) visit(to, rate);
     } else if (*derivative_ == Parameter::tau) {
       if (changes_of_ != n) {
         changes_ = noise_.jumps_by_tau(n);
@@ -115,12 +123,13 @@ class RowAssembler {
 
   void rates_of_node(const State& s) {
     rates_of_transport(s);
-    for_each_jump(s.noise, [&](int to, double rate) { rate_to(node(s.half, to, s.node), rate); });
+    for_each_jump(s.half, s.noise,
+                  [&](int to, double rate) { rate_to(node(s.half, to, s.node), rate); });
   }
 
   void rates_of_transport(const State& s) {
     const Side& here = side(s.half);
-    const double net_force = here.process.net_force_at(noise_.x(s.noise));
+    const double net_force = here.process.net_force_at(here.noise.x(s.noise));
     if (derivative_) {
       here.velocities.transport_change(net_force, speed_change(s.half), s.node, transport_);
     } else {
@@ -133,10 +142,10 @@ class RowAssembler {
 
   void rates_of_origin(const State& s) {
     const Side& here = side(s.half);
-    const double net_force = here.process.net_force_at(noise_.x(s.noise));
+    const double net_force = here.process.net_force_at(here.noise.x(s.noise));
     rate_to(node(s.half, s.noise, 0),
             here.velocities.origin_rate(derivative_ ? speed_change(s.half)(0) : net_force));
-    for_each_jump(s.noise, [&](int to, double rate) {
+    for_each_jump(s.half, s.noise, [&](int to, double rate) {
       if (states_.has_origin(s.half, to)) {
         rate_to(states_.index({StateKind::origin, s.half, to, 0}), rate);
       } else {
@@ -146,7 +155,7 @@ class RowAssembler {
   }
 
   void rates_of_holding(const State& s) {
-    for_each_jump(s.noise, [&](int to, double rate) {
+    for_each_jump(s.half, s.noise, [&](int to, double rate) {
       if (states_.has_holding(s.half, to)) return rate_to(holding(s.half, to), rate);
       for (const auto& e : top_trace_) rate_to(node(s.half, to, e.node), rate * e.value);
     });
@@ -158,10 +167,10 @@ class RowAssembler {
       killing_ = chain_.rate();  // value 0 there: killed at once
       return;
     }
-    if (i < highest) rate_to_rest(i + 1, up_rate(i));
-    if (i == highest) rate_to_exit(Branch::positive, up_rate(i));
-    if (i > lowest) rate_to_rest(i - 1, down_rate(i));
-    if (i == lowest) rate_to_exit(Branch::negative, down_rate(i));
+    if (i < highest) rate_to_rest(i + 1, chain_.up_rate(i));
+    if (i == highest) rate_to_exit(Branch::positive, chain_.up_rate(i));
+    if (i > lowest) rate_to_rest(i - 1, chain_.down_rate(i));
+    if (i == lowest) rate_to_exit(Branch::negative, chain_.down_rate(i));
   }
 
   // Where a sliding body meets v = 0.
@@ -180,7 +189,7 @@ class RowAssembler {
 
   // To rest on the levels for which a node stands, in the shares of T.
   void rate_to_rest(Branch half, int n, double rate) {
-    const noise::Nodes::Group& group = noise_.group_of(n);
+    const noise::Nodes::Group& group = side(half).noise.group_of(n);
     for (int i = group.first; i <= group.last; ++i) {
       const double share = group.row(group.weight, i)[n - group.begin];
       rate_to_rest(half == Branch::positive ? i : -i, rate * share);
@@ -203,6 +212,7 @@ class RowAssembler {
   }
 
   void rate_to_exit(Branch half, double rate) {
+    if (rate == 0) return;
     if (rest_ == StaticPhase::killed_on_exit) {
       killing_ += rate;
     } else if (states_.symmetry_reduced()) {
@@ -257,14 +267,13 @@ class RowAssembler {
     return first + j * stride;
   }
   [[nodiscard]] std::size_t place_of_line(Branch half, int n) const {
-    return 2 * static_cast<std::size_t>(noise_.half() + n) + (half == Branch::positive ? 0 : 1);
+    const int place = n - side(half).noise.first();
+    return 2 * static_cast<std::size_t>(place) + (half == Branch::positive ? 0 : 1);
   }
   [[nodiscard]] PetscInt holding(Branch half, int n) const {
     return states_.index({StateKind::holding, half, n, 0});
   }
   [[nodiscard]] double reflection() const { return states_.symmetry() == Symmetry::odd ? -1 : 1; }
-  [[nodiscard]] double up_rate(int level) const { return chain_.rate() * chain_.up(level); }
-  [[nodiscard]] double down_rate(int level) const { return chain_.rate() * chain_.down(level); }
   [[nodiscard]] velocity::SpeedChange speed_change(Branch half) const {
     const auto& given = upper_.process.friction;
     const bool lower = half == Branch::negative, own_d = lower && given.mu_d_minus,

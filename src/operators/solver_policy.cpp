@@ -19,8 +19,9 @@ double scalar_bytes() { return petsc::complex_scalars() ? 16 : 8; }
 
 // How many noise nodes do not rise where drag adds `drag` to their speeds.
 double falling_nodes(const model::Process& process, const noise::Nodes* noise, double drag) {
-  const int half = noise == nullptr ? process.noise.levels : noise->half();
-  int below = -half, above = half + 1;  // the first that rises is in [below, above]
+  const int lowest = noise == nullptr ? process.noise.lowest() : noise->first();
+  const int count = noise == nullptr ? process.noise.count() : noise->count();
+  int below = lowest, above = lowest + count;  // the first that rises is in [below, above]
   while (below < above) {
     const int n = below + (above - below) / 2;
     const double x = noise == nullptr ? process.noise.level(n) : noise->x(n);
@@ -30,12 +31,12 @@ double falling_nodes(const model::Process& process, const noise::Nodes* noise, d
       below = n + 1;
     }
   }
-  return static_cast<double>(below) + half;
+  return static_cast<double>(below) - lowest;
 }
 
 // How many groups have how many nodes.
 std::map<int, double> group_sizes(const model::Process& process, const noise::Nodes* noise) {
-  if (noise == nullptr) return {{1, 2.0 * process.noise.levels + 1}};
+  if (noise == nullptr) return {{1, process.noise.count()}};
   std::map<int, double> sizes;
   for (const auto& group : noise->groups()) sizes[group.count] += 1;
   return sizes;
@@ -63,7 +64,7 @@ FactorCost elimination_cost(const model::Process& process,
                             const velocity::HpDiscretisation& velocities, const noise::Nodes* noise,
                             int ranks) {
   const auto sizes = group_sizes(process, noise);
-  const double all = noise == nullptr ? 2.0 * process.noise.levels + 1 : noise->count();
+  const double all = noise == nullptr ? process.noise.count() : noise->count();
   double inside = 0, between = 0, operations = 0;
   double inner = falling_nodes(process, noise, velocities.drag_at_end(0));
   for (int e = 0; e < velocities.elements(); ++e) {
@@ -87,14 +88,15 @@ FactorCost elimination_cost(const model::Process& process,
 
 FactorCost elimination_cost(const Discretisation& discretisation, bool symmetry_reduced,
                             int ranks) {
-  const auto of = [&](const model::Process& along, const velocity::VelocityDiscretisation& side) {
-    return elimination_cost(along, dynamic_cast<const velocity::HpDiscretisation&>(side),
-                            discretisation.noise.get(), ranks);
+  const auto of = [&](const model::Process& along, const noise::Nodes& nodes,
+                      const velocity::VelocityDiscretisation& side) {
+    return elimination_cost(along, dynamic_cast<const velocity::HpDiscretisation&>(side), &nodes,
+                            ranks);
   };
   const auto& [process, noise, velocities] = discretisation;
-  FactorCost cost = of(process, *velocities);
+  FactorCost cost = of(process, *noise, *velocities);
   if (symmetry_reduced) return cost;
-  const FactorCost other = of(process.mirrored(), velocities->mirrored());
+  const FactorCost other = of(process.mirrored(), noise->mirrored(), velocities->mirrored());
   return {cost.entries + other.entries, cost.bytes + other.bytes,
           cost.operations + other.operations};
 }

@@ -17,10 +17,10 @@ namespace {
 
 int first_holding_node(const model::Process& process, const noise::Nodes& noise,
                        const velocity::VelocityDiscretisation& velocities) {
-  int first = noise.half() + 1;
+  int first = noise.last() + 1;
   if (!velocities.needs_holding()) return first;
   const double drag = process.drag(velocities.v_max());
-  while (first > -noise.half() && process.net_force_at(noise.x(first - 1)) + drag > 0) --first;
+  while (first > noise.first() && process.net_force_at(noise.x(first - 1)) + drag > 0) --first;
   return first;
 }
 
@@ -39,11 +39,14 @@ void require_countable(double states) {
                              8 * sizeof(PetscInt)));
 }
 
-// Of {-(last-1) ... -first, first ... last-1}, those below n.
-int below_in_pairs(int first, int last, int n) {
-  if (last == first) return 0;
-  const int negative = std::clamp(n - (1 - last), 0, last - std::max(first, 1));
-  return negative + std::clamp(n - first, 0, last - first);
+// Of {-(last-1) ... -first, first ... last-1} in [lowest, highest], those below n.
+int below_in_pairs(int first, int last, int lowest, int highest, int n) {
+  const auto below = [&](int from, int to) {
+    from = std::max(from, lowest);
+    to = std::min(to, highest);
+    return std::clamp(n - from, 0, std::max(to - from + 1, 0));
+  };
+  return below(1 - last, -std::max(first, 1)) + below(first, last - 1);
 }
 
 }  // namespace
@@ -59,35 +62,45 @@ StateSpace::StateSpace(MPI_Comm comm, const Discretisation& discretisation, Symm
       symmetry_(symmetry),
       with_rest_(with_rest),
       keeps_origin_(discretisation.velocities->keeps_origin()),
-      half_(discretisation.noise->half()),
+      first_(discretisation.noise->first()),
+      last_(discretisation.noise->last()),
       nodes_(discretisation.velocities->size()),
       upper_(discretisation.process, *discretisation.noise, *discretisation.velocities),
-      lower_(discretisation.process.mirrored(), *discretisation.noise, *discretisation.velocities),
+      lower_(discretisation.process.mirrored(), discretisation.noise->mirrored(),
+             discretisation.velocities->mirrored()),
       lowest_rest_(lowest_rest_level(symmetry, discretisation.process)),
       highest_rest_(discretisation.process.static_index()),
       rank_(petsc::rank(comm)) {
-  const int levels = discretisation.process.noise.levels;
-  require_countable((2.0 * half_ + 1) * (2.0 * nodes_ + 2) + 2.0 * levels + 1);
-  distribute(*discretisation.noise, levels);
+  require_countable(discretisation.noise->count() * (2.0 * nodes_ + 2) +
+                    discretisation.process.noise.count());
+  distribute(*discretisation.noise, discretisation.process.noise);
   const Block& block = blocks_[rank_];
-  for (int n = 1 - block.last; n < block.last; ++n) {
-    if (std::abs(n) >= block.first) local_noise_.push_back(n);
+  for (int n = first_; n <= last_; ++n) {
+    if (std::abs(n) >= block.first && std::abs(n) < block.last) local_noise_.push_back(n);
   }
   local_size_ = size(block);
 }
 
 // A group goes to the rank in whose equal share of the nodes it begins, and takes its levels along.
-void StateSpace::distribute(const noise::Nodes& noise, int levels) {
+// Groups that -x does not map to groups stay together.
+void StateSpace::distribute(const noise::Nodes& noise, const model::NoiseChain& chain) {
   const std::int64_t ranks = petsc::ranks(comm_), all = noise.count();
-  for (int shell = 0; shell <= half_; ++shell) {
-    const int innermost = noise.group_of(shell).begin;
-    const std::int64_t before = innermost == 0 ? 0 : 2LL * innermost - 1;
-    owner_of_pair_.push_back(static_cast<int>(before * ranks / all));
+  const bool together = !chain.symmetric() && !noise.all_levels();
+  const int pairs = std::max(-first_, last_), levels = std::max(-chain.lowest(), chain.highest());
+  const auto innermost = [&](int pair) {
+    return noise.all_levels() ? pair : noise.group_of(pair).begin;
+  };
+  for (int pair = 0; pair <= pairs; ++pair) {
+    const std::int64_t before = together || pair == 0 ? 0 : 2LL * innermost(pair) - 1;
+    owner_of_pair_.push_back(static_cast<int>(std::min(before * ranks / all, ranks - 1)));
   }
   int first = 0, rest = 0;
   for (int r = 0; r < ranks; ++r) {
     int last = first, last_rest = rest;
-    while (last <= half_ && owner_of_pair_[last] == r) ++last;
+    while (last <= pairs && owner_of_pair_[last] == r) ++last;
+    if (last > pairs || noise.all_levels()) {
+      last_rest = last > pairs ? levels + 1 : last;
+    }
     while (last_rest <= levels && noise.group_at(last_rest).begin < last) {
       last_rest = noise.group_at(last_rest).last + 1;
     }
@@ -125,17 +138,14 @@ int StateSpace::owner_of_rest(int level) const {
   return static_cast<int>(after - blocks_.begin());
 }
 
-int StateSpace::nodes_below(const Block& block, int n) {
-  return below_in_pairs(block.first, block.last, n);
+int StateSpace::nodes_below(const Block& block, int n) const {
+  return below_in_pairs(block.first, block.last, first_, last_, n);
 }
 
 // States at rest of a rank below a level.
 int StateSpace::rest_below(const Block& block, int level) const {
-  if (!with_rest_ || highest_rest_ < lowest_rest_) return 0;
-  const auto below = [&block](int i) {
-    return below_in_pairs(block.first_rest, block.last_rest, i);
-  };
-  return below(std::clamp(level, lowest_rest_, highest_rest_ + 1)) - below(lowest_rest_);
+  if (!with_rest_) return 0;
+  return below_in_pairs(block.first_rest, block.last_rest, lowest_rest_, highest_rest_, level);
 }
 
 // Number of states of a row of a rank before a state: at v = 0 origins of the lower half, states at
@@ -161,13 +171,13 @@ int StateSpace::position(const Block& block, int row, const State& state) const 
 int StateSpace::size_at_zero(const Block& block) const {
   int count = rest_below(block, highest_rest_ + 1);
   if (!keeps_origin_) return count;
-  const int all = nodes_below(block, half_ + 1);
+  const int all = nodes_below(block, last_ + 1);
   if (!symmetry_reduced()) count += nodes_below(block, -lower_.last_static);
   return count + all - nodes_below(block, upper_.last_static + 1);
 }
 
 int StateSpace::count(const Block& block, int row) const {
-  const int all = nodes_below(block, half_ + 1);
+  const int all = nodes_below(block, last_ + 1);
   if (row == 0) return size_at_zero(block);
   if (std::abs(row) <= nodes_) return all;
   if (row > 0) return all - nodes_below(block, upper_.first_holding);
@@ -175,7 +185,7 @@ int StateSpace::count(const Block& block, int row) const {
 }
 
 PetscInt StateSpace::row_offset(const Block& block, int row) const {
-  const PetscInt node_row = nodes_below(block, half_ + 1);
+  const PetscInt node_row = nodes_below(block, last_ + 1);
   PetscInt offset = 0;
   if (!symmetry_reduced()) {
     if (row > -last_row()) offset += count(block, -last_row());

@@ -8,14 +8,16 @@ namespace stickslip::operators {
 // killing rate grows by down_i times the share of killing at i-1, and its pivot is that killing
 // rate plus the rate of going up.
 StaticChain::StaticChain(const model::NoiseChain& chain, int low, int high, double lambda) {
-  if (high < low - 1 || high >= chain.levels || low <= -chain.levels)
+  if (high < low - 1 || high > chain.highest() || low < chain.lowest() ||
+      high - low + 1 == chain.count()) {
     throw std::invalid_argument("levels outside the noise");
+  }
   if (!(lambda >= 0)) throw std::invalid_argument("negative Laplace parameter");
-  up_exit_ = chain.rate() * chain.up(high);
-  down_exit_ = chain.rate() * chain.down(low);
+  up_exit_ = chain.up_rate(high);
+  down_exit_ = chain.down_rate(low);
   double killing_below = 0;
   for (int i = low; i <= high; ++i) {
-    const double up = chain.rate() * chain.up(i), down = chain.rate() * chain.down(i);
+    const double up = chain.up_rate(i), down = chain.down_rate(i);
     double killing = lambda + (i == low ? down : 0) + (i == high ? up : 0);
     if (i > low) killing += down * killing_below / pivot_.back();
     up_.push_back(i < high ? up : 0);

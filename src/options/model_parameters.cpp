@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 
 #include "reading.hpp"
@@ -33,6 +34,7 @@ class SceneReader {
   void read_numbers() {
     scene_.tau = settings_.real("tau");
     scene_.delta = settings_.real("delta");
+    read_noise();
     scene_.friction = {settings_.real("mu_s"), settings_.real("mu_d")};
     const auto by_direction = [this](const char* option) {
       return settings_.given(option) ? std::optional(settings_.real(option)) : std::nullopt;
@@ -47,6 +49,36 @@ class SceneReader {
     scene_.bias = settings_.real("bias");
     scene_.noise_levels = settings_.integer("noise_levels");
     if (settings_.given("v_max")) scene_.v_max = settings_.real("v_max");
+  }
+
+  void read_noise() {
+    auto& noise = scene_.noise;
+    noise.name = settings_.text("noise");
+    const auto require = [this](const char* option, const char* example) {
+      if (settings_.given(option)) return true;
+      report("noise", fmt::format("needs -{}", option),
+             fmt::format("add for example -{} {}", option, example));
+      return false;
+    };
+    if (noise.name == "telegraph") {
+      if (!require("telegraph_amplitude", "1") || !require("telegraph_rate", "1")) return;
+      const double a = noise.amplitude = settings_.real("telegraph_amplitude"),
+                   rate = noise.rate = settings_.real("telegraph_rate");
+      if (!(a > 0 && rate > 0)) return;  // reported
+      noise.table = std::make_shared<const model::LevelTable>(
+          std::vector<model::Level>{{-a, rate, 0}, {a, 0, rate}});
+    } else if (noise.name == "file") {
+      if (!require("noise_file", "levels.csv")) return;
+      noise.file = settings_.text("noise_file");
+      try {
+        noise.table = read_levels(noise.file);
+      } catch (const std::invalid_argument& unfit) {
+        report("noise_file", unfit.what(),
+               "write CSV with the columns x,rate_up,rate_down, x rising");
+      }
+    } else if (settings_.given("noise_deviation")) {
+      noise.deviation = settings_.real("noise_deviation");
+    }
   }
 
   void read_stribeck() {
@@ -71,16 +103,36 @@ class SceneReader {
                          backwards.mu_d, backwards.mu_s),
              grows);
     }
-    const double mu_d = scene_.bias > 0 ? forwards.mu_d : backwards.mu_d;
-    if (drag_law_.expression || !scene_.drag.is_none() || std::abs(scene_.bias) < mu_d) return;
-    report("bias",
-           fmt::format(
-               "drives a sliding body for ever: without drag only mu_d = {:g} holds it back", mu_d),
-           "take a bias smaller than mu_d, or add drag");
+    const double mean = scene_.noise.table ? scene_.noise.table->mean() : 0;
+    const double force = scene_.bias + mean, mu_d = force > 0 ? forwards.mu_d : backwards.mu_d;
+    if (drag_law_.expression || !scene_.drag.is_none() || std::abs(force) < mu_d) return;
+    const auto noise = mean == 0 ? "" : fmt::format("with the mean {:g} of the noise ", mean);
+    report(
+        "bias",
+        fmt::format("{}drives a sliding body for ever: without drag only mu_d = {:g} holds it back",
+                    noise, mu_d),
+        "take a bias smaller than mu_d, or add drag");
   }
 
   // The levels that exist, and that on some of them bodies stick and on some they slide.
+  void check_table() {
+    const auto process = scene_.process(1);
+    const auto& noise = process.noise;
+    const auto range =
+        fmt::format("levels, from {:g} to {:g}, shifted by the bias {:g}",
+                    noise.level(noise.lowest()), noise.level(noise.highest()), scene_.bias);
+    if (process.lowest_static() > process.static_index()) {
+      report("mu_s", "holds the body on none of the noise's " + range + ": nothing ever sticks",
+             "take a larger -mu_s or another -bias");
+    } else if (!process.starts_upwards() && !process.starts_downwards()) {
+      report("mu_s", "holds the body on all of the noise's " + range + ": nothing ever slides",
+             "take a smaller -mu_s or a larger -bias");
+    }
+  }
+
   void check_noise() {
+    if (scene_.noise.table) return check_table();
+    if (scene_.noise.name != "ou") return;  // reported
     const double tau = scene_.tau, delta = scene_.delta;
     int full = 0, highest = 0, lowest = 0;
     try {
@@ -137,9 +189,11 @@ class SceneReader {
       return report("drag", "needs a law in -drag_expression",
                     "add for example -drag_expression \"-v - 0.1*v*abs(v)\"");
     }
+    const auto process = scene_.process(1);
     try {
       scene_.drag = model::parse_drag(scene_.drag_expression, scene_.friction, scene_.tau,
-                                      largest_force(scene_), scene_.bias);
+                                      largest_force(scene_), process.mean_force(),
+                                      process.noise.tail_intensity(0));
     } catch (const model::UnfitLaw& unfit) {
       report("drag_expression", unfit.what(), unfit.fix());
     }
@@ -155,10 +209,13 @@ class SceneReader {
 
 double largest_force(const model::Scene& scene) {
   const auto process = scene.meant();
-  const double highest = process.noise.level(process.noise.levels);
+  const auto& noise = process.noise;
+  const double highest = std::max(noise.level(noise.highest()), -noise.level(noise.lowest()));
   const auto &along = scene.friction, against = along.mirrored();
-  const double seen = std::max(along.mu_s, against.mu_s) + scene.delta + 12 / std::sqrt(scene.tau);
-  return std::min(highest, seen) + std::abs(scene.bias) - std::min(along.mu_d, against.mu_d);
+  const double seen =
+      std::max(along.mu_s, against.mu_s) + noise.step() + 12 * noise.standard_deviation();
+  return std::min(highest, noise.table ? highest : seen) + std::abs(scene.bias) -
+         std::min(along.mu_d, against.mu_d);
 }
 
 model::Scene read_scene(const Settings& settings, Problems& problems) {

@@ -113,15 +113,18 @@ read_observables(const Settings& settings, const model::Friction& friction, Prob
 // Up to 17 levels evenly, and those next to the numbers of f.
 std::vector<double> probed_levels(const model::Scene& scene, const model::Observable& f) {
   const auto noise = scene.meant().noise;
-  const double seen = (largest_force(scene) + scene.friction.mu_d) / scene.delta;
-  const int highest = std::min<int>(noise.levels, static_cast<int>(std::min(seen, 1e9)));
+  const double seen = std::min(noise.place(largest_force(scene) + scene.friction.mu_d), 1e9);
+  const int highest = std::min(noise.highest(), static_cast<int>(seen)),
+            lowest = std::max(noise.lowest(), static_cast<int>(-seen));
   constexpr int half = 8;
   std::set<int> levels;
-  for (int n = -half; n <= half; ++n) levels.insert(static_cast<int>(highest * (n * 1.0 / half)));
+  for (int n = -half; n <= half; ++n) {
+    levels.insert(static_cast<int>((n > 0 ? highest : -lowest) * (n * 1.0 / half)));
+  }
   for (double number : f.numbers) {
-    const double near = std::min<double>(number / scene.delta, highest);
-    for (double level : {std::floor(near), std::ceil(near)}) {
-      for (int sign : {1, -1}) levels.insert(sign * static_cast<int>(level));
+    for (double x : {number, -number}) {
+      const double near = std::clamp<double>(noise.place(x), lowest, highest);
+      levels.insert({static_cast<int>(std::floor(near)), static_cast<int>(std::ceil(near))});
     }
   }
   std::vector<double> x;
@@ -152,7 +155,7 @@ void examine_observables(const Settings& settings, Request& request, Problems& p
   const double speed = largest_speed(scene);
   for (auto& f : request.question.observables) {
     try {
-      model::examine(f, probed_levels(scene, f), scene.delta, speed);
+      model::examine(f, probed_levels(scene, f), scene.meant().noise.step(), speed);
     } catch (const std::invalid_argument& error) {
       if (!elements) continue;
       settings.report(problems, "observable", error.what(),
@@ -166,17 +169,23 @@ void examine_observables(const Settings& settings, Request& request, Problems& p
 model::Start read_state(const Settings& settings, const model::Scene& scene, double x, double v,
                         Problems& problems) {
   const auto process = scene.meant();
-  const double place = x / scene.delta, level = std::round(place), levels = process.noise.levels;
-  if (std::abs(place - level) > 1e-9 * std::max(1.0, std::abs(place)) || std::abs(level) > levels) {
-    settings.report(problems, "start",
-                    fmt::format("starts on no noise level, which are {:g} apart up to {:g}",
-                                scene.delta, levels * scene.delta),
-                    fmt::format("take x = {:g}", std::clamp(level, -levels, levels) * scene.delta));
+  const auto& noise = process.noise;
+  const auto level = noise.find(x);
+  if (!level) {
+    const double place = std::clamp<double>(noise.place(x), noise.lowest(), noise.highest());
+    const double lowest = noise.level(noise.lowest()), highest = noise.level(noise.highest());
+    settings.report(
+        problems, "start",
+        noise.table
+            ? fmt::format("starts on no noise level, which lie in [{:g}, {:g}]", lowest, highest)
+            : fmt::format("starts on no noise level, which are {:g} apart up to {:g}", scene.delta,
+                          highest),
+        fmt::format("take x = {:g}", noise.level(static_cast<int>(std::round(place)))));
     return {};
   }
   const auto half = v < 0 ? process.mirrored() : process;
   const double largest =
-      half.drag.terminal_velocity(half.net_force(process.noise.levels)) * (v < 0 ? -1 : 1);
+      half.drag.terminal_velocity(half.net_force(half.noise.highest())) * (v < 0 ? -1 : 1);
   if (std::abs(v) > std::abs(largest)) {
     settings.report(
         problems, "start",
@@ -185,7 +194,7 @@ model::Start read_state(const Settings& settings, const model::Scene& scene, dou
                     largest),
         fmt::format("take v in [{:g}, {:g}]", std::min(0.0, largest), std::max(0.0, largest)));
   }
-  return {static_cast<int>(level), v};
+  return {*level, v};
 }
 
 // stationary, rest, s+, s- or x,v with x on a noise level.
@@ -194,7 +203,12 @@ void read_start(const Settings& settings, Request& request, Problems& problems) 
   const std::string text = settings.text("start");
   model::Start& start = request.question.start;
   const auto process = request.scene.process(1);
-  if (text == "s+") {
+  const bool up = process.starts_upwards(), down = process.starts_downwards();
+  if ((text == "s+" && !up) || (text == "s-" && !down)) {
+    settings.report(problems, "start",
+                    "is no state: the noise has no level beyond those that stick",
+                    up ? "take -start s+" : "take -start s-");
+  } else if (text == "s+") {
     start = {process.static_index() + 1};
   } else if (text == "s-") {
     start = {process.lowest_static() - 1};

@@ -1,6 +1,7 @@
 #pragma once
 /// Steps of reading a request, each in a file of its own, and those that sweeps share.
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,12 @@ namespace stickslip::options {
 
 /// The largest force that occurs: X passes mu_s by 12 standard deviations with probability e^-72.
 [[nodiscard]] double largest_force(const model::Scene& scene);
+
+// noise_file.cpp
+
+/// The levels in a CSV file with the columns x,rate_up,rate_down. Throws std::invalid_argument with
+/// the line and the value that is wrong.
+[[nodiscard]] std::shared_ptr<const model::LevelTable> read_levels(const std::string& file);
 
 // question.cpp
 

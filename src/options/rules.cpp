@@ -22,6 +22,8 @@ class Rules {
     const std::string with_drag = "with -drag " + r_.scene.drag_name;
     warn({"drag_coefficient"}, !drag_law_.linear, with_drag);
     warn({"drag_cubic"}, !drag_law_.cubic, with_drag);
+    warn({"tau", "delta", "noise_levels", "noise_deviation"}, r_.scene.noise.name != "ou",
+         "with -noise " + r_.scene.noise.name);
     warn({"lambda"}, r_.method.route != Route::lambda && !asked("lambda"));
     warn({"excursions"}, !simulates);
     warn({"seed"}, !simulates && !asked("seed"));
@@ -44,6 +46,13 @@ class Rules {
     refuse({"drag_expression"}, !drag_law_.expression,
            "is not the drag, which is that of -drag " + r_.scene.drag_name,
            "add -drag expression, or leave it out");
+    for (const auto& [option, noise] : {std::pair{"telegraph_amplitude", "telegraph"},
+                                        {"telegraph_rate", "telegraph"},
+                                        {"noise_file", "file"}}) {
+      refuse({option}, r_.scene.noise.name != noise,
+             "is not of the noise, which is that of -noise " + r_.scene.noise.name,
+             "name its -noise, or leave it out");
+    }
     refuse({"stribeck_velocity", "stribeck_exponent"}, !weakens, "belongs to -friction stribeck",
            "add -friction stribeck, or leave it out");
     refuse({"route"}, queue && !r_.scene.process(1).drag.is_none(),
@@ -62,6 +71,11 @@ class Rules {
     refuse({"route", "scheme", "degree", "layers", "noise_degree", "noise_grading", "p", "v_max",
             "compare", "checkpoint", "noise_levels"},
            study_, "is chosen by -study itself", "leave it out");
+    const bool of_steps =
+        r_.study.kind == StudyKind::steps || r_.study.kind == StudyKind::heuristic;
+    refuse({"study"}, of_steps && r_.scene.noise.name != "ou",
+           "takes smaller and smaller -delta, which -noise " + r_.scene.noise.name + " has not",
+           "leave it out, or take -noise ou");
     refuse({"plan"}, r_.plan_only && study_, "foretells one run, not a study", "leave -study out");
   }
 

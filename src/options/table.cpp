@@ -64,7 +64,7 @@ Option file(const char* name, Kind kind, const char* sentence) {
   return {name, kind, "file", "a file name", "", "", {}, {}, sentence, ""};
 }
 
-std::vector<Option> scene_options() {
+std::vector<Option> friction_options() {
   return {
       real("mu_s", "force", "1", positive(), "static friction coefficient",
            "friction must be able to hold the body"),
@@ -86,14 +86,38 @@ std::vector<Option> scene_options() {
            "for a fall at once take -friction coulomb"),
       real("stribeck_exponent", "", "1", positive(), "gamma of -friction stribeck",
            "take 1, or 2 for friction that is flat at rest"),
-      real("tau", "time", "1", positive(), "correlation time of the noise X",
+      choice(
+          "noise", "ou", {"ou", "telegraph", "file"},
+          "the noise X: ou, an Ornstein-Uhlenbeck process on the levels of -delta; telegraph, two "
+          "values; file, any birth-death chain"),
+  };
+}
+
+std::vector<Option> scene_options() {
+  std::vector<Option> all = friction_options();
+  const std::vector<Option> others{
+      real("tau", "time", "1", positive(), "correlation time of -noise ou",
            "for white noise take a small value such as 0.01"),
       real("delta", "force", "0.125", positive(), "step between neighbouring noise levels",
            "the continuous noise is the limit of small steps such as 0.125"),
       integer("noise_levels", "", whole(1, 1e9),
-              "levels N of the noise on each side of 0; `full` is floor(2/(tau delta^2)). Without "
+              "levels N of the noise on each side of 0; `full` is the most that there can be, 2 "
+              "(deviation/delta)^2. Without "
               "it, the full range is meant, and as much of it is kept as -accuracy needs",
               kChosen, {"full"}),
+      real("noise_deviation", "force", "", positive(),
+           "standard deviation of X with -noise ou; 1/sqrt(tau) unless given, so that X tends to "
+           "white "
+           "noise of one strength as tau -> 0",
+           "take the standard deviation of the measured force"),
+      real("telegraph_amplitude", "force", "", positive(), "a of -noise telegraph, X = +a or -a",
+           "take for example 1"),
+      real("telegraph_rate", "1/time", "", positive(),
+           "rate at which X = +a turns into -a and back: the correlation time is half its inverse",
+           "take for example 1"),
+      file("noise_file", Kind::input,
+           "CSV with the columns x,rate_up,rate_down: the levels of -noise file, rising, with the "
+           "rates of jumps to their neighbours; 0 for those below the first and above the last"),
       choice("drag", "linear", words_of(kDragLaws),
              "drag law b(v): -c v, 0, -c v - c3 v^3, or -drag_expression"),
       real("drag_coefficient", "1/time", "1", not_negative(), "c in the drag law",
@@ -113,6 +137,8 @@ std::vector<Option> scene_options() {
            "cut of the velocity axis; bodies that reach it wait there until the noise falls. "
            "Without it, the largest velocity that matters at -accuracy is taken"),
   };
+  all.insert(all.end(), others.begin(), others.end());
+  return all;
 }
 
 std::vector<Option> question_options() {

@@ -31,11 +31,11 @@ void for_each_place(const StationaryDistribution& distribution, Visit visit) {
 
 std::vector<double> atoms(const StationaryDistribution& distribution) {
   const auto& process = distribution.process();
-  const int n = process.noise.levels;
+  const int n = -process.noise.lowest();
   const int lowest = process.lowest_static(), highest = process.static_index();
   const auto& stick = distribution.excursion().stick_time;
   const double total = distribution.excursion().mean_excursion();
-  std::vector<double> atom(2 * static_cast<std::size_t>(n) + 1, 0.0);
+  std::vector<double> atom(static_cast<std::size_t>(process.noise.count()), 0.0);
   for (int i = lowest; i <= highest; ++i) {
     atom[n + i] = stick[i - lowest] / total;
     if (distribution.states().symmetry_reduced()) {
@@ -50,7 +50,7 @@ std::vector<double> atoms(const StationaryDistribution& distribution) {
 DensityField density_field(const StationaryDistribution& distribution) {
   const auto& [process, noise, velocities] = distribution.discretisation();
   const auto weights = velocities->weights();
-  const int nodes = velocities->size(), half = noise->half();
+  const int nodes = velocities->size(), first = noise->first();
   std::vector<double> noise_marginal(static_cast<std::size_t>(noise->count()), 0.0);
   DensityField field{
       PhaseField(distribution.discretisation(), distribution.states(), PhaseField::Kind::measure),
@@ -60,7 +60,7 @@ DensityField density_field(const StationaryDistribution& distribution) {
       speed_distribution(distribution).at_top};
   for_each_place(distribution, [&](Branch side, const State& state, double probability) {
     const bool upper = side == Branch::positive;
-    noise_marginal[half + (upper ? state.noise : -state.noise)] += probability;
+    noise_marginal[(upper ? state.noise : -state.noise) - first] += probability;
     if (state.kind == StateKind::holding) return;
     // The node of a state at the origin is 0.
     const double density = probability / weights[state.node];

@@ -16,7 +16,8 @@ using operators::StaticPhase;
 using operators::Symmetry;
 using petsc::check;
 
-/// exp(Q t) for the static chain: at rate Lambda the noise jumps, up or down.
+/// exp(Q t) for the static chain: at rate Lambda the noise jumps, up or down, or stays where it
+/// does so more slowly.
 class StickingFlow {
  public:
   StickingFlow(const model::Process& process, std::vector<double> start)
@@ -33,8 +34,8 @@ class StickingFlow {
   }
 
   [[nodiscard]] double exit_rate() const {
-    return noise_.rate() * (noise_.up(highest_) * distribution_.back() +
-                            noise_.down(lowest_) * distribution_.front());
+    return noise_.up_rate(highest_) * distribution_.back() +
+           noise_.down_rate(lowest_) * distribution_.front();
   }
   [[nodiscard]] double left() const { return left_; }
 
@@ -60,8 +61,10 @@ class StickingFlow {
     double leaving = 0;
     for (int i = lowest_; i <= highest_; ++i) {
       const int at = i - lowest_;
-      (i < highest_ ? next[at + 1] : leaving) += chain[at] * noise_.up(i);
-      (i > lowest_ ? next[at - 1] : leaving) += chain[at] * noise_.down(i);
+      const double jumping = noise_.rate(i) / noise_.rate();
+      (i < highest_ ? next[at + 1] : leaving) += chain[at] * jumping * noise_.up(i);
+      (i > lowest_ ? next[at - 1] : leaving) += chain[at] * jumping * noise_.down(i);
+      next[at] += chain[at] * (1 - jumping);
     }
     chain = std::move(next);
     return leaving;
@@ -141,9 +144,10 @@ DurationDistribution excursion_distribution(operators::Systems& systems,
 double slide_density_at_zero(const model::Process& process, const SideChain& sides) {
   const auto from_plus = [](const model::Process& seen) {
     const int k = seen.static_index();
+    if (!seen.starts_upwards()) return 0.0;
     const double up = seen.net_force(k + 1), down = -seen.net_force(k);
     if (down <= 0) return 0.0;
-    return seen.noise.rate() * seen.noise.down(k + 1) * down / (up + down);
+    return seen.noise.down_rate(k + 1) * down / (up + down);
   };
   return sides.share_of_plus() * from_plus(process) +
          sides.share_of_minus() * from_plus(process.mirrored());

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
+#include <span>
+#include <string>
 
 #include "stickslip/operators/static_chain.hpp"
 
@@ -19,20 +22,27 @@ double Excursion::mean_slide() const { return sum(slide_time); }
 double Excursion::mean_stick() const { return sum(stick_time); }
 double Excursion::mean_excursion() const { return mean_slide() + mean_stick(); }
 
+double Excursion::mean_drift(const noise::Nodes& noise) const {
+  const auto half = slide_distance.begin() + noise.count();
+  if (half == slide_distance.end()) return 0;
+  return std::accumulate(slide_distance.begin(), half, 0.0) -
+         std::accumulate(half, slide_distance.end(), 0.0);
+}
+
 double Excursion::conservation_defect(const operators::Discretisation& discretisation) const {
-  const auto& process = discretisation.process;
-  const int k = process.threshold_index(), half = discretisation.noise->half();
+  const auto& [process, noise, velocities] = discretisation;
+  const int highest = noise->last_up_to(process.static_index()),
+            lowest = -noise->mirrored().last_up_to(-process.lowest_static());
   double beyond = 0;
-  for (int n = discretisation.noise->last_up_to(k) + 1; n <= half; ++n) {
-    beyond += slide_time[half + n] + slide_time[half - n];
+  for (std::size_t n = 0; n < slide_time.size(); ++n) {
+    const int place = static_cast<int>(n), count = noise->count();
+    const int node = place < count ? noise->first() + place : noise->last() - (place - count);
+    if (node < lowest || node > highest) beyond += slide_time[n];
   }
-  // A bias holds levels beyond mu_s, too.
-  const int lowest = process.lowest_static(), highest = process.static_index();
-  for (int i = lowest; i <= highest; ++i) {
-    if (std::abs(i) > k) beyond += stick_time[i - lowest];
-  }
-  const double expected = model::noise_moments(process.noise, k).beyond * mean_excursion();
-  return std::abs(beyond / expected - 1) + lost_probability * lost_probability;
+  const auto moments =
+      model::noise_moments(process.noise, process.lowest_static(), process.static_index());
+  return std::abs(beyond / (moments.beyond * mean_excursion()) - 1) +
+         lost_probability * lost_probability;
 }
 
 SideChain side_chain(const model::Process& process, const std::vector<double>& entry_plus,
@@ -48,7 +58,7 @@ SideChain side_chain(const model::Process& process, const std::vector<double>& e
 Excursion joined(const SideChain& sides, const Excursion& plus, const Excursion& minus) {
   Excursion all = plus;
   for (auto member : {&Excursion::slide_time, &Excursion::slide_distance, &Excursion::slide_square,
-                      &Excursion::slide_drift, &Excursion::entry, &Excursion::stick_time}) {
+                      &Excursion::entry, &Excursion::stick_time}) {
     for (std::size_t n = 0; n < (all.*member).size(); ++n) {
       (all.*member)[n] =
           sides.share_of_plus() * (plus.*member)[n] + sides.share_of_minus() * (minus.*member)[n];
@@ -74,19 +84,23 @@ void append_sticking(const Excursion& excursion, Results& results) {
 void append_moments(const operators::Discretisation& discretisation, const Excursion& excursion,
                     Results& results) {
   const double total = excursion.mean_excursion();
-  const int half = discretisation.noise->half();
+  const auto& noise = *discretisation.noise;
+  const auto& distance = excursion.slide_distance;
   double force_times_velocity = 0;
-  for (int n = -half; n <= half; ++n) {
-    force_times_velocity += discretisation.noise->x(n) * excursion.slide_distance[half + n];
+  std::size_t place = 0;
+  for (const auto* along : {&noise, &noise.mirrored()}) {
+    for (int n = along->first(); n <= along->last() && place < distance.size(); ++n) {
+      force_times_velocity += along->x(n) * distance[place++];
+    }
   }
   results.push_back(scalar(kEV2, sum(excursion.slide_square) / total, 0));
   results.push_back(scalar(kEAbsV, sum(excursion.slide_distance) / total, 0));
   results.push_back(scalar(kEXV, force_times_velocity / total, 0));
-  const auto& drift = excursion.slide_drift;
   // A difference of what the two half lines give: exact to the size of E|V|.
-  const double rounding =
-      excursion.conservation_defect(discretisation) * sum(excursion.slide_distance);
-  results.push_back(scalar(kEV, sum(drift) / total, drift.empty() ? 0 : rounding / total));
+  const bool one_half = distance.size() == static_cast<std::size_t>(noise.count());
+  const double rounding = excursion.conservation_defect(discretisation) * sum(distance);
+  results.push_back(
+      scalar(kEV, excursion.mean_drift(noise) / total, one_half ? 0 : rounding / total));
 }
 
 void append_hitting_distribution(const model::Process& process, const Excursion& excursion,
@@ -108,28 +122,47 @@ void append_hitting_distribution(const model::Process& process, const Excursion&
 
 double stick_density_at_zero(const model::Process& process, double lowest, double highest) {
   const auto& noise = process.noise;
-  return noise.rate() * (noise.up(process.static_index()) * highest +
-                         noise.down(process.lowest_static()) * lowest);
+  return noise.up_rate(process.static_index()) * highest +
+         noise.down_rate(process.lowest_static()) * lowest;
 }
 
 void append_noise_distribution(const model::Process& process, Results& results) {
-  const auto moments = model::noise_moments(process.noise, process.threshold_index());
-  const double rounding = model::rounding_of_sums(process.noise);
+  const auto& noise = process.noise;
+  const double mu_s = process.friction.mu_s;
+  const auto moments = model::noise_moments(noise, noise.first_from(-mu_s), noise.last_up_to(mu_s));
+  const double rounding = model::rounding_of_sums(noise);
   results.push_back(scalar(kPWithin, moments.within, rounding * moments.within));
-  results.push_back(scalar(kEX2, moments.variance, rounding * moments.variance));
+  results.push_back(scalar(kEX2, moments.square, rounding * moments.square));
+}
+
+void leave_out_missing_side(const model::Process& process, Results& results) {
+  static const std::set<std::string> of_plus{"entry_law", "h_plus", "h_minus", "w_one",
+                                             "w_plus",    "u",      "mu"},
+      of_minus{"entry_law_minus",  "h_plus_from_minus", "h_minus_from_minus",
+               "w_one_from_minus", "w_minus",           "u_minus",
+               "mu_minus"};
+  std::erase_if(results, [&](const Result& result) {
+    const std::string word = result.key.substr(0, result.key.find('('));
+    return (!process.starts_upwards() && of_plus.contains(word)) ||
+           (!process.starts_downwards() && of_minus.contains(word));
+  });
 }
 
 std::vector<double> marginal_of_noise(const operators::Discretisation& discretisation,
                                       const Excursion& excursion) {
-  const auto& process = discretisation.process;
-  auto time = discretisation.noise->spread(excursion.slide_time);
-  const int lowest = process.noise.levels + process.lowest_static();
+  const auto& [process, noise, velocities] = discretisation;
+  const std::span all(excursion.slide_time);
+  const auto nodes = static_cast<std::size_t>(noise->count());
+  const bool one_half = all.size() == nodes;
+  auto time = noise->spread(all.first(nodes));
+  const int lowest = process.lowest_static() - process.noise.lowest();
   for (std::size_t k = 0; k < excursion.stick_time.size(); ++k) {
     time[lowest + k] += excursion.stick_time[k];
   }
-  const std::vector<double> mirrored(time.rbegin(), time.rend());
+  const auto other = one_half ? time : noise->mirrored().spread(all.last(nodes));
+  const std::vector<double> below(other.rbegin(), other.rend());
   for (std::size_t i = 0; i < time.size(); ++i) {
-    time[i] = (time[i] + mirrored[i]) / (2 * excursion.mean_excursion());
+    time[i] = (time[i] + below[i]) / ((one_half ? 2 : 1) * excursion.mean_excursion());
   }
   return time;
 }

@@ -9,9 +9,12 @@ namespace stickslip::quantities {
 
 PhaseField::PhaseField(const operators::Discretisation& discretisation,
                        const operators::StateSpace& states, Kind kind)
-    : noise_(discretisation.noise), kind_(kind), local_noise_(states.local_noise()) {
+    : noise_(discretisation.noise),
+      lowest_(discretisation.process.noise.lowest()),
+      kind_(kind),
+      local_noise_(states.local_noise()) {
   const auto& chain = discretisation.process.noise;
-  for (int i = -chain.levels; i <= chain.levels; ++i) x_.push_back(chain.level(i));
+  for (int i = chain.lowest(); i <= chain.highest(); ++i) x_.push_back(chain.level(i));
   const auto nodes = discretisation.velocities->nodes();
   std::transform(nodes.rbegin(), nodes.rend(), std::back_inserter(v_),
                  [](double node) { return -node; });
@@ -39,10 +42,12 @@ void PhaseField::for_each_group(Visit visit) const {
   }
 }
 
-std::vector<int> PhaseField::local_levels() const {
-  std::vector<int> levels;
-  for_each_group([&levels](const noise::Nodes::Group& group) {
-    for (int i = group.first; i <= group.last; ++i) levels.push_back(i);
+std::vector<std::size_t> PhaseField::local_levels() const {
+  std::vector<std::size_t> levels;
+  for_each_group([&](const noise::Nodes::Group& group) {
+    for (int i = group.first - lowest_; i <= group.last - lowest_; ++i) {
+      levels.push_back(static_cast<std::size_t>(i));
+    }
   });
   return levels;
 }

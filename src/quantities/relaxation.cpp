@@ -121,7 +121,7 @@ RelaxationSector relaxation_modes(operators::Systems& systems, Symmetry symmetry
   const auto a = operators::assemble(systems.comm(), systems.discretisation(), 0, symmetry,
                                      operators::StaticPhase::kept, systems.statistics());
   // All rates have real parts >= 0; a target left of them, on the scale of the noise.
-  const double target = -0.1 / process.noise.tau;
+  const double target = -0.1 / process.noise.correlation_time();
   const petsc::Eigensolver solver(a.matrix(), kRelaxPrefix, target, kAskedFor,
                                   systems.statistics());
   std::vector<RelaxationMode> modes;

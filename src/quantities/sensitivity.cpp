@@ -89,7 +89,8 @@ ByTau stays_by_tau(const model::Process& process, const std::vector<double>& sti
 }  // namespace
 
 std::vector<Parameter> parameters_of(const model::Scene& scene) {
-  std::vector<Parameter> parameters{Parameter::mu_d, Parameter::tau};
+  std::vector<Parameter> parameters{Parameter::mu_d};
+  if (!scene.noise.table) parameters.push_back(Parameter::tau);
   if (scene.friction.mu_d_minus) parameters.push_back(Parameter::mu_d_minus);
   if (scene.friction.stribeck) {
     parameters.insert(parameters.end(), {Parameter::mu_s, Parameter::stribeck_velocity});
@@ -134,10 +135,10 @@ Sensitivity::Gradient Sensitivity::stays() const {
     gradient =
         through(system_.factors().solve(system_.a().from_rest({mean.begin(), mean.end()})), mean);
   }
-  const double by_tau = stays_by_tau(process, stick_time).stay;
-  const double uncorrected = stays_by_tau(process, distribution_.uncorrected().stick_time).stay;
   for (std::size_t n = 0; n < parameters_.size(); ++n) {
     if (parameters_[n] != Parameter::tau) continue;
+    const double by_tau = stays_by_tau(process, stick_time).stay;
+    const double uncorrected = stays_by_tau(process, distribution_.uncorrected().stick_time).stay;
     gradient[n] = gradient[n] + Uncertain{by_tau, std::abs(uncorrected - by_tau)};
   }
   return gradient;
@@ -161,8 +162,6 @@ Sensitivity::Gradient Sensitivity::through(petsc::Solution h, const std::vector<
     petsc::check(VecAXPY(h.x, worth, rising_.x));
     petsc::check(VecAXPY(h.correction, worth, rising_.correction));
   }
-  const double by_tau =
-      worth * stays_by_tau(distribution_.process(), distribution_.excursion().stick_time).upwards;
   Gradient gradient;
   for (std::size_t n = 0; n < changes_.size(); ++n) {
     const auto& change = changes_[n];
@@ -172,7 +171,11 @@ Sensitivity::Gradient Sensitivity::through(petsc::Solution h, const std::vector<
       return -petsc::dot(distribution_.occupation(), image);
     };
     const double moved = petsc::dot(distribution_.occupation(), change.from_rest(values));
-    const double chain = parameters_[n] == Parameter::tau ? by_tau : 0;
+    const double chain =
+        parameters_[n] != Parameter::tau
+            ? 0
+            : worth * stays_by_tau(distribution_.process(), distribution_.excursion().stick_time)
+                          .upwards;
     gradient.push_back({flux(h.x) + moved + chain, std::abs(flux(h.correction))});
   }
   return gradient;
@@ -230,7 +233,8 @@ void Sensitivity::append_moments(Results& results) const {
 // negative terms; a mean changes by its covariance with that score.
 void append_noise_sensitivity(const model::Process& process, Results& results) {
   const auto& noise = process.noise;
-  const int k = process.threshold_index();
+  if (noise.table) return;
+  const int k = noise.last_up_to(process.friction.mu_s);
   const auto distribution = model::stationary_distribution(noise);
   double score = 0;
   double within = distribution[noise.levels], within_score = 0, beyond = 0, beyond_score = 0;

@@ -129,7 +129,7 @@ class DirectSpectrum {
                                distribution.velocity_symmetry(), StaticPhase::kept,
                                systems.statistics())),
         statistics_(systems.statistics()),
-        turn_(1 / systems.process().noise.tau),
+        turn_(1 / systems.process().noise.correlation_time()),
         least_(distribution.process().symmetric() ? 0 : kNearZero * turn_),
         velocity_(distribution.velocity(a_)),
         acceleration_(a_.zeros()),
@@ -170,7 +170,7 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems,
                                  const StationaryDistribution& distribution,
                                  const std::vector<double>& omega, double tolerance) {
   const auto& noise = systems.process().noise;
-  const double turn = 1 / noise.tau;
+  const double turn = 1 / noise.correlation_time();
   auto a = operators::assemble(systems.comm(), systems.discretisation(), 0,
                                distribution.velocity_symmetry(), StaticPhase::kept,
                                systems.statistics());
@@ -178,7 +178,7 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems,
   const petsc::VecHandle d = distribution.weight_on(a);
   ReducedModel model(systems, std::move(a), StaticPhase::kept, {b, c, d},
                      ReducedModel::Nature::smooth, kMostPairs);
-  const std::vector<double> frequencies = judged(omega, noise.tau);
+  const std::vector<double> frequencies = judged(omega, noise.correlation_time());
   Questions questions;
   questions.values = [&](const Reduced& reduced) {
     const ReducedFunction s(reduced, turn);
@@ -209,7 +209,7 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems,
     if (frequencies[n] > 10 * turn) continue;
     bulk_error = std::max(bulk_error, answers.error[n] / std::abs(answers.value[n]));
   }
-  result.shape = shape_of(s, noise.tau, bulk_error, answers.relative_error);
+  result.shape = shape_of(s, noise.correlation_time(), bulk_error, answers.relative_error);
   // What the integral leaves of c v = E[V^2], known to rounding here, the model has not seen.
   PetscScalar variance = 0;
   check(VecTDot(c, b, &variance));

@@ -58,22 +58,23 @@ Excursion excursion_of(const KolmogorovOperator& a, Vec nu, double lost) {
   const auto nodes = static_cast<std::size_t>(noise->count());
   const bool symmetry_reduced = a.states().symmetry_reduced();
   Excursion e;
-  for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square}) sums->resize(nodes);
-  if (!symmetry_reduced) e.slide_drift.resize(nodes);
+  for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square}) {
+    sums->resize((symmetry_reduced ? 1 : 2) * nodes);
+  }
   const petsc::ReadView local(nu);
   PetscInt at = 0;
   a.states().for_each_local(
-      [&, &velocities_of_v = *velocities, half = noise->half()](const State& state) {
+      [&, &velocities_of_v = *velocities, &nodes_of_x = *noise](const State& state) {
         const double mass = PetscRealPart(local[at++]), v = speed(state, velocities_of_v);
-        const int node = half + state.noise;
+        const int node = state.half == Branch::positive
+                             ? state.noise - nodes_of_x.first()
+                             : nodes_of_x.count() + state.noise + nodes_of_x.last();
         e.slide_time[node] += mass;
         e.slide_distance[node] += mass * v;
         e.slide_square[node] += mass * v * v;
-        if (!symmetry_reduced)
-          e.slide_drift[node] += state.half == Branch::positive ? mass * v : -mass * v;
       });
-  // The nodes n and -n live on one rank, so that the sums do not depend on the distribution.
-  for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square, &e.slide_drift}) {
+  // A node lives on one rank, so that the sums do not depend on the distribution.
+  for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square}) {
     petsc::sum_over_ranks(a.states().comm(), *sums);
   }
   e.entry = real_parts(a.entry_rates(nu));
@@ -181,9 +182,8 @@ petsc::VecHandle StationaryDistribution::occupation_on(const KolmogorovOperator&
 
 StationaryDistribution::Velocity
 StationaryDistribution::velocity(const KolmogorovOperator& a) const {
-  const auto& drift = excursion_.slide_drift;
   const double total = excursion_.mean_excursion();
-  const double mean = std::accumulate(drift.begin(), drift.end(), 0.0) / total;
+  const double mean = excursion_.mean_drift(*discretisation_.noise) / total;
   Velocity velocity{a.values([mean](double, double, double v) { return v - mean; }), a.zeros()};
   petsc::check(VecPointwiseMult(velocity.c, velocity.b, occupation_on(a)));
   petsc::check(VecScale(velocity.c, 1 / total));

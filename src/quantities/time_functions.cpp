@@ -71,7 +71,7 @@ TimeCurve time_curve(operators::Systems& systems, operators::KolmogorovOperator 
     }
     return values;
   };
-  const double tau = systems.process().noise.tau;
+  const double tau = systems.process().noise.correlation_time();
   for (std::size_t n = 0; n < 2 * time.size(); ++n) {
     questions.shift.push_back(2 / std::max(time[n % time.size()], 1e-6 * tau));
   }

@@ -28,7 +28,10 @@ std::vector<Average> averages(const Setting& setting) {
     all.push_back({name.key, name.unit, name.kind, f});
   };
   const auto within = named("|x|<=mu_s"), stick = named("stick"), slide = named("slide");
-  add({"P_X_gt_mu_s", ""}, [=](double x, double y, double v) { return 1 - within(x, y, v); });
+  const double low = process.noise.level(process.lowest_static()),
+               high = process.noise.level(process.static_index());
+  add({"P_moving_levels", ""},
+      [=](double x, double, double) { return x < low || x > high ? 1 : 0; });
   if (question.wants(Quantity::sticking) || question.wants(Quantity::averages)) {
     add(quantities::kPStick, stick);
     add(quantities::kPSlide, slide);
@@ -64,7 +67,8 @@ void append_averages(const Setting& setting, const std::vector<Uncertain>& value
   const auto all = averages(setting);
   const options::Question& question = setting.given.question;
   const auto& process = setting.discretisation.process;
-  const double beyond = model::noise_moments(process.noise, process.threshold_index()).beyond;
+  const double beyond =
+      model::noise_moments(process.noise, process.lowest_static(), process.static_index()).beyond;
   const double defect = std::abs(values[kBeyond].value / beyond - 1);
   for (int n = kBeyond + 1; n < static_cast<int>(all.size()); ++n) {
     Uncertain value = values[n];

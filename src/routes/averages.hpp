@@ -18,7 +18,7 @@ struct Average {
   int given = -1;  ///< number of the average that it is divided by, of a phase; -1: none
 };
 
-/// Those that are asked for, after P_X_gt_mu_s, which append_averages needs.
+/// Those that are asked for, after P_moving_levels, which append_averages needs.
 [[nodiscard]] std::vector<Average> averages(const Setting& setting);
 
 /// Turns pi(f) of averages(setting) into results.

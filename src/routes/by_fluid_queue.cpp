@@ -37,7 +37,6 @@ Excursion excursion_of(const model::Process& process, const exact::QueuedSlide& 
   e.slide_time = slide.time;
   e.slide_distance = slide.distance;
   e.slide_square = slide.square;
-  if (!process.symmetric()) e.slide_drift = {slide.drift};
   e.entry = e.entry_plus = slide.entry;
   e.lost_probability = sum(e.entry) - 1;
   e.stick_time = operators::StaticChain::of(process).occupation(e.entry);
@@ -57,11 +56,14 @@ double relative_rounding(const Excursion& e, const FluidQueue& queue) {
 void append_noise_distribution(const model::Process& process,
                                const std::vector<double>& distribution,
                                quantities::Results& results) {
-  const int n = process.noise.levels, k = process.static_index();
+  const auto& noise = process.noise;
+  const double mu_s = process.friction.mu_s;
+  const int low = noise.first_from(-mu_s), high = noise.last_up_to(mu_s);
   double within = 0, square = 0;
-  for (int i = -n; i <= n; ++i) {
-    if (std::abs(i) <= k) within += distribution[n + i];
-    square += distribution[n + i] * process.noise.level(i) * process.noise.level(i);
+  for (int i = noise.lowest(); i <= noise.highest(); ++i) {
+    const double p = distribution[i - noise.lowest()];
+    if (low <= i && i <= high) within += p;
+    square += p * noise.level(i) * noise.level(i);
   }
   results.push_back(quantities::scalar(quantities::kPWithin, within, 0));
   results.push_back(quantities::scalar(quantities::kEX2, square, 0));

@@ -29,28 +29,28 @@ class Hitting {
 
   /// Means of that time; where the process is killed at once it is 0.
   [[nodiscard]] Means time() {
-    return solve([this](int i, bool at_rest) { return at_rest && is_edge(i) ? 0.0 : 1.0; });
+    return solve([this](double x, bool at_rest) { return at_rest && is_edge(x) ? 0.0 : 1.0; });
   }
   /// Probabilities of reaching the highest static level before the lowest one; 1 if they are one.
   [[nodiscard]] Means upwards() {
     const double rate = process_.noise.rate();
-    return solve([this, rate](int i, bool at_rest) {
-      return at_rest && i == process_.static_index() ? rate : 0.0;
+    return solve([this, rate](double x, bool at_rest) {
+      return at_rest && x == process_.noise.level(process_.static_index()) ? rate : 0.0;
     });
   }
 
  private:
-  [[nodiscard]] bool is_edge(int i) const {
-    return rest_ == StaticPhase::killing_edges &&
-           (i == process_.static_index() || i == process_.lowest_static());
+  [[nodiscard]] bool is_edge(double x) const {
+    const auto& noise = process_.noise;
+    return rest_ == StaticPhase::killing_edges && (x == noise.level(process_.static_index()) ||
+                                                   x == noise.level(process_.lowest_static()));
   }
 
   template <class Source>
   Means solve(Source source) {
     const auto& a = system_.a();
-    const auto u = system_.factors().solve(a.values([&](double x, double y, double) {
-      return source(static_cast<int>(std::lround(x / process_.noise.delta)), y == 0);
-    }));
+    const auto u = system_.factors().solve(
+        a.values([&](double x, double y, double) { return source(x, y == 0); }));
     return {quantities::value_of(a.trace_at_exit(), u),
             quantities::value_of(a.trace_at_exit(operators::Branch::negative), u)};
   }

@@ -91,7 +91,7 @@ class Search {
   explicit Search(const Setting& setting) : setting_(setting) {}
 
   Trial run() {
-    const double tau = setting_.discretisation.process.noise.tau,
+    const double tau = setting_.discretisation.process.noise.correlation_time(),
                  wanted = 0.25 * setting_.given.question.accuracy;
     best_ = average_at(setting_, std::max(0.01 * setting_.given.question.accuracy, kSafe) / tau);
     for (int n = 1, means = 0; n < kMostTrials && means < kMostMeans; ++n) {

@@ -60,9 +60,9 @@ Uncertain mean_excursion(const Setting& setting, const KolmogorovOperator& a, Ve
   const auto& noise = process.noise;
   const auto exits = [&](double x, double y, double) {
     if (y != 0) return 0.0;
-    const auto i = static_cast<int>(std::lround(x / noise.delta));
-    const bool high = i == process.static_index(), low = i == process.lowest_static();
-    return noise.rate() * ((high ? noise.up(i) : 0) + (low ? noise.down(i) : 0));
+    const int high = process.static_index(), low = process.lowest_static();
+    return (x == noise.level(high) ? noise.up_rate(high) : 0) +
+           (x == noise.level(low) ? noise.down_rate(low) : 0);
   };
   const double value = 1 / integral(a, pi, exits);
   return {value, std::abs(value - 1 / integral(a, before, exits))};
@@ -89,7 +89,7 @@ Evaluation by_null_vector(const Setting& setting) {
   check(MatTranspose(a.matrix(), MAT_INITIAL_MATRIX, transposed.out()));
   // All eigenvalues of -M have real parts >= 0, and 0 is the one nearest to a small negative
   // target.
-  const double target = -1e-6 / setting.discretisation.process.noise.tau;
+  const double target = -1e-6 / setting.discretisation.process.noise.correlation_time();
   petsc::Eigensolver solver(transposed, kNullPrefix, target, 1, setting.statistics);
   const Vec before = solver.pairs()[0].real;
   normalise(before);

@@ -1,6 +1,7 @@
 #include "stickslip/simulation/excursions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -17,57 +18,71 @@ class Levels {
   explicit Levels(const model::Process& process)
       : lowest_(process.lowest_static()),
         highest_(process.static_index()),
-        within_(process.threshold_index()),
-        reach_(reach(process)),
-        mean_wait_(1 / process.noise.rate()) {
+        least_within_(process.noise.first_from(-process.friction.mu_s)),
+        most_within_(process.noise.last_up_to(process.friction.mu_s)),
+        upwards_(process.starts_upwards()),
+        downwards_(process.starts_downwards()),
+        begin_(std::max(process.noise.lowest(), -reach(process))),
+        end_(std::min(process.noise.highest(), reach(process))) {
     const auto mirrored = process.mirrored();
-    for (int i = -reach_; i <= reach_; ++i) {
+    for (int i = begin_; i <= end_; ++i) {
       level_.push_back(process.noise.level(i));
-      upper_force_.push_back(process.net_force(i));
-      lower_force_.push_back(mirrored.net_force(i));
+      force_.push_back({process.net_force(i), mirrored.net_force(-i)});
+      mean_wait_.push_back(1 / process.noise.rate(i));
       // 2^-32 is far below what any number of excursions resolves.
-      up_.push_back(static_cast<std::uint64_t>(std::llround(process.noise.up(i) * 0x1p32)));
+      const auto threshold = [](double p) {
+        return static_cast<std::uint64_t>(std::llround(p * 0x1p32));
+      };
+      onwards_.push_back({threshold(process.noise.up(i)), threshold(process.noise.down(i))});
     }
   }
 
   [[nodiscard]] bool rests(int i) const { return lowest_ <= i && i <= highest_; }
-  [[nodiscard]] bool within(int i) const { return std::abs(i) <= within_; }
-  /// The first level beyond those that rest, along a direction of motion.
-  [[nodiscard]] int exit(int sign) const { return 1 + (sign > 0 ? highest_ : -lowest_); }
+  [[nodiscard]] bool within(int i) const { return least_within_ <= i && i <= most_within_; }
+  /// The direction in which excursions start from a side; where the noise has one side alone, its.
+  [[nodiscard]] int direction(std::size_t side) const {
+    return (side == 0 ? upwards_ : !downwards_) ? 1 : -1;
+  }
+  /// The first level beyond those that rest, in a direction.
+  [[nodiscard]] int exit(int sign) const { return sign > 0 ? highest_ + 1 : lowest_ - 1; }
   [[nodiscard]] double level(int i) const { return level_[at(i)]; }
-  /// Acceleration at v = 0 of a body that moves upwards, by i, or downwards, by -i.
-  [[nodiscard]] double force(int sign, int along) const {
-    return (sign > 0 ? upper_force_ : lower_force_)[at(along)];
+  /// Acceleration along the motion at v = 0 of a body that moves upwards or downwards.
+  [[nodiscard]] double force(int sign, int i) const { return force_[at(i)][sign > 0 ? 0 : 1]; }
+  [[nodiscard]] double wait(int i, RandomStream& random) const {
+    return mean_wait_[at(i)] * random.exponential();
   }
-  [[nodiscard]] double wait(RandomStream& random) const {
-    return mean_wait_ * random.exponential();
-  }
-  [[nodiscard]] int next(int i, RandomStream& random) const {
-    const int next = i + (random.half_word() < up_[at(i)] ? 1 : -1);
-    if (std::abs(next) > reach_) throw std::runtime_error("the noise left 40 deviations");
+  /// The level after a jump. Drawn along the motion, so that mirror images take the same numbers.
+  [[nodiscard]] int next(int i, int sign, RandomStream& random) const {
+    const bool onwards = random.half_word() < onwards_[at(i)][sign > 0 ? 0 : 1];
+    const int next = onwards ? i + sign : i - sign;
+    if (next < begin_ || next > end_) throw std::runtime_error("the noise left 40 deviations");
     return next;
   }
 
  private:
   // The noise passes 40 standard deviations with probability exp(-800).
   static int reach(const model::Process& process) {
-    const double far = 40 / (std::sqrt(process.noise.tau) * process.noise.delta);
+    const auto& noise = process.noise;
+    const double far = 40 * noise.standard_deviation() / noise.step();
     const int edge = std::max(process.static_index(), -process.lowest_static());
-    const double most = std::min<double>(process.noise.levels, edge + 2 + far);
-    return static_cast<int>(most);
+    const double all = std::max(-noise.lowest(), noise.highest());
+    return static_cast<int>(noise.table ? all : std::min(all, edge + 2 + far));
   }
   [[nodiscard]] std::size_t at(int i) const {
-    const int place = i + reach_;
+    const int place = i - begin_;
     return static_cast<std::size_t>(place);
   }
 
-  int lowest_, highest_, within_, reach_;
-  double mean_wait_;
-  std::vector<double> level_, upper_force_, lower_force_;
-  std::vector<std::uint64_t> up_;  // alpha_i in units of 2^-32
+  int lowest_, highest_, least_within_, most_within_;
+  bool upwards_, downwards_;
+  int begin_, end_;  // of the tables, the end included
+  std::vector<double> level_, mean_wait_;
+  std::vector<std::array<double, 2>> force_;
+  // Probabilities of jumps upwards and downwards, in units of 2^-32.
+  std::vector<std::array<std::uint64_t, 2>> onwards_;
 };
 
-/// In the frame of the motion: speed u = |V| >= 0, level j = i sign(V).
+/// Speeds are |V| >= 0.
 template <class Flow>
 class Source : public ExcursionSource {
  public:
@@ -90,8 +105,9 @@ class Source : public ExcursionSource {
     e.discounted.assign(wanted_.observables.size() * wanted_.discount.size(), {});
     std::fill(phase_.begin(), phase_.end(), 1.0);
     place_ = place;
-    double wait = levels_.wait(random);
-    slide(random, e, wait, side == 0 ? 1 : -1);
+    const int sign = levels_.direction(side);
+    double wait = levels_.wait(levels_.exit(sign), random);
+    slide(random, e, wait, sign);
     sticking(random, e, wait);
     if (side == 1) e.turned = !e.turned;
   }
@@ -100,39 +116,37 @@ class Source : public ExcursionSource {
   // Until rest; `wait` is the time to the next jump of the noise.
   void slide(RandomStream& random, Excursion& e, double& wait, int sign) {
     const bool integrals = wanted_.moments || wanted_.displacement || !wanted_.omega.empty();
-    int j = levels_.exit(sign);
+    int i = levels_.exit(sign);
     double speed = 0;
     for (;;) {
-      const double force = levels_.force(sign, j);
+      const double force = levels_.force(sign, i);
       const Piece piece = flow(sign).move(speed, force, wait, integrals);
-      if (!wanted_.observables.empty()) observe_slide(e, piece.time, speed, j, sign);
-      follow(e, piece, j, sign);
+      if (!wanted_.observables.empty()) observe_slide(e, piece.time, speed, i, sign);
+      follow(e, piece, i, sign);
       if (!wanted_.omega.empty()) follow_transform(e, piece, speed, force, sign);
       speed = piece.end;
       if (!piece.stopped) {
-        j = levels_.next(j, random);
-        wait = levels_.wait(random);
+        i = levels_.next(i, sign, random);
+        wait = levels_.wait(i, random);
         ++e.jumps;
         continue;
       }
       wait -= piece.time;
-      if (levels_.rests(sign * j)) break;
-      j = -j;  // pushed on the other way
-      sign = -sign;
+      if (levels_.rests(i)) break;
+      sign = -sign;  // pushed on the other way
     }
-    e.entry = sign * j;
+    e.entry = i;
   }
 
   [[nodiscard]] const Flow& flow(int sign) const { return sign > 0 ? flow_ : backward_flow_; }
 
-  void follow(Excursion& e, const Piece& piece, int j, int sign) const {
+  void follow(Excursion& e, const Piece& piece, int i, int sign) const {
     e.slide += piece.time;
     e.path += piece.path;
     e.drift += sign * piece.path;
     e.square += piece.square;
-    const double x = levels_.level(j);
-    e.product += x * piece.path;
-    if (wanted_.noise) follow_noise(e, j, piece.time);
+    e.product += sign * levels_.level(i) * piece.path;
+    if (wanted_.noise) follow_noise(e, i, piece.time);
   }
 
   void follow_noise(Excursion& e, int i, double time) const {
@@ -149,11 +163,11 @@ class Source : public ExcursionSource {
   }
 
   // Places along the golden ratio spread evenly, and each is uniformly distributed.
-  void observe_slide(Excursion& e, double time, double speed, int j, int sign) {
+  void observe_slide(Excursion& e, double time, double speed, int i, int sign) {
     place_ = std::fmod(place_ + 0.6180339887498949, 1);
     const double at = place_ * time;
-    const double then = flow(sign).move(speed, levels_.force(sign, j), at, false).end;
-    observe(e, &Integrals::slide, time, at, sign * levels_.level(j), sign, sign * then);
+    const double then = flow(sign).move(speed, levels_.force(sign, i), at, false).end;
+    observe(e, &Integrals::slide, time, at, levels_.level(i), sign, sign * then);
   }
 
   // A piece of `time`, with the state at `at` after its start; at rest nothing changes.
@@ -185,10 +199,10 @@ class Source : public ExcursionSource {
       }
       e.stick += wait;
       if (wanted_.noise) follow_noise(e, i, wait);
-      i = levels_.next(i, random);
+      i = levels_.next(i, 1, random);
       ++e.jumps;
       if (!levels_.rests(i)) break;
-      wait = levels_.wait(random);
+      wait = levels_.wait(i, random);
     }
     e.turned = i < e.entry;
   }

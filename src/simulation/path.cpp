@@ -68,7 +68,7 @@ class Walker : public Walk {
   void start_if_pushed() {
     if (y_ == 0 && (i_ < lowest_ || i_ > highest_)) y_ = i_ > highest_ ? 1 : -1;
   }
-  void wait() { next_jump_ = time_ + random_.exponential() / process_.noise.rate(); }
+  void wait() { next_jump_ = time_ + random_.exponential() / process_.noise.rate(i_); }
 
   [[nodiscard]] Piece move_on(double time) const {
     if (y_ > 0) return flow_.move(speed_, process_.net_force(i_), time, false);
@@ -87,7 +87,8 @@ class Walker : public Walk {
 void begin_stationary(Walk& walk, const model::Process& process, RandomStream& random) {
   constexpr int excursions = 1000;
   const double share = random.uniform();
-  const model::Start start{process.static_index() + 1};
+  const model::Start start{process.starts_upwards() ? process.static_index() + 1
+                                                    : process.lowest_static() - 1};
   walk.begin(random, start);
   for (int n = 0; n < excursions; ++n) walk.end_excursion();
   const double time = share * walk.state().time;
@@ -117,13 +118,13 @@ std::unique_ptr<Walk> make_walk(const model::Process& process) {
 }
 
 NoiseLevels::NoiseLevels(const model::NoiseChain& noise)
-    : below_(model::stationary_distribution(noise)) {
+    : lowest_(noise.lowest()), below_(model::stationary_distribution(noise)) {
   std::partial_sum(below_.begin(), below_.end(), below_.begin());
 }
 
 int NoiseLevels::draw(double uniform) const {
   const auto found = std::upper_bound(below_.begin(), below_.end() - 1, uniform * below_.back());
-  return static_cast<int>(found - below_.begin()) - static_cast<int>(below_.size() / 2);
+  return lowest_ + static_cast<int>(found - below_.begin());
 }
 
 Path simulate_path(const model::Process& process, const model::Start& start, double horizon,

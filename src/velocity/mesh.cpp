@@ -12,13 +12,13 @@
 namespace stickslip::velocity {
 namespace {
 
-// Local rate F(v) - b(v) at which log-density falls in white noise, or grows. A bias g changes it
-// by -g on one half line and by g on the other; elements serve both.
+// Local decay rate of log-density in white noise of intensity D, (F(v) - b(v))/D, or of its growth.
+// A mean force g changes it by -g on one half line and by g on the other; elements serve both.
 double decay_rate(const model::Process& process, double v) {
   const double drag =
       process.drag.odd() ? -process.drag(v) : std::max(-process.drag(v), process.drag(-v));
   const double rest = std::max(process.friction.at_rest(), process.friction.mirrored().at_rest());
-  return std::abs(rest + drag) + std::abs(process.bias);
+  return (std::abs(rest + drag) + std::abs(process.mean_force())) / process.noise.intensity();
 }
 
 // Where geometric growth stops because an element would span more than `decay` of log-density.
@@ -35,12 +35,13 @@ double graded_end(const model::Process& process, const MeshRule& rule) {
 // Distance from F(0+) - g down to the nearest level below it, for levels that can come to rest on
 // the upper half line.
 double upper_gap_below(const model::Process& process) {
-  const double delta = process.noise.delta, rest = process.friction.at_rest();
-  const auto level = static_cast<int>(std::floor((rest - process.bias) / delta));
-  for (int i = level + 1; i >= level - 1; --i) {
+  const auto& noise = process.noise;
+  const int level = noise.last_up_to(process.friction.at_rest() - process.bias);
+  for (int i = std::min(level + 1, noise.highest()); i >= std::max(level - 1, noise.lowest());
+       --i) {
     if (process.net_force(i) < 0) return -process.net_force(i);
   }
-  return delta;
+  return noise.step();
 }
 
 // The smaller one of the two half lines.
@@ -57,13 +58,13 @@ double speed_of_bend(const model::Drag& drag, double gap) {
 }
 
 // At lambda = 0 two layers can form at v = 0. The kinetic layer around x = mu_d mixes levels delta
-// apart, at speeds about delta, in the time 1/Lambda = tau^2 delta^2/2 between jumps: 0.3 delta^3
-// tau^2 is fine enough at every degree tried. A level at a distance g below mu_d comes to rest
+// apart, at speeds about delta, in the time 1/Lambda between jumps: 0.6 delta/Lambda is fine enough
+// at every degree tried. A level at a distance g below mu_d comes to rest
 // through the factor (1 + v/s)^(-Lambda/c), s = g/c, c = -b'(0): with fast jumps it is over before
 // it matters (the first test), with slow ones it is a feature of its own on the scale s.
 double free_layer(const model::Process& process) {
   const auto& noise = process.noise;
-  const double kinetic = 0.3 * noise.delta * noise.delta * noise.delta * noise.tau * noise.tau;
+  const double kinetic = 0.6 * noise.step() / noise.rate();
   const double gap = gap_below(process);
   double rest = speed_of_bend(process.drag, gap);
   if (!process.drag.odd()) rest = std::min(rest, speed_of_bend(process.drag.mirrored(), gap));
@@ -79,40 +80,49 @@ double free_layer(const model::Process& process) {
 double killed_layer(const model::Process& process, double lambda) {
   const auto& noise = process.noise;
   const double rate = noise.rate(), gap = gap_below(process);
-  const bool counts = lambda * gap > 1e-3 * rate * noise.delta;
-  return (counts ? gap : gap + noise.delta) / (rate + lambda);
+  const bool counts = lambda * gap > 1e-3 * rate * noise.step();
+  return (counts ? gap : gap + noise.step()) / (rate + lambda);
 }
 
 // Speed that a body which leaves v = 0 has when the noise might turn it back: at the net force g it
-// does so after the time g^2 tau^2/2. On the half line where that is less.
+// does so after the time g^2/D, D = Lambda delta^2 the diffusivity of the noise. On the half line
+// where that is less.
 double speed_of_leaving(const model::Process& process) {
   const auto cubed = [](const model::Process& half) {
+    if (!half.starts_upwards()) return std::numeric_limits<double>::infinity();
     return std::pow(half.net_force(half.static_index() + 1), 3);
   };
-  const double tau = process.noise.tau;
-  return 0.3 * tau * tau * std::min(cubed(process), cubed(process.mirrored()));
+  const double step = process.noise.step();
+  return 0.6 * std::min(cubed(process), cubed(process.mirrored())) /
+         (process.noise.rate() * step * step);
 }
 
-// log of the stationary density of white noise on the upper half line, exp(-slope v + int b) with
-// slope = F(0+) - bias, against its largest value.
+// log of the stationary density of white noise of intensity D on the upper half line, exp((-slope v
+// + int b)/D) with slope = F(0+) - g, g the mean force, against its largest value. Large speeds
+// make of some noises a stronger one.
 struct LogDensity {
   explicit LogDensity(const model::Process& process)
-      : drag(process.drag), slope(process.friction.at_rest() - process.bias) {
+      : drag(process.drag), slope(process.friction.at_rest() - process.mean_force()) {
     extrema.push_back(drag.terminal_velocity(-slope));
     if (drag.rises_until > 0) extrema = drag.balances(-slope);
+    double least = slope;
+    for (double v = drag.rises_until; v > 1e-9 * drag.rises_until; v *= 0.95) {
+      least = std::min(least, slope - drag(v));
+    }
+    intensity = process.noise.tail_intensity(least);
     for (double v : extrema) highest = std::max(highest, -slope * v + drag.potential(v));
   }
   /// Raised by `by`.
   [[nodiscard]] double operator()(double v, double by = 0) const {
-    return by - highest - slope * v + drag.potential(v);
+    return by - (highest + slope * v - drag.potential(v)) / intensity;
   }
 
   model::Drag drag;
   double slope;
-  // Rising: a bias beyond mu_d moves the peak to where drag balances it, and where the whole force
-  // weakens there may be more peaks, with minima between them.
+  // Rising: where drag balances a bias beyond mu_d; under forces that weaken more, minima too.
   std::vector<double> extrema;
   double highest = 0;  // at v = 0
+  double intensity;
 };
 
 bool has_waves(const model::Process& process, const MeshRule& rule) {
@@ -132,8 +142,9 @@ double end_of_thinnest_waves(const model::Process& process) {
 // beside the smooth part, so that they are followed up to 40 Lambda only.
 double wave_width(const model::Process& process, double omega, double v) {
   const double rate = process.noise.rate(), gap = gap_below(process);
-  const double slowest =
-      v < end_of_thinnest_waves(process) ? gap : std::max(gap + process.noise.delta, rate * v / 20);
+  const double slowest = v < end_of_thinnest_waves(process)
+                             ? gap
+                             : std::max(gap + process.noise.step(), rate * v / 20);
   return 4 * std::numbers::pi * slowest / std::min(omega, 40 * rate);
 }
 
@@ -158,27 +169,26 @@ std::vector<double> cut_for_waves(const model::Process& process, double omega,
 
 namespace {
 
-// How many elements, graded towards a place where the solution is like |v - v*|^power, leave an
-// error below the tolerance: that of the smallest one is its length to the power + 1.
+// Elements graded towards a place where the solution is like |v - v*|^power, for an error below the
+// tolerance: that of the smallest one is its length to the power + 1.
 int layers_towards(double power, const MeshRule& rule) {
   const double needed = std::log(rule.tolerance) / ((1 + power) * std::log(rule.ratio));
   return std::max(1, static_cast<int>(std::ceil(needed)));
 }
 
 constexpr double kSmooth = 10;  // powers from which on elements of any length do
-
 // The power in v with which solutions are rough below all other scales, kSmooth at most. A level of
 // no net force there is left at the speed b'(0) v, or at once where b is like a root of v.
 double power_at_rest(const model::Process& process) {
-  const auto& friction = process.friction;
+  const auto& [noise, friction, drag, bias] = process;
   const double exponent = friction.weakens() ? friction.stribeck->exponent : 1;
   const double power = exponent == std::round(exponent) ? kSmooth : 1 + exponent;
-  const double slope = process.drag.slope_at_rest();
-  const double level = std::round((friction.at_rest() - process.bias) / process.noise.delta);
-  if (process.drag.rises_until == 0 || process.net_force(static_cast<int>(level)) != 0)
-    return power;
+  const double slope = drag.slope_at_rest();
+  const int below = noise.last_up_to(friction.at_rest() - bias),
+            level = std::clamp(below, noise.lowest(), noise.highest());
+  if (drag.rises_until == 0 || process.net_force(level) != 0) return power;
   if (exponent < 1) return 1 - exponent;
-  return slope > 0 && exponent == 1 ? std::min(kSmooth, process.noise.rate() / slope) : power;
+  return slope > 0 && exponent == 1 ? std::min(kSmooth, noise.rate() / slope) : power;
 }
 
 /// Elements towards a place, by place.
@@ -186,31 +196,27 @@ using Layers = std::map<double, int>;
 
 // Where a level does not move but is left for both sides, at speeds beta (v - v*) with beta > 0, on
 // either half line: solutions are like |v - v*|^(Lambda/beta).
-Layers partings(const model::Process& process, const MeshRule& rule) {
+Layers partings(const model::Process& process, const MeshRule& rule, bool on_both = true) {
   constexpr double fine = 1.01, smallest = 1e-12;
+  const auto& [noise, friction, drag, bias] = process;
+  const double end = std::min(rule.v_max, drag.rises_until), rest = friction.at_rest() - bias;
   Layers found;
-  std::vector<model::Process> halves{process};
-  if (!process.symmetric()) halves.push_back(process.mirrored());
-  for (const auto& [noise, friction, drag, bias] : halves) {
-    const double end = std::min(rule.v_max, drag.rises_until), rest = friction.at_rest() - bias;
-    for (double low = smallest * end, high = fine * low; low < end; low = high, high *= fine) {
-      const double from = drag(low), rise = drag(high) - from;
-      const double power = noise.rate() * (high - low) / rise;
-      if (!(rise > 0) || power > kSmooth) continue;
-      const auto levels = static_cast<double>(noise.levels);
-      const double highest = std::clamp(std::floor((rest - from) / noise.delta), -levels, levels);
-      for (int i = static_cast<int>(highest); i >= -noise.levels; --i) {
-        const double force = friction.net_force(noise.level(i), bias);
-        if (force + from > 0) continue;  // by rounding
-        if (force + from + rise <= 0) break;
-        std::uintmax_t iterations = 200;
-        const auto at = boost::math::tools::toms748_solve(
-            [&, &b = drag](double v) { return force + b(v); }, low, high,
-            boost::math::tools::eps_tolerance<double>(52), iterations);
-        if (at.first < rule.v_max) found[at.first] = layers_towards(power, rule);
-      }
+  for (double low = smallest * end, high = fine * low; low < end; low = high, high *= fine) {
+    const double from = drag(low), rise = drag(high) - from;
+    if (!(rise > 0)) continue;
+    for (int i = std::min(noise.last_up_to(rest - from), noise.highest());
+         i >= noise.lowest() && process.net_force(i) + from + rise > 0; --i) {
+      const double force = process.net_force(i), power = noise.rate(i) * (high - low) / rise;
+      if (force + from > 0 || power > kSmooth) continue;
+      const auto speed = [force, &b = drag](double v) { return force + b(v); };
+      const boost::math::tools::eps_tolerance<double> rounding(52);
+      std::uintmax_t iterations = 200;
+      const double v =
+          boost::math::tools::toms748_solve(speed, low, high, rounding, iterations).first;
+      if (v < rule.v_max) found[v] = layers_towards(power, rule);
     }
   }
+  if (on_both && !process.symmetric()) found.merge(partings(process.mirrored(), rule, false));
   return found;
 }
 
@@ -376,7 +382,7 @@ std::vector<int> regular_degrees(const model::Process& process, const MeshRule& 
   constexpr int most_where_left = 2;  // degrees less
   const int layers = rule.layers > 0 ? rule.layers : natural_layers(process, rule);
   std::vector<int> degrees(ends.size() - 1, degree);
-  const bool early = rule.rates.lambda * process.noise.tau > 1;
+  const bool early = rule.rates.lambda * process.noise.correlation_time() > 1;
   if (early || has_waves(process, rule)) return degrees;
   const double leaving = speed_of_leaving(process);
   const int graded = std::min(layers, static_cast<int>(degrees.size()));
@@ -423,7 +429,7 @@ double upper_tail(const model::Process& process, double tolerance) {
   const auto left = [&](double v) { return log_density(v, drop); };
   double last = 0;  // with a density that counts
   for (double v : log_density.extrema) last = left(v) > 0 ? v : last;
-  double end = std::max(slope > 0 ? drop / slope : 1.0, 2 * last);
+  double end = std::max(slope > 0 ? drop * log_density.intensity / slope : 1.0, 2 * last);
   const bool open = slope <= 0 || process.drag.rises_until > 0;
   while (open && left(end) > 0 && end < process.drag.reach) end *= 2;
   end = std::min(end, process.drag.reach);

@@ -3,6 +3,7 @@
 
 #include "stickslip/model/friction.hpp"
 #include "stickslip/model/grid_index.hpp"
+#include "stickslip/model/process.hpp"
 
 using stickslip::model::floor_index;
 using stickslip::model::Friction;
@@ -45,10 +46,13 @@ TEST_CASE("excess: a level that equals mu_d in decimals has none") {
 }
 
 TEST_CASE("static index: x_k <= mu_s < x_{k+1}") {
-  CHECK(Friction{0.3, 0.3}.static_index(0.1) == 3);
-  CHECK(Friction{1, 1}.static_index(0.25) == 4);
-  CHECK(Friction{1, 1}.static_index(0.3) == 3);
-  CHECK(Friction{0.05, 0.05}.static_index(0.1) == 0);
+  const auto index = [](double mu_s, double delta) {
+    return stickslip::model::Process{{1, delta, 9}, {mu_s, mu_s}, {}}.static_index();
+  };
+  CHECK(index(0.3, 0.1) == 3);
+  CHECK(index(1, 0.25) == 4);
+  CHECK(index(1, 0.3) == 3);
+  CHECK(index(0.05, 0.1) == 0);
 }
 
 TEST_CASE("floor index: below zero, too, the largest integer that is not larger") {

@@ -58,18 +58,19 @@ TEST_CASE("noise law: detailed balance on a truncated range") {
 }
 
 TEST_CASE("noise moments: closed values, variance 1/tau on the full range") {
-  CHECK(noise_moments(full_chain(1, 0.5), 2).within == 51766.0 / 65536);
+  CHECK(noise_moments(full_chain(1, 0.5), -2, 2).within == 51766.0 / 65536);
   // Printed in the paper for delta = 1/2 ... 1/32, right to about 13 digits.
   const double printed[] = {0.789886474609376, 0.739564523423343, 0.712010713468334,
                             0.697578849841333, 0.690192311713429};
   double delta = 1;
   for (double value : printed) {
     delta /= 2;
-    const auto moments = noise_moments(full_chain(1, delta), static_cast<int>(1 / delta));
+    const int k = static_cast<int>(1 / delta);
+    const auto moments = noise_moments(full_chain(1, delta), -k, k);
     CHECK(relative_difference(moments.within, value) < 1e-13);
-    CHECK(relative_difference(moments.variance, 1) < 1e-14);
+    CHECK(relative_difference(moments.square, 1) < 1e-14);
   }
-  CHECK(relative_difference(noise_moments(full_chain(0.25, 0.5), 2).variance, 4) < 1e-14);
+  CHECK(relative_difference(noise_moments(full_chain(0.25, 0.5), -2, 2).square, 4) < 1e-14);
 }
 
 TEST_CASE("noise moments: far tails keep their relative accuracy") {
@@ -77,7 +78,7 @@ TEST_CASE("noise moments: far tails keep their relative accuracy") {
   const boost::math::binomial_distribution<double> urn(64, 0.5);
   for (int k : {8, 16, 24, 31}) {
     const double beyond = 2 * boost::math::cdf(boost::math::complement(urn, 32 + k));
-    CHECK(relative_difference(noise_moments(chain, k).beyond, beyond) < 1e-13);
+    CHECK(relative_difference(noise_moments(chain, -k, k).beyond, beyond) < 1e-13);
   }
 }
 

@@ -33,7 +33,7 @@ double projected_generator(const Nodes& nodes, const model::Process& p, int node
     const auto& g = nodes.group_at(i);
     const auto shares = g.row(g.value, i);
     double sum = 0;
-    for (int l = 0; l < g.count; ++l) sum += shares[l] * f[g.begin + l + nodes.half()];
+    for (int l = 0; l < g.count; ++l) sum += shares[l] * f[g.begin + l + nodes.last()];
     return sum;
   };
   const int top = p.noise.levels;
@@ -48,14 +48,14 @@ double projected_generator(const Nodes& nodes, const model::Process& p, int node
 double applied(const Nodes& nodes, int node, const std::vector<double>& f) {
   double sum = 0;
   for (const auto& [to, rate] : nodes.jumps(node)) {
-    sum += rate * (f[to + nodes.half()] - f[node + nodes.half()]);
+    sum += rate * (f[to + nodes.last()] - f[node + nodes.last()]);
   }
   return sum;
 }
 
 std::vector<double> at_nodes(const Nodes& nodes, double (*f)(double)) {
   std::vector<double> values;
-  for (int n = -nodes.half(); n <= nodes.half(); ++n) values.push_back(f(nodes.x(n)));
+  for (int n = nodes.first(); n <= nodes.last(); ++n) values.push_back(f(nodes.x(n)));
   return values;
 }
 
@@ -65,7 +65,7 @@ TEST_CASE("noise nodes: every level is a node, with the rates of the chain") {
   const auto p = process(0.25, 20, 0.25, 0.1);
   const Nodes nodes(p);
   CHECK(nodes.all_levels());
-  CHECK(nodes.half() == 20);
+  CHECK(nodes.last() == 20);
   for (int i = -20; i <= 20; ++i) {
     CHECK(nodes.x(i) == p.noise.level(i));
     std::map<int, double> rates;
@@ -86,7 +86,7 @@ TEST_CASE("noise nodes: groups follow one another, mirrored, and contain no spec
   for (const auto& p : processes()) {
     const Nodes nodes(p, {4, 2});
     const auto& groups = nodes.groups();
-    int level = -p.noise.levels, node = -nodes.half();
+    int level = -p.noise.levels, node = nodes.first();
     for (std::size_t n = 0; n < groups.size(); ++n) {
       const auto& g = groups[n];
       const auto& mirror = groups[groups.size() - 1 - n];
@@ -103,14 +103,15 @@ TEST_CASE("noise nodes: groups follow one another, mirrored, and contain no spec
           CHECK_FALSE((g.levels() > 1 && g.first - 0.5 < at && at < g.last + 0.5));
         }
       }
-      for (int end : {p.static_index(), p.lowest_static() - 1, p.threshold_index()}) {
+      for (int end :
+           {p.static_index(), p.lowest_static() - 1, p.noise.last_up_to(p.friction.mu_s)}) {
         CHECK_FALSE((g.first <= end && end < g.last));
       }
     }
     CHECK(level == p.noise.levels + 1);
-    CHECK(node == nodes.half() + 1);
-    for (int n = 0; n <= nodes.half(); ++n) CHECK(nodes.x(-n) == -nodes.x(n));
-    for (int n = -nodes.half(); n < nodes.half(); ++n) CHECK(nodes.x(n) < nodes.x(n + 1));
+    CHECK(node == nodes.last() + 1);
+    for (int n = 0; n <= nodes.last(); ++n) CHECK(nodes.x(-n) == -nodes.x(n));
+    for (int n = nodes.first(); n < nodes.last(); ++n) CHECK(nodes.x(n) < nodes.x(n + 1));
     const auto& exit = nodes.group_at(p.static_index() + 1);
     CHECK(exit.count == 1);
     CHECK(nodes.last_up_to(p.static_index()) + 1 == exit.begin);
@@ -128,7 +129,7 @@ TEST_CASE("noise nodes: jumps are the chain's own, projected") {
   for (const auto& p : processes()) {
     const Nodes nodes(p, {4, 2});
     const auto f = at_nodes(nodes, [](double x) { return std::sin(3 * x) + std::exp(0.2 * x); });
-    for (int n = -nodes.half(); n <= nodes.half(); n += 3) {
+    for (int n = nodes.first(); n <= nodes.last(); n += 3) {
       const double expected = projected_generator(nodes, p, n, f);
       double size = 0;
       for (const auto& jump : nodes.jumps(n)) size += std::abs(jump.value);
@@ -144,7 +145,7 @@ TEST_CASE("noise nodes: polynomials up to the degree have their exact images") {
   const auto x = at_nodes(nodes, [](double v) { return v; });
   const auto square = at_nodes(nodes, [](double v) { return v * v; });
   const double diffusion = p.noise.rate() * p.noise.delta * p.noise.delta;
-  for (int n = -nodes.half() + 12; n <= nodes.half() - 12; ++n) {
+  for (int n = nodes.first() + 12; n <= nodes.last() - 12; ++n) {
     const double at = nodes.x(n);
     double size = 0;
     for (const auto& [to, rate] : nodes.jumps(n)) {
@@ -165,7 +166,7 @@ TEST_CASE("noise nodes: the stationary law of the chain is theirs") {
       for (int i = g.first; i <= g.last; ++i) {
         const auto shares = g.row(g.value, i);
         for (int l = 0; l < g.count; ++l) {
-          gamma[g.begin + l + nodes.half()] += law[i + p.noise.levels] * shares[l];
+          gamma[g.begin + l + nodes.last()] += law[i + p.noise.levels] * shares[l];
         }
       }
     }
@@ -175,12 +176,12 @@ TEST_CASE("noise nodes: the stationary law of the chain is theirs") {
     }
     // gamma J = 0, flow by flow: detailed balance of the projection.
     std::map<std::pair<int, int>, double> flow;
-    for (int n = -nodes.half(); n <= nodes.half(); ++n) {
-      for (const auto& [to, rate] : nodes.jumps(n)) flow[{n, to}] = gamma[n + nodes.half()] * rate;
+    for (int n = nodes.first(); n <= nodes.last(); ++n) {
+      for (const auto& [to, rate] : nodes.jumps(n)) flow[{n, to}] = gamma[n + nodes.last()] * rate;
     }
     for (const auto& [ends, there] : flow) {
       const double back = flow.at({ends.second, ends.first});
-      const double most = gamma[ends.first + nodes.half()] * p.noise.rate();
+      const double most = gamma[ends.first + nodes.last()] * p.noise.rate();
       CHECK(std::abs(there - back) < 1e-9 * (std::abs(there) + 1e-3 * most) + 1e-250);
     }
   }
@@ -194,10 +195,10 @@ TEST_CASE("noise nodes: derivatives by tau are projected, too") {
     auto above = p, below = p;
     above.noise.tau += h;
     below.noise.tau -= h;
-    for (int n = -nodes.half(); n <= nodes.half(); n += 5) {
+    for (int n = nodes.first(); n <= nodes.last(); n += 5) {
       double found = 0, size = 0;
       for (const auto& [to, rate] : nodes.jumps_by_tau(n)) {
-        found += rate * (f[to + nodes.half()] - f[n + nodes.half()]);
+        found += rate * (f[to + nodes.last()] - f[n + nodes.last()]);
         size += std::abs(rate);
       }
       // On the nodes of p.

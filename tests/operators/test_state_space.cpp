@@ -27,8 +27,8 @@ PetscInt expected_size(const Discretisation& d, Symmetry symmetry, bool with_res
   const int k = process.static_index();
   const int halves = symmetry == Symmetry::none ? 2 : 1;
   int size = halves * noise->count() * velocities->size();
-  if (velocities->keeps_origin()) size += halves * (noise->half() - k);
-  for (int n = -noise->half(); n <= noise->half(); ++n) {
+  if (velocities->keeps_origin()) size += halves * (noise->last() - k);
+  for (int n = noise->first(); n <= noise->last(); ++n) {
     const bool accelerates =
         process.net_force_at(noise->x(n)) + process.drag(velocities->v_max()) > 0;
     if (velocities->needs_holding() && accelerates) size += halves;
@@ -46,7 +46,7 @@ TEST_CASE("state space: every state has one index, ranks follow one another", "[
   const auto cut = std::make_shared<velocity::HpDiscretisation>(low, 2, process.drag);
   const auto grid = std::make_shared<velocity::UpwindDiscretisation>(0.05, 40, process.drag);
   const auto nodes = std::make_shared<noise::Nodes>(process, noise::Grouping{1, 50});
-  REQUIRE(nodes->half() < 14);
+  REQUIRE(nodes->last() < 14);
   for (const Discretisation& d :
        {Discretisation(process, tall), Discretisation(process, cut), Discretisation(process, grid),
         Discretisation(process, tall, nodes), Discretisation(process, cut, nodes)}) {

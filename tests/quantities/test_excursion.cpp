@@ -25,7 +25,7 @@ Excursion by_hand() {
 }
 
 // Of levels beyond +-2.
-double beyond() { return model::noise_moments(process().noise, 2).beyond; }
+double beyond() { return model::noise_moments(process().noise, -2, 2).beyond; }
 
 double value(const Results& results, const std::string& key) {
   for (const auto& r : results) {
@@ -47,16 +47,19 @@ TEST_CASE("excursion: the time beyond mu_s is held against its known share") {
   CHECK(e.conservation_defect(on_levels()) < 1e-14);
 }
 
-TEST_CASE("excursion: with a bias stays beyond mu_s count, too") {
+TEST_CASE("excursion: with a bias levels that stick do not count, on both half lines") {
   const auto inclined = process(0.5);  // levels -3 ... 1 stick
   REQUIRE(inclined.lowest_static() == -3);
   REQUIRE(inclined.static_index() == 1);
-  const Excursion e = by_hand();
-  CHECK(e.conservation_defect(on_levels(0.5)) == Approx(std::abs((8 + 10) / (118 * beyond()) - 1)));
+  const double above = model::noise_moments(inclined.noise, -3, 1).beyond;
+  Excursion e = by_hand();                                              // 118 in all
+  e.slide_time.insert(e.slide_time.end(), {0.25, 0.5, 1, 0, 0, 0, 8});  // 9.75 on 3, 2, 1 ... -3
+  CHECK(e.conservation_defect(on_levels(0.5)) ==
+        Approx(std::abs((6 + 7 + 0.25 + 0.5) / (127.75 * above) - 1)));
   const auto declined = process(-0.5);  // -1 ... 3
   REQUIRE(declined.static_index() == 3);
   CHECK(e.conservation_defect(on_levels(-0.5)) ==
-        Approx(std::abs((8 + 10) / (118 * beyond()) - 1)));
+        Approx(std::abs((1 + 2 + 8) / (127.75 * above) - 1)));
 }
 
 TEST_CASE("excursion: ratios of sums, by hand") {
@@ -81,10 +84,10 @@ TEST_CASE("excursion: a drift is a difference, exact to the size of E|V|") {
   quantities::append_moments(on_levels(), e, symmetry_reduced);
   CHECK(symmetry_reduced.back().value[0] == 0);
   CHECK(symmetry_reduced.back().error[0] == 0);
-  e.slide_drift = {0.5, 0, 0, 0, 0, 0, -1};
+  e.slide_distance.insert(e.slide_distance.end(), {0.5, 0, 0, 10, 0, 0, 1});
   quantities::append_moments(on_levels(), e, both);
-  CHECK(both.back().value[0] == Approx(-0.5 / 118));
-  CHECK(both.back().error[0] == Approx(e.conservation_defect(on_levels()) * 10.875 / 118));
+  CHECK(both.back().value[0] == Approx((10.875 - 11.5) / 118));
+  CHECK(both.back().error[0] == Approx(e.conservation_defect(on_levels()) * 22.375 / 118));
 }
 
 TEST_CASE("excursion: closed forms of the noise have the rounding of its sums") {

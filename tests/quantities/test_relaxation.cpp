@@ -57,7 +57,8 @@ void for_each_value(const PhaseField& field, Visit visit) {
   const auto rows = field.local_rows();
   for (std::size_t r = 0; r < levels.size(); ++r) {
     for (std::size_t j = 0; j < columns; ++j) {
-      visit(levels[r], j, rows[r * columns + j]);
+      visit(static_cast<int>(levels[r]) - static_cast<int>(field.x().size() / 2), j,
+            rows[r * columns + j]);
     }
   }
 }

@@ -140,8 +140,8 @@ TEST_CASE("stationary law: P(|X| <= mu_s) summed over the grid at every scheme a
   const double delta = GENERATE(0.5, 0.25);
   auto s = scene(1, 0.25, 1, delta, {1, 0});
   s.noise_levels = s.full_levels();
-  const int k = s.friction.static_index(delta);
-  const double closed = model::noise_moments(s.meant().noise, k).within;
+  const int k = s.process(1).static_index();
+  const double closed = model::noise_moments(s.meant().noise, -k, k).within;
   std::vector<accuracy::Resolution> resolutions{accuracy::hp_resolution(s, 1, 0, 1e-8),
                                                 accuracy::hp_resolution(s, 8, 0, 1e-8)};
   for (int p : {1, 2, 7, 64}) resolutions.push_back(accuracy::upwind_resolution(s, p, 1e-8));
@@ -177,9 +177,8 @@ TEST_CASE("density: integrates to the law it came from", "[parallel]") {
       continue;  // its states at v = 0 are no density
     CHECK(sliding + stick + field.cut_mass == Approx(1).epsilon(1e-11));
     // Each row integrates to P(X = x_i) less its atom, from both halves.
-    const int n = distribution.process().noise.levels;
     for (std::size_t r = 0; r < field.pdf.local_levels().size(); ++r) {
-      const std::size_t level = static_cast<std::size_t>(field.pdf.local_levels()[r] + n);
+      const std::size_t level = field.pdf.local_levels()[r];
       double mass = field.atom[level];
       for (std::size_t j = 0; j < field.pdf.v().size(); ++j) {
         mass += weights[j] * field.pdf.local_rows()[r * field.pdf.v().size() + j];

@@ -141,7 +141,7 @@ TEST_CASE("rounding: averages by hand, with the error of a probability that is k
   const auto process = r.scene.process(8);
   petsc::SolverStatistics statistics;
   const routes::Setting setting{PETSC_COMM_WORLD, r, {process, nullptr}, statistics};
-  const double beyond = model::noise_moments(process.noise, 2).beyond;
+  const double beyond = model::noise_moments(process.noise, -2, 2).beyond;
   for (const auto& [stick, slide] : {std::pair{0.3, 0.7}, {0.9, 0.1}}) {
     const std::vector<Uncertain> values{{beyond * (1 - 1e-3), 0},
                                         {stick, 1e-9},

@@ -434,7 +434,8 @@ TEST_CASE("excursions: integrals of observables are right in the mean, within 4 
 TEST_CASE("excursions: the noise keeps its law in the mean over both sides, within 4 sigma") {
   for (const auto& c : cases_without_symmetry()) {
     INFO(c.name);
-    const int levels = c.process.noise.levels, k = c.process.threshold_index();
+    const int levels = c.process.noise.levels,
+              k = c.process.noise.last_up_to(c.process.friction.mu_s);
     double within = 0;
     for (int i = -k; i <= k; ++i) within += binomial(levels, i);
     Wanted wanted;

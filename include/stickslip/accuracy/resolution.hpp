@@ -19,15 +19,17 @@ struct Resolution {
   velocity::Rates rates;                      ///< hp: fastest rates that the elements resolve
   velocity::Integrands integrands;            ///< hp: that the elements resolve
   int points = 0;                             ///< upwind: nodes per noise step
-  int levels = 0;                             ///< N, noise levels on each side of 0
+  int levels = 0;                             ///< N, noise levels on each side of 0, if not a table
   noise::Grouping grouping;                   ///< of the noise levels
   std::shared_ptr<const noise::Nodes> noise;  ///< of that grouping; none: every level is a node
+  int table_levels = 0;                       ///< of a noise from a table
   double v_max = 0;                           ///< end of the velocity discretisation [velocity]
   int halves = 1;  ///< 1: reduced by symmetry, v > 0 only; 2: both signs of v
   options::Factors factors = options::Factors::own;
 
   [[nodiscard]] std::int64_t noise_nodes() const {
-    return noise ? noise->count() : 2LL * levels + 1;
+    if (noise) return noise->count();
+    return table_levels > 0 ? table_levels : 2LL * levels + 1;
   }
 };
 

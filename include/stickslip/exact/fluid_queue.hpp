@@ -7,13 +7,12 @@
 
 namespace stickslip::exact {
 
-/// Means over one slide, discounted by exp(-lambda t). Arrays over the noise have the index i + N,
-/// the noise counted along the motion: i sign(V).
+/// Means over one slide, discounted by exp(-lambda t). Arrays over the noise run from the lowest
+/// level up, counted along the motion; without symmetry first for V > 0, then for V < 0.
 struct QueuedSlide {
   std::vector<double> time;      ///< [time]
   std::vector<double> distance;  ///< int |V| dt
   std::vector<double> square;    ///< int V^2 dt
-  double drift = 0;              ///< int V dt
   double turns = 0;              ///< changes of the sign of V
   /// Probability that the slide ends on each static level, from the lowest up; their sum is
   /// F_slide.
@@ -37,7 +36,7 @@ class FluidQueue {
   /// std::runtime_error when the doubling does not converge.
   explicit FluidQueue(const model::Process& process, double lambda = 0);
 
-  /// Slides from s+ and from s-.
+  /// Slides from s+ and from s-; where the noise has one of them alone, the same.
   [[nodiscard]] const QueuedSlide& plus() const { return plus_; }
   [[nodiscard]] const QueuedSlide& minus() const { return minus_; }
 

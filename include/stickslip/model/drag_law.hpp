@@ -24,8 +24,9 @@ class UnfitLaw : public std::invalid_argument {
 /// finite and with bounded slopes on the velocities that can occur. They end at twice the terminal
 /// velocity under `force`, or where the density is below exp(-51); a law that lets a body run away
 /// has no such end. b is sampled there at 3000 places. `force` is the largest that occurs, with the
-/// bias and less mu_d. Throws UnfitLaw.
+/// bias and less mu_d, `bias` the mean one, `intensity` that of the noise at large speeds. Throws
+/// UnfitLaw.
 [[nodiscard]] Drag parse_drag(const std::string& text, const Friction& friction, double tau,
-                              double force, double bias = 0);
+                              double force, double bias = 0, double intensity = 1);
 
 }  // namespace stickslip::model

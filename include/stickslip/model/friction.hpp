@@ -38,10 +38,6 @@ struct Friction {
   /// That of mu_d in F(v); the rest is that of mu_s.
   [[nodiscard]] double share(double v) const { return stribeck ? stribeck->share(v) : 1; }
 
-  /// k with x_k + g <= mu_s < x_{k+1} + g for a constant force g: with symmetry, the static phase
-  /// holds the levels |i| <= k. Rounding never moves it. Throws std::out_of_range beyond int.
-  [[nodiscard]] int static_index(double delta, double bias = 0) const;
-
   /// x_i + g - F(0+), the acceleration of a body that starts to slide upwards; exactly 0 for a
   /// level that equals F(0+) - g up to rounding.
   [[nodiscard]] double net_force(double level, double bias = 0) const;

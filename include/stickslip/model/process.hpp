@@ -19,21 +19,31 @@ struct Process {
   double bias = 0;  ///< g, a constant force
 
   /// Whether (-X, -Y, -V) has the same law.
-  [[nodiscard]] bool symmetric() const { return bias == 0 && drag.odd() && friction.symmetric(); }
+  [[nodiscard]] bool symmetric() const {
+    return bias == 0 && drag.odd() && friction.symmetric() && noise.symmetric();
+  }
   /// The process (-X, -Y, -V): what is true of sliding upwards here is true of sliding downwards
   /// there.
   [[nodiscard]] Process mirrored() const {
-    return {noise, friction.mirrored(), drag.mirrored(), -bias};
+    return {noise.mirrored(), friction.mirrored(), drag.mirrored(), -bias};
   }
 
   /// The highest level that can stick; k with symmetry, where the levels |i| <= k stick.
-  [[nodiscard]] int static_index() const { return friction.static_index(noise.delta, bias); }
+  [[nodiscard]] int static_index() const { return noise.last_up_to(friction.mu_s - bias); }
   /// The lowest level that can stick; -k with symmetry.
   [[nodiscard]] int lowest_static() const {
-    return -friction.mirrored().static_index(noise.delta, -bias);
+    return noise.first_from(-friction.mirrored().mu_s - bias);
   }
-  /// The highest level with x_i <= mu_s, whatever the bias.
-  [[nodiscard]] int threshold_index() const { return friction.static_index(noise.delta); }
+  /// Whether bodies at rest can start upwards: there is a level s+. A table that ends at the levels
+  /// that stick has none, and excursions have one side.
+  [[nodiscard]] bool starts_upwards() const {
+    return !noise.table || static_index() < noise.highest();
+  }
+  [[nodiscard]] bool starts_downwards() const {
+    return !noise.table || lowest_static() > noise.lowest();
+  }
+  /// g + E[X]: what drives bodies over long times.
+  [[nodiscard]] double mean_force() const { return bias + noise.mean(); }
   /// x_i + g - F(0+): the speed of V at v = 0+ on level i.
   [[nodiscard]] double net_force(int i) const { return net_force_at(noise.level(i)); }
   /// The same for any x.

@@ -1,6 +1,8 @@
 #pragma once
 /// What the user fixes about the process; the noise range and the velocity cut may stay open.
 
+#include <algorithm>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -8,10 +10,20 @@
 
 namespace stickslip::model {
 
+/// The noise as the user gave it: word of -noise, and what belongs to it.
+struct NoiseChoice {
+  std::string name = "ou";
+  std::optional<double> deviation = {};          ///< of "ou", if it has its own [force]
+  double amplitude = 0, rate = 0;                ///< of "telegraph" [force], [1/time]
+  std::string file = {};                         ///< of "file"
+  std::shared_ptr<const LevelTable> table = {};  ///< the levels of all but "ou"
+};
+
 struct Scene {
   double tau = 1;        ///< noise correlation time [time]
   double delta = 0.125;  ///< noise step [force]
-  Friction friction;     ///< mu_s, mu_d [force]
+  NoiseChoice noise;
+  Friction friction;  ///< mu_s, mu_d [force]
   std::string drag_name = "linear";
   std::string drag_expression;  ///< b(v) as text, of the law "expression"
   Drag drag;
@@ -20,11 +32,17 @@ struct Scene {
   std::optional<double> v_max;      ///< velocity cut, if fixed by the user [velocity]
 
   [[nodiscard]] bool symmetric() const { return process(1).symmetric(); }
-  /// floor(2/(tau delta^2)), the range that is meant when noise_levels is open.
-  [[nodiscard]] int full_levels() const { return full_range(tau, delta); }
-  /// The process on `levels` noise levels.
+  /// The range that is meant when noise_levels is open: full_range(), or that of the table.
+  [[nodiscard]] int full_levels() const {
+    return noise.table ? std::max(-noise.table->lowest(), noise.table->highest())
+                       : full_range(tau, delta, noise.deviation);
+  }
+  /// The process on `levels` noise levels, or on all those of a table.
   [[nodiscard]] Process process(int levels) const {
-    return {{tau, delta, levels}, friction, with_weakening(drag, friction), bias};
+    return {{tau, delta, levels, noise.deviation, noise.table},
+            friction,
+            with_weakening(drag, friction),
+            bias};
   }
   /// The process that is meant: on noise_levels if fixed, else on the full range.
   [[nodiscard]] Process meant() const { return process(noise_levels.value_or(full_levels())); }

@@ -1,6 +1,7 @@
 #pragma once
 /// The noise chain on few nodes: functions of x as piecewise polynomials.
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace stickslip::noise {
 struct Grouping {
   int degree = 0;      ///< of the polynomials on a group; 0: every level is a node
   double grading = 2;  ///< levels of a group per level of distance from the nearest special point
-  double width = 4;    ///< of the widest group, in standard deviations 1/sqrt(tau)
+  double width = 4;    ///< of the widest group, in standard deviations of the noise
 };
 
 /// Galerkin projection of the noise chain on piecewise polynomials, held by their values at nodes.
@@ -32,9 +33,10 @@ struct Grouping {
 /// rules are exact for x times two such polynomials, speeds at the nodes are all that transport
 /// needs. Groups shrink towards the special points of a process, where functions are not smooth:
 /// levels on which the speed at v = 0 vanishes, and the ends of the static range. None contains
-/// one, and x -> -x maps groups to groups.
+/// one, and where -X is the same chain x -> -x maps groups to groups.
 ///
-/// Nodes are numbered -half() ... half(), rising, with x_-n = -x_n. Immutable; members are local.
+/// Nodes are numbered first() ... last(), rising; node -n of mirrored() is that of -x_n. Immutable;
+/// members are local.
 class Nodes {
  public:
   /// O(levels degree^2). Throws std::invalid_argument for a degree below 0 or a grading <= 0.
@@ -63,11 +65,14 @@ class Nodes {
   [[nodiscard]] const Group& group_of(int node) const { return groups_[group_of_[at(node)]]; }
   [[nodiscard]] const Group& group_at(int level) const;
 
-  [[nodiscard]] int half() const { return half_; }
-  [[nodiscard]] int count() const { return 2 * half_ + 1; }
+  [[nodiscard]] int first() const { return first_; }
+  [[nodiscard]] int last() const { return first_ + count() - 1; }
+  [[nodiscard]] int count() const { return static_cast<int>(x_.size()); }
   [[nodiscard]] double x(int node) const { return x_[at(node)]; }
   /// Whether every level is a node.
-  [[nodiscard]] bool all_levels() const { return half_ == levels_; }
+  [[nodiscard]] bool all_levels() const { return count() == noise_.count(); }
+  /// The nodes of -X, along which the lower half line counts; these for a symmetric chain.
+  [[nodiscard]] const Nodes& mirrored() const { return mirrored_ ? *mirrored_ : *this; }
 
   /// One entry of a row of J.
   struct Rate {
@@ -95,30 +100,30 @@ class Nodes {
     return sum;
   }
 
-  /// nu_i = sum_l T_il nu_l on all levels, from values by node (index node + half()); index
-  /// i + N. O(levels degree).
+  /// nu_i = sum_l T_il nu_l on all levels, from values by node, both from the lowest one up.
+  /// O(levels degree).
   [[nodiscard]] std::vector<double> spread(std::span<const double> by_node) const;
 
  private:
+  struct Upper;
+  enum class Mirror { made, left_out };
+  Nodes(const model::Process& process, const Grouping& grouping, Mirror mirror);
+
   [[nodiscard]] std::size_t at(int node) const {
-    const int place = node + half_;
+    const int place = node - first_;
     return static_cast<std::size_t>(place);
   }
-  void add_levels(int first, int last);
-  void add_group(int first, int last, int size);
-  void mirror();
-  void number();
+  void join(const Upper& above, const Upper& below);
   void find_jumps();
-  [[nodiscard]] double up(int level) const { return noise_.rate() * noise_.up(level); }
-  [[nodiscard]] double down(int level) const { return noise_.rate() * noise_.down(level); }
 
   model::NoiseChain noise_;
-  int levels_, half_ = 0;
+  int first_ = 0;
   std::vector<Group> groups_;
   std::vector<std::vector<double>> inner_;  // by group of several levels: rates inside, by rows
   std::vector<std::size_t> group_of_;       // by node
   std::vector<double> x_;
   std::vector<std::vector<Rate>> jumps_;
+  std::shared_ptr<const Nodes> mirrored_;
 };
 
 }  // namespace stickslip::noise

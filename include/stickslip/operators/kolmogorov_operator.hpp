@@ -67,7 +67,8 @@ class KolmogorovOperator {
   /// The functional u -> u(x_i, v), v = 0 being s+- for |i| > k and rest for |i| <= k;
   /// symmetry-reduced, from the half that is kept. Static states must be kept. Collective.
   [[nodiscard]] petsc::VecHandle value_at(int i, double v) const;
-  /// u -> sum_i p_i u(x_i, 0), p by level from -N up, in the same sense. Collective. O(levels).
+  /// u -> sum_i p_i u(x_i, 0), p by level from the lowest up, in the same sense. Collective.
+  /// O(levels).
   [[nodiscard]] petsc::VecHandle mean_at_zero(const std::vector<double>& p) const;
 
   /// nu -> -nu A_us, from the lowest static level up: the rate at which an occupation flows into
@@ -93,6 +94,12 @@ class KolmogorovOperator {
  private:
   KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda,
                      Symmetry symmetry, StaticPhase rest, std::optional<Parameter> derivative);
+
+  // The nodes by which states of a half are counted.
+  [[nodiscard]] const noise::Nodes& nodes_along(Branch half) const {
+    const auto& nodes = *discretisation().noise;
+    return half == Branch::positive ? nodes : nodes.mirrored();
+  }
 
   // Adds weight times the value at (x_i, v) to a functional that is not assembled yet.
   void add_value_at(int i, double v, double weight, Vec functional) const;

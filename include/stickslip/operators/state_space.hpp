@@ -100,7 +100,7 @@ class StateSpace {
     Side(const model::Process& process, const noise::Nodes& noise,
          const velocity::VelocityDiscretisation& velocities);
     int last_static;
-    int first_holding;  // holding states exist from here on; half() + 1 if there are none
+    int first_holding;  // holding states exist from here on; last() + 1 if there are none
   };
   [[nodiscard]] const Side& side(Branch half) const {
     return half == Branch::positive ? upper_ : lower_;
@@ -112,7 +112,7 @@ class StateSpace {
     int first, last, first_rest, last_rest;
     PetscInt begin;
   };
-  void distribute(const noise::Nodes& noise, int levels);
+  void distribute(const noise::Nodes& noise, const model::NoiseChain& chain);
 
   template <class Visit>
   void visit_local_at_zero(Visit visit) const {
@@ -135,7 +135,7 @@ class StateSpace {
   [[nodiscard]] bool has_state(int row, int n) const;
   [[nodiscard]] State state_at(int row, int n) const;
   [[nodiscard]] int owner_of_rest(int level) const;
-  [[nodiscard]] static int nodes_below(const Block& block, int n);
+  [[nodiscard]] int nodes_below(const Block& block, int n) const;
   [[nodiscard]] int rest_below(const Block& block, int level) const;
   [[nodiscard]] int size_at_zero(const Block& block) const;
   [[nodiscard]] int count(const Block& block, int row) const;
@@ -146,7 +146,7 @@ class StateSpace {
   MPI_Comm comm_;
   Symmetry symmetry_;
   bool with_rest_, keeps_origin_;
-  int half_, nodes_;
+  int first_, last_, nodes_;
   Side upper_, lower_;
   int lowest_rest_, highest_rest_;
   int rank_;

@@ -17,7 +17,7 @@ namespace stickslip::operators {
 /// sticking times of 1e20 included), if what they are asked about is >= 0. Local, O(levels).
 class StaticChain {
  public:
-  /// The static levels |i| <= k; lambda >= 0 [1/time]; 0 <= k < chain.levels.
+  /// The static levels |i| <= k; lambda >= 0 [1/time]; the noise must have others.
   StaticChain(const model::NoiseChain& chain, int k, double lambda = 0)
       : StaticChain(chain, -k, k, lambda) {}
   /// The static levels of a process, with its bias.
@@ -43,7 +43,7 @@ class StaticChain {
   [[nodiscard]] std::vector<double> upward_exit_transform() const;
   [[nodiscard]] std::vector<double> downward_exit_transform() const;
 
-  /// Rate Lambda alpha_high of leaving upwards from the highest level.
+  /// Rate of leaving upwards from the highest level.
   [[nodiscard]] double exit_rate() const { return up_exit_; }
 
   [[nodiscard]] int size() const { return static_cast<int>(pivot_.size()); }

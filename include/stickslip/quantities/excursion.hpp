@@ -10,14 +10,13 @@ namespace stickslip::quantities {
 
 /// Means over one excursion, which starts at s+ = (x_{k+1}, +1, 0), slides, sticks and ends at
 /// the next exit. Positions are symmetry-reduced: (x, y, v) stands for (-x, -y, -v) as well, such
-/// that y >= 0. Arrays over noise nodes have the index n + H, H = noise::Nodes::half(), those over
-/// static levels i + k. Without symmetry, the means are over excursions from s+ and from s- in the
-/// shares in which they occur, and static levels are those of the noise, counted from the lowest.
+/// that y >= 0. Arrays run over noise nodes and over static levels from the lowest one up. Without
+/// symmetry, the means are over excursions from s+ and from s- in the shares in which they occur,
+/// and what belongs to v < 0 follows what belongs to v > 0, counted along the nodes of -X.
 struct Excursion {
   std::vector<double> slide_time;      ///< time spent sliding on node n [time]
   std::vector<double> slide_distance;  ///< int |V| dt on node n [length]
   std::vector<double> slide_square;    ///< int V^2 dt on node n
-  std::vector<double> slide_drift;     ///< int V dt on node n [length]; empty if symmetry-reduced
   std::vector<double> entry;  ///< probability that sliding ends on symmetry-reduced level i
   /// The same of slides from s+ alone, by level of the noise; empty unless it is known.
   std::vector<double> entry_plus;
@@ -25,14 +24,16 @@ struct Excursion {
   std::vector<double> stick_time;   ///< time spent sticking on symmetry-reduced level i [time]
   double lost_probability = 0;      ///< sum of entry less 1, before it was scaled to 1
 
+  /// int V dt over a slide [length]; 0 if symmetry-reduced.
+  [[nodiscard]] double mean_drift(const noise::Nodes& noise) const;
   [[nodiscard]] double mean_slide() const;      ///< E[tau_hat_1], section 4.3 of the paper [time]
   [[nodiscard]] double mean_stick() const;      ///< E[tau_1 - tau_hat_1] [time]
   [[nodiscard]] double mean_excursion() const;  ///< E[tau_1] [time]
 
   /// Relative violation of an identity that holds exactly on every discretisation: by renewal,
-  /// the time spent beyond mu_s is pi(|X| > mu_s) E[tau_1]. What is left is rounding, of the matrix
-  /// entries too, which residuals do not see. The square of lost_probability is added: scaling has
-  /// removed its first order.
+  /// the time spent on levels that do not stick is their probability times E[tau_1]. What is left
+  /// is rounding, of the matrix entries too, which residuals do not see. The square of
+  /// lost_probability is added: scaling has removed its first order.
   [[nodiscard]] double conservation_defect(const operators::Discretisation& discretisation) const;
 };
 
@@ -74,11 +75,15 @@ void append_hitting_distribution(const model::Process& process, const Excursion&
 /// P_X_le_mu_s and E_X2 of the noise alone, from its closed law.
 void append_noise_distribution(const model::Process& process, Results& results);
 
-/// dP_X_le_mu_s_dtau and dE_X2_dtau, at the number of levels of the process. Local. O(N).
+/// dP_X_le_mu_s_dtau and dE_X2_dtau, at the number of levels of the process; nothing for a noise
+/// from a table. Local. O(N).
 void append_noise_sensitivity(const model::Process& process, Results& results);
 
-/// The stationary law of |X| as the excursion sees it, summed over the grid and halved for x and
-/// -x; index i + N.
+/// Leaves out the results that are about excursions from s+ or s- if the noise has no such level.
+void leave_out_missing_side(const model::Process& process, Results& results);
+
+/// The stationary distribution of X as the excursion sees it, summed over the grid, from the lowest
+/// level up; with symmetry halved for x and -x.
 [[nodiscard]] std::vector<double> marginal_of_noise(const operators::Discretisation& discretisation,
                                                     const Excursion& excursion);
 

@@ -33,8 +33,8 @@ class PhaseField {
 
   [[nodiscard]] const std::vector<double>& x() const { return x_; }
   [[nodiscard]] const std::vector<double>& v() const { return v_; }
-  /// Levels of this rank, rising, and their rows. O(levels velocity nodes).
-  [[nodiscard]] std::vector<int> local_levels() const;
+  /// Levels of this rank, counted from the lowest of all, and their rows. O(levels velocity nodes).
+  [[nodiscard]] std::vector<std::size_t> local_levels() const;
   [[nodiscard]] std::vector<double> local_rows() const;
 
  private:
@@ -44,6 +44,7 @@ class PhaseField {
   [[nodiscard]] std::size_t row_start(int noise) const;
 
   std::shared_ptr<const noise::Nodes> noise_;
+  int lowest_;
   Kind kind_;
   std::vector<double> x_, v_;
   std::vector<int> local_noise_;

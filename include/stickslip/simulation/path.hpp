@@ -44,6 +44,7 @@ class NoiseLevels {
   [[nodiscard]] int draw(double uniform) const;
 
  private:
+  int lowest_;
   std::vector<double> below_;  // probability of a level and all below
 };
 

@@ -1,0 +1,134 @@
+#include "stickslip/model/level_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stickslip::model {
+namespace {
+
+void require_rate(double rate, bool at_end, std::size_t row, const char* name) {
+  if (at_end ? rate == 0 : rate > 0 && std::isfinite(rate)) return;
+  throw UnfitTable(row, at_end ? fmt::format("{} = {:g} leads to no level; it must be 0 at the end "
+                                             "of the levels",
+                                             name, rate)
+                               : fmt::format("{} = {:g} must be positive: every level must be "
+                                             "reached from every other one",
+                                             name, rate));
+}
+
+void require_chain(const std::vector<Level>& levels) {
+  if (levels.size() < 2) throw UnfitTable(0, "there must be at least two levels");
+  for (std::size_t n = 0; n < levels.size(); ++n) {
+    const auto& [x, up, down] = levels[n];
+    if (!std::isfinite(x)) throw UnfitTable(n, fmt::format("x = {:g} must be a number", x));
+    if (n > 0 && x <= levels[n - 1].x) {
+      throw UnfitTable(
+          n, fmt::format("x = {:g} must be above the level before, {:g}", x, levels[n - 1].x));
+    }
+    require_rate(up, n + 1 == levels.size(), n, "rate_up");
+    require_rate(down, n == 0, n, "rate_down");
+  }
+}
+
+int places_below_zero(const std::vector<Level>& levels) {
+  const auto nearest = std::min_element(levels.begin(), levels.end(), [](auto& a, auto& b) {
+    return std::abs(a.x) < std::abs(b.x) || (std::abs(a.x) == std::abs(b.x) && a.x > b.x);
+  });
+  return static_cast<int>(nearest - levels.begin());
+}
+
+// Probabilities up to a factor, the largest 1, from the logarithms of their ratios: neither
+// overflows.
+std::vector<double> weights(const std::vector<Level>& levels) {
+  std::vector<double> w{0};
+  for (std::size_t n = 1; n < levels.size(); ++n) {
+    w.push_back(w.back() + std::log(levels[n - 1].up / levels[n].down));
+  }
+  const double largest = *std::max_element(w.begin(), w.end());
+  for (double& value : w) value = std::exp(value - largest);
+  return w;
+}
+
+}  // namespace
+
+LevelTable::LevelTable(const std::vector<Level>& levels)
+    : LevelTable(levels, -places_below_zero(levels)) {}
+
+// With S_i = sum_(j <= i) pi_j (x_j - m), the intensity is sum_i S_i^2/(pi_i up_i): an edge passes
+// on all that lies below it. Summed from the end where all terms have one sign.
+LevelTable::LevelTable(std::vector<Level> levels, int lowest)
+    : levels_(std::move(levels)), lowest_(lowest), step_(std::numeric_limits<double>::infinity()) {
+  require_chain(levels_);
+  const auto w = weights(levels_);
+  const std::size_t count = w.size();
+  mode_ = lowest_ + static_cast<int>(std::max_element(w.begin(), w.end()) - w.begin());
+  double total = 0;
+  for (std::size_t n = 0; n < count; ++n) {
+    total += w[n];
+    mean_ += w[n] * levels_[n].x;
+  }
+  mean_ /= total;
+  const auto part = [&](std::size_t n) { return w[n] * (levels_[n].x - mean_) / total; };
+  const auto add_edge = [&](double sum, double flow) {
+    if (flow > 0) intensity_ += sum * sum * total / flow;
+  };
+  double below = 0, above = 0;
+  for (std::size_t n = 0; n + 1 < count; ++n) {
+    step_ = std::min(step_, levels_[n + 1].x - levels_[n].x);
+    if (levels_[n].x < mean_) add_edge(below += part(n), w[n] * levels_[n].up);
+  }
+  for (std::size_t n = count - 1; n > 0 && levels_[n - 1].x >= mean_; --n) {
+    add_edge(above += part(n), w[n] * levels_[n].down);
+  }
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto& [x, up, down] = levels_[n];
+    const auto& other = levels_[count - 1 - n];
+    symmetric_ = symmetric_ && x == -other.x && up == other.down;
+    rate_ = std::max(rate_, up + down);
+    variance_ += part(n) * (x - mean_);
+  }
+  symmetric_ = symmetric_ && count % 2 == 1;
+}
+
+// Whether theta (X - m - f) + Q has negative eigenvalues alone: the pivots of its negative are
+// positive.
+bool LevelTable::decays(double theta, double force) const {
+  double pivot = 1, above = 0;  // of the level before, and its rate upwards
+  for (const auto& [x, up, down] : levels_) {
+    pivot = up + down - theta * (x - mean_ - force) - above * down / pivot;
+    if (!(pivot > 0)) return false;
+    above = up;
+  }
+  return true;
+}
+
+double LevelTable::tail_intensity(double least) const {
+  const double top = levels_.back().x - mean_, from = std::max(least, 1e-3 * top);
+  constexpr int forces = 24, halvings = 20;
+  double largest = intensity_;
+  for (int n = 0; n < forces && from < top; ++n) {
+    const double force = from + (top - from) * n / forces;
+    double low = force / intensity_, high = low;
+    while (!decays(low, force) && low > 1e-6 * high) low /= 2;
+    while (decays(high, force)) high *= 2;
+    for (int k = 0; k < halvings; ++k) {
+      const double middle = (low + high) / 2;
+      (decays(middle, force) ? low : high) = middle;
+    }
+    largest = std::max(largest, force / low);
+  }
+  return largest;
+}
+
+LevelTable LevelTable::mirrored() const {
+  std::vector<Level> levels;
+  for (auto level = levels_.rbegin(); level != levels_.rend(); ++level) {
+    levels.push_back({-level->x, level->down, level->up});
+  }
+  return {std::move(levels), -highest()};
+}
+
+}  // namespace stickslip::model

@@ -1,0 +1,197 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+
+#include "../common/near.hpp"
+#include "../common/scenes.hpp"
+#include "stickslip/accuracy/refinement.hpp"
+
+using namespace stickslip;
+using options::Quantity;
+using options::Route;
+using test::relative_difference;
+using test::scene;
+
+namespace {
+
+using Values = std::map<std::string, quantities::Result>;
+
+Values values(const model::Scene& s, Route route = Route::excursion, double accuracy = 1e-10,
+              const std::set<Quantity>& asked = {Quantity::sticking, Quantity::moments}) {
+  options::Case c;
+  c.scene = s;
+  c.method.route = route;
+  c.question.quantities = asked;
+  c.question.accuracy = accuracy;
+  if (asked.contains(Quantity::laplace)) c.question.lambda = {0.5};
+  c.question.omega = {1};
+  c.question.time = {0.7};
+  Values by_key;
+  for (const auto& r : accuracy::refine(PETSC_COMM_WORLD, c, {}).results) by_key[r.key] = r;
+  return by_key;
+}
+
+void require_close(const Values& found, const Values& expected, double tolerance) {
+  for (const auto& [key, r] : expected) {
+    INFO(key);
+    REQUIRE(found.contains(key));
+    for (std::size_t n = 0; n < r.value.size(); ++n) {
+      CHECK(found.at(key).value[n] == Approx(r.value[n]).epsilon(tolerance).margin(1e-12));
+    }
+  }
+}
+
+model::Scene with_levels(model::Scene s, const std::vector<model::Level>& levels) {
+  s.noise.name = "file";
+  s.noise.table = std::make_shared<const model::LevelTable>(levels);
+  return s;
+}
+
+model::Scene telegraph(double bias, const model::Drag& drag, double rate = 1) {
+  auto s = with_levels(scene(1, 0.5, 1, 0.25, drag), {{-1, rate, 0}, {1, 0, rate}});
+  s.bias = bias;
+  return s;
+}
+
+/// The noise of a scene level by level, moved by `shift`.
+model::Scene moved(const model::Scene& s, double shift) {
+  const auto chain = s.meant().noise;
+  std::vector<model::Level> levels;
+  for (int i = chain.lowest(); i <= chain.highest(); ++i) {
+    levels.push_back({chain.level(i) + shift, chain.up_rate(i), chain.down_rate(i)});
+  }
+  auto other = with_levels(s, levels);
+  other.bias -= shift;
+  return other;
+}
+
+}  // namespace
+
+// P_stick = (mu_d - g)/(mu_d + a - g) whatever the rate.
+TEST_CASE("telegraph noise: closed forms without drag") {
+  for (double rate : {0.05, 1.0, 20.0}) {
+    const auto found = values(telegraph(0.3, {0, 0}, rate));
+    CHECK(found.at("P_stick").value[0] == Approx(1.0 / 6).epsilon(1e-11));
+    CHECK(found.at("mean_slide").value[0] == Approx(5 / rate).epsilon(1e-11));
+    CHECK(found.at("mean_excursion").value[0] == Approx(6 / rate).epsilon(1e-11));
+    CHECK(found.at("E_absV").value[0] * 6 / rate == Approx(12 / (rate * rate)).epsilon(1e-11));
+    require_close(values(telegraph(0.3, {0, 0}, rate), Route::fluid_queue), found, 1e-11);
+  }
+}
+
+TEST_CASE("telegraph noise: closed forms with linear drag, by every method") {
+  const auto s = telegraph(0.3, {1, 0});
+  for (auto route : {Route::excursion, Route::lambda, Route::null_vector}) {
+    const auto found = values(s, route, 1e-8);
+    CHECK(found.at("P_stick").value[0] == Approx(0.375).epsilon(1e-7));
+    CHECK(found.at("E_V").value[0] == Approx(0.25).epsilon(1e-7));
+  }
+  const auto exact = values(s);
+  CHECK(exact.at("P_stick").value[0] == Approx(0.375).epsilon(1e-11));
+  CHECK(exact.at("E_V").value[0] == Approx(0.25).epsilon(1e-11));
+  const auto hit = values(s, Route::hitting, 1e-10, {Quantity::sticking});
+  CHECK(hit.at("P_stick").value[0] == Approx(0.375).epsilon(1e-10));
+}
+
+TEST_CASE("telegraph noise: the mirror image starts downwards") {
+  const std::set<Quantity> asked{Quantity::sticking, Quantity::moments, Quantity::entry_law,
+                                 Quantity::laplace, Quantity::resolvent};
+  const auto up = values(telegraph(0.3, {1, 0}), Route::excursion, 1e-8, asked),
+             down = values(telegraph(-0.3, {1, 0}), Route::excursion, 1e-8, asked);
+  CHECK(down.at("E_V").value[0] == Approx(-0.25).epsilon(1e-11));
+  for (const char* key : {"P_stick", "mean_slide", "E_V2", "E_absV", "E_XV", "F_slide", "var_slide",
+                          "f_slide_0", "f_stick_0"}) {
+    INFO(key);
+    CHECK(relative_difference(down.at(key).value[0], up.at(key).value[0]) < 1e-12);
+  }
+  CHECK(up.contains("entry_law"));
+  CHECK_FALSE(up.contains("entry_law_minus"));
+  CHECK(up.contains("h_plus"));
+  CHECK_FALSE(up.contains("h_plus_from_minus"));
+  CHECK_FALSE(down.contains("entry_law"));
+  CHECK(down.contains("entry_law_minus"));
+  CHECK_FALSE(down.contains("h_plus"));
+}
+
+TEST_CASE("noise levels moved by a constant force are the same process") {
+  const std::set<Quantity> asked{
+      Quantity::sticking, Quantity::moments,         Quantity::entry_law,       Quantity::laplace,
+      Quantity::spectrum, Quantity::autocorrelation, Quantity::duration_density};
+  const auto s = scene(1, 0.45, 1, 0.5, {1, 0.1});
+  const auto expected = values(s, Route::excursion, 1e-9, asked);
+  for (double shift : {0.0, 0.13, -0.4}) {
+    auto found = values(moved(s, shift), Route::excursion, 1e-9, asked);
+    for (const char* key : {"C_vv", "f_slide", "cdf_slide", "f_excursion", "cdf_excursion",
+                            "variance_from_spectrum"}) {
+      CHECK(found.at(key).value[0] == Approx(expected.at(key).value[0]).epsilon(1e-6));
+      found.at(key) = expected.at(key);
+    }
+    // What depends on x itself.
+    for (const char* key : {"E_XV"}) found.at(key) = expected.at(key);
+    require_close(found, expected, 1e-9);
+  }
+}
+
+TEST_CASE("noise levels in groups: unsymmetric ones as well as symmetric ones") {
+  const auto s = scene(1, 0.5, 1, 1.0 / 16, {1, 0});
+  const auto solve = [](const model::Scene& of) {
+    const auto d = test::on_nodes(of, 10, 6);
+    petsc::SolverStatistics statistics;
+    options::Case c;
+    c.scene = of;
+    c.question.quantities = {Quantity::sticking, Quantity::moments};
+    Values by_key;
+    for (const auto& r : routes::evaluate({PETSC_COMM_WORLD, c, d, statistics}).results) {
+      by_key[r.key] = r;
+    }
+    CHECK(d.noise->count() < d.process.noise.count() / 3);
+    CHECK(d.noise->mirrored().mirrored().count() == d.noise->count());
+    return by_key;
+  };
+  auto full = s;
+  full.noise_levels = full.full_levels();
+  auto expected = solve(full), found = solve(moved(full, 0.2));
+  CHECK(std::abs(found.at("E_V").value[0]) < 1e-8);
+  for (const char* key : {"E_V", "E_XV"}) expected.erase(key);
+  require_close(found, expected, 1e-8);
+}
+
+TEST_CASE("noise deviation: what is multiplied by it scales") {
+  const double c = 0.37;
+  const auto s = scene(1, 0.3, 0.8, 0.2, {1, 0});
+  auto scaled = scene(c, 0.3 * c, 0.8, 0.2 * c, {1, 0});
+  scaled.noise.deviation = c / std::sqrt(0.8);
+  const auto one = values(s), other = values(scaled);
+  for (const auto& [key, power] : {std::pair{"P_stick", 0},
+                                   {"mean_slide", 0},
+                                   {"mean_stick", 0},
+                                   {"E_absV", 1},
+                                   {"E_V2", 2},
+                                   {"E_XV", 2}}) {
+    INFO(key);
+    CHECK(relative_difference(other.at(key).value[0], std::pow(c, power) * one.at(key).value[0]) <
+          1e-12);
+  }
+}
+
+TEST_CASE("noise of few levels, uneven ones: all methods agree") {
+  auto s = with_levels(scene(1, 0.4, 1, 0.25, {1, 0}),
+                       {{-1.4, 1, 0}, {-0.3, 2, 0.5}, {0.2, 1, 1}, {0.9, 0.7, 3}, {1.7, 0, 2}});
+  s.bias = 0.05;
+  const auto exact = values(s);
+  require_close(values(s, Route::null_vector, 1e-9), exact, 1e-9);
+  require_close(values(s, Route::hitting, 1e-9, {Quantity::sticking}),
+                values(s, Route::excursion, 1e-10, {Quantity::sticking}), 1e-9);
+  s.drag = {0, 0};
+  require_close(values(s, Route::fluid_queue), values(s), 1e-9);
+}
+
+TEST_CASE("noise of an even number of levels: no level stands at 0") {
+  auto s = with_levels(scene(1, 0.4, 1, 0.25, {1, 0}),
+                       {{-1.5, 1, 0}, {-0.5, 1, 1}, {0.5, 1, 1}, {1.5, 0, 1}});
+  const auto found = values(s, Route::null_vector, 1e-8);
+  CHECK(std::abs(found.at("E_V").value[0]) < 1e-12);
+  auto exact = values(s);
+  exact.erase("E_V");
+  require_close(found, exact, 1e-8);
+}
