@@ -136,6 +136,14 @@ std::vector<double> Drag::balances(double force) const {
   return found;
 }
 
+double Drag::highest(double v) const {
+  constexpr double smallest = 1e-9;
+  const double end = std::min(v, rises_until);
+  double most = 0;
+  for (double u = end; u > smallest * end; u /= kFine) most = std::max(most, (*this)(u));
+  return most;
+}
+
 std::optional<double> Drag::asymmetry() const {
   if (!law) return std::nullopt;
   constexpr double rounding = 1e-12;

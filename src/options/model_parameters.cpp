@@ -23,6 +23,7 @@ class SceneReader {
     check_friction();
     check_noise();
     if (drag_law_.expression && problems_.empty()) read_expression();  // which looks at the noise
+    if (scene_.noise.table && problems_.empty()) check_returns();
     return scene_;
   }
 
@@ -181,6 +182,25 @@ class SceneReader {
                          "the bias {:g}: nothing ever sticks",
                          delta, scene_.bias),
              "take a smaller -delta");
+    }
+  }
+
+  // On the lowest level bodies must come to rest from every velocity that they reach: others slide
+  // for ever.
+  void check_returns() {
+    const auto process = scene_.process(1);
+    for (const auto& half : {process, process.mirrored()}) {
+      const auto& noise = half.noise;
+      const double lowest = half.net_force(noise.lowest()),
+                   highest = half.net_force(noise.highest());
+      const double rise = half.drag.highest(half.drag.terminal_velocity(highest));
+      if (!half.starts_upwards() || lowest + rise < 0) continue;
+      return report(
+          "mu_d",
+          fmt::format("does not stop sliding bodies: on the outermost level of the noise, "
+                      "{:g} from the mean, a force of {:g} still drives some",
+                      noise.level(noise.lowest()) - noise.mean(), lowest + rise),
+          "take a larger -mu_d, or levels on both sides of it");
     }
   }
 

@@ -105,11 +105,7 @@ struct LogDensity {
       : drag(process.drag), slope(process.friction.at_rest() - process.mean_force()) {
     extrema.push_back(drag.terminal_velocity(-slope));
     if (drag.rises_until > 0) extrema = drag.balances(-slope);
-    double least = slope;
-    for (double v = drag.rises_until; v > 1e-9 * drag.rises_until; v *= 0.95) {
-      least = std::min(least, slope - drag(v));
-    }
-    intensity = process.noise.tail_intensity(least);
+    intensity = process.noise.tail_intensity(slope - drag.highest(drag.rises_until));
     for (double v : extrema) highest = std::max(highest, -slope * v + drag.potential(v));
   }
   /// Raised by `by`.

@@ -46,6 +46,8 @@ struct Drag {
   /// For a law that rises somewhere: all v > 0 at which force + b(v) changes its sign, rising, each
   /// to rounding and beyond it. Between two there is a factor of 1.01 at least.
   [[nodiscard]] std::vector<double> balances(double force) const;
+  /// Largest b on [0, v], to about 1e-4 of it.
+  [[nodiscard]] double highest(double v) const;
 
   [[nodiscard]] bool odd() const { return !law || law_is_odd; }
   /// A v > 0 with b(-v) != -b(v) beyond rounding; nothing if b is odd. Samples the law.
