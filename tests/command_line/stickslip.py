@@ -35,8 +35,8 @@ class Case(unittest.TestCase):
         self.addCleanup(holder.cleanup)
         self.folder = pathlib.Path(holder.name)
 
-    def run_ok(self, *options, status=0, **how):
-        done = run(*options, folder=self.folder, **how)
+    def run_ok(self, *options, status=0, folder=None, **how):
+        done = run(*options, folder=folder or self.folder, **how)
         self.assertEqual(done.returncode, status, done.stderr)
         return done
 

@@ -11,8 +11,10 @@ class Scenes(Case):
         self.assertGreater(len(files), 60)
         for file in files:
             with self.subTest(scene=str(file.relative_to(SOURCES))):
-                more = ("-trajectory", "path.csv") if file.stem == "trajectory" else ()
-                s = self.summary("-options_file", file, *more)
+                path = ("-trajectory", self.folder / "path.csv")
+                more = path if file.stem == "trajectory" else ()
+                # Names of files within scenes count from the folder of the sources.
+                s = self.summary("-options_file", file, *more, folder=SOURCES)
                 for run in s.get("runs", [s]):
                     self.assertTrue(run["accuracy"]["reached"])
                     self.check_power(run["scene"], run["results"])
