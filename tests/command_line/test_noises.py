@@ -1,0 +1,103 @@
+"""Noises of the command line: what is refused, what has no effect, and what the summary holds."""
+
+import unittest
+
+from stickslip import Case, run
+
+TELEGRAPH = ("-mu_d", "0.5", "-bias", "0.3", "-noise", "telegraph", "-telegraph_amplitude", "1",
+             "-telegraph_rate", "1")
+HEADER = "x,rate_up,rate_down\n"
+
+
+class Noises(Case):
+    def refuse(self, *options, told):
+        done = run(*options, folder=self.folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(done.stdout, "")
+        for part in told:
+            self.assertIn(part, done.stderr)
+
+    def refuse_file(self, text, *told):
+        (self.folder / "levels.csv").write_text(text)
+        self.refuse("-noise", "file", "-noise_file", "levels.csv",
+                    told=("-noise_file = levels.csv: ", *told))
+
+    def test_what_a_noise_needs(self):
+        self.refuse("-noise", "telegraph", "-telegraph_rate", "1",
+                    told=("-noise = telegraph: needs -telegraph_amplitude",))
+        self.refuse("-noise", "telegraph", "-telegraph_amplitude", "1",
+                    told=("-noise = telegraph: needs -telegraph_rate",))
+        self.refuse("-noise", "file", told=("-noise = file: needs -noise_file",))
+
+    def test_values_out_of_range(self):
+        self.refuse("-noise_deviation", "0", told=("-noise_deviation = 0", "(0, inf)"))
+        for option in ("-telegraph_amplitude", "-telegraph_rate"):
+            self.refuse(*TELEGRAPH, option, "-1", told=(f"{option} = -1", "(0, inf)"))
+        self.refuse("-noise", "telegrah", told=("-noise = telegrah", "did you mean telegraph?"))
+
+    def test_files_that_cannot_be_read(self):
+        for name in ("none.csv", "."):  # a folder is no file
+            self.refuse("-noise", "file", "-noise_file", name,
+                        told=(f"-noise_file = {name}: cannot be read",))
+
+    def test_files_of_another_form(self):
+        self.refuse_file("", "Header missing")
+        self.refuse_file("a,rate_up,rate_down\n-1,1,0\n1,0,1\n", 'column "a"', "x,rate_up,rate_down")
+        self.refuse_file("x,rate_up\n-1,1\n1,0\n", "rate_down")
+        self.refuse_file(HEADER + "-1,1,0\n1,0\n", "line 3")
+        self.refuse_file(HEADER + "-1,1,0\n0,one,1\n1,0,1\n", "line 3", "rate_up = one")
+        self.refuse_file(HEADER + "-1,1,0\n0,1,nan\n1,0,1\n", "line 3", "rate_down = nan")
+
+    def test_levels_that_are_no_chain(self):
+        self.refuse_file(HEADER + "1,0,0\n", "at least two levels")
+        self.refuse_file(HEADER + "-1,1,0\n-2,1,1\n1,0,1\n", "line 3: x = -2 must be above", "-1")
+        self.refuse_file(HEADER + "-1,1,0\n-1,1,1\n1,0,1\n", "line 3: x = -1 must be above")
+        self.refuse_file(HEADER + "-1,1,0\n0,0,1\n1,0,1\n", "line 3: rate_up = 0 must be positive")
+        self.refuse_file(HEADER + "-1,1,0\n0,1,-2\n1,0,1\n", "line 3: rate_down = -2 must be positive")
+        self.refuse_file(HEADER + "-1,1,0\n1,0.5,1\n", "line 3: rate_up = 0.5", "must be 0 at the end")
+        self.refuse_file("# two\n" + HEADER + "-1,1,0.5\n1,0,1\n", "line 3: rate_down = 0.5")
+
+    def test_bodies_that_never_slide_or_never_stick(self):
+        self.refuse(*TELEGRAPH, "-bias", "0", told=("-mu_s = 1", "nothing ever slides"))
+        self.refuse(*TELEGRAPH, "-telegraph_amplitude", "2", told=("-mu_s = 1", "nothing ever sticks"))
+        (self.folder / "weak.csv").write_text(HEADER + "-0.5,1,0\n0.5,0,1\n")
+        self.refuse("-noise", "file", "-noise_file", "weak.csv",
+                    told=("-mu_s = 1: holds the body on all", "nothing ever slides"))
+
+    def test_options_of_another_noise(self):
+        for option, value in (("-telegraph_amplitude", "1"), ("-telegraph_rate", "1"), ("-noise_file", "x.csv")):
+            self.refuse(option, value, told=(f"{option} = {value}: is not of the noise",))
+        self.refuse(*TELEGRAPH, "-noise_file", "x.csv", told=("-noise_file = x.csv: is not of the noise",))
+        for study in ("delta", "heuristic"):
+            self.refuse(*TELEGRAPH, "-study", study, "-quantities", "sticking",
+                        told=(f"-study = {study}", "-noise telegraph has not"))
+        self.refuse(*TELEGRAPH, "-sweep_tau", "1,2", told=("-tau has no effect with -noise telegraph",))
+
+    def test_options_without_effect(self):
+        for option in ("-tau", "-delta", "-noise_levels", "-noise_deviation"):
+            with self.subTest(option=option):
+                done = self.run_ok(*TELEGRAPH, option, "1", "-quantities", "sticking")
+                self.assertIn(f"{option} has no effect with -noise telegraph", done.stderr)
+        self.assertEqual(self.run_ok(*TELEGRAPH, "-quantities", "sticking").stderr, "")
+
+
+class Summary(Case):
+    def test_the_summary_tells_the_noise(self):
+        s = self.summary(*TELEGRAPH, "-quantities", "sticking")
+        self.assertEqual([s["scene"][key] for key in ("noise", "telegraph_amplitude", "telegraph_rate")],
+                         ["telegraph", 1, 1])
+        self.assertNotIn("tau", s["scene"])
+        self.assert_close(s["results"]["P_stick"]["value"], 3 / 8, 1e-12)
+        self.assertEqual(self.summary("-noise_deviation", "0.9")["scene"]["noise_deviation"], 0.9)
+
+    def test_two_levels_of_a_file_are_the_telegraph(self):
+        (self.folder / "two.csv").write_text("# X = +-1\n" + HEADER + " -1, 1, 0\n1,0,1\n")
+        ask = ("-quantities", "sticking,moments,noise_law,entry_law")
+        telegraph, file = (self.summary(*TELEGRAPH[:4], *noise, *ask) for noise in (
+            TELEGRAPH[4:], ("-noise", "file", "-noise_file", "two.csv")))
+        self.assertEqual(file["scene"]["noise_file"], "two.csv")
+        self.assertEqual(telegraph["results"], file["results"])
+
+
+if __name__ == "__main__":
+    unittest.main()
