@@ -46,6 +46,15 @@ class Pictures(Case):
             self.run_ok(*SCENE, *options, "-output", "f.h5")
             self.assertEqual(sorted(self.drawn("f.h5")), pictures)
 
+    def test_noises_without_a_step(self):
+        (self.folder / "levels.csv").write_text("x,rate_up,rate_down\n-1,1,0\n0.5,1,1\n2,0,2\n")
+        for noise in (("-noise", "file", "-noise_file", "levels.csv"),
+                      ("-noise", "telegraph", "-telegraph_amplitude", "1", "-telegraph_rate", "2", "-bias", "0.2")):
+            self.run_ok("-mu_d", "0.5", *noise, "-quantities", "density,spectrum,duration_density,trajectory",
+                        "-omega", "0.1,1,10", "-time", "0:1:5", "-horizon", "10", "-accuracy", "1e-2", "-output", "f.h5")
+            self.assertEqual(sorted(self.drawn("f.h5")), [
+                f"f_{kind}.png" for kind in ("density", "durations", "spectra", "trajectory")])
+
     def test_csv_of_paths_and_sweeps(self):
         self.run_ok(*SCENE, "-quantities", "trajectory", "-horizon", "10", "-trajectory", "path.csv")
         self.run_ok(*SCENE, "-quantities", "noise_law", "-sweep_tau", "0.5,1", "-sweep_csv", "s.csv")

@@ -18,14 +18,14 @@ LINES = ("-", (0, (1, 1)), (0, (4, 1.5)))
 def panels_of(laws):
     panels = {}
     for file in laws:
-        key = tuple(file.number(option) for option in ("mu_s", "mu_d", "tau")) + (file.drag(),)
+        key = (file.number("mu_s"), file.number("mu_d"), file.memory(), file.drag())
         panels.setdefault(key, []).append(file)
     return panels
 
 
 def line_styles(laws):
-    """By noise step, the finest solid."""
-    deltas = sorted({file.number("delta") for file in laws})
+    """By noise step, the finest solid; solid also where there is none."""
+    deltas = sorted({file.step() or 0 for file in laws})
     if len(deltas) > len(LINES):
         sys.exit(f"{len(deltas)} values of delta; at most {len(LINES)} can be told apart")
     return dict(zip(deltas, LINES))
@@ -35,9 +35,9 @@ def draw_panel(axes, key, same, lines):
     for file in same:
         for quantity, (_, colour) in QUANTITIES.items():
             axes.plot(*file.curve(quantity, "time"), color=colour, linewidth=1.6,
-                      linestyle=lines[file.number("delta")])
-    mu_s, mu_d, tau, drag = key
-    axes.set_title(rf"$\mu_s$ = {mu_s:g}, $\mu_d$ = {mu_d:g}, $\tau$ = {tau:g}, $b(v) = {drag}$",
+                      linestyle=lines[file.step() or 0])
+    mu_s, mu_d, noise, drag = key
+    axes.set_title(rf"$\mu_s$ = {mu_s:g}, $\mu_d$ = {mu_d:g}, {noise}, $b(v) = {drag}$",
                    fontsize=9)
     axes.set(xlabel="duration  [time]", ylabel="density  [1/time]", ylim=(0, None))
     axes.margins(x=0)
@@ -49,7 +49,7 @@ def draw_legend(axes, lines):
                for label, colour in QUANTITIES.values()]
     handles += [plt.Line2D([], [], color="#888888", linestyle=line,
                            label=rf"$\delta$ = {power_of_two(delta)}")
-                for delta, line in lines.items()]
+                for delta, line in lines.items() if delta]
     axes.legend(handles=handles, loc="center", ncol=len(handles), columnspacing=1.2)
     axes.axis("off")
 

@@ -77,6 +77,27 @@ class File:
     def number(self, option):
         return float(self.options[option])
 
+    def step(self):
+        """Distance of the noise levels; none where these are given one by one."""
+        return self.number("delta") if self.options.get("noise", "ou") == "ou" else None
+
+    def memory(self):
+        """The noise in words, without its step; TeX."""
+        noise = self.options.get("noise", "ou")
+        if noise == "telegraph":
+            a, rate = self.number("telegraph_amplitude"), self.number("telegraph_rate")
+            return rf"$a$ = {a:g}, $\kappa$ = {rate:g}"
+        if noise == "file":
+            return f"levels of {pathlib.Path(str(self.options['noise_file'])).name}"
+        deviation = self.options.get("noise_deviation")
+        given = rf", $\sigma$ = {float(deviation):g}" if deviation else ""
+        return rf"$\tau$ = {power_of_two(self.number('tau'))}{given}"
+
+    def noise(self):
+        """The noise in words; TeX."""
+        step = self.step()
+        return self.memory() + (rf", $\delta$ = {power_of_two(step)}" if step else "")
+
     def drag(self):
         """b(v) in words."""
         law = str(self.options["drag"])

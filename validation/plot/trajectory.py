@@ -13,7 +13,7 @@ import pathlib
 import matplotlib
 import numpy
 
-from results import COLOURS, File, arguments_of, one_file, plt, power_of_two
+from results import COLOURS, File, arguments_of, one_file, plt
 
 SLIDE, STICK = COLOURS[:2]
 FORCING = COLOURS[4]
@@ -37,9 +37,9 @@ class Path:
     def title(self):
         if not self.file:
             return ""
-        mu_s, mu_d, tau, delta = map(self.known, ("mu_s", "mu_d", "tau", "delta"))
-        return (rf"$\mu_s$ = {mu_s:g}, $\mu_d$ = {mu_d:g}, $\tau$ = {tau:g}, $\delta$ = "
-                rf"{power_of_two(delta)}, $b(v) = {self.file.drag()}$")
+        mu_s, mu_d = map(self.known, ("mu_s", "mu_d"))
+        return (rf"$\mu_s$ = {mu_s:g}, $\mu_d$ = {mu_d:g}, {self.file.noise()}, "
+                rf"$b(v) = {self.file.drag()}$")
 
     def stays(self):
         """Begin and end of each time of rest."""
