@@ -54,12 +54,11 @@ void require_start_within(const options::Case& given, const Resolution& first) {
                                "is computed at -accuracy {:g}; take |{}| at most {:g}, or {}",
                                x, v, what, question.accuracy, what, largest, more));
   };
+  const char* simulated = "-route monte_carlo, which starts at any state that occurs";
   if (level < noise.lowest() || level > noise.highest()) {
-    refuse("x", noise.level(noise.highest()), "-noise_levels full");
+    refuse("x", noise.level(noise.highest()), noise.table ? simulated : "-noise_levels full");
   }
-  if (std::abs(v) > first.v_max) {
-    refuse("v", first.v_max, "-route monte_carlo, which starts at any state that occurs");
-  }
+  if (std::abs(v) > first.v_max) refuse("v", first.v_max, simulated);
 }
 
 class Refiner {

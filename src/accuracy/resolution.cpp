@@ -28,7 +28,7 @@ velocity::MeshRule mesh_rule(const Resolution& resolution) {
   return rule;
 }
 
-double upwind_step(const model::Scene& scene) { return scene.process(1).noise.step(); }
+double upwind_step(const model::Scene& scene) { return scene.meant().noise.step(); }
 
 // Number of nodes of the upwind velocity discretisation: the first at or beyond v_max is its last.
 double upwind_nodes(const model::Scene& scene, const Resolution& resolution) {
@@ -46,9 +46,9 @@ std::vector<int> hp_degrees(const model::Scene& scene, const Resolution& resolut
 // saturates adds to mu_d.
 double tilt(const model::Scene& scene) {
   const double mu_d = std::max(scene.friction.mu_d, scene.friction.mirrored().mu_d);
-  const auto noise = scene.process(1).noise;
+  const auto noise = scene.meant().noise;
   const double drag_time = -scene.drag.slope_at_rest() * noise.intensity() / (mu_d * mu_d);
-  const double most = noise.standard_deviation(), variance = noise.intensity() / scene.tau;
+  const double most = noise.standard_deviation(), variance = most * most;
   if (scene.drag.law && !scene.drag.bounds_velocity()) return 2 * most / variance;
   if (drag_time > 1) return 0;
   return 2 * std::min(mu_d, most) / variance;
@@ -84,27 +84,30 @@ std::shared_ptr<const noise::Nodes> grouped(const model::Process& process,
 }  // namespace
 
 int levels_for(const model::Scene& scene, double tolerance) {
-  const int full = scene.full_levels();
-  const auto process = scene.process(full);
-  if (process.noise.table) return full;
-  const int first = std::max(process.static_index(), -process.lowest_static()) + 1;
-  const double shift = tilt(scene) * scene.delta;
-  double log_weight = 0;  // of level i against level `first`
-  int i = first;
-  while (i < full && log_weight > std::log(tolerance)) {
-    ++i;
-    log_weight +=
-        std::log(model::weight_ratio(process.noise, i)) + shift + 2 * std::log1p(1.0 / (i - 1));
-  }
-  return i;
+  const auto process = scene.meant();
+  const double per_force = tilt(scene);
+  const auto last = [&](const model::Process& side) {
+    const auto& noise = side.noise;
+    double log_weight = 0;  // of level i against the first that does not stick
+    int last = std::min(side.static_index() + 1, noise.highest());
+    for (int i = last + 1; i <= noise.highest(); ++i) {
+      const double below = noise.level(i - 1), step = noise.level(i) - below;
+      log_weight += std::log(model::weight_ratio(noise, i)) + per_force * step +
+                    2 * std::log1p(step / std::max(std::abs(below), noise.step()));
+      const bool counts = log_weight > std::log(tolerance);
+      if (counts || last == i - 1) last = i;
+      if (!counts && !noise.table) break;
+    }
+    return last;
+  };
+  return std::max(last(process), last(process.mirrored()));
 }
 
 namespace {
 
 void set_levels(const model::Scene& scene, double tolerance, Resolution& r) {
   r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
-  if (const auto& table = scene.noise.table)
-    r.table_levels = table->highest() - table->lowest() + 1;
+  if (scene.noise.table) r.table_levels = scene.process(r.levels).noise.count();
 }
 
 }  // namespace

@@ -123,6 +123,15 @@ double LevelTable::tail_intensity(double least) const {
   return largest;
 }
 
+LevelTable LevelTable::within(int low, int high) const {
+  low = std::max(low, lowest());
+  high = std::min(high, highest());
+  std::vector<Level> levels(levels_.begin() + (low - lowest_),
+                            levels_.begin() + (high - lowest_ + 1));
+  levels.front().down = levels.back().up = 0;
+  return {std::move(levels), low};
+}
+
 LevelTable LevelTable::mirrored() const {
   std::vector<Level> levels;
   for (auto level = levels_.rbegin(); level != levels_.rend(); ++level) {

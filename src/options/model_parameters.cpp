@@ -117,7 +117,7 @@ class SceneReader {
 
   // The levels that exist, and that on some of them bodies stick and on some they slide.
   void check_table() {
-    const auto process = scene_.process(1);
+    const auto process = scene_.meant();
     const auto& noise = process.noise;
     const auto range =
         fmt::format("levels, from {:g} to {:g}, shifted by the bias {:g}",
@@ -132,7 +132,10 @@ class SceneReader {
   }
 
   void check_noise() {
-    if (scene_.noise.table) return check_table();
+    if (scene_.noise.table) {
+      scene_.noise_levels.reset();
+      return check_table();
+    }
     if (scene_.noise.name != "ou") return;  // reported
     const double tau = scene_.tau, delta = scene_.delta;
     int full = 0, highest = 0, lowest = 0;
@@ -188,7 +191,7 @@ class SceneReader {
   // On the lowest level bodies must come to rest from every velocity that they reach: others slide
   // for ever.
   void check_returns() {
-    const auto process = scene_.process(1);
+    const auto process = scene_.meant();
     for (const auto& half : {process, process.mirrored()}) {
       const auto& noise = half.noise;
       const double lowest = half.net_force(noise.lowest()),
@@ -209,7 +212,7 @@ class SceneReader {
       return report("drag", "needs a law in -drag_expression",
                     "add for example -drag_expression \"-v - 0.1*v*abs(v)\"");
     }
-    const auto process = scene_.process(1);
+    const auto process = scene_.meant();
     try {
       scene_.drag = model::parse_drag(scene_.drag_expression, scene_.friction, scene_.tau,
                                       largest_force(scene_), process.mean_force(),

@@ -42,6 +42,8 @@ class LevelTable {
   [[nodiscard]] double step() const { return step_; }  ///< smallest distance of neighbours
   /// Whether -X is the same chain and x = 0 a level.
   [[nodiscard]] bool symmetric() const { return symmetric_; }
+  /// The chain on low <= i <= high alone, as far as they exist.
+  [[nodiscard]] LevelTable within(int low, int high) const;
   /// The chain of -X, level -i for level i.
   [[nodiscard]] LevelTable mirrored() const;
 

@@ -37,12 +37,17 @@ struct Scene {
     return noise.table ? std::max(-noise.table->lowest(), noise.table->highest())
                        : full_range(tau, delta, noise.deviation);
   }
-  /// The process on `levels` noise levels, or on all those of a table.
+  /// The process on the noise levels |i| <= levels and those next to rest.
   [[nodiscard]] Process process(int levels) const {
-    return {{tau, delta, levels, noise.deviation, noise.table},
-            friction,
-            with_weakening(drag, friction),
-            bias};
+    Process all{{tau, delta, levels, noise.deviation, noise.table},
+                friction,
+                with_weakening(drag, friction),
+                bias};
+    if (noise.table && levels < full_levels()) {
+      all.noise.table = std::make_shared<const LevelTable>(noise.table->within(
+          std::min(-levels, all.lowest_static() - 1), std::max(levels, all.static_index() + 1)));
+    }
+    return all;
   }
   /// The process that is meant: on noise_levels if fixed, else on the full range.
   [[nodiscard]] Process meant() const { return process(noise_levels.value_or(full_levels())); }
