@@ -27,8 +27,7 @@ DRAGS = {  # options, b on v > 0
         lambda v: 0.3 * (1 - numpy.exp(-10 * v)) - v)}
 OU = {"mu_s": 1, "mu_d": 0.45, "delta": 0.5, "tau": 1, "quantities": "sticking,moments,spectrum"}
 WITHOUT_X = ("P_stick", "P_slide", "mean_stick", "mean_slide", "E_V2", "E_absV", "S_0", "fwhm")
-POWERS = {"P_stick": 0, "mean_stick": 0, "mean_slide": 0, "E_absV": 1, "E_V2": 2, "E_XV": 2,
-          "E_X2": 2}
+POWERS = {"P_stick": 0, "mean_stick": 0, "mean_slide": 0, "E_absV": 1, "E_V2": 2, "E_XV": 2, "E_X2": 2}
 
 
 def exact():
@@ -47,16 +46,15 @@ def telegraph_values(entry):
     for name, drag, kappa, known in exact():
         scene = {**TELEGRAPH, **drag, "telegraph_rate": kappa, "quantities": "sticking,moments"}
         found = entry.run(**scene, accuracy=1e-11)["results"]
-        simulated = entry.run(**scene, route="monte_carlo",
-                              excursions=10**5 if entry.quick else 3 * 10**5)["results"]
+        count = 10**5 if entry.quick else 3 * 10**5
+        simulated = entry.run(**scene, route="monte_carlo", excursions=count)["results"]
         for key, value in known.items():
             far.append(difference(found[key]["value"], value))
             beside.append((value, 0, simulated[key]))
             rows.append((name, f"{kappa:g}", key, f"{value:.10g}", f"{found[key]['value']:.12g}",
                          far[-1], simulated[key]["value"], deviation(*beside[-1])))
-    entry.table("telegraph noise, a = 1, mu_s = 1, mu_d = 1/2, bias 0.3",
-                ("drag", "kappa", "quantity", "closed form", "found", "relative difference",
-                 "simulated", "z"), rows)
+    entry.table("telegraph noise, a = 1, mu_s = 1, mu_d = 1/2, bias 0.3", (
+        "drag", "kappa", "quantity", "closed form", "found", "relative difference", "simulated", "z"), rows)
     entry.claim("telegraph noise against closed forms, relative", worse(*far), 1e-10)
     entry.simulated("simulated telegraph noise", beside)
 
@@ -64,17 +62,16 @@ def telegraph_values(entry):
 def telegraph_densities(entry):
     shown, far = {}, []
     for (name, (drag, b)), kappa in itertools.product(DRAGS.items(), (2, 3)):
-        entry.run(output="density.h5", **TELEGRAPH, **drag, telegraph_rate=kappa,
-                  quantities="density", accuracy=1e-10)
+        scene = {**TELEGRAPH, **drag, "telegraph_rate": kappa}
+        entry.run(output="density.h5", **scene, quantities="density", accuracy=1e-10)
         with h5py.File(entry.file("density.h5")) as file:
             v, pdf, atom = (file["density"][key][:] for key in ("v", "pdf", "atom"))
         falling, rising = pdf[:, v > 0]
         known = [atom.sum() * f for f in densities(kappa, b, v[v > 0])]
-        far += [abs(rising - known[0]).max() / known[0].max(),
-                abs(falling - known[1]).max() / known[1].max(), abs(pdf[:, v < 0]).max()]
+        far += [abs(f - g).max() / g.max() for f, g in zip((rising, falling), known)]
+        far.append(abs(pdf[:, v < 0]).max())
         shown[rf"{name}, $\kappa$ = {kappa}"] = (v[v > 0], rising, falling, atom.sum(), kappa, b)
-    entry.claim("densities of X = +-a from the closed form, relative to the largest",
-                worse(*far), 1e-6)
+    entry.claim("densities of X = +-a from the closed form, relative to the largest", worse(*far), 1e-6)
     return shown
 
 
@@ -83,8 +80,8 @@ def against_bias(entry):
     found = {}
     for n, a in enumerate((0.8, 1, 1.2)):
         biases = numpy.linspace(max(1 - a, a - 1), 0.5, 5 if entry.quick else 13)[1:-1]
-        runs = entry.run(**{**TELEGRAPH, "telegraph_amplitude": a}, telegraph_rate=3.0**(n - 1), drag="none",
-                         quantities="sticking", accuracy=1e-11,
+        scene = {**TELEGRAPH, "telegraph_amplitude": a, "telegraph_rate": 3.0**(n - 1), "drag": "none"}
+        runs = entry.run(**scene, quantities="sticking", accuracy=1e-11,
                          sweep_bias=",".join(map(repr, map(float, biases))))["runs"]
         found[a] = (biases, numpy.array([run["results"]["P_stick"]["value"] for run in runs]))
     entry.claim("P_stick = (mu_d - g)/(mu_d + a - g) without drag, relative", worse(*(
@@ -101,17 +98,18 @@ def draw(entry, shown, biased):
             axes.plot(line, stick * known, color=COLOURS[n], linestyle=STYLES[n],
                       label=f"$X = {sign}a$, closed form")
             axes.plot(v, nodes, "o^"[n], color=COLOURS[n], markersize=3, label=f"$X = {sign}a$, nodes")
-        axes.set(xlabel="$v$  [velocity]", ylabel="density  [1/velocity]", title=name, ylim=(0, None))
-        axes.title.set_fontsize(9)
-        axes.legend()
+        axes.set(xlabel="$v$  [velocity]", ylabel="density  [1/velocity]")
+        axes.set_title(name, fontsize=9)
     for n, (a, (biases, values)) in enumerate(biased.items()):
         line = numpy.linspace(abs(1 - a), 0.5, 100)
         panels[2].plot(line, (0.5 - line) / (0.5 + a - line), color=COLOURS[n], linestyle=STYLES[n],
                        label=rf"$a$ = {a:g}, $\kappa$ = {3.0**(n - 1):.2g}")
         panels[2].plot(biases, values, "o^s"[n], color=COLOURS[n], markersize=3)
-    panels[2].set(xlabel="bias $g$  [force]", ylabel=r"$P_\mathrm{stick}$", title="b = 0", ylim=(0, None))
-    panels[2].title.set_fontsize(9)
-    panels[2].legend()
+    panels[2].set(xlabel="bias $g$  [force]", ylabel=r"$P_\mathrm{stick}$")
+    panels[2].set_title("b = 0", fontsize=9)
+    for axes in panels:
+        axes.set_ylim(0)
+        axes.legend()
     figure.savefig(entry.file("noises.png"), dpi=150)
     entry.picture("noises.png", "Telegraph noise, mu_s = 1, mu_d = 1/2: densities of sliding bodies for a = 1 and the bias "
                   "0.3, and the probability of sticking without drag. Lines are closed forms, marks computed.")
@@ -122,10 +120,9 @@ def units_of_force(entry):
     far = []
     one = entry.run(mu_d=0.6, delta=0.2, tau=0.8, noise_deviation=1.1, accuracy=1e-10)["results"]
     for c in (0.37, 9.81):
-        other = entry.run(mu_s=c, mu_d=0.6 * c, delta=0.2 * c, tau=0.8, noise_deviation=1.1 * c,
-                          accuracy=1e-10)["results"]
-        far += [difference(other[key]["value"], c**power * one[key]["value"])
-                for key, power in POWERS.items()]
+        forces = {"mu_s": c, "mu_d": 0.6 * c, "delta": 0.2 * c, "noise_deviation": 1.1 * c}
+        other = entry.run(**forces, tau=0.8, accuracy=1e-10)["results"]
+        far += [difference(other[key]["value"], c**p * one[key]["value"]) for key, p in POWERS.items()]
     entry.claim("-noise_deviation in other units of force, relative", worse(*far), 1e-12)
 
 
@@ -136,13 +133,12 @@ def shifted_levels(entry):
     for shift in (0.13, -0.4):
         lines = ["x,rate_up,rate_down"]
         for i in range(-full, full + 1):
-            up, down = ((full - sign * i) / (2 * full) * 2 / (OU["tau"] * OU["delta"])**2
-                        for sign in (1, -1))
+            up, down = ((1 - j / full) / (OU["tau"] * OU["delta"])**2 for j in (i, -i))
             lines.append(f"{i * OU['delta'] + shift!r},{up!r},{down!r}")
         entry.file("moved.csv").write_text("\n".join(lines) + "\n")
         scene = {key: value for key, value in OU.items() if key not in ("tau", "delta")}
-        found = entry.run(**scene, noise="file", noise_file=entry.file("moved.csv"), bias=-shift,
-                          accuracy=1e-11)["results"]
+        levels = {"noise": "file", "noise_file": entry.file("moved.csv"), "bias": -shift}
+        found = entry.run(**scene, **levels, accuracy=1e-11)["results"]
         far += [difference(found[key]["value"], known[key]["value"]) for key in WITHOUT_X]
         far.append(abs(found["E_V"]["value"]))
     entry.claim("-noise file with the moved levels of -noise ou, relative", worse(*far), 1e-9)
