@@ -89,16 +89,20 @@ int levels_for(const model::Scene& scene, double tolerance) {
   const auto last = [&](const model::Process& side) {
     const auto& noise = side.noise;
     double log_weight = 0;  // of level i against the first that does not stick
-    int last = std::min(side.static_index() + 1, noise.highest());
+    int last = side.static_index() + 1;
+    if (noise.symmetric()) last = std::max(last, 1 - side.lowest_static());
+    last = std::min(last, noise.highest());
     for (int i = last + 1; i <= noise.highest(); ++i) {
       const double below = noise.level(i - 1), step = noise.level(i) - below;
       log_weight += std::log(model::weight_ratio(noise, i)) + per_force * step +
                     2 * std::log1p(step / std::max(std::abs(below), noise.step()));
-      const bool counts = log_weight > std::log(tolerance);
-      if (counts || last == i - 1) last = i;
-      if (!counts && !noise.table) break;
+      if (log_weight > std::log(tolerance)) {
+        last = i;
+      } else if (!noise.table) {
+        break;
+      }
     }
-    return last;
+    return std::min(last + 1, noise.highest());
   };
   return std::max(last(process), last(process.mirrored()));
 }

@@ -54,13 +54,12 @@ std::vector<double> weights(const std::vector<Level>& levels) {
 
 }  // namespace
 
-LevelTable::LevelTable(const std::vector<Level>& levels)
-    : LevelTable(levels, -places_below_zero(levels)) {}
-
 // With S_i = sum_(j <= i) pi_j (x_j - m), the intensity is sum_i S_i^2/(pi_i up_i): an edge passes
 // on all that lies below it. Summed from the end where all terms have one sign.
-LevelTable::LevelTable(std::vector<Level> levels, int lowest)
-    : levels_(std::move(levels)), lowest_(lowest), step_(std::numeric_limits<double>::infinity()) {
+LevelTable::LevelTable(std::vector<Level> levels)
+    : levels_(std::move(levels)),
+      lowest_(-places_below_zero(levels_)),
+      step_(std::numeric_limits<double>::infinity()) {
   require_chain(levels_);
   const auto w = weights(levels_);
   const std::size_t count = w.size();
@@ -91,6 +90,11 @@ LevelTable::LevelTable(std::vector<Level> levels, int lowest)
     variance_ += part(n) * (x - mean_);
   }
   symmetric_ = symmetric_ && count % 2 == 1;
+  if (!std::isnormal(intensity_) || !std::isnormal(variance_)) {
+    throw UnfitTable(count, "the rates lead to probabilities beyond double precision");
+  }
+  upper_tail_ = tail_intensity();
+  lower_tail_ = symmetric_ ? upper_tail_ : mirrored().tail_intensity();
 }
 
 // Whether theta (X - m - f) + Q has negative eigenvalues alone: the pivots of its negative are
@@ -105,12 +109,12 @@ bool LevelTable::decays(double theta, double force) const {
   return true;
 }
 
-double LevelTable::tail_intensity(double least) const {
-  const double top = levels_.back().x - mean_, from = std::max(least, 1e-3 * top);
-  constexpr int forces = 24, halvings = 20;
+double LevelTable::tail_intensity() const {
+  const double top = levels_.back().x - mean_;
+  constexpr int forces = 20, halvings = 12;
   double largest = intensity_;
-  for (int n = 0; n < forces && from < top; ++n) {
-    const double force = from + (top - from) * n / forces;
+  for (int n = 1; n < forces; ++n) {
+    const double force = top * n / forces;
     double low = force / intensity_, high = low;
     while (!decays(low, force) && low > 1e-6 * high) low /= 2;
     while (decays(high, force)) high *= 2;
@@ -126,18 +130,24 @@ double LevelTable::tail_intensity(double least) const {
 LevelTable LevelTable::within(int low, int high) const {
   low = std::max(low, lowest());
   high = std::min(high, highest());
-  std::vector<Level> levels(levels_.begin() + (low - lowest_),
-                            levels_.begin() + (high - lowest_ + 1));
-  levels.front().down = levels.back().up = 0;
-  return {std::move(levels), low};
+  LevelTable part = *this;
+  part.lowest_ = low;
+  part.levels_.assign(levels_.begin() + (low - lowest_), levels_.begin() + (high - lowest_ + 1));
+  part.levels_.front().down = part.levels_.back().up = 0;
+  return part;
 }
 
 LevelTable LevelTable::mirrored() const {
-  std::vector<Level> levels;
-  for (auto level = levels_.rbegin(); level != levels_.rend(); ++level) {
-    levels.push_back({-level->x, level->down, level->up});
+  LevelTable other = *this;
+  for (std::size_t n = 0; n < levels_.size(); ++n) {
+    const auto& [x, up, down] = levels_[levels_.size() - 1 - n];
+    other.levels_[n] = {-x, down, up};
   }
-  return {std::move(levels), -highest()};
+  other.lowest_ = -highest();
+  other.mode_ = -mode_;
+  other.mean_ = -mean_;
+  std::swap(other.upper_tail_, other.lower_tail_);
+  return other;
 }
 
 }  // namespace stickslip::model

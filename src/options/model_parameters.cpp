@@ -137,7 +137,11 @@ class SceneReader {
       return check_table();
     }
     if (scene_.noise.name != "ou") return;  // reported
-    const double tau = scene_.tau, delta = scene_.delta;
+    const double delta = scene_.delta,
+                 sigma = scene_.noise.deviation.value_or(1 / std::sqrt(scene_.tau)),
+                 ratio = delta * delta / (sigma * sigma);
+    const bool own = scene_.noise.deviation.has_value();
+    const char* stronger = own ? "a larger -noise_deviation" : "smaller -tau";
     int full = 0, highest = 0, lowest = 0;
     try {
       full = scene_.full_levels();
@@ -152,15 +156,15 @@ class SceneReader {
     const double largest = levels * delta;
     if (full < 1) {
       report("delta",
-             fmt::format("leaves no noise level besides 0: tau delta^2 = {:g} must be at most 2",
-                         tau * delta * delta),
-             fmt::format("take -delta at most {:g}", std::sqrt(2 / tau)));
+             fmt::format("leaves no noise level besides 0: {} = {:g} must be at most 2",
+                         own ? "(delta/noise_deviation)^2" : "tau delta^2", ratio),
+             fmt::format("take -delta at most {:g}", std::sqrt(2) * sigma));
     } else if (levels > full) {
-      report("noise_levels",
-             fmt::format("gives tau delta L_X = {:g} with L_X = N delta, but jump probabilities "
-                         "need at most 2",
-                         tau * delta * delta * levels),
-             fmt::format("take at most {}, or full", full));
+      report(
+          "noise_levels",
+          fmt::format("gives {} = {:g} with L_X = N delta, but jump probabilities need at most 2",
+                      own ? "delta L_X/noise_deviation^2" : "tau delta L_X", ratio * levels),
+          fmt::format("take at most {}, or full", full));
     } else if (k >= levels && lowest + highest != 0) {
       const bool backwards = -lowest > highest;
       const auto& friction = scene_.friction;
@@ -171,14 +175,14 @@ class SceneReader {
              fmt::format("is never overcome by the noise, which reaches {:g}: no body at rest "
                          "would ever start towards {} v",
                          largest, backwards ? "negative" : "positive"),
-             fmt::format("take {} below {:g}, or smaller -tau or -delta",
+             fmt::format("take {} below {:g}, or {} or -delta",
                          biased ? "|bias|" : fmt::format("-{}", threshold),
-                         biased ? largest - mu_s : largest));
+                         biased ? largest - mu_s : largest, stronger));
     } else if (k >= levels) {
       const auto why =
           fmt::format("is not below the largest noise level {:g}: nothing ever slides", largest);
       if (levels < full) return report("mu_s", why, fmt::format("take -noise_levels above {}", k));
-      report("mu_s", why, fmt::format("take -mu_s below {:g}, or smaller -tau or -delta", largest));
+      report("mu_s", why, fmt::format("take -mu_s below {:g}, or {} or -delta", largest, stronger));
     } else if (lowest > highest) {
       report("mu_s",
              fmt::format("holds the body on no noise level, which are {:g} apart and shifted by "
@@ -214,9 +218,10 @@ class SceneReader {
     }
     const auto process = scene_.meant();
     try {
-      scene_.drag = model::parse_drag(scene_.drag_expression, scene_.friction, scene_.tau,
-                                      largest_force(scene_), process.mean_force(),
-                                      process.noise.tail_intensity(0));
+      scene_.drag = model::parse_drag(
+          scene_.drag_expression, scene_.friction, scene_.tau, largest_force(scene_),
+          process.mean_force(),
+          std::max(process.noise.tail_intensity(), process.mirrored().noise.tail_intensity()));
     } catch (const model::UnfitLaw& unfit) {
       report("drag_expression", unfit.what(), unfit.fix());
     }

@@ -22,8 +22,10 @@ class Rules {
     const std::string with_drag = "with -drag " + r_.scene.drag_name;
     warn({"drag_coefficient"}, !drag_law_.linear, with_drag);
     warn({"drag_cubic"}, !drag_law_.cubic, with_drag);
-    warn({"tau", "delta", "noise_levels", "noise_deviation"}, r_.scene.noise.name != "ou",
-         "with -noise " + r_.scene.noise.name);
+    const bool levels = r_.scene.noise.name != "ou";
+    const std::string with_noise = "with -noise " + r_.scene.noise.name;
+    warn({"tau"}, levels && !drag_law_.expression, with_noise);
+    warn({"delta", "noise_levels", "noise_deviation"}, levels, with_noise);
     warn({"lambda"}, r_.method.route != Route::lambda && !asked("lambda"));
     warn({"excursions"}, !simulates);
     warn({"seed"}, !simulates && !asked("seed"));

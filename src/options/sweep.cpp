@@ -4,8 +4,10 @@
 #include <petscsys.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <memory>
+#include <sstream>
 
 #include "quantities.hpp"
 #include "reading.hpp"
@@ -132,6 +134,10 @@ std::vector<std::pair<std::string, std::string>> identity_of(const Settings& set
       if (option.name == "checkpoint" || option.name == "plan") continue;
       const bool swept = is_axis(axes, option.name);
       identity.emplace_back(option.name, swept ? kSwept : settings.text(option.name));
+      if (option.name != "noise_file" || !settings.given(option.name)) continue;
+      std::ostringstream contents;
+      contents << std::ifstream(identity.back().second).rdbuf();
+      identity.back().second = contents.str();
     }
   }
   for (const auto& option : solver_options()) identity.push_back(option);

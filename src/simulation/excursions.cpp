@@ -20,8 +20,7 @@ class Levels {
         highest_(process.static_index()),
         least_within_(process.noise.first_from(-process.friction.mu_s)),
         most_within_(process.noise.last_up_to(process.friction.mu_s)),
-        upwards_(process.starts_upwards()),
-        downwards_(process.starts_downwards()),
+        exit_{process.exit_level(true), process.exit_level(false)},
         begin_(std::max(process.noise.lowest(), -reach(process))),
         end_(std::min(process.noise.highest(), reach(process))) {
     const auto mirrored = process.mirrored();
@@ -39,12 +38,9 @@ class Levels {
 
   [[nodiscard]] bool rests(int i) const { return lowest_ <= i && i <= highest_; }
   [[nodiscard]] bool within(int i) const { return least_within_ <= i && i <= most_within_; }
-  /// The direction in which excursions start from a side; where the noise has one side alone, its.
-  [[nodiscard]] int direction(std::size_t side) const {
-    return (side == 0 ? upwards_ : !downwards_) ? 1 : -1;
-  }
-  /// The first level beyond those that rest, in a direction.
-  [[nodiscard]] int exit(int sign) const { return sign > 0 ? highest_ + 1 : lowest_ - 1; }
+  /// The level from which excursions start from a side.
+  [[nodiscard]] int exit(std::size_t side) const { return exit_[side]; }
+  [[nodiscard]] int direction(int exit) const { return exit > highest_ ? 1 : -1; }
   [[nodiscard]] double level(int i) const { return level_[at(i)]; }
   /// Acceleration along the motion at v = 0 of a body that moves upwards or downwards.
   [[nodiscard]] double force(int sign, int i) const { return force_[at(i)][sign > 0 ? 0 : 1]; }
@@ -74,7 +70,7 @@ class Levels {
   }
 
   int lowest_, highest_, least_within_, most_within_;
-  bool upwards_, downwards_;
+  std::array<int, 2> exit_;
   int begin_, end_;  // of the tables, the end included
   std::vector<double> level_, mean_wait_;
   std::vector<std::array<double, 2>> force_;
@@ -105,18 +101,18 @@ class Source : public ExcursionSource {
     e.discounted.assign(wanted_.observables.size() * wanted_.discount.size(), {});
     std::fill(phase_.begin(), phase_.end(), 1.0);
     place_ = place;
-    const int sign = levels_.direction(side);
-    double wait = levels_.wait(levels_.exit(sign), random);
-    slide(random, e, wait, sign);
+    const int exit = levels_.exit(side);
+    double wait = levels_.wait(exit, random);
+    slide(random, e, wait, exit);
     sticking(random, e, wait);
     if (side == 1) e.turned = !e.turned;
   }
 
  private:
   // Until rest; `wait` is the time to the next jump of the noise.
-  void slide(RandomStream& random, Excursion& e, double& wait, int sign) {
+  void slide(RandomStream& random, Excursion& e, double& wait, int i) {
     const bool integrals = wanted_.moments || wanted_.displacement || !wanted_.omega.empty();
-    int i = levels_.exit(sign);
+    int sign = levels_.direction(i);
     double speed = 0;
     for (;;) {
       const double force = levels_.force(sign, i);

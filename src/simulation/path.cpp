@@ -87,8 +87,7 @@ class Walker : public Walk {
 void begin_stationary(Walk& walk, const model::Process& process, RandomStream& random) {
   constexpr int excursions = 1000;
   const double share = random.uniform();
-  const model::Start start{process.starts_upwards() ? process.static_index() + 1
-                                                    : process.lowest_static() - 1};
+  const model::Start start{process.exit_level(true)};
   walk.begin(random, start);
   for (int n = 0; n < excursions; ++n) walk.end_excursion();
   const double time = share * walk.state().time;

@@ -55,7 +55,7 @@ const std::vector<State>& Sampler::follow(double begun) {
 void Sampler::add_stationary(const RandomStream& random, std::size_t side, double place,
                              Tally& tally) {
   const int sign = side == 0 ? 1 : -1;
-  const model::Start start{side == 0 ? process_.static_index() + 1 : process_.lowest_static() - 1};
+  const model::Start start{process_.exit_level(side == 0)};
   walk_->begin(random, start);
   const double duration = walk_->end_excursion();
   const bool turned = walk_->state().y != sign;

@@ -207,7 +207,10 @@ Estimate Tally::spectrum_at_zero() const {
       m.overall(dd) - 2 * drift * m.overall(dt, -1) + drift * drift * m.overall(tt);
   const Smooth up = m.share(0) * (sum(0, d, t) - sum(0, d_turned, t_turned)) +
                     m.share(1) * sum(1, d_turned, t_turned);
-  return m.estimate((spread + 2 * sum(0, d, t) / m.at(0, 0) * up) / m.overall(t));
+  // One side alone renews the process at each of its starts.
+  const Smooth turning = m.at(0, 0);
+  const Smooth to_come = turning.value == 0.0 ? Smooth(0) : 2 * sum(0, d, t) / turning * up;
+  return m.estimate((spread + to_come) / m.overall(t));
 }
 
 Estimate Tally::entry(std::size_t side, int i) const {

@@ -105,7 +105,7 @@ struct LogDensity {
       : drag(process.drag), slope(process.friction.at_rest() - process.mean_force()) {
     extrema.push_back(drag.terminal_velocity(-slope));
     if (drag.rises_until > 0) extrema = drag.balances(-slope);
-    intensity = process.noise.tail_intensity(slope - drag.highest(drag.rises_until));
+    intensity = process.noise.tail_intensity();
     for (double v : extrema) highest = std::max(highest, -slope * v + drag.potential(v));
   }
   /// Raised by `by`.

@@ -20,7 +20,7 @@ struct Level {
 class LevelTable {
  public:
   /// At least two levels, rising. Throws UnfitTable.
-  explicit LevelTable(const std::vector<Level>& levels);
+  explicit LevelTable(std::vector<Level> levels);
 
   [[nodiscard]] int lowest() const { return lowest_; }
   [[nodiscard]] int highest() const { return lowest_ + static_cast<int>(levels_.size()) - 1; }
@@ -34,30 +34,32 @@ class LevelTable {
   [[nodiscard]] double variance() const { return variance_; }
   /// int_0^infinity Cov(X_0, X_t) dt [force^2 time].
   [[nodiscard]] double intensity() const { return intensity_; }
-  /// What intensity() is to speeds that need X to stay high: where a force f >= `least` slows a
-  /// body, its density falls like exp(-theta v), theta the root of log E[exp(theta int_0^t (X - m -
-  /// f))]/t -> 0; the largest f/theta. O(levels).
-  [[nodiscard]] double tail_intensity(double least) const;
+  /// What intensity() is to speeds that need X to stay high: where a force f slows a body, its
+  /// density falls like exp(-theta v), theta > 0 the root of lim log E[exp(theta int_0^t (X - m -
+  /// f))]/t = 0; the largest f/theta.
+  [[nodiscard]] double upper_tail() const { return upper_tail_; }
   [[nodiscard]] double rate() const { return rate_; }  ///< largest rate of leaving a level
   [[nodiscard]] double step() const { return step_; }  ///< smallest distance of neighbours
   /// Whether -X is the same chain and x = 0 a level.
   [[nodiscard]] bool symmetric() const { return symmetric_; }
-  /// The chain on low <= i <= high alone, as far as they exist.
+  /// The chain on low <= i <= high alone, as far as they exist; what is known of the whole stays.
   [[nodiscard]] LevelTable within(int low, int high) const;
   /// The chain of -X, level -i for level i.
   [[nodiscard]] LevelTable mirrored() const;
 
  private:
-  LevelTable(std::vector<Level> levels, int lowest);
   [[nodiscard]] bool decays(double theta, double force) const;
+  [[nodiscard]] double tail_intensity() const;
 
   std::vector<Level> levels_;
   int lowest_, mode_ = 0;
+  double upper_tail_ = 0, lower_tail_ = 0;
   double mean_ = 0, variance_ = 0, intensity_ = 0, rate_ = 0, step_ = 0;
   bool symmetric_ = true;
 };
 
-/// Levels that are no such chain: what() says why, row() in which of them, from 0.
+/// Levels that are no such chain: what() says why, row() in which of them, from 0; in none
+/// if it is their number.
 class UnfitTable : public std::invalid_argument {
  public:
   UnfitTable(std::size_t row, const std::string& why) : std::invalid_argument(why), row_(row) {}

@@ -59,10 +59,8 @@ struct NoiseChain {
   /// int_0^infinity Cov(X_0, X_t) dt = sigma^2 tau: over long times X is white noise of twice this
   /// strength [force^2 time].
   [[nodiscard]] double intensity() const;
-  /// The same for speeds that forces of at least `least` slow; see LevelTable.
-  [[nodiscard]] double tail_intensity(double least) const {
-    return table ? table->tail_intensity(least) : intensity();
-  }
+  /// The same for large speeds; see LevelTable.
+  [[nodiscard]] double tail_intensity() const { return table ? table->upper_tail() : intensity(); }
   /// intensity()/variance [time].
   [[nodiscard]] double correlation_time() const;
 

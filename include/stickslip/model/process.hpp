@@ -42,6 +42,11 @@ struct Process {
   [[nodiscard]] bool starts_downwards() const {
     return !noise.table || lowest_static() > noise.lowest();
   }
+  /// The level from which excursions to one side start; if the noise has one side alone, its.
+  [[nodiscard]] int exit_level(bool upwards) const {
+    const bool there = upwards ? starts_upwards() : starts_downwards();
+    return upwards == there ? static_index() + 1 : lowest_static() - 1;
+  }
   /// g + E[X]: what drives bodies over long times.
   [[nodiscard]] double mean_force() const { return bias + noise.mean(); }
   /// x_i + g - F(0+): the speed of V at v = 0+ on level i.
