@@ -55,30 +55,37 @@ class SceneReader {
   void read_noise() {
     auto& noise = scene_.noise;
     noise.name = settings_.text("noise");
-    const auto require = [this](const char* option, const char* example) {
-      if (settings_.given(option)) return true;
-      report("noise", fmt::format("needs -{}", option),
-             fmt::format("add for example -{} {}", option, example));
-      return false;
-    };
     if (noise.name == "telegraph") {
-      if (!require("telegraph_amplitude", "1") || !require("telegraph_rate", "1")) return;
+      if (!has("telegraph_amplitude", "1") || !has("telegraph_rate", "1")) return;
       const double a = noise.amplitude = settings_.real("telegraph_amplitude"),
                    rate = noise.rate = settings_.real("telegraph_rate");
-      if (!(a > 0 && rate > 0)) return;  // reported
-      noise.table = std::make_shared<const model::LevelTable>(
-          std::vector<model::Level>{{-a, rate, 0}, {a, 0, rate}});
-    } else if (noise.name == "file") {
-      if (!require("noise_file", "levels.csv")) return;
+      set_levels("telegraph_rate", "take for example -telegraph_amplitude 1 -telegraph_rate 1",
+                 [=] {
+                   return model::LevelTable({{-a, rate, 0}, {a, 0, rate}});
+                 });
+    } else if (noise.name == "file" && has("noise_file", "levels.csv")) {
       noise.file = settings_.text("noise_file");
-      try {
-        noise.table = read_levels(noise.file);
-      } catch (const std::invalid_argument& unfit) {
-        report("noise_file", unfit.what(),
-               "write CSV with the columns x,rate_up,rate_down, x rising");
-      }
+      set_levels("noise_file", "write CSV with the columns x,rate_up,rate_down, x rising",
+                 [&noise] { return read_levels(noise.file); });
     } else if (settings_.given("noise_deviation")) {
       noise.deviation = settings_.real("noise_deviation");
+    }
+  }
+
+  bool has(const char* option, const char* example) {
+    if (settings_.given(option)) return true;
+    report("noise", fmt::format("needs -{}", option),
+           fmt::format("add for example -{} {}", option, example));
+    return false;
+  }
+
+  template <class Levels>
+  void set_levels(const char* option, const char* fix, Levels levels) {
+    if (!problems_.empty()) return;  // the numbers may be without meaning
+    try {
+      scene_.noise.table = std::make_shared<const model::LevelTable>(levels());
+    } catch (const std::invalid_argument& unfit) {
+      report(option, unfit.what(), fix);
     }
   }
 

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -14,7 +13,7 @@
 
 namespace stickslip::options {
 
-std::shared_ptr<const model::LevelTable> read_levels(const std::string& file) {
+model::LevelTable read_levels(const std::string& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error) || !std::ifstream(file).good()) {
     throw std::invalid_argument("cannot be read");
@@ -40,7 +39,7 @@ std::shared_ptr<const model::LevelTable> read_levels(const std::string& file) {
     throw std::invalid_argument(fmt::format("is no CSV file of levels: {}", problem.what()));
   }
   try {
-    return std::make_shared<const model::LevelTable>(levels);
+    return model::LevelTable(levels);
   } catch (const model::UnfitTable& unfit) {
     const bool at_line = unfit.row() < lines.size();
     throw std::invalid_argument((at_line ? fmt::format("line {}: ", lines[unfit.row()]) : "") +

@@ -1,7 +1,6 @@
 #pragma once
 /// Steps of reading a request, each in a file of its own, and those that sweeps share.
 
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,7 +22,7 @@ namespace stickslip::options {
 
 /// The levels in a CSV file with the columns x,rate_up,rate_down. Throws std::invalid_argument with
 /// the line and the value that is wrong.
-[[nodiscard]] std::shared_ptr<const model::LevelTable> read_levels(const std::string& file);
+[[nodiscard]] model::LevelTable read_levels(const std::string& file);
 
 // question.cpp
 
