@@ -85,16 +85,15 @@ LevelTable::LevelTable(std::vector<Level> levels)
   for (std::size_t n = 0; n < count; ++n) {
     const auto& [x, up, down] = levels_[n];
     const auto& other = levels_[count - 1 - n];
-    symmetric_ = symmetric_ && x == -other.x && up == other.down;
+    even_ = even_ && x == -other.x && up == other.down;
     rate_ = std::max(rate_, up + down);
     variance_ += part(n) * (x - mean_);
   }
-  symmetric_ = symmetric_ && count % 2 == 1;
   if (!std::isnormal(intensity_) || !std::isnormal(variance_)) {
     throw UnfitTable(count, "the rates lead to probabilities beyond double precision");
   }
   upper_tail_ = tail_intensity();
-  lower_tail_ = symmetric_ ? upper_tail_ : mirrored().tail_intensity();
+  lower_tail_ = even_ ? upper_tail_ : mirrored().tail_intensity();
 }
 
 // Whether theta (X - m - f) + Q has negative eigenvalues alone: the pivots of its negative are

@@ -116,7 +116,7 @@ class Estimates {
     scalar(quantities::kEV2, tally_.stationary(Integrand::v_square));
     scalar(quantities::kEAbsV, tally_.stationary(Integrand::v_size));
     scalar(quantities::kEXV, tally_.stationary(Integrand::x_v));
-    if (process_.symmetric()) {
+    if (!process_.drifts()) {
       results_.push_back(quantities::scalar(quantities::kEV, 0, 0));
     } else {
       scalar(quantities::kEV, tally_.stationary(Integrand::v));

@@ -96,14 +96,9 @@ void StateSpace::distribute(const noise::Nodes& noise, const model::NoiseChain& 
   }
   int first = 0, rest = 0;
   for (int r = 0; r < ranks; ++r) {
-    int last = first, last_rest = rest;
+    int last = first, last_rest = levels + 1;
     while (last <= pairs && owner_of_pair_[last] == r) ++last;
-    if (last > pairs || noise.all_levels()) {
-      last_rest = last > pairs ? levels + 1 : last;
-    }
-    while (last_rest <= levels && noise.group_at(last_rest).begin < last) {
-      last_rest = noise.group_at(last_rest).last + 1;
-    }
+    if (last <= pairs) last_rest = noise.all_levels() ? last : noise.group_of(last).first;
     blocks_.push_back({first, last, rest, last_rest, global_size_});
     global_size_ += size(blocks_.back());
     first = last;

@@ -97,10 +97,10 @@ void append_moments(const operators::Discretisation& discretisation, const Excur
   results.push_back(scalar(kEAbsV, sum(excursion.slide_distance) / total, 0));
   results.push_back(scalar(kEXV, force_times_velocity / total, 0));
   // A difference of what the two half lines give: exact to the size of E|V|.
-  const bool one_half = distance.size() == static_cast<std::size_t>(noise.count());
+  const bool drifts = discretisation.process.drifts();
   const double rounding = excursion.conservation_defect(discretisation) * sum(distance);
   results.push_back(
-      scalar(kEV, excursion.mean_drift(noise) / total, one_half ? 0 : rounding / total));
+      scalar(kEV, drifts ? excursion.mean_drift(noise) / total : 0, drifts ? rounding / total : 0));
 }
 
 void append_hitting_distribution(const model::Process& process, const Excursion& excursion,

@@ -224,7 +224,7 @@ void Sensitivity::append_moments(Results& results) const {
   add(kEV2, [](double, double, double v) { return v * v; });
   add(kEAbsV, [](double, double, double v) { return std::abs(v); });
   add(kEXV, [](double x, double, double v) { return x * v; });
-  if (!distribution_.process().symmetric()) {
+  if (distribution_.process().drifts()) {
     add(kEV, [](double, double, double v) { return v; });
   }
 }

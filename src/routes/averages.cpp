@@ -40,7 +40,7 @@ std::vector<Average> averages(const Setting& setting) {
     add(quantities::kEV2, named("v^2"));
     add(quantities::kEAbsV, named("|v|"));
     add(quantities::kEXV, named("x*v"));
-    if (!process.symmetric()) add(quantities::kEV, named("v"));
+    if (process.drifts()) add(quantities::kEV, named("v"));
   }
   if (question.wants(Quantity::noise_law)) {
     add(quantities::kPWithin, within);
@@ -82,7 +82,7 @@ void append_averages(const Setting& setting, const std::vector<Uncertain>& value
     result.kind = all[n].kind;
     results.push_back(std::move(result));
   }
-  if (question.wants(Quantity::moments) && process.symmetric()) {
+  if (question.wants(Quantity::moments) && !process.drifts()) {
     results.push_back(quantities::scalar(quantities::kEV, 0, 0));  // by symmetry
   }
 }

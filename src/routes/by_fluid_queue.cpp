@@ -133,7 +133,7 @@ Evaluation by_fluid_queue(const Setting& setting) {
   }
   for (auto& r : results) {
     // E_V is a difference of what the two half lines give.
-    const double least = r.kind == quantities::Kind::drift && !process.symmetric()
+    const double least = r.kind == quantities::Kind::drift && process.drifts()
                              ? sum(excursion.slide_distance) / excursion.mean_excursion()
                              : 0;
     for (std::size_t n = 0; n < r.value.size(); ++n) {

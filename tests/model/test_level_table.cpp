@@ -62,7 +62,10 @@ TEST_CASE("level table: two values, by their closed forms") {
   CHECK(telegraph.step() == 3);
   CHECK(telegraph.lowest() == -1);
   CHECK(telegraph.mode() == 0);
-  CHECK_FALSE(telegraph.symmetric());
+  CHECK_FALSE(telegraph.even());
+  const LevelTable pair({{-1, 2, 0}, {1, 0, 2}});
+  CHECK(pair.even());
+  CHECK_FALSE(pair.symmetric());
   const LevelTable mirrored = telegraph.mirrored();
   CHECK(mirrored.lowest() == 0);
   CHECK(mirrored.at(0).x == -1);

@@ -85,9 +85,9 @@ TEST_CASE("excursion: a drift is a difference, exact to the size of E|V|") {
   CHECK(symmetry_reduced.back().value[0] == 0);
   CHECK(symmetry_reduced.back().error[0] == 0);
   e.slide_distance.insert(e.slide_distance.end(), {0.5, 0, 0, 10, 0, 0, 1});
-  quantities::append_moments(on_levels(), e, both);
+  quantities::append_moments(on_levels(0.5), e, both);
   CHECK(both.back().value[0] == Approx((10.875 - 11.5) / 118));
-  CHECK(both.back().error[0] == Approx(e.conservation_defect(on_levels()) * 22.375 / 118));
+  CHECK(both.back().error[0] == Approx(e.conservation_defect(on_levels(0.5)) * 22.375 / 118));
 }
 
 TEST_CASE("excursion: closed forms of the noise have the rounding of its sums") {

@@ -40,8 +40,9 @@ class LevelTable {
   [[nodiscard]] double upper_tail() const { return upper_tail_; }
   [[nodiscard]] double rate() const { return rate_; }  ///< largest rate of leaving a level
   [[nodiscard]] double step() const { return step_; }  ///< smallest distance of neighbours
-  /// Whether -X is the same chain and x = 0 a level.
-  [[nodiscard]] bool symmetric() const { return symmetric_; }
+  /// Whether -X is the same chain; and whether level -i then mirrors level i, which needs one at 0.
+  [[nodiscard]] bool even() const { return even_; }
+  [[nodiscard]] bool symmetric() const { return even_ && levels_.size() % 2 == 1; }
   /// The chain on low <= i <= high alone, as far as they exist; what is known of the whole stays.
   [[nodiscard]] LevelTable within(int low, int high) const;
   /// The chain of -X, level -i for level i.
@@ -55,7 +56,7 @@ class LevelTable {
   int lowest_, mode_ = 0;
   double upper_tail_ = 0, lower_tail_ = 0;
   double mean_ = 0, variance_ = 0, intensity_ = 0, rate_ = 0, step_ = 0;
-  bool symmetric_ = true;
+  bool even_ = true;
 };
 
 /// Levels that are no such chain: what() says why, row() in which of them, from 0; in none

@@ -74,7 +74,8 @@ struct NoiseChain {
   /// i + 1/2 for x between the levels i and i + 1 halfway: linear between levels and beyond.
   [[nodiscard]] double place(double x) const;
 
-  /// Whether -X is the same chain, level -i for level i; then 0 is a level.
+  /// Whether -X is the same chain; and level -i the mirror image of level i, with 0 a level.
+  [[nodiscard]] bool even() const { return !table || table->even(); }
   [[nodiscard]] bool symmetric() const { return !table || table->symmetric(); }
   /// The chain of -X, level -i for level i.
   [[nodiscard]] NoiseChain mirrored() const;

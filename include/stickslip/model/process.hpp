@@ -18,10 +18,12 @@ struct Process {
   Drag drag;        ///< with what friction loses to the speed: b(v) + F(0+) - F(v) on v > 0
   double bias = 0;  ///< g, a constant force
 
-  /// Whether (-X, -Y, -V) has the same law.
-  [[nodiscard]] bool symmetric() const {
-    return bias == 0 && drag.odd() && friction.symmetric() && noise.symmetric();
+  /// Whether (-X, -Y, -V) has another distribution, so that E[V] need not be 0.
+  [[nodiscard]] bool drifts() const {
+    return bias != 0 || !drag.odd() || !friction.symmetric() || !noise.even();
   }
+  /// Whether it has the same one, level -i for level i.
+  [[nodiscard]] bool symmetric() const { return !drifts() && noise.symmetric(); }
   /// The process (-X, -Y, -V): what is true of sliding upwards here is true of sliding downwards
   /// there.
   [[nodiscard]] Process mirrored() const {
