@@ -25,14 +25,14 @@ class Levels {
         end_(std::min(process.noise.highest(), reach(process))) {
     const auto mirrored = process.mirrored();
     for (int i = begin_; i <= end_; ++i) {
-      level_.push_back(process.noise.level(i));
-      force_.push_back({process.net_force(i), mirrored.net_force(-i)});
-      mean_wait_.push_back(1 / process.noise.rate(i));
       // 2^-32 is far below what any number of excursions resolves.
       const auto threshold = [](double p) {
         return static_cast<std::uint64_t>(std::llround(p * 0x1p32));
       };
-      onwards_.push_back({threshold(process.noise.up(i)), threshold(process.noise.down(i))});
+      levels_.push_back({process.noise.level(i),
+                         1 / process.noise.rate(i),
+                         {process.net_force(i), mirrored.net_force(-i)},
+                         {threshold(process.noise.up(i)), threshold(process.noise.down(i))}});
     }
   }
 
@@ -41,15 +41,15 @@ class Levels {
   /// The level from which excursions start from a side.
   [[nodiscard]] int exit(std::size_t side) const { return exit_[side]; }
   [[nodiscard]] int direction(int exit) const { return exit > highest_ ? 1 : -1; }
-  [[nodiscard]] double level(int i) const { return level_[at(i)]; }
+  [[nodiscard]] double level(int i) const { return at(i).x; }
   /// Acceleration along the motion at v = 0 of a body that moves upwards or downwards.
-  [[nodiscard]] double force(int sign, int i) const { return force_[at(i)][sign > 0 ? 0 : 1]; }
+  [[nodiscard]] double force(int sign, int i) const { return at(i).force[sign > 0 ? 0 : 1]; }
   [[nodiscard]] double wait(int i, RandomStream& random) const {
-    return mean_wait_[at(i)] * random.exponential();
+    return at(i).mean_wait * random.exponential();
   }
   /// The level after a jump. Drawn along the motion, so that mirror images take the same numbers.
   [[nodiscard]] int next(int i, int sign, RandomStream& random) const {
-    const bool onwards = random.half_word() < onwards_[at(i)][sign > 0 ? 0 : 1];
+    const bool onwards = random.half_word() < at(i).onwards[sign > 0 ? 0 : 1];
     const int next = onwards ? i + sign : i - sign;
     if (next < begin_ || next > end_) throw std::runtime_error("the noise left 40 deviations");
     return next;
@@ -64,18 +64,21 @@ class Levels {
     const double all = std::max(-noise.lowest(), noise.highest());
     return static_cast<int>(noise.table ? all : std::min(all, edge + 2 + far));
   }
-  [[nodiscard]] std::size_t at(int i) const {
+  // What motions upwards and downwards find on a level.
+  struct Level {
+    double x, mean_wait;
+    std::array<double, 2> force;
+    std::array<std::uint64_t, 2> onwards;  // probabilities of jumps, in units of 2^-32
+  };
+  [[nodiscard]] const Level& at(int i) const {
     const int place = i - begin_;
-    return static_cast<std::size_t>(place);
+    return levels_[static_cast<std::size_t>(place)];
   }
 
   int lowest_, highest_, least_within_, most_within_;
   std::array<int, 2> exit_;
   int begin_, end_;  // of the tables, the end included
-  std::vector<double> level_, mean_wait_;
-  std::vector<std::array<double, 2>> force_;
-  // Probabilities of jumps upwards and downwards, in units of 2^-32.
-  std::vector<std::array<std::uint64_t, 2>> onwards_;
+  std::vector<Level> levels_;
 };
 
 /// Speeds are |V| >= 0.
