@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -14,10 +12,7 @@
 namespace stickslip::options {
 
 model::LevelTable read_levels(const std::string& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error) || !std::ifstream(file).good()) {
-    throw std::invalid_argument("cannot be read");
-  }
+  require_readable(file);
   std::vector<model::Level> levels;
   std::vector<unsigned> lines;
   try {

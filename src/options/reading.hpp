@@ -18,6 +18,11 @@ namespace stickslip::options {
 /// The largest force that occurs: X passes mu_s by 12 standard deviations with probability e^-72.
 [[nodiscard]] double largest_force(const model::Scene& scene);
 
+// reference.cpp
+
+/// Throws std::invalid_argument unless it is a regular file that can be read.
+void require_readable(const std::string& file);
+
 // noise_file.cpp
 
 /// The levels in a CSV file with the columns x,rate_up,rate_down. Throws std::invalid_argument with

@@ -14,6 +14,7 @@
 // Fast C++ CSV Parser: header only, tells file and line of what is wrong.
 #include <libfccp/csv.h>
 
+#include "reading.hpp"
 #include "stickslip/options/settings.hpp"
 #include "stickslip/support/hdf5_id.hpp"
 #include "stickslip/support/isolated.hpp"
@@ -240,11 +241,14 @@ std::vector<Reference> read_csv(const std::string& file) {
 
 }  // namespace
 
-std::vector<Reference> read_references(const std::string& file) {
+void require_readable(const std::string& file) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error) || !std::ifstream(file).good()) {
-    throw std::invalid_argument("cannot be read");
-  }
+  if (std::filesystem::is_regular_file(file, error) && std::ifstream(file).good()) return;
+  throw std::invalid_argument("cannot be read");
+}
+
+std::vector<Reference> read_references(const std::string& file) {
+  require_readable(file);
   using Reader = std::vector<Reference> (*)(const std::string&);
   static const std::map<std::string, Reader> readers{{".h5", read_hdf5_apart},
                                                      {".hdf5", read_hdf5_apart},
