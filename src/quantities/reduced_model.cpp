@@ -191,6 +191,7 @@ class Search {
       barren = grew && best_.relative_error < 0.3 * before ? 0 : barren + 1;
       if (barren > 0) add_shift();
     }
+    doubt_best();
     best_.pairs = model_.pairs();
     best_.shifts = shifts_;
     return std::move(best_);
@@ -214,23 +215,62 @@ class Search {
     now.model = model_.reduce();
     now.value = questions_.values(now.model);
     judge(now);
-    last_ = now.value;
-    if (best_.value.empty() || now.relative_error < best_.relative_error) best_ = std::move(now);
+    met_.push_back(now.value);
+    if (best_.value.empty() || now.relative_error < best_.relative_error) {
+      best_ = std::move(now);
+      best_at_ = met_.size() - 1;
+    }
     return grew;
   }
 
+  [[nodiscard]] double size(double value) const {
+    return questions_.each_by_its_size ? std::abs(value) : 1;
+  }
+
+  // The changes of a value fall from block to block. Once those of rough ends have grown they are
+  // noise that adds up: a value is then no better known than it is far from all met since.
   void judge(Answers& now) {
-    relative_.assign(now.value.size(), 1.0);
+    const std::size_t last = met_.empty() ? 0 : met_.size() - 1;
+    double largest = 0;
     for (std::size_t n = 0; n < now.value.size(); ++n) {
-      const double size = questions_.each_by_its_size ? std::abs(now.value[n]) : 1;
-      const double rounding = std::numeric_limits<double>::epsilon() * size;
-      double change = last_.empty() ? size : std::abs(now.value[n] - last_[n]);
-      // A projection may have a pole on the wrong side; the next ones have it elsewhere.
-      if (!std::isfinite(change)) change = std::numeric_limits<double>::infinity();
-      now.error.push_back(std::max(change, rounding));
-      relative_[n] = now.error[n] / size;
+      largest = std::max(largest, distance(now.value, last, n) / size(now.value[n]));
+    }
+    if (model_.nature() == ReducedModel::Nature::rough && largest > change_) {
+      noisy_from_ = std::min(noisy_from_, last);
+    }
+    change_ = largest;
+    relative_.clear();
+    for (std::size_t n = 0; n < now.value.size(); ++n) {
+      double error = std::numeric_limits<double>::epsilon() * size(now.value[n]);
+      for (std::size_t m = std::min(noisy_from_, last); m <= last; ++m) {
+        error = std::max(error, distance(now.value, m, n));
+      }
+      now.error.push_back(error);
+      relative_.push_back(error / size(now.value[n]));
     }
     now.relative_error = *std::max_element(relative_.begin(), relative_.end());
+  }
+
+  // From value n of the model met m-th; the first has only its size to be judged by.
+  [[nodiscard]] double distance(const std::vector<double>& value, std::size_t m,
+                                std::size_t n) const {
+    const double change = met_.empty() ? size(value[n]) : std::abs(value[n] - met_[m][n]);
+    // A projection may have a pole on the wrong side; the next ones have it elsewhere.
+    return std::isfinite(change) ? change : std::numeric_limits<double>::infinity();
+  }
+
+  // The best of several that miss the tolerance owes something to chance. The next one, which was
+  // to be better, shows how much: the error lies between the changes before and after it.
+  void doubt_best() {
+    if (model_.nature() == ReducedModel::Nature::smooth || best_at_ + 1 == met_.size() ||
+        best_.relative_error <= questions_.tolerance) {
+      return;
+    }
+    for (std::size_t n = 0; n < best_.value.size(); ++n) {
+      const double after = distance(best_.value, best_at_ + 1, n);
+      best_.error[n] = std::max(best_.error[n], std::sqrt(best_.error[n] * after));
+      best_.relative_error = std::max(best_.relative_error, best_.error[n] / size(best_.value[n]));
+    }
   }
 
   // Where the error is largest, unless a shift is near.
@@ -246,7 +286,11 @@ class Search {
   ReducedModel& model_;
   const Questions& questions_;
   Answers best_;
-  std::vector<double> shifts_, last_, relative_;
+  std::size_t best_at_ = 0;
+  std::vector<std::vector<double>> met_;  // values of all models
+  std::size_t noisy_from_ = std::numeric_limits<std::size_t>::max();
+  double change_ = std::numeric_limits<double>::infinity();
+  std::vector<double> shifts_, relative_;
 };
 
 }  // namespace

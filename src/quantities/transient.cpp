@@ -124,7 +124,6 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
     for (std::size_t n = 0; n < time.size(); ++n) result.value[n] = result.value[n] + of_part[n];
   }
   for (auto& value : result.value) value.error += unseen;
-  for (auto& value : result.value) value.error += unseen;
   return result;
 }
 

@@ -53,6 +53,7 @@ class ReducedModel {
   /// fewer when the space is full or invariant. Collective.
   int extend(double shift, int count);
 
+  [[nodiscard]] Nature nature() const { return nature_; }
   [[nodiscard]] int pairs() const { return pairs_; }
   [[nodiscard]] bool full() const { return pairs_ >= most_pairs_; }
   /// The projection on all vectors so far, without directions of V and W that see nothing of the
@@ -91,7 +92,7 @@ struct Questions {
 struct Answers {
   Reduced model;
   std::vector<double> value;
-  std::vector<double> error;  ///< absolute: what the last vectors changed
+  std::vector<double> error;  ///< absolute: what the last vectors changed, and noise
   double relative_error = 1;  ///< the largest, in the sense of the questions
   int pairs = 0;              ///< of vectors in the space
   std::vector<double> shifts;
