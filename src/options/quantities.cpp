@@ -33,7 +33,11 @@ const std::vector<QuantityKeys>& key_table() {
       {spectrum, {"S_v", "S_0", "fwhm", "t_corr"}, {"diffusivity", "variance_from_spectrum"}},
       {duration_density, {"f_slide", "f_stick", "f_excursion"}},
       {duration_density, {"cdf_slide", "cdf_stick", "cdf_excursion"}},
-      {autocorrelation, {"C_vv"}}};
+      {slip, {"mean_slip", "var_slip", "f_slip", "cdf_slip"}},
+      {slip, {"mean_slip_net", "var_slip_net"}, {"F_slip"}},
+      {peak, {"P_peak", "mean_first_passage", "mean_first_passage_rest"}},
+      {autocorrelation, {"C_vv"}},
+      {displacement, {"displacement_mean", "displacement_variance"}}};
   return rows;
 }
 
@@ -61,6 +65,9 @@ const std::vector<QuantityRow>& quantity_table() {
       {"spectrum", spectrum, simulated, {"omega", "spectrum_solver"}},
       {"duration_density", duration_density, simulated, {"time", "transient_solver"}},
       {"autocorrelation", autocorrelation, simulated, {"time", "transient_solver"}},
+      {"slip", slip, simulated, {"distance", "inverse_distance"}},
+      {"peak", peak, simulated, {"velocity"}},
+      {"displacement", displacement, simulated, {"time", "start"}},
       {"expectation", expectation, simulated, {"observable", "time", "start", "transient_solver"}},
       {"trajectory", trajectory, simulated, {"start", "horizon", "seed"}, true},
       {"sensitivity", sensitivity, alone, {}}};

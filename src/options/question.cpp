@@ -244,6 +244,9 @@ void read_question(const Settings& settings, Request& request, Problems& problem
   question.lambda = arguments(settings, known, "lambda", Quantity::laplace);
   question.omega = arguments(settings, known, "omega", Quantity::spectrum);
   question.time = arguments(settings, known, "time", Quantity::duration_density);
+  question.distance = arguments(settings, known, "distance", Quantity::slip);
+  question.inverse_distance = settings.numbers("inverse_distance");
+  question.velocity = arguments(settings, known, "velocity", Quantity::peak);
   question.observables = read_observables(settings, request.scene.friction, problems);
   question.accuracy = settings.real("accuracy");
   question.accuracy_given = settings.given("accuracy");

@@ -52,7 +52,7 @@ void require_numbers(const std::string& key, const Values& v) {
 
 // Of durations: averages over cells, where they are simulated.
 bool is_histogram(const std::string& key) {
-  static const std::set<std::string> keys{"f_slide", "f_stick", "f_excursion"};
+  static const std::set<std::string> keys{"f_slide", "f_stick", "f_excursion", "f_slip"};
   return keys.contains(key);
 }
 
@@ -95,7 +95,8 @@ std::vector<Reference> read_json(const std::string& file) {
       v.error = numbers(result.at("error"));
       v.scalar = result.at("value").is_number();
       if (result.contains("ci95")) read_intervals(result["ci95"], v);
-      for (const char* name : {"lambda", "omega", "time", "k", "n", "mode"}) {
+      for (const char* name : {"lambda", "omega", "time", "distance", "inverse_distance",
+                               "velocity", "k", "n", "mode"}) {
         if (result.contains(name)) v.argument = numbers(result[name]);
       }
       append(key, v, all);

@@ -32,8 +32,9 @@ class Rules {
     warn({"checkpoint"}, !simulates && !swept);
     warn({"sweep_csv", "sweep_ranks"}, !swept);
     warn({"study_steps", "study_repeats", "study_csv"}, !study_, "without -study");
-    for (const char* option : {"observable", "time", "start", "horizon", "transient_solver",
-                               "omega", "spectrum_solver"}) {
+    for (const char* option :
+         {"observable", "time", "start", "horizon", "transient_solver", "omega", "spectrum_solver",
+          "distance", "inverse_distance", "velocity"}) {
       warn({option}, !asked(option));
     }
   }
@@ -99,6 +100,11 @@ class Rules {
     require("time", asked("time") && q_.time.empty(),
             "asks for functions of time and no times are given",
             "add for example -time 0.01:10:31:log");
+    require("velocity", q_.wants(peak) && q_.velocity.empty(),
+            "asks for functions of a speed and none are given",
+            "add for example -velocity 0.1:2:20");
+    report("velocity", std::count(q_.velocity.begin(), q_.velocity.end(), 0) > 0,
+           "must be positive: every slide is faster than 0", "leave 0 out");
     require("output", q_.wants(density), "asks for density, a field that needs a file",
             "add -output FILE.h5");
     require("trajectory", q_.wants(trajectory) && r_.output.output.empty(),

@@ -27,7 +27,10 @@ enum class Quantity {
   relaxation,
   spectrum,
   duration_density,
+  slip,
+  peak,
   autocorrelation,
+  displacement,
   expectation,
   trajectory,
   sensitivity
@@ -61,7 +64,10 @@ struct Question {
   std::vector<model::Observable> observables;  ///< of averages, resolvent and expectation
   std::vector<double> omega;                   ///< of spectrum [1/time]
   std::vector<double> time;                    ///< of functions of time [time]
-  model::Start start;                          ///< of expectation and trajectory
+  std::vector<double> distance;                ///< of the densities of slip [velocity*time]
+  std::vector<double> inverse_distance;        ///< of the transform of slip
+  std::vector<double> velocity;                ///< of peak [velocity]
+  model::Start start;                          ///< of expectation, displacement and trajectory
   double horizon = 100;                        ///< end of the trajectory [time]
   double accuracy = 1e-6;
   bool accuracy_given = false;        ///< by the user
