@@ -45,7 +45,7 @@ Solved evaluated(MPI_Comm comm, const options::Case& given, const Resolution& re
 // but extrapolation.
 void require_start_within(const options::Case& given, const Resolution& first) {
   const options::Question& question = given.question;
-  if (!question.wants(Quantity::expectation)) return;
+  if (!question.wants(Quantity::expectation) && !question.wants(Quantity::displacement)) return;
   const auto noise = given.scene.process(first.levels).noise;
   const int level = question.start.level;
   const double x = given.scene.meant().noise.level(level), v = question.start.v;

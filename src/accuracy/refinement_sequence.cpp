@@ -46,6 +46,7 @@ velocity::Rates fastest_rates(const options::Case& given) {
     rates.lambda = largest(question.lambda);
   }
   if (question.wants(Quantity::spectrum)) rates.omega = largest(question.omega);
+  if (question.wants(Quantity::peak)) rates.speed = largest(question.velocity);
   return rates;
 }
 
@@ -135,7 +136,9 @@ Resolution RefinementSequence::made(int n) const {
                       grouping(n));
     r.integrands = integrands_;
     break;
-  case options::Scheme::upwind: r = upwind_resolution(scene_, points(n), tail_tolerance(n)); break;
+  case options::Scheme::upwind:
+    r = upwind_resolution(scene_, points(n), tail_tolerance(n), rates(n));
+    break;
   case options::Scheme::none: r = exact_resolution(scene_, tail_tolerance(n)); break;
   }
   r.halves = halves_;

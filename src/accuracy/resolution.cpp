@@ -83,34 +83,36 @@ std::shared_ptr<const noise::Nodes> grouped(const model::Process& process,
 
 }  // namespace
 
-int levels_for(const model::Scene& scene, double tolerance) {
+int levels_for(const model::Scene& scene, double tolerance, double speed) {
   const auto process = scene.meant();
   const double per_force = tilt(scene);
   const auto last = [&](const model::Process& side) {
     const auto& noise = side.noise;
-    double log_weight = 0;  // of level i against the first that does not stick
-    int last = side.static_index() + 1;
-    if (noise.symmetric()) last = std::max(last, 1 - side.lowest_static());
-    last = std::min(last, noise.highest());
-    for (int i = last + 1; i <= noise.highest(); ++i) {
+    const double needed = side.friction.at_rest() - side.bias - side.drag(speed);
+    double log_weight = 0;  // of level i against the first that does not stick and has the force
+    int end = side.static_index() + 1;
+    if (noise.symmetric()) end = std::max(end, 1 - side.lowest_static());
+    end = std::min(end, noise.highest());
+    for (int i = end + 1; i <= noise.highest(); ++i) {
       const double below = noise.level(i - 1), step = noise.level(i) - below;
       log_weight += std::log(model::weight_ratio(noise, i)) + per_force * step +
                     2 * std::log1p(step / std::max(std::abs(below), noise.step()));
+      if (noise.level(i) <= needed) log_weight = 0;
       if (log_weight > std::log(tolerance)) {
-        last = i;
+        end = i;
       } else if (!noise.table) {
         break;
       }
     }
-    return std::min(last + 1, noise.highest());
+    return std::min(end + 1, noise.highest());
   };
   return std::max(last(process), last(process.mirrored()));
 }
 
 namespace {
 
-void set_levels(const model::Scene& scene, double tolerance, Resolution& r) {
-  r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance));
+void set_levels(const model::Scene& scene, double tolerance, double speed, Resolution& r) {
+  r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance, speed));
   if (scene.noise.table) r.table_levels = scene.process(r.levels).noise.count();
 }
 
@@ -133,7 +135,7 @@ Resolution hp_resolution(const model::Scene& scene, int degree, int layers, doub
   r.scheme = options::Scheme::hp;
   r.degree = degree;
   r.rates = rates;
-  set_levels(scene, tolerance, r);
+  set_levels(scene, tolerance, rates.speed, r);
   r.v_max = velocity_end(scene, r.levels, tolerance);
   r.layers = layers > 0 ? layers : velocity::natural_layers(scene.process(r.levels), mesh_rule(r));
   r.grouping = grouping;
@@ -141,11 +143,12 @@ Resolution hp_resolution(const model::Scene& scene, int degree, int layers, doub
   return r;
 }
 
-Resolution upwind_resolution(const model::Scene& scene, int points, double tolerance) {
+Resolution upwind_resolution(const model::Scene& scene, int points, double tolerance,
+                             const velocity::Rates& rates) {
   Resolution r;
   r.scheme = options::Scheme::upwind;
   r.points = points;
-  set_levels(scene, tolerance, r);
+  set_levels(scene, tolerance, rates.speed, r);
   r.v_max = velocity_end(scene, r.levels, tolerance);
   return r;
 }
@@ -153,7 +156,7 @@ Resolution upwind_resolution(const model::Scene& scene, int points, double toler
 Resolution exact_resolution(const model::Scene& scene, double tolerance) {
   Resolution r;
   r.scheme = options::Scheme::none;
-  set_levels(scene, tolerance, r);
+  set_levels(scene, tolerance, 0, r);
   return r;
 }
 

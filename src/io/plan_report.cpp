@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "stickslip/io/parts.hpp"
@@ -19,8 +20,10 @@ const char* symmetry_name(operators::Symmetry symmetry) {
 
 std::string system_name(const operators::SystemKey& key) {
   const bool symmetry_reduced = key.symmetry != operators::Symmetry::none;
-  return fmt::format("lambda = {:g}, {}", key.lambda,
-                     symmetry_reduced ? symmetry_name(key.symmetry) : "both half lines");
+  const bool by_time = key.clock == operators::Clock::time;
+  return fmt::format("{} = {:g}, {}{}", by_time ? "lambda" : "s", key.lambda,
+                     symmetry_reduced ? symmetry_name(key.symmetry) : "both half lines",
+                     std::isinf(key.speed_limit) ? "" : ", cut");
 }
 
 std::string solves_text(const routes::Use& use) {

@@ -13,7 +13,7 @@ namespace {
 /// Where groups of the levels i >= 1 end and towards which they shrink, in levels.
 class SpecialPoints {
  public:
-  explicit SpecialPoints(const model::Process& process) {
+  SpecialPoints(const model::Process& process, const std::vector<double>& more) {
     const auto& noise = process.noise;
     const auto mirrored = process.mirrored();
     const auto standing = [](const model::Process& half) {
@@ -22,6 +22,7 @@ class SpecialPoints {
     const double mu_s = process.friction.mu_s;
     graded_ = {standing(process), -standing(mirrored), process.static_index() + 0.5,
                process.lowest_static() - 0.5};
+    for (double x : more) graded_.push_back(noise.place(x));
     ends_ = {noise.last_up_to(mu_s) + 0.5, noise.first_from(-mu_s) - 0.5};
     for (auto* points : {&graded_, &ends_}) {
       for (double& s : *points) {
@@ -70,7 +71,7 @@ std::vector<double> reversed(const std::vector<double>& values) {
 /// The levels i >= 1 in groups.
 struct Nodes::Upper {
   Upper(const model::Process& process, const Grouping& grouping) : noise(process.noise) {
-    const SpecialPoints special(process);
+    const SpecialPoints special(process, grouping.special);
     constexpr double rounding = 1e-9;
     const double widest = (1 - rounding) * grouping.width * noise.standard_deviation();
     const int size = grouping.degree == 0 ? std::numeric_limits<int>::max() : grouping.degree + 1;
@@ -133,7 +134,7 @@ Nodes::Nodes(const model::Process& process, const Grouping& grouping)
     : Nodes(process, grouping, Mirror::made) {}
 
 Nodes::Nodes(const model::Process& process, const Grouping& grouping, Mirror mirror)
-    : noise_(process.noise) {
+    : noise_(process.noise), grouping_(grouping) {
   if (grouping.degree < 0 || !(grouping.grading > 0) || !(grouping.width > 0)) {
     throw std::invalid_argument("noise groups need a degree >= 0, a grading and a width > 0");
   }
@@ -141,9 +142,11 @@ Nodes::Nodes(const model::Process& process, const Grouping& grouping, Mirror mir
   if (noise_.symmetric()) {
     join(above, above);
   } else {
-    join(above, Upper(process.mirrored(), grouping));
+    Grouping seen = grouping;
+    for (double& x : seen.special) x = -x;
+    join(above, Upper(process.mirrored(), seen));
     if (mirror == Mirror::made) {
-      mirrored_.reset(new Nodes(process.mirrored(), grouping, Mirror::left_out));
+      mirrored_.reset(new Nodes(process.mirrored(), seen, Mirror::left_out));
     }
   }
   find_jumps();

@@ -171,8 +171,9 @@ int ElementElimination::owner(const Line& line, std::size_t e) const {
 
 ElementSystem::Response ElementElimination::make_element(Line& line, std::size_t e) const {
   ElementSystem::Response response;
-  line.elements[e] = std::make_unique<ElementSystem>(
-      *line.noise, *line.velocities, static_cast<int>(e), line.net_force, data_->lambda, response);
+  line.elements[e] =
+      std::make_unique<ElementSystem>(*line.noise, *line.velocities, static_cast<int>(e),
+                                      line.net_force, data_->lambda, data_->clock, response);
   return response;
 }
 
@@ -205,13 +206,14 @@ ElementSystem::Response ElementElimination::response(Line& line, std::size_t e) 
   return s;
 }
 
-// What holding states make of the values that fall at v_max.
+// What holding states make of the values that fall at v_max; where bodies are killed, nothing.
 DenseMatrix ElementElimination::hold(const Line& line) {
   const noise::Nodes& noise = *line.noise;
-  const int held = static_cast<int>(line.holding.size()), below = line.count() - held;
+  const int below = line.rising[line.velocities->elements()], held = line.count() - below;
+  if (line.velocities->kills_at_top()) return {held, below};
   DenseMatrix own(held, held), jumps(held, below);
   for (int l = 0; l < held; ++l) {
-    own(l, l) = data_->lambda;
+    own(l, l) = data_->lambda * rate_of(data_->clock, line.velocities->v_max());
     for (const auto& [to, rate] : noise.jumps(noise.first() + below + l)) {
       const int place = to - noise.first();
       own(l, l) += rate;

@@ -61,10 +61,14 @@ int first_rising(std::span<const double> speeds, double drag) {
 class ElementSystem::Elimination {
  public:
   /// `rates` of the own nodes among each other: by noise node, q x q by rows, zero diagonals. The
-  /// first `rising_inner`, `rising_outer` nodes fall at the ends.
+  /// first `rising_inner`, `rising_outer` nodes fall at the ends. `lambda` is by velocity node.
   Elimination(const ElementSystem& system, const noise::Nodes& noise, std::vector<double> rates,
-              PetscScalar lambda, int rising_inner, int rising_outer)
-      : s_(system), q_(system.nodes_), noise_(noise), rates_(std::move(rates)), lambda_(lambda) {
+              Scalars lambda, int rising_inner, int rising_outer)
+      : s_(system),
+        q_(system.nodes_),
+        noise_(noise),
+        rates_(std::move(rates)),
+        lambda_(std::move(lambda)) {
     for (int l = 0; l < s_.count_; ++l) {
       (l < rising_inner ? inner_in_ : inner_out_)
           .push_back(l < rising_inner ? inputs_++ : outputs_++);
@@ -158,7 +162,7 @@ class ElementSystem::Elimination {
           sum += rate;
           a(row, l * q_ + n) -= rate;
         }
-        a(row, row) += lambda_ + sum + jumps;
+        a(row, row) += lambda_[m] + sum + jumps;
       }
     }
     return a;
@@ -282,7 +286,7 @@ class ElementSystem::Elimination {
   int q_;
   const noise::Nodes& noise_;
   std::vector<double> rates_;
-  PetscScalar lambda_;
+  Scalars lambda_;
   std::vector<Takes> ports_;  // by noise node
   int inputs_ = 0, outputs_ = 0;
   std::vector<int> inner_in_, outer_in_, inner_out_, outer_out_;
@@ -295,7 +299,7 @@ class ElementSystem::Elimination {
 
 ElementSystem::ElementSystem(const noise::Nodes& noise,
                              const velocity::HpDiscretisation& velocities, int element,
-                             std::span<const double> net_force, PetscScalar lambda,
+                             std::span<const double> net_force, PetscScalar lambda, Clock clock,
                              Response& response)
     : count_(noise.count()),
       nodes_(velocities.element(element).reference->size),
@@ -326,7 +330,12 @@ ElementSystem::ElementSystem(const noise::Nodes& noise,
     if (l >= rising_inner) given_.inner[place] = reference.at_left[m];
     if (l < rising_outer) given_.outer[place] = reference.at_right[m];
   }
-  Elimination elimination(*this, noise, std::move(rates), lambda, rising_inner, rising_outer);
+  Scalars by_node;
+  for (double v : velocities.nodes().subspan(static_cast<std::size_t>(first_), q)) {
+    by_node.push_back(lambda * rate_of(clock, v));
+  }
+  Elimination elimination(*this, noise, std::move(rates), std::move(by_node), rising_inner,
+                          rising_outer);
   response = elimination.response();
   steps_ = elimination.steps();
   length_ = elimination.length();

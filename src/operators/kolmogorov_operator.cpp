@@ -16,26 +16,28 @@ namespace stickslip::operators {
 using petsc::check;
 
 KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation,
-                                       PetscScalar lambda, Symmetry symmetry, StaticPhase rest)
-    : KolmogorovOperator(comm, discretisation, lambda, symmetry, rest, std::nullopt) {}
+                                       PetscScalar lambda, Symmetry symmetry, StaticPhase rest,
+                                       Clock clock)
+    : KolmogorovOperator(comm, discretisation, lambda, symmetry, rest, clock, std::nullopt) {}
 
 KolmogorovOperator KolmogorovOperator::derivative(MPI_Comm comm,
                                                   const Discretisation& discretisation,
                                                   Symmetry symmetry, Parameter theta) {
-  return {comm, discretisation, 0, symmetry, StaticPhase::killing, theta};
+  return {comm, discretisation, 0, symmetry, StaticPhase::killing, Clock::time, theta};
 }
 
 KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation,
                                        PetscScalar lambda, Symmetry symmetry, StaticPhase rest,
-                                       std::optional<Parameter> derivative)
+                                       Clock clock, std::optional<Parameter> derivative)
     : data_(std::make_shared<MatrixData>(MatrixData{
           discretisation, StateSpace(comm, discretisation, symmetry, rest != StaticPhase::killing),
-          lambda})) {
-  RowAssembler rows(discretisation, states(), lambda, rest, derivative);
+          lambda, clock})) {
+  RowAssembler rows(discretisation, states(), lambda, clock, rest, derivative);
   rows.assemble();
   trace_upper_ = rows.trace_at_exit(Branch::positive);
   if (!states().symmetry_reduced()) trace_lower_ = rows.trace_at_exit(Branch::negative);
   rest_coupling_ = std::move(rows.rest_coupling);
+  top_coupling_ = std::move(rows.top_coupling);
   if (!derivative && symmetry != Symmetry::odd && PetscRealPart(lambda) >= 0) {
     const bool nothing_killed = rest == StaticPhase::kept && PetscAbsScalar(lambda) == 0;
     require_generator(comm, {states().local_begin(), rows.row_start, rows.columns, rows.values},
@@ -142,6 +144,14 @@ std::vector<PetscScalar> KolmogorovOperator::entry_rates(Vec nu) const {
   MPI_Allreduce(MPI_IN_PLACE, rates.data(), static_cast<int>(rates.size()), MPIU_SCALAR, MPIU_SUM,
                 states().comm());
   return rates;
+}
+
+double KolmogorovOperator::rate_at_top(Vec nu) const {
+  PetscScalar rate = 0;
+  const petsc::ReadView local(nu);
+  for (const auto& c : top_coupling_) rate += c.rate * local[c.row];
+  MPI_Allreduce(MPI_IN_PLACE, &rate, 1, MPIU_SCALAR, MPIU_SUM, states().comm());
+  return PetscRealPart(rate);
 }
 
 petsc::VecHandle KolmogorovOperator::from_rest(const std::vector<PetscScalar>& s) const {

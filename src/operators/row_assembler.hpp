@@ -20,7 +20,7 @@ class RowAssembler {
   using Functional = std::vector<std::pair<PetscInt, double>>;
 
   RowAssembler(const Discretisation& discretisation, const StateSpace& states, PetscScalar lambda,
-               StaticPhase rest, std::optional<Parameter> derivative)
+               Clock clock, StaticPhase rest, std::optional<Parameter> derivative)
       : derivative_(derivative),
         noise_(*discretisation.noise),
         chain_(discretisation.process.noise),
@@ -29,6 +29,7 @@ class RowAssembler {
                discretisation.velocities->mirrored()},
         states_(states),
         lambda_(lambda),
+        clock_(clock),
         rest_(rest),
         zero_trace_(discretisation.velocities->trace_at_zero()),
         top_trace_(discretisation.velocities->trace_at_top()),
@@ -68,6 +69,7 @@ class RowAssembler {
   std::vector<PetscInt> columns;
   std::vector<PetscScalar> values;
   std::vector<RestCoupling> rest_coupling;
+  std::vector<TopCoupling> top_coupling;
 
  private:
   // A half line, seen with its noise and velocities counted along it.
@@ -104,7 +106,7 @@ class RowAssembler {
     case StateKind::holding: rates_of_holding(state); break;
     case StateKind::rest: rates_of_rest(state.noise); break;
     }
-    finish_row(states_.index(state));
+    finish_row(states_.index(state), lambda_ * rate_of(clock_, state, upper_.velocities));
   }
 
   // Calls visit(node, rate) for the jumps from a noise node. By tau they are alike on both halves.
@@ -137,7 +139,12 @@ class RowAssembler {
     }
     for (const auto& e : transport_.entries) rate_to(node(s.half, s.noise, e.node), e.value);
     if (transport_.inflow != 0) rate_to_zero(s, transport_.inflow);
-    if (transport_.outflow != 0) rate_to(holding(s.half, s.noise), transport_.outflow);
+    if (transport_.outflow == 0) return;
+    if (!here.velocities.kills_at_top()) {
+      return rate_to(holding(s.half, s.noise), transport_.outflow);
+    }
+    killing_ += transport_.outflow;
+    top_coupling.push_back({local_row(), transport_.outflow});
   }
 
   void rates_of_origin(const State& s) {
@@ -234,7 +241,7 @@ class RowAssembler {
   }
 
   // The couplings of the row to the arrays, in the order of columns, each once.
-  void finish_row(PetscInt diagonal) {
+  void finish_row(PetscInt diagonal, PetscScalar lambda) {
     row_.emplace_back(diagonal, 0.0);  // keeps its place in the order
     std::sort(row_.begin(), row_.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -258,7 +265,7 @@ class RowAssembler {
         sum += values[n];
       }
     }
-    values[place] = lambda_ - sum + std::exchange(killing_, 0.0);
+    values[place] = lambda - sum + std::exchange(killing_, 0.0);
   }
 
   [[nodiscard]] PetscInt local_row() const { return static_cast<PetscInt>(row_start.size()) - 1; }
@@ -298,6 +305,7 @@ class RowAssembler {
   Side upper_, lower_;
   const StateSpace& states_;
   PetscScalar lambda_;
+  Clock clock_;
   StaticPhase rest_;
   std::vector<velocity::Entry> zero_trace_, top_trace_;
   std::vector<StateSpace::NodeLine> lines_;  // by noise node and half

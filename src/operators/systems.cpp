@@ -1,5 +1,6 @@
 #include "stickslip/operators/systems.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "stickslip/operators/solver_policy.hpp"
@@ -24,9 +25,10 @@ KolmogorovOperator entered(petsc::SolverStatistics& statistics, Make make) {
 
 KolmogorovOperator assemble(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda,
                             Symmetry symmetry, StaticPhase rest,
-                            petsc::SolverStatistics& statistics) {
-  return entered(statistics,
-                 [&] { return KolmogorovOperator(comm, discretisation, lambda, symmetry, rest); });
+                            petsc::SolverStatistics& statistics, Clock clock) {
+  return entered(statistics, [&] {
+    return KolmogorovOperator(comm, discretisation, lambda, symmetry, rest, clock);
+  });
 }
 
 KolmogorovOperator assemble_derivative(MPI_Comm comm, const Discretisation& discretisation,
@@ -43,17 +45,23 @@ std::unique_ptr<petsc::Factorization> factorization(const KolmogorovOperator& a,
                                                 default_pc_type(a.discretisation()));
 }
 
-System& Systems::at(double lambda, Symmetry symmetry, StaticPhase rest) {
-  auto& system = systems_[{lambda, symmetry, rest}];
-  if (!system) {
-    auto a = assemble(comm_, discretisation_, lambda, symmetry, rest, statistics_);
-    system = std::make_unique<System>(std::move(a), statistics_);
-  }
+KolmogorovOperator Systems::assembled(const SystemKey& key) {
+  const auto of = [&](const Discretisation& discretisation) {
+    return assemble(comm_, discretisation, key.lambda, key.symmetry, key.rest, statistics_,
+                    key.clock);
+  };
+  return std::isinf(key.speed_limit) ? of(discretisation_)
+                                     : of(discretisation_.killing_at(key.speed_limit));
+}
+
+System& Systems::at(const SystemKey& key) {
+  auto& system = systems_[key];
+  if (!system) system = std::make_unique<System>(assembled(key), statistics_);
   return *system;
 }
 
 petsc::Analysis Systems::analyse(const SystemKey& key) {
-  const auto a = assemble(comm_, discretisation_, key.lambda, key.symmetry, key.rest, statistics_);
+  const auto a = assembled(key);
   return petsc::Factorization::analyse(a.matrix(), kSlidePrefix, statistics_,
                                        default_pc_type(a.discretisation()));
 }

@@ -105,6 +105,8 @@ class Rules {
             "add for example -velocity 0.1:2:20");
     report("velocity", std::count(q_.velocity.begin(), q_.velocity.end(), 0) > 0,
            "must be positive: every slide is faster than 0", "leave 0 out");
+    report("distance", std::count(q_.distance.begin(), q_.distance.end(), 0) > 0,
+           "must be positive: f_slip has no value at 0", "leave 0 out");
     require("output", q_.wants(density), "asks for density, a field that needs a file",
             "add -output FILE.h5");
     require("trajectory", q_.wants(trajectory) && r_.output.output.empty(),

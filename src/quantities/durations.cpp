@@ -7,7 +7,6 @@
 
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
-#include "stickslip/quantities/time_functions.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -107,38 +106,37 @@ DurationDistribution stick_distribution(const model::Process& process,
   return law;
 }
 
-namespace {
-
 // f(t) = g exp(L t) r, g where excursions start, r = -L 1 the rate of ending where `rest` kills.
-DurationDistribution distribution_until(operators::Systems& systems, StaticPhase rest,
-                                        const StationaryDistribution& stationary,
-                                        const std::vector<double>& time, double mean,
-                                        double tolerance) {
-  auto a =
-      operators::assemble(systems.comm(), systems.discretisation(), 0,
-                          operators::symmetry_of(systems.process()), rest, systems.statistics());
+DurationDistribution distribution_until_killed(operators::Systems& systems, StaticPhase rest,
+                                               operators::Clock clock,
+                                               const StationaryDistribution& stationary,
+                                               const std::vector<double>& time, double mean,
+                                               const TimeScales& scales, double tolerance) {
+  ProcessPencil pencil(systems, operators::symmetry_of(systems.process()), rest, clock);
+  const auto& a = pencil.a();
   const petsc::VecHandle one = a.values([](double, double, double) { return 1.0; }), b = a.zeros(),
                          c = stationary.starts(a), d = stationary.weight_on(a);
   check(MatMult(a.matrix(), one, b));
-  auto curve = time_curve(systems, std::move(a), rest, {b, c, d}, ReducedModel::Nature::rough,
-                          Integral::wanted, time, 1 / mean, tolerance);
-  return {std::move(curve.value), std::move(curve.integral), curve.pairs};
+  for (Vec end : {Vec(b), Vec(c)}) pencil.by_clock(-1, end);
+  auto curve = time_curve(pencil, {b, c, d}, ReducedModel::Nature::rough, {{0, 1 / mean}, {1, 1}},
+                          time, scales, tolerance);
+  return {std::move(curve.value[0]), std::move(curve.value[1]), curve.pairs};
 }
-
-}  // namespace
 
 DurationDistribution slide_distribution(operators::Systems& systems,
                                         const StationaryDistribution& stationary,
                                         const std::vector<double>& time, double tolerance) {
-  return distribution_until(systems, StaticPhase::killing, stationary, time,
-                            stationary.excursion().mean_slide(), tolerance);
+  return distribution_until_killed(systems, StaticPhase::killing, operators::Clock::time,
+                                   stationary, time, stationary.excursion().mean_slide(),
+                                   time_scales(systems.process()), tolerance);
 }
 
 DurationDistribution excursion_distribution(operators::Systems& systems,
                                             const StationaryDistribution& stationary,
                                             const std::vector<double>& time, double tolerance) {
-  return distribution_until(systems, StaticPhase::killed_on_exit, stationary, time,
-                            stationary.excursion().mean_excursion(), tolerance);
+  return distribution_until_killed(systems, StaticPhase::killed_on_exit, operators::Clock::time,
+                                   stationary, time, stationary.excursion().mean_excursion(),
+                                   time_scales(systems.process()), tolerance);
 }
 
 double slide_density_at_zero(const model::Process& process, const SideChain& sides) {
@@ -202,10 +200,11 @@ void append_duration_moments(const model::Process& process, const SideChain& sid
                     stick_density_at_zero(process, entry.front().error, entry.back().error)});
 }
 
-void append_duration(const char* name, const std::vector<double>& time,
-                     const DurationDistribution& law, Results& results) {
-  Result density = array(std::string("f_") + name, "1/time", "time", time);
-  Result distribution = array(std::string("cdf_") + name, "", "time", time, Kind::distribution);
+void append_distribution(const std::string& name, const Abscissa& abscissa,
+                         const DurationDistribution& law, Results& results) {
+  Result density = array("f_" + name, abscissa.unit_of_density, abscissa.name, abscissa.values);
+  Result distribution =
+      array("cdf_" + name, "", abscissa.name, abscissa.values, Kind::distribution);
   for (const auto& value : law.density) append_value(density, value);
   for (const auto& value : law.distribution) append_value(distribution, value);
   results.push_back(std::move(density));

@@ -5,12 +5,14 @@
 #include <limits>
 
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/vectors.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
 using algebra::Matrix;
 using petsc::check;
+using petsc::copy_of;
 
 petsc::BvHandle basis_like(Vec vec, int columns) {
   petsc::BvHandle basis;
@@ -41,13 +43,6 @@ int room_for(int pairs, Vec vec) {
   return static_cast<int>(std::min<PetscInt>(pairs, entries));
 }
 
-petsc::VecHandle copy_of(Vec vec) {
-  petsc::VecHandle copy;
-  check(VecDuplicate(vec, copy.out()));
-  check(VecCopy(vec, copy));
-  return copy;
-}
-
 // Y^T X of the first columns.
 Matrix<double> products(BV x, BV y, int size) {
   petsc::MatHandle dense;
@@ -74,69 +69,66 @@ std::vector<double> products(BV y, Vec v, int size) {
 
 }  // namespace
 
-ReducedModel::ReducedModel(operators::Systems& systems, operators::KolmogorovOperator minus_l,
-                           operators::StaticPhase rest, const Ends& ends, Nature nature,
-                           int most_pairs)
-    : systems_(systems),
-      rest_(rest),
+ReducedModel::ReducedModel(Pencil& pencil, const Ends& ends, Nature nature, int most_pairs)
+    : pencil_(pencil),
       nature_(nature),
       root_(copy_of(ends.weight)),
       inverse_root_(copy_of(ends.weight)),
-      minus_l_(std::move(minus_l)),
       most_pairs_(room_for(most_pairs, ends.b)),
       right_(basis_like(ends.b, most_pairs_)),
       left_(basis_like(ends.b, most_pairs_)),
+      image_(basis_like(ends.b, most_pairs_)),
       b_(copy_of(ends.b)),
       c_(copy_of(ends.c)) {
   check(VecSqrtAbs(root_));
   check(VecCopy(root_, inverse_root_));
   check(VecReciprocal(inverse_root_));
-  check(MatDiagonalScale(minus_l_.matrix(), root_, inverse_root_));
   check(VecPointwiseMult(b_, b_, root_));
   check(VecPointwiseMult(c_, c_, inverse_root_));
   if (nature == Nature::rough) return;
-  const petsc::VecHandle lb = copy_of(b_), cl = copy_of(c_);
-  check(MatMult(minus_l_.matrix(), b_, lb));
-  check(MatMultTranspose(minus_l_.matrix(), c_, cl));
+  const petsc::VecHandle ab = copy_of(b_), ca = copy_of(c_);
+  multiply(b_, ab, false);
+  multiply(c_, ca, true);
   append(b_, c_);
-  append(lb, cl);
+  append(ab, ca);
 }
 
-ReducedModel::~ReducedModel() {
-  for (const auto& chain : chains_) {
-    systems_.release(chain.first, minus_l_.states().symmetry(), rest_);
-  }
+// y = D^1/2 A D^-1/2 x or its transpose.
+void ReducedModel::multiply(Vec x, Vec y, bool transposed) const {
+  const petsc::VecHandle scaled = copy_of(x);
+  check(VecPointwiseMult(scaled, scaled, transposed ? root_ : inverse_root_));
+  pencil_.multiply(scaled, y, transposed);
+  check(VecPointwiseMult(y, y, transposed ? inverse_root_ : root_));
 }
 
 bool ReducedModel::append(Vec v, Vec w) {
   if (!appended(right_, pairs_, v) || !appended(left_, pairs_, w)) return false;
+  const petsc::VecHandle column = copy_of(v), image = copy_of(v);
+  check(BVCopyVec(right_, pairs_, column));
+  multiply(column, image, false);
+  check(BVInsertVec(image_, pairs_, image));
   ++pairs_;
   return true;
 }
 
-// v <- (s - L)^-1 v and w <- w (s - L)^-1, scaled.
-void ReducedModel::resolve(petsc::Factorization& factors, Vec v, Vec w) const {
+// v <- (s + A)^-1 v and w <- w (s + A)^-1, scaled.
+void ReducedModel::resolve(double shift, Vec v, Vec w) {
   const petsc::VecHandle b = copy_of(v), c = copy_of(w);
   check(VecPointwiseMult(b, b, inverse_root_));
   check(VecPointwiseMult(c, c, root_));
-  if (nature_ == Nature::smooth) {
-    factors.solve_once(b, v);
-    factors.solve_transposed_once(c, w);
-  } else {
-    check(VecCopy(factors.solve(b).x, v));
-    check(VecCopy(factors.solve_transposed(c).x, w));
-  }
+  const bool refined = nature_ == Nature::rough;
+  pencil_.solve(shift, b, v, false, refined);
+  pencil_.solve(shift, c, w, true, refined);
   check(VecPointwiseMult(v, v, root_));
   check(VecPointwiseMult(w, w, inverse_root_));
 }
 
 int ReducedModel::extend(double shift, int count) {
-  auto& factors = systems_.at(shift, minus_l_.states().symmetry(), rest_).factors();
   Chain& chain = chains_[shift];
   if (chain.v == nullptr) chain = {copy_of(b_), copy_of(c_)};
   int added = 0;
   for (; added < count && !full(); ++added) {
-    resolve(factors, chain.v, chain.w);
+    resolve(shift, chain.v, chain.w);
     if (!append(chain.v, chain.w)) break;
     // The chain goes on from the new direction alone, as Arnoldi's process does.
     check(BVCopyVec(right_, pairs_ - 1, chain.v));
@@ -146,12 +138,9 @@ int ReducedModel::extend(double shift, int count) {
 }
 
 Reduced ReducedModel::reduce() const {
-  petsc::BvHandle image;
-  check(BVDuplicate(right_, image.out()));
-  for (BV basis : {BV(right_), BV(left_), BV(image)}) check(BVSetActiveColumns(basis, 0, pairs_));
-  check(BVMatMult(right_, minus_l_.matrix(), image));
+  for (BV basis : {BV(right_), BV(left_), BV(image_)}) check(BVSetActiveColumns(basis, 0, pairs_));
   const algebra::SingularValues g(products(right_, left_, pairs_));
-  const Matrix<double> projected = products(image, left_, pairs_);
+  const Matrix<double> projected = products(image_, left_, pairs_);
   // Directions of V and W that are orthogonal to the rounding of the products see nothing of each
   // other; the others are scaled so that W^T V = 1.
   constexpr double rounding = 1e-14;

@@ -125,7 +125,7 @@ Resolvent by_parity(operators::Systems& systems, double lambda,
   for (const auto& f : observables) {
     w_even.push_back(even.integral(operators::part_of(f, Symmetry::even), f.quadratic).plus);
   }
-  systems.release(lambda, Symmetry::even);
+  systems.release({lambda, Symmetry::even});
   const Uncertain h_odd = odd.exit_transform(Branch::positive).plus;
   const Uncertain same = 0.5 * (h_even + h_odd), other = 0.5 * (h_even - h_odd);
   Resolvent r{{same, other, w_one}, {other, same, w_one}, {}};
@@ -138,7 +138,7 @@ Resolvent by_parity(operators::Systems& systems, double lambda,
     r.of.push_back(
         {w_even[n] + w_odd, w_even[n] - w_odd, w_even[n] / w_one, mu, -1.0 * mu, {}, {}});
   }
-  systems.release(lambda, Symmetry::odd);
+  systems.release({lambda, Symmetry::odd});
   return r;
 }
 
@@ -164,7 +164,7 @@ Resolvent by_side(operators::Systems& systems, double lambda,
                     {},
                     {}});
   }
-  systems.release(lambda, Symmetry::none);
+  systems.release({lambda, Symmetry::none});
   return r;
 }
 

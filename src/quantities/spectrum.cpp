@@ -171,13 +171,10 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems,
                                  const std::vector<double>& omega, double tolerance) {
   const auto& noise = systems.process().noise;
   const double turn = 1 / noise.correlation_time();
-  auto a = operators::assemble(systems.comm(), systems.discretisation(), 0,
-                               distribution.velocity_symmetry(), StaticPhase::kept,
-                               systems.statistics());
-  const auto [b, c] = distribution.velocity(a);
-  const petsc::VecHandle d = distribution.weight_on(a);
-  ReducedModel model(systems, std::move(a), StaticPhase::kept, {b, c, d},
-                     ReducedModel::Nature::smooth, kMostPairs);
+  ProcessPencil pencil(systems, distribution.velocity_symmetry(), StaticPhase::kept);
+  const auto [b, c] = distribution.velocity(pencil.a());
+  const petsc::VecHandle d = distribution.weight_on(pencil.a());
+  ReducedModel model(pencil, {b, c, d}, ReducedModel::Nature::smooth, kMostPairs);
   const std::vector<double> frequencies = judged(omega, noise.correlation_time());
   Questions questions;
   questions.values = [&](const Reduced& reduced) {

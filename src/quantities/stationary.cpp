@@ -31,11 +31,6 @@ std::vector<double> real_parts(const std::vector<PetscScalar>& values) {
   return parts;
 }
 
-double speed(const State& state, const velocity::VelocityDiscretisation& velocities) {
-  if (state.kind == StateKind::node) return velocities.nodes()[state.node];
-  return state.kind == StateKind::holding ? velocities.v_max() : 0;
-}
-
 // Scales nu such that sliding ends somewhere: sum_i P_i = 1 holds on every discretisation. Where
 // slides last long against the time steps of the noise, nu is nearly a null vector of A, and
 // rounding (of the entries of A too) changes little but its length; this sets it right.
@@ -63,16 +58,16 @@ Excursion excursion_of(const KolmogorovOperator& a, Vec nu, double lost) {
   }
   const petsc::ReadView local(nu);
   PetscInt at = 0;
-  a.states().for_each_local(
-      [&, &velocities_of_v = *velocities, &nodes_of_x = *noise](const State& state) {
-        const double mass = PetscRealPart(local[at++]), v = speed(state, velocities_of_v);
-        const int node = state.half == Branch::positive
-                             ? state.noise - nodes_of_x.first()
-                             : nodes_of_x.count() + state.noise + nodes_of_x.last();
-        e.slide_time[node] += mass;
-        e.slide_distance[node] += mass * v;
-        e.slide_square[node] += mass * v * v;
-      });
+  a.states().for_each_local([&, &velocities_of_v = *velocities,
+                             &nodes_of_x = *noise](const State& state) {
+    const double mass = PetscRealPart(local[at++]), v = operators::speed_of(state, velocities_of_v);
+    const int node = state.half == Branch::positive
+                         ? state.noise - nodes_of_x.first()
+                         : nodes_of_x.count() + state.noise + nodes_of_x.last();
+    e.slide_time[node] += mass;
+    e.slide_distance[node] += mass * v;
+    e.slide_square[node] += mass * v * v;
+  });
   // A node lives on one rank, so that the sums do not depend on the distribution.
   for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square}) {
     petsc::sum_over_ranks(a.states().comm(), *sums);

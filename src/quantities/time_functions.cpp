@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <numeric>
 
 #include "stickslip/exact/transfer_function.hpp"
 
@@ -32,53 +33,57 @@ struct Contour {
 
 }  // namespace
 
-TimeFunction evaluate(const Reduced& reduced, const std::vector<double>& time) {
+std::vector<std::vector<double>> evaluate(const Reduced& reduced, const std::vector<double>& time,
+                                          const std::vector<int>& folds) {
   static const Contour contour;
   const exact::TransferFunction transfer(reduced.m, reduced.gamma, reduced.beta);
-  TimeFunction f;
-  for (double t : time) {
-    double value = 0, integral = 0;
-    if (t == 0) {
-      for (std::size_t n = 0; n < reduced.beta.size(); ++n) {
-        value += reduced.gamma[n] * reduced.beta[n];
-      }
-    }
+  std::vector<std::vector<double>> values(folds.size(), std::vector<double>(time.size(), 0.0));
+  for (std::size_t at = 0; at < time.size(); ++at) {
+    const double t = time[at];
     for (std::size_t n = 0; t > 0 && n < contour.z.size(); ++n) {
       const auto z = contour.z[n] / t;
       const auto term = contour.weight[n] * transfer(z) / t;
-      value += term.real();
-      integral += (term / z).real();
+      for (std::size_t f = 0; f < folds.size(); ++f) {
+        values[f][at] += (folds[f] == 0 ? term : term / std::pow(z, folds[f])).real();
+      }
     }
-    f.value.push_back(value);
-    f.integral.push_back(integral);
+    for (std::size_t f = 0; t == 0 && f < folds.size(); ++f) {
+      if (folds[f] > 0) continue;
+      values[f][at] =
+          std::inner_product(reduced.gamma.begin(), reduced.gamma.end(), reduced.beta.begin(), 0.0);
+    }
   }
-  return f;
+  return values;
 }
 
-TimeCurve time_curve(operators::Systems& systems, operators::KolmogorovOperator minus_l,
-                     operators::StaticPhase rest, const Ends& ends, ReducedModel::Nature nature,
-                     Integral integral, const std::vector<double>& time, double unit,
-                     double tolerance) {
+TimeScales time_scales(const model::Process& process) {
+  return {process.noise.correlation_time(), process.noise.rate()};
+}
+
+TimeCurve time_curve(Pencil& pencil, const Ends& ends, ReducedModel::Nature nature,
+                     const std::vector<Fold>& folds, const std::vector<double>& time,
+                     const TimeScales& scales, double tolerance) {
   constexpr int most_pairs = 80;
-  ReducedModel model(systems, std::move(minus_l), rest, ends, nature, most_pairs);
+  ReducedModel model(pencil, ends, nature, most_pairs);
+  std::vector<int> orders;
+  for (const Fold& fold : folds) orders.push_back(fold.n);
   Questions questions;
   questions.values = [&](const Reduced& reduced) {
-    const TimeFunction f = evaluate(reduced, time);
+    const auto found = evaluate(reduced, time, orders);
     std::vector<double> values;
-    for (double value : f.value) values.push_back(value / unit);
-    if (integral == Integral::wanted) {
-      values.insert(values.end(), f.integral.begin(), f.integral.end());
+    for (std::size_t f = 0; f < folds.size(); ++f) {
+      for (double value : found[f]) values.push_back(value / folds[f].unit);
     }
     return values;
   };
-  const double tau = systems.process().noise.correlation_time();
-  for (std::size_t n = 0; n < 2 * time.size(); ++n) {
+  const auto [tau, rate] = scales;
+  for (std::size_t n = 0; n < folds.size() * time.size(); ++n) {
     questions.shift.push_back(2 / std::max(time[n % time.size()], 1e-6 * tau));
   }
   questions.tolerance = tolerance;
   // From the slowest rates to beyond the rate of the noise.
   constexpr int shifts = 6;
-  const double low = 0.3 / tau, high = std::max(30 / tau, 12 * systems.process().noise.rate());
+  const double low = 0.3 / tau, high = std::max(30 / tau, 12 * rate);
   for (int n = 0; n < shifts; ++n) {
     questions.first_shifts.push_back(low * std::pow(high / low, n / (shifts - 1.0)));
   }
@@ -87,11 +92,11 @@ TimeCurve time_curve(operators::Systems& systems, operators::KolmogorovOperator 
   const Answers answers = ask(model, questions);
   TimeCurve curve;
   curve.pairs = answers.pairs;
-  for (std::size_t n = 0; n < time.size(); ++n) {
-    const std::size_t m = time.size() + n;
-    curve.value.push_back({unit * answers.value[n], unit * answers.error[n]});
-    if (m < answers.value.size()) {
-      curve.integral.push_back({answers.value[m], answers.error[m]});
+  auto value = answers.value.begin(), error = answers.error.begin();
+  for (const Fold& fold : folds) {
+    auto& values = curve.value.emplace_back();
+    for (std::size_t n = 0; n < time.size(); ++n) {
+      values.push_back({fold.unit * *value++, fold.unit * *error++});
     }
   }
   return curve;

@@ -18,11 +18,6 @@ using operators::Symmetry;
 using petsc::check;
 using petsc::dot;
 
-KolmogorovOperator kept(operators::Systems& systems, Symmetry symmetry) {
-  return operators::assemble(systems.comm(), systems.discretisation(), 0, symmetry,
-                             StaticPhase::kept, systems.statistics());
-}
-
 std::vector<std::size_t> rising(const std::vector<double>& time) {
   std::vector<std::size_t> order(time.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -33,9 +28,7 @@ std::vector<std::size_t> rising(const std::vector<double>& time) {
 
 std::vector<double> stepped(operators::Systems& systems, const KolmogorovOperator& a, Vec b, Vec c,
                             const std::vector<double>& time, double tolerance) {
-  petsc::VecHandle u;
-  check(VecDuplicate(b, u.out()));
-  check(VecCopy(b, u));
+  const petsc::VecHandle u = petsc::copy_of(b);
   petsc::TimeStepper stepper(a.matrix(), u, kBackwardPrefix, tolerance, systems.statistics());
   std::vector<double> values(time.size());
   for (std::size_t n : rising(time)) {
@@ -47,15 +40,16 @@ std::vector<double> stepped(operators::Systems& systems, const KolmogorovOperato
 
 // c exp(L t) b; errors in units of `unit`.
 std::vector<Uncertain> curve(operators::Systems& systems,
-                             const StationaryDistribution& distribution, KolmogorovOperator a,
+                             const StationaryDistribution& distribution, ProcessPencil& pencil,
                              Vec b, Vec c, ReducedModel::Nature nature,
                              const std::vector<double>& time, double unit, TransientMethod method,
                              double tolerance) {
+  const KolmogorovOperator& a = pencil.a();
   if (method == TransientMethod::krylov) {
     const petsc::VecHandle weight = distribution.weight_on(a);
-    return time_curve(systems, std::move(a), StaticPhase::kept, {b, c, weight}, nature,
-                      Integral::left_out, time, unit, tolerance)
-        .value;
+    return time_curve(pencil, {b, c, weight}, nature, {{0, unit}}, time,
+                      time_scales(systems.process()), tolerance)
+        .value[0];
   }
   // Errors of steps add up; a run with coarser steps shows how far.
   const double fine = 0.03 * tolerance * unit, coarse = 10 * fine;
@@ -68,26 +62,29 @@ std::vector<Uncertain> curve(operators::Systems& systems,
   return result;
 }
 
-// Probabilities of mirror images add up to 0 on odd functions, up to rounding.
-constexpr double kNothing = 1e-15;
+}  // namespace
 
-// u -> E[u(Z_0)].
 petsc::VecHandle start_on(const KolmogorovOperator& a, const model::Start& start) {
   if (start.kind == model::Start::Kind::state) return a.value_at(start.level, start.v);
   return a.mean_at_zero(model::stationary_distribution(a.discretisation().process.noise));
 }
 
-}  // namespace
+bool counts(Vec functional) {
+  constexpr double rounding = 1e-15;
+  PetscReal largest = 0;
+  check(VecNorm(functional, NORM_INFINITY, &largest));
+  return largest > rounding;
+}
 
 std::vector<Uncertain> autocorrelation(operators::Systems& systems,
                                        const StationaryDistribution& distribution,
                                        const std::vector<double>& time, TransientMethod method,
                                        double tolerance) {
-  KolmogorovOperator a = kept(systems, distribution.velocity_symmetry());
-  const auto [b, c] = distribution.velocity(a);
+  ProcessPencil whole(systems, distribution.velocity_symmetry(), StaticPhase::kept);
+  const auto [b, c] = distribution.velocity(whole.a());
   const double variance = dot(c, b);
-  return curve(systems, distribution, std::move(a), b, c, ReducedModel::Nature::smooth, time,
-               variance, method, tolerance);
+  return curve(systems, distribution, whole, b, c, ReducedModel::Nature::smooth, time, variance,
+               method, tolerance);
 }
 
 Expectation expectation(operators::Systems& systems, const StationaryDistribution& distribution,
@@ -97,7 +94,8 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
   result.value.resize(time.size());
   double unseen = 0;
   for (Symmetry symmetry : operators::sectors_of(systems.process())) {
-    KolmogorovOperator a = kept(systems, symmetry);
+    ProcessPencil whole(systems, symmetry, StaticPhase::kept);
+    const KolmogorovOperator& a = whole.a();
     const auto part = operators::part_of(f, symmetry);
     const petsc::VecHandle b = a.values(part);
     const petsc::VecHandle pi = distribution.occupation_on(a), square = a.zeros();
@@ -116,11 +114,9 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
       continue;
     }
     const petsc::VecHandle c = start_on(a, start);
-    PetscReal seen = 0;
-    check(VecNorm(c, NORM_INFINITY, &seen));
-    if (seen <= kNothing) continue;  // as odd functions at rest at x = 0
-    const auto of_part = curve(systems, distribution, std::move(a), b, c,
-                               ReducedModel::Nature::rough, time, unit, method, tolerance);
+    if (!counts(c)) continue;  // as odd functions at rest at x = 0
+    const auto of_part = curve(systems, distribution, whole, b, c, ReducedModel::Nature::rough,
+                               time, unit, method, tolerance);
     for (std::size_t n = 0; n < time.size(); ++n) result.value[n] = result.value[n] + of_part[n];
   }
   for (auto& value : result.value) value.error += unseen;

@@ -3,10 +3,13 @@
 #include "routes.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/quantities/displacement.hpp"
 #include "stickslip/quantities/durations.hpp"
+#include "stickslip/quantities/first_passage.hpp"
 #include "stickslip/quantities/laplace.hpp"
 #include "stickslip/quantities/resolvent.hpp"
 #include "stickslip/quantities/sensitivity.hpp"
+#include "stickslip/quantities/slip.hpp"
 #include "stickslip/quantities/spectrum.hpp"
 #include "stickslip/quantities/state_averages.hpp"
 #include "stickslip/quantities/stationary.hpp"
@@ -47,6 +50,7 @@ void append_distribution(const Question& question, const StationaryDistribution&
                          Results& results) {
   append_with_rounding(distribution, results, [&](const auto& excursion, Results& found) {
     if (question.wants(Quantity::sticking)) quantities::append_sticking(excursion, found);
+    if (question.wants(Quantity::slip)) quantities::append_mean_slip(excursion, found);
     if (!question.wants(Quantity::moments)) return;
     quantities::append_moments(distribution.discretisation(), excursion, found);
   });
@@ -65,7 +69,7 @@ quantities::Spectrum direct_spectrum(const Setting& setting) {
   const MPI_Comm comm = petsc::ranks(setting.comm) > 1 ? PETSC_COMM_SELF : setting.comm;
   operators::Systems systems(comm, setting.discretisation, setting.statistics);
   const StationaryDistribution distribution(systems);
-  systems.release(0, operators::symmetry_of(systems.process()));
+  systems.release({0, operators::symmetry_of(systems.process())});
   return quantities::direct_spectrum(setting.comm, systems, distribution,
                                      setting.given.question.omega);
 }
@@ -93,9 +97,10 @@ void append_durations(operators::Systems& systems, const Setting& setting, Evalu
   const auto stick =
       quantities::stick_distribution(setting.discretisation.process, entry_law(distribution), time);
   const auto excursion = quantities::excursion_distribution(systems, distribution, time, tolerance);
-  quantities::append_duration("slide", time, slide, evaluation.results);
-  quantities::append_duration("stick", time, stick, evaluation.results);
-  quantities::append_duration("excursion", time, excursion, evaluation.results);
+  const quantities::Abscissa by_time{"time", "1/time", time};
+  quantities::append_distribution("slide", by_time, slide, evaluation.results);
+  quantities::append_distribution("stick", by_time, stick, evaluation.results);
+  quantities::append_distribution("excursion", by_time, excursion, evaluation.results);
   evaluation.checks.emplace_back("slide_pairs", slide.pairs);
   evaluation.checks.emplace_back("excursion_pairs", excursion.pairs);
 }
@@ -175,6 +180,13 @@ class Execution {
       return;
     case Work::spectrum: return append_spectrum(systems_, setting_, evaluation_);
     case Work::durations: return append_durations(systems_, setting_, evaluation_);
+    case Work::slips:
+      return quantities::append_slip_moments(
+          process(), quantities::slip_moments(systems_, distribution()), results());
+    case Work::slip_transform: return transform_slips(question_.inverse_distance[task.at]);
+    case Work::slip_distribution: return find_slip_distribution();
+    case Work::first_passage: return pass(question_.velocity[task.at]);
+    case Work::displacement: return find_displacement();
     case Work::autocorrelation: return append_autocorrelation(systems_, setting_, evaluation_);
     case Work::expectation: return append_expectations(systems_, setting_, evaluation_);
     case Work::relaxation: return find_modes();
@@ -185,6 +197,9 @@ class Execution {
     return *evaluation_.distribution;
   }
   [[nodiscard]] Results& results() { return evaluation_.results; }
+  [[nodiscard]] const model::Process& process() const { return setting_.discretisation.process; }
+  // So that reduced models do not rule the error.
+  [[nodiscard]] double tolerance() const { return 0.1 * question_.accuracy; }
 
   void find_distribution() {
     evaluation_.distribution = std::make_shared<StationaryDistribution>(systems_);
@@ -225,6 +240,29 @@ class Execution {
     transforms_.push_back({t.slide, stick, t.excursion});
   }
 
+  void transform_slips(double s) {
+    slip_transforms_.push_back(quantities::slip_transform(systems_, distribution(), s));
+  }
+
+  void find_slip_distribution() {
+    const auto& distance = question_.distance;
+    const auto law = quantities::slip_distribution(systems_, distribution(), distance, tolerance());
+    quantities::append_slip(distance, law, results());
+    evaluation_.checks.emplace_back("slip_pairs", law.pairs);
+  }
+
+  void pass(double speed) {
+    const auto& found = evaluation_.distribution;
+    passages_.push_back(quantities::first_passage(
+        systems_, found ? found->sides() : quantities::SideChain{}, speed));
+  }
+
+  void find_displacement() {
+    const auto x = quantities::displacement(systems_, distribution(), question_.start,
+                                            question_.time, tolerance());
+    quantities::append_displacement(question_.time, x, results());
+  }
+
   void transform_stick_durations() {
     quantities::append_stick_transform(setting_.discretisation.process, question_.lambda,
                                        entry_law(distribution()), results());
@@ -237,10 +275,16 @@ class Execution {
     }
   }
 
-  // What was found one lambda at a time.
+  // What was found one value at a time.
   void append_arrays() {
     const auto& lambda = question_.lambda;
     if (!transforms_.empty()) quantities::append_laplace(lambda, transforms_, results());
+    if (!slip_transforms_.empty()) {
+      quantities::append_slip_transform(question_.inverse_distance, slip_transforms_, results());
+    }
+    if (!passages_.empty()) {
+      quantities::append_first_passages(question_.velocity, passages_, results());
+    }
     if (resolvents_.empty()) return;
     quantities::append_resolvent(lambda, question_.observables, resolvents_,
                                  setting_.discretisation.process.symmetric(), results());
@@ -252,6 +296,8 @@ class Execution {
   operators::Systems systems_;
   Evaluation evaluation_;
   std::vector<quantities::DurationTransforms> transforms_;
+  std::vector<Uncertain> slip_transforms_;
+  std::vector<quantities::FirstPassage> passages_;
   std::vector<quantities::Resolvent> resolvents_;
 };
 

@@ -19,10 +19,12 @@ using options::Quantity;
 bool needs_distribution(const Case& given) {
   for (Quantity q : {Quantity::sticking, Quantity::moments, Quantity::averages, Quantity::entry_law,
                      Quantity::density, Quantity::laplace, Quantity::stick_duration_transform,
-                     Quantity::spectrum, Quantity::duration_density, Quantity::autocorrelation,
-                     Quantity::expectation}) {
+                     Quantity::spectrum, Quantity::duration_density, Quantity::slip,
+                     Quantity::autocorrelation, Quantity::displacement, Quantity::expectation}) {
     if (given.question.wants(q)) return true;
   }
+  // The shares of both sides.
+  if (given.question.wants(Quantity::peak) && !given.scene.symmetric()) return true;
   return given.scene.v_max.has_value();  // what the cut holds back is judged by the law
 }
 
@@ -38,6 +40,9 @@ class Planner {
     if (question_.wants(Quantity::spectrum)) plan_spectrum();
     const auto observables = static_cast<int>(question_.observables.size());
     if (question_.wants(Quantity::duration_density)) add_adaptive(Work::durations, 14, 160);
+    if (question_.wants(Quantity::slip)) plan_slips();
+    if (question_.wants(Quantity::peak)) plan_peaks();
+    if (question_.wants(Quantity::displacement)) plan_displacement();
     if (question_.wants(Quantity::autocorrelation)) add_adaptive(Work::autocorrelation, 6, 36);
     if (question_.wants(Quantity::expectation)) {
       add_adaptive(Work::expectation, 6 * observables, 36 * observables);
@@ -110,6 +115,33 @@ class Planner {
     return {Work::resolvent,
             n,
             {{{lambda, Symmetry::even}, even, 0}, {{lambda, Symmetry::odd}, odd, 0}}};
+  }
+
+  void plan_slips() {
+    Task moments{Work::slips, 0, {{ground(), symmetric_ ? 3 : 4, 0}}};
+    if (symmetric_) moments.uses.push_back({{0, Symmetry::odd}, 1, 0});
+    add(std::move(moments));
+    for (std::size_t n = 0; n < question_.inverse_distance.size(); ++n) {
+      auto system = ground();
+      system.lambda = question_.inverse_distance[n];
+      system.clock = operators::Clock::path_length;
+      add({Work::slip_transform, n, {{system, 1, 0}}});
+    }
+    if (!question_.distance.empty()) add_adaptive(Work::slip_distribution, 6, 80);
+  }
+
+  // From each side, and from rest.
+  void plan_peaks() {
+    for (std::size_t n = 0; n < question_.velocity.size(); ++n) {
+      auto system = ground();
+      system.speed_limit = question_.velocity[n];
+      add({Work::first_passage, n, {{system, 0, symmetric_ ? 2 : 3}}});
+    }
+  }
+
+  void plan_displacement() {
+    const bool stationary = question_.start.kind == model::Start::Kind::stationary;
+    add_adaptive(Work::displacement, stationary ? 6 : 12, stationary ? 36 : 200);
   }
 
   void plan_spectrum() {
@@ -201,6 +233,13 @@ std::string task_name(const options::Question& question, const Task& task) {
   case Work::resolvent: return at_lambda("resolvent");
   case Work::spectrum: return "spectrum";
   case Work::durations: return "laws of durations";
+  case Work::slips: return "moments of slips";
+  case Work::slip_transform:
+    return fmt::format("transform of slips at s = {:g}", question.inverse_distance[task.at]);
+  case Work::slip_distribution: return "distribution of slips";
+  case Work::first_passage:
+    return fmt::format("first passage to |v| = {:g}", question.velocity[task.at]);
+  case Work::displacement: return "displacement";
   case Work::autocorrelation: return "autocorrelation";
   case Work::expectation: return "expectations";
   case Work::relaxation: return "relaxation modes";

@@ -97,6 +97,27 @@ HpDiscretisation::HpDiscretisation(std::vector<double> ends, const std::vector<i
   for (double v : ends_) drag_at_ends_.push_back(drag(v));
 }
 
+// Levels on which bodies hardly move at the last end reach it or turn round there, in layers as
+// thin as those at v = 0: elements shrink towards it as they do towards rest.
+std::unique_ptr<VelocityDiscretisation> HpDiscretisation::up_to(double speed) const {
+  constexpr double sliver = 0.2, ratio = 0.3;
+  std::vector<double> ends;
+  std::vector<int> degrees;
+  for (int e = 0; e < elements() && ends_[e] < speed; ++e) {
+    const bool last = e + 1 == elements() || ends_[e + 1] >= speed;
+    if (last && e > 0 && speed - ends_[e] < sliver * (ends_[e] - ends_[e - 1])) break;
+    ends.push_back(ends_[e]);
+    degrees.push_back(elements_[e].reference->size - 1);
+  }
+  degrees.back() = *std::max_element(degrees.begin(), degrees.end());
+  for (double left = ratio * (speed - ends.back()); left > ends_[1]; left *= ratio) {
+    ends.push_back(speed - left);
+    degrees.push_back(degrees.back());
+  }
+  ends.push_back(speed);
+  return std::make_unique<HpDiscretisation>(std::move(ends), degrees, drag_);
+}
+
 void HpDiscretisation::transport(double net_force, int j, TransportRow& row) const {
   const int element = element_of_[j];
   fill(j, std::max(-(net_force + drag_at_ends_[element]), 0.0), net_force + drag_at_nodes_[j],

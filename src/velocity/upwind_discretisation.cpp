@@ -1,12 +1,13 @@
 #include "stickslip/velocity/upwind_discretisation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace stickslip::velocity {
 
 UpwindDiscretisation::UpwindDiscretisation(double spacing, int count, const model::Drag& drag)
-    : spacing_(spacing) {
+    : spacing_(spacing), drag_(drag) {
   if (!(spacing > 0) || count < 1) throw std::invalid_argument("upwind axis without nodes");
   cells_.push_back(0);
   for (int j = 1; j <= count; ++j) {
@@ -15,6 +16,11 @@ UpwindDiscretisation::UpwindDiscretisation(double spacing, int count, const mode
     cells_.push_back((j + 0.5) * spacing);
     drag_at_nodes_.push_back(drag(nodes_.back()));
   }
+}
+
+std::unique_ptr<VelocityDiscretisation> UpwindDiscretisation::up_to(double speed) const {
+  const int steps = std::max(2, static_cast<int>(std::lround(speed / spacing_)));
+  return std::make_unique<UpwindDiscretisation>(speed / steps, steps - 1, drag_);
 }
 
 void UpwindDiscretisation::transport(double net_force, int j, TransportRow& row) const {
@@ -33,6 +39,7 @@ void UpwindDiscretisation::fill(int j, double direction, double rate, TransportR
   if (direction < 0 && j > 0) row.entries.push_back({j - 1, -rate});
   if (direction < 0 && j == 0) row.inflow = -rate;
   if (direction > 0 && j < size() - 1) row.entries.push_back({j + 1, rate});
+  if (direction > 0 && j == size() - 1 && kills_at_top()) row.outflow = rate;
 }
 
 // Between two nodes; below the first one, where a cell of its own begins, its value.

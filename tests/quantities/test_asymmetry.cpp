@@ -243,7 +243,7 @@ TEST_CASE("asymmetry: the representation formula gives the resolvent of the whol
                 quantities::value_of(whole.a().trace_at_exit(operators::Branch::negative), u).value,
                 r.of[n].u_from_minus.value) < 1e-10);
       }
-      systems.release(lambda, operators::Symmetry::none, operators::StaticPhase::kept);
+      systems.release({lambda, operators::Symmetry::none, operators::StaticPhase::kept});
     }
   }
 }

@@ -189,7 +189,7 @@ TEST_CASE("durations: densities have the transforms of the operators", "[paralle
   for (double lambda : {0.1, 1.0, 10.0, 100.0}) {
     const auto known = quantities::slide_transforms(s.systems, s.distribution, lambda);
     const auto stick = quantities::stick_transform(d.process, lambda, s.entry());
-    s.systems.release(lambda, Symmetry::even);
+    s.systems.release({lambda, Symmetry::even});
     const auto weight = [lambda](double t) { return std::exp(-lambda * t); };
     INFO("lambda " << lambda);
     CHECK(std::abs(integral(q, all.slide, weight).value - known.slide.value) < 1e-8);
@@ -426,7 +426,7 @@ TEST_CASE("durations: variances are what transforms say at small lambda") {
   const auto logs = [&](double lambda) {
     const auto t = quantities::slide_transforms(s.systems, s.distribution, lambda);
     const double stick = quantities::stick_transform(d.process, lambda, s.entry()).value;
-    s.systems.release(lambda, Symmetry::even);
+    s.systems.release({lambda, Symmetry::even});
     return std::vector<double>{std::log(t.slide.value), std::log(stick),
                                std::log(t.excursion.value)};
   };
@@ -461,8 +461,9 @@ TEST_CASE("durations: named results, means only where there are none yet") {
   CHECK(value("f_slide_0") == f_slide_at(process));
   const double edge = process.noise.rate() * process.noise.up(2);
   CHECK(value("f_stick_0") == Approx(0.4 * edge).epsilon(1e-14));
-  quantities::append_duration("slide", {1, 2}, {{{0.5, 0}, {0.25, 0}}, {{0.1, 0}, {0.6, 0}}, 0},
-                              results);
+  const std::vector<double> time{1, 2};
+  quantities::append_distribution("slide", {"time", "1/time", time},
+                                  {{{0.5, 0}, {0.25, 0}}, {{0.1, 0}, {0.6, 0}}, 0}, results);
   CHECK(value("f_slide") == 0.5);
   CHECK(value("cdf_slide") == 0.1);
 }

@@ -27,7 +27,7 @@ class Durations {
     std::vector<Uncertain> entry;
     for (double p : distribution_.excursion().entry) entry.push_back({p, 0});
     const auto t = quantities::slide_transforms(systems_, distribution_, lambda);
-    systems_.release(lambda, operators::Symmetry::even);
+    systems_.release({lambda, operators::Symmetry::even});
     return {t.slide, quantities::stick_transform(systems_.process(), lambda, entry), t.excursion};
   }
   [[nodiscard]] const quantities::Excursion& means() const { return distribution_.excursion(); }

@@ -40,17 +40,17 @@ class Scripted {
 
  private:
   std::unique_ptr<ReducedModel> made(int most_pairs) {
-    auto odd = operators::assemble(PETSC_COMM_WORLD, solved_.systems.discretisation(), 0,
-                                   Symmetry::odd, StaticPhase::kept, solved_.statistics);
-    const auto [b, c] = solved_.distribution.velocity(odd);
-    const petsc::VecHandle weight = solved_.distribution.weight_on(odd);
-    return std::make_unique<ReducedModel>(solved_.systems, std::move(odd), StaticPhase::kept,
-                                          quantities::Ends{b, c, weight},
+    pencil_ = std::make_unique<quantities::ProcessPencil>(solved_.systems, Symmetry::odd,
+                                                          StaticPhase::kept);
+    const auto [b, c] = solved_.distribution.velocity(pencil_->a());
+    const petsc::VecHandle weight = solved_.distribution.weight_on(pencil_->a());
+    return std::make_unique<ReducedModel>(*pencil_, quantities::Ends{b, c, weight},
                                           ReducedModel::Nature::smooth, most_pairs);
   }
 
   Script script_;
   test::Solved solved_;
+  std::unique_ptr<quantities::ProcessPencil> pencil_;
   std::unique_ptr<ReducedModel> model_;
 };
 

@@ -37,7 +37,7 @@ struct Resolution {
 /// from which slides start, second moments included; never more than the full range, and always
 /// more than k. Where drag does not hold it back, a body is fast because the noise stayed high:
 /// there the law of X is shifted upwards, and the range with it.
-[[nodiscard]] int levels_for(const model::Scene& scene, double tolerance);
+[[nodiscard]] int levels_for(const model::Scene& scene, double tolerance, double speed = 0);
 
 /// End of the velocity discretisation: the terminal velocity of the highest level, or
 /// where the density has fallen below `tolerance` if that comes first. What the user fixed goes
@@ -52,7 +52,8 @@ struct Resolution {
                                        const noise::Grouping& grouping = {});
 
 /// Upwind with `points` nodes per noise step, the open rest chosen as above.
-[[nodiscard]] Resolution upwind_resolution(const model::Scene& scene, int points, double tolerance);
+[[nodiscard]] Resolution upwind_resolution(const model::Scene& scene, int points, double tolerance,
+                                           const velocity::Rates& rates = {});
 
 /// No discretisation in v: only the noise range is chosen.
 [[nodiscard]] Resolution exact_resolution(const model::Scene& scene, double tolerance);

@@ -14,6 +14,7 @@ struct Grouping {
   int degree = 0;      ///< of the polynomials on a group; 0: every level is a node
   double grading = 2;  ///< levels of a group per level of distance from the nearest special point
   double width = 4;    ///< of the widest group, in standard deviations of the noise
+  std::vector<double> special = {};  ///< more special points, as x
 };
 
 /// Galerkin projection of the noise chain on piecewise polynomials, held by their values at nodes.
@@ -32,8 +33,8 @@ struct Grouping {
 /// so that w stays stationary and rows sum to zero; J_lm may be negative for l != m. Since Gauss
 /// rules are exact for x times two such polynomials, speeds at the nodes are all that transport
 /// needs. Groups shrink towards the special points of a process, where functions are not smooth:
-/// levels on which the speed at v = 0 vanishes, and the ends of the static range. None contains
-/// one, and where -X is the same chain x -> -x maps groups to groups.
+/// levels on which the speed at v = 0 vanishes, the ends of the static range, and those of the
+/// grouping. None contains one, and where -X is the same chain x -> -x maps groups to groups.
 ///
 /// Nodes are numbered first() ... last(), rising; node -n of mirrored() is that of -x_n. Immutable;
 /// members are local.
@@ -61,6 +62,7 @@ class Nodes {
       return std::span(matrix).subspan(from, static_cast<std::size_t>(count));
     }
   };
+  [[nodiscard]] const Grouping& grouping() const { return grouping_; }
   [[nodiscard]] const std::vector<Group>& groups() const { return groups_; }
   [[nodiscard]] const Group& group_of(int node) const { return groups_[group_of_[at(node)]]; }
   [[nodiscard]] const Group& group_at(int level) const;
@@ -117,6 +119,7 @@ class Nodes {
   void find_jumps();
 
   model::NoiseChain noise_;
+  Grouping grouping_;
   int first_ = 0;
   std::vector<Group> groups_;
   std::vector<std::vector<double>> inner_;  // by group of several levels: rates inside, by rows

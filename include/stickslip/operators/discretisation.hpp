@@ -20,6 +20,9 @@ struct Discretisation {
         noise(noise_nodes ? std::move(noise_nodes) : std::make_shared<noise::Nodes>(process)),
         velocities(std::move(velocity_axis)) {}
 
+  /// The same up to |v| = speed, where the process is killed.
+  [[nodiscard]] Discretisation killing_at(double speed) const;
+
   model::Process process;
   std::shared_ptr<const noise::Nodes> noise;
   std::shared_ptr<const velocity::VelocityDiscretisation> velocities;  ///< none for the fluid queue

@@ -6,6 +6,7 @@
 
 #include "stickslip/noise/nodes.hpp"
 #include "stickslip/operators/linear_steps.hpp"
+#include "stickslip/operators/matrix_data.hpp"
 #include "stickslip/petsc/scalars.hpp"
 #include "stickslip/velocity/hp_discretisation.hpp"
 
@@ -39,7 +40,7 @@ class ElementSystem {
   /// goes to `response`. O(M q^3 groups' sizes^2 + M^2 q). Throws NotReached if a block is
   /// singular.
   ElementSystem(const noise::Nodes& noise, const velocity::HpDiscretisation& velocities,
-                int element, std::span<const double> net_force, PetscScalar lambda,
+                int element, std::span<const double> net_force, PetscScalar lambda, Clock clock,
                 Response& response);
 
   [[nodiscard]] int size() const { return count_ * nodes_; }

@@ -22,6 +22,12 @@ struct RestCoupling {
   double rate;
 };
 
+/// What a row has to do with bodies that reach the largest speed, where they are killed.
+struct TopCoupling {
+  PetscInt row;  ///< local
+  double rate;
+};
+
 /// A = lambda - L. On noise node l of a half, with B_l(v) = x_l + g - mu_d + b(v) on the upper one
 /// and that of the mirrored process on the lower one, J the jump matrix of noise::Nodes,
 ///
@@ -38,12 +44,15 @@ struct RestCoupling {
 /// StaticPhase::kept and lambda = 0 row sums are exactly zero. On an upwind velocity discretisation
 /// the off-diagonals of -A are >= 0 and a row has at most five entries if every level is a node:
 /// with both branches and kept, -A then is the generator M of the paper's section 5.
+///
+/// By the clock of path length lambda is multiplied by |v|; where the velocity discretisation kills
+/// at its top, u = 0 there.
 class KolmogorovOperator {
  public:
   /// Assembles the local rows. The matrix lives as long as the operator. Collective.
   /// O(local nonzeros).
   KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda,
-                     Symmetry symmetry, StaticPhase rest);
+                     Symmetry symmetry, StaticPhase rest, Clock clock = Clock::time);
 
   /// dA/dtheta with all members, for StaticPhase::killing: entry_rates and from_rest are those of
   /// -dA_us/dtheta. Elements, nodes and upwind directions stay as they are: what is projected is
@@ -56,7 +65,7 @@ class KolmogorovOperator {
   [[nodiscard]] const StateSpace& states() const { return data_->states; }
   /// Carries the MatrixData of the operator.
   [[nodiscard]] Mat matrix() const { return matrix_; }
-  /// lambda += by. Collective.
+  /// lambda += by, by the clock of time. Collective.
   void shift(PetscScalar by);
   [[nodiscard]] PetscInt64 nonzeros() const { return nonzeros_; }
 
@@ -74,6 +83,9 @@ class KolmogorovOperator {
   /// nu -> -nu A_us, from the lowest static level up: the rate at which an occupation flows into
   /// each static level; the same on all ranks. StaticPhase::killing only. Collective.
   [[nodiscard]] std::vector<PetscScalar> entry_rates(Vec nu) const;
+  /// The rate at which an occupation flows over the largest speed, where bodies are killed; the
+  /// same on all ranks. Collective.
+  [[nodiscard]] double rate_at_top(Vec nu) const;
   /// -A_us s, a right-hand side: what static values s, from the lowest level up, send into the
   /// sliding states.
   /// StaticPhase::killing only. Collective.
@@ -93,7 +105,8 @@ class KolmogorovOperator {
 
  private:
   KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda,
-                     Symmetry symmetry, StaticPhase rest, std::optional<Parameter> derivative);
+                     Symmetry symmetry, StaticPhase rest, Clock clock,
+                     std::optional<Parameter> derivative);
 
   // The nodes by which states of a half are counted.
   [[nodiscard]] const noise::Nodes& nodes_along(Branch half) const {
@@ -107,6 +120,7 @@ class KolmogorovOperator {
   std::shared_ptr<MatrixData> data_;
   std::vector<std::pair<PetscInt, double>> trace_upper_, trace_lower_;
   std::vector<RestCoupling> rest_coupling_;  // -A_us
+  std::vector<TopCoupling> top_coupling_;
   // The matrix of a single rank lives in these.
   std::vector<PetscInt> row_start_, columns_;
   std::vector<PetscScalar> values_;

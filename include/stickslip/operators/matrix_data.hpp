@@ -15,6 +15,7 @@ struct MatrixData {
   Discretisation discretisation;
   StateSpace states;
   PetscScalar lambda;
+  Clock clock;
 };
 
 /// Composes the data on a matrix. Not collective.

@@ -28,6 +28,20 @@ struct State {
   int node;     ///< index on the velocity discretisation, for nodes
 };
 
+/// |v| in a state.
+[[nodiscard]] inline double speed_of(const State& state,
+                                     const velocity::VelocityDiscretisation& velocities) {
+  if (state.kind == StateKind::node) return velocities.nodes()[state.node];
+  return state.kind == StateKind::holding ? velocities.v_max() : 0;
+}
+
+/// The rate of a clock in a state; a grid scheme's state at v = 0 stands for [0, v_1].
+[[nodiscard]] inline double rate_of(Clock clock, const State& state,
+                                    const velocity::VelocityDiscretisation& velocities) {
+  const bool origin = state.kind == StateKind::origin;
+  return rate_of(clock, origin ? velocities.nodes()[0] / 2 : speed_of(state, velocities));
+}
+
 /// All states of a discretisation: for each half and noise node its velocity nodes and, if it has
 /// them, an origin and a holding state; with `with_rest` also the static states, of which the even
 /// fold keeps 0 <= i <= k and the odd one 1 <= i <= k, on all their levels.

@@ -1,6 +1,7 @@
 #pragma once
 /// What an operator is of: the part that plans and reports need, independent of the scalar type.
 
+#include <limits>
 #include <tuple>
 #include <vector>
 
@@ -47,13 +48,25 @@ enum class Parameter {
   drag_coefficient  ///< c of the linear part of the drag
 };
 
-/// lambda - L on functions of one symmetry.
+/// What lambda is per unit of: with the path length for a clock the process runs at the speed |v|,
+/// and lambda - L becomes lambda |v| - L.
+enum class Clock { time, path_length };
+
+/// The rate of a clock at a speed.
+[[nodiscard]] inline double rate_of(Clock clock, double speed) {
+  return clock == Clock::time ? 1 : speed;
+}
+
+/// lambda - L on functions of one symmetry, killed where |v| reaches a limit.
 struct SystemKey {
   double lambda = 0;
   Symmetry symmetry = Symmetry::even;
   StaticPhase rest = StaticPhase::killing;
+  Clock clock = Clock::time;
+  double speed_limit = std::numeric_limits<double>::infinity();
   friend bool operator<(const SystemKey& a, const SystemKey& b) {
-    return std::tie(a.lambda, a.symmetry, a.rest) < std::tie(b.lambda, b.symmetry, b.rest);
+    return std::tie(a.lambda, a.symmetry, a.rest, a.clock, a.speed_limit) <
+           std::tie(b.lambda, b.symmetry, b.rest, b.clock, b.speed_limit);
   }
   friend bool operator==(const SystemKey&, const SystemKey&) = default;
 };

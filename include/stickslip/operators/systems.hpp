@@ -20,7 +20,8 @@ inline const std::string kSlidePrefix = "slide_";
 /// Assembles an operator and enters it in the statistics. Collective.
 [[nodiscard]] KolmogorovOperator assemble(MPI_Comm comm, const Discretisation& discretisation,
                                           PetscScalar lambda, Symmetry symmetry, StaticPhase rest,
-                                          petsc::SolverStatistics& statistics);
+                                          petsc::SolverStatistics& statistics,
+                                          Clock clock = Clock::time);
 
 /// The same for its derivative. Collective.
 [[nodiscard]] KolmogorovOperator assemble_derivative(MPI_Comm comm,
@@ -48,7 +49,7 @@ class System {
   std::unique_ptr<petsc::Factorization> factors_;
 };
 
-/// One system for each (lambda, symmetry, rest) that is asked for, and none else; each is assembled
+/// One system for each key that is asked for, and none else; each is assembled
 /// and factored once and serves every solve, plain, transposed or with several right-hand sides.
 class Systems {
  public:
@@ -57,14 +58,15 @@ class Systems {
       : comm_(comm), discretisation_(std::move(discretisation)), statistics_(statistics) {}
 
   /// Collective at first use of a key.
+  [[nodiscard]] System& at(const SystemKey& key);
   [[nodiscard]] System& at(double lambda, Symmetry symmetry,
-                           StaticPhase rest = StaticPhase::killing);
+                           StaticPhase rest = StaticPhase::killing) {
+    return at({lambda, symmetry, rest});
+  }
   /// Assembles and analyses as that would, and keeps nothing. Collective.
   [[nodiscard]] petsc::Analysis analyse(const SystemKey& key);
   /// Frees a system that is not needed any more. Collective.
-  void release(double lambda, Symmetry symmetry, StaticPhase rest = StaticPhase::killing) {
-    systems_.erase({lambda, symmetry, rest});
-  }
+  void release(const SystemKey& key) { systems_.erase(key); }
   /// Frees all others. Collective.
   void keep(const std::set<SystemKey>& used) {
     std::erase_if(systems_, [&used](const auto& entry) { return !used.contains(entry.first); });
@@ -76,6 +78,8 @@ class Systems {
   [[nodiscard]] petsc::SolverStatistics& statistics() { return statistics_; }
 
  private:
+  [[nodiscard]] KolmogorovOperator assembled(const SystemKey& key);
+
   MPI_Comm comm_;
   Discretisation discretisation_;
   petsc::SolverStatistics& statistics_;

@@ -73,6 +73,14 @@ class RowView {
   const PetscScalar* values_ = nullptr;
 };
 
+/// Collective.
+[[nodiscard]] inline VecHandle copy_of(Vec vec) {
+  VecHandle copy;
+  check(VecDuplicate(vec, copy.out()));
+  check(VecCopy(vec, copy));
+  return copy;
+}
+
 /// Real part of sum_n a_n b_n, without conjugation. Collective.
 [[nodiscard]] inline double dot(Vec a, Vec b) {
   PetscScalar sum = 0;

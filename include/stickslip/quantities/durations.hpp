@@ -1,11 +1,13 @@
 #pragma once
 /// Densities and distribution functions of the durations of slides, stays and excursions.
 
+#include <string>
 #include <vector>
 
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/quantities/results.hpp"
 #include "stickslip/quantities/stationary.hpp"
+#include "stickslip/quantities/time_functions.hpp"
 #include "stickslip/quantities/uncertain.hpp"
 
 namespace stickslip::quantities {
@@ -37,6 +39,14 @@ struct DurationDistribution {
                                                           const std::vector<double>& time,
                                                           double tolerance);
 
+/// Of what a clock shows when the process is killed, started as excursions start; `mean` of that.
+/// Both of the above are this. Collective.
+[[nodiscard]] DurationDistribution
+distribution_until_killed(operators::Systems& systems, operators::StaticPhase rest,
+                          operators::Clock clock, const StationaryDistribution& stationary,
+                          const std::vector<double>& time, double mean, const TimeScales& scales,
+                          double tolerance);
+
 /// f_slide(0+): a slide can only end at once if one jump back from the level of its start reverses
 /// it.
 [[nodiscard]] double slide_density_at_zero(const model::Process& process, const SideChain& sides);
@@ -59,8 +69,12 @@ void append_duration_moments(const model::Process& process, const SideChain& sid
                              const DurationMoments& moments, const std::vector<Uncertain>& entry,
                              Results& results);
 
-/// f_NAME and cdf_NAME by time.
-void append_duration(const char* name, const std::vector<double>& time,
-                     const DurationDistribution& law, Results& results);
+/// f_NAME and cdf_NAME by an abscissa.
+struct Abscissa {
+  const char *name, *unit_of_density;
+  const std::vector<double>& values;
+};
+void append_distribution(const std::string& name, const Abscissa& abscissa,
+                         const DurationDistribution& law, Results& results);
 
 }  // namespace stickslip::quantities

@@ -1,5 +1,5 @@
 #pragma once
-/// Small models of c (z - L)^-1 b by two-sided rational Krylov projection.
+/// Small models of c (z + A)^-1 b by two-sided rational Krylov projection.
 
 #include <slepcbv.h>
 
@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "stickslip/algebra/dense.hpp"
-#include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/handle.hpp"
+#include "stickslip/quantities/pencil.hpp"
 
 namespace stickslip::quantities {
 
-/// A small model of L: c (z - L)^-1 b ~ gamma (z - m)^-1 beta.
+/// A small model: c (z + A)^-1 b ~ gamma (z - m)^-1 beta.
 struct Reduced {
   algebra::Matrix<double> m;
   std::vector<double> beta, gamma;
@@ -24,11 +24,11 @@ struct Ends {
   Vec b, c, weight;
 };
 
-/// Two-sided projection (W^T V)^-1 W^T L V. V spans chains (s - L)^-1 ... b, W the transposed
-/// chains from c, for real shifts s: real factorisations only. Each pair of vectors matches two
-/// more derivatives of the transfer function at its shift. b, L b, c, c L, if they are smooth
-/// enough to be of use, match four moments at infinity. One-sided projections, W = V, fail by
-/// orders of magnitude in the tail, and so does the orthogonal projection on V and W together in
+/// Two-sided projection -(W^T V)^-1 W^T A V. V spans chains (s + A)^-1 ... b, W the
+/// transposed chains from c, for real shifts s: real factorisations only. Each pair of vectors
+/// matches two more derivatives of the transfer function at its shift. b, A b, c, c A, if they are
+/// smooth enough to be of use, match four moments at infinity. One-sided projections, W = V, fail
+/// by orders of magnitude in the tail, and so does the orthogonal projection on V and W together in
 /// L2(D), although it cannot have growing modes.
 ///
 /// Vectors are orthogonalised in the scalar product with a weight D, V with D and W with D^-1: with
@@ -36,17 +36,12 @@ struct Ends {
 /// never occur, W what does, and W^T V is near singular.
 class ReducedModel {
  public:
-  /// Smooth b and c: V and W start with b, L b, c, c L. Rough ones, such as the value at a point,
+  /// Smooth b and c: V and W start with b, A b, c, c A. Rough ones, such as the value at a point,
   /// say nothing at infinity; then W^T V is near singular all the same (1e-11 was seen), and the
   /// solves of the chains are refined, which leaves seven digits of the largest value.
   enum class Nature { smooth, rough };
-  /// `minus_l` is -L with the static states as `rest` says; `ends.weight` > 0. Collective.
-  ReducedModel(operators::Systems& systems, operators::KolmogorovOperator minus_l,
-               operators::StaticPhase rest, const Ends& ends, Nature nature, int most_pairs);
-  /// Releases the factors it had made. Collective.
-  ~ReducedModel();
-  ReducedModel(const ReducedModel&) = delete;
-  ReducedModel& operator=(const ReducedModel&) = delete;
+  /// `pencil` must live as long; `ends.weight` > 0. Collective.
+  ReducedModel(Pencil& pencil, const Ends& ends, Nature nature, int most_pairs);
 
   /// Adds up to `count` pairs of vectors of the chains of `shift` > 0 [1/time]; a new shift takes
   /// one factorisation, each pair one plain and one transposed solve. Returns how many were added:
@@ -62,16 +57,15 @@ class ReducedModel {
 
  private:
   bool append(Vec v, Vec w);
-  void resolve(petsc::Factorization& factors, Vec v, Vec w) const;
+  void multiply(Vec x, Vec y, bool transposed) const;
+  void resolve(double shift, Vec v, Vec w);
 
-  operators::Systems& systems_;
-  operators::StaticPhase rest_;
+  Pencil& pencil_;
   Nature nature_;
-  petsc::VecHandle root_, inverse_root_;   // D^1/2, D^-1/2
-  operators::KolmogorovOperator minus_l_;  // D^1/2 (-L) D^-1/2
+  petsc::VecHandle root_, inverse_root_;  // D^1/2, D^-1/2
   int most_pairs_, pairs_ = 0;
-  petsc::BvHandle right_, left_;  // D^1/2 V, D^-1/2 W
-  petsc::VecHandle b_, c_;        // scaled like V and W
+  petsc::BvHandle right_, left_, image_;  // D^1/2 V, D^-1/2 W, D^1/2 A V
+  petsc::VecHandle b_, c_;                // scaled like V and W
   struct Chain {
     petsc::VecHandle v, w;
   };

@@ -1,5 +1,5 @@
 #pragma once
-/// c exp(L t) b on a reduced model.
+/// c exp(-A t) b and its integrals on reduced models.
 
 #include <vector>
 
@@ -8,31 +8,36 @@
 
 namespace stickslip::quantities {
 
-/// Values of c exp(L t) b and of its integral from 0 to t, one for each time.
-struct TimeFunction {
-  std::vector<double> value, integral;
+/// n-fold integrals from 0 to t of gamma exp(m t) beta, for each n of `folds` one for each time. By
+/// quadrature of the inverse Laplace transform on Talbot's contour with the parameters of Weideman
+/// (SIAM J. Numer. Anal. 44, 2006), whose error is about 10^-14 of the largest value. Growing modes
+/// that a two-sided projection may have lie outside the contour and do no harm, as they would to
+/// exp(m t). Local. O(size^2) a time. Times >= 0.
+[[nodiscard]] std::vector<std::vector<double>>
+evaluate(const Reduced& reduced, const std::vector<double>& time, const std::vector<int>& folds);
+
+/// An n-fold integral that is wanted to a tolerance times `unit`.
+struct Fold {
+  int n;
+  double unit;
 };
 
-/// By quadrature of the inverse Laplace transform on Talbot's contour with the parameters of
-/// Weideman (SIAM J. Numer. Anal. 44, 2006), whose error is about 10^-14 of the largest value.
-/// Growing modes that a two-sided projection may have lie outside the contour and do no harm, as
-/// they would to exp(m t). Local. O(size^2) a time. Times >= 0.
-[[nodiscard]] TimeFunction evaluate(const Reduced& reduced, const std::vector<double>& time);
+/// How fast things happen: the correlation time of the noise and its rate, by the clock of a
+/// pencil.
+struct TimeScales {
+  double correlation, rate;
+};
 
-/// Whether the integral of a curve is wanted too, to the tolerance itself.
-enum class Integral { wanted, left_out };
-
-/// c exp(L t) b to `tolerance` times `unit`, and its integral from 0 to t, with their errors, by
-/// reduced models grown until they stand still.
+/// Integrals of c exp(-A t) b with their errors, by fold and time.
 struct TimeCurve {
-  std::vector<Uncertain> value, integral;  ///< no integral if it is left out
-  int pairs = 0;                           ///< of vectors of the reduced model
+  std::vector<std::vector<Uncertain>> value;
+  int pairs = 0;  ///< of vectors of the reduced model
 };
-/// `minus_l` is -L with the static states as `rest` says. Collective.
-[[nodiscard]] TimeCurve time_curve(operators::Systems& systems,
-                                   operators::KolmogorovOperator minus_l,
-                                   operators::StaticPhase rest, const Ends& ends,
-                                   ReducedModel::Nature nature, Integral integral,
-                                   const std::vector<double>& time, double unit, double tolerance);
+/// By reduced models grown until they stand still. Collective.
+[[nodiscard]] TimeCurve time_curve(Pencil& pencil, const Ends& ends, ReducedModel::Nature nature,
+                                   const std::vector<Fold>& folds, const std::vector<double>& time,
+                                   const TimeScales& scales, double tolerance);
+/// Those of the noise of a process, by the clock of time.
+[[nodiscard]] TimeScales time_scales(const model::Process& process);
 
 }  // namespace stickslip::quantities

@@ -20,6 +20,13 @@ inline const std::string kBackwardPrefix = "backward_";
 /// TS), which shares nothing with them but L.
 enum class TransientMethod { krylov, stepping };
 
+/// u -> E[u(Z_0)] for functions on an operator that keeps the static states. Collective.
+[[nodiscard]] petsc::VecHandle start_on(const operators::KolmogorovOperator& a,
+                                        const model::Start& start);
+/// Whether it is more than the rounding of the probabilities of mirror images, which add up to 0 on
+/// odd functions. Collective.
+[[nodiscard]] bool counts(Vec functional);
+
 /// C_vv(t) = E[(V_0 - m)(V_t - m)], m = E[V], as c exp(L t) b with the vectors of
 /// StationaryDistribution::velocity(). Errors are relative to C_vv(0). Collective.
 [[nodiscard]] std::vector<Uncertain> autocorrelation(operators::Systems& systems,

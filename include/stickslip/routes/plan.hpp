@@ -21,7 +21,12 @@ enum class Work {
   stick_duration_transforms,  ///< F_stick by itself
   resolvent,                  ///< of one lambda
   spectrum,
-  durations,  ///< densities and distribution functions
+  durations,          ///< densities and distribution functions
+  slips,              ///< variances of path lengths and net displacements
+  slip_transform,     ///< of one inverse distance
+  slip_distribution,  ///< density and distribution function
+  first_passage,      ///< to one speed
+  displacement,
   autocorrelation,
   expectation,
   relaxation
@@ -35,7 +40,7 @@ struct Use {
 
 struct Task {
   Work work;
-  std::size_t at = 0;  ///< index of its lambda
+  std::size_t at = 0;  ///< index of its lambda, inverse distance or speed
   std::vector<Use> uses = {};
   int derivatives = 0;  ///< of the operator, assembled and not factored
   /// Whether it makes operators and factorisations of its own besides, as many as its accuracy

@@ -64,7 +64,7 @@ class HpDiscretisation final : public VelocityDiscretisation {
   overlooked(const std::function<double(double)>& f) const override;
   [[nodiscard]] bool keeps_origin() const override { return false; }
   [[nodiscard]] double origin_rate(double) const override { return 0; }
-  [[nodiscard]] bool needs_holding() const override { return true; }
+  [[nodiscard]] bool needs_holding() const override { return !kills_at_top(); }
 
   struct Element {
     std::shared_ptr<const ReferenceElement> reference;
@@ -78,6 +78,8 @@ class HpDiscretisation final : public VelocityDiscretisation {
   [[nodiscard]] double drag_at_end(int end) const { return drag_at_ends_[end]; }
 
  private:
+  [[nodiscard]] std::unique_ptr<VelocityDiscretisation> up_to(double speed) const override;
+
   using Trace = std::vector<double> ReferenceElement::*;
 
   // The row of a node where B is `speed` and the flow leaves its element with the speeds `down` and

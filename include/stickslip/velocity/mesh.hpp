@@ -8,10 +8,11 @@
 
 namespace stickslip::velocity {
 
-/// Fastest rates of the equations (z - L) u = f to be solved [1/time].
+/// How far the equations (z - L) u = f to be solved go.
 struct Rates {
-  double lambda = 0;  ///< largest real z
-  double omega = 0;   ///< largest |Im z|
+  double lambda = 0;  ///< largest real z [1/time]
+  double omega = 0;   ///< largest |Im z| [1/time]
+  double speed = 0;   ///< largest |v| of which first passages are asked for
 };
 
 /// Functions of |v| that are seen on the nodes of the elements, as the drag is.

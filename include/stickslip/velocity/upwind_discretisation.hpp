@@ -15,7 +15,8 @@ namespace stickslip::velocity {
 ///
 /// u_0 being the inflow value. Levels above the static threshold own a state at v = 0. At the last
 /// node a positive speed is dropped, which makes it a holding state. Off-diagonals are >= 0 and
-/// rows sum to 0: T generates a Markov chain. Order 1 in h.
+/// rows sum to 0: T generates a Markov chain. Order 1 in h. Where bodies are killed, v_(J+1) is
+/// where.
 class UpwindDiscretisation final : public VelocityDiscretisation {
  public:
   /// `count` >= 1 nodes of spacing `spacing` > 0.
@@ -37,10 +38,13 @@ class UpwindDiscretisation final : public VelocityDiscretisation {
   [[nodiscard]] bool needs_holding() const override { return false; }
 
  private:
+  [[nodiscard]] std::unique_ptr<VelocityDiscretisation> up_to(double speed) const override;
+
   // The row of a node where the body moves on at `rate`, upwards or downwards as `direction` says.
   void fill(int j, double direction, double rate, TransportRow& row) const;
 
   double spacing_;
+  model::Drag drag_;
   std::vector<double> nodes_, weights_, cells_, drag_at_nodes_;
 };
 

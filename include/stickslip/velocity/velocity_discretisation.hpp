@@ -22,7 +22,7 @@ struct Entry {
 struct TransportRow {
   std::vector<Entry> entries;  ///< sorted by node, without the diagonal
   double inflow = 0;           ///< coefficient of u(0)
-  double outflow = 0;          ///< coefficient of the holding state
+  double outflow = 0;          ///< coefficient of the holding state, or of what lies beyond
 };
 
 /// The derivative of the speed B(v) with respect to a parameter.
@@ -78,6 +78,17 @@ class VelocityDiscretisation {
   /// Whether levels that still accelerate at v_max need a holding state there.
   [[nodiscard]] virtual bool needs_holding() const = 0;
 
+  /// Whether bodies that reach v_max are killed there, instead of waiting.
+  [[nodiscard]] bool kills_at_top() const { return kills_at_top_; }
+  /// The same on [0, speed], where bodies are killed that reach `speed` > 0, as fine there as at
+  /// v = 0; of both half lines.
+  [[nodiscard]] std::shared_ptr<const VelocityDiscretisation> killing_at(double speed) const {
+    auto own = up_to(speed);
+    own->kills_at_top_ = true;
+    if (mirrored_) own->set_mirrored(mirrored_->killing_at(speed));
+    return own;
+  }
+
   /// The velocity discretisation of the lower half line, where speeds are net_force - b(-v); this
   /// one for an odd b. It has the same nodes.
   [[nodiscard]] const VelocityDiscretisation& mirrored() const {
@@ -95,6 +106,9 @@ class VelocityDiscretisation {
   VelocityDiscretisation& operator=(const VelocityDiscretisation&) = default;
 
  private:
+  [[nodiscard]] virtual std::unique_ptr<VelocityDiscretisation> up_to(double speed) const = 0;
+
+  bool kills_at_top_ = false;
   std::shared_ptr<const VelocityDiscretisation> mirrored_;
 };
 

@@ -1,0 +1,34 @@
+#pragma once
+/// Where a body is after a time.
+
+#include <vector>
+
+#include "stickslip/model/start.hpp"
+#include "stickslip/quantities/transient.hpp"
+
+namespace stickslip::quantities {
+
+/// By time.
+struct Displacement {
+  std::vector<Uncertain> mean;      ///< E[x(t)], x(t) = int_0^t V [velocity time]
+  std::vector<Uncertain> variance;  ///< of x(t)
+};
+
+/// With V = m + V', m = E[V], x(t) = m t + y(t). From the stationary distribution y has mean 0 and
+/// the variance 2 int_0^t (t - s) C(s) ds, C the autocovariance of the velocity. From any other
+/// start its moments follow the backward equations
+///
+///   dm1/dt = L m1 + v',   dm2/dt = L m2 + 2 v' m1,
+///
+/// which one reduced model of both together solves for all times. Errors are relative to the
+/// variance at the largest time. Collective. Throws NotReached or NoMemory.
+[[nodiscard]] Displacement displacement(operators::Systems& systems,
+                                        const StationaryDistribution& distribution,
+                                        const model::Start& start, const std::vector<double>& time,
+                                        double tolerance);
+
+/// displacement_mean and displacement_variance.
+void append_displacement(const std::vector<double>& time, const Displacement& displacement,
+                         Results& results);
+
+}  // namespace stickslip::quantities

@@ -1,0 +1,179 @@
+#include "stickslip/quantities/displacement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/vectors.hpp"
+#include "stickslip/quantities/time_functions.hpp"
+
+namespace stickslip::quantities {
+namespace {
+
+using operators::KolmogorovOperator;
+using operators::State;
+using operators::StateKind;
+using operators::StaticPhase;
+using operators::Symmetry;
+using petsc::check;
+using petsc::dot;
+using Nature = ReducedModel::Nature;
+
+/// u2' = -A2 u2 + f u1, u1' = -A1 u1, f a function of the state, as one vector: u2 and then u1 of
+/// each rank.
+class CoupledPencil final : public Pencil {
+ public:
+  CoupledPencil(ProcessPencil& outer, ProcessPencil& inner, Vec f) : outer_(outer), inner_(inner) {
+    // Sliding states come in the same order, whatever the symmetry; at rest bodies do not move.
+    const auto sliding = [](const KolmogorovOperator& a) {
+      std::vector<PetscInt> places;
+      PetscInt at = 0;
+      a.states().for_each_local([&](const State& state) {
+        if (state.kind != StateKind::rest || !a.states().symmetry_reduced()) places.push_back(at);
+        ++at;
+      });
+      return places;
+    };
+    outer_places_ = sliding(outer.a());
+    inner_places_ = sliding(inner.a());
+    const petsc::ReadView value(f);
+    for (PetscInt place : inner_places_) f_.push_back(value[place]);
+  }
+
+  [[nodiscard]] petsc::VecHandle joined(Vec outer, Vec inner) const {
+    PetscInt first = 0, second = 0;
+    check(VecGetLocalSize(outer, &first));
+    check(VecGetLocalSize(inner, &second));
+    petsc::VecHandle all;
+    check(VecCreateMPI(PetscObjectComm(reinterpret_cast<PetscObject>(outer)), first + second,
+                       PETSC_DETERMINE, all.out()));
+    join(outer, inner, all);
+    return all;
+  }
+
+  void multiply(Vec x, Vec y, bool transposed) const override {
+    const auto [x2, x1] = apart(x);
+    const petsc::VecHandle y2 = outer_.a().zeros(), y1 = inner_.a().zeros();
+    outer_.multiply(x2, y2, transposed);
+    inner_.multiply(x1, y1, transposed);
+    transposed ? couple(-1, x2, outer_places_, y1, inner_places_)
+               : couple(-1, x1, inner_places_, y2, outer_places_);
+    join(y2, y1, y);
+  }
+
+  void solve(double z, Vec b, Vec x, bool transposed, bool refined) override {
+    const auto [b2, b1] = apart(b);
+    const petsc::VecHandle x2 = outer_.a().zeros(), x1 = inner_.a().zeros();
+    if (transposed) {
+      outer_.solve(z, b2, x2, true, refined);
+      couple(1, x2, outer_places_, b1, inner_places_);
+      inner_.solve(z, b1, x1, true, refined);
+    } else {
+      inner_.solve(z, b1, x1, false, refined);
+      couple(1, x1, inner_places_, b2, outer_places_);
+      outer_.solve(z, b2, x2, false, refined);
+    }
+    join(x2, x1, x);
+  }
+
+ private:
+  struct Parts {
+    petsc::VecHandle outer, inner;
+  };
+  [[nodiscard]] Parts apart(Vec all) const {
+    Parts parts{outer_.a().zeros(), inner_.a().zeros()};
+    const petsc::ReadView from(all);
+    petsc::WriteView outer(parts.outer), inner(parts.inner);
+    const auto* middle = from.data() + outer.size();
+    std::copy(from.data(), middle, outer.data());
+    std::copy(middle, middle + inner.size(), inner.data());
+    return parts;
+  }
+  static void join(Vec outer, Vec inner, Vec all) {
+    const petsc::ReadView first(outer), second(inner);
+    petsc::WriteView to(all);
+    std::copy(second.data(), second.data() + second.size(),
+              std::copy(first.data(), first.data() + first.size(), to.data()));
+  }
+  // y += sign f x.
+  void couple(double sign, Vec x, const std::vector<PetscInt>& from, Vec y,
+              const std::vector<PetscInt>& to) const {
+    const petsc::ReadView values(x);
+    petsc::WriteView sums(y);
+    for (std::size_t n = 0; n < f_.size(); ++n) sums[to[n]] += sign * f_[n] * values[from[n]];
+  }
+
+  ProcessPencil &outer_, &inner_;
+  std::vector<PetscInt> outer_places_, inner_places_;
+  std::vector<PetscScalar> f_;
+};
+
+petsc::VecHandle scaled(Vec x, double factor) {
+  petsc::VecHandle copy = petsc::copy_of(x);
+  check(VecScale(copy, factor));
+  return copy;
+}
+
+}  // namespace
+
+Displacement displacement(operators::Systems& systems, const StationaryDistribution& distribution,
+                          const model::Start& start, const std::vector<double>& time,
+                          double tolerance) {
+  const TimeScales scales = time_scales(systems.process());
+  ProcessPencil inner(systems, distribution.velocity_symmetry(), StaticPhase::kept);
+  const auto [v, c] = distribution.velocity(inner.a());
+  const double variance = dot(c, v), tau = scales.correlation;
+  const double longest = std::max(*std::max_element(time.begin(), time.end()) / tau, 1e-9);
+  const double spread = longest * longest / (1 + longest);  // variance of y, in about these units
+  const petsc::VecHandle weight = distribution.weight_on(inner.a());
+  Displacement x;
+  x.mean.resize(time.size());
+  if (start.kind == model::Start::Kind::stationary) {
+    const double unit = variance * tau * tau * spread;
+    const auto half =
+        time_curve(inner, {v, c, weight}, Nature::smooth, {{2, unit}}, time, scales, tolerance);
+    for (const Uncertain& value : half.value[0]) x.variance.push_back(2.0 * value);
+  } else {
+    // In units of the standard deviation of the velocity and of tau.
+    const double unit = 1 / std::sqrt(variance);
+    ProcessPencil outer(systems, operators::symmetry_of(systems.process()), StaticPhase::kept);
+    const petsc::VecHandle b = scaled(v, unit / tau);
+    CoupledPencil both(outer, inner, scaled(b, 2));
+    const petsc::VecHandle first = start_on(inner.a(), start), second = start_on(outer.a(), start),
+                           none = inner.a().zeros(), nothing = outer.a().zeros();
+    if (counts(first)) {
+      x.mean = time_curve(inner, {b, first, weight}, Nature::rough, {{1, std::sqrt(spread)}}, time,
+                          scales, tolerance)
+                   .value[0];
+    }
+    const petsc::VecHandle all_b = both.joined(nothing, b), all_c = both.joined(second, none),
+                           all = both.joined(distribution.weight_on(outer.a()), weight);
+    x.variance =
+        time_curve(both, {all_b, all_c, all}, Nature::rough, {{1, spread}}, time, scales, tolerance)
+            .value[0];
+    for (std::size_t n = 0; n < time.size(); ++n) {
+      x.variance[n] = variance * tau * tau * (x.variance[n] - x.mean[n] * x.mean[n]);
+      x.mean[n] = tau / unit * x.mean[n];
+    }
+  }
+  const auto& excursion = distribution.excursion();
+  const double drift =
+      excursion.mean_drift(*systems.discretisation().noise) / excursion.mean_excursion();
+  const double defect = excursion.conservation_defect(systems.discretisation());
+  for (std::size_t n = 0; n < time.size(); ++n) {
+    x.mean[n] = x.mean[n] + Uncertain{drift * time[n], defect * std::abs(drift) * time[n]};
+  }
+  return x;
+}
+
+void append_displacement(const std::vector<double>& time, const Displacement& displacement,
+                         Results& results) {
+  Result mean = array("displacement_mean", "velocity*time", "time", time);
+  Result variance = array("displacement_variance", "velocity^2*time^2", "time", time);
+  for (const auto& value : displacement.mean) append_value(mean, value);
+  for (const auto& value : displacement.variance) append_value(variance, value);
+  results.push_back(std::move(mean));
+  results.push_back(std::move(variance));
+}
+
+}  // namespace stickslip::quantities

@@ -1,0 +1,119 @@
+#include "stickslip/quantities/first_passage.hpp"
+
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "stickslip/operators/static_chain.hpp"
+#include "stickslip/petsc/check.hpp"
+
+namespace stickslip::quantities {
+namespace {
+
+using operators::Branch;
+using operators::KolmogorovOperator;
+using operators::StaticPhase;
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+/// The static phase of a process by level, from the lowest up.
+struct Sticking {
+  explicit Sticking(const model::Process& process) {
+    const auto chain = operators::StaticChain::of(process);
+    time = chain.integral(std::vector<double>(static_cast<std::size_t>(chain.size()), 1.0));
+    up = chain.upward_exit_transform();
+    down = chain.downward_exit_transform();
+    const auto all = model::stationary_distribution(process.noise);
+    const auto first = all.begin() + (process.lowest_static() - process.noise.lowest());
+    stationary.assign(first, first + chain.size());
+  }
+  std::vector<double> time;        ///< mean, until it is left
+  std::vector<double> up, down;    ///< probabilities of leaving upwards, downwards
+  std::vector<double> stationary;  ///< probabilities of the levels
+};
+
+/// What becomes of a slide until it reaches the speed or the excursion ends.
+struct Slide {
+  double time = 0;          // sliding and sticking
+  double up = 0, down = 0;  // probabilities of the side from which the next one starts
+  double reached = 0;
+};
+
+Slide slide_of(const KolmogorovOperator& a, Vec nu, const Sticking& sticking) {
+  PetscScalar time = 0;
+  petsc::check(VecSum(nu, &time));
+  std::vector<double> entry;
+  for (const auto& p : a.entry_rates(nu)) entry.push_back(PetscRealPart(p));
+  return {PetscRealPart(time) + dot(entry, sticking.time), dot(entry, sticking.up),
+          dot(entry, sticking.down), a.rate_at_top(nu)};
+}
+
+/// The numbers of a speed, by side.
+struct Passage {
+  double exceeded, from_slide, from_rest;
+};
+
+Passage passage(const SideChain& sides, const Sticking& sticking, const Slide& plus,
+                const Slide& minus, Slide rest) {
+  const double across =
+      plus.down * minus.reached + plus.reached * minus.up + plus.reached * minus.reached;
+  const double from_plus =
+                   (plus.time * (minus.up + minus.reached) + plus.down * minus.time) / across,
+               from_minus =
+                   (minus.time * (plus.down + plus.reached) + minus.up * plus.time) / across;
+  const double up = sides.share_of_plus(), down = sides.share_of_minus();
+  rest.time += dot(sticking.stationary, sticking.time);
+  rest.up += dot(sticking.stationary, sticking.up);
+  rest.down += dot(sticking.stationary, sticking.down);
+  return {up * plus.reached + down * minus.reached, up * from_plus + down * from_minus,
+          rest.time + rest.up * from_plus + rest.down * from_minus};
+}
+
+// With symmetry where all slides are alike, whichever side comes next.
+Slide mirrored(Slide slide) {
+  std::swap(slide.up, slide.down);
+  return slide;
+}
+
+}  // namespace
+
+FirstPassage first_passage(operators::Systems& systems, const SideChain& sides, double speed) {
+  const auto& process = systems.process();
+  operators::SystemKey key{0, operators::symmetry_of(process)};
+  key.speed_limit = speed;
+  auto& system = systems.at(key);
+  const KolmogorovOperator& a = system.a();
+  const Sticking sticking(process);
+  // Also before the last correction, which shows rounding.
+  const auto follow = [&](Vec start) {
+    const petsc::Solution nu = system.factors().solve_transposed(start);
+    petsc::check(VecAYPX(nu.correction, -1, nu.x));
+    return std::pair{slide_of(a, nu.x, sticking), slide_of(a, nu.correction, sticking)};
+  };
+  const auto plus = follow(a.trace_at_exit(Branch::positive));
+  const auto minus = process.symmetric() ? std::pair{mirrored(plus.first), mirrored(plus.second)}
+                                         : follow(a.trace_at_exit(Branch::negative));
+  const auto rest = follow(a.mean_at_zero(model::stationary_distribution(process.noise)));
+  const Passage p = passage(sides, sticking, plus.first, minus.first, rest.first),
+                q = passage(sides, sticking, plus.second, minus.second, rest.second);
+  return {{p.exceeded, std::abs(p.exceeded - q.exceeded)},
+          {p.from_slide, std::abs(p.from_slide - q.from_slide)},
+          {p.from_rest, std::abs(p.from_rest - q.from_rest)}};
+}
+
+void append_first_passages(const std::vector<double>& speed,
+                           const std::vector<FirstPassage>& passages, Results& results) {
+  const auto append = [&](const Name& name, Uncertain FirstPassage::*member) {
+    Result result = array(name.key, name.unit, "velocity", speed, name.kind);
+    result.each_by_its_size = true;
+    for (const auto& passage : passages) append_value(result, passage.*member);
+    results.push_back(std::move(result));
+  };
+  append({"P_peak", "", Kind::probability}, &FirstPassage::exceeded);
+  append({"mean_first_passage", "time", Kind::positive_mean}, &FirstPassage::from_slide);
+  append({"mean_first_passage_rest", "time", Kind::positive_mean}, &FirstPassage::from_rest);
+}
+
+}  // namespace stickslip::quantities
