@@ -222,6 +222,25 @@ void read_start(const Settings& settings, Request& request, Problems& problems) 
   }
 }
 
+// Below the speed to which bodies tend on the highest level of the noise, on either side.
+void check_speeds(const Settings& settings, const Request& request, Problems& problems) {
+  if (!request.question.wants(Quantity::peak)) return;
+  const auto process = request.scene.meant();
+  double reached = 0;
+  for (const auto& half : {process, process.mirrored()}) {
+    reached = std::max(reached, half.drag.terminal_velocity(half.net_force(half.noise.highest())));
+  }
+  for (double speed : request.question.velocity) {
+    if (speed < reached) continue;
+    settings.report(problems, "velocity",
+                    fmt::format("holds {:g}, which no body reaches: on the highest level of the "
+                                "noise speeds tend to {:g}",
+                                speed, reached),
+                    "take smaller speeds");
+    return;
+  }
+}
+
 // A path is kept in memory.
 void check_horizon(const Settings& settings, const Request& request, Problems& problems) {
   const double horizon = request.question.horizon;
@@ -252,6 +271,7 @@ void read_question(const Settings& settings, Request& request, Problems& problem
   question.accuracy_given = settings.given("accuracy");
   question.horizon = settings.real("horizon");
   check_horizon(settings, request, problems);
+  check_speeds(settings, request, problems);
   if (!problems.empty()) return;  // the others look at states of the model
   if (depends_on(question, "start")) read_start(settings, request, problems);
   examine_observables(settings, request, problems);

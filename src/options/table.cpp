@@ -141,38 +141,9 @@ std::vector<Option> scene_options() {
   return all;
 }
 
-std::vector<Option> question_options() {
+// Where functions are asked for.
+std::vector<Option> argument_options() {
   return {
-      list(
-          "quantities", "sticking,moments,noise_law", words_of(quantity_table()),
-          "comma list. sticking: P_stick, P_slide, mean_stick, mean_slide, mean_excursion. "
-          "moments: E_V2, E_absV, E_XV, E_V. averages: pi(f), pi(f|stick), pi(f|slide) for each "
-          "-observable f, slip_rate = 1/mean_excursion, friction_power = E[F(V) |V|]. noise_law: "
-          "P_X_le_mu_s, E_X2. entry_law: the level at which a slide from s+ ends (an array; "
-          "without symmetry also entry_law_minus, from s-), f_stick_0. density: the stationary "
-          "law as a field "
-          "(needs -output). laplace: F_slide, F_stick, F_excursion on -lambda. F_stick: that "
-          "alone, from the noise at rest. resolvent: h_plus, h_minus, w_one and for each "
-          "-observable u, w_plus, w_minus, pi, mu on -lambda (pi_lambda beside averages). "
-          "relaxation: leading eigenvalues of "
-          "-L, with symmetry for even and odd functions. spectrum: S_v of V - E[V] on -omega, "
-          "S_0, diffusivity = S_0/2, "
-          "fwhm, t_corr = 1/fwhm, variance_from_spectrum. duration_density: f_slide, f_stick, "
-          "f_excursion and cdf_slide, cdf_stick, cdf_excursion on -time. autocorrelation: C_vv = "
-          "E[(V_0 - m)(V_t - m)], m = E[V], on -time. expectation: E[f(Z_t)] from -start for each "
-          "-observable on "
-          "-time, and its limit pi(f). slip: mean and variance of the path length of a slide "
-          "(mean_slip, var_slip) and of its net displacement (mean_slip_net, var_slip_net), f_slip "
-          "and cdf_slip of the path length on -distance, F_slip on -inverse_distance. peak, on "
-          "-velocity: P_peak = P(the largest speed of a slide > w), mean_first_passage and "
-          "mean_first_passage_rest = mean time until |V| first reaches w from the start of a slide "
-          "and from rest. displacement: displacement_mean and displacement_variance of int_0^t V "
-          "from -start, on -time. trajectory: one simulated path from -start up to "
-          "-horizon, to -output or -trajectory. sensitivity: derivatives of every scalar of "
-          "sticking, moments and noise_law, as far as these are asked for, with respect to mu_d, "
-          "mu_d_minus (if given), tau (at a fixed number of noise levels) and drag_coefficient, "
-          "with -friction stribeck also mu_s and stribeck_velocity, by adjoints: "
-          "dP_stick_dmu_d and so on; between two noise levels no threshold of rest counts"),
       arguments(
           "lambda", "1/time",
           "values of lambda, as a,b,c or first:last:count or first:last:count:log. With -route "
@@ -186,6 +157,43 @@ std::vector<Option> question_options() {
       arguments("inverse_distance", "1/(velocity*time)",
                 "values s of F_slip = E[exp(-s path length)], in the forms of -lambda"),
       arguments("velocity", "velocity", "speeds w > 0 of peak, in the forms of -lambda"),
+  };
+}
+
+std::vector<Option> question_options() {
+  std::vector<Option> all{list(
+      "quantities", "sticking,moments,noise_law", words_of(quantity_table()),
+      "comma list. sticking: P_stick, P_slide, mean_stick, mean_slide, mean_excursion. "
+      "moments: E_V2, E_absV, E_XV, E_V. averages: pi(f), pi(f|stick), pi(f|slide) for each "
+      "-observable f, slip_rate = 1/mean_excursion, friction_power = E[F(V) |V|]. noise_law: "
+      "P_X_le_mu_s, E_X2. entry_law: the level at which a slide from s+ ends (an array; "
+      "without symmetry also entry_law_minus, from s-), f_stick_0. density: the stationary "
+      "law as a field "
+      "(needs -output). laplace: F_slide, F_stick, F_excursion on -lambda. F_stick: that "
+      "alone, from the noise at rest. resolvent: h_plus, h_minus, w_one and for each "
+      "-observable u, w_plus, w_minus, pi, mu on -lambda (pi_lambda beside averages). "
+      "relaxation: leading eigenvalues of "
+      "-L, with symmetry for even and odd functions. spectrum: S_v of V - E[V] on -omega, "
+      "S_0, diffusivity = S_0/2, "
+      "fwhm, t_corr = 1/fwhm, variance_from_spectrum. duration_density: f_slide, f_stick, "
+      "f_excursion and cdf_slide, cdf_stick, cdf_excursion on -time. autocorrelation: C_vv = "
+      "E[(V_0 - m)(V_t - m)], m = E[V], on -time. expectation: E[f(Z_t)] from -start for each "
+      "-observable on "
+      "-time, and its limit pi(f). slip: mean and variance of the path length of a slide "
+      "(mean_slip, var_slip) and of its net displacement (mean_slip_net, var_slip_net), f_slip "
+      "and cdf_slip of the path length on -distance, F_slip on -inverse_distance. peak, on "
+      "-velocity: P_peak = P(the largest speed of a slide > w), mean_first_passage and "
+      "mean_first_passage_rest = mean time until |V| first reaches w from the start of a slide "
+      "and from rest. displacement: displacement_mean and displacement_variance of int_0^t V "
+      "from -start, on -time. trajectory: one simulated path from -start up to "
+      "-horizon, to -output or -trajectory. sensitivity: derivatives of every scalar of "
+      "sticking, moments and noise_law, as far as these are asked for, with respect to mu_d, "
+      "mu_d_minus (if given), tau (at a fixed number of noise levels) and drag_coefficient, "
+      "with -friction stribeck also mu_s and stribeck_velocity, by adjoints: "
+      "dP_stick_dmu_d and so on; between two noise levels no threshold of rest counts")};
+  const auto arguments = argument_options();
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  const std::vector<Option> others{
       text("start", "s+",
            "at time 0 of expectation, displacement and trajectory: s+, s-, x,v with x a noise "
            "level, rest (X in "
@@ -201,6 +209,8 @@ std::vector<Option> question_options() {
            "relative error wanted for every scalar asked for, at the given delta",
            "double precision allows down to about 1e-14, case by case"),
   };
+  all.insert(all.end(), others.begin(), others.end());
+  return all;
 }
 
 std::vector<Option> method_options() {

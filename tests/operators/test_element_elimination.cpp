@@ -16,6 +16,7 @@
 #include "stickslip/support/errors.hpp"
 
 using namespace stickslip;
+using operators::Clock;
 using operators::ElementElimination;
 using operators::KolmogorovOperator;
 using operators::StaticPhase;
@@ -104,6 +105,21 @@ TEST_CASE("element elimination: solves every kind of system, plain and transpose
                   << static_cast<int>(rest));
       const KolmogorovOperator a(PETSC_COMM_WORLD, c.on, 0.4, c.symmetry, rest);
       for (bool share : {true, false}) check_solves(a, share);
+    }
+  }
+}
+
+TEST_CASE("element elimination: by the clock of path length, and killed at a speed", "[parallel]") {
+  for (const auto& c : cases()) {
+    INFO(c.name << ", symmetry " << static_cast<int>(c.symmetry));
+    const KolmogorovOperator slow(PETSC_COMM_WORLD, c.on, 3, c.symmetry, StaticPhase::killing,
+                                  Clock::path_length);
+    check_solves(slow);
+    for (double speed : {0.01, 0.4}) {
+      for (StaticPhase rest : {StaticPhase::killing, StaticPhase::kept}) {
+        const auto below = c.on.killing_at(speed);
+        check_solves({PETSC_COMM_WORLD, below, 0, c.symmetry, rest});
+      }
     }
   }
 }
