@@ -74,7 +74,9 @@ checkpoint::Identity identity(const Case& given) {
                                       {"laplace", !wanted.lambda.empty()},
                                       {"resolvent", !wanted.discount.empty()},
                                       {"duration_density", !wanted.edges.empty()},
-                                      {"expectation", wanted.start.has_value()},
+                                      {"slip", wanted.slip},
+                                      {"expectation", wanted.expectation},
+                                      {"displacement", wanted.travel},
                                       {"autocorrelation", wanted.autocorrelation}}) {
     if (whether) followed.emplace_back(name);
   }
@@ -85,6 +87,8 @@ checkpoint::Identity identity(const Case& given) {
   add("-omega", wanted.omega);
   const bool timed = !wanted.edges.empty() || !wanted.time.empty();
   add("-time", timed ? given.question.time : wanted.time);
+  add("-inverse_distance", wanted.inverse_distance);
+  add("-distance", wanted.path_edges.empty() ? wanted.path_edges : given.question.distance);
   if (const auto& start = wanted.start) {
     found.emplace_back(
         "-start", fmt::format("{} {} {}", static_cast<int>(start->kind), start->level, start->v));

@@ -77,12 +77,14 @@ class Estimates {
     if (wants(laplace)) append_laplace();
     if (wants(stick_duration_transform) && !wants(laplace)) transform("F_stick", Duration::stick);
     if (wants(duration_density)) append_durations();
+    if (wants(slip)) append_slip();
     if (wants(spectrum)) append_spectrum();
     if (wants(resolvent)) append_resolvent();
     if (wants(autocorrelation)) {
       over("C_vv", "velocity^2", "time", question_.time,
            [&](std::size_t n) { return tally_.autocorrelation(n); });
     }
+    if (wants(displacement)) append_displacement();
     if (wants(expectation)) append_expectations();
     return std::move(results_);
   }
@@ -174,20 +176,44 @@ class Estimates {
         Kind::transform);
   }
 
+  // f_ and cdf_ of what is below t with probability(0, t).
+  template <class Probability>
+  void append_law(const std::string& key, const char* unit, const char* name,
+                  const std::vector<double>& abscissa, const Probability& probability) {
+    const auto cells = cells_around(abscissa);
+    over(key, unit, name, abscissa, [&](std::size_t n) {
+      const auto [low, high] = cells[n];
+      return divided(probability(low, high), high - low);
+    });
+    over(
+        "cd" + key, "", name, abscissa, [&](std::size_t n) { return probability(0, abscissa[n]); },
+        Kind::distribution);
+  }
+
   void append_durations() {
-    const auto& time = question_.time;
-    const auto cells = cells_around(time);
-    for (const auto& [key, which] : names("f_")) {
-      const Duration duration = which;
-      over(key, "1/time", "time", time, [&](std::size_t n) {
-        const auto [low, high] = cells[n];
-        return divided(tally_.probability(duration, low, high), high - low);
-      });
-      const auto distribution = [&](std::size_t n) {
-        return tally_.probability(duration, 0, time[n]);
-      };
-      over("cd" + key, "", "time", time, distribution, Kind::distribution);
+    for (const auto& [key, duration] : names("f_")) {
+      append_law(key, "1/time", "time", question_.time,
+                 [&, duration = duration](double low, double high) {
+                   return tally_.probability(duration, low, high);
+                 });
     }
+  }
+
+  void append_slip() {
+    for (const auto& [key, e] : tally_.slip()) {
+      const bool net = key == "mean_slip_net", mean = key.starts_with("mean");
+      const Kind kind = net ? Kind::drift : Kind::positive_mean;
+      scalar(key, {"", mean ? "velocity*time" : "velocity^2*time^2", kind},
+             net && !process_.drifts() ? Estimate{} : e);
+    }
+    if (!question_.distance.empty()) {
+      append_law("f_slip", "1/(velocity*time)", "distance", question_.distance,
+                 [&](double low, double high) { return tally_.slip_probability(low, high); });
+    }
+    if (question_.inverse_distance.empty()) return;
+    over(
+        "F_slip", "", "inverse_distance", question_.inverse_distance,
+        [&](std::size_t n) { return tally_.slip_transform(n); }, Kind::transform);
   }
 
   void append_spectrum() {
@@ -220,6 +246,17 @@ class Estimates {
       append(tally_.resolvent(largest, f), "(" + question_.observables[f].name + ")",
              [&](std::size_t n) { return tally_.resolvent(n, f); });
     }
+  }
+
+  void append_displacement() {
+    const bool still = !process_.drifts() && question_.start.kind != model::Start::Kind::state;
+    over(
+        "displacement_mean", "velocity*time", "time", question_.time,
+        [&](std::size_t n) { return still ? Estimate{} : tally_.travel(n)[0].second; },
+        Kind::drift);
+    over(
+        "displacement_variance", "velocity^2*time^2", "time", question_.time,
+        [&](std::size_t n) { return tally_.travel(n)[1].second; }, Kind::positive_mean);
   }
 
   void append_expectations() {
@@ -264,10 +301,17 @@ simulation::Wanted wanted_of(const options::Question& question, const model::Pro
     wanted.observables.push_back(model::friction_power(process.friction));
   }
   if (wants(Quantity::resolvent)) wanted.discount = question.lambda;
-  if (wants(Quantity::expectation)) wanted.start = question.start;
+  wanted.expectation = wants(Quantity::expectation);
+  wanted.travel = wants(Quantity::displacement);
+  if (wanted.expectation || wanted.travel) wanted.start = question.start;
   wanted.autocorrelation = wants(Quantity::autocorrelation);
   if (wanted.start || wanted.autocorrelation) wanted.time = question.time;
   if (wants(Quantity::duration_density)) wanted.edges = edges_of(question.time);
+  wanted.slip = wants(Quantity::slip);
+  if (wanted.slip) {
+    wanted.path_edges = edges_of(question.distance);
+    wanted.inverse_distance = question.inverse_distance;
+  }
   return wanted;
 }
 

@@ -114,7 +114,8 @@ class Source : public ExcursionSource {
  private:
   // Until rest; `wait` is the time to the next jump of the noise.
   void slide(RandomStream& random, Excursion& e, double& wait, int i) {
-    const bool integrals = wanted_.moments || wanted_.displacement || !wanted_.omega.empty();
+    const bool integrals =
+        wanted_.moments || wanted_.displacement || wanted_.slip || !wanted_.omega.empty();
     int sign = levels_.direction(i);
     double speed = 0;
     for (;;) {

@@ -18,7 +18,7 @@ Sampler::Sampler(const model::Process& process, const Wanted& wanted)
     : process_(process),
       wanted_(wanted),
       source_(make_source(process, wanted)),
-      walk_(make_walk(process)),
+      walk_(make_walk(process, wanted.travel)),
       order_(wanted.time.size()),
       states_(wanted.time.size()) {
   std::iota(order_.begin(), order_.end(), std::size_t{0});
@@ -40,14 +40,17 @@ Tally Sampler::batch(std::uint64_t seed, std::uint64_t batch, int count) {
     }
     if (!wanted_.chosen_paths()) continue;
     walk_->begin({seed, path_stream(batch, n, 2)}, *wanted_.start);
-    tally.add_path(0, false, 1, follow(0));
+    tally.add_path(0, false, 1, follow(walk_->state()));
     tally.add_jumps(walk_->jumps());
   }
   return tally;
 }
 
-const std::vector<State>& Sampler::follow(double begun) {
-  for (std::size_t n : order_) states_[n] = walk_->advance(begun + wanted_.time[n]);
+const std::vector<State>& Sampler::follow(const State& first) {
+  for (std::size_t n : order_) {
+    states_[n] = walk_->advance(first.time + wanted_.time[n]);
+    states_[n].displacement -= first.displacement;
+  }
   return states_;
 }
 
@@ -62,7 +65,7 @@ void Sampler::add_stationary(const RandomStream& random, std::size_t side, doubl
   const double jumps = walk_->jumps();
   walk_->begin(random, start);
   const State first = walk_->advance(place * duration);
-  const auto& states = follow(place * duration);
+  const auto& states = follow(first);
   if (!wanted_.chosen_paths()) tally.add_path(side, turned, duration, states);
   tally.add_lagged(side, turned, duration, first, states);
   tally.add_jumps(jumps + walk_->jumps());

@@ -37,6 +37,9 @@ enum Transform : std::size_t {
 enum Observed : std::size_t { f_slide = 3, f_stick, size_of_observed };  // after slide, stick
 enum Discount : std::size_t { h_same = 1, h_other, w_one, w_f, w_mirrored, size_of_discounts };
 enum Expected : std::size_t { weight = 1, weighted, size_of_expected };
+enum Travel : std::size_t { travelled = 2, travelled_square, size_of_travels };  // after weight
+enum Slip : std::size_t { length = 1, length_square, net, net_square, size_of_slips };
+constexpr std::size_t kSlipHistogram = 4;
 enum Lagged : std::size_t { duration_of_lagged = 1, v_start, v_end, v_v, size_of_lagged };
 
 Smooth mean_of(const Means& m, Duration duration) {
@@ -63,11 +66,20 @@ Tally::Tally(const model::Process& process, const Wanted& wanted)
   group(spectra, wanted.omega.size(), size_of_transforms, sides);
   group(observed, functions, size_of_observed, sides);
   group(discounted, functions * wanted.discount.size(), size_of_discounts, sides);
-  group(expected, wanted.start ? functions * wanted.time.size() : 0, size_of_expected,
-        wanted.chosen_paths() ? 1 : sides);
-  group(lagged, wanted.autocorrelation ? wanted.time.size() : 0, size_of_lagged, sides);
+  const std::size_t times = wanted.time.size(), starts = wanted.chosen_paths() ? 1 : sides;
+  group(expected, wanted.expectation ? functions * times : 0, size_of_expected, starts);
+  group(lagged, wanted.autocorrelation ? times : 0, size_of_lagged, sides);
+  group(travels, wanted.travel ? times : 0, size_of_travels, starts);
+  group(slips, wanted.slip ? 1 : 0, size_of_slips, sides);
+  group(slip_transforms, wanted.inverse_distance.size(), 2, sides);
   histograms_.emplace_back(symmetric_, bin(process.static_index()) + 1);
-  histograms_.resize(wanted.edges.empty() ? 1 : 4, Histogram(symmetric_, wanted.edges.size() + 1));
+  for (std::size_t h = 1; h <= kSlipHistogram; ++h) {
+    histograms_.emplace_back(symmetric_, edges(h).empty() ? 0 : edges(h).size() + 1);
+  }
+}
+
+const std::vector<double>& Tally::edges(std::size_t histogram) const {
+  return histogram < kSlipHistogram ? wanted_.edges : wanted_.path_edges;
 }
 
 std::size_t Tally::bin(int level) const {
@@ -93,12 +105,21 @@ void Tally::add(std::size_t side, const Excursion& e) {
   }
   add_transforms(side, e);
   add_integrals(side, e);
+  if (wanted_.slip) add_slip(side, e);
   histograms_[0].add(side, e.turned, bin(e.entry));
-  const auto& edges = wanted_.edges;
-  const std::array durations{e.slide, e.stick, whole};
-  for (std::size_t n = 1; n < histograms_.size(); ++n) {
-    const auto above = std::upper_bound(edges.begin(), edges.end(), durations[n - 1]);
-    histograms_[n].add(side, e.turned, static_cast<std::size_t>(above - edges.begin()));
+  const std::array values{e.slide, e.stick, whole, e.path};
+  for (std::size_t h = 1; h < histograms_.size(); ++h) {
+    if (histograms_[h].bins() == 0) continue;
+    const auto above = std::upper_bound(edges(h).begin(), edges(h).end(), values[h - 1]);
+    histograms_[h].add(side, e.turned, static_cast<std::size_t>(above - edges(h).begin()));
+  }
+}
+
+void Tally::add_slip(std::size_t side, const Excursion& e) {
+  const double turned = e.turned ? 1 : 0;
+  keep(slips, 0, side, {turned, e.path, e.path * e.path, e.drift, e.drift * e.drift});
+  for (std::size_t n = 0; n < wanted_.inverse_distance.size(); ++n) {
+    keep(slip_transforms, n, side, {turned, std::exp(-wanted_.inverse_distance[n] * e.path)});
   }
 }
 
@@ -140,6 +161,10 @@ void Tally::add_path(std::size_t side, bool turned, double weight,
     const State& z = states[n % times];
     const double value = even ? f.even(z.x, z.y, z.v) : f(z.x, z.y, z.v);
     keep(expected, n, side, {turned ? 1.0 : 0.0, weight, weight * value});
+  }
+  for (std::size_t n = 0; n < places_[travels].members; ++n) {
+    const double x = states[n].displacement;
+    keep(travels, n, side, {turned ? 1.0 : 0.0, weight, weight * x, weight * x * x});
   }
 }
 
@@ -229,16 +254,37 @@ Estimate Tally::laplace(std::size_t n, Duration duration) const {
 }
 
 Estimate Tally::probability(Duration duration, double low, double high) const {
-  const auto& edges = wanted_.edges;
+  return between(1 + static_cast<std::size_t>(duration), low, high);
+}
+
+Estimate Tally::between(std::size_t histogram, double low, double high) const {
+  const auto& all = edges(histogram);
   const auto bin_from = [&](double edge) {
-    return static_cast<std::size_t>(std::lower_bound(edges.begin(), edges.end(), edge) -
-                                    edges.begin()) +
+    return static_cast<std::size_t>(std::lower_bound(all.begin(), all.end(), edge) - all.begin()) +
            1;
   };
   const std::size_t first = low > 0 ? bin_from(low) : 0,
-                    last = std::isfinite(high) ? bin_from(high) : edges.size() + 1;
-  return histograms_[1 + static_cast<std::size_t>(duration)].mean(
+                    last = std::isfinite(high) ? bin_from(high) : all.size() + 1;
+  return histograms_[histogram].mean(
       [&](std::size_t n) { return first <= n && n < last ? 1.0 : 0.0; });
+}
+
+Named Tally::slip() const {
+  const Means m = means(slips);
+  const Smooth mean = m.overall(length), mean_net = m.overall(net, -1);
+  return {{"mean_slip", m.estimate(mean)},
+          {"var_slip", m.estimate(m.overall(length_square) - mean * mean)},
+          {"mean_slip_net", m.estimate(mean_net)},
+          {"var_slip_net", m.estimate(m.overall(net_square) - mean_net * mean_net)}};
+}
+
+Estimate Tally::slip_transform(std::size_t n) const {
+  const Means m = means(slip_transforms, n);
+  return m.estimate(m.overall(1));
+}
+
+Estimate Tally::slip_probability(double low, double high) const {
+  return between(kSlipHistogram, low, high);
 }
 
 // Let C be the transform of v over an excursion, T its duration, and H(s, s') and K(s, s') the
@@ -321,6 +367,15 @@ Estimate Tally::autocorrelation(std::size_t n) const {
   const Smooth duration = m.overall(duration_of_lagged);
   return m.estimate(m.overall(v_v) / duration -
                     m.overall(v_start, -1) * m.overall(v_end, -1) / (duration * duration));
+}
+
+// With symmetry paths from rest and stationary ones are as likely as their mirror images.
+Named Tally::travel(std::size_t n) const {
+  const Means m = means(travels, n);
+  const bool even = symmetric_ && wanted_.start->kind != model::Start::Kind::state;
+  const Smooth all = m.overall(weight), mean = m.overall(travelled, even ? -1 : 1) / all;
+  return {{"displacement_mean", m.estimate(mean)},
+          {"displacement_variance", m.estimate(m.overall(travelled_square) / all - mean * mean)}};
 }
 
 // All that is kept, row by row.

@@ -26,8 +26,13 @@ struct Wanted {
   std::vector<model::Observable> observables = {};  ///< integrals of them, and values along paths
   std::vector<double> discount = {};                ///< resolvent of them at these lambda [1/time]
   std::vector<double> time = {};                    ///< along paths [time]
-  std::optional<model::Start> start = {};           ///< of paths along which observables are taken
+  std::optional<model::Start> start = {};           ///< of paths
+  bool expectation = false;                         ///< of observables along paths
+  bool travel = false;                              ///< int v dt along paths and its spread
   bool autocorrelation = false;                     ///< of v along stationary paths
+  bool slip = false;                                ///< path and displacement of slides
+  std::vector<double> path_edges = {};              ///< rising edges of paths [velocity*time]
+  std::vector<double> inverse_distance = {};        ///< transforms of paths
 
   /// Whether there are paths that start from a state or from rest, and stationary ones.
   [[nodiscard]] bool chosen_paths() const {

@@ -14,6 +14,7 @@ namespace stickslip::simulation {
 /// The process at some time; y = sign of the motion, 0 at rest.
 struct State {
   double time = 0, x = 0, y = 0, v = 0;
+  double displacement = 0;  ///< int v dt since the beginning, where it is followed
 };
 
 /// The process on its way. Between events X and Y stay and V follows the flow. Local.
@@ -35,7 +36,8 @@ class Walk {
   double end_excursion();
 };
 
-[[nodiscard]] std::unique_ptr<Walk> make_walk(const model::Process& process);
+[[nodiscard]] std::unique_ptr<Walk> make_walk(const model::Process& process,
+                                              bool displacement = false);
 
 /// Draws levels of the noise from its stationary distribution. Local.
 class NoiseLevels {

@@ -24,7 +24,7 @@ class Sampler {
 
  private:
   void add_stationary(const RandomStream& random, std::size_t side, double place, Tally& tally);
-  [[nodiscard]] const std::vector<State>& follow(double begun);
+  [[nodiscard]] const std::vector<State>& follow(const State& first);
 
   model::Process process_;
   Wanted wanted_;

@@ -66,6 +66,11 @@ class Tally {
   [[nodiscard]] Estimate laplace(std::size_t n, Duration duration) const;
   /// P(low <= D < high); low and high are edges, or 0 and infinity.
   [[nodiscard]] Estimate probability(Duration duration, double low, double high) const;
+  /// Mean and variance of the path length of a slide and of its net displacement.
+  [[nodiscard]] Named slip() const;
+  /// E[exp(-s L)] of the path length L of a slide for the n-th s, and P(low <= L < high).
+  [[nodiscard]] Estimate slip_transform(std::size_t n) const;
+  [[nodiscard]] Estimate slip_probability(double low, double high) const;
   /// S_v at the n-th omega, and at 0, of V - E[V]; see tally.cpp.
   [[nodiscard]] Estimate spectrum(std::size_t n) const;
   [[nodiscard]] Estimate spectrum_at_zero() const;
@@ -77,6 +82,8 @@ class Tally {
   /// E[f(Z_t)] for the f-th observable at the n-th time, and E[(V_0 - m)(V_t - m)].
   [[nodiscard]] Estimate expectation(std::size_t f, std::size_t n) const;
   [[nodiscard]] Estimate autocorrelation(std::size_t n) const;
+  /// Mean and variance of int_0^t V at the n-th time.
+  [[nodiscard]] Named travel(std::size_t n) const;
 
   /// All numbers in a row, and back. `unpack` expects a tally of the same questions, and throws
   /// std::invalid_argument if the size is another.
@@ -85,8 +92,20 @@ class Tally {
   void unpack(std::span<const double> numbers);
 
  private:
-  enum Group { totals, displacement, laplaces, spectra, observed, discounted, expected, lagged };
-  static constexpr std::size_t kGroups = 8;
+  enum Group {
+    totals,
+    displacement,
+    laplaces,
+    spectra,
+    observed,
+    discounted,
+    expected,
+    lagged,
+    travels,
+    slips,
+    slip_transforms
+  };
+  static constexpr std::size_t kGroups = 11;
   /// Where a group begins, and how many comoments it has for each side; one side with symmetry.
   struct Place {
     std::size_t first = 0, members = 0, sides = 0;
@@ -103,6 +122,9 @@ class Tally {
   template <class Self, class Action>
   static void each_row(Self& tally, const Action& action);
   [[nodiscard]] std::size_t bin(int level) const;
+  [[nodiscard]] const std::vector<double>& edges(std::size_t histogram) const;
+  [[nodiscard]] Estimate between(std::size_t histogram, double low, double high) const;
+  void add_slip(std::size_t side, const Excursion& e);
   void add_transforms(std::size_t side, const Excursion& e);
   void add_integrals(std::size_t side, const Excursion& e);
 
@@ -111,7 +133,7 @@ class Tally {
   bool symmetric_;
   std::array<Place, kGroups> places_;
   std::vector<Comoments> comoments_;   // by group, member and side
-  std::vector<Histogram> histograms_;  // of entries, then of durations
+  std::vector<Histogram> histograms_;  // of entries, of durations, of paths
   double jumps_ = 0;
 };
 
