@@ -70,11 +70,11 @@ checkpoint::Identity identity(const Case& given) {
   std::vector<std::string> followed, observables;
   for (const auto& [name, whether] : {std::pair{"moments", wanted.moments},
                                       {"noise_law", wanted.noise},
-                                      {"spectrum", wanted.displacement},
+                                      {"spectrum or slip", wanted.displacement},
                                       {"laplace", !wanted.lambda.empty()},
                                       {"resolvent", !wanted.discount.empty()},
                                       {"duration_density", !wanted.edges.empty()},
-                                      {"slip", wanted.slip},
+                                      {"peak", !wanted.speeds.empty()},
                                       {"expectation", wanted.expectation},
                                       {"displacement", wanted.travel},
                                       {"autocorrelation", wanted.autocorrelation}}) {
@@ -87,6 +87,7 @@ checkpoint::Identity identity(const Case& given) {
   add("-omega", wanted.omega);
   const bool timed = !wanted.edges.empty() || !wanted.time.empty();
   add("-time", timed ? given.question.time : wanted.time);
+  add("-velocity", wanted.speeds);
   add("-inverse_distance", wanted.inverse_distance);
   add("-distance", wanted.path_edges.empty() ? wanted.path_edges : given.question.distance);
   if (const auto& start = wanted.start) {
@@ -145,7 +146,8 @@ class Campaign {
     const auto chain = operators::StaticChain::of(process_);
     const auto sticking = chain.integral(std::vector<double>(chain.size(), 1.0));
     const double sides = process_.symmetric() ? 1 : 2,
-                 stationary = wanted_.stationary_paths() ? sides : 0, stays = sides + stationary,
+                 stationary = wanted_.stationary_paths() ? sides : 0,
+                 stays = sides + stationary + (wanted_.speeds.empty() ? 0 : 1),
                  walks = (wanted_.chosen_paths() ? 1 : 0) + stationary,
                  longest =
                      walks > 0 ? *std::max_element(wanted_.time.begin(), wanted_.time.end()) : 0;

@@ -18,12 +18,12 @@ constexpr std::uint64_t kPathStream = std::numeric_limits<std::uint64_t>::max();
 template <class Flow>
 class Walker : public Walk {
  public:
-  Walker(const model::Process& process, bool displacement)
+  Walker(const model::Process& process, bool travel)
       : process_(process),
         mirrored_(process.mirrored()),
         flow_(process_.drag),
         backward_flow_(mirrored_.drag),
-        displaced_(displacement),
+        travel_(travel),
         lowest_(process.lowest_static()),
         highest_(process.static_index()) {}
 
@@ -73,15 +73,15 @@ class Walker : public Walk {
   void wait() { next_jump_ = time_ + random_.exponential() / process_.noise.rate(i_); }
 
   [[nodiscard]] Piece move_on(double time) const {
-    if (y_ > 0) return flow_.move(speed_, process_.net_force(i_), time, displaced_);
-    return backward_flow_.move(speed_, mirrored_.net_force(-i_), time, displaced_);
+    if (y_ > 0) return flow_.move(speed_, process_.net_force(i_), time, travel_);
+    return backward_flow_.move(speed_, mirrored_.net_force(-i_), time, travel_);
   }
 
   model::Process process_, mirrored_;
   Flow flow_, backward_flow_;
   std::optional<NoiseLevels> noise_;  // where it has been of use
   RandomStream random_{0, 0};
-  bool displaced_;
+  bool travel_;
   int lowest_, highest_, i_ = 0, y_ = 0;
   double speed_ = 0, time_ = 0, next_jump_ = 0, jumps_ = 0, displacement_ = 0;
 };
@@ -114,11 +114,9 @@ double Walk::end_excursion() {
   }
 }
 
-std::unique_ptr<Walk> make_walk(const model::Process& process, bool displacement) {
-  if (process.drag.is_linear()) {
-    return std::make_unique<Walker<LinearFlow>>(process, displacement);
-  }
-  return std::make_unique<Walker<GeneralFlow>>(process, displacement);
+std::unique_ptr<Walk> make_walk(const model::Process& process, bool travel) {
+  if (process.drag.is_linear()) return std::make_unique<Walker<LinearFlow>>(process, travel);
+  return std::make_unique<Walker<GeneralFlow>>(process, travel);
 }
 
 NoiseLevels::NoiseLevels(const model::NoiseChain& noise)

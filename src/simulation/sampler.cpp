@@ -8,6 +8,7 @@ namespace {
 
 // Excursions take the streams from 0 on.
 std::uint64_t places_stream(std::uint64_t batch) { return std::uint64_t{1} << 62 | batch; }
+std::uint64_t rests_stream(std::uint64_t batch) { return std::uint64_t{1} << 61 | batch; }
 std::uint64_t path_stream(std::uint64_t batch, int sample, std::uint64_t which) {
   return std::uint64_t{1} << 63 | batch << 18 | static_cast<std::uint64_t>(sample) << 2 | which;
 }
@@ -24,17 +25,26 @@ Sampler::Sampler(const model::Process& process, const Wanted& wanted)
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::sort(order_.begin(), order_.end(),
             [&](std::size_t a, std::size_t b) { return wanted_.time[a] < wanted_.time[b]; });
+  if (wanted.speeds.empty()) return;
+  from_rest_ = make_source(process, {.speeds = wanted.speeds});
+  at_rest_ = std::make_unique<NoiseLevels>(process.noise);
 }
 
 Tally Sampler::batch(std::uint64_t seed, std::uint64_t batch, int count) {
-  RandomStream random(seed, batch), places(seed, places_stream(batch));
+  RandomStream random(seed, batch), places(seed, places_stream(batch)),
+      rests(seed, rests_stream(batch));
   Tally tally = empty();
-  Excursion excursion;
+  Excursion excursion, from_rest;
   const std::size_t sides = process_.symmetric() ? 1 : 2;
   for (int n = 0; n < count; ++n) {
+    if (at_rest_) {
+      from_rest_->draw_from(at_rest_->draw(rests.uniform()), rests, from_rest);
+      tally.add_jumps(from_rest.jumps);
+    }
     for (std::size_t side = 0; side < sides; ++side) {
       source_->draw(random, side, places.uniform(), excursion);
       tally.add(side, excursion);
+      if (at_rest_) tally.add_passages(side, excursion, from_rest);
       if (!wanted_.stationary_paths()) continue;
       add_stationary({seed, path_stream(batch, n, side)}, side, places.uniform(), tally);
     }

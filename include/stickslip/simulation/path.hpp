@@ -11,10 +11,10 @@
 
 namespace stickslip::simulation {
 
-/// The process at some time; y = sign of the motion, 0 at rest.
+/// The process at some time; y = sign of the motion, 0 at rest. displacement = int v dt since the
+/// beginning, where `travel` is wanted.
 struct State {
-  double time = 0, x = 0, y = 0, v = 0;
-  double displacement = 0;  ///< int v dt since the beginning, where it is followed
+  double time = 0, x = 0, y = 0, v = 0, displacement = 0;
 };
 
 /// The process on its way. Between events X and Y stay and V follows the flow. Local.
@@ -36,8 +36,7 @@ class Walk {
   double end_excursion();
 };
 
-[[nodiscard]] std::unique_ptr<Walk> make_walk(const model::Process& process,
-                                              bool displacement = false);
+[[nodiscard]] std::unique_ptr<Walk> make_walk(const model::Process& process, bool travel = false);
 
 /// Draws levels of the noise from its stationary distribution. Local.
 class NoiseLevels {

@@ -28,7 +28,8 @@ class Sampler {
 
   model::Process process_;
   Wanted wanted_;
-  std::unique_ptr<ExcursionSource> source_;
+  std::unique_ptr<ExcursionSource> source_, from_rest_;
+  std::unique_ptr<NoiseLevels> at_rest_;  // where passages from rest are wanted
   std::unique_ptr<Walk> walk_;
   std::vector<std::size_t> order_;  // of times
   std::vector<State> states_;

@@ -19,6 +19,9 @@ namespace stickslip::simulation {
 /// Durations whose laws are asked for.
 enum class Duration { slide, stick, excursion };
 
+/// Laws of durations, of the path length of a slide, and of its largest speed.
+enum class Law { slide, stick, excursion, path, peak };
+
 /// Functions of the state whose integrals over excursions are kept; inside is 1{|x| <= mu_s}.
 enum class Integrand { v_square, v_size, x_v, inside, x_square, v };
 
@@ -36,6 +39,8 @@ class Tally {
   Tally(const model::Process& process, const Wanted& wanted);
 
   void add(std::size_t side, const Excursion& excursion);
+  /// When an excursion and a path from rest reached wanted.speeds.
+  void add_passages(std::size_t side, const Excursion& excursion, const Excursion& from_rest);
   /// The states at wanted.time of a path from wanted.start, or of a stationary one: such a path
   /// begins at a uniformly distributed time of an excursion from one side, and counts with the
   /// duration of that. The others have side 0 and weight 1.
@@ -65,12 +70,11 @@ class Tally {
   /// E[exp(-lambda D)] for the n-th lambda.
   [[nodiscard]] Estimate laplace(std::size_t n, Duration duration) const;
   /// P(low <= D < high); low and high are edges, or 0 and infinity.
-  [[nodiscard]] Estimate probability(Duration duration, double low, double high) const;
+  [[nodiscard]] Estimate probability(Law law, double low, double high) const;
   /// Mean and variance of the path length of a slide and of its net displacement.
   [[nodiscard]] Named slip() const;
-  /// E[exp(-s L)] of the path length L of a slide for the n-th s, and P(low <= L < high).
+  /// E[exp(-s L)] of the path length L of a slide for the n-th s.
   [[nodiscard]] Estimate slip_transform(std::size_t n) const;
-  [[nodiscard]] Estimate slip_probability(double low, double high) const;
   /// S_v at the n-th omega, and at 0, of V - E[V]; see tally.cpp.
   [[nodiscard]] Estimate spectrum(std::size_t n) const;
   [[nodiscard]] Estimate spectrum_at_zero() const;
@@ -84,6 +88,9 @@ class Tally {
   [[nodiscard]] Estimate autocorrelation(std::size_t n) const;
   /// Mean and variance of int_0^t V at the n-th time.
   [[nodiscard]] Named travel(std::size_t n) const;
+  /// Mean times until |V| first reaches w, one of wanted.speeds, from the start of a slide and from
+  /// rest. If no slide did, a lower bound with an interval up to infinity.
+  [[nodiscard]] Named first_passage(double w) const;
 
   /// All numbers in a row, and back. `unpack` expects a tally of the same questions, and throws
   /// std::invalid_argument if the size is another.
@@ -102,10 +109,10 @@ class Tally {
     expected,
     lagged,
     travels,
-    slips,
-    slip_transforms
+    slip_transforms,
+    passages,
+    size_of_groups
   };
-  static constexpr std::size_t kGroups = 11;
   /// Where a group begins, and how many comoments it has for each side; one side with symmetry.
   struct Place {
     std::size_t first = 0, members = 0, sides = 0;
@@ -122,18 +129,16 @@ class Tally {
   template <class Self, class Action>
   static void each_row(Self& tally, const Action& action);
   [[nodiscard]] std::size_t bin(int level) const;
-  [[nodiscard]] const std::vector<double>& edges(std::size_t histogram) const;
-  [[nodiscard]] Estimate between(std::size_t histogram, double low, double high) const;
-  void add_slip(std::size_t side, const Excursion& e);
   void add_transforms(std::size_t side, const Excursion& e);
   void add_integrals(std::size_t side, const Excursion& e);
 
   int lowest_;
   Wanted wanted_;
   bool symmetric_;
-  std::array<Place, kGroups> places_;
-  std::vector<Comoments> comoments_;   // by group, member and side
-  std::vector<Histogram> histograms_;  // of entries, of durations, of paths
+  std::array<Place, size_of_groups> places_;
+  std::vector<Comoments> comoments_;        // by group, member and side
+  std::vector<Histogram> histograms_;       // of entries, then by Law
+  std::vector<std::vector<double>> edges_;  // of the cells of histograms
   double jumps_ = 0;
 };
 
