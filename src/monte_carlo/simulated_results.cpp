@@ -201,12 +201,12 @@ class Estimates {
       scalar(key, {"", mean ? "velocity*time" : "velocity^2*time^2", kind},
              net && !process_.drifts() ? Estimate{} : e);
     }
-    const auto& s = question_.inverse_distance;
-    if (!question_.distance.empty())
+    if (!question_.distance.empty()) {
       append_law("slip", Law::path, "1/(velocity*time)", "distance", question_.distance);
-    if (!s.empty())
-      over("F_slip", "", Kind::transform, "inverse_distance", s,
-           [&](std::size_t n) { return tally_.slip_transform(n); });
+    }
+    if (question_.inverse_distance.empty()) return;
+    over("F_slip", "", Kind::transform, "inverse_distance", question_.inverse_distance,
+         [&](std::size_t n) { return tally_.slip_transform(n); });
   }
 
   void append_peak() {

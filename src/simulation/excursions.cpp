@@ -105,9 +105,7 @@ class Source : public ExcursionSource {
   void draw_from(int level, RandomStream& random, Excursion& e) override {
     e = {.transform = std::move(e.transform),
          .integrals = std::move(e.integrals),
-         .discounted = std::move(e.discounted),
-         .passages = std::move(e.passages)};
-    e.passages.clear();
+         .discounted = std::move(e.discounted)};
     e.transform.assign(wanted_.omega.size(), 0.0);
     e.integrals.assign(wanted_.observables.size(), {});
     e.discounted.assign(wanted_.observables.size() * wanted_.discount.size(), {});

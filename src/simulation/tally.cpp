@@ -6,8 +6,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "stickslip/support/statistics.hpp"
-
 namespace stickslip::simulation {
 namespace {
 
@@ -76,9 +74,7 @@ Tally::Tally(const model::Process& process, const Wanted& wanted)
   group(slip_transforms, wanted.inverse_distance.size(), 2, sides);
   group(passages, wanted.speeds.size(), passage_size, sides);
   edges_ = {{}, wanted.edges, wanted.edges, wanted.edges, wanted.path_edges, wanted.speeds};
-  for (const auto& edges : edges_) {
-    histograms_.emplace_back(symmetric_, edges.empty() ? 0 : edges.size() + 1);
-  }
+  for (const auto& edges : edges_) histograms_.emplace_back(symmetric_, edges.size() + 1);
   histograms_[0] = Histogram(symmetric_, bin(process.static_index()) + 1);
 }
 
@@ -393,9 +389,10 @@ Named Tally::first_passage(double w) const {
   const Smooth up = never ? least : (a[0] * (p[1] + q[1]) + q[0] * a[1]) / det;
   const Smooth down = never ? least : (a[1] * (p[0] + q[0]) + q[1] * a[0]) / det;
   const auto estimate = [&](const Smooth& time) -> Estimate {
-    const double mean = time.value.real(), spread = kNormalQuantile * std::sqrt(m.variance(time));
+    const auto [mean, low, high] = m.estimate(time);
     if (never) return {mean, mean, std::numeric_limits<double>::infinity()};
-    return {mean, mean * std::exp(-spread / mean), mean * std::exp(spread / mean)};
+    const double factor = std::exp(high / mean - 1);
+    return {mean, mean / factor, mean * factor};
   };
   return {{"mean_first_passage", estimate(m.share(0) * up + m.share(1) * down)},
           {"mean_first_passage_rest",

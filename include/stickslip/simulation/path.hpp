@@ -11,8 +11,7 @@
 
 namespace stickslip::simulation {
 
-/// The process at some time; y = sign of the motion, 0 at rest. displacement = int v dt since the
-/// beginning, where `travel` is wanted.
+/// The process at some time; y = sign of the motion, 0 at rest; displacement since the beginning.
 struct State {
   double time = 0, x = 0, y = 0, v = 0, displacement = 0;
 };
