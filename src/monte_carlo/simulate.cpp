@@ -31,6 +31,39 @@ constexpr int kRound = 64;   // batches between merges
 constexpr long kWhole = long{kRound} * kBatch;
 constexpr double kSecondsBetweenFiles = 3, kSecondsBetweenReports = 1;
 
+// What is tallied.
+void add_followed(const Case& given, checkpoint::Identity& found) {
+  const auto wanted = wanted_of(given.question, given.scene.process(1));
+  const auto add = [&](const char* name, const auto& values) {
+    found.emplace_back(name, values.empty() ? "none" : fmt::format("{}", fmt::join(values, ",")));
+  };
+  std::vector<std::string> followed, observables;
+  for (const auto& [name, whether] : {std::pair{"moments", wanted.moments},
+                                      {"noise_law", wanted.noise},
+                                      {"spectrum or slip", wanted.displacement},
+                                      {"laplace", !wanted.lambda.empty()},
+                                      {"resolvent", !wanted.discount.empty()},
+                                      {"duration_density", !wanted.edges.empty()},
+                                      {"expectation", wanted.expectation},
+                                      {"displacement", wanted.travel},
+                                      {"autocorrelation", wanted.autocorrelation}}) {
+    if (whether) followed.emplace_back(name);
+  }
+  for (const auto& f : wanted.observables) observables.push_back(f.name);
+  add("-quantities", followed);
+  add("-observable", observables);
+  add("-lambda", wanted.discount.empty() ? wanted.lambda : wanted.discount);
+  add("-omega", wanted.omega);
+  add("-time", wanted.edges.empty() ? wanted.time : given.question.time);
+  add("-velocity", wanted.speeds);
+  add("-inverse_distance", wanted.inverse_distance);
+  add("-distance", wanted.path_edges.empty() ? wanted.path_edges : given.question.distance);
+  if (const auto& start = wanted.start) {
+    found.emplace_back(
+        "-start", fmt::format("{} {} {}", static_cast<int>(start->kind), start->level, start->v));
+  }
+}
+
 // What fixes the numbers of a simulation, but for how many excursions there are: as understood, not
 // as written, since questions may come from the file of -compare.
 checkpoint::Identity identity(const Case& given) {
@@ -63,32 +96,7 @@ checkpoint::Identity identity(const Case& given) {
   }
   found.emplace_back("-bias", text(s.bias));
   found.emplace_back("-seed", text(given.method.seed));
-  const auto wanted = wanted_of(given.question, s.process(1));
-  const auto add = [&](const char* name, const auto& values) {
-    found.emplace_back(name, values.empty() ? "none" : fmt::format("{}", fmt::join(values, ",")));
-  };
-  std::vector<std::string> followed, observables;
-  for (const auto& [name, whether] : {std::pair{"moments", wanted.moments},
-                                      {"noise_law", wanted.noise},
-                                      {"spectrum", wanted.displacement},
-                                      {"laplace", !wanted.lambda.empty()},
-                                      {"resolvent", !wanted.discount.empty()},
-                                      {"duration_density", !wanted.edges.empty()},
-                                      {"expectation", wanted.start.has_value()},
-                                      {"autocorrelation", wanted.autocorrelation}}) {
-    if (whether) followed.emplace_back(name);
-  }
-  for (const auto& f : wanted.observables) observables.push_back(f.name);
-  add("-quantities", followed);
-  add("-observable", observables);
-  add("-lambda", wanted.discount.empty() ? wanted.lambda : wanted.discount);
-  add("-omega", wanted.omega);
-  const bool timed = !wanted.edges.empty() || !wanted.time.empty();
-  add("-time", timed ? given.question.time : wanted.time);
-  if (const auto& start = wanted.start) {
-    found.emplace_back(
-        "-start", fmt::format("{} {} {}", static_cast<int>(start->kind), start->level, start->v));
-  }
+  add_followed(given, found);
   return found;
 }
 
@@ -141,7 +149,8 @@ class Campaign {
     const auto chain = operators::StaticChain::of(process_);
     const auto sticking = chain.integral(std::vector<double>(chain.size(), 1.0));
     const double sides = process_.symmetric() ? 1 : 2,
-                 stationary = wanted_.stationary_paths() ? sides : 0, stays = sides + stationary,
+                 stationary = wanted_.stationary_paths() ? sides : 0,
+                 stays = sides + stationary + (wanted_.speeds.empty() ? 0 : 1),
                  walks = (wanted_.chosen_paths() ? 1 : 0) + stationary,
                  longest =
                      walks > 0 ? *std::max_element(wanted_.time.begin(), wanted_.time.end()) : 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <set>
 #include <string>
 #include <utility>
@@ -19,6 +20,7 @@ using quantities::Results;
 using simulation::Duration;
 using simulation::Estimate;
 using simulation::Integrand;
+using simulation::Law;
 using simulation::Tally;
 
 /// Cell of a histogram around one time of -time.
@@ -77,12 +79,15 @@ class Estimates {
     if (wants(laplace)) append_laplace();
     if (wants(stick_duration_transform) && !wants(laplace)) transform("F_stick", Duration::stick);
     if (wants(duration_density)) append_durations();
+    if (wants(slip)) append_slip();
+    if (wants(peak)) append_peak();
     if (wants(spectrum)) append_spectrum();
     if (wants(resolvent)) append_resolvent();
     if (wants(autocorrelation)) {
-      over("C_vv", "velocity^2", "time", question_.time,
+      over("C_vv", "velocity^2", Kind::other, "time", question_.time,
            [&](std::size_t n) { return tally_.autocorrelation(n); });
     }
+    if (wants(displacement)) append_displacement();
     if (wants(expectation)) append_expectations();
     return std::move(results_);
   }
@@ -96,9 +101,8 @@ class Estimates {
   }
   // An array of estimate(n) over the n-th abscissa.
   template <class Estimates>
-  void over(const std::string& key, const char* unit, const char* name,
-            const std::vector<double>& abscissa, const Estimates& estimate,
-            Kind kind = Kind::other) {
+  void over(const std::string& key, const char* unit, Kind kind, const char* name,
+            const std::vector<double>& abscissa, const Estimates& estimate) {
     Result result = quantities::array(key, unit, name, abscissa, kind);
     for (std::size_t n = 0; n < abscissa.size(); ++n) append_value(result, estimate(n));
     results_.push_back(std::move(result));
@@ -153,7 +157,7 @@ class Estimates {
     std::vector<double> levels;
     for (int i = lowest; i <= highest; ++i) levels.push_back(i);
     for (std::size_t side = 0; side < (process_.symmetric() ? 1 : 2); ++side) {
-      over(side == 0 ? "entry_law" : "entry_law_minus", "", "k", levels,
+      over(side == 0 ? "entry_law" : "entry_law_minus", "", Kind::other, "k", levels,
            [&](std::size_t n) { return tally_.entry(side, static_cast<int>(levels[n])); });
     }
     scalar(quantities::kFStick0,
@@ -168,33 +172,58 @@ class Estimates {
   }
 
   void transform(const std::string& key, Duration duration) {
-    over(
-        key, "", "lambda", question_.lambda,
-        [&, duration = duration](std::size_t n) { return tally_.laplace(n, duration); },
-        Kind::transform);
+    over(key, "", Kind::transform, "lambda", question_.lambda,
+         [&](std::size_t n) { return tally_.laplace(n, duration); });
+  }
+
+  // Averages over cells, and the distribution function.
+  void append_law(const std::string& name, Law law, const char* unit, const char* abscissa,
+                  const std::vector<double>& at) {
+    const auto cells = cells_around(at);
+    over("f_" + name, unit, Kind::other, abscissa, at, [&](std::size_t n) {
+      const auto [low, high] = cells[n];
+      return divided(tally_.probability(law, low, high), high - low);
+    });
+    over("cdf_" + name, "", Kind::distribution, abscissa, at,
+         [&](std::size_t n) { return tally_.probability(law, 0, at[n]); });
   }
 
   void append_durations() {
-    const auto& time = question_.time;
-    const auto cells = cells_around(time);
-    for (const auto& [key, which] : names("f_")) {
-      const Duration duration = which;
-      over(key, "1/time", "time", time, [&](std::size_t n) {
-        const auto [low, high] = cells[n];
-        return divided(tally_.probability(duration, low, high), high - low);
-      });
-      const auto distribution = [&](std::size_t n) {
-        return tally_.probability(duration, 0, time[n]);
-      };
-      over("cd" + key, "", "time", time, distribution, Kind::distribution);
+    append_law("slide", Law::slide, "1/time", "time", question_.time);
+    append_law("stick", Law::stick, "1/time", "time", question_.time);
+    append_law("excursion", Law::excursion, "1/time", "time", question_.time);
+  }
+
+  void append_slip() {
+    for (const auto& [key, e] : tally_.slip()) {
+      const bool net = key == "mean_slip_net", mean = key.starts_with("mean");
+      const Kind kind = net ? Kind::drift : Kind::positive_mean;
+      scalar(key, {"", mean ? "velocity*time" : "velocity^2*time^2", kind},
+             net && !process_.drifts() ? Estimate{} : e);
+    }
+    if (!question_.distance.empty()) {
+      append_law("slip", Law::path, "1/(velocity*time)", "distance", question_.distance);
+    }
+    if (question_.inverse_distance.empty()) return;
+    over("F_slip", "", Kind::transform, "inverse_distance", question_.inverse_distance,
+         [&](std::size_t n) { return tally_.slip_transform(n); });
+  }
+
+  void append_peak() {
+    const auto& w = question_.velocity;
+    over("P_peak", "", Kind::probability, "velocity", w, [&](std::size_t n) {
+      return tally_.probability(Law::peak, w[n], std::numeric_limits<double>::infinity());
+    });
+    for (std::size_t from : {0, 1}) {
+      over(tally_.first_passage(w[0])[from].first, "time", Kind::positive_mean, "velocity", w,
+           [&](std::size_t n) { return tally_.first_passage(w[n])[from].second; });
     }
   }
 
   void append_spectrum() {
     if (!question_.omega.empty()) {
-      over(
-          "S_v", "velocity^2*time", "omega", question_.omega,
-          [&](std::size_t n) { return tally_.spectrum(n); }, Kind::spectrum);
+      over("S_v", "velocity^2*time", Kind::spectrum, "omega", question_.omega,
+           [&](std::size_t n) { return tally_.spectrum(n); });
     }
     const Estimate s = tally_.spectrum_at_zero();
     scalar(quantities::kS0, s);
@@ -210,7 +239,8 @@ class Estimates {
         if (first[which].first == "pi" && question_.wants(Quantity::averages))
           key.insert(2, "_lambda");
         if (key.starts_with("u") && *std::min_element(lambda.begin(), lambda.end()) == 0) continue;
-        over(key, "", "lambda", lambda, [&](std::size_t n) { return at(n)[which].second; });
+        over(key, "", Kind::other, "lambda", lambda,
+             [&](std::size_t n) { return at(n)[which].second; });
       }
     };
     append(tally_.exits(0), "", [&](std::size_t n) { return tally_.exits(n); });
@@ -222,10 +252,18 @@ class Estimates {
     }
   }
 
+  void append_displacement() {
+    const bool still = !process_.drifts() && question_.start.kind != model::Start::Kind::state;
+    over("displacement_mean", "velocity*time", Kind::drift, "time", question_.time,
+         [&](std::size_t n) { return still ? Estimate{} : tally_.travel(n)[0].second; });
+    over("displacement_variance", "velocity^2*time^2", Kind::positive_mean, "time", question_.time,
+         [&](std::size_t n) { return tally_.travel(n)[1].second; });
+  }
+
   void append_expectations() {
     for (std::size_t f = 0; f < question_.observables.size(); ++f) {
       const std::string of = "(" + question_.observables[f].name + ")";
-      over("E" + of, "", "time", question_.time, [&](std::size_t n) {
+      over("E" + of, "", Kind::other, "time", question_.time, [&](std::size_t n) {
         return of_function(question_.observables[f], tally_.expectation(f, n));
       });
       scalar("stationary" + of, {"", ""},
@@ -252,7 +290,7 @@ simulation::Wanted wanted_of(const options::Question& question, const model::Pro
   simulation::Wanted wanted;
   wanted.moments = wants(Quantity::moments) || wants(Quantity::averages);
   wanted.noise = wants(Quantity::noise_law);
-  wanted.displacement = wants(Quantity::spectrum);
+  wanted.displacement = wants(Quantity::spectrum) || wants(Quantity::slip);
   if (wants(Quantity::spectrum)) wanted.omega = question.omega;
   if (wants(Quantity::laplace) || wants(Quantity::stick_duration_transform)) {
     wanted.lambda = question.lambda;
@@ -264,10 +302,16 @@ simulation::Wanted wanted_of(const options::Question& question, const model::Pro
     wanted.observables.push_back(model::friction_power(process.friction));
   }
   if (wants(Quantity::resolvent)) wanted.discount = question.lambda;
-  if (wants(Quantity::expectation)) wanted.start = question.start;
+  wanted.expectation = wants(Quantity::expectation);
+  wanted.travel = wants(Quantity::displacement);
+  if (wanted.expectation || wanted.travel) wanted.start = question.start;
   wanted.autocorrelation = wants(Quantity::autocorrelation);
   if (wanted.start || wanted.autocorrelation) wanted.time = question.time;
   if (wants(Quantity::duration_density)) wanted.edges = edges_of(question.time);
+  if (wants(Quantity::slip)) wanted.path_edges = edges_of(question.distance);
+  if (wants(Quantity::slip)) wanted.inverse_distance = question.inverse_distance;
+  if (wants(Quantity::peak)) wanted.speeds = question.velocity;
+  std::sort(wanted.speeds.begin(), wanted.speeds.end());
   return wanted;
 }
 

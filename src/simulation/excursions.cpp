@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -96,6 +97,12 @@ class Source : public ExcursionSource {
   }
 
   void draw(RandomStream& random, std::size_t side, double place, Excursion& e) override {
+    place_ = place;
+    draw_from(levels_.exit(side), random, e);
+    if (side == 1) e.turned = !e.turned;
+  }
+
+  void draw_from(int level, RandomStream& random, Excursion& e) override {
     e = {.transform = std::move(e.transform),
          .integrals = std::move(e.integrals),
          .discounted = std::move(e.discounted)};
@@ -103,12 +110,10 @@ class Source : public ExcursionSource {
     e.integrals.assign(wanted_.observables.size(), {});
     e.discounted.assign(wanted_.observables.size() * wanted_.discount.size(), {});
     std::fill(phase_.begin(), phase_.end(), 1.0);
-    place_ = place;
-    const int exit = levels_.exit(side);
-    double wait = levels_.wait(exit, random);
-    slide(random, e, wait, exit);
+    e.entry = level;
+    double wait = levels_.wait(level, random);
+    if (!levels_.rests(level)) slide(random, e, wait, level);
     sticking(random, e, wait);
-    if (side == 1) e.turned = !e.turned;
   }
 
  private:
@@ -121,6 +126,7 @@ class Source : public ExcursionSource {
       const double force = levels_.force(sign, i);
       const Piece piece = flow(sign).move(speed, force, wait, integrals);
       if (!wanted_.observables.empty()) observe_slide(e, piece.time, speed, i, sign);
+      follow_passages(e, piece, speed, i, sign);
       follow(e, piece, i, sign);
       if (!wanted_.omega.empty()) follow_transform(e, piece, speed, force, sign);
       speed = piece.end;
@@ -140,12 +146,27 @@ class Source : public ExcursionSource {
   [[nodiscard]] const Flow& flow(int sign) const { return sign > 0 ? flow_ : backward_flow_; }
 
   void follow(Excursion& e, const Piece& piece, int i, int sign) const {
+    e.peak = std::max(e.peak, piece.end);
     e.slide += piece.time;
     e.path += piece.path;
     e.drift += sign * piece.path;
     e.square += piece.square;
     e.product += sign * levels_.level(i) * piece.path;
     if (wanted_.noise) follow_noise(e, i, piece.time);
+  }
+
+  // The speed rises or falls all along a piece.
+  void follow_passages(Excursion& e, const Piece& piece, double speed, int i, int sign) const {
+    const auto& speeds = wanted_.speeds;
+    for (std::size_t n = e.passages.size(); n < speeds.size() && speeds[n] <= piece.end; ++n) {
+      const auto above = [&](double t) {
+        return flow(sign).move(speed, levels_.force(sign, i), t, false).end - speeds[n];
+      };
+      std::uintmax_t most = 60;
+      const auto time = boost::math::tools::toms748_solve(
+          above, 0.0, piece.time, boost::math::tools::eps_tolerance<double>(40), most);
+      e.passages.push_back(e.slide + time.second);
+    }
   }
 
   void follow_noise(Excursion& e, int i, double time) const {

@@ -18,11 +18,12 @@ constexpr std::uint64_t kPathStream = std::numeric_limits<std::uint64_t>::max();
 template <class Flow>
 class Walker : public Walk {
  public:
-  explicit Walker(const model::Process& process)
+  Walker(const model::Process& process, bool travel)
       : process_(process),
         mirrored_(process.mirrored()),
         flow_(process_.drag),
         backward_flow_(mirrored_.drag),
+        travel_(travel),
         lowest_(process.lowest_static()),
         highest_(process.static_index()) {}
 
@@ -31,7 +32,7 @@ class Walker : public Walk {
     i_ = start.kind == model::Start::Kind::rest ? stationary_level() : start.level;
     speed_ = std::abs(start.v);
     y_ = start.v == 0 ? 0 : (start.v > 0 ? 1 : -1);
-    time_ = jumps_ = 0;
+    time_ = jumps_ = displacement_ = 0;
     start_if_pushed();
     wait();
   }
@@ -41,6 +42,7 @@ class Walker : public Walk {
     if (y_ != 0) {
       const Piece piece = move_on(end - time_);
       speed_ = piece.end;
+      displacement_ += y_ * piece.path;
       if (piece.stopped) {
         time_ += piece.time;
         y_ = 0;
@@ -56,7 +58,7 @@ class Walker : public Walk {
   }
 
   [[nodiscard]] State state() const override {
-    return {time_, process_.noise.level(i_), static_cast<double>(y_), y_ * speed_};
+    return {time_, process_.noise.level(i_), static_cast<double>(y_), y_ * speed_, displacement_};
   }
   [[nodiscard]] double jumps() const override { return jumps_; }
 
@@ -71,16 +73,17 @@ class Walker : public Walk {
   void wait() { next_jump_ = time_ + random_.exponential() / process_.noise.rate(i_); }
 
   [[nodiscard]] Piece move_on(double time) const {
-    if (y_ > 0) return flow_.move(speed_, process_.net_force(i_), time, false);
-    return backward_flow_.move(speed_, mirrored_.net_force(-i_), time, false);
+    if (y_ > 0) return flow_.move(speed_, process_.net_force(i_), time, travel_);
+    return backward_flow_.move(speed_, mirrored_.net_force(-i_), time, travel_);
   }
 
   model::Process process_, mirrored_;
   Flow flow_, backward_flow_;
   std::optional<NoiseLevels> noise_;  // where it has been of use
   RandomStream random_{0, 0};
+  bool travel_;
   int lowest_, highest_, i_ = 0, y_ = 0;
-  double speed_ = 0, time_ = 0, next_jump_ = 0, jumps_ = 0;
+  double speed_ = 0, time_ = 0, next_jump_ = 0, jumps_ = 0, displacement_ = 0;
 };
 
 // The same numbers again up to a time of the first thousand excursions.
@@ -111,9 +114,9 @@ double Walk::end_excursion() {
   }
 }
 
-std::unique_ptr<Walk> make_walk(const model::Process& process) {
-  if (process.drag.is_linear()) return std::make_unique<Walker<LinearFlow>>(process);
-  return std::make_unique<Walker<GeneralFlow>>(process);
+std::unique_ptr<Walk> make_walk(const model::Process& process, bool travel) {
+  if (process.drag.is_linear()) return std::make_unique<Walker<LinearFlow>>(process, travel);
+  return std::make_unique<Walker<GeneralFlow>>(process, travel);
 }
 
 NoiseLevels::NoiseLevels(const model::NoiseChain& noise)

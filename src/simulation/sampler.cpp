@@ -8,6 +8,7 @@ namespace {
 
 // Excursions take the streams from 0 on.
 std::uint64_t places_stream(std::uint64_t batch) { return std::uint64_t{1} << 62 | batch; }
+std::uint64_t rests_stream(std::uint64_t batch) { return std::uint64_t{1} << 61 | batch; }
 std::uint64_t path_stream(std::uint64_t batch, int sample, std::uint64_t which) {
   return std::uint64_t{1} << 63 | batch << 18 | static_cast<std::uint64_t>(sample) << 2 | which;
 }
@@ -18,36 +19,48 @@ Sampler::Sampler(const model::Process& process, const Wanted& wanted)
     : process_(process),
       wanted_(wanted),
       source_(make_source(process, wanted)),
-      walk_(make_walk(process)),
+      walk_(make_walk(process, wanted.travel)),
       order_(wanted.time.size()),
       states_(wanted.time.size()) {
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::sort(order_.begin(), order_.end(),
             [&](std::size_t a, std::size_t b) { return wanted_.time[a] < wanted_.time[b]; });
+  if (wanted.speeds.empty()) return;
+  from_rest_ = make_source(process, {.speeds = wanted.speeds});
+  at_rest_ = std::make_unique<NoiseLevels>(process.noise);
 }
 
 Tally Sampler::batch(std::uint64_t seed, std::uint64_t batch, int count) {
-  RandomStream random(seed, batch), places(seed, places_stream(batch));
+  RandomStream random(seed, batch), places(seed, places_stream(batch)),
+      rests(seed, rests_stream(batch));
   Tally tally = empty();
-  Excursion excursion;
+  Excursion excursion, from_rest;
   const std::size_t sides = process_.symmetric() ? 1 : 2;
   for (int n = 0; n < count; ++n) {
+    if (at_rest_) {
+      from_rest_->draw_from(at_rest_->draw(rests.uniform()), rests, from_rest);
+      tally.add_jumps(from_rest.jumps);
+    }
     for (std::size_t side = 0; side < sides; ++side) {
       source_->draw(random, side, places.uniform(), excursion);
       tally.add(side, excursion);
+      if (at_rest_) tally.add_passages(side, excursion, from_rest);
       if (!wanted_.stationary_paths()) continue;
       add_stationary({seed, path_stream(batch, n, side)}, side, places.uniform(), tally);
     }
     if (!wanted_.chosen_paths()) continue;
     walk_->begin({seed, path_stream(batch, n, 2)}, *wanted_.start);
-    tally.add_path(0, false, 1, follow(0));
+    tally.add_path(0, false, 1, follow(walk_->state()));
     tally.add_jumps(walk_->jumps());
   }
   return tally;
 }
 
-const std::vector<State>& Sampler::follow(double begun) {
-  for (std::size_t n : order_) states_[n] = walk_->advance(begun + wanted_.time[n]);
+const std::vector<State>& Sampler::follow(const State& first) {
+  for (std::size_t n : order_) {
+    states_[n] = walk_->advance(first.time + wanted_.time[n]);
+    states_[n].displacement -= first.displacement;
+  }
   return states_;
 }
 
@@ -62,7 +75,7 @@ void Sampler::add_stationary(const RandomStream& random, std::size_t side, doubl
   const double jumps = walk_->jumps();
   walk_->begin(random, start);
   const State first = walk_->advance(place * duration);
-  const auto& states = follow(place * duration);
+  const auto& states = follow(first);
   if (!wanted_.chosen_paths()) tally.add_path(side, turned, duration, states);
   tally.add_lagged(side, turned, duration, first, states);
   tally.add_jumps(jumps + walk_->jumps());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <stdexcept>
 
 namespace stickslip::simulation {
@@ -20,8 +21,8 @@ enum Total : std::size_t {
   drift = first_integral + 5,
   size_of_totals
 };
-// D, T and products of them, and what of them belongs to excursions that turn.
-enum Displacement : std::size_t { d = 1, t, dd, dt, tt, d_turned, t_turned, size_of_displacements };
+// D, T and products of them, what of them belongs to excursions that turn, path L and its square.
+enum Move : std::size_t { d = 1, t, dd, dt, tt, d_turned, t_turned, l, ll, size_of_moves };
 enum Laplace : std::size_t { of_slide = 1, of_stick, of_excursion, size_of_laplaces };
 // Of complex numbers the real and the imaginary part in a row.
 enum Transform : std::size_t {
@@ -37,6 +38,9 @@ enum Transform : std::size_t {
 enum Observed : std::size_t { f_slide = 3, f_stick, size_of_observed };  // after slide, stick
 enum Discount : std::size_t { h_same = 1, h_other, w_one, w_f, w_mirrored, size_of_discounts };
 enum Expected : std::size_t { weight = 1, weighted, size_of_expected };
+enum Travel : std::size_t { travelled = 2, travelled_square, size_of_travels };  // after weight
+// Until a speed is reached, or until an excursion ends, also of the first one from rest.
+enum Passage : std::size_t { reached = 1, crossed, lasted, rest, rest_up, rest_down, passage_size };
 enum Lagged : std::size_t { duration_of_lagged = 1, v_start, v_end, v_v, size_of_lagged };
 
 Smooth mean_of(const Means& m, Duration duration) {
@@ -58,16 +62,20 @@ Tally::Tally(const model::Process& process, const Wanted& wanted)
   };
   const std::size_t sides = symmetric_ ? 1 : 2, functions = wanted.observables.size();
   group(totals, 1, size_of_totals, sides);
-  group(displacement, wanted.displacement ? 1 : 0, size_of_displacements, sides);
+  group(displacement, wanted.displacement ? 1 : 0, size_of_moves, sides);
   group(laplaces, wanted.lambda.size(), size_of_laplaces, sides);
   group(spectra, wanted.omega.size(), size_of_transforms, sides);
   group(observed, functions, size_of_observed, sides);
   group(discounted, functions * wanted.discount.size(), size_of_discounts, sides);
-  group(expected, wanted.start ? functions * wanted.time.size() : 0, size_of_expected,
-        wanted.chosen_paths() ? 1 : sides);
-  group(lagged, wanted.autocorrelation ? wanted.time.size() : 0, size_of_lagged, sides);
-  histograms_.emplace_back(symmetric_, bin(process.static_index()) + 1);
-  histograms_.resize(wanted.edges.empty() ? 1 : 4, Histogram(symmetric_, wanted.edges.size() + 1));
+  const std::size_t times = wanted.time.size(), starts = wanted.chosen_paths() ? 1 : sides;
+  group(expected, wanted.expectation ? functions * times : 0, size_of_expected, starts);
+  group(lagged, wanted.autocorrelation ? times : 0, size_of_lagged, sides);
+  group(travels, wanted.travel ? times : 0, size_of_travels, starts);
+  group(slip_transforms, wanted.inverse_distance.size(), 2, sides);
+  group(passages, wanted.speeds.size(), passage_size, sides);
+  edges_ = {{}, wanted.edges, wanted.edges, wanted.edges, wanted.path_edges, wanted.speeds};
+  for (const auto& edges : edges_) histograms_.emplace_back(symmetric_, edges.size() + 1);
+  histograms_[0] = Histogram(symmetric_, bin(process.static_index()) + 1);
 }
 
 std::size_t Tally::bin(int level) const {
@@ -84,7 +92,7 @@ void Tally::add(std::size_t side, const Excursion& e) {
   if (wanted_.displacement) {
     keep(displacement, 0, side,
          {turned, e.drift, whole, e.drift * e.drift, e.drift * whole, whole * whole,
-          turned * e.drift, turned * whole});
+          turned * e.drift, turned * whole, e.path, e.path * e.path});
   }
   for (std::size_t n = 0; n < wanted_.lambda.size(); ++n) {
     const double f = std::exp(-wanted_.lambda[n] * e.slide),
@@ -93,12 +101,29 @@ void Tally::add(std::size_t side, const Excursion& e) {
   }
   add_transforms(side, e);
   add_integrals(side, e);
+  for (std::size_t n = 0; n < wanted_.inverse_distance.size(); ++n) {
+    keep(slip_transforms, n, side, {turned, std::exp(-wanted_.inverse_distance[n] * e.path)});
+  }
   histograms_[0].add(side, e.turned, bin(e.entry));
-  const auto& edges = wanted_.edges;
-  const std::array durations{e.slide, e.stick, whole};
-  for (std::size_t n = 1; n < histograms_.size(); ++n) {
-    const auto above = std::upper_bound(edges.begin(), edges.end(), durations[n - 1]);
-    histograms_[n].add(side, e.turned, static_cast<std::size_t>(above - edges.begin()));
+  const std::array values{e.slide, e.stick, whole, e.path, e.peak};
+  for (std::size_t h = 1; h < edges_.size(); ++h) {
+    if (edges_[h].empty()) continue;
+    const auto above = std::upper_bound(edges_[h].begin(), edges_[h].end(), values[h - 1]);
+    histograms_[h].add(side, e.turned, static_cast<std::size_t>(above - edges_[h].begin()));
+  }
+}
+
+void Tally::add_passages(std::size_t side, const Excursion& e, const Excursion& from_rest) {
+  const auto time = [](const Excursion& of, std::size_t n) {
+    return n < of.passages.size() ? of.passages[n] : of.slide + of.stick;
+  };
+  const double turned = e.turned ? 1 : 0, down = from_rest.turned ? 1 : 0;
+  for (std::size_t n = 0; n < wanted_.speeds.size(); ++n) {
+    const double missed = n < e.passages.size() ? 0 : 1,
+                 rest_missed = n < from_rest.passages.size() ? 0 : 1;
+    keep(passages, n, side,
+         {turned, 1 - missed, missed * turned, time(e, n), time(from_rest, n),
+          rest_missed * (1 - down), rest_missed * down});
   }
 }
 
@@ -140,6 +165,10 @@ void Tally::add_path(std::size_t side, bool turned, double weight,
     const State& z = states[n % times];
     const double value = even ? f.even(z.x, z.y, z.v) : f(z.x, z.y, z.v);
     keep(expected, n, side, {turned ? 1.0 : 0.0, weight, weight * value});
+  }
+  for (std::size_t n = 0; n < places_[travels].members; ++n) {
+    const double x = states[n].displacement;
+    keep(travels, n, side, {turned ? 1.0 : 0.0, weight, weight * x, weight * x * x});
   }
 }
 
@@ -228,17 +257,30 @@ Estimate Tally::laplace(std::size_t n, Duration duration) const {
   return m.estimate(m.overall(of_slide + static_cast<std::size_t>(duration)));
 }
 
-Estimate Tally::probability(Duration duration, double low, double high) const {
-  const auto& edges = wanted_.edges;
+Estimate Tally::probability(Law law, double low, double high) const {
+  const std::size_t h = 1 + static_cast<std::size_t>(law);
+  const auto& all = edges_[h];
   const auto bin_from = [&](double edge) {
-    return static_cast<std::size_t>(std::lower_bound(edges.begin(), edges.end(), edge) -
-                                    edges.begin()) +
+    return static_cast<std::size_t>(std::lower_bound(all.begin(), all.end(), edge) - all.begin()) +
            1;
   };
   const std::size_t first = low > 0 ? bin_from(low) : 0,
-                    last = std::isfinite(high) ? bin_from(high) : edges.size() + 1;
-  return histograms_[1 + static_cast<std::size_t>(duration)].mean(
-      [&](std::size_t n) { return first <= n && n < last ? 1.0 : 0.0; });
+                    last = std::isfinite(high) ? bin_from(high) : all.size() + 1;
+  return histograms_[h].mean([&](std::size_t n) { return first <= n && n < last ? 1.0 : 0.0; });
+}
+
+Named Tally::slip() const {
+  const Means m = means(displacement);
+  const Smooth mean = m.overall(l), net = m.overall(d, -1);
+  return {{"mean_slip", m.estimate(mean)},
+          {"var_slip", m.estimate(m.overall(ll) - mean * mean)},
+          {"mean_slip_net", m.estimate(net)},
+          {"var_slip_net", m.estimate(m.overall(dd) - net * net)}};
+}
+
+Estimate Tally::slip_transform(std::size_t n) const {
+  const Means m = means(slip_transforms, n);
+  return m.estimate(m.overall(1));
 }
 
 // Let C be the transform of v over an excursion, T its duration, and H(s, s') and K(s, s') the
@@ -321,6 +363,40 @@ Estimate Tally::autocorrelation(std::size_t n) const {
   const Smooth duration = m.overall(duration_of_lagged);
   return m.estimate(m.overall(v_v) / duration -
                     m.overall(v_start, -1) * m.overall(v_end, -1) / (duration * duration));
+}
+
+// With symmetry paths from rest and stationary ones are as likely as their mirror images.
+Named Tally::travel(std::size_t n) const {
+  const Means m = means(travels, n);
+  const bool even = symmetric_ && wanted_.start->kind != model::Start::Kind::state;
+  const Smooth all = m.overall(weight), mean = m.overall(travelled, even ? -1 : 1) / all;
+  return {{"displacement_mean", m.estimate(mean)},
+          {"displacement_variance", m.estimate(m.overall(travelled_square) / all - mean * mean)}};
+}
+
+// From side s an excursion reaches w with probability p(s), ends before on the other side with
+// probability q(s), and takes the mean time a(s) until it does either or ends. The mean time to
+// come is m+ = a+ + (1 - p+ - q+) m+ + q+ m-, and so for m-; it is known up to a factor. Where no
+// slide reached w, one that as many samples miss with probability 0.025 has the least.
+Named Tally::first_passage(double w) const {
+  const auto at = std::lower_bound(wanted_.speeds.begin(), wanted_.speeds.end(), w);
+  const Means m = means(passages, static_cast<std::size_t>(at - wanted_.speeds.begin()));
+  const std::array p{m.at(0, reached), m.at(1, reached)}, q{m.at(0, crossed), m.at(1, crossed)},
+      a{m.at(0, lasted), m.at(1, lasted)};
+  const Smooth det = p[0] * p[1] + p[0] * q[1] + q[0] * p[1];
+  const bool never = det.value == 0.0;
+  const Smooth least = samples() / -std::log(0.025) * m.overall(lasted);
+  const Smooth up = never ? least : (a[0] * (p[1] + q[1]) + q[0] * a[1]) / det;
+  const Smooth down = never ? least : (a[1] * (p[0] + q[0]) + q[1] * a[0]) / det;
+  const auto estimate = [&](const Smooth& time) -> Estimate {
+    const auto [mean, low, high] = m.estimate(time);
+    if (never) return {mean, mean, std::numeric_limits<double>::infinity()};
+    const double factor = std::exp(high / mean - 1);
+    return {mean, mean / factor, mean * factor};
+  };
+  return {{"mean_first_passage", estimate(m.share(0) * up + m.share(1) * down)},
+          {"mean_first_passage_rest",
+           estimate(m.at(0, rest) + m.at(0, rest_up) * up + m.at(0, rest_down) * down)}};
 }
 
 // All that is kept, row by row.

@@ -17,17 +17,22 @@ namespace stickslip::simulation {
 
 /// What is followed and counted besides the durations.
 struct Wanted {
-  bool moments = false;        ///< integrals of v^2, |v|, x v
-  bool noise = false;          ///< of 1{|x| <= mu_s}, x^2
-  std::vector<double> omega;   ///< spectrum at these frequencies [1/time]
-  std::vector<double> lambda;  ///< Laplace transforms of durations [1/time]
-  std::vector<double> edges;   ///< rising edges of the cells of histograms of durations [time]
-  bool displacement = false;   ///< int v dt and its spread
+  bool moments = false;             ///< integrals of v^2, |v|, x v
+  bool noise = false;               ///< of 1{|x| <= mu_s}, x^2
+  std::vector<double> omega = {};   ///< spectrum at these frequencies [1/time]
+  std::vector<double> lambda = {};  ///< Laplace transforms of durations [1/time]
+  std::vector<double> edges = {};   ///< rising edges of the cells of histograms of durations [time]
+  bool displacement = false;        ///< int v dt, int |v| dt and their spread
   std::vector<model::Observable> observables = {};  ///< integrals of them, and values along paths
   std::vector<double> discount = {};                ///< resolvent of them at these lambda [1/time]
   std::vector<double> time = {};                    ///< along paths [time]
-  std::optional<model::Start> start = {};           ///< of paths along which observables are taken
+  std::optional<model::Start> start = {};           ///< of paths
+  bool expectation = false;                         ///< of observables along paths
+  bool travel = false;                              ///< int v dt along paths and its spread
   bool autocorrelation = false;                     ///< of v along stationary paths
+  std::vector<double> path_edges = {};              ///< rising edges of paths [velocity*time]
+  std::vector<double> inverse_distance = {};        ///< transforms of paths
+  std::vector<double> speeds = {};                  ///< rising; when |v| reaches them [velocity]
 
   /// Whether there are paths that start from a state or from rest, and stationary ones.
   [[nodiscard]] bool chosen_paths() const {
@@ -65,6 +70,8 @@ struct Excursion {
   double drift = 0;                         ///< int v dt
   std::vector<Integrals> integrals = {};    ///< by observable
   std::vector<Discounted> discounted = {};  ///< by lambda and observable
+  double peak = 0;                          ///< largest |v|
+  std::vector<double> passages = {};        ///< when |v| first reached the speeds that it reached
 };
 
 /// Draws independent excursions from s+ (side 0) or s- (side 1); with symmetry those from s- are
@@ -77,6 +84,8 @@ class ExcursionSource {
   /// The next one, with the numbers of `random`; `place` in [0, 1) moves the times at which
   /// observables are taken, and nothing else.
   virtual void draw(RandomStream& random, std::size_t side, double place, Excursion& excursion) = 0;
+  /// From v = 0 on any level; on static ones it slides 0. `turned`: the next one is from s-.
+  virtual void draw_from(int level, RandomStream& random, Excursion& excursion) = 0;
 };
 
 /// Closed forms where b is linear, a series otherwise. Local.

@@ -11,9 +11,9 @@
 
 namespace stickslip::simulation {
 
-/// The process at some time; y = sign of the motion, 0 at rest.
+/// The process at some time; y = sign of the motion, 0 at rest; displacement since the beginning.
 struct State {
-  double time = 0, x = 0, y = 0, v = 0;
+  double time = 0, x = 0, y = 0, v = 0, displacement = 0;
 };
 
 /// The process on its way. Between events X and Y stay and V follows the flow. Local.
@@ -35,7 +35,7 @@ class Walk {
   double end_excursion();
 };
 
-[[nodiscard]] std::unique_ptr<Walk> make_walk(const model::Process& process);
+[[nodiscard]] std::unique_ptr<Walk> make_walk(const model::Process& process, bool travel = false);
 
 /// Draws levels of the noise from its stationary distribution. Local.
 class NoiseLevels {

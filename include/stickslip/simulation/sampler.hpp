@@ -24,11 +24,12 @@ class Sampler {
 
  private:
   void add_stationary(const RandomStream& random, std::size_t side, double place, Tally& tally);
-  [[nodiscard]] const std::vector<State>& follow(double begun);
+  [[nodiscard]] const std::vector<State>& follow(const State& first);
 
   model::Process process_;
   Wanted wanted_;
-  std::unique_ptr<ExcursionSource> source_;
+  std::unique_ptr<ExcursionSource> source_, from_rest_;
+  std::unique_ptr<NoiseLevels> at_rest_;  // where passages from rest are wanted
   std::unique_ptr<Walk> walk_;
   std::vector<std::size_t> order_;  // of times
   std::vector<State> states_;

@@ -19,6 +19,9 @@ namespace stickslip::simulation {
 /// Durations whose laws are asked for.
 enum class Duration { slide, stick, excursion };
 
+/// Laws of durations, of the path length of a slide, and of its largest speed.
+enum class Law { slide, stick, excursion, path, peak };
+
 /// Functions of the state whose integrals over excursions are kept; inside is 1{|x| <= mu_s}.
 enum class Integrand { v_square, v_size, x_v, inside, x_square, v };
 
@@ -36,6 +39,8 @@ class Tally {
   Tally(const model::Process& process, const Wanted& wanted);
 
   void add(std::size_t side, const Excursion& excursion);
+  /// When an excursion and a path from rest reached wanted.speeds.
+  void add_passages(std::size_t side, const Excursion& excursion, const Excursion& from_rest);
   /// The states at wanted.time of a path from wanted.start, or of a stationary one: such a path
   /// begins at a uniformly distributed time of an excursion from one side, and counts with the
   /// duration of that. The others have side 0 and weight 1.
@@ -65,7 +70,11 @@ class Tally {
   /// E[exp(-lambda D)] for the n-th lambda.
   [[nodiscard]] Estimate laplace(std::size_t n, Duration duration) const;
   /// P(low <= D < high); low and high are edges, or 0 and infinity.
-  [[nodiscard]] Estimate probability(Duration duration, double low, double high) const;
+  [[nodiscard]] Estimate probability(Law law, double low, double high) const;
+  /// Mean and variance of the path length of a slide and of its net displacement.
+  [[nodiscard]] Named slip() const;
+  /// E[exp(-s L)] of the path length L of a slide for the n-th s.
+  [[nodiscard]] Estimate slip_transform(std::size_t n) const;
   /// S_v at the n-th omega, and at 0, of V - E[V]; see tally.cpp.
   [[nodiscard]] Estimate spectrum(std::size_t n) const;
   [[nodiscard]] Estimate spectrum_at_zero() const;
@@ -77,6 +86,11 @@ class Tally {
   /// E[f(Z_t)] for the f-th observable at the n-th time, and E[(V_0 - m)(V_t - m)].
   [[nodiscard]] Estimate expectation(std::size_t f, std::size_t n) const;
   [[nodiscard]] Estimate autocorrelation(std::size_t n) const;
+  /// Mean and variance of int_0^t V at the n-th time.
+  [[nodiscard]] Named travel(std::size_t n) const;
+  /// Mean times until |V| first reaches w, one of wanted.speeds, from the start of a slide and from
+  /// rest. If no slide did, a lower bound with an interval up to infinity.
+  [[nodiscard]] Named first_passage(double w) const;
 
   /// All numbers in a row, and back. `unpack` expects a tally of the same questions, and throws
   /// std::invalid_argument if the size is another.
@@ -85,8 +99,20 @@ class Tally {
   void unpack(std::span<const double> numbers);
 
  private:
-  enum Group { totals, displacement, laplaces, spectra, observed, discounted, expected, lagged };
-  static constexpr std::size_t kGroups = 8;
+  enum Group {
+    totals,
+    displacement,
+    laplaces,
+    spectra,
+    observed,
+    discounted,
+    expected,
+    lagged,
+    travels,
+    slip_transforms,
+    passages,
+    size_of_groups
+  };
   /// Where a group begins, and how many comoments it has for each side; one side with symmetry.
   struct Place {
     std::size_t first = 0, members = 0, sides = 0;
@@ -109,9 +135,10 @@ class Tally {
   int lowest_;
   Wanted wanted_;
   bool symmetric_;
-  std::array<Place, kGroups> places_;
-  std::vector<Comoments> comoments_;   // by group, member and side
-  std::vector<Histogram> histograms_;  // of entries, then of durations
+  std::array<Place, size_of_groups> places_;
+  std::vector<Comoments> comoments_;        // by group, member and side
+  std::vector<Histogram> histograms_;       // of entries, then by Law
+  std::vector<std::vector<double>> edges_;  // of the cells of histograms
   double jumps_ = 0;
 };
 
