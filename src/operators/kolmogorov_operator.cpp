@@ -39,7 +39,8 @@ KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& disc
   rest_coupling_ = std::move(rows.rest_coupling);
   top_coupling_ = std::move(rows.top_coupling);
   if (!derivative && symmetry != Symmetry::odd && PetscRealPart(lambda) >= 0) {
-    const bool nothing_killed = rest == StaticPhase::kept && PetscAbsScalar(lambda) == 0;
+    const bool nothing_killed = rest == StaticPhase::kept && PetscAbsScalar(lambda) == 0 &&
+                                !discretisation.velocities->kills_at_top();
     require_generator(comm, {states().local_begin(), rows.row_start, rows.columns, rows.values},
                       {discretisation.velocities->keeps_origin(), nothing_killed},
                       discretisation.process);

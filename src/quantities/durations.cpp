@@ -107,36 +107,51 @@ DurationDistribution stick_distribution(const model::Process& process,
 }
 
 // f(t) = g exp(L t) r, g where excursions start, r = -L 1 the rate of ending where `rest` kills.
-DurationDistribution distribution_until_killed(operators::Systems& systems, StaticPhase rest,
-                                               operators::Clock clock,
-                                               const StationaryDistribution& stationary,
-                                               const std::vector<double>& time, double mean,
-                                               const TimeScales& scales, double tolerance) {
-  ProcessPencil pencil(systems, operators::symmetry_of(systems.process()), rest, clock);
-  const auto& a = pencil.a();
-  const petsc::VecHandle one = a.values([](double, double, double) { return 1.0; }), b = a.zeros(),
-                         c = stationary.starts(a), d = stationary.weight_on(a);
-  check(MatMult(a.matrix(), one, b));
-  for (Vec end : {Vec(b), Vec(c)}) pencil.by_clock(-1, end);
-  auto curve = time_curve(pencil, {b, c, d}, ReducedModel::Nature::rough, {{0, 1 / mean}, {1, 1}},
-                          time, scales, tolerance);
-  return {std::move(curve.value[0]), std::move(curve.value[1]), curve.pairs};
+DurationDistribution
+distribution_until_killed(operators::Systems& systems, StaticPhase rest, operators::Clock clock,
+                          const StationaryDistribution& stationary, const std::vector<double>& time,
+                          double mean, const TimeScales& scales, double at_zero, double tolerance) {
+  std::vector<double> later;
+  for (double t : time) {
+    if (t > 0) later.push_back(t);
+  }
+  DurationDistribution law;
+  TimeCurve curve{{{}, {}}};
+  if (!later.empty()) {
+    ProcessPencil pencil(systems, operators::symmetry_of(systems.process()), rest, clock);
+    const auto& a = pencil.a();
+    const petsc::VecHandle one = a.values([](double, double, double) { return 1.0; }),
+                           b = a.zeros(), c = stationary.starts(a), d = stationary.weight_on(a);
+    check(MatMult(a.matrix(), one, b));
+    for (Vec end : {Vec(b), Vec(c)}) pencil.by_clock(-1, end);
+    curve = time_curve(pencil, {b, c, d}, ReducedModel::Nature::rough, {{0, 1 / mean}, {1, 1}},
+                       later, scales, tolerance);
+  }
+  law.pairs = curve.pairs;
+  std::size_t next = 0;
+  for (double t : time) {
+    law.density.push_back(t > 0 ? curve.value[0][next] : Uncertain{at_zero, 0});
+    law.distribution.push_back(t > 0 ? curve.value[1][next++] : Uncertain{});
+  }
+  return law;
 }
 
 DurationDistribution slide_distribution(operators::Systems& systems,
                                         const StationaryDistribution& stationary,
                                         const std::vector<double>& time, double tolerance) {
-  return distribution_until_killed(systems, StaticPhase::killing, operators::Clock::time,
-                                   stationary, time, stationary.excursion().mean_slide(),
-                                   time_scales(systems.process()), tolerance);
+  return distribution_until_killed(
+      systems, StaticPhase::killing, operators::Clock::time, stationary, time,
+      stationary.excursion().mean_slide(), time_scales(systems.process()),
+      slide_density_at_zero(systems.process(), stationary.sides()), tolerance);
 }
 
+// No excursion ends at once: a slide would have to, and then a sticking phase.
 DurationDistribution excursion_distribution(operators::Systems& systems,
                                             const StationaryDistribution& stationary,
                                             const std::vector<double>& time, double tolerance) {
   return distribution_until_killed(systems, StaticPhase::killed_on_exit, operators::Clock::time,
                                    stationary, time, stationary.excursion().mean_excursion(),
-                                   time_scales(systems.process()), tolerance);
+                                   time_scales(systems.process()), 0, tolerance);
 }
 
 double slide_density_at_zero(const model::Process& process, const SideChain& sides) {

@@ -6,6 +6,7 @@
 
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/support/errors.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -57,6 +58,10 @@ struct Passage {
 
 Passage passage(const SideChain& sides, const Sticking& sticking, const Slide& plus,
                 const Slide& minus, Slide rest) {
+  if (!(plus.reached + minus.reached > 0)) {
+    throw NotReached("a speed of -velocity is reached more rarely than numbers can tell; take "
+                     "smaller ones");
+  }
   const double across =
       plus.down * minus.reached + plus.reached * minus.up + plus.reached * minus.reached;
   const double from_plus =

@@ -161,6 +161,37 @@ Reduced ReducedModel::reduce() const {
   return r;
 }
 
+Reduced whole_model(const Pencil& pencil, const Ends& ends, bool scaled) {
+  PetscInt size = 0;
+  check(VecGetSize(ends.b, &size));
+  const int n = static_cast<int>(size);
+  const petsc::BvHandle units = basis_like(ends.b, n), images = basis_like(ends.b, n);
+  const petsc::VecHandle unit = copy_of(ends.b), image = copy_of(ends.b);
+  for (int column = 0; column < n; ++column) {
+    check(VecSet(unit, 0));
+    check(VecSetValue(unit, column, 1, INSERT_VALUES));
+    check(VecAssemblyBegin(unit));
+    check(VecAssemblyEnd(unit));
+    pencil.multiply(unit, image, false);
+    check(BVInsertVec(units, column, unit));
+    check(BVInsertVec(images, column, image));
+  }
+  Reduced r{-1.0 * products(images, units, n), products(units, ends.b, n),
+            products(units, ends.c, n)};
+  if (!scaled) return r;
+  const auto weight = products(units, ends.weight, n);
+  for (int j = 0; j < n; ++j) {
+    const double root = std::sqrt(weight[j]);
+    for (int i = 0; i < n; ++i) {
+      r.m(j, i) *= root;
+      r.m(i, j) /= root;
+    }
+    r.beta[j] *= root;
+    r.gamma[j] /= root;
+  }
+  return r;
+}
+
 namespace {
 
 /// The search for a good model.

@@ -60,7 +60,7 @@ DurationDistribution slip_distribution(operators::Systems& systems,
   const double mean = mean_slip(excursion), typical = mean / excursion.mean_slide();
   const auto [correlation, rate] = time_scales(systems.process());
   return distribution_until_killed(systems, StaticPhase::killing, Clock::path_length, distribution,
-                                   distance, mean, {correlation * typical, rate / typical},
+                                   distance, mean, {correlation * typical, rate / typical}, 0,
                                    tolerance);
 }
 

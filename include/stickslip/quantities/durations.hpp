@@ -39,13 +39,13 @@ struct DurationDistribution {
                                                           const std::vector<double>& time,
                                                           double tolerance);
 
-/// Of what a clock shows when the process is killed, started as excursions start; `mean` of that.
-/// Both of the above are this. Collective.
+/// Of what a clock shows when the process is killed, started as excursions start; `mean` of that,
+/// and its density `at_zero`. Both of the above are this. Collective.
 [[nodiscard]] DurationDistribution
 distribution_until_killed(operators::Systems& systems, operators::StaticPhase rest,
                           operators::Clock clock, const StationaryDistribution& stationary,
                           const std::vector<double>& time, double mean, const TimeScales& scales,
-                          double tolerance);
+                          double at_zero, double tolerance);
 
 /// f_slide(0+): a slide can only end at once if one jump back from the level of its start reverses
 /// it.

@@ -72,6 +72,10 @@ class ReducedModel {
   std::map<double, Chain> chains_;
 };
 
+/// The model that is not reduced: A itself, in the coordinates of ReducedModel or in its own, which
+/// round otherwise. Collective. O(size^2) memory.
+[[nodiscard]] Reduced whole_model(const Pencil& pencil, const Ends& ends, bool scaled);
+
 /// Numbers to be had from a reduced model, and how to make it better for each of them.
 struct Questions {
   std::function<std::vector<double>(const Reduced&)> values;
