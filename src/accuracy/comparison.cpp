@@ -19,6 +19,7 @@ std::optional<Compared> counterpart(const options::Reference& reference,
   for (const auto& result : results) {
     if (result.key != reference.quantity) continue;
     if (result.is_scalar() == reference.argument.has_value()) continue;
+    if (!result.ci95.empty() && options::is_histogram(result.key)) continue;
     for (std::size_t n = 0; n < result.value.size(); ++n) {
       const bool same = result.is_scalar() || std::abs(result.abscissa[n] - *reference.argument) <=
                                                   1e-9 * std::abs(*reference.argument);

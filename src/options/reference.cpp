@@ -50,12 +50,6 @@ void require_numbers(const std::string& key, const Values& v) {
   if (!sound) throw std::invalid_argument(key + " has values or errors that are no numbers");
 }
 
-// Of durations: averages over cells, where they are simulated.
-bool is_histogram(const std::string& key) {
-  static const std::set<std::string> keys{"f_slide", "f_stick", "f_excursion", "f_slip"};
-  return keys.contains(key);
-}
-
 void append(const std::string& key, const Values& v, std::vector<Reference>& all) {
   require_equal_sizes(key, v);
   require_numbers(key, v);
@@ -241,6 +235,11 @@ std::vector<Reference> read_csv(const std::string& file) {
 }
 
 }  // namespace
+
+bool is_histogram(const std::string& key) {
+  static const std::set<std::string> keys{"f_slide", "f_stick", "f_excursion", "f_slip"};
+  return keys.contains(key);
+}
 
 void require_readable(const std::string& file) {
   std::error_code error;

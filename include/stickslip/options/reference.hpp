@@ -21,4 +21,7 @@ struct Reference {
 /// std::invalid_argument that says what is wrong and where. Local.
 [[nodiscard]] std::vector<Reference> read_references(const std::string& file);
 
+/// Whether simulations give averages over cells for a result, not values at points.
+[[nodiscard]] bool is_histogram(const std::string& key);
+
 }  // namespace stickslip::options
