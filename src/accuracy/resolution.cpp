@@ -88,7 +88,8 @@ int levels_for(const model::Scene& scene, double tolerance, double speed) {
   const double per_force = tilt(scene);
   const auto last = [&](const model::Process& side) {
     const auto& noise = side.noise;
-    const double needed = side.friction.at_rest() - side.bias - side.drag(speed);
+    const double needed =
+        speed > 0 ? side.friction.at_rest() - side.bias - side.drag(speed) : -HUGE_VAL;
     double log_weight = 0;  // of level i against the first that does not stick and has the force
     int end = side.static_index() + 1;
     if (noise.symmetric()) end = std::max(end, 1 - side.lowest_static());
