@@ -52,26 +52,26 @@ class CoupledPencil final : public Pencil {
   }
 
   void multiply(Vec x, Vec y, bool transposed) const override {
-    const auto [x2, x1] = apart(x);
+    const Parts given = apart(x);
     const petsc::VecHandle y2 = outer_.a().zeros(), y1 = inner_.a().zeros();
-    outer_.multiply(x2, y2, transposed);
-    inner_.multiply(x1, y1, transposed);
-    transposed ? couple(-1, x2, outer_places_, y1, inner_places_)
-               : couple(-1, x1, inner_places_, y2, outer_places_);
+    outer_.multiply(given.outer, y2, transposed);
+    inner_.multiply(given.inner, y1, transposed);
+    transposed ? couple(-1, given.outer, outer_places_, y1, inner_places_)
+               : couple(-1, given.inner, inner_places_, y2, outer_places_);
     join(y2, y1, y);
   }
 
   void solve(double z, Vec b, Vec x, bool transposed, bool refined) override {
-    const auto [b2, b1] = apart(b);
+    const Parts given = apart(b);
     const petsc::VecHandle x2 = outer_.a().zeros(), x1 = inner_.a().zeros();
     if (transposed) {
-      outer_.solve(z, b2, x2, true, refined);
-      couple(1, x2, outer_places_, b1, inner_places_);
-      inner_.solve(z, b1, x1, true, refined);
+      outer_.solve(z, given.outer, x2, true, refined);
+      couple(1, x2, outer_places_, given.inner, inner_places_);
+      inner_.solve(z, given.inner, x1, true, refined);
     } else {
-      inner_.solve(z, b1, x1, false, refined);
-      couple(1, x1, inner_places_, b2, outer_places_);
-      outer_.solve(z, b2, x2, false, refined);
+      inner_.solve(z, given.inner, x1, false, refined);
+      couple(1, x1, inner_places_, given.outer, outer_places_);
+      outer_.solve(z, given.outer, x2, false, refined);
     }
     join(x2, x1, x);
   }
@@ -121,8 +121,9 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
                           double tolerance) {
   const TimeScales scales = time_scales(systems.process());
   ProcessPencil inner(systems, distribution.velocity_symmetry(), StaticPhase::kept);
-  const auto [v, c] = distribution.velocity(inner.a());
-  const double variance = dot(c, v), tau = scales.correlation;
+  const auto velocity = distribution.velocity(inner.a());
+  const Vec v = velocity.b;
+  const double variance = dot(velocity.c, v), tau = scales.correlation;
   const double longest = std::max(*std::max_element(time.begin(), time.end()) / tau, 1e-9);
   const double spread = longest * longest / (1 + longest);  // variance of y, in about these units
   const petsc::VecHandle weight = distribution.weight_on(inner.a());
@@ -130,8 +131,8 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
   x.mean.resize(time.size());
   if (start.kind == model::Start::Kind::stationary) {
     const double unit = variance * tau * tau * spread;
-    const auto half =
-        time_curve(inner, {v, c, weight}, Nature::smooth, {{2, unit}}, time, scales, tolerance);
+    const auto half = time_curve(inner, {v, velocity.c, weight}, Nature::smooth, {{2, unit}}, time,
+                                 scales, tolerance);
     for (const Uncertain& value : half.value[0]) x.variance.push_back(2.0 * value);
   } else {
     // In units of the standard deviation of the velocity and of tau.

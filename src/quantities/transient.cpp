@@ -81,10 +81,10 @@ std::vector<Uncertain> autocorrelation(operators::Systems& systems,
                                        const std::vector<double>& time, TransientMethod method,
                                        double tolerance) {
   ProcessPencil whole(systems, distribution.velocity_symmetry(), StaticPhase::kept);
-  const auto [b, c] = distribution.velocity(whole.a());
-  const double variance = dot(c, b);
-  return curve(systems, distribution, whole, b, c, ReducedModel::Nature::smooth, time, variance,
-               method, tolerance);
+  const auto velocity = distribution.velocity(whole.a());
+  const double variance = dot(velocity.c, velocity.b);
+  return curve(systems, distribution, whole, velocity.b, velocity.c, ReducedModel::Nature::smooth,
+               time, variance, method, tolerance);
 }
 
 Expectation expectation(operators::Systems& systems, const StationaryDistribution& distribution,

@@ -110,9 +110,11 @@ std::unique_ptr<VelocityDiscretisation> HpDiscretisation::up_to(double speed) co
     degrees.push_back(elements_[e].reference->size - 1);
   }
   degrees.back() = *std::max_element(degrees.begin(), degrees.end());
-  for (double left = ratio * (speed - ends.back()); left > ends_[1]; left *= ratio) {
+  double left = ratio * (speed - ends.back());
+  while (left > ends_[1]) {
     ends.push_back(speed - left);
     degrees.push_back(degrees.back());
+    left *= ratio;
   }
   ends.push_back(speed);
   return std::make_unique<HpDiscretisation>(std::move(ends), degrees, drag_);
