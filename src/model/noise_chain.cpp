@@ -61,7 +61,8 @@ int NoiseChain::first_from(double x) const {
 }
 
 std::optional<int> NoiseChain::find(double x) const {
-  const int i = last_up_to(x);
+  // A level far outside the chain need not fit an integer.
+  const int i = last_up_to(std::clamp(x, level(lowest()), level(highest())));
   constexpr double rounding = 1e-9;  // of what people write
   for (int near : {i, i + 1}) {
     if (near < lowest() || near > highest()) continue;

@@ -473,6 +473,7 @@ TEST_CASE("request: starts are states that occur, or distributions") {
   CHECK(r.question.start.v == 0.25);
   check_refusal({path + "0.3,0", {"-start = 0.3,0", "0.125 apart", "take x = 0.25"}});
   check_refusal({path + "-99,0", {"up to 16", "take x = -16"}});
+  check_refusal({path + "2147483648,0", {"-start = 2147483648,0", "take x = 16"}});
   check_refusal({path + "0.5,100", {"-start = 0.5,100", "no body reaches", "take v in [0, 15]"}});
   check_refusal({path + "0.5,-15.1", {"tends to -15", "take v in [-15, 0]"}});
   CHECK_NOTHROW(Given(path + "0.5,100 -drag none").read());
