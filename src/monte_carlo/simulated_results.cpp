@@ -217,6 +217,7 @@ class Estimates {
     for (std::size_t from : {0, 1}) {
       over(tally_.first_passage(w[0])[from].first, "time", Kind::positive_mean, "velocity", w,
            [&](std::size_t n) { return tally_.first_passage(w[n])[from].second; });
+      results_.back().each_by_its_size = true;
     }
   }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
@@ -42,10 +43,12 @@ void require_equal_sizes(const std::string& key, const Values& v) {
 
 void require_numbers(const std::string& key, const Values& v) {
   bool sound = true;
-  for (const auto* values : {&v.argument, &v.value, &v.error, &v.low, &v.high}) {
+  for (const auto* values : {&v.argument, &v.value}) {
     for (double value : *values) sound = sound && std::isfinite(value);
   }
-  for (double error : v.error) sound = sound && error >= 0;
+  // A simulation may have bounded a value from below alone.
+  const bool finite = v.low.empty();
+  for (double error : v.error) sound = sound && error >= 0 && (!finite || std::isfinite(error));
   for (std::size_t n = 0; n < v.low.size(); ++n) sound = sound && v.low[n] <= v.high[n];
   if (!sound) throw std::invalid_argument(key + " has values or errors that are no numbers");
 }
@@ -64,17 +67,24 @@ void append(const std::string& key, const Values& v, std::vector<Reference>& all
   }
 }
 
+// JSON has no infinity: null stands for it.
+double number_or_infinity(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
+}
+
 std::vector<double> numbers(const Json& json) {
-  if (json.is_number()) return {json.get<double>()};
-  return json.get<std::vector<double>>();
+  if (!json.is_array()) return {number_or_infinity(json)};
+  std::vector<double> all;
+  for (const auto& number : json) all.push_back(number_or_infinity(number));
+  return all;
 }
 
 void read_intervals(const Json& ci95, Values& v) {
   const auto add = [&](const Json& pair) {
     v.low.push_back(pair.at(0).get<double>());
-    v.high.push_back(pair.at(1).get<double>());
+    v.high.push_back(number_or_infinity(pair.at(1)));
   };
-  if (ci95.at(0).is_number()) return add(ci95);
+  if (!ci95.at(0).is_array()) return add(ci95);
   for (const auto& pair : ci95) add(pair);
 }
 
@@ -171,7 +181,7 @@ std::vector<Reference> references_of(const std::string& text) {
   for (const auto& r : Json::parse(text)) {
     const auto argument = r[1].is_null() ? std::nullopt : std::optional(r[1].get<double>());
     all.push_back({r[0].get<std::string>(), argument, r[2].get<double>(), r[3].get<double>(),
-                   r[4].get<double>()});
+                   number_or_infinity(r[4])});
   }
   return all;
 }

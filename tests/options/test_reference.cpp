@@ -177,7 +177,9 @@ TEST_CASE("reference: values that are no numbers are refused") {
   CHECK(json(R"({"value": 1, "error": 0.5})") == "nothing");
   CHECK_THAT(json(R"({"value": 1, "error": -0.5})"), Contains("a has values or errors"));
   CHECK_THAT(json(R"({"value": 1, "error": 0, "ci95": [2, 1]})"), Contains("a has values"));
-  CHECK_THAT(json(R"({"value": 1, "error": null})"), Contains("no JSON summary"));
+  CHECK_THAT(json(R"({"value": 1, "error": null})"), Contains("a has values"));
+  CHECK_THAT(json(R"({"value": null, "error": 1})"), Contains("a has values"));
+  CHECK(json(R"({"value": 1, "error": null, "ci95": [1, null]})") == "nothing");
 }
 
 // A chunk of the file's own structure points outside, at which the library has crashed.
