@@ -38,7 +38,8 @@ double deviations(const Compared& c) {
   if (difference == 0) return 0;
   const double half = difference > 0 ? r.high - r.value : r.value - r.low;
   const double rounding = std::numeric_limits<double>::epsilon() * std::abs(c.value);
-  return difference / std::hypot(half / kNormalQuantile, c.error, rounding);
+  // In pairs: the library's sum of three infinite squares is no number.
+  return difference / std::hypot(std::hypot(half / kNormalQuantile, c.error), rounding);
 }
 
 double chance(double z) {

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "stickslip/accuracy/comparison.hpp"
 
@@ -51,6 +52,12 @@ TEST_CASE("comparison: z by the half of the interval on our side") {
   CHECK(one(reference(10, 1, 2), 7, 0).rows[0].z == Approx(-3));
   CHECK(one(reference(10, 3, 3), 15, 4).rows[0].z == Approx(1));
   CHECK(one(reference(10, 3, 3), 15, 4).rows[0].error == 4);
+}
+
+TEST_CASE("comparison: what is open above agrees with all above") {
+  const double open = std::numeric_limits<double>::infinity();
+  CHECK(one(reference(10, 1, open), 1e9, 0).rows[0].z == 0);
+  CHECK(one(reference(10, 1, 1), 3, open).rows[0].z == 0);
 }
 
 TEST_CASE("comparison: half the interval of a simulated value is 1.96 standard deviations") {
