@@ -41,6 +41,8 @@ class Pictures(Case):
                  ["f_density.png", "f_spectra.png"]),
                 (("-quantities", "trajectory", "-horizon", "10"), ["f.png"]),
                 (("-quantities", "duration_density", "-time", "0:1:5", "-accuracy", "1e-2"), ["f.png"]),
+                (("-quantities", "slip,peak,displacement", "-distance", "1,2", "-velocity", "0.5", "-time", "1,2",
+                  "-accuracy", "1e-2"), ["f.png"]),
                 (("-compare", "reference.h5"), ["f.png"]),
                 (("-quantities", "noise_law", "-sweep_tau", "0.5,1"), ["f/E_X2.png", "f/P_X_le_mu_s.png"])):
             self.run_ok(*SCENE, *options, "-output", "f.h5")

@@ -18,10 +18,11 @@ HERE = pathlib.Path(__file__).resolve().parent
 # Script and where its data are; of a study also the kind.
 HDF5 = (("density", "density"), ("trajectory", "trajectory"), ("sweep", "sweep"),
         ("comparison", "comparison"), ("spectra", "results/S_v"), ("durations", "results/f_slide"),
+        ("slips", "results/cdf_slip"), ("slips", "results/P_peak"), ("slips", "results/displacement_variance"),
         ("cost", "study"))
 FORMATS = (".png", ".pdf", ".svg")
-ASK = ("ask the program for density, trajectory, spectrum with -omega, or duration_density with "
-       "-quantities; or for -compare, -study cost or a sweep")
+ASK = ("ask the program for density, trajectory, spectrum with -omega, duration_density, slip with "
+       "-distance, peak or displacement with -quantities; or for -compare, -study cost or a sweep")
 
 
 def refuse(words):
@@ -33,7 +34,7 @@ def kinds_of_hdf5(name):
     with h5py.File(name) as file:
         if "record/options" not in file:
             refuse(f"{name}: no file of this program: it has no record/options")
-        found = [script for script, path in HDF5 if path in file]
+        found = list(dict.fromkeys(script for script, path in HDF5 if path in file))
         if "cost" in found and file["study"].attrs["kind"] != "cost":
             found.remove("cost")
     return found
