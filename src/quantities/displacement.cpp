@@ -129,12 +129,19 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
   const petsc::VecHandle weight = distribution.weight_on(inner.a());
   Displacement x;
   x.mean.resize(time.size());
-  if (start.kind == model::Start::Kind::stationary) {
-    const double unit = variance * tau * tau * spread;
-    const auto half = time_curve(inner, {v, velocity.c, weight}, Nature::smooth, {{2, unit}}, time,
-                                 scales, tolerance);
-    for (const Uncertain& value : half.value[0]) x.variance.push_back(2.0 * value);
-  } else {
+  x.variance.resize(time.size());
+  const bool stationary = start.kind == model::Start::Kind::stationary;
+  // From there E[x^2] grows as S_0 t, of which a model of rough ends loses sight: beyond the time
+  // of memory only what another start changes, which stays bounded, is left to it.
+  constexpr double memory = 10;  // correlation times
+  const bool beside_stationary = !stationary && longest > memory;
+  if (stationary || beside_stationary) {
+    const double unit = 2 * variance * tau * tau * spread;
+    x.variance = time_curve(inner, {scaled(v, 2), velocity.c, weight}, Nature::smooth, {{2, unit}},
+                            time, scales, tolerance)
+                     .value[0];
+  }
+  if (!stationary) {
     // In units of the standard deviation of the velocity and of tau.
     const double unit = 1 / std::sqrt(variance);
     ProcessPencil outer(systems, operators::symmetry_of(systems.process()), StaticPhase::kept);
@@ -147,13 +154,17 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
                           scales, tolerance)
                    .value[0];
     }
+    if (beside_stationary) {
+      check(VecAXPY(second, -1 / distribution.excursion().mean_excursion(),
+                    distribution.occupation_on(outer.a())));
+    }
     const petsc::VecHandle all_b = both.joined(nothing, b), all_c = both.joined(second, none),
                            all = both.joined(distribution.weight_on(outer.a()), weight);
-    x.variance =
+    const auto square =
         time_curve(both, {all_b, all_c, all}, Nature::rough, {{1, spread}}, time, scales, tolerance)
             .value[0];
     for (std::size_t n = 0; n < time.size(); ++n) {
-      x.variance[n] = variance * tau * tau * (x.variance[n] - x.mean[n] * x.mean[n]);
+      x.variance[n] = x.variance[n] + variance * tau * tau * (square[n] - x.mean[n] * x.mean[n]);
       x.mean[n] = tau / unit * x.mean[n];
     }
   }

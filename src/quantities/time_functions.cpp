@@ -85,13 +85,22 @@ TimeCurve time_curve(Pencil& pencil, const Ends& ends, ReducedModel::Nature natu
     questions.shift.push_back(2 / std::max(time[n % time.size()], 1e-6 * tau));
   }
   questions.tolerance = tolerance;
-  // From the slowest rates to beyond the rate of the noise.
-  constexpr int shifts = 6;
-  const double low = 0.3 / tau, high = std::max(30 / tau, 12 * rate);
+  // From the slowest rates to beyond the rate of the noise. Fast noise leaves velocities that are
+  // slower than it by any factor: long times tell of them.
+  const double longest = *std::max_element(time.begin(), time.end());
+  double low = 0.3 / tau;
+  const double high = std::max(30 / tau, 12 * rate);
+  int shifts = 6;
+  questions.lowest = 0.05 / tau;
+  if (2 / longest < questions.lowest) {
+    const double slowest = std::max(2 / longest, 1e-4 / tau);
+    shifts += static_cast<int>(std::ceil(std::log10(low / slowest)));
+    low = slowest;
+    questions.lowest = 0.5 * slowest;
+  }
   for (int n = 0; n < shifts; ++n) {
     questions.first_shifts.push_back(low * std::pow(high / low, n / (shifts - 1.0)));
   }
-  questions.lowest = 0.05 / tau;
   questions.highest = 1e6 / tau;
   Answers answers = ask(model, questions);
   PetscInt size = 0;

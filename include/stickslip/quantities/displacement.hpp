@@ -20,8 +20,9 @@ struct Displacement {
 ///
 ///   dm1/dt = L m1 + v',   dm2/dt = L m2 + 2 v' m1,
 ///
-/// which one reduced model of both together solves for all times. Errors are relative to the
-/// variance at the largest time. Collective. Throws NotReached or NoMemory.
+/// which one reduced model of both together solves for all times: up to ten correlation times by
+/// themselves, for longer times what the start adds to the second moment from the stationary
+/// distribution, which stays bounded. Errors are relative to the variance at the largest time. Collective. Throws NotReached or NoMemory.
 [[nodiscard]] Displacement displacement(operators::Systems& systems,
                                         const StationaryDistribution& distribution,
                                         const model::Start& start, const std::vector<double>& time,
