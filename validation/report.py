@@ -22,7 +22,7 @@ import time
 from harness import ROOT, parser
 
 CASES = ("paths", "averages", "points", "spectra", "correlation_time", "laplace", "durations",
-         "extrapolation", "limit", "cost", "scan", "effects", "weakening", "noises", "combinations", "hard",
+         "extrapolation", "limit", "cost", "scan", "effects", "weakening", "noises", "slips", "combinations", "hard",
          "faults")  # in the order of the paper
 STYLE = """
 body { font: 15px/1.5 sans-serif; max-width: 62em; margin: 2em auto; padding: 0 1em; color: #222 }

@@ -219,6 +219,22 @@ TEST_CASE("displacement: spreads as the autocovariance says, and at last with S_
 }
 
 // Before the noise jumps: x = v t + a t^2/2, and in the variance nothing but jumps.
+// The velocity then is a thousand times slower than the noise.
+TEST_CASE("displacement: keeps its growth under fast noise") {
+  auto s = test::scene(1, 1, 0.01, 2, {0, 0});
+  Solved solved(test::on_hp(s, 6));
+  const double slope = quantities::reduced_spectrum(solved.systems, solved.distribution, {}, 1e-7)
+                           .spectrum.at_zero.value;
+  using enum model::Start::Kind;
+  for (auto kind : {stationary, rest}) {
+    const auto x = quantities::displacement(solved.systems, solved.distribution, {0, 0, kind},
+                                            {1, 300, 500}, 1e-7);
+    CHECK((x.variance[2].value - x.variance[1].value) / 200 == Approx(slope).epsilon(1e-4));
+    CHECK(x.variance[0].value > 0);
+    CHECK(x.variance[0].value < slope);
+  }
+}
+
 TEST_CASE("displacement: begins as the start says") {
   const auto s = linear();
   Solved solved(test::on_hp(s, 8));
