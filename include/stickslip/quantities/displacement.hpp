@@ -22,7 +22,8 @@ struct Displacement {
 ///
 /// which one reduced model of both together solves for all times: up to ten correlation times by
 /// themselves, for longer times what the start adds to the second moment from the stationary
-/// distribution, which stays bounded. Errors are relative to the variance at the largest time. Collective. Throws NotReached or NoMemory.
+/// distribution, which stays bounded. Errors are relative to the variance at the largest time.
+/// Collective. Throws NotReached or NoMemory.
 [[nodiscard]] Displacement displacement(operators::Systems& systems,
                                         const StationaryDistribution& distribution,
                                         const model::Start& start, const std::vector<double>& time,
