@@ -58,10 +58,10 @@ DurationDistribution slip_distribution(operators::Systems& systems,
                                        const std::vector<double>& distance, double tolerance) {
   const Excursion& excursion = distribution.excursion();
   const double mean = mean_slip(excursion), typical = mean / excursion.mean_slide();
-  const auto [correlation, rate] = time_scales(systems.process());
-  return distribution_until_killed(systems, StaticPhase::killing, Clock::path_length, distribution,
-                                   distance, mean, {correlation * typical, rate / typical}, 0,
-                                   tolerance);
+  const auto [correlation, rate, stopping] = time_scales(systems.process());
+  return distribution_until_killed(
+      systems, StaticPhase::killing, Clock::path_length, distribution, distance, mean,
+      {correlation * typical, rate / typical, stopping * typical}, 0, tolerance);
 }
 
 void append_mean_slip(const Excursion& excursion, Results& results) {

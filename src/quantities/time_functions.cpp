@@ -61,7 +61,16 @@ std::vector<std::vector<double>> evaluate(const Reduced& reduced, const std::vec
 }
 
 TimeScales time_scales(const model::Process& process) {
-  return {process.noise.correlation_time(), process.noise.rate()};
+  // At a typical speed friction and drag take the power that white noise gives.
+  const auto force = [&](double v) {
+    return process.friction.at_rest() - std::abs(process.bias) - process.drag(v);
+  };
+  double low = 1e-9, high = 1e9;
+  for (int n = 0; n < 60; ++n) {
+    const double v = std::sqrt(low * high);
+    (v * force(v) < process.noise.intensity() ? low : high) = v;
+  }
+  return {process.noise.correlation_time(), process.noise.rate(), low / force(low)};
 }
 
 TimeCurve time_curve(Pencil& pencil, const Ends& ends, ReducedModel::Nature nature,
@@ -80,20 +89,20 @@ TimeCurve time_curve(Pencil& pencil, const Ends& ends, ReducedModel::Nature natu
     }
     return values;
   };
-  const auto [tau, rate] = scales;
+  const auto [tau, rate, stopping] = scales;
   for (std::size_t n = 0; n < folds.size() * time.size(); ++n) {
     questions.shift.push_back(2 / std::max(time[n % time.size()], 1e-6 * tau));
   }
   questions.tolerance = tolerance;
-  // From the slowest rates to beyond the rate of the noise. Fast noise leaves velocities that are
-  // slower than it by any factor: long times tell of them.
+  // From the slowest rates to beyond the rate of the noise. Under fast noise velocities are slower
+  // than it by any factor, and long times tell of them.
   const double longest = *std::max_element(time.begin(), time.end());
   double low = 0.3 / tau;
   const double high = std::max(30 / tau, 12 * rate);
   int shifts = 6;
   questions.lowest = 0.05 / tau;
-  if (2 / longest < questions.lowest) {
-    const double slowest = std::max(2 / longest, 1e-4 / tau);
+  const double slowest = std::max(2 / longest, 0.05 / stopping);
+  if (slowest < questions.lowest) {
     shifts += static_cast<int>(std::ceil(std::log10(low / slowest)));
     low = slowest;
     questions.lowest = 0.5 * slowest;

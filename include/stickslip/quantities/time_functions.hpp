@@ -22,10 +22,10 @@ struct Fold {
   double unit;
 };
 
-/// How fast things happen: the correlation time of the noise and its rate, by the clock of a
-/// pencil.
+/// How fast things happen: the correlation time of the noise, its rate, and the time in which a
+/// body of a typical speed stops, by the clock of a pencil.
 struct TimeScales {
-  double correlation, rate;
+  double correlation, rate, stopping;
 };
 
 /// Integrals of c exp(-A t) b with their errors, by fold and time.
@@ -38,7 +38,7 @@ struct TimeCurve {
 [[nodiscard]] TimeCurve time_curve(Pencil& pencil, const Ends& ends, ReducedModel::Nature nature,
                                    const std::vector<Fold>& folds, const std::vector<double>& time,
                                    const TimeScales& scales, double tolerance);
-/// Those of the noise of a process, by the clock of time.
+/// Those of a process, by the clock of time.
 [[nodiscard]] TimeScales time_scales(const model::Process& process);
 
 }  // namespace stickslip::quantities
