@@ -97,7 +97,7 @@ std::vector<Reference> read_json(const std::string& file) {
       Values v;
       v.value = numbers(result.at("value"));
       v.error = numbers(result.at("error"));
-      v.scalar = result.at("value").is_number();
+      v.scalar = !result.at("value").is_array();
       if (result.contains("ci95")) read_intervals(result["ci95"], v);
       for (const char* name : {"lambda", "omega", "time", "distance", "inverse_distance",
                                "velocity", "k", "n", "mode"}) {
