@@ -169,9 +169,10 @@ class Refiner {
     }
     const bool falls = rounding < 0.5 * std::exchange(last_rounding_, rounding);
     if (rounding <= question_.accuracy || falls) return false;
-    // What sums over nodes overlook of an observable falls by fits and starts.
-    constexpr int patience = 3;
-    if (!question_.observables.empty() && ++refinements_in_vain_ < patience) return false;
+    // What reduced models miss on coarse grids, and what sums over nodes overlook of an observable,
+    // falls by fits and starts.
+    const int patience = question_.observables.empty() ? 2 : 3;
+    if (++refinements_in_vain_ < patience) return false;
     const bool by_lambda = given_.method.route == options::Route::lambda;
     const double least = std::max(rounding, step.estimate);
     const std::string looser = least < 0.05

@@ -494,3 +494,13 @@ TEST_CASE("refinement: closed forms and paths need no system, all else does") {
   CHECK(needs({sticking}, Route::excursion));
   CHECK(needs({noise_law, trajectory, sensitivity, moments}, Route::excursion));
 }
+
+TEST_CASE("refinement: what reduced models miss on coarse grids ends no refinement") {
+  options::Case r = given(1, 0.5, 1, 0.25, {1, 0});
+  r.question.quantities = {Quantity::slip};
+  for (int k = 0; k <= 12; ++k) {
+    r.question.distance.push_back(0.03 * std::pow(10 / 0.03, k / 12.0));
+  }
+  r.question.accuracy = 1e-3;
+  CHECK(solve(r).reached);
+}
