@@ -15,13 +15,16 @@ PLOTS = ROOT / "validation" / "plot"
 
 
 class Entry(Report):
-    """What `doc` says in its first line is the title; `paper` names the figure or table."""
+    """What `doc` says in its first line is the title; `paper` names the figure or table; options of its own
+    are (name, arguments of add_argument)."""
 
-    def __init__(self, doc, paper):
+    def __init__(self, doc, paper, *more):
         super().__init__()
         options = parser(doc)
         options.add_argument("--report", type=pathlib.Path, metavar="FOLDER",
                              help="leave pictures and entry.json in this folder")
+        for name, keywords in more:
+            options.add_argument(name, **keywords)
         self.arguments = options.parse_args()
         self.quick = self.arguments.quick
         self.program = Program(self.arguments.program)

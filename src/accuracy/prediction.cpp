@@ -112,7 +112,7 @@ Prediction predict(MPI_Comm comm, const options::Case& given) {
   if (given.method.route == options::Route::monte_carlo) return prediction;
   const RefinementSequence sequence(given);
   require_memory(comm, given.scene, sequence.refinement_level(1));
-  for (int n = 0; n <= 1; ++n) {
+  for (int n = sequence.first(); n <= 1; ++n) {
     const Resolution& resolution = sequence.refinement_level(n);
     if (prediction.plan.tasks.empty()) {
       PredictedStep step{resolution, unknowns(given.scene, resolution)};

@@ -79,12 +79,12 @@ class Refiner {
 
  private:
   void climb() {
-    require_start_within(given_, sequence_.refinement_level(0));
+    require_start_within(given_, sequence_.refinement_level(sequence_.first()));
     require_memory(comm_, given_.scene, sequence_.refinement_level(1));
-    for (int n = 0; n <= sequence_.last(); ++n) {
+    for (int n = sequence_.first(); n <= sequence_.last(); ++n) {
       if (n >= 2 && !fits(sequence_.refinement_level(n))) return short_of_memory(n);
       solve(n);
-      if (n == 0) continue;
+      if (n < 1) continue;
       if (finished()) {
         if (outcome_.reached) outcome_.next_digit_seconds = next_digit(n);
         return;
@@ -104,10 +104,11 @@ class Refiner {
 
   void solve(int n) {
     const Resolution& resolution = sequence_.refinement_level(n);
-    if (progress_) progress_(n, resolution, expected_seconds(resolution));
+    const int step_number = static_cast<int>(outcome_.steps.size());
+    if (progress_) progress_(step_number, resolution, expected_seconds(resolution));
     auto [evaluation, step] = evaluated(comm_, given_, resolution);
     remember_rounding(evaluation.results);
-    if (n >= 1) add_discretisation(n, evaluation.results);
+    if (!outcome_.steps.empty()) add_discretisation(n, evaluation.results);
     outcome_.results = std::move(evaluation.results);
     outcome_.modes = std::move(evaluation.modes);
     follow(std::move(evaluation.distribution));
@@ -129,9 +130,8 @@ class Refiner {
   }
 
   void add_discretisation(int n, Results& results) {
-    const ErrorPerChange factor{sequence_.error_per_change(n),
-                                sequence_.error_per_earlier_change()};
-    changes_ = accuracy::add_discretisation(factor, outcome_.results, changes_, results);
+    changes_ = accuracy::add_discretisation(sequence_.error_per_change(n), outcome_.results,
+                                            changes_, results);
   }
 
   // Whoever asks for the density, or cuts the velocity by hand, asks for the distribution of |V|.
@@ -194,9 +194,8 @@ class Refiner {
   [[nodiscard]] double next_digit(int n) const {
     const auto& steps = outcome_.steps;
     double fall = 1;  // digits a step
-    if (steps.size() >= 3 && steps.back().estimate > 0) {
-      fall = std::log10(steps[steps.size() - 2].estimate / steps.back().estimate);
-    }
+    const double before = steps[steps.size() - 2].estimate, now = steps.back().estimate;
+    if (before > 0 && now > 0) fall = std::log10(before / now);
     if (sequence_.first_order()) fall = std::log10(2.0);
     const int more = static_cast<int>(std::ceil(1 / std::clamp(fall, 0.2, 10.0)));
     if (n + more > sequence_.last() || 0.1 * question_.accuracy < 1e-14) return 0;

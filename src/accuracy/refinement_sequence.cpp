@@ -7,14 +7,10 @@
 namespace stickslip::accuracy {
 namespace {
 
-// Errors of hp functionals fall about tenfold a degree, in the mean of hundreds of scenes chosen at
-// random, with a spread of a decade to both sides. The change from degree d-1 to d, which is the
-// error at d-1, then is at least the error at d in 97 of 100 cases, and 11 times as large in the
-// middle. (Two degrees apart, the spread of the ratio is three decades.)
-constexpr double kErrorPerChange = 1;
-// An error that changes sign makes one change vanish by accident, but not the one before.
-constexpr double kErrorPerEarlierChange = 0.03;
-constexpr int kHighestDegree = 19;
+// Errors of hp functionals fall about tenfold a degree. Each change is the error one degree lower,
+// unless that vanishes by accident; the two together rarely do. See validation/calibration.
+constexpr ErrorPerChange kHpErrorPerChange{0.65, 0.03};
+constexpr int kLowestDegree = 5, kHighestDegree = 19;
 constexpr int kDegreesLessInNoise = 1;
 
 // First-order differences: the change from p/2 to p is the error at p up to what the order differs
@@ -30,7 +26,7 @@ int starting_degree(const options::Question& question) {
   const double digits = -std::log10(question.accuracy);
   int extra = question.wants(options::Quantity::entry_law) ? 2 : 1;
   if (question.wants(options::Quantity::spectrum)) extra = 3;
-  return std::clamp(static_cast<int>(std::ceil(digits)) + extra, 3, kHighestDegree);
+  return std::clamp(static_cast<int>(std::ceil(digits)) + extra, kLowestDegree, kHighestDegree);
 }
 
 double largest(const std::vector<double>& values) {
@@ -88,6 +84,10 @@ int RefinementSequence::free_refinement_levels() const {
   return 1;
 }
 
+int RefinementSequence::first() const {
+  return method_.scheme == options::Scheme::hp && first_degree_ > 1 ? -1 : 0;
+}
+
 int RefinementSequence::degree(int n) const { return std::max(0, first_degree_ + n - 1); }
 
 int RefinementSequence::points(int n) const {
@@ -100,7 +100,9 @@ double RefinementSequence::tail_tolerance(int n) const {
   if (method_.scheme == options::Scheme::upwind) return 1e-3 * std::min(accuracy_, 1e-6);
   if (method_.scheme == options::Scheme::none)
     return std::max(accuracy_ * std::pow(1e-2, n), 1e-18);
-  return std::max(std::pow(10.0, -(degree(n) + 3)), 1e-18);
+  // The first refinement level reaches as far as the second: where a body may start does not
+  // depend on what is only compared with.
+  return std::max(std::pow(10.0, -(degree(std::max(n, 0)) + 3)), 1e-18);
 }
 
 noise::Grouping RefinementSequence::grouping(int n) const {
@@ -109,7 +111,7 @@ noise::Grouping RefinementSequence::grouping(int n) const {
   grouping.grading = method_.noise_grading;
   // Never the same on two refinement levels, or no change would show the error.
   constexpr int least = 2;
-  grouping.degree = method_.noise_degree ? *method_.noise_degree + n - 1
+  grouping.degree = method_.noise_degree ? std::max(0, *method_.noise_degree + n - 1)
                                          : std::max(least + n, degree(n) - kDegreesLessInNoise);
   return grouping;
 }
@@ -135,6 +137,7 @@ Resolution RefinementSequence::made(int n) const {
     r = hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n), rates(n),
                       grouping(n));
     r.integrands = integrands_;
+    r.least_degree = n + 1;  // so that all degrees rise from one refinement level to the next
     break;
   case options::Scheme::upwind:
     r = upwind_resolution(scene_, points(n), tail_tolerance(n), rates(n));
@@ -146,16 +149,16 @@ Resolution RefinementSequence::made(int n) const {
   return r;
 }
 
-double RefinementSequence::error_per_change(int n) const {
-  if (method_.scheme == options::Scheme::upwind) {
+ErrorPerChange RefinementSequence::error_per_change(int n) const {
+  switch (method_.scheme) {
+  case options::Scheme::hp: return kHpErrorPerChange;
+  case options::Scheme::upwind: {
     const double ratio = static_cast<double>(points(n)) / points(n - 1);
-    return order_margin(points(n)) / std::abs(ratio - 1);
+    return {order_margin(points(n)) / std::abs(ratio - 1), 0};
   }
-  return kErrorPerChange;
-}
-
-double RefinementSequence::error_per_earlier_change() const {
-  return method_.scheme == options::Scheme::hp ? kErrorPerEarlierChange : 0;
+  case options::Scheme::none: return {1, 0};
+  }
+  return {};
 }
 
 }  // namespace stickslip::accuracy

@@ -21,6 +21,7 @@ namespace {
 velocity::MeshRule mesh_rule(const Resolution& resolution) {
   velocity::MeshRule rule;
   rule.v_max = resolution.v_max;
+  rule.least_degree = resolution.least_degree;
   rule.layers = resolution.layers;
   rule.tolerance = std::pow(10.0, -(resolution.degree + 1));
   rule.rates = resolution.rates;

@@ -77,9 +77,11 @@ std::vector<double> judged(const std::vector<double>& omega, double tau) {
 
 using Density = std::function<double(double)>;
 
-// First omega at which S falls to half of S(0); NaN if there is none.
+// First omega at which S falls to half of S(0); NaN if there is none, as where a coarse grid makes
+// S(0) negative.
 double half_width(const Density& s, double tau) {
   const double half = s(0) / 2;
+  if (!(half > 0)) return std::numeric_limits<double>::quiet_NaN();
   constexpr double step = 1.05, most = 1e9;
   double low = 0, high = 1e-3 / tau;
   while (s(high) > half) {

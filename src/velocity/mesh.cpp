@@ -387,7 +387,7 @@ std::vector<int> regular_degrees(const model::Process& process, const MeshRule& 
   for (int e = 0; e < graded; ++e) {
     const int below_leaving = std::max(static_cast<int>(slow) - e, 0);
     const int less = std::min((layers - 1 - e) / 2, most_where_left + below_leaving / 2);
-    degrees[e] = std::max(std::min(2, degree), degree - less);
+    degrees[e] = std::max(std::min(rule.least_degree, degree), degree - less);
   }
   return degrees;
 }
@@ -403,7 +403,8 @@ std::vector<int> element_degrees(const model::Process& process, const MeshRule& 
     const auto end = std::lower_bound(regular.begin() + 1, regular.end(), ends[e]);
     degrees.push_back(of_regular[end - regular.begin() - 1]);
   }
-  const int most = degree - std::min(2, degree), all = static_cast<int>(degrees.size());
+  const int most = degree - std::min(rule.least_degree, degree),
+            all = static_cast<int>(degrees.size());
   for (const auto& [v, layers] : partings(process, rule)) {
     const auto at = static_cast<int>(std::lower_bound(ends.begin(), ends.end(), v) - ends.begin());
     for (int n = 0; n < layers; ++n) {

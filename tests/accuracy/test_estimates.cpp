@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "stickslip/accuracy/estimates.hpp"
 
@@ -43,13 +44,12 @@ TEST_CASE("estimates: rounding is the least error, of every entry") {
   check_errors(results, {0.5, 1, 0.25, 5, 6});
 }
 
-TEST_CASE("estimates: the larger of two changes is added, each by its factor") {
+TEST_CASE("estimates: two changes are added as one length, each by its factor") {
   const Results coarse{scalar("f", "", 3, 9), modes({1, 2}, {9, 9})};
   Results results{scalar("f", "", 1, 0.5), modes({2, 2.5, 7}, {0, 0.25, 0})};
-  // The last change rules the first mode, the earlier one the scalar and the second mode.
-  const Changes before{{20}, {4, 40}};
+  const Changes before{{16}, {0, 4}};
   const Changes changes = add_discretisation({3, 0.5}, coarse, before, results);
-  check_errors(results, {0.5 + 10, 3, 0.25 + 20, 21});
+  check_errors(results, {0.5 + 10, 3, 0.25 + 2.5, 21});
   CHECK(changes == Changes{{2}, {1, 0.5, 7}});  // the third mode is new, and all change
 }
 
@@ -59,50 +59,78 @@ TEST_CASE("estimates: without an earlier change the last one counts alone") {
   check_errors(results, {6.5});
 }
 
-TEST_CASE("estimates: a change through zero is no small error, as the other means show") {
-  Results results{scalar(quantities::kMeanSlide, 10, 0), scalar(quantities::kEV2, 4, 1e-9)};
-  const Results coarse{scalar(quantities::kMeanSlide, 8, 0), scalar(quantities::kEV2, 4, 0)};
+namespace {
+
+// Results after changes by such amounts.
+Results changed(Results results, const std::vector<double>& amounts) {
+  Results coarse = results;
+  for (std::size_t r = 0; r < results.size(); ++r) coarse[r].value[0] += amounts[r];
   (void)add_discretisation({1, 0}, coarse, {}, results);
-  check_errors(results, {2, 0.05 * 0.2 * 4});
+  return results;
 }
 
-TEST_CASE("estimates: means share a twentieth of the largest relative error") {
-  Results results{scalar(quantities::kMeanStick, 10, 2),  // 0.2, the largest
-                  scalar(quantities::kEV2, -4, 1e-6),      scalar(quantities::kEAbsV, 2, 0.1),
-                  scalar(quantities::kEV, 0.5, 100),       scalar(quantities::kFStick0, 1, 1e-6),
-                  scalar(quantities::kMeanSlide, 3, 2e-13)};
-  accuracy::share_errors(results);
-  // E_V may vanish: it takes its share, and gives none. A density is no mean. A mean that does not
-  // change stays.
-  check_errors(results, {2, 0.01 * 4, 0.1, 100, 1e-6, 2e-13});
-  Results drift{scalar(quantities::kMeanStick, 10, 2), scalar(quantities::kEV, 0.5, 1e-6)};
-  accuracy::share_errors(drift);
-  check_errors(drift, {2, 0.01 * 0.5});
+}  // namespace
+
+TEST_CASE("estimates: a change through zero is no small error, as the other means show") {
+  const Results means{scalar(quantities::kMeanSlide, 10, 0), scalar(quantities::kEV2, 4, 1e-9),
+                      scalar(quantities::kEAbsV, 2, 0)};
+  // Relative changes of 0.3, 1e-12 and 0.4 have the mean square 0.25/3.
+  const double shared = 0.1 * std::sqrt(0.25 / 3);
+  check_errors(changed(means, {3, 4e-12, 0.8}),
+               {std::hypot(3, 10 * shared), 1e-9 + 4 * shared, std::hypot(0.8, 2 * shared)});
 }
 
-TEST_CASE("estimates: a mean changes as soon as it does so by 1e-13") {
-  Results results{scalar(quantities::kMeanStick, 10, 2), scalar(quantities::kEV2, 4, 4.1e-13),
-                  scalar(quantities::kEXV, 4, 3.9e-13)};
-  accuracy::share_errors(results);
-  check_errors(results, {2, 0.04, 3.9e-13});
+TEST_CASE("estimates: the drift takes its share of the errors of means, and gives none") {
+  constexpr double small = 0x1p-20;
+  const Results means{scalar(quantities::kMeanStick, -10, 0), scalar(quantities::kEV, 0.5, 0),
+                      scalar(quantities::kFStick0, 1, 0)};
+  // A density is no mean.
+  check_errors(changed(means, {2, 100, small}), {std::hypot(2, 0.2), std::hypot(100, 0.01), small});
+  check_errors(changed(means, {2, small, small}),
+               {std::hypot(2, 0.2), std::hypot(small, 0.01), small});
+  const Results drift{scalar(quantities::kEV, 0.5, 0)};
+  check_errors(changed(drift, {small}), {small});
+}
+
+TEST_CASE("estimates: what changes by less than 1e-13 does not depend on the discretisation") {
+  const Results means{scalar(quantities::kMeanStick, 8, 0), scalar(quantities::kEV2, 1, 0),
+                      scalar(quantities::kEXV, 1, 0)};
+  const double above = 0x1p-43, below = 0x1p-44;  // 1.1e-13 and 0.6e-13
+  const double shared = 0.1 * 0.25 / std::sqrt(3);
+  check_errors(changed(means, {2, above, below}), {std::hypot(2, 8 * shared), shared, below});
 }
 
 // P_stick = 1/(1 + q), q = mean_slide/mean_stick: dP_stick = P_stick P_slide dq/q.
 TEST_CASE("estimates: probabilities of the phases share what their ratio does") {
-  Results results{scalar(quantities::kPStick, 0.2, 1e-6), scalar(quantities::kPSlide, 0.8, 1e-6),
-                  scalar(quantities::kMeanStick, 10, 5), scalar(quantities::kPWithin, 0.5, 1e-6)};
-  accuracy::share_errors(results);
-  check_errors(results, {0.05 * 0.5 * 0.16, 0.05 * 0.5 * 0.16, 5, 1e-6});
-  Results exact{scalar(quantities::kPStick, 0.2, 0), scalar(quantities::kPSlide, 0.8, 0.7),
-                scalar(quantities::kMeanStick, 10, 5)};
-  accuracy::share_errors(exact);
-  check_errors(exact, {0, 0.7, 5});
+  const Results shares{scalar(quantities::kPStick, 0.2, 0), scalar(quantities::kPSlide, 0.8, 0),
+                       scalar(quantities::kMeanStick, 10, 0), scalar(quantities::kPWithin, 0.5, 0)};
+  const double shared = 0.1 * 0.5 * 0.16;
+  constexpr double small = 0x1p-20;
+  check_errors(changed(shares, {small, 1, 5, small}),
+               {std::hypot(small, shared), std::hypot(1, shared), std::hypot(5, 0.5), small});
+  check_errors(changed(shares, {0, 0.7, 5, 0}),
+               {0, std::hypot(0.7, shared), std::hypot(5, 0.5), 0});
 }
 
-TEST_CASE("estimates: arrays keep their own errors") {
+TEST_CASE("estimates: an entry has half the error of its neighbours, and no more than relative") {
+  Result curve = array("f_stick", "1/time", "time", {1, 2, 3, 4, 5, 6});
+  curve.value = {8, 8, -16, 8, 2, 0};
+  curve.error.assign(6, 0);
+  Results results{curve};
+  Results coarse = results;
+  const double small = 0x1p-30;
+  coarse[0].value[1] += small;
+  coarse[0].value[3] += 1;
+  (void)add_discretisation({1, 0}, coarse, {}, results);
+  check_errors(results, {small / 2, 0.5, 0.5, 1, 0.125, 0});
+}
+
+TEST_CASE("estimates: modes keep their own errors") {
   Result array_of_means = modes({1, 2, 3}, {1e-6, 1e-6, 1e-6});
   array_of_means.kind = Kind::mean;
-  Results results{scalar(quantities::kMeanStick, 10, 5), array_of_means};
-  accuracy::share_errors(results);
-  check_errors(results, {5, 1e-6, 1e-6, 1e-6});
+  Results results{scalar(quantities::kMeanStick, 10, 0), array_of_means};
+  Results coarse = results;
+  coarse[0].value[0] = 15;
+  (void)add_discretisation({1, 0}, coarse, {}, results);
+  check_errors(results, {std::hypot(5, 0.5), 1e-6, 1e-6, 1e-6});
 }

@@ -62,6 +62,8 @@ TEST_CASE("mesh: degrees fall by one in two layers towards v = 0, and only there
   CHECK(velocity::element_degrees(p, rule, 9) == std::vector{6, 6, 7, 7, 8, 8, 9, 9, 9, 9});
   CHECK(velocity::element_degrees(p, rule, 4) == std::vector{2, 2, 2, 2, 3, 3, 4, 4, 4, 4});
   CHECK(velocity::element_degrees(p, rule, 1) == std::vector(10, 1));
+  rule.least_degree = 0;
+  CHECK(velocity::element_degrees(p, rule, 3) == std::vector{0, 0, 1, 1, 2, 2, 3, 3, 3, 3});
   CHECK(velocity::element_degrees(p, rule, 0) == std::vector(10, 0));
   rule.rates.lambda = 0.9;
   CHECK(velocity::element_degrees(p, rule, 9).front() == 6);

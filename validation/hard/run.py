@@ -67,12 +67,9 @@ CLAIMS = {"balances": "power, probability, the law of the noise, entry law, stay
 
 
 def main():
-    only = ""
-    if "--only" in sys.argv:
-        at = sys.argv.index("--only")
-        only = sys.argv[at + 1]
-        del sys.argv[at:at + 2]
-    entry = Entry(__doc__, "beyond the paper")
+    entry = Entry(__doc__, "beyond the paper",
+                  ("--only", {"default": "", "metavar": "WORDS", "help": "scenes whose name contains these"}))
+    only = entry.arguments.only
     table, kinds, missed, count = [], {}, [], 0
     for scene in SCENES:
         if only not in scene.name or (scene.long and entry.quick):

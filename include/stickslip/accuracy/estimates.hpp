@@ -21,18 +21,26 @@ struct ErrorPerChange {
   double earlier = 0;  ///< the change to the one before
 };
 
-/// error += max(last |change from coarse|, earlier |change before|), then the means share their
-/// errors, see share_errors(). A value that `coarse` lacks is all change; `before` is empty where
-/// there are no two coarser discretisations. Returns the changes from `coarse`.
+/// Adds the error of the discretisation,
+///
+///   d = |(last |change from coarse|, earlier |change before|)|,   Euclidean norm,
+///   error += |(d, 0.1 size rms(d/size))|,
+///
+/// where the mean square is over the means of the same stationary distribution, whose errors are
+/// alike within a decade or two: a change that vanishes by accident hides an error, which the
+/// changes before it and of the other means show. The size of a mean is its value; that of P_stick
+/// and P_slide, of which P_slide/P_stick is a ratio of two means, is P_stick P_slide. What changes
+/// by less than 1e-13 does not depend on the discretisation and takes no share; the drift, which
+/// may vanish, gives none. An entry u_i of an array over anything but modes gets at least
+///
+///   error_i = 0.5 max over |j - i| <= 2 of d_j min(1, |u_i/u_j|),
+///
+/// all other results their d.
+///
+/// A value that `coarse` lacks is all change; `before` is empty where there are no two coarser
+/// discretisations. Returns the changes from `coarse`.
 [[nodiscard]] Changes add_discretisation(const ErrorPerChange& factor,
                                          const quantities::Results& coarse, const Changes& before,
                                          quantities::Results& results);
-
-/// A change from grid to grid that passes through zero hides an error, which the other means of the
-/// same stationary distribution show: no mean gets a relative error below a twentieth of the
-/// largest one among them, unless it does not change at all (relative error 1e-13). P_stick and
-/// P_slide, of which P_slide / P_stick is a ratio of two means, get that share of
-/// P_stick P_slide.
-void share_errors(quantities::Results& results);
 
 }  // namespace stickslip::accuracy

@@ -68,12 +68,8 @@ struct Outcome {
 using Progress = std::function<void(int, const Resolution&, double)>;
 
 /// All that is asked for. Deterministic routes climb the refinement sequence of the case; the error
-/// estimate of a value is
-///
-///   max(error_per_change |last change|, error_per_earlier_change |change before|)
-///   + error of the route on this discretisation,
-///
-/// where the second line is mostly rounding; see routes::Evaluation. Stops when every scalar meets
+/// estimate of a value is that of add_discretisation() and the error of the route on this
+/// discretisation, mostly rounding; see routes::Evaluation. Stops when every scalar meets
 /// the accuracy, when rounding forbids it, or at the end of the refinement sequence. Collective.
 /// Throws NoMemory before anything is allocated that would not fit, NotReached when a solver fails.
 [[nodiscard]] Outcome refine(MPI_Comm comm, const options::Case& given, const Progress& progress,

@@ -3,28 +3,28 @@
 
 #include <map>
 
+#include "stickslip/accuracy/estimates.hpp"
 #include "stickslip/accuracy/resolution.hpp"
 #include "stickslip/options/case.hpp"
 
 namespace stickslip::accuracy {
 
-/// Refinement level 0 is only there to be compared with; each further refinement level is finer in
-/// every respect (degrees or points, noise range, velocity cut), so that the change from one
-/// refinement level to the next shows the error of the coarser one, whatever its cause.
+/// Refinement levels below 1 are only there to be compared with; each further refinement level is
+/// finer in every respect (degrees or points, noise range, velocity cut), so that the change from
+/// one refinement level to the next shows the error of the coarser one, whatever its cause.
 class RefinementSequence {
  public:
   explicit RefinementSequence(const options::Case& given);
 
+  /// Number of the first refinement level: -1, or 0 where the order of convergence is known or
+  /// there is nothing coarser.
+  [[nodiscard]] int first() const;
   /// Number of the last refinement level that may be tried.
   [[nodiscard]] int last() const { return last_; }
   [[nodiscard]] const Resolution& refinement_level(int n) const;
 
-  /// Bound for error(refinement level n) / |change from refinement level n-1 to refinement level
-  /// n|, n >= 1.
-  [[nodiscard]] double error_per_change(int n) const;
-  /// The same for the change from refinement level n-2 to refinement level n-1; 0 where it tells
-  /// nothing.
-  [[nodiscard]] double error_per_earlier_change() const;
+  /// How the error of refinement level n >= 1 follows from changes.
+  [[nodiscard]] ErrorPerChange error_per_change(int n) const;
   /// Whether the error falls only as a power of the unknowns.
   [[nodiscard]] bool first_order() const { return method_.scheme == options::Scheme::upwind; }
   /// Truncation error allowed on refinement level n, relative.

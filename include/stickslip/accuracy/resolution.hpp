@@ -15,6 +15,7 @@ namespace stickslip::accuracy {
 struct Resolution {
   options::Scheme scheme = options::Scheme::hp;
   int degree = 0;                             ///< hp: largest polynomial degree of an element
+  int least_degree = 2;                       ///< hp: of an element, unless `degree` is smaller
   int layers = 0;                             ///< hp: elements graded towards v = 0
   velocity::Rates rates;                      ///< hp: fastest rates that the elements resolve
   velocity::Integrands integrands;            ///< hp: that the elements resolve

@@ -27,6 +27,7 @@ struct MeshRule {
   double ratio = 0.3;        ///< quotient of neighbouring element ends near v = 0
   double decay = 8;          ///< largest drop of log-density over one element
   int layers = 0;            ///< elements of the graded part; 0: from smallest_scale
+  int least_degree = 2;      ///< of an element where those elsewhere have at least this one
   double tolerance = 1e-12;  ///< relative error that the smallest elements may leave
   Rates rates;
   Integrands integrands;

@@ -1,0 +1,107 @@
+"""Random cases by group: what is asked for, at which accuracies, and how a scene is drawn."""
+
+import dataclasses
+import math
+
+
+def log_uniform(random, low, high):
+    return math.exp(random.uniform(math.log(low), math.log(high)))
+
+
+def drag(random):
+    kind = random.choice(("linear", "none", "quadratic", "cubic"))
+    weak = random.random() < 0.2
+    first = log_uniform(random, 1e-3, 0.1) if weak else random.uniform(0, 2)
+    second = random.uniform(0.05, 2)
+    if kind == "quadratic":
+        return {"drag": "expression", "drag_expression": f"-{first!r}*v - {second!r}*v*abs(v)"}
+    options = {"drag": kind}
+    if kind != "none":
+        options["drag_coefficient"] = first
+    if kind == "cubic":
+        options["drag_cubic"] = second
+    return options
+
+
+def noise(random, finest=0.05, coarsest=0.5):
+    """Dyadic steps as people take them, and any."""
+    delta = log_uniform(random, finest, coarsest)
+    if random.random() < 0.5:
+        delta = 2.0 ** math.floor(math.log2(delta))
+    tau = log_uniform(random, 0.1, 5)
+    while tau * delta > 1.2:  # the noise needs levels within its standard deviation
+        tau /= 1.7
+    return {"tau": tau, "delta": delta}
+
+
+def thresholds(random, delta):
+    """mu_d anywhere, at mu_s, or on a level; by direction, or with a bias, now and then."""
+    kind = random.random()
+    mu_d = random.uniform(0.05, 1)
+    if kind > 0.7:
+        mu_d = min(1, max(1, round(mu_d / delta)) * delta)
+    elif kind > 0.5:
+        mu_d = 1
+    options = {"mu_s": 1, "mu_d": mu_d}
+    kind = random.random()
+    if kind < 0.1:
+        options |= {"mu_s_minus": random.uniform(1, 1.5), "mu_d_minus": random.uniform(0.1, 1)}
+    elif kind < 0.4:
+        options["bias"] = random.uniform(0, 0.95)
+    return options
+
+
+def coulomb(random, **steps):
+    options = drag(random) | noise(random, **steps)
+    options |= thresholds(random, options["delta"])
+    if options["drag"] == "none" and "bias" in options:
+        options["bias"] *= options["mu_d"]  # or the body runs away
+    return options
+
+
+def fine(random):
+    return coulomb(random, finest=0.005, coarsest=0.03)
+
+
+def quick(random):
+    return coulomb(random, finest=0.15)
+
+
+def telegraph(random):
+    return drag(random) | {"mu_s": 1, "mu_d": random.uniform(0.05, 1), "noise": "telegraph",
+                           "telegraph_amplitude": random.uniform(1.1, 3), "telegraph_rate": log_uniform(random, 0.1, 5)}
+
+
+def weakening(random):
+    options = drag(random) | noise(random)
+    return options | {"mu_s": 1, "mu_d": random.uniform(0.05, 0.95), "friction": "stribeck",
+                      "stribeck_velocity": log_uniform(random, 0.01, 10),
+                      "stribeck_exponent": random.choice((1, 2))}
+
+
+@dataclasses.dataclass(frozen=True)
+class Group:
+    what: str
+    scene: object  # of a random.Random
+    asked: dict
+    accuracies: tuple = (1e-2, 1e-4, 1e-6)
+    truth: float = 1e-9
+    most: float = 2  # runs of 100 with an estimate too small
+    worst: float = 2  # error by estimate
+
+
+TIMES = {"time": "0.1,0.5,1,3,8"}
+SCALARS = {"quantities": "sticking,moments"}
+GROUPS = {
+    "scalars": Group("Coulomb friction", coulomb, SCALARS, (1e-2, 1e-4, 1e-6, 1e-8), 1e-12),
+    "nodes": Group("noise levels on nodes", fine, SCALARS, truth=1e-10),
+    "telegraph": Group("telegraph noise", telegraph, SCALARS, truth=1e-10),
+    "weakening": Group("weakening friction", weakening, SCALARS, truth=1e-10),
+    "transforms": Group("transforms and hitting distributions", coulomb,
+                        {"quantities": "entry_law,laplace", "lambda": "0.1,0.5,2,8"}),
+    "spectra": Group("power spectral densities", quick, {"quantities": "spectrum", "omega": "0.1,0.5,2,8,30"}),
+    "durations": Group("densities of durations", quick, {"quantities": "duration_density", **TIMES}),
+    "slips": Group("slips and displacement", quick, {
+        "quantities": "slip,peak,displacement", "distance": "0.1,0.3,1,3", "inverse_distance": "0.3,1,5",
+        "velocity": "0.1,0.3", **TIMES}, (1e-2, 1e-4), 1e-7),
+}

@@ -1,0 +1,178 @@
+"""How well error estimates hold: random cases against much finer runs.
+
+usage: python3 validation/calibration/run.py [--quick] [--groups NAMES] [--cases N] [--seed N] [--jobs N]
+                                             [--csv FILE] [--page docs/accuracy.md] [--program build/stickslip]
+                                             [--report FOLDER]
+
+Cases (cases.py) follow from the seed and their number. Each is run at several accuracies, and at a much
+higher one, whose values stand for the true ones. A value counts where that run is three times as accurate as
+the estimate to be judged. --quick takes 200 cases of scalars and 20 of transforms; without it 100 of every group.
+--page puts table and picture into the manual.
+"""
+
+import concurrent.futures
+import csv
+import json
+import os
+import pathlib
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from cases import GROUPS
+from entry import Entry
+from harness import words_of
+
+SECONDS = 120  # the longest run; a case that takes longer is left out
+ROUNDING = 4 * numpy.finfo(float).eps
+COLUMNS = ("group", "case", "accuracy", "key", "entry", "value", "error", "truth", "truth_error", "command")
+COLUMNS_OF_TABLE = ("accuracy", "cases", "values", "not judged, %", "misses", "cases with a miss, %", "worst",
+                    "median width", "ninth decile")
+MARK, END = "<!-- made by validation/calibration/run.py -->", "<!-- end -->"
+QUICK = {"scalars": 200, "transforms": 20}
+
+
+class LeftOut(Exception):
+    """A case that the program refuses, or that takes too long."""
+
+
+def results_of(program, options):
+    with tempfile.TemporaryDirectory() as folder:
+        summary = pathlib.Path(folder) / "summary.json"
+        words = [str(program), *words_of(options), "-summary", str(summary)]
+        try:
+            done = subprocess.run(words, capture_output=True, text=True, timeout=SECONDS)
+        except subprocess.TimeoutExpired:
+            raise LeftOut("takes too long") from None
+        if done.returncode == 2:
+            raise LeftOut(done.stderr)
+        if done.returncode not in (0, 3):
+            sys.exit(f"{' '.join(words)}\n{done.stderr}")
+        return json.loads(summary.read_text())["results"]
+
+
+def pairs(result):
+    """Value and error of each entry; null stands for what is no number."""
+    return numpy.array([numpy.atleast_1d(numpy.array(result[part], float)) for part in ("value", "error")]).T
+
+
+def judged(program, seed, name, number):
+    """Rows of one case."""
+    group = GROUPS[name]
+    scene = group.scene(random.Random(f"{seed} {name} {number}"))
+    options = {**scene, **group.asked}
+    truth = results_of(program, {**options, "accuracy": group.truth})
+    rows = []
+    for accuracy in group.accuracies:
+        asked = {**options, "accuracy": accuracy}
+        found = results_of(program, asked)
+        command = " ".join(["stickslip", *(f"'{w}'" if "*" in w else w for w in words_of(asked))])
+        for key, result in found.items():
+            for entry, ((value, error), (true, doubt)) in enumerate(zip(pairs(result), pairs(truth[key]))):
+                rows.append((name, number, accuracy, key, entry, value, error, true, doubt, command))
+    return rows
+
+
+def number_of_cases(arguments, name):
+    return arguments.cases or (QUICK[name] if arguments.quick else 100)
+
+
+def collect(entry, names):
+    """Rows of all cases in their order, and the number of those left out."""
+    arguments, rows, left_out = entry.arguments, [], 0
+    asked = [(name, number) for name in names for number in range(number_of_cases(arguments, name))]
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        running = [pool.submit(judged, entry.program.path, arguments.seed, *one) for one in asked]
+        for count, one in enumerate(running, 1):
+            try:
+                rows += one.result()
+            except LeftOut:
+                left_out += 1
+            if count % 50 == 0:
+                print(f"{count} of {len(asked)} cases", file=sys.stderr, flush=True)
+    return rows, left_out
+
+
+class Judgement:
+    """Ratios of rows that count."""
+
+    def __init__(self, rows):
+        _, self.case, _, _, _, self.value, self.error, truth, doubt, _ = (
+            numpy.array(column) for column in zip(*rows))
+        self.true = numpy.abs(self.value - truth)
+        rounding = ROUNDING * numpy.abs(truth)
+        counts = (3 * doubt <= self.error) & (self.error > rounding)
+        self.left_out = 1 - counts.mean()
+        self.excess = numpy.zeros(len(counts))
+        self.excess[counts] = ((self.true - doubt - rounding) / self.error)[counts]
+        self.missed = self.excess > 1
+        width = self.error[counts] / numpy.maximum(self.true, rounding)[counts]
+        self.width, self.tenth = numpy.quantile(width, (0.5, 0.9)) if counts.any() else (0, 0)
+        cases = set(self.case)
+        self.cases = len(cases)
+        self.bad = 100 * len(set(self.case[self.missed])) / len(cases)
+
+    def row(self):
+        return (f"{self.cases}", f"{len(self.case)}", f"{100 * self.left_out:.1f}", f"{self.missed.sum()}",
+                f"{self.bad:.1f}", f"{self.excess.max():.1f}", f"{self.width:.0f}", f"{self.tenth:.0f}")
+
+
+def judge(entry, name, rows):
+    """The rows of its table."""
+    group, table, bad = GROUPS[name], [], []
+    for accuracy in group.accuracies:
+        judgement = Judgement([row for row in rows if row[2] == accuracy])
+        table.append((f"{group.what}, {accuracy:g}", *judgement.row()))
+        bad.append(judgement.bad)
+    entry.claim(f"runs of 100 with an estimate too small, {group.what}", sum(bad) / len(bad), group.most)
+    entry.claim(f"error by estimate, {group.what}", Judgement(rows).excess.max(), group.worst)
+    worst = sorted(rows, key=lambda row: -Judgement([row]).excess[0])[:5]
+    entry.table(f"{group.what}, largest errors by their estimates", ("by estimate", "value", "command"),
+                [(f"{Judgement([row]).excess[0]:.2f}", f"{row[3]}[{row[4]}]", row[-1]) for row in worst])
+    return table
+
+
+def write_page(page, table, words, picture):
+    """The table between its marks, the picture beside the page."""
+    lines = [words, "", f"| {' | '.join(COLUMNS_OF_TABLE)} |", "|" + " --- |" * len(COLUMNS_OF_TABLE),
+             *(f"| {' | '.join(row)} |" for row in table)]
+    before, rest = page.read_text().split(MARK)
+    after = rest[rest.index(END):]
+    page.write_text(before + MARK + "\n".join(["", *lines, after]))
+    shutil.copy(picture, page.with_suffix(".png"))
+
+
+def main():
+    entry = Entry(__doc__, "beyond the paper",
+                  ("--groups", {"metavar": "NAMES", "help": f"of {', '.join(GROUPS)}"}),
+                  ("--cases", {"type": int, "help": "number of cases of each group"}),
+                  ("--seed", {"type": int, "default": 1}),
+                  ("--jobs", {"type": int, "default": os.cpu_count()}),
+                  ("--csv", {"type": pathlib.Path, "help": "leave every value judged in this file"}),
+                  ("--page", {"type": pathlib.Path, "help": "put table and picture into this page"}))
+    arguments = entry.arguments
+    names = arguments.groups.split(",") if arguments.groups else [*(QUICK if entry.quick else GROUPS)]
+    if unknown := sorted(set(names) - set(QUICK if entry.quick and not arguments.cases else GROUPS)):
+        sys.exit(f"no group {', '.join(unknown)}; there are {', '.join(GROUPS)}")
+    rows, left_out = collect(entry, names)
+    file = arguments.csv or entry.file("calibration.csv")
+    with open(file, "w", newline="") as stream:
+        csv.writer(stream).writerows([COLUMNS, *rows])
+    counts = ", ".join(f"{number_of_cases(arguments, name)} of {GROUPS[name].what}" for name in names)
+    words = f"Cases of seed {arguments.seed}: {counts}; {left_out} of them refused or too long."
+    entry.text(words)
+    table = [line for name in names for line in judge(entry, name, [row for row in rows if row[0] == name])]
+    entry.table("estimates against errors", COLUMNS_OF_TABLE, table)
+    entry.drawn("calibration.py", "calibration.png", "Each dot is a value. Below the first line the estimate is too "
+                "small; above the others it is 10 and 100 times too wide.", file)
+    if arguments.page:
+        write_page(arguments.page, table, words, entry.file("calibration.png"))
+    entry.end()
+
+
+main()
