@@ -1,0 +1,14 @@
+"""Dry friction under random forcing: runs the program stickslip, and holds and draws its results.
+
+>>> import stickslip
+>>> r = stickslip.run(mu_d=0.25, quantities="sticking")
+>>> r["P_stick"].value, r["P_stick"].error
+"""
+
+from .calls import load, run, sweep
+from .program import AccuracyWarning, BadInput, OutOfMemory, ProgramError, TimedOut, find_program
+from .results import Density, Result, Results
+from .sweeps import Sweep
+
+__all__ = ["AccuracyWarning", "BadInput", "Density", "OutOfMemory", "ProgramError", "Result", "Results", "Sweep",
+           "TimedOut", "find_program", "load", "run", "sweep"]

@@ -1,0 +1,207 @@
+"""Runs the program, and reads its files."""
+
+import csv
+import json
+import os
+import pathlib
+import tempfile
+import warnings
+from collections.abc import Mapping
+from typing import Any
+
+from . import results, sweeps
+from .needed import needed
+from .program import (DONE, NO_MEMORY, AccuracyWarning, Finished, OutOfMemory, ProgramError, execute, find_program,
+                      words_of)
+from .results import Results
+from .sweeps import Sweep
+
+# A sequence for another option is swept.
+LISTS = ("quantities", "lambda", "omega", "time", "distance", "inverse_distance", "velocity", "observable", "start")
+FIELDS = ("density", "trajectory", "relaxation")  # what only HDF5 holds
+Path = str | os.PathLike[str]
+
+
+def run(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = None, program: Path | None = None,
+        **options: Any) -> Results:
+    """Run the program once.
+
+    Parameters
+    ----------
+    ranks
+        With a number, the program runs under mpiexec on so many ranks.
+    timeout
+        Seconds after which the program is ended.
+    keep
+        Where to leave the HDF5 file; without it no file stays.
+    program
+        Path of the program; by default that of `find_program`.
+    **options
+        The program's options by name: numbers, text, sequences of them, or True for an option without a value.
+        Write `lambda_` for lambda. The program checks them.
+
+    Returns
+    -------
+    results
+        A `Sweep` if an option `sweep_...` is among the options.
+
+    Raises
+    ------
+    BadInput, OutOfMemory, TimedOut, ProgramError
+        With the text of the program.
+
+    Warns
+    -----
+    AccuracyWarning
+        If the accuracy was not reached; the results are there, with their errors.
+
+    Examples
+    --------
+    >>> r = stickslip.run(mu_d=0.25, quantities="sticking,spectrum", omega=[0.1, 1, 10])
+    >>> r["P_stick"].value, r["P_stick"].error
+    >>> r["S_v"].abscissa, r["S_v"].value
+    """
+    return _run(ranks, timeout, keep, program, options)
+
+
+def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | None,
+         options: Mapping[str, Any]) -> Results:
+    options = {name.rstrip("_"): value for name, value in options.items()}
+    with tempfile.TemporaryDirectory(prefix="stickslip-") as folder:
+        summary = pathlib.Path(options.pop("summary", None) or pathlib.Path(folder) / "summary.json")
+        output = keep or options.pop("output", None)
+        asked = str(options.get("quantities", ""))
+        if output is None and ("options_file" in options or any(word in asked for word in FIELDS)):
+            output = pathlib.Path(folder) / "results.h5"
+        if output is not None:
+            options["output"] = os.fspath(output)
+        launcher = ["mpiexec", "-n", str(ranks)] if ranks else []
+        before = _stamp(summary)
+        finished = execute([*launcher, os.fspath(program or find_program()), *words_of(options), "-summary",
+                            str(summary)], timeout)
+        if _stamp(summary) == before:
+            raise OutOfMemory(finished.message()) if finished.status == NO_MEMORY else ProgramError(
+                f"the program wrote no results: {finished.message()}")
+        found = _from_tree(json.loads(summary.read_text()))
+        if output is not None and any(word in found.options.get("quantities", "") for word in FIELDS):
+            _add_fields(found, pathlib.Path(output))
+    if finished.status != DONE:
+        warnings.warn(_shortfall(found, finished), AccuracyWarning, stacklevel=3)
+    return found
+
+
+def sweep(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = None, program: Path | None = None,
+          **options: Any) -> Sweep:
+    """Run the program for every combination of values of some options.
+
+    Parameters
+    ----------
+    ranks, timeout, keep, program
+        As for `run`; on several ranks the points are distributed.
+    **options
+        As for `run`. An option whose value is a sequence is swept, but for those that are lists in any run
+        (`LISTS`). Text such as "0.1:1:10" is swept under the name `sweep_mu_d`.
+
+    Returns
+    -------
+    sweep
+        Its dimensions are in the order of the options here.
+
+    Raises
+    ------
+    BadInput, OutOfMemory, TimedOut, ProgramError
+        With the text of the program; not for single points that fail.
+
+    Warns
+    -----
+    AccuracyWarning
+        If points failed or did not reach the accuracy.
+
+    Examples
+    --------
+    >>> s = stickslip.sweep(mu_d=[0.25, 0.5], tau=[0.5, 1, 2], quantities="sticking")
+    >>> s["P_stick"].value.shape, s["P_stick"].dims
+    ((2, 3), ('mu_d', 'tau'))
+    """
+    def many(name: str, value: Any) -> bool:
+        return not isinstance(value, (str, bytes, Mapping)) and hasattr(value, "__len__") and name not in LISTS
+
+    options = {name.rstrip("_"): value for name, value in options.items()}
+    named = {f"sweep_{name}" if many(name, value) and not name.startswith("sweep_") else name: value
+             for name, value in options.items()}
+    found = _run(ranks, timeout, keep, program, named)
+    if not isinstance(found, Sweep):
+        raise ValueError("no option is swept: give one of them a sequence of values, as in mu_d=[0.25, 0.5]")
+    order = [name.removeprefix("sweep_") for name in named]
+    return found.transposed(sorted(found.dims, key=lambda name: order.index(name) if name in order else len(order)))
+
+
+def load(path: Path) -> Results:
+    """Read a file of the program.
+
+    Parameters
+    ----------
+    path
+        A summary (JSON), results or a sweep (HDF5), the table of a sweep or a path (CSV).
+
+    Returns
+    -------
+    results
+        A `Sweep` where the file holds one.
+
+    Raises
+    ------
+    FileNotFoundError, ValueError
+        If there is no such file, or none of this program.
+    """
+    path = pathlib.Path(path)
+    if path.suffix == ".json":
+        return results.reading(path, "JSON", "-summary", lambda: _from_tree(json.loads(path.read_text()), path.stem))
+    if path.suffix == ".csv":
+        return results.reading(path, "CSV", "-sweep_csv", lambda: _from_csv(path))
+    h5py = needed("h5py")
+
+    def from_hdf5() -> Results:
+        path.stat()  # h5py's error does not say that there is none
+        with h5py.File(path) as file:
+            return (sweeps if "sweep" in file else results).from_hdf5(file, path.stem)
+
+    return results.reading(path, "HDF5", "-output", from_hdf5)
+
+
+def _stamp(path: pathlib.Path) -> tuple[int, int] | None:
+    """Changes when the file is written anew."""
+    return (path.stat().st_mtime_ns, path.stat().st_ino) if path.exists() else None
+
+
+def _from_tree(tree: Mapping[str, Any], name: str = "") -> Results:
+    if "provenance" not in tree:
+        raise ValueError("it has no provenance")
+    return (sweeps if "sweep" in tree else results).from_summary(tree, name)
+
+
+def _from_csv(path: pathlib.Path) -> Results:
+    with open(path, newline="") as file:
+        head = next(csv.reader(file), [])
+    if head[-1:] == ["status"]:
+        return sweeps.from_csv(path)
+    if head != ["time", "x", "y", "v"]:
+        raise ValueError("neither a sweep nor a path")
+    columns = needed("numpy").loadtxt(path, delimiter=",", skiprows=1, ndmin=2).T
+    return Results({}, trajectory=dict(zip(head, columns)), name=path.stem)
+
+
+def _add_fields(found: Results, output: pathlib.Path) -> None:
+    if output.exists():  # a plan writes none
+        with needed("h5py").File(output) as file:
+            for name, value in results.fields(file).items():
+                setattr(found, name, value)
+
+
+def _shortfall(found: Results, finished: Finished) -> str:
+    if isinstance(found, Sweep):
+        told = {**found.failures, **found.shortfalls}
+        return f"{len(told)} of {found.status.size} points fell short: " + "; ".join(
+            ", ".join(f"{name} = {found.coords[name][n]:g}" for name, n in zip(found.dims, index)) + f": {text}"
+            for index, text in list(told.items())[:3]) + ("; ..." if len(told) > 3 else "")
+    return found.accuracy.get("shortfall") or finished.message()

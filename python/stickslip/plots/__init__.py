@@ -1,0 +1,95 @@
+"""Pictures of what the program computed. matplotlib is imported with this module, not before."""
+
+import pathlib
+import re
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+from ..results import Results
+from ..sweeps import Sweep
+from . import curves, fields, studies, sweeping
+from .style import saved
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FORMATS = (".png", ".pdf", ".svg")
+# By kind: whether a file has what it takes, and the function that draws files of one kind together.
+KINDS: "dict[str, tuple[Callable[[Results], bool], Callable[[Sequence[Results]], Figure]]]" = {
+    "density": (lambda r: r.density is not None, fields.density),
+    "trajectory": (lambda r: r.trajectory is not None, fields.trajectory),
+    "comparison": (lambda r: r.comparison is not None, studies.comparison),
+    "spectra": (lambda r: "S_v" in r, curves.spectra),
+    "durations": (lambda r: "f_slide" in r, curves.durations),
+    "slips": (lambda r: any(key in r for panel in curves.SLIPS for key in panel[0]), curves.slips),
+    "arrays": (lambda r: bool(curves.other_arrays([r])), curves.arrays),
+    "cost": (lambda r: r.study_kind == "cost", studies.cost),
+    "correlation_time": (lambda r: "t_corr" in r, curves.correlation_time),  # on request, as the next one
+    "drift": (lambda r: isinstance(r, Sweep) and r.dims == ("bias",), sweeping.drift)}
+ON_REQUEST = ("correlation_time", "drift")
+TOGETHER = ("spectra", "durations", "slips", "arrays", "correlation_time")  # kinds that show several files at once
+ASK = ("ask the program for density, trajectory, spectrum with -omega, duration_density, slip with "
+       "-distance, peak or displacement with -quantities; or for -compare, -study cost or a sweep")
+
+
+def kinds_of(items: Sequence[Results]) -> list[str]:
+    """Kinds of pictures that each of the files has something for."""
+    if any(isinstance(item, Sweep) for item in items):
+        return ["sweep"]
+    found = [kind for kind, (fits, _) in KINDS.items() if kind not in ON_REQUEST and all(map(fits, items))
+             and (len(items) == 1 or kind in TOGETHER)]
+    several = len(items) > 1 and all(map(KINDS["correlation_time"][0], items))
+    return found or (["correlation_time"] if several else [])
+
+
+def draw(items: Sequence[Results], picture: str | pathlib.Path | None = None,
+         kind: str | None = None) -> "dict[str, Figure]":
+    """Draw what files hold.
+
+    Parameters
+    ----------
+    items
+        Results; several of them share a picture.
+    picture
+        Where to save; of several pictures each has its kind appended. The pictures of a sweep, one for each scalar,
+        go into a folder of that name without its ending.
+    kind
+        One of `KINDS`; without it, all that fit.
+
+    Returns
+    -------
+    figures
+        By kind, or by the key of a sweep's scalar.
+
+    Raises
+    ------
+    ValueError
+        If there is nothing to draw, or a picture cannot be of that name.
+    """
+    return {name: figure for name, figure, _ in drawn(items, picture, kind)}
+
+
+def drawn(items: Sequence[Results], picture: str | pathlib.Path | None = None,
+          kind: str | None = None) -> "list[tuple[str, Figure, pathlib.Path | None]]":
+    """As `draw`: kind, figure, and where it was saved."""
+    place = pathlib.Path(picture) if picture is not None else None
+    if place and place.suffix not in FORMATS:
+        raise ValueError(f"{place}: a picture ends in {', '.join(FORMATS)}")
+    if place and not place.parent.is_dir():
+        raise ValueError(f"{place}: its folder does not exist; make the folder first")
+    kinds = [kind] if kind else kinds_of(items)
+    if kinds == ["sweep"]:
+        if len(items) > 1:
+            raise ValueError("one sweep, please: a picture holds one")
+        return [(key, figure, saved(figure, place and place.with_suffix("") / f"{plain(key)}{place.suffix}"))
+                for key, figure in sweeping.scalars(items[0]).items()]
+    if not kinds or not all(name in KINDS and all(map(KINDS[name][0], items)) for name in kinds):
+        raise ValueError(f"nothing to draw{f' as {kind}' if kind else ''}; {ASK}")
+    several = len(kinds) > 1
+    return [(name, figure, saved(figure, place.with_stem(f"{place.stem}_{name}") if place and several else place))
+            for name, figure in ((name, KINDS[name][1](items)) for name in kinds)]
+
+
+def plain(key: str) -> str:
+    """A key as a file's name; keys of observables hold anything."""
+    return re.sub(r"[^\w.+-]", "_", key)

@@ -1,0 +1,124 @@
+"""The stationary distribution, and a path."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from ..needed import needed
+from ..results import Results
+from .style import COLOURS, Figure, Line2D, Patch, matplotlib, number, numpy, styled, title
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+SLIDE, STICK, FORCING = COLOURS[0], COLOURS[1], COLOURS[4]
+needed("matplotlib.collections")
+
+
+def _edges(points: "numpy.ndarray") -> "numpy.ndarray":
+    return numpy.concatenate([[points[0]], (points[1:] + points[:-1]) / 2, [points[-1]]])
+
+
+def _cells(levels: "numpy.ndarray") -> "numpy.ndarray":
+    """Ends of the cells around noise levels, the outer ones as wide to both sides."""
+    ends = _edges(levels)
+    ends[[0, -1]] = 2 * levels[[0, -1]] - ends[[1, -2]]
+    return ends
+
+
+@styled
+def density(items: Sequence[Results]) -> "Figure":
+    """The stationary distribution of (X, V), its marginals, and the static states."""
+    (results,) = items
+    field = results.density
+    x, v, ends = field.x, field.v, _cells(field.x)
+    width = numpy.diff(ends)
+    figure = Figure(figsize=(7.2, 5.2))
+    (plane, by_v), (by_x, corner) = figure.subplots(
+        2, 2, sharex="col", sharey="row", gridspec_kw={"width_ratios": (3, 1), "height_ratios": (3, 1.2)})
+    corner.axis("off")
+
+    pdf = numpy.maximum(field.values.T / width, 1e-12)
+    seen = numpy.flatnonzero(field.marginal_x > 1e-4 * field.marginal_x.max())
+    fast = v[field.marginal_v > 1e-4 * field.marginal_v.max()]
+    image = plane.pcolormesh(ends, _edges(v), pdf, norm=matplotlib.colors.LogNorm(1e-5, pdf.max()), cmap="Blues",
+                             rasterized=True)
+    stuck = field.at_rest > 0
+    plane.scatter(x[stuck], 0 * x[stuck], s=900 * field.at_rest[stuck], color=STICK, zorder=3,
+                  label="sticking (area: probability)")
+    plane.set(xlim=(ends[seen[0]], ends[seen[-1] + 1]), ylim=(fast[0], fast[-1]), ylabel="$v$  [velocity]")
+    plane.legend(loc="upper left")
+    figure.colorbar(image, ax=by_v, label="density while sliding  [1/(force velocity)]")
+
+    by_v.plot(field.marginal_v, v, color=SLIDE)
+    by_v.set(xlabel="density of $v$\n[1/velocity]", xlim=(0, None))
+    by_v.tick_params(labelbottom=True)
+    by_x.bar(x, field.marginal_x - field.at_rest, width * 0.9, field.at_rest, color=SLIDE, label="sliding")
+    by_x.bar(x, field.at_rest, width * 0.9, color=STICK, label="sticking")
+    by_x.set(xlabel="forcing $x$  [force]", ylabel="$P(X = x)$")
+    by_x.legend(loc="upper left")
+    figure.suptitle(rf"{title(results)}: $P_{{stick}}$ = {field.mass_at_rest:.4f}")
+    return figure
+
+
+@styled
+def trajectory(items: Sequence[Results]) -> "Figure":
+    """A path: in the plane of forcing and velocity, and both against time. A CSV file has no marks at mu_s, mu_d."""
+    (results,) = items
+    figure = Figure(figsize=(8.6, 4.3))
+    grid = figure.add_gridspec(3, 2, width_ratios=(1, 1.5), height_ratios=(1, 1, 0.14))
+    by_v = figure.add_subplot(grid[0, 1])
+    by_x = figure.add_subplot(grid[1, 1], sharex=by_v)
+    by_v.tick_params(labelbottom=False)
+    _plane(figure.add_subplot(grid[:2, 0]), results)
+    _times(by_v, by_x, results)
+    handles = [Line2D([], [], color=SLIDE, label="sliding"),
+               Line2D([], [], color="#999999", label="jump of the noise"),
+               Line2D([], [], color=STICK, marker="o", linestyle="", label="rest (area: time)"),
+               Patch(color=STICK, alpha=0.18, label="rest")]
+    if results.options:
+        handles += [Line2D([], [], color="#777777", marker="|", markersize=10, linestyle="--", linewidth=1,
+                           markeredgecolor="black", label=r"$\pm\mu_s$"),
+                    Line2D([], [], color="black", marker="o", markerfacecolor="white", markersize=5, linestyle="",
+                           label=r"$\pm\mu_d$")]
+    legend = figure.add_subplot(grid[2, :])  # paths reach every corner of a panel
+    legend.legend(handles=handles, loc="center", ncol=len(handles), columnspacing=1.4)
+    legend.axis("off")
+    figure.suptitle(title(results), fontsize=10)
+    return figure
+
+
+def _plane(axes: "Axes", results: Results) -> None:
+    """Sliding is vertical, jumps of the noise are horizontal."""
+    time, x, y, v = (results.trajectory[part] for part in ("time", "x", "y", "v"))
+    stuck, wait = y[:-1] == 0, numpy.diff(time)  # from each event to the next
+    slides = [((a, b), (a, c)) for a, b, c, rests in zip(x, v, v[1:], stuck) if not rests]
+    jumps = [((a, c), (b, c)) for a, b, c in zip(x, x[1:], v[1:]) if a != b]
+    collection = matplotlib.collections.LineCollection
+    axes.add_collection(collection(jumps, color="#999999", linewidth=0.5))
+    axes.add_collection(collection(slides, color=SLIDE, linewidth=1.1))
+    levels = numpy.unique(x[:-1][stuck])
+    if levels.size:
+        rest = numpy.array([wait[stuck & (x[:-1] == level)].sum() for level in levels])
+        axes.scatter(levels, 0 * levels, s=6 + 60 * rest / max(rest.max(), 1e-300), color=STICK, zorder=3)
+    if results.options:
+        for option, form in (("mu_s", {"marker": "|", "markersize": 13}),
+                             ("mu_d", {"marker": "o", "markerfacecolor": "white", "markersize": 5})):
+            mu = number(results, option)
+            axes.plot([-mu, mu], [0, 0], linestyle="", color="black", zorder=4, **form)
+    axes.set(xlabel="forcing $x$  [force]", ylabel="velocity $v$  [velocity]")
+    axes.margins(0.05)
+    axes.autoscale_view()
+
+
+def _times(by_v: "Axes", by_x: "Axes", results: Results) -> None:
+    time, x, y, v = (results.trajectory[part] for part in ("time", "x", "y", "v"))
+    steps = numpy.diff(numpy.concatenate([[0], y[:-1] == 0, [0]]))
+    for begin, end in zip(time[numpy.flatnonzero(steps > 0)], time[numpy.flatnonzero(steps < 0)]):
+        for axes in (by_v, by_x):
+            axes.axvspan(begin, end, color=STICK, alpha=0.18, linewidth=0)
+    by_v.plot(time, v, color=SLIDE, linewidth=1.1)  # events are close together
+    by_v.set(ylabel="velocity $v$\n[velocity]")
+    by_x.step(time, x, where="post", color=FORCING, linewidth=0.8)
+    for sign in (-1, 1) if results.options else ():
+        by_x.axhline(sign * number(results, "mu_s"), color="#777777", linewidth=1, linestyle="--")
+    by_x.set(xlabel="time $t$  [time]", ylabel="forcing $x$\n[force]")
+    by_v.margins(x=0)

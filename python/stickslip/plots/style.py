@@ -1,0 +1,135 @@
+"""What the pictures share: colours, curves with their errors, and the words for parameters."""
+
+import functools
+import pathlib
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from ..needed import needed
+from ..results import Result, Results
+
+if TYPE_CHECKING:
+    import numpy
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+numpy, matplotlib = needed("numpy"), needed("matplotlib")
+needed("matplotlib.figure")
+Figure, Line2D, Patch = matplotlib.figure.Figure, matplotlib.lines.Line2D, matplotlib.patches.Patch
+
+# Told apart by the colour-blind (Okabe and Ito), and in grey together with the line styles.
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#222222")
+STYLES = ("-", "--", "-.", (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5, 1, 1.5)))
+MARKERS = "os^Dv"
+LOOK = {"figure.facecolor": "white", "axes.grid": True, "grid.color": "#e4e4e4", "axes.axisbelow": True,
+        "legend.frameon": False, "font.size": 9, "savefig.dpi": 160, "figure.constrained_layout.use": True}
+ABSCISSAE = {"omega": r"$\omega$  [1/time]", "time": "$t$  [time]", "lambda": r"$\lambda$  [1/time]", "k": "level $i$",
+             "distance": "path length $d$  [length]", "inverse_distance": "$s$  [1/length]",
+             "velocity": "$w$  [velocity]", "mode": "mode"}
+
+
+def styled(draw: Callable[..., Any]) -> Callable[..., Any]:
+    """A function that draws with the look of this package, whatever is set elsewhere."""
+    @functools.wraps(draw)
+    def drawing(*arguments: Any, **keywords: Any) -> Any:
+        with matplotlib.rc_context(LOOK):
+            return draw(*arguments, **keywords)
+    return drawing
+
+
+def saved(figure: "Figure", place: pathlib.Path | None) -> pathlib.Path | None:
+    """The place, after saving there if there is one."""
+    if place is not None:
+        place.parent.mkdir(exist_ok=True)
+        with matplotlib.rc_context(LOOK):
+            figure.savefig(place)
+    return place
+
+
+def curve(axes: "Axes", result: Result, n: int = 0, *, colour: str | None = None, style: Any = None,
+          label: str | None = None) -> None:
+    """An array against its abscissa: computed values as a line in the band of their errors, simulated ones as marks
+    with their 95 % intervals.
+
+    Parameters
+    ----------
+    axes
+    result
+    n
+        Number of the curve, which gives it colour and line style where these are not given.
+    """
+    colour, style = colour or COLOURS[n % len(COLOURS)], style or STYLES[n % len(STYLES)]
+    x, value, error = (numpy.asarray(part, float) for part in (result.abscissa, result.value, result.error))
+    if result.ci95 is not None:
+        bars(axes, x, value, result.ci95, colour, label, "o" if style == STYLES[0] else MARKERS[n % 5])
+        return
+    if result.abscissa_name in ("k", "mode") or x.size == 1:  # nothing lies between
+        axes.errorbar(x, value, error, fmt=MARKERS[n % 5], color=colour, markersize=3, capsize=2, label=label)
+        return
+    axes.plot(x, value, color=colour, linestyle=style, linewidth=1.6, label=label)
+    axes.fill_between(x, value - error, value + error, color=colour, alpha=0.25, linewidth=0)
+
+
+def bars(axes: "Axes", x: "numpy.ndarray", value: "numpy.ndarray", ci95: "numpy.ndarray", colour: str,
+         label: str | None = None, marker: str = "o") -> None:
+    """Simulated values with their 95 % intervals, which may be infinite."""
+    sides = numpy.abs(numpy.nan_to_num(numpy.asarray(ci95).T - value, posinf=0, neginf=0))
+    axes.errorbar(x, value, yerr=sides, fmt=marker, color=colour, markersize=3, capsize=2, linewidth=1, label=label)
+
+
+def scale(values: "numpy.ndarray") -> str:
+    """Logarithmic where neighbours differ by a factor rather than by a distance."""
+    values = numpy.sort(values)
+    even = len(values) > 2 and values[0] > 0 and numpy.ptp(numpy.diff(numpy.log(values))) < 1e-6
+    return "log" if even else "linear"
+
+
+def number(results: Results, option: str) -> float:
+    """An option that is one."""
+    return float(results.options[option])
+
+
+def step(results: Results) -> float | None:
+    """Distance of the noise levels; none where these are given one by one."""
+    return number(results, "delta") if results.options.get("noise", "ou") == "ou" else None
+
+
+def memory(results: Results) -> str:
+    """The noise in words, without its step; TeX."""
+    options = results.options
+    if options.get("noise") == "telegraph":
+        return rf"$a$ = {number(results, 'telegraph_amplitude'):g}, $\kappa$ = {number(results, 'telegraph_rate'):g}"
+    if options.get("noise") == "file":
+        return f"levels of {pathlib.Path(options['noise_file']).name}"
+    given = options.get("noise_deviation")
+    return rf"$\tau$ = {fraction(number(results, 'tau'))}" + (rf", $\sigma$ = {float(given):g}" if given else "")
+
+
+def noise(results: Results) -> str:
+    """The noise in words; TeX."""
+    delta = step(results)
+    return memory(results) + (rf", $\delta$ = {fraction(delta)}" if delta else "")
+
+
+def drag(results: Results) -> str:
+    """b(v) in words."""
+    law = results.options["drag"]
+    if law == "expression":
+        return results.options["drag_expression"]
+    linear = "v" if number(results, "drag_coefficient") == 1 else "c v"
+    return {"none": "0", "linear": f"-{linear}"}.get(law, f"-{linear} - c_3 v^3")
+
+
+def title(results: Results) -> str:
+    """The model parameters in one line; TeX. Empty where the file does not have them."""
+    if not results.options:
+        return ""
+    bias = number(results, "bias")
+    return (rf"$\mu_s$ = {number(results, 'mu_s'):g}, $\mu_d$ = {number(results, 'mu_d'):g}, {noise(results)}, "
+            rf"$b(v) = {drag(results)}$" + (f", bias {bias:g}" if bias else ""))
+
+
+def fraction(x: float) -> str:
+    """1, 1/2, 1/4, ... as fractions, the rest as decimals; TeX."""
+    denominator = round(1 / x) if 0 < x <= 1 else 0
+    exact = denominator & (denominator - 1) == 0 and denominator * x == 1
+    return f"1/{denominator}" if exact and denominator > 1 else f"{x:g}"

@@ -1,0 +1,94 @@
+"""Sweeps: each scalar, and drift against the bias."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from ..results import Result, Results
+from ..sweeps import Sweep
+from .style import COLOURS, MARKERS, STYLES, Figure, bars, numpy, scale, styled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+FEW = 5  # curves told apart by colour and line style
+DRIFT = (("E_V", "drift $E[V]$"), ("diffusivity", "diffusivity $S_0/2$"), ("P_stick", "probability of sticking"))
+
+
+@styled
+def scalars(sweep: Sweep) -> "dict[str, Figure]":
+    """A figure of each scalar, by key.
+
+    One option is an axis, errors are bars; of two options the second is the axis and the first one tells curves
+    apart, up to five values, or makes a map of more. Further options stay at their first value, which the title
+    tells. Points that fell short are marked by crosses.
+    """
+    return {key: _figure(sweep, result) for key, result in sweep.items() if len(result.dims) == len(sweep.dims)}
+
+
+def _figure(sweep: Sweep, result: Result) -> "Figure":
+    figure = Figure(figsize=(6.4, 4.2))
+    axes = figure.subplots()
+    names, first = sweep.dims[:2], (slice(None),) * min(2, len(sweep.dims)) + (0,) * (len(sweep.dims) - 2)
+    value, error, reached = result.value[first], result.error[first], (sweep.status == "reached")[first]
+    ci95 = None if result.ci95 is None else result.ci95[first]
+    if len(sweep.dims) > 2:
+        axes.set_title(", ".join(f"{name} = {sweep.coords[name][0]:g}" for name in sweep.dims[2:]), fontsize=9)
+    if len(names) == 2 and len(value) > FEW:
+        _map(figure, axes, sweep, result, value, reached)
+        return figure
+    x = sweep.coords[names[-1]]
+    rows = [numpy.s_[:]] if len(names) == 1 else range(len(value))
+    for n, row in enumerate(rows):
+        label = f"{names[0]} = {sweep.coords[names[0]][n]:g}" if len(names) == 2 else None
+        curve(axes, x, value[row], error[row], n, label, None if ci95 is None else ci95[row], reached[row])
+    if len(names) == 2:
+        axes.legend()
+    axes.set(xscale=scale(x), xlabel=_label(sweep, names[-1]), ylabel=_label(sweep, result.key))
+    return figure
+
+
+def curve(axes: "Axes", x: "numpy.ndarray", value: "numpy.ndarray", error: "numpy.ndarray", n: int = 0,
+          label: str | None = None, ci95: "numpy.ndarray | None" = None,
+          reached: "numpy.ndarray | None" = None) -> None:
+    """A scalar against a swept option: line and error bars; marks with intervals where simulated."""
+    colour, order = COLOURS[n % len(COLOURS)], numpy.argsort(x)
+    if ci95 is not None:
+        bars(axes, x[order], value[order], ci95[order], colour, label, MARKERS[n % 5])
+    else:
+        axes.errorbar(x[order], value[order], yerr=error[order], color=colour, marker=MARKERS[n % 5],
+                      linestyle=STYLES[n % len(STYLES)], markersize=4, capsize=2, label=label)
+    if reached is not None:
+        axes.plot(x[~reached], value[~reached], linestyle="", marker="x", markersize=9, color=colour)
+
+
+def _map(figure: "Figure", axes: "Axes", sweep: Sweep, result: Result, value: "numpy.ndarray",
+         reached: "numpy.ndarray") -> None:
+    down, across = sweep.dims[:2]
+    y, x = sweep.coords[down], sweep.coords[across]
+    rows, columns = numpy.argsort(y), numpy.argsort(x)
+    mesh = axes.pcolormesh(x[columns], y[rows], value[rows][:, columns], shading="nearest", cmap="cividis")
+    short = numpy.argwhere(~reached)
+    axes.plot(x[short[:, 1]], y[short[:, 0]], linestyle="", marker="x", color="white")
+    figure.colorbar(mesh, label=_label(sweep, result.key))
+    axes.set(xscale=scale(x), yscale=scale(y), xlabel=_label(sweep, across), ylabel=_label(sweep, down))
+    axes.grid(False)
+
+
+def _label(sweep: Sweep, name: str) -> str:
+    unit = sweep[name].unit if name in sweep else sweep.units.get(name, "")
+    return name + (f"  [{unit}]" if unit else "")
+
+
+@styled
+def drift(items: Sequence[Results]) -> "Figure":
+    """Drift, diffusivity and probability of sticking against the bias."""
+    (sweep,) = items
+    if any(key not in sweep for key, _ in DRIFT):
+        raise ValueError("drift needs a sweep of the bias with -quantities sticking,moments,spectrum")
+    figure = Figure(figsize=(6.4, 3.8))
+    axes = figure.subplots()
+    for n, (key, label) in enumerate(DRIFT):
+        curve(axes, sweep.coords["bias"], sweep[key].value, sweep[key].error, n, label, sweep[key].ci95)
+    axes.set(xlabel="bias $g$  [force]", ylim=(0, None), xlim=(0, None))
+    axes.legend(loc="best")
+    return figure

@@ -1,0 +1,182 @@
+"""Finds the program, runs it, and turns its exit statuses into exceptions."""
+
+import dataclasses
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+DONE, BAD_INPUT, SHORT, NO_MEMORY = 0, 2, 3, 4  # exit statuses
+TAIL = 20  # lines of what the program printed, in messages
+GRACE = 5  # seconds from the request to end until the program is killed
+PACKAGE = pathlib.Path(__file__).resolve().parent
+
+
+class BadInput(ValueError):
+    """The program refused an option; the message is the program's."""
+
+
+class OutOfMemory(MemoryError):
+    """What was asked for would not fit in memory; the message is the program's."""
+
+
+class ProgramError(RuntimeError):
+    """The program was not found, failed or was killed; the message ends with what the program printed last."""
+
+
+class TimedOut(ProgramError, TimeoutError):
+    """The program took longer than `timeout` and was ended."""
+
+
+class AccuracyWarning(UserWarning):
+    """The accuracy asked for was not reached, or a comparison disagrees; the text is the program's."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Finished:
+    """How the program ended.
+
+    Attributes
+    ----------
+    status
+        Exit status 0, 2, 3 or 4.
+    out, err
+        What the program printed on standard output and on standard error.
+    """
+
+    status: int
+    out: str
+    err: str
+
+    def message(self) -> str:
+        """What the program says about its end, without its name in front."""
+        lines = [line.removeprefix("stickslip: ").removeprefix("stickslip-complex: ")
+                 for line in (self.err.strip() or last_lines(self.out, 1)).splitlines()]
+        return "\n".join(lines)
+
+
+def find_program() -> pathlib.Path:
+    """Find the program.
+
+    Returns
+    -------
+    path
+        The environment variable STICKSLIP, the build or install tree that the package belongs to, or PATH, in
+        this order.
+
+    Raises
+    ------
+    ProgramError
+        If no place has it.
+    """
+    given = os.environ.get("STICKSLIP")
+    places = [pathlib.Path(given)] if given else [
+        PACKAGE.parents[1] / "build" / "stickslip",  # the sources
+        *(folder / "bin" / "stickslip" for folder in PACKAGE.parents[1:4]),  # PREFIX/lib/python3/dist-packages
+        *filter(None, [pathlib.Path(shutil.which("stickslip") or "")])]
+    for place in places:
+        if place.is_file() and os.access(place, os.X_OK):
+            return place.resolve()
+    if given:
+        raise ProgramError(f"the environment variable STICKSLIP names {given}, which is no program")
+    raise ProgramError(f"the program stickslip is not found: the environment variable STICKSLIP is not set, there is "
+                       f"none beside the package ({places[0]}), and none in PATH; ./bootstrap build makes it")
+
+
+def words_of(options: Mapping[str, Any]) -> list[str]:
+    """Words of the command line.
+
+    Parameters
+    ----------
+    options
+        Values by the names of options. True makes an option without a value, None leaves the option out, and a
+        sequence becomes a list with commas (functions of `observable` with semicolons). An underscore behind a
+        name is dropped, so that `lambda_` can be written.
+
+    Returns
+    -------
+    words
+    """
+    words: list[str] = []
+    for name, value in options.items():
+        name = name.rstrip("_")
+        if value is not None:
+            words += ["-" + name] if value is True else ["-" + name, text_of(value, name)]
+    return words
+
+
+def text_of(value: Any, name: str = "") -> str:
+    """A value as the program reads it; floating-point numbers keep all their bits."""
+    value = value.tolist() if hasattr(value, "tolist") else value  # NumPy's arrays and numbers
+    if isinstance(value, (list, tuple, range)):
+        return ("; " if name == "observable" else ",").join(map(text_of, value))
+    return "no" if value is False else repr(value) if isinstance(value, float) else str(value)
+
+
+def last_lines(text: str, count: int = TAIL) -> str:
+    """The last lines of a text that are not empty."""
+    return "\n".join([line for line in text.splitlines() if line.strip()][-count:])
+
+
+def execute(words: Sequence[str], timeout: float | None = None) -> Finished:
+    """Run a command line of the program to its end.
+
+    Parameters
+    ----------
+    words
+        The command line.
+    timeout
+        Seconds after which the program is ended, and with it what mpiexec started.
+
+    Returns
+    -------
+    finished
+
+    Raises
+    ------
+    BadInput, TimedOut, ProgramError
+        By exit status. Statuses 3 and 4 may have left results and are returned.
+    """
+    try:
+        process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   start_new_session=True)
+    except OSError as problem:
+        raise ProgramError(f"{words[0]} does not run: {problem.strerror}") from None
+    try:
+        out, err = (text.decode(errors="replace") for text in process.communicate(timeout=timeout))
+    except BaseException as problem:
+        _end(process)
+        if isinstance(problem, subprocess.TimeoutExpired):
+            raise TimedOut(f"the program was ended after {timeout:g} s") from None
+        raise
+    finished = Finished(process.returncode, out, err)
+    if finished.status == BAD_INPUT:
+        raise BadInput(finished.message())
+    if finished.status not in (DONE, SHORT, NO_MEMORY):
+        raise ProgramError(_end_of(finished))
+    return finished
+
+
+def _end(process: subprocess.Popen) -> None:
+    """Asks the program and its children to end, and kills what does not."""
+    for number in (signal.SIGTERM, signal.SIGKILL):
+        try:
+            os.killpg(process.pid, number)
+            process.communicate(timeout=GRACE)
+        except (ProcessLookupError, subprocess.TimeoutExpired):
+            continue
+
+
+def _end_of(finished: Finished) -> str:
+    """Of a program that failed: the signal or the exit status, and the last lines."""
+    status = finished.status
+    number = -status if status < 0 else status - 128  # shells and mpiexec add 128
+    try:
+        ending = f"was killed by {signal.Signals(number).name}"
+    except ValueError:
+        ending = f"failed with exit status {status}"
+    said = last_lines(finished.err) or last_lines(finished.out)
+    return f"the program {ending}" + (f":\n{said}" if said else "")

@@ -1,0 +1,287 @@
+"""What a run computed, as data: results with their errors, fields, and where they come from."""
+
+import dataclasses
+import math
+import pathlib
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from .needed import needed
+
+if TYPE_CHECKING:
+    import h5py
+    import numpy
+    from matplotlib.figure import Figure
+    Array = numpy.ndarray
+numpy = needed("numpy")
+
+PARTS = ("value", "error", "unit", "ci95", "low", "high")  # of a result; what else there is, is the abscissa
+
+
+@dataclasses.dataclass(frozen=True)
+class Result:
+    """One quantity.
+
+    Attributes
+    ----------
+    key
+        Its name, such as "P_stick".
+    value
+        A number, or an array.
+    error
+        Absolute error estimate, of the shape of `value`; NaN where there is none.
+    unit
+        In words, such as "velocity^2*time"; empty where there is none.
+    dims
+        Names of the dimensions of `value`: () of a number, ("omega",) of a spectrum. In a sweep the swept options
+        come first.
+    abscissa_name, abscissa
+        What an array depends on, such as "omega", and its values; None for numbers. In a sweep whose points have
+        abscissae of their own, `abscissa` has the shape of `value`.
+    ci95
+        Ends of the 95 % confidence interval in the last dimension, where simulated; else None.
+    """
+
+    key: str
+    value: "float | Array"
+    error: "float | Array"
+    unit: str = ""
+    dims: tuple[str, ...] = ()
+    abscissa_name: str | None = None
+    abscissa: "Array | None" = None
+    ci95: "tuple[float, float] | Array | None" = None
+
+    def __float__(self) -> float:
+        return float(self.value)
+
+
+@dataclasses.dataclass(frozen=True)
+class Density:
+    """The stationary distribution of (X, V).
+
+    Attributes
+    ----------
+    x, v
+        Levels of the noise, and velocities of the nodes.
+    values
+        P(X = x_i, V in dv)/dv while the body slides, by [x, v].
+    at_rest
+        P(X = x_i, the body sticks), by [x].
+    marginal_x, marginal_v
+        P(X = x_i), and the density of V without its atom at 0.
+    error
+        Error estimate of the distribution function of the speed.
+    """
+
+    x: "Array"
+    v: "Array"
+    values: "Array"
+    at_rest: "Array"
+    marginal_x: "Array"
+    marginal_v: "Array"
+    error: float
+
+    @property
+    def mass_at_rest(self) -> float:
+        """Probability that the body sticks."""
+        return float(self.at_rest.sum())
+
+
+class Results(Mapping):
+    """Results of one run, by key.
+
+    Attributes
+    ----------
+    scene, options
+        Parameters as they were used, and every option as it was given, as text.
+    cost, plan, provenance
+        Seconds and sizes, counts of what was done, versions and machine.
+    accuracy
+        `asked`, `reached` and, if missed, `shortfall`.
+    density
+        The stationary distribution, or None.
+    trajectory
+        `time`, `x`, `y`, `v` of one path just after each event, or None.
+    modes
+        Modes of the generator by group ("relaxation_even"), if asked for.
+    comparison
+        With `compare`: by key the columns `argument`, `value`, `error`, `reference`, `low`, `high` and `z`; or None.
+    study
+        With `study`: tables by name, each with columns by name; or None. `runs` has the results of its runs.
+    summary
+        All that `-summary` wrote; empty after reading HDF5.
+    name
+        Of the file, without its folder and ending; empty after a run.
+    """
+
+    def __init__(self, results: Mapping[str, Result], *, options: Mapping[str, str] | None = None, name: str = "",
+                 summary: Mapping[str, Any] | None = None, **parts: Any) -> None:
+        self._results = dict(results)
+        self.name = name
+        self.summary: dict[str, Any] = dict(summary or {})
+        self.options: dict[str, str] = dict(options or {})
+        self.scene: dict[str, Any] = parts.get("scene", {})
+        self.cost: dict[str, Any] = parts.get("cost", {})
+        self.plan: dict[str, Any] = parts.get("plan", {})
+        self.provenance: dict[str, Any] = parts.get("provenance", {})
+        self.accuracy: dict[str, Any] = parts.get("accuracy", {})
+        self.density: Density | None = parts.get("density")
+        self.trajectory: "dict[str, Array] | None" = parts.get("trajectory")
+        self.modes: dict[str, Any] = parts.get("modes", {})
+        self.comparison: "dict[str, dict[str, Array]] | None" = parts.get("comparison")
+        self.study: "dict[str, dict[str, Array]] | None" = parts.get("study")
+        self.study_kind: str = parts.get("study_kind", "")
+        self.runs: list[Results] = parts.get("runs", [])
+
+    def __getitem__(self, key: str) -> Result:
+        return self._results[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._results)
+
+    def __len__(self) -> int:
+        return len(self._results)
+
+    def __repr__(self) -> str:
+        lines = []
+        for key, result in self.items():
+            shown = (f"{result.value:.17g} +- {result.error:.1e}" if numpy.ndim(result.value) == 0 else
+                     f"{' x '.join(map(str, numpy.shape(result.value)))} values by {', '.join(result.dims)}")
+            lines.append(f"{key} = {shown} {result.unit}".rstrip())
+        return "\n".join(lines) or f"<{type(self).__name__} without scalars and arrays>"
+
+    @property
+    def reached(self) -> bool:
+        """Whether the accuracy asked for was reached."""
+        return bool(self.accuracy.get("reached", True))
+
+    def plot(self, picture: str | pathlib.Path | None = None, kind: str | None = None) -> "dict[str, Figure]":
+        """Draw what there is.
+
+        Parameters
+        ----------
+        picture
+            Where to save; of several figures each has its name appended.
+        kind
+            One of `stickslip.plots.KINDS`; without it, all that fit.
+
+        Returns
+        -------
+        figures
+            By kind; those of a sweep by the key of the result.
+        """
+        from . import plots
+        return plots.draw([self], picture, kind)
+
+
+def array(values: Any, missing: float = math.nan) -> "Array":
+    """Numbers of JSON, where null stands for what is no number."""
+    if isinstance(values, list):
+        return numpy.array([array(v, missing) for v in values], float)
+    return numpy.asarray(missing if values is None else values, float)
+
+
+def _number(values: "Array") -> "float | Array":
+    return float(values) if values.ndim == 0 else values
+
+
+def result_of(key: str, parts: Mapping[str, Any]) -> Result:
+    """A result of the summary, or of /results of HDF5."""
+    name = next((part for part in parts if part not in PARTS), None)
+    value = array(parts["value"])
+    ci95 = None
+    if "ci95" in parts:  # null where an interval is infinite
+        ends = parts["ci95"] if value.ndim else [parts["ci95"]]
+        ci95 = numpy.array([[-math.inf if low is None else low, math.inf if high is None else high]
+                            for low, high in ends], float)
+    elif "low" in parts:
+        ci95 = numpy.stack([array(parts["low"]), array(parts["high"])], -1).reshape(-1, 2)
+    if ci95 is not None and not value.ndim:
+        ci95 = tuple(ci95[0].tolist())
+    error = array(parts.get("error")) if "error" in parts else numpy.full(value.shape, math.nan)
+    return Result(key, _number(value), _number(error), str(parts.get("unit", "")), (name,) if name else (), name,
+                  array(parts[name]) if name else None, ci95)
+
+
+def from_summary(tree: Mapping[str, Any], name: str = "") -> Results:
+    """Results of one run, or of a study, from the tree of a summary."""
+    parts = {key: tree[key] for key in ("scene", "cost", "plan", "accuracy", "provenance") if key in tree}
+    options = tree.get("provenance", {}).get("options", {})
+    if "comparison" in tree:
+        parts["comparison"] = _comparison(tree["comparison"]["rows"])
+    if "study" in tree:
+        parts["study"] = {title: {column: array(values) for column, values in table.items() if isinstance(values, list)}
+                          for title, table in tree["study"]["tables"].items()}
+        parts["study_kind"] = tree["study"]["kind"]
+        parts["runs"] = [from_summary({"provenance": tree["provenance"], **run}) for run in tree["runs"]]
+    results = {key: result_of(key, result) for key, result in tree.get("results", {}).items()}
+    return Results(results, options=options, name=name, summary=tree, **parts)
+
+
+def _comparison(rows: list[dict[str, Any]]) -> "dict[str, dict[str, Array]]":
+    """Columns by quantity, as HDF5 has them."""
+    found: dict[str, dict[str, list]] = {}
+    for row in rows:
+        columns = found.setdefault(row["quantity"], {})
+        low, high = row["ci95"]
+        row = {**row, "argument": row.get("argument"), "low": low, "high": high}
+        for column in ("argument", "value", "error", "reference", "low", "high", "z"):
+            columns.setdefault(column, []).append(row[column])
+    return {key: {column: array(values) for column, values in columns.items()} for key, columns in found.items()}
+
+
+def _datasets(group: "h5py.Group") -> dict[str, Any]:
+    """Datasets and groups by name, to any depth."""
+    return {key: _datasets(part) if hasattr(part, "items") else part[()] for key, part in group.items()}
+
+
+def from_hdf5(file: "h5py.File", name: str = "") -> Results:
+    """Results of an open file of -output."""
+    record = dict(file["record"].attrs)
+    options = {key: str(value) for key, value in file["record/options"].attrs.items()}
+    parts: dict[str, Any] = {
+        "provenance": record, "cost": {"seconds": float(record.get("seconds", math.nan))}, **fields(file),
+        "scene": {key: _parameter(value) for key, value in options.items()},
+        "accuracy": {"asked": _parameter(options.get("accuracy", "")),
+                     "reached": str(record.get("accuracy_reached", "yes")) == "yes"}}
+    if "comparison" in file:
+        parts["comparison"] = _datasets(file["comparison"])
+    if "study" in file:
+        parts |= {"study": _datasets(file["study"]), "study_kind": str(file["study"].attrs["kind"])}
+    results = {}
+    for group, data in file.get("results", {}).items():
+        key = group.replace(":", "/")  # names of groups have no /
+        results[key] = result_of(key, {**dict(data.attrs), **_datasets(data)})
+    return Results(results, options=options, name=name, **parts)
+
+
+def _parameter(text: str) -> Any:
+    """A number where the option is one."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def fields(file: "h5py.File") -> dict[str, Any]:
+    """What only HDF5 holds: density, path and modes."""
+    found: dict[str, Any] = {"modes": {key: _datasets(file[key]) for key in file if key.startswith("relaxation")}}
+    if "density" in file:
+        data = _datasets(file["density"])
+        found["density"] = Density(
+            *(data[part] for part in ("x", "v", "pdf", "atom", "marginal_x", "marginal_v")),
+            float(file["density"].attrs.get("error_of_distribution_function_of_speed", math.nan)))
+    if "trajectory" in file:
+        found["trajectory"] = _datasets(file["trajectory"])
+    return found
+
+
+def reading(path: pathlib.Path, kind: str, option: str, read: Callable[[], Any]) -> Any:
+    """What `read` returns; a file that is not of its kind is told as such."""
+    try:
+        return read()
+    except FileNotFoundError:
+        raise FileNotFoundError(f"{path}: no such file; the program writes it with {option} {path}") from None
+    except (OSError, ValueError, KeyError, IndexError, TypeError, AttributeError) as problem:
+        said = str(problem).splitlines()[0] if str(problem) else type(problem).__name__
+        raise ValueError(f"{path}: cannot be read as {kind} of this program: {said}") from None
