@@ -1,0 +1,346 @@
+"""The Python package, as a script meets it."""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+import warnings
+from unittest import mock
+
+import h5py
+import numpy
+
+SOURCES = pathlib.Path(__file__).resolve().parents[2]
+BINARIES = pathlib.Path(os.environ.get("STICKSLIP_BINARIES", SOURCES / "build"))
+os.environ["STICKSLIP"] = str(BINARIES / "stickslip")
+sys.path.insert(0, str(SOURCES / "python"))
+import stickslip
+from stickslip import program
+
+SMALL = {"mu_d": 0.25, "delta": 0.5, "accuracy": 1e-3}
+PNG = b"\x89PNG\r\n\x1a\n"
+
+
+class Case(unittest.TestCase):
+    """A test with a folder of its own, in whose name are a space and letters that are not ASCII."""
+
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory(prefix="Reibung µ δ ")
+        self.addCleanup(holder.cleanup)
+        self.folder = pathlib.Path(holder.name)
+        filters = warnings.catch_warnings()
+        filters.__enter__()
+        self.addCleanup(filters.__exit__)
+        warnings.simplefilter("ignore", stickslip.AccuracyWarning)
+
+    def fake(self, text):
+        """A program that is found instead of the real one."""
+        file = self.folder / "fake program"
+        file.write_text(f"#!/bin/sh\n{text}\n")
+        file.chmod(0o755)
+        return mock.patch.dict(os.environ, STICKSLIP=str(file))
+
+    def python(self, *words, **environment):
+        return subprocess.run([sys.executable, *map(str, words)], capture_output=True, text=True, cwd=self.folder,
+                              env={**os.environ, "PYTHONPATH": str(SOURCES / "python"), **environment})
+
+
+class Runs(Case):
+    def test_values_and_errors_are_those_that_the_program_prints(self):
+        file = self.folder / "summary.json"
+        r = stickslip.run(**SMALL, quantities="sticking,spectrum", omega=[0.1, 1, 10], summary=file)
+        written = json.loads(file.read_text())["results"]
+        self.assertEqual(list(r), list(written))
+        for key, parts in written.items():
+            self.assertEqual((r[key].key, r[key].unit), (key, parts.get("unit", "")))
+            numpy.testing.assert_array_equal(r[key].value, parts["value"])
+            numpy.testing.assert_array_equal(r[key].error, parts["error"])
+        self.assertIsInstance(r["P_stick"].value, float)
+        self.assertEqual(float(r["P_stick"]), r["P_stick"].value)
+        numpy.testing.assert_array_equal(r["S_v"].abscissa, [0.1, 1, 10])
+        self.assertEqual((r["S_v"].abscissa_name, r["S_v"].dims, r["P_stick"].dims), ("omega", ("omega",), ()))
+        printed = subprocess.run([BINARIES / "stickslip", *program.words_of(SMALL), "-quantities", "sticking,spectrum",
+                                  "-omega", "0.1,1,10"], capture_output=True, text=True, check=True).stdout
+        self.assertRegex(printed, rf"P_stick +{r['P_stick'].value:.17g} ")
+        self.assertTrue(r.reached)
+        self.assertEqual((r.scene["mu_d"], r.plan["factorizations_complex"]), (0.25, 0))
+        self.assertGreater(r.cost["seconds"], 0)
+
+    def test_density_arrives_and_nothing_else_stays(self):
+        with mock.patch.dict(os.environ, TMPDIR=str(self.folder)), mock.patch("tempfile.tempdir", None):
+            r = stickslip.run(**SMALL, quantities=["sticking", "density"])
+            self.assertEqual(list(self.folder.iterdir()), [])
+        self.assertAlmostEqual(r.density.mass_at_rest, r["P_stick"].value, delta=1e-12)
+        self.assertEqual(r.density.values.shape, (r.density.x.size, r.density.v.size))
+        self.assertAlmostEqual(r.density.marginal_x.sum(), 1, delta=1e-9)
+        self.assertIsNone(stickslip.run(**SMALL).density)
+
+    def test_simulated_values_have_intervals(self):
+        r = stickslip.run(**SMALL, quantities="sticking,laplace", lambda_=[1, 2], route="monte_carlo", excursions=1000)
+        low, high = r["P_stick"].ci95
+        self.assertLess(low, r["P_stick"].value)
+        self.assertLess(r["P_stick"].value, high)
+        self.assertEqual(r["F_slide"].ci95.shape, (2, 2))
+        self.assertIsNone(stickslip.run(**SMALL)["P_stick"].ci95)
+
+    def test_words_of_options(self):
+        self.assertEqual(program.words_of({
+            "mu_d": 0.1, "omega": [1, 1e-7], "plan": True, "lambda_": numpy.array([0.3]), "observable": ["v", "x*v"],
+            "excursions": numpy.int64(7), "degree": None, "options_file": pathlib.Path("a b")}), [
+                "-mu_d", "0.1", "-omega", "1,1e-07", "-plan", "-lambda", "0.3", "-observable", "v; x*v",
+                "-excursions", "7", "-options_file", "a b"])
+
+    def test_a_plan(self):
+        r = stickslip.run(**SMALL, quantities="sticking,density", plan=True)
+        self.assertEqual((len(r), r.density), (0, None))
+        self.assertGreater(r.plan["steps"][0]["unknowns"], 0)
+
+    def test_ranks(self):
+        one, two = (stickslip.run(**SMALL, quantities="sticking", ranks=ranks) for ranks in (0, 2))
+        self.assertEqual(two.provenance["ranks"], "2")
+        self.assertAlmostEqual(one["P_stick"].value, two["P_stick"].value, delta=1e-9)
+
+    def test_an_accuracy_that_is_missed_is_a_warning(self):
+        with self.assertWarnsRegex(stickslip.AccuracyWarning, "take -accuracy") as caught:
+            r = stickslip.run(delta=0.5, quantities="sticking", accuracy=1e-15)
+        self.assertEqual(caught.filename, __file__)
+        self.assertFalse(r.reached)
+        self.assertGreater(r["P_stick"].value, 0)
+
+
+class Failures(Case):
+    def test_bad_input_is_told_in_the_words_of_the_program(self):
+        for options, told in (({"mu_d": 2}, r"^-mu_d = 2: must be in \(0, mu_s\]"),
+                              ({"detla": 0.5}, "did you mean -delta?")):
+            with self.assertRaisesRegex(ValueError, told) as caught:
+                stickslip.run(**options)
+            self.assertIs(type(caught.exception), stickslip.BadInput)
+
+    def test_what_does_not_fit_in_memory(self):
+        with self.assertRaisesRegex(stickslip.OutOfMemory, "GB of memory"):
+            stickslip.run(delta=1e-4, scheme="upwind", p=4000)
+
+    def test_a_program_that_is_killed(self):
+        with self.fake("echo last words >&2; kill -SEGV $$"):
+            self.assertRaisesRegex(stickslip.ProgramError, "(?s)killed by SIGSEGV.*last words", stickslip.run)
+        with self.fake("exit 137"):  # as a shell or mpiexec tells it
+            self.assertRaisesRegex(stickslip.ProgramError, "killed by SIGKILL", stickslip.run)
+        with self.fake("seq 100; exit 1"):
+            with self.assertRaisesRegex(stickslip.ProgramError, "(?s)exit status 1.*\n100$") as caught:
+                stickslip.run()
+        self.assertLess(len(str(caught.exception)), 200)
+        with self.fake("exit 0"):
+            self.assertRaisesRegex(stickslip.ProgramError, "wrote no results", stickslip.run)
+
+    def test_results_of_before_are_not_taken_for_those_of_now(self):
+        file = self.folder / "summary.json"
+        stickslip.run(**SMALL, summary=file)
+        with self.fake("exit 0"):
+            self.assertRaisesRegex(stickslip.ProgramError, "wrote no results", stickslip.run, summary=file)
+
+    def test_a_program_that_takes_too_long_is_ended_with_its_children(self):
+        pid = self.folder / "pid"
+        with self.fake(f"sleep 60 & echo $! > '{pid}'; wait"):
+            self.assertRaises(stickslip.TimedOut, stickslip.run, timeout=0.5)
+        status = pathlib.Path("/proc", pid.read_text().strip(), "stat")
+        self.assertTrue(not status.exists() or status.read_text().split()[2] == "Z")
+
+    def test_where_the_program_is_looked_for(self):
+        with self.fake("exit 0"):
+            self.assertEqual(stickslip.find_program(), self.folder / "fake program")
+        with mock.patch.dict(os.environ, STICKSLIP="/none"):
+            self.assertRaisesRegex(stickslip.ProgramError, "STICKSLIP names /none", stickslip.find_program)
+        package = self.folder / "python" / "stickslip"
+        with mock.patch.object(program, "PACKAGE", package), mock.patch.dict(os.environ, PATH=str(self.folder)):
+            os.environ.pop("STICKSLIP")
+            with self.assertRaisesRegex(stickslip.ProgramError, "STICKSLIP.*beside the package.*PATH"):
+                stickslip.find_program()
+            for place in ("stickslip", "bin/stickslip", "build/stickslip"):  # PATH, installed, built
+                file = self.folder / place
+                file.parent.mkdir(exist_ok=True)
+                file.write_text("")
+                file.chmod(0o755)
+                self.assertEqual(stickslip.find_program(), file)
+
+    def test_a_missing_module_is_one_sentence(self):
+        for name, script in (("numpy", "import stickslip"),
+                             ("h5py", "import stickslip; stickslip.load('a.h5')"),
+                             ("matplotlib", "import stickslip.plots")):
+            done = self.python("-c", f"import sys; sys.modules['{name}'] = None; {script}")
+            self.assertEqual(done.stderr.splitlines()[-1],
+                             f"ImportError: stickslip needs {name} for this: apt-get install python3-{name}")
+
+    def test_matplotlib_is_imported_only_to_draw(self):
+        done = self.python("-c", "import sys, stickslip; print('matplotlib' in sys.modules, 'h5py' in sys.modules)")
+        self.assertEqual(done.stdout, "False False\n", done.stderr)
+
+
+class Sweeps(Case):
+    def test_shapes_names_and_order(self):
+        asked = {"delta": 0.5, "quantities": "sticking,spectrum", "omega": [1, 2, 3, 4], "accuracy": 1e-3}
+        s = stickslip.sweep(tau=[1, 0.5, 2], mu_d=[0.5, 0.25], **asked)
+        self.assertEqual((s.dims, s.shape, s.reached), (("tau", "mu_d"), (3, 2), True))
+        self.assertEqual(s["P_stick"].value.shape, (3, 2))
+        self.assertEqual((s["S_v"].value.shape, s["S_v"].dims), ((3, 2, 4), ("tau", "mu_d", "omega")))
+        numpy.testing.assert_array_equal(s["S_v"].abscissa, [1, 2, 3, 4])
+        numpy.testing.assert_array_equal(s.coords["tau"], [1, 0.5, 2])
+        one = stickslip.run(tau=2, mu_d=0.5, **asked)
+        for key in ("P_stick", "S_v"):
+            numpy.testing.assert_array_equal(s[key].value[2, 0], one[key].value)
+            numpy.testing.assert_array_equal(s[key].error[2, 0], one[key].error)
+
+    def test_arrays_of_different_length_end_with_nan(self):
+        s = stickslip.sweep(mu_s=[1, 2], delta=0.5, quantities="entry_law", accuracy=1e-3)
+        self.assertEqual((s["entry_law"].value.shape, s["entry_law"].abscissa.shape), ((2, 9), (2, 9)))
+        self.assertTrue(numpy.isnan(s["entry_law"].value[0, 5:]).all())
+
+    def test_points_that_fail_are_nan_with_their_message(self):
+        with self.assertWarnsRegex(stickslip.AccuracyWarning, "2 of 2 points.*delta = 0.0001: about"):
+            s = stickslip.sweep(delta=[1, 1e-4], scheme="upwind", p=200, quantities="sticking")
+        self.assertEqual((list(s.failures), list(s.shortfalls), s.reached), ([(1,)], [(0,)], False))
+        self.assertIn("GB of memory", s.failures[1,])
+        self.assertEqual(list(numpy.isnan(s["P_stick"].value)), [False, True])
+
+    def test_nothing_to_sweep(self):
+        self.assertRaisesRegex(ValueError, "sequence of values", stickslip.sweep, **SMALL)
+        self.assertRaisesRegex(stickslip.BadInput, "sweep_seed", stickslip.sweep, seed=[1, 2])
+
+    def test_simulated_intervals_follow_the_order(self):
+        s = stickslip.sweep(tau=[1, 1.5, 2], mu_d=[0.25, 0.5], delta=0.5, quantities="sticking", route="monte_carlo",
+                            excursions=200)
+        self.assertEqual(s["P_stick"].ci95.shape, (3, 2, 2))
+        self.assertTrue((s["P_stick"].ci95[..., 0] < s["P_stick"].value).all())
+
+
+class Files(Case):
+    def same(self, a, b):
+        self.assertEqual(set(a), set(b))
+        for key in a:
+            for part in ("value", "error", "abscissa", "ci95"):
+                one, other = (getattr(r[key], part) for r in (a, b))
+                self.assertEqual(one is None, other is None, (key, part))
+                if one is not None:
+                    numpy.testing.assert_array_equal(one, other)
+            self.assertEqual((a[key].dims, a[key].unit), (b[key].dims, b[key].unit))
+
+    def test_json_and_hdf5_hold_the_same(self):
+        for more in ({}, {"route": "monte_carlo", "excursions": 500}):
+            names = {"summary": self.folder / "µ 1.json", "keep": self.folder / "µ 1.h5"}
+            r = stickslip.run(**SMALL, quantities="sticking,laplace", lambda_=[0.5, 2], **more, **names)
+            for file in names.values():
+                self.same(r, stickslip.load(file))
+                self.assertEqual(stickslip.load(file).options["mu_d"], "0.25")
+        r = stickslip.run(**SMALL, quantities="resolvent", observable=["x/2", "v^2"], lambda_=1, **names)
+        self.assertIn("pi(x/2)", r)
+        self.same(r, stickslip.load(names["keep"]))
+
+    def test_files_of_sweeps(self):
+        names = {"summary": self.folder / "s.json", "keep": self.folder / "s.h5"}
+        s = stickslip.sweep(mu_d=[0.25, 0.5], tau=[1, 1.5, 2], delta=0.5, quantities="sticking,spectrum", omega=[1, 2],
+                            accuracy=1e-2, sweep_csv=self.folder / "s.csv", **names)
+        for file in names.values():
+            self.same(s, stickslip.load(file))
+        table = stickslip.load(self.folder / "s.csv")
+        self.assertEqual((table.dims, set(table)), (s.dims, set(s) - {"S_v"}))
+        for key in table:
+            numpy.testing.assert_array_equal(table[key].value, s[key].value)
+
+    def test_studies_and_comparisons(self):
+        names = {"summary": self.folder / "s.json", "keep": self.folder / "s.h5"}
+        study = stickslip.run(delta=0.5, study="p", study_steps=4, quantities="sticking", **names)
+        other = stickslip.load(names["keep"])
+        self.assertEqual((study.study_kind, set(study.study)), ("p", set(other.study)))
+        numpy.testing.assert_array_equal(study.study["P_stick"]["value"], other.study["P_stick"]["value"])
+        self.assertGreater(study.runs[0]["P_stick"].value, 0)
+        reference = self.folder / "reference.h5"
+        stickslip.run(**SMALL, route="monte_carlo", excursions=500, keep=reference)
+        r = stickslip.run(**SMALL, compare=reference, **names)
+        other = stickslip.load(names["keep"])
+        for key, rows in r.comparison.items():
+            for column in ("value", "reference", "low", "high", "z"):
+                numpy.testing.assert_array_equal(rows[column], other.comparison[key][column])
+
+    def test_foreign_files(self):
+        with h5py.File(self.folder / "foreign.h5", "w") as file:
+            file["x"] = 1
+        for name, text, told in (("a.json", "{}", "JSON"), ("b.json", "[", "JSON"), ("c.csv", "a,b\n1,2\n", "CSV"),
+                                 ("d.h5", "text", "HDF5"), ("foreign.h5", None, "HDF5")):
+            if text:
+                (self.folder / name).write_text(text)
+            self.assertRaisesRegex(ValueError, f"{name}: cannot be read as {told}", stickslip.load, self.folder / name)
+        self.assertRaisesRegex(FileNotFoundError, "no such file", stickslip.load, self.folder / "none.h5")
+
+
+class Pictures(Case):
+    def plot(self, *words):
+        done = self.python("-m", "stickslip", "plot", *words)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for name in done.stdout.splitlines():
+            data = (self.folder / name).read_bytes()
+            self.assertTrue(data.startswith(PNG), name)
+            self.assertGreater(len(data), 5000, name)
+        return sorted(done.stdout.splitlines())
+
+    def test_every_kind_of_results(self):
+        """With the number of axes in the picture, and of bands, bars or marks where errors belong."""
+        mc = {"route": "monte_carlo", "excursions": 500}
+        stickslip.run(**SMALL, quantities="sticking,laplace", lambda_=[1, 2], **mc, keep=self.folder / "reference.h5")
+        for kind, axes, options in (
+                ("density", 5, {"quantities": "density"}),
+                ("trajectory", 4, {"quantities": "trajectory", "horizon": 5}),
+                ("spectra", 1, {"quantities": "spectrum", "omega": [0.1, 1]}),
+                ("durations", 2, {"quantities": "duration_density", "time": "0:1:5", "accuracy": 1e-2}),
+                ("slips", 4, {"quantities": "slip,peak", "distance": [1, 2], "velocity": [0.1, 0.2], "accuracy": 1e-2}),
+                ("slips", 2, {"quantities": "displacement", "time": [1, 2], "bias": 0.1}),
+                ("arrays", 3, {"quantities": "laplace", "lambda": [1, 2]}),
+                ("comparison", 8, {"quantities": "sticking,laplace", "lambda": [1, 2],
+                                   "compare": self.folder / "reference.h5"}),
+                ("cost", 1, {"quantities": "sticking", "study": "cost", "study_steps": 4, "study_repeats": 1}),
+                ("spectra", 1, {"quantities": "spectrum", "omega": [0.1, 1], **mc})):
+            r = stickslip.run(**{**SMALL, **options})
+            picture = self.folder / "µ.png"
+            figure = r.plot(picture, kind)[kind]
+            self.assertEqual(sum(len(part.get_axes()) for part in (*figure.subfigs, figure) if part is not figure
+                                 or not figure.subfigs), axes, kind)
+            self.assertTrue(picture.read_bytes().startswith(PNG), kind)
+            self.assertGreater(picture.stat().st_size, 5000)
+            if kind in ("spectra", "slips", "arrays", "durations"):
+                marked = figure.axes[-1]
+                self.assertTrue(marked.containers if "route" in options else marked.collections, kind)
+
+    def test_errors_of_sweeps_are_drawn(self):
+        for more in ({}, {"route": "monte_carlo", "excursions": 500}):
+            s = stickslip.sweep(mu_d=[0.25, 0.5], tau=[1, 1.5, 2], delta=0.5, quantities="sticking", accuracy=1e-1,
+                                **more)
+            figure = s.plot()["P_stick"]
+            self.assertEqual(len(figure.axes[0].containers), 2)  # a curve with bars for each mu_d
+        s = stickslip.sweep(mu_d=[0.1, 0.2, 0.3, 0.4, 0.5, 0.6], tau=[1, 2], delta=0.5, quantities="noise_law")
+        self.assertEqual(len(s.plot()["E_X2"].axes), 2)  # a map with its scale
+
+    def test_pictures_on_request(self):
+        s = stickslip.sweep(bias=[0.1, 0.2], delta=0.5, quantities="sticking,moments,spectrum", accuracy=1e-2)
+        self.assertEqual(list(s.plot(kind="drift")), ["drift"])
+        for tau in (1, 0.5):
+            stickslip.run(**SMALL, tau=tau, quantities="spectrum", keep=self.folder / f"{tau}.h5")
+        self.assertEqual(self.plot("1.h5", "0.5.h5", "t.png"), ["t.png"])
+
+    def test_command_line(self):
+        file = self.folder / "λ 1.h5"
+        stickslip.run(**SMALL, quantities="density,spectrum", omega=[0.1, 1], keep=file)
+        self.assertEqual(self.plot(file.name), ["λ 1_density.png", "λ 1_spectra.png"])
+        self.assertEqual(self.plot(file.name, file.name, "both.png"), ["both.png"])
+        stickslip.sweep(tau=[1, 2], delta=0.5, quantities="noise_law", sweep_csv=self.folder / "s.csv")
+        self.assertEqual(self.plot("s.csv"), ["s/E_X2.png", "s/P_X_le_mu_s.png"])
+        for words, told in ((["none.h5"], "no such file"), ([file.name, "a.foo"], ".svg"),
+                            ([file.name, "x/a.png"], "folder")):
+            done = self.python("-m", "stickslip", "plot", *words)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn(told, done.stderr)
+            self.assertIn(words[-1], done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
