@@ -17,6 +17,8 @@ inside apt-get install -y -qq --no-install-recommends /root/stickslip.deb >"$sys
 rm "$system/root/stickslip.deb"
 inside stickslip -version
 inside stickslip -options_file /usr/share/stickslip/options/quickstart.opts
+inside apt-get install -y -qq --no-install-recommends python3-numpy >>"$system.log" 2>&1
+inside python3 -c 'import stickslip; print(stickslip.run(mu_d=0.25, quantities="sticking")["P_stick"])'
 inside stickslip-complex -options_file /usr/share/stickslip/options/quickstart.opts | grep P_stick
 
 inside apt-get purge -y -qq stickslip >>"$system.log" 2>&1

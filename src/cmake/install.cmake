@@ -21,10 +21,12 @@ foreach(program ${PROGRAMS})
   install(FILES ${manual}/stickslip DESTINATION ${completions} RENAME ${program})
 endforeach()
 install(DIRECTORY options DESTINATION ${CMAKE_INSTALL_DATADIR}/stickslip)
-install(DIRECTORY validation/plot DESTINATION ${CMAKE_INSTALL_DATADIR}/stickslip
-        FILES_MATCHING PATTERN *.py PATTERN README.md PATTERN __pycache__ EXCLUDE)
+# Where Debian's python3 looks if the prefix is /usr.
+install(DIRECTORY python/stickslip DESTINATION lib/python3/dist-packages
+        FILES_MATCHING PATTERN *.py PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES python/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME python.md)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 
 set(CPACK_GENERATOR DEB)
@@ -37,4 +39,6 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "openmpi-bin, libopenblas0-pthread, bash-completion, "
                                     "python3-numpy, python3-h5py, python3-matplotlib")
 list(JOIN CPACK_DEBIAN_PACKAGE_RECOMMENDS "" CPACK_DEBIAN_PACKAGE_RECOMMENDS)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/src/cmake/prerm)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 include(CPack)

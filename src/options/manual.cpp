@@ -109,7 +109,8 @@ std::string files() {
   return entry("\\fIPREFIX/share/stickslip/options\\fR", "Options files to start from.") +
          entry("\\fIPREFIX/share/doc/stickslip\\fR",
                "Tutorial, method, format of the output, and other pages.") +
-         entry("\\fIPREFIX/share/stickslip/plot\\fR", "Scripts that draw what was computed.");
+         entry("\\fIPREFIX/lib/python3/dist-packages/stickslip\\fR",
+               "Python package that runs the program and draws what was computed.");
 }
 
 constexpr const char* kCompletionHead =

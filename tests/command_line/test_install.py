@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+import sys
 import unittest
 
 from stickslip import BINARIES, Case, TWINS
@@ -47,8 +48,17 @@ class Install(Case):
     def test_pages_and_scripts_are_there(self):
         self.assertIn("tutorial.md", self.installed("share/doc/stickslip"))
         self.assertIn("copyright", self.installed("share/doc/stickslip"))
-        self.assertIn("density.py", self.installed("share/stickslip/plot"))
+        self.assertIn("python.md", self.installed("share/doc/stickslip"))
         self.assertIn("paper", self.installed("share/stickslip/options"))
+
+    def test_python_package_finds_the_installed_program(self):
+        script = "import stickslip; print(stickslip.run(delta=0.5, quantities='sticking')['P_stick'].value)"
+        environment = {**os.environ, "PYTHONPATH": str(self.prefix / "lib/python3/dist-packages")}
+        environment.pop("STICKSLIP", None)
+        done = subprocess.run([sys.executable, "-c", f"{script}; print(stickslip.find_program())"], text=True,
+                              cwd=self.folder, capture_output=True, env=environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"^0\.58\d+\n" + str(self.prefix / "bin/stickslip"))
 
     def test_the_manifest_names_every_file(self):
         """So that removing what it names removes all."""
