@@ -3,15 +3,28 @@ and leaves both in a folder for the report."""
 
 import json
 import pathlib
-import subprocess
 import sys
 import tempfile
 import time
 
-from harness import ROOT, Program, Report, parser, significant, worse
+from harness import Program, Report, parser, significant, worse
 
 MOST = 0.5  # the largest relative deviation that any claim allows
-PLOTS = ROOT / "validation" / "plot"
+
+
+def plots():
+    """The pictures of the package; imported where there is something to draw."""
+    import matplotlib
+    import stickslip.plots.style
+    matplotlib.rcParams.update(stickslip.plots.style.LOOK)
+    return stickslip.plots
+
+
+def subplots(*shape, **keywords):
+    """A figure in the style of the package, and its axes."""
+    sharey = keywords.pop("sharey", False)
+    figure = plots().style.Figure(**keywords)
+    return figure, figure.subplots(*shape, sharey=sharey)
 
 
 class Entry(Report):
@@ -57,19 +70,20 @@ class Entry(Report):
         """`name` is a file in the folder by now."""
         self.parts.append({"picture": name, "caption": caption})
 
-    def drawn(self, script, name, caption, *files, options=()):
-        """A picture by a script of validation/plot."""
-        words = [sys.executable, str(PLOTS / script), *map(str, options), *map(str, files),
-                 str(self.file(name))]
-        done = subprocess.run(words, capture_output=True, text=True)
-        if done.returncode != 0:
-            sys.exit(f"{' '.join(words)}\n{done.stderr}")
+    def figure(self, figure, name, caption):
+        figure.savefig(self.file(name))
         self.picture(name, caption)
 
-    def run(self, output=None, **options):
-        """The summary of one run; `output` keeps the HDF5 file of that name too."""
-        if output:
-            options["output"] = self.file(output)
+    def drawn(self, kind, name, caption, *results):
+        """A picture of the package."""
+        self.figure(plots().KINDS[kind][1](results), name, caption)
+
+    def results(self, **options):
+        """Results of one run."""
+        return self.program.results(**options)
+
+    def run(self, **options):
+        """The summary of one run."""
         return self.program.run(**options)
 
     def verdict(self, good, text, numbers):

@@ -1,26 +1,22 @@
 """What the claims of validation/ share: running the program, and verdicts."""
 
 import argparse
-import json
 import pathlib
 import statistics
-import subprocess
 import sys
-import tempfile
+import warnings
 import zlib
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "python"))
+import stickslip
+from stickslip.program import words_of
 
+warnings.simplefilter("ignore", stickslip.AccuracyWarning)  # a discretisation fixed by hand is not refined
 
 # Open MPI refuses root, and more ranks than cores, unless told otherwise.
 MPI_PERMISSIONS = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                    "OMPI_MCA_rmaps_base_oversubscribe": "1"}
-
-
-def words_of(options):
-    """Words of a command line; the value None makes a flag of an option."""
-    return [word for name, value in options.items()
-            for word in (["-" + name] if value is None else ["-" + name, str(value)])]
 
 
 def seed_of(options):
@@ -35,31 +31,24 @@ def simulates(options):
             or "trajectory" in options.get("quantities", "").split(","))
 
 
-class Refused(Exception):
-    """The program found the scene or the request invalid."""
-
-
 class Program:
-    def __init__(self, path, launcher=()):
-        self.path, self.launcher = path, launcher
+    """The program at a path, on so many ranks if that is no 0."""
 
-    def run(self, **options):
-        """The summary of one run; underscores of PETSc's solver prefixes stay as they are. What is
-        simulated without a seed has that of seed_of."""
+    def __init__(self, path, ranks=0):
+        self.path, self.ranks = path, ranks
+
+    def results(self, **options):
+        """Results of one run. What is simulated without a seed has that of seed_of."""
         if simulates(options):
             options = {"seed": seed_of(options), **options}
-        with tempfile.TemporaryDirectory() as folder:
-            summary = pathlib.Path(folder) / "summary.json"
-            words = [*self.launcher, str(self.path), "-summary", str(summary), *words_of(options)]
-            try:
-                done = subprocess.run(words, capture_output=True, text=True)
-            except OSError as problem:
-                sys.exit(f"{words[0]} does not run: {problem.strerror}")
-            if done.returncode == 2:
-                raise Refused(done.stderr.strip())
-            if done.returncode not in (0, 3):  # 3: a discretisation fixed by hand is not refined
-                sys.exit(f"{' '.join(words)}\n{done.stderr}")
-            return json.loads(summary.read_text())
+        try:
+            return stickslip.run(program=self.path, ranks=self.ranks, **options)
+        except (stickslip.ProgramError, stickslip.OutOfMemory) as problem:
+            sys.exit(f"{' '.join(words_of(options))}\n{problem}")
+
+    def run(self, **options):
+        """The summary of one run."""
+        return self.results(**options).summary
 
 
 class Report:

@@ -7,7 +7,7 @@ import unittest
 import h5py
 import numpy
 
-from stickslip import Case, TWINS, SOURCES, run
+from running import Case, TWINS, SOURCES, run
 
 SMALL = ("-mu_d", "0.25", "-delta", "0.5")
 
@@ -162,7 +162,7 @@ class Statuses(Case):
 
     def test_closed_pipe_is_no_crash(self):
         import subprocess
-        from stickslip import BINARIES
+        from running import BINARIES
         line = f"{BINARIES / 'stickslip'} -help | head -1"
         done = subprocess.run(line, shell=True, capture_output=True, text=True)
         self.assertEqual(done.stderr, "")

@@ -16,7 +16,7 @@ import unittest
 
 import h5py
 
-from stickslip import BINARIES, Case, run
+from running import BINARIES, Case, run
 
 SMALL = ("-mu_d", "0.25", "-delta", "0.25")
 SIMULATE = (*SMALL, "-route", "monte_carlo", "-excursions", "2e6", "-seed", "3", "-quantities",

@@ -5,7 +5,7 @@ import subprocess
 import sys
 import unittest
 
-from stickslip import BINARIES, Case, TWINS
+from running import BINARIES, Case, TWINS
 
 
 class Install(Case):

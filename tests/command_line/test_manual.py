@@ -4,7 +4,7 @@ import shutil
 import subprocess
 import unittest
 
-from stickslip import Case
+from running import Case
 
 
 class ManualPage(Case):

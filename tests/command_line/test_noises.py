@@ -2,7 +2,7 @@
 
 import unittest
 
-from stickslip import Case, run
+from running import Case, run
 
 TELEGRAPH = ("-mu_d", "0.5", "-bias", "0.3", "-noise", "telegraph", "-telegraph_amplitude", "1",
              "-telegraph_rate", "1")

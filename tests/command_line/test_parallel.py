@@ -7,7 +7,7 @@ import unittest
 import h5py
 import numpy
 
-from stickslip import BINARIES, Case, TWINS, run
+from running import BINARIES, Case, TWINS, run
 
 
 class Together(Case):

@@ -3,7 +3,7 @@
 import json
 import unittest
 
-from stickslip import Case
+from running import Case
 
 SMALL = ("-mu_d", "0.25", "-delta", "0.5")
 

@@ -3,13 +3,14 @@
 import contextlib
 import importlib.util
 import io
+import os
 import pathlib
 import subprocess
 import sys
 import unittest
 from unittest import mock
 
-from stickslip import BINARIES, SOURCES, Case
+from running import BINARIES, SOURCES, Case
 
 sys.path.insert(0, str(SOURCES / "validation"))
 import entry
@@ -20,8 +21,8 @@ PNG = b"\x89PNG"
 
 
 def plot(*words, folder):
-    return subprocess.run([sys.executable, SOURCES / "validation" / "plot" / "draw.py", *words],
-                          capture_output=True, text=True, cwd=folder)
+    return subprocess.run([sys.executable, "-m", "stickslip", "plot", *words], capture_output=True, text=True,
+                          cwd=folder, env={**os.environ, "PYTHONPATH": str(SOURCES / "python")})
 
 
 class Pictures(Case):
@@ -78,7 +79,7 @@ class Pictures(Case):
         self.refused("none.h5", told="no such file")
         self.refused("text.h5", told="HDF5")
         self.refused("cut.h5", told="HDF5")
-        self.refused("foreign.csv", told="nothing to draw")
+        self.refused("foreign.csv", told="neither a sweep nor a path")
         self.run_ok(*SCENE, "-output", "scalars.h5", "-quantities", "noise_law")
         self.refused("scalars.h5", told="nothing to draw; ask the program")
         self.run_ok(*SCENE, "-output", "path.h5", "-quantities", "trajectory")
@@ -106,7 +107,7 @@ class Report(unittest.TestCase):
 
     def test_seeds_reach_the_program(self):
         program = harness.Program("program")
-        with mock.patch("subprocess.run", side_effect=OSError) as run:
+        with mock.patch("subprocess.Popen", side_effect=OSError) as run:
             for options, seeded in (({"route": "monte_carlo"}, True), ({"mu_d": 1}, False),
                                     ({"quantities": "sticking,trajectory"}, True)):
                 self.assertRaises(SystemExit, program.run, **options)

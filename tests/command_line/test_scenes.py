@@ -2,7 +2,7 @@
 
 import unittest
 
-from stickslip import Case, SOURCES
+from running import Case, SOURCES
 
 
 class Scenes(Case):

@@ -9,7 +9,7 @@ import unittest
 import h5py
 import numpy
 
-from stickslip import BINARIES, Case, SOURCES, run
+from running import BINARIES, Case, SOURCES, run
 
 SMALL = ("-mu_d", "0.25", "-delta", "0.25")
 SIMULATE = (*SMALL, "-route", "monte_carlo")

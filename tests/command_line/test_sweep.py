@@ -14,7 +14,7 @@ import unittest
 import h5py
 import numpy
 
-from stickslip import BINARIES, Case, SOURCES, run
+from running import BINARIES, Case, SOURCES, run
 
 SMALL = ("-delta", "0.5", "-sweep_mu_d", "0.25,0.5,1", "-sweep_tau", "0.5:1:2")
 MANY = ("-delta", "0.25", "-sweep_mu_d", "0.1:1:6", "-sweep_tau", "0.5:2:8")
@@ -165,11 +165,10 @@ class Files(Case):
         self.assertIn("6 of 6 points; ", run(*SMALL, "-progress", "on").stderr)
 
     def test_picture(self):
-        script = SOURCES / "validation" / "plot" / "sweep.py"
         self.run_ok(*SMALL, "-output", "s.h5", "-sweep_csv", "s.csv")
         for file in ("s.h5", "s.csv"):
-            subprocess.run([sys.executable, script, file, "-o", "pictures"], cwd=self.folder,
-                           check=True, capture_output=True)
+            subprocess.run([sys.executable, "-m", "stickslip", "plot", file, "pictures.png"], cwd=self.folder,
+                           check=True, capture_output=True, env={**os.environ, "PYTHONPATH": str(SOURCES / "python")})
             picture = self.folder / "pictures" / "P_stick.png"
             self.assertTrue(picture.read_bytes().startswith(b"\x89PNG"))
             shutil.rmtree(self.folder / "pictures")

@@ -7,11 +7,10 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "plot"))
-from entry import Entry, deviation
+from entry import Entry, deviation, subplots
 from harness import difference, worse
 from known import P_X, SIMULATED
-from results import COLOURS, STYLES, plt, power_of_two
+from stickslip.plots.style import COLOURS, STYLES, fraction
 
 KEYS = {"P_stick": r"$P_\mathrm{stick}$", "E_V2": r"$E[V^2]$  [velocity$^2$]",
         "P_X_le_mu_s": r"$P(|X| \leq \mu_s)$"}
@@ -26,7 +25,7 @@ def both(entry, mu_d, delta, excursions):
 
 
 def draw(entry, found, deltas):
-    figure, panels = plt.subplots(1, 3, figsize=(10, 3.4), layout="constrained")
+    figure, panels = subplots(1, 3, figsize=(10, 3.4))
     for axes, (key, label) in zip(panels, KEYS.items()):
         for n, mu_d in enumerate(MU_D):
             known = [found[mu_d, delta][0][key]["value"] for delta in deltas]
@@ -38,14 +37,12 @@ def draw(entry, found, deltas):
             axes.errorbar(deltas, [s["value"] for s in simulated], half, fmt="o", markersize=3,
                           capsize=3, color=COLOURS[n])
         axes.set_xscale("log", base=2)
-        axes.xaxis.set_major_formatter(lambda x, _: power_of_two(x))
+        axes.xaxis.set_major_formatter(lambda x, _: fraction(x))
         axes.set(xlabel=r"noise step $\delta$  [force]", ylabel=label)
     figure.legend(*panels[0].get_legend_handles_labels(), loc="upper center", ncol=4)
     figure.suptitle(" ")  # room for the legend
-    figure.savefig(entry.file("averages.png"), dpi=150)
-    entry.picture("averages.png", "Curves: deterministic values. Bars: simulations with 95 % "
-                                  "intervals. mu_s = tau = 1, b(v) = -v. The last panel does not "
-                                  "depend on mu_d")
+    entry.figure(figure, "averages.png", "Curves: deterministic values. Bars: simulations with 95 % intervals. "
+                 "mu_s = tau = 1, b(v) = -v. The last panel does not depend on mu_d")
 
 
 def main():

@@ -27,8 +27,9 @@ import numpy
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from entry import Entry
+from entry import Entry, subplots
 from harness import MPI_PERMISSIONS, difference, words_of, worse
+from stickslip.plots.style import COLOURS
 
 LAMBDA = 1e-6  # of the paper's method
 EXCURSIONS = 100_000
@@ -222,7 +223,7 @@ def product_speed():
 
 def against_arithmetic(entry, runs, scene):
     """Seconds beside those that the operations of an elimination would take as a matrix product."""
-    steps = Ours(entry, plan=None, **scene)().values["plan"]["steps"]
+    steps = Ours(entry, plan=True, **scene)().values["plan"]["steps"]
     operations = sum(step["factor_operations"] for step in steps)
     ours = runs.last("this program")["cost"]
     start_up = ours["start_up_seconds"]
@@ -335,8 +336,28 @@ def drawn(entry, groups):
             for name, costs in runs.costs.items():
                 lines.writerows((runs.group, name, n + 1, f"{cost.seconds:.6g}",
                                  f"{cost.megabytes:.4g}") for n, cost in enumerate(costs))
-    entry.drawn("benchmark.py", "benchmark.png", "Seconds of whole processes, each dot one run",
-                entry.file("benchmark.csv"))
+    entry.figure(picture(groups), "benchmark.png", "Seconds of whole processes, each dot one run")
+
+
+def picture(groups):
+    """Seconds of every run, by group and method."""
+    rows = sum(len(runs.costs) for runs in groups) + len(groups)
+    figure, axes = subplots(figsize=(7, 0.8 + 0.26 * rows))
+    at, places, labels = 0, [], []
+    for n, runs in enumerate(groups):
+        axes.text(0.01, at, runs.group, transform=axes.get_yaxis_transform(), fontsize=9, fontweight="bold",
+                  va="center")
+        at += 1
+        for method, costs in runs.costs.items():
+            seconds, colour = [cost.seconds for cost in costs], COLOURS[n % len(COLOURS)]
+            axes.plot(seconds, [at] * len(seconds), "o", color=colour, markersize=4, alpha=0.6)
+            axes.plot(statistics.median(seconds), at, "|", color=colour, markersize=14)
+            places.append(at)
+            labels.append(method)
+            at += 1
+    axes.set(xscale="log", xlabel="wall time of the process  [s]", ylim=(at - 0.5, -0.8))
+    axes.set_yticks(places, labels)
+    return figure
 
 
 def main():

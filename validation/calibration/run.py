@@ -12,23 +12,24 @@ the estimate to be judged. --quick takes 200 cases of scalars and 20 of transfor
 
 import concurrent.futures
 import csv
-import json
 import os
 import pathlib
 import random
 import shutil
-import subprocess
 import sys
-import tempfile
 
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from cases import GROUPS
-from entry import Entry
+from entry import Entry, subplots
 from harness import words_of
 
+import stickslip
+from stickslip.plots.style import COLOURS
+
 SECONDS = 120  # the longest run; a case that takes longer is left out
+LEAST = 1e-16  # smaller errors are drawn there
 ROUNDING = 4 * numpy.finfo(float).eps
 COLUMNS = ("group", "case", "accuracy", "key", "entry", "value", "error", "truth", "truth_error", "command")
 COLUMNS_OF_TABLE = ("accuracy", "cases", "values", "not judged, %", "misses", "cases with a miss, %", "worst",
@@ -42,18 +43,10 @@ class LeftOut(Exception):
 
 
 def results_of(program, options):
-    with tempfile.TemporaryDirectory() as folder:
-        summary = pathlib.Path(folder) / "summary.json"
-        words = [str(program), *words_of(options), "-summary", str(summary)]
-        try:
-            done = subprocess.run(words, capture_output=True, text=True, timeout=SECONDS)
-        except subprocess.TimeoutExpired:
-            raise LeftOut("takes too long") from None
-        if done.returncode == 2:
-            raise LeftOut(done.stderr)
-        if done.returncode not in (0, 3):
-            sys.exit(f"{' '.join(words)}\n{done.stderr}")
-        return json.loads(summary.read_text())["results"]
+    try:
+        return stickslip.run(program=program, timeout=SECONDS, **options).summary["results"]
+    except (stickslip.BadInput, stickslip.TimedOut) as reason:
+        raise LeftOut(str(reason)) from None
 
 
 def pairs(result):
@@ -147,6 +140,26 @@ def write_page(page, table, words, picture):
     shutil.copy(picture, page.with_suffix(".png"))
 
 
+def draw(rows):
+    """Error estimates against true errors, relative to the size of the value."""
+    accuracy, value, error, truth = (numpy.array([row[COLUMNS.index(key)] for row in rows], float)
+                                     for key in ("accuracy", "value", "error", "truth"))
+    size = numpy.maximum(numpy.abs(truth), 1e-300)
+    true, estimate = numpy.abs(value - truth) / size, error / size
+    figure, axes = subplots(figsize=(6, 5.5))
+    for n, one in enumerate(sorted(set(accuracy), reverse=True)):
+        of = (accuracy == one) & (estimate > 0)
+        axes.loglog(numpy.maximum(true[of], LEAST), estimate[of], ".", color=COLOURS[n % len(COLOURS)], markersize=3,
+                    alpha=0.5, label=f"accuracy {one:g}")
+    line = numpy.array([LEAST, 1])
+    for factor, style in ((1, "-"), (10, "--"), (100, ":")):
+        axes.loglog(line, factor * line, color="black", linestyle=style, linewidth=1,
+                    label="equal" if factor == 1 else f"{factor} times the error")
+    axes.set(xlabel="true error, relative", ylabel="estimate, relative", ylim=(LEAST, None))
+    axes.legend(fontsize=8)
+    return figure
+
+
 def main():
     entry = Entry(__doc__, "beyond the paper",
                   ("--groups", {"metavar": "NAMES", "help": f"of {', '.join(GROUPS)}"}),
@@ -168,8 +181,8 @@ def main():
     entry.text(words)
     table = [line for name in names for line in judge(entry, name, [row for row in rows if row[0] == name])]
     entry.table("estimates against errors", COLUMNS_OF_TABLE, table)
-    entry.drawn("calibration.py", "calibration.png", "Each dot is a value. Below the first line the estimate is too "
-                "small; above the others it is 10 and 100 times too wide.", file)
+    entry.figure(draw(rows), "calibration.png", "Each dot is a value. Below the first line the estimate is too "
+                 "small; above the others it is 10 and 100 times too wide.")
     if arguments.page:
         write_page(arguments.page, table, words, entry.file("calibration.png"))
     entry.end()

@@ -15,7 +15,8 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from entry import Entry, deviation
-from harness import Refused, difference, worse
+from harness import difference, worse
+from stickslip import BadInput
 
 NOTHING = 1e-300
 LAMBDA, OMEGA, TIME = (0.3, 2), (0, 0.7, 3), (0.4, 1.5)
@@ -296,7 +297,7 @@ def main():
     for case in drawn(rng, 0 if entry.quick else 20):
         try:
             cases.append((case, computed(entry, case)))
-        except Refused as reason:
+        except BadInput as reason:
             refused.append((name_of(case), str(reason)))
     entry.text(f"{len(cases)} combinations run, {len(refused)} refused")
     for name, reason in refused:

@@ -19,18 +19,14 @@ def main():
     entry = Entry(__doc__, "the figure of correlation times")
     last = 3 if entry.quick else 6
     delta = 0.5 if entry.quick else 0.25
-    times, files = {}, []
+    times, items = {}, []
     for drag, mu_d in CURVES:
         for n in range(last + 1):
-            name = f"{drag}_{mu_d:g}_{n}.h5"
-            found = entry.run(output=name, quantities="spectrum", mu_d=mu_d, drag=drag, delta=delta,
-                              tau=2.0**-n, accuracy=1e-4)
-            times[drag, mu_d, n] = found["results"]["t_corr"]["value"]
-            files.append(entry.file(name))
-    entry.drawn("correlation_time.py", "correlation_time.png",
-                f"t_corr = 1/(full width of S_v at half maximum), mu_s = 1, delta = {delta:g}", *files)
-    for file in files:
-        file.unlink()
+            items.append(entry.results(quantities="spectrum", mu_d=mu_d, drag=drag, delta=delta, tau=2.0**-n,
+                                       accuracy=1e-4))
+            times[drag, mu_d, n] = items[-1]["t_corr"].value
+    entry.drawn("correlation_time", "correlation_time.png",
+                f"t_corr = 1/(full width of S_v at half maximum), mu_s = 1, delta = {delta:g}", *items)
     entry.table("t_corr", ("drag", "mu_d", *(f"tau = 2^-{n}" for n in range(last + 1))),
                 [(drag, f"{mu_d:g}", *(times[drag, mu_d, n] for n in range(last + 1)))
                  for drag, mu_d in CURVES])

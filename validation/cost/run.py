@@ -26,15 +26,14 @@ def seconds_of_paper(entry):
 def main():
     entry = Entry(__doc__, "beyond the paper: its method, this program and simulation")
     steps = 5 if entry.quick else 8
-    study = entry.run(output="cost.h5", study="cost", mu_d=0.25, delta=0.25, study_steps=steps,
-                      study_repeats=1 if entry.quick else 3, quantities="sticking,moments")
-    entry.drawn("cost.py", "cost.png", "Largest relative error of sticking and moments against "
-                "time; mu_d = 1/4, delta = 1/4, mu_s = tau = 1, b(v) = -v", entry.file("cost.h5"))
-    for line in study["study"]["conclusions"]:
+    found = entry.results(study="cost", mu_d=0.25, delta=0.25, study_steps=steps,
+                          study_repeats=1 if entry.quick else 3, quantities="sticking,moments")
+    entry.drawn("cost", "cost.png", "Largest relative error of sticking and moments against "
+                "time; mu_d = 1/4, delta = 1/4, mu_s = tau = 1, b(v) = -v", found)
+    for line in found.summary["study"]["conclusions"]:
         entry.text(line)
-    tables = study["study"]["tables"]
-    hp = list(zip(tables["hp"]["error"], tables["hp"]["seconds"]))
-    fast = min(seconds for error, seconds in hp if error < 1e-9)
+    hp = found.study["hp"]
+    fast = hp["seconds"][hp["error"] < 1e-9].min()
     p, slow, value = seconds_of_paper(entry)
     known = entry.run(quantities="sticking", mu_d=0.25, delta=0.25, accuracy=1e-9)["results"]
     error = difference(value, known["P_stick"]["value"])

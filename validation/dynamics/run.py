@@ -16,7 +16,8 @@ import collocation
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import known
-from harness import ROOT, Program, Refused, Report, difference, last_place, parser, worse
+from harness import ROOT, Program, Report, difference, last_place, parser, worse
+from stickslip import BadInput
 
 
 class Variance:
@@ -126,7 +127,7 @@ def solvers(programs, report, variance, quick):
         row = f"  {mu_d:<5g} {delta:<5g} {tau:>5g}"
         try:
             krylov, reference, fast, slow = compared(programs, variance, scene)
-        except Refused as message:
+        except BadInput as message:
             print(f"{row}  left out: {str(message).splitlines()[0]}")
             continue
         apart = worse(*map(difference, krylov["results"]["S_v"]["value"], reference))

@@ -84,10 +84,10 @@ def without_bias(entry):
 def pictures(entry):
     """The drift and the diffusivity as the bias grows."""
     count = 9 if entry.quick else 41
-    entry.run(mu_s=1, mu_d=1, delta=0.125, quantities="sticking,moments,spectrum", accuracy=1e-5,
-              sweep_bias=f"0.025:2.025:{count}", output="drift.h5")
-    entry.drawn("drift.py", "drift.png", "Drift, diffusivity and sticking under a bias: from creep "
-                "to motion that friction only slows down.", entry.file("drift.h5"))
+    swept = entry.results(mu_s=1, mu_d=1, delta=0.125, quantities="sticking,moments,spectrum", accuracy=1e-5,
+                          sweep_bias=f"0.025:2.025:{count}")
+    entry.drawn("drift", "drift.png", "Drift, diffusivity and sticking under a bias: from creep "
+                "to motion that friction only slows down.", swept)
 
 
 def extrapolated(entry, scene, parameter, base, h):

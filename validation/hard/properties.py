@@ -7,11 +7,9 @@ import fractions
 import json
 import math
 import pathlib
-import subprocess
-import tempfile
 
 from entry import spread
-from harness import words_of
+from harness import Program
 from reference_arguments import words
 from scenes import BASE
 
@@ -335,11 +333,10 @@ def spectrum(f):
 def direct(f):
     """One complex factorisation for each frequency, by the complex twin."""
     twin = f.entry.program.path.with_name("stickslip-complex")
-    with tempfile.TemporaryDirectory() as folder:
-        summary = pathlib.Path(folder) / "direct.json"
-        options = {**f.options, "quantities": "spectrum", "spectrum_solver": "direct", "summary": summary}
-        subprocess.run([str(twin), *words_of(options)], capture_output=True, text=True, check=True)
-        other = json.loads(summary.read_text())["results"]["S_v"]
+    found = Program(twin).run(**{**f.options, "quantities": "spectrum", "spectrum_solver": "direct"})
+    if not found["accuracy"]["reached"]:
+        raise ValueError(found["accuracy"]["shortfall"])
+    other = found["results"]["S_v"]
     for (omega, value, error), x, e in zip(f.column("S_v"), other["value"], other["error"]):
         yield same(f"S_v({omega:g})", (value, error), (x, e))
 

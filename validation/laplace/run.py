@@ -7,30 +7,27 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "plot"))
-from entry import Entry
+from entry import Entry, subplots
 from harness import difference, worse
 from known import F_1
-from results import COLOURS, STYLES, plt
+from stickslip.plots.style import COLOURS, curve
 
 MU_D = (0.25, 0.5, 1)
 LAMBDA = "0.01:100:25:log"
 
 
 def draw(entry, found):
-    figure, panels = plt.subplots(1, 2, figsize=(8.4, 3.5), layout="constrained")
+    figure, panels = subplots(1, 2, figsize=(8.4, 3.5))
     for axes, key, label in zip(panels, ("F_slide", "F_stick"),
                                 (r"$F_\mathrm{slide}(\lambda)$", r"$F_\mathrm{stick}(\lambda)$")):
         for n, mu_d in enumerate(MU_D):
-            known, simulated = (found[mu_d][m][key] for m in (0, 1))
-            axes.plot(known["lambda"], known["value"], color=COLOURS[n], linestyle=STYLES[n],
-                      label=rf"$\mu_d$ = {mu_d:g}")
-            axes.plot(simulated["lambda"], simulated["value"], "o", markersize=3, color=COLOURS[n])
+            known, simulated = found[mu_d]
+            curve(axes, known[key], n, label=rf"$\mu_d$ = {mu_d:g}")
+            curve(axes, simulated[key], colour=COLOURS[n])
         axes.set(xscale="log", yscale="log", xlabel=r"$\lambda$  [1/time]", ylabel=label)
     panels[0].legend()
-    figure.savefig(entry.file("laplace.png"), dpi=150)
-    entry.picture("laplace.png", "Curves: deterministic; dots: simulated. delta = tau = mu_s = 1, "
-                                 "b(v) = -v")
+    entry.figure(figure, "laplace.png", "Curves: deterministic; dots: simulated, with 95 % intervals. "
+                 "delta = tau = mu_s = 1, b(v) = -v")
 
 
 def main():
@@ -38,9 +35,8 @@ def main():
     found = {}
     for mu_d in MU_D:
         scene = {"quantities": "laplace", "mu_d": mu_d, "delta": 1, "lambda": LAMBDA}
-        found[mu_d] = (entry.run(**scene, accuracy=1e-9)["results"],
-                       entry.run(**scene, route="monte_carlo",
-                                 excursions=100000 if entry.quick else 1000000)["results"])
+        found[mu_d] = (entry.results(**scene, accuracy=1e-9),
+                       entry.results(**scene, route="monte_carlo", excursions=100000 if entry.quick else 1000000))
     draw(entry, found)
     rows, away, beside = [], [], []
     for mu_d, digits in F_1.items():
@@ -54,11 +50,11 @@ def main():
     entry.claim("F_slide(1), F_stick(1) against collocation, relative", worse(*away), 1e-11)
     for known, simulated in found.values():
         for key in ("F_slide", "F_stick"):
-            for n, value in enumerate(known[key]["value"]):
-                one = {name: simulated[key][name][n] for name in ("value", "ci95")}
+            for n, value in enumerate(known[key].value):
+                one = {"value": simulated[key].value[n], "ci95": simulated[key].ci95[n]}
                 # Where a million excursions see a handful, no interval is normal.
                 if value > 1e-3:
-                    beside.append((value, known[key]["error"][n], one))
+                    beside.append((value, known[key].error[n], one))
     entry.simulated("simulated transforms above 1e-3", beside)
     entry.end()
 

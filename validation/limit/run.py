@@ -9,12 +9,9 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as pyplot
-from entry import Entry
+from entry import Entry, subplots
 from harness import difference, worse
+from stickslip.plots.style import COLOURS
 
 # mu_s = tau = 1, b(v) = -v; by removing powers of delta one by one from values between 1/4 and 1/64.
 KNOWN = {0.25: {"P_stick": 0.1205970417, "E_V2": 0.3097150920},
@@ -25,9 +22,9 @@ FAMILIES = ("on a level", "between levels")
 
 def draw(entry, studies):
     """Distance from the limit against delta, with the slopes of the orders."""
-    figure, axes = pyplot.subplots(1, 2, figsize=(10, 4.2), sharey=True, layout="constrained")
+    figure, axes = subplots(1, 2, figsize=(10, 4.2), sharey=True)
     for axis, (mu_d, study) in zip(axes, studies.items()):
-        for colour, key in (("#0072b2", "P_stick"), ("#d55e00", "E_V2")):
+        for colour, key in zip(COLOURS, ("P_stick", "E_V2")):
             for marker, family in zip("o^", FAMILIES):
                 table = study["tables"][f"{key} {family}"]
                 limit = table["limit"][-1]
@@ -42,9 +39,8 @@ def draw(entry, studies):
         axis.set_xlabel("noise step delta [force]")
         axis.legend(fontsize=8)
     axes[0].set_ylabel("relative distance from the limit")
-    figure.savefig(entry.file("limit.png"), dpi=130)
-    entry.picture("limit.png", "Distance of stationary values from their limits against the noise step; "
-                  "mu_s = tau = 1, b(v) = -v")
+    entry.figure(figure, "limit.png", "Distance of stationary values from their limits against the noise step; "
+                 "mu_s = tau = 1, b(v) = -v")
 
 
 def main():

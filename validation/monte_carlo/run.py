@@ -203,7 +203,7 @@ def idle_cores(seconds=1):
 def two_ranks(program, report):
     """Seconds of one rank over those of two."""
     os.environ |= MPI_PERMISSIONS
-    both = {1: program, 2: Program(program.path, ("mpiexec", "-n", "2"))}
+    both = {1: program, 2: Program(program.path, ranks=2)}
     free = idle_cores()
     seconds = {ranks: min(run.run(route="monte_carlo", mu_d=1 / 4, delta=1 / 8, excursions=500_000)
                           ["cost"]["simulation"]["seconds"] for _ in range(2))

@@ -9,14 +9,12 @@ import itertools
 import pathlib
 import sys
 
-import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "plot"))
-from entry import Entry, deviation
+from entry import Entry, deviation, subplots
 from harness import difference, worse
-from results import COLOURS, STYLES, plt
+from stickslip.plots.style import COLOURS, STYLES
 from telegraph import densities, integrals
 
 TELEGRAPH = {"noise": "telegraph", "telegraph_amplitude": 1, "mu_d": 0.5, "bias": 0.3}
@@ -63,9 +61,8 @@ def telegraph_densities(entry):
     shown, far = {}, []
     for (name, (drag, b)), kappa in itertools.product(DRAGS.items(), (2, 3)):
         scene = {**TELEGRAPH, **drag, "telegraph_rate": kappa}
-        entry.run(output="density.h5", **scene, quantities="density", accuracy=1e-10)
-        with h5py.File(entry.file("density.h5")) as file:
-            v, pdf, atom = (file["density"][key][:] for key in ("v", "pdf", "atom"))
+        found = entry.results(**scene, quantities="density", accuracy=1e-10).density
+        v, pdf, atom = found.v, found.values, found.at_rest
         falling, rising = pdf[:, v > 0]
         known = [atom.sum() * f for f in densities(kappa, b, v[v > 0])]
         far += [abs(f - g).max() / g.max() for f, g in zip((rising, falling), known)]
@@ -91,7 +88,7 @@ def against_bias(entry):
 
 
 def draw(entry, shown, biased):
-    figure, panels = plt.subplots(1, 3, figsize=(10, 3.4), layout="constrained")
+    figure, panels = subplots(1, 3, figsize=(10, 3.4))
     for axes, (name, (v, rising, falling, stick, kappa, b)) in zip(panels, list(shown.items())[1::2]):
         line = numpy.linspace(0, v.max(), 300)
         for n, (sign, nodes, known) in enumerate(zip("+-", (rising, falling), densities(kappa, b, line))):
@@ -110,9 +107,8 @@ def draw(entry, shown, biased):
     for axes in panels:
         axes.set_ylim(0)
         axes.legend()
-    figure.savefig(entry.file("noises.png"), dpi=150)
-    entry.picture("noises.png", "Telegraph noise, mu_s = 1, mu_d = 1/2: densities of sliding bodies for a = 1 and the bias "
-                  "0.3, and the probability of sticking without drag. Lines are closed forms, marks computed.")
+    entry.figure(figure, "noises.png", "Telegraph noise, mu_s = 1, mu_d = 1/2: densities of sliding bodies for a = 1 "
+                 "and the bias 0.3, and the probability of sticking without drag. Lines are closed forms, marks computed.")
 
 
 def units_of_force(entry):

@@ -10,10 +10,10 @@ import pathlib
 import sys
 
 VALIDATION = pathlib.Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(VALIDATION / folder) for folder in ("", "plot", "benchmark")]
-from entry import Entry
+sys.path[:0] = [str(VALIDATION / folder) for folder in ("", "benchmark")]
+from entry import Entry, subplots
 from harness import difference, worse
-from results import COLOURS, STYLES, plt, power_of_two
+from stickslip.plots.style import COLOURS, STYLES, fraction
 
 # Tables of kappa(64) ... kappa(512) in the paper.
 PAPER = {1 / 2: {"P_stick": (0.881, 0.939, 0.976, 0.997), "E_V2": (0.997, 0.999, 0.996, 0.986)},
@@ -22,21 +22,20 @@ LABELS = {"P_stick": r"$P_\mathrm{stick}$", "E_V2": r"$E[V^2]$  [velocity$^2$]"}
 
 
 def draw(entry, studies):
-    figure, panels = plt.subplots(1, 2, figsize=(8.4, 3.6), layout="constrained")
+    figure, panels = subplots(1, 2, figsize=(8.4, 3.6))
     for axes, (key, label) in zip(panels, LABELS.items()):
         for n, (delta, study) in enumerate(studies.items()):
             table = study["study"]["tables"][key]
             colour = COLOURS[n % len(COLOURS)]
             axes.plot(table["p"], table["value"], color=colour, marker="os^Dv"[n % 5], markersize=4,
-                      linestyle=STYLES[n % 5], label=rf"$\delta$ = {power_of_two(delta)}")
+                      linestyle=STYLES[n % 5], label=rf"$\delta$ = {fraction(delta)}")
             axes.axhline(study["runs"][-1]["results"][key]["value"], color=colour, linewidth=0.8,
                          linestyle=":")
         axes.set_xscale("log", base=2)
         axes.set(xlabel="points per noise step $p$", ylabel=label)
     panels[0].legend()
-    figure.savefig(entry.file("points.png"), dpi=150)
-    entry.picture("points.png", "Upwind values against p; dotted: converged (hp). mu_d = 1/4, "
-                                "mu_s = tau = 1, b(v) = -v")
+    entry.figure(figure, "points.png", "Upwind values against p; dotted: converged (hp). mu_d = 1/4, "
+                 "mu_s = tau = 1, b(v) = -v")
 
 
 def kappas_of_grid_functions(delta, mu_d, p):

@@ -137,22 +137,22 @@ def symmetry(entry):
 
 
 def simulation(entry, name, scene):
-    found = entry.run(output=f"{name}.h5", **scene, **ASKED, accuracy=1e-4)["results"]
+    found = entry.results(**scene, **ASKED, accuracy=1e-4)
     count = 10**4 if entry.quick else 5 * 10**4
-    result = entry.run(output=f"{name} simulated.h5", **scene, **ASKED, route="monte_carlo", excursions=count)
+    result = entry.results(**scene, **ASKED, route="monte_carlo", excursions=count)
+    found.name, result.name = name, f"{name}, simulated"
     beside = []
-    for key, simulated in result["results"].items():
+    for key, simulated in result.items():
         if key == "f_slip":  # a histogram: its cells are no points
             continue
-        for n, value in enumerate(numpy.atleast_1d(found[key]["value"])):
-            single = numpy.ndim(found[key]["value"]) == 0
-            pick = {part: simulated[part] if single else simulated[part][n] for part in ("value", "ci95")}
-            if value and None not in pick["ci95"]:
-                beside.append((value, 0, pick))
+        for value, mean, ends in zip(*map(numpy.atleast_1d, (found[key].value, simulated.value)),
+                                     numpy.atleast_2d(simulated.ci95)):
+            if value and numpy.isfinite(ends).all():
+                beside.append((value, 0, {"value": mean, "ci95": ends}))
     entry.claim(f"largest |z| of {len(beside)} simulated values, {name}",
                 worse(*(abs(deviation(*one)) for one in beside)), 4.5)
-    entry.drawn("slips.py", f"{name}.png".replace(" ", "_"), f"Slips, {name}: lines computed, marks simulated.",
-                entry.file(f"{name}.h5"), entry.file(f"{name} simulated.h5"))
+    entry.drawn("slips", f"{name}.png".replace(" ", "_"), f"Slips, {name}: lines computed, marks simulated.",
+                found, result)
 
 
 def costs(entry):

@@ -19,14 +19,9 @@ def main():
     scenes = list(itertools.product((0.25, 0.5, 1), values, values))
     if entry.quick:
         scenes = [(mu_d, 1, tau) for mu_d in (0.25, 1) for tau in values]
-    files = []
-    for n, (mu_d, delta, tau) in enumerate(scenes):
-        entry.run(output=f"{n}.h5", quantities="spectrum", mu_d=mu_d, delta=delta, tau=tau,
-                  omega="1e-3:50:120:log", accuracy=1e-5)
-        files.append(entry.file(f"{n}.h5"))
-    entry.drawn("spectra.py", "spectra.png", "S_v against omega; mu_s = 1, b(v) = -v", *files)
-    for file in files:
-        file.unlink()
+    items = [entry.results(quantities="spectrum", mu_d=mu_d, delta=delta, tau=tau, omega="1e-3:50:120:log",
+                           accuracy=1e-5) for mu_d, delta, tau in scenes]
+    entry.drawn("spectra", "spectra.png", "S_v against omega; mu_s = 1, b(v) = -v", *items)
 
     worst, rows = 0.0, []
     for delta, digits in S_V.items():
@@ -42,12 +37,10 @@ def main():
     for mu_d, tau in ((0.25, 1), (1, 0.5)):
         scene = {"quantities": "spectrum", "mu_d": mu_d, "delta": 0.5, "tau": tau,
                  "omega": "0,0.3,1,3,10"}
-        known = entry.run(**scene, accuracy=1e-7)["results"]["S_v"]
-        simulated = entry.run(**scene, route="monte_carlo",
-                              excursions=20000 if entry.quick else 300000)["results"]["S_v"]
-        for n, value in enumerate(known["value"]):
-            beside.append((value, known["error"][n],
-                           {key: simulated[key][n] for key in ("value", "ci95")}))
+        known = entry.results(**scene, accuracy=1e-7)["S_v"]
+        simulated = entry.results(**scene, route="monte_carlo", excursions=20000 if entry.quick else 300000)["S_v"]
+        beside += [(value, error, {"value": found, "ci95": ends}) for value, error, found, ends in
+                   zip(known.value, known.error, simulated.value, simulated.ci95)]
     entry.simulated("simulated spectra", beside)
     entry.end()
 

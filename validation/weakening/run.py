@@ -9,8 +9,10 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from entry import Entry
+from entry import Entry, subplots
 from harness import difference, worse
+from stickslip.plots.style import COLOURS
+from stickslip.plots.sweeping import curve
 
 SCENE = {"mu_s": 1, "mu_d": 0.5, "tau": 1, "delta": 0.25, "friction": "stribeck"}
 # Elements of one degree without any grading at v*, in Python.
@@ -86,28 +88,37 @@ def methods(entry):
         entry.simulated(f"simulations, {name}", beside)
 
 
+def draw(swept, ends):
+    """P_stick and E[V^2] against the speed within which friction falls, between their limits."""
+    figure, axes = subplots(figsize=(6.4, 3.8))
+    for n, (key, label) in enumerate((("P_stick", "probability of sticking"), ("E_V2", "$E[V^2]$"))):
+        curve(axes, swept.coords["stribeck_velocity"], swept[key].value, swept[key].error, n, label)
+        for end, place in zip(ends, ((0, 0.2), (0.8, 1))):
+            axes.axhline(end[key]["value"], *place, color=COLOURS[n], linewidth=0.8)
+    axes.set(xlabel="$v_s$  [velocity]", xscale="log", ylim=(0, None))
+    axes.legend(loc="best")
+    return figure
+
+
 def between(entry):
     """From Coulomb friction to a dynamic friction of mu_s."""
     count = 9 if entry.quick else 41
     ends = [entry.run(mu_s=1, mu_d=mu_d, delta=0.25, accuracy=1e-8)["results"] for mu_d in (0.5, 1)]
     options = {k: v for k, v in SCENE.items() if k != "tau"}
-    swept = entry.run(**options, stribeck_velocity=1, accuracy=1e-7, output="weakening.h5",
-                      sweep_stribeck_velocity=f"1e-4:1e3:{count}:log")["runs"]
-    far = [difference(run["results"][key]["value"], end[key]["value"])
-           for run, end in ((swept[0], ends[0]), (swept[-1], ends[1])) for key in ("P_stick", "E_V2")]
+    swept = entry.results(**options, stribeck_velocity=1, accuracy=1e-7,
+                          sweep_stribeck_velocity=f"1e-4:1e3:{count}:log")
+    far = [difference(swept[key].value[place], end[key]["value"])
+           for place, end in ((0, ends[0]), (-1, ends[1])) for key in ("P_stick", "E_V2")]
     entry.claim("v_s = 1e-4 from Coulomb friction, v_s = 1e3 from mu_d = mu_s, relative",
                 worse(*far), 2e-3)
-    limits = ",".join(f"{end[key]['value']:.10g}" for key in ("P_stick", "E_V2") for end in ends)
-    entry.drawn("weakening.py", "weakening.png", "P_stick and E[V^2] as friction falls later and "
-                "later, from Coulomb friction (left) to mu_d = mu_s (right).",
-                entry.file("weakening.h5"), limits)
+    entry.figure(draw(swept, ends), "weakening.png", "P_stick and E[V^2] as friction falls later and "
+                 "later, from Coulomb friction (left) to mu_d = mu_s (right).")
 
 
 def distribution(entry):
-    entry.run(**SLOW, quantities="density,sticking", accuracy=1e-8, output="slow.h5")
-    entry.drawn("density.py", "slow.png", "The stationary distribution in slow noise (tau = 10) "
+    entry.drawn("density", "slow.png", "The stationary distribution in slow noise (tau = 10) "
                 "under friction that weakens: bodies move at speeds of their own, and leave those "
-                "between them and rest.", entry.file("slow.h5"))
+                "between them and rest.", entry.results(**SLOW, quantities="density,sticking", accuracy=1e-8))
 
 
 def main():
