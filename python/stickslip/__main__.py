@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 TEXT = """Draws what the program wrote to FILE: HDF5, the JSON of -summary, or CSV. Without PICTURE the picture goes
 next to the file, under its name. A file that holds several kinds of results makes a picture of each, with the kind in
-its name. A sweep makes a picture of each scalar, in the folder PICTURE/. Several files share a picture. Prints where
+its name. A sweep makes a picture of each result, in the folder PICTURE/. Several files share a picture. Prints where
 the pictures are. Exit status 2 if there is nothing to draw."""
 
 

@@ -317,6 +317,15 @@ class Pictures(Case):
                                 **more)
             figure = s.plot()["P_stick"]
             self.assertEqual(len(figure.axes[0].containers), 2)  # a curve with bars for each mu_d
+        for more in ({"accuracy": 1e-2}, {"route": "monte_carlo", "excursions": 500}):
+            s = stickslip.sweep(mu_s=[1, 1.5], mu_d=[0.25, 0.5, 0.75], delta=0.5, quantities="laplace,entry_law",
+                                lambda_=[1, 2], **more)
+            figures = s.plot()
+            self.assertEqual(set(figures), set(s))
+            for key in ("F_slide", "entry_law"):
+                axes = figures[key].axes[0]
+                bars = "route" in more or key == "entry_law"
+                self.assertEqual(len(axes.containers if bars else axes.collections), 3, key)
         s = stickslip.sweep(mu_d=[0.1, 0.2, 0.3, 0.4, 0.5, 0.6], tau=[1, 2], delta=0.5, quantities="noise_law")
         self.assertEqual(len(s.plot()["E_X2"].axes), 2)  # a map with its scale
 

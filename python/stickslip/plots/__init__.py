@@ -51,7 +51,7 @@ def draw(items: Sequence[Results], picture: str | pathlib.Path | None = None,
     items
         Results; several of them share a picture.
     picture
-        Where to save; of several pictures each has its kind appended. The pictures of a sweep, one for each scalar,
+        Where to save; of several pictures each has its kind appended. The pictures of a sweep, one for each result,
         go into a folder of that name without its ending.
     kind
         One of `KINDS`; without it, all that fit.
@@ -59,7 +59,7 @@ def draw(items: Sequence[Results], picture: str | pathlib.Path | None = None,
     Returns
     -------
     figures
-        By kind, or by the key of a sweep's scalar.
+        By kind, or by the key of a sweep's result.
 
     Raises
     ------
@@ -81,8 +81,10 @@ def drawn(items: Sequence[Results], picture: str | pathlib.Path | None = None,
     if kinds == ["sweep"]:
         if len(items) > 1:
             raise ValueError("one sweep, please: a picture holds one")
+        if not items[0]:
+            raise ValueError("nothing to draw: no point of the sweep has results")
         return [(key, figure, saved(figure, place and place.with_suffix("") / f"{plain(key)}{place.suffix}"))
-                for key, figure in sweeping.scalars(items[0]).items()]
+                for key, figure in sweeping.each(items[0]).items()]
     if not kinds or not all(name in KINDS and all(map(KINDS[name][0], items)) for name in kinds):
         raise ValueError(f"nothing to draw{f' as {kind}' if kind else ''}; {ASK}")
     several = len(kinds) > 1

@@ -1,11 +1,12 @@
-"""Sweeps: each scalar, and drift against the bias."""
+"""Sweeps: each result, and drift against the bias."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..results import Result, Results
 from ..sweeps import Sweep
-from .style import COLOURS, MARKERS, STYLES, Figure, bars, numpy, scale, styled
+from . import style
+from .style import ABSCISSAE, COLOURS, MARKERS, STYLES, Figure, bars, numpy, scale, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,17 +16,39 @@ DRIFT = (("E_V", "drift $E[V]$"), ("diffusivity", "diffusivity $S_0/2$"), ("P_st
 
 
 @styled
-def scalars(sweep: Sweep) -> "dict[str, Figure]":
-    """A figure of each scalar, by key.
+def each(sweep: Sweep) -> "dict[str, Figure]":
+    """A figure of each result, by key.
 
     One option is an axis, errors are bars; of two options the second is the axis and the first one tells curves
     apart, up to five values, or makes a map of more. Further options stay at their first value, which the title
-    tells. Points that fell short are marked by crosses.
+    tells. Points that fell short are marked by crosses. An array is drawn against its abscissa, a curve for each
+    value of the last option, five of them if there are more; the other options stay at their first value.
     """
-    return {key: _figure(sweep, result) for key, result in sweep.items() if len(result.dims) == len(sweep.dims)}
+    return {key: (_scalar if result.dims == sweep.dims else _array)(sweep, result) for key, result in sweep.items()}
 
 
-def _figure(sweep: Sweep, result: Result) -> "Figure":
+def _array(sweep: Sweep, result: Result) -> "Figure":
+    figure = Figure(figsize=(6.4, 4.2))
+    axes = figure.subplots()
+    *others, last = sweep.dims
+    values = sweep.coords[last]
+    shown = numpy.unique(numpy.linspace(0, len(values) - 1, min(FEW, len(values))).round().astype(int))
+    for n, point in enumerate(shown):
+        at = (0,) * len(others) + (point,)
+        abscissa = result.abscissa if result.abscissa.ndim == 1 else result.abscissa[at]
+        one = Result(result.key, result.value[at], result.error[at], result.unit, result.dims[-1:], result.abscissa_name,
+                     abscissa, None if result.ci95 is None else result.ci95[at])
+        style.curve(axes, one, n, label=f"{last} = {values[point]:g}")
+    name = result.abscissa_name
+    low, high = numpy.nanmin(result.value), numpy.nanmax(result.value)
+    axes.set(xscale=scale(abscissa), xlabel=ABSCISSAE.get(name, name), ylabel=_label(sweep, result.key),
+             **({"yscale": "log", "ylim": (low / 2, high * 2)} if 0 < 100 * low < high else {}))
+    axes.set_title(", ".join(f"{name} = {sweep.coords[name][0]:g}" for name in others), fontsize=9)
+    axes.legend()
+    return figure
+
+
+def _scalar(sweep: Sweep, result: Result) -> "Figure":
     figure = Figure(figsize=(6.4, 4.2))
     axes = figure.subplots()
     names, first = sweep.dims[:2], (slice(None),) * min(2, len(sweep.dims)) + (0,) * (len(sweep.dims) - 2)
