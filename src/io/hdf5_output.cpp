@@ -25,12 +25,18 @@ void write_axes(Hdf5File& file, const std::string& group, const quantities::Phas
 
 void write_density(Hdf5File& file, const quantities::DensityField& field, double error) {
   write_axes(file, "/density", field.pdf);
+  file.write_array("/density/weights", field.weights);
+  file.write_array("/density/cells", field.cells);
   write_field(file, "/density/pdf", field.pdf);
   file.write_array("/density/atom", field.atom);
   file.write_array("/density/marginal_x", field.noise_marginal);
   file.write_array("/density/marginal_v", field.velocity_marginal);
   file.attribute("/density/pdf", "meaning",
                  "P(X = x_i, V in dv)/dv by rows of x and columns of v, without the atom at v = 0");
+  file.attribute("/density/pdf", "smallest_value", field.least);
+  file.attribute("/density/weights", "meaning", "sum_j weights_j f(v_j) = integral of f");
+  file.attribute("/density/cells", "meaning",
+                 "between two of them the density is the polynomial through the nodes there");
   file.attribute("/density/atom", "meaning", "P(X = x_i, V = 0 and sticking)");
   file.attribute("/density/marginal_x", "meaning", "P(X = x_i), summed over the grid");
   file.attribute("/density/marginal_v", "meaning", "density of V without its atom P_stick at 0");

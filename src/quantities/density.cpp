@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <span>
 
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
@@ -45,6 +47,22 @@ std::vector<double> atoms(const StationaryDistribution& distribution) {
   return atom;
 }
 
+// What belongs to v > 0, beside its mirror image.
+std::vector<double> on_both_signs(std::span<const double> upper, double factor) {
+  std::vector<double> all;
+  std::transform(upper.rbegin(), upper.rend(), std::back_inserter(all),
+                 [factor](double value) { return factor * value; });
+  all.insert(all.end(), upper.begin(), upper.end());
+  return all;
+}
+
+double least_value(MPI_Comm comm, const PhaseField& field) {
+  double least = 0;
+  for (double value : field.local_rows()) least = std::min(least, value);
+  MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE, MPI_MIN, comm);
+  return least;
+}
+
 }  // namespace
 
 DensityField density_field(const StationaryDistribution& distribution) {
@@ -54,6 +72,9 @@ DensityField density_field(const StationaryDistribution& distribution) {
   std::vector<double> noise_marginal(static_cast<std::size_t>(noise->count()), 0.0);
   DensityField field{
       PhaseField(distribution.discretisation(), distribution.states(), PhaseField::Kind::measure),
+      on_both_signs(weights, 1),
+      on_both_signs(velocities->cells(), -1),
+      0,
       atoms(distribution),
       {},
       std::vector<double>(2 * static_cast<std::size_t>(nodes), 0.0),
@@ -70,6 +91,8 @@ DensityField density_field(const StationaryDistribution& distribution) {
   for (auto* marginal : {&noise_marginal, &field.velocity_marginal}) {
     petsc::sum_over_ranks(distribution.states().comm(), *marginal);
   }
+  field.cells.erase(field.cells.begin() + static_cast<std::ptrdiff_t>(field.cells.size() / 2) - 1);
+  field.least = least_value(distribution.states().comm(), field.pdf);
   field.noise_marginal = noise->spread(noise_marginal);
   for (std::size_t i = 0; i < field.atom.size(); ++i) field.noise_marginal[i] += field.atom[i];
   return field;

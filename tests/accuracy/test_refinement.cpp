@@ -501,3 +501,16 @@ TEST_CASE("refinement: what reduced models miss on coarse grids ends no refineme
   r.question.accuracy = 1e-3;
   CHECK(solve(r).reached);
 }
+
+TEST_CASE("refinement: a spectrum that a coarse grid makes negative at 0 has no half width") {
+  options::Case r = given(1, 0.6110350497383901, 0.4257929586632042, 0.0625, {0, 0});
+  r.scene.bias = 0.06983964773977684;
+  r.question.quantities = {Quantity::spectrum};
+  r.question.omega = {1};
+  r.method.degree = 1;
+  const Outcome outcome = solve(r);
+  CHECK_FALSE(outcome.reached);
+  CHECK(value(outcome, "S_0") < 0);
+  CHECK(result(outcome, "S_0").error[0] > std::abs(value(outcome, "S_0")));
+  CHECK(std::isnan(value(outcome, "fwhm")));
+}

@@ -160,17 +160,21 @@ TEST_CASE("density: integrates to the law it came from", "[parallel]") {
   for (const auto& resolution : sample_resolutions(s)) {
     const auto distribution = solve(s, resolution);
     const auto field = quantities::density_field(distribution);
-    const std::size_t half = field.pdf.v().size() / 2;
-    std::vector<double> weights(field.pdf.v().size());
-    for (std::size_t j = 0; j < half; ++j) {
-      weights[half + j] = weights[half - 1 - j] =
-          distribution.discretisation().velocities->weights()[j];
-    }
+    const auto& weights = field.weights;
+    REQUIRE(weights.size() == field.pdf.v().size());
     CHECK(std::is_sorted(field.pdf.v().begin(), field.pdf.v().end()));
     double sliding = 0;
     for (std::size_t j = 0; j < field.pdf.v().size(); ++j) {
       sliding += weights[j] * field.velocity_marginal[j];
     }
+    const auto& velocities = *distribution.discretisation().velocities;
+    CHECK(field.cells.size() == 2 * velocities.cells().size() - 1);
+    CHECK(std::is_sorted(field.cells.begin(), field.cells.end()));
+    CHECK(field.cells.front() == -field.cells.back());
+    CHECK_FALSE(std::signbit(field.cells[field.cells.size() / 2]));
+    // No value is below the one told.
+    for (double value : field.pdf.local_rows()) CHECK(value >= field.least);
+    CHECK(field.least <= 0);
     const double stick = sum(field.atom);
     CHECK(stick == Approx(moment(distribution, "P_stick")).epsilon(1e-12));
     if (distribution.discretisation().velocities->keeps_origin())

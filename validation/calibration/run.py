@@ -99,7 +99,7 @@ class Judgement:
             numpy.array(column) for column in zip(*rows))
         self.true = numpy.abs(self.value - truth)
         rounding = ROUNDING * numpy.abs(truth)
-        counts = (3 * doubt <= self.error) & (self.error > rounding)
+        counts = (3 * doubt <= self.error) & (self.error > rounding) & numpy.isfinite(self.error)
         self.left_out = 1 - counts.mean()
         self.excess = numpy.zeros(len(counts))
         self.excess[counts] = ((self.true - doubt - rounding) / self.error)[counts]

@@ -1,5 +1,5 @@
 #pragma once
-/// The stationary law as a field over (x, v), and the distribution of |V|.
+/// The stationary distribution as a field over (x, v), and the distribution of |V|.
 
 #include <memory>
 #include <vector>
@@ -11,9 +11,14 @@ namespace stickslip::quantities {
 
 class StationaryDistribution;
 
-/// pi on the whole grid. Marginals and atoms are on all ranks.
+/// pi on the whole grid. All but `pdf` is the same on all ranks. Between two neighbours among
+/// `cells` the density is the polynomial through its values on the nodes there, whose integral is
+/// their sum with `weights`.
 struct DensityField {
   PhaseField pdf;                         ///< density in v at fixed x_i [1/velocity]
+  std::vector<double> weights;            ///< of the nodes in v [velocity]
+  std::vector<double> cells;              ///< -v_max ... 0 ... v_max [velocity]
+  double least = 0;                       ///< smallest value: below 0 by discretisation errors
   std::vector<double> atom;               ///< P(X = x_i, sticking), index i + N
   std::vector<double> noise_marginal;     ///< P(X = x_i) summed over the grid, index i + N
   std::vector<double> velocity_marginal;  ///< density of V without its atom P_stick [1/velocity]
