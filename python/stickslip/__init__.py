@@ -6,9 +6,9 @@
 """
 
 from .calls import load, run, sweep
-from .program import AccuracyWarning, BadInput, OutOfMemory, ProgramError, TimedOut, find_program
+from .program import AccuracyWarning, BadInput, Cancelled, OutOfMemory, ProgramError, TimedOut, find_program
 from .results import Density, Result, Results
 from .sweeps import Sweep
 
-__all__ = ["AccuracyWarning", "BadInput", "Density", "OutOfMemory", "ProgramError", "Result", "Results", "Sweep",
-           "TimedOut", "find_program", "load", "run", "sweep"]
+__all__ = ["AccuracyWarning", "BadInput", "Cancelled", "Density", "OutOfMemory", "ProgramError", "Result", "Results",
+           "Sweep", "TimedOut", "find_program", "load", "run", "sweep"]

@@ -1,4 +1,5 @@
-"""python3 -m stickslip plot FILE... [PICTURE.png]: draws what files of the program hold."""
+"""python3 -m stickslip plot FILE... [PICTURE.png]: draws what files of the program hold.
+python3 -m stickslip explore [SCENE.opts]: sliders over a scene, pictures that follow."""
 
 import argparse
 import pathlib
@@ -10,15 +11,45 @@ next to the file, under its name. A file that holds several kinds of results mak
 its name. A sweep makes a picture of each result, in the folder PICTURE/. Several files share a picture. Prints where
 the pictures are. Exit status 2 if there is nothing to draw."""
 
+EXPLORE = """Sliders over mu_s, mu_d, tau, delta, bias and drag, choices of drag, friction law and noise. The stationary
+distribution with its marginals, probabilities and mean durations with their errors, the power spectral density of the
+velocity and the densities of durations follow. Buttons save the scene as an options file, and the picture. In a window
+(python3-tk), or in a browser on this machine (python3-tornado)."""
+
 
 def main(words: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status."""
     parser = argparse.ArgumentParser(prog="python3 -m stickslip", description=__doc__)
-    plot = parser.add_subparsers(required=True, metavar="plot").add_parser(
+    commands = parser.add_subparsers(required=True, metavar="plot | explore")
+    plot = commands.add_parser(
         "plot", usage="%(prog)s [--kind KIND] FILE... [PICTURE.png]", description=TEXT)
     plot.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE")
     plot.add_argument("--kind", help="one picture, such as correlation_time, or drift of a sweep of the bias")
-    return plot_files(parser.parse_args(words))
+    plot.set_defaults(act=plot_files)
+    explore = commands.add_parser("explore", description=EXPLORE)
+    explore.add_argument("scene", nargs="?", type=pathlib.Path, metavar="SCENE.opts", help="options file to start from")
+    explore.add_argument("--accuracy", type=float, default=1e-4, help="of the program (default 1e-4)")
+    explore.add_argument("--browser", action="store_true", help="a page in the browser instead of a window")
+    explore.add_argument("--port", type=int, default=8988, help="of that page (default 8988)")
+    explore.set_defaults(act=explore_scene)
+    arguments = parser.parse_args(words)
+    return arguments.act(arguments)
+
+
+def explore_scene(arguments: argparse.Namespace) -> int:
+    """Shows the window until it is closed; returns the exit status."""
+    try:
+        from . import BadInput, ProgramError
+        from .explore import explore
+        try:
+            explore(arguments.scene, arguments.accuracy, arguments.browser, arguments.port)
+        except (BadInput, ProgramError, OSError) as problem:
+            print(f"stickslip: {problem}", file=sys.stderr)
+            return 2 if isinstance(problem, BadInput) else 1
+    except ImportError as problem:
+        print(problem, file=sys.stderr)
+        return 1
+    return 0
 
 
 def plot_files(arguments: argparse.Namespace) -> int:

@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import tempfile
+import threading
 import warnings
 from collections.abc import Mapping
 from typing import Any
@@ -23,7 +24,7 @@ Path = str | os.PathLike[str]
 
 
 def run(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = None, program: Path | None = None,
-        **options: Any) -> Results:
+        cancel: threading.Event | None = None, **options: Any) -> Results:
     """Run the program once.
 
     Parameters
@@ -36,6 +37,8 @@ def run(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = Non
         Where to leave the HDF5 file; without it no file stays.
     program
         Path of the program; by default that of `find_program`.
+    cancel
+        Ends the run when another thread sets it.
     **options
         The program's options by name: numbers, text, sequences of them, or True for an option without a value.
         Write `lambda_` for lambda. The program checks them.
@@ -47,7 +50,7 @@ def run(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = Non
 
     Raises
     ------
-    BadInput, OutOfMemory, TimedOut, ProgramError
+    BadInput, OutOfMemory, TimedOut, Cancelled, ProgramError
         With the text of the program.
 
     Warns
@@ -61,11 +64,11 @@ def run(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = Non
     >>> r["P_stick"].value, r["P_stick"].error
     >>> r["S_v"].abscissa, r["S_v"].value
     """
-    return _run(ranks, timeout, keep, program, options)
+    return _run(ranks, timeout, keep, program, options, cancel)
 
 
 def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | None,
-         options: Mapping[str, Any]) -> Results:
+         options: Mapping[str, Any], cancel: threading.Event | None = None) -> Results:
     options = {name.rstrip("_"): value for name, value in options.items()}
     with tempfile.TemporaryDirectory(prefix="stickslip-") as folder:
         summary = pathlib.Path(options.pop("summary", None) or pathlib.Path(folder) / "summary.json")
@@ -78,7 +81,7 @@ def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | N
         launcher = ["mpiexec", "-n", str(ranks)] if ranks else []
         before = _stamp(summary)
         finished = execute([*launcher, os.fspath(program or find_program()), *words_of(options), "-summary",
-                            str(summary)], timeout)
+                            str(summary)], timeout, cancel)
         if _stamp(summary) == before:
             raise OutOfMemory(finished.message()) if finished.status == NO_MEMORY else ProgramError(
                 f"the program wrote no results: {finished.message()}")

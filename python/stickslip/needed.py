@@ -3,7 +3,8 @@
 import importlib
 from types import ModuleType
 
-PACKAGES = {"numpy": "python3-numpy", "h5py": "python3-h5py", "matplotlib": "python3-matplotlib"}
+PACKAGES = {"numpy": "python3-numpy", "h5py": "python3-h5py", "matplotlib": "python3-matplotlib",
+            "tkinter": "python3-tk", "tornado": "python3-tornado"}
 
 
 def needed(name: str) -> ModuleType:

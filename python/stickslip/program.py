@@ -1,16 +1,20 @@
 """Finds the program, runs it, and turns its exit statuses into exceptions."""
 
 import dataclasses
+import math
 import os
 import pathlib
 import shutil
 import signal
 import subprocess
+import threading
+import time
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 DONE, BAD_INPUT, SHORT, NO_MEMORY = 0, 2, 3, 4  # exit statuses
 TAIL = 20  # lines of what the program printed, in messages
+LOOK = 0.01  # seconds between looks at whether a run is still wanted
 GRACE = 5  # seconds from the request to end until the program is killed
 PACKAGE = pathlib.Path(__file__).resolve().parent
 
@@ -29,6 +33,10 @@ class ProgramError(RuntimeError):
 
 class TimedOut(ProgramError, TimeoutError):
     """The program took longer than `timeout` and was ended."""
+
+
+class Cancelled(ProgramError):
+    """The run was ended because its event `cancel` was set."""
 
 
 class AccuracyWarning(UserWarning):
@@ -121,7 +129,7 @@ def last_lines(text: str, count: int = TAIL) -> str:
     return "\n".join([line for line in text.splitlines() if line.strip()][-count:])
 
 
-def execute(words: Sequence[str], timeout: float | None = None) -> Finished:
+def execute(words: Sequence[str], timeout: float | None = None, cancel: threading.Event | None = None) -> Finished:
     """Run a command line of the program to its end.
 
     Parameters
@@ -130,6 +138,8 @@ def execute(words: Sequence[str], timeout: float | None = None) -> Finished:
         The command line.
     timeout
         Seconds after which the program is ended, and with it what mpiexec started.
+    cancel
+        Ends the program when it is set by another thread.
 
     Returns
     -------
@@ -137,7 +147,7 @@ def execute(words: Sequence[str], timeout: float | None = None) -> Finished:
 
     Raises
     ------
-    BadInput, TimedOut, ProgramError
+    BadInput, TimedOut, Cancelled, ProgramError
         By exit status. Statuses 3 and 4 may have left results and are returned.
     """
     try:
@@ -146,7 +156,7 @@ def execute(words: Sequence[str], timeout: float | None = None) -> Finished:
     except OSError as problem:
         raise ProgramError(f"{words[0]} does not run: {problem.strerror}") from None
     try:
-        out, err = (text.decode(errors="replace") for text in process.communicate(timeout=timeout))
+        out, err = (text.decode(errors="replace") for text in _printed(process, timeout, cancel))
     except BaseException as problem:
         _end(process)
         if isinstance(problem, subprocess.TimeoutExpired):
@@ -158,6 +168,21 @@ def execute(words: Sequence[str], timeout: float | None = None) -> Finished:
     if finished.status not in (DONE, SHORT, NO_MEMORY):
         raise ProgramError(_end_of(finished))
     return finished
+
+
+def _printed(process: subprocess.Popen, timeout: float | None, cancel: threading.Event | None) -> tuple[bytes, bytes]:
+    """What the program prints until its end, or until it is no longer wanted."""
+    if cancel is None:
+        return process.communicate(timeout=timeout)
+    end = time.monotonic() + (math.inf if timeout is None else timeout)
+    while time.monotonic() < end:
+        if cancel.is_set():
+            raise Cancelled("the run was cancelled")
+        try:
+            return process.communicate(timeout=LOOK)
+        except subprocess.TimeoutExpired:
+            continue
+    raise subprocess.TimeoutExpired(process.args, timeout or 0)
 
 
 def _end(process: subprocess.Popen) -> None:

@@ -69,6 +69,10 @@ class Density:
         P(X = x_i, the body sticks), by [x].
     marginal_x, marginal_v
         P(X = x_i), and the density of V without its atom at 0.
+    weights
+        Of the nodes: `(weights * f(v)).sum()` is the integral of f.
+    cells
+        Ends of the elements in v: between two of them densities are the polynomials through the values there.
     error
         Error estimate of the distribution function of the speed.
     """
@@ -79,12 +83,44 @@ class Density:
     at_rest: "Array"
     marginal_x: "Array"
     marginal_v: "Array"
+    weights: "Array"
+    cells: "Array"
     error: float
 
     @property
     def mass_at_rest(self) -> float:
         """Probability that the body sticks."""
         return float(self.at_rest.sum())
+
+    def at(self, v: "Array") -> "Array":
+        """`values` at any velocities, by [x, v]; 0 beyond the cells."""
+        return self.values @ self._interpolation(v).T
+
+    def marginal(self, v: "Array") -> "Array":
+        """`marginal_v` at any velocities."""
+        return self._interpolation(v) @ self.marginal_v
+
+    def window(self, outside: float = 1e-3, count: int = 400) -> "Array":
+        """Evenly spaced velocities that leave out so much of the probability of sliding, on both sides together."""
+        share = numpy.cumsum(numpy.maximum(self.weights * self.marginal_v, 0))
+        ends = numpy.interp([outside / 2, 1 - outside / 2], share / share[-1], self.v)
+        return numpy.linspace(*ends, count)
+
+    def _interpolation(self, v: "Array") -> "Array":
+        """Matrix from the nodes to values at v, of the polynomial through the nodes of each cell."""
+        v = numpy.asarray(v, float)
+        matrix = numpy.zeros((len(v), len(self.v)))
+        of_nodes = numpy.searchsorted(self.cells, self.v) - 1
+        of_points = numpy.clip(numpy.searchsorted(self.cells, v) - 1, 0, len(self.cells) - 2)
+        inside = (v >= self.cells[0]) & (v <= self.cells[-1])
+        for cell in numpy.unique(of_points[inside]):
+            points, nodes = numpy.flatnonzero(inside & (of_points == cell)), numpy.flatnonzero(of_nodes == cell)
+            low, high = self.cells[cell:cell + 2]
+            t, s = ((2 * part - low - high) / (high - low) for part in (v[points], self.v[nodes]))
+            for n, node in enumerate(nodes):
+                others = numpy.delete(s, n)
+                matrix[points, node] = numpy.prod((t[:, None] - others) / (s[n] - others), axis=1)
+        return matrix
 
 
 class Results(Mapping):
@@ -269,7 +305,7 @@ def fields(file: "h5py.File") -> dict[str, Any]:
     if "density" in file:
         data = _datasets(file["density"])
         found["density"] = Density(
-            *(data[part] for part in ("x", "v", "pdf", "atom", "marginal_x", "marginal_v")),
+            *(data[part] for part in ("x", "v", "pdf", "atom", "marginal_x", "marginal_v", "weights", "cells")),
             float(file["density"].attrs.get("error_of_distribution_function_of_speed", math.nan)))
     if "trajectory" in file:
         found["trajectory"] = _datasets(file["trajectory"])

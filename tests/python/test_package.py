@@ -78,6 +78,25 @@ class Runs(Case):
         self.assertAlmostEqual(r.density.marginal_x.sum(), 1, delta=1e-9)
         self.assertIsNone(stickslip.run(**SMALL).density)
 
+    def test_densities_are_polynomials_on_elements(self):
+        for scheme in ({}, {"scheme": "upwind", "p": 4, "accuracy": 0.1}):
+            d = stickslip.run(**{**SMALL, **scheme}, bias=0.1, quantities="density").density
+            numpy.testing.assert_allclose(d.at(d.v), d.values, atol=1e-14)
+            numpy.testing.assert_allclose(d.marginal(d.v), d.marginal_v, atol=1e-14)
+            self.assertAlmostEqual(d.values.sum(0) @ d.weights, d.marginal_v @ d.weights, delta=1e-12)
+            numpy.testing.assert_array_equal(d.at(numpy.array([-99, 99])), 0)
+            if scheme:  # the upwind scheme has states at v = 0
+                continue
+            self.assertAlmostEqual(d.marginal_v @ d.weights + d.mass_at_rest, 1, delta=1e-12)
+            fine = numpy.concatenate([low + (high - low) * (numpy.arange(2000) + 0.5) / 2000
+                                      for low, high in zip(d.cells, d.cells[1:])])
+            widths = numpy.repeat(numpy.diff(d.cells), 2000) / 2000
+            self.assertAlmostEqual(d.marginal(fine) @ widths, d.marginal_v @ d.weights, delta=1e-6)
+            window = d.window(0.01)
+            inside = (fine > window[0]) & (fine < window[-1])
+            share = (d.marginal(fine) * widths)[inside].sum() / (d.marginal_v @ d.weights)
+            self.assertAlmostEqual(share, 0.99, delta=0.01)
+
     def test_simulated_values_have_intervals(self):
         r = stickslip.run(**SMALL, quantities="sticking,laplace", lambda_=[1, 2], route="monte_carlo", excursions=1000)
         low, high = r["P_stick"].ci95

@@ -68,8 +68,13 @@ def quick(random):
 
 
 def telegraph(random):
-    return drag(random) | {"mu_s": 1, "mu_d": random.uniform(0.05, 1), "noise": "telegraph",
-                           "telegraph_amplitude": random.uniform(1.1, 3), "telegraph_rate": log_uniform(random, 0.1, 5)}
+    """One level of the force holds a body at rest, the other one moves it."""
+    amplitude = random.uniform(0.6, 1.4)
+    bias = random.uniform(abs(1 - amplitude) + 0.05, 0.9)
+    options = drag(random)
+    slowest = bias + 0.05 if options["drag"] == "none" else 0.05
+    return options | {"mu_s": 1, "mu_d": random.uniform(slowest, 1), "bias": bias, "noise": "telegraph",
+                      "telegraph_amplitude": amplitude, "telegraph_rate": log_uniform(random, 0.1, 5)}
 
 
 def weakening(random):

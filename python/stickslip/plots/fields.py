@@ -29,26 +29,25 @@ def density(items: Sequence[Results]) -> "Figure":
     """The stationary distribution of (X, V), its marginals, and the static states."""
     (results,) = items
     field = results.density
-    x, v, ends = field.x, field.v, _cells(field.x)
+    x, v, ends = field.x, field.window(), _cells(field.x)
     width = numpy.diff(ends)
     figure = Figure(figsize=(7.2, 5.2))
     (plane, by_v), (by_x, corner) = figure.subplots(
         2, 2, sharex="col", sharey="row", gridspec_kw={"width_ratios": (3, 1), "height_ratios": (3, 1.2)})
     corner.axis("off")
 
-    pdf = numpy.maximum(field.values.T / width, 1e-12)
+    pdf = numpy.maximum(field.at(v).T / width, 1e-12)  # discretisation errors are on both sides of 0
     seen = numpy.flatnonzero(field.marginal_x > 1e-4 * field.marginal_x.max())
-    fast = v[field.marginal_v > 1e-4 * field.marginal_v.max()]
     image = plane.pcolormesh(ends, _edges(v), pdf, norm=matplotlib.colors.LogNorm(1e-5, pdf.max()), cmap="Blues",
                              rasterized=True)
     stuck = field.at_rest > 0
     plane.scatter(x[stuck], 0 * x[stuck], s=900 * field.at_rest[stuck], color=STICK, zorder=3,
                   label="sticking (area: probability)")
-    plane.set(xlim=(ends[seen[0]], ends[seen[-1] + 1]), ylim=(fast[0], fast[-1]), ylabel="$v$  [velocity]")
+    plane.set(xlim=(ends[seen[0]], ends[seen[-1] + 1]), ylim=(v[0], v[-1]), ylabel="$v$  [velocity]")
     plane.legend(loc="upper left")
     figure.colorbar(image, ax=by_v, label="density while sliding  [1/(force velocity)]")
 
-    by_v.plot(field.marginal_v, v, color=SLIDE)
+    by_v.plot(field.marginal(v), v, color=SLIDE)
     by_v.set(xlabel="density of $v$\n[1/velocity]", xlim=(0, None))
     by_v.tick_params(labelbottom=True)
     by_x.bar(x, field.marginal_x - field.at_rest, width * 0.9, field.at_rest, color=SLIDE, label="sliding")
