@@ -102,8 +102,9 @@ class Density:
 
     def window(self, outside: float = 1e-3, count: int = 400) -> "Array":
         """Evenly spaced velocities that leave out so much of the probability of sliding, on both sides together."""
-        share = numpy.cumsum(numpy.maximum(self.weights * self.marginal_v, 0))
-        ends = numpy.interp([outside / 2, 1 - outside / 2], share / share[-1], self.v)
+        mass = numpy.maximum(self.weights * self.marginal_v, 0)
+        below = (numpy.cumsum(mass) - mass / 2) / mass.sum()
+        ends = numpy.interp([outside / 2, 1 - outside / 2], below, self.v)
         return numpy.linspace(*ends, count)
 
     def _interpolation(self, v: "Array") -> "Array":

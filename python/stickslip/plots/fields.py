@@ -29,7 +29,7 @@ def density(items: Sequence[Results]) -> "Figure":
     """The stationary distribution of (X, V), its marginals, and the static states."""
     (results,) = items
     field = results.density
-    x, v, ends = field.x, field.window(), _cells(field.x)
+    x, v, ends = field.x, field.window(1e-4), _cells(field.x)
     width = numpy.diff(ends)
     figure = Figure(figsize=(7.2, 5.2))
     (plane, by_v), (by_x, corner) = figure.subplots(
