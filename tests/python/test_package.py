@@ -96,6 +96,9 @@ class Runs(Case):
     def test_a_plan(self):
         r = stickslip.run(**SMALL, quantities="sticking,density", plan=True)
         self.assertEqual((len(r), r.density), (0, None))
+        file = self.folder / "law.h5"
+        stickslip.run(**SMALL, quantities="density", keep=file)
+        self.assertIsNone(stickslip.run(**SMALL, quantities="density", keep=file, plan=True).density)
         self.assertGreater(r.plan["steps"][0]["unknowns"], 0)
 
     def test_ranks(self):
@@ -158,12 +161,14 @@ class Failures(Case):
             os.environ.pop("STICKSLIP")
             with self.assertRaisesRegex(stickslip.ProgramError, "STICKSLIP.*beside the package.*PATH"):
                 stickslip.find_program()
-            for place in ("stickslip", "bin/stickslip", "build/stickslip"):  # PATH, installed, built
+            installed = self.folder / "lib" / "python3" / "dist-packages" / "stickslip"
+            for place, package in (("stickslip", package), ("bin/stickslip", installed), ("build/stickslip", package)):
                 file = self.folder / place
                 file.parent.mkdir(exist_ok=True)
                 file.write_text("")
                 file.chmod(0o755)
-                self.assertEqual(stickslip.find_program(), file)
+                with mock.patch.object(program, "PACKAGE", package):
+                    self.assertEqual(stickslip.find_program(), file)
 
     def test_a_missing_module_is_one_sentence(self):
         for name, script in (("numpy", "import stickslip"),
