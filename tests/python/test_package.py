@@ -178,6 +178,16 @@ class Failures(Case):
             self.assertEqual(done.stderr.splitlines()[-1],
                              f"ImportError: stickslip needs {name} for this: apt-get install python3-{name}")
 
+    def test_the_command_line_tells_a_missing_module_in_one_sentence(self):
+        stickslip.run(**SMALL, quantities="density", keep=self.folder / "law.h5")
+        for name in ("numpy", "h5py", "matplotlib"):
+            with tempfile.TemporaryDirectory() as hidden:
+                pathlib.Path(hidden, f"{name}.py").write_text(f"raise ModuleNotFoundError('none', name='{name}')\n")
+                done = self.python("-m", "stickslip", "plot", "law.h5",
+                                   PYTHONPATH=f"{hidden}:{SOURCES / 'python'}")
+            self.assertEqual((done.returncode, done.stdout, done.stderr), (
+                1, "", f"stickslip needs {name} for this: apt-get install python3-{name}\n"))
+
     def test_matplotlib_is_imported_only_to_draw(self):
         done = self.python("-c", "import sys, stickslip; print('matplotlib' in sys.modules, 'h5py' in sys.modules)")
         self.assertEqual(done.stdout, "False False\n", done.stderr)
