@@ -52,10 +52,10 @@ class Finished:
     err: str
 
     def message(self) -> str:
-        """What the program says about its end, without its name in front."""
-        lines = [line.removeprefix("stickslip: ").removeprefix("stickslip-complex: ")
-                 for line in (self.err.strip() or last_lines(self.out, 1)).splitlines()]
-        return "\n".join(lines)
+        """What the program says about its end, without its name in front and what mpiexec adds in frames."""
+        said = self.err.partition("-" * 60)[0].strip() or last_lines(self.out, 1)
+        return "\n".join(line.removeprefix("stickslip: ").removeprefix("stickslip-complex: ")
+                         for line in said.splitlines())
 
 
 def find_program() -> pathlib.Path:

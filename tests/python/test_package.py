@@ -105,6 +105,9 @@ class Runs(Case):
         one, two = (stickslip.run(**SMALL, quantities="sticking", ranks=ranks) for ranks in (0, 2))
         self.assertEqual(two.provenance["ranks"], "2")
         self.assertAlmostEqual(one["P_stick"].value, two["P_stick"].value, delta=1e-9)
+        with self.assertRaisesRegex(stickslip.BadInput, r"^-mu_d = 2: .*$") as caught:
+            stickslip.run(mu_d=2, ranks=2)
+        self.assertNotIn("mpiexec", str(caught.exception))
 
     def test_an_accuracy_that_is_missed_is_a_warning(self):
         with self.assertWarnsRegex(stickslip.AccuracyWarning, "take -accuracy") as caught:
