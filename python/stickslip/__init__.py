@@ -5,10 +5,17 @@
 >>> r["P_stick"].value, r["P_stick"].error
 """
 
-from .calls import load, run, sweep
-from .program import AccuracyWarning, BadInput, Cancelled, OutOfMemory, ProgramError, TimedOut, find_program
-from .results import Density, Result, Results
-from .sweeps import Sweep
+import sys
+
+try:
+    from .calls import load, run, sweep
+    from .program import AccuracyWarning, BadInput, Cancelled, OutOfMemory, ProgramError, TimedOut, find_program
+    from .results import Density, Result, Results
+    from .sweeps import Sweep
+except ImportError as problem:
+    if sys.argv[:1] == ["-m"]:  # python3 -m stickslip, which ends with the sentence alone
+        sys.exit(str(problem))
+    raise
 
 __all__ = ["AccuracyWarning", "BadInput", "Cancelled", "Density", "OutOfMemory", "ProgramError", "Result", "Results",
            "Sweep", "TimedOut", "find_program", "load", "run", "sweep"]

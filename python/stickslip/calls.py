@@ -86,8 +86,11 @@ def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | N
             raise OutOfMemory(finished.message()) if finished.status == NO_MEMORY else ProgramError(
                 f"the program wrote no results: {finished.message()}")
         found = _from_tree(json.loads(summary.read_text()))
-        if output is not None and any(word in found.options.get("quantities", "") for word in FIELDS):
-            _add_fields(found, pathlib.Path(output))
+        if output is not None and "results" in found.summary and any(
+                word in found.options.get("quantities", "") for word in FIELDS):
+            with needed("h5py").File(output) as file:
+                for name, value in results.fields(file).items():
+                    setattr(found, name, value)
     if finished.status != DONE:
         warnings.warn(_shortfall(found, finished), AccuracyWarning, stacklevel=3)
     return found
@@ -192,13 +195,6 @@ def _from_csv(path: pathlib.Path) -> Results:
         raise ValueError("neither a sweep nor a path")
     columns = needed("numpy").loadtxt(path, delimiter=",", skiprows=1, ndmin=2).T
     return Results({}, trajectory=dict(zip(head, columns)), name=path.stem)
-
-
-def _add_fields(found: Results, output: pathlib.Path) -> None:
-    if output.exists():  # a plan writes none
-        with needed("h5py").File(output) as file:
-            for name, value in results.fields(file).items():
-                setattr(found, name, value)
 
 
 def _shortfall(found: Results, finished: Finished) -> str:

@@ -60,10 +60,10 @@ class Finished:
     err: str
 
     def message(self) -> str:
-        """What the program says about its end, without its name in front."""
-        lines = [line.removeprefix("stickslip: ").removeprefix("stickslip-complex: ")
-                 for line in (self.err.strip() or last_lines(self.out, 1)).splitlines()]
-        return "\n".join(lines)
+        """What the program says about its end, without its name in front and what mpiexec adds in frames."""
+        said = self.err.partition("-" * 60)[0].strip() or last_lines(self.out, 1)
+        return "\n".join(line.removeprefix("stickslip: ").removeprefix("stickslip-complex: ")
+                         for line in said.splitlines())
 
 
 def find_program() -> pathlib.Path:
@@ -81,17 +81,15 @@ def find_program() -> pathlib.Path:
         If no place has it.
     """
     given = os.environ.get("STICKSLIP")
-    places = [pathlib.Path(given)] if given else [
-        PACKAGE.parents[1] / "build" / "stickslip",  # the sources
-        *(folder / "bin" / "stickslip" for folder in PACKAGE.parents[1:4]),  # PREFIX/lib/python3/dist-packages
-        *filter(None, [pathlib.Path(shutil.which("stickslip") or "")])]
-    for place in places:
-        if place.is_file() and os.access(place, os.X_OK):
-            return place.resolve()
+    installed = PACKAGE.parent.name.endswith("-packages")  # PREFIX/lib/python3/dist-packages
+    beside = PACKAGE.parents[3] / "bin" / "stickslip" if installed else PACKAGE.parents[1] / "build" / "stickslip"
+    for place in [given] if given else [beside, shutil.which("stickslip")]:
+        if place and pathlib.Path(place).is_file() and os.access(place, os.X_OK):
+            return pathlib.Path(place).resolve()
     if given:
         raise ProgramError(f"the environment variable STICKSLIP names {given}, which is no program")
     raise ProgramError(f"the program stickslip is not found: the environment variable STICKSLIP is not set, there is "
-                       f"none beside the package ({places[0]}), and none in PATH; ./bootstrap build makes it")
+                       f"none beside the package ({beside}), and none in PATH; ./bootstrap build makes it")
 
 
 def words_of(options: Mapping[str, Any]) -> list[str]:

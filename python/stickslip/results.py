@@ -18,7 +18,7 @@ numpy = needed("numpy")
 PARTS = ("value", "error", "unit", "ci95", "low", "high")  # of a result; what else there is, is the abscissa
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Result:
     """One quantity.
 
@@ -55,7 +55,7 @@ class Result:
         return float(self.value)
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Density:
     """The stationary distribution of (X, V).
 
@@ -178,6 +178,8 @@ class Results(Mapping):
 
     def __len__(self) -> int:
         return len(self._results)
+
+    __eq__, __hash__ = object.__eq__, object.__hash__  # arrays have no truth value
 
     def __repr__(self) -> str:
         lines = []

@@ -115,12 +115,18 @@ class Runs(Case):
     def test_a_plan(self):
         r = stickslip.run(**SMALL, quantities="sticking,density", plan=True)
         self.assertEqual((len(r), r.density), (0, None))
+        file = self.folder / "law.h5"
+        stickslip.run(**SMALL, quantities="density", keep=file)
+        self.assertIsNone(stickslip.run(**SMALL, quantities="density", keep=file, plan=True).density)
         self.assertGreater(r.plan["steps"][0]["unknowns"], 0)
 
     def test_ranks(self):
         one, two = (stickslip.run(**SMALL, quantities="sticking", ranks=ranks) for ranks in (0, 2))
         self.assertEqual(two.provenance["ranks"], "2")
         self.assertAlmostEqual(one["P_stick"].value, two["P_stick"].value, delta=1e-9)
+        with self.assertRaisesRegex(stickslip.BadInput, r"^-mu_d = 2: .*$") as caught:
+            stickslip.run(mu_d=2, ranks=2)
+        self.assertNotIn("mpiexec", str(caught.exception))
 
     def test_an_accuracy_that_is_missed_is_a_warning(self):
         with self.assertWarnsRegex(stickslip.AccuracyWarning, "take -accuracy") as caught:
@@ -177,12 +183,14 @@ class Failures(Case):
             os.environ.pop("STICKSLIP")
             with self.assertRaisesRegex(stickslip.ProgramError, "STICKSLIP.*beside the package.*PATH"):
                 stickslip.find_program()
-            for place in ("stickslip", "bin/stickslip", "build/stickslip"):  # PATH, installed, built
+            installed = self.folder / "lib" / "python3" / "dist-packages" / "stickslip"
+            for place, package in (("stickslip", package), ("bin/stickslip", installed), ("build/stickslip", package)):
                 file = self.folder / place
                 file.parent.mkdir(exist_ok=True)
                 file.write_text("")
                 file.chmod(0o755)
-                self.assertEqual(stickslip.find_program(), file)
+                with mock.patch.object(program, "PACKAGE", package):
+                    self.assertEqual(stickslip.find_program(), file)
 
     def test_a_missing_module_is_one_sentence(self):
         for name, script in (("numpy", "import stickslip"),
@@ -191,6 +199,16 @@ class Failures(Case):
             done = self.python("-c", f"import sys; sys.modules['{name}'] = None; {script}")
             self.assertEqual(done.stderr.splitlines()[-1],
                              f"ImportError: stickslip needs {name} for this: apt-get install python3-{name}")
+
+    def test_the_command_line_tells_a_missing_module_in_one_sentence(self):
+        stickslip.run(**SMALL, quantities="density", keep=self.folder / "law.h5")
+        for name in ("numpy", "h5py", "matplotlib"):
+            with tempfile.TemporaryDirectory() as hidden:
+                pathlib.Path(hidden, f"{name}.py").write_text(f"raise ModuleNotFoundError('none', name='{name}')\n")
+                done = self.python("-m", "stickslip", "plot", "law.h5",
+                                   PYTHONPATH=f"{hidden}:{SOURCES / 'python'}")
+            self.assertEqual((done.returncode, done.stdout, done.stderr), (
+                1, "", f"stickslip needs {name} for this: apt-get install python3-{name}\n"))
 
     def test_matplotlib_is_imported_only_to_draw(self):
         done = self.python("-c", "import sys, stickslip; print('matplotlib' in sys.modules, 'h5py' in sys.modules)")

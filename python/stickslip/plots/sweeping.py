@@ -36,8 +36,8 @@ def _array(sweep: Sweep, result: Result) -> "Figure":
     for n, point in enumerate(shown):
         at = (0,) * len(others) + (point,)
         abscissa = result.abscissa if result.abscissa.ndim == 1 else result.abscissa[at]
-        one = Result(result.key, result.value[at], result.error[at], result.unit, result.dims[-1:], result.abscissa_name,
-                     abscissa, None if result.ci95 is None else result.ci95[at])
+        one = Result(result.key, result.value[at], result.error[at], result.unit, result.dims[-1:],
+                     result.abscissa_name, abscissa, None if result.ci95 is None else result.ci95[at])
         style.curve(axes, one, n, label=f"{last} = {values[point]:g}")
     name = result.abscissa_name
     low, high = numpy.nanmin(result.value), numpy.nanmax(result.value)
