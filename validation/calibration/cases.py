@@ -93,20 +93,21 @@ class Group:
     truth: float = 1e-9
     most: float = 10  # runs of 100 with an estimate too small; arrays have many
     worst: float = 3  # error by estimate
+    cases: int = 60
 
 
 TIMES = {"time": "0.1,0.5,1,3,8"}
 SCALARS = {"quantities": "sticking,moments"}
 GROUPS = {
-    "scalars": Group("Coulomb friction", coulomb, SCALARS, (1e-2, 1e-4, 1e-6, 1e-8), 1e-12, 2),
+    "scalars": Group("Coulomb friction", coulomb, SCALARS, (1e-2, 1e-4, 1e-6, 1e-8), 1e-12, most=2, cases=300),
     "nodes": Group("noise levels on nodes", fine, SCALARS, truth=1e-10, most=3),
     "telegraph": Group("telegraph noise", telegraph, SCALARS, truth=1e-10, most=3),
     "weakening": Group("weakening friction", weakening, SCALARS, truth=1e-10, most=3),
     "transforms": Group("transforms and hitting distributions", coulomb,
                         {"quantities": "entry_law,laplace", "lambda": "0.1,0.5,2,8"}),
-    "spectra": Group("power spectral densities", quick, {"quantities": "spectrum", "omega": "0.1,0.5,2,8,30"}),
-    "durations": Group("densities of durations", quick, {"quantities": "duration_density", **TIMES}),
+    "spectra": Group("power spectral densities", quick, {"quantities": "spectrum", "omega": "0.1,0.5,2,8,30"}, cases=40),
+    "durations": Group("densities of durations", quick, {"quantities": "duration_density", **TIMES}, cases=40),
     "slips": Group("slips and displacement", quick, {
         "quantities": "slip,peak,displacement", "distance": "0.1,0.3,1,3", "inverse_distance": "0.3,1,5",
-        "velocity": "0.1,0.3", **TIMES}, (1e-2, 1e-4), 1e-7),
+        "velocity": "0.1,0.3", **TIMES}, (1e-2, 1e-4), 1e-7, cases=20),
 }

@@ -6,7 +6,7 @@ usage: python3 validation/calibration/run.py [--quick] [--groups NAMES] [--cases
 
 Cases (cases.py) follow from the seed and their number. Each is run at several accuracies, and at a much
 higher one, whose values stand for the true ones. A value counts where that run is three times as accurate as
-the estimate to be judged. --quick takes 200 cases of scalars and 20 of transforms; without it 100 of every group.
+the estimate to be judged. --quick takes 200 cases of scalars and 20 of transforms; without it up to 300 of every group.
 --page puts table and picture into the manual.
 """
 
@@ -72,7 +72,7 @@ def judged(program, seed, name, number):
 
 
 def number_of_cases(arguments, name):
-    return arguments.cases or (QUICK[name] if arguments.quick else 100)
+    return arguments.cases or (QUICK[name] if arguments.quick else GROUPS[name].cases)
 
 
 def collect(entry, names):
