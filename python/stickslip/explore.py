@@ -164,7 +164,7 @@ class Explorer:
         # What is drawn stays; new results move it, which is several times faster than drawing anew.
         colors = needed("matplotlib.colors")
         self.image = self.density.imshow(numpy.zeros((2, 2)), aspect="auto", origin="lower", cmap="Blues",
-                                         norm=colors.PowerNorm(0.5, 0, 1), interpolation="nearest")
+                                         norm=colors.PowerNorm(0.35, 0, 1), interpolation="nearest")
         self.held, = self.density.plot([], [], "_", color=STICK, markersize=5)
         self.density.set(xlabel="V", ylabel="X")
         self.curve_v, = self.by_v.plot([], [], color=SLIDE)
