@@ -109,7 +109,7 @@ std::string files() {
   return entry("\\fIPREFIX/share/stickslip/options\\fR", "Options files to start from.") +
          entry("\\fIPREFIX/share/doc/stickslip\\fR",
                "Tutorial, method, format of the output, and other pages.") +
-         entry("\\fIPREFIX/lib/python3/dist-packages/stickslip\\fR",
+         entry("\\fIPREFIX/lib/python3/dist\\-packages/stickslip\\fR",
                "Python package that runs the program and draws what was computed.");
 }
 
