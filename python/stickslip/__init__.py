@@ -9,7 +9,7 @@ import sys
 
 try:
     from .calls import load, run, sweep
-    from .program import AccuracyWarning, BadInput, Cancelled, OutOfMemory, ProgramError, TimedOut, find_program
+    from .program import AccuracyWarning, BadInput, Cancelled, OutOfMemory, ProgramError, TimedOut, Unsolved, find_program
     from .results import Density, Result, Results
     from .sweeps import Sweep
 except ImportError as problem:
@@ -18,4 +18,4 @@ except ImportError as problem:
     raise
 
 __all__ = ["AccuracyWarning", "BadInput", "Cancelled", "Density", "OutOfMemory", "ProgramError", "Result", "Results",
-           "Sweep", "TimedOut", "find_program", "load", "run", "sweep"]
+           "Sweep", "TimedOut", "Unsolved", "find_program", "load", "run", "sweep"]

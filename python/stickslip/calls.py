@@ -12,8 +12,8 @@ from typing import Any
 
 from . import results, sweeps
 from .needed import needed
-from .program import (DONE, NO_MEMORY, AccuracyWarning, Finished, OutOfMemory, ProgramError, execute, find_program,
-                      words_of)
+from .program import (DONE, NO_MEMORY, SHORT, AccuracyWarning, Finished, OutOfMemory, ProgramError, Unsolved, execute,
+                      find_program, words_of)
 from .results import Results
 from .sweeps import Sweep
 
@@ -50,7 +50,7 @@ def run(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = Non
 
     Raises
     ------
-    BadInput, OutOfMemory, TimedOut, Cancelled, ProgramError
+    BadInput, OutOfMemory, Unsolved, TimedOut, Cancelled, ProgramError
         With the text of the program.
 
     Warns
@@ -83,8 +83,9 @@ def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | N
         finished = execute([*launcher, os.fspath(program or find_program()), *words_of(options), "-summary",
                             str(summary)], timeout, cancel)
         if _stamp(summary) == before:
-            raise OutOfMemory(finished.message()) if finished.status == NO_MEMORY else ProgramError(
-                f"the program wrote no results: {finished.message()}")
+            kind = {NO_MEMORY: OutOfMemory, SHORT: Unsolved}.get(finished.status, ProgramError)
+            said = "the program wrote no results: " if kind is ProgramError else ""
+            raise kind(said + finished.message())
         found = _from_tree(json.loads(summary.read_text()))
         if output is not None and "results" in found.summary and any(
                 word in found.options.get("quantities", "") for word in FIELDS):

@@ -31,6 +31,10 @@ class ProgramError(RuntimeError):
     """The program was not found, failed or was killed; the message ends with what the program printed last."""
 
 
+class Unsolved(ProgramError):
+    """No number could be computed; the message is the program's."""
+
+
 class TimedOut(ProgramError, TimeoutError):
     """The program took longer than `timeout` and was ended."""
 

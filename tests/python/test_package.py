@@ -160,6 +160,10 @@ class Failures(Case):
         with self.fake("exit 0"):
             self.assertRaisesRegex(stickslip.ProgramError, "wrote no results", stickslip.run)
 
+    def test_what_cannot_be_solved(self):
+        with self.fake("echo rounding leaves nothing >&2; exit 3"):
+            self.assertRaisesRegex(stickslip.Unsolved, "^rounding leaves nothing$", stickslip.run)
+
     def test_results_of_before_are_not_taken_for_those_of_now(self):
         file = self.folder / "summary.json"
         stickslip.run(**SMALL, summary=file)

@@ -45,7 +45,7 @@ class LeftOut(Exception):
 def results_of(program, options):
     try:
         return stickslip.run(program=program, timeout=SECONDS, **options).summary["results"]
-    except (stickslip.BadInput, stickslip.TimedOut) as reason:
+    except (stickslip.BadInput, stickslip.Unsolved, stickslip.TimedOut) as reason:
         raise LeftOut(str(reason)) from None
 
 
@@ -86,6 +86,9 @@ def collect(entry, names):
                 rows += one.result()
             except LeftOut:
                 left_out += 1
+            except BaseException:
+                pool.shutdown(cancel_futures=True)  # the others are not waited for
+                raise
             if count % 50 == 0:
                 print(f"{count} of {len(asked)} cases", file=sys.stderr, flush=True)
     return rows, left_out
