@@ -357,17 +357,16 @@ def free_name(path: pathlib.Path) -> pathlib.Path:
     return found
 
 
-def use_backend(browser: bool, port: int) -> str:
-    """Choose a window, or a page in the browser; what to tell the user."""
+def use_backend(browser: bool, port: int) -> None:
+    """Choose a window, or a page in the browser, whose address Matplotlib prints."""
     matplotlib = needed("matplotlib")
     if not browser and (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         needed("tkinter")
         matplotlib.use("TkAgg")
-        return ""
+        return
     needed("tornado")
     matplotlib.rcParams |= {"webagg.address": ADDRESS, "webagg.port": port, "webagg.open_in_browser": browser}
     matplotlib.use("WebAgg")
-    return f"open http://{ADDRESS}:{port}/ in a browser; Ctrl-C ends"
 
 
 def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = False, port: int = 8988) -> None:
@@ -395,15 +394,13 @@ def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = F
         if isinstance(found, Sweep):
             raise BadInput(f"{file} is a sweep; leave the options -sweep_... out")
         scene = {**found.options, **found.scene}
-    told = use_backend(browser, port)
+    use_backend(browser, port)
     pyplot = needed("matplotlib.pyplot")
     figure = pyplot.figure("stickslip", figsize=(13, 8))
     explorer = Explorer(figure, options, scene)
     timer = figure.canvas.new_timer(POLL)
     timer.add_callback(lambda: explorer.poll() or True)  # Matplotlib drops what returns False
     timer.start()
-    if told:
-        print(told, flush=True)
     try:
         pyplot.show()
     finally:
