@@ -12,14 +12,13 @@ from typing import Any
 
 from .calls import run
 from .needed import needed
-from .plots.style import COLOURS
+from .plots.fields import SLIDE, STICK, cells_around
 from .program import BadInput, Cancelled, OutOfMemory, ProgramError
 from .results import Results
 from .sweeps import Sweep
 
 numpy = needed("numpy")
 
-SLIDE, STICK = COLOURS[:2]
 ADDRESS = "127.0.0.1"  # of the page: this machine alone
 POLL = 20  # milliseconds between looks for new results
 LEAST = 1e-3  # probability outside of what is shown
@@ -144,7 +143,6 @@ class Explorer:
         self.choices: dict[str, str] = {}
         self.moved: set[str] = set()  # knobs and choices that the user turned
         self.asked_at = 0.0
-        self.delays: list[float] = []  # seconds from a move to its first picture
         self._lay_out(scene)
         self._show_knobs()
         self.solver.start()
@@ -189,7 +187,7 @@ class Explorer:
             place = self.figure.add_axes((0.5 if n < 6 else 0.8, 0.31 - 0.045 * (n % 6), 0.19 if n < 6 else 0.12, 0.03))
             start = scene.get(knob.option)
             start = knob.start if not isinstance(start, (int, float)) else min(max(start, knob.low), knob.high)
-            slider = widgets.Slider(place, knob.label, knob.place(knob.low) if knob.log else knob.low,
+            slider = widgets.Slider(place, knob.label, knob.place(knob.low),
                                     knob.place(knob.high), valinit=knob.place(start))
             slider.on_changed(lambda _, option=knob.option: self.turn(option))
             self.sliders[knob.option] = slider
@@ -275,7 +273,6 @@ class Explorer:
             if part == 0:
                 self._draw_distribution(found)
                 self.tell("computing the spectrum and durations")
-                self.delays.append(time.monotonic() - self.asked_at)
             else:
                 self._draw_dynamics(found)
                 self.tell(f"{time.monotonic() - self.asked_at:.2f} s")
@@ -284,7 +281,7 @@ class Explorer:
     def _draw_distribution(self, found: Results) -> None:
         density = found.density
         v, x = density.window(LEAST), density.x
-        edges = numpy.concatenate([[1.5 * x[0] - 0.5 * x[1]], (x[1:] + x[:-1]) / 2, [1.5 * x[-1] - 0.5 * x[-2]]])
+        edges = cells_around(x)
         steps = numpy.diff(edges)
         likely = numpy.flatnonzero(density.marginal_x > LEAST * density.marginal_x.max())
         low, high = edges[likely[0]], edges[likely[-1] + 1]

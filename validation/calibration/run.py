@@ -105,7 +105,7 @@ class Judgement:
         counts = (3 * doubt <= self.error) & (self.error > rounding) & numpy.isfinite(self.error)
         self.left_out = 1 - counts.mean()
         self.excess = numpy.zeros(len(counts))
-        self.excess[counts] = ((self.true - doubt - rounding) / self.error)[counts]
+        self.excess[counts] = (self.true - doubt - rounding)[counts] / self.error[counts]
         self.missed = self.excess > 1
         width = self.error[counts] / numpy.maximum(self.true, rounding)[counts]
         self.width, self.tenth = numpy.quantile(width, (0.5, 0.9)) if counts.any() else (0, 0)
@@ -126,10 +126,11 @@ def judge(entry, name, rows):
         table.append((f"{group.what}, {accuracy:g}", *judgement.row()))
         bad.append(judgement.bad)
     entry.claim(f"runs of 100 with an estimate too small, {group.what}", sum(bad) / len(bad), group.most)
-    entry.claim(f"error by estimate, {group.what}", Judgement(rows).excess.max(), group.worst)
-    worst = sorted(rows, key=lambda row: -Judgement([row]).excess[0])[:5]
+    excess = Judgement(rows).excess
+    entry.claim(f"error by estimate, {group.what}", excess.max(), group.worst)
+    worst = numpy.argsort(-excess, kind="stable")[:5]
     entry.table(f"{group.what}, largest errors by their estimates", ("by estimate", "value", "command"),
-                [(f"{Judgement([row]).excess[0]:.2f}", f"{row[3]}[{row[4]}]", row[-1]) for row in worst])
+                [(f"{excess[n]:.2f}", f"{rows[n][3]}[{rows[n][4]}]", rows[n][-1]) for n in worst])
     return table
 
 

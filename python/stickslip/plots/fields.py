@@ -17,7 +17,7 @@ def _edges(points: "numpy.ndarray") -> "numpy.ndarray":
     return numpy.concatenate([[points[0]], (points[1:] + points[:-1]) / 2, [points[-1]]])
 
 
-def _cells(levels: "numpy.ndarray") -> "numpy.ndarray":
+def cells_around(levels: "numpy.ndarray") -> "numpy.ndarray":
     """Ends of the cells around noise levels, the outer ones as wide to both sides."""
     ends = _edges(levels)
     ends[[0, -1]] = 2 * levels[[0, -1]] - ends[[1, -2]]
@@ -29,7 +29,7 @@ def density(items: Sequence[Results]) -> "Figure":
     """The stationary distribution of (X, V), its marginals, and the static states."""
     (results,) = items
     field = results.density
-    x, v, ends = field.x, field.window(1e-4), _cells(field.x)
+    x, v, ends = field.x, field.window(1e-4), cells_around(field.x)
     width = numpy.diff(ends)
     figure = Figure(figsize=(7.2, 5.2))
     (plane, by_v), (by_x, corner) = figure.subplots(
