@@ -126,7 +126,9 @@ std::vector<double> Drag::balances(double force) const {
   constexpr double smallest = 1e-30;
   std::vector<double> found;
   bool pushed = force > 0;
-  for (double low = smallest * rises_until, high = low; high < 0x1p300; low = high) {
+  double high = smallest * rises_until;
+  while (high < 0x1p300) {
+    const double low = high;
     high *= low < rises_until ? kFine : 2;
     if (force + (*this)(high) > 0 == pushed) continue;
     found.push_back(change_between(low, high, pushed, *this, force));
@@ -140,7 +142,11 @@ double Drag::highest(double v) const {
   constexpr double smallest = 1e-9;
   const double end = std::min(v, rises_until);
   double most = 0;
-  for (double u = end; u > smallest * end; u /= kFine) most = std::max(most, (*this)(u));
+  double u = end;
+  while (u > smallest * end) {
+    most = std::max(most, (*this)(u));
+    u /= kFine;
+  }
   return most;
 }
 

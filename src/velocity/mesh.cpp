@@ -197,7 +197,10 @@ Layers partings(const model::Process& process, const MeshRule& rule, bool on_bot
   const auto& [noise, friction, drag, bias] = process;
   const double end = std::min(rule.v_max, drag.rises_until), rest = friction.at_rest() - bias;
   Layers found;
-  for (double low = smallest * end, high = fine * low; low < end; low = high, high *= fine) {
+  double high = smallest * end;
+  while (high < end) {
+    const double low = high;
+    high *= fine;
     const double from = drag(low), rise = drag(high) - from;
     if (!(rise > 0)) continue;
     for (int i = std::min(noise.last_up_to(rest - from), noise.highest());
