@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string_view>
 
 namespace stickslip::accuracy {
 namespace {
@@ -56,6 +57,23 @@ void share_between_means(Changes& errors, const Results& results) {
   }
 }
 
+// Relative error of a mean; 0 if there is no such result.
+double relative_error(std::string_view key, const Changes& errors, const Results& results) {
+  for (std::size_t r = 0; r < results.size(); ++r) {
+    if (results[r].key == key) return errors[r][0] / std::abs(results[r].value[0]);
+  }
+  return 0;
+}
+
+void share_with_phases(Changes& errors, const Results& results) {
+  const double of_ratio =
+      odds(results) * std::hypot(relative_error(quantities::kMeanStick.key, errors, results),
+                                 relative_error(quantities::kMeanSlide.key, errors, results));
+  for (std::size_t r = 0; r < results.size(); ++r) {
+    if (results[r].kind == Kind::share) errors[r][0] = std::max(errors[r][0], of_ratio);
+  }
+}
+
 void share_between_neighbours(std::vector<double>& errors, const Result& result) {
   if (result.is_scalar() || result.abscissa_name == "mode") return;
   const std::vector<double> own = errors;
@@ -95,6 +113,7 @@ Changes add_discretisation(const ErrorPerChange& factor, const Results& coarse,
     }
   }
   share_between_means(errors, results);
+  share_with_phases(errors, results);
   for (std::size_t r = 0; r < results.size(); ++r) {
     share_between_neighbours(errors[r], results[r]);
     for (std::size_t e = 0; e < errors[r].size(); ++e) results[r].error[e] += errors[r][e];

@@ -103,13 +103,26 @@ TEST_CASE("estimates: what changes by less than 1e-13 does not depend on the dis
 // P_stick = 1/(1 + q), q = mean_slide/mean_stick: dP_stick = P_stick P_slide dq/q.
 TEST_CASE("estimates: probabilities of the phases share what their ratio does") {
   const Results shares{scalar(quantities::kPStick, 0.2, 0), scalar(quantities::kPSlide, 0.8, 0),
-                       scalar(quantities::kMeanStick, 10, 0), scalar(quantities::kPWithin, 0.5, 0)};
+                       scalar(quantities::kMeanExcursion, 10, 0),
+                       scalar(quantities::kPWithin, 0.5, 0)};
   const double shared = 0.1 * 0.5 * 0.16;
   constexpr double small = 0x1p-20;
   check_errors(changed(shares, {small, 1, 5, small}),
                {std::hypot(small, shared), std::hypot(1, shared), std::hypot(5, 0.5), small});
   check_errors(changed(shares, {0, 0.7, 5, 0}),
                {0, std::hypot(0.7, shared), std::hypot(5, 0.5), 0});
+}
+
+TEST_CASE("estimates: probabilities of the phases follow the errors of both mean durations") {
+  const Results phases{scalar(quantities::kPStick, 0.2, 0), scalar(quantities::kPSlide, 0.8, 0),
+                       scalar(quantities::kMeanStick, 10, 0),
+                       scalar(quantities::kMeanSlide, 40, 0)};
+  // Relative changes of 0.3 and 0.4 have the root mean square 0.25 sqrt(2).
+  const double shared = 0.1 * 0.25 * std::sqrt(2);
+  const double stick = std::hypot(3, 10 * shared), slide = std::hypot(16, 40 * shared);
+  const double of_ratio = 0.16 * std::hypot(stick / 10, slide / 40);
+  check_errors(changed(phases, {0x1p-20, 0.5, 3, 16}),
+               {of_ratio, std::hypot(0.5, 0.16 * shared), stick, slide});
 }
 
 TEST_CASE("estimates: an entry has half the error of its neighbours, and no more than relative") {

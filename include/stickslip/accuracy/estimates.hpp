@@ -31,7 +31,12 @@ struct ErrorPerChange {
 /// changes before it and of the other means show. The size of a mean is its value; that of P_stick
 /// and P_slide, of which P_slide/P_stick is a ratio of two means, is P_stick P_slide. What changes
 /// by less than 1e-13 does not depend on the discretisation and takes no share; the drift, which
-/// may vanish, gives none. An entry u_i of an array over anything but modes gets at least
+/// may vanish, gives none. Where mean_stick and mean_slide are among the results, P_stick and
+/// P_slide have at least what follows from the errors of both,
+///
+///   error = P_stick P_slide |(error of mean_stick/mean_stick, error of mean_slide/mean_slide)|.
+///
+/// An entry u_i of an array over anything but modes gets at least
 ///
 ///   error_i = 0.5 max over |j - i| <= 2 of d_j min(1, |u_i/u_j|),
 ///
