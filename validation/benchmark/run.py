@@ -4,8 +4,8 @@ usage: python3 validation/benchmark/run.py [--quick] [--program build/stickslip]
 
 Whole processes, start-up included, on one BLAS thread. All contestants of a group run once a round, in
 turns, so that other load on the machine falls on all; a ratio is taken within a round, and its median,
-smallest and largest are told. Writes benchmark.csv and benchmark.png to the folder. Optional: GNU
-Octave, SciPy and a reference BLAS; what is not there is left out and said so. --quick takes p = 64
+smallest and largest are printed. Writes benchmark.csv and benchmark.png to the folder. Optional: GNU
+Octave, SciPy and a reference BLAS; what is not installed is left out, with a message. --quick takes p = 64
 instead of 512, one round and no system beyond delta = 1/16.
 """
 
