@@ -24,7 +24,8 @@ install(DIRECTORY options DESTINATION ${CMAKE_INSTALL_DATADIR}/stickslip)
 # Where Debian's python3 looks if the prefix is /usr.
 install(DIRECTORY python/stickslip DESTINATION lib/python3/dist-packages
         FILES_MATCHING PATTERN *.py PATTERN __pycache__ EXCLUDE)
-install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}
+        PATTERN *.py EXCLUDE PATTERN __pycache__ EXCLUDE)
 install(FILES CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES python/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME python.md)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
