@@ -24,7 +24,7 @@ def main(words: Sequence[str] | None = None) -> int:
     plot = commands.add_parser(
         "plot", usage="%(prog)s [--kind KIND] FILE... [PICTURE.png]", description=TEXT)
     plot.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE")
-    plot.add_argument("--kind", help="one picture, such as correlation_time, or drift of a sweep of the bias")
+    plot.add_argument("--kind", help="one picture, such as correlation_time; of a sweep a key, such as P_stick, or drift")
     plot.set_defaults(act=plot_files)
     explore = commands.add_parser("explore", description=EXPLORE)
     explore.add_argument("scene", nargs="?", type=pathlib.Path, metavar="SCENE.opts", help="options file to start from")

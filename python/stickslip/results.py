@@ -202,7 +202,7 @@ class Results(Mapping):
         picture
             Where to save; of several figures each has its name appended.
         kind
-            One of `stickslip.plots.KINDS`; without it, all that fit.
+            One of `stickslip.plots.KINDS`, or a key of a sweep; without it, all that fit.
 
         Returns
         -------

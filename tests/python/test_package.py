@@ -373,6 +373,8 @@ class Pictures(Case):
     def test_pictures_on_request(self):
         s = stickslip.sweep(bias=[0.1, 0.2], delta=0.5, quantities="sticking,moments,spectrum", accuracy=1e-2)
         self.assertEqual(list(s.plot(kind="drift")), ["drift"])
+        self.assertEqual(list(s.plot(self.folder / "one.png", "P_stick")), ["P_stick"])
+        self.assertTrue((self.folder / "one.png").read_bytes().startswith(PNG))
         for tau in (1, 0.5):
             stickslip.run(**SMALL, tau=tau, quantities="spectrum", keep=self.folder / f"{tau}.h5")
         self.assertEqual(self.plot("1.h5", "0.5.h5", "t.png"), ["t.png"])
@@ -384,6 +386,7 @@ class Pictures(Case):
         self.assertEqual(self.plot(file.name, file.name, "both.png"), ["both.png"])
         stickslip.sweep(tau=[1, 2], delta=0.5, quantities="noise_law", sweep_csv=self.folder / "s.csv")
         self.assertEqual(self.plot("s.csv"), ["s/E_X2.png", "s/P_X_le_mu_s.png"])
+        self.assertEqual(self.plot("--kind", "E_X2", "s.csv"), ["s.png"])
         for words, told in ((["none.h5"], "no such file"), ([file.name, "a.foo"], ".svg"),
                             ([file.name, "x/a.png"], "folder")):
             done = self.python("-m", "stickslip", "plot", *words)

@@ -54,7 +54,7 @@ def draw(items: Sequence[Results], picture: str | pathlib.Path | None = None,
         Where to save; of several pictures each has its kind appended. The pictures of a sweep, one for each result,
         go into a folder of that name without its ending.
     kind
-        One of `KINDS`; without it, all that fit.
+        One of `KINDS`, or a key of a sweep; without it, all that fit.
 
     Returns
     -------
@@ -77,6 +77,8 @@ def drawn(items: Sequence[Results], picture: str | pathlib.Path | None = None,
         raise ValueError(f"{place}: a picture ends in {', '.join(FORMATS)}")
     if place and not place.parent.is_dir():
         raise ValueError(f"{place}: its folder does not exist; make the folder first")
+    if len(items) == 1 and isinstance(items[0], Sweep) and kind in items[0]:
+        return [(kind, figure := sweeping.one(items[0], kind), saved(figure, place))]
     kinds = [kind] if kind else kinds_of(items)
     if kinds == ["sweep"]:
         if len(items) > 1:

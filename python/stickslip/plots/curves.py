@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..results import Results
-from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, Figure, Line2D, curve, drag, fraction, memory, number, numpy,
-                    scale, step, styled, title)
+from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, Figure, Line2D, curve, decades, drag, fraction, memory, number,
+                    numpy, scale, step, styled, title, units)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -81,7 +81,10 @@ def durations(items: Sequence[Results]) -> "Figure":
             for key, (_, colour) in DURATIONS.items():
                 curve(axes, item[key], colour=colour, style=lines[step(item) or 0])
         axes.set_title(rf"$\mu_s$ = {mu_s:g}, $\mu_d$ = {mu_d:g}, {noise}, $b(v) = {law}$", fontsize=9)
-        axes.set(xlabel="duration  [time]", ylabel="density  [1/time]", ylim=(0, None))
+        axes.set(xlabel="duration  [time]", ylabel="probability density  [1/time]", ylim=(0, None))
+        if all(scale(item["f_slide"].abscissa) == "log" for item in same):
+            highest = max(item[key].value.max() for item in same for key in DURATIONS)
+            axes.set(xscale="log", yscale="log", ylim=(1e-5 * highest, 2 * highest))
         axes.margins(x=0)
     return figure
 
@@ -117,7 +120,7 @@ def arrays(items: Sequence[Results]) -> "Figure":
     """Every array that no other picture shows, each in a panel of its own."""
     def panel(key: str) -> Panel:
         result = next(item[key] for item in items if key in item)
-        return (key,), key + (f"  [{result.unit}]" if result.unit else ""), scale(result.abscissa), "linear"
+        return (key,), key + units(result.unit), scale(result.abscissa), "linear"
     return _panels(items, [panel(key) for key in other_arrays(items)])
 
 
@@ -145,6 +148,9 @@ def _panel(axes: "Axes", panel: Panel, items: Sequence[Results]) -> None:
             axes.plot(t, item["S_0"].value * t, color="#888888", linewidth=0.9, linestyle=STYLES[3], zorder=1,
                       label=None if n else "$S_0 t$")
     axes.set(ylabel=y_label, xscale=x_scale, yscale=y_scale)
+    low, high = axes.get_ylim()
+    if y_scale == "log" and high < 100 * low:  # powers of ten alone would be one or two
+        decades(axes.yaxis)
     if keys[0] in ("cdf_slip", "F_slip"):
         axes.set_ylim(0, 1.03)
     if axes.get_legend_handles_labels()[1]:

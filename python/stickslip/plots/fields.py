@@ -38,23 +38,31 @@ def density(items: Sequence[Results]) -> "Figure":
 
     pdf = numpy.maximum(field.at(v).T / width, 1e-12)  # discretisation errors are on both sides of 0
     seen = numpy.flatnonzero(field.marginal_x > 1e-4 * field.marginal_x.max())
-    image = plane.pcolormesh(ends, _edges(v), pdf, norm=matplotlib.colors.LogNorm(1e-5, pdf.max()), cmap="Blues",
-                             rasterized=True)
+    image = plane.pcolormesh(ends, _edges(v), pdf, norm=matplotlib.colors.LogNorm(1e-5 * pdf.max(), pdf.max()),
+                             cmap="Blues", rasterized=True)
     stuck = field.at_rest > 0
     plane.scatter(x[stuck], 0 * x[stuck], s=900 * field.at_rest[stuck], color=STICK, zorder=3,
-                  label="sticking (area: probability)")
-    plane.set(xlim=(ends[seen[0]], ends[seen[-1] + 1]), ylim=(v[0], v[-1]), ylabel="$v$  [velocity]")
+                  label="at rest (area: probability of $X = x$)")
+    margin = 0.03 * numpy.ptp(v)  # rest is seen whole where no body moves to one of the sides
+    plane.set(xlim=(ends[seen[0]], ends[seen[-1] + 1]), ylim=(min(v[0], -margin), max(v[-1], margin)),
+              ylabel="velocity $v$  [velocity]")
     plane.legend(loc="upper left")
-    figure.colorbar(image, ax=by_v, label="density while sliding  [1/(force velocity)]")
+    figure.colorbar(image, ax=by_v, label="density of sliding  [1/(force velocity)]")
 
-    by_v.plot(field.marginal(v), v, color=SLIDE)
-    by_v.set(xlabel="density of $v$\n[1/velocity]", xlim=(0, None))
-    by_v.tick_params(labelbottom=True)
+    marginal = field.marginal(v)
+    by_v.plot(marginal, v, color=SLIDE)
+    by_v.set(xlabel="density of $V$  [1/velocity]", xlim=(0, 1.05 * marginal.max()))
+    by_v.xaxis.tick_top()
+    by_v.xaxis.set_label_position("top")  # below, it would part the plane from the levels
+    by_v.tick_params(labeltop=True, labelbottom=False)
+    by_v.annotate("", (1.05 * marginal.max(), 0), (0, 0), arrowprops={"arrowstyle": "-|>", "color": STICK})
+    by_v.annotate(r"$P_\mathrm{stick}\,\delta(v)$", (0.2, 0), xycoords=by_v.get_yaxis_transform(), xytext=(0, 3),
+                  textcoords="offset points", color=STICK)
     by_x.bar(x, field.marginal_x - field.at_rest, width * 0.9, field.at_rest, color=SLIDE, label="sliding")
     by_x.bar(x, field.at_rest, width * 0.9, color=STICK, label="sticking")
     by_x.set(xlabel="forcing $x$  [force]", ylabel="$P(X = x)$")
     by_x.legend(loc="upper left")
-    figure.suptitle(rf"{title(results)}: $P_{{stick}}$ = {field.mass_at_rest:.4f}")
+    figure.suptitle(rf"{title(results)}: $P_\mathrm{{stick}}$ = {field.mass_at_rest:.4f}", fontsize=10)
     return figure
 
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..results import Results
-from .style import ABSCISSAE, COLOURS, STYLES, Figure, Line2D, Patch, matplotlib, numpy, styled, title
+from .style import ABSCISSAE, COLOURS, STYLES, Figure, Line2D, Patch, matplotlib, numpy, styled, title, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,7 +27,7 @@ def comparison(items: Sequence[Results]) -> "Figure":
     scalars = {key: rows for key, rows in groups.items() if key in results and not results[key].dims}
     arrays = {key: rows for key, rows in groups.items() if key not in scalars}
     columns = min(COLUMNS, len(arrays)) or 1
-    heights = [0.4] + [0.8 + 0.25 * len(scalars)] * bool(scalars) + [3.0 * -(-len(arrays) // columns)] * bool(arrays)
+    heights = [0.6] + [0.8 + 0.25 * len(scalars)] * bool(scalars) + [3.0 * -(-len(arrays) // columns)] * bool(arrays)
     figure = Figure(figsize=(max(6.4, 3.1 * columns), sum(heights)))
     parts = list(figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0])
     _legend(parts[0].subplots())
@@ -64,10 +64,10 @@ def _scalars(axes: "Axes", scalars: "dict[str, Rows]") -> None:
         axes.errorbar((rows["reference"] - rows["value"]) / scale, [n], xerr=_bars(rows) / scale, fmt="o",
                       color=REFERENCE, markersize=4, capsize=3)
         axes.text(1.02, n, f"{rows['value'][0]:.6g}", transform=axes.get_yaxis_transform(), va="center", fontsize=8)
-    axes.text(1.02, 1.0, "our value", transform=axes.transAxes, va="bottom", fontsize=8)
+    axes.text(1.02, 1.0, "computed", transform=axes.transAxes, va="bottom", fontsize=8)
     axes.axvspan(-WIDTH, WIDTH, color="#777777", alpha=0.1, linewidth=0)
     axes.set(yticks=range(len(names)), yticklabels=names, ylim=(-0.6, len(names) - 0.4),
-             xlabel="reference minus ours  [standard deviations of the difference]")
+             xlabel="reference minus computed  [standard deviations of the difference]")
     axes.grid(axis="y", visible=False)
 
 
@@ -92,15 +92,15 @@ def _array(above: "Axes", below: "Axes", results: Results, key: str, rows: "Rows
     if key == "entry_law":
         below.xaxis.set_major_locator(matplotlib.ticker.MaxNLocator(integer=True))
     unit = results[key].unit if key in results else ""
-    above.set_title(f"{key}  [{unit}]" if unit else key, fontsize=9)
+    above.set_title(key + units(unit), fontsize=9)
     above.tick_params(labelbottom=False)
 
 
 def _legend(axes: "Axes") -> None:
-    handles = [Line2D([], [], color=OURS, label="ours"), Patch(color=OURS, alpha=0.3, label="our 95 % interval"),
-               Line2D([], [], color=REFERENCE, marker="o", markersize=4, label="reference, 95 %"),
-               Patch(color="#777777", alpha=0.15, label=r"$\pm$1.96 deviations")]
-    axes.legend(handles=handles, loc="center", ncol=len(handles), columnspacing=1.2)
+    handles = [Line2D([], [], color=OURS, label="computed"), Patch(color=OURS, alpha=0.3, label="computed, 95 %"),
+               Line2D([], [], color=REFERENCE, marker="o", markersize=4, label="reference, 95 % confidence interval"),
+               Patch(color="#777777", alpha=0.15, label=r"$\pm$1.96 standard deviations")]
+    axes.legend(handles=handles, loc="center", ncol=2, columnspacing=1.2)
     axes.axis("off")
 
 
@@ -116,14 +116,14 @@ def cost(items: Sequence[Results]) -> "Figure":
             continue
         axes.plot(table["seconds"], table["error"], color=COLOURS[n], linestyle=STYLES[n], marker="os^D"[n],
                   markersize=4, label=name)
-        for end, side, shift in ((0, "left", (5, 5)), (-1, "right", (-2, -11))):
+        for end, shift in ((0, (5, -14 if method == "monte_carlo" else 5)), (-1, (6, -3))):
             value = table[parameter][end]
             told = (rf"$10^{{{math.log10(value):.0f}}}$ excursions" if parameter == "excursions" else
                     f"{parameter}{' ' if parameter == 'degree' else ' = '}{value:g}")
             axes.annotate(told, (table["seconds"][end], table["error"][end]), textcoords="offset points",
-                          xytext=shift, fontsize=7, ha=side, color=COLOURS[n])
+                          xytext=shift, fontsize=7, color=COLOURS[n])
     axes.set(xscale="log", yscale="log", xlabel="time  [s]", ylabel="largest relative error")
-    axes.margins(x=0.15)
+    axes.margins(x=0.2)
     axes.legend(loc="lower right")
     axes.set_title(title(results), fontsize=9)
     return figure

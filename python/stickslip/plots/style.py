@@ -2,6 +2,7 @@
 
 import functools
 import pathlib
+import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ from ..results import Result, Results
 if TYPE_CHECKING:
     import numpy
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 numpy, matplotlib = needed("numpy"), needed("matplotlib")
 needed("matplotlib.figure")
@@ -21,10 +23,18 @@ COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#222222")
 STYLES = ("-", "--", "-.", (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5, 1, 1.5)))
 MARKERS = "os^Dv"
 LOOK = {"figure.facecolor": "white", "axes.grid": True, "grid.color": "#e4e4e4", "axes.axisbelow": True,
-        "legend.frameon": False, "font.size": 9, "savefig.dpi": 160, "figure.constrained_layout.use": True}
-ABSCISSAE = {"omega": r"$\omega$  [1/time]", "time": "$t$  [time]", "lambda": r"$\lambda$  [1/time]", "k": "level $i$",
-             "distance": "path length $d$  [length]", "inverse_distance": "$s$  [1/length]",
-             "velocity": "$w$  [velocity]", "mode": "mode"}
+        "legend.frameon": False, "font.size": 9, "savefig.dpi": 120, "figure.constrained_layout.use": True}
+ABSCISSAE = {"omega": r"angular frequency $\omega$  [1/time]", "time": "time $t$  [time]",
+             "lambda": r"$\lambda$  [1/time]", "k": "level $i$", "distance": "path length $d$  [length]",
+             "inverse_distance": "$s$  [1/length]", "velocity": "speed $w$  [velocity]", "mode": "mode"}
+WORDS = {"mu_s": r"static friction $\mu_s$", "mu_d": r"dynamic friction $\mu_d$", "bias": "bias $g$",
+         "tau": r"correlation time of the noise $\tau$", "delta": r"noise step $\delta$",
+         "noise_deviation": r"standard deviation of the noise $\sigma$", "drag_coefficient": "drag coefficient $c$",
+         "stribeck_velocity": "Stribeck velocity $v_s$", "P_stick": r"probability of sticking $P_\mathrm{stick}$",
+         "P_slide": r"probability of sliding $P_\mathrm{slide}$", "mean_stick": "mean duration of sticking",
+         "mean_slide": "mean duration of sliding", "mean_excursion": "mean duration of an excursion",
+         "E_V": "mean velocity $E[V]$", "E_V2": "$E[V^2]$", "E_absV": "mean speed $E[|V|]$", "E_XV": "$E[XV]$",
+         "S_v": "power spectral density $S_v$", "diffusivity": "diffusivity $S_0/2$"}
 
 
 def styled(draw: Callable[..., Any]) -> Callable[..., Any]:
@@ -83,6 +93,18 @@ def scale(values: "numpy.ndarray") -> str:
     return "log" if even else "linear"
 
 
+def units(text: str) -> str:
+    """A unit of the program, such as "velocity^2*time", in brackets; TeX. Empty where there is none."""
+    return "  [" + re.sub(r"\^(\d+)", r"$^\1$", text).replace("*", " ") + "]" if text else ""
+
+
+def decades(axis: "Axis") -> None:
+    """Ticks at 1, 2 and 5 times the powers of ten, as numbers; for a logarithmic axis of a few decades."""
+    axis.set_major_locator(matplotlib.ticker.LogLocator(10, (1, 2, 5)))
+    axis.set_major_formatter(lambda x, _: f"{x:g}")
+    axis.set_minor_locator(matplotlib.ticker.NullLocator())
+
+
 def number(results: Results, option: str) -> float:
     """An option that is one."""
     return float(results.options[option])
@@ -124,8 +146,10 @@ def title(results: Results) -> str:
     if not results.options:
         return ""
     bias = number(results, "bias")
-    return (rf"$\mu_s$ = {number(results, 'mu_s'):g}, $\mu_d$ = {number(results, 'mu_d'):g}, {noise(results)}, "
-            rf"$b(v) = {drag(results)}$" + (f", bias {bias:g}" if bias else ""))
+    weakening = results.options.get("friction") == "stribeck"
+    return (rf"$\mu_s$ = {number(results, 'mu_s'):g}, $\mu_d$ = {number(results, 'mu_d'):g}, "
+            + (f"$v_s$ = {number(results, 'stribeck_velocity'):g}, " if weakening else "")
+            + rf"{noise(results)}, $b(v) = {drag(results)}$" + (f", bias {bias:g}" if bias else ""))
 
 
 def fraction(x: float) -> str:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from ..results import Result, Results
 from ..sweeps import Sweep
 from . import style
-from .style import ABSCISSAE, COLOURS, MARKERS, STYLES, Figure, bars, numpy, scale, styled
+from .style import ABSCISSAE, COLOURS, MARKERS, STYLES, WORDS, Figure, bars, decades, numpy, scale, styled, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,7 +24,13 @@ def each(sweep: Sweep) -> "dict[str, Figure]":
     tells. Points that fell short are marked by crosses. An array is drawn against its abscissa, a curve for each
     value of the last option, five of them if there are more; the other options stay at their first value.
     """
-    return {key: (_scalar if result.dims == sweep.dims else _array)(sweep, result) for key, result in sweep.items()}
+    return {key: one(sweep, key) for key in sweep}
+
+
+@styled
+def one(sweep: Sweep, key: str) -> "Figure":
+    """The figure of one result, as in `each`."""
+    return (_scalar if sweep[key].dims == sweep.dims else _array)(sweep, sweep[key])
 
 
 def _array(sweep: Sweep, result: Result) -> "Figure":
@@ -38,12 +44,12 @@ def _array(sweep: Sweep, result: Result) -> "Figure":
         abscissa = result.abscissa if result.abscissa.ndim == 1 else result.abscissa[at]
         one = Result(result.key, result.value[at], result.error[at], result.unit, result.dims[-1:],
                      result.abscissa_name, abscissa, None if result.ci95 is None else result.ci95[at])
-        style.curve(axes, one, n, label=f"{last} = {values[point]:g}")
+        style.curve(axes, one, n, label=f"{_symbol(last)} = {values[point]:g}")
     name = result.abscissa_name
     low, high = numpy.nanmin(result.value), numpy.nanmax(result.value)
     axes.set(xscale=scale(abscissa), xlabel=ABSCISSAE.get(name, name), ylabel=_label(sweep, result.key),
              **({"yscale": "log", "ylim": (low / 2, high * 2)} if 0 < 100 * low < high else {}))
-    axes.set_title(", ".join(f"{name} = {sweep.coords[name][0]:g}" for name in others), fontsize=9)
+    axes.set_title(", ".join(f"{_symbol(name)} = {sweep.coords[name][0]:g}" for name in others), fontsize=9)
     axes.legend()
     return figure
 
@@ -55,14 +61,14 @@ def _scalar(sweep: Sweep, result: Result) -> "Figure":
     value, error, reached = result.value[first], result.error[first], (sweep.status == "reached")[first]
     ci95 = None if result.ci95 is None else result.ci95[first]
     if len(sweep.dims) > 2:
-        axes.set_title(", ".join(f"{name} = {sweep.coords[name][0]:g}" for name in sweep.dims[2:]), fontsize=9)
+        axes.set_title(", ".join(f"{_symbol(name)} = {sweep.coords[name][0]:g}" for name in sweep.dims[2:]), fontsize=9)
     if len(names) == 2 and len(value) > FEW:
         _map(figure, axes, sweep, result, value, reached)
         return figure
     x = sweep.coords[names[-1]]
     rows = [numpy.s_[:]] if len(names) == 1 else range(len(value))
     for n, row in enumerate(rows):
-        label = f"{names[0]} = {sweep.coords[names[0]][n]:g}" if len(names) == 2 else None
+        label = f"{_symbol(names[0])} = {sweep.coords[names[0]][n]:g}" if len(names) == 2 else None
         curve(axes, x, value[row], error[row], n, label, None if ci95 is None else ci95[row], reached[row])
     if len(names) == 2:
         axes.legend()
@@ -89,17 +95,29 @@ def _map(figure: "Figure", axes: "Axes", sweep: Sweep, result: Result, value: "n
     down, across = sweep.dims[:2]
     y, x = sweep.coords[down], sweep.coords[across]
     rows, columns = numpy.argsort(y), numpy.argsort(x)
-    mesh = axes.pcolormesh(x[columns], y[rows], value[rows][:, columns], shading="nearest", cmap="cividis")
+    ordered = value[rows][:, columns]
+    mesh = axes.pcolormesh(x[columns], y[rows], ordered, shading="nearest", cmap="cividis")
+    if len(columns) > FEW and numpy.isfinite(ordered).all() and numpy.ptp(ordered) > 0:
+        lines = axes.contour(x[columns], y[rows], ordered, colors="white", linewidths=0.8)
+        axes.clabel(lines, fontsize=7)
     short = numpy.argwhere(~reached)
     axes.plot(x[short[:, 1]], y[short[:, 0]], linestyle="", marker="x", color="white")
     figure.colorbar(mesh, label=_label(sweep, result.key))
     axes.set(xscale=scale(x), yscale=scale(y), xlabel=_label(sweep, across), ylabel=_label(sweep, down))
+    for axis, values in ((axes.xaxis, x), (axes.yaxis, y)):
+        if scale(values) == "log":
+            decades(axis)
     axes.grid(False)
 
 
 def _label(sweep: Sweep, name: str) -> str:
     unit = sweep[name].unit if name in sweep else sweep.units.get(name, "")
-    return name + (f"  [{unit}]" if unit else "")
+    return WORDS.get(name, name) + units(unit)
+
+
+def _symbol(name: str) -> str:
+    """Of an option; its words end with it."""
+    return WORDS.get(name, name).rpartition(" ")[2]
 
 
 @styled
