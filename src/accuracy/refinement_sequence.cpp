@@ -7,9 +7,12 @@
 namespace stickslip::accuracy {
 namespace {
 
-// Errors of hp functionals fall about tenfold a degree. Each change is the error one degree lower,
-// unless that vanishes by accident; the two together rarely do. See validation/calibration.
-constexpr ErrorPerChange kHpErrorPerChange{0.65, 0.03};
+// Errors of hp functionals fall about tenfold a degree, more at low degrees than at high ones. Each
+// change is the error one degree lower, unless that vanishes by accident; the two together rarely
+// do. For each degree; see validation/calibration.
+constexpr ErrorPerChange kHpErrorPerChange{0.06, 0.0037, 1.5};
+// Where friction weakens errors fall as they otherwise do so many degrees higher.
+constexpr int kDegreesOfWeakening = 3;
 constexpr int kLowestDegree = 5, kHighestDegree = 19;
 constexpr int kDegreesLessInNoise = 1;
 
@@ -151,7 +154,12 @@ Resolution RefinementSequence::made(int n) const {
 
 ErrorPerChange RefinementSequence::error_per_change(int n) const {
   switch (method_.scheme) {
-  case options::Scheme::hp: return kHpErrorPerChange;
+  case options::Scheme::hp: {
+    const int weakening = scene_.friction.stribeck ? kDegreesOfWeakening : 0;
+    const double degrees = std::max(1, degree(n) + weakening);
+    return {degrees * kHpErrorPerChange.last, degrees * kHpErrorPerChange.earlier,
+            kHpErrorPerChange.alone};
+  }
   case options::Scheme::upwind: {
     const double ratio = static_cast<double>(points(n)) / points(n - 1);
     return {order_margin(points(n)) / std::abs(ratio - 1), 0};

@@ -53,6 +53,13 @@ TEST_CASE("estimates: two changes are added as one length, each by its factor") 
   CHECK(changes == Changes{{2}, {1, 0.5, 7}});  // the third mode is new, and all change
 }
 
+TEST_CASE("estimates: what shares no errors with means has a factor of its own") {
+  const Results coarse{scalar(quantities::kFStick0, 3, 9), scalar(quantities::kEX2, 3, 9)};
+  Results results{scalar(quantities::kFStick0, 1, 0), scalar(quantities::kEX2, 1, 0)};
+  (void)add_discretisation({3, 0.5, 4}, coarse, {{16}, {16}}, results);
+  check_errors(results, {40, std::hypot(10, 3)});
+}
+
 TEST_CASE("estimates: without an earlier change the last one counts alone") {
   Results results{scalar("f", "", 1, 0.5)};
   (void)add_discretisation({3, 0.5}, {scalar("f", "", 3, 9)}, {}, results);
@@ -72,31 +79,43 @@ Results changed(Results results, const std::vector<double>& amounts) {
 }  // namespace
 
 TEST_CASE("estimates: a change through zero is no small error, as the other means show") {
-  const Results means{scalar(quantities::kMeanSlide, 10, 0), scalar(quantities::kEV2, 4, 1e-9),
+  const Results means{scalar(quantities::kEXV, 10, 0), scalar(quantities::kEV2, 4, 1e-9),
                       scalar(quantities::kEAbsV, 2, 0)};
   // Relative changes of 0.3, 1e-12 and 0.4 have the mean square 0.25/3.
-  const double shared = 0.1 * std::sqrt(0.25 / 3);
+  const double shared = 0.3 * std::sqrt(0.25 / 3);
   check_errors(changed(means, {3, 4e-12, 0.8}),
                {std::hypot(3, 10 * shared), 1e-9 + 4 * shared, std::hypot(0.8, 2 * shared)});
 }
 
+TEST_CASE("estimates: durations and functions of the velocity share errors among themselves") {
+  const Results means{scalar(quantities::kMeanSlide, 10, 0),
+                      scalar(quantities::kMeanExcursion, 20, 0),
+                      scalar(quantities::kSlipRate, 0.05, 0), scalar(quantities::kEV2, 4, 0),
+                      scalar(quantities::kEAbsV, 2, 0)};
+  // Relative changes of 0.3, 2e-12, 0.4 of durations and rates, and of 2e-12 and 0.5.
+  const double of_time = 0.3 * std::sqrt(0.25 / 3), of_velocity = 0.3 * std::sqrt(0.25 / 2);
+  check_errors(changed(means, {3, 4e-11, 0.02, 8e-12, 1}),
+               {std::hypot(3, 10 * of_time), 20 * of_time, std::hypot(0.02, 0.05 * of_time),
+                4 * of_velocity, std::hypot(1, 2 * of_velocity)});
+}
+
 TEST_CASE("estimates: the drift takes its share of the errors of means, and gives none") {
   constexpr double small = 0x1p-20;
-  const Results means{scalar(quantities::kMeanStick, -10, 0), scalar(quantities::kEV, 0.5, 0),
+  const Results means{scalar(quantities::kEAbsV, -10, 0), scalar(quantities::kEV, 0.5, 0),
                       scalar(quantities::kFStick0, 1, 0)};
   // A density is no mean.
-  check_errors(changed(means, {2, 100, small}), {std::hypot(2, 0.2), std::hypot(100, 0.01), small});
+  check_errors(changed(means, {2, 100, small}), {std::hypot(2, 0.6), std::hypot(100, 0.03), small});
   check_errors(changed(means, {2, small, small}),
-               {std::hypot(2, 0.2), std::hypot(small, 0.01), small});
+               {std::hypot(2, 0.6), std::hypot(small, 0.03), small});
   const Results drift{scalar(quantities::kEV, 0.5, 0)};
   check_errors(changed(drift, {small}), {small});
 }
 
 TEST_CASE("estimates: what changes by less than 1e-13 does not depend on the discretisation") {
-  const Results means{scalar(quantities::kMeanStick, 8, 0), scalar(quantities::kEV2, 1, 0),
+  const Results means{scalar(quantities::kEAbsV, 8, 0), scalar(quantities::kEV2, 1, 0),
                       scalar(quantities::kEXV, 1, 0)};
   const double above = 0x1p-43, below = 0x1p-44;  // 1.1e-13 and 0.6e-13
-  const double shared = 0.1 * 0.25 / std::sqrt(3);
+  const double shared = 0.3 * 0.25 / std::sqrt(3);
   check_errors(changed(means, {2, above, below}), {std::hypot(2, 8 * shared), shared, below});
 }
 
@@ -105,12 +124,12 @@ TEST_CASE("estimates: probabilities of the phases share what their ratio does") 
   const Results shares{scalar(quantities::kPStick, 0.2, 0), scalar(quantities::kPSlide, 0.8, 0),
                        scalar(quantities::kMeanExcursion, 10, 0),
                        scalar(quantities::kPWithin, 0.5, 0)};
-  const double shared = 0.1 * 0.5 * 0.16;
+  const double shared = 0.3 * 0.5 * 0.16;
   constexpr double small = 0x1p-20;
   check_errors(changed(shares, {small, 1, 5, small}),
-               {std::hypot(small, shared), std::hypot(1, shared), std::hypot(5, 0.5), small});
+               {std::hypot(small, shared), std::hypot(1, shared), std::hypot(5, 1.5), small});
   check_errors(changed(shares, {0, 0.7, 5, 0}),
-               {0, std::hypot(0.7, shared), std::hypot(5, 0.5), 0});
+               {0, std::hypot(0.7, shared), std::hypot(5, 1.5), 0});
 }
 
 TEST_CASE("estimates: probabilities of the phases follow the errors of both mean durations") {
@@ -118,14 +137,14 @@ TEST_CASE("estimates: probabilities of the phases follow the errors of both mean
                        scalar(quantities::kMeanStick, 10, 0),
                        scalar(quantities::kMeanSlide, 40, 0)};
   // Relative changes of 0.3 and 0.4 have the root mean square 0.25 sqrt(2).
-  const double shared = 0.1 * 0.25 * std::sqrt(2);
+  const double shared = 0.3 * 0.25 * std::sqrt(2);
   const double stick = std::hypot(3, 10 * shared), slide = std::hypot(16, 40 * shared);
-  const double of_ratio = 0.16 * std::hypot(stick / 10, slide / 40);
+  const double of_ratio = 0.5 * 0.16 * std::hypot(stick / 10, slide / 40);
   check_errors(changed(phases, {0x1p-20, 0.5, 3, 16}),
                {of_ratio, std::hypot(0.5, 0.16 * shared), stick, slide});
 }
 
-TEST_CASE("estimates: an entry has half the error of its neighbours, and no more than relative") {
+TEST_CASE("estimates: an entry has 0.7 of the error of its neighbours, and no more than relative") {
   Result curve = array("f_stick", "1/time", "time", {1, 2, 3, 4, 5, 6});
   curve.value = {8, 8, -16, 8, 2, 0};
   curve.error.assign(6, 0);
@@ -135,7 +154,7 @@ TEST_CASE("estimates: an entry has half the error of its neighbours, and no more
   coarse[0].value[1] += small;
   coarse[0].value[3] += 1;
   (void)add_discretisation({1, 0}, coarse, {}, results);
-  check_errors(results, {small / 2, 0.5, 0.5, 1, 0.125, 0});
+  check_errors(results, {0.7 * small, 0.7, 0.7, 1, 0.7 / 4, 0});
 }
 
 TEST_CASE("estimates: modes keep their own errors") {
@@ -145,5 +164,5 @@ TEST_CASE("estimates: modes keep their own errors") {
   Results coarse = results;
   coarse[0].value[0] = 15;
   (void)add_discretisation({1, 0}, coarse, {}, results);
-  check_errors(results, {std::hypot(5, 0.5), 1e-6, 1e-6, 1e-6});
+  check_errors(results, {std::hypot(5, 1.5), 1e-6, 1e-6, 1e-6});
 }

@@ -19,28 +19,31 @@ using Changes = std::vector<std::vector<double>>;
 struct ErrorPerChange {
   double last = 1;     ///< the change to this discretisation
   double earlier = 0;  ///< the change to the one before
+  double alone = 1;    ///< both, of what shares no errors with means of its family
 };
 
 /// Adds the error of the discretisation,
 ///
 ///   d = |(last |change from coarse|, earlier |change before|)|,   Euclidean norm,
-///   error += |(d, 0.1 size rms(d/size))|,
+///   error += |(d, 0.3 size rms(d/size))|,
 ///
-/// where the mean square is over the means of the same stationary distribution, whose errors are
-/// alike within a decade or two: a change that vanishes by accident hides an error, which the
-/// changes before it and of the other means show. The size of a mean is its value; that of P_stick
-/// and P_slide, of which P_slide/P_stick is a ratio of two means, is P_stick P_slide. What changes
-/// by less than 1e-13 does not depend on the discretisation and takes no share; the drift, which
-/// may vanish, gives none. Where mean_stick and mean_slide are among the results, P_stick and
-/// P_slide have at least what follows from the errors of both,
+/// where the mean square is over the means of the same stationary distribution and family, whose
+/// errors are alike within a decade or two: a change that vanishes by accident hides an error,
+/// which the changes before it and of the other means show. Durations are one family, functions of
+/// the velocity the other. The size of a mean is its value; that of P_stick and P_slide, of which
+/// P_slide/P_stick is a ratio of two durations, is P_stick P_slide. What changes by less than 1e-13
+/// does not depend on the discretisation and takes no share; the drift, which may vanish, gives
+/// none. Where mean_stick and mean_slide are among the results, P_stick and P_slide have at least
+/// half of what follows from the errors of both,
 ///
-///   error = P_stick P_slide |(error of mean_stick/mean_stick, error of mean_slide/mean_slide)|.
+///   error = 0.5 P_stick P_slide |(error of mean_stick/mean_stick, error of
+///   mean_slide/mean_slide)|.
 ///
 /// An entry u_i of an array over anything but modes gets at least
 ///
-///   error_i = 0.5 max over |j - i| <= 2 of d_j min(1, |u_i/u_j|),
+///   error_i = 0.7 max over |j - i| <= 2 of d_j min(1, |u_i/u_j|).
 ///
-/// all other results their d.
+/// What is no mean and no probability of a phase has `alone` d in the place of d.
 ///
 /// A value that `coarse` lacks is all change; `before` is empty where there are no two coarser
 /// discretisations. Returns the changes from `coarse`.
