@@ -10,9 +10,9 @@ namespace {
 // Errors of hp functionals fall about tenfold a degree, more at low degrees than at high ones. Each
 // change is the error one degree lower, unless that vanishes by accident; the two together rarely
 // do. For each degree; see validation/calibration.
-constexpr ErrorPerChange kHpErrorPerChange{0.06, 0.0037, 1.5};
+constexpr ErrorPerChange kHpErrorPerChange{0.08, 0.005, 1.3};
 // Where friction weakens errors fall as they otherwise do so many degrees higher.
-constexpr int kDegreesOfWeakening = 3;
+constexpr int kDegreesOfWeakening = 4;
 constexpr int kLowestDegree = 5, kHighestDegree = 19;
 constexpr int kDegreesLessInNoise = 1;
 

@@ -260,12 +260,12 @@ TEST_CASE("refinement sequence: two hp changes make an error, the larger the hig
   const accuracy::RefinementSequence sequence(given);
   for (int n = 1; n < 5; ++n) {
     const int degree = sequence.refinement_level(n).degree;
-    CHECK(sequence.error_per_change(n).last == Approx(0.06 * degree));
-    CHECK(sequence.error_per_change(n).earlier == Approx(0.0037 * degree));
+    CHECK(sequence.error_per_change(n).last == Approx(0.08 * degree));
+    CHECK(sequence.error_per_change(n).earlier == Approx(0.005 * degree));
   }
   CHECK_FALSE(sequence.first_order());
   given.scene.friction.stribeck = model::Stribeck{0.1, 1};
   const accuracy::RefinementSequence weakening(given);
   const int degree = weakening.refinement_level(1).degree;
-  CHECK(weakening.error_per_change(1).last == Approx(0.06 * (degree + 3)));
+  CHECK(weakening.error_per_change(1).last == Approx(0.08 * (degree + 4)));
 }
