@@ -92,9 +92,9 @@ class Refiner {
       if (sequence_.first_order() && hopeless(n)) return;
     }
     outcome_.shortfall = given_.method.fixed()
-                             ? "the discretisation is fixed by hand; leave -degree, -layers and -p "
-                               "out to have it refined"
-                             : "no finer discretisation is tried";
+                             ? "-degree, -layers or -p fixes the discretisation; leave them out to "
+                               "have it refined"
+                             : "the refinement sequence ends here";
   }
 
   [[nodiscard]] bool fits(const Resolution& resolution) const {
@@ -178,9 +178,9 @@ class Refiner {
     const std::string looser = least < 0.05
                                    ? fmt::format("take {}-accuracy {:.0e}",
                                                  by_lambda ? "another -lambda or " : "", 2 * least)
-                                   : "no digit of it is left: leave it out";
-    outcome_.shortfall =
-        fmt::format("{} {} to {:.1e}; {}", what_limits(), step.limiting_key, least, looser);
+                                   : "no digit of it is certain: leave it out";
+    outcome_.shortfall = fmt::format("{} the relative error of {} to {:.1e}; {}", what_limits(),
+                                     step.limiting_key, least, looser);
     return true;
   }
 
@@ -213,9 +213,10 @@ class Refiner {
     const double held = speed_->at_top, sliding = 1 - speed_->at_rest;
     if (held <= question_.accuracy * sliding) return;
     outcome_.reached = false;
-    outcome_.shortfall = fmt::format(
-        "-v_max = {:g} holds back {:.1e} of the sliding time; leave it out, or take it larger",
-        *given_.scene.v_max, held / sliding);
+    outcome_.shortfall = fmt::format("-v_max = {:g} truncates the velocity, and {:.1e} of the "
+                                     "sliding time is spent there; leave it out, or take it "
+                                     "larger",
+                                     *given_.scene.v_max, held / sliding);
   }
 
   // Errors that are too small betray themselves where results leave their bounds.

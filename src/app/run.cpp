@@ -84,8 +84,8 @@ accuracy::Progress progress_of(const options::Request& request, bool first_rank)
     if (r.scheme == options::Scheme::hp) axis = fmt::format("degree {}", r.degree);
     if (r.scheme == options::Scheme::upwind) axis = fmt::format("p = {}", r.points);
     const std::string time = seconds < 1 ? "" : fmt::format(", about {:.0f} s", seconds);
-    print_error(fmt::format("step {}: {}, {} noise levels on each side, {} unknowns{}", step + 1,
-                            axis, r.levels, accuracy::unknowns(request.scene, r), time));
+    print_error(fmt::format("refinement level {}: {}, {} noise levels on each side, {} unknowns{}",
+                            step + 1, axis, r.levels, accuracy::unknowns(request.scene, r), time));
   };
 }
 
@@ -170,7 +170,7 @@ int run_sweep(const options::Request& request, Clock::time_point start, double s
     }
     deliver(request, sweep, times);
     if (status != 0)
-      print_error("stickslip: some points fell short; the table says which, and why");
+      print_error("stickslip: some points failed or missed the accuracy; the table lists them");
   }
   MPI_Bcast(&status, 1, MPI_INT, 0, comm);
   return status;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "stickslip/io/parts.hpp"
+#include "stickslip/support/number_text.hpp"
 
 namespace stickslip::io {
 namespace {
@@ -19,38 +20,69 @@ const char* symmetry_name(operators::Symmetry symmetry) {
 }
 
 std::string system_name(const operators::SystemKey& key) {
-  const bool symmetry_reduced = key.symmetry != operators::Symmetry::none;
+  const bool reduced = key.symmetry != operators::Symmetry::none;
   const bool by_time = key.clock == operators::Clock::time;
+  const std::string limit =
+      std::isinf(key.speed_limit) ? "" : fmt::format(", |v| <= {:g}", key.speed_limit);
   return fmt::format("{} = {:g}, {}{}", by_time ? "lambda" : "s", key.lambda,
-                     symmetry_reduced ? symmetry_name(key.symmetry) : "both half lines",
-                     std::isinf(key.speed_limit) ? "" : ", cut");
+                     reduced ? fmt::format("{} functions", symmetry_name(key.symmetry))
+                             : "v of both signs",
+                     limit);
 }
 
 std::string solves_text(const routes::Use& use) {
   if (use.forward == 0) return fmt::format("{} transposed", use.transposed);
-  return fmt::format("{} plain", use.forward);
+  return fmt::format("{} forward", use.forward);
 }
 
-std::string task_lines(const options::Question& question, const routes::Task& task) {
-  std::string text;
+void add_task(const options::Question& question, const routes::Task& task, TextTable& table) {
   std::string name = routes::task_name(question, task);
-  const auto line = [&](const std::string& system, const std::string& solves) {
-    text += fmt::format("{:<34} {:<28} {}\n", name, system, solves);
+  const auto add = [&](const std::string& system, const std::string& solves) {
+    table.add({name, system, solves});
     name.clear();
   };
-  for (const auto& use : task.uses) line(system_name(use.system), solves_text(use));
-  if (task.derivatives > 0) line("its derivatives", fmt::format("{} assemblies", task.derivatives));
-  if (task.adaptive) {
-    line("its own, by accuracy", fmt::format("usually {} factorisations, {} solves",
-                                             task.usual_factorizations, task.usual_solves));
+  for (const auto& use : task.uses) add(system_name(use.system), solves_text(use));
+  if (task.derivatives > 0) {
+    add("derivatives of its matrix", fmt::format("{} assemblies", task.derivatives));
   }
-  return text;
+  if (task.adaptive) {
+    add(fmt::format("adaptive: about {} factorisations", task.usual_factorizations),
+        fmt::format("about {}", task.usual_solves));
+  }
 }
 
-std::string step_line(const accuracy::PredictedStep& step, std::size_t number) {
-  return fmt::format("{:<4} {} {:>14.4g} {:>8.0f} {:>9.3g}\n", number,
-                     size_cells(step.resolution, step.unknowns, step.nonzeros), step.factor_entries,
-                     step.megabytes, step.seconds);
+std::string tasks_table(const options::Question& question, const routes::Plan& plan) {
+  if (plan.tasks.empty()) {
+    return "sizes only: the linear systems of this solution method, on v of both signs, are not "
+           "counted\n";
+  }
+  TextTable table({{"task", true}, {"linear system", true}, {"solves", true}});
+  for (const auto& task : plan.tasks) add_task(question, task, table);
+  return "on each refinement level\n" + table.text() +
+         fmt::format("total{}: {} assemblies, {} factorisations, {} solves\n",
+                     plan.adaptive() ? ", adaptive tasks not counted" : "", plan.assemblies(),
+                     plan.factorizations(), plan.solves());
+}
+
+std::string steps_table(options::Scheme scheme, const std::vector<accuracy::PredictedStep>& steps) {
+  auto columns = size_columns(scheme);
+  const bool system = scheme != options::Scheme::none;
+  if (system) {
+    columns.insert(columns.end(), {{"entries", false, "factor"}, {"MB", false, "factors"}});
+  }
+  columns.push_back({"s", false, "total"});
+  TextTable table(std::move(columns), 1);
+  for (const auto& step : steps) {
+    auto cells = size_cells(step.resolution, step.unknowns, step.nonzeros);
+    if (system) {
+      cells.push_back(count_text(step.factor_entries));
+      cells.push_back(fmt::format("{:.0f}", step.megabytes));
+    }
+    // What is not predicted is 0.
+    cells.push_back(step.seconds > 0 ? seconds_text(step.seconds) : "-");
+    table.add(std::move(cells));
+  }
+  return table.text();
 }
 
 Json step_json(const accuracy::PredictedStep& step) {
@@ -80,30 +112,22 @@ Json task_json(const options::Question& question, const routes::Task& task) {
 }  // namespace
 
 std::string table(const options::Request& request, const accuracy::Prediction& prediction) {
-  std::string text = scene_line(request.scene);
+  std::string text = scene_text(request.scene) + "\n";
   const auto& plan = prediction.plan;
   if (!accuracy::needs_system(request)) {
-    return text + "\nclosed formulas only: no system is assembled, factored or solved\n";
+    return text + "closed-form results only: no linear system is assembled, factored or solved\n";
   }
   if (request.method.route == options::Route::monte_carlo) {
-    return text + fmt::format("\n{:g} excursions are simulated; no system is assembled\n",
+    return text + fmt::format("{:g} excursions are simulated; no linear system is assembled\n",
                               request.method.excursions);
   }
-  text += "\non each discretisation\n";
-  for (const auto& task : plan.tasks) text += task_lines(request.question, task);
-  if (plan.tasks.empty()) text += "the systems of the route, on both half lines\n";
-  text += fmt::format("in all {}{} assemblies, {} factorisations, {} solves\n\n",
-                      plan.adaptive() ? "at least " : "", plan.assemblies(), plan.factorizations(),
-                      plan.solves());
-  text += fmt::format("step {} {:>14} {:>8} {:>9}\n", size_titles(request.method.scheme),
-                      "factor entries", "MB", "seconds");
-  for (std::size_t n = 0; n < prediction.steps.size(); ++n) {
-    text += step_line(prediction.steps[n], n);
-  }
+  text += tasks_table(request.question, plan) + "\n" +
+          steps_table(request.method.scheme, prediction.steps);
   if (plan.tasks.empty()) return text;
-  return text + fmt::format("about {:.2g} s for these steps; an accuracy that is missed takes "
-                            "more of them\n",
-                            prediction.seconds);
+  return text +
+         fmt::format("about {:.2g} s for these refinement levels; finer ones follow if error "
+                     "estimates exceed -accuracy\n",
+                     prediction.seconds);
 }
 
 std::string summary(MPI_Comm comm, const options::Request& request,

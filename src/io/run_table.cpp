@@ -4,58 +4,58 @@
 #include <cmath>
 
 #include "stickslip/io/parts.hpp"
+#include "stickslip/support/number_text.hpp"
 #include "stickslip/support/statistics.hpp"
+#include "stickslip/support/text.hpp"
 
 namespace stickslip::io {
 
 namespace {
 
-std::string noise_text(const model::Scene& s) {
+void add_noise(const model::Scene& s, std::vector<std::string>& parts) {
   const auto& noise = s.noise;
-  if (noise.name == "file") return "levels of " + noise.file;
-  if (noise.name == "telegraph") {
-    return fmt::format("telegraph a = {:g}, rate = {:g}", noise.amplitude, noise.rate);
+  if (noise.name == "file") {
+    parts.push_back("noise levels of " + noise.file);
+  } else if (noise.name == "telegraph") {
+    parts.push_back(
+        fmt::format("telegraph noise a = {:g}, rate = {:g}", noise.amplitude, noise.rate));
+  } else {
+    parts.push_back(fmt::format("tau = {:g}", s.tau));
+    parts.push_back(fmt::format("delta = {:g}", s.delta));
+    if (noise.deviation) parts.push_back(fmt::format("noise_deviation = {:g}", *noise.deviation));
   }
-  const auto own = noise.deviation ? fmt::format("   deviation = {:g}", *noise.deviation) : "";
-  return fmt::format("tau = {:g}   delta = {:g}{}", s.tau, s.delta, own);
+}
+
+std::string drag_text(const model::Scene& s) {
+  if (s.drag.law) return "drag b(v) = " + s.drag_expression;
+  std::string text = "drag " + s.drag_name;
+  if (s.drag.linear > 0) text += fmt::format(", c = {:g}", s.drag.linear);
+  if (s.drag.cubic > 0) text += fmt::format(", c3 = {:g}", s.drag.cubic);
+  return text;
 }
 
 }  // namespace
 
-std::string scene_line(const model::Scene& s) {
-  std::string drag = s.drag_name;
-  if (s.drag.linear > 0) drag += fmt::format(", c = {:g}", s.drag.linear);
-  if (s.drag.law) drag = "b(v) = " + s.drag_expression;
-  if (s.drag.cubic > 0) drag += fmt::format(", c3 = {:g}", s.drag.cubic);
-  std::string minus;
+std::string scene_text(const model::Scene& s) {
+  std::vector<std::string> parts;
+  const auto add = [&](const char* name, double value) {
+    parts.push_back(fmt::format("{} = {:g}", name, value));
+  };
+  add("mu_s", s.friction.mu_s);
+  add("mu_d", s.friction.mu_d);
   if (!s.friction.symmetric()) {
     const auto backwards = s.friction.mirrored();
-    minus = fmt::format("   mu_s_minus = {:g}   mu_d_minus = {:g}", backwards.mu_s, backwards.mu_d);
+    add("mu_s_minus", backwards.mu_s);
+    add("mu_d_minus", backwards.mu_d);
   }
   if (const auto& stribeck = s.friction.stribeck) {
-    minus += fmt::format("   stribeck_velocity = {:g}   stribeck_exponent = {:g}",
-                         stribeck->velocity, stribeck->exponent);
+    add("stribeck_velocity", stribeck->velocity);
+    add("stribeck_exponent", stribeck->exponent);
   }
-  const std::string bias = s.bias == 0 ? "" : fmt::format("   bias = {:g}", s.bias);
-  return fmt::format("mu_s = {:g}   mu_d = {:g}{}   {}   drag {}{}\n", s.friction.mu_s,
-                     s.friction.mu_d, minus, noise_text(s), drag, bias);
-}
-
-std::string size_cells(const accuracy::Resolution& r, std::int64_t unknowns,
-                       std::int64_t nonzeros) {
-  std::string axis = fmt::format("{:>13}", "exact");
-  if (r.scheme == options::Scheme::hp) axis = fmt::format("{:>6} {:>6}", r.degree, r.layers);
-  if (r.scheme == options::Scheme::upwind) axis = fmt::format("{:>13}", r.points);
-  return fmt::format("{} {:>7} {:>6} {:>8.4g} {:>9} {:>10}", axis, r.levels, r.noise_nodes(),
-                     r.v_max, unknowns, nonzeros);
-}
-
-std::string size_titles(options::Scheme scheme) {
-  const char* axis = "in v";
-  if (scheme == options::Scheme::hp) axis = "degree layers";
-  if (scheme == options::Scheme::upwind) axis = "p";
-  return fmt::format("{:>13} {:>7} {:>6} {:>8} {:>9} {:>10}", axis, "levels", "nodes", "v_max",
-                     "unknowns", "nonzeros");
+  add_noise(s, parts);
+  parts.push_back(drag_text(s));
+  if (s.bias != 0) add("bias", s.bias);
+  return spaced(parts);
 }
 
 std::string cell(double value, int digits) {
@@ -76,127 +76,123 @@ std::string csv_line(const std::vector<std::string>& cells) {
 
 namespace {
 
-constexpr std::size_t kKeyWidth = 16;
+constexpr std::size_t kLongestKey = 40;  // longer ones have a line of their own
 
-// Of the longest key.
-std::size_t key_width(const quantities::Results& results) {
-  std::size_t width = kKeyWidth;
-  for (const auto& r : results) width = std::max(width, r.key.size());
-  return width;
+void add_scalar(const quantities::Result& r, TextTable& table) {
+  const double value = r.value[0], error = r.error[0];
+  const bool alone = r.key.size() > kLongestKey;
+  if (alone) table.add_line(r.key);
+  table.add({alone ? "" : r.key, number_text(value, error), error_text(error),
+             error_text(error == 0 ? 0 : error / std::abs(value)), r.unit});
 }
 
-std::string result_lines(const quantities::Result& r, std::size_t width) {
-  if (r.is_scalar()) {
-    const double relative = r.error[0] == 0 ? 0 : r.error[0] / std::abs(r.value[0]);
-    return fmt::format("{:<{}} {:>24.17g}  {:>8.1e}  {:>8.1e}  {}\n", r.key, width, r.value[0],
-                       r.error[0], relative, r.unit);
-  }
+void add_array(const quantities::Result& r, TextTable& table) {
   constexpr std::size_t most = 12;  // the files hold all
-  std::string lines = fmt::format("{} by {}\n", r.key, r.abscissa_name);
-  for (std::size_t n = 0; n < r.value.size(); ++n) {
-    if (r.value.size() > most && n == most / 2) {
-      n = r.value.size() - most / 2;
-      lines += fmt::format("{:>{}}\n", "...", width);
-    }
-    lines +=
-        fmt::format("{:>{}g} {:>24.17g}  {:>8.1e}\n", r.abscissa[n], width, r.value[n], r.error[n]);
+  const std::string unit = r.unit.empty() ? "" : fmt::format(" [{}]", r.unit);
+  table.add_line(fmt::format("{} by {}{}", r.key, r.abscissa_name, unit));
+  const std::size_t size = r.value.size();
+  const auto shown = [&](std::size_t n) {
+    return size <= most || n < most / 2 || n >= size - most / 2;
+  };
+  std::size_t width = 0;
+  for (double at : r.abscissa) width = std::max(width, fmt::format("{:g}", at).size());
+  for (std::size_t n = 0; n < size; ++n) {
+    if (!shown(n) && shown(n - 1)) table.add({fmt::format("  {:>{}}", "...", width)});
+    if (!shown(n)) continue;
+    table.add({fmt::format("  {:>{}g}", r.abscissa[n], width), number_text(r.value[n], r.error[n]),
+               error_text(r.error[n])});
   }
-  return lines;
 }
 
-std::string step_line(const accuracy::Step& step) {
-  const auto& l = step.statistics;
-  const std::string error = step.limiting_key.empty()
-                                ? "to compare with"
-                                : fmt::format("{:.1e} {}", step.estimate, step.limiting_key);
-  return fmt::format("{} {:>8.0f} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.3f}  {}\n",
-                     size_cells(step.resolution, l.unknowns, l.nonzeros), l.factor_megabytes,
-                     l.assembly_seconds, l.analysis_seconds, l.factorization_seconds,
-                     l.solve_seconds, step.seconds, error);
+std::string results_table(const quantities::Results& results) {
+  if (results.empty()) return "";
+  TextTable table({{"quantity", true}, {"value"}, {"error"}, {"rel. error"}, {"unit", true}});
+  for (const auto& r : results) r.is_scalar() ? add_scalar(r, table) : add_array(r, table);
+  return table.text();
 }
 
-std::string simulation_lines(const monte_carlo::Simulated& simulated) {
-  const auto& s = simulated.state;
-  std::string text = fmt::format("{:.8g} excursions, ", s.excursions);
-  if (simulated.continued_from > 0) {
-    text += fmt::format("{:.8g} of them from the checkpoint, ", simulated.continued_from);
+// What stands in files alone.
+std::string elsewhere(const options::Request& request, const accuracy::Outcome& outcome) {
+  std::string text;
+  if (request.question.wants(options::Quantity::density)) {
+    text += fmt::format("density: in {}; error of the distribution function of |V| {}\n",
+                        request.output.output, error_text(outcome.speed_error));
   }
-  return text + fmt::format("{:.4g} jumps of the noise in {:.2f} s ({:.3g} ns a jump)\n", s.jumps,
-                            s.seconds, s.jumps > 0 ? 1e9 * s.seconds / s.jumps : 0);
+  if (outcome.path) {
+    text += fmt::format("trajectory up to time {:g}: {} events\n", request.question.horizon,
+                        outcome.path->time.size());
+  }
+  return text;
 }
 
-std::string comparison_line(const accuracy::Compared& c) {
+void add_row(const accuracy::Compared& c, TextTable& table) {
   const auto& r = c.reference;
-  const std::string argument = r.argument ? fmt::format("{:g}", *r.argument) : "";
-  return fmt::format("{:<16} {:>9} {:>17.10g} {:>17.10g} [{:.7g}, {:.7g}] {:>7.2f}  {}\n",
-                     r.quantity, argument, c.value, r.value, r.low, r.high, c.z,
-                     verdict_text(c.verdict));
+  // A simulation may have bounded a value from one side alone.
+  const double down = r.value - r.low, up = r.high - r.value;
+  const double half = std::isfinite(up) ? std::max(down, up) : down;
+  // A digit more than the value of an interval has: its ends are what matters.
+  const std::string interval =
+      fmt::format("[{}, {}]", number_text(r.low, half / 10), number_text(r.high, half / 10));
+  const bool long_z = std::abs(c.z) >= 1e4;
+  table.add({r.quantity, r.argument ? fmt::format("{:g}", *r.argument) : "",
+             number_text(c.value, c.error), number_text(r.value, half), interval,
+             long_z ? fmt::format("{:.1e}", c.z) : fmt::format("{:.2f}", c.z),
+             verdict_text(c.verdict)});
 }
 
 std::string comparison_table(const accuracy::Comparison& comparison, const std::string& file) {
   constexpr std::size_t most = 40;  // the files hold all
-  std::string text =
-      fmt::format("\nagainst {}\n{:<16} {:>9} {:>17} {:>17} {} {:>7}  {}\n", file, "quantity",
-                  "argument", "value", "reference", "95 % interval", "z", "verdict");
+  TextTable table({{"quantity", true},
+                   {"argument"},
+                   {"value"},
+                   {"reference"},
+                   {"interval", true, "95 % confidence"},
+                   {"z"},
+                   {"verdict", true}},
+                  1);
   const auto& rows = comparison.rows;
   for (std::size_t n = 0; n < rows.size(); ++n) {
     const bool shown = rows.size() <= most || n < most / 2 || n >= rows.size() - most / 2 ||
                        rows[n].verdict == accuracy::Verdict::disagrees;
-    if (shown) text += comparison_line(rows[n]);
-    if (!shown && n == most / 2) text += "...\n";
+    if (shown) add_row(rows[n], table);
+    if (!shown && n == most / 2) table.add_line("...");
   }
+  std::string text = fmt::format("\ncomparison with {}\n", file);
+  if (!rows.empty()) text += table.text();
   for (const auto& name : comparison.left_out) text += name + ": not computed here\n";
-  if (rows.empty()) return text + "NOTHING was compared; name the quantities of the file\n";
+  if (rows.empty()) {
+    return text + "NOTHING was compared: ask for the quantities of the file with -quantities\n";
+  }
   const auto inside = std::count_if(
       rows.begin(), rows.end(), [](const auto& row) { return std::abs(row.z) < kNormalQuantile; });
   return text +
          fmt::format("{} of {} values within 1.96 standard deviations; {}\n", inside, rows.size(),
-                     comparison.disagrees ? "the disagreement is significant at the level 1e-3"
+                     comparison.disagrees ? "significant disagreement at the family-wise level 1e-3"
                                           : "no significant disagreement");
 }
 
-std::string cost_table(const options::Request& request, const accuracy::Outcome& outcome) {
-  if (outcome.simulation) return simulation_lines(*outcome.simulation);
-  if (outcome.steps.empty()) return "no system was assembled: closed formulas only\n";
-  std::string text = fmt::format("{} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9}  {}\n",
-                                 size_titles(request.method.scheme), "MB", "assembly", "analysis",
-                                 "factor", "solve", "total s", "largest relative error");
-  for (const auto& step : outcome.steps) text += step_line(step);
-  if (outcome.total.iterations > 0) {
-    text += fmt::format("{} iterations in {} solves and {} corrections\n", outcome.total.iterations,
-                        outcome.total.solves, outcome.total.corrections);
-  }
-  for (const auto& [name, value] : outcome.steps.back().checks) {
-    text += fmt::format("{} = {:.4g}\n", name, value);
-  }
-  return text;
+std::string verdict_on_accuracy(const options::Question& question,
+                                const accuracy::Outcome& outcome) {
+  // Simulations go on to the number of excursions unless an accuracy is asked for.
+  if (outcome.simulation && !question.accuracy_given) return "";
+  return outcome.reached ? fmt::format("accuracy {:g} reached\n", question.accuracy)
+                         : wrap(fmt::format("accuracy {:g} NOT reached: {}", question.accuracy,
+                                            outcome.shortfall),
+                                kLineWidth - 2, 2) +
+                               "\n";
 }
 
 }  // namespace
 
 std::string table(const options::Request& request, const accuracy::Outcome& outcome,
                   const RunTimes& times) {
-  std::string text = scene_line(request.scene);
-  const std::size_t width = key_width(outcome.results);
-  text += fmt::format("\n{:<{}} {:>24}  {:>8}  {:>8}\n", "quantity", width, "value", "error",
-                      "relative");
-  for (const auto& result : outcome.results) text += result_lines(result, width);
-  if (request.question.wants(options::Quantity::density)) {
-    text += fmt::format("{:<{}} {:>24}  {:>8.1e}  of the distribution function of |V|\n", "density",
-                        width, "in " + request.output.output, outcome.speed_error);
-  }
-  if (outcome.path) {
-    text += fmt::format("trajectory up to {:g}: {} events\n", request.question.horizon,
-                        outcome.path->time.size());
-  }
+  std::string text = scene_text(request.scene) + "\n" + results_table(outcome.results);
+  if (outcome.simulation) text += "errors are half widths of 95 % confidence intervals\n";
+  text += elsewhere(request, outcome);
   if (outcome.comparison) text += comparison_table(*outcome.comparison, request.output.compared);
-  text += "\n" + cost_table(request, outcome);
-  // Simulations go on to the number of excursions unless an accuracy is asked for.
-  if (!outcome.simulation || request.question.accuracy_given) {
-    text += fmt::format("accuracy {:g} {}; ", request.question.accuracy,
-                        outcome.reached ? "reached" : "NOT reached: " + outcome.shortfall);
-  }
-  text += fmt::format("{:.2f} s in all, {:.2f} s of it start-up\n", times.total, times.start_up);
+  text += "\n" + cost_table(request.method.scheme, outcome);
+  text += verdict_on_accuracy(request.question, outcome);
+  text += fmt::format("{:.2f} s in total, {:.2f} s of it start-up\n", times.total, times.start_up);
   if (outcome.next_digit_seconds > 0) {
     text += fmt::format("one more digit would take about {:.2g} s\n", outcome.next_digit_seconds);
   }

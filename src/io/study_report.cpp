@@ -1,23 +1,43 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "stickslip/io/hdf5_file.hpp"
 #include "stickslip/io/parts.hpp"
+#include "stickslip/support/number_text.hpp"
 
 namespace stickslip::io {
 namespace {
 
-std::string table_text(const studies::Table& table) {
-  std::string text = "\n" + table.title + "\n";
-  for (const auto& column : table.columns) text += fmt::format("{:>17}", column);
-  text += "\n";
-  for (const auto& row : table.rows) {
-    for (double value : row) text += fmt::format("{:>17}", cell(value, 10));
-    text += "\n";
+// `error` is the number in the next column.
+std::string digits_of(double value, double error, studies::Digits digits) {
+  if (std::isnan(value)) return "";
+  switch (digits) {
+  case studies::Digits::parameter: return fmt::format("{:g}", value);
+  case studies::Digits::supported: return number_text(value, error);
+  case studies::Digits::compared: return fmt::format("{:.10g}", value);
+  case studies::Digits::error: return error_text(value);
+  case studies::Digits::order: return fmt::format("{:.3f}", value);
+  case studies::Digits::measurement: break;
   }
-  return text;
+  return fmt::format("{:.3g}", value);
+}
+
+std::string table_text(const studies::Table& table) {
+  std::vector<TextTable::Column> titles;
+  for (const auto& column : table.columns) titles.push_back({column.name});
+  TextTable text(std::move(titles));
+  for (const auto& row : table.rows) {
+    std::vector<std::string> cells;
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const double next = c + 1 < row.size() ? row[c + 1] : 0;
+      cells.push_back(digits_of(row[c], next, table.columns[c].digits));
+    }
+    text.add(std::move(cells));
+  }
+  return "\n" + table.title + "\n" + text.text();
 }
 
 Json run_json(const model::Scene& meant, const studies::Run& run) {
@@ -34,7 +54,7 @@ Json run_json(const model::Scene& meant, const studies::Run& run) {
 Json table_json(const studies::Table& table) {
   Json json{{"title", table.title}};
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    Json& column = json[table.columns[c]] = Json::array();
+    Json& column = json[table.columns[c].name] = Json::array();
     for (const auto& row : table.rows) column.push_back(row[c]);
   }
   return json;
@@ -44,11 +64,11 @@ Json table_json(const studies::Table& table) {
 
 std::string table(const options::Request& request, const studies::Study& study,
                   const RunTimes& times) {
-  std::string text = scene_line(request.scene);
+  std::string text = scene_text(request.scene);
   for (const auto& table : study.tables) text += table_text(table);
   text += "\n";
   for (const auto& line : study.conclusions) text += line + "\n";
-  return text + fmt::format("{} runs, {:.2f} s in all\n", study.runs.size(), times.total);
+  return text + fmt::format("{} runs, {:.2f} s in total\n", study.runs.size(), times.total);
 }
 
 std::string summary(MPI_Comm comm, const options::Request& request, const studies::Study& study,

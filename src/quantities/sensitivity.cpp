@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "stickslip/model/noise_chain.hpp"
+#include "stickslip/model/unit.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
@@ -35,9 +36,9 @@ Naming naming(Parameter parameter) {
 }
 
 Result derivative(const Name& of, Parameter parameter, Uncertain value) {
-  const auto [name, below] = naming(parameter);
-  const std::string above = *of.unit == 0 ? "1" : of.unit;
-  return scalar(fmt::format("d{}_d{}", of.key, name), fmt::format("{}/({})", above, below), value);
+  const auto [name, unit] = naming(parameter);
+  const model::Unit quotient = model::Unit::parse(of.unit) / model::Unit::parse(unit);
+  return scalar(fmt::format("d{}_d{}", of.key, name), quotient.text(), value);
 }
 
 /// Differences between neighbouring static levels, those beyond the ends included, of the mean stay

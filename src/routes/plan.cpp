@@ -223,16 +223,16 @@ std::string task_name(const options::Question& question, const Task& task) {
     return fmt::format("{} at lambda = {:g}", what, question.lambda[task.at]);
   };
   switch (task.work) {
-  case Work::stationary_distribution: return "stationary law";
+  case Work::stationary_distribution: return "stationary distribution";
   case Work::averages: return "averages";
-  case Work::orientation: return "entry law";
+  case Work::orientation: return "hitting distribution (entry_law)";
   case Work::sensitivity: return "sensitivity";
   case Work::duration_moments: return "moments of durations";
-  case Work::duration_transforms: return at_lambda("Laplace transforms");
-  case Work::stick_duration_transforms: return "Laplace transforms of stays";
+  case Work::duration_transforms: return at_lambda("duration transforms");
+  case Work::stick_duration_transforms: return "sticking duration transforms";
   case Work::resolvent: return at_lambda("resolvent");
   case Work::spectrum: return "spectrum";
-  case Work::durations: return "laws of durations";
+  case Work::durations: return "distributions of durations";
   case Work::slips: return "moments of slips";
   case Work::slip_transform:
     return fmt::format("transform of slips at s = {:g}", question.inverse_distance[task.at]);

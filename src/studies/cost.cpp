@@ -163,9 +163,15 @@ class CostStudy {
 
   void report(const Curve& curve) {
     Table table{curve.method,
-                curve.method + ": error is the largest relative one of a scalar",
-                {curve.parameter, "error", "seconds", "megabytes", "assembly", "analysis",
-                 "factorization", "solve"},
+                curve.method + ": largest relative error of a scalar; times in seconds",
+                {{curve.parameter, Digits::parameter},
+                 {"error", Digits::error},
+                 {"seconds", Digits::measurement},
+                 {"megabytes", Digits::measurement},
+                 {"assembly", Digits::measurement},
+                 {"analysis", Digits::measurement},
+                 {"factorization", Digits::measurement},
+                 {"solve", Digits::measurement}},
                 {}};
     for (const Point& p : curve.points) {
       const auto& l = p.statistics;
@@ -182,7 +188,7 @@ class CostStudy {
     for (const Point& p : curve.points) {
       if (p.error > 1e-12) used.push_back(p);
     }
-    if (used.size() < 3) return curve.method + ": too few points";
+    if (used.size() < 3) return curve.method + ": too few points for a rate of convergence";
     double x = 0, y = 0, xx = 0, xy = 0;
     const auto count = static_cast<double>(used.size());
     for (const Point& p : used) {
@@ -195,8 +201,8 @@ class CostStudy {
     }
     const double slope = xy / xx;
     const auto at = [&](double digits) { return std::pow(10, y + slope * (digits - x)); };
-    return fmt::format("{}: one more digit costs {:.3g} times the time; 1e-6 takes about {:.2g} s, "
-                       "1e-9 about {:.2g} s",
+    return fmt::format("{}: one more digit takes {:.3g} times the time; error 1e-6 about {:.2g} s, "
+                       "1e-9 {:.2g} s",
                        curve.method, std::pow(10, slope), at(6), at(9));
   }
 

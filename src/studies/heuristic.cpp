@@ -57,11 +57,15 @@ class Grid {
     std::map<Place, double> values;
     for (const auto& [place, run] : runs_) values[place] = value_of(run.results, key);
     extrapolate(values);
-    Table table{
-        key,
-        fmt::format("{} by the extrapolation of the paper, beside the converged value", key),
-        {"k", "l", "extrapolated", "converged", "relative_error"},
-        {}};
+    Table table{key,
+                key +
+                    " by the extrapolation of the paper, p = 2^k and delta = 2^-l; converged by hp",
+                {{"k", Digits::parameter},
+                 {"l", Digits::parameter},
+                 {"extrapolated", Digits::compared},
+                 {"converged", Digits::compared},
+                 {"relative_error", Digits::error}},
+                {}};
     for (const auto& [place, value] : values) {
       const auto [k, l] = place;
       if (is_computed(place)) continue;
@@ -115,7 +119,7 @@ Study study_heuristic(const Setting& setting) {
     double worst = 0;
     for (const auto& row : study.tables.back().rows) worst = std::max(worst, row[4]);
     study.conclusions.push_back(
-        fmt::format("{}: extrapolated values are off by up to {:.1e}", result.key, worst));
+        fmt::format("{}: largest relative error of extrapolated values {:.1e}", result.key, worst));
   }
   return study;
 }

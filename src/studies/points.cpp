@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "stickslip/support/number_text.hpp"
 #include "studies.hpp"
 
 namespace stickslip::studies {
@@ -12,8 +13,13 @@ double observed_order(double a, double b, double c) {
 
 Table table_of(const std::string& key, const std::vector<Run>& runs, double limit) {
   Table table{key,
-              key + " by the upwind scheme; kappa(p) is the observed order",
-              {"p", "value", "kappa", "richardson", "error", "richardson_error"},
+              key + " by the upwind scheme: observed order kappa(p), relative errors against hp",
+              {{"p", Digits::parameter},
+               {"value", Digits::compared},
+               {"kappa", Digits::order},
+               {"richardson", Digits::compared},
+               {"error", Digits::error},
+               {"richardson_error", Digits::error}},
               {}};
   for (std::size_t n = 0; n < runs.size(); ++n) {
     const auto at = [&](std::size_t m) { return value_of(runs[m].results, key); };
@@ -30,9 +36,10 @@ Table table_of(const std::string& key, const std::vector<Run>& runs, double limi
 std::string conclusion(const Table& table, const quantities::Result& converged) {
   const auto& last = table.rows.back();
   const auto& before = table.rows[table.rows.size() - 2];
-  return fmt::format("{}: order {:.3f}; Richardson {:.10g} +- {:.1e}; hp {:.12g} +- {:.1e}",
-                     table.name, before[2], last[3], std::abs(last[3] - before[3]),
-                     converged.value[0], converged.error[0]);
+  const double change = std::abs(last[3] - before[3]);
+  return fmt::format("{}: order {:.3f}; Richardson {} +- {:.1e}; hp {} +- {:.1e}", table.name,
+                     before[2], number_text(last[3], change), change,
+                     number_text(converged.value[0], converged.error[0]), converged.error[0]);
 }
 
 }  // namespace
@@ -46,7 +53,7 @@ Study study_points(const Setting& setting) {
     setting.report(n, steps + 1, fmt::format("p = {}", 1 << n));
     study.runs.push_back(upwind_run(setting, setting.given, 1 << n));
   }
-  setting.report(steps + 1, steps + 1, "hp to compare with");
+  setting.report(steps + 1, steps + 1, "hp, for comparison");
   const Run converged = converged_run(setting, setting.given, 1e-10);
   for (auto& run : study.runs) set_errors(converged.results, run.results);
   for (const auto& result : converged.results) {

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "stickslip/studies/limit.hpp"
+#include "stickslip/support/number_text.hpp"
 #include "studies.hpp"
 
 namespace stickslip::studies {
@@ -37,7 +38,12 @@ class Family {
   [[nodiscard]] Table table(const std::string& key) const {
     Table table{key + " " + name_,
                 fmt::format("{}, mu_s {}", key, name_),
-                {"delta", "value", "error", "order", "limit", "limit_error"},
+                {{"delta", Digits::parameter},
+                 {"value", Digits::supported},
+                 {"error", Digits::error},
+                 {"order", Digits::order},
+                 {"limit", Digits::supported},
+                 {"limit_error", Digits::error}},
                 {}};
     const auto s = samples(key);
     for (std::size_t n = 0; n < s.size(); ++n) {
@@ -71,9 +77,9 @@ class Family {
 std::string conclusion(const Table& table) {
   const auto& last = table.rows.back();
   if (std::isnan(last[4]))
-    return table.name + ": no order is seen, changes are too small or uneven";
-  return fmt::format("{}: order {:.2f}, limit {:.10g} +- {:.1e}", table.name, last[3], last[4],
-                     last[5]);
+    return table.name + ": no order of convergence; the changes are too small or irregular";
+  return fmt::format("{}: order {:.2f}, limit {} +- {:.1e}", table.name, last[3],
+                     number_text(last[4], last[5]), last[5]);
 }
 
 }  // namespace

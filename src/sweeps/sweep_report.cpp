@@ -4,6 +4,7 @@
 #include <petscsys.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 
 #include "stickslip/io/hdf5_file.hpp"
 #include "stickslip/io/parts.hpp"
+#include "stickslip/support/number_text.hpp"
 #include "stickslip/support/text.hpp"
 
 namespace stickslip::sweeps {
@@ -75,16 +77,16 @@ std::vector<Column> scalars_of(const std::vector<SweepPoint>& runs) {
   return columns;
 }
 
-// The options of the scene that stay.
+// The model parameters that stay.
 std::string fixed_options(const options::Request& request) {
-  std::string text;
+  std::vector<std::string> parts;
   for (const auto& option : options::table().front().options) {
     for (const auto& [name, value] : request.resolved) {
       if (name != option.name || value.empty() || value == "swept") continue;
-      text += fmt::format("{}{} = {}", text.empty() ? "" : "   ", name, value);
+      parts.push_back(fmt::format("{} = {}", name, value));
     }
   }
-  return text + "\n";
+  return io::spaced(parts);
 }
 
 std::string title(const options::Sweep& sweep) {
@@ -95,44 +97,68 @@ std::string title(const options::Sweep& sweep) {
   return fmt::format("sweep of {}: {} points\n", enumerate(axes, "and"), sweep.size());
 }
 
-// Of the column of an axis.
-std::size_t width(const options::SweepAxis& axis) {
-  return std::max<std::size_t>(11, axis.option.size() + 2);
-}
+/// The columns of a scalar: its values, and their errors.
+using Pair = std::array<Column, 2>;
 
-std::string row(const options::Sweep& sweep, const SweepPoint& run,
-                std::span<const Column> scalars) {
-  std::string text;
-  const auto values = sweep.values(run.point);
-  for (std::size_t a = 0; a < values.size(); ++a) {
-    text += fmt::format("{:>{}.6g}", values[a], width(sweep.axes()[a]));
+std::vector<std::string> row_cells(const options::Sweep& sweep, const SweepPoint& run,
+                                   std::span<const Pair> scalars) {
+  std::vector<std::string> cells;
+  for (double value : sweep.values(run.point)) cells.push_back(fmt::format("{:.6g}", value));
+  for (const auto& [values, errors] : scalars) {
+    const double value = values.number(run), error = errors.number(run);
+    cells.push_back(std::isnan(value) ? "" : number_text(value, error));
+    cells.push_back(std::isnan(value) ? "" : error_text(error));
   }
-  for (const Column& scalar : scalars) {
-    const double number = scalar.number(run);
-    const std::string error = std::isnan(number) ? "" : fmt::format("{:.1e}", number);
-    text += scalar.is_values() ? fmt::format("  {:>17}", io::cell(number, 10))
-                               : fmt::format(" {:>8}", error);
-  }
-  if (run.status != Status::reached) text += fmt::format("  {}", status_text(run.status));
-  return text + "\n";
+  if (run.status != Status::reached) cells.emplace_back(status_text(run.status));
+  return cells;
 }
 
 // Some scalars of all points; an empty line where the last but one axis moves on.
 std::string block(const options::Sweep& sweep, const std::vector<SweepPoint>& runs,
-                  std::span<const Column> scalars) {
-  std::string text = "\n";
-  for (const auto& axis : sweep.axes()) text += fmt::format("{:>{}}", axis.option, width(axis));
-  for (const Column& scalar : scalars) {
-    text +=
-        scalar.is_values() ? fmt::format("  {:>17}", scalar.name) : fmt::format(" {:>8}", "error");
+                  std::span<const Pair> scalars) {
+  std::vector<io::TextTable::Column> titles;
+  for (const auto& axis : sweep.axes()) titles.push_back({axis.option});
+  for (const auto& scalar : scalars) {
+    titles.push_back({scalar[0].name});
+    titles.push_back({"error"});
   }
-  text += "\n";
+  titles.push_back({"", true});  // status
+  io::TextTable table(std::move(titles));
   const std::size_t fastest = sweep.axes().back().values.size();
   for (const auto& run : runs) {
     const bool moves_on = sweep.axes().size() > 1 && run.point > 0 && run.point % fastest == 0;
-    if (moves_on) text += "\n";
-    text += row(sweep, run, scalars);
+    if (moves_on) table.add_line("");
+    table.add(row_cells(sweep, run, scalars));
   }
+  return table.text();
+}
+
+std::size_t longest_line(const std::string& text) {
+  std::size_t longest = 0;
+  for (const auto& line : split(text, '\n')) longest = std::max(longest, line.size());
+  return longest;
+}
+
+// As many scalars side by side as lines have room for.
+std::string blocks(const options::Sweep& sweep, const std::vector<SweepPoint>& runs) {
+  std::vector<Pair> pairs;
+  const auto columns = scalars_of(runs);
+  for (std::size_t n = 0; n + 1 < columns.size(); n += 2) {
+    pairs.push_back({columns[n], columns[n + 1]});
+  }
+  std::span<const Pair> left(pairs);
+  std::string text;
+  do {
+    std::size_t count = std::min<std::size_t>(1, left.size());
+    std::string best = block(sweep, runs, left.first(count));
+    for (; count < left.size(); ++count) {
+      std::string wider = block(sweep, runs, left.first(count + 1));
+      if (longest_line(wider) > io::kLineWidth) break;
+      best = std::move(wider);
+    }
+    text += "\n" + best;
+    left = left.subspan(count);
+  } while (!left.empty());
   return text;
 }
 
@@ -142,8 +168,10 @@ std::string shortfalls(const options::Sweep& sweep, const std::vector<SweepPoint
   int count = 0;
   for (const auto& run : runs) {
     if (run.status == Status::reached || ++count > most) continue;
-    text +=
-        fmt::format("{}: {}: {}\n", sweep.place(run.point), status_text(run.status), run.message);
+    text += wrap(fmt::format("{}: {}: {}", sweep.place(run.point), status_text(run.status),
+                             run.message),
+                 io::kLineWidth - 2, 2) +
+            "\n";
   }
   return count > most ? text + fmt::format("and {} more like these\n", count - most) : text;
 }
@@ -154,9 +182,9 @@ std::string counts(const SweepResult& result, const io::RunTimes& times) {
                     [](const SweepPoint& run) { return run.status == Status::reached; });
   std::string text =
       fmt::format("{} of {} points reached the accuracy; ", reached, result.runs.size());
-  if (result.resumed > 0) text += fmt::format("{} from the record; ", result.resumed);
+  if (result.resumed > 0) text += fmt::format("{} from the checkpoint; ", result.resumed);
   return text +
-         fmt::format("{:.2f} s in all, {:.2f} s of it start-up\n", times.total, times.start_up);
+         fmt::format("{:.2f} s in total, {:.2f} s of it start-up\n", times.total, times.start_up);
 }
 
 /// Datasets over the axes of the sweep, the last index within a result.
@@ -207,16 +235,7 @@ class Grid {
 std::string table(const options::Request& request, const SweepResult& result,
                   const io::RunTimes& times) {
   const auto& sweep = *request.sweep;
-  std::string text = title(sweep) + fixed_options(request);
-  const auto scalars = scalars_of(result.runs);
-  constexpr std::size_t side_by_side = 4;
-  const std::size_t count = scalars.size() / 2;
-  const std::size_t blocks = std::max<std::size_t>(1, (count + side_by_side - 1) / side_by_side);
-  for (std::size_t b = 0; b < blocks; ++b) {
-    const std::size_t first = count * b / blocks, end = count * (b + 1) / blocks;
-    text += block(sweep, result.runs, {scalars.data() + 2 * first, 2 * (end - first)});
-  }
-  text += "\n";
+  std::string text = title(sweep) + fixed_options(request) + blocks(sweep, result.runs) + "\n";
   for (const auto& column : columns_of(result.runs)) {
     if (column.result->is_scalar() || !column.is_values()) continue;
     text += fmt::format("{} by {}: in the files of -summary and -output\n", column.name,

@@ -423,7 +423,8 @@ TEST_CASE("refinement: a velocity cut by hand is an error of the time spent at i
   r.question.accuracy = 0.98 * share;
   const Outcome held = solve(r);
   CHECK_FALSE(held.reached);
-  CHECK_THAT(held.shortfall, Catch::Contains(fmt::format("holds back {:.1e}", share)));
+  CHECK_THAT(held.shortfall,
+             Catch::Contains(fmt::format("truncates the velocity, and {:.1e} of", share)));
 }
 
 TEST_CASE("refinement: a digit more takes the steps by which estimates fall") {

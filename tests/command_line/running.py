@@ -41,9 +41,9 @@ class Case(unittest.TestCase):
         return done
 
     def summary(self, *options, **how):
-        """Runs to the end and returns what -summary wrote."""
+        """Runs to the end and returns what -summary wrote; `printed` is what went to standard output."""
         file = self.folder / "summary.json"
-        self.run_ok(*options, "-summary", file, **how)
+        self.printed = self.run_ok(*options, "-summary", file, **how).stdout
         return json.loads(file.read_text())
 
     def wait_for_file(self, file, process, lines=0):

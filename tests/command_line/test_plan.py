@@ -18,7 +18,7 @@ class Plans(Case):
 
     def test_words(self):
         for words in (("-plan",), ("-plan", "yes")):
-            self.assertIn("factor entries", self.run_ok(*SMALL, *words).stdout)
+            self.assertIn("nonzeros", self.run_ok(*SMALL, *words).stdout)
         self.assertIn("P_stick", self.run_ok(*SMALL, "-plan", "no").stdout)
         self.assertIn("-plan = maybe", self.run_ok(*SMALL, "-plan", "maybe", status=2).stderr)
 
@@ -36,10 +36,10 @@ class Plans(Case):
             self.assertEqual(told["nonzeros"], made["nonzeros"])
 
     def test_other_routes(self):
-        self.assertIn("closed formulas", self.run_ok("-quantities", "noise_law", "-plan").stdout)
+        self.assertIn("closed-form results", self.run_ok("-quantities", "noise_law", "-plan").stdout)
         self.assertIn("are simulated",
                       self.run_ok(*SMALL, "-route", "monte_carlo", "-plan").stdout)
-        self.assertIn("both half lines", self.run_ok(*SMALL, "-route", "hitting", "-quantities",
+        self.assertIn("v of both signs", self.run_ok(*SMALL, "-route", "hitting", "-quantities",
                                                      "sticking", "-plan").stdout)
         for more in (("-study", "p"), ("-sweep_tau", "1,2")):
             self.assertIn("-plan", self.run_ok("-plan", *more, status=2).stderr)

@@ -221,7 +221,7 @@ class Compared(Case):
         self.assertFalse(s["comparison"]["disagrees"])
         self.assertEqual(s["comparison"]["left_out"], [])
         table = run(*SMALL, "-compare", file, folder=self.folder).stdout
-        self.assertIn("against", table)
+        self.assertIn(f"comparison with {file}", table)
         self.assertIn("agrees", table)
 
     def test_a_jump_rate_off_by_two_per_cent_is_seen(self):

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import os
 import random
 import shutil
@@ -144,7 +145,8 @@ class Files(Case):
                 self.assertEqual(sweep[key + "_error"][place], result["error"])
                 self.assertEqual(float(row[key]), result["value"])
                 self.assertEqual(float(row[key + "_error"]), result["error"])
-                self.assertIn(f"{result['value']:.10g}", done.stdout)
+                decimals = -math.floor(math.log10(result["error"])) if result["error"] else 0
+                self.assertIn(f" {result['value']:.{decimals}f} ", done.stdout)
 
     def test_arrays_of_different_length(self):
         s = self.summary("-delta", "0.5", "-sweep_mu_s", "1,2", "-quantities", "entry_law,laplace",
@@ -217,7 +219,7 @@ class Ends(Case):
             s = self.summary(*options, status=3)
             self.assertEqual(s["sweep"]["from_record"], kept)
             self.assertEqual([r["status"] for r in s["runs"]], ["not reached", "reached"])
-            self.assertIn("holds back", s["runs"][0]["message"])
+            self.assertIn("truncates the velocity", s["runs"][0]["message"])
             self.assertIn(",not reached\n", (self.folder / "s.csv").read_text())
 
     def test_points_without_memory_are_tried_again(self):

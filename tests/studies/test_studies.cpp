@@ -11,6 +11,7 @@
 #include "stickslip/studies/limit.hpp"
 #include "stickslip/studies/study.hpp"
 #include "stickslip/support/errors.hpp"
+#include "stickslip/support/number_text.hpp"
 
 using namespace stickslip;
 using options::Quantity;
@@ -43,7 +44,7 @@ const Table& table(const Study& study, const std::string& name) {
 
 std::vector<double> column(const Table& t, const std::string& name) {
   for (std::size_t c = 0; c < t.columns.size(); ++c) {
-    if (t.columns[c] != name) continue;
+    if (t.columns[c].name != name) continue;
     std::vector<double> values;
     for (const auto& row : t.rows) values.push_back(row[c]);
     return values;
@@ -98,10 +99,12 @@ TEST_CASE("studies: the table of p holds differences of its values, and errors a
       const double before = value[n] - value[n - 1], after = value[n + 1] - value[n];
       CHECK(kappa[n] == Approx(std::log2(std::abs(before / after))));
     }
+    const double change = std::abs(richardson[3] - richardson[2]);
+    const auto& converged = study.runs.back().results[r];
     CHECK_THAT(study.conclusions[r],
-               Catch::Contains(
-                   fmt::format(": order {:.3f}; Richardson {:.10g} +- {:.1e}; hp {:.12g}", kappa[2],
-                               richardson[3], std::abs(richardson[3] - richardson[2]), limit)));
+               Catch::Contains(fmt::format(": order {:.3f}; Richardson {} +- {:.1e}; hp {} +- ",
+                                           kappa[2], number_text(richardson[3], change), change,
+                                           number_text(limit, converged.error[0]))));
   }
 }
 
@@ -244,8 +247,8 @@ std::string price(const Table& t) {
   }
   algebra::LuFactors(normal).solve(line, false);
   const auto at = [&](double digits) { return std::pow(10, line[0] + line[1] * digits); };
-  return fmt::format("{}: one more digit costs {:.3g} times the time; 1e-6 takes about {:.2g} s, "
-                     "1e-9 about {:.2g} s",
+  return fmt::format("{}: one more digit takes {:.3g} times the time; error 1e-6 about {:.2g} s, "
+                     "1e-9 {:.2g} s",
                      t.name, std::pow(10, line[1]), at(6), at(9));
 }
 
@@ -285,7 +288,7 @@ TEST_CASE("studies: errors and prices of each method follow from its runs", "[sl
   for (std::size_t n = 0; n < study.tables.size(); ++n) {
     const auto error = column(study.tables[n], "error");
     const auto used = std::count_if(error.begin(), error.end(), [](double e) { return e > 1e-12; });
-    const std::string too_few = study.tables[n].name + ": too few points";
+    const std::string too_few = study.tables[n].name + ": too few points for a rate of convergence";
     CHECK(study.conclusions[n] == (used < 3 ? too_few : price(study.tables[n])));
   }
 }
@@ -332,7 +335,10 @@ TEST_CASE("studies: reports name every run and leave gaps where there is no numb
                         {quantities::scalar("P_stick", "", 0.25, 0.125)},
                         2.0,
                         {}});
-  study.tables.push_back({"P_stick", "of p", {"p", "kappa"}, {{4, std::nan("")}}});
+  study.tables.push_back({"P_stick",
+                          "of p",
+                          {{"p", studies::Digits::parameter}, {"kappa", studies::Digits::order}},
+                          {{4, std::nan("")}}});
   study.conclusions = {"so it is"};
   const Request r = request(StudyKind::points, 0.25, 0.5, 3);
   const std::string text = io::table(r, study, {});

@@ -106,12 +106,12 @@ TEST_CASE("sweeps: several ranks to a point give the same up to rounding", "[par
 }
 
 TEST_CASE("sweeps: what falls short keeps its values and stops no other", "[parallel]") {
-  // The velocity cut of 1 holds back more than the accuracy allows.
+  // Beyond the truncation velocity 1 lies more than the accuracy allows.
   const auto sweep =
       result(read({{"-delta", "0.5"}, {"-accuracy", "1e-4"}, {"-sweep_v_max", "1,3.7"}}));
   if (!first_rank()) return;
   CHECK(sweep.runs[0].status == Status::not_reached);
-  CHECK_THAT(sweep.runs[0].message, Catch::Contains("holds back"));
+  CHECK_THAT(sweep.runs[0].message, Catch::Contains("truncates the velocity"));
   CHECK(sweep.runs[0].results[0].value[0] > 0);
   CHECK(sweep.runs[1].status == Status::reached);
   CHECK(exit_status(sweep.runs) == 3);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "stickslip/io/report.hpp"
+#include "stickslip/io/text_table.hpp"
 
 namespace stickslip::io {
 
@@ -17,13 +18,18 @@ class Hdf5File;
 // to the same bits. It takes seconds to compile: sources that make JSON include it, headers do not.
 using Json = nlohmann::ordered_json;
 
-/// The scene in a line.
-[[nodiscard]] std::string scene_line(const model::Scene& scene);
-/// The sizes of a discretisation as cells of a table of steps, and their titles.
-[[nodiscard]] std::string size_cells(const accuracy::Resolution& resolution, std::int64_t unknowns,
-                                     std::int64_t nonzeros);
-[[nodiscard]] std::string size_titles(options::Scheme scheme);
-/// A number in a cell; nothing for NaN.
+/// The model parameters, on as many lines as they take.
+[[nodiscard]] std::string scene_text(const model::Scene& scene);
+/// The columns that tell the size of a discretisation, and their cells.
+[[nodiscard]] std::vector<TextTable::Column> size_columns(options::Scheme scheme);
+[[nodiscard]] std::vector<std::string> size_cells(const accuracy::Resolution& resolution,
+                                                  std::int64_t unknowns, std::int64_t nonzeros);
+/// Entries of a matrix or factorisation; "-" for none, where they are not known.
+[[nodiscard]] std::string count_text(double count);
+/// A row for each refinement level: its size, memory, times and largest relative error estimate;
+/// then iterations, and what the solution method reports of itself. Of a simulation its size.
+[[nodiscard]] std::string cost_table(options::Scheme scheme, const accuracy::Outcome& outcome);
+/// A number in a cell of CSV; nothing for NaN.
 [[nodiscard]] std::string cell(double value, int digits);
 /// A line of CSV (RFC 4180: what holds a comma stands in quotes).
 [[nodiscard]] std::string csv_line(const std::vector<std::string>& cells);

@@ -20,11 +20,26 @@ struct Run {
   petsc::SolverStatistics statistics;  ///< of the run that took this long; empty for a simulation
 };
 
+/// How many digits of a column are printed; files hold all.
+enum class Digits {
+  parameter,   ///< those that it was given with
+  supported,   ///< those that its error supports, which the next column holds
+  compared,    ///< ten, of which differences are looked at
+  error,       ///< two
+  order,       ///< three behind the point
+  measurement  ///< three
+};
+
+struct Column {
+  std::string name;
+  Digits digits;
+};
+
 /// Numbers in rows and named columns; NaN where there is none.
 struct Table {
   std::string name;   ///< such as "P_stick" or "cost hp"
   std::string title;  ///< a line for people
-  std::vector<std::string> columns;
+  std::vector<Column> columns;
   std::vector<std::vector<double>> rows;
 };
 

@@ -1,0 +1,44 @@
+#include "stickslip/support/number_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace stickslip {
+namespace {
+
+// Decimal exponent of x when it is printed with so many digits after the first.
+int exponent(double x, int digits) {
+  const std::string text = fmt::format("{:.{}e}", x, digits);
+  return std::stoi(text.substr(text.find('e') + 1));
+}
+
+}  // namespace
+
+std::string number_text(double value, double error) {
+  constexpr int all = 16;      // digits after the first that tell every double from its neighbours
+  if (value == 0) return "0";  // without the sign of -0
+  if (error == 0 || !std::isfinite(value)) return fmt::format("{}", value);
+  const int leading = exponent(value, all);
+  const int place = std::isfinite(error) ? exponent(error, 1) : leading;
+  const int digits = std::clamp(leading - place, 0, all);
+  if (digits == all) return fmt::format("{}", value);
+  // As %g does: no zeros that nobody knows, and few before the first digit.
+  const bool fixed = leading >= -4 && leading <= digits;
+  return fixed ? fmt::format("{:.{}f}", value, digits - leading)
+               : fmt::format("{:.{}e}", value, digits);
+}
+
+std::string error_text(double error) {
+  if (!std::isfinite(error)) return "-";
+  return error == 0 ? "0" : fmt::format("{:.1e}", error);
+}
+
+std::string seconds_text(double seconds) {
+  const double decimals = seconds < 1 ? 3 : 3 - std::floor(std::log10(seconds));
+  return fmt::format("{:.{}f}", seconds, static_cast<int>(std::clamp(decimals, 0.0, 3.0)));
+}
+
+}  // namespace stickslip
