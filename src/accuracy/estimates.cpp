@@ -12,7 +12,7 @@ using quantities::Kind;
 using quantities::Result;
 using quantities::Results;
 
-// Of the root mean square of relative errors of means. In 120 scenes with six drags no single mean
+// Of the root mean square of relative errors of means. In 120 cases with six drags no single mean
 // was less accurate than 0.4 of it.
 constexpr double kShared = 0.1;
 // A mean that changes less does not depend on the grid, as the mean duration of sticking at a

@@ -75,7 +75,7 @@ std::vector<Column> scalars_of(const std::vector<SweepPoint>& runs) {
   return columns;
 }
 
-// The options of the scene that stay.
+// The model parameters that are not swept.
 std::string fixed_options(const options::Request& request) {
   std::string text;
   for (const auto& option : options::table().front().options) {
@@ -95,7 +95,7 @@ std::string title(const options::Sweep& sweep) {
   return fmt::format("sweep of {}: {} points\n", enumerate(axes, "and"), sweep.size());
 }
 
-// Of the column of an axis.
+// Of the column of a sweep axis.
 std::size_t width(const options::SweepAxis& axis) {
   return std::max<std::size_t>(11, axis.option.size() + 2);
 }
@@ -154,7 +154,7 @@ std::string counts(const SweepResult& result, const io::RunTimes& times) {
                     [](const SweepPoint& run) { return run.status == Status::reached; });
   std::string text =
       fmt::format("{} of {} points reached the accuracy; ", reached, result.runs.size());
-  if (result.resumed > 0) text += fmt::format("{} from the record; ", result.resumed);
+  if (result.resumed > 0) text += fmt::format("{} from the checkpoint; ", result.resumed);
   return text +
          fmt::format("{:.2f} s in all, {:.2f} s of it start-up\n", times.total, times.start_up);
 }

@@ -38,11 +38,12 @@ TEST_CASE("noise range: beyond mu_s by as much as the tolerance asks, within the
       CHECK(levels <= 32);
       CHECK(levels >= before);
       before = levels;
-      // What is cut off weighs less than the tolerance against the level slides start from.
-      const auto law = model::stationary_distribution(s.process(32).noise);
-      double cut = 0;
-      for (int i = levels + 1; i <= 32; ++i) cut += law[32 + i];
-      CHECK(cut <= tolerance * law[32 + k + 1]);
+      // What is truncated weighs less than the tolerance against the level from which sliding
+      // starts.
+      const auto distribution = model::stationary_distribution(s.process(32).noise);
+      double truncated = 0;
+      for (int i = levels + 1; i <= 32; ++i) truncated += distribution[32 + i];
+      CHECK(truncated <= tolerance * distribution[32 + k + 1]);
     }
   }
 }
@@ -69,9 +70,10 @@ TEST_CASE("noise range: the first level whose weight with second moments is belo
     s.bias = c.bias;
     // With a bias bodies start from the farther edge, at |x| = mu_s + |g|.
     const int first = static_cast<int>(std::floor((1 + std::abs(c.bias)) / c.delta + 1e-9)) + 1;
-    const auto law = model::stationary_distribution(s.process(s.full_levels()).noise);
+    const auto distribution = model::stationary_distribution(s.process(s.full_levels()).noise);
     const auto weight = [&](int i) {
-      const double share = law[s.full_levels() + i] / law[s.full_levels() + first];
+      const double share =
+          distribution[s.full_levels() + i] / distribution[s.full_levels() + first];
       const double square = static_cast<double>(i) / first;
       return share * square * square * std::exp(c.tilt * c.delta * (i - first));
     };
@@ -85,7 +87,7 @@ TEST_CASE("noise range: the first level whose weight with second moments is belo
   }
 }
 
-TEST_CASE("velocity end: terminal velocity, or where the tail allows a cut") {
+TEST_CASE("velocity end: terminal velocity, or where the tail allows a truncation") {
   auto s = scene(1, 0.25, 1, 0.25);
   CHECK(accuracy::velocity_end(s, 32, 1e-12) == 7.75);
   s.drag = {0.001, 0};  // terminal velocity 7750
@@ -102,7 +104,7 @@ TEST_CASE("velocity end: of both signs the faster one counts") {
   }
 }
 
-TEST_CASE("resolution: unknowns are levels times nodes, on each half line") {
+TEST_CASE("resolution: unknowns are levels times nodes, on each velocity branch") {
   const auto s = scene(1, 0.25, 1, 0.25);
   accuracy::Resolution upwind;
   upwind.scheme = options::Scheme::upwind;
@@ -113,7 +115,7 @@ TEST_CASE("resolution: unknowns are levels times nodes, on each half line") {
   upwind.v_max = 3.13;
   CHECK(accuracy::unknowns(s, upwind) == 11 * 51);
   CHECK(accuracy::discretise(s, upwind).velocities->size() == 51);
-  upwind.halves = 2;
+  upwind.branches = 2;
   CHECK(accuracy::unknowns(s, upwind) == 2 * 11 * 51);
   const auto hp = hp_resolution(s, 7, 0, 1e-6);
   const int nodes = accuracy::discretise(s, hp).velocities->size();
@@ -135,7 +137,7 @@ TEST_CASE("resolution: the work of a band, or of blocks of noise nodes") {
   const auto blocks = operators::elimination_cost(accuracy::discretise(s, hp), true, 1);
   CHECK(accuracy::relative_work(s, hp) == Approx(blocks.operations));
   auto both = hp;
-  both.halves = 2;
+  both.branches = 2;
   CHECK(accuracy::relative_work(s, both) == Approx(2 * blocks.operations));
   auto by_mumps = hp;
   by_mumps.factors = options::Factors::in_memory;
@@ -148,7 +150,8 @@ TEST_CASE("resolution: the work of a band, or of blocks of noise nodes") {
         Approx(std::pow(2.0 * accuracy::exact_resolution(s, 1e-6).levels + 1, 3)));
 }
 
-TEST_CASE("resolution: the axis of the other sign has the drag of the other sign") {
+TEST_CASE(
+    "resolution: the velocity discretisation of the other sign has the drag of the other sign") {
   auto s = scene(1, 0.25, 1, 0.25);
   s.drag = model::parse_drag("-(1 + 0.3*tanh(v))*v", s.friction, 1, 8);
   s.noise_levels = 8;
@@ -324,7 +327,7 @@ TEST_CASE("refinement sequence: the noise is on nodes, of a degree by hand, or o
   CHECK(fixed.refinement_level(1).grouping.degree == 5);
   CHECK(fixed.refinement_level(0).grouping.degree == 4);
   given.method.noise_degree.reset();
-  // The routes of the paper know single levels alone.
+  // The solution methods of the paper use single levels alone.
   for (auto route :
        {options::Route::lambda, options::Route::hitting, options::Route::null_vector}) {
     given.method.route = route;
@@ -342,12 +345,12 @@ TEST_CASE("refinement sequence: the noise is on nodes, of a degree by hand, or o
 TEST_CASE("refinement sequence: both signs of v where there is no symmetry, or none is used") {
   options::Case given;
   given.scene = scene(1, 0.25, 1, 0.25);
-  CHECK(accuracy::RefinementSequence(given).refinement_level(1).halves == 1);
+  CHECK(accuracy::RefinementSequence(given).refinement_level(1).branches == 1);
   given.method.route = options::Route::null_vector;
-  CHECK(accuracy::RefinementSequence(given).refinement_level(1).halves == 2);
+  CHECK(accuracy::RefinementSequence(given).refinement_level(1).branches == 2);
   given.method.route = options::Route::excursion;
   given.scene.bias = 0.2;
-  CHECK(accuracy::RefinementSequence(given).refinement_level(1).halves == 2);
+  CHECK(accuracy::RefinementSequence(given).refinement_level(1).branches == 2);
 }
 
 TEST_CASE(
@@ -375,7 +378,8 @@ TEST_CASE(
   CHECK(rates({sticking}) == std::pair{700.0, 0.0});
 }
 
-// By MUMPS alone, whose count is its own; its analysis is enough for memory, factors tell entries.
+// By MUMPS alone, whose count is its own; its analysis is enough for memory, entries come from
+// factors.
 TEST_CASE("memory: predicted within a factor 2.5 of what MUMPS counts", "[slow]") {
   const test::Given mumps({{"-slide_pc_type", "lu"}});
   struct Case {
