@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     Rows = dict[str, numpy.ndarray]
 
 OURS, REFERENCE = COLOURS[:2]
-WIDTH = 1.96  # of a 95 % interval, in standard deviations to each side
+WIDTH = 1.96  # of a 95 % confidence interval, in standard deviations to each side
 COLUMNS = 3
 METHODS = {"hp": ("hp elements", "degree"), "upwind": ("upwind", "p"), "richardson": ("upwind, Richardson", "p"),
            "monte_carlo": ("Monte Carlo", "excursions")}
@@ -97,7 +97,8 @@ def _array(above: "Axes", below: "Axes", results: Results, key: str, rows: "Rows
 
 
 def _legend(axes: "Axes") -> None:
-    handles = [Line2D([], [], color=OURS, label="ours"), Patch(color=OURS, alpha=0.3, label="our 95 % interval"),
+    handles = [Line2D([], [], color=OURS, label="ours"),
+               Patch(color=OURS, alpha=0.3, label="our 95 % confidence interval"),
                Line2D([], [], color=REFERENCE, marker="o", markersize=4, label="reference, 95 %"),
                Patch(color="#777777", alpha=0.15, label=r"$\pm$1.96 deviations")]
     axes.legend(handles=handles, loc="center", ncol=len(handles), columnspacing=1.2)
@@ -118,9 +119,9 @@ def cost(items: Sequence[Results]) -> "Figure":
                   markersize=4, label=name)
         for end, side, shift in ((0, "left", (5, 5)), (-1, "right", (-2, -11))):
             value = table[parameter][end]
-            told = (rf"$10^{{{math.log10(value):.0f}}}$ excursions" if parameter == "excursions" else
-                    f"{parameter}{' ' if parameter == 'degree' else ' = '}{value:g}")
-            axes.annotate(told, (table["seconds"][end], table["error"][end]), textcoords="offset points",
+            label = (rf"$10^{{{math.log10(value):.0f}}}$ excursions" if parameter == "excursions" else
+                     f"{parameter}{' ' if parameter == 'degree' else ' = '}{value:g}")
+            axes.annotate(label, (table["seconds"][end], table["error"][end]), textcoords="offset points",
                           xytext=shift, fontsize=7, ha=side, color=COLOURS[n])
     axes.set(xscale="log", yscale="log", xlabel="time  [s]", ylabel="largest relative error")
     axes.margins(x=0.15)
