@@ -154,7 +154,7 @@ class Planner {
     }
   }
 
-  // How many observables have a part of that symmetry, as far as a sample of states tells; the
+  // How many observables have a part of that symmetry, as far as a sample of states shows; the
   // others are not solved for.
   [[nodiscard]] int observables_with(double (model::Observable::*part)(double, double, double)
                                          const) const {

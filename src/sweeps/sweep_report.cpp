@@ -177,8 +177,8 @@ class Grid {
     file_.write_array("/sweep/" + name, sizes_, values);
   }
 
-  // Arrays may differ in length from point to point, as the levels at which slides end do; NaN
-  // where there is nothing.
+  // Arrays may differ in length from point to point, as the levels at which sliding phases end do;
+  // NaN where there is nothing.
   void write(const Column& column) {
     const Result& r = *column.result;
     const std::string path = "/sweep/" + io::hdf5_name(column.name);

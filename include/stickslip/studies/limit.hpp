@@ -13,7 +13,7 @@ struct Sample {
 /// q for which the last three samples fit u + C delta^q; NaN if there is none.
 [[nodiscard]] double observed_order(std::span<const Sample> samples);
 
-/// NaN where the samples do not tell.
+/// NaN where the samples fit no order.
 struct Limit {
   double value, error;
 };

@@ -29,7 +29,7 @@ struct TransportRow {
 using SpeedChange = std::function<double(double v)>;
 
 /// A velocity discretisation on [0, v_max] for the speeds B(v) = net_force + b(v).
-/// Implementations are immutable; all members are local and cost O(size) unless said.
+/// Implementations are immutable; all members are local and cost O(size) unless stated.
 class VelocityDiscretisation {
  public:
   virtual ~VelocityDiscretisation() = default;
