@@ -14,14 +14,14 @@ from stickslip.program import words_of
 
 warnings.simplefilter("ignore", stickslip.AccuracyWarning)  # a discretisation fixed by hand is not refined
 
-# Open MPI refuses root, and more ranks than cores, unless told otherwise.
+# Open MPI refuses root, and more ranks than cores, without these settings.
 MPI_PERMISSIONS = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                    "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 
 
 def seed_of(options):
-    """Seed of what these options simulate: every scene has its own, the same one each time. Files are no
-    part of a scene."""
+    """Seed of what these options simulate: every case has its own, the same one each time. Files are no
+    part of a case."""
     scene = {name: value for name, value in options.items() if not isinstance(value, pathlib.Path)}
     return zlib.crc32(" ".join(words_of(scene)).encode())
 

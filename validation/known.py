@@ -1,5 +1,5 @@
-"""What several cases of validation/ hold the program against: digits of the paper, of other codes, and
-limits. mu_s = tau = 1 and b(v) = -v unless something else is said; digits as they were printed."""
+"""What several cases of validation/ compare the program with: digits of the paper, of other codes, and
+limits. mu_s = tau = 1 and b(v) = -v unless something else is stated; digits as they were printed."""
 
 # Monte Carlo values of the paper's figure of convergence in p, mu_d = 1/4, by delta.
 SIMULATED = {"P_stick": {1 / 2: "0.2898", 1 / 4: "0.1972", 1 / 8: "0.1565", 1 / 16: "0.1380",
@@ -24,5 +24,5 @@ S_V = {1 / 2: ("1.05184088", "1.03401702", "0.310095661", "1.85013e-4"),
        1 / 4: ("1.08314710", "1.06555462", "0.330747341", "1.91001e-4")}
 # F_slide(1), F_stick(1) for delta = 1 by mu_d: Chebyshev collocation, dynamics/collocation.py.
 F_1 = {1: ("0.301282642717", "0.179691207960"), 0.25: ("0.124123808609", "0.221868272518")}
-# t_corr for tau -> 0 and mu_d = 1 by the law of drag.
+# t_corr for tau -> 0 and mu_d = 1 by the drag law.
 T_CORR = {"none": 1.35446038, "linear": 0.247854704305}

@@ -4,7 +4,8 @@ usage: python3 validation/report.py [--quick] [--program build/stickslip] [--cas
                                     FOLDER
 
 Runs the cases of validation/, two at a time, and writes FOLDER/index.html with all pictures inside.
---without leaves cases out, as ctest does with those that it runs by themselves; the page says so. Exit status 1 if a claim failed; the report is written all the same.
+--without leaves cases out, as ctest does with those that it runs by themselves; the page names them. Exit
+status 1 if a claim failed; the report is written all the same.
 """
 
 import base64
@@ -35,7 +36,7 @@ caption { text-align: left; font-weight: bold; padding-bottom: 4px }
 .FAILS::before { content: "\\2717 fails: "; color: #d55e00 } .claims { font-size: 13px }
 summary { cursor: pointer }
 """
-LONG = 14  # rows of a table that is shown folded
+LONG = 14  # rows of a table that is shown collapsed
 
 
 class Progress:
@@ -125,7 +126,7 @@ def machine(program):
 def page(entries, arguments):
     body = "".join(entry_html(case, entry, arguments.folder / case)
                    for case, entry in entries.items())
-    form = "The quick form: fewer scenes and simulations. " if arguments.quick else ""
+    form = "The quick form: fewer cases and simulations. " if arguments.quick else ""
     left_out = [case for case in CASES if case not in entries]
     if left_out:
         form += f"Left out: {', '.join(left_out)}. "

@@ -1,5 +1,5 @@
 """python3 -m stickslip plot FILE... [PICTURE.png]: draws what files of the program hold.
-python3 -m stickslip explore [SCENE.opts]: sliders over a scene, pictures that follow."""
+python3 -m stickslip explore [SCENE.opts]: sliders over the model parameters, pictures that follow."""
 
 import argparse
 import pathlib
@@ -13,8 +13,8 @@ the pictures are. Exit status 2 if there is nothing to draw."""
 
 EXPLORE = """Sliders over mu_s, mu_d, tau, delta, bias and drag, choices of drag, friction law and noise. The stationary
 distribution with its marginals, probabilities and mean durations with their errors, the power spectral density of the
-velocity and the densities of durations follow. Buttons save the scene as an options file, and the picture. In a window
-(python3-tk), or in a browser on this machine (python3-tornado)."""
+velocity and the densities of durations follow. Buttons save the parameters as an options file, and the picture. In a
+window (python3-tk), or in a browser on this machine (python3-tornado)."""
 
 
 def main(words: Sequence[str] | None = None) -> int:

@@ -84,8 +84,8 @@ def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | N
                             str(summary)], timeout, cancel)
         if _stamp(summary) == before:
             kind = {NO_MEMORY: OutOfMemory, SHORT: Unsolved}.get(finished.status, ProgramError)
-            said = "the program wrote no results: " if kind is ProgramError else ""
-            raise kind(said + finished.message())
+            prefix = "the program wrote no results: " if kind is ProgramError else ""
+            raise kind(prefix + finished.message())
         found = _from_tree(json.loads(summary.read_text()))
         if output is not None and "results" in found.summary and any(
                 word in found.options.get("quantities", "") for word in FIELDS):
@@ -200,8 +200,8 @@ def _from_csv(path: pathlib.Path) -> Results:
 
 def _shortfall(found: Results, finished: Finished) -> str:
     if isinstance(found, Sweep):
-        told = {**found.failures, **found.shortfalls}
-        return f"{len(told)} of {found.status.size} points fell short: " + "; ".join(
+        messages = {**found.failures, **found.shortfalls}
+        return f"{len(messages)} of {found.status.size} points fell short: " + "; ".join(
             ", ".join(f"{name} = {found.coords[name][n]:g}" for name, n in zip(found.dims, index)) + f": {text}"
-            for index, text in list(told.items())[:3]) + ("; ..." if len(told) > 3 else "")
+            for index, text in list(messages.items())[:3]) + ("; ..." if len(messages) > 3 else "")
     return found.accuracy.get("shortfall") or finished.message()

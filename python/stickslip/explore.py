@@ -1,4 +1,4 @@
-"""Turn a knob and watch the stationary distribution move: sliders over a scene, pictures that follow."""
+"""Turn a knob and watch the stationary distribution move: sliders over the model parameters, pictures that follow."""
 
 import dataclasses
 import os
@@ -63,7 +63,7 @@ SECOND = {"quantities": "spectrum,duration_density", "omega": FREQUENCIES, "time
 
 
 class Solver(threading.Thread):
-    """Computes the newest scene asked for; what it was computing before is ended.
+    """Computes the newest parameters asked for; what it was computing before is ended.
 
     Results come in two parts, the stationary distribution first, as (number of the request, part, results or
     exception).
@@ -200,10 +200,11 @@ class Explorer:
             radio = widgets.RadioButtons(place, values, active=values.index(value))
             radio.on_clicked(lambda chosen, option=option: self.choose(option, chosen))
             setattr(self, f"_{option}", radio)  # widgets without a reference are dead
-        for n, (label, act) in enumerate((("save scene", self.save_scene), ("save PNG", lambda: self.save_picture("png")),
+        for n, (label, act) in enumerate((("save options", self.save_scene),
+                                          ("save PNG", lambda: self.save_picture("png")),
                                           ("save PDF", lambda: self.save_picture("pdf")))):
             button = widgets.Button(self.figure.add_axes((0.66 + 0.11 * n, 0.005, 0.1, 0.035)), label)
-            button.on_clicked(lambda _, act=act: self.tell(act()))
+            button.on_clicked(lambda _, act=act: self.show(act()))
             setattr(self, f"_button_{n}", button)
 
     def _in_use(self, knob: Knob) -> bool:
@@ -211,7 +212,7 @@ class Explorer:
         return not unused and (knob.choice is None or self.choices[knob.choice[0]] == knob.choice[1])
 
     def _show_knobs(self) -> None:
-        """Sliders that the choices leave no use for are hidden; the others say their value."""
+        """Sliders that the choices leave no use for are hidden; the others show their value."""
         for knob in KNOBS:
             slider = self.sliders[knob.option]
             slider.ax.set_visible(self._in_use(knob))
@@ -245,13 +246,13 @@ class Explorer:
         self.ask()
 
     def ask(self) -> None:
-        """Have the scene computed; what was being computed is ended."""
+        """Have the model computed; what was being computed is ended."""
         self.asked_at = time.monotonic()
         scene = self.scene()
-        self.tell("computing " + "  ".join(f"{name} = {value}" for name, value in scene.items()))
+        self.show("computing " + "  ".join(f"{name} = {value}" for name, value in scene.items()))
         self.solver.ask({**self.options, **scene})
 
-    def tell(self, text: str, color: str = "black") -> None:
+    def show(self, text: str, color: str = "black") -> None:
         """The line at the bottom."""
         self.status.set_color(color)
         self.status.set_text(text if len(text) < 150 else text[:147] + "...")
@@ -260,7 +261,7 @@ class Explorer:
     # From results to pictures
 
     def poll(self) -> bool:
-        """Draw what has arrived for the newest scene; whether there was any."""
+        """Draw what has arrived for the newest parameters; whether there was any."""
         news = False
         while not self.solver.results.empty():
             number, part, found = self.solver.results.get()
@@ -268,14 +269,14 @@ class Explorer:
                 continue
             news = True
             if isinstance(found, Exception):
-                self.tell(str(found).splitlines()[0], REFUSED)
+                self.show(str(found).splitlines()[0], REFUSED)
                 continue
             if part == 0:
                 self._draw_distribution(found)
-                self.tell("computing the spectrum and durations")
+                self.show("computing the spectrum and durations")
             else:
                 self._draw_dynamics(found)
-                self.tell(f"{time.monotonic() - self.asked_at:.2f} s")
+                self.show(f"{time.monotonic() - self.asked_at:.2f} s")
         return news
 
     def _draw_distribution(self, found: Results) -> None:
@@ -323,7 +324,7 @@ class Explorer:
     # Files
 
     def save_scene(self) -> str:
-        """Write the scene as an options file of the program; says where."""
+        """Write the parameters as an options file of the program; returns where."""
         path = free_name(self.folder / "explored.opts")
         given = self.options.get("options_file")
         text = pathlib.Path(given).read_text() + "\n# changed since\n" if given else ""
@@ -333,7 +334,7 @@ class Explorer:
         return f"saved {path}"
 
     def save_picture(self, ending: str) -> str:
-        """Save the figure without its knobs; says where."""
+        """Save the figure without its knobs; returns where."""
         path = free_name(self.folder / f"explored.{ending}")
         knobs = [axes for axes in self.figure.axes if axes not in (
             self.density, self.by_v, self.by_x, self.spectrum, self.durations) and axes.get_visible()]
@@ -372,7 +373,7 @@ def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = F
     Parameters
     ----------
     file
-        Options file of the scene to start from.
+        Options file to start from.
     accuracy
         Of all runs.
     browser
@@ -381,7 +382,7 @@ def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = F
     Raises
     ------
     BadInput, ProgramError
-        If the program does not take the scene.
+        If the program does not take the options.
     """
     options: dict[str, Any] = {"accuracy": accuracy}
     scene: Mapping[str, Any] = {}

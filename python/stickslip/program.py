@@ -64,10 +64,10 @@ class Finished:
     err: str
 
     def message(self) -> str:
-        """What the program says about its end, without its name in front and what mpiexec adds in frames."""
-        said = self.err.partition("-" * 60)[0].strip() or last_lines(self.out, 1)
+        """What the program reports about its end, without its name in front and what mpiexec adds in frames."""
+        printed = self.err.partition("-" * 60)[0].strip() or last_lines(self.out, 1)
         return "\n".join(line.removeprefix("stickslip: ").removeprefix("stickslip-complex: ")
-                         for line in said.splitlines())
+                         for line in printed.splitlines())
 
 
 def find_program() -> pathlib.Path:
@@ -205,5 +205,5 @@ def _end_of(finished: Finished) -> str:
         ending = f"was killed by {signal.Signals(number).name}"
     except ValueError:
         ending = f"failed with exit status {status}"
-    said = last_lines(finished.err) or last_lines(finished.out)
-    return f"the program {ending}" + (f":\n{said}" if said else "")
+    printed = last_lines(finished.err) or last_lines(finished.out)
+    return f"the program {ending}" + (f":\n{printed}" if printed else "")

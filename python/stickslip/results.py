@@ -316,11 +316,11 @@ def fields(file: "h5py.File") -> dict[str, Any]:
 
 
 def reading(path: pathlib.Path, kind: str, option: str, read: Callable[[], Any]) -> Any:
-    """What `read` returns; a file that is not of its kind is told as such."""
+    """What `read` returns; a file that is not of its kind is reported as such."""
     try:
         return read()
     except FileNotFoundError:
         raise FileNotFoundError(f"{path}: no such file; the program writes it with {option} {path}") from None
     except (OSError, ValueError, KeyError, IndexError, TypeError, AttributeError) as problem:
-        said = str(problem).splitlines()[0] if str(problem) else type(problem).__name__
-        raise ValueError(f"{path}: cannot be read as {kind} of this program: {said}") from None
+        reason = str(problem).splitlines()[0] if str(problem) else type(problem).__name__
+        raise ValueError(f"{path}: cannot be read as {kind} of this program: {reason}") from None

@@ -45,9 +45,9 @@ class Sweep(Results):
         self.dims = tuple(self.coords)
         self.status = status
         self.units = dict(units or {})
-        told = {index: messages.get(index) or str(status[index]) for index in numpy.ndindex(status.shape)}
-        self.failures = {i: text for i, text in told.items() if status[i] in STATES[2:]}
-        self.shortfalls = {i: text for i, text in told.items() if status[i] == STATES[1]}
+        texts = {index: messages.get(index) or str(status[index]) for index in numpy.ndindex(status.shape)}
+        self.failures = {i: text for i, text in texts.items() if status[i] in STATES[2:]}
+        self.shortfalls = {i: text for i, text in texts.items() if status[i] == STATES[1]}
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -81,11 +81,11 @@ class Sweep(Results):
                                tuple(dims) + one.dims[len(order):], one.abscissa_name,
                                one.abscissa if one.abscissa is None or one.abscissa.ndim == 1 else turned(one.abscissa),
                                turned(one.ci95)) for key, one in self.items()}
-        told = {**self.failures, **self.shortfalls}
+        texts = {**self.failures, **self.shortfalls}
         parts = {name: getattr(self, name) for name in
                  ("options", "name", "summary", "scene", "cost", "plan", "provenance", "accuracy", "units")}
         return Sweep({name: self.coords[name] for name in dims}, results, turned(self.status),
-                     {tuple(index[n] for n in order): text for index, text in told.items()}, **parts)
+                     {tuple(index[n] for n in order): text for index, text in texts.items()}, **parts)
 
 
 def _gathered(key: str, points: Sequence[Result | None], dims: tuple[str, ...], shape: tuple[int, ...]) -> Result:

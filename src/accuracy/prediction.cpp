@@ -15,8 +15,8 @@ namespace {
 
 using operators::SystemKey;
 
-// Fitted to runs of hp scenes with delta from 1/2 to 1/256: eliminations reach a share of the speed
-// of a matrix product, and pay for each entry besides, for which memory has to be found; a solve
+// Fitted to hp runs with delta from 1/2 to 1/256: eliminations reach a share of the speed of a
+// matrix product, and take a time for each entry besides, for which memory has to be found; a solve
 // reads the factors.
 struct Speed {
   double share, per_entry, per_entry_solved;
@@ -63,7 +63,7 @@ class Predictor {
     Predicted f = factored(analysis, static_cast<double>(statistics.nonzeros));
     f.assembly = statistics.assembly_seconds;
     f.factorization += statistics.analysis_seconds;
-    // The first task that uses it pays for it.
+    // The time counts for the first task that uses it.
     step_.seconds += f.assembly + f.factorization;
     return systems_.emplace(key, f).first->second;
   }
@@ -75,7 +75,7 @@ class Predictor {
     f.factorization = kFixedSeconds + (analysis.operations / (speed.share * speed_) +
                                        speed.per_entry * analysis.factor_entries) /
                                           sharing;
-    // Each is corrected once, with two residuals and a bound.
+    // Each has one step of iterative refinement, with two residuals and a bound.
     const double one = speed.per_entry_solved * analysis.factor_entries / sharing;
     step_.seconds_per_solution = std::max(step_.seconds_per_solution, one);
     f.solve = 2 * one + 3 * kSecondsPerNonzero * nonzeros / ranks;

@@ -71,14 +71,14 @@ class Refiner {
         sequence_(given) {}
 
   Outcome run() {
-    climb();
+    refine();
     if (question_.wants(Quantity::density))
       outcome_.density = quantities::density_field(*distribution_);
     return std::move(outcome_);
   }
 
  private:
-  void climb() {
+  void refine() {
     require_start_within(given_, sequence_.refinement_level(sequence_.first()));
     require_memory(comm_, given_.scene, sequence_.refinement_level(1));
     for (int n = sequence_.first(); n <= sequence_.last(); ++n) {
@@ -123,7 +123,7 @@ class Refiner {
            relative_work(given_.scene, last.resolution);
   }
 
-  // The errors of the route itself, for the verdict.
+  // The errors of the solution method itself, for the verdict.
   void remember_rounding(const Results& results) {
     rounding_.clear();
     for (const auto& result : results) rounding_.push_back(quantities::relative_error(result));
@@ -134,9 +134,9 @@ class Refiner {
                                             changes_, results);
   }
 
-  // Whoever asks for the density, or cuts the velocity by hand, asks for the distribution of |V|.
-  // How far its distribution function moved is the density's own measure. It converges slowly (the
-  // density has corners), so the whole change is taken for the error.
+  // A density and a truncation velocity given by hand need the distribution of |V|. How far its
+  // distribution function moved is the density's own measure. It converges slowly (the density has
+  // corners), so the whole change is taken for the error.
   void follow(std::shared_ptr<const StationaryDistribution> distribution) {
     if (!distribution || (!question_.wants(Quantity::density) && !given_.scene.v_max)) return;
     auto now = quantities::speed_distribution(*distribution);
@@ -162,7 +162,7 @@ class Refiner {
       return true;
     }
     // What a finer discretisation still improves is no limit yet, and one that only now resolves
-    // the waves has nothing to be held against.
+    // the waves has nothing to be compared with.
     if (step.resolution.rates.omega > last_omega_) {
       last_omega_ = step.resolution.rates.omega;
       last_rounding_ = std::numeric_limits<double>::infinity();
@@ -170,7 +170,7 @@ class Refiner {
     const bool falls = rounding < 0.5 * std::exchange(last_rounding_, rounding);
     if (rounding <= question_.accuracy || falls) return false;
     // What reduced models miss on coarse grids, and what sums over nodes overlook of an observable,
-    // falls by fits and starts.
+    // falls unevenly.
     const int patience = question_.observables.empty() ? 2 : 3;
     if (++refinements_in_vain_ < patience) return false;
     const bool by_lambda = given_.method.route == options::Route::lambda;
@@ -207,19 +207,18 @@ class Refiner {
     return seconds * work(n + more) / work(n);
   }
 
-  // A velocity cut made by hand is no part of the model: what it holds back is an error.
+  // A truncation velocity given by hand is no part of the model: the mass beyond it is an error.
   void check_truncation() {
     if (!given_.scene.v_max || !speed_) return;
     const double held = speed_->at_top, sliding = 1 - speed_->at_rest;
     if (held <= question_.accuracy * sliding) return;
     outcome_.reached = false;
-    outcome_.shortfall = fmt::format("-v_max = {:g} truncates the velocity, and {:.1e} of the "
-                                     "sliding time is spent there; leave it out, or take it "
-                                     "larger",
-                                     *given_.scene.v_max, held / sliding);
+    outcome_.shortfall = fmt::format(
+        "-v_max = {:g} excludes {:.1e} of the sliding time; leave it out, or take it larger",
+        *given_.scene.v_max, held / sliding);
   }
 
-  // Errors that are too small betray themselves where results leave their bounds.
+  // Results outside their bounds show that errors are too small.
   void check_bounds() {
     const std::string broken = broken_bound(outcome_.results);
     if (broken.empty()) return;
@@ -228,7 +227,7 @@ class Refiner {
     outcome_.shortfall = broken + model::please_report(given_.scene.process(levels));
   }
 
-  // A first-order scheme tells early how many points it would take.
+  // A first-order scheme shows early how many points it would take.
   [[nodiscard]] bool hopeless(int n) {
     const Resolution now = sequence_.refinement_level(n);
     const double needed = now.points * outcome_.steps.back().estimate / question_.accuracy;
@@ -265,7 +264,8 @@ class Refiner {
   std::optional<quantities::SpeedDistribution> speed_;
 };
 
-// The law of the noise has a closed form; routes that check the model compute it all the same.
+// The distribution of the noise has a closed form; solution methods that check the model compute it
+// all the same.
 bool closed_noise_distribution(const options::Case& given) {
   return given.question.wants(Quantity::noise_law) &&
          given.method.route == options::Route::excursion;

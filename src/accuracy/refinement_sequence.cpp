@@ -71,7 +71,7 @@ RefinementSequence::RefinementSequence(const options::Case& given)
   first_degree_ = method_.degree.value_or(starting_degree(given.question));
   rates_ = fastest_rates(given);
   integrands_ = integrands_of(given.question);
-  halves_ = options::on_full_grid(given.method.route) || !given.scene.symmetric() ? 2 : 1;
+  branches_ = options::on_full_grid(given.method.route) || !given.scene.symmetric() ? 2 : 1;
   // On nodes the residuals of eigenvectors, which stand for errors, stay five times larger.
   all_levels_ = options::on_full_grid(given.method.route) || method_.noise_degree == 0 ||
                 given.question.wants(options::Quantity::relaxation);
@@ -119,7 +119,7 @@ noise::Grouping RefinementSequence::grouping(int n) const {
   return grouping;
 }
 
-// Elements follow waves where the first estimate asks for it: in most scenes the noise damps them.
+// Elements follow waves where the first estimate asks for it: in most cases the noise damps them.
 velocity::Rates RefinementSequence::rates(int n) const {
   constexpr int first_with_waves = 2;
   velocity::Rates rates = rates_;
@@ -147,7 +147,7 @@ Resolution RefinementSequence::made(int n) const {
     break;
   case options::Scheme::none: r = exact_resolution(scene_, tail_tolerance(n)); break;
   }
-  r.halves = halves_;
+  r.branches = branches_;
   r.factors = method_.factors;
   return r;
 }

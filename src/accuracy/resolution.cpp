@@ -42,9 +42,9 @@ std::vector<int> hp_degrees(const model::Scene& scene, const Resolution& resolut
                                    resolution.degree);
 }
 
-// Exponential tilt of the law of X, per unit of x, that comes with large velocities: without drag
-// X conditioned on it is shifted by up to twice mu_d (less where mu_d exceeds the noise). Drag that
-// saturates adds to mu_d.
+// Exponential tilt of the distribution of X, per unit of x, that comes with large velocities:
+// without drag X conditioned on it is shifted by up to twice mu_d (less where mu_d exceeds the
+// noise). Drag that saturates adds to mu_d.
 double tilt(const model::Scene& scene) {
   const double mu_d = std::max(scene.friction.mu_d, scene.friction.mirrored().mu_d);
   const auto noise = scene.meant().noise;
@@ -127,7 +127,7 @@ double velocity_end(const model::Scene& scene, int levels, double tolerance) {
                mirrored.drag.terminal_velocity(mirrored.net_force(mirrored.noise.highest())));
   if (scene.v_max) return std::min(*scene.v_max, terminal);
   const double tail = velocity::tail_velocity(process, tolerance);
-  // Holding states cost a little: a cut must save something.
+  // Holding states cost a little: a truncation must save something.
   return tail < 0.8 * terminal ? tail : terminal;
 }
 
@@ -180,7 +180,7 @@ std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution) {
   } else if (resolution.scheme == options::Scheme::upwind) {
     nodes = upwind_nodes(scene, resolution);
   }
-  const double total = static_cast<double>(resolution.noise_nodes()) * nodes * resolution.halves;
+  const double total = static_cast<double>(resolution.noise_nodes()) * nodes * resolution.branches;
   constexpr double most = 9e18;
   return static_cast<std::int64_t>(std::min(total, most));
 }
@@ -200,7 +200,7 @@ operators::FactorCost factor_cost(const model::Scene& scene, const Resolution& r
   const auto cost = operators::elimination_cost(
       scene.process(r.levels), dynamic_cast<const velocity::HpDiscretisation&>(*velocities),
       r.noise.get(), ranks);
-  return {r.halves * cost.entries, r.halves * cost.bytes, r.halves * cost.operations};
+  return {r.branches * cost.entries, r.branches * cost.bytes, r.branches * cost.operations};
 }
 
 options::Factors factors_of(const Resolution& r) {

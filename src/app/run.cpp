@@ -56,7 +56,7 @@ bool contains(const std::vector<std::string>& words, const char* word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Texts that need neither PETSc nor a scene; empty when none is asked for.
+/// Texts that need neither PETSc nor model parameters; empty when none is asked for.
 std::string text_asked_for(const std::vector<std::string>& words) {
   const auto asked = [&](const char* word) { return contains(words, word); };
   if (asked("-help") || asked("--help") || asked("-h")) return options::help_text();
@@ -80,12 +80,13 @@ void warn(const options::Request& request) {
 accuracy::Progress progress_of(const options::Request& request, bool first_rank) {
   if (!request.output.progress || !first_rank) return {};
   return [&request](int step, const accuracy::Resolution& r, double seconds) {
-    std::string axis = "no grid in v";
-    if (r.scheme == options::Scheme::hp) axis = fmt::format("degree {}", r.degree);
-    if (r.scheme == options::Scheme::upwind) axis = fmt::format("p = {}", r.points);
+    std::string velocity = "no grid in v";
+    if (r.scheme == options::Scheme::hp) velocity = fmt::format("degree {}", r.degree);
+    if (r.scheme == options::Scheme::upwind) velocity = fmt::format("p = {}", r.points);
     const std::string time = seconds < 1 ? "" : fmt::format(", about {:.0f} s", seconds);
     print_error(fmt::format("refinement level {}: {}, {} noise levels on each side, {} unknowns{}",
-                            step + 1, axis, r.levels, accuracy::unknowns(request.scene, r), time));
+                            step + 1, velocity, r.levels, accuracy::unknowns(request.scene, r),
+                            time));
   };
 }
 

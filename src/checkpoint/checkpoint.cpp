@@ -56,7 +56,7 @@ class LockedFile {
     return text;
   }
 
-  void cut(std::size_t size) const {
+  void truncate(std::size_t size) const {
     if (ftruncate(descriptor_, static_cast<off_t>(size)) != 0) fail("cannot write");
   }
 
@@ -99,7 +99,7 @@ void Checkpoint::refuse(const std::string& why) const {
   throw BadInput(fmt::format("-checkpoint = {}: {}; name another file, or remove it", file_, why));
 }
 
-// Says in what the file of another header differs.
+// Reports in what the header of the file differs.
 void Checkpoint::refuse_other(const std::string& header) const {
   const Json json = Json::parse(header, nullptr, false), own = Json::parse(header_);
   const auto agrees = [&](const char* key) {
@@ -140,7 +140,7 @@ void Checkpoint::read(const Take& take) const {
   if (!file.regular()) refuse("is no regular file");
   const std::string text = file.read_all();
   if (header_.starts_with(text)) {  // new, or killed before the first line was whole
-    file.cut(0);
+    file.truncate(0);
     file.append(header_);
     return;
   }
@@ -148,7 +148,7 @@ void Checkpoint::read(const Take& take) const {
   const std::size_t whole = text.rfind('\n') + 1;
   std::vector<std::string> lines = split(text.substr(header_.size(), whole - header_.size()), '\n');
   if (!lines.empty()) lines.pop_back();  // behind the last end of line
-  // Nothing is cut off from a file that is always replaced as a whole.
+  // A file that is always replaced as a whole is never truncated.
   if (kind_ == name_of(Kind::simulation) && (lines.size() > 1 || whole < text.size())) {
     refuse("is damaged");
   }
@@ -161,7 +161,7 @@ void Checkpoint::read(const Take& take) const {
       refuse("is damaged");
     }
   }
-  if (whole < text.size()) file.cut(whole);
+  if (whole < text.size()) file.truncate(whole);
 }
 
 void Checkpoint::append(const std::string& entry) const {

@@ -26,7 +26,7 @@ struct Phases {
 };
 
 /// T - lambda between groups of phases, the still one censored: what passes through it counts as a
-/// direct jump, discounted for the stay.
+/// direct jump, discounted for the time in it.
 class Jumps {
  public:
   Jumps(const model::Process& process, const Phases& phases, double lambda)
@@ -43,7 +43,7 @@ class Jumps {
     for (int s : phases_.still) total += rate(from, s) * sojourn(s) * rate(s, to);
     return total;
   }
-  /// Mean discounted stay in the still phase.
+  /// Mean discounted time in the still phase.
   [[nodiscard]] double sojourn(int still) const {
     return 1 / (process_.noise.rate(still) + lambda_);
   }
@@ -129,7 +129,7 @@ struct Riccati {
   }
 };
 
-/// The queue of one half line, seen along its motion; empty where no body starts.
+/// The queue of one velocity branch, seen along its motion; empty where no body starts.
 class Queue {
  public:
   Queue(const model::Process& process, double lambda)
@@ -163,7 +163,7 @@ class Queue {
   /// Adds what a body does that starts `number` times in each phase. The density of upcrossings of
   /// v by phase is starts exp(K v), K = C_u^-1 T_uu + Psi C_d^-1 T_du; its moments are powers of
   /// (-K)^-1.
-  void follow(const double* number, std::size_t first, QueuedSlide& slide) const {
+  void follow(const double* number, std::size_t first, SlidingMeans& slide) const {
     if (starts() == 0) return;
     std::vector<double> moment(phases_.rising.size(), 0.0);
     for (int s = 0; s < starts(); ++s) moment[row(s)] = number[s];
@@ -201,29 +201,29 @@ class Queue {
   LuFactors<double> minus_k_;
 };
 
-/// Both half lines, and what a return to v = 0 leads to.
+/// Both velocity branches, and what a return to v = 0 leads to.
 class Boundary {
  public:
   Boundary(const Queue& upper, const Queue& lower)
       : upper_(upper),
         lower_(lower),
         restart_(upper.starts() + lower.starts(), upper.starts() + lower.starts()),
-        rest_(restart_.rows(), upper.count_static()) {
+        to_static_(restart_.rows(), upper.count_static()) {
     fill(upper, 0, upper.starts(), 1);
     fill(lower, upper.starts(), 0, -1);
   }
 
-  /// The slide that begins with start number `first`: those of the upper half come first. The lower
-  /// half is counted in `sums` from `below` on.
-  [[nodiscard]] QueuedSlide slide(int first, std::size_t sums_of_both, std::size_t below) const {
+  /// The sliding phase that begins with start number `first`: those of the positive branch come
+  /// first. The negative branch is counted in `sums` from `below` on.
+  [[nodiscard]] SlidingMeans slide(int first, std::size_t sums_of_both, std::size_t below) const {
     std::vector<double> number(static_cast<std::size_t>(restart_.rows()), 0.0);
     number[first] = 1;
     LuFactors(Matrix::identity(restart_.rows()) - restart_).solve(number, true);
-    QueuedSlide slide;
+    SlidingMeans slide;
     for (auto* sums : {&slide.time, &slide.distance, &slide.square}) {
       sums->assign(sums_of_both, 0.0);
     }
-    slide.entry = number * rest_;
+    slide.entry = number * to_static_;
     slide.turns = std::accumulate(number.begin(), number.end(), -1.0);
     upper_.follow(number.data(), 0, slide);
     lower_.follow(number.data() + upper_.starts(), below, slide);
@@ -231,22 +231,22 @@ class Boundary {
   }
 
  private:
-  // Returns of a half whose starts have the numbers from `from` on; `sign` turns its phases into
+  // Returns of a branch whose starts have the numbers from `from` on; `sign` turns its phases into
   // levels.
-  void fill(const Queue& half, int from, int others_from, int sign) {
-    for (int s = 0; s < half.starts(); ++s) {
-      half.for_each_return(s, [&](int i, double p) {
-        if (i < half.lowest_static()) {
-          restart_(from + s, others_from + half.lowest_static() - 1 - i) += p;
+  void fill(const Queue& queue, int from, int others_from, int sign) {
+    for (int s = 0; s < queue.starts(); ++s) {
+      queue.for_each_return(s, [&](int i, double p) {
+        if (i < queue.lowest_static()) {
+          restart_(from + s, others_from + queue.lowest_static() - 1 - i) += p;
         } else {
-          rest_(from + s, sign * i - upper_.lowest_static()) += p;
+          to_static_(from + s, sign * i - upper_.lowest_static()) += p;
         }
       });
     }
   }
 
   const Queue &upper_, &lower_;
-  Matrix restart_, rest_;
+  Matrix restart_, to_static_;
 };
 
 }  // namespace

@@ -41,7 +41,7 @@ void write_density(Hdf5File& file, const quantities::DensityField& field, double
   file.attribute("/density/marginal_x", "meaning", "P(X = x_i), summed over the grid");
   file.attribute("/density/marginal_v", "meaning", "density of V without its atom P_stick at 0");
   file.attribute("/density", "error_of_distribution_function_of_speed", error);
-  file.attribute("/density", "probability_at_velocity_cut", field.cut_mass);
+  file.attribute("/density", "probability_at_velocity_cut", field.truncated_mass);
 }
 
 void write_path(Hdf5File& file, const simulation::Path& path) {

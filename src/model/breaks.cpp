@@ -71,7 +71,7 @@ class Search {
 
   // Follows the part with the largest error; where f is not finite that counts as largest. Where f
   // is smooth the error falls like width^8 in the end, at a break like width^order, and rounding
-  // or waves too short for doubles show in every part alike. No part ends in the middle, where
+  // or waves too short for doubles show in every part alike. No part ends at the midpoint, where
   // marks lie.
   [[nodiscard]] Bracket narrow(const Interval& all, double rounding) const {
     constexpr int unresolvable = 5;

@@ -56,8 +56,8 @@ double integral(const Drag& b, double v) {
   return sum;
 }
 
-// Halving rather than a root finder: b may be constant from some velocity on. `pushed` tells the
-// sign of force + b at `low`, which is another one at `high`.
+// Halving rather than a root finder: b may be constant from some velocity on. `pushed`: whether
+// force + b > 0 at `low`; at `high` the sign is the opposite one.
 double change_between(double low, double high, bool pushed, const Drag& b, double force) {
   for (;;) {
     const double middle = low + (high - low) / 2;

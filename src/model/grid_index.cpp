@@ -10,7 +10,7 @@ namespace {
 
 // Quotients such as 2/(tau delta^2) carry up to three roundings of half a unit each, and their
 // operands one each from decimal notation; eight units cover both, and stay far below the 1e-12
-// at which two different thresholds must be told apart.
+// at which two different thresholds must be distinguished.
 constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
 
 }  // namespace

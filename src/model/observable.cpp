@@ -26,7 +26,7 @@ std::string not_finite(const std::string& text, double value, double x, double y
                      text, value, x, y, v);
 }
 
-// Tried at rest, as motion starts and in slow motion, where every scene has states like these.
+// Tried at rest, as motion starts and in slow motion, where every process has states like these.
 void require_finite(const Expression& f, const Friction& friction) {
   const double some_x = friction.mu_s / 2, some_v = 1e-3;
   for (double x : {0.0, some_x, -some_x}) {

@@ -144,19 +144,21 @@ class Campaign {
   }
   [[nodiscard]] bool first_rank() const { return petsc::rank(comm_) == 0; }
 
-  // Every stay begins at most at the edge of the static levels, and a path lasts as long as asked.
+  // Every sticking phase begins at most at the edge of the static levels, and a path lasts as long
+  // as asked.
   void require_time() const {
     const auto chain = operators::StaticChain::of(process_);
     const auto sticking = chain.integral(std::vector<double>(chain.size(), 1.0));
     const double sides = process_.symmetric() ? 1 : 2,
                  stationary = wanted_.stationary_paths() ? sides : 0,
-                 stays = sides + stationary + (wanted_.speeds.empty() ? 0 : 1),
+                 sticking_phases = sides + stationary + (wanted_.speeds.empty() ? 0 : 1),
                  walks = (wanted_.chosen_paths() ? 1 : 0) + stationary,
                  longest =
                      walks > 0 ? *std::max_element(wanted_.time.begin(), wanted_.time.end()) : 0;
     constexpr double jump = 15e-9, month = 30 * 86400.0;
-    const double jumps = process_.noise.rate() *
-                         (stays * std::min(sticking.front(), sticking.back()) + walks * longest);
+    const double jumps =
+        process_.noise.rate() *
+        (sticking_phases * std::min(sticking.front(), sticking.back()) + walks * longest);
     const double seconds = given_.method.excursions * jumps * jump / petsc::ranks(comm_);
     if (seconds < month) return;
     throw BadInput(fmt::format(
@@ -210,7 +212,7 @@ class Campaign {
     merge(own, batches);
   }
 
-  // The first batch tells how long it will take.
+  // The first batch shows how long it will take.
   void predict(const Tally& batch) {
     predicted_ = true;
     SimulationState s = now();

@@ -20,15 +20,15 @@ using quantities::Results;
 using simulation::Duration;
 using simulation::Estimate;
 using simulation::Integrand;
-using simulation::Law;
 using simulation::Tally;
+using simulation::Variable;
 
 /// Cell of a histogram around one time of -time.
 struct Cell {
   double low, high;
 };
 
-// Up to the middle between neighbours, and as far on the other side at the ends.
+// Up to halfway between neighbours, and as far on the other side at the ends.
 std::vector<Cell> cells_around(const std::vector<double>& time) {
   const std::set<double> sorted(time.begin(), time.end());
   std::vector<Cell> cells;
@@ -129,7 +129,7 @@ class Estimates {
 
   // Where all samples of f agree they may have missed what is rare: no interval is narrower than
   // that of an event that as many samples miss with probability 0.025. What symmetry makes zero is
-  // so.
+  // exactly zero.
   [[nodiscard]] Estimate of_function(const model::Observable& f, Estimate e) const {
     const bool odd = process_.symmetric() && f.least == -f.most;
     if (e.low < e.high || odd || !std::isfinite(f.most - f.least)) return e;
@@ -177,21 +177,21 @@ class Estimates {
   }
 
   // Averages over cells, and the distribution function.
-  void append_law(const std::string& name, Law law, const char* unit, const char* abscissa,
-                  const std::vector<double>& at) {
+  void append_distribution(const std::string& name, Variable variable, const char* unit,
+                           const char* abscissa, const std::vector<double>& at) {
     const auto cells = cells_around(at);
     over("f_" + name, unit, Kind::other, abscissa, at, [&](std::size_t n) {
       const auto [low, high] = cells[n];
-      return divided(tally_.probability(law, low, high), high - low);
+      return divided(tally_.probability(variable, low, high), high - low);
     });
     over("cdf_" + name, "", Kind::distribution, abscissa, at,
-         [&](std::size_t n) { return tally_.probability(law, 0, at[n]); });
+         [&](std::size_t n) { return tally_.probability(variable, 0, at[n]); });
   }
 
   void append_durations() {
-    append_law("slide", Law::slide, "1/time", "time", question_.time);
-    append_law("stick", Law::stick, "1/time", "time", question_.time);
-    append_law("excursion", Law::excursion, "1/time", "time", question_.time);
+    append_distribution("slide", Variable::slide, "1/time", "time", question_.time);
+    append_distribution("stick", Variable::stick, "1/time", "time", question_.time);
+    append_distribution("excursion", Variable::excursion, "1/time", "time", question_.time);
   }
 
   void append_slip() {
@@ -202,7 +202,8 @@ class Estimates {
              net && !process_.drifts() ? Estimate{} : e);
     }
     if (!question_.distance.empty()) {
-      append_law("slip", Law::path, "1/(velocity*time)", "distance", question_.distance);
+      append_distribution("slip", Variable::path, "1/(velocity*time)", "distance",
+                          question_.distance);
     }
     if (question_.inverse_distance.empty()) return;
     over("F_slip", "", Kind::transform, "inverse_distance", question_.inverse_distance,
@@ -212,7 +213,7 @@ class Estimates {
   void append_peak() {
     const auto& w = question_.velocity;
     over("P_peak", "", Kind::probability, "velocity", w, [&](std::size_t n) {
-      return tally_.probability(Law::peak, w[n], std::numeric_limits<double>::infinity());
+      return tally_.probability(Variable::peak, w[n], std::numeric_limits<double>::infinity());
     });
     for (std::size_t from : {0, 1}) {
       over(tally_.first_passage(w[0])[from].first, "time", Kind::positive_mean, "velocity", w,

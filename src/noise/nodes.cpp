@@ -16,8 +16,8 @@ class SpecialPoints {
   SpecialPoints(const model::Process& process, const std::vector<double>& more) {
     const auto& noise = process.noise;
     const auto mirrored = process.mirrored();
-    const auto standing = [](const model::Process& half) {
-      return half.noise.place(half.friction.at_rest() - half.bias);
+    const auto standing = [](const model::Process& branch) {
+      return branch.noise.place(branch.friction.at_rest() - branch.bias);
     };
     const double mu_s = process.friction.mu_s;
     graded_ = {standing(process), -standing(mirrored), process.static_index() + 0.5,

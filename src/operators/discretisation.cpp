@@ -4,8 +4,8 @@ namespace stickslip::operators {
 
 // Functions of the noise are not smooth on the levels that do not move at that speed.
 Discretisation Discretisation::killing_at(double speed) const {
-  const auto standing = [speed](const model::Process& half) {
-    return half.friction.at_rest() - half.bias - half.drag(speed);
+  const auto standing = [speed](const model::Process& branch) {
+    return branch.friction.at_rest() - branch.bias - branch.drag(speed);
   };
   noise::Grouping grouping = noise->grouping();
   grouping.special = {standing(process), -standing(process.mirrored())};

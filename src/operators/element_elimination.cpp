@@ -51,8 +51,8 @@ class RowsOnAllRanks {
   Mat* rows_ = nullptr;
 };
 
-/// The rows of states at rest: a tridiagonal chain with its exits.
-struct RestChain {
+/// The rows of static states: a tridiagonal chain with its exits.
+struct StaticRows {
   struct Exit {
     std::size_t level;  // of the chain
     PetscInt column;
@@ -62,42 +62,42 @@ struct RestChain {
   std::vector<Exit> exits;
 };
 
-RestChain read_chain(Mat matrix, const std::vector<PetscInt>& rows) {
+StaticRows read_chain(Mat matrix, const std::vector<PetscInt>& rows) {
   const std::size_t size = rows.size();
-  RestChain rest;
-  for (Scalars* band : {&rest.chain.diagonal, &rest.chain.below, &rest.chain.above}) {
+  StaticRows at_rest;
+  for (Scalars* band : {&at_rest.chain.diagonal, &at_rest.chain.below, &at_rest.chain.above}) {
     band->assign(size, 0.0);
   }
   const RowsOnAllRanks all(matrix, rows);
   for (std::size_t n = 0; n < size; ++n) {
     all.row(n).for_each([&](PetscInt column, PetscScalar value) {
       if (column == rows[n]) {
-        rest.chain.diagonal[n] += value;
+        at_rest.chain.diagonal[n] += value;
       } else if (n > 0 && column == rows[n - 1]) {
-        rest.chain.below[n] += value;
+        at_rest.chain.below[n] += value;
       } else if (n + 1 < size && column == rows[n + 1]) {
-        rest.chain.above[n] += value;
+        at_rest.chain.above[n] += value;
       } else {
-        rest.exits.push_back({n, column, -value});
+        at_rest.exits.push_back({n, column, -value});
       }
     });
   }
-  rest.chain.factor();
-  return rest;
+  at_rest.chain.factor();
+  return at_rest;
 }
 
 }  // namespace
 
-/// A half line; lists by noise node count along it.
+/// A velocity branch; lists by noise node count along it.
 struct ElementElimination::Line {
-  Branch half = Branch::positive;
+  Branch branch = Branch::positive;
   const velocity::HpDiscretisation* velocities = nullptr;
   const noise::Nodes* noise;
   std::vector<double> net_force;
   std::vector<StateSpace::NodeLine> nodes;  // of a noise node
   std::vector<PetscInt> holding;            // rows of holding states, of the highest nodes
   std::vector<int> rising;                  // by end of elements: first node that rises there
-  std::size_t first_element = 0;            // counted over all lines
+  std::size_t first_element = 0;            // counted over all branches
   std::size_t begin = 0;                    // in w: of the values at v = 0, those at v_1 ...
   std::vector<std::unique_ptr<ElementSystem>> elements;  // those of this rank
   std::vector<ElementSystem::Response> responses;        // of shared ones, until they are used
@@ -116,17 +116,17 @@ ElementElimination::ElementElimination(Mat matrix, std::shared_ptr<const MatrixD
     : data_(std::move(data)), comm_(share ? data_->states.comm() : PETSC_COMM_SELF) {
   const StateSpace& states = data_->states;
   const auto& process = data_->discretisation.process;
-  for (Branch half : states.halves()) {
-    lines_.push_back(line_of(half));
+  for (Branch branch : states.branches()) {
+    lines_.push_back(line_of(branch));
     length_ = lines_.back().falling_at(lines_.back().velocities->elements() + 1);
   }
   for (int i = process.lowest_static(); i <= process.static_index(); ++i) {
-    if (!states.has_rest(i)) continue;
-    if (rest_rows_.empty()) lowest_rest_ = i;
-    rest_rows_.push_back(states.index({StateKind::rest, Branch::positive, i, 0}));
+    if (!states.has_static_state(i)) continue;
+    if (static_rows_.empty()) lowest_static_ = i;
+    static_rows_.push_back(states.index({StateKind::static_phase, Branch::positive, i, 0}));
   }
-  rest_ = length_;
-  length_ += rest_rows_.size();
+  static_begin_ = length_;
+  length_ += static_rows_.size();
   if (petsc::ranks(comm_) > 1) make_shared_elements();
   for (Line& line : lines_) reflect(line);
   meet(matrix);
@@ -137,13 +137,13 @@ ElementElimination::ElementElimination(Mat matrix, std::shared_ptr<const MatrixD
 
 ElementElimination::~ElementElimination() = default;
 
-ElementElimination::Line ElementElimination::line_of(Branch half) const {
+ElementElimination::Line ElementElimination::line_of(Branch branch) const {
   const auto& [process, noise, velocities] = data_->discretisation;
   const StateSpace& states = data_->states;
-  const bool upper = half == Branch::positive;
+  const bool upper = branch == Branch::positive;
   const model::Process along = upper ? process : process.mirrored();
   Line line;
-  line.half = half;
+  line.branch = branch;
   line.velocities = dynamic_cast<const velocity::HpDiscretisation*>(
       upper ? velocities.get() : &velocities->mirrored());
   if (!lines_.empty()) line.first_element = lines_.back().elements.size();
@@ -151,9 +151,9 @@ ElementElimination::Line ElementElimination::line_of(Branch half) const {
   line.noise = upper ? noise.get() : &noise->mirrored();
   for (int n = line.noise->first(); n <= line.noise->last(); ++n) {
     line.net_force.push_back(along.net_force_at(line.noise->x(n)));
-    line.nodes.push_back(states.nodes_of(half, n));
-    if (states.has_holding(half, n)) {
-      line.holding.push_back(states.index({StateKind::holding, half, n, 0}));
+    line.nodes.push_back(states.nodes_of(branch, n));
+    if (states.has_holding(branch, n)) {
+      line.holding.push_back(states.index({StateKind::holding, branch, n, 0}));
     }
   }
   const int elements = line.velocities->elements();
@@ -260,49 +260,49 @@ void ElementElimination::reflect(Line& line) {
   }
 }
 
-// What a line finds at rest, of its nodes that fall to v = 0 from `fall` on.
+// What a branch finds in the static states, of its nodes that fall to v = 0 from `fall` on.
 void ElementElimination::add_shares(const Line& line, std::size_t fall, Couplings& shares) const {
   const StateSpace& states = data_->states;
   const noise::Nodes& noise = *line.noise;
-  const Branch other = states.symmetry_reduced() ? line.half : opposite(line.half);
+  const Branch other = states.symmetry_reduced() ? line.branch : opposite(line.branch);
   for (int l = 0; l < line.rising[0]; ++l) {
     const int node = l + noise.first();
     if (node < -states.last_static(other)) continue;
     const auto& group = noise.group_of(node);
     for (int along = group.first; along <= group.last; ++along) {
-      const int i = line.half == Branch::positive ? along : -along;
+      const int i = line.branch == Branch::positive ? along : -along;
       const int kept = states.symmetry_reduced() ? std::abs(i) : i;
-      if (!states.has_rest(kept)) continue;  // an odd function vanishes at x = 0
+      if (!states.has_static_state(kept)) continue;  // an odd function vanishes at x = 0
       const double share = group.row(group.weight, along)[node - group.begin];
-      shares.push_back({rest_ + static_cast<std::size_t>(kept - lowest_rest_),
+      shares.push_back({static_begin_ + static_cast<std::size_t>(kept - lowest_static_),
                         fall + static_cast<std::size_t>(l), kept == i ? share : sign() * share});
     }
   }
 }
 
-// What a line finds on the other side, or reflected.
+// What a branch finds on the other one, or reflected.
 void ElementElimination::add_crossings(const Line& line, std::size_t fall, Couplings& found) const {
   const Line& other = lines_[data_->states.symmetry_reduced() || &line != &lines_[0] ? 0 : 1];
-  const int crossing = -data_->states.last_static(other.half) - line.noise->first();
+  const int crossing = -data_->states.last_static(other.branch) - line.noise->first();
   for (int l = 0; l < crossing; ++l) {
     found.push_back({other.falling_at(1) - 1 - l, fall + static_cast<std::size_t>(l), sign()});
   }
 }
 
-// The place in w of the node next to those at rest to which an entry of a row at rest belongs.
+// The place in w of the node next to the static levels to which an entry of a static row belongs.
 std::size_t ElementElimination::exit_at(PetscInt column) const {
   for (const Line& line : lines_) {
-    const int node = data_->states.last_static(line.half) + 1 - line.noise->first();
+    const int node = data_->states.last_static(line.branch) + 1 - line.noise->first();
     if (node == line.count()) continue;
     const auto& [first, stride] = line.nodes[node];
     const PetscInt from = column - first, q = line.velocities->element(0).reference->size;
     const PetscInt place = stride == 0 ? 0 : from / stride;
     if (from == place * stride && place >= 0 && place < q) return line.begin + node;
   }
-  throw NotReached("a state at rest is left for one that is no exit");
+  throw NotReached("a static state is left for one that is no exit");
 }
 
-// What falls to v = 0 goes on at the other side, or comes to rest and leaves by an exit. With C
+// What falls to v = 0 continues on the other branch, or comes to rest and leaves by an exit. With C
 // what falling nodes find there, from the values of rising ones, 1 - C R is left to solve.
 void ElementElimination::meet(Mat matrix) {
   const std::size_t fall = length_;  // what falling nodes find
@@ -313,20 +313,20 @@ void ElementElimination::meet(Mat matrix) {
     for (int l = 0; l < line.rising[0]; ++l) returned.push_back({length_++, line.begin + l, 1});
   }
   const std::size_t falling = length_ - fall;
-  RestChain rest = read_chain(matrix, rest_rows_);
+  StaticRows at_rest = read_chain(matrix, static_rows_);
   LinearSteps leaving;
-  for (const auto& [level, column, rate] : rest.exits) {
-    DenseMatrix left(static_cast<int>(rest_rows_.size()), 1);
+  for (const auto& [level, column, rate] : at_rest.exits) {
+    DenseMatrix left(static_cast<int>(static_rows_.size()), 1);
     left(static_cast<int>(level), 0) = rate;
-    rest.chain.solve(left.data(), false);
+    at_rest.chain.solve(left.data(), false);
     Scalars passed(falling, 0.0);
     for (const auto& [from, to, share] : shares)
-      passed[to - fall] += share * left.data()[from - rest_];
+      passed[to - fall] += share * left.data()[from - static_begin_];
     const std::size_t exit = exit_at(column);
     for (std::size_t n = 0; n < falling; ++n) {
       if (passed[n] != 0.0) found.push_back({exit, fall + n, passed[n]});
     }
-    leaving.add(std::move(left), exit, rest_);
+    leaving.add(std::move(left), exit, static_begin_);
   }
   DenseMatrix closed = DenseMatrix::identity(static_cast<int>(falling));
   int first = 0;
@@ -340,7 +340,7 @@ void ElementElimination::meet(Mat matrix) {
     }
     first += line.rising[0];
   }
-  between_.solve(std::move(rest.chain), rest_);
+  between_.solve(std::move(at_rest.chain), static_begin_);
   between_.add(std::move(shares));
   between_.add(std::move(found));
   between_.solve(DenseFactors(std::move(closed)), fall);
@@ -377,7 +377,7 @@ void ElementElimination::for_each_unknown_between(Visit visit) const {
     std::size_t place = line.rising_at(line.velocities->elements());
     for (PetscInt row : line.holding) visit(place++, row);
   }
-  for (std::size_t n = 0; n < rest_rows_.size(); ++n) visit(rest_ + n, rest_rows_[n]);
+  for (std::size_t n = 0; n < static_rows_.size(); ++n) visit(static_begin_ + n, static_rows_[n]);
 }
 
 void ElementElimination::solve(Vec b, Vec x, bool transposed) const {

@@ -128,8 +128,8 @@ PetscErrorCode view(PC pc, PetscViewer viewer) {
       check(PetscViewerASCIIPrintf(viewer, "  %s\n", text.c_str()));
     };
     line("block LU along the velocity, over elements condensed to the values at their ends");
-    line(fmt::format("elements {} on {} half line(s), noise nodes {} in {} groups",
-                     on.velocities->cells().size() - 1, data->states.halves().size(),
+    line(fmt::format("elements {} on {} velocity branch(es), noise nodes {} in {} groups",
+                     on.velocities->cells().size() - 1, data->states.branches().size(),
                      on.noise->count(), on.noise->groups().size()));
     line(fmt::format("elements shared by {} rank(s)",
                      elements_of(pc).share == PETSC_TRUE ? petsc::ranks(data->states.comm()) : 1));

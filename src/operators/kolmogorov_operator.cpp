@@ -16,9 +16,10 @@ namespace stickslip::operators {
 using petsc::check;
 
 KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation,
-                                       PetscScalar lambda, Symmetry symmetry, StaticPhase rest,
-                                       Clock clock)
-    : KolmogorovOperator(comm, discretisation, lambda, symmetry, rest, clock, std::nullopt) {}
+                                       PetscScalar lambda, Symmetry symmetry,
+                                       StaticPhase static_phase, Clock clock)
+    : KolmogorovOperator(comm, discretisation, lambda, symmetry, static_phase, clock,
+                         std::nullopt) {}
 
 KolmogorovOperator KolmogorovOperator::derivative(MPI_Comm comm,
                                                   const Discretisation& discretisation,
@@ -27,19 +28,21 @@ KolmogorovOperator KolmogorovOperator::derivative(MPI_Comm comm,
 }
 
 KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation,
-                                       PetscScalar lambda, Symmetry symmetry, StaticPhase rest,
-                                       Clock clock, std::optional<Parameter> derivative)
+                                       PetscScalar lambda, Symmetry symmetry,
+                                       StaticPhase static_phase, Clock clock,
+                                       std::optional<Parameter> derivative)
     : data_(std::make_shared<MatrixData>(MatrixData{
-          discretisation, StateSpace(comm, discretisation, symmetry, rest != StaticPhase::killing),
-          lambda, clock})) {
-  RowAssembler rows(discretisation, states(), lambda, clock, rest, derivative);
+          discretisation,
+          StateSpace(comm, discretisation, symmetry, static_phase != StaticPhase::killing), lambda,
+          clock})) {
+  RowAssembler rows(discretisation, states(), lambda, clock, static_phase, derivative);
   rows.assemble();
   trace_upper_ = rows.trace_at_exit(Branch::positive);
   if (!states().symmetry_reduced()) trace_lower_ = rows.trace_at_exit(Branch::negative);
-  rest_coupling_ = std::move(rows.rest_coupling);
+  static_coupling_ = std::move(rows.static_coupling);
   top_coupling_ = std::move(rows.top_coupling);
   if (!derivative && symmetry != Symmetry::odd && PetscRealPart(lambda) >= 0) {
-    const bool nothing_killed = rest == StaticPhase::kept && PetscAbsScalar(lambda) == 0 &&
+    const bool nothing_killed = static_phase == StaticPhase::kept && PetscAbsScalar(lambda) == 0 &&
                                 !discretisation.velocities->kills_at_top();
     require_generator(comm, {states().local_begin(), rows.row_start, rows.columns, rows.values},
                       {discretisation.velocities->keeps_origin(), nothing_killed},
@@ -72,10 +75,10 @@ petsc::VecHandle KolmogorovOperator::zeros() const {
   return x;
 }
 
-petsc::VecHandle KolmogorovOperator::trace_at_exit(Branch half) const {
+petsc::VecHandle KolmogorovOperator::trace_at_exit(Branch branch) const {
   petsc::VecHandle g = zeros();
   const PetscInt begin = states().local_begin(), end = begin + states().local_size();
-  for (const auto& [index, weight] : half == Branch::positive ? trace_upper_ : trace_lower_) {
+  for (const auto& [index, weight] : branch == Branch::positive ? trace_upper_ : trace_lower_) {
     if (index < begin || index >= end) continue;
     check(VecSetValue(g, index, weight, INSERT_VALUES));
   }
@@ -87,11 +90,11 @@ petsc::VecHandle KolmogorovOperator::trace_at_exit(Branch half) const {
 void KolmogorovOperator::add_value_at(int i, double v, double weight, Vec functional) const {
   const auto& [process, noise, velocities] = discretisation();
   const int lowest = process.lowest_static();
-  const bool rest = v == 0 && i >= lowest && i <= process.static_index();
-  const bool below = v < 0 || (v == 0 && (rest ? i < 0 : i < lowest));
+  const bool at_rest = v == 0 && i >= lowest && i <= process.static_index();
+  const bool below = v < 0 || (v == 0 && (at_rest ? i < 0 : i < lowest));
   const bool mirrored = below && states().symmetry_reduced();
   const double sign = mirrored && states().symmetry() == Symmetry::odd ? -weight : weight;
-  const Branch half = below && !mirrored ? Branch::negative : Branch::positive;
+  const Branch branch = below && !mirrored ? Branch::negative : Branch::positive;
   const PetscInt begin = states().local_begin(), end = begin + states().local_size();
   const auto add = [&](const State& state, double share) {
     const PetscInt index = states().index(state);
@@ -101,19 +104,20 @@ void KolmogorovOperator::add_value_at(int i, double v, double weight, Vec functi
   const auto& group =
       nodes_along(below ? Branch::negative : Branch::positive).group_at(below ? -i : i);
   const auto shares = group.row(group.value, below ? -i : i);
-  for (int l = 0; !rest && l < group.count; ++l) {
+  for (int l = 0; !at_rest && l < group.count; ++l) {
     const int n = group.begin + l;
-    if (v == 0 && states().has_origin(half, n)) {
-      add({StateKind::origin, half, n, 0}, sign);
+    if (v == 0 && states().has_origin(branch, n)) {
+      add({StateKind::origin, branch, n, 0}, sign);
       continue;
     }
     for (const auto& e : v == 0 ? velocities->trace_at_zero() : velocities->value_at(std::abs(v))) {
-      add({StateKind::node, half, n, e.node}, sign * shares[l] * e.value);
+      add({StateKind::node, branch, n, e.node}, sign * shares[l] * e.value);
     }
   }
-  if (rest) {
+  if (at_rest) {
     const int kept = states().symmetry_reduced() ? std::abs(i) : i;
-    if (states().has_rest(kept)) add({StateKind::rest, Branch::positive, kept, 0}, sign);
+    if (states().has_static_state(kept))
+      add({StateKind::static_phase, Branch::positive, kept, 0}, sign);
   }
 }
 
@@ -141,7 +145,7 @@ std::vector<PetscScalar> KolmogorovOperator::entry_rates(Vec nu) const {
             count = discretisation().process.static_index() - lowest + 1;
   std::vector<PetscScalar> rates(static_cast<std::size_t>(count), 0.0);
   const petsc::ReadView local(nu);
-  for (const auto& c : rest_coupling_) rates[c.level - lowest] += c.rate * local[c.row];
+  for (const auto& c : static_coupling_) rates[c.level - lowest] += c.rate * local[c.row];
   MPI_Allreduce(MPI_IN_PLACE, rates.data(), static_cast<int>(rates.size()), MPIU_SCALAR, MPIU_SUM,
                 states().comm());
   return rates;
@@ -155,11 +159,11 @@ double KolmogorovOperator::rate_at_top(Vec nu) const {
   return PetscRealPart(rate);
 }
 
-petsc::VecHandle KolmogorovOperator::from_rest(const std::vector<PetscScalar>& s) const {
+petsc::VecHandle KolmogorovOperator::from_static(const std::vector<PetscScalar>& s) const {
   const int lowest = discretisation().process.lowest_static();
   petsc::VecHandle f = zeros();
   petsc::WriteView local(f);
-  for (const auto& c : rest_coupling_) local[c.row] += c.rate * s[c.level - lowest];
+  for (const auto& c : static_coupling_) local[c.row] += c.rate * s[c.level - lowest];
   return f;
 }
 
@@ -170,15 +174,15 @@ petsc::VecHandle KolmogorovOperator::values(const Observable& f) const {
   const velocity::VelocityDiscretisation& velocities = *discretisation().velocities;
   PetscInt at = 0;
   states().for_each_local([&](const State& s) {
-    const int sign = s.half == Branch::positive ? 1 : -1;
-    if (s.kind == StateKind::rest) {
+    const int sign = s.branch == Branch::positive ? 1 : -1;
+    if (s.kind == StateKind::static_phase) {
       local[at++] = f(chain.level(s.noise), 0, 0);
       return;
     }
     double v = 0;
     if (s.kind == StateKind::node) v = sign * velocities.nodes()[s.node];
     if (s.kind == StateKind::holding) v = sign * velocities.v_max();
-    local[at++] = nodes_along(s.half).projected(
+    local[at++] = nodes_along(s.branch).projected(
         s.noise, [&](int i) { return f(chain.level(sign * i), sign, v); });
   });
   return result;
@@ -187,14 +191,14 @@ petsc::VecHandle KolmogorovOperator::values(const Observable& f) const {
 petsc::VecHandle KolmogorovOperator::overlooked(const Observable& f) const {
   petsc::VecHandle result = zeros();
   petsc::WriteView local(result);
-  for (const Branch half : states().halves()) {
-    const int sign = half == Branch::positive ? 1 : -1;
+  for (const Branch branch : states().branches()) {
+    const int sign = branch == Branch::positive ? 1 : -1;
     for (const int node : states().local_noise()) {
       const int n = sign * node;
-      const auto [first, stride] = states().nodes_of(half, n);
+      const auto [first, stride] = states().nodes_of(branch, n);
       PetscInt at = first - states().local_begin();
       const auto of_speed = [&](double speed) {
-        return nodes_along(half).projected(n, [&](int i) {
+        return nodes_along(branch).projected(n, [&](int i) {
           return f(discretisation().process.noise.level(sign * i), sign, sign * speed);
         });
       };

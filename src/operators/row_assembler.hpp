@@ -20,7 +20,7 @@ class RowAssembler {
   using Functional = std::vector<std::pair<PetscInt, double>>;
 
   RowAssembler(const Discretisation& discretisation, const StateSpace& states, PetscScalar lambda,
-               Clock clock, StaticPhase rest, std::optional<Parameter> derivative)
+               Clock clock, StaticPhase static_phase, std::optional<Parameter> derivative)
       : derivative_(derivative),
         noise_(*discretisation.noise),
         chain_(discretisation.process.noise),
@@ -30,14 +30,14 @@ class RowAssembler {
         states_(states),
         lambda_(lambda),
         clock_(clock),
-        rest_(rest),
+        static_phase_(static_phase),
         zero_trace_(discretisation.velocities->trace_at_zero()),
         top_trace_(discretisation.velocities->trace_at_top()),
         lines_(2 * static_cast<std::size_t>(noise_.count())) {
-    for (Branch half : states.halves()) {
-      const auto& nodes = side(half).noise;
+    for (Branch branch : states.branches()) {
+      const auto& nodes = side(branch).noise;
       for (int n = nodes.first(); n <= nodes.last(); ++n) {
-        lines_[place_of_line(half, n)] = states.nodes_of(half, n);
+        lines_[place_of_line(branch, n)] = states.nodes_of(branch, n);
       }
     }
   }
@@ -47,39 +47,39 @@ class RowAssembler {
     states_.for_each_local([this](const State& state) { append(state); });
   }
 
-  /// u(0+) on a noise node of a half that leaves v = 0, as global indices and coefficients.
-  [[nodiscard]] Functional trace_at_zero(Branch half, int n) const {
-    if (states_.has_origin(half, n)) {
-      return {{states_.index({StateKind::origin, half, n, 0}), 1.0}};
+  /// u(0+) on a noise node of a branch that leaves v = 0, as global indices and coefficients.
+  [[nodiscard]] Functional trace_at_zero(Branch branch, int n) const {
+    if (states_.has_origin(branch, n)) {
+      return {{states_.index({StateKind::origin, branch, n, 0}), 1.0}};
     }
     Functional trace;
-    for (const auto& e : zero_trace_) trace.emplace_back(node(half, n, e.node), e.value);
+    for (const auto& e : zero_trace_) trace.emplace_back(node(branch, n, e.node), e.value);
     return trace;
   }
 
-  /// The same at s+ or s-: the level next to those at rest is a node. Where the noise has none, the
-  /// other one stands for it: excursions that never happen.
-  [[nodiscard]] Functional trace_at_exit(Branch half) const {
-    const int next = states_.last_static(half) + 1;
-    return next <= side(half).noise.last() ? trace_at_zero(half, next)
-                                           : trace_at_exit(opposite(half));
+  /// The same at s+ or s-: the level next to the static ones is a node. Where the noise has none,
+  /// the other one stands for it: excursions that never happen.
+  [[nodiscard]] Functional trace_at_exit(Branch branch) const {
+    const int next = states_.last_static(branch) + 1;
+    return next <= side(branch).noise.last() ? trace_at_zero(branch, next)
+                                             : trace_at_exit(opposite(branch));
   }
 
   std::vector<PetscInt> row_start{0};
   std::vector<PetscInt> columns;
   std::vector<PetscScalar> values;
-  std::vector<RestCoupling> rest_coupling;
+  std::vector<StaticCoupling> static_coupling;
   std::vector<TopCoupling> top_coupling;
 
  private:
-  // A half line, seen with its noise and velocities counted along it.
+  // A velocity branch, seen with its noise and velocities counted along it.
   struct Side {
     model::Process process;
     const noise::Nodes& noise;
     const velocity::VelocityDiscretisation& velocities;
   };
-  [[nodiscard]] const Side& side(Branch half) const {
-    return half == Branch::positive ? upper_ : lower_;
+  [[nodiscard]] const Side& side(Branch branch) const {
+    return branch == Branch::positive ? upper_ : lower_;
   }
 
   // What rows on a node where all speeds are positive, and jumps, take: little more than there is.
@@ -93,7 +93,7 @@ class RowAssembler {
     const std::vector<int>& local = states_.local_noise();
     entries *= local.size();
     for (int n : local) entries += noise_.jumps(n).size() * upper_.velocities.nodes().size();
-    entries *= states_.halves().size();
+    entries *= states_.branches().size();
     columns.reserve(entries);
     values.reserve(entries);
     row_start.reserve(static_cast<std::size_t>(states_.local_size()) + 1);
@@ -104,16 +104,17 @@ class RowAssembler {
     case StateKind::node: rates_of_node(state); break;
     case StateKind::origin: rates_of_origin(state); break;
     case StateKind::holding: rates_of_holding(state); break;
-    case StateKind::rest: rates_of_rest(state.noise); break;
+    case StateKind::static_phase: rates_at_rest(state.noise); break;
     }
     finish_row(states_.index(state), lambda_ * rate_of(clock_, state, upper_.velocities));
   }
 
-  // Calls visit(node, rate) for the jumps from a noise node. By tau they are alike on both halves.
+  // Calls visit(node, rate) for the jumps from a noise node. By tau they are alike on both
+  // branches.
   template <class Visit>
-  void for_each_jump(Branch half, int n, Visit visit) const {
+  void for_each_jump(Branch branch, int n, Visit visit) const {
     if (!derivative_) {
-      for (const auto& [to, rate] : side(half).noise.jumps(n)) visit(to, rate);
+      for (const auto& [to, rate] : side(branch).noise.jumps(n)) visit(to, rate);
     } else if (*derivative_ == Parameter::tau) {
       if (changes_of_ != n) {
         changes_ = noise_.jumps_by_tau(n);
@@ -125,52 +126,52 @@ class RowAssembler {
 
   void rates_of_node(const State& s) {
     rates_of_transport(s);
-    for_each_jump(s.half, s.noise,
-                  [&](int to, double rate) { rate_to(node(s.half, to, s.node), rate); });
+    for_each_jump(s.branch, s.noise,
+                  [&](int to, double rate) { rate_to(node(s.branch, to, s.node), rate); });
   }
 
   void rates_of_transport(const State& s) {
-    const Side& here = side(s.half);
+    const Side& here = side(s.branch);
     const double net_force = here.process.net_force_at(here.noise.x(s.noise));
     if (derivative_) {
-      here.velocities.transport_change(net_force, speed_change(s.half), s.node, transport_);
+      here.velocities.transport_change(net_force, speed_change(s.branch), s.node, transport_);
     } else {
       here.velocities.transport(net_force, s.node, transport_);
     }
-    for (const auto& e : transport_.entries) rate_to(node(s.half, s.noise, e.node), e.value);
+    for (const auto& e : transport_.entries) rate_to(node(s.branch, s.noise, e.node), e.value);
     if (transport_.inflow != 0) rate_to_zero(s, transport_.inflow);
     if (transport_.outflow == 0) return;
     if (!here.velocities.kills_at_top()) {
-      return rate_to(holding(s.half, s.noise), transport_.outflow);
+      return rate_to(holding(s.branch, s.noise), transport_.outflow);
     }
     killing_ += transport_.outflow;
     top_coupling.push_back({local_row(), transport_.outflow});
   }
 
   void rates_of_origin(const State& s) {
-    const Side& here = side(s.half);
+    const Side& here = side(s.branch);
     const double net_force = here.process.net_force_at(here.noise.x(s.noise));
-    rate_to(node(s.half, s.noise, 0),
-            here.velocities.origin_rate(derivative_ ? speed_change(s.half)(0) : net_force));
-    for_each_jump(s.half, s.noise, [&](int to, double rate) {
-      if (states_.has_origin(s.half, to)) {
-        rate_to(states_.index({StateKind::origin, s.half, to, 0}), rate);
+    rate_to(node(s.branch, s.noise, 0),
+            here.velocities.origin_rate(derivative_ ? speed_change(s.branch)(0) : net_force));
+    for_each_jump(s.branch, s.noise, [&](int to, double rate) {
+      if (states_.has_origin(s.branch, to)) {
+        rate_to(states_.index({StateKind::origin, s.branch, to, 0}), rate);
       } else {
-        rate_to_rest(s.half, to, rate);
+        rate_to_rest(s.branch, to, rate);
       }
     });
   }
 
   void rates_of_holding(const State& s) {
-    for_each_jump(s.half, s.noise, [&](int to, double rate) {
-      if (states_.has_holding(s.half, to)) return rate_to(holding(s.half, to), rate);
-      for (const auto& e : top_trace_) rate_to(node(s.half, to, e.node), rate * e.value);
+    for_each_jump(s.branch, s.noise, [&](int to, double rate) {
+      if (states_.has_holding(s.branch, to)) return rate_to(holding(s.branch, to), rate);
+      for (const auto& e : top_trace_) rate_to(node(s.branch, to, e.node), rate * e.value);
     });
   }
 
-  void rates_of_rest(int i) {
+  void rates_at_rest(int i) {
     const int highest = upper_.process.static_index(), lowest = upper_.process.lowest_static();
-    if (rest_ == StaticPhase::killing_edges && (i == highest || i == lowest)) {
+    if (static_phase_ == StaticPhase::killing_edges && (i == highest || i == lowest)) {
       killing_ = chain_.rate();  // value 0 there: killed at once
       return;
     }
@@ -182,51 +183,51 @@ class RowAssembler {
 
   // Where a sliding body meets v = 0.
   void rate_to_zero(const State& s, double rate) {
-    if (s.noise > states_.last_static(s.half)) {
+    if (s.noise > states_.last_static(s.branch)) {
       // A grid scheme near a turning point: back to the state at v = 0.
-      rate_to(states_.index({StateKind::origin, s.half, s.noise, 0}), rate);
-    } else if (s.noise >= -states_.last_static(opposite(s.half))) {
-      rate_to_rest(s.half, s.noise, rate);
+      rate_to(states_.index({StateKind::origin, s.branch, s.noise, 0}), rate);
+    } else if (s.noise >= -states_.last_static(opposite(s.branch))) {
+      rate_to_rest(s.branch, s.noise, rate);
     } else if (states_.symmetry_reduced()) {
-      rate_to_trace(trace_at_zero(s.half, -s.noise), rate, reflection());
+      rate_to_trace(trace_at_zero(s.branch, -s.noise), rate, reflection());
     } else {
-      rate_to_trace(trace_at_zero(opposite(s.half), -s.noise), rate, 1);
+      rate_to_trace(trace_at_zero(opposite(s.branch), -s.noise), rate, 1);
     }
   }
 
   // To rest on the levels for which a node stands, in the shares of T.
-  void rate_to_rest(Branch half, int n, double rate) {
-    const noise::Nodes::Group& group = side(half).noise.group_of(n);
+  void rate_to_rest(Branch branch, int n, double rate) {
+    const noise::Nodes::Group& group = side(branch).noise.group_of(n);
     for (int i = group.first; i <= group.last; ++i) {
       const double share = group.row(group.weight, i)[n - group.begin];
-      rate_to_rest(half == Branch::positive ? i : -i, rate * share);
+      rate_to_rest(branch == Branch::positive ? i : -i, rate * share);
     }
   }
 
   void rate_to_rest(int i, double rate) {
-    if (rest_ == StaticPhase::killing) {
+    if (static_phase_ == StaticPhase::killing) {
       killing_ += rate;
-      rest_coupling.push_back({local_row(), i, rate});
+      static_coupling.push_back({local_row(), i, rate});
       return;
     }
     const int kept = states_.symmetry_reduced() ? std::abs(i) : i;
-    if (!states_.has_rest(kept)) {
+    if (!states_.has_static_state(kept)) {
       killing_ += rate;  // an odd function vanishes at x = 0
       return;
     }
-    rate_to(states_.index({StateKind::rest, Branch::positive, kept, 0}), rate,
+    rate_to(states_.index({StateKind::static_phase, Branch::positive, kept, 0}), rate,
             kept == i ? 1 : reflection());
   }
 
-  void rate_to_exit(Branch half, double rate) {
+  void rate_to_exit(Branch branch, double rate) {
     if (rate == 0) return;
-    if (rest_ == StaticPhase::killed_on_exit) {
+    if (static_phase_ == StaticPhase::killed_on_exit) {
       killing_ += rate;
     } else if (states_.symmetry_reduced()) {
       rate_to_trace(trace_at_exit(Branch::positive), rate,
-                    half == Branch::positive ? 1 : reflection());
+                    branch == Branch::positive ? 1 : reflection());
     } else {
-      rate_to_trace(trace_at_exit(half), rate, 1);
+      rate_to_trace(trace_at_exit(branch), rate, 1);
     }
   }
 
@@ -269,23 +270,23 @@ class RowAssembler {
   }
 
   [[nodiscard]] PetscInt local_row() const { return static_cast<PetscInt>(row_start.size()) - 1; }
-  [[nodiscard]] PetscInt node(Branch half, int n, int j) const {
-    const auto& [first, stride] = lines_[place_of_line(half, n)];
+  [[nodiscard]] PetscInt node(Branch branch, int n, int j) const {
+    const auto& [first, stride] = lines_[place_of_line(branch, n)];
     return first + j * stride;
   }
-  [[nodiscard]] std::size_t place_of_line(Branch half, int n) const {
-    const int place = n - side(half).noise.first();
-    return 2 * static_cast<std::size_t>(place) + (half == Branch::positive ? 0 : 1);
+  [[nodiscard]] std::size_t place_of_line(Branch branch, int n) const {
+    const int place = n - side(branch).noise.first();
+    return 2 * static_cast<std::size_t>(place) + (branch == Branch::positive ? 0 : 1);
   }
-  [[nodiscard]] PetscInt holding(Branch half, int n) const {
-    return states_.index({StateKind::holding, half, n, 0});
+  [[nodiscard]] PetscInt holding(Branch branch, int n) const {
+    return states_.index({StateKind::holding, branch, n, 0});
   }
   [[nodiscard]] double reflection() const { return states_.symmetry() == Symmetry::odd ? -1 : 1; }
-  [[nodiscard]] velocity::SpeedChange speed_change(Branch half) const {
+  [[nodiscard]] velocity::SpeedChange speed_change(Branch branch) const {
     const auto& given = upper_.process.friction;
-    const bool lower = half == Branch::negative, own_d = lower && given.mu_d_minus,
+    const bool lower = branch == Branch::negative, own_d = lower && given.mu_d_minus,
                own_s = lower && given.mu_s_minus;
-    return [=, theta = *derivative_, f = side(half).process.friction](double v) {
+    return [=, theta = *derivative_, f = side(branch).process.friction](double v) {
       switch (theta) {
       case Parameter::mu_d: return own_d ? 0.0 : -f.share(v);
       case Parameter::mu_d_minus: return own_d ? -f.share(v) : 0.0;
@@ -306,9 +307,9 @@ class RowAssembler {
   const StateSpace& states_;
   PetscScalar lambda_;
   Clock clock_;
-  StaticPhase rest_;
+  StaticPhase static_phase_;
   std::vector<velocity::Entry> zero_trace_, top_trace_;
-  std::vector<StateSpace::NodeLine> lines_;  // by noise node and half
+  std::vector<StateSpace::NodeLine> lines_;  // by noise node and branch
   // Derivatives of the jumps from the noise node that was asked for last.
   mutable std::vector<noise::Nodes::Rate> changes_;
   mutable std::optional<int> changes_of_;

@@ -24,7 +24,7 @@ int first_holding_node(const model::Process& process, const noise::Nodes& noise,
   return first;
 }
 
-int lowest_rest_level(Symmetry symmetry, const model::Process& process) {
+int lowest_static_level(Symmetry symmetry, const model::Process& process) {
   switch (symmetry) {
   case Symmetry::even: return 0;
   case Symmetry::odd: return 1;  // an odd function vanishes at x = 0 at rest
@@ -57,10 +57,10 @@ StateSpace::Side::Side(const model::Process& process, const noise::Nodes& noise,
       first_holding(first_holding_node(process, noise, velocities)) {}
 
 StateSpace::StateSpace(MPI_Comm comm, const Discretisation& discretisation, Symmetry symmetry,
-                       bool with_rest)
+                       bool with_static_states)
     : comm_(comm),
       symmetry_(symmetry),
-      with_rest_(with_rest),
+      with_static_states_(with_static_states),
       keeps_origin_(discretisation.velocities->keeps_origin()),
       first_(discretisation.noise->first()),
       last_(discretisation.noise->last()),
@@ -68,8 +68,8 @@ StateSpace::StateSpace(MPI_Comm comm, const Discretisation& discretisation, Symm
       upper_(discretisation.process, *discretisation.noise, *discretisation.velocities),
       lower_(discretisation.process.mirrored(), discretisation.noise->mirrored(),
              discretisation.velocities->mirrored()),
-      lowest_rest_(lowest_rest_level(symmetry, discretisation.process)),
-      highest_rest_(discretisation.process.static_index()),
+      lowest_static_(lowest_static_level(symmetry, discretisation.process)),
+      highest_static_(discretisation.process.static_index()),
       rank_(petsc::rank(comm)) {
   require_countable(discretisation.noise->count() * (2.0 * nodes_ + 2) +
                     discretisation.process.noise.count());
@@ -94,19 +94,19 @@ void StateSpace::distribute(const noise::Nodes& noise, const model::NoiseChain& 
     const std::int64_t before = together || pair == 0 ? 0 : 2LL * innermost(pair) - 1;
     owner_of_pair_.push_back(static_cast<int>(std::min(before * ranks / all, ranks - 1)));
   }
-  int first = 0, rest = 0;
+  int first = 0, first_static = 0;
   for (int r = 0; r < ranks; ++r) {
-    int last = first, last_rest = levels + 1;
+    int last = first, last_static = levels + 1;
     while (last <= pairs && owner_of_pair_[last] == r) ++last;
-    if (last <= pairs) last_rest = noise.all_levels() ? last : noise.group_of(last).first;
-    blocks_.push_back({first, last, rest, last_rest, global_size_});
+    if (last <= pairs) last_static = noise.all_levels() ? last : noise.group_of(last).first;
+    blocks_.push_back({first, last, first_static, last_static, global_size_});
     global_size_ += size(blocks_.back());
     first = last;
-    rest = last_rest;
+    first_static = last_static;
   }
 }
 
-std::span<const Branch> StateSpace::halves() const {
+std::span<const Branch> StateSpace::branches() const {
   static constexpr std::array<Branch, 2> both{Branch::negative, Branch::positive};
   return symmetry_reduced() ? std::span<const Branch>(both).subspan(1)
                             : std::span<const Branch>(both);
@@ -119,16 +119,16 @@ bool StateSpace::has_state(int row, int n) const {
 }
 
 State StateSpace::state_at(int row, int n) const {
-  const Branch half = row < 0 ? Branch::negative : Branch::positive;
+  const Branch branch = row < 0 ? Branch::negative : Branch::positive;
   const int along = row < 0 ? -n : n;
-  if (std::abs(row) <= nodes_) return {StateKind::node, half, along, std::abs(row) - 1};
-  return {StateKind::holding, half, along, 0};
+  if (std::abs(row) <= nodes_) return {StateKind::node, branch, along, std::abs(row) - 1};
+  return {StateKind::holding, branch, along, 0};
 }
 
-int StateSpace::owner_of_rest(int level) const {
+int StateSpace::owner_of_static_level(int level) const {
   const auto after =
       std::partition_point(blocks_.begin(), blocks_.end(), [level](const Block& block) {
-        return block.last_rest <= std::abs(level);
+        return block.last_static <= std::abs(level);
       });
   return static_cast<int>(after - blocks_.begin());
 }
@@ -137,34 +137,35 @@ int StateSpace::nodes_below(const Block& block, int n) const {
   return below_in_pairs(block.first, block.last, first_, last_, n);
 }
 
-// States at rest of a rank below a level.
-int StateSpace::rest_below(const Block& block, int level) const {
-  if (!with_rest_) return 0;
-  return below_in_pairs(block.first_rest, block.last_rest, lowest_rest_, highest_rest_, level);
+// Static states of a rank below a level.
+int StateSpace::static_levels_below(const Block& block, int level) const {
+  if (!with_static_states_) return 0;
+  return below_in_pairs(block.first_static, block.last_static, lowest_static_, highest_static_,
+                        level);
 }
 
-// Number of states of a row of a rank before a state: at v = 0 origins of the lower half, states at
-// rest, origins of the upper half.
+// Number of states of a row of a rank before a state: at v = 0 origins of the negative branch,
+// static states, origins of the positive branch.
 int StateSpace::position(const Block& block, int row, const State& state) const {
   const auto below = [&](int n) { return nodes_below(block, n); };
-  const int n = state.half == Branch::positive ? state.noise : -state.noise;
+  const int n = state.branch == Branch::positive ? state.noise : -state.noise;
   const int first_lower = -lower_.last_static, first_upper = upper_.last_static + 1;
   const int lower_origins = keeps_origin_ && !symmetry_reduced() ? below(first_lower) : 0;
   switch (state.kind) {
   case StateKind::node: return below(n);
   case StateKind::holding:
-    // The highest nodes of a half: on the lower one, the lowest of the noise.
+    // The highest nodes of a branch: on the negative one, the lowest of the noise.
     return row > 0 ? below(n) - below(upper_.first_holding) : below(n);
-  case StateKind::rest: return lower_origins + rest_below(block, state.noise);
+  case StateKind::static_phase: return lower_origins + static_levels_below(block, state.noise);
   case StateKind::origin: break;
   }
-  if (state.half == Branch::negative) return below(n);
-  const int rest = rest_below(block, highest_rest_ + 1);
-  return lower_origins + rest + below(n) - below(first_upper);
+  if (state.branch == Branch::negative) return below(n);
+  const int at_rest = static_levels_below(block, highest_static_ + 1);
+  return lower_origins + at_rest + below(n) - below(first_upper);
 }
 
 int StateSpace::size_at_zero(const Block& block) const {
-  int count = rest_below(block, highest_rest_ + 1);
+  int count = static_levels_below(block, highest_static_ + 1);
   if (!keeps_origin_) return count;
   const int all = nodes_below(block, last_ + 1);
   if (!symmetry_reduced()) count += nodes_below(block, -lower_.last_static);
@@ -194,15 +195,15 @@ PetscInt StateSpace::size(const Block& block) const {
   return row_offset(block, last_row()) + count(block, last_row());
 }
 
-StateSpace::NodeLine StateSpace::nodes_of(Branch half, int noise) const {
-  const PetscInt first = index({StateKind::node, half, noise, 0});
-  return {first, nodes_ > 1 ? index({StateKind::node, half, noise, 1}) - first : 0};
+StateSpace::NodeLine StateSpace::nodes_of(Branch branch, int noise) const {
+  const PetscInt first = index({StateKind::node, branch, noise, 0});
+  return {first, nodes_ > 1 ? index({StateKind::node, branch, noise, 1}) - first : 0};
 }
 
 PetscInt StateSpace::index(const State& state) const {
-  const int sign = state.half == Branch::positive ? 1 : -1;
-  const int owner = state.kind == StateKind::rest ? owner_of_rest(state.noise)
-                                                  : owner_of_pair_[std::abs(state.noise)];
+  const int sign = state.branch == Branch::positive ? 1 : -1;
+  const int owner = state.kind == StateKind::static_phase ? owner_of_static_level(state.noise)
+                                                          : owner_of_pair_[std::abs(state.noise)];
   const Block& block = blocks_[owner];
   int row = 0;
   if (state.kind == StateKind::node) row = sign * (state.node + 1);

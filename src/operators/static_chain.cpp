@@ -28,7 +28,8 @@ StaticChain::StaticChain(const model::NoiseChain& chain, int low, int high, doub
 }
 
 std::vector<double> StaticChain::occupation(std::span<const double> entry) const {
-  if (entry.size() != pivot_.size()) throw std::invalid_argument("entry law of a wrong size");
+  if (entry.size() != pivot_.size())
+    throw std::invalid_argument("hitting distribution of a wrong size");
   std::vector<double> m(entry.begin(), entry.end());
   if (m.empty()) return m;
   for (int i = 1; i < size(); ++i) m[i] += m[i - 1] * up_[i - 1] / pivot_[i - 1];

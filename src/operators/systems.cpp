@@ -24,10 +24,10 @@ KolmogorovOperator entered(petsc::SolverStatistics& statistics, Make make) {
 }  // namespace
 
 KolmogorovOperator assemble(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda,
-                            Symmetry symmetry, StaticPhase rest,
+                            Symmetry symmetry, StaticPhase static_phase,
                             petsc::SolverStatistics& statistics, Clock clock) {
   return entered(statistics, [&] {
-    return KolmogorovOperator(comm, discretisation, lambda, symmetry, rest, clock);
+    return KolmogorovOperator(comm, discretisation, lambda, symmetry, static_phase, clock);
   });
 }
 
@@ -47,7 +47,7 @@ std::unique_ptr<petsc::Factorization> factorization(const KolmogorovOperator& a,
 
 KolmogorovOperator Systems::assembled(const SystemKey& key) {
   const auto of = [&](const Discretisation& discretisation) {
-    return assemble(comm_, discretisation, key.lambda, key.symmetry, key.rest, statistics_,
+    return assemble(comm_, discretisation, key.lambda, key.symmetry, key.static_phase, statistics_,
                     key.clock);
   };
   return std::isinf(key.speed_limit) ? of(discretisation_)

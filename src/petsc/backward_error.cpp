@@ -6,10 +6,10 @@
 namespace stickslip::petsc {
 namespace {
 
-// Of the largest component of a plain solution: smaller ones need not be right relative to their
+// Of the largest component of a forward solution: smaller ones need not be right relative to their
 // own size. Where an element is thin or a transform has decayed they are tens of orders smaller,
-// and the factors mix their rows with others; what that does to a functional, the last correction
-// tells.
+// and the factors mix their rows with others; what that does to a functional shows in the last step
+// of iterative refinement.
 constexpr double kNegligible = 1e-13;
 
 void take_magnitudes_of_block(Mat block) {

@@ -16,7 +16,7 @@ namespace stickslip::petsc {
 namespace {
 
 constexpr double kBackwardErrorLimit = 1e-12;
-constexpr int kMostCorrections = 2;  // the second only where the first leaves too much
+constexpr int kMostRefinementSteps = 2;  // the second only where the first leaves too much
 constexpr bool kComplex = PetscDefined(USE_COMPLEX);
 
 }  // namespace
@@ -90,7 +90,7 @@ Solution Factorization::solve(Vec b, bool transposed) {
   apply(b, s.x, transposed);
   ++statistics_.solves;
   bool sound = false;
-  for (int n = 0; n < kMostCorrections && !sound; ++n) {
+  for (int n = 0; n < kMostRefinementSteps && !sound; ++n) {
     compute_residual();  // again, as backward_error may overwrite it
     apply(residual, step, transposed);
     check(VecAXPY(s.x, 1, step));

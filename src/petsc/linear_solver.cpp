@@ -97,7 +97,7 @@ bool lacks_workspace(KSP ksp) {
 }
 
 // MUMPS adds ICNTL(14) per cent to the workspace that its analysis foresees. PETSc does not let it
-// go on after an error, so it begins anew.
+// continue after an error, so it begins anew.
 KspHandle with_more_workspace(KSP ksp, Mat matrix, const std::string& prefix) {
   constexpr PetscInt least = 100;
   PetscInt percent = 0;

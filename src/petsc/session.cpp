@@ -55,7 +55,7 @@ Session::Session(int& argc, char**& argv) : arguments_(argv, argv + argc) {
   (void)ranks_on_node();          // all ranks are here
   take_blas_space();
   std::signal(SIGPIPE, SIG_DFL);  // a closed pipe (| head) is no crash
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes is told by the write that fails
+  std::signal(SIGXFSZ, SIG_IGN);  // the write that fails reports a limit of file sizes
 }
 
 Session::~Session() { (void)SlepcFinalize(); }

@@ -16,7 +16,7 @@ using operators::Branch;
 using operators::State;
 using operators::StateKind;
 
-// Calls visit(half, state, probability) for the local sliding states; what is symmetry-reduced
+// Calls visit(branch, state, probability) for the local sliding states; what is symmetry-reduced
 // stands for two places, each with half of the mass.
 template <class Visit>
 void for_each_place(const StationaryDistribution& distribution, Visit visit) {
@@ -25,7 +25,7 @@ void for_each_place(const StationaryDistribution& distribution, Visit visit) {
   PetscInt at = 0;
   distribution.states().for_each_local([&](const State& state) {
     const double probability = PetscRealPart(local[at++]) / total;
-    if (!distribution.states().symmetry_reduced()) return visit(state.half, state, probability);
+    if (!distribution.states().symmetry_reduced()) return visit(state.branch, state, probability);
     visit(Branch::positive, state, probability / 2);
     visit(Branch::negative, state, probability / 2);
   });

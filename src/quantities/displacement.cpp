@@ -29,7 +29,8 @@ class CoupledPencil final : public Pencil {
       std::vector<PetscInt> places;
       PetscInt at = 0;
       a.states().for_each_local([&](const State& state) {
-        if (state.kind != StateKind::rest || !a.states().symmetry_reduced()) places.push_back(at);
+        if (state.kind != StateKind::static_phase || !a.states().symmetry_reduced())
+          places.push_back(at);
         ++at;
       });
       return places;
@@ -131,8 +132,8 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
   x.mean.resize(time.size());
   x.variance.resize(time.size());
   const bool stationary = start.kind == model::Start::Kind::stationary;
-  // From there E[x^2] grows as S_0 t, of which a model of rough ends loses sight: beyond the time
-  // of memory only what another start changes, which stays bounded, is left to it.
+  // From there E[x^2] grows as S_0 t, which a model of rough ends does not resolve: beyond the time
+  // of memory the model gives only what another start changes, which stays bounded.
   constexpr double memory = 10;  // correlation times
   const bool beside_stationary = !stationary && longest > memory;
   if (stationary || beside_stationary) {

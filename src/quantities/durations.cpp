@@ -90,9 +90,9 @@ DurationDistribution stick_distribution(const model::Process& process,
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return time[a] < time[b]; });
-  DurationDistribution law;
-  law.density.resize(time.size());
-  law.distribution.resize(time.size());
+  DurationDistribution result;
+  result.density.resize(time.size());
+  result.distribution.resize(time.size());
   StickingFlow flow(process, std::move(start));
   double now = 0;
   for (std::size_t n : order) {
@@ -100,25 +100,28 @@ DurationDistribution stick_distribution(const model::Process& process,
     now = time[n];
     // Each jump rounds; about Lambda t of them happen.
     const double doubt = relative + 1e-16 * (8 + process.noise.rate() * now);
-    law.density[n] = {flow.exit_rate(), doubt * flow.exit_rate()};
-    law.distribution[n] = {flow.left(), doubt * flow.left()};
+    result.density[n] = {flow.exit_rate(), doubt * flow.exit_rate()};
+    result.distribution[n] = {flow.left(), doubt * flow.left()};
   }
-  return law;
+  return result;
 }
 
-// f(t) = g exp(L t) r, g where excursions start, r = -L 1 the rate of ending where `rest` kills.
-DurationDistribution
-distribution_until_killed(operators::Systems& systems, StaticPhase rest, operators::Clock clock,
-                          const StationaryDistribution& stationary, const std::vector<double>& time,
-                          double mean, const TimeScales& scales, double at_zero, double tolerance) {
+// f(t) = g exp(L t) r, g where excursions start, r = -L 1 the rate of ending where `static_phase`
+// kills.
+DurationDistribution distribution_until_killed(operators::Systems& systems,
+                                               StaticPhase static_phase, operators::Clock clock,
+                                               const StationaryDistribution& stationary,
+                                               const std::vector<double>& time, double mean,
+                                               const TimeScales& scales, double at_zero,
+                                               double tolerance) {
   std::vector<double> later;
   for (double t : time) {
     if (t > 0) later.push_back(t);
   }
-  DurationDistribution law;
+  DurationDistribution result;
   TimeCurve curve{{{}, {}}};
   if (!later.empty()) {
-    ProcessPencil pencil(systems, operators::symmetry_of(systems.process()), rest, clock);
+    ProcessPencil pencil(systems, operators::symmetry_of(systems.process()), static_phase, clock);
     const auto& a = pencil.a();
     const petsc::VecHandle one = a.values([](double, double, double) { return 1.0; }),
                            b = a.zeros(), c = stationary.starts(a), d = stationary.weight_on(a);
@@ -127,13 +130,13 @@ distribution_until_killed(operators::Systems& systems, StaticPhase rest, operato
     curve = time_curve(pencil, {b, c, d}, ReducedModel::Nature::rough, {{0, 1 / mean}, {1, 1}},
                        later, scales, tolerance);
   }
-  law.pairs = curve.pairs;
+  result.pairs = curve.pairs;
   std::size_t next = 0;
   for (double t : time) {
-    law.density.push_back(t > 0 ? curve.value[0][next] : Uncertain{at_zero, 0});
-    law.distribution.push_back(t > 0 ? curve.value[1][next++] : Uncertain{});
+    result.density.push_back(t > 0 ? curve.value[0][next] : Uncertain{at_zero, 0});
+    result.distribution.push_back(t > 0 ? curve.value[1][next++] : Uncertain{});
   }
-  return law;
+  return result;
 }
 
 DurationDistribution slide_distribution(operators::Systems& systems,
@@ -145,7 +148,7 @@ DurationDistribution slide_distribution(operators::Systems& systems,
       slide_density_at_zero(systems.process(), stationary.sides()), tolerance);
 }
 
-// No excursion ends at once: a slide would have to, and then a sticking phase.
+// No excursion ends at once: a sliding phase would have to, and then a sticking phase.
 DurationDistribution excursion_distribution(operators::Systems& systems,
                                             const StationaryDistribution& stationary,
                                             const std::vector<double>& time, double tolerance) {
@@ -184,7 +187,7 @@ DurationMoments duration_moments(operators::Systems& systems,
   const auto slide = system.factors().solve(ones);
   const auto square = system.factors().solve(slide.x);
   const auto sticking = system.factors().solve(
-      system.a().from_rest(std::vector<PetscScalar>(once.begin(), once.end())));
+      system.a().from_static(std::vector<PetscScalar>(once.begin(), once.end())));
   const Uncertain s = value_of(starts, slide), s2 = 2.0 * value_of(starts, square);
   const Uncertain st = value_of(starts, system.factors().solve(sticking.x));
   const Uncertain excursion = s + stick;
@@ -216,12 +219,12 @@ void append_duration_moments(const model::Process& process, const SideChain& sid
 }
 
 void append_distribution(const std::string& name, const Abscissa& abscissa,
-                         const DurationDistribution& law, Results& results) {
+                         const DurationDistribution& durations, Results& results) {
   Result density = array("f_" + name, abscissa.unit_of_density, abscissa.name, abscissa.values);
   Result distribution =
       array("cdf_" + name, "", abscissa.name, abscissa.values, Kind::distribution);
-  for (const auto& value : law.density) append_value(density, value);
-  for (const auto& value : law.distribution) append_value(distribution, value);
+  for (const auto& value : durations.density) append_value(density, value);
+  for (const auto& value : durations.distribution) append_value(distribution, value);
   results.push_back(std::move(density));
   results.push_back(std::move(distribution));
 }

@@ -96,7 +96,7 @@ void append_moments(const operators::Discretisation& discretisation, const Excur
   results.push_back(scalar(kEV2, sum(excursion.slide_square) / total, 0));
   results.push_back(scalar(kEAbsV, sum(excursion.slide_distance) / total, 0));
   results.push_back(scalar(kEXV, force_times_velocity / total, 0));
-  // A difference of what the two half lines give: exact to the size of E|V|.
+  // A difference of the two velocity branches: exact to the size of E|V|.
   const bool drifts = discretisation.process.drifts();
   const double rounding = excursion.conservation_defect(discretisation) * sum(distance);
   results.push_back(
@@ -153,16 +153,16 @@ std::vector<double> marginal_of_noise(const operators::Discretisation& discretis
   const auto& [process, noise, velocities] = discretisation;
   const std::span all(excursion.slide_time);
   const auto nodes = static_cast<std::size_t>(noise->count());
-  const bool one_half = all.size() == nodes;
+  const bool one_branch = all.size() == nodes;
   auto time = noise->spread(all.first(nodes));
   const int lowest = process.lowest_static() - process.noise.lowest();
   for (std::size_t k = 0; k < excursion.stick_time.size(); ++k) {
     time[lowest + k] += excursion.stick_time[k];
   }
-  const auto other = one_half ? time : noise->mirrored().spread(all.last(nodes));
+  const auto other = one_branch ? time : noise->mirrored().spread(all.last(nodes));
   const std::vector<double> below(other.rbegin(), other.rend());
   for (std::size_t i = 0; i < time.size(); ++i) {
-    time[i] = (time[i] + below[i]) / ((one_half ? 2 : 1) * excursion.mean_excursion());
+    time[i] = (time[i] + below[i]) / ((one_branch ? 2 : 1) * excursion.mean_excursion());
   }
   return time;
 }

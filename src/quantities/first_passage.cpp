@@ -35,14 +35,14 @@ struct Sticking {
   std::vector<double> stationary;  ///< probabilities of the levels
 };
 
-/// What becomes of a slide until it reaches the speed or the excursion ends.
-struct Slide {
+/// What becomes of a sliding phase until it reaches the speed or the excursion ends.
+struct SlidingPhase {
   double time = 0;          // sliding and sticking
   double up = 0, down = 0;  // probabilities of the side from which the next one starts
   double reached = 0;
 };
 
-Slide slide_of(const KolmogorovOperator& a, Vec nu, const Sticking& sticking) {
+SlidingPhase sliding_phase_of(const KolmogorovOperator& a, Vec nu, const Sticking& sticking) {
   PetscScalar time = 0;
   petsc::check(VecSum(nu, &time));
   std::vector<double> entry;
@@ -56,11 +56,11 @@ struct Passage {
   double exceeded, from_slide, from_rest;
 };
 
-Passage passage(const SideChain& sides, const Sticking& sticking, const Slide& plus,
-                const Slide& minus, Slide rest) {
+Passage passage(const SideChain& sides, const Sticking& sticking, const SlidingPhase& plus,
+                const SlidingPhase& minus, SlidingPhase rest) {
   if (!(plus.reached + minus.reached > 0)) {
-    throw NotReached("a speed of -velocity is reached more rarely than numbers can tell; take "
-                     "smaller ones");
+    throw NotReached(
+        "a speed of -velocity is reached too rarely for double precision; take smaller ones");
   }
   const double across =
       plus.down * minus.reached + plus.reached * minus.up + plus.reached * minus.reached;
@@ -76,8 +76,8 @@ Passage passage(const SideChain& sides, const Sticking& sticking, const Slide& p
           rest.time + rest.up * from_plus + rest.down * from_minus};
 }
 
-// With symmetry where all slides are alike, whichever side comes next.
-Slide mirrored(Slide slide) {
+// With symmetry where all sliding phases are alike, whichever side comes next.
+SlidingPhase mirrored(SlidingPhase slide) {
   std::swap(slide.up, slide.down);
   return slide;
 }
@@ -91,11 +91,12 @@ FirstPassage first_passage(operators::Systems& systems, const SideChain& sides, 
   auto& system = systems.at(key);
   const KolmogorovOperator& a = system.a();
   const Sticking sticking(process);
-  // Also before the last correction, which shows rounding.
+  // Also before iterative refinement, whose step shows rounding.
   const auto follow = [&](Vec start) {
     const petsc::Solution nu = system.factors().solve_transposed(start);
     petsc::check(VecAYPX(nu.correction, -1, nu.x));
-    return std::pair{slide_of(a, nu.x, sticking), slide_of(a, nu.correction, sticking)};
+    return std::pair{sliding_phase_of(a, nu.x, sticking),
+                     sliding_phase_of(a, nu.correction, sticking)};
   };
   const auto plus = follow(a.trace_at_exit(Branch::positive));
   const auto minus = process.symmetric() ? std::pair{mirrored(plus.first), mirrored(plus.second)}

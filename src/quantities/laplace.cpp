@@ -26,14 +26,14 @@ void append_stick_transform(const model::Process& process, const std::vector<dou
   results.push_back(std::move(result));
 }
 
-SlideTransforms slide_transforms(operators::Systems& systems,
-                                 const StationaryDistribution& distribution, double lambda) {
+SlidingTransforms sliding_transforms(operators::Systems& systems,
+                                     const StationaryDistribution& distribution, double lambda) {
   const auto sticking = stick_duration_transforms(systems.process(), lambda);
   auto& system = systems.at(lambda, operators::symmetry_of(systems.process()));
   const petsc::VecHandle starts = distribution.starts(system.a());
   const auto transform = [&](const std::vector<double>& values) {
     const std::vector<PetscScalar> s(values.begin(), values.end());
-    return value_of(starts, system.factors().solve(system.a().from_rest(s)));
+    return value_of(starts, system.factors().solve(system.a().from_static(s)));
   };
   return {transform(std::vector<double>(sticking.size(), 1.0)), transform(sticking)};
 }

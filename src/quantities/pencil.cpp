@@ -11,10 +11,10 @@ using operators::Clock;
 using petsc::check;
 
 ProcessPencil::ProcessPencil(operators::Systems& systems, operators::Symmetry symmetry,
-                             operators::StaticPhase rest, Clock clock)
+                             operators::StaticPhase static_phase, Clock clock)
     : systems_(systems),
-      key_{0, symmetry, rest, clock},
-      a_(operators::assemble(systems.comm(), systems.discretisation(), 0, symmetry, rest,
+      key_{0, symmetry, static_phase, clock},
+      a_(operators::assemble(systems.comm(), systems.discretisation(), 0, symmetry, static_phase,
                              systems.statistics())) {
   if (clock == Clock::time) return;
   root_ = a_.zeros();

@@ -27,9 +27,9 @@ std::size_t PhaseField::row_start(int noise) const {
   return static_cast<std::size_t>(place - local_noise_.begin()) * v_.size();
 }
 
-void PhaseField::add(operators::Branch half, int noise, int node, double value) {
+void PhaseField::add(operators::Branch branch, int noise, int node, double value) {
   const std::size_t nodes = v_.size() / 2;
-  const bool upper = half == operators::Branch::positive;
+  const bool upper = branch == operators::Branch::positive;
   by_node_[upper ? row_start(noise) + nodes + node : row_start(-noise) + nodes - 1 - node] += value;
 }
 

@@ -130,7 +130,7 @@ int ReducedModel::extend(double shift, int count) {
   for (; added < count && !full(); ++added) {
     resolve(shift, chain.v, chain.w);
     if (!append(chain.v, chain.w)) break;
-    // The chain goes on from the new direction alone, as Arnoldi's process does.
+    // The chain continues from the new direction alone, as Arnoldi's process does.
     check(BVCopyVec(right_, pairs_ - 1, chain.v));
     check(BVCopyVec(left_, pairs_ - 1, chain.w));
   }

@@ -78,13 +78,13 @@ RelaxationMode mode_of(const operators::Systems& systems, const operators::State
     auto value = scale * entry(real, imaginary, at++);
     if (real_rate) value = value.real();
     if (state.kind == StateKind::node) {
-      const auto add = [&](Branch half, double factor) {
-        mode.real.add(half, state.noise, state.node, factor * value.real());
-        mode.imaginary.add(half, state.noise, state.node, factor * value.imag());
+      const auto add = [&](Branch branch, double factor) {
+        mode.real.add(branch, state.noise, state.node, factor * value.real());
+        mode.imaginary.add(branch, state.noise, state.node, factor * value.imag());
       };
-      add(state.half, 1);
-      if (states.symmetry_reduced()) add(operators::opposite(state.half), sign);
-    } else if (state.kind == StateKind::rest) {
+      add(state.branch, 1);
+      if (states.symmetry_reduced()) add(operators::opposite(state.branch), sign);
+    } else if (state.kind == StateKind::static_phase) {
       mode.at_rest[state.noise - lowest] = value;
       if (states.symmetry_reduced()) mode.at_rest[-state.noise - lowest] = sign * value;
     }

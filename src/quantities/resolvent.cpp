@@ -37,7 +37,7 @@ class Sector {
   Sector(operators::Systems& systems, double lambda, Symmetry symmetry)
       : systems_(systems), lambda_(lambda), symmetry_(symmetry) {}
 
-  /// At s+ and, where both halves are kept, at s-.
+  /// At s+ and, where both branches are kept, at s-.
   struct Values {
     Uncertain plus, minus;
   };
@@ -79,7 +79,8 @@ class Sector {
   }
 
  private:
-  // int exp(-lambda s) f(X_s, 0, 0) ds over a stay, by its first level from the lowest up.
+  // int exp(-lambda s) f(X_s, 0, 0) ds over a sticking phase, by its first level from the lowest
+  // up.
   [[nodiscard]] std::vector<double> static_integral(const Function& f) const {
     const auto& process = systems_.process();
     const int highest = process.static_index();
@@ -97,7 +98,7 @@ class Sector {
   [[nodiscard]] Values solve(const std::vector<double>& values, Vec source = nullptr) {
     auto& system = systems_.at(lambda_, symmetry_);
     const std::vector<PetscScalar> s(values.begin(), values.end());
-    const petsc::VecHandle rhs = system.a().from_rest(s);
+    const petsc::VecHandle rhs = system.a().from_static(s);
     if (source != nullptr) petsc::check(VecAXPY(rhs, 1, source));
     const auto u = system.factors().solve(rhs);
     Values at{value_of(system.a().trace_at_exit(), u), {}};

@@ -41,18 +41,18 @@ Result derivative(const Name& of, Parameter parameter, Uncertain value) {
   return scalar(fmt::format("d{}_d{}", of.key, name), quotient.text(), value);
 }
 
-/// Differences between neighbouring static levels, those beyond the ends included, of the mean stay
-/// T and of the probability h of leaving upwards: from Q T = -1 and Q h = 0,
+/// Differences between neighbouring static levels, those beyond the ends included, of the mean
+/// sticking time T and of the probability h of leaving upwards: from Q T = -1 and Q h = 0,
 ///
 ///   up_i (T_i - T_{i+1}) = 1/Lambda + down_i (T_{i-1} - T_i),  up_i (h_{i+1} - h_i) = down_i (h_i
 ///   - h_{i-1}),
 ///
 /// T = 0 at both ends, h = 0 and 1. Sums of positive terms but for one difference for each level,
 /// of numbers that are alike only where T is largest.
-struct StayDifferences {
+struct StaticDifferences {
   std::vector<double> fall, rise;  // of T and of h; index i + 1 - lowest of the pair i, i + 1
 
-  explicit StayDifferences(const model::Process& process) {
+  explicit StaticDifferences(const model::Process& process) {
     const auto& noise = process.noise;
     std::vector<double> from_below{0}, weight{1};
     for (int i = process.lowest_static(); i <= process.static_index(); ++i) {
@@ -71,17 +71,17 @@ struct StayDifferences {
 // stick_time . (dQ T) and stick_time . (dQ h) by tau, as
 // (dQ s)_i = (dLambda/Lambda) (Q s)_i + Lambda dalpha_i (s_{i+1} - s_{i-1}).
 struct ByTau {
-  double stay = 0, upwards = 0;
+  double sticking = 0, upwards = 0;
 };
-ByTau stays_by_tau(const model::Process& process, const std::vector<double>& stick_time) {
+ByTau static_phase_by_tau(const model::Process& process, const std::vector<double>& stick_time) {
   const auto& noise = process.noise;
-  const StayDifferences differences(process);
+  const StaticDifferences differences(process);
   ByTau sum;
   for (std::size_t n = 0; n < stick_time.size(); ++n) {
     const double change =
         noise.rate() * noise.up_change(process.lowest_static() + static_cast<int>(n));
-    sum.stay -= stick_time[n] * (noise.rate_change() / noise.rate() +
-                                 change * (differences.fall[n] + differences.fall[n + 1]));
+    sum.sticking -= stick_time[n] * (noise.rate_change() / noise.rate() +
+                                     change * (differences.fall[n] + differences.fall[n + 1]));
     sum.upwards += stick_time[n] * change * (differences.rise[n] + differences.rise[n + 1]);
   }
   return sum;
@@ -114,32 +114,34 @@ Sensitivity::Sensitivity(operators::Systems& systems, const StationaryDistributi
                                                       symmetry, theta, systems.statistics()));
   }
   if (symmetry == Symmetry::none) {
-    rising_ = system_.factors().solve(system_.a().from_rest({upwards_.begin(), upwards_.end()}));
+    rising_ = system_.factors().solve(system_.a().from_static({upwards_.begin(), upwards_.end()}));
   }
-  slide_ = slides([](double, double, double) { return 1.0; });
-  stick_ = stays();
+  slide_ = sliding_mean([](double, double, double) { return 1.0; });
+  stick_ = sticking_mean();
 }
 
-Sensitivity::Gradient Sensitivity::slides(const KolmogorovOperator::Observable& f) const {
+Sensitivity::Gradient Sensitivity::sliding_mean(const KolmogorovOperator::Observable& f) const {
   const std::vector<double> none(upwards_.size(), 0.0);
   return through(system_.factors().solve(system_.a().values(f)), none);
 }
 
-Sensitivity::Gradient Sensitivity::stays() const {
+Sensitivity::Gradient Sensitivity::sticking_mean() const {
   const auto& process = distribution_.process();
   const auto& stick_time = distribution_.excursion().stick_time;
   const auto chain = operators::StaticChain::of(process);
   const auto mean = chain.integral(std::vector<double>(stick_time.size(), 1.0));
-  // On a single static level all stays are alike, whatever the slides do.
+  // On a single static level all sticking phases have one distribution, whatever the sliding
+  // phases.
   Gradient gradient(parameters_.size());
   if (mean.size() > 1) {
     gradient =
-        through(system_.factors().solve(system_.a().from_rest({mean.begin(), mean.end()})), mean);
+        through(system_.factors().solve(system_.a().from_static({mean.begin(), mean.end()})), mean);
   }
   for (std::size_t n = 0; n < parameters_.size(); ++n) {
     if (parameters_[n] != Parameter::tau) continue;
-    const double by_tau = stays_by_tau(process, stick_time).stay;
-    const double uncorrected = stays_by_tau(process, distribution_.uncorrected().stick_time).stay;
+    const double by_tau = static_phase_by_tau(process, stick_time).sticking;
+    const double uncorrected =
+        static_phase_by_tau(process, distribution_.uncorrected().stick_time).sticking;
     gradient[n] = gradient[n] + Uncertain{by_tau, std::abs(uncorrected - by_tau)};
   }
   return gradient;
@@ -171,12 +173,12 @@ Sensitivity::Gradient Sensitivity::through(petsc::Solution h, const std::vector<
       petsc::check(MatMult(change.matrix(), function, image));
       return -petsc::dot(distribution_.occupation(), image);
     };
-    const double moved = petsc::dot(distribution_.occupation(), change.from_rest(values));
-    const double chain =
-        parameters_[n] != Parameter::tau
-            ? 0
-            : worth * stays_by_tau(distribution_.process(), distribution_.excursion().stick_time)
-                          .upwards;
+    const double moved = petsc::dot(distribution_.occupation(), change.from_static(values));
+    const double chain = parameters_[n] != Parameter::tau
+                             ? 0
+                             : worth * static_phase_by_tau(distribution_.process(),
+                                                           distribution_.excursion().stick_time)
+                                           .upwards;
     gradient.push_back({flux(h.x) + moved + chain, std::abs(flux(h.correction))});
   }
   return gradient;
@@ -220,7 +222,7 @@ void Sensitivity::append_moments(Results& results) const {
     return petsc::dot(distribution_.occupation(), system_.a().values(f));
   };
   const auto add = [&](const Name& name, const KolmogorovOperator::Observable& f) {
-    append(name, ratio(mean(f), slides(f)), results);
+    append(name, ratio(mean(f), sliding_mean(f)), results);
   };
   add(kEV2, [](double, double, double v) { return v * v; });
   add(kEAbsV, [](double, double, double v) { return std::abs(v); });

@@ -49,7 +49,7 @@ Uncertain slip_transform(operators::Systems& systems, const StationaryDistributi
       systems.at({s, operators::symmetry_of(process), StaticPhase::killing, Clock::path_length});
   const int levels = process.static_index() - process.lowest_static() + 1;
   const auto ended =
-      system.a().from_rest(std::vector<PetscScalar>(static_cast<std::size_t>(levels), 1.0));
+      system.a().from_static(std::vector<PetscScalar>(static_cast<std::size_t>(levels), 1.0));
   return value_of(distribution.starts(system.a()), system.factors().solve(ended));
 }
 
@@ -82,9 +82,9 @@ void append_slip_transform(const std::vector<double>& inverse_distance,
   results.push_back(std::move(result));
 }
 
-void append_slip(const std::vector<double>& distance, const DurationDistribution& law,
+void append_slip(const std::vector<double>& distance, const DurationDistribution& slips,
                  Results& results) {
-  append_distribution("slip", {"distance", "1/(velocity*time)", distance}, law, results);
+  append_distribution("slip", {"distance", "1/(velocity*time)", distance}, slips, results);
 }
 
 }  // namespace stickslip::quantities

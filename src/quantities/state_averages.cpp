@@ -16,7 +16,7 @@ struct Integral {
   Uncertain stick, slide;
 };
 
-// Rounding is the effect of the last correction, and the defect of an exact identity, relative to
+// Rounding is the effect of iterative refinement, and the defect of an exact identity, relative to
 // the size of what is summed.
 Integral integral(const StationaryDistribution& distribution, double defect,
                   const KolmogorovOperator& a, const model::Observable& f) {

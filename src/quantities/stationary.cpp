@@ -32,16 +32,16 @@ std::vector<double> real_parts(const std::vector<PetscScalar>& values) {
 }
 
 // Scales nu such that sliding ends somewhere: sum_i P_i = 1 holds on every discretisation. Where
-// slides last long against the time steps of the noise, nu is nearly a null vector of A, and
-// rounding (of the entries of A too) changes little but its length; this sets it right.
+// sliding phases last long against the time steps of the noise, nu is nearly a null vector of A,
+// and rounding (of the entries of A too) changes little but its length; this sets it right.
 double normalise(const KolmogorovOperator& a, Vec nu) {
   const auto entry = real_parts(a.entry_rates(nu));
   const double total = std::accumulate(entry.begin(), entry.end(), 0.0);
   if (!(std::abs(total - 1) < 0.1)) {
-    throw NotReached(fmt::format("rounding leaves {:.2g} for the probability that a slide ends; "
-                                 "slides last too long against "
-                                 "the noise for double precision",
-                                 total));
+    throw NotReached(
+        fmt::format("rounding leaves {:.2g} for the probability that a sliding phase ends; sliding "
+                    "phases last too long against the noise for double precision",
+                    total));
   }
   petsc::check(VecScale(nu, 1 / total));
   return total - 1;
@@ -61,7 +61,7 @@ Excursion excursion_of(const KolmogorovOperator& a, Vec nu, double lost) {
   a.states().for_each_local([&, &velocities_of_v = *velocities,
                              &nodes_of_x = *noise](const State& state) {
     const double mass = PetscRealPart(local[at++]), v = operators::speed_of(state, velocities_of_v);
-    const int node = state.half == Branch::positive
+    const int node = state.branch == Branch::positive
                          ? state.noise - nodes_of_x.first()
                          : nodes_of_x.count() + state.noise + nodes_of_x.last();
     e.slide_time[node] += mass;
@@ -78,7 +78,8 @@ Excursion excursion_of(const KolmogorovOperator& a, Vec nu, double lost) {
   return e;
 }
 
-/// Occupations over the slides of excursions from one side, and without the last correction.
+/// Occupations over the sliding phases of excursions from one side, and before iterative
+/// refinement.
 struct Occupation {
   petsc::VecHandle nu, uncorrected;
   double lost = 0, uncorrected_lost = 0;
@@ -127,7 +128,7 @@ StationaryDistribution::StationaryDistribution(Systems& systems)
   uncorrected_occupation_ = std::move(plus.uncorrected);
 }
 
-// Slides that end with V > 0 on level i, and with V < 0 on level -i in symmetry-reduced
+// Sliding phases that end with V > 0 on level i, and with V < 0 on level -i in symmetry-reduced
 // coordinates: halves of the sum and of the difference of both.
 void StationaryDistribution::orient(Systems& systems) {
   if (!excursion_.entry_plus.empty()) return;
@@ -155,7 +156,7 @@ petsc::VecHandle StationaryDistribution::starts(const KolmogorovOperator& a) con
   return g;
 }
 
-// All operators that keep the same halves list the sliding states of a rank in the same order.
+// All operators that keep the same branches list the sliding states of a rank in the same order.
 petsc::VecHandle StationaryDistribution::occupation_on(const KolmogorovOperator& a) const {
   petsc::VecHandle all = a.zeros();
   petsc::WriteView local(all);
@@ -165,7 +166,7 @@ petsc::VecHandle StationaryDistribution::occupation_on(const KolmogorovOperator&
   const bool both = a.states().symmetry_reduced();
   PetscInt at = 0, sliding = 0;
   a.states().for_each_local([&](const State& state) {
-    if (state.kind != StateKind::rest) {
+    if (state.kind != StateKind::static_phase) {
       local[at++] = nu[sliding++];
     } else {
       const double here = stick[state.noise - lowest];

@@ -95,7 +95,7 @@ TimeCurve time_curve(Pencil& pencil, const Ends& ends, ReducedModel::Nature natu
   }
   questions.tolerance = tolerance;
   // From the slowest rates to beyond the rate of the noise. Under fast noise velocities are slower
-  // than it by any factor, and long times tell of them.
+  // than it by any factor, and long times depend on them.
   const double longest = *std::max_element(time.begin(), time.end());
   double low = 0.3 / tau;
   const double high = std::max(30 / tau, 12 * rate);

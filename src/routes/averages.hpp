@@ -1,6 +1,6 @@
 #pragma once
-/// Stationary averages pi(f) behind sticking, moments, noise_law and averages, for routes that
-/// compute pi(f) for one f after the other.
+/// Stationary averages pi(f) behind sticking, moments, noise_law and averages, for solution methods
+/// that compute pi(f) for one f after the other.
 
 #include <string>
 #include <vector>

@@ -27,8 +27,8 @@ using quantities::Results;
 using quantities::StationaryDistribution;
 using quantities::Uncertain;
 
-// Appends what `append` makes of the excursion, with rounding for error: the effect of the last
-// correction of the solve, and the defect of an exact identity.
+// Appends what `append` makes of the excursion, with rounding for error: the effect of iterative
+// refinement, and the defect of an exact identity.
 template <class Append>
 void append_with_rounding(const StationaryDistribution& distribution, Results& results,
                           Append append) {
@@ -64,7 +64,8 @@ std::vector<Uncertain> entry_law(const StationaryDistribution& distribution) {
   return entry;
 }
 
-// On several ranks each computes the law for itself, then its share of the frequencies.
+// On several ranks each computes the stationary distribution for itself, then its share of the
+// frequencies.
 quantities::Spectrum direct_spectrum(const Setting& setting) {
   const MPI_Comm comm = petsc::ranks(setting.comm) > 1 ? PETSC_COMM_SELF : setting.comm;
   operators::Systems systems(comm, setting.discretisation, setting.statistics);
@@ -234,7 +235,7 @@ class Execution {
   }
 
   void transform_durations(double lambda) {
-    const auto t = quantities::slide_transforms(systems_, distribution(), lambda);
+    const auto t = quantities::sliding_transforms(systems_, distribution(), lambda);
     const auto stick = quantities::stick_transform(setting_.discretisation.process, lambda,
                                                    entry_law(distribution()));
     transforms_.push_back({t.slide, stick, t.excursion});
@@ -246,9 +247,10 @@ class Execution {
 
   void find_slip_distribution() {
     const auto& distance = question_.distance;
-    const auto law = quantities::slip_distribution(systems_, distribution(), distance, tolerance());
-    quantities::append_slip(distance, law, results());
-    evaluation_.checks.emplace_back("slip_pairs", law.pairs);
+    const auto slips =
+        quantities::slip_distribution(systems_, distribution(), distance, tolerance());
+    quantities::append_slip(distance, slips, results());
+    evaluation_.checks.emplace_back("slip_pairs", slips.pairs);
   }
 
   void pass(double speed) {

@@ -24,7 +24,7 @@ FluidQueue solve(const model::Process& process, double lambda) {
     return FluidQueue(process, lambda);
   } catch (const std::runtime_error& error) {
     throw NotReached(std::string(error.what()) +
-                     "; slides last too long against the noise, take a larger -mu_d");
+                     "; sliding phases last too long against the noise, take a larger -mu_d");
   }
 }
 
@@ -32,7 +32,7 @@ double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-Excursion excursion_of(const model::Process& process, const exact::QueuedSlide& slide) {
+Excursion excursion_of(const model::Process& process, const exact::SlidingMeans& slide) {
   Excursion e;
   e.slide_time = slide.time;
   e.slide_distance = slide.distance;
@@ -44,7 +44,7 @@ Excursion excursion_of(const model::Process& process, const exact::QueuedSlide& 
 }
 
 // What is left of sum P = 1 and of the Riccati equation is rounding, and grows with the length of
-// slides, whose moments it changes by about that factor.
+// sliding phases, whose moments it changes by about that factor.
 double relative_rounding(const Excursion& e, const FluidQueue& queue) {
   const double speed = sum(e.slide_distance) / e.mean_slide();
   const double defect = std::abs(e.lost_probability) + std::abs(queue.residual()) +
@@ -52,7 +52,7 @@ double relative_rounding(const Excursion& e, const FluidQueue& queue) {
   return 4 * defect * (1 + speed);
 }
 
-// From the law of X as the queue sees it, not from its closed form.
+// From the distribution of X as the queue has it, not from its closed form.
 void append_noise_distribution(const model::Process& process,
                                const std::vector<double>& distribution,
                                quantities::Results& results) {
@@ -69,7 +69,7 @@ void append_noise_distribution(const model::Process& process,
   results.push_back(quantities::scalar(quantities::kEX2, square, 0));
 }
 
-/// What the queue tells about excursions as they follow one another.
+/// What the queue gives of excursions as they follow one another.
 struct Excursions {
   Excursion mean;
   quantities::SideChain sides;
@@ -132,7 +132,7 @@ Evaluation by_fluid_queue(const Setting& setting) {
         process, quantities::marginal_of_noise(setting.discretisation, excursion), results);
   }
   for (auto& r : results) {
-    // E_V is a difference of what the two half lines give.
+    // E_V is a difference of the two velocity branches.
     const double least = r.kind == quantities::Kind::drift && process.drifts()
                              ? sum(excursion.slide_distance) / excursion.mean_excursion()
                              : 0;

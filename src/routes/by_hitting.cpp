@@ -18,14 +18,14 @@ struct Means {
   Uncertain plus, minus;
 };
 
-/// Problems on the full grid up to the time at which `rest` kills.
+/// Problems on the full grid up to the time at which `static_phase` kills.
 class Hitting {
  public:
-  Hitting(const Setting& setting, StaticPhase rest)
+  Hitting(const Setting& setting, StaticPhase static_phase)
       : process_(setting.discretisation.process),
-        rest_(rest),
+        static_phase_(static_phase),
         systems_(setting.comm, setting.discretisation, setting.statistics),
-        system_(systems_.at(0, Symmetry::none, rest)) {}
+        system_(systems_.at(0, Symmetry::none, static_phase)) {}
 
   /// Means of that time; where the process is killed at once it is 0.
   [[nodiscard]] Means time() {
@@ -42,8 +42,9 @@ class Hitting {
  private:
   [[nodiscard]] bool is_edge(double x) const {
     const auto& noise = process_.noise;
-    return rest_ == StaticPhase::killing_edges && (x == noise.level(process_.static_index()) ||
-                                                   x == noise.level(process_.lowest_static()));
+    return static_phase_ == StaticPhase::killing_edges &&
+           (x == noise.level(process_.static_index()) ||
+            x == noise.level(process_.lowest_static()));
   }
 
   template <class Source>
@@ -56,7 +57,7 @@ class Hitting {
   }
 
   const model::Process& process_;
-  StaticPhase rest_;
+  StaticPhase static_phase_;
   operators::Systems systems_;
   operators::System& system_;
 };

@@ -15,7 +15,7 @@ using petsc::check;
 using quantities::Uncertain;
 
 constexpr int kMostTrials = 8, kMostMeans = 4;
-// In units of 1/tau: where rounding does not rule yet in any scene tried, and where it always does.
+// In units of 1/tau: where rounding does not rule yet in any case tried, and where it always does.
 constexpr double kSafe = 1e-11, kSmallest = 1e-15;
 constexpr int kMostSolves = 6;
 

@@ -25,7 +25,7 @@ bool needs_distribution(const Case& given) {
   }
   // The shares of both sides.
   if (given.question.wants(Quantity::peak) && !given.scene.symmetric()) return true;
-  return given.scene.v_max.has_value();  // what the cut holds back is judged by the law
+  return given.scene.v_max.has_value();  // the mass beyond v_max follows from the distribution
 }
 
 /// Collects the tasks in their order.
@@ -58,7 +58,7 @@ class Planner {
   void add(Task task) { plan_.tasks.push_back(std::move(task)); }
 
   // With operators of its own, which carry the static states or are projected; the numbers are
-  // those seen in most of thirty scenes, in solves with correction.
+  // those seen in most of thirty cases, in solves with iterative refinement.
   void add_adaptive(Work work, int factorizations, int solves) {
     Task task{work};
     task.adaptive = true;
@@ -147,13 +147,14 @@ class Planner {
   void plan_spectrum() {
     if (given_.method.spectrum_solver == options::SpectrumSolver::direct) {
       const int frequencies = static_cast<int>(question_.omega.size()) + 1;  // and 0
-      add_adaptive(Work::spectrum, frequencies + 1, frequencies + 1);        // and the law alone
+      add_adaptive(Work::spectrum, frequencies + 1,
+                   frequencies + 1);  // and the stationary distribution alone
     } else {
       add_adaptive(Work::spectrum, 2, 18);
     }
   }
 
-  // How many observables have a part of that symmetry, as far as a sample of states tells; the
+  // How many observables have a part of that symmetry, as far as a sample of states shows; the
   // others are not solved for.
   [[nodiscard]] int observables_with(double (model::Observable::*part)(double, double, double)
                                          const) const {
@@ -171,7 +172,7 @@ class Planner {
     }));
   }
 
-  // The system of the stationary law.
+  // The system of the stationary distribution.
   [[nodiscard]] operators::SystemKey ground() const {
     return {0, operators::symmetry_of(given_.scene.process(1))};
   }
@@ -228,8 +229,8 @@ std::string task_name(const options::Question& question, const Task& task) {
   case Work::orientation: return "hitting distribution (entry_law)";
   case Work::sensitivity: return "sensitivity";
   case Work::duration_moments: return "moments of durations";
-  case Work::duration_transforms: return at_lambda("duration transforms");
-  case Work::stick_duration_transforms: return "sticking duration transforms";
+  case Work::duration_transforms: return at_lambda("Laplace transforms");
+  case Work::stick_duration_transforms: return "Laplace transforms of sticking phases";
   case Work::resolvent: return at_lambda("resolvent");
   case Work::spectrum: return "spectrum";
   case Work::durations: return "distributions of durations";

@@ -1,5 +1,5 @@
 #pragma once
-/// The routes behind evaluate(), each in a file of its own.
+/// The solution methods behind evaluate(), each in a file of its own.
 
 #include "stickslip/routes/evaluation.hpp"
 
@@ -12,7 +12,7 @@ namespace stickslip::routes {
 /// pi(f) = lambda u_lambda(s+; f) + O(lambda) with (lambda - M) u_lambda = f on the full grid; one
 /// factorisation for all f.
 ///
-/// With R = (lambda - M)^-1 a plain solve loses rounding/lambda. Since lambda R 1 = 1, the number
+/// With R = (lambda - M)^-1 a single solve loses rounding/lambda. Since lambda R 1 = 1, the number
 /// lambda R f at s+ also is the c for which R(f - c) = 0 there; found by c <- c + lambda R(f - c),
 /// whose solutions stay of order one, it keeps all digits for any lambda well above the rounding of
 /// the diagonal of M. The bias is measured: (lambda R)^2 f differs from pi(f) by O(lambda^2) only,

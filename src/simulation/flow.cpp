@@ -117,7 +117,7 @@ class Series {
   }
 
  private:
-  // The last terms over what is allowed of them. Some may be 0 by chance, and earlier ones tell.
+  // The last terms over what is allowed of them. Some may be 0 by chance, but not the earlier ones.
   template <std::size_t order>
   [[nodiscard]] double remainder(double h) const {
     constexpr double fall = 3e-3;  // of one term to the next
@@ -145,7 +145,7 @@ class Series {
   std::array<double, kOrder + 1> x_{};
 };
 
-/// Steps by series, each within a panel of the drag, cut where the body stops.
+/// Steps by series, each within a panel of the drag, the last one up to where the body stops.
 class Motion {
  public:
   Motion(DragTable& drag, double force, double speed)

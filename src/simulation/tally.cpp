@@ -257,8 +257,8 @@ Estimate Tally::laplace(std::size_t n, Duration duration) const {
   return m.estimate(m.overall(of_slide + static_cast<std::size_t>(duration)));
 }
 
-Estimate Tally::probability(Law law, double low, double high) const {
-  const std::size_t h = 1 + static_cast<std::size_t>(law);
+Estimate Tally::probability(Variable variable, double low, double high) const {
+  const std::size_t h = 1 + static_cast<std::size_t>(variable);
   const auto& all = edges_[h];
   const auto bin_from = [&](double edge) {
     return static_cast<std::size_t>(std::lower_bound(all.begin(), all.end(), edge) - all.begin()) +
@@ -295,12 +295,13 @@ Estimate Tally::spectrum(std::size_t n) const {
   if (wanted_.omega[n] == 0) return spectrum_at_zero();
   const Means m = means(spectra, n);
   const std::array side{m.complex_at(0, c), m.complex_at(1, c, -1)};
-  const std::array stays{1 - m.complex_at(0, same), 1 - m.complex_at(1, same)};
+  const std::array diagonal{1 - m.complex_at(0, same), 1 - m.complex_at(1, same)};
   const std::array turns{m.complex_at(0, other), m.complex_at(1, other)};
-  const Smooth det = stays[0] * stays[1] - turns[0] * turns[1];
-  std::array to_come{(side[0] * stays[1] + turns[0] * side[1]) / det,
-                     (side[1] * stays[0] + turns[1] * side[0]) / det};
-  if (symmetric_) to_come = {side[0] / (stays[0] + turns[0]), -1 * side[0] / (stays[0] + turns[0])};
+  const Smooth det = diagonal[0] * diagonal[1] - turns[0] * turns[1];
+  std::array to_come{(side[0] * diagonal[1] + turns[0] * side[1]) / det,
+                     (side[1] * diagonal[0] + turns[1] * side[0]) / det};
+  if (symmetric_)
+    to_come = {side[0] / (diagonal[0] + turns[0]), -1 * side[0] / (diagonal[0] + turns[0])};
   Smooth sum = m.overall(power);
   for (std::size_t s : {0, 1}) {
     sum = sum + 2 * m.share(s) *
@@ -377,7 +378,7 @@ Named Tally::travel(std::size_t n) const {
 // From side s an excursion reaches w with probability p(s), ends before on the other side with
 // probability q(s), and takes the mean time a(s) until it does either or ends. The mean time to
 // come is m+ = a+ + (1 - p+ - q+) m+ + q+ m-, and so for m-; it is known up to a factor. Where no
-// slide reached w, one that as many samples miss with probability 0.025 has the least.
+// sliding phase reached w, one that as many samples miss with probability 0.025 has the least.
 Named Tally::first_passage(double w) const {
   const auto at = std::lower_bound(wanted_.speeds.begin(), wanted_.speeds.end(), w);
   const Means m = means(passages, static_cast<std::size_t>(at - wanted_.speeds.begin()));

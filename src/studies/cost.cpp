@@ -63,7 +63,7 @@ class CostStudy {
     return hp;
   }
 
-  // Finer than every point that is held against it, in degree and in layers.
+  // Finer than every point that is compared with it, in degree and in layers.
   quantities::Results reference() {
     announce("reference");
     const auto given = hp_case(setting_.given);
@@ -110,20 +110,20 @@ class CostStudy {
   }
 
   void upwind() {
-    Curve plain{"upwind", "p", {}}, extrapolated{"richardson", "p", {}};
+    Curve upwind{"upwind", "p", {}}, extrapolated{"richardson", "p", {}};
     for (int n = 0; n < upwind_steps(); ++n) {
       const int points = kFirstPoints << n;
       announce(fmt::format("upwind, p = {}", points));
       Run run = median_run(repeats_, [&] { return upwind_run(setting_, setting_.given, points); });
       set_errors(reference_, run.results);
       if (n > 0) add_extrapolated(extrapolated, study_.runs.back(), run, points);
-      add(plain, run, points, error_of(run.results));
+      add(upwind, run, points, error_of(run.results));
     }
-    curves_.push_back(std::move(plain));
+    curves_.push_back(std::move(upwind));
     curves_.push_back(std::move(extrapolated));
   }
 
-  // 2 u^2p - u^p, at the price of both.
+  // 2 u^2p - u^p, at the cost of both.
   void add_extrapolated(Curve& curve, const Run& coarse, const Run& fine, double points) const {
     quantities::Results results = fine.results;
     for (auto& result : results) {
@@ -134,7 +134,7 @@ class CostStudy {
     curve.points.push_back({points, error_of(results), coarse.seconds + fine.seconds, both});
   }
 
-  // The error is the standard deviation that the interval tells: a single one is a matter of luck.
+  // The error is the standard deviation of the interval: the error of a single run is random.
   void simulations() {
     Curve curve{"monte_carlo", "excursions", {}};
     options::Case given = setting_.given;
@@ -179,11 +179,11 @@ class CostStudy {
                             l.analysis_seconds, l.factorization_seconds, l.solve_seconds});
     }
     study_.tables.push_back(std::move(table));
-    study_.conclusions.push_back(price_of_a_digit(curve));
+    study_.conclusions.push_back(cost_of_a_digit(curve));
   }
 
   // time ~ error^-s by least squares in the logarithms, without points limited by rounding.
-  [[nodiscard]] static std::string price_of_a_digit(const Curve& curve) {
+  [[nodiscard]] static std::string cost_of_a_digit(const Curve& curve) {
     std::vector<Point> used;
     for (const Point& p : curve.points) {
       if (p.error > 1e-12) used.push_back(p);

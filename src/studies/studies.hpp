@@ -36,8 +36,8 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 void set_errors(const quantities::Results& known, quantities::Results& results);
 /// The case with another noise step, and without choices of the discretisation made by hand.
 [[nodiscard]] options::Case with_delta(const options::Case& given, double delta);
-/// Noise and velocity of upwind runs are cut where they weigh less: far less than the error of the
-/// scheme, which is about 1/p.
+/// Noise and velocity of upwind runs are truncated where they weigh less: far less than the error
+/// of the scheme, which is about 1/p.
 constexpr double kUpwindTail = 1e-9;
 /// Upwind with p points per noise step.
 [[nodiscard]] Run upwind_run(const Setting& setting, const options::Case& given, int points,

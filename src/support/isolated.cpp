@@ -19,7 +19,7 @@ namespace {
   throw std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
 }
 
-// A fault of the child is told by how it ends, not by a handler or a core file.
+// How the child ends shows a fault: no handler and no core file is wanted.
 void let_faults_end_this_process(unsigned seconds) {
   for (int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGALRM, SIGPIPE}) {
     std::signal(signal, SIG_DFL);

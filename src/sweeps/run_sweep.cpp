@@ -41,7 +41,7 @@ class Group {
   [[nodiscard]] bool works() const { return comm_ != MPI_COMM_NULL; }
   [[nodiscard]] MPI_Comm comm() const { return comm_; }
   [[nodiscard]] bool leads() const { return works() && petsc::rank(comm_) == 0; }
-  /// What the first rank of the group says.
+  /// The number that the first rank of the group has.
   [[nodiscard]] long shared(long value) const {
     if (ranks_ > 1) MPI_Bcast(&value, 1, MPI_LONG, 0, comm_);
     return value;

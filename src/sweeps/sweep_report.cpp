@@ -77,7 +77,7 @@ std::vector<Column> scalars_of(const std::vector<SweepPoint>& runs) {
   return columns;
 }
 
-// The model parameters that stay.
+// The model parameters that are not swept.
 std::string fixed_options(const options::Request& request) {
   std::vector<std::string> parts;
   for (const auto& option : options::table().front().options) {
@@ -205,8 +205,8 @@ class Grid {
     file_.write_array("/sweep/" + name, sizes_, values);
   }
 
-  // Arrays may differ in length from point to point, as the levels at which slides end do; NaN
-  // where there is nothing.
+  // Arrays may differ in length from point to point, as the levels at which sliding phases end do;
+  // NaN where there is nothing.
   void write(const Column& column) {
     const Result& r = *column.result;
     const std::string path = "/sweep/" + io::hdf5_name(column.name);

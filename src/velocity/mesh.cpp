@@ -13,7 +13,8 @@ namespace stickslip::velocity {
 namespace {
 
 // Local decay rate of log-density in white noise of intensity D, (F(v) - b(v))/D, or of its growth.
-// A mean force g changes it by -g on one half line and by g on the other; elements serve both.
+// A mean force g changes it by -g on one velocity branch and by g on the other; elements serve
+// both.
 double decay_rate(const model::Process& process, double v) {
   const double drag =
       process.drag.odd() ? -process.drag(v) : std::max(-process.drag(v), process.drag(-v));
@@ -33,7 +34,7 @@ double graded_end(const model::Process& process, const MeshRule& rule) {
 }
 
 // Distance from F(0+) - g down to the nearest level below it, for levels that can come to rest on
-// the upper half line.
+// the positive velocity branch.
 double upper_gap_below(const model::Process& process) {
   const auto& noise = process.noise;
   const int level = noise.last_up_to(process.friction.at_rest() - process.bias);
@@ -44,7 +45,7 @@ double upper_gap_below(const model::Process& process) {
   return noise.step();
 }
 
-// The smaller one of the two half lines.
+// The smaller one of the two velocity branches.
 double gap_below(const model::Process& process) {
   return std::min(upper_gap_below(process), upper_gap_below(process.mirrored()));
 }
@@ -85,19 +86,19 @@ double killed_layer(const model::Process& process, double lambda) {
 }
 
 // Speed that a body which leaves v = 0 has when the noise might turn it back: at the net force g it
-// does so after the time g^2/D, D = Lambda delta^2 the diffusivity of the noise. On the half line
+// does so after the time g^2/D, D = Lambda delta^2 the diffusivity of the noise. On the branch
 // where that is less.
 double speed_of_leaving(const model::Process& process) {
-  const auto cubed = [](const model::Process& half) {
-    if (!half.starts_upwards()) return std::numeric_limits<double>::infinity();
-    return std::pow(half.net_force(half.static_index() + 1), 3);
+  const auto cubed = [](const model::Process& branch) {
+    if (!branch.starts_upwards()) return std::numeric_limits<double>::infinity();
+    return std::pow(branch.net_force(branch.static_index() + 1), 3);
   };
   const double step = process.noise.step();
   return 0.6 * std::min(cubed(process), cubed(process.mirrored())) /
          (process.noise.rate() * step * step);
 }
 
-// log of the stationary density of white noise of intensity D on the upper half line, exp((-slope v
+// log of the stationary density of white noise of intensity D on the positive branch, exp((-slope v
 // + int b)/D) with slope = F(0+) - g, g the mean force, against its largest value. Large speeds
 // make of some noises a stronger one.
 struct LogDensity {
@@ -144,21 +145,21 @@ double wave_width(const model::Process& process, double omega, double v) {
   return 4 * std::numbers::pi * slowest / std::min(omega, 40 * rate);
 }
 
-// Cuts elements that are too wide for the waves. Those of a level very near to mu_d end within the
-// first element: only the part that has them is cut for them.
-std::vector<double> cut_for_waves(const model::Process& process, double omega,
-                                  std::vector<double> ends) {
+// Splits elements that are too wide for the waves. Those of a level very near to mu_d end within
+// the first element: only the part that has them is split for them.
+std::vector<double> split_for_waves(const model::Process& process, double omega,
+                                    std::vector<double> ends) {
   const double thinnest = end_of_thinnest_waves(process);
   if (thinnest < ends[1]) ends.insert(ends.begin() + 1, thinnest);
-  std::vector<double> cut{ends.front()};
+  std::vector<double> split{ends.front()};
   for (std::size_t n = 1; n < ends.size(); ++n) {
     const double start = ends[n - 1], width = ends[n] - start;
     const auto pieces =
         static_cast<int>(std::ceil(width / wave_width(process, omega, start) - 1e-9));
-    for (int p = 1; p < pieces; ++p) cut.push_back(start + width * p / pieces);
-    cut.push_back(ends[n]);
+    for (int p = 1; p < pieces; ++p) split.push_back(start + width * p / pieces);
+    split.push_back(ends[n]);
   }
-  return cut;
+  return split;
 }
 
 }  // namespace
@@ -191,7 +192,7 @@ double power_at_rest(const model::Process& process) {
 using Layers = std::map<double, int>;
 
 // Where a level does not move but is left for both sides, at speeds beta (v - v*) with beta > 0, on
-// either half line: solutions are like |v - v*|^(Lambda/beta).
+// either branch: solutions are like |v - v*|^(Lambda/beta).
 Layers partings(const model::Process& process, const MeshRule& rule, bool on_both = true) {
   constexpr double fine = 1.01, smallest = 1e-12;
   const auto& [noise, friction, drag, bias] = process;
@@ -250,7 +251,7 @@ std::vector<double> regular_ends(const model::Process& process, const MeshRule& 
     // A remainder much shorter than its neighbour is merged into it.
     ends.push_back(next + 0.3 * step >= rule.v_max ? rule.v_max : next);
   }
-  return has_waves(process, rule) ? cut_for_waves(process, rule.rates.omega, ends) : ends;
+  return has_waves(process, rule) ? split_for_waves(process, rule.rates.omega, ends) : ends;
 }
 
 // A regular end that would leave a sliver beside a break gives way to it.
@@ -368,14 +369,13 @@ namespace {
 
 // An element at v holds a share of what is asked for that falls like v^0.8 to v (levels that it
 // concerns times how far the solution is from constant there), half a digit from one element to the
-// next, and a degree is worth a digit. One degree for two elements changed no error of seven scenes
-// in which one for one made them 10 to 1000 times larger; factors have half the entries. That is
-// so for bodies that come to rest. Those that leave it pass all speeds above `speed_of_leaving`,
-// where they might turn back, so that errors there multiply: at mu_d = mu_s and delta = 1/256 they
-// were 1e4 times larger with degrees falling by eight, and as small as ever with two. With
-// less than degree 2 the first refinement levels were wrong by more than they said (mu_d = 0.9).
-// Waves are as steep in every element, and what ends within 1/lambda before the noise changes comes
-// from small v.
+// next, and a degree is worth a digit. One degree for two elements changed no error of seven cases
+// in which one for one made them 10 to 1000 times larger; factors have half the entries. That is so
+// for bodies that come to rest. Those that leave it pass all speeds above `speed_of_leaving`, where
+// they might turn back, so that errors there multiply: at mu_d = mu_s and delta = 1/256 they were
+// 1e4 times larger with degrees falling by eight, and unchanged with two. With less than degree 2
+// the first refinement levels had errors above their estimates (mu_d = 0.9). Waves are as steep in
+// every element, and what ends within 1/lambda before the noise changes comes from small v.
 std::vector<int> regular_degrees(const model::Process& process, const MeshRule& rule,
                                  const std::vector<double>& ends, int degree) {
   constexpr int most_where_left = 2;  // degrees less
@@ -421,7 +421,7 @@ std::vector<int> element_degrees(const model::Process& process, const MeshRule& 
 
 namespace {
 
-// Of the upper half line.
+// Of the positive branch.
 double upper_tail(const model::Process& process, double tolerance) {
   const double drop = -std::log(tolerance) + 5;  // 5: polynomial factors of the moments
   const LogDensity log_density(process);

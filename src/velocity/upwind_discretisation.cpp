@@ -8,7 +8,8 @@ namespace stickslip::velocity {
 
 UpwindDiscretisation::UpwindDiscretisation(double spacing, int count, const model::Drag& drag)
     : spacing_(spacing), drag_(drag) {
-  if (!(spacing > 0) || count < 1) throw std::invalid_argument("upwind axis without nodes");
+  if (!(spacing > 0) || count < 1)
+    throw std::invalid_argument("upwind velocity discretisation without nodes");
   cells_.push_back(0);
   for (int j = 1; j <= count; ++j) {
     nodes_.push_back(j * spacing);

@@ -98,7 +98,7 @@ TEST_CASE("comparison: Holm steps down from the largest") {
   CHECK_FALSE(judged(std::vector<double>(20, 3.5)).disagrees);
 }
 
-TEST_CASE("comparison: huge differences are told, not lost to underflow") {
+TEST_CASE("comparison: huge differences are reported, not lost to underflow") {
   CHECK(judged({1e6, 0}).disagrees);
   CHECK(judged({-1e300}).disagrees);
 }

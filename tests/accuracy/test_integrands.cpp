@@ -153,7 +153,7 @@ TEST_CASE("integrands: a kink of the drag is what ever sharper bends tend to") {
   CHECK(relative_difference((4 * narrow - wide) / 3, kink) < 3e-6);
 }
 
-// Nobody has looked for the jump: the nodes of two degrees in a row can miss it alike. Others
+// Without a search for the jump the nodes of two degrees in a row can miss it alike. Other points
 // between them show it, if not to the digit.
 TEST_CASE("integrands: what the nodes miss is part of the error") {
   const double right = 0.198608934333;

@@ -221,7 +221,8 @@ TEST_CASE("refinement: estimates of fixed upwind grids cover their errors", "[sl
   }
 }
 
-// Scenes at random over what the model allows; the truth is a run four digits more accurate.
+// Model parameters at random over what the model allows; the truth is a run four digits more
+// accurate.
 TEST_CASE("refinement: error estimates are honest and not far off", "[slow][real]") {
   std::mt19937 random(20260131);
   const auto uniform = [&](double a, double b) {
@@ -304,7 +305,7 @@ TEST_CASE("refinement: only what is asked for is done") {
   CHECK(factorizations(both) == 2 * static_cast<int>(both.steps.size()));
 }
 
-TEST_CASE("refinement: a fixed discretisation is not refined, and says what it reaches") {
+TEST_CASE("refinement: a fixed discretisation is not refined, and its errors are reported") {
   options::Case r = given(1, 0.25, 1, 0.25, {1, 0});
   r.question.quantities = {Quantity::sticking};
   r.method.degree = 3;
@@ -316,7 +317,7 @@ TEST_CASE("refinement: a fixed discretisation is not refined, and says what it r
   CHECK(solve(r).reached);
 }
 
-TEST_CASE("refinement: rounding is told from discretisation") {
+TEST_CASE("refinement: rounding is distinguished from discretisation") {
   options::Case r = given(1, 0.25, 1.0 / 64, 0.5, {1, 0});
   r.question.quantities = {Quantity::sticking, Quantity::moments};
   r.question.accuracy = 1e-15;
@@ -325,7 +326,7 @@ TEST_CASE("refinement: rounding is told from discretisation") {
   CHECK_THAT(outcome.shortfall, Catch::Contains("rounding"));
 }
 
-TEST_CASE("refinement: the upwind scheme says early what an accuracy would take") {
+TEST_CASE("refinement: the upwind scheme reports early what an accuracy would take") {
   options::Case r = given(1, 0.25, 1, 0.25, {1, 0});
   r.question.quantities = {Quantity::sticking};
   r.method.scheme = options::Scheme::upwind;
@@ -346,7 +347,8 @@ TEST_CASE("refinement: refuses what cannot fit before allocating it") {
   CHECK_THROWS_AS(solve(r), NoMemory);
 }
 
-TEST_CASE("refinement: estimates are made of the last changes, and of what the route says") {
+TEST_CASE("refinement: estimates are made of the last changes, and of the errors of the solution "
+          "method") {
   struct Case {
     options::Method method;
     model::Drag drag;
@@ -406,7 +408,7 @@ TEST_CASE("refinement: the density is judged by the distribution of |V|", "[para
   CHECK(distance > 1e-6);
 }
 
-TEST_CASE("refinement: a velocity cut by hand is an error of the time spent at it") {
+TEST_CASE("refinement: a truncation velocity by hand is an error of the time spent at it") {
   options::Case r = given(1, 0.25, 1, 0.5, {1, 0});
   r.question.quantities = {Quantity::sticking};
   r.scene.v_max = 1;
@@ -423,8 +425,7 @@ TEST_CASE("refinement: a velocity cut by hand is an error of the time spent at i
   r.question.accuracy = 0.98 * share;
   const Outcome held = solve(r);
   CHECK_FALSE(held.reached);
-  CHECK_THAT(held.shortfall,
-             Catch::Contains(fmt::format("truncates the velocity, and {:.1e} of", share)));
+  CHECK_THAT(held.shortfall, Catch::Contains(fmt::format("excludes {:.1e}", share)));
 }
 
 TEST_CASE("refinement: a digit more takes the steps by which estimates fall") {
@@ -465,7 +466,7 @@ TEST_CASE("refinement: a step is expected to take the time of the last one, by i
   }
 }
 
-TEST_CASE("refinement: the ledger of a run is that of its steps") {
+TEST_CASE("refinement: the solver statistics of a run are those of its steps") {
   options::Case r = given(1, 0.25, 1, 0.5, {1, 0});
   r.question.quantities = {Quantity::sticking, Quantity::moments};
   const Outcome outcome = solve(r);

@@ -17,7 +17,7 @@ Result transform(std::vector<double> values, double error = 0) {
 
 }  // namespace
 
-TEST_CASE("laws: sound results pass") {
+TEST_CASE("result bounds: sound results pass") {
   CHECK(broken_bound({}).empty());
   CHECK(broken_bound(
             {quantities::scalar(quantities::kPStick, 1, 0),
@@ -28,12 +28,12 @@ TEST_CASE("laws: sound results pass") {
   CHECK(broken_bound({transform({1 / 3., 1 / 3., 1 / 3.})}).empty());
 }
 
-TEST_CASE("laws: errors excuse what they cover") {
+TEST_CASE("result bounds: errors excuse what they cover") {
   CHECK(broken_bound({transform({0.41, 0.6, 0.4}, 0.006)}).empty());
   CHECK(broken_bound({quantities::scalar(quantities::kPSlide, 1.01, 0.02)}).empty());
 }
 
-TEST_CASE("laws: every violation is told with its place") {
+TEST_CASE("result bounds: every violation is reported with its place") {
   CHECK(broken_bound({transform({0.41, 0.6, 0.4})}) ==
         "F_slide rises from 0.4 at lambda = 1 to 0.41 at lambda = 2");
   CHECK(broken_bound({transform({0.2, 1.5, 0.4})}) == "F_slide is 1.5 at lambda = 0.5");
@@ -45,7 +45,7 @@ TEST_CASE("laws: every violation is told with its place") {
   CHECK(broken_bound({quantities::scalar(quantities::kMeanSlide, nan, 0)}) == "mean_slide is nan");
 }
 
-TEST_CASE("laws: an error excuses its own size, and 1e-10, and no more") {
+TEST_CASE("result bounds: an error excuses its own size, and 1e-10, and no more") {
   const auto passes = [](Kind kind, double value, double error) {
     return broken_bound({quantities::scalar({"a", "", kind}, value, error)}).empty();
   };
@@ -64,7 +64,7 @@ TEST_CASE("laws: an error excuses its own size, and 1e-10, and no more") {
   for (Kind kind : {Kind::mean, Kind::drift, Kind::other}) CHECK(passes(kind, -1, 0));
 }
 
-TEST_CASE("laws: two values in the wrong order are excused by both their errors") {
+TEST_CASE("result bounds: two values in the wrong order are excused by both their errors") {
   const auto passes = [](double rise, double first, double second) {
     return broken_bound({{"F_stick",
                           "",
@@ -82,7 +82,7 @@ TEST_CASE("laws: two values in the wrong order are excused by both their errors"
   CHECK_FALSE(passes(1.1e-10, 0, 0));
 }
 
-TEST_CASE("laws: simulated results scatter, and are left alone") {
+TEST_CASE("result bounds: simulated results scatter, and are left alone") {
   Result simulated = transform({0.41, 0.6, 0.4});
   simulated.ci95.assign(3, {0, 1});
   CHECK(broken_bound({simulated}).empty());

@@ -47,7 +47,7 @@ TEST_CASE("checkpoint: entries come back as they were written") {
   CHECK(entries(checkpoint) == Entries{R"({"point":1})", R"({"point":0})"});
 }
 
-TEST_CASE("checkpoint: a line that was cut off goes, wherever it was cut") {
+TEST_CASE("checkpoint: a truncated line goes, wherever it ends") {
   const test::TemporaryFolder folder;
   const std::string file = folder / "kept";
   const Checkpoint checkpoint = sweep(file);
@@ -105,7 +105,7 @@ TEST_CASE("checkpoint: what is none is refused, and stays as it is") {
   CHECK_THROWS_AS(sweep(folder / "no/such/folder").append("{}"), std::runtime_error);
 }
 
-TEST_CASE("checkpoint: entries are inspected before anything is cut off") {
+TEST_CASE("checkpoint: entries are inspected before anything is truncated") {
   const test::TemporaryFolder folder;
   const std::string file = folder / "kept";
   const Checkpoint checkpoint = sweep(file);
@@ -119,7 +119,7 @@ TEST_CASE("checkpoint: entries are inspected before anything is cut off") {
   CHECK(entries(checkpoint) == Entries{R"({"bad":1})"});
 }
 
-TEST_CASE("checkpoint: the state of a simulation replaces the one before, and is never cut off") {
+TEST_CASE("checkpoint: the state of a simulation replaces the one before, and is never truncated") {
   const test::TemporaryFolder folder;
   const std::string file = folder / "kept";
   const Checkpoint checkpoint(file, Kind::simulation, kRun);

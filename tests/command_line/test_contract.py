@@ -157,7 +157,7 @@ class Statuses(Case):
     def test_velocity_cut_by_hand_is_judged(self):
         low = run(*SMALL, "-v_max", "1", "-accuracy", "1e-4")
         self.assertEqual(low.returncode, 3)
-        self.assertIn("-v_max = 1 truncates the velocity", low.stdout)
+        self.assertIn("-v_max = 1 excludes", low.stdout)
         self.assertEqual(run(*SMALL, "-v_max", "3.7", "-accuracy", "1e-4").returncode, 0)
 
     def test_closed_pipe_is_no_crash(self):

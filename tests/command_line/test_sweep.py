@@ -219,7 +219,7 @@ class Ends(Case):
             s = self.summary(*options, status=3)
             self.assertEqual(s["sweep"]["from_record"], kept)
             self.assertEqual([r["status"] for r in s["runs"]], ["not reached", "reached"])
-            self.assertIn("truncates the velocity", s["runs"][0]["message"])
+            self.assertIn("excludes", s["runs"][0]["message"])
             self.assertIn(",not reached\n", (self.folder / "s.csv").read_text())
 
     def test_points_without_memory_are_tried_again(self):

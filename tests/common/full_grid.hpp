@@ -1,6 +1,6 @@
 #pragma once
 /// An independent solution for tests: the upwind chain on the whole (x, v) grid of the paper, both
-/// signs of v, as a dense generator; no folding, no excursions, no PETSc.
+/// signs of v, as a dense generator; no symmetry reduction, no excursions, no PETSc.
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #pragma once
-/// Scenes by hand, and discretisations of them.
+/// Model parameters by hand, and discretisations of them.
 
 #include "stickslip/accuracy/resolution.hpp"
 #include "stickslip/model/scene.hpp"
@@ -23,7 +23,7 @@ inline model::Scene on_full_noise(model::Scene s) {
 
 using Discrete = operators::Discretisation;
 
-/// hp with noise range and velocity cut for errors of `tolerance`.
+/// hp with noise range and truncation velocity for errors of `tolerance`.
 inline Discrete on_hp(const model::Scene& s, int degree, double tolerance = 1e-12) {
   return accuracy::discretise(s, accuracy::hp_resolution(s, degree, 0, tolerance));
 }

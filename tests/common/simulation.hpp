@@ -15,10 +15,11 @@ namespace stickslip::test {
 struct SimulatedProcess {
   double mu_s = 1, mu_d = 1, tau = 1, delta = 0.5;
   double drag = 1;   ///< c; 0 for none
-  double hurry = 1;  ///< factor of the jump rate, for wrong laws
+  double hurry = 1;  ///< factor of the jump rate, for wrong distributions
 };
 
-/// Durations of excursions from s+-, each a slide and a stay, and what happens on the way.
+/// Durations of excursions from s+-, each a sliding and a sticking phase, and what happens on the
+/// way.
 struct Excursions {
   std::vector<double> slide, stick, excursion;
   std::vector<double> square_of_jumps;  ///< sum of the squared jumps of the acceleration

@@ -1,5 +1,5 @@
 #pragma once
-/// Discretisations with their systems and stationary laws.
+/// Discretisations with their systems and stationary distributions.
 
 #include <vector>
 
@@ -17,11 +17,11 @@ struct Solved {
   Solved(const Solved&) = delete;
   Solved& operator=(const Solved&) = delete;
 
-  /// The law of the static level on which a slide ends.
+  /// The distribution of the static level on which a sliding phase ends.
   [[nodiscard]] std::vector<quantities::Uncertain> entry() const {
-    std::vector<quantities::Uncertain> law_of_level;
-    for (double p : distribution.excursion().entry) law_of_level.push_back({p, 0});
-    return law_of_level;
+    std::vector<quantities::Uncertain> of_levels;
+    for (double p : distribution.excursion().entry) of_levels.push_back({p, 0});
+    return of_levels;
   }
   [[nodiscard]] double mean_square_velocity() const {
     double sum = 0;

@@ -11,7 +11,7 @@ namespace stickslip::test {
 struct System {
   model::Scene scene;
   operators::Symmetry symmetry;
-  operators::StaticPhase rest;
+  operators::StaticPhase static_phase;
 };
 
 inline std::vector<System> killed_systems() {

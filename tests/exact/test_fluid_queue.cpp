@@ -23,13 +23,13 @@ double sum(const std::vector<double>& values) {
 }  // namespace
 
 // N = 1, k = 0, mu_d = 1/2, delta = 1: one rising phase, speed 1/2; two falling ones, speeds 1/2
-// and 3/2; all jumps lead to 0 or away from it at rate 2. With p the probability that a slide ends
-// in phase 0 and q = 1 - p in phase -1 (a restart), the Riccati equation reads
+// and 3/2; all jumps lead to 0 or away from it at rate 2. With p the probability that a sliding
+// phase ends in phase 0 and q = 1 - p in phase -1 (a restart), the Riccati equation reads
 //   4 - 4 p - 4 p + 4/3 q + 2 p^2 = 0  (to phase 0)  and  -4 q + 2 p - 4/3 q + 2 p q = 0  (to -1).
 TEST_CASE("fluid queue: three phases satisfy their equations by hand") {
   const model::Process process{{1, 1, 1}, {0.5, 0.5}, {0, 0}};
   const FluidQueue queue(process);
-  // Every slide ends at rest in phase 0, after restarts in phase 1.
+  // Every sliding phase ends at rest in phase 0, after restarts in phase 1.
   CHECK(queue.plus().entry.size() == 1);
   CHECK(queue.plus().entry[0] == Approx(1).epsilon(1e-14));
   // Each restart turns the body round: q/p of them in the mean.
@@ -39,7 +39,7 @@ TEST_CASE("fluid queue: three phases satisfy their equations by hand") {
   CHECK(-4 * q + 2 * p - 4 * q / 3 + 2 * p * q == Approx(0).margin(1e-13));
 }
 
-TEST_CASE("fluid queue: slides end, and the noise keeps its law beyond mu_s") {
+TEST_CASE("fluid queue: sliding ends, and the noise keeps its distribution beyond mu_s") {
   for (double mu_d : {1.0, 0.5, 0.3, 0.25, 0.2500001, 0.05}) {
     const auto process = without_drag(0.25, mu_d);
     const FluidQueue queue(process);
@@ -47,10 +47,10 @@ TEST_CASE("fluid queue: slides end, and the noise keeps its law beyond mu_s") {
     CHECK(queue.residual() < 1e-14);
     CHECK(std::abs(sum(queue.plus().entry) - 1) < 1e-11);
     // Between two exits the noise spends pi(x_i) of the time on |x_i| > mu_s: ratios are known.
-    const auto law = model::stationary_distribution(process.noise);
+    const auto distribution = model::stationary_distribution(process.noise);
     const auto at = [&](int i) { return queue.plus().time[32 + i] + queue.plus().time[32 - i]; };
     for (int i = 6; i <= 20; ++i) {
-      CHECK(relative_difference(at(i) / at(5), law[32 + i] / law[37]) < 1e-10);
+      CHECK(relative_difference(at(i) / at(5), distribution[32 + i] / distribution[37]) < 1e-10);
     }
   }
 }
@@ -67,7 +67,7 @@ TEST_CASE("fluid queue: power put in by the noise equals power dissipated") {
   }
 }
 
-TEST_CASE("fluid queue: the transform falls from 1 with the mean slide as its slope") {
+TEST_CASE("fluid queue: the transform falls from 1 with the mean duration as its slope") {
   const auto process = without_drag(0.25, 0.5);
   const double mean = sum(FluidQueue(process).plus().time);
   const double h = 1e-5;
@@ -86,8 +86,8 @@ TEST_CASE("fluid queue: drag is refused") {
   CHECK_THROWS_AS(FluidQueue({{1, 0.5, 8}, {1, 1}, {1, 0}}), std::invalid_argument);
 }
 
-// Of x, x v and x v^2 over a slide from x_{k+1}; restarts at v = 0 change the sign of x alone, and
-// x v and x v^2 begin and end at 0. Q x = -x/tau.
+// Of x, x v and x v^2 over a sliding phase from x_{k+1}; restarts at v = 0 change the sign of x
+// alone, and x v and x v^2 begin and end at 0. Q x = -x/tau.
 TEST_CASE("fluid queue: moments follow one another through the equations of motion") {
   for (double mu_d : {1.0, 0.3, 0.25}) {
     const auto process = without_drag(0.25, mu_d);

@@ -1,7 +1,7 @@
 /// Damaged input for every reader: options files and lines, references (CSV, JSON, HDF5),
-/// checkpoints of simulations, records of sweeps, expressions. A reader takes it or refuses it with
-/// the exception that ends the program with status 2; whatever else happens is a fault, and the
-/// input is kept. Meant to run under sanitizers.
+/// checkpoints of simulations and of sweeps, expressions. A reader takes it or refuses it with the
+/// exception that ends the program with status 2; whatever else happens is a fault, and the input
+/// is kept. Meant to run under sanitizers.
 ///
 ///     fuzz_readers [inputs] [seed]
 
@@ -194,9 +194,9 @@ class Corpus {
                            "sticking\n-route\nmonte_carlo\n-excursions\n16384");
   }
 
-  std::string record() const {
+  std::string sweep_checkpoint() const {
     options::Request request = sweep();
-    request.output.checkpoint = folder_ / "seed.record";
+    request.output.checkpoint = folder_ / "seed.sweep";
     (void)sweeps::run_sweep(PETSC_COMM_SELF, request, {});
     return test::content(request.output.checkpoint);
   }
@@ -207,7 +207,7 @@ class Corpus {
   /// Entries of finished points, without checksums.
   std::vector<std::string> entries() const {
     std::vector<std::string> found;
-    const auto lines = split(record(), '\n');
+    const auto lines = split(sweep_checkpoint(), '\n');
     for (std::size_t n = 1; n + 1 < lines.size(); ++n) found.push_back(*unsealed(lines[n]));
     return found;
   }
@@ -234,7 +234,8 @@ class Corpus {
 
 const std::vector<std::string>& option_files() {
   static const std::vector<std::string> files{
-      "# a scene\n-mu_s 1\n-mu_d 0.25\n-delta 0.125 # step\n-tau 1\n-quantities sticking,moments\n",
+      "# model parameters\n-mu_s 1\n-mu_d 0.25\n-delta 0.125 # step\n-tau 1\n-quantities "
+      "sticking,moments\n",
       "-mu_d 0.5\n-drag expression\n-drag_expression \" -v - 0.1*v*abs(v)\"\n-bias 0.1\n",
       "-quantities resolvent,laplace\n-lambda 0.1:10:5:log\n-observable \"v^2; x*v; stick\"\n",
       "-route monte_carlo\n-excursions 1e4\n-seed 7\n-quantities sticking,trajectory\n-start "
@@ -331,10 +332,10 @@ std::vector<Target> targets(const Corpus& corpus) {
        {corpus.checkpoint()},
        entries_again,
        [request = Corpus::simulation()](const std::string& file) { go_on_with(request, file); }},
-      {"sweep record",
-       ".record",
+      {"sweep checkpoint",
+       ".sweep",
        4,
-       {corpus.record()},
+       {corpus.sweep_checkpoint()},
        entries_again,
        [request = Corpus::sweep()](const std::string& file) { go_on_with(request, file); }},
       {"sweep entry", ".json", 6, corpus.entries(), by_structure, report},
@@ -358,13 +359,13 @@ std::vector<Target> targets(const Corpus& corpus) {
 
 std::string current;  // what is being read
 
-extern "C" void tell_hang(int) {
-  bool told = true;
+extern "C" void report_hang(int) {
+  bool written = true;
   for (const std::string_view part :
        {std::string_view("hang: "), std::string_view(current), std::string_view("\n")}) {
-    told = told && write(STDERR_FILENO, part.data(), part.size()) >= 0;
+    written = written && write(STDERR_FILENO, part.data(), part.size()) >= 0;
   }
-  _exit(told ? 1 : 2);
+  _exit(written ? 1 : 2);
 }
 
 struct Count {
@@ -377,9 +378,9 @@ void run_one(const Target& target, const std::string& file, Count& count) {
     target.read(file);
     ++count.taken;
   } catch (const Failure& refusal) {
-    const bool told = refusal.status() == ExitStatus::bad_input && *refusal.what() != '\0';
-    ++(told ? count.refused : count.faults);
-    if (!told) std::cerr << current << ": " << refusal.what() << "\n";
+    const bool explained = refusal.status() == ExitStatus::bad_input && *refusal.what() != '\0';
+    ++(explained ? count.refused : count.faults);
+    if (!explained) std::cerr << current << ": " << refusal.what() << "\n";
   } catch (const std::invalid_argument&) {
     ++count.refused;
   } catch (const std::exception& fault) {
@@ -421,7 +422,7 @@ int main(int argc, char** argv) {
   int petsc_argc = 1;
   const petsc::Session session(petsc_argc, argv);
   operators::register_preconditioners();
-  (void)std::signal(SIGALRM, tell_hang);
+  (void)std::signal(SIGALRM, report_hang);
   const test::TemporaryFolder folder;
   std::cout << fmt::format("{:14} {:>7} {:>7} {:>7} {:>7}\n", "input", "all", "taken", "refused",
                            "faults");

@@ -129,8 +129,12 @@ def check_words(root):
                 yield f"{path}:{number}: {line.strip()}"
 
 
-REPLACED = re.compile(r"\b(StationaryLaw|DurationLaw|Ladder|rung|rungs_|Ledger|ledger_?|folded|Rest|Half|excess(_at)?"
-                      r"|HpAxis|UpwindAxis|Conducted|conduct|chance_of_falling|[Ff]oretold|StayFlow|HighModes)\b")
+REPLACED = re.compile(r"\b(StationaryLaw|DurationLaw|Laws?|append_law|law_of_level|Ladder|climb|rung|rungs_|Ledger|ledger_?"
+                      r"|folded|Rest|RestCoupling|RestChain|rest_coupling_?|(with|has|owner_of)_rest_?|rest_below"
+                      r"|(lowest|highest)_rest_|Half|(one|from|of)_half|halves_?|cut_(mass|for_waves)|excess(_at)?|HpAxis"
+                      r"|UpwindAxis|Conducted|conduct|kMostCorrections|price(_of_a_digit)?|tell_hang|chance_of_falling"
+                      r"|[Ff]oretold|StayFlow|StayDifferences|\w*stays?(_by_tau)?_?|QueuedSlide|SlideTransforms"
+                      r"|slide_transforms|HighModes)\b")
 
 
 def check_vocabulary(root):

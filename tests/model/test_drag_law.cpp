@@ -28,7 +28,7 @@ std::string driven(const std::string& text) { return refusal(text, 2); }
 
 }  // namespace
 
-TEST_CASE("drag laws: read with the constants of the scene") {
+TEST_CASE("drag laws: read with the constants of the model") {
   const Drag b = read("-v*mu_s - mu_d*v*abs(v) - tau*v^3");
   CHECK(b(2) == -1 - 1 - 16);
   CHECK(b(-2) == 18);
@@ -145,7 +145,7 @@ TEST_CASE("drag laws: the side with less drag decides how far they are tried") {
   }
 }
 
-TEST_CASE("drag laws: what is left at rest is held against dry friction") {
+TEST_CASE("drag laws: what is left at rest is compared with dry friction") {
   CHECK_THROWS_AS(parse_drag("1e-15 - v", {1, 1e-3}, 1, 6), UnfitLaw);
   CHECK_NOTHROW(parse_drag("1e-17 - v", {1, 1e-3}, 1, 6));
 }

@@ -36,7 +36,7 @@ TEST_CASE("floor index: refuses what an int cannot hold") {
   CHECK_THROWS_AS(floor_index(std::numeric_limits<double>::quiet_NaN()), std::out_of_range);
 }
 
-TEST_CASE("excess: a level that equals mu_d in decimals has none") {
+TEST_CASE("net force: a level that equals mu_d in decimals has none") {
   const Friction friction{1, 0.3};
   CHECK(3 * 0.1 != 0.3);  // why snapping is needed
   CHECK(friction.net_force(3 * 0.1) == 0);

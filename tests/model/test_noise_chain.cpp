@@ -37,23 +37,24 @@ TEST_CASE("noise chain: the full range is 2/(tau delta^2), safe to rounding") {
 }
 
 // Full range: X is an Ehrenfest urn of 2N balls, P(X = x_i) = C(2N, N+i)/4^N.
-TEST_CASE("noise law: binomial on the full range, with relative accuracy in the tails") {
+TEST_CASE("noise distribution: binomial on the full range, with relative accuracy in the tails") {
   const double delta = GENERATE(0.5, 0.25, 0.125);
   const NoiseChain chain = full_chain(1, delta);
   const int n = chain.levels;
   const boost::math::binomial_distribution<double> urn(2 * n, 0.5);
-  const auto law = stationary_distribution(chain);
+  const auto distribution = stationary_distribution(chain);
   for (int i = -n; i <= n; ++i) {
-    CHECK(relative_difference(law[n + i], boost::math::pdf(urn, n + i)) < 1e-12);
+    CHECK(relative_difference(distribution[n + i], boost::math::pdf(urn, n + i)) < 1e-12);
   }
-  CHECK(std::accumulate(law.begin(), law.end(), 0.0) == Approx(1).epsilon(1e-15));
+  CHECK(std::accumulate(distribution.begin(), distribution.end(), 0.0) == Approx(1).epsilon(1e-15));
 }
 
-TEST_CASE("noise law: detailed balance on a truncated range") {
+TEST_CASE("noise distribution: detailed balance on a truncated range") {
   const NoiseChain chain{0.8, 0.2, 17};
-  const auto law = stationary_distribution(chain);
+  const auto distribution = stationary_distribution(chain);
   for (int i = -17; i < 17; ++i) {
-    CHECK(relative_difference(law[17 + i] * chain.up(i), law[18 + i] * chain.down(i + 1)) < 1e-14);
+    CHECK(relative_difference(distribution[17 + i] * chain.up(i),
+                              distribution[18 + i] * chain.down(i + 1)) < 1e-14);
   }
 }
 
@@ -82,7 +83,7 @@ TEST_CASE("noise moments: far tails keep their relative accuracy") {
   }
 }
 
-TEST_CASE("noise chain: a range cut short ends where it is cut") {
+TEST_CASE("noise chain: a truncated range ends where it is truncated") {
   const NoiseChain chain{1, 0.25, 10};
   CHECK(chain.up(10) == 0);
   CHECK(chain.up(-10) == 1);
@@ -102,7 +103,7 @@ TEST_CASE("noise chain: derivatives with respect to tau are differences at fixed
 }
 
 // N = 100: a bulk of ten levels, and four operations beside it.
-TEST_CASE("noise chain: rounding of sums grows with the width of the law") {
+TEST_CASE("noise chain: rounding of sums grows with the width of the distribution") {
   const double unit = std::numeric_limits<double>::epsilon();
   CHECK(rounding_of_sums({1, 0.1, 100}) == Approx(14 * unit));
   CHECK(rounding_of_sums({1, 1, 1}) == Approx(5 * unit));

@@ -54,7 +54,7 @@ TEST_CASE("observables: even and odd parts add up") {
   CHECK(f.odd(x, y, v) == -f.odd(-x, -y, -v));
 }
 
-TEST_CASE("observables: what cannot be read is told") {
+TEST_CASE("observables: what cannot be read is refused") {
   for (const char* bad : {"", "x+", "q", "sin(", "x v", "|x|"}) {
     INFO(bad);
     CHECK_THROWS_AS(parse_observable(bad, kFriction), std::invalid_argument);
@@ -91,7 +91,7 @@ TEST_CASE("observables: one expression, and no assignment") {
   }
 }
 
-TEST_CASE("observables: not finite somewhere, and where is told") {
+TEST_CASE("observables: not finite somewhere, and the message names the place") {
   CHECK_THAT(refusal("1/v"), Catch::Contains("1/v is inf at x = 0, y = 0, v = 0"));
   CHECK_THAT(refusal("log(x)"), Catch::Contains("at x = 0, y = 0, v = 0"));
   CHECK_THAT(refusal("sqrt(x)"), Catch::Contains("at x = -0.15, y = 0, v = 0"));
@@ -171,7 +171,7 @@ TEST_CASE("observables: breaks at which no element can end are refused, with the
   CHECK(reason("log(abs(abs(v) - 0.7310585))") == "none");
 }
 
-TEST_CASE("observables: the values seen tell what is a probability") {
+TEST_CASE("observables: the values seen show what is a probability") {
   for (const char* text : {"abs(v) > 0.5", "stick", "1", "x > 0 && v < 3", "exp(-v^2)"}) {
     INFO(text);
     CHECK(examined(text).within_unit());

@@ -54,7 +54,7 @@ TEST_CASE("process: bias and drag can break the symmetry") {
   CHECK_FALSE(Process{{1, 0.25, 8}, {1, 0.5}, one_sided()}.symmetric());
 }
 
-TEST_CASE("process: an excess that vanishes but for rounding is 0, with a bias too") {
+TEST_CASE("process: a net force that vanishes but for rounding is 0, with a bias too") {
   const Process process{{1, 0.1, 100}, {1, 0.7}, {1, 0}, 0.4};
   CHECK(process.net_force(3) == 0);  // 0.3 + 0.4 - 0.7
   CHECK(process.net_force(4) > 0.09);

@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kRound = 64 * 256;  // excursions after which it may stop
 
-/// Every question the route can answer.
+/// Every question that simulation can answer.
 Case given(const model::Scene& s, double excursions) {
   Case r;
   r.scene = s;
@@ -128,7 +128,7 @@ TEST_CASE("monte carlo: only what is asked for, with the arguments asked for") {
 }
 
 // The same excursions, asked for the edges of the cells.
-TEST_CASE("monte carlo: densities are those of cells up to the middle between times") {
+TEST_CASE("monte carlo: densities are those of cells up to halfway between times") {
   auto r = given(small(), 5000);
   r.question.quantities = {Quantity::duration_density};
   r.question.time = {4, 1, 2};
@@ -208,8 +208,8 @@ TEST_CASE("monte carlo: a bias of nothing gives what symmetry gives, within 4.5 
   }
 }
 
-// (X, Y, V) -> (-X, -Y, -V) takes one scene to the other.
-TEST_CASE("monte carlo: opposite scenes give opposite results, within 4.5 sigma") {
+// (X, Y, V) -> (-X, -Y, -V) takes one case to the other.
+TEST_CASE("monte carlo: opposite cases give opposite results, within 4.5 sigma") {
   auto s = small(), mirrored = s;
   s.bias = 0.3;
   s.friction.mu_d_minus = 0.5;
@@ -312,7 +312,7 @@ TEST_CASE("monte carlo: stops when the accuracy is met", "[parallel]") {
   CHECK(worst > 0.003);  // not long after
 }
 
-TEST_CASE("monte carlo: tells what is lacking when the accuracy is not met") {
+TEST_CASE("monte carlo: reports what is lacking when the accuracy is not met") {
   auto r = given(small(), 1000);
   r.question.accuracy_given = true;
   r.question.accuracy = 1e-4;
@@ -337,17 +337,19 @@ TEST_CASE("monte carlo: an accuracy is met by the widest interval, and not below
   CHECK_FALSE(simulate(r).reached);
 }
 
-TEST_CASE("monte carlo: progress is told at once, and how much is left") {
+TEST_CASE("monte carlo: progress is reported at once, and how much is left") {
   const auto r = given(small(), 3 * kRound);
-  std::vector<monte_carlo::SimulationState> told;
-  (void)monte_carlo::simulate(PETSC_COMM_WORLD, r, "",
-                              [&](const monte_carlo::SimulationState& s) { told.push_back(s); });
-  REQUIRE_FALSE(told.empty());
-  REQUIRE(told[0].excursions > 0);
-  const double speed = told[0].excursions / told[0].seconds * petsc::ranks(PETSC_COMM_WORLD);
-  CHECK(told[0].wanted == 3 * kRound);
-  CHECK(told[0].jumps > told[0].excursions);
-  CHECK(told[0].seconds_left == Approx((told[0].wanted - told[0].excursions) / speed));
+  std::vector<monte_carlo::SimulationState> reported;
+  (void)monte_carlo::simulate(PETSC_COMM_WORLD, r, "", [&](const monte_carlo::SimulationState& s) {
+    reported.push_back(s);
+  });
+  REQUIRE_FALSE(reported.empty());
+  REQUIRE(reported[0].excursions > 0);
+  const double speed =
+      reported[0].excursions / reported[0].seconds * petsc::ranks(PETSC_COMM_WORLD);
+  CHECK(reported[0].wanted == 3 * kRound);
+  CHECK(reported[0].jumps > reported[0].excursions);
+  CHECK(reported[0].seconds_left == Approx((reported[0].wanted - reported[0].excursions) / speed));
 }
 
 TEST_CASE("monte carlo: what would take months is refused at once") {

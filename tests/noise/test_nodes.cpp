@@ -156,23 +156,23 @@ TEST_CASE("noise nodes: polynomials up to the degree have their exact images") {
   }
 }
 
-TEST_CASE("noise nodes: the stationary law of the chain is theirs") {
+TEST_CASE("noise nodes: the stationary distribution of the chain is theirs") {
   for (const auto& p : processes()) {
     const Nodes nodes(p, {4, 2});
-    const auto law = model::stationary_distribution(p.noise);
-    // gamma, the law on the nodes: P^T w.
+    const auto distribution = model::stationary_distribution(p.noise);
+    // gamma, the distribution on the nodes: P^T w.
     std::vector<double> gamma(static_cast<std::size_t>(nodes.count()), 0.0);
     for (const auto& g : nodes.groups()) {
       for (int i = g.first; i <= g.last; ++i) {
         const auto shares = g.row(g.value, i);
         for (int l = 0; l < g.count; ++l) {
-          gamma[g.begin + l + nodes.last()] += law[i + p.noise.levels] * shares[l];
+          gamma[g.begin + l + nodes.last()] += distribution[i + p.noise.levels] * shares[l];
         }
       }
     }
     const auto spread = nodes.spread(gamma);
-    for (std::size_t i = 0; i < law.size(); ++i) {
-      CHECK(std::abs(spread[i] - law[i]) < 1e-11 * law[i] + 1e-250);
+    for (std::size_t i = 0; i < distribution.size(); ++i) {
+      CHECK(std::abs(spread[i] - distribution[i]) < 1e-11 * distribution[i] + 1e-250);
     }
     // gamma J = 0, flow by flow: detailed balance of the projection.
     std::map<std::pair<int, int>, double> flow;

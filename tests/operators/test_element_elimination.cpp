@@ -33,10 +33,10 @@ struct Case {
 
 model::Scene plain(double mu_d, double delta) { return test::scene(1, mu_d, 1, delta, {1, 0}); }
 
-// With holding states and without, on levels and on nodes, drags of both kinds, one level at rest.
+// With holding states and without, on levels and on nodes, drags of both kinds, one static level.
 std::vector<Case> cases() {
-  auto cut = plain(0.25, 0.25), biased = plain(0.6, 0.2), driven = plain(0.5, 0.25);
-  cut.v_max = 1;
+  auto truncated = plain(0.25, 0.25), biased = plain(0.6, 0.2), driven = plain(0.5, 0.25);
+  truncated.v_max = 1;
   biased.bias = 0.3;
   driven.bias = -1.4;
   auto one_sided = plain(0.3, 0.25);
@@ -48,9 +48,9 @@ std::vector<Case> cases() {
   for (Symmetry symmetry : {Symmetry::even, Symmetry::odd, Symmetry::none}) {
     all.push_back({"levels", test::on_hp(plain(0.25, 0.25), 4), symmetry});
     all.push_back({"nodes", test::on_nodes(plain(0.25, 1.0 / 16), 4, 3), symmetry});
-    all.push_back({"cut", test::on_nodes(cut, 3, 2), symmetry});
+    all.push_back({"truncated", test::on_nodes(truncated, 3, 2), symmetry});
     all.push_back({"free", test::on_nodes(free, 3, 3), symmetry});
-    all.push_back({"one level at rest", test::on_hp(single, 3), symmetry});
+    all.push_back({"one static level", test::on_hp(single, 3), symmetry});
   }
   all.push_back({"bias", test::on_nodes(biased, 4, 2), Symmetry::none});
   all.push_back({"nothing rests long", test::on_nodes(driven, 3, 2), Symmetry::none});
@@ -89,7 +89,7 @@ void check_solves(const KolmogorovOperator& a, bool share = true) {
   const auto b = rough(a);
   const auto x = a.zeros();
   for (bool transposed : {false, true}) {
-    INFO((transposed ? "transposed" : "plain"));
+    INFO((transposed ? "transposed" : "forward"));
     elimination.solve(b, x, transposed);
     CHECK(residual(a, x, b, transposed) < 1e-13);
   }
@@ -97,13 +97,14 @@ void check_solves(const KolmogorovOperator& a, bool share = true) {
 
 }  // namespace
 
-TEST_CASE("element elimination: solves every kind of system, plain and transposed", "[parallel]") {
+TEST_CASE("element elimination: solves every kind of system, forward and transposed",
+          "[parallel]") {
   for (const auto& c : cases()) {
-    for (StaticPhase rest : {StaticPhase::killing, StaticPhase::kept, StaticPhase::killed_on_exit,
-                             StaticPhase::killing_edges}) {
-      INFO(c.name << ", symmetry " << static_cast<int>(c.symmetry) << ", rest "
-                  << static_cast<int>(rest));
-      const KolmogorovOperator a(PETSC_COMM_WORLD, c.on, 0.4, c.symmetry, rest);
+    for (StaticPhase static_phase : {StaticPhase::killing, StaticPhase::kept,
+                                     StaticPhase::killed_on_exit, StaticPhase::killing_edges}) {
+      INFO(c.name << ", symmetry " << static_cast<int>(c.symmetry) << ", static phase "
+                  << static_cast<int>(static_phase));
+      const KolmogorovOperator a(PETSC_COMM_WORLD, c.on, 0.4, c.symmetry, static_phase);
       for (bool share : {true, false}) check_solves(a, share);
     }
   }
@@ -116,9 +117,9 @@ TEST_CASE("element elimination: by the clock of path length, and killed at a spe
                                   Clock::path_length);
     check_solves(slow);
     for (double speed : {0.01, 0.4}) {
-      for (StaticPhase rest : {StaticPhase::killing, StaticPhase::kept}) {
+      for (StaticPhase static_phase : {StaticPhase::killing, StaticPhase::kept}) {
         const auto below = c.on.killing_at(speed);
-        check_solves({PETSC_COMM_WORLD, below, 0, c.symmetry, rest});
+        check_solves({PETSC_COMM_WORLD, below, 0, c.symmetry, static_phase});
       }
     }
   }

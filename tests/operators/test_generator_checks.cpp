@@ -24,12 +24,12 @@ struct Rows {
 
 }  // namespace
 
-TEST_CASE("laws: a generator passes") {
+TEST_CASE("generator checks: a generator passes") {
   const Rows rows;
   CHECK_NOTHROW(rows.require({true, true}));
 }
 
-TEST_CASE("laws: a negative rate, a wrong row sum and what is no number are told") {
+TEST_CASE("generator checks: a negative rate, a wrong row sum and what is no number are reported") {
   Rows rows;
   rows.values[0] = 2;
   CHECK_THROWS_WITH(rows.require({true, false}), Catch::Contains("rate of -2 in row 1") &&
@@ -48,7 +48,7 @@ TEST_CASE("laws: a negative rate, a wrong row sum and what is no number are told
   CHECK_THROWS_AS(rows.require({true, false}), NotReached);
 }
 
-TEST_CASE("laws: row sums may be off by a rounding of 1e-12 of the diagonal") {
+TEST_CASE("generator checks: row sums may be off by a rounding of 1e-12 of the diagonal") {
   Rows rows;
   for (double sign : {1.0, -1.0}) {
     rows.values = {-2, 5 + sign * 0.9 * 5e-12, -3, -4, 4};
@@ -59,7 +59,7 @@ TEST_CASE("laws: row sums may be off by a rounding of 1e-12 of the diagonal") {
   CHECK_THROWS_WITH(rows.require({true, false}), Catch::Contains("killing rate"));
 }
 
-TEST_CASE("laws: an occupation below zero is told", "[parallel]") {
+TEST_CASE("generator checks: an occupation below zero is reported", "[parallel]") {
   petsc::VecHandle nu;
   petsc::check(VecCreateMPI(PETSC_COMM_WORLD, PETSC_DECIDE, 10, nu.out()));
   petsc::check(VecSet(nu, 1));

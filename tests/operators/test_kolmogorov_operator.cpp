@@ -98,7 +98,7 @@ std::vector<Named> discretisations(const model::Process& process, double v_max) 
 
 // The generator of the paper, built here from its definition on the (i, j) grid, entry by entry:
 // the same states in another order, those at v = 0 beyond mu_s with the sign of their force as y.
-TEST_CASE("kolmogorov operator: the unfolded upwind operator is -M of the paper") {
+TEST_CASE("kolmogorov operator: the upwind operator on both branches is -M of the paper") {
   const std::vector<model::Process> processes{process_on(6, 1, 0.1, {1, 0.4}),
                                               process_on(6, 0.1, 0.1, {1, 0.4}), rough_process(9)};
   for (const auto& process : processes) {
@@ -113,7 +113,7 @@ TEST_CASE("kolmogorov operator: the unfolded upwind operator is -M of the paper"
     REQUIRE(a.states().global_size() == grid.size());
     std::map<PetscInt, int> place;  // in the grid's numbering
     a.states().for_each_local([&](const State& s) {
-      const int sign = s.half == Branch::positive ? 1 : -1;
+      const int sign = s.branch == Branch::positive ? 1 : -1;
       const int j = s.kind == StateKind::node ? s.node + 1 : 0;
       place[a.states().index(s)] = grid.index(sign * s.noise, sign * j);
     });
@@ -129,8 +129,7 @@ TEST_CASE("kolmogorov operator: the unfolded upwind operator is -M of the paper"
 }
 
 TEST_CASE("kolmogorov operator: constants are harmonic for the whole process", "[parallel]") {
-  const double v_max =
-      GENERATE(8.0, 1.0);  // the second cuts the velocity discretisation: holding states
+  const double v_max = GENERATE(8.0, 1.0);  // the second truncates the velocity: holding states
   const auto process = process_on(11, 1, 0.25);
   for (const auto& d : discretisations(process, v_max)) {
     for (Symmetry symmetry : {Symmetry::even, Symmetry::none}) {
@@ -158,34 +157,36 @@ TEST_CASE("kolmogorov operator: rows conserve probability up to killing", "[para
       const PetscScalar entering = std::accumulate(rates.begin(), rates.end(), PetscScalar(0));
       CHECK(PetscRealPart(left) == Approx(PetscRealPart(entering + lambda * mass)).epsilon(1e-11));
       // The same coupling read the other way: nu (-A_us s) with s = 1.
-      check(VecTDot(nu, a.from_rest(std::vector<PetscScalar>(rates.size(), 1.0)), &sent));
+      check(VecTDot(nu, a.from_static(std::vector<PetscScalar>(rates.size(), 1.0)), &sent));
       CHECK(PetscRealPart(sent) == Approx(PetscRealPart(entering)).epsilon(1e-12));
     }
   }
 }
 
-// The fold is exact: an even (odd) function on the whole space and its upper half see the same.
-TEST_CASE("kolmogorov operator: folded and unfolded agree on functions of their symmetry") {
+// Symmetry reduction is exact: an even (odd) function on both branches and its part on the positive
+// one have the same image.
+TEST_CASE(
+    "kolmogorov operator: reduced by symmetry and not, it agrees on functions of that symmetry") {
   const auto process = process_on(11, 0.6, 0.25);
   const auto even = [](double x, double y, double v) { return 1 + x * v + std::cos(v) + y * x; };
   const auto odd = [](double x, double y, double v) { return x + v * v * v + y; };
   for (const auto& d : discretisations(process, 8)) {
     for (Symmetry symmetry : {Symmetry::even, Symmetry::odd}) {
-      for (StaticPhase rest :
+      for (StaticPhase static_phase :
            {StaticPhase::killing, StaticPhase::kept, StaticPhase::killing_edges}) {
         const auto f = symmetry == Symmetry::even ? KolmogorovOperator::Observable(even)
                                                   : KolmogorovOperator::Observable(odd);
-        const KolmogorovOperator half(PETSC_COMM_SELF, d.on, 0.3, symmetry, rest);
-        const KolmogorovOperator whole(PETSC_COMM_SELF, d.on, 0.3, Symmetry::none, rest);
-        petsc::VecHandle from_half = half.zeros(), from_whole = whole.zeros();
-        check(MatMult(half.matrix(), half.values(f), from_half));
+        const KolmogorovOperator reduced(PETSC_COMM_SELF, d.on, 0.3, symmetry, static_phase);
+        const KolmogorovOperator whole(PETSC_COMM_SELF, d.on, 0.3, Symmetry::none, static_phase);
+        petsc::VecHandle from_branch = reduced.zeros(), from_whole = whole.zeros();
+        check(MatMult(reduced.matrix(), reduced.values(f), from_branch));
         check(MatMult(whole.matrix(), whole.values(f), from_whole));
-        const petsc::ReadView of_half(from_half), of_whole(from_whole);
+        const petsc::ReadView of_branch(from_branch), of_whole(from_whole);
         const double scale = largest_entry(whole.matrix());
         PetscInt at = 0;
-        half.states().for_each_local([&](const State& s) {
+        reduced.states().for_each_local([&](const State& s) {
           const PetscInt there = whole.states().index(s);
-          CHECK(std::abs(of_half[at++] - of_whole[there]) < 1e-13 * scale);
+          CHECK(std::abs(of_branch[at++] - of_whole[there]) < 1e-13 * scale);
         });
       }
     }
@@ -228,8 +229,9 @@ TEST_CASE("kolmogorov operator: upwind is an M-matrix of at most five entries a 
 
 // Off-diagonals summed from left to right and the diagonal added last leave nothing, not even the
 // rounding of the rates.
-TEST_CASE("kolmogorov operator: unfolded and kept, upwind is minus a generator to the last bit",
-          "[parallel]") {
+TEST_CASE(
+    "kolmogorov operator: on both branches and kept, upwind is minus a generator to the last bit",
+    "[parallel]") {
   for (const auto& process : {process_on(9, 1, 0.25, {1, 0.4}), rough_process(53)}) {
     const auto velocities =
         std::make_shared<velocity::UpwindDiscretisation>(process.noise.delta / 3, 40, process.drag);
@@ -256,7 +258,7 @@ TEST_CASE("kolmogorov operator: three noise levels by hand") {
                                StaticPhase::killing);
     REQUIRE(a.states().global_size() == 4);
     const double sign = symmetry == Symmetry::even ? 1 : -1;
-    // Order: (1, v = 0), (-1, v), (0, v), (1, v). B_1(0) = 0.5 goes on at rate 2; B_-1(v) = -1.75
+    // Order: (1, v = 0), (-1, v), (0, v), (1, v). B_1(0) = 0.5 moves on at rate 2; B_-1(v) = -1.75
     // reflects to (1, 0) at rate 7; B_0(v) = -0.75 comes to rest at rate 3; B_1(v) = 0.25 is held.
     const double expected[4][4] = {
         {2 + 2, 0, 0, -2}, {-7 * sign, 7 + 2, -2, 0}, {0, -1, 3 + 2, -1}, {0, 0, -2, 2}};
@@ -298,7 +300,7 @@ TEST_CASE("kolmogorov operator: exits of the static states carry their rates", "
       petsc::WriteView local(u);
       PetscInt at = 0;
       a.states().for_each_local([&](const State& s) {
-        local[at++] = s.kind == StateKind::rest ? transform[s.noise + 4] : 0.0;
+        local[at++] = s.kind == StateKind::static_phase ? transform[s.noise + 4] : 0.0;
       });
     }
     check(MatMult(a.matrix(), u, residual));
@@ -306,7 +308,7 @@ TEST_CASE("kolmogorov operator: exits of the static states carry their rates", "
     const petsc::ReadView local(residual);
     PetscInt at = 0;
     a.states().for_each_local([&](const State& s) {
-      if (s.kind == StateKind::rest) CHECK(std::abs(local[at]) < 1e-11);
+      if (s.kind == StateKind::static_phase) CHECK(std::abs(local[at]) < 1e-11);
       ++at;
     });
   }
@@ -314,7 +316,7 @@ TEST_CASE("kolmogorov operator: exits of the static states carry their rates", "
 
 namespace {
 
-// Linear in |v| on each half, so that both schemes have its exact values.
+// Linear in |v| on each branch, so that both schemes have its exact values.
 double even_sample(double x, double y, double v) { return 1 + x * x + y * x + x * v + y * v; }
 double odd_sample(double x, double y, double v) {
   return x + 2 * y + 3 * v + x * x * x + x * y * v;
@@ -350,7 +352,7 @@ std::vector<Symmetric> symmetric_samples() {
 }  // namespace
 
 // Every level at rest, at s+ and s- and beyond, and at velocities of both signs; symmetry-reduced,
-// from the half that is kept, with the sign of the symmetry.
+// from the branch that is kept, with the sign of the symmetry.
 TEST_CASE("kolmogorov operator: values at single states", "[parallel]") {
   const auto process = process_on(11, 1, 0.25);
   for (const auto& d : discretisations(process, 2)) {
@@ -359,7 +361,7 @@ TEST_CASE("kolmogorov operator: values at single states", "[parallel]") {
       const auto values = a.values(f);
       for (int i = -11; i <= 11; ++i) {
         for (double v : {0.0, 0.05, 0.333, 2.0, -0.05, -0.1234, -2.0}) {
-          INFO(d.name << " level " << i << " v " << v << " folded "
+          INFO(d.name << " level " << i << " v " << v << " symmetry-reduced "
                       << a.states().symmetry_reduced());
           const double expected = at_state(process, f, i, v);
           CHECK(applied(a.value_at(i, v), values) == Approx(expected).margin(1e-11));

@@ -57,7 +57,7 @@ TEST_CASE("linear steps: the transposed map runs them backwards") {
   }
 }
 
-TEST_CASE("linear steps: each does what it says, in its order") {
+TEST_CASE("linear steps: each does its own, in its order") {
   LinearSteps steps;
   steps.add({{0, 1, 2.0}, {1, 2, 3.0}});
   DenseMatrix twice(1, 1);

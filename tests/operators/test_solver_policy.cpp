@@ -94,7 +94,7 @@ TEST_CASE("solver policy: options choose another solver, with the same solution"
   }
 }
 
-TEST_CASE("PC elements: its view tells what it works on", "[parallel]") {
+TEST_CASE("PC elements: its view shows what it works on", "[parallel]") {
   const auto on = test::on_nodes(with_step(0.25), 4, 3);
   const auto a = sliding(on);
   const auto ksp = petsc::linear_solver(a.matrix(), "user_", petsc::kElementsPc);

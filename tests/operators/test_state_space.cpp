@@ -22,18 +22,19 @@ model::Process process_on(int levels, double mu_s, double mu_d) {
 }
 
 // Number of states of each kind by counting what the model says exists.
-PetscInt expected_size(const Discretisation& d, Symmetry symmetry, bool with_rest) {
+PetscInt expected_size(const Discretisation& d, Symmetry symmetry, bool with_static_states) {
   const auto& [process, noise, velocities] = d;
   const int k = process.static_index();
-  const int halves = symmetry == Symmetry::none ? 2 : 1;
-  int size = halves * noise->count() * velocities->size();
-  if (velocities->keeps_origin()) size += halves * (noise->last() - k);
+  const int branches = symmetry == Symmetry::none ? 2 : 1;
+  int size = branches * noise->count() * velocities->size();
+  if (velocities->keeps_origin()) size += branches * (noise->last() - k);
   for (int n = noise->first(); n <= noise->last(); ++n) {
     const bool accelerates =
         process.net_force_at(noise->x(n)) + process.drag(velocities->v_max()) > 0;
-    if (velocities->needs_holding() && accelerates) size += halves;
+    if (velocities->needs_holding() && accelerates) size += branches;
   }
-  if (with_rest) size += symmetry == Symmetry::none ? 2 * k + 1 : (symmetry == Symmetry::even) + k;
+  if (with_static_states)
+    size += symmetry == Symmetry::none ? 2 * k + 1 : (symmetry == Symmetry::even) + k;
   return size;
 }
 
@@ -43,17 +44,18 @@ TEST_CASE("state space: every state has one index, ranks follow one another", "[
   const auto process = process_on(14, 1, 0.25);
   const std::vector<double> low{0, 0.1, 0.5, 1}, high{0, 0.1, 0.5, 8};
   const auto tall = std::make_shared<velocity::HpDiscretisation>(high, 2, process.drag);
-  const auto cut = std::make_shared<velocity::HpDiscretisation>(low, 2, process.drag);
+  const auto truncated = std::make_shared<velocity::HpDiscretisation>(low, 2, process.drag);
   const auto grid = std::make_shared<velocity::UpwindDiscretisation>(0.05, 40, process.drag);
   const auto nodes = std::make_shared<noise::Nodes>(process, noise::Grouping{1, 50});
   REQUIRE(nodes->last() < 14);
   for (const Discretisation& d :
-       {Discretisation(process, tall), Discretisation(process, cut), Discretisation(process, grid),
-        Discretisation(process, tall, nodes), Discretisation(process, cut, nodes)}) {
+       {Discretisation(process, tall), Discretisation(process, truncated),
+        Discretisation(process, grid), Discretisation(process, tall, nodes),
+        Discretisation(process, truncated, nodes)}) {
     for (Symmetry symmetry : {Symmetry::even, Symmetry::odd, Symmetry::none}) {
-      for (bool with_rest : {false, true}) {
-        const StateSpace states(PETSC_COMM_WORLD, d, symmetry, with_rest);
-        CHECK(states.global_size() == expected_size(d, symmetry, with_rest));
+      for (bool with_static_states : {false, true}) {
+        const StateSpace states(PETSC_COMM_WORLD, d, symmetry, with_static_states);
+        CHECK(states.global_size() == expected_size(d, symmetry, with_static_states));
         PetscInt next = states.local_begin();
         states.for_each_local([&](const State& s) { CHECK(states.index(s) == next++); });
         CHECK(next == states.local_begin() + states.local_size());
@@ -71,11 +73,13 @@ TEST_CASE("state space: all ranks know the index of every state", "[parallel]") 
   const StateSpace states(PETSC_COMM_WORLD, {process, velocities}, Symmetry::none, true);
   std::set<PetscInt> seen;
   for (int l = -6; l <= 6; ++l) {
-    for (Branch half : {Branch::positive, Branch::negative}) {
-      for (int j = 0; j < 3; ++j) seen.insert(states.index({StateKind::node, half, l, j}));
-      if (states.has_origin(half, l)) seen.insert(states.index({StateKind::origin, half, l, 0}));
+    for (Branch branch : {Branch::positive, Branch::negative}) {
+      for (int j = 0; j < 3; ++j) seen.insert(states.index({StateKind::node, branch, l, j}));
+      if (states.has_origin(branch, l))
+        seen.insert(states.index({StateKind::origin, branch, l, 0}));
     }
-    if (states.has_rest(l)) seen.insert(states.index({StateKind::rest, Branch::positive, l, 0}));
+    if (states.has_static_state(l))
+      seen.insert(states.index({StateKind::static_phase, Branch::positive, l, 0}));
   }
   CHECK(static_cast<PetscInt>(seen.size()) == states.global_size());
   CHECK(*seen.begin() == 0);
@@ -91,7 +95,7 @@ TEST_CASE("state space: a rank owns i together with -i", "[parallel]") {
   for (int i : levels) CHECK(std::binary_search(levels.begin(), levels.end(), -i));
 }
 
-TEST_CASE("state space: more ranks than shells leaves some ranks empty", "[parallel]") {
+TEST_CASE("state space: more ranks than level pairs leaves some ranks empty", "[parallel]") {
   const auto process = process_on(1, 0.1, 0.1);
   const auto velocities = std::make_shared<velocity::UpwindDiscretisation>(0.1, 2, process.drag);
   const StateSpace states(PETSC_COMM_WORLD, {process, velocities}, Symmetry::even, false);
@@ -122,7 +126,7 @@ TEST_CASE("state space: with a bias every state has one index, too", "[parallel]
     for (int i = -8; i <= 8; ++i) {
       const double force = process.noise.level(i) + bias;
       const bool rest = std::abs(force) <= 0.6 + 1e-12;
-      CHECK(states.has_rest(i) == rest);
+      CHECK(states.has_static_state(i) == rest);
       rests += rest ? 1 : 0;
       CHECK(states.has_origin(Branch::positive, i) == (force > 0.6 + 1e-12));
       CHECK(states.has_origin(Branch::negative, -i) == (force < -0.6 - 1e-12));

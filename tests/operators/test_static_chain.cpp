@@ -13,7 +13,7 @@ using Big = boost::multiprecision::cpp_bin_float_100;
 
 namespace {
 
-// m (lambda - Q) = entry by plain elimination on diagonals in 100 digits: another algorithm,
+// m (lambda - Q) = entry by Gaussian elimination on diagonals in 100 digits: another algorithm,
 // precise enough to be exact here.
 std::vector<double> exact_occupation(const model::NoiseChain& chain, int k, double lambda,
                                      const std::vector<double>& entry) {
@@ -61,7 +61,7 @@ TEST_CASE("static chain: one level sticks for 1/Lambda") {
 }
 
 // Three levels by hand: from 0 the walk goes to +-1 and leaves from there with probability
-// alpha_1, so it makes 1/alpha_1 rounds: 1/alpha_1 stays on 0, as many on +-1 together.
+// alpha_1, so it makes 1/alpha_1 rounds: 1/alpha_1 visits to 0, as many to +-1 together.
 TEST_CASE("static chain: three levels by hand") {
   const model::NoiseChain chain{1, 0.5, 8};
   const auto m = StaticChain(chain, 1).occupation(std::vector<double>{0, 1, 0});
@@ -83,12 +83,12 @@ TEST_CASE("static chain: full relative accuracy of every entry at any time scale
     const auto m = StaticChain(chain, k, c.lambda).occupation(entry);
     const auto exact = exact_occupation(chain, k, c.lambda, entry);
     for (std::size_t r = 0; r < m.size(); ++r) CHECK(relative_difference(m[r], exact[r]) < 1e-13);
-    INFO("mean stay " << sum(m));
+    INFO("mean sticking time " << sum(m));
     CHECK(sum(m) > 0);
   }
 }
 
-TEST_CASE("static chain: mean stays of 1e20 are ordinary") {
+TEST_CASE("static chain: mean sticking times of 1e20 are ordinary") {
   const model::NoiseChain chain{1, 0.125, 128};
   const int k = 77;  // 9.6 standard deviations
   const double mean = sum(StaticChain(chain, k).occupation(entry_law(k)));

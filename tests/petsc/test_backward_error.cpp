@@ -30,13 +30,13 @@ VecHandle vector(Mat a, const std::vector<double>& values) {
 }
 
 struct Measured {
-  double plain, transposed;
+  double forward, transposed;
 };
 
 Measured measured(BackwardError& measure, Mat a, const std::vector<double>& r,
                   const std::vector<double>& b, const std::vector<double>& x) {
-  const double plain = measure.forward(vector(a, r), vector(a, b), vector(a, x));
-  return {plain, measure.transposed(vector(a, r), vector(a, b), vector(a, x))};
+  const double forward = measure.forward(vector(a, r), vector(a, b), vector(a, x));
+  return {forward, measure.transposed(vector(a, r), vector(a, b), vector(a, x))};
 }
 
 }  // namespace
@@ -47,10 +47,10 @@ TEST_CASE("backward error: by hand, row by row and as a share of all visits", "[
   // |A| |x| + |b| = (1 + 6 + 3, 12 + 8); the rows of |A| sum to 3 and 4, so that |x| makes 15
   // visits and |b| is 11.
   const auto first = measured(measure, a, {0.5, -0.25}, {-3, 8}, {1, -3});
-  CHECK(first.plain == Approx(0.05).epsilon(1e-11));
+  CHECK(first.forward == Approx(0.05).epsilon(1e-11));
   CHECK(first.transposed == Approx(0.75 / 26).epsilon(1e-14));
   const auto second = measured(measure, a, {0.5, -4}, {-3, 8}, {1, -3});
-  CHECK(second.plain == Approx(0.2).epsilon(1e-11));
+  CHECK(second.forward == Approx(0.2).epsilon(1e-11));
   CHECK(second.transposed == Approx(4.5 / 26).epsilon(1e-14));
 }
 
@@ -58,18 +58,18 @@ TEST_CASE("backward error: components below 1e-13 of the largest need no digits"
   const MatHandle a = triangle();
   BackwardError measure(a);
   // The second row sees |x_2| = 0 and no b, but 4e-13 of the largest component, 5.
-  CHECK(measured(measure, a, {0, 1e-12}, {5, 0}, {5, 0}).plain == Approx(0.5).epsilon(1e-9));
+  CHECK(measured(measure, a, {0, 1e-12}, {5, 0}, {5, 0}).forward == Approx(0.5).epsilon(1e-9));
 }
 
 TEST_CASE("backward error: new entries count once the old ones are forgotten", "[parallel]") {
   const MatHandle a = triangle();
   BackwardError measure(a);
   const auto before = measured(measure, a, {1, 0}, {0, 0}, {1, 1});
-  CHECK(before.plain == Approx(1.0 / 3).epsilon(1e-11));
+  CHECK(before.forward == Approx(1.0 / 3).epsilon(1e-11));
   CHECK(before.transposed == Approx(1.0 / 7).epsilon(1e-14));
   check(MatScale(a, 10));
   measure.forget();
   const auto after = measured(measure, a, {1, 0}, {0, 0}, {1, 1});
-  CHECK(after.plain == Approx(1.0 / 30).epsilon(1e-11));
+  CHECK(after.forward == Approx(1.0 / 30).epsilon(1e-11));
   CHECK(after.transposed == Approx(1.0 / 70).epsilon(1e-14));
 }

@@ -63,7 +63,7 @@ TEST_CASE("check: an exception that PETSc swallowed does not come out later") {
   CHECK_THROWS_AS(check(VecSetSizes(x, 5, 5)), petsc::PetscFailure);
 }
 
-TEST_CASE("check: without an exception an error of PETSc tells what PETSc says") {
+TEST_CASE("check: without an exception an error of PETSc has the text of PETSc") {
   petsc::VecHandle x;
   check(VecCreate(PETSC_COMM_SELF, x.out()));
   CHECK_THROWS_WITH(check(VecSetType(x, "nonsense")), Catch::Contains("nonsense"));

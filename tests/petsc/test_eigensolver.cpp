@@ -122,7 +122,7 @@ TEST_CASE("eigensolver: residuals are those of its vectors", "[parallel]") {
   CHECK(largest > 1e-10);  // there was something to see
 }
 
-TEST_CASE("eigensolver: what it did is entered in the ledger", "[parallel]") {
+TEST_CASE("eigensolver: what it did is counted in the solver statistics", "[parallel]") {
   const MatHandle a = ring(12);
   SolverStatistics statistics;
   const Eigensolver solver(a, "test_", -0.1, 1, statistics);

@@ -68,7 +68,7 @@ double distance_from_one(Vec x) {
 
 }  // namespace
 
-TEST_CASE("factorization: plain and transposed solves, counted", "[parallel]") {
+TEST_CASE("factorization: forward and transposed solves, counted", "[parallel]") {
   const MatHandle a = bidiagonal(20);
   SolverStatistics statistics;
   Factorization factors(a, "test_", statistics);
@@ -196,7 +196,7 @@ TEST_CASE("factorization: MUMPS gets more workspace once when it runs out of it"
   CHECK(distance_from_one(factors.solve_transposed(image_of_one(a, Side::left)).x) < 1e-12);
 }
 
-TEST_CASE("factorization: a failure is told with what MUMPS means by it") {
+TEST_CASE("factorization: a failure is reported with the meaning of MUMPS's code") {
   const test::Given little({{"-little_mat_mumps_icntl_23", "1"}});
   CHECK_THAT(complaint(saddle(40000), "little_"),
              Catch::Contains("INFOG(1) = -19") && Catch::Contains("ICNTL(23) is too small"));
@@ -233,7 +233,7 @@ PetscInt ordering_asked(Mat a, const std::string& prefix) {
 
 }  // namespace
 
-TEST_CASE("factorization: MUMPS orders by AMF unless told otherwise", "[parallel]") {
+TEST_CASE("factorization: MUMPS orders by AMF unless options say otherwise", "[parallel]") {
   const MatHandle a = saddle(400);
   constexpr PetscInt amd = 0, amf = 2;
   CHECK(ordering_asked(a, "order_") == amf);

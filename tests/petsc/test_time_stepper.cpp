@@ -106,7 +106,7 @@ TEST_CASE("time stepper: the exponential to the tolerance, from step to step", "
   }
 }
 
-TEST_CASE("time stepper: errors fall with the tolerance, at the price of steps") {
+TEST_CASE("time stepper: errors fall with the tolerance, at the cost of steps") {
   double before = 1;
   int steps = 0;
   for (double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
@@ -147,7 +147,7 @@ TEST_CASE("time stepper: constants of a generator stay constant", "[parallel]") 
 }
 
 // Each step of ARKIMEX5, fully implicit, has eight stages, each of one linear system.
-TEST_CASE("time stepper: linear systems are counted in the ledger", "[parallel]") {
+TEST_CASE("time stepper: linear systems are counted in the solver statistics", "[parallel]") {
   Run run("test_", 1e-6);
   run.stepper.advance(1);
   CHECK(run.statistics.iterations >= run.stepper.steps());

@@ -115,7 +115,7 @@ class Runs(Case):
     def test_a_plan(self):
         r = stickslip.run(**SMALL, quantities="sticking,density", plan=True)
         self.assertEqual((len(r), r.density), (0, None))
-        file = self.folder / "law.h5"
+        file = self.folder / "density.h5"
         stickslip.run(**SMALL, quantities="density", keep=file)
         self.assertIsNone(stickslip.run(**SMALL, quantities="density", keep=file, plan=True).density)
         self.assertGreater(r.plan["steps"][0]["unknowns"], 0)
@@ -138,9 +138,9 @@ class Runs(Case):
 
 class Failures(Case):
     def test_bad_input_is_told_in_the_words_of_the_program(self):
-        for options, told in (({"mu_d": 2}, r"^-mu_d = 2: must be in \(0, mu_s\]"),
+        for options, message in (({"mu_d": 2}, r"^-mu_d = 2: must be in \(0, mu_s\]"),
                               ({"detla": 0.5}, "did you mean -delta?")):
-            with self.assertRaisesRegex(ValueError, told) as caught:
+            with self.assertRaisesRegex(ValueError, message) as caught:
                 stickslip.run(**options)
             self.assertIs(type(caught.exception), stickslip.BadInput)
 
@@ -205,11 +205,11 @@ class Failures(Case):
                              f"ImportError: stickslip needs {name} for this: apt-get install python3-{name}")
 
     def test_the_command_line_tells_a_missing_module_in_one_sentence(self):
-        stickslip.run(**SMALL, quantities="density", keep=self.folder / "law.h5")
+        stickslip.run(**SMALL, quantities="density", keep=self.folder / "density.h5")
         for name in ("numpy", "h5py", "matplotlib"):
             with tempfile.TemporaryDirectory() as hidden:
                 pathlib.Path(hidden, f"{name}.py").write_text(f"raise ModuleNotFoundError('none', name='{name}')\n")
-                done = self.python("-m", "stickslip", "plot", "law.h5",
+                done = self.python("-m", "stickslip", "plot", "density.h5",
                                    PYTHONPATH=f"{hidden}:{SOURCES / 'python'}")
             self.assertEqual((done.returncode, done.stdout, done.stderr), (
                 1, "", f"stickslip needs {name} for this: apt-get install python3-{name}\n"))
@@ -307,11 +307,11 @@ class Files(Case):
     def test_foreign_files(self):
         with h5py.File(self.folder / "foreign.h5", "w") as file:
             file["x"] = 1
-        for name, text, told in (("a.json", "{}", "JSON"), ("b.json", "[", "JSON"), ("c.csv", "a,b\n1,2\n", "CSV"),
+        for name, text, message in (("a.json", "{}", "JSON"), ("b.json", "[", "JSON"), ("c.csv", "a,b\n1,2\n", "CSV"),
                                  ("d.h5", "text", "HDF5"), ("foreign.h5", None, "HDF5")):
             if text:
                 (self.folder / name).write_text(text)
-            self.assertRaisesRegex(ValueError, f"{name}: cannot be read as {told}", stickslip.load, self.folder / name)
+            self.assertRaisesRegex(ValueError, f"{name}: cannot be read as {message}", stickslip.load, self.folder / name)
         self.assertRaisesRegex(FileNotFoundError, "no such file", stickslip.load, self.folder / "none.h5")
 
 
@@ -387,11 +387,11 @@ class Pictures(Case):
         stickslip.sweep(tau=[1, 2], delta=0.5, quantities="noise_law", sweep_csv=self.folder / "s.csv")
         self.assertEqual(self.plot("s.csv"), ["s/E_X2.png", "s/P_X_le_mu_s.png"])
         self.assertEqual(self.plot("--kind", "E_X2", "s.csv"), ["s.png"])
-        for words, told in ((["none.h5"], "no such file"), ([file.name, "a.foo"], ".svg"),
+        for words, message in ((["none.h5"], "no such file"), ([file.name, "a.foo"], ".svg"),
                             ([file.name, "x/a.png"], "folder")):
             done = self.python("-m", "stickslip", "plot", *words)
             self.assertEqual((done.returncode, done.stdout), (2, ""))
-            self.assertIn(told, done.stderr)
+            self.assertIn(message, done.stderr)
             self.assertIn(words[-1], done.stderr)
 
 

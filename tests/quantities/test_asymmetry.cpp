@@ -70,7 +70,7 @@ Values everything_on_hp(const model::Scene& s, bool mirrored = false) {
   return evaluated(everything(s, mirrored), test::on_hp(test::on_full_noise(s), 7));
 }
 
-// Reduced models of what is rough are as good as they say, five digits of the largest value at
+// Reduced models of what is rough are as good as their errors, five digits of the largest value at
 // least; all others leave ten digits or more.
 void check_alike(const Values& found, const Values& expected, double tolerance) {
   for (const auto& [key, values] : expected) {
@@ -150,8 +150,8 @@ TEST_CASE("asymmetry: mirror images mirror", "[slow]") {
     exchange("h_minus", "h_plus_from_minus");
     exchange("w_one", "w_one_from_minus");
     exchange("entry_law", "entry_law_minus");
-    for (const char* law : {"entry_law", "entry_law_minus"}) {
-      std::reverse(there.at(law).begin(), there.at(law).end());
+    for (const char* key : {"entry_law", "entry_law_minus"}) {
+      std::reverse(there.at(key).begin(), there.at(key).end());
     }
     for (const auto& pair : kObservables) {
       const std::string f = std::string("(") + pair[0] + ")";
@@ -191,8 +191,8 @@ TEST_CASE("asymmetry: thresholds that differ alike are a bias", "[parallel]") {
   check_alike(found, expected, 1e-12);
 }
 
-// Four routes that share the matrix at most, and the queue that shares nothing.
-TEST_CASE("asymmetry: the routes agree") {
+// Four solution methods that share the matrix at most, and the queue that shares nothing.
+TEST_CASE("asymmetry: the solution methods agree") {
   auto s = asymmetric();
   for (bool drag : {true, false}) {
     if (!drag) s.drag = {0, 0};

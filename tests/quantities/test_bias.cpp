@@ -50,7 +50,7 @@ double spectrum_at_zero(Solved& solved) {
 
 }  // namespace
 
-TEST_CASE("bias: without one both half lines give what one of them gives", "[parallel]") {
+TEST_CASE("bias: without one both velocity branches give what one of them gives", "[parallel]") {
   for (const auto& s : sample_scenes()) {
     for (bool hp : {true, false}) {
       const auto on = [&](const model::Scene& any) {
@@ -110,7 +110,7 @@ TEST_CASE("bias: the power put in is dissipated") {
   }
 }
 
-TEST_CASE("bias: the density integrates to the law and to its drift") {
+TEST_CASE("bias: the density integrates to the distribution and to its drift") {
   for (double bias : {0.2, -1.4}) {
     const auto s = biased(scene(1, 0.6, 1, 0.25, {1, 0}), bias);
     const Solved solved(test::on_hp(s, 8));
@@ -130,10 +130,10 @@ TEST_CASE("bias: the density integrates to the law and to its drift") {
       noise += field.noise_marginal[i];
     }
     CHECK(stick == Approx(values.at("P_stick")).epsilon(1e-12));
-    CHECK(sliding + stick + field.cut_mass == Approx(1).epsilon(1e-11));
+    CHECK(sliding + stick + field.truncated_mass == Approx(1).epsilon(1e-11));
     CHECK(drift == Approx(values.at("E_V")).epsilon(1e-9));
     CHECK(noise == Approx(1).epsilon(1e-11));
-    // The law of the noise, level by level.
+    // The distribution of the noise, level by level.
     const auto distribution = model::stationary_distribution(solved.distribution.process().noise);
     for (std::size_t i = 0; i < distribution.size(); ++i) {
       CHECK(field.noise_marginal[i] == Approx(distribution[i]).epsilon(1e-7).margin(1e-12));

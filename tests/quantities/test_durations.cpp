@@ -44,18 +44,19 @@ std::vector<Sample> samples() {
           {"tau = 4", test::on_hp(scene(0.7, 0.4, 4, 0.25, {2, 1}), 16)}};
 }
 
-/// The laws of all durations at the same times.
-struct Laws {
+/// The distributions of all durations at the same times.
+struct Distributions {
   DurationDistribution slide, stick, excursion;
 };
 
-Laws laws(Solved& s, const std::vector<double>& time, double tolerance) {
+Distributions distributions(Solved& s, const std::vector<double>& time, double tolerance) {
   return {quantities::slide_distribution(s.systems, s.distribution, time, tolerance),
           quantities::stick_distribution(s.systems.process(), s.entry(), time),
           quantities::excursion_distribution(s.systems, s.distribution, time, tolerance)};
 }
 
-constexpr DurationDistribution Laws::*kAll[] = {&Laws::slide, &Laws::stick, &Laws::excursion};
+constexpr DurationDistribution Distributions::*kAll[] = {
+    &Distributions::slide, &Distributions::stick, &Distributions::excursion};
 constexpr const char* kNames[] = {"slide", "stick", "excursion"};
 
 constexpr double kFirstTime = 1e-9;  // densities are constant before
@@ -64,11 +65,11 @@ test::Quadrature all_times(double last) { return test::logarithmic_panels(kFirst
 
 /// int weight f over all times, and the errors that the density states.
 template <class Weight>
-Uncertain integral(const test::Quadrature& q, const DurationDistribution& law, Weight weight) {
+Uncertain integral(const test::Quadrature& q, const DurationDistribution& duration, Weight weight) {
   const auto sum_of = [&](double Uncertain::*part) {
-    return q.sum([&](std::size_t n) { return weight(q.node[n]) * law.density[n].*part; });
+    return q.sum([&](std::size_t n) { return weight(q.node[n]) * duration.density[n].*part; });
   };
-  const double start = kFirstTime * weight(0.0) * law.density.front().value;
+  const double start = kFirstTime * weight(0.0) * duration.density.front().value;
   return {start + sum_of(&Uncertain::value), sum_of(&Uncertain::error)};
 }
 
@@ -98,7 +99,7 @@ std::vector<double> stepped_slide(Solved& s, const std::vector<double>& time, do
   const KolmogorovOperator a(s.systems.comm(), s.systems.discretisation(), 0.0, Symmetry::even,
                              StaticPhase::killing);
   const auto levels = 2 * static_cast<std::size_t>(process.static_index()) + 1;
-  const auto ends = a.from_rest(std::vector<PetscScalar>(levels, 1.0));
+  const auto ends = a.from_static(std::vector<PetscScalar>(levels, 1.0));
   return stepped(a, ends, a.trace_at_exit(), time, tolerance);
 }
 
@@ -111,8 +112,8 @@ std::vector<double> stepped_excursion(Solved& s, const std::vector<double>& time
   return stepped(a, ends, a.trace_at_exit(), time, tolerance);
 }
 
-/// Durations on the whole grid of the paper: a dense chain, killed where a slide ends, or where an
-/// excursion does.
+/// Durations on the whole grid of the paper: a dense chain, killed where a sliding phase ends, or
+/// where an excursion does.
 class DenseDurations {
  public:
   enum class Ends { at_rest, after_rest };
@@ -169,14 +170,14 @@ TEST_CASE("durations: densities integrate to 1, with the means and variances of 
     const std::vector<Uncertain> mean{m.mean_slide, m.mean_stick, m.mean_excursion},
         variance{m.var_slide, m.var_stick, m.var_excursion};
     const auto q = all_times(100 * d.process.noise.tau);
-    const auto all = laws(s, q.node, 1e-9);
+    const auto all = distributions(s, q.node, 1e-9);
     for (std::size_t n = 0; n < std::size(kAll); ++n) {
-      const auto& law = all.*kAll[n];
+      const auto& duration = all.*kAll[n];
       const double square = variance[n].value + mean[n].value * mean[n].value;
       INFO(name << ", " << kNames[n]);
-      check_moment(integral(q, law, [](double) { return 1.0; }), 1, 1e-8);
-      check_moment(integral(q, law, [](double t) { return t; }), mean[n].value, 1e-8);
-      check_moment(integral(q, law, [](double t) { return t * t; }), square, 1e-7);
+      check_moment(integral(q, duration, [](double) { return 1.0; }), 1, 1e-8);
+      check_moment(integral(q, duration, [](double t) { return t; }), mean[n].value, 1e-8);
+      check_moment(integral(q, duration, [](double t) { return t * t; }), square, 1e-7);
     }
   }
 }
@@ -185,9 +186,9 @@ TEST_CASE("durations: densities have the transforms of the operators", "[paralle
   const auto d = test::on_hp(scene(1, 0.25, 1, 0.5, {1, 0}), 10);
   Solved s(d);
   const auto q = all_times(150);
-  const auto all = laws(s, q.node, 1e-9);
+  const auto all = distributions(s, q.node, 1e-9);
   for (double lambda : {0.1, 1.0, 10.0, 100.0}) {
-    const auto known = quantities::slide_transforms(s.systems, s.distribution, lambda);
+    const auto known = quantities::sliding_transforms(s.systems, s.distribution, lambda);
     const auto stick = quantities::stick_transform(d.process, lambda, s.entry());
     s.systems.release({lambda, Symmetry::even});
     const auto weight = [lambda](double t) { return std::exp(-lambda * t); };
@@ -208,22 +209,23 @@ TEST_CASE("durations: distributions rise to 1 and are the integrals of the densi
   }
   for (const auto& [name, d] : samples()) {
     Solved s(d);
-    const auto all = laws(s, time, 1e-9);
+    const auto all = distributions(s, time, 1e-9);
     for (std::size_t which = 0; which < std::size(kAll); ++which) {
-      const auto& law = all.*kAll[which];
+      const auto& duration = all.*kAll[which];
       INFO(name << ", " << kNames[which]);
-      CHECK(std::abs(law.distribution[0].value) < 1e-9);
+      CHECK(std::abs(duration.distribution[0].value) < 1e-9);
       std::size_t at = ends.size();
       for (std::size_t n = 1; n < ends.size(); ++n) {
         const auto& part = parts[n - 1];
-        const double within = part.sum([&](std::size_t p) { return law.density[at + p].value; });
+        const double within =
+            part.sum([&](std::size_t p) { return duration.density[at + p].value; });
         at += part.node.size();
-        const double rise = law.distribution[n].value - law.distribution[n - 1].value;
+        const double rise = duration.distribution[n].value - duration.distribution[n - 1].value;
         CHECK(rise > -1e-9);
-        // The first part has the layer of the shortest slides.
+        // The first part has the layer of the shortest sliding phases.
         if (n > 1 && n + 1 < ends.size()) CHECK(std::abs(rise - within) < 1e-8);
       }
-      CHECK(std::abs(law.distribution[ends.size() - 1].value - 1) < 1e-8);
+      CHECK(std::abs(duration.distribution[ends.size() - 1].value - 1) < 1e-8);
     }
   }
 }
@@ -234,7 +236,7 @@ TEST_CASE("durations: errors of distributions and densities cover finer models",
     const auto& [name, d] = all_samples[sample];
     Solved s(d);
     const std::vector<double> time{0.1, 0.5, 2, 8};
-    const auto rough = laws(s, time, 1e-3), fine = laws(s, time, 1e-10);
+    const auto rough = distributions(s, time, 1e-3), fine = distributions(s, time, 1e-10);
     for (std::size_t which = 0; which < std::size(kAll); ++which) {
       for (std::size_t n = 0; n < time.size(); ++n) {
         const auto change = [&](auto member) {
@@ -250,7 +252,7 @@ TEST_CASE("durations: errors of distributions and densities cover finer models",
   }
 }
 
-// No folding, no excursions, no reduced models, no PETSc.
+// No symmetry reduction, no excursions, no reduced models, no PETSc.
 TEST_CASE("durations: upwind equals dense exponentials on the whole grid", "[parallel]") {
   struct Case {
     double mu_s, mu_d;
@@ -266,7 +268,7 @@ TEST_CASE("durations: upwind equals dense exponentials on the whole grid", "[par
     const DenseDurations slide(grid, k, DenseDurations::Ends::at_rest);
     const DenseDurations excursion(grid, k, DenseDurations::Ends::after_rest);
     Solved s({process, std::make_shared<velocity::UpwindDiscretisation>(spacing, c.nodes, c.drag)});
-    const auto all = laws(s, time, 1e-10);
+    const auto all = distributions(s, time, 1e-10);
     for (std::size_t n = 0; n < time.size(); ++n) {
       INFO("mu_d " << c.mu_d << " time " << time[n]);
       CHECK(std::abs(all.slide.density[n].value - slide.density(time[n])) < 1e-8);
@@ -277,14 +279,14 @@ TEST_CASE("durations: upwind equals dense exponentials on the whole grid", "[par
   }
 }
 
-// A slide ends in a point: on hp elements time steps carry that as wiggles, which the reduced model
-// has not. An excursion ends at rest, and an upwind chain has no wiggles.
+// A sliding phase ends in a point: on hp elements time steps carry that as wiggles, which the
+// reduced model has not. An excursion ends at rest, and an upwind chain has no wiggles.
 TEST_CASE("durations: time steps give the same densities") {
   const std::vector<double> time{0.1, 0.5, 2, 8};
   for (const auto& d : {test::on_upwind(scene(1, 0.25, 1, 0.5, {1, 0}), 2),
                         test::on_upwind(scene(0.7, 0.7, 1, 0.5, {0, 0}), 2)}) {
     Solved s(d);
-    const auto all = laws(s, time, 1e-8);
+    const auto all = distributions(s, time, 1e-8);
     const auto slide = stepped_slide(s, time, 1e-8), excursion = stepped_excursion(s, time, 1e-8);
     for (std::size_t n = 0; n < time.size(); ++n) {
       INFO("mu_d " << d.process.friction.mu_d << " time " << time[n]);
@@ -297,32 +299,32 @@ TEST_CASE("durations: time steps give the same densities") {
 TEST_CASE("durations: time steps on hp elements give the same excursions") {
   const std::vector<double> time{0.1, 0.5, 2, 8};
   Solved s(test::on_hp(scene(1, 0.25, 1, 0.5, {1, 0}), 7, 1e-9));
-  const auto law = quantities::excursion_distribution(s.systems, s.distribution, time, 1e-8);
+  const auto duration = quantities::excursion_distribution(s.systems, s.distribution, time, 1e-8);
   const auto steps = stepped_excursion(s, time, 1e-8);
   for (std::size_t n = 0; n < time.size(); ++n) {
     INFO("time " << time[n]);
-    CHECK(std::abs(law.density[n].value - steps[n]) < 1e-6);
+    CHECK(std::abs(duration.density[n].value - steps[n]) < 1e-6);
   }
 }
 
-TEST_CASE("durations: a stay starts to end at the rate of its edges") {
+TEST_CASE("durations: sticking starts to end at the rate of its edges") {
   for (const auto& [name, d] : samples()) {
     Solved s(d);
     const int k = d.process.static_index();
     const auto entry = s.entry();
     const double rate = d.process.noise.rate() * (d.process.noise.up(k) * entry.back().value +
                                                   d.process.noise.down(-k) * entry[0].value);
-    const auto law = quantities::stick_distribution(d.process, entry, {0});
+    const auto duration = quantities::stick_distribution(d.process, entry, {0});
     INFO(name);
-    CHECK(relative_difference(law.density[0].value, rate) < 1e-14);
-    CHECK(law.distribution[0].value == 0);
+    CHECK(relative_difference(duration.density[0].value, rate) < 1e-14);
+    CHECK(duration.distribution[0].value == 0);
   }
 }
 
-// From the middle of the chain: the shortest stays take k + 1 jumps. Shifted by the jump rate the
-// chain has no negative entries, so that the exponential is right to the size of each of its
-// entries.
-TEST_CASE("durations: stays by dense exponentials, right relative to their size") {
+// From level 0 of the chain: the shortest sticking phases take k + 1 jumps. Shifted by the jump
+// rate the chain has no negative entries, so that the exponential is right to the size of each of
+// its entries.
+TEST_CASE("durations: sticking phases by dense exponentials, right relative to their size") {
   for (double mu_s : {0.3, 1.0, 1.7}) {
     const auto process = process_with(mu_s, 0.25);
     const int k = process.static_index();
@@ -338,7 +340,7 @@ TEST_CASE("durations: stays by dense exponentials, right relative to their size"
     std::vector<Uncertain> entry(static_cast<std::size_t>(left), Uncertain{0, 0});
     entry[middle] = {1, 0};
     const std::vector<double> time{20, 0.5, 3, 1e-3, 0.02};  // in any order
-    const auto law = quantities::stick_distribution(process, entry, time);
+    const auto duration = quantities::stick_distribution(process, entry, time);
     for (std::size_t n = 0; n < time.size(); ++n) {
       const auto flow = test::exponential(q, time[n]);
       const double shift = std::exp(-rate * time[n]);
@@ -346,28 +348,28 @@ TEST_CASE("durations: stays by dense exponentials, right relative to their size"
       for (int c = 0; c < left; ++c) density += flow(middle, c) * q(c, left);
       INFO("k " << k << " time " << time[n]);
       const double expected = shift * density;
-      CHECK(relative_difference(law.density[n].value, expected) < 1e-11);
-      CHECK(law.density[n].error < 1e-11 * expected);
+      CHECK(relative_difference(duration.density[n].value, expected) < 1e-11);
+      CHECK(duration.density[n].error < 1e-11 * expected);
       const double gone = shift * flow(middle, left);
-      CHECK(relative_difference(law.distribution[n].value, gone) < 1e-11);
+      CHECK(relative_difference(duration.distribution[n].value, gone) < 1e-11);
     }
   }
 }
 
-TEST_CASE("durations: stays end in the end, and errors of the entry law go on") {
+TEST_CASE("durations: sticking phases end, and errors of the hitting distribution propagate") {
   const model::Process process{{1, 0.25, 32}, {2.5, 0.25}, {1, 0}};
   const auto k = static_cast<std::size_t>(process.static_index());
   const double even = 1 / (2 * static_cast<double>(k) + 1);
   const std::vector<Uncertain> entry(2 * k + 1, Uncertain{even, 1e-9 * even});
-  const auto law = quantities::stick_distribution(process, entry, {1e4, 1, 10});
-  CHECK(law.distribution[0].value == Approx(1).epsilon(1e-11));
-  CHECK(law.distribution[1].value < law.distribution[2].value);
-  CHECK(law.distribution[2].value < law.distribution[0].value);
-  for (const auto& value : law.density) CHECK(value.error >= 1e-9 * value.value);
+  const auto duration = quantities::stick_distribution(process, entry, {1e4, 1, 10});
+  CHECK(duration.distribution[0].value == Approx(1).epsilon(1e-11));
+  CHECK(duration.distribution[1].value < duration.distribution[2].value);
+  CHECK(duration.distribution[2].value < duration.distribution[0].value);
+  for (const auto& value : duration.density) CHECK(value.error >= 1e-9 * value.value);
 }
 
 // One jump down at time t and the way back: T = t (1 + up/down).
-TEST_CASE("durations: slides can end at once only where one jump down reverses them") {
+TEST_CASE("durations: sliding can end at once only where one jump down reverses it") {
   CHECK(f_slide_at(process_with(1, 0.25)) == 0);
   CHECK(f_slide_at(process_with(1, 1)) == 0);  // mu_d = x_k
   CHECK(f_slide_at(process_with(1.2, 1)) == 0);
@@ -381,8 +383,8 @@ TEST_CASE("durations: slides can end at once only where one jump down reverses t
   CHECK(f_slide_at(process_with(1.4, 1.2)) == f_slide_at(process_with(1.2, 1.2)));
 }
 
-// Three small times tell the limit.
-TEST_CASE("durations: the density of slides tends to its value at 0") {
+// Three small times give the limit.
+TEST_CASE("durations: the density of sliding phases tends to its value at 0") {
   for (double mu : {1.1, 1.25}) {
     Solved s(test::on_hp(scene(mu, mu, 1, 0.5, {1, 0}), 16));
     const double t = 1e-3;
@@ -400,7 +402,7 @@ TEST_CASE("durations: the density of slides tends to its value at 0") {
   CHECK(f[1].value > 50 * f[0].value);
 }
 
-TEST_CASE("durations: means are those of the stationary law, and moments are positive",
+TEST_CASE("durations: means are those of the stationary distribution, and moments are positive",
           "[parallel]") {
   for (const auto& d : {test::on_hp(scene(1, 0.25, 1, 0.25, {1, 0}), 6, 1e-9),
                         test::on_upwind(scene(1, 1, 1, 0.5, {0, 0}), 2)}) {
@@ -412,19 +414,19 @@ TEST_CASE("durations: means are those of the stationary law, and moments are pos
     CHECK(relative_difference(m.mean_excursion.value, e.mean_excursion()) < 1e-12);
     CHECK(m.var_slide.value > 0);
     CHECK(m.var_stick.value > 0);
-    // Long slides and where they end go together; the parts are not independent.
+    // Where a sliding phase ends depends on its duration; the parts are not independent.
     CHECK(m.var_excursion.value != Approx(m.var_slide.value + m.var_stick.value).epsilon(1e-3));
   }
 }
 
 // log F(lambda) = -mean lambda + variance lambda^2/2 - ...: second differences from 0 on, with the
 // term of third order extrapolated away.
-TEST_CASE("durations: variances are what transforms say at small lambda") {
+TEST_CASE("durations: variances are those of transforms at small lambda") {
   const auto d = test::on_hp(scene(1, 0.25, 1, 0.5, {1, 0}), 8);
   Solved s(d);
   const auto m = quantities::duration_moments(s.systems, s.distribution, s.entry());
   const auto logs = [&](double lambda) {
-    const auto t = quantities::slide_transforms(s.systems, s.distribution, lambda);
+    const auto t = quantities::sliding_transforms(s.systems, s.distribution, lambda);
     const double stick = quantities::stick_transform(d.process, lambda, s.entry()).value;
     s.systems.release({lambda, Symmetry::even});
     return std::vector<double>{std::log(t.slide.value), std::log(stick),

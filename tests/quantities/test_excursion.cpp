@@ -36,7 +36,7 @@ double value(const Results& results, const std::string& key) {
 
 }  // namespace
 
-TEST_CASE("excursion: the time beyond mu_s is held against its known share") {
+TEST_CASE("excursion: the time beyond mu_s is compared with its known share") {
   Excursion e = by_hand();  // 118 in all, 1 + 7 of it beyond
   CHECK(e.conservation_defect(on_levels()) == Approx(std::abs(8 / (118 * beyond()) - 1)));
   e.lost_probability = -0.1;  // counts by its square
@@ -47,7 +47,7 @@ TEST_CASE("excursion: the time beyond mu_s is held against its known share") {
   CHECK(e.conservation_defect(on_levels()) < 1e-14);
 }
 
-TEST_CASE("excursion: with a bias levels that stick do not count, on both half lines") {
+TEST_CASE("excursion: with a bias levels that stick do not count, on both velocity branches") {
   const auto inclined = process(0.5);  // levels -3 ... 1 stick
   REQUIRE(inclined.lowest_static() == -3);
   REQUIRE(inclined.static_index() == 1);

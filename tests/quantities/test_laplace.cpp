@@ -26,7 +26,7 @@ class Durations {
   [[nodiscard]] DurationTransforms at(double lambda) {
     std::vector<Uncertain> entry;
     for (double p : distribution_.excursion().entry) entry.push_back({p, 0});
-    const auto t = quantities::slide_transforms(systems_, distribution_, lambda);
+    const auto t = quantities::sliding_transforms(systems_, distribution_, lambda);
     systems_.release({lambda, operators::Symmetry::even});
     return {t.slide, quantities::stick_transform(systems_.process(), lambda, entry), t.excursion};
   }
@@ -71,7 +71,7 @@ constexpr Uncertain DurationTransforms::*kAll[] = {
 
 }  // namespace
 
-TEST_CASE("laplace: every slide, stay and excursion ends", "[parallel]") {
+TEST_CASE("laplace: every sliding phase, sticking phase and excursion ends", "[parallel]") {
   for (const auto& d : sample_discretisations()) {
     const auto at_zero = Durations(d).at(0);
     for (const auto member : kAll) CHECK(std::abs((at_zero.*member).value - 1) < 1e-11);

@@ -53,7 +53,7 @@ model::Scene telegraph(double bias, const model::Drag& drag, double rate = 1) {
   return s;
 }
 
-/// The noise of a scene level by level, moved by `shift`.
+/// The noise of a case level by level, moved by `shift`.
 model::Scene moved(const model::Scene& s, double shift) {
   const auto chain = s.meant().noise;
   std::vector<model::Level> levels;

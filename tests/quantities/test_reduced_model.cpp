@@ -18,7 +18,7 @@ using Script = std::vector<std::vector<double>>;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// A model of some process whose answers are told beforehand, one list of values after the other;
+/// A model of some process whose answers are given beforehand, one list of values after the other;
 /// the last one is repeated.
 class Scripted {
  public:

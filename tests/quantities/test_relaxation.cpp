@@ -110,7 +110,7 @@ double largest_modulus(const RelaxationMode& mode) {
   return over_ranks(largest, MPI_MAX);
 }
 
-// pi(phi) by the density of the stationary law; no state may be missing there.
+// pi(phi) by the density of the stationary distribution; no state may be missing there.
 std::complex<double> average(const quantities::DensityField& density,
                              const velocity::VelocityDiscretisation& velocities,
                              const RelaxationMode& mode) {
@@ -179,7 +179,7 @@ TEST_CASE("relaxation: modes have no stationary average", "[parallel]") {
     petsc::SolverStatistics statistics;
     Systems systems(PETSC_COMM_WORLD, c.discrete, statistics);
     const auto density = quantities::density_field(quantities::StationaryDistribution(systems));
-    REQUIRE(std::abs(density.cut_mass) < 1e-12);
+    REQUIRE(std::abs(density.truncated_mass) < 1e-12);
     for (const auto& mode : solve(c)) CHECK(std::abs(average(density, *velocities, mode)) < 1e-11);
   }
 }

@@ -119,7 +119,7 @@ TEST_CASE("resolvent: the representation formula gives the resolvent of the whol
 TEST_CASE("resolvent: an excursion ends at s+ or s-, now or later", "[parallel]") {
   for (const auto& d : sample_discretisations()) {
     Discretised made(d);
-    const quantities::StationaryDistribution law(made.systems);
+    const quantities::StationaryDistribution distribution(made.systems);
     for (double lambda : {0.0, 1.0, 1e2}) {
       const auto exits = quantities::resolvent(made.systems, lambda, {}).from_plus;
       const double ends = exits.h_plus.value + exits.h_minus.value;
@@ -127,7 +127,7 @@ TEST_CASE("resolvent: an excursion ends at s+ or s-, now or later", "[parallel]"
       CHECK(exits.h_plus.value > 0);
       CHECK(exits.h_minus.value > 0);
       const double excursion =
-          quantities::slide_transforms(made.systems, law, lambda).excursion.value;
+          quantities::sliding_transforms(made.systems, distribution, lambda).excursion.value;
       CHECK(relative_difference(ends, excursion) < 1e-11);
     }
   }

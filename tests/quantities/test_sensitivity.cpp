@@ -82,7 +82,7 @@ TEST_CASE("sensitivity: adjoints agree with extrapolated differences", "[slow][r
   auto weak = scene(0.6, 0.26, 2.1, 0.25, {1.3, 0});
   auto strong = scene(1, 0.9, 0.5, 0.5, {0.5, 0.3});
   auto small = scene(0.2, 0.13, 1, 0.5, {1, 0});  // k = 0
-  auto long_stays = scene(2.6, 0.6, 1, 0.25, {1, 0});
+  auto long_sticking = scene(2.6, 0.6, 1, 0.25, {1, 0});
   auto biased = scene(1, 0.4, 1, 0.5, {1, 0});
   biased.bias = 0.3;
   auto lopsided = scene(1, 0.4, 1, 0.5, {1, 0});
@@ -93,7 +93,7 @@ TEST_CASE("sensitivity: adjoints agree with extrapolated differences", "[slow][r
   weakening.friction.stribeck = {0.3, 1};
   by_side.friction.stribeck = {0.5, 2};
   by_side.friction.mu_s = 1.1;
-  for (auto s : {weak, strong, small, long_stays, biased, lopsided, weakening, by_side}) {
+  for (auto s : {weak, strong, small, long_sticking, biased, lopsided, weakening, by_side}) {
     s.noise_levels = s.full_levels() - 1;  // tau changes no number of levels
     const Values exact = derivatives(s);
     std::vector<std::pair<std::string, double>> parameters{
@@ -116,7 +116,7 @@ TEST_CASE("sensitivity: adjoints agree with extrapolated differences", "[slow][r
   }
 }
 
-// One system serves the law and all adjoints.
+// One system serves the stationary distribution and all adjoints.
 TEST_CASE("sensitivity: one factorisation, one solve a functional") {
   const auto s = scene(1, 0.25, 1, 0.5, {1, 0});
   Solved solved(test::on_hp(s, 4));
@@ -132,7 +132,7 @@ TEST_CASE("sensitivity: one factorisation, one solve a functional") {
   CHECK(results.size() == 9);
 }
 
-// Stays on one level are exponential: nothing but the rate of the noise changes them.
+// Sticking phases on one level are exponential: nothing but the rate of the noise changes them.
 TEST_CASE("sensitivity: a single static level") {
   const auto s = scene(0.2, 0.13, 1, 0.5, {1, 0});
   const auto exact = derivatives(s);
@@ -142,7 +142,7 @@ TEST_CASE("sensitivity: a single static level") {
   CHECK(relative_difference(exact.at("dmean_stick_dtau"), 2 / (s.tau * rate)) < 1e-12);
 }
 
-TEST_CASE("sensitivity: a law without coefficient has no derivative by it") {
+TEST_CASE("sensitivity: a drag law without coefficient has no derivative by it") {
   auto s = scene(1, 0.5, 1, 0.5, {0, 0});
   s.drag_name = "none";
   CHECK(quantities::parameters_of(s) == std::vector{Parameter::mu_d, Parameter::tau});

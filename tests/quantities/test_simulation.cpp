@@ -61,11 +61,12 @@ double p_value(const std::vector<double>& values, const std::vector<double>& end
     chi += (count[n] - expected) * (count[n] - expected) / expected;
     below = up_to;
   }
-  const boost::math::chi_squared law(static_cast<double>(ends.size()));
-  return boost::math::cdf(boost::math::complement(law, chi));
+  const boost::math::chi_squared expected(static_cast<double>(ends.size()));
+  return boost::math::cdf(boost::math::complement(expected, chi));
 }
 
-/// p-values of slides, stays and excursions, the bins from other values than those judged.
+/// p-values of sliding phases, sticking phases and excursions, the bins from other values than
+/// those judged.
 std::vector<double> p_values(Solved& s, const Excursions& pilot, const Excursions& judged) {
   const auto slide = bin_ends(pilot.slide), stick = bin_ends(pilot.stick),
              excursion = bin_ends(pilot.excursion);
@@ -99,8 +100,9 @@ double deviation(const Estimate& found, double known) {
 
 }  // namespace
 
-TEST_CASE("simulation: slides, stays and excursions have the distributions computed",
-          "[slow][real]") {
+TEST_CASE(
+    "simulation: sliding phases, sticking phases and excursions have the distributions computed",
+    "[slow][real]") {
   for (const auto& c : cases()) {
     Solved s(discrete(c.process));
     const auto pilot = Simulation(c.process, 100 + c.seed).run(kCount / 20);
@@ -123,7 +125,7 @@ TEST_CASE("simulation: a jump rate off by two per cent is seen", "[slow][real]")
   }
 }
 
-// After a slide and a stay the next excursion is independent of all before.
+// After a sliding and a sticking phase the next excursion is independent of all before.
 TEST_CASE("simulation: time at rest, means, and the tail of the spectrum within 4 sigma",
           "[slow][real]") {
   for (const auto& c : cases()) {
@@ -143,7 +145,7 @@ TEST_CASE("simulation: time at rest, means, and the tail of the spectrum within 
   }
 }
 
-// The waiting times, the noise alone: stays from s+ do not see how fast the body was.
+// The waiting times, the noise alone: sticking phases do not depend on how fast the body was.
 TEST_CASE("simulation: without drag and with, a handful of excursions ends") {
   for (const auto& c : cases()) {
     const auto all = Simulation(c.process, c.seed).run(1000);

@@ -103,12 +103,12 @@ TEST_CASE("slips: the distribution has that transform") {
       }
     }
   }
-  const auto law =
+  const auto slips =
       quantities::slip_distribution(solved.systems, solved.distribution, distance, 1e-8);
   for (double s : {2.0, 10.0}) {
     double sum = 0;
     for (std::size_t n = 0; n < distance.size(); ++n) {
-      sum += s * weight[n] * std::exp(-s * distance[n]) * law.distribution[n].value;
+      sum += s * weight[n] * std::exp(-s * distance[n]) * slips.distribution[n].value;
     }
     const auto transform = quantities::slip_transform(solved.systems, solved.distribution, s);
     CHECK(sum == Approx(transform.value).epsilon(1e-6));
@@ -179,7 +179,7 @@ TEST_CASE("slips: as the asymmetry vanishes everything has its symmetric value")
   }
 }
 
-TEST_CASE("displacement: spreads as the autocovariance says, and at last with S_0", "[parallel]") {
+TEST_CASE("displacement: spreads by the autocovariance, and at last with S_0", "[parallel]") {
   for (const auto& s : {linear(), by_direction()}) {
     Solved solved(test::on_hp(s, 7));
     const auto of = [&](model::Start::Kind kind, const std::vector<double>& time) {
@@ -235,7 +235,7 @@ TEST_CASE("displacement: keeps its growth under fast noise") {
   }
 }
 
-TEST_CASE("displacement: begins as the start says") {
+TEST_CASE("displacement: begins at the start asked for") {
   const auto s = linear();
   Solved solved(test::on_hp(s, 8));
   const auto& process = solved.systems.process();

@@ -77,7 +77,7 @@ std::vector<Sample> samples() {
           {"upwind", test::on_upwind(scene(1, 0.25, 1, 0.5, {1, 0}), 4)}};
 }
 
-// Smaller ones, for what each model is asked about itself.
+// Smaller ones, for the errors that each model states.
 std::vector<Sample> small_samples() {
   return {{"linear drag", test::on_hp(scene(1, 0.25, 1, 0.5, {1, 0}), 8)},
           {"mu_d = mu_s", test::on_hp(scene(1, 1, 1, 0.5, {1, 0}), 8)},
@@ -86,7 +86,7 @@ std::vector<Sample> small_samples() {
           {"no drag", test::on_hp(scene(1, 1, 1, 0.5, {0, 0}), 12)}};
 }
 
-/// Small dense chains without any folding, 2 Re c (i omega - M)^-1 v.
+/// Small dense chains without any symmetry reduction, 2 Re c (i omega - M)^-1 v.
 class DenseSpectrum {
  public:
   DenseSpectrum(const model::Process& process, double spacing, int nodes)
@@ -162,7 +162,7 @@ TEST_CASE("spectrum: the reduced model agrees with complex solves, within its er
       INFO(name << " omega " << omega[n] << " error " << one.error / one.value);
       CHECK(relative_difference(one.value, other.value) < 1e-8);
       CHECK(one.error < 1e-8 * one.value);
-      // What the last vectors changed is no bound, but tells the size; the grid has its say too.
+      // What the last vectors changed is no bound, but shows the size; the grid has errors too.
       const double slack = omega[n] < 25 ? 1e-12 : 3e-9;
       CHECK(std::abs(one.value - other.value) < 10 * (one.error + other.error) + slack * one.value);
     }
@@ -172,7 +172,7 @@ TEST_CASE("spectrum: the reduced model agrees with complex solves, within its er
   }
 }
 
-// Factored anew or not, on one rank or shared out: the same numbers.
+// Factored anew or not, on one rank or distributed: the same numbers.
 TEST_CASE("spectrum: complex solves on several ranks give what one gives", "[parallel]") {
   if (!kComplex) return;
   const std::vector<double> omega{0.03, 0.5, 2, 7, 20};
@@ -191,8 +191,8 @@ TEST_CASE("spectrum: complex solves on several ranks give what one gives", "[par
   CHECK(relative_difference(shared.at_zero.value, own.at_zero.value) < 1e-13);
 }
 
-// No folding, no excursions, no PETSc. Beyond 1/tau what the scheme makes of E[V dV/dt] = 0 is left
-// out.
+// No symmetry reduction, no excursions, no PETSc. Beyond 1/tau what the scheme makes of E[V dV/dt]
+// = 0 is left out.
 TEST_CASE("spectrum: upwind equals dense solves on the whole grid") {
   struct Case {
     double mu_s, mu_d, tau;
@@ -260,7 +260,7 @@ TEST_CASE("spectrum: its integral is the variance, and half of S_v(0) is met at 
   }
 }
 
-TEST_CASE("spectrum: errors of values, width and variance cover what better models say") {
+TEST_CASE("spectrum: errors of values, width and variance cover those of better models") {
   const auto all = small_samples();
   for (std::size_t sample : {0, 3}) {
     const auto& [name, d] = all[sample];
@@ -282,7 +282,7 @@ TEST_CASE("spectrum: errors of values, width and variance cover what better mode
   }
 }
 
-// b = -v, mu = 1, tau -> 0: closed forms, met as tau, so that two small tau tell the limit.
+// b = -v, mu = 1, tau -> 0: closed forms, met as tau, so that two small tau give the limit.
 TEST_CASE("spectrum: the white-noise limit", "[parallel]") {
   const auto at = [](double tau) {
     Solved s(test::on_hp(scene(1, 1, tau, 0.25 / std::sqrt(tau), {1, 0}), 6, 1e-9));

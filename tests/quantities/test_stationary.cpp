@@ -66,9 +66,10 @@ std::vector<accuracy::Resolution> sample_resolutions(const model::Scene& s) {
 
 }  // namespace
 
-// The symmetry-reduced excursion against the whole grid of the paper: no folding, no excursions, no
-// PETSc.
-TEST_CASE("stationary law: upwind equals the null vector of the unfolded generator") {
+// The symmetry-reduced excursion against the whole grid of the paper: no symmetry reduction, no
+// excursions, no PETSc.
+TEST_CASE(
+    "stationary distribution: upwind equals the null vector of the generator on both branches") {
   struct Case {
     double mu_s, mu_d, delta;
     int levels, points;
@@ -107,7 +108,7 @@ TEST_CASE("stationary law: upwind equals the null vector of the unfolded generat
   }
 }
 
-TEST_CASE("stationary law: sliding ends somewhere, and X keeps its own law", "[parallel]") {
+TEST_CASE("stationary distribution: sliding ends somewhere, and X keeps its own", "[parallel]") {
   for (const auto& s : sample_scenes()) {
     for (const auto& resolution : sample_resolutions(s)) {
       const auto distribution = solve(s, resolution);
@@ -126,7 +127,8 @@ TEST_CASE("stationary law: sliding ends somewhere, and X keeps its own law", "[p
 }
 
 // pi(L f) = 0 for f = v on the sliding states: E[XV] = mu_d E|V| - E[b(V) V].
-TEST_CASE("stationary law: power put in by the noise equals power dissipated", "[parallel]") {
+TEST_CASE("stationary distribution: power put in by the noise equals power dissipated",
+          "[parallel]") {
   for (const auto& s : sample_scenes()) {
     if (s.drag.cubic > 0) continue;  // would need E[V^4]
     const auto distribution = solve(s, accuracy::hp_resolution(s, 13, 0, 1e-15));
@@ -136,7 +138,7 @@ TEST_CASE("stationary law: power put in by the noise equals power dissipated", "
   }
 }
 
-TEST_CASE("stationary law: P(|X| <= mu_s) summed over the grid at every scheme and p") {
+TEST_CASE("stationary distribution: P(|X| <= mu_s) summed over the grid at every scheme and p") {
   const double delta = GENERATE(0.5, 0.25);
   auto s = scene(1, 0.25, 1, delta, {1, 0});
   s.noise_levels = s.full_levels();
@@ -155,7 +157,7 @@ TEST_CASE("stationary law: P(|X| <= mu_s) summed over the grid at every scheme a
   }
 }
 
-TEST_CASE("density: integrates to the law it came from", "[parallel]") {
+TEST_CASE("density: integrates to the distribution it came from", "[parallel]") {
   const auto s = scene(1, 0.25, 1, 0.25, {1, 0});
   for (const auto& resolution : sample_resolutions(s)) {
     const auto distribution = solve(s, resolution);
@@ -172,15 +174,15 @@ TEST_CASE("density: integrates to the law it came from", "[parallel]") {
     CHECK(std::is_sorted(field.cells.begin(), field.cells.end()));
     CHECK(field.cells.front() == -field.cells.back());
     CHECK_FALSE(std::signbit(field.cells[field.cells.size() / 2]));
-    // No value is below the one told.
+    // No value is below the one reported.
     for (double value : field.pdf.local_rows()) CHECK(value >= field.least);
     CHECK(field.least <= 0);
     const double stick = sum(field.atom);
     CHECK(stick == Approx(moment(distribution, "P_stick")).epsilon(1e-12));
     if (distribution.discretisation().velocities->keeps_origin())
       continue;  // its states at v = 0 are no density
-    CHECK(sliding + stick + field.cut_mass == Approx(1).epsilon(1e-11));
-    // Each row integrates to P(X = x_i) less its atom, from both halves.
+    CHECK(sliding + stick + field.truncated_mass == Approx(1).epsilon(1e-11));
+    // Each row integrates to P(X = x_i) less its atom, from both branches.
     for (std::size_t r = 0; r < field.pdf.local_levels().size(); ++r) {
       const std::size_t level = field.pdf.local_levels()[r];
       double mass = field.atom[level];

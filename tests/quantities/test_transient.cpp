@@ -33,7 +33,7 @@ model::Observable observable(const std::string& text) {
   return model::parse_observable(text, {1, 0.25});
 }
 
-// Linear in |v| on each half, so that both schemes have its values; of no symmetry.
+// Linear in |v| on each branch, so that both schemes have its values; of no symmetry.
 model::Observable sample_observable() {
   return {"sample", [](double x, double y, double v) { return 1 + x - x * x + 2 * v + y * v * x; }};
 }
@@ -224,7 +224,7 @@ TEST_CASE("transient: 1 stays 1", "[parallel]") {
 // Seen from x = 0 at rest, up and down are the same.
 // x^2 - 1 decays as a whole: the model needs one direction, which x = 1 does not see.
 TEST_CASE("transient: an eigenfunction stays 0 where it is 0", "[parallel]") {
-  const model::Observable f{"excess", [](double x, double, double) { return x * x - 1; }};
+  const model::Observable f{"variance", [](double x, double, double) { return x * x - 1; }};
   for (const auto& d : {on_all_levels(scene(1, 0.25, 1, 0.5, {1, 0})), small_upwind()}) {
     Solved s(d);
     for (const auto& u : expectation(s, f, {-2, 0}, {0, 1}, TransientMethod::krylov, 1e-8)) {
@@ -283,7 +283,8 @@ TEST_CASE("transient: expectations turn with the start") {
   }
 }
 
-// No folding, no reduced models, no PETSc: all starts of the whole grid of the paper at once.
+// No symmetry reduction, no reduced models, no PETSc: all starts of the whole grid of the paper at
+// once.
 TEST_CASE("transient: upwind equals dense exponentials on the whole grid", "[parallel]") {
   const int levels = 4, nodes = 6;
   const double spacing = 0.25;

@@ -55,7 +55,7 @@ TEST_CASE("uncertain: bounds are the worst cases, to first order and attained") 
   }
 }
 
-TEST_CASE("uncertain: a functional is off by what the last correction made of it", "[parallel]") {
+TEST_CASE("uncertain: a functional is off by the effect of iterative refinement", "[parallel]") {
   const auto constant = [](double value) {
     petsc::VecHandle x;
     petsc::check(VecCreateMPI(PETSC_COMM_WORLD, PETSC_DECIDE, 6, x.out()));

@@ -46,7 +46,7 @@ model::Scene without_drag() {
   return s;
 }
 
-model::Scene cut() {
+model::Scene truncated() {
   auto s = scene(1, 0.25, 1, 0.5, {1, 0});
   s.v_max = 3;
   return s;
@@ -61,10 +61,14 @@ const std::vector<Example>& cases() {
       {"sticking", {sticking}, {1, 1, 1}},
       {"sticking and moments", {sticking, moments, noise_law}, {1, 1, 1}},
       {"with the density", {sticking, moments, noise_law, density}, {1, 1, 1}},
-      {"the entry law asks for odd functions", {sticking, entry_law}, {2, 2, 2}},
-      {"stays alone", {stick_duration_transform}, {1, 1, 1}, cut(), {0.1, 1, 10}},
-      {"transforms of durations", {laplace}, {3, 3, 9}, cut(), {0.5, 2}},
-      {"transforms at 0 share the system of the law", {laplace}, {2, 2, 9}, cut(), {0, 2}},
+      {"the hitting distribution asks for odd functions", {sticking, entry_law}, {2, 2, 2}},
+      {"sticking alone", {stick_duration_transform}, {1, 1, 1}, truncated(), {0.1, 1, 10}},
+      {"transforms of durations", {laplace}, {3, 3, 9}, truncated(), {0.5, 2}},
+      {"transforms at 0 share the system of the stationary distribution",
+       {laplace},
+       {2, 2, 9},
+       truncated(),
+       {0, 2}},
       {"a resolvent", {resolvent}, {2, 2, 6}, without_drag(), {0.5}, {"v^2", "x*v", "stick"}},
       {"transforms and resolvent share systems",
        {laplace, resolvent},
@@ -81,7 +85,12 @@ const std::vector<Example>& cases() {
       {"derivatives without drag", {sticking, sensitivity}, {3, 1, 3}, without_drag()},
       {"a bias", {sticking, moments}, {1, 1, 2}, inclined()},
       {"a bias and averages", {moments, averages, entry_law}, {1, 1, 2}, inclined(), {}, {"x*v"}},
-      {"averages cost nothing more", {moments, averages}, {1, 1, 1}, cut(), {}, {"v^2", "abs(v)"}},
+      {"averages cost nothing more",
+       {moments, averages},
+       {1, 1, 1},
+       truncated(),
+       {},
+       {"v^2", "abs(v)"}},
       {"a bias and transforms", {laplace, resolvent}, {2, 2, 13}, inclined(), {1}, {"v", "x*v"}},
       {"a bias and derivatives", {sticking, moments, sensitivity}, {4, 1, 9}, inclined()}};
   return all;
@@ -101,7 +110,7 @@ Case given(const Example& c) {
 
 }  // namespace
 
-TEST_CASE("plan: what is foretold is what is done") {
+TEST_CASE("plan: what is predicted is what is done") {
   for (const auto& c : cases()) {
     INFO(c.name);
     const Case r = given(c);
@@ -123,7 +132,7 @@ TEST_CASE("plan: what is foretold is what is done") {
   }
 }
 
-TEST_CASE("plan: what is adaptive says so, and takes no complex arithmetic") {
+TEST_CASE("plan: adaptive tasks are marked, and take no complex arithmetic") {
   using enum Quantity;
   for (Quantity q : {spectrum, duration_density, autocorrelation, expectation, relaxation}) {
     Case r = given({"", {q}, {}});
@@ -166,7 +175,7 @@ TEST_CASE("plan: sizes are those of the run, by the analysis alone") {
 }
 
 // The odd operator has the size of the even one.
-TEST_CASE("plan: operations of all systems are foretold, sizes of the largest") {
+TEST_CASE("plan: operations of all systems are predicted, sizes of the largest") {
   using enum Quantity;
   const auto even =
       accuracy::predict(PETSC_COMM_WORLD, given({"", {density, stick_duration_transform}, {}}));

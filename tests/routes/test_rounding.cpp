@@ -54,7 +54,7 @@ double value(const Results& results, const std::string& key) {
   return result(results, key).value[0];
 }
 
-// Solves that leave six digits, which one correction makes twelve.
+// Solves that leave six digits, which one step of iterative refinement makes twelve.
 test::Given rough_solves() {
   return {{"-slide_ksp_type", "gmres"},
           {"-slide_pc_type", "ilu"},
@@ -73,8 +73,8 @@ Results all_by_rough_solves() {
 
 }  // namespace
 
-// Corrected values are right; what the correction was stays visible in every error.
-TEST_CASE("rounding: every number says how far its solves were corrected") {
+// Refined values are right; the size of the refinement step stays visible in every error.
+TEST_CASE("rounding: every error shows the steps of iterative refinement") {
   using enum Quantity;
   auto inclined = plain();
   inclined.bias = 0.3;
@@ -119,14 +119,15 @@ TEST_CASE("rounding: derivatives are off by what those of the mean durations are
   }
 }
 
-// With a single static level all stays are alike, whatever the corrections were.
-TEST_CASE("rounding: what an identity lacks is added to every number of the stationary law") {
+// With a single static level all sticking phases are alike, whatever the refinement.
+TEST_CASE(
+    "rounding: what an identity lacks is added to every number of the stationary distribution") {
   using enum Quantity;
   const auto r = given(scene(0.15, 0.005, 1.0 / 256, 0.25, {1, 0}), {sticking, moments, entry_law});
   const auto d = test::on_hp(r.scene, 6, 1e-9);
   const auto found = evaluate(r, d);
   const double defect = found.distribution->excursion().conservation_defect(d);
-  REQUIRE(defect > 1e-14);  // the noise is far faster than slides
+  REQUIRE(defect > 1e-14);  // the noise is far faster than sliding phases
   const auto& results = found.results;
   const double stick = value(results, "mean_stick");
   CHECK(error(results, "mean_stick") == Approx(defect * stick).margin(2e-15 * stick));
@@ -183,7 +184,7 @@ TEST_CASE("rounding: of the fluid queue four times its defects, more for fast bo
   }
 }
 
-TEST_CASE("rounding: hitting times say how far their solves were corrected") {
+TEST_CASE("rounding: errors of hitting times show the steps of iterative refinement") {
   auto r = given(plain(), {Quantity::sticking});
   r.method.route = Route::hitting;
   const auto d = test::on_hp(r.scene, 5, 1e-8);
@@ -196,7 +197,7 @@ TEST_CASE("rounding: hitting times say how far their solves were corrected") {
 }
 
 // A step of inverse iteration more makes a rough vector a good one, and shows how rough it was.
-TEST_CASE("rounding: the null vector says what its last iteration changed") {
+TEST_CASE("rounding: errors of the null vector show what its last iteration changed") {
   using enum Quantity;
   auto r = given(plain(), {sticking, moments, noise_law});
   const auto d = test::on_upwind(r.scene, 2, 1e-5);

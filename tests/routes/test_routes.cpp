@@ -59,10 +59,10 @@ const std::vector<model::Scene>& sample_scenes() {
       scene(1, 0.25, 1, 0.25, {1, 0}),    // mu_d on a noise level
       scene(1, 0.3, 1, 0.5, {1, 0}),      // and off
       scene(1, 1, 1, 0.5, {1, 0}),        // mu_d = mu_s
-      scene(3, 0.25, 1, 0.5, {1, 0}),     // long stays
+      scene(3, 0.25, 1, 0.5, {1, 0}),     // long sticking phases
       scene(0.2, 0.15, 1, 0.5, {1, 0}),   // k = 0
       scene(0.7, 0.4, 2, 0.5, {0.5, 1}),  // cubic drag
-      scene(1, 0.5, 1, 0.5, {0, 0}),      // no drag: holding states at the velocity cut
+      scene(1, 0.5, 1, 0.5, {0, 0}),      // no drag: holding states at the truncation velocity
       weakening()};                       // levels that leave a speed to both sides
   return scenes;
 }
@@ -71,7 +71,7 @@ std::vector<test::Discrete> discretisations(const model::Scene& s) {
   return {test::on_hp(s, 5, 1e-9), test::on_upwind(s, 4)};
 }
 
-/// What the excursion route and the closed law of the noise give on a discretisation, by key.
+/// What method excursion and the closed form for the noise give on a discretisation, by key.
 std::map<std::string, double> known_values(const model::Scene& s, const test::Discrete& d) {
   std::map<std::string, double> known;
   const auto r = given(s, Route::excursion, {Quantity::sticking, Quantity::moments});
@@ -187,7 +187,8 @@ TEST_CASE("routes: the null vector is one, and a probability on a grid") {
   }
 }
 
-// Row sums of K vanish and f depends on x alone: the scheme leaves the law of the noise as it is.
+// Row sums of K vanish and f depends on x alone: the scheme leaves the distribution of the noise as
+// it is.
 TEST_CASE("routes: P(|X| <= mu_s) is the binomial sum at every p") {
   struct Case {
     double delta, known;
@@ -234,7 +235,7 @@ TEST_CASE("routes: without drag excursions agree with the fluid queue") {
   }
 }
 
-TEST_CASE("routes: the fluid queue leaves the noise its law") {
+TEST_CASE("routes: the fluid queue leaves the noise its distribution") {
   const auto s = test::on_full_noise(scene(1, 0.3, 1, 0.25, {0, 0}));
   auto r = given(s, Route::fluid_queue, {Quantity::noise_law});
   r.method.scheme = Scheme::none;

@@ -76,10 +76,10 @@ TEST_CASE("comoments: huge offsets do not cancel") {
 
 TEST_CASE("comoments: merging parts is adding their samples") {
   const auto all = samples(1000, 2);
-  for (std::size_t cut : {0UL, 1UL, 2UL, 500UL, 999UL, 1000UL}) {
-    INFO("cut " << cut);
-    auto merged = of(all, 0, cut);
-    merged.merge(of(all, cut, 1000));
+  for (std::size_t split : {0UL, 1UL, 2UL, 500UL, 999UL, 1000UL}) {
+    INFO("split at " << split);
+    auto merged = of(all, 0, split);
+    merged.merge(of(all, split, 1000));
     check_against_two_passes(merged, all, 1e-12);
   }
 }
@@ -97,7 +97,7 @@ TEST_CASE("comoments: merging into nothing and nothing keeps the bits") {
   }
 }
 
-TEST_CASE("comoments: nothing merged into nothing is nothing, and goes on") {
+TEST_CASE("comoments: nothing merged into nothing is nothing, and takes samples") {
   const auto all = samples(10, 1);
   Comoments nothing(3);
   nothing.merge(Comoments(3));
@@ -130,14 +130,14 @@ TEST_CASE("comoments: no variance is negative") {
   }
 }
 
-TEST_CASE("comoments: one sample tells nothing of the spread, equal ones tell there is none") {
+TEST_CASE("comoments: one sample shows nothing of the spread, equal ones show there is none") {
   const auto one = samples(1, 0);
   CHECK(std::isinf(Comoments(3).variance_of_mean(kWeight)));
   CHECK(std::isinf(of(one, 0, 1).variance_of_mean(kWeight)));
   CHECK(of({one[0], one[0]}, 0, 2).variance_of_mean(kWeight) == 0);
 }
 
-TEST_CASE("comoments: with the numbers of others they go on alike") {
+TEST_CASE("comoments: with the numbers of others they continue alike") {
   const auto all = samples(100, 3);
   const auto first = of(all, 0, 60);
   const auto row = first.numbers();

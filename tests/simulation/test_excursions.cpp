@@ -20,7 +20,7 @@ namespace {
 
 const Wanted kAll{true, true, {0, 0.7, 5}, {}, {}};
 
-// With 2/(tau delta^2) a whole number, so that the noise is the urn and its law binomial.
+// With 2/(tau delta^2) a whole number, so that the noise is the urn and its distribution binomial.
 model::Process process(double mu_s, double mu_d, double tau, double delta, model::Drag drag) {
   return {{tau, delta, model::full_range(tau, delta)}, {mu_s, mu_d}, drag};
 }
@@ -67,7 +67,7 @@ double binomial(int levels, int i) {
 }
 
 /// Mean time from each level |i| <= k until |X| > x_k, by sums over the scale of the chain.
-std::vector<double> mean_stays(const model::NoiseChain& noise, int k) {
+std::vector<double> mean_sticking_times(const model::NoiseChain& noise, int k) {
   // d_i = h_i - h_{i+1}: alpha_i d_i = (1 - alpha_i) d_{i-1} + 1/Lambda, d_{-i-1} = -d_i.
   std::vector<double> sticking(2 * static_cast<std::size_t>(k) + 1);
   double d = 1 / noise.rate() / (noise.up(0) + noise.down(0)), sum = 0;
@@ -99,7 +99,7 @@ std::vector<double> turns(const model::NoiseChain& noise, int k) {
   return turn;
 }
 
-/// Levels on which the slides of a path end, in the frame of their beginnings.
+/// Levels on which the sliding phases of a path end, in the frame of their beginnings.
 std::vector<int> entries_along(const model::Process& p, double horizon) {
   const auto path = simulation::simulate_path(p, {p.static_index() + 1}, horizon, 1);
   std::vector<int> entries;
@@ -186,7 +186,7 @@ TEST_CASE("excursions: every one begins and ends at rest, with what that means")
 }
 
 // -Im/omega -> int t v dt as omega -> 0.
-TEST_CASE("excursions: transforms put the motion between the start and the end of the slide") {
+TEST_CASE("excursions: transforms put the motion between the start and the end of sliding") {
   constexpr double omega = 1e-4;
   for (const auto& c : {cases()[0], cases()[1], cases()[4]}) {
     INFO(c.name);
@@ -228,7 +228,7 @@ TEST_CASE("excursions: durations are the same whatever is followed, and repeat")
   }
 }
 
-// A cubic term too small to count sends the same scene through the integrator.
+// A cubic term too small to count sends the same case through the integrator.
 TEST_CASE("excursions: the integrator follows the closed forms jump by jump") {
   for (auto c : cases()) {
     INFO(c.name);
@@ -250,7 +250,7 @@ TEST_CASE("excursions: the integrator follows the closed forms jump by jump") {
   }
 }
 
-TEST_CASE("excursions: the noise on the way has the binomial law within 4 sigma") {
+TEST_CASE("excursions: the noise on the way has the binomial distribution within 4 sigma") {
   for (const auto& c : cases()) {
     INFO(c.name);
     const int levels = c.process.noise.levels, k = c.process.static_index();
@@ -273,11 +273,12 @@ TEST_CASE("excursions: the noise on the way has the binomial law within 4 sigma"
   }
 }
 
-TEST_CASE("excursions: stays and turns follow from the entry by closed sums, within 4 sigma") {
+TEST_CASE(
+    "excursions: sticking times and turns follow from the entry by closed sums, within 4 sigma") {
   for (const auto& c : cases()) {
     INFO(c.name);
     const int k = c.process.static_index();
-    const auto sticking = mean_stays(c.process.noise, k), turn = turns(c.process.noise, k);
+    const auto sticking = mean_sticking_times(c.process.noise, k), turn = turns(c.process.noise, k);
     const auto all = draw(c.process, {}, 100000);
     for (int i = -k; i <= k; ++i) {
       const auto at = static_cast<std::size_t>(i + k);
@@ -298,7 +299,7 @@ TEST_CASE("excursions: stays and turns follow from the entry by closed sums, wit
 }
 
 // Where bodies turn round on the way, too: signs on a path are its own.
-TEST_CASE("excursions: slides end where those along a path do, within 4 sigma") {
+TEST_CASE("excursions: sliding ends where it does along a path, within 4 sigma") {
   auto all_cases = cases();
   all_cases.push_back({"turned round", process(0.5, 0.5, 1, 0.5, {1, 0})});
   for (const auto& c : all_cases) {
@@ -431,7 +432,8 @@ TEST_CASE("excursions: integrals of observables are right in the mean, within 4 
   }
 }
 
-TEST_CASE("excursions: the noise keeps its law in the mean over both sides, within 4 sigma") {
+TEST_CASE(
+    "excursions: the noise keeps its distribution in the mean over both sides, within 4 sigma") {
   for (const auto& c : cases_without_symmetry()) {
     INFO(c.name);
     const int levels = c.process.noise.levels,
@@ -450,7 +452,7 @@ TEST_CASE("excursions: the noise keeps its law in the mean over both sides, with
   }
 }
 
-// Another program of the same process, and its laws off by two per cent.
+// Another program of the same process, and one with rates off by two per cent.
 TEST_CASE("excursions: durations agree with a simulation that shares nothing") {
   constexpr int count = 200000;
   for (const auto& c : cases()) {

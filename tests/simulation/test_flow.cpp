@@ -225,7 +225,7 @@ TEST_CASE("flow: a body all but at rest stops at once when it is pushed back") {
   }
 }
 
-TEST_CASE("flow: any law gives what the closed forms and the built-in laws give") {
+TEST_CASE("flow: any drag law gives what the closed forms and the built-in laws give") {
   for (const auto& s : cubic_starts()) {
     INFO(s);
     const model::Drag written{
@@ -283,7 +283,7 @@ TEST_CASE("flow: a kink of the drag ends a step from either side") {
   CHECK(falling.time == Approx(0.3 / 0.4 + std::log(4.0)).epsilon(1e-12));
 }
 
-TEST_CASE("flow: the table of a law holds it everywhere, to rounding") {
+TEST_CASE("flow: the table of a drag law holds it everywhere, to rounding") {
   const std::vector<std::function<double(double)>> laws{
       [](double v) { return -std::tanh(v); }, [](double v) { return -std::pow(v, 1.5); },
       [](double v) { return -v - std::max(0.0, v - 0.7) * 5; },

@@ -98,7 +98,7 @@ TEST_CASE("path: an event is a jump by one step or an end of motion, and the end
   }
 }
 
-TEST_CASE("path: starts where it is told, in motion, pushed or at rest") {
+TEST_CASE("path: starts where it is asked to, in motion, pushed or at rest") {
   const auto p = processes()[0];
   const auto moving = simulate_path(p, {1, -0.75}, 1, 1);
   CHECK(moving.x[0] == 0.5);

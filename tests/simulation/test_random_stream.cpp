@@ -86,7 +86,7 @@ TEST_CASE("random stream: two half words make a word, and words go on between") 
   CHECK(random.half_word() == static_cast<std::uint32_t>(whole[2]));
 }
 
-TEST_CASE("random stream: exponential numbers have the exponential law within 4 sigma") {
+TEST_CASE("random stream: exponential numbers have the exponential distribution within 4 sigma") {
   RandomStream random(3, 1);
   constexpr int count = 400000;
   const std::vector<double> beyond{0.01, 0.1, 1, 3, 7, 10};

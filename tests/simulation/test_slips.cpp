@@ -14,9 +14,9 @@ using model::Start;
 using simulation::Duration;
 using simulation::Estimate;
 using simulation::Integrand;
-using simulation::Law;
 using simulation::Sampler;
 using simulation::Tally;
+using simulation::Variable;
 using simulation::Wanted;
 
 namespace {
@@ -29,7 +29,7 @@ model::Process process(double bias = 0, double mu_d_minus = 0.25) {
   return p;
 }
 
-/// X + g = 1.3 and -0.7, so that every slide starts upwards.
+/// X + g = 1.3 and -0.7, so that sliding always starts upwards.
 model::Process telegraph() {
   model::Process p{{}, {1, 0.5}, {0, 0}, 0.3};
   p.noise.table =
@@ -75,7 +75,7 @@ Estimate mean_passage(const model::Process& p, const Start& start, double w, int
   return {times.mean(0), times.mean(0) - half, times.mean(0) + half};
 }
 
-/// The share of slides that start upwards, by how often excursions change sides.
+/// The share of sliding phases that start upwards, by how often excursions change sides.
 double share_upwards(const model::Process& p) {
   const auto source = simulation::make_source(p, {});
   simulation::RandomStream random(3, 0);
@@ -104,12 +104,13 @@ TEST_CASE("slips: closed forms of telegraph noise without drag, within 4.5 sigma
   CHECK(holds(t.mean(Duration::slide), 5));
   CHECK(holds(t.slip()[0].second, 12));
   CHECK(t.slip()[2].second.value == Approx(t.slip()[0].second.value));
-  const auto peak = t.probability(Law::peak, 0.6, kInfinity);
+  const auto peak = t.probability(Variable::peak, 0.6, kInfinity);
   CHECK(holds(peak, 0.5399345734));
   CHECK(peak.high - peak.low < 0.005);
 }
 
-TEST_CASE("slips: path and displacement of a slide are speeds times durations of excursions") {
+TEST_CASE(
+    "slips: path and displacement of a sliding phase are speeds times durations of excursions") {
   Wanted wanted;
   wanted.displacement = true;
   for (double bias : {0.0, 0.3}) {
@@ -122,8 +123,9 @@ TEST_CASE("slips: path and displacement of a slide are speeds times durations of
   }
 }
 
-// The moments of L are derivatives of its transform, and the transform an integral of its law.
-TEST_CASE("slips: transform, law and moments of the path belong to one another") {
+// The moments of L are derivatives of its transform, and the transform an integral of its
+// distribution.
+TEST_CASE("slips: transform, distribution and moments of the path belong to one another") {
   Wanted wanted;
   wanted.displacement = true;
   wanted.inverse_distance = {1e-4, 2};
@@ -137,14 +139,14 @@ TEST_CASE("slips: transform, law and moments of the path belong to one another")
     for (int n = 0; n < 2000; ++n) {
       const double low = n == 0 ? 0 : wanted.path_edges[static_cast<std::size_t>(n) - 1];
       const double high = wanted.path_edges[static_cast<std::size_t>(n)];
-      sum += t.probability(Law::path, low, high).value * std::exp(-(low + high));
+      sum += t.probability(Variable::path, low, high).value * std::exp(-(low + high));
     }
     CHECK(t.slip_transform(1).value == Approx(sum).epsilon(1e-3));
     CHECK(t.slip()[3].second.value <= variance + mean * mean);
   }
 }
 
-// With a bias slides from s- are slow, and seldom.
+// With a bias sliding phases from s- are slow, and rare.
 TEST_CASE("passages: mean times are those of paths followed until they pass") {
   for (double bias : {0.0, 0.3}) {
     const auto p = process(bias, 1);
@@ -166,7 +168,7 @@ TEST_CASE("passages: mean times are those of paths followed until they pass") {
   }
 }
 
-// A cubic term too small to count sends the same scene through the integrator.
+// A cubic term too small to count sends the same case through the integrator.
 TEST_CASE("passages: closed forms and the integrator cross at the same times, in rising order") {
   auto p = process();
   const Wanted wanted{.speeds = {0.01, 0.3, 0.7, 1.5}};
@@ -193,10 +195,10 @@ TEST_CASE("passages: closed forms and the integrator cross at the same times, in
   CHECK(all > 3000);
 }
 
-TEST_CASE("passages: of a speed that no slide reaches there is a lower bound") {
+TEST_CASE("passages: of a speed that is never reached there is a lower bound") {
   for (double bias : {0.0, 0.3}) {
     const auto t = batches(process(bias), {.speeds = {1e-3, 50}}, 10000);
-    const auto peak = t.probability(Law::peak, 50, kInfinity);
+    const auto peak = t.probability(Variable::peak, 50, kInfinity);
     CHECK(peak.value == 0);
     CHECK(peak.low == 0);
     CHECK(peak.high > 1e-5);

@@ -14,8 +14,8 @@ using simulation::Duration;
 using simulation::Estimate;
 using simulation::Excursion;
 using simulation::Integrand;
-using simulation::Law;
 using simulation::Tally;
+using simulation::Variable;
 using simulation::Wanted;
 
 namespace {
@@ -87,7 +87,7 @@ void check_ratio(const Estimate& found, const std::vector<Excursion>& all, const
   check_estimate(found, ratio, std::sqrt(variance * n / (n - 1)) / time);
 }
 
-/// Jeffreys' interval: quantiles of the beta law.
+/// Jeffreys' interval: quantiles of the beta distribution.
 void check_proportion(const Estimate& found, int successes, int trials, double factor = 1) {
   const double a = successes + 0.5, b = trials - successes + 0.5;
   const double low = successes == 0 ? 0 : boost::math::ibeta_inv(a, b, 0.025);
@@ -146,7 +146,7 @@ TEST_CASE("tally: a sample of four by hand") {
   CHECK(t.mean(Duration::slide).value == Approx(6.5 / 4).epsilon(1e-14));
   CHECK(t.mean(Duration::excursion).value == Approx(14.5 / 4).epsilon(1e-14));
   CHECK(t.stationary(Integrand::v_square).value == Approx(4.25 / 14.5).epsilon(1e-14));
-  CHECK(t.probability(Law::slide, 1, 2).value == 0.25);
+  CHECK(t.probability(Variable::slide, 1, 2).value == 0.25);
   CHECK(t.laplace(0, Duration::excursion).value == 1);
 }
 
@@ -181,15 +181,15 @@ TEST_CASE("tally: means of durations and of their exponentials") {
 }
 
 TEST_CASE("tally: cells of histograms count low <= D < high") {
-  const auto t = of(sample());  // slides 1, 0.5, 3, 2; stays 2, 1.5, 0.5, 4
-  check_proportion(t.probability(Law::slide, 0, 1), 1, 4);
-  check_proportion(t.probability(Law::slide, 1, 2), 1, 4);
-  check_proportion(t.probability(Law::slide, 2, 4), 2, 4);
-  check_proportion(t.probability(Law::slide, 4, kInfinity), 0, 4);
-  check_proportion(t.probability(Law::slide, 0, kInfinity), 4, 4);
-  check_proportion(t.probability(Law::stick, 4, kInfinity), 1, 4);
-  check_proportion(t.probability(Law::stick, 1, 4), 2, 4);
-  check_proportion(t.probability(Law::excursion, 0, 4), 3, 4);
+  const auto t = of(sample());  // sliding 1, 0.5, 3, 2; sticking 2, 1.5, 0.5, 4
+  check_proportion(t.probability(Variable::slide, 0, 1), 1, 4);
+  check_proportion(t.probability(Variable::slide, 1, 2), 1, 4);
+  check_proportion(t.probability(Variable::slide, 2, 4), 2, 4);
+  check_proportion(t.probability(Variable::slide, 4, kInfinity), 0, 4);
+  check_proportion(t.probability(Variable::slide, 0, kInfinity), 4, 4);
+  check_proportion(t.probability(Variable::stick, 4, kInfinity), 1, 4);
+  check_proportion(t.probability(Variable::stick, 1, 4), 2, 4);
+  check_proportion(t.probability(Variable::excursion, 0, 4), 3, 4);
 }
 
 TEST_CASE("tally: entries are proportions in [0, 1] that hold their value") {
@@ -386,9 +386,9 @@ TEST_CASE("tally: shares over both sides are those of a long path") {
   const auto t = two.tally();
   const auto long_slide = [](const Excursion& e) { return e.slide >= 2 ? 1.0 : 0.0; };
   const Weights even(10, 0.2);
-  CHECK(t.probability(Law::slide, 2, kInfinity).value ==
+  CHECK(t.probability(Variable::slide, 2, kInfinity).value ==
         Approx(two.overall(even, long_slide)).epsilon(1e-13));
-  CHECK(t.first_exit(3, 0).value == 0);  // no slide ended on the highest level
+  CHECK(t.first_exit(3, 0).value == 0);  // no sliding phase ended on the highest level
   check_proportion(t.entry(0, 1), 2, 5);
   check_proportion(t.entry(1, 1), 3, 5);
   check_proportion(t.entry(1, 2), 0, 5);
@@ -402,7 +402,7 @@ TEST_CASE("tally: intervals of shares over both sides are those of means") {
     t.add(0, two.plus[static_cast<std::size_t>(n * 7 % 5)]);
     t.add(1, two.minus[static_cast<std::size_t>(n * 3 % 5)]);
   }
-  const auto share = t.probability(Law::stick, 1, 2);
+  const auto share = t.probability(Variable::stick, 1, 2);
   Wanted wanted = kWanted;
   Tally other(process(1, -0.4), wanted);
   for (int n = 0; n < 20000; ++n) {
@@ -479,7 +479,7 @@ TEST_CASE("tally: two sides that mirror each other give what symmetry gives") {
   CHECK(two.spectrum_at_zero().value == Approx(one.spectrum_at_zero().value).epsilon(1e-12));
   CHECK(two.share(Duration::slide).value ==
         Approx(one.share(Duration::slide).value).epsilon(1e-13));
-  CHECK(two.probability(Law::slide, 1, 2).value == 0.25);
+  CHECK(two.probability(Variable::slide, 1, 2).value == 0.25);
 }
 
 TEST_CASE("tally: both sides merged and packed are the whole") {

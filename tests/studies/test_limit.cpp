@@ -43,7 +43,7 @@ TEST_CASE("limit: half powers for mu_d = mu_s") {
   CHECK(other.error < 1e-6);
 }
 
-TEST_CASE("limit: an unforeseen order stands for itself, and none gives no limit") {
+TEST_CASE("limit: an unexpected order stands for itself, and none gives no limit") {
   const auto cubic = samples_of([](double d) { return 1 + d * d * d; }, 5);
   const Limit limit = limit_of(cubic, observed_order(cubic), false);
   CHECK(limit.value == Approx(1).epsilon(1e-10));

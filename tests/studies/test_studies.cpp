@@ -114,7 +114,8 @@ TEST_CASE("studies: without -study_steps there are eight values of p") {
   CHECK(result(r).runs.size() == 9);
 }
 
-TEST_CASE("studies: steps put mu_s on a level or in the middle, and extrapolate what they found") {
+TEST_CASE(
+    "studies: steps put mu_s on a level or halfway between two, and extrapolate what they found") {
   for (double mu_d : {1.0, 0.5}) {
     Request r = request(StudyKind::steps, mu_d, 0.45, 3);
     r.question.accuracy = 1e-6;
@@ -147,7 +148,8 @@ TEST_CASE("studies: steps put mu_s on a level or in the middle, and extrapolate 
   }
 }
 
-// Grazing slides: the order in delta is 2 for E_V2 and 3/2 for P_stick where mu_d = mu_s, else 1.
+// Grazing sliding phases: the order in delta is 2 for E_V2 and 3/2 for P_stick where mu_d = mu_s,
+// else 1.
 TEST_CASE("studies: orders in delta, with mu_s on a level and between two", "[slow][real]") {
   struct Case {
     double mu_d;
@@ -227,7 +229,7 @@ double largest_error(const quantities::Results& results, const quantities::Resul
 }
 
 /// log10 of the time against digits: the regression line through points with errors above 1e-12.
-std::string price(const Table& t) {
+std::string cost(const Table& t) {
   std::vector<double> x, y;
   const auto error = column(t, "error"), seconds = column(t, "seconds");
   for (std::size_t n = 0; n < error.size(); ++n) {
@@ -254,7 +256,7 @@ std::string price(const Table& t) {
 
 }  // namespace
 
-TEST_CASE("studies: errors and prices of each method follow from its runs", "[slow][real]") {
+TEST_CASE("studies: errors and costs of each method follow from its runs", "[slow][real]") {
   const Study& study = costs();
   const auto hp = runs_of(study, "hp"), upwind = runs_of(study, "upwind"),
              simulated = runs_of(study, "monte_carlo");
@@ -289,7 +291,7 @@ TEST_CASE("studies: errors and prices of each method follow from its runs", "[sl
     const auto error = column(study.tables[n], "error");
     const auto used = std::count_if(error.begin(), error.end(), [](double e) { return e > 1e-12; });
     const std::string too_few = study.tables[n].name + ": too few points for a rate of convergence";
-    CHECK(study.conclusions[n] == (used < 3 ? too_few : price(study.tables[n])));
+    CHECK(study.conclusions[n] == (used < 3 ? too_few : cost(study.tables[n])));
   }
 }
 
@@ -311,7 +313,7 @@ TEST_CASE("studies: the extrapolation of the paper is the mean of both direction
         Approx((on({7, 4}, {7, 3}, {7, 2}) + on({6, 5}, {5, 5}, {4, 5})) / 2).epsilon(1e-13));
 }
 
-TEST_CASE("studies: the extrapolation of the paper goes on with geometric changes") {
+TEST_CASE("studies: the extrapolation of the paper continues with geometric changes") {
   std::map<studies::Place, double> values;
   const auto truth = [](int k, int l) { return 0.3 + 0.2 * std::pow(0.5, l) + std::pow(0.4, k); };
   for (int l = 1; l <= studies::kMostSteps; ++l) {

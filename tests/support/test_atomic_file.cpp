@@ -34,7 +34,7 @@ TEST_CASE("atomic file: without commit nothing changes and nothing is left") {
   CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("atomic file: a place that cannot be written is told") {
+TEST_CASE("atomic file: a place that cannot be written is reported") {
   CHECK_THROWS_WITH(write_text("/no/such/folder/file", "text"),
                     Catch::Contains("/no/such/folder/file"));
 }

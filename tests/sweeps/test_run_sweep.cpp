@@ -106,12 +106,12 @@ TEST_CASE("sweeps: several ranks to a point give the same up to rounding", "[par
 }
 
 TEST_CASE("sweeps: what falls short keeps its values and stops no other", "[parallel]") {
-  // Beyond the truncation velocity 1 lies more than the accuracy allows.
+  // The truncation velocity of 1 excludes more than the accuracy allows.
   const auto sweep =
       result(read({{"-delta", "0.5"}, {"-accuracy", "1e-4"}, {"-sweep_v_max", "1,3.7"}}));
   if (!first_rank()) return;
   CHECK(sweep.runs[0].status == Status::not_reached);
-  CHECK_THAT(sweep.runs[0].message, Catch::Contains("truncates the velocity"));
+  CHECK_THAT(sweep.runs[0].message, Catch::Contains("excludes"));
   CHECK(sweep.runs[0].results[0].value[0] > 0);
   CHECK(sweep.runs[1].status == Status::reached);
   CHECK(exit_status(sweep.runs) == 3);
@@ -127,9 +127,9 @@ TEST_CASE("sweeps: what does not fit in memory stops no other", "[parallel]") {
   CHECK(exit_status(sweep.runs) == 4);
 }
 
-TEST_CASE("sweeps: what the record holds is not computed again") {
+TEST_CASE("sweeps: what the checkpoint holds is not computed again") {
   const test::TemporaryFolder folder;
-  const std::string file = folder / "record";
+  const std::string file = folder / "checkpoint";
   const auto run = [&] {
     return result(read({{"-delta", "0.5"}, {"-sweep_mu_d", "0.25,0.5"}, {"-checkpoint", file}}));
   };
@@ -167,9 +167,9 @@ TEST_CASE("sweeps: the status of the whole is that of the worst point") {
   CHECK(status({Status::failed, Status::no_memory, Status::reached}) == 4);
 }
 
-TEST_CASE("sweeps: progress counts points of the record, and predicts by those done here") {
+TEST_CASE("sweeps: progress counts points of the checkpoint, and predicts by those done here") {
   const test::TemporaryFolder folder;
-  const std::string file = folder / "record";
+  const std::string file = folder / "checkpoint";
   const auto states = [&file] {
     const Request request =
         read({{"-delta", "0.5"}, {"-sweep_mu_d", "0.25,0.5,0.75"}, {"-checkpoint", file}});
@@ -216,7 +216,7 @@ TEST_CASE("sweeps: CSV quotes what holds a comma and leaves gaps where there is 
                         !Catch::Contains("mu_d = swept"));
 }
 
-TEST_CASE("sweeps: ten points that fell short are told of, and how many more there are") {
+TEST_CASE("sweeps: ten points that fell short are reported, and how many more there are") {
   for (const auto& [count, more] : {std::pair{10, ""}, {12, "and 2 more like these\n"}}) {
     const Request request = read({{"-sweep_mu_d", "0.1:0.9:" + std::to_string(count)}});
     SweepResult sweep;

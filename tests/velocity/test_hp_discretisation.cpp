@@ -93,7 +93,7 @@ TEST_CASE("hp transport: meets rest only where the flow reaches it, the top like
   CHECK(largest(0, &velocity::TransportRow::inflow) == 0);
 }
 
-TEST_CASE("hp axis: traces extrapolate, weights integrate, masses accumulate") {
+TEST_CASE("hp discretisation: traces extrapolate, weights integrate, masses accumulate") {
   const HpDiscretisation velocities({0, 0.1, 1, 3}, {2, 3, 5}, model::Drag{1, 0});
   std::vector<double> mass;
   double integral = 0, at_zero = 0, at_top = 0;
@@ -114,7 +114,7 @@ TEST_CASE("hp axis: traces extrapolate, weights integrate, masses accumulate") {
   }
 }
 
-TEST_CASE("hp axis: refuses elements that do not rise from 0") {
+TEST_CASE("hp discretisation: refuses elements that do not rise from 0") {
   CHECK_THROWS_AS(HpDiscretisation({0}, 2, model::Drag{}), std::invalid_argument);
   CHECK_THROWS_AS(HpDiscretisation({0.1, 1}, 2, model::Drag{}), std::invalid_argument);
   CHECK_THROWS_AS(HpDiscretisation({0, 2, 1}, 2, model::Drag{}), std::invalid_argument);
@@ -123,7 +123,8 @@ TEST_CASE("hp axis: refuses elements that do not rise from 0") {
                   std::invalid_argument);
 }
 
-TEST_CASE("hp axis: values are exact on polynomials of its degree, ends of elements included") {
+TEST_CASE(
+    "hp discretisation: values are exact on polynomials of its degree, ends of elements included") {
   const std::vector<double> ends{0, 1e-6, 0.01, 0.5, 3};
   for (int degree : {0, 1, 4, 9}) {
     const HpDiscretisation velocities(ends, degree, model::Drag{1, 0});
@@ -145,7 +146,7 @@ TEST_CASE("hp axis: values are exact on polynomials of its degree, ends of eleme
   }
 }
 
-TEST_CASE("hp axis: a value takes the nodes of its own element, a node itself") {
+TEST_CASE("hp discretisation: a value takes the nodes of its own element, a node itself") {
   const std::vector<double> ends{0, 0.1, 1, 3};
   const HpDiscretisation velocities(ends, 3, model::Drag{1, 0});
   for (double v : {0.05, 0.6, 1.7, 3.0}) {
@@ -185,7 +186,8 @@ TEST_CASE("hp transport: the derivative of a row is the difference of rows") {
   }
 }
 
-TEST_CASE("hp axis: what sums over nodes overlook is nothing for polynomials, and a jump's error") {
+TEST_CASE("hp discretisation: what sums over nodes overlook is nothing for polynomials, and a "
+          "jump's error") {
   const HpDiscretisation hp({0, 0.5, 2}, std::vector{3, 5}, {});
   for (int n = 0; n <= 3; ++n) {
     for (double d : hp.overlooked([n](double v) { return power(v, n); })) {

@@ -70,8 +70,8 @@ TEST_CASE("mesh: degrees fall by one in two layers towards v = 0, and only there
   rule.rates.lambda = 1.1;
   CHECK(velocity::element_degrees(p, rule, 9) == std::vector(10, 9));
   rule.rates = {0, 5 * p.noise.rate()};
-  const auto cut = velocity::element_ends(p, rule).size() - 1;
-  CHECK(velocity::element_degrees(p, rule, 9) == std::vector(cut, 9));
+  const auto elements = velocity::element_ends(p, rule).size() - 1;
+  CHECK(velocity::element_degrees(p, rule, 9) == std::vector(elements, 9));
 }
 
 TEST_CASE("mesh: degrees fall by two at most where bodies that leave v = 0 might turn back") {
@@ -95,7 +95,7 @@ TEST_CASE("mesh: degrees fall by two at most where bodies that leave v = 0 might
   }
 }
 
-TEST_CASE("mesh: a law has the elements and the tail of the coefficients it stands for") {
+TEST_CASE("mesh: a drag law has the elements and the tail of the coefficients it stands for") {
   const auto built_in = process(0.5, 1, 0.25, {1, 0.3});
   auto written = built_in;
   written.drag = {0, 0, [](double v) { return -v - 0.3 * v * v * v; }, 20};
@@ -147,7 +147,7 @@ TEST_CASE("tail velocity: the white-noise bound on the density has fallen to the
 }
 
 // In white noise log-density is (g - mu_d) v + int b: the tail starts from its peak.
-TEST_CASE("mesh: a bias lengthens the axis, and beyond mu_d moves the peak") {
+TEST_CASE("mesh: a bias raises the truncation velocity, and beyond mu_d moves the peak") {
   auto p = process(0.5, 1, 0.25, {1, 0});
   const double drop = std::log(1e12) + 5;
   for (double bias : {0.2, 0.5, 2.0, -2.0}) {
@@ -250,7 +250,7 @@ TEST_CASE("smallest scale: the kinetic layer grows with tau, resting ones fall w
   CHECK(velocity::smallest_scale(near, 3) == velocity::smallest_scale(near));
 }
 
-TEST_CASE("smallest scale: of two half lines the finer one") {
+TEST_CASE("smallest scale: of two velocity branches the finer one") {
   for (double bias : {0.1, -0.1}) {
     // Levels below mu_d -+ bias: 0.2 below 0.2, and 0.15 below 0.4.
     const auto p = with_bias(process(0.3, 1, 0.25, {1, 0}), bias);
@@ -259,7 +259,7 @@ TEST_CASE("smallest scale: of two half lines the finer one") {
 }
 
 // On a level a below mu_d waves are 2 pi a/omega long, and none is left at v = 20 a/Lambda.
-TEST_CASE("mesh: every element has two waves at most, and none is cut in vain") {
+TEST_CASE("mesh: every element has two waves at most, and none is split in vain") {
   const auto p = process(0.3, 1, 0.25, {1, 0});
   const double rate = p.noise.rate(), gap = 0.05;
   for (double omega : {5 * rate, 20 * rate, 1000 * rate}) {
@@ -282,7 +282,8 @@ TEST_CASE("mesh: every element has two waves at most, and none is cut in vain") 
   }
 }
 
-TEST_CASE("tail velocity: that of the half line with the longer tail, and no further than a law") {
+TEST_CASE(
+    "tail velocity: that of the branch with the longer tail, and no further than a drag law") {
   for (double bias : {0.2, -0.2}) {
     auto p = with_bias(process(0.5, 1, 0.25, {0, 0}), bias);
     CHECK(velocity::tail_velocity(p, 1e-10) == Approx((std::log(1e10) + 5) / 0.3));
@@ -318,7 +319,7 @@ bool has(const std::vector<double>& ends, double v) {
 
 }  // namespace
 
-TEST_CASE("mesh: smooth laws and polynomials leave the elements as they are") {
+TEST_CASE("mesh: smooth drag laws and polynomials leave the elements as they are") {
   const auto p = process(0.25, 1, 0.25, {1, 0});
   const auto plain = velocity::element_ends(p, rule_to(7));
   CHECK(with_law([](double v) { return -v; }) == plain);

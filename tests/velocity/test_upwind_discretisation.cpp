@@ -32,14 +32,14 @@ TEST_CASE("upwind transport: rates are >= 0 and go with the flow") {
   }
 }
 
-TEST_CASE("upwind axis: a state at the origin moves on at speed over spacing") {
+TEST_CASE("upwind discretisation: a state at the origin moves on at speed over spacing") {
   const UpwindDiscretisation velocities(0.5, 4, model::Drag{1, 0});
   CHECK(velocities.keeps_origin());
   CHECK_FALSE(velocities.needs_holding());
   CHECK(velocities.origin_rate(0.75) == 1.5);
 }
 
-TEST_CASE("upwind axis: cells share the mass of their nodes") {
+TEST_CASE("upwind discretisation: cells share the mass of their nodes") {
   const UpwindDiscretisation velocities(1, 3, model::Drag{1, 0});
   const std::vector<double> mass{0.2, 0.3, 0.5};
   CHECK(velocities.mass_below(mass, 0.5) == 0);
@@ -48,12 +48,12 @@ TEST_CASE("upwind axis: cells share the mass of their nodes") {
   CHECK(velocities.mass_below(mass, 3.5) == Approx(1));
 }
 
-TEST_CASE("upwind axis: refuses to have no nodes") {
+TEST_CASE("upwind discretisation: refuses to have no nodes") {
   CHECK_THROWS_AS(UpwindDiscretisation(0, 3, model::Drag{}), std::invalid_argument);
   CHECK_THROWS_AS(UpwindDiscretisation(1, 0, model::Drag{}), std::invalid_argument);
 }
 
-TEST_CASE("upwind axis: values are exact on linear functions between nodes") {
+TEST_CASE("upwind discretisation: values are exact on linear functions between nodes") {
   const UpwindDiscretisation velocities(0.1, 20, model::Drag{1, 0});
   for (double v : {0.1, 0.1 + 1e-13, 0.17, 0.2, 1.999, std::nextafter(2.0, 0.0), 2.0}) {
     double constant = 0, linear = 0;
@@ -68,7 +68,7 @@ TEST_CASE("upwind axis: values are exact on linear functions between nodes") {
 }
 
 // The cell around v = 0 has a state of its own only on some levels.
-TEST_CASE("upwind axis: below the first node, its value") {
+TEST_CASE("upwind discretisation: below the first node, its value") {
   for (int count : {1, 2, 20}) {
     const UpwindDiscretisation velocities(0.1, count, model::Drag{1, 0});
     for (double v : {1e-300, 0.01, 0.0999}) {
@@ -111,7 +111,7 @@ TEST_CASE("upwind transport: the derivative of a row is the difference of rows")
   CHECK(row.entries[0].value == Approx(-10));
 }
 
-TEST_CASE("upwind axis: cells lie around the nodes") {
+TEST_CASE("upwind discretisation: cells lie around the nodes") {
   const UpwindDiscretisation velocities(0.5, 3, model::Drag{1, 0});
   const auto cells = velocities.cells();
   CHECK(std::vector(cells.begin(), cells.end()) == std::vector<double>{0, 0.75, 1.25, 1.75});

@@ -18,7 +18,7 @@ MU_D = (0.25, 0.5, 0.75, 1)
 
 
 def both(entry, mu_d, delta, excursions):
-    """Deterministic and simulated results of a scene."""
+    """Deterministic and simulated results of a case."""
     scene = {"quantities": "sticking,moments,noise_law", "mu_d": mu_d, "delta": delta}
     return (entry.run(**scene, accuracy=1e-8)["results"],
             entry.run(**scene, route="monte_carlo", excursions=excursions)["results"])
@@ -41,7 +41,8 @@ def draw(entry, found, deltas):
         axes.set(xlabel=r"noise step $\delta$  [force]", ylabel=label)
     figure.legend(*panels[0].get_legend_handles_labels(), loc="upper center", ncol=4)
     figure.suptitle(" ")  # room for the legend
-    entry.figure(figure, "averages.png", "Curves: deterministic values. Bars: simulations with 95 % intervals. "
+    entry.figure(figure, "averages.png", "Curves: deterministic values. Bars: simulations with 95 % "
+                 "confidence intervals. "
                  "mu_s = tau = 1, b(v) = -v. The last panel does not depend on mu_d")
 
 

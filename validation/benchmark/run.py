@@ -53,22 +53,22 @@ class Cost:
 def cost_of(words, environment=None):
     """Cost without values, and what the process printed."""
     words = [str(word) for word in words]
-    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as told:
+    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as errors:
         start = time.monotonic()
-        process = subprocess.Popen(words, stdout=out, stderr=told,
+        process = subprocess.Popen(words, stdout=out, stderr=errors,
                                    env={**os.environ, **MPI_PERMISSIONS, **(environment or {})})
         _, status, usage = os.wait4(process.pid, 0)
         seconds = time.monotonic() - start
         process.returncode = os.waitstatus_to_exitcode(status)
         out.seek(0)
-        told.seek(0)
+        errors.seek(0)
         if process.returncode not in (0, 3):  # 3: an accuracy missed, as with fixed grids
-            sys.exit(f"{' '.join(words)}\n{told.read()}")
+            sys.exit(f"{' '.join(words)}\n{errors.read()}")
         return Cost(seconds, usage.ru_maxrss / 1024, {}), out.read()
 
 
 class Ours:
-    """This program on one scene, by options."""
+    """This program on one case, by options."""
 
     def __init__(self, entry, ranks=0, environment=None, **options):
         self.program, self.environment = entry.program.path, environment
@@ -303,7 +303,7 @@ def single_degrees(entry):
         rows.append((f"{accuracy:g}", f"{mu_d:g}", f"1/{1 / delta:.0f}", str(best[0]),
                      f"{best[2]:.1e}", f"{best[1]:.4f}", " ".join(map(str, degrees)),
                      f"{error:.1e}", f"{sum(seconds):.4f}", f"{sum(seconds) / best[1]:.2f}"))
-        print(f"benchmark: single degrees: {len(rows)} of {len(scenes)} scenes", file=sys.stderr,
+        print(f"benchmark: single degrees: {len(rows)} of {len(scenes)} cases", file=sys.stderr,
               flush=True)
     entry.table("Refinement beside the cheapest single degree that is accurate enough",
                 ("accuracy", "mu_d", "delta", "degree", "its error", "seconds", "ours", "error",

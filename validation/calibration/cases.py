@@ -1,4 +1,4 @@
-"""Random cases by group: what is asked for, at which accuracies, and how a scene is drawn."""
+"""Random cases by group: what is asked for, at which accuracies, and how parameters are drawn."""
 
 import dataclasses
 import math

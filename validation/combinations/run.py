@@ -2,8 +2,8 @@
 
 usage: python3 validation/combinations/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
-Each is held against its mirror image, against itself with a bias of 10^-300 where it has symmetry, and
-against simulation. --quick draws as many as pairs need, else twenty more, and simulates less.
+Each is compared with its mirror image, with itself under a bias of 10^-300 where it has symmetry, and with
+simulation. --quick draws as many as pairs need, else twenty more, and simulates less.
 """
 
 import collections
@@ -21,7 +21,7 @@ from stickslip import BadInput
 NOTHING = 1e-300
 LAMBDA, OMEGA, TIME = (0.3, 2), (0, 0.7, 3), (0.4, 1.5)
 
-# A law of drag and its mirror image -b(-v).
+# A drag law and its mirror image -b(-v).
 DRAGS = {
     "none": ({"drag": "none"},) * 2,
     "linear": ({"drag_coefficient": 0.7},) * 2,
@@ -57,8 +57,8 @@ CHOICES = {
     "observable": list(OBSERVABLES),
     "start": ["s+", "s-", "0,0", "x,v", "rest", "stationary"],
     "scheme": ["hp", "levels", "upwind"]}
-# Rounding moves eigenvalues of matrices far from normal, and reduced models of what is rough, which know
-# by how much.
+# Rounding moves eigenvalues of matrices far from normal, and reduced models of what is rough, whose errors
+# cover it.
 ROUNDING = {"modes": 1e-6}
 ROUGH = {"durations", "expectation"}
 # What a sample cannot have, and histograms, which are averages over cells.
@@ -216,7 +216,7 @@ def mirror_images(entry, cases):
     """Mirror images, and symmetric cases with next to no bias."""
     mirrored, vanishing = [], []
     for case, here in cases:
-        # Of these only what starts at s+ is told with symmetry.
+        # Of these only what starts at s+ is printed with symmetry.
         one_side = case["question"] in ("entries", "resolvent") and is_symmetric(case)
         f, image = OBSERVABLES[case["observable"]]
         there = {} if one_side else seen_in_mirror(
@@ -261,7 +261,7 @@ def simulations(entry, cases):
     entry.table("against simulation", ("question", "values", "within 1.96", "largest |z|"), rows)
     z = [deviation(*known) for known in beside]
     inside = sum(abs(one) < 1.96 for one in z) / len(z)
-    entry.at_least(f"share of {len(z)} intervals at 95 % that hold the value", inside, 0.9)
+    entry.at_least(f"share of {len(z)} confidence intervals at 95 % that hold the value", inside, 0.9)
     allowed = 4.5 + math.log10(len(z)) / 4
     entry.claim("largest |z|", max(map(abs, z)), allowed)
 

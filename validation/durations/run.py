@@ -1,4 +1,4 @@
-"""Durations of slides, stays and excursions.
+"""Durations of sliding phases, sticking phases and excursions.
 
 usage: python3 validation/durations/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 """

@@ -1,8 +1,7 @@
-"""F_slide, F_stick and S_v of small scenes by Chebyshev collocation: one polynomial on [0, v_max].
+"""F_slide, F_stick and S_v of small systems by Chebyshev collocation: one polynomial on [0, v_max].
 
-Shares nothing with the program: no elements, no weak form, no grading, no stationary law, no
-projection, and dense elimination. b(v) = -v, mu_s = tau = 1. Bounded backward functions are
-analytic in v on [0, v_max] (docs/method.md, section 4): the error falls geometrically.
+Shares nothing with the program: no elements, no weak form, no grading, no stationary distribution, no
+projection, and dense elimination. b(v) = -v, mu_s = tau = 1. Bounded backward functions are analytic in v on [0, v_max] (docs/numerics.md): the error falls geometrically.
 """
 
 import math
@@ -113,8 +112,8 @@ def transforms(delta, mu_d, decay, degree):
     chain = scene.matrix(decay, 1, "killed")[len(scene.sliding):]
     leaving = [[sum(rate for j, rate in scene.jumps(i) if j not in scene.static)]
                for i in scene.static]
-    stay = solve([row[len(scene.sliding):] for row in chain], leaving)
-    return slide, sum(p * f for p, (f,) in zip(entry, stay))
+    sticking = solve([row[len(scene.sliding):] for row in chain], leaving)
+    return slide, sum(p * f for p, (f,) in zip(entry, sticking))
 
 
 def spectrum(delta, mu_d, frequencies, degree):

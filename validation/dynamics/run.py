@@ -1,10 +1,10 @@
-"""Spectrum of the velocity, Laplace transforms and entry law against references.
+"""Spectrum of the velocity, Laplace transforms and hitting distribution against references.
 
 usage: python3 validation/dynamics/run.py [--quick] [--program build/stickslip]
                                           [--complex-program build/stickslip-complex]
 
 Prints the tables, then each claim of README.md with its verdict; exit status 1 if one fails.
---quick takes fewer scenes and frequencies (half a minute instead of half an hour).
+--quick takes fewer cases and frequencies (half a minute instead of half an hour).
 """
 
 import cmath

@@ -1,4 +1,4 @@
-"""Effects one by one: bias, unequal drag, derivatives, sweeps, and what is foretold of their cost.
+"""Effects one by one: bias, unequal drag, derivatives, sweeps, and predictions of their cost.
 
 usage: python3 validation/effects/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
@@ -22,7 +22,7 @@ ASKED = "sticking,moments,noise_law,spectrum"
 RATCHET = {"mu_s": 0.5, "mu_d": 0.25, "delta": 0.25, "drag": "expression",
            "drag_expression": "v > 0 ? (0-3)*v : (0-0.5)*v"}
 STEPS = {"mu_d": 0.004, "tau": 0.02, "drag_coefficient": 0.05}
-FORETOLD = (  # scenes whose cost does not depend on how an adaptive solver fares
+PREDICTED = (  # cases whose cost does not depend on an adaptive solver
     {"delta": 0.125}, {"delta": 0.0625, "mu_d": 0.25}, {"delta": 0.03125, "accuracy": 1e-8},
     {"delta": 0.0625, "quantities": "sticking,moments,entry_law,laplace", "lambda": "0.1,1,10"},
     {"delta": 0.125, "quantities": "sticking,moments,sensitivity"},
@@ -50,7 +50,7 @@ def simulations(entry):
     entry.table(f"deterministic and simulated ({excursions} excursions from each side; a quarter for the ratchet)",
                 ("scene", "quantity", "value", "simulated", "low", "high", "z"), rows)
     inside = sum(abs(deviation(*one)) < 1.96 for one in beside) / len(beside)
-    entry.at_least("share of 95 % intervals that hold the deterministic value", inside, 0.85)
+    entry.at_least("share of 95 % confidence intervals that hold the deterministic value", inside, 0.85)
     entry.simulated("simulations", beside)
 
 
@@ -72,13 +72,13 @@ def drift_in_white_noise(entry):
 
 def without_bias(entry):
     """10^-300 breaks the symmetry and moves nothing."""
-    folded = scalars(entry.run(quantities="sticking,moments,spectrum", accuracy=1e-11, degree=10,
+    reduced = scalars(entry.run(quantities="sticking,moments,spectrum", accuracy=1e-11, degree=10,
                                **SCENE))
     whole = scalars(entry.run(quantities="sticking,moments,spectrum", degree=10, bias=1e-300,
                               **SCENE))
     keys = ("P_stick", "P_slide", "mean_stick", "mean_slide", "E_V2", "E_absV", "E_XV", "S_0")
-    entry.claim("both half lines give at g = 0 what one of them gives, relative",
-                worse(*(difference(whole[k]["value"], folded[k]["value"]) for k in keys)), 1e-11)
+    entry.claim("both velocity branches give at g = 0 what one of them gives, relative",
+                worse(*(difference(whole[k]["value"], reduced[k]["value"]) for k in keys)), 1e-11)
 
 
 def pictures(entry):
@@ -120,21 +120,21 @@ def derivatives(entry):
 
 
 def costs(entry):
-    """What -plan foretells beside what was spent on the same steps."""
+    """What -plan predicts beside what was spent on the same steps."""
     rows, off = [], []
-    for scene in FORETOLD:
+    for scene in PREDICTED:
         plan = entry.run(**scene, plan="yes")["plan"]["steps"]
         spent = entry.run(**scene)["cost"]["steps"][:len(plan)]
-        told, real = (sum(s["seconds"] for s in steps) for steps in (plan, spent))
-        # Nested steps have no factors of their own.
+        predicted, real = (sum(s["seconds"] for s in steps) for steps in (plan, spent))
+        # Two-level p-corrections have no factors of their own.
         entries, memory = (max(s[key] for s in plan) / max(s[key] for s in spent)
                            for key in ("factor_entries", "factor_megabytes"))
         off += [max(memory, 1 / memory)]
-        rows.append((" ".join(f"{k} {v}" for k, v in scene.items()), told, real, told / real,
+        rows.append((" ".join(f"{k} {v}" for k, v in scene.items()), predicted, real, predicted / real,
                      entries, memory))
-    entry.table("foretold cost over real cost, two steps", ("scene", "foretold s", "real s",
+    entry.table("predicted cost over real cost, two steps", ("scene", "predicted s", "real s",
                                                             "seconds", "entries", "memory"), rows)
-    entry.claim("memory of the factors, by which factor foretold", worse(*off), 1.5)
+    entry.claim("memory of the factors, ratio of predicted to measured or its inverse", worse(*off), 1.5)
 
 
 def sweep_cost(entry):

@@ -3,7 +3,7 @@
 usage: python3 validation/extrapolation/run.py [--quick] [--program build/stickslip]
                                                [--report FOLDER]
 
---quick holds the printed table against converged values, without the 46 upwind runs.
+--quick compares the printed table with converged values, without the 46 upwind runs.
 """
 
 import pathlib

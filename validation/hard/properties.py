@@ -1,4 +1,4 @@
-"""What must hold in a scene. Each property yields (words, deviation, allowed, size) for what it compares;
+"""What must hold in a case. Each property yields (words, deviation, allowed, size) for what it compares;
 `allowed` is what the program's own error estimates leave, times FACTOR, unless said otherwise, and
 where both sides share the discretisation no more than rounding."""
 
@@ -13,7 +13,7 @@ from harness import Program
 from reference_arguments import words
 from scenes import BASE
 
-FACTOR = 10  # an estimate is no bound: it covers the error in 97 of 100 scenes (docs/method.md, section 5)
+FACTOR = 10  # an estimate is no bound: it covers the error in 97 of 100 cases (docs/accuracy.md)
 ON_ANY_GRID = 1e-11  # relative: identities that every discretisation keeps
 UNDERSHOOT = 1e-4  # of the total probability: entries of coarse discretisations below zero
 METHODS_AGREE = 1e-9  # relative: solution methods on one discretisation
@@ -25,7 +25,7 @@ decimal.getcontext().Emin, decimal.getcontext().Emax = -10**6, 10**6
 
 
 class Found:
-    """A scene and what the program says about it."""
+    """A case and what the program prints about it."""
 
     def __init__(self, entry, scene):
         self.entry, self.scene = entry, scene
@@ -40,7 +40,7 @@ class Found:
         return self.summary["cost"]["seconds"]
 
     def again(self, **changes):
-        """The same scene with other options; None takes one away."""
+        """The same case with other options; None takes one away."""
         options = {**self.options, **changes}
         return self.entry.run(**{k: v for k, v in options.items() if v is not None})["results"]
 
@@ -93,14 +93,14 @@ def probability(f):
     """Shares add up to one, and are those of mean durations."""
     (stick, a), (slide, b) = f.number("P_stick"), f.number("P_slide")
     yield identity("P_stick + P_slide = 1", abs(stick + slide - 1), a + b, 1)
-    (stay, c), (slid, d), (whole, e) = map(f.number, ("mean_stick", "mean_slide", "mean_excursion"))
-    yield identity("means add up", abs(stay + slid - whole), c + d + e, whole)
+    (stick, c), (slide, d), (whole, e) = map(f.number, ("mean_stick", "mean_slide", "mean_excursion"))
+    yield identity("means add up", abs(stick + slide - whole), c + d + e, whole)
     yield identity("P_slide = slide/excursion", abs(slide - slid / whole),
                    b + d / whole + e * slide / whole, slide)
 
 
 def noise(f):
-    """The law of the noise by detailed balance; bodies slide at least while it is above mu_s."""
+    """The distribution of the noise by detailed balance; bodies slide at least while it is above mu_s."""
     n, _, up, lo, hi = f.exact()
     weights = {0: Decimal(1)}
     for i in range(n):
@@ -117,24 +117,26 @@ def noise(f):
 
 
 def entry(f):
-    """The entry law: sum, sign, and f_stick(0+) = Lambda (alpha_k P_k + (1 - alpha_-k) P_-k)."""
-    law = f.column("entry_law")
-    yield identity("entry law sums to 1", abs(math.fsum(v for _, v, _ in law) - 1),
-                   sum(e for _, _, e in law), 1)
-    errors = [e for _, _, e in law]
-    for n, (k, v, _) in enumerate(law):
-        # The change between discretisations has its own zeros: there the neighbours tell the error.
+    """The hitting distribution at the onset of sticking: sum, sign, and
+    f_stick(0+) = Lambda (alpha_k P_k + (1 - alpha_-k) P_-k)."""
+    entries = f.column("entry_law")
+    yield identity("hitting distribution sums to 1", abs(math.fsum(v for _, v, _ in entries) - 1),
+                   sum(e for _, _, e in entries), 1)
+    errors = [e for _, _, e in entries]
+    for n, (k, v, _) in enumerate(entries):
+        # The change between discretisations has its own zeros: there the neighbours show the error.
         near = max(errors[max(0, n - 1):n + 2])
         yield f"entry_law({k:g}) >= 0", max(0.0, -v), min(FACTOR * near, UNDERSHOOT), 1
     _, rate, up, lo, hi = f.exact()
     last, first = float(rate * up(hi)), float(rate * (1 - up(lo)))
     value, error = f.number("f_stick_0")
-    yield identity("f_stick(0+)", abs(value - last * law[-1][1] - first * law[0][1]),
-                   error + last * law[-1][2] + first * law[0][2], value)
+    yield identity("f_stick(0+)", abs(value - last * entries[-1][1] - first * entries[0][1]),
+                   error + last * entries[-1][2] + first * entries[0][2], value)
 
 
-def stay_times(f):
-    """Mean stays by first level. Plain elimination loses as many digits as the stay has: 400 are enough."""
+def sticking_times(f):
+    """Mean sticking times by first level. Gaussian elimination loses as many digits as their decades: 400
+    are enough."""
     with decimal.localcontext() as context:
         context.prec = 400
         return eliminated(*f.exact()[1:])
@@ -153,12 +155,12 @@ def eliminated(rate, up, lo, hi):
     return times[:0:-1]
 
 
-def stay(f):
-    """The mean stay from the entry law and exact mean stays by level."""
-    times, law = stay_times(f), f.column("entry_law")
-    mean = sum(Decimal(v) * t for (_, v, _), t in zip(law, times))
-    error = sum(Decimal(e) * t for (_, _, e), t in zip(law, times))
-    yield same("mean stay by exact stays", f.number("mean_stick"), (float(mean), float(error)),
+def sticking(f):
+    """The mean sticking time from the hitting distribution and exact means by level."""
+    times, entries = sticking_times(f), f.column("entry_law")
+    mean = sum(Decimal(v) * t for (_, v, _), t in zip(entries, times))
+    error = sum(Decimal(e) * t for (_, _, e), t in zip(entries, times))
+    yield same("mean sticking time by exact means", f.number("mean_stick"), (float(mean), float(error)),
                ON_ANY_GRID)
 
 
@@ -167,8 +169,8 @@ def stored():
 
 
 def reference(f):
-    """Every value of reference/values.json that was asked for, against the estimate alone. Entries of an
-    entry law are right to an absolute error (docs/method.md, section 5): the largest is their size."""
+    """Every value of reference/values.json that was asked for, against the estimate alone. Entries of a
+    hitting distribution are right to an absolute error (docs/accuracy.md): the largest is their size."""
     entry_of_scene = stored().get(f.scene.name, {"arguments": "", "values": {}})
     if entry_of_scene["arguments"] != words(f.scene):
         yield "no reference of these options: run reference/make.py --missing", math.inf, 0, 1
@@ -186,7 +188,7 @@ def reference(f):
 
 
 def by_hand(f):
-    """Three levels: stays are exponential with rate 1/2, whatever else happens."""
+    """Three levels: sticking times are exponential with rate 1/2, whatever else happens."""
     for key, value in (("mean_stick", 2), ("f_stick_0", 0.5)):
         yield same(key, f.number(key), (value, 0))
 
@@ -235,7 +237,7 @@ def monte_carlo(f):
 
 
 def scaled(f):
-    """The same scene in units in which tau is 1: forces by sqrt(tau), drag by 1/tau."""
+    """The same case in units in which tau is 1: forces by sqrt(tau), drag by 1/tau."""
     tau = f.options["tau"]
     root = math.sqrt(tau)
     other = f.again(tau=1, **{key: f.options[key] * root for key in ("mu_s", "mu_d", "delta")},
@@ -245,14 +247,14 @@ def scaled(f):
 
 
 def neighbour(f):
-    """Within 1e-9 of the scene with mu_d on the grid: nothing depends on the side."""
+    """Within 1e-9 of the case with mu_d on the grid: nothing depends on the side."""
     other = f.again(mu_d=round(f.options["mu_d"], 9))
     for words, apart, allowed, value in compared(f, other):
         yield words, apart, allowed + 1e-9 * value, value
 
 
 def as_if_plain(f):
-    """The scene without the small number."""
+    """The case without the small number."""
     other = f.again(**({"bias": 0} if "bias" in f.options else {"mu_s": round(f.options["mu_s"], 9)}))
     yield from compared(f, other)
 
@@ -325,15 +327,15 @@ def spectrum(f):
     (a, x, e), (b, y, d) = rows[-2:]
     if a < 1e6:
         return
-    # The next term is smaller by (rates of the scene / omega)^2 or, with waves, a power less.
+    # The next term is smaller by (rates of the process / omega)^2 or, with waves, a power less.
     yield (f"omega^4 S_v at {b:g}", abs(y * b**4 - x * a**4),
            FACTOR * (e * a**4 + d * b**4) + 1e-6 * x * a**4, x * a**4)
 
 
 def direct(f):
-    """One complex factorisation for each frequency, by the complex twin."""
-    twin = f.entry.program.path.with_name("stickslip-complex")
-    found = Program(twin).run(**{**f.options, "quantities": "spectrum", "spectrum_solver": "direct"})
+    """One complex factorisation for each frequency, by the build with complex scalars."""
+    complex_program = f.entry.program.path.with_name("stickslip-complex")
+    found = Program(complex_program).run(**{**f.options, "quantities": "spectrum", "spectrum_solver": "direct"})
     if not found["accuracy"]["reached"]:
         raise ValueError(found["accuracy"]["shortfall"])
     other = found["results"]["S_v"]
@@ -342,7 +344,7 @@ def direct(f):
 
 
 PROPERTIES = {f.__name__: f for f in (
-    power, probability, noise, entry, stay, reference, by_hand, null_vector, lambda_route, hitting,
+    power, probability, noise, entry, sticking, reference, by_hand, null_vector, lambda_route, hitting,
     fluid_queue, monte_carlo, scaled, neighbour, near_no_drag, finer, transforms, resolvent, spectrum, direct)}
 PROPERTIES["same"] = as_if_plain
-BALANCES = ("power", "probability", "noise", "entry", "stay")
+BALANCES = ("power", "probability", "noise", "entry", "sticking")

@@ -1,4 +1,4 @@
-"""The scene as reference.cpp wants it."""
+"""The case as reference.cpp takes it."""
 
 import fractions
 import math
@@ -35,5 +35,5 @@ def arguments(scene):
 
 
 def words(scene):
-    """What is stored beside the values, to tell when a scene has changed since."""
+    """What is stored beside the values, to detect a case that has changed since."""
     return " ".join(map(str, sum(arguments(scene), [])))

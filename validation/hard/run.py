@@ -3,8 +3,8 @@
 usage: python3 validation/hard/run.py [--quick] [--only WORDS] [--program build/stickslip]
                                       [--report FOLDER]
 
-Scenes that break naive code (scenes.py), each with what must hold (properties.py) to the digits that
-the program claims. --only takes scenes whose name contains the words.
+Cases that break naive code (scenes.py), each with what must hold (properties.py) to the digits that
+the program claims. --only takes cases whose name contains the words.
 """
 
 import pathlib
@@ -51,7 +51,7 @@ def checked(entry, scene):
 
 
 def refused(entry):
-    """Exit status and message of scenes that cannot be."""
+    """Exit status and message of cases that cannot be."""
     rows, wrong = [], 0
     for name, options, status, word in REFUSED:
         words = [str(entry.program.path), *words_of({**BASE, **options})]
@@ -59,16 +59,16 @@ def refused(entry):
         wrong += done.returncode != status or word not in done.stderr
         rows.append((name, str(done.returncode), done.stderr.strip().replace("stickslip: ", "")))
     entry.table("Refused", ("scene", "exit status", "message"), rows)
-    entry.claim("scenes that should be refused and are not, or without a reason", wrong, 0.5)
+    entry.claim("cases that should be refused and are not, or without a reason", wrong, 0.5)
 
 
-CLAIMS = {"balances": "power, probability, the law of the noise, entry law, stays",
+CLAIMS = {"balances": "power, probability, noise, hitting distribution, sticking times",
           "reference": "values against references in extended precision"}
 
 
 def main():
     entry = Entry(__doc__, "beyond the paper",
-                  ("--only", {"default": "", "metavar": "WORDS", "help": "scenes whose name contains these"}))
+                  ("--only", {"default": "", "metavar": "WORDS", "help": "cases whose name contains these"}))
     only = entry.arguments.only
     table, kinds, missed, count = [], {}, [], 0
     for scene in SCENES:
@@ -80,13 +80,13 @@ def main():
         for kind, value in ratios.items():
             kinds.setdefault(kind, []).append(value)
         missed += [] if reached else [scene.name]
-    entry.text(f"{count} scenes. Allowed is {FACTOR} times the error that the program states for what is "
+    entry.text(f"{count} cases. Allowed is {FACTOR} times the error that the program states for what is "
                "compared; both are relative. Of each group the comparison that comes nearest to it is shown.")
     entry.table("Scenes", ("scene", "why hard", "property", "achieved", "allowed", "seconds"), table)
     for kind, values in kinds.items():
-        entry.claim(f"{CLAIMS.get(kind, kind)}: deviation over what is allowed, {len(values)} scenes",
+        entry.claim(f"{CLAIMS.get(kind, kind)}: deviation over what is allowed, {len(values)} cases",
                     worse(*sorted(values, reverse=True)), 1)
-    entry.claim(f"scenes that missed -accuracy ({'; '.join(missed) or 'none'})", len(missed), 0.5)
+    entry.claim(f"cases that missed -accuracy ({'; '.join(missed) or 'none'})", len(missed), 0.5)
     if not only:
         known = stored()
         digits = min(v["digits"] for scene in known.values() for v in scene["values"].values())

@@ -1,8 +1,8 @@
-"""The scenes: what is hard about each, and what must hold.
+"""The cases: what is hard about each, and what must hold.
 
 Options not given: mu_s = tau = 1, mu_d = 1/4, delta = 1/4, linear drag with c = 1, -accuracy 1e-9. The
-properties are the functions of properties.py; "reference" compares with reference/values.json. Scenes
-marked `long` are left out by --quick.
+properties are the functions of properties.py; "reference" compares with reference/values.json. Cases marked
+`long` are left out by --quick.
 """
 
 import dataclasses
@@ -27,8 +27,8 @@ def scene(name, why, properties, long=False, quantities=STATIONARY, misses=False
 
 
 BASE = {"mu_s": 1, "mu_d": 0.25, "tau": 1, "delta": 0.25, "accuracy": 1e-9}
-NO_ENTRY = "sticking,moments,noise_law"  # without symmetry there is no entry law
-BALANCE = "power probability noise entry stay "
+NO_ENTRY = "sticking,moments,noise_law"  # without symmetry there is no single hitting distribution
+BALANCE = "power probability noise entry sticking "
 STRIBECK = {"friction": "stribeck", "mu_d": 0.5, "quantities": STATIONARY + ",averages"}
 ONE_SIDED = "v>0 ? (0-3)*v : (0-0.5)*v"
 
@@ -55,27 +55,27 @@ SCENES = (
     scene("mu_d = 1e-300", "products of two such numbers underflow",
           BALANCE, mu_d=1e-300, delta=0.5),
 
-    # Rare slides.
+    # Rare sliding.
     scene("mu_s = 3 deviations", "P_slide 1e-3", BALANCE + "reference", mu_s=3),
-    scene("mu_s = 6 deviations", "mean stay 6e8: a joint LU loses nine digits",
+    scene("mu_s = 6 deviations", "mean sticking time 6e8: a joint LU loses nine digits",
           BALANCE + "reference transforms", mu_s=6, quantities=STATIONARY + ",laplace",
           **{"lambda": "0,1e-14,1"}),
-    scene("mu_s = 7.75, k = N - 1", "exit only from the last state; mean stay 1e18",
+    scene("mu_s = 7.75, k = N - 1", "exit only from the last state; mean sticking time 1e18",
           BALANCE + "reference", mu_s=7.75),
-    scene("mu_s = 9, delta = 1/5", "mean stay above 1e18, and 1/5 is no double",
+    scene("mu_s = 9, delta = 1/5", "mean sticking time above 1e18, and 1/5 is no double",
           BALANCE, long=True, mu_s=9, delta=0.2),
-    scene("mu_s = 10 deviations", "mean stay 1e23; f_stick(0+) = 1e-37", BALANCE, long=True, misses=True, mu_s=10,
+    scene("mu_s = 10 deviations", "mean sticking time 1e23; f_stick(0+) = 1e-37", BALANCE, long=True, misses=True, mu_s=10,
           delta=0.125),
-    scene("mu_d = mu_s = 7", "rare slides that end at once; f_stick(0+) = 1e-73", BALANCE, misses=True, mu_s=7, mu_d=7),
+    scene("mu_d = mu_s = 7", "rare sliding that ends at once; f_stick(0+) = 1e-73", BALANCE, misses=True, mu_s=7, mu_d=7),
     scene("mu_s = 27 deviations", "P_slide below 1e-150: squares underflow", BALANCE, long=True,
           mu_s=27, mu_d=26, delta=1 / 16, degree=6),
-    scene("mu_s = 31.9 deviations, k = N - 1", "1 - P_stick below 1e-300, mean stay near 1e308",
+    scene("mu_s = 31.9 deviations, k = N - 1", "1 - P_stick below 1e-300, mean sticking time near 1e308",
           BALANCE, long=True, mu_s=31.9375, mu_d=31, delta=1 / 16, degree=6),
 
     # Time scales.
     scene("tau = 2^-12", "jumps 1e6 times faster than drag", BALANCE + "scaled", tau=2.0**-12,
           mu_s=64, mu_d=16, delta=16),
-    scene("tau = 2^-12 without drag", "the same, and no end of the velocity axis",
+    scene("tau = 2^-12 without drag", "the same, and no terminal velocity",
           BALANCE + "reference fluid_queue", tau=2.0**-12, mu_s=64, mu_d=20, delta=32, drag="none"),
     scene("tau = 2^-6", "short correlation", BALANCE + "scaled", tau=2.0**-6, mu_d=0.5, delta=1),
     scene("tau = 2^-6, mu_s far below a deviation", "hardly ever at rest; k = 0",
@@ -93,9 +93,9 @@ SCENES = (
           delta=1),
     scene("k = 0", "one static level; the odd static chain is empty", BALANCE + "reference null_vector",
           mu_s=0.4, mu_d=0.3, delta=0.5),
-    scene("range cut at k + 1", "exit only into the last level", BALANCE + "reference",
+    scene("range truncated at k + 1", "exit only into the last level", BALANCE + "reference",
           mu_s=1, delta=0.5, noise_levels=3),
-    scene("full range at delta = 1/8", "257 levels whose law spans 77 decades", BALANCE, long=True,
+    scene("full range at delta = 1/8", "257 levels whose distribution spans 77 decades", BALANCE, long=True,
           delta=0.125, noise_levels="full"),
 
     # Drag.
@@ -109,10 +109,10 @@ SCENES = (
           drag_coefficient=1e-6),
     scene("drag 1e4", "stiff: everything within v = 4e-4", BALANCE + "reference", mu_d=0.3, delta=0.5,
           drag_coefficient=1e4),
-    scene("cubic drag 1e3", "roots of B crowd as x^(1/3)", "probability noise entry stay reference",
+    scene("cubic drag 1e3", "roots of B crowd as x^(1/3)", "probability noise entry sticking reference",
           mu_d=0.3, delta=0.5, drag="cubic", drag_cubic=1000),
     scene("cubic drag 1e9, c = 0", "drag that vanishes to third order at rest",
-          "probability noise entry stay reference", misses=True, mu_d=0.3, delta=0.5,
+          "probability noise entry sticking reference", misses=True, mu_d=0.3, delta=0.5,
           drag="cubic", drag_coefficient=0, drag_cubic=1e9),
 
     # Friction that weakens with the speed, and drag that rises: levels leave a velocity v* for both sides.
@@ -130,14 +130,14 @@ SCENES = (
           BALANCE + "finer", **{**STRIBECK, "mu_d": 0.1}, stribeck_velocity=0.1, drag="none"),
     scene("weakening in slow noise", "bodies cross v* by drift alone",
           BALANCE + "finer", **{**STRIBECK, "mu_s": 0.5, "mu_d": 0.1}, tau=10, stribeck_velocity=0.02),
-    scene("weakening and bias", "two half lines with their own v*", "power probability noise finer",
+    scene("weakening and bias", "two velocity branches with their own v*", "power probability noise finer",
           **{**STRIBECK, "quantities": NO_ENTRY + ",averages"}, stribeck_velocity=0.1, bias=0.3),
     scene("drag that rises to friction", "F - b falls from 1/2 to 0.02 before drag takes over",
           "probability noise entry finer", mu_d=0.5, drag="expression",
           drag_expression="0.5*tanh(3*v) - 0.1*v"),
 
     # Without symmetry.
-    scene("one-sided drag", "two half lines that differ", "probability noise reference",
+    scene("one-sided drag", "two velocity branches that differ", "probability noise reference",
           delta=0.5, drag="expression", drag_expression=ONE_SIDED, quantities=NO_ENTRY),
     scene("one-sided drag and bias", "the same, static levels -3 ... 1",
           "probability noise reference", delta=0.5, drag="expression",
@@ -149,15 +149,15 @@ SCENES = (
     scene("bias 1e-300", "no symmetry, and no difference; E[V] is rounding", "power probability noise same", misses=True, bias=1e-300, delta=0.5, quantities=NO_ENTRY),
 
     # Discretisations fixed by hand.
-    scene("degree 1", "the coarsest elements keep probability", "probability noise entry stay lambda_route hitting",
+    scene("degree 1", "the coarsest elements keep probability", "probability noise entry sticking lambda_route hitting",
           degree=1, noise_degree=0),
     scene("degree 16", "powers of v to v^16", BALANCE + "lambda_route hitting", degree=16,
           noise_degree=0),
     scene("degree 24", "powers of v to v^24; the last one there is",
           BALANCE + "reference", degree=24, delta=0.5),
-    scene("upwind p = 1", "one point per noise step", "probability noise entry stay null_vector lambda_route",
+    scene("upwind p = 1", "one point per noise step", "probability noise entry sticking null_vector lambda_route",
           scheme="upwind", p=1, noise_levels="full"),
-    scene("upwind p = 1, N = 1", "the smallest system there is", "probability noise entry stay null_vector",
+    scene("upwind p = 1, N = 1", "the smallest system there is", "probability noise entry sticking null_vector",
           scheme="upwind", p=1, mu_s=0.5, tau=2, delta=1),
     scene("simulation", "no discretisation in common", BALANCE + "monte_carlo", delta=0.5,
           mu_d=0.5 + EPS),
@@ -166,13 +166,13 @@ SCENES = (
     scene("lambda from 1e-14 to 1e12", "1 - F cancels at one end, F underflows at the other",
           "transforms reference", delta=0.5, quantities="sticking,entry_law,laplace",
           **{"lambda": "0,1e-14,1e-9,1e-3,1,20,1e4,1e8,1e12"}),
-    scene("lambda to 1e12, mu_d = mu_s", "slides that end at once: F_slide falls slowly",
+    scene("lambda to 1e12, mu_d = mu_s", "sliding that ends at once: F_slide falls slowly",
           "transforms", mu_d=1, delta=0.5, quantities="sticking,entry_law,laplace",
           **{"lambda": "0,1e-14,1e-9,1e-3,1,1e4,1e8,1e12"}),
     scene("resolvent from 1e-14 to 1e12", "u is a constant of 1e14 plus numbers of order one",
           "resolvent", delta=0.5, quantities="sticking,resolvent", observable="stick;v^2;x*v",
           **{"lambda": "1e-14,1e-8,1e-3,1,1e4,1e8,1e12"}),
-    scene("omega from 0 to 1e8", "far out 24 digits cancel in the plain formula",
+    scene("omega from 0 to 1e8", "far out 24 digits cancel in the direct formula",
           "spectrum reference", delta=0.5, quantities="sticking,moments,spectrum",
           omega="0,1e-12,1e-3,1,20,1e4,1e7,1e8"),
     scene("waves, mu_d 1e-12 above a level", "as short as 1e-12 on the level that nearly stands",
@@ -184,7 +184,7 @@ SCENES = (
     scene("spectrum by two solvers, tau = 2^-4", "reduced model against a complex factorisation",
           "spectrum direct", tau=2.0**-4, mu_d=1, delta=1, quantities="sticking,moments,spectrum",
           omega="0,1e-12,0.01,1,20,100"),
-    scene("spectrum at mu_s = 6", "S_v of 1e-8 with slides that are rare", "spectrum", long=True, mu_s=6,
+    scene("spectrum at mu_s = 6", "S_v of 1e-8 with sliding that is rare", "spectrum", long=True, mu_s=6,
           quantities="sticking,moments,spectrum", omega="0,1e-12,0.01,1,20,100"),
 )
 
@@ -192,7 +192,7 @@ SCENES = (
 REFUSED = (
     ("mu_d above mu_s", {"mu_d": 2}, 2, "mu_d"),
     ("mu_s beyond the noise", {"mu_s": 8.5}, 2, "mu_s"),
-    ("noise range cut at k", {"mu_s": 1, "noise_levels": 4}, 2, "noise_levels"),
+    ("noise range truncated at k", {"mu_s": 1, "noise_levels": 4}, 2, "noise_levels"),
     ("tau = 0", {"tau": 0}, 2, "tau"),
     ("delta too large for a chain", {"delta": 2}, 2, "delta"),
     ("drag that grows", {"drag": "expression", "drag_expression": "v"}, 2, "drag_expression"),

@@ -1,4 +1,4 @@
-"""Laplace transform of the duration of slides.
+"""Laplace transform of the duration of sliding phases.
 
 usage: python3 validation/laplace/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 """
@@ -26,7 +26,8 @@ def draw(entry, found):
             curve(axes, simulated[key], colour=COLOURS[n])
         axes.set(xscale="log", yscale="log", xlabel=r"$\lambda$  [1/time]", ylabel=label)
     panels[0].legend()
-    entry.figure(figure, "laplace.png", "Curves: deterministic; dots: simulated, with 95 % intervals. "
+    entry.figure(figure, "laplace.png", "Curves: deterministic; dots: simulated, with 95 % confidence "
+                 "intervals. "
                  "delta = tau = mu_s = 1, b(v) = -v")
 
 

@@ -4,9 +4,9 @@
 ///
 ///   plain_loop MU_S MU_D TAU DELTA EXCURSIONS SEED [FACTOR]
 ///
-/// writes CSV (quantity,argument,value,low,high with 95 % intervals) and, on standard error, the
-/// nanoseconds for each jump of the noise. FACTOR speeds the jumps up, for a deliberately wrong
-/// law.
+/// writes CSV (quantity,argument,value,low,high with 95 % confidence intervals) and, on standard
+/// error, the nanoseconds for each jump of the noise. FACTOR speeds the jumps up, for a
+/// deliberately wrong process.
 
 #include <chrono>
 #include <cmath>
@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
     Sums s;
     int i = k + 1, y = 1;
     double v = 0, wait = wait_for_jump();
-    for (;;) {  // slide
+    for (;;) {  // sliding
       const double x = i * delta, force = x - y * mu_d;
       double e = std::exp(-wait), end = force + (v - force) * e, t = wait;
       const bool stops = y * end <= 0;
@@ -110,7 +110,7 @@ int main(int argc, char** argv) {
       if (std::abs(i) <= k) break;
       y = -y;
     }
-    for (;;) {  // stay
+    for (;;) {  // sticking
       s.stick += wait;
       s.noise_square += i * delta * i * delta * wait;
       i = jump(i);

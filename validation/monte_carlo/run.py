@@ -27,7 +27,7 @@ from known import P_X, SIMULATED
 QUANTITIES = ("P_stick", "E_V2", "P_X_le_mu_s")
 DELTAS = tuple(2.0**-n for n in range(1, 6))
 FRICTIONS = (1 / 4, 1 / 2, 3 / 4, 1)
-WIDTH = statistics.NormalDist().inv_cdf(0.975)  # half a 95 % interval, in standard deviations
+WIDTH = statistics.NormalDist().inv_cdf(0.975)  # half a 95 % confidence interval, in standard deviations
 
 Row = collections.namedtuple("Row", "quantity mu_d delta value low high exact paper")
 
@@ -43,14 +43,14 @@ def deviations(row):
 
 
 def off(row, excursions):
-    """Whether the paper's number is further from the exact one than half the width of an interval
+    """Whether the paper's number is further from the exact one than half the width of a confidence interval
     of 10^6 excursions, as it has, and a unit of its last digit."""
     half = (row.high - row.value) * math.sqrt(excursions / 10**6)
     return abs(float(row.paper) - row.exact) > half + last_place(row.paper)
 
 
 def rows_of(program, mu_d, delta, excursions):
-    """One simulated scene and the same by the deterministic route."""
+    """One simulated case and the same by the deterministic method."""
     scene = {"mu_d": mu_d, "delta": delta}
     simulated = program.run(route="monte_carlo", excursions=excursions, **scene)
     exact = program.run(route="excursion", accuracy=1e-8, **scene)["results"]
@@ -63,7 +63,7 @@ def figure(program, deltas, excursions):
     """Every point of the figure; each has a seed of its own, so that they are independent."""
     print(f"mu_s = tau = 1, b(v) = -v; {excursions} excursions; a star: further from the\n"
           "deterministic value than an interval of 10^6 excursions and the rounding allow\n"
-          "  mu_d  delta  quantity      simulated  95 % interval        deterministic     z  paper")
+          "  mu_d  delta  quantity      simulated  95 % confidence      deterministic     z  paper")
     rows = []
     for mu_d, delta in itertools.product(FRICTIONS, deltas):
         for row in rows_of(program, mu_d, delta, excursions):
@@ -77,11 +77,11 @@ def figure(program, deltas, excursions):
 
 
 def binomial_range(trials, probability, tail):
-    """The counts that are left when both tails of the binomial law are cut off."""
-    law = [math.comb(trials, n) * probability**n * (1 - probability) ** (trials - n)
-           for n in range(trials + 1)]
-    low = next(n for n, below in enumerate(itertools.accumulate(law)) if below > tail)
-    above = next(n for n, over in enumerate(itertools.accumulate(reversed(law))) if over > tail)
+    """The counts that are left when both tails of the binomial distribution are cut off."""
+    binomial = [math.comb(trials, n) * probability**n * (1 - probability) ** (trials - n)
+                for n in range(trials + 1)]
+    low = next(n for n, below in enumerate(itertools.accumulate(binomial)) if below > tail)
+    above = next(n for n, over in enumerate(itertools.accumulate(reversed(binomial))) if over > tail)
     return low, trials - above
 
 
@@ -121,7 +121,7 @@ def claim_paper(report, rows):
 
 
 def coverage(program, report, runs):
-    """Many short runs of one scene: intervals that are too wide show as well."""
+    """Many short runs of one case: intervals that are too wide show as well."""
     scene = {"mu_d": 1 / 4, "delta": 1 / 2}
     exact = program.run(route="excursion", accuracy=1e-8, **scene)["results"]
     inside = {key: [] for key in QUANTITIES}
@@ -157,17 +157,17 @@ class PlainLoop:
 
 
 def comparison(program, plain, report):
-    """-compare with the law right and with jumps 2 % too fast."""
+    """-compare with the right process and with jumps 2 % too fast."""
     for route in ("excursion", "monte_carlo"):
         for factor in (1, 1.02):
             file, _ = plain.run(1 / 4, 1 / 4, 10**6, seed=1, factor=factor)
             found = program.run(mu_d=1 / 4, delta=1 / 4, route=route, compare=file)["comparison"]
             largest = max(abs(row["z"]) for row in found["rows"])
-            told = "disagrees" if found["disagrees"] else "agrees"
+            verdict = "disagrees" if found["disagrees"] else "agrees"
             wanted = "agrees" if factor == 1 else "disagrees"
-            report.verdict(told == wanted, f"-compare, -route {route}: plain loop with jumps "
+            report.verdict(verdict == wanted, f"-compare, -route {route}: plain loop with jumps "
                            f"{factor:g} times as fast {wanted}",
-                           f"{told}, largest |z| {largest:.1f}")
+                           f"{verdict}, largest |z| {largest:.1f}")
 
 
 def nanoseconds(program, scene, excursions):

@@ -1,4 +1,4 @@
-"""Every route to the stationary numbers, on the same discretisations, in one table.
+"""Every solution method for the stationary numbers, on the same discretisations, in one table.
 
 usage: python3 validation/routes/run.py [--quick] [--program build/stickslip]
 
@@ -20,7 +20,7 @@ ROUTES = ("excursion", "lambda", "hitting", "resolvent", "null_vector")
 
 
 def numbers_by(program, route, scene):
-    """KEYS by one route: value and the error that the route itself states, and the solver's seconds."""
+    """KEYS by one method: value and the error that the method itself states, and the solver's seconds."""
     if route == "resolvent":
         found = program.run(quantities="resolvent", observable=OBSERVABLES, **{"lambda": 0}, **scene)
         names = [f"pi({f})" for f in OBSERVABLES.split(";")]
@@ -40,7 +40,7 @@ def binomial(delta, tau=1, mu_s=1):
 
 
 def common_table(program, report, scenes, discretisations, tolerance, routes, claim):
-    """Prints one row per route; claims that all agree with the first one."""
+    """Prints one row per method; claims that all agree with the first one."""
     worst, worst_lambda, ratio = 0.0, 0.0, 0.0
     mass, negative, binomial_error = 0.0, 0.0, 0.0
     for (delta, mu_d), chosen in itertools.product(scenes, discretisations):
@@ -67,7 +67,7 @@ def common_table(program, report, scenes, discretisations, tolerance, routes, cl
             if seconds > 0.05:  # less is timer noise
                 ratio = max(ratio, rows["null_vector"][2] / seconds)
     print()
-    report.claim(f"{claim}: routes agree, relative", worst, tolerance)
+    report.claim(f"{claim}: methods agree, relative", worst, tolerance)
     report.claim(f"{claim}: lambda differs by its own bias, times", worst_lambda, 2)
     report.claim(f"{claim}: P_X_le_mu_s is the binomial sum, relative", binomial_error, 1e-10)
     if "null_vector" in routes:
@@ -77,7 +77,7 @@ def common_table(program, report, scenes, discretisations, tolerance, routes, cl
 
 
 def first_order_values(program, report):
-    """P_stick of the paper's scheme and route at lambda = 1e-6, also by a script of its own."""
+    """P_stick of the paper's scheme and method at lambda = 1e-6, also by a script of its own."""
     worst = 0.0
     for delta, points, value in ((1 / 2, 64, 0.29655524), (1 / 2, 512, 0.29022545),
                                  (1 / 4, 64, 0.2030130), (1 / 4, 256, 0.198250)):

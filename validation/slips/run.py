@@ -38,7 +38,7 @@ def telegraph_peak(w):
 
 
 def telegraph_passage(w):
-    """Mean time to V = w from the start of a slide: P u' = KAPPA D - 1, u(w) = 0 for u(v) with X driving, and
+    """Mean time to V = w from the start of a sliding phase: P u' = KAPPA D - 1, u(w) = 0 for u(v) with X driving, and
     D' = r D - (1/P + 1/Q), D(0) = -1/KAPPA for what it has more than with X holding."""
     r, s = KAPPA * (1 / P - 1 / Q), 1 / P + 1 / Q
     return (w - KAPPA * (s * w / r - (1 / KAPPA + s / r) * math.expm1(r * w) / r)) / P
@@ -126,7 +126,7 @@ def other_formulas(entry, name, scene):
 
 
 def symmetry(entry):
-    """A bias of 1e-300 is no force, but takes the ways of one."""
+    """A bias of 1e-300 is no force, but is treated as one."""
     scene, far = SCENES["symmetric"], []
     one, other = (entry.run(**scene, **ASKED, bias=bias, accuracy=1e-7)["results"] for bias in (0, 1e-300))
     for key, result in one.items():

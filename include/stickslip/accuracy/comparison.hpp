@@ -1,5 +1,5 @@
 #pragma once
-/// Results held against values of other origin.
+/// Results compared with values of other origin.
 
 #include <optional>
 #include <string>
@@ -29,10 +29,10 @@ struct Comparison {
   bool disagrees = false;
 };
 
-/// z = (ours - reference)/sigma, where sigma joins the half of the interval on the side of our
-/// value with our error (a bound, or half of an interval if ours is simulated). |z| < 1.96 agrees;
-/// what is beyond is chance unless Holm's step-down test rejects it at the family-wise level 1e-3.
-/// References without counterpart are left out. Local.
+/// z = (ours - reference)/sigma, where sigma joins the half of the reference's confidence interval
+/// on the side of our value with our error (a bound, or half of a confidence interval if ours is
+/// simulated). |z| < 1.96 agrees; what is beyond is chance unless Holm's step-down test rejects it
+/// at the family-wise level 1e-3. References without counterpart are left out. Local.
 [[nodiscard]] Comparison compare(const std::vector<options::Reference>& references,
                                  const quantities::Results& results);
 

@@ -32,7 +32,8 @@ struct Prediction {
 /// Assembles each system of the first steps and has the solver analyse it; nothing is factored or
 /// solved. Times follow from the operations and entries counted by that analysis, with the speed of
 /// a matrix product measured now, and were found within a factor 2 of real ones; a run may need
-/// one or two steps more than predicted. Routes other than excursion: the sizes only, with seconds
+/// one or two steps more than predicted. Solution methods other than excursion: the sizes only,
+/// with seconds
 /// 0. Collective. Throws NoMemory as the run would.
 [[nodiscard]] Prediction predict(MPI_Comm comm, const options::Case& given);
 

@@ -26,7 +26,8 @@ struct Step {
   double seconds = 0;        ///< wall time of the whole step
   double estimate = 0;       ///< largest relative error estimate of a scalar; 0 if none yet
   std::string limiting_key;  ///< the scalar that has it
-  std::vector<std::pair<std::string, double>> checks;  ///< what the route tells about itself
+  std::vector<std::pair<std::string, double>>
+      checks;  ///< what the solution method reports of itself
 };
 
 /// Whether anything asked for takes a discretisation or a simulation; closed forms and paths do
@@ -38,7 +39,8 @@ void require_memory(MPI_Comm comm, const model::Scene& scene, const Resolution& 
 
 /// What is asked for on one discretisation.
 struct Solved {
-  routes::Evaluation evaluation;  ///< errors are those of the route on this discretisation alone
+  routes::Evaluation
+      evaluation;  ///< errors are those of the solution method on this discretisation alone
   Step step;
 };
 
@@ -67,11 +69,12 @@ struct Outcome {
 /// (0 for the first, of which nothing is known).
 using Progress = std::function<void(int, const Resolution&, double)>;
 
-/// All that is asked for. Deterministic routes climb the refinement sequence of the case; the error
-/// estimate of a value is that of add_discretisation() and the error of the route on this
-/// discretisation, mostly rounding; see routes::Evaluation. Stops when every scalar meets
-/// the accuracy, when rounding forbids it, or at the end of the refinement sequence. Collective.
-/// Throws NoMemory before anything is allocated that would not fit, NotReached when a solver fails.
+/// All that is asked for. Deterministic solution methods follow the refinement sequence of the
+/// case; the error estimate of a value is that of add_discretisation() and the error of the
+/// solution method on this discretisation, mostly rounding; see routes::Evaluation. Stops when
+/// every scalar meets the accuracy, when rounding forbids it, or at the end of the refinement
+/// sequence. Collective. Throws NoMemory before anything is allocated that would not fit,
+/// NotReached when a solver fails.
 [[nodiscard]] Outcome refine(MPI_Comm comm, const options::Case& given, const Progress& progress,
                              const monte_carlo::SimulationProgress& simulation_progress = {},
                              const std::string& checkpoint = {});

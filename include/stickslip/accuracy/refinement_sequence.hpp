@@ -9,9 +9,9 @@
 
 namespace stickslip::accuracy {
 
-/// Refinement levels below 1 are only there to be compared with; each further refinement level is
-/// finer in every respect (degrees or points, noise range, velocity cut), so that the change from
-/// one refinement level to the next shows the error of the coarser one, whatever its cause.
+/// Refinement levels below 1 only serve for comparison; each further refinement level is finer in
+/// every respect (degrees or points, noise range, truncation velocity), so that the change from one
+/// refinement level to the next shows the error of the coarser one, whatever its cause.
 class RefinementSequence {
  public:
   explicit RefinementSequence(const options::Case& given);
@@ -44,7 +44,7 @@ class RefinementSequence {
   int first_degree_ = 0;   // of refinement level 1
   velocity::Rates rates_;  // of the equations to be solved
   velocity::Integrands integrands_;
-  int halves_ = 1;
+  int branches_ = 1;
   bool all_levels_ = false;  // every noise level is a node
   int last_;
   mutable std::map<int, Resolution> refinement_levels_;  // those asked for so far

@@ -1,5 +1,6 @@
 #pragma once
-/// One discretisation of a scene: noise range and nodes, velocity cut and velocity discretisation.
+/// One discretisation of a case: noise range and nodes, truncation velocity and velocity
+/// discretisation.
 
 #include <cstdint>
 #include <memory>
@@ -25,7 +26,7 @@ struct Resolution {
   std::shared_ptr<const noise::Nodes> noise;  ///< of that grouping; none: every level is a node
   int table_levels = 0;                       ///< of a noise from a table
   double v_max = 0;                           ///< end of the velocity discretisation [velocity]
-  int halves = 1;  ///< 1: reduced by symmetry, v > 0 only; 2: both signs of v
+  int branches = 1;  ///< 1: reduced by symmetry, v > 0 only; 2: both signs of v
   options::Factors factors = options::Factors::own;
 
   [[nodiscard]] std::int64_t noise_nodes() const {
@@ -35,9 +36,9 @@ struct Resolution {
 };
 
 /// Noise levels on each side of 0 whose tail beyond weighs less than `tolerance` against the level
-/// from which slides start, second moments included; never more than the full range, and always
-/// more than k. Where drag does not hold it back, a body is fast because the noise stayed high:
-/// there the law of X is shifted upwards, and the range with it.
+/// from which sliding phases start, second moments included; never more than the full range, and
+/// always more than k. Where drag does not hold it back, a body is fast because the noise stayed
+/// high: there the distribution of X is shifted upwards, and the range with it.
 [[nodiscard]] int levels_for(const model::Scene& scene, double tolerance, double speed = 0);
 
 /// End of the velocity discretisation: the terminal velocity of the highest level, or
@@ -45,14 +46,14 @@ struct Resolution {
 /// before.
 [[nodiscard]] double velocity_end(const model::Scene& scene, int levels, double tolerance);
 
-/// hp of polynomial degree `degree` in v, the noise levels grouped so, the open rest chosen for
+/// hp of polynomial degree `degree` in v, the noise levels grouped so, all that is open chosen for
 /// truncation errors of `tolerance`; `layers` 0 are chosen for equations with rates up to `rates`.
 /// O(noise levels).
 [[nodiscard]] Resolution hp_resolution(const model::Scene& scene, int degree, int layers,
                                        double tolerance, const velocity::Rates& rates = {},
                                        const noise::Grouping& grouping = {});
 
-/// Upwind with `points` nodes per noise step, the open rest chosen as above.
+/// Upwind with `points` nodes per noise step, all that is open chosen as above.
 [[nodiscard]] Resolution upwind_resolution(const model::Scene& scene, int points, double tolerance,
                                            const velocity::Rates& rates = {});
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What holds of results whatever the scene.
+/// What holds of results whatever the model parameters.
 
 #include <string>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The program between main and its rooms.
+/// The program between main and its modules.
 
 namespace stickslip::app {
 

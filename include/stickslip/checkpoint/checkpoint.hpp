@@ -28,8 +28,8 @@ class Checkpoint {
   /// Hands the entries of the file to `take`, in their order, on the first rank, or makes the file.
   /// A last line of a sweep that was cut off when its writer was killed is removed. Collective.
   /// Throws BadInput on all ranks, and leaves the file alone, if it belongs to something else (the
-  /// message says what differs) or is damaged; std::runtime_error on the first rank when the disk
-  /// refuses.
+  /// message names the difference) or is damaged; std::runtime_error on the first rank when the
+  /// disk refuses.
   void open(MPI_Comm comm, const Take& take) const;
 
   /// Adds an entry and flushes it to disk, whole or not at all. By one process at a time: others

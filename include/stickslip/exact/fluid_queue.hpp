@@ -7,22 +7,22 @@
 
 namespace stickslip::exact {
 
-/// Means over one slide, discounted by exp(-lambda t). Arrays over the noise run from the lowest
-/// level up, counted along the motion; without symmetry first for V > 0, then for V < 0.
-struct QueuedSlide {
+/// Means over one sliding phase, discounted by exp(-lambda t). Arrays over the noise run from the
+/// lowest level up, counted along the motion; without symmetry first for V > 0, then for V < 0.
+struct SlidingMeans {
   std::vector<double> time;      ///< [time]
   std::vector<double> distance;  ///< int |V| dt
   std::vector<double> square;    ///< int V^2 dt
   double turns = 0;              ///< changes of the sign of V
-  /// Probability that the slide ends on each static level, from the lowest up; their sum is
+  /// Probability that the sliding phase ends on each static level, from the lowest up; their sum is
   /// F_slide.
   std::vector<double> entry;
 };
 
 /// Without drag, |V| changes at the constant rate x_i + g - mu_d on each noise level (v > 0): a
 /// fluid queue with the noise as its phase, whose boundary v = 0 is sticky on the static levels and
-/// hands a phase below them on to the queue of the other half line, the one of the mirrored
-/// process. The law of each queue follows from its first-return matrix
+/// hands a phase below them on to the queue of the other velocity branch, the one of the mirrored
+/// process. The distribution of each queue follows from its first-return matrix
 ///
 ///   Psi(i, j) = E[exp(-lambda T); phase j at the return to 0 | start at 0 in phase i],
 ///
@@ -36,15 +36,15 @@ class FluidQueue {
   /// std::runtime_error when the doubling does not converge.
   explicit FluidQueue(const model::Process& process, double lambda = 0);
 
-  /// Slides from s+ and from s-; where the noise has one of them alone, the same.
-  [[nodiscard]] const QueuedSlide& plus() const { return plus_; }
-  [[nodiscard]] const QueuedSlide& minus() const { return minus_; }
+  /// Sliding phases from s+ and from s-; where the noise has one of them alone, the same.
+  [[nodiscard]] const SlidingMeans& plus() const { return plus_; }
+  [[nodiscard]] const SlidingMeans& minus() const { return minus_; }
 
   /// Largest residual of the Riccati equations against their terms.
   [[nodiscard]] double residual() const { return residual_; }
 
  private:
-  QueuedSlide plus_, minus_;
+  SlidingMeans plus_, minus_;
   double residual_ = 0;
 };
 

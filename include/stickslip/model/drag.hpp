@@ -10,8 +10,8 @@
 
 namespace stickslip::model {
 
-/// b(v) = -linear v - cubic v^3 with linear, cubic >= 0; both zero means no drag. Or any other law,
-/// see drag_law.hpp; a copy of it shares nothing, and threads need one each.
+/// b(v) = -linear v - cubic v^3 with linear, cubic >= 0; both zero means no drag. Or any other drag
+/// law, see drag_law.hpp; a copy of it shares nothing, and threads need one each.
 struct Drag {
   double linear = 1;                       ///< c [1/time]
   double cubic = 0;                        ///< c3 [time/length^2]

@@ -102,7 +102,7 @@ struct NoiseChain {
 [[nodiscard]] std::vector<double> stationary_distribution(const NoiseChain& chain);
 
 /// Relative rounding of sums of positive terms over levels: weights are products of up to N
-/// factors, each rounded, and the bulk of the law holds about sqrt(N) of them.
+/// factors, each rounded, and the bulk of the distribution holds about sqrt(N) of them.
 [[nodiscard]] double rounding_of_sums(const NoiseChain& chain);
 
 /// P(low <= i <= high), the rest, and moments, each a sum of its own terms. O(levels) time, O(1)

@@ -1,5 +1,6 @@
 #pragma once
-/// The piecewise deterministic process (X, Y, V) with everything that fixes its law.
+/// The piecewise deterministic Markov process (X, Y, V) with everything that fixes its
+/// distribution.
 
 #include <string>
 
@@ -24,7 +25,7 @@ struct Process {
   }
   /// Whether it has the same one, level -i for level i.
   [[nodiscard]] bool symmetric() const { return !drifts() && noise.symmetric(); }
-  /// The process (-X, -Y, -V): what is true of sliding upwards here is true of sliding downwards
+  /// The process (-X, -Y, -V): what holds for sliding upwards here holds for sliding downwards
   /// there.
   [[nodiscard]] Process mirrored() const {
     return {noise.mirrored(), friction.mirrored(), drag.mirrored(), -bias};
@@ -57,7 +58,7 @@ struct Process {
   [[nodiscard]] double net_force_at(double x) const { return friction.net_force(x, bias); }
 };
 
-/// "; this should not happen: please report it with the scene mu_s = ...".
+/// "; this should not happen: please report it with the model parameters mu_s = ...".
 [[nodiscard]] std::string please_report(const Process& process);
 
 }  // namespace stickslip::model

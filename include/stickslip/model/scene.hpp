@@ -1,5 +1,6 @@
 #pragma once
-/// What the user fixes about the process; the noise range and the velocity cut may stay open.
+/// The model parameters: what the user fixes about the process. The noise range and the truncation
+/// velocity may stay open.
 
 #include <algorithm>
 #include <memory>
@@ -25,11 +26,11 @@ struct Scene {
   NoiseChoice noise;
   Friction friction;  ///< mu_s, mu_d [force]
   std::string drag_name = "linear";
-  std::string drag_expression;  ///< b(v) as text, of the law "expression"
+  std::string drag_expression;  ///< b(v) as text, of the drag law "expression"
   Drag drag;
   double bias = 0;                  ///< constant force g
   std::optional<int> noise_levels;  ///< N, if fixed by the user
-  std::optional<double> v_max;      ///< velocity cut, if fixed by the user [velocity]
+  std::optional<double> v_max;      ///< truncation velocity, if fixed by the user
 
   [[nodiscard]] bool symmetric() const { return process(1).symmetric(); }
   /// The range that is meant when noise_levels is open: full_range(), or that of the table.

@@ -23,7 +23,7 @@ struct SimulationState {
 using SimulationProgress = std::function<void(const SimulationState&)>;
 
 struct Simulated {
-  quantities::Results results;  ///< error: half the width of the 95 % interval
+  quantities::Results results;  ///< error: half the width of the 95 % confidence interval
   SimulationState state;        ///< at the end
   double continued_from = 0;    ///< excursions found in the checkpoint
   bool reached = false;         ///< the accuracy asked for, if one was, or all excursions
@@ -32,11 +32,11 @@ struct Simulated {
 
 /// Simulates given.method.excursions excursions, or fewer if -accuracy is given and met before;
 /// without symmetry pairs of them, one from each side, and with each a path for functions of time.
-/// Batches of them have random streams of their own, are dealt
-/// out to the ranks, and merged in their order: the numbers depend on the scene, the seed and the
-/// excursions alone. With a file name in `checkpoint` the tally is read from that file if it
-/// exists, and written to it every few seconds. Collective. Throws BadInput when the checkpoint
-/// belongs to another run or is damaged, and when it would take more than a month.
+/// Batches of them have random streams of their own, are distributed over the ranks, and merged in
+/// their order: the numbers depend on the model parameters, the seed and the excursions alone. With
+/// a file name in `checkpoint` the tally is read from that file if it exists, and written to it
+/// every few seconds. Collective. Throws BadInput when the checkpoint belongs to another run or is
+/// damaged, and when it would take more than a month.
 [[nodiscard]] Simulated simulate(MPI_Comm comm, const options::Case& given,
                                  const std::string& checkpoint, const SimulationProgress& progress);
 

@@ -73,7 +73,7 @@ class Nodes {
   [[nodiscard]] double x(int node) const { return x_[at(node)]; }
   /// Whether every level is a node.
   [[nodiscard]] bool all_levels() const { return count() == noise_.count(); }
-  /// The nodes of -X, along which the lower half line counts; these for a symmetric chain.
+  /// The nodes of -X, along which the negative velocity branch counts; these for a symmetric chain.
   [[nodiscard]] const Nodes& mirrored() const { return mirrored_ ? *mirrored_ : *this; }
 
   /// One entry of a row of J.

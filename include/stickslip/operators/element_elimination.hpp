@@ -15,8 +15,8 @@
 namespace stickslip::operators {
 
 /// LU factors of the matrix A of a KolmogorovOperator on an hp velocity discretisation. With A_E
-/// its elements alone, cut off from each other, G what they give at their ends and T what they take
-/// there,
+/// its elements alone, decoupled from each other, G what they give at their ends and T what they
+/// take there,
 ///
 ///   A^-1 = A_E^-1 + A_E^-1 T (1 - S)^-1 G A_E^-1,   S = G A_E^-1 T;
 ///
@@ -26,17 +26,17 @@ namespace stickslip::operators {
 ///
 ///   u+(v_e) = R_e u-(v_e) + r_e,   R_e = S_ii + S_io R_(e+1) (1 - S_oo R_(e+1))^-1 S_oi,
 ///
-/// R_e being what the half line above v_e reflects; at v_max holding states reflect. At v = 0 the
-/// half lines meet each other and the states at rest, a tridiagonal chain eliminated before. With M
-/// noise nodes and E elements of q velocity nodes, factors take some 1.5 E M^2 entries and 1.1 E
-/// M^3 operations, besides those of the elements.
+/// R_e being the reflection by the part of the branch above v_e; at v_max holding states reflect.
+/// At v = 0 the velocity branches meet each other and the static states, a tridiagonal chain
+/// eliminated before. With M noise nodes and E elements of q velocity nodes, factors take some 1.5
+/// E M^2 entries and 1.1 E M^3 operations, besides those of the elements.
 ///
 /// Ranks share the elements; what is between them each rank eliminates alike, so that results do
 /// not depend on the number of ranks.
 class ElementElimination {
  public:
-  /// Factors `matrix`, which carries `data`; of its entries the rows of states at rest are read,
-  /// the others follow from the discretisation. Without `share` each rank factors all elements.
+  /// Factors `matrix`, which carries `data`; of its entries the rows of static states are read, the
+  /// others follow from the discretisation. Without `share` each rank factors all elements.
   /// Collective. Throws NotReached where the matrix is singular.
   ElementElimination(Mat matrix, std::shared_ptr<const MatrixData> data, bool share = true);
   ~ElementElimination();
@@ -53,7 +53,7 @@ class ElementElimination {
   using Couplings = std::vector<LinearSteps::Coupling>;
   struct Line;
 
-  [[nodiscard]] Line line_of(Branch half) const;
+  [[nodiscard]] Line line_of(Branch branch) const;
   [[nodiscard]] int owner(const Line& line, std::size_t e) const;
   [[nodiscard]] ElementSystem::Response make_element(Line& line, std::size_t e) const;
   void make_shared_elements();
@@ -76,11 +76,11 @@ class ElementElimination {
   std::shared_ptr<const MatrixData> data_;
   MPI_Comm comm_;  // of the ranks that share elements
   std::vector<Line> lines_;
-  std::vector<PetscInt> rest_rows_;  // of states at rest, from the lowest level up
-  int lowest_rest_ = 0;
-  // The list w: values between elements, holding states among them; states at rest; what falling
+  std::vector<PetscInt> static_rows_;  // of static states, from the lowest level up
+  int lowest_static_ = 0;
+  // The list w: values between elements, holding states among them; static states; what falling
   // nodes find at v = 0.
-  std::size_t rest_ = 0, length_ = 0;
+  std::size_t static_begin_ = 0, length_ = 0;
   LinearSteps between_;  // (1 - S)^-1
   petsc::Handle<VecScatter, VecScatterDestroy> scatter_;
   petsc::VecHandle all_;  // a whole vector

@@ -15,11 +15,11 @@ namespace stickslip::operators {
 /// First noise node with a positive speed, `speeds` rising, where drag adds `drag` to them.
 [[nodiscard]] int first_rising(std::span<const double> speeds, double drag);
 
-/// The rows of lambda - L on the element [a, b] of a half line, cut off from its neighbours. At
-/// each end every noise node has one value that crosses it: the element takes those beyond b on
-/// nodes with B(b) > 0 and beyond a on those with B(a) <= 0, and gives its own at a on nodes with
-/// B(a) > 0 and at b on those with B(b) <= 0. Speeds B rise with the noise, so that each of these
-/// sets is a range of nodes.
+/// The rows of lambda - L on the element [a, b] of a velocity branch, decoupled from its
+/// neighbours. At each end every noise node has one value that crosses it: the element takes those
+/// beyond b on nodes with B(b) > 0 and beyond a on those with B(a) <= 0, and gives its own at a on
+/// nodes with B(a) > 0 and at b on those with B(b) <= 0. Speeds B rise with the noise, so that each
+/// of these sets is a range of nodes.
 ///
 /// Along the noise the system is block tridiagonal over groups, its couplings of the rank of the
 /// element's nodes: jumps reach the next group through its first or last level alone. LU factors by

@@ -1,6 +1,6 @@
 #pragma once
-/// What holds of every generator and every occupation, whatever the scene: where it fails, the
-/// program is at fault, and no number is given.
+/// What holds of every generator and every occupation, whatever the model parameters: where it
+/// fails, the program is at fault, and no number is given.
 
 #include <petscvec.h>
 
@@ -23,14 +23,14 @@ struct Promise {
   bool conservative;  ///< row sums are zero: nothing is killed and lambda = 0
 };
 
-/// Throws NotReached, with the row and the scene to report, if a promise is broken on any rank.
-/// Collective. O(nonzeros).
+/// Throws NotReached, with the row and the model parameters to report, if a promise is broken on
+/// any rank. Collective. O(nonzeros).
 void require_generator(MPI_Comm comm, const LocalRows& rows, Promise promise,
                        const model::Process& process);
 
-/// Throws NotReached, with the scene to report, if an occupation has entries below zero by more
-/// than rounding, 1e-9 of the largest one: on a monotone velocity discretisation there are none.
-/// Collective. O(size).
+/// Throws NotReached, with the model parameters to report, if an occupation has entries below zero
+/// by more than rounding, 1e-9 of the largest one: on a monotone velocity discretisation there are
+/// none. Collective. O(size).
 void require_occupation(Vec nu, const model::Process& process);
 
 }  // namespace stickslip::operators

@@ -15,27 +15,28 @@
 
 namespace stickslip::operators {
 
-/// What a row has to do with a state at rest.
-struct RestCoupling {
+/// How a row is coupled to a static state.
+struct StaticCoupling {
   PetscInt row;  ///< local
   int level;     ///< static level i
   double rate;
 };
 
-/// What a row has to do with bodies that reach the largest speed, where they are killed.
+/// How a row is coupled to the largest speed, where bodies are killed.
 struct TopCoupling {
   PetscInt row;  ///< local
   double rate;
 };
 
-/// A = lambda - L. On noise node l of a half, with B_l(v) = x_l + g - mu_d + b(v) on the upper one
-/// and that of the mirrored process on the lower one, J the jump matrix of noise::Nodes,
+/// A = lambda - L. On noise node l of a velocity branch, with B_l(v) = x_l + g - mu_d + b(v) on the
+/// positive one and that of the mirrored process on the negative one, J the jump matrix of
+/// noise::Nodes,
 ///
 ///   (A u)_l = lambda u_l - B_l u_l' - sum_m J_lm u_m,
 ///
 /// and where the flow reaches v = 0 the value met there is
 ///   static l:    sum_i T_il s_i of the static values s,
-///   l below:     u(0+) on node -l of the other half, or +- that on the same half when
+///   l below:     u(0+) on node -l of the other branch, or +- that on the same branch when
 ///   symmetry-reduced.
 /// Nodes that leave v = 0 need no condition. Static values live on all their levels and follow the
 /// noise until they leave to s+- = (x, +-1, 0), x the level next to them, x_{+-(k+1)} without bias.
@@ -52,9 +53,9 @@ class KolmogorovOperator {
   /// Assembles the local rows. The matrix lives as long as the operator. Collective.
   /// O(local nonzeros).
   KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda,
-                     Symmetry symmetry, StaticPhase rest, Clock clock = Clock::time);
+                     Symmetry symmetry, StaticPhase static_phase, Clock clock = Clock::time);
 
-  /// dA/dtheta with all members, for StaticPhase::killing: entry_rates and from_rest are those of
+  /// dA/dtheta with all members, for StaticPhase::killing: entry_rates and from_static are those of
   /// -dA_us/dtheta. Elements, nodes and upwind directions stay as they are: what is projected is
   /// the derivative of the process. Collective.
   [[nodiscard]] static KolmogorovOperator derivative(MPI_Comm comm,
@@ -69,12 +70,12 @@ class KolmogorovOperator {
   void shift(PetscScalar by);
   [[nodiscard]] PetscInt64 nonzeros() const { return nonzeros_; }
 
-  /// The functional u -> u(s+) (upper) or u(s-) (lower; with both branches only) as a vector.
+  /// The functional u -> u(s+) (positive) or u(s-) (negative; with both branches only) as a vector.
   /// Collective.
-  [[nodiscard]] petsc::VecHandle trace_at_exit(Branch half = Branch::positive) const;
+  [[nodiscard]] petsc::VecHandle trace_at_exit(Branch branch = Branch::positive) const;
 
   /// The functional u -> u(x_i, v), v = 0 being s+- for |i| > k and rest for |i| <= k;
-  /// symmetry-reduced, from the half that is kept. Static states must be kept. Collective.
+  /// symmetry-reduced, from the branch that is kept. Static states must be kept. Collective.
   [[nodiscard]] petsc::VecHandle value_at(int i, double v) const;
   /// u -> sum_i p_i u(x_i, 0), p by level from the lowest up, in the same sense. Collective.
   /// O(levels).
@@ -89,7 +90,7 @@ class KolmogorovOperator {
   /// -A_us s, a right-hand side: what static values s, from the lowest level up, send into the
   /// sliding states.
   /// StaticPhase::killing only. Collective.
-  [[nodiscard]] petsc::VecHandle from_rest(const std::vector<PetscScalar>& s) const;
+  [[nodiscard]] petsc::VecHandle from_static(const std::vector<PetscScalar>& s) const;
 
   /// f(x, y, v) on all states, projected on noise nodes: products with occupations are those of
   /// the measures that they stand for, whatever f is. Collective. O(levels velocity nodes).
@@ -105,13 +106,13 @@ class KolmogorovOperator {
 
  private:
   KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda,
-                     Symmetry symmetry, StaticPhase rest, Clock clock,
+                     Symmetry symmetry, StaticPhase static_phase, Clock clock,
                      std::optional<Parameter> derivative);
 
-  // The nodes by which states of a half are counted.
-  [[nodiscard]] const noise::Nodes& nodes_along(Branch half) const {
+  // The nodes by which states of a branch are counted.
+  [[nodiscard]] const noise::Nodes& nodes_along(Branch branch) const {
     const auto& nodes = *discretisation().noise;
-    return half == Branch::positive ? nodes : nodes.mirrored();
+    return branch == Branch::positive ? nodes : nodes.mirrored();
   }
 
   // Adds weight times the value at (x_i, v) to a functional that is not assembled yet.
@@ -119,7 +120,7 @@ class KolmogorovOperator {
 
   std::shared_ptr<MatrixData> data_;
   std::vector<std::pair<PetscInt, double>> trace_upper_, trace_lower_;
-  std::vector<RestCoupling> rest_coupling_;  // -A_us
+  std::vector<StaticCoupling> static_coupling_;  // -A_us
   std::vector<TopCoupling> top_coupling_;
   // The matrix of a single rank lives in these.
   std::vector<PetscInt> row_start_, columns_;

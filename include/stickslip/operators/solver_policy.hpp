@@ -14,7 +14,7 @@ namespace stickslip::operators {
 /// elements by the PC "elements" where few noise nodes stand for the levels, as groups couple all
 /// of their nodes and MUMPS takes ten times as long, and up to 700 levels that are nodes
 /// themselves, which have two neighbours alone: both are even at some 900. All else goes to MUMPS,
-/// in memory. What one solver cannot do, it says; the advice then is -slide_pc_type lu.
+/// in memory. A solver reports what it cannot do; the advice then is -slide_pc_type lu.
 [[nodiscard]] options::Factors chosen_factors(options::Factors asked, options::Scheme scheme,
                                               std::int64_t noise_nodes, bool all_levels);
 
@@ -28,14 +28,14 @@ struct FactorCost {
   double operations = 0;  ///< of factoring
 };
 
-/// Of ElementElimination on one half line, exactly; `noise` null: every level of the process is a
-/// node. The elements are dealt out to the ranks, what is between them each rank has. Local.
-/// O(elements (groups + log nodes)).
+/// Of ElementElimination on one velocity branch, exactly; `noise` null: every level of the process
+/// is a node. The elements are distributed over the ranks, what is between them each rank has.
+/// Local. O(elements (groups + log nodes)).
 [[nodiscard]] FactorCost elimination_cost(const model::Process& process,
                                           const velocity::HpDiscretisation& velocities,
                                           const noise::Nodes* noise, int ranks);
 
-/// Of both half lines, or of the upper one if symmetry-reduced.
+/// Of both velocity branches, or of the positive one if symmetry-reduced.
 [[nodiscard]] FactorCost elimination_cost(const Discretisation& discretisation,
                                           bool symmetry_reduced, int ranks);
 

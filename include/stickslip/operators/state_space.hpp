@@ -13,19 +13,20 @@ namespace stickslip::operators {
 
 /// What a state stands for.
 enum class StateKind {
-  node,     ///< sliding at a velocity node
-  origin,   ///< (x_i, +-1, 0) beyond the static levels: a grid scheme keeps it, about to slide
-  holding,  ///< at v_max, waiting for the noise to fall
-  rest      ///< static, (x_i, 0, 0)
+  node,         ///< sliding at a velocity node
+  origin,       ///< (x_i, +-1, 0) beyond the static levels: a grid scheme keeps it, about to slide
+  holding,      ///< at v_max, waiting for the noise to fall
+  static_phase  ///< at rest, (x_i, 0, 0)
 };
 
-/// One state. The noise node of a sliding state counts along its own half: on the lower half n
-/// stands for the node -n, so that both halves look alike. A state at rest has a noise level.
+/// One state. The noise node of a sliding state counts along its own velocity branch: on the
+/// negative branch n stands for the node -n, so that both branches look alike. A static state has a
+/// noise level.
 struct State {
   StateKind kind;
-  Branch half;  ///< upper for states at rest
-  int noise;    ///< number of the noise node; at rest the level
-  int node;     ///< index on the velocity discretisation, for nodes
+  Branch branch;  ///< positive for static states
+  int noise;      ///< number of the noise node; of a static state the level
+  int node;       ///< index on the velocity discretisation, for nodes
 };
 
 /// |v| in a state.
@@ -42,27 +43,28 @@ struct State {
   return rate_of(clock, origin ? velocities.nodes()[0] / 2 : speed_of(state, velocities));
 }
 
-/// All states of a discretisation: for each half and noise node its velocity nodes and, if it has
-/// them, an origin and a holding state; with `with_rest` also the static states, of which the even
-/// fold keeps 0 <= i <= k and the odd one 1 <= i <= k, on all their levels.
+/// All states of a discretisation: for each velocity branch and noise node its velocity nodes and,
+/// if it has them, an origin and a holding state; with `with_static_states` also the static states
+/// on all their levels, of which reduction by even symmetry keeps 0 <= i <= k and by odd symmetry 1
+/// <= i <= k.
 ///
 /// States are numbered rank by rank; a rank owns whole groups of noise nodes, those of n and -n
-/// together, which the reflection at v = 0 couples, with their levels at rest, and numbers its
+/// together, which the reflection at v = 0 couples, with their static levels, and numbers its
 /// states by velocity from low to high, noise fastest: incomplete factorisations need that order,
-/// complete ones do not mind. Tables of the size of the noise on every rank, nothing of the size of
-/// the grid.
+/// complete ones do not depend on it. Tables of the size of the noise on every rank, nothing of the
+/// size of the grid.
 class StateSpace {
  public:
   /// Collective on `comm`. Throws NoMemory when the states exceed PETSc's index type.
   StateSpace(MPI_Comm comm, const Discretisation& discretisation, Symmetry symmetry,
-             bool with_rest);
+             bool with_static_states);
 
   [[nodiscard]] MPI_Comm comm() const { return comm_; }
   [[nodiscard]] Symmetry symmetry() const { return symmetry_; }
-  [[nodiscard]] bool with_rest() const { return with_rest_; }
+  [[nodiscard]] bool with_static_states() const { return with_static_states_; }
   [[nodiscard]] bool symmetry_reduced() const { return symmetry_ != Symmetry::none; }
-  /// Halves that are kept.
-  [[nodiscard]] std::span<const Branch> halves() const;
+  /// The velocity branches that are kept.
+  [[nodiscard]] std::span<const Branch> branches() const;
 
   [[nodiscard]] PetscInt global_size() const { return global_size_; }
   [[nodiscard]] PetscInt local_size() const { return local_size_; }
@@ -72,16 +74,16 @@ class StateSpace {
   [[nodiscard]] const std::vector<int>& local_noise() const { return local_noise_; }
 
   /// The highest noise node that can stick.
-  [[nodiscard]] int last_static(Branch half) const { return side(half).last_static; }
-  [[nodiscard]] bool has_origin(Branch half, int noise) const {
-    return keeps_origin_ && noise > side(half).last_static;
+  [[nodiscard]] int last_static(Branch branch) const { return side(branch).last_static; }
+  [[nodiscard]] bool has_origin(Branch branch, int noise) const {
+    return keeps_origin_ && noise > side(branch).last_static;
   }
-  [[nodiscard]] bool has_holding(Branch half, int noise) const {
-    return noise >= side(half).first_holding;
+  [[nodiscard]] bool has_holding(Branch branch, int noise) const {
+    return noise >= side(branch).first_holding;
   }
   /// Whether the static level i is an unknown of its own.
-  [[nodiscard]] bool has_rest(int i) const {
-    return with_rest_ && i >= lowest_rest_ && i <= highest_rest_;
+  [[nodiscard]] bool has_static_state(int i) const {
+    return with_static_states_ && i >= lowest_static_ && i <= highest_static_;
   }
 
   /// Global index of a state that exists. O(1).
@@ -92,7 +94,7 @@ class StateSpace {
     PetscInt first, stride;
   };
   /// O(1).
-  [[nodiscard]] NodeLine nodes_of(Branch half, int noise) const;
+  [[nodiscard]] NodeLine nodes_of(Branch branch, int noise) const;
 
   /// Calls visit(state) for the local states in the order of their indices.
   template <class Visit>
@@ -109,21 +111,21 @@ class StateSpace {
   }
 
  private:
-  // Noise nodes of a half, counted along it.
+  // Noise nodes of a branch, counted along it.
   struct Side {
     Side(const model::Process& process, const noise::Nodes& noise,
          const velocity::VelocityDiscretisation& velocities);
     int last_static;
     int first_holding;  // holding states exist from here on; last() + 1 if there are none
   };
-  [[nodiscard]] const Side& side(Branch half) const {
-    return half == Branch::positive ? upper_ : lower_;
+  [[nodiscard]] const Side& side(Branch branch) const {
+    return branch == Branch::positive ? upper_ : lower_;
   }
 
-  // Shells [first, last) of a rank, the levels at rest with first_rest <= |i| < last_rest, and its
-  // first global index.
+  // Level pairs {n, -n}, first <= n < last, of a rank, its static levels with first_static <= |i| <
+  // last_static, and its first global index.
   struct Block {
-    int first, last, first_rest, last_rest;
+    int first, last, first_static, last_static;
     PetscInt begin;
   };
   void distribute(const noise::Nodes& noise, const model::NoiseChain& chain);
@@ -135,8 +137,9 @@ class StateSpace {
         visit(State{StateKind::origin, Branch::negative, -n, 0});
       }
     }
-    for (int i = lowest_rest_; with_rest_ && i <= highest_rest_; ++i) {
-      if (owner_of_rest(i) == rank_) visit(State{StateKind::rest, Branch::positive, i, 0});
+    for (int i = lowest_static_; with_static_states_ && i <= highest_static_; ++i) {
+      if (owner_of_static_level(i) == rank_)
+        visit(State{StateKind::static_phase, Branch::positive, i, 0});
     }
     for (int n : local_noise_) {
       if (has_origin(Branch::positive, n)) visit(State{StateKind::origin, Branch::positive, n, 0});
@@ -148,9 +151,9 @@ class StateSpace {
   [[nodiscard]] int first_row() const { return symmetry_reduced() ? 0 : -last_row(); }
   [[nodiscard]] bool has_state(int row, int n) const;
   [[nodiscard]] State state_at(int row, int n) const;
-  [[nodiscard]] int owner_of_rest(int level) const;
+  [[nodiscard]] int owner_of_static_level(int level) const;
   [[nodiscard]] int nodes_below(const Block& block, int n) const;
-  [[nodiscard]] int rest_below(const Block& block, int level) const;
+  [[nodiscard]] int static_levels_below(const Block& block, int level) const;
   [[nodiscard]] int size_at_zero(const Block& block) const;
   [[nodiscard]] int count(const Block& block, int row) const;
   [[nodiscard]] int position(const Block& block, int row, const State& state) const;
@@ -159,10 +162,10 @@ class StateSpace {
 
   MPI_Comm comm_;
   Symmetry symmetry_;
-  bool with_rest_, keeps_origin_;
+  bool with_static_states_, keeps_origin_;
   int first_, last_, nodes_;
   Side upper_, lower_;
-  int lowest_rest_, highest_rest_;
+  int lowest_static_, highest_static_;
   int rank_;
   std::vector<Block> blocks_;       // by rank
   std::vector<int> owner_of_pair_;  // rank

@@ -31,11 +31,12 @@ class StaticChain {
     return {chain, 1, k, lambda};
   }
 
-  /// m with m (lambda - Q) = entry: discounted mean time spent on each level by a stay that starts
-  /// on level low + n with probability entry[n] [time].
+  /// m with m (lambda - Q) = entry: discounted mean time spent on each level by a sticking phase
+  /// that starts on level low + n with probability entry[n] [time].
   [[nodiscard]] std::vector<double> occupation(std::span<const double> entry) const;
 
-  /// u with (lambda - Q) u = f: the discounted integral of f over a stay, by its first level.
+  /// u with (lambda - Q) u = f: the discounted integral of f over a sticking phase, by its first
+  /// level.
   [[nodiscard]] std::vector<double> integral(std::vector<double> f) const;
 
   /// E_i[exp(-lambda T)], T the time of leaving: on both sides, or on one of them only.

@@ -9,8 +9,8 @@
 
 namespace stickslip::operators {
 
-/// Functions under (x, y, v) -> (-x, -y, -v): even or odd, for which the half y = +1 is enough
-/// ("symmetry-reduced"), or of no symmetry, for which both halves are kept.
+/// Functions under (x, y, v) -> (-x, -y, -v): even or odd, for which the velocity branch y = +1 is
+/// enough ("symmetry-reduced"), or of no symmetry, for which both branches are kept.
 enum class Symmetry { even, odd, none };
 
 /// The symmetry of densities and constants: even where the process is symmetric.
@@ -24,10 +24,10 @@ enum class Symmetry { even, odd, none };
   return {Symmetry::none};
 }
 
-/// The two half lines of the velocity.
+/// The velocity branches v > 0 and v < 0.
 enum class Branch { positive, negative };
-[[nodiscard]] inline Branch opposite(Branch half) {
-  return half == Branch::positive ? Branch::negative : Branch::positive;
+[[nodiscard]] inline Branch opposite(Branch branch) {
+  return branch == Branch::positive ? Branch::negative : Branch::positive;
 }
 
 /// The part of the static states in an operator.
@@ -61,12 +61,12 @@ enum class Clock { time, path_length };
 struct SystemKey {
   double lambda = 0;
   Symmetry symmetry = Symmetry::even;
-  StaticPhase rest = StaticPhase::killing;
+  StaticPhase static_phase = StaticPhase::killing;
   Clock clock = Clock::time;
   double speed_limit = std::numeric_limits<double>::infinity();
   friend bool operator<(const SystemKey& a, const SystemKey& b) {
-    return std::tie(a.lambda, a.symmetry, a.rest, a.clock, a.speed_limit) <
-           std::tie(b.lambda, b.symmetry, b.rest, b.clock, b.speed_limit);
+    return std::tie(a.lambda, a.symmetry, a.static_phase, a.clock, a.speed_limit) <
+           std::tie(b.lambda, b.symmetry, b.static_phase, b.clock, b.speed_limit);
   }
   friend bool operator==(const SystemKey&, const SystemKey&) = default;
 };

@@ -18,10 +18,9 @@ namespace stickslip::operators {
 inline const std::string kSlidePrefix = "slide_";
 
 /// Assembles an operator and enters it in the statistics. Collective.
-[[nodiscard]] KolmogorovOperator assemble(MPI_Comm comm, const Discretisation& discretisation,
-                                          PetscScalar lambda, Symmetry symmetry, StaticPhase rest,
-                                          petsc::SolverStatistics& statistics,
-                                          Clock clock = Clock::time);
+[[nodiscard]] KolmogorovOperator
+assemble(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda, Symmetry symmetry,
+         StaticPhase static_phase, petsc::SolverStatistics& statistics, Clock clock = Clock::time);
 
 /// The same for its derivative. Collective.
 [[nodiscard]] KolmogorovOperator assemble_derivative(MPI_Comm comm,
@@ -29,7 +28,7 @@ inline const std::string kSlidePrefix = "slide_";
                                                      Symmetry symmetry, Parameter theta,
                                                      petsc::SolverStatistics& statistics);
 
-/// The solver of an operator, which must live as long: by default what default_pc_type() says.
+/// The solver of an operator, which must live as long: by default of the type default_pc_type().
 /// Collective. Throws NoMemory or NotReached.
 [[nodiscard]] std::unique_ptr<petsc::Factorization>
 factorization(const KolmogorovOperator& a, petsc::SolverStatistics& statistics);
@@ -50,7 +49,7 @@ class System {
 };
 
 /// One system for each key that is asked for, and none else; each is assembled
-/// and factored once and serves every solve, plain, transposed or with several right-hand sides.
+/// and factored once and serves every solve, forward, transposed or with several right-hand sides.
 class Systems {
  public:
   /// `statistics` must outlive this object.
@@ -60,8 +59,8 @@ class Systems {
   /// Collective at first use of a key.
   [[nodiscard]] System& at(const SystemKey& key);
   [[nodiscard]] System& at(double lambda, Symmetry symmetry,
-                           StaticPhase rest = StaticPhase::killing) {
-    return at({lambda, symmetry, rest});
+                           StaticPhase static_phase = StaticPhase::killing) {
+    return at({lambda, symmetry, static_phase});
   }
   /// Assembles and analyses as that would, and keeps nothing. Collective.
   [[nodiscard]] petsc::Analysis analyse(const SystemKey& key);

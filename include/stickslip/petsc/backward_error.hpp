@@ -10,9 +10,9 @@ namespace stickslip::petsc {
 /// Backward errors of solutions with one matrix.
 ///
 /// Its rows differ by many orders of magnitude, so that norms of the whole matrix would hide a bad
-/// row; |A| |x| does not. A plain solution is of one size: the largest component counts (Oettli and
-/// Prager). A transposed one is an occupation, time spent in each state: |A|^T |x| counts visits,
-/// falls off by tens of orders of magnitude, and its sum is what functionals see.
+/// row; |A| |x| does not. A forward solution is of one size: the largest component counts (Oettli
+/// and Prager). A transposed one is an occupation, time spent in each state: |A|^T |x| counts
+/// visits, falls off by tens of orders of magnitude, and its sum is what functionals see.
 class BackwardError {
  public:
   /// The matrix must outlive this object.

@@ -28,8 +28,8 @@ void check(PetscErrorCode code);
 /// returns the code that PETSc is to hand on. Called in a catch block.
 [[nodiscard]] PetscErrorCode keep_exception() noexcept;
 
-/// Runs f, which PETSc called: no exception may pass through PETSc's frames. It goes on from the
-/// check(...) around them, as it was thrown.
+/// Runs f, which PETSc called: no exception may pass through PETSc's frames. The check(...) around
+/// them throws it again.
 template <class F>
 [[nodiscard]] PetscErrorCode guarded(F f) noexcept {
   try {

@@ -12,12 +12,13 @@
 
 namespace stickslip::petsc {
 
-/// A solution with its corrections summed up; solution - correction is what one solve alone gave,
-/// and the effect of the correction on a functional estimates the rounding error in it.
+/// A solution after iterative refinement. `correction` is the sum of the steps of refinement: x -
+/// correction is the solution of one solve alone, and the effect of the correction on a functional
+/// estimates the rounding error in the functional.
 struct Solution {
   VecHandle x;
   VecHandle correction;
-  double backward_error = 0;  ///< of the corrected x; see BackwardError
+  double backward_error = 0;  ///< of the refined x; see BackwardError
 };
 
 /// A direct solver reports success on a singular matrix too, so each solve computes its residual
@@ -38,8 +39,8 @@ class Factorization {
   /// A^T x = b (no conjugation).
   [[nodiscard]] Solution solve_transposed(Vec b) { return solve(b, true); }
 
-  /// A x = b and A^T x = b without the residual and its correction, for directions that need not be
-  /// exact.
+  /// A x = b and A^T x = b without residual and iterative refinement, for directions that need not
+  /// be exact.
   void solve_once(Vec b, Vec x);
   void solve_transposed_once(Vec b, Vec x);
 

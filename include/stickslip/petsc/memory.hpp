@@ -5,7 +5,7 @@
 
 namespace stickslip::petsc {
 
-/// What is said when there is no room for them.
+/// The message where the factors do not fit.
 inline constexpr const char* kFactorsTooLarge =
     "the factors need more memory than there is; use a larger -delta, a looser -accuracy or more "
     "ranks";

@@ -11,7 +11,7 @@ namespace stickslip::petsc {
 /// Starts MPI, PETSc and SLEPc; ends them when it dies. One per process.
 ///
 /// Outside mpiexec, Open MPI's search for a daemon to join takes most of the start-up time of a
-/// small run; it is told to do without (0.3 s become 0.05 s). The files .petscrc and petscrc are
+/// small run; the search is switched off (0.3 s become 0.05 s). The files .petscrc and petscrc are
 /// not read, so that a run depends on what its command line names, and on PETSC_OPTIONS.
 class Session {
  public:

@@ -8,7 +8,7 @@ namespace stickslip::petsc {
 /// The PC type of this program, which the operators register.
 inline constexpr const char* kElementsPc = "elements";
 
-/// What options under the prefix say about the preconditioner and its matrices, if anything: the
+/// What options under the prefix choose of the preconditioner and its matrices, if anything: the
 /// default of -<prefix>pc_type is "elements" where its own options are given, and "lu" with others.
 [[nodiscard]] std::string implied_pc_type(const std::string& prefix);
 

@@ -13,15 +13,15 @@ struct SolverStatistics {
   int assemblies = 0;
   int factorizations_real = 0;
   int factorizations_complex = 0;
-  int solves = 0;       ///< right-hand sides solved for, plain or transposed
-  int corrections = 0;  ///< further solves that corrected or measured rounding
+  int solves = 0;       ///< right-hand sides solved for, forward or transposed
+  int corrections = 0;  ///< steps of iterative refinement, which correct or measure rounding
   int iterations = 0;   ///< of iterative solvers, all solves together
 
   std::int64_t unknowns = 0;        ///< of the largest system
   std::int64_t nonzeros = 0;        ///< of the largest matrix
   std::int64_t factor_entries = 0;  ///< of the largest factorisation; 0 if the solver hides it
   double factor_megabytes = 0;      ///< memory of the largest factorisation, all ranks
-  double backward_error = 0;        ///< largest normwise backward error after correction
+  double backward_error = 0;        ///< largest backward error after iterative refinement
 
   double assembly_seconds = 0;
   double analysis_seconds = 0;

@@ -26,7 +26,7 @@ class TimeStepper {
   TimeStepper(Mat a, Vec u, const std::string& prefix, double tolerance,
               SolverStatistics& statistics);
 
-  /// Goes on to `time`, not before the present one. Throws NotReached when steps fail.
+  /// Advances to `time`, not before the present one. Throws NotReached when steps fail.
   void advance(double time);
 
   [[nodiscard]] int steps() const;

@@ -22,7 +22,7 @@ struct DensityField {
   std::vector<double> atom;               ///< P(X = x_i, sticking), index i + N
   std::vector<double> noise_marginal;     ///< P(X = x_i) summed over the grid, index i + N
   std::vector<double> velocity_marginal;  ///< density of V without its atom P_stick [1/velocity]
-  double cut_mass = 0;                    ///< probability kept in holding states at |V| = v_max
+  double truncated_mass = 0;              ///< probability kept in holding states at |V| = v_max
 };
 
 /// Collective. The state at v = 0 of a grid scheme is counted with the first node.
@@ -33,7 +33,7 @@ struct SpeedDistribution {
   std::shared_ptr<const velocity::VelocityDiscretisation> velocities;
   std::vector<double> mass;  ///< of the velocity nodes
   double at_rest = 0;        ///< P_stick, and the origin states of a grid scheme
-  double at_top = 0;         ///< holding states: what the velocity cut keeps back
+  double at_top = 0;         ///< holding states: the mass beyond the truncation velocity
 };
 
 /// Collective.

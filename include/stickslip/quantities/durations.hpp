@@ -1,5 +1,6 @@
 #pragma once
-/// Densities and distribution functions of the durations of slides, stays and excursions.
+/// Densities and distribution functions of the durations of sliding phases, sticking phases and
+/// excursions.
 
 #include <string>
 #include <vector>
@@ -19,14 +20,15 @@ struct DurationDistribution {
   int pairs = 0;                        ///< of vectors of the reduced model, 0 if there is none
 };
 
-/// Stays, from the entry law by the static chain alone: exp(Q t) as a sum of positive terms
-/// (uniformisation), so that every value keeps its relative accuracy. O(Lambda t_max k).
+/// Sticking phases, from the hitting distribution at their onset by the static chain alone: exp(Q
+/// t) as a sum of positive terms (uniformisation), so that every value keeps its relative accuracy.
+/// O(Lambda t_max k).
 [[nodiscard]] DurationDistribution stick_distribution(const model::Process& process,
                                                       const std::vector<Uncertain>& entry,
                                                       const std::vector<double>& time);
 
-/// Slides: f(t) = g exp(-A t) r with A = A(0, even or none), r = A 1 = -A_us 1 the rate of coming
-/// to rest, g the value where excursions start; by a reduced model, to about 1e-8 to 2e-7 of
+/// Sliding phases: f(t) = g exp(-A t) r with A = A(0, even or none), r = A 1 = -A_us 1 the rate of
+/// coming to rest, g the value where excursions start; by a reduced model, to about 1e-8 to 2e-7 of
 /// 1/mean. Errors of densities are relative to 1/mean. Collective.
 [[nodiscard]] DurationDistribution slide_distribution(operators::Systems& systems,
                                                       const StationaryDistribution& stationary,
@@ -42,23 +44,23 @@ struct DurationDistribution {
 /// Of what a clock shows when the process is killed, started as excursions start; `mean` of that,
 /// and its density `at_zero`. Both of the above are this. Collective.
 [[nodiscard]] DurationDistribution
-distribution_until_killed(operators::Systems& systems, operators::StaticPhase rest,
+distribution_until_killed(operators::Systems& systems, operators::StaticPhase static_phase,
                           operators::Clock clock, const StationaryDistribution& stationary,
                           const std::vector<double>& time, double mean, const TimeScales& scales,
                           double at_zero, double tolerance);
 
-/// f_slide(0+): a slide can only end at once if one jump back from the level of its start reverses
-/// it.
+/// f_slide(0+): a sliding phase can only end at once if one jump back from the level of its start
+/// reverses it.
 [[nodiscard]] double slide_density_at_zero(const model::Process& process, const SideChain& sides);
 
-/// Means and variances of the durations: what their transforms say at lambda -> 0.
+/// Means and variances of the durations: the limits of their transforms as lambda -> 0.
 struct DurationMoments {
   Uncertain mean_slide, mean_stick, mean_excursion;  ///< [time]
   Uncertain var_slide, var_stick, var_excursion;     ///< [time^2]
 };
-/// E[S^2] = 2 g A^-2 1 for slides S, E[T^2] = 2 P R^2 1 for stays T with R = (-Q)^-1, and
-/// E[S T] = g A^-2 (-A_us R 1), since where a slide ends and how long it took go together. Three
-/// solves with systems.at(0, even or none). Collective.
+/// E[S^2] = 2 g A^-2 1 for sliding phases S, E[T^2] = 2 P R^2 1 for sticking phases T with R =
+/// (-Q)^-1, and E[S T] = g A^-2 (-A_us R 1), since where a sliding phase ends depends on how long
+/// it took. Three solves with systems.at(0, even or none). Collective.
 [[nodiscard]] DurationMoments duration_moments(operators::Systems& systems,
                                                const StationaryDistribution& distribution,
                                                const std::vector<Uncertain>& entry);
@@ -75,6 +77,6 @@ struct Abscissa {
   const std::vector<double>& values;
 };
 void append_distribution(const std::string& name, const Abscissa& abscissa,
-                         const DurationDistribution& law, Results& results);
+                         const DurationDistribution& durations, Results& results);
 
 }  // namespace stickslip::quantities

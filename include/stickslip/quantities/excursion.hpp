@@ -1,5 +1,5 @@
 #pragma once
-/// Everything that one mean excursion from s+ tells about the stationary law.
+/// What follows for the stationary distribution from means over one excursion from s+.
 
 #include <vector>
 
@@ -15,16 +15,16 @@ namespace stickslip::quantities {
 /// and what belongs to v < 0 follows what belongs to v > 0, counted along the nodes of -X.
 struct Excursion {
   std::vector<double> slide_time;      ///< time spent sliding on node n [time]
-  std::vector<double> slide_distance;  ///< int |V| dt on node n [length]
+  std::vector<double> slide_distance;  ///< int |V| dt on node n [velocity time]
   std::vector<double> slide_square;    ///< int V^2 dt on node n
   std::vector<double> entry;  ///< probability that sliding ends on symmetry-reduced level i
-  /// The same of slides from s+ alone, by level of the noise; empty unless it is known.
+  /// The same of sliding phases from s+ alone, by level of the noise; empty unless it is known.
   std::vector<double> entry_plus;
-  std::vector<double> entry_minus;  ///< of slides from s-; empty if symmetry-reduced
+  std::vector<double> entry_minus;  ///< of sliding phases from s-; empty if symmetry-reduced
   std::vector<double> stick_time;   ///< time spent sticking on symmetry-reduced level i [time]
   double lost_probability = 0;      ///< sum of entry less 1, before it was scaled to 1
 
-  /// int V dt over a slide [length]; 0 if symmetry-reduced.
+  /// int V dt over a sliding phase [velocity time]; 0 if symmetry-reduced.
   [[nodiscard]] double mean_drift(const noise::Nodes& noise) const;
   [[nodiscard]] double mean_slide() const;      ///< E[tau_hat_1], section 4.3 of the paper [time]
   [[nodiscard]] double mean_stick() const;      ///< E[tau_1 - tau_hat_1] [time]
@@ -46,7 +46,7 @@ struct SideChain {
   [[nodiscard]] double share_of_minus() const { return falling / (rising + falling); }
 };
 
-/// That chain, given where slides from s+ and s- end.
+/// That chain, given where sliding phases from s+ and s- end.
 [[nodiscard]] SideChain side_chain(const model::Process& process,
                                    const std::vector<double>& entry_plus,
                                    const std::vector<double>& entry_minus);
@@ -62,17 +62,17 @@ void append_sticking(const Excursion& excursion, Results& results);
 void append_moments(const operators::Discretisation& discretisation, const Excursion& excursion,
                     Results& results);
 
-/// entry_law: P(X = x_k when the first slide from s+ ends) on the static levels k, without symmetry
-/// entry_law_minus, the same from s-, and f_stick_0.
+/// entry_law: P(X = x_k when the first sliding phase from s+ ends) on the static levels k, without
+/// symmetry entry_law_minus, the same from s-, and f_stick_0.
 void append_hitting_distribution(const model::Process& process, const Excursion& excursion,
                                  Results& results);
 
-/// The density of sticking times at 0+ [1/time]: the rate of leaving at once, where slides end on
-/// the lowest and on the highest static level with these probabilities.
+/// The density of sticking times at 0+ [1/time]: the rate of leaving at once, where sliding phases
+/// end on the lowest and on the highest static level with these probabilities.
 [[nodiscard]] double stick_density_at_zero(const model::Process& process, double lowest,
                                            double highest);
 
-/// P_X_le_mu_s and E_X2 of the noise alone, from its closed law.
+/// P_X_le_mu_s and E_X2 of the noise alone, from its distribution in closed form.
 void append_noise_distribution(const model::Process& process, Results& results);
 
 /// dP_X_le_mu_s_dtau and dE_X2_dtau, at the number of levels of the process; nothing for a noise

@@ -1,5 +1,5 @@
 #pragma once
-/// Laplace transforms of the durations of slides, stays and excursions.
+/// Laplace transforms of the durations of sliding phases, sticking phases and excursions.
 
 #include <vector>
 
@@ -17,7 +17,8 @@ struct DurationTransforms {
   Uncertain excursion;  ///< E[exp(-lambda tau_1)]
 };
 
-/// F_stick from the entry law, by the static chain alone. Relative error that of `entry`.
+/// F_stick from the hitting distribution at the onset of sticking, by the static chain alone.
+/// Relative error that of `entry`.
 [[nodiscard]] Uncertain stick_transform(const model::Process& process, double lambda,
                                         const std::vector<Uncertain>& entry);
 
@@ -28,12 +29,12 @@ void append_stick_transform(const model::Process& process, const std::vector<dou
 /// F_slide and F_excursion: A u = -A_us s with s = 1 (Prop. 4.3) or s = F_lambda, read where
 /// excursions start. Two solves with systems.at(lambda, even or none). Collective. lambda >= 0
 /// [1/time].
-struct SlideTransforms {
+struct SlidingTransforms {
   Uncertain slide, excursion;
 };
-[[nodiscard]] SlideTransforms slide_transforms(operators::Systems& systems,
-                                               const StationaryDistribution& distribution,
-                                               double lambda);
+[[nodiscard]] SlidingTransforms sliding_transforms(operators::Systems& systems,
+                                                   const StationaryDistribution& distribution,
+                                                   double lambda);
 
 /// F_slide, F_stick and F_excursion as arrays over lambda; each value counts by its own size.
 void append_laplace(const std::vector<double>& lambda,

@@ -15,8 +15,8 @@ class Pencil {
   virtual ~Pencil() = default;
   /// y = A x, or A^T x.
   virtual void multiply(Vec x, Vec y, bool transposed) const = 0;
-  /// x = (z + A)^-1 b, or with the transpose: by one plain solve, or refined. A new z > 0 takes a
-  /// factorisation. Throws NoMemory or NotReached.
+  /// x = (z + A)^-1 b, or with the transpose: by one solve, or with iterative refinement. A new z >
+  /// 0 takes a factorisation. Throws NoMemory or NotReached.
   virtual void solve(double z, Vec b, Vec x, bool transposed, bool refined) = 0;
 
  protected:
@@ -25,13 +25,14 @@ class Pencil {
   Pencil& operator=(const Pencil&) = default;
 };
 
-/// A = -L with the static states as `rest` says, by any clock: with its rates e, functions u and
+/// A = -L with that part of the static states, by any clock: with its rates e, functions u and
 /// functionals c on the operator are e^1/2 u and e^-1/2 c here, and A = -e^-1/2 L e^-1/2. Releases
 /// the systems that it has solved with.
 class ProcessPencil final : public Pencil {
  public:
   ProcessPencil(operators::Systems& systems, operators::Symmetry symmetry,
-                operators::StaticPhase rest, operators::Clock clock = operators::Clock::time);
+                operators::StaticPhase static_phase,
+                operators::Clock clock = operators::Clock::time);
   ~ProcessPencil() override;
   ProcessPencil(const ProcessPencil&) = delete;
   ProcessPencil& operator=(const ProcessPencil&) = delete;

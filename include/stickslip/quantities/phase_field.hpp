@@ -27,9 +27,9 @@ class PhaseField {
   PhaseField(const operators::Discretisation& discretisation, const operators::StateSpace& states,
              Kind kind);
 
-  /// Adds to the velocity node of a half on a noise node counted along it: (x_n, v) of the upper
-  /// one, (-x_n, -v) of the lower one. A noise node of this rank.
-  void add(operators::Branch half, int noise, int node, double value);
+  /// Adds to the velocity node of a branch on a noise node counted along it: (x_n, v) of the
+  /// positive one, (-x_n, -v) of the negative one. A noise node of this rank.
+  void add(operators::Branch branch, int noise, int node, double value);
 
   [[nodiscard]] const std::vector<double>& x() const { return x_; }
   [[nodiscard]] const std::vector<double>& v() const { return v_; }

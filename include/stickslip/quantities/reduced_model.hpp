@@ -32,20 +32,20 @@ struct Ends {
 /// L2(D), although it cannot have growing modes.
 ///
 /// Vectors are orthogonalised in the scalar product with a weight D, V with D and W with D^-1: with
-/// D near the stationary law both then are functions in L2(D). Without it V sees fast bodies that
-/// never occur, W what does, and W^T V is near singular.
+/// D near the stationary distribution both then are functions in L2(D). Without it V sees fast
+/// bodies that never occur, W what does, and W^T V is near singular.
 class ReducedModel {
  public:
   /// Smooth b and c: V and W start with b, A b, c, c A. Rough ones, such as the value at a point,
-  /// say nothing at infinity; then W^T V is near singular all the same (1e-11 was seen), and the
-  /// solves of the chains are refined, which leaves seven digits of the largest value.
+  /// give no information at infinity; then W^T V is near singular all the same (1e-11 was seen),
+  /// and the solves of the chains are refined, which leaves seven digits of the largest value.
   enum class Nature { smooth, rough };
   /// `pencil` must live as long; `ends.weight` > 0. Collective.
   ReducedModel(Pencil& pencil, const Ends& ends, Nature nature, int most_pairs);
 
   /// Adds up to `count` pairs of vectors of the chains of `shift` > 0 [1/time]; a new shift takes
-  /// one factorisation, each pair one plain and one transposed solve. Returns how many were added:
-  /// fewer when the space is full or invariant. Collective.
+  /// one factorisation, each pair one forward and one transposed solve. Returns how many were
+  /// added: fewer when the space is full or invariant. Collective.
   int extend(double shift, int count);
 
   [[nodiscard]] Nature nature() const { return nature_; }

@@ -22,7 +22,7 @@ inline const std::string kRelaxPrefix = "relax_";
 struct RelaxationMode {
   std::complex<double> rate;   ///< real part: decay, imaginary part >= 0: frequency [1/time]
   double residual = 0;         ///< of the eigensolver
-  double spread = 0;           ///< distance to rates that rounding cannot tell from this one
+  double spread = 0;           ///< distance to rates that rounding cannot distinguish from this one
   PhaseField real, imaginary;  ///< phi on the grid, largest modulus 1
   std::vector<std::complex<double>>
       at_rest;  ///< phi(x_i, 0, 0), from the lowest level up, on all ranks

@@ -9,14 +9,14 @@
 
 namespace stickslip::quantities {
 
-/// What an excursion tells whatever the observable (Prop. 3.1 of the paper).
+/// What excursions give whatever the observable (Prop. 3.1 of the paper).
 struct ExitTransforms {
   Uncertain h_plus;   ///< h^+ = E[exp(-lambda tau_1); the excursion ends at s+]
   Uncertain h_minus;  ///< h^-
   Uncertain w_one;    ///< w(1) = E int_0^tau_1 exp(-lambda s) ds [time]
 };
 
-/// What excursions tell about f.
+/// What excursions give of f.
 struct ObservableTransforms {
   Uncertain w_plus, w_minus;  ///< w(s+; f), w(s-; f)
   Uncertain pi_lambda;        ///< -> pi(f)

@@ -22,15 +22,15 @@ namespace stickslip::quantities {
 ///   dM = nu dL (h, s) + entry . ds,
 ///
 /// where dL is the derivative of the generator on functions with the static values s: the flow
-/// changes by dB, the jumps by d(Lambda alpha). One plain solve with systems.at(0, even) for each
+/// changes by dB, the jumps by d(Lambda alpha). One forward solve with systems.at(0, even) for each
 /// M, whatever the number of parameters; one assembly for each parameter. Elements and upwind
 /// directions are kept: what that leaves out is an error of the discretisation, and falls with it.
 ///
 /// Without symmetry the shares of excursions from s+ and s- change as well. The side on which an
 /// excursion ends then counts like a static value: h and s get z times those of the probability of
 /// leaving upwards, z = (h(s+) - h(s-))/(P(s+ to s-) + P(s- to s+)), which solves (1 - P) z = h - M
-/// for the chain P of the sides. One more plain solve in all. With a single static level mean_stick
-/// takes no solve, and has no derivative but that by tau.
+/// for the chain P of the sides. One more forward solve in all. With a single static level
+/// mean_stick takes no solve, and has no derivative but that by tau.
 class Sensitivity {
  public:
   /// Solves for the durations. Collective.
@@ -46,8 +46,8 @@ class Sensitivity {
   /// Of one mean, by parameter.
   using Gradient = std::vector<Uncertain>;
 
-  [[nodiscard]] Gradient slides(const operators::KolmogorovOperator::Observable& f) const;
-  [[nodiscard]] Gradient stays() const;
+  [[nodiscard]] Gradient sliding_mean(const operators::KolmogorovOperator::Observable& f) const;
+  [[nodiscard]] Gradient sticking_mean() const;
   [[nodiscard]] double worth_of_upper_side(const petsc::Solution& h) const;
   // nu dL (h, s) by parameter, and what the sides change.
   [[nodiscard]] Gradient through(petsc::Solution h, const std::vector<double>& s) const;

@@ -7,8 +7,8 @@
 
 namespace stickslip::quantities {
 
-/// Mean and variance of the path length int |V| dt and of the net displacement int V dt of a slide,
-/// over slides as they follow one another.
+/// Mean and variance of the path length int |V| dt and of the net displacement int V dt of a
+/// sliding phase, over sliding phases as they follow one another.
 struct SlipMoments {
   Uncertain variance;                ///< of the path length [velocity^2 time^2]
   Uncertain net_mean, net_variance;  ///< of the displacement
@@ -46,7 +46,7 @@ void append_slip_transform(const std::vector<double>& inverse_distance,
                            const std::vector<Uncertain>& transform, Results& results);
 
 /// f_slip and cdf_slip.
-void append_slip(const std::vector<double>& distance, const DurationDistribution& law,
+void append_slip(const std::vector<double>& distance, const DurationDistribution& slips,
                  Results& results);
 
 }  // namespace stickslip::quantities

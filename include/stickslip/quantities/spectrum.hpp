@@ -55,7 +55,7 @@ struct ReducedSpectrum {
 
 /// By one factorisation of i omega - L for each frequency, its analysis done once. Complex scalars
 /// only. Collective; on several ranks each takes its share of the frequencies, alone: `systems` and
-/// `law` then live on one rank each, and `comm` has all of them.
+/// `distribution` then live on one rank each, and `comm` has all of them.
 [[nodiscard]] Spectrum direct_spectrum(MPI_Comm comm, operators::Systems& systems,
                                        const StationaryDistribution& distribution,
                                        const std::vector<double>& omega);

@@ -1,5 +1,5 @@
 #pragma once
-/// The stationary law from one transposed solve with the sliding operator.
+/// The stationary distribution from one transposed solve with the sliding operator.
 
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/quantities/excursion.hpp"
@@ -12,13 +12,14 @@ namespace stickslip::quantities {
 ///
 /// so that pi = (nu, stick_time)/E[tau_1], symmetrised, and pi(f) is a sum for every f.
 ///
-/// Without symmetry, on both half lines: nu+ A(0, none) = g+ and nu- A = g- for excursions from s+
-/// and s-. The sides from which excursions start are a Markov chain; with its stationary shares,
+/// Without symmetry, on both velocity branches: nu+ A(0, none) = g+ and nu- A = g- for excursions
+/// from s+ and s-. The sides from which excursions start are a Markov chain; with its stationary
+/// shares,
 ///
 ///   p+/p- = P(s- to s+)/P(s+ to s-) = (entry- . h+)/(entry+ . h-),
 ///
-/// h+-(i) the probability that a stay that begins on level i ends upwards or downwards, all sums
-/// positive, nu = p+ nu+ + p- nu- takes the place of the nu above.
+/// h+-(i) the probability that a sticking phase that begins on level i ends upwards or downwards,
+/// all sums positive, nu = p+ nu+ + p- nu- takes the place of the nu above.
 class StationaryDistribution {
  public:
   /// One transposed solve with systems.at(0, even), or two with systems.at(0, none). Collective.
@@ -35,7 +36,7 @@ class StationaryDistribution {
 
   /// Means over an excursion, the same on all ranks.
   [[nodiscard]] const Excursion& excursion() const { return excursion_; }
-  /// The same before the last correction of the solve: the difference shows rounding.
+  /// The same before iterative refinement of the solution: the difference shows rounding.
   [[nodiscard]] const Excursion& uncorrected() const { return uncorrected_; }
 
   /// How excursions follow one another; with symmetry all start at s+.
@@ -45,7 +46,7 @@ class StationaryDistribution {
 
   /// nu, distributed as states() says [time]: the time spent in each sliding state.
   [[nodiscard]] Vec occupation() const { return occupation_; }
-  /// The same before the last correction.
+  /// The same before iterative refinement.
   [[nodiscard]] Vec uncorrected_occupation() const { return uncorrected_occupation_; }
 
   /// Time spent per excursion in each state of any operator, its static states too, if it has any:

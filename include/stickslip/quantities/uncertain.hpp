@@ -31,7 +31,7 @@ struct Uncertain {
   return {factor * a.value, std::abs(factor) * a.error};
 }
 
-/// functional . solution, with the effect of the last correction as its rounding. Collective.
+/// functional . solution, with the effect of iterative refinement as its rounding. Collective.
 [[nodiscard]] Uncertain value_of(Vec functional, const petsc::Solution& solution);
 
 /// A scalar result.

@@ -1,5 +1,5 @@
 #pragma once
-/// All that is asked for, on one discretisation, by the route asked for.
+/// All that is asked for, on one discretisation, by the solution method asked for.
 
 #include <mpi.h>
 
@@ -31,12 +31,13 @@ struct Setting {
 };
 
 struct Evaluation {
-  /// Errors are those of the route on this discretisation: rounding, and the bias of small lambda.
+  /// Errors are those of the solution method on this discretisation: rounding, and the bias of
+  /// small lambda.
   quantities::Results results;
-  /// What the route tells about itself, by name, such as the lambda it used.
+  /// What the solution method reports of itself, by name, such as the lambda it used.
   std::vector<std::pair<std::string, double>> checks;
   std::shared_ptr<quantities::StationaryDistribution>
-      distribution;                                 ///< excursion route, if it was needed
+      distribution;                                 ///< of method excursion, if it was needed
   std::vector<quantities::RelaxationSector> modes;  ///< if asked for
 };
 

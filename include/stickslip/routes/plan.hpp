@@ -14,7 +14,7 @@ namespace stickslip::routes {
 enum class Work {
   stationary_distribution,    ///< occupations, and with them sticking, moments and density
   averages,                   ///< of observables
-  orientation,                ///< the entry law, which is no even functional
+  orientation,                ///< the hitting distribution, which is no even functional
   sensitivity,                ///< adjoints of the scalars
   duration_moments,           ///< variances of durations
   duration_transforms,        ///< of one lambda
@@ -66,11 +66,11 @@ struct Plan {
   [[nodiscard]] bool adaptive() const;
 };
 
-/// The least set of work for the quantities asked for. Routes other than excursion do one thing
-/// each, and their plan is empty. Local.
+/// The least set of work for the quantities asked for. Solution methods other than excursion do one
+/// thing each, and their plan is empty. Local.
 [[nodiscard]] Plan plan_of(const options::Case& given);
 
-/// "stationary law", "resolvent at lambda = 0.5".
+/// "stationary distribution", "resolvent at lambda = 0.5".
 [[nodiscard]] std::string task_name(const options::Question& question, const Task& task);
 
 }  // namespace stickslip::routes

@@ -18,7 +18,7 @@ class Comoments {
   [[nodiscard]] double count() const { return numbers_[0]; }
   [[nodiscard]] double mean(std::size_t n) const { return numbers_[1 + n]; }
 
-  /// As many samples as `times` tells, all alike. O(size^2).
+  /// `times` samples, all alike. O(size^2).
   void add(std::span<const double> sample, double times = 1);
   /// As if all samples of `other` had been added.
   void merge(const Comoments& other);

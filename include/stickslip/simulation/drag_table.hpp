@@ -1,5 +1,5 @@
 #pragma once
-/// Drag as a piecewise polynomial, which costs the same whatever the law.
+/// Drag as a piecewise polynomial, which costs the same whatever the drag law.
 
 #include <array>
 #include <cstddef>

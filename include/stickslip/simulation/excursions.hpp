@@ -43,7 +43,8 @@ struct Wanted {
   }
 };
 
-/// Integrals of f over the slide and the stay of an excursion; with symmetry of its even part.
+/// Integrals of f over the sliding and the sticking phase of an excursion; with symmetry of its
+/// even part.
 struct Integrals {
   double slide = 0, stick = 0;
 };
@@ -53,8 +54,8 @@ struct Discounted {
   double value = 0, mirrored = 0;
 };
 
-/// One excursion: a slide from (x_{k+1}, v = 0) or its counterpart below to rest, and the stay
-/// until the static levels are left again.
+/// One excursion: a sliding phase from (x_{k+1}, v = 0) or its counterpart below to rest, and the
+/// sticking phase until the static levels are left again.
 struct Excursion {
   double slide = 0, stick = 0;  ///< durations [time]
   double square = 0;            ///< int v^2 dt
@@ -62,7 +63,7 @@ struct Excursion {
   double product = 0;           ///< int x v dt
   double within = 0;            ///< time with |X| <= mu_s
   double noise_square = 0;      ///< int x^2 dt
-  int entry = 0;                ///< level i at which the slide came to rest
+  int entry = 0;                ///< level i at which the sliding phase ended
   bool turned = false;          ///< whether the next one starts from the other side
   double jumps = 0;             ///< of the noise
   /// int v exp(-i omega t) dt, t from the start of the excursion.
@@ -84,7 +85,8 @@ class ExcursionSource {
   /// The next one, with the numbers of `random`; `place` in [0, 1) moves the times at which
   /// observables are taken, and nothing else.
   virtual void draw(RandomStream& random, std::size_t side, double place, Excursion& excursion) = 0;
-  /// From v = 0 on any level; on static ones it slides 0. `turned`: the next one is from s-.
+  /// From v = 0 on any level; on static ones the sliding phase lasts 0. `turned`: the next one is
+  /// from s-.
   virtual void draw_from(int level, RandomStream& random, Excursion& excursion) = 0;
 };
 

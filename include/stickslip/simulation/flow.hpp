@@ -12,7 +12,7 @@
 
 namespace stickslip::simulation {
 
-/// A piece of a slide at constant force: over `time`, from one speed to `end`.
+/// A piece of a sliding phase at constant force: over `time`, from one speed to `end`.
 struct Piece {
   double time = 0;
   double end = 0;        ///< speed at the end; 0 where the body came to rest
@@ -94,7 +94,7 @@ inline Piece LinearFlow::move(double speed, double force, double time, bool inte
 
 /// Any other drag: Taylor series of order 6 or 8 in time, from piecewise polynomials for b, whose
 /// last terms are below 1e-11 of the speed; where the speed vanishes or b has another polynomial, a
-/// step is cut. Not to be shared by threads.
+/// step ends. Not to be shared by threads.
 class GeneralFlow {
  public:
   explicit GeneralFlow(const model::Drag& drag) : drag_(drag), table_(drag) {}

@@ -16,7 +16,8 @@ struct State {
   double time = 0, x = 0, y = 0, v = 0, displacement = 0;
 };
 
-/// The process on its way. Between events X and Y stay and V follows the flow. Local.
+/// A path of the process, followed event by event. Between events X and Y stay and V follows the
+/// flow. Local.
 class Walk {
  public:
   virtual ~Walk() = default;

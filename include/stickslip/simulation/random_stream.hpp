@@ -13,7 +13,7 @@ namespace stickslip::simulation {
 
 /// Stream number `stream` of `seed`: 2^66 random bits of the counter-based generator Philox4x64-10
 /// (Salmon, Moraes, Dror and Shaw, SC 2011), from Random123. Streams of different number or seed
-/// share no counter, so that work can be dealt out in any way. A UniformRandomBitGenerator.
+/// share no counter, so that work can be distributed in any way. A UniformRandomBitGenerator.
 class RandomStream {
  public:
   using result_type = std::uint64_t;

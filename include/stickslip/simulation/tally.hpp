@@ -16,11 +16,12 @@
 
 namespace stickslip::simulation {
 
-/// Durations whose laws are asked for.
+/// Durations whose distributions are asked for.
 enum class Duration { slide, stick, excursion };
 
-/// Laws of durations, of the path length of a slide, and of its largest speed.
-enum class Law { slide, stick, excursion, path, peak };
+/// Random variables with histograms: durations, the path length of a sliding phase, and its largest
+/// speed.
+enum class Variable { slide, stick, excursion, path, peak };
 
 /// Functions of the state whose integrals over excursions are kept; inside is 1{|x| <= mu_s}.
 enum class Integrand { v_square, v_size, x_v, inside, x_square, v };
@@ -29,10 +30,10 @@ enum class Integrand { v_square, v_size, x_v, inside, x_square, v };
 using Named = std::vector<std::pair<std::string, Estimate>>;
 
 /// Counts and co-moments of excursions from both sides, or with symmetry from s+. Tallies of parts,
-/// merged in a fixed order, give the same bits however the parts were dealt out.
+/// merged in a fixed order, give the same bits however the parts were distributed.
 ///
-/// Excursions of a long path start from s+ and s- in turn by a Markov chain. Whatever is said of
-/// one of them is a mean over all, so that a stationary mean is E[G]/E[T], with G the integral over
+/// Excursions of a long path start from s+ and s- in turn by a Markov chain. Quantities of an
+/// excursion are means over all, so that a stationary mean is E[G]/E[T], with G the integral over
 /// an excursion and T its duration. Intervals are those of the delta method. Local.
 class Tally {
  public:
@@ -62,7 +63,7 @@ class Tally {
   [[nodiscard]] Estimate stationary(Integrand integrand) const;  ///< E[V^2] and the like
   /// up E[V+] + down E[V-].
   [[nodiscard]] Estimate mean_of_speeds(double up, double down) const;
-  /// Probability that a slide from one side comes to rest on level i.
+  /// Probability that a sliding phase from one side ends on level i.
   [[nodiscard]] Estimate entry(std::size_t side, int i) const;
   /// Rate at which a body leaves rest as it has come there: `up` on the highest level, `down` on
   /// the lowest.
@@ -70,10 +71,10 @@ class Tally {
   /// E[exp(-lambda D)] for the n-th lambda.
   [[nodiscard]] Estimate laplace(std::size_t n, Duration duration) const;
   /// P(low <= D < high); low and high are edges, or 0 and infinity.
-  [[nodiscard]] Estimate probability(Law law, double low, double high) const;
-  /// Mean and variance of the path length of a slide and of its net displacement.
+  [[nodiscard]] Estimate probability(Variable variable, double low, double high) const;
+  /// Mean and variance of the path length of a sliding phase and of its net displacement.
   [[nodiscard]] Named slip() const;
-  /// E[exp(-s L)] of the path length L of a slide for the n-th s.
+  /// E[exp(-s L)] of the path length L of a sliding phase for the n-th s.
   [[nodiscard]] Estimate slip_transform(std::size_t n) const;
   /// S_v at the n-th omega, and at 0, of V - E[V]; see tally.cpp.
   [[nodiscard]] Estimate spectrum(std::size_t n) const;
@@ -88,8 +89,8 @@ class Tally {
   [[nodiscard]] Estimate autocorrelation(std::size_t n) const;
   /// Mean and variance of int_0^t V at the n-th time.
   [[nodiscard]] Named travel(std::size_t n) const;
-  /// Mean times until |V| first reaches w, one of wanted.speeds, from the start of a slide and from
-  /// rest. If no slide did, a lower bound with an interval up to infinity.
+  /// Mean times until |V| first reaches w, one of wanted.speeds, from the start of a sliding phase
+  /// and from rest. If no sliding phase reached w, a lower bound with an interval up to infinity.
   [[nodiscard]] Named first_passage(double w) const;
 
   /// All numbers in a row, and back. `unpack` expects a tally of the same questions, and throws
@@ -137,7 +138,7 @@ class Tally {
   bool symmetric_;
   std::array<Place, size_of_groups> places_;
   std::vector<Comoments> comoments_;        // by group, member and side
-  std::vector<Histogram> histograms_;       // of entries, then by Law
+  std::vector<Histogram> histograms_;       // of entries, then by Variable
   std::vector<std::vector<double>> edges_;  // of the cells of histograms
   double jumps_ = 0;
 };

@@ -13,7 +13,7 @@ struct Sample {
 /// q for which the last three samples fit u + C delta^q; NaN if there is none.
 [[nodiscard]] double observed_order(std::span<const Sample> samples);
 
-/// NaN where the samples do not tell.
+/// NaN where the samples fit no order.
 struct Limit {
   double value, error;
 };
@@ -22,10 +22,10 @@ struct Limit {
 /// error smallest: the change that leaving the last sample out would make, and the errors of the
 /// samples as they are weighted. The powers are 1, 2, 3, ... for mu_d < mu_s, and go by halves from
 /// 3/2 or 2 on, whichever is nearer to the observed order, for mu_d = mu_s, where a layer of
-/// grazing bodies, sqrt(delta) wide, is in the way; so it was found of all means and probabilities.
-/// An observed order more than 1/4 away from the first power stands for itself: then the last two
-/// samples are extrapolated with it, and the error is the change from one such limit to the next.
-/// O(n^4) for n samples.
+/// grazing bodies is sqrt(delta) wide; so it was found of all means and probabilities. An observed
+/// order more than 1/4 away from the first power stands for itself: then the last two samples are
+/// extrapolated with it, and the error is the change from one such limit to the next. O(n^4) for n
+/// samples.
 [[nodiscard]] Limit limit_of(std::span<const Sample> samples, double order, bool grazing);
 
 }  // namespace stickslip::studies

@@ -9,7 +9,7 @@ namespace stickslip {
 /// commit, the destructor removes what was written, and the target stays as it was.
 class AtomicFile {
  public:
-  /// `tag` tells runs apart that write the same target; ranks of one run share it.
+  /// `tag` distinguishes runs that write the same target; ranks of one run share it.
   AtomicFile(std::string target, long tag);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;

@@ -1,5 +1,5 @@
 #pragma once
-/// The points of a sweep, shared out over groups of ranks.
+/// The points of a sweep, distributed over groups of ranks.
 
 #include <mpi.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What a sweep tells: table, CSV, JSON, HDF5. All by rank 0 alone, which has the runs.
+/// What a sweep reports: table, CSV, JSON, HDF5. All by rank 0 alone, which has the runs.
 
 #include <mpi.h>
 

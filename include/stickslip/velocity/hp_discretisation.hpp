@@ -1,5 +1,5 @@
 #pragma once
-/// hp discontinuous Galerkin discretisation of the half line.
+/// hp discontinuous Galerkin discretisation of one velocity branch.
 
 #include <map>
 #include <memory>

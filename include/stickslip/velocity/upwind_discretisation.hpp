@@ -40,7 +40,8 @@ class UpwindDiscretisation final : public VelocityDiscretisation {
  private:
   [[nodiscard]] std::unique_ptr<VelocityDiscretisation> up_to(double speed) const override;
 
-  // The row of a node where the body moves on at `rate`, upwards or downwards as `direction` says.
+  // The row of a node where the body moves on at `rate`, upwards or downwards by the sign of
+  // `direction`.
   void fill(int j, double direction, double rate, TransportRow& row) const;
 
   double spacing_;

@@ -1,5 +1,5 @@
 #pragma once
-/// A discretised half line v > 0, seen by the operators through a few rows and weights.
+/// A discretised velocity branch v > 0, seen by the operators through a few rows and weights.
 
 #include <functional>
 #include <memory>
@@ -29,7 +29,7 @@ struct TransportRow {
 using SpeedChange = std::function<double(double v)>;
 
 /// A velocity discretisation on [0, v_max] for the speeds B(v) = net_force + b(v).
-/// Implementations are immutable; all members are local and cost O(size) unless said.
+/// Implementations are immutable; all members are local and cost O(size) unless stated.
 class VelocityDiscretisation {
  public:
   virtual ~VelocityDiscretisation() = default;
@@ -81,7 +81,7 @@ class VelocityDiscretisation {
   /// Whether bodies that reach v_max are killed there, instead of waiting.
   [[nodiscard]] bool kills_at_top() const { return kills_at_top_; }
   /// The same on [0, speed], where bodies are killed that reach `speed` > 0, as fine there as at
-  /// v = 0; of both half lines.
+  /// v = 0; of both branches.
   [[nodiscard]] std::shared_ptr<const VelocityDiscretisation> killing_at(double speed) const {
     auto own = up_to(speed);
     own->kills_at_top_ = true;
@@ -89,7 +89,7 @@ class VelocityDiscretisation {
     return own;
   }
 
-  /// The velocity discretisation of the lower half line, where speeds are net_force - b(-v); this
+  /// The velocity discretisation of the negative branch, where speeds are net_force - b(-v); this
   /// one for an odd b. It has the same nodes.
   [[nodiscard]] const VelocityDiscretisation& mirrored() const {
     return mirrored_ ? *mirrored_ : *this;

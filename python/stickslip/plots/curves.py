@@ -68,19 +68,19 @@ def durations(items: Sequence[Results]) -> "Figure":
         panels.setdefault(key, []).append(item)
     deltas = sorted({step(item) or 0 for item in items})
     if len(deltas) > len(LINES):
-        raise ValueError(f"{len(deltas)} values of delta; at most {len(LINES)} can be told apart")
+        raise ValueError(f"{len(deltas)} values of delta; at most {len(LINES)} can be distinguished")
     lines = dict(zip(deltas, LINES))
     columns = min(len(panels), 2)
     rows = -(-len(panels) // columns)
     figure = Figure(figsize=(max(5.4, 0.6 + 3.9 * columns), 0.3 + 2.9 * rows))
     grid = figure.add_gridspec(rows + 1, columns, height_ratios=[0.3] + [2.9] * rows)
     _duration_legend(figure.add_subplot(grid[0, :]), lines)
-    for n, ((mu_s, mu_d, noise, law), same) in enumerate(panels.items()):
+    for n, ((mu_s, mu_d, noise, force), same) in enumerate(panels.items()):
         axes = figure.add_subplot(grid[1 + n // columns, n % columns])
         for item in same:
             for key, (_, colour) in DURATIONS.items():
                 curve(axes, item[key], colour=colour, style=lines[step(item) or 0])
-        axes.set_title(rf"$\mu_s$ = {mu_s:g}, $\mu_d$ = {mu_d:g}, {noise}, $b(v) = {law}$", fontsize=9)
+        axes.set_title(rf"$\mu_s$ = {mu_s:g}, $\mu_d$ = {mu_d:g}, {noise}, $b(v) = {force}$", fontsize=9)
         axes.set(xlabel="duration  [time]", ylabel="probability density  [1/time]", ylim=(0, None))
         if all(scale(item["f_slide"].abscissa) == "log" for item in same):
             highest = max(item[key].value.max() for item in same for key in DURATIONS)
@@ -168,16 +168,16 @@ def correlation_time(items: Sequence[Results]) -> "Figure":
     same_noise = len({key[2:] for key in curves}) == 1
     figure = Figure(figsize=(6.4, 4.0))
     axes = figure.subplots()
-    for n, ((law, mu_d, mu_s, delta), points) in enumerate(curves.items()):
-        label = rf"$\mu_d$ = {mu_d:g}, $b(v) = {law}$"
+    for n, ((force, mu_d, mu_s, delta), points) in enumerate(curves.items()):
+        label = rf"$\mu_d$ = {mu_d:g}, $b(v) = {force}$"
         if not same_noise:
             label += rf", $\mu_s$ = {mu_s:g}, $\delta$ = {fraction(delta)}"
         colour = COLOURS[n % len(COLOURS)]
         tau, value, error = zip(*sorted(points))
         axes.errorbar(tau, value, error, color=colour, linestyle=STYLES[n % len(STYLES)], marker=MARKERS[n % 5],
                       markersize=4, capsize=2, label=label)
-        if mu_d == mu_s and (law, mu_d) in WHITE_NOISE:
-            axes.plot(0, WHITE_NOISE[law, mu_d], marker=(3, 0, -90), markersize=8, color=colour,
+        if mu_d == mu_s and (force, mu_d) in WHITE_NOISE:
+            axes.plot(0, WHITE_NOISE[force, mu_d], marker=(3, 0, -90), markersize=8, color=colour,
                       transform=axes.get_yaxis_transform(), clip_on=False, zorder=3)
     axes.axvline(1 / 8, color="#777777", linewidth=1, linestyle=":")
     axes.text(1 / 8, 0.02, r" $\tau$ = 1/8", transform=axes.get_xaxis_transform(), color="#555555")

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     Rows = dict[str, numpy.ndarray]
 
 OURS, REFERENCE = COLOURS[:2]
-WIDTH = 1.96  # of a 95 % interval, in standard deviations to each side
+WIDTH = 1.96  # of a 95 % confidence interval, in standard deviations to each side
 COLUMNS = 3
 METHODS = {"hp": ("hp elements", "degree"), "upwind": ("upwind", "p"), "richardson": ("upwind, Richardson", "p"),
            "monte_carlo": ("Monte Carlo", "excursions")}
@@ -118,9 +118,9 @@ def cost(items: Sequence[Results]) -> "Figure":
                   markersize=4, label=name)
         for end, shift in ((0, (5, -14 if method == "monte_carlo" else 5)), (-1, (6, -3))):
             value = table[parameter][end]
-            told = (rf"$10^{{{math.log10(value):.0f}}}$ excursions" if parameter == "excursions" else
+            label = (rf"$10^{{{math.log10(value):.0f}}}$ excursions" if parameter == "excursions" else
                     f"{parameter}{' ' if parameter == 'degree' else ' = '}{value:g}")
-            axes.annotate(told, (table["seconds"][end], table["error"][end]), textcoords="offset points",
+            axes.annotate(label, (table["seconds"][end], table["error"][end]), textcoords="offset points",
                           xytext=shift, fontsize=7, color=COLOURS[n])
     axes.set(xscale="log", yscale="log", xlabel="time  [s]", ylabel="largest relative error")
     axes.margins(x=0.2)

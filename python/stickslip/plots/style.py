@@ -18,7 +18,7 @@ numpy, matplotlib = needed("numpy"), needed("matplotlib")
 needed("matplotlib.figure")
 Figure, Line2D, Patch = matplotlib.figure.Figure, matplotlib.lines.Line2D, matplotlib.patches.Patch
 
-# Told apart by the colour-blind (Okabe and Ito), and in grey together with the line styles.
+# Distinguished by the colour-blind (Okabe and Ito), and in grey together with the line styles.
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#222222")
 STYLES = ("-", "--", "-.", (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5, 1, 1.5)))
 MARKERS = "os^Dv"
@@ -58,7 +58,7 @@ def saved(figure: "Figure", place: pathlib.Path | None) -> pathlib.Path | None:
 def curve(axes: "Axes", result: Result, n: int = 0, *, colour: str | None = None, style: Any = None,
           label: str | None = None) -> None:
     """An array against its abscissa: computed values as a line in the band of their errors, simulated ones as marks
-    with their 95 % intervals.
+    with their 95 % confidence intervals.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def curve(axes: "Axes", result: Result, n: int = 0, *, colour: str | None = None
 
 def bars(axes: "Axes", x: "numpy.ndarray", value: "numpy.ndarray", ci95: "numpy.ndarray", colour: str,
          label: str | None = None, marker: str = "o") -> None:
-    """Simulated values with their 95 % intervals, which may be infinite."""
+    """Simulated values with their 95 % confidence intervals, which may be infinite."""
     sides = numpy.abs(numpy.nan_to_num(numpy.asarray(ci95).T - value, posinf=0, neginf=0))
     axes.errorbar(x, value, yerr=sides, fmt=marker, color=colour, markersize=3, capsize=2, linewidth=1, label=label)
 
@@ -134,11 +134,11 @@ def noise(results: Results) -> str:
 
 def drag(results: Results) -> str:
     """b(v) in words."""
-    law = results.options["drag"]
-    if law == "expression":
+    kind = results.options["drag"]
+    if kind == "expression":
         return results.options["drag_expression"]
     linear = "v" if number(results, "drag_coefficient") == 1 else "c v"
-    return {"none": "0", "linear": f"-{linear}"}.get(law, f"-{linear} - c_3 v^3")
+    return {"none": "0", "linear": f"-{linear}"}.get(kind, f"-{linear} - c_3 v^3")
 
 
 def title(results: Results) -> str:

@@ -11,7 +11,7 @@ from .style import ABSCISSAE, COLOURS, MARKERS, STYLES, WORDS, Figure, bars, dec
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-FEW = 5  # curves told apart by colour and line style
+FEW = 5  # curves distinguished by colour and line style
 DRIFT = (("E_V", "drift $E[V]$"), ("diffusivity", "diffusivity $S_0/2$"), ("P_stick", "probability of sticking"))
 
 
@@ -19,9 +19,9 @@ DRIFT = (("E_V", "drift $E[V]$"), ("diffusivity", "diffusivity $S_0/2$"), ("P_st
 def each(sweep: Sweep) -> "dict[str, Figure]":
     """A figure of each result, by key.
 
-    One option is an axis, errors are bars; of two options the second is the axis and the first one tells curves
-    apart, up to five values, or makes a map of more. Further options stay at their first value, which the title
-    tells. Points that fell short are marked by crosses. An array is drawn against its abscissa, a curve for each
+    One option is an axis, errors are bars; of two options the second is the axis and the first one distinguishes
+    curves, up to five values, or makes a map of more. Further options stay at their first value, which the title
+    shows. Points that fell short are marked by crosses. An array is drawn against its abscissa, a curve for each
     value of the last option, five of them if there are more; the other options stay at their first value.
     """
     return {key: one(sweep, key) for key in sweep}

@@ -1,8 +1,8 @@
-"""Recomputes values.json: compiles reference.cpp, runs it for every scene with the property "reference".
+"""Recomputes values.json: compiles reference.cpp, runs it for every case with the property "reference".
 
 usage: python3 validation/hard/reference/make.py [--compiler c++] [--only WORDS] [--missing] [--jobs 1]
 
-Each scene is computed twice, in 60 digits with series that reach half their radius and in 50 digits
+Each case is computed twice, in 60 digits with series that reach half their radius and in 50 digits
 with series that reach 0.4 of it: other pieces, other lengths, other rounding. The digits on which the two
 agree are stored with the value.
 """
@@ -55,8 +55,9 @@ def reference(programs, scene):
 def main():
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--compiler", default="c++")
-    options.add_argument("--only", default="", help="scenes whose name contains this")
-    options.add_argument("--missing", action="store_true", help="only scenes without values, or with values of other options")
+    options.add_argument("--only", default="", help="cases whose name contains this")
+    options.add_argument("--missing", action="store_true",
+                         help="only cases without values, or with values of other options")
     options.add_argument("--jobs", type=int, default=1)
     given = options.parse_args()
     target = HERE / "values.json"

@@ -1,21 +1,22 @@
 /// Dry friction with noise in extended precision. Shares nothing with the program: no mesh of
-/// elements, no weak form, no folding; and every number that the program gets from a transposed
-/// solve comes from backward equations here.
+/// elements, no weak form, no symmetry reduction; and every number that the program gets from a
+/// transposed solve comes from backward equations here.
 ///
-/// On a half line the backward equations (lambda + Lambda) u_i - Lambda (alpha_i u_{i+1} + (1 -
-/// alpha_i) u_{i-1}) - B_i(v) u_i' = f_i have bounded solutions that are analytic, also where a B_i
-/// has its root v_i*: there u_i is fixed by its neighbours, order by order. So the half line is cut
-/// into pieces, each a Taylor series about a root v_i* or about an ordinary point, well inside the
-/// distance to all other roots (complex ones too). From the top down, the levels that move up at v
-/// are a function of those that move down, u_up = Psi u_down + w: Psi is the law of the level at
-/// the first return to v. Without drag Psi does not depend on v and solves a Riccati equation, here
-/// by Newton's method. Excursions are then linear algebra on the levels at v = 0.
+/// On a velocity branch the backward equations (lambda + Lambda) u_i - Lambda (alpha_i u_{i+1} + (1
+/// - alpha_i) u_{i-1}) - B_i(v) u_i' = f_i have bounded solutions that are analytic, also where a
+/// B_i has its root v_i*: there u_i is fixed by its neighbours, order by order. So the branch is
+/// split into pieces, each a Taylor series about a root v_i* or about an ordinary point, well
+/// inside the distance to all other roots (complex ones too). From the top down, the levels that
+/// move up at v are a function of those that move down, u_up = Psi u_down + w: Psi is the
+/// distribution of the level at the first return to v. Without drag Psi does not depend on v and
+/// solves a Riccati equation, here by Newton's method. Excursions are then linear algebra on the
+/// levels at v = 0.
 ///
 ///   reference N LO HI MU_D TAU DELTA C_ABOVE C_BELOW CUBIC BIAS SHARE [lambda L]... [omega W]...
 ///
 /// LO, HI: first and last static level. C_ABOVE, C_BELOW: drag coefficients for v > 0 and v < 0
 /// (both 0: no drag). SHARE: reach of a series over its radius of convergence. Numbers are taken as
-/// doubles, exactly. lambda and omega want a symmetric scene. -DDIGITS=60 at compile time.
+/// doubles, exactly. lambda and omega need a symmetric process. -DDIGITS=60 at compile time.
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/cpp_complex.hpp>
@@ -101,7 +102,7 @@ struct Scene {
   bool symmetric() const { return c_above == c_below && bias == 0; }
 };
 
-/// A half line v > 0; the lower one is that of the mirrored process (-X, -Y, -V).
+/// A velocity branch v > 0; the negative one is that of the mirrored process (-X, -Y, -V).
 struct Side {
   const Scene& scene;
   bool below;
@@ -119,7 +120,7 @@ struct Side {
   Real speed(int e, const Real& v) const { return force[e] - v * (c + scene.cubic * v * v); }
 };
 
-/// Real root of B_e, and all others in double precision (they only say how far a series reaches).
+/// Real root of B_e, and all others in double precision (they only limit how far a series reaches).
 Real root(const Side& side, int e) {
   const Real& k = side.scene.cubic;
   if (k == 0) return side.force[e] / side.c;
@@ -203,7 +204,7 @@ Source<S> power(int p, std::function<Real(int)> weight) {
   };
 }
 
-/// What a half line does to levels at v = 0: u_up = psi u_down + w, a column of w for each source.
+/// What a branch does to levels at v = 0: u_up = psi u_down + w, a column of w for each source.
 template <class S>
 struct Return {
   std::vector<int> up, down;
@@ -465,9 +466,9 @@ class Crossing {
 
   /// J - (crossings) J = [sources..., static levels lo .. hi]; `sign` of each source below.
   void assemble(Matrix<S>& system, Matrix<S>& right, const std::vector<int>& sign) const {
-    const int stays = scene_.hi - scene_.lo + 1, given = static_cast<int>(sign.size());
+    const int levels = scene_.hi - scene_.lo + 1, given = static_cast<int>(sign.size());
     system = Matrix<S>(count(), count());
-    right = Matrix<S>(count(), given + stays);
+    right = Matrix<S>(count(), given + levels);
     for (int s = 0; s < 2; ++s) {
       const Return<S>& r = *sides_[s];
       for (std::size_t u = 0; u < r.up.size(); ++u) {
@@ -494,9 +495,10 @@ class Crossing {
   const Return<S>* sides_[2];
 };
 
-/// Transforms of a stay by its first level: leaving upwards, leaving downwards, and the mean stay.
+/// Transforms of a sticking phase by its first level: leaving upwards, leaving downwards, and the
+/// mean duration.
 template <class S>
-Matrix<S> stays(const Scene& scene, const S& lambda) {
+Matrix<S> sticking_transforms(const Scene& scene, const S& lambda) {
   const int n = scene.hi - scene.lo + 1;
   Matrix<S> system(n, n), right(n, 3);
   for (int r = 0; r < n; ++r) {
@@ -532,18 +534,18 @@ class Answer {
     solve(system, j);
     const int n = scene_.hi - scene_.lo + 1, plus = crossing.above(scene_.hi + 1),
               minus = crossing.below(scene_.lo - 1);
-    const Matrix<Real> stay = stays<Real>(scene_, 0);
+    const Matrix<Real> sticking = sticking_transforms<Real>(scene_, 0);
     Real to_plus = 0, to_minus = 0;  // sides of the next start
     for (int s = 0; s < n; ++s) {
-      to_plus += j(minus, 5 + s) * stay(s, 0);
-      to_minus += j(plus, 5 + s) * stay(s, 1);
+      to_plus += j(minus, 5 + s) * sticking(s, 0);
+      to_minus += j(plus, 5 + s) * sticking(s, 1);
     }
     const Real share = to_plus / (to_plus + to_minus);
     const auto mean = [&](int q) { return share * j(plus, q) + (1 - share) * j(minus, q); };
     Real rest = 0;
     for (int s = 0; s < n; ++s) {
       entry_.push_back(j(plus, 5 + s));
-      rest += mean(5 + s) * stay(s, 2);
+      rest += mean(5 + s) * sticking(s, 2);
     }
     mean_excursion_ = mean(0) + rest;
     print("mean_slide", mean(0));
@@ -569,13 +571,13 @@ class Answer {
     Matrix<Real> system, j;
     crossing.assemble(system, j, {});
     solve(system, j);
-    const Matrix<Real> stay = stays<Real>(scene_, lambda);
+    const Matrix<Real> sticking = sticking_transforms<Real>(scene_, lambda);
     const int plus = crossing.above(scene_.hi + 1);
     Real slide = 0, stick = 0, excursion = 0;
     for (int s = 0; s < j.cols; ++s) {
       slide += j(plus, s);
-      stick += entry_[s] * (stay(s, 0) + stay(s, 1));
-      excursion += j(plus, s) * (stay(s, 0) + stay(s, 1));
+      stick += entry_[s] * (sticking(s, 0) + sticking(s, 1));
+      excursion += j(plus, s) * (sticking(s, 0) + sticking(s, 1));
     }
     print("F_slide:" + text, slide);
     print("F_stick:" + text, stick);
@@ -592,15 +594,15 @@ class Answer {
     const Crossing<Complex> crossing(scene_, r, r);
     Matrix<Complex> system, right;
     crossing.assemble(system, right, {-1});
-    const Matrix<Complex> stay = stays<Complex>(scene_, lambda);
+    const Matrix<Complex> sticking = sticking_transforms<Complex>(scene_, lambda);
     const int n = scene_.hi - scene_.lo + 1, plus = crossing.above(scene_.hi + 1),
               minus = crossing.below(scene_.lo - 1);
     Matrix<Complex> u(crossing.count(), 1);
     for (int row = 0; row < crossing.count(); ++row) {
       u(row, 0) = right(row, 0);
-      for (int s = 0; s < n; ++s) {  // a stay leads to s+ or s-
-        system(row, plus) -= right(row, 1 + s) * stay(s, 0);
-        system(row, minus) -= right(row, 1 + s) * stay(s, 1);
+      for (int s = 0; s < n; ++s) {  // a sticking phase leads to s+ or s-
+        system(row, plus) -= right(row, 1 + s) * sticking(s, 0);
+        system(row, minus) -= right(row, 1 + s) * sticking(s, 1);
       }
       // u is odd and sums to 0: this changes nothing but the null vector 1 at omega = 0.
       for (int i = 0; i < crossing.count(); ++i) system(row, i) += Complex(1);
@@ -610,8 +612,8 @@ class Answer {
     for (int e : r.down) {
       const int i = e - scene_.levels;
       down.push_back(i < scene_.lo ? u(crossing.below(i), 0)
-                                   : stay(i - scene_.lo, 0) * u(plus, 0) +
-                                         stay(i - scene_.lo, 1) * u(minus, 0));
+                                   : sticking(i - scene_.lo, 0) * u(plus, 0) +
+                                         sticking(i - scene_.lo, 1) * u(minus, 0));
     }
     const auto series = line.series(down, v);
     const auto product = [&](bool imaginary) {
