@@ -84,7 +84,7 @@ class Estimates {
     if (wants(spectrum)) append_spectrum();
     if (wants(resolvent)) append_resolvent();
     if (wants(autocorrelation)) {
-      over("C_vv", "velocity^2", Kind::other, "time", question_.time,
+      over("C_vv", Kind::other, question_.time,
            [&](std::size_t n) { return tally_.autocorrelation(n); });
     }
     if (wants(displacement)) append_displacement();
@@ -93,17 +93,17 @@ class Estimates {
   }
 
  private:
-  void scalar(const quantities::Name& name, const Estimate& e) { scalar(name.key, name, e); }
-  void scalar(const std::string& key, const quantities::Name& name, const Estimate& e) {
-    Result result{key, name.unit, "", {}, {}, {}, name.kind};
+  void scalar(const quantities::Name& name, const Estimate& e) { scalar(name.key, name.kind, e); }
+  void scalar(const std::string& key, Kind kind, const Estimate& e) {
+    Result result{key, options::unit_of(key), "", {}, {}, {}, kind};
     append_value(result, e);
     results_.push_back(std::move(result));
   }
   // An array of estimate(n) over the n-th abscissa.
   template <class Estimates>
-  void over(const std::string& key, const char* unit, Kind kind, const char* name,
-            const std::vector<double>& abscissa, const Estimates& estimate) {
-    Result result = quantities::array(key, unit, name, abscissa, kind);
+  void over(const std::string& key, Kind kind, const std::vector<double>& abscissa,
+            const Estimates& estimate) {
+    Result result = quantities::array(key, abscissa, kind);
     for (std::size_t n = 0; n < abscissa.size(); ++n) append_value(result, estimate(n));
     results_.push_back(std::move(result));
   }
@@ -141,11 +141,11 @@ class Estimates {
     const auto& friction = process_.friction;
     for (std::size_t f = 0; f < question_.observables.size(); ++f) {
       for (const auto& [given, e] : tally_.averages(f)) {
-        scalar("pi(" + question_.observables[f].name + given + ")", {"", ""},
+        scalar("pi(" + question_.observables[f].name + given + ")", Kind::other,
                given == "|stick" ? e : of_function(question_.observables[f], e));
       }
     }
-    scalar({"slip_rate", "1/time"}, tally_.slip_rate());
+    scalar({"slip_rate"}, tally_.slip_rate());
     scalar(quantities::kFrictionPower,
            friction.weakens() ? tally_.averages(question_.observables.size())[0].second
                               : tally_.mean_of_speeds(friction.mu_d, friction.mirrored().mu_d));
@@ -157,7 +157,7 @@ class Estimates {
     std::vector<double> levels;
     for (int i = lowest; i <= highest; ++i) levels.push_back(i);
     for (std::size_t side = 0; side < (process_.symmetric() ? 1 : 2); ++side) {
-      over(side == 0 ? "entry_law" : "entry_law_minus", "", Kind::other, "k", levels,
+      over(side == 0 ? "entry_law" : "entry_law_minus", Kind::other, levels,
            [&](std::size_t n) { return tally_.entry(side, static_cast<int>(levels[n])); });
     }
     scalar(quantities::kFStick0,
@@ -167,56 +167,54 @@ class Estimates {
   void append_laplace() {
     for (const auto& [key, duration] : names("F_")) transform(key, duration);
     for (const auto& [key, duration] : names("var_")) {
-      scalar(key, {"", "time^2"}, tally_.variance(duration));
+      scalar(key, Kind::other, tally_.variance(duration));
     }
   }
 
   void transform(const std::string& key, Duration duration) {
-    over(key, "", Kind::transform, "lambda", question_.lambda,
+    over(key, Kind::transform, question_.lambda,
          [&](std::size_t n) { return tally_.laplace(n, duration); });
   }
 
   // Averages over cells, and the distribution function.
-  void append_distribution(const std::string& name, Variable variable, const char* unit,
-                           const char* abscissa, const std::vector<double>& at) {
+  void append_distribution(const std::string& name, Variable variable,
+                           const std::vector<double>& at) {
     const auto cells = cells_around(at);
-    over("f_" + name, unit, Kind::other, abscissa, at, [&](std::size_t n) {
+    over("f_" + name, Kind::other, at, [&](std::size_t n) {
       const auto [low, high] = cells[n];
       return divided(tally_.probability(variable, low, high), high - low);
     });
-    over("cdf_" + name, "", Kind::distribution, abscissa, at,
+    over("cdf_" + name, Kind::distribution, at,
          [&](std::size_t n) { return tally_.probability(variable, 0, at[n]); });
   }
 
   void append_durations() {
-    append_distribution("slide", Variable::slide, "1/time", "time", question_.time);
-    append_distribution("stick", Variable::stick, "1/time", "time", question_.time);
-    append_distribution("excursion", Variable::excursion, "1/time", "time", question_.time);
+    append_distribution("slide", Variable::slide, question_.time);
+    append_distribution("stick", Variable::stick, question_.time);
+    append_distribution("excursion", Variable::excursion, question_.time);
   }
 
   void append_slip() {
     for (const auto& [key, e] : tally_.slip()) {
-      const bool net = key == "mean_slip_net", mean = key.starts_with("mean");
+      const bool net = key == "mean_slip_net";
       const Kind kind = net ? Kind::drift : Kind::positive_mean;
-      scalar(key, {"", mean ? "velocity*time" : "velocity^2*time^2", kind},
-             net && !process_.drifts() ? Estimate{} : e);
+      scalar(key, kind, net && !process_.drifts() ? Estimate{} : e);
     }
     if (!question_.distance.empty()) {
-      append_distribution("slip", Variable::path, "1/(velocity*time)", "distance",
-                          question_.distance);
+      append_distribution("slip", Variable::path, question_.distance);
     }
     if (question_.inverse_distance.empty()) return;
-    over("F_slip", "", Kind::transform, "inverse_distance", question_.inverse_distance,
+    over("F_slip", Kind::transform, question_.inverse_distance,
          [&](std::size_t n) { return tally_.slip_transform(n); });
   }
 
   void append_peak() {
     const auto& w = question_.velocity;
-    over("P_peak", "", Kind::probability, "velocity", w, [&](std::size_t n) {
+    over("P_peak", Kind::probability, w, [&](std::size_t n) {
       return tally_.probability(Variable::peak, w[n], std::numeric_limits<double>::infinity());
     });
     for (std::size_t from : {0, 1}) {
-      over(tally_.first_passage(w[0])[from].first, "time", Kind::positive_mean, "velocity", w,
+      over(tally_.first_passage(w[0])[from].first, Kind::positive_mean, w,
            [&](std::size_t n) { return tally_.first_passage(w[n])[from].second; });
       results_.back().each_by_its_size = true;
     }
@@ -224,7 +222,7 @@ class Estimates {
 
   void append_spectrum() {
     if (!question_.omega.empty()) {
-      over("S_v", "velocity^2*time", Kind::spectrum, "omega", question_.omega,
+      over("S_v", Kind::spectrum, question_.omega,
            [&](std::size_t n) { return tally_.spectrum(n); });
     }
     const Estimate s = tally_.spectrum_at_zero();
@@ -236,13 +234,12 @@ class Estimates {
     const auto& lambda = question_.lambda;
     const auto append = [&](const simulation::Named& first, const std::string& f, const auto& at) {
       for (std::size_t which = 0; which < first.size(); ++which) {
-        std::string key = first[which].first + f;
-        // Beside averages it may not take their name.
-        if (first[which].first == "pi" && question_.wants(Quantity::averages))
-          key.insert(2, "_lambda");
+        const bool average = first[which].first == "pi";
+        const std::string key = (average ? "pi_lambda" : first[which].first) + f;
         if (key.starts_with("u") && *std::min_element(lambda.begin(), lambda.end()) == 0) continue;
-        over(key, "", Kind::other, "lambda", lambda,
-             [&](std::size_t n) { return at(n)[which].second; });
+        over(key, Kind::other, lambda, [&](std::size_t n) { return at(n)[which].second; });
+        // Beside averages it may not take their name.
+        if (average && !question_.wants(Quantity::averages)) results_.back().key = "pi" + f;
       }
     };
     append(tally_.exits(0), "", [&](std::size_t n) { return tally_.exits(n); });
@@ -256,19 +253,19 @@ class Estimates {
 
   void append_displacement() {
     const bool still = !process_.drifts() && question_.start.kind != model::Start::Kind::state;
-    over("displacement_mean", "velocity*time", Kind::drift, "time", question_.time,
+    over("displacement_mean", Kind::drift, question_.time,
          [&](std::size_t n) { return still ? Estimate{} : tally_.travel(n)[0].second; });
-    over("displacement_variance", "velocity^2*time^2", Kind::positive_mean, "time", question_.time,
+    over("displacement_variance", Kind::positive_mean, question_.time,
          [&](std::size_t n) { return tally_.travel(n)[1].second; });
   }
 
   void append_expectations() {
     for (std::size_t f = 0; f < question_.observables.size(); ++f) {
       const std::string of = "(" + question_.observables[f].name + ")";
-      over("E" + of, "", Kind::other, "time", question_.time, [&](std::size_t n) {
+      over("E" + of, Kind::other, question_.time, [&](std::size_t n) {
         return of_function(question_.observables[f], tally_.expectation(f, n));
       });
-      scalar("stationary" + of, {"", ""},
+      scalar("stationary" + of, Kind::other,
              of_function(question_.observables[f], tally_.averages(f)[0].second));
     }
   }

@@ -20,7 +20,8 @@ bool is_formula(const std::string& option, const std::string& value) {
   return std::count(names.begin(), names.end(), value) == 0;
 }
 
-// The same in a line of an options file, in quotes or not: how to write it, empty if all is well.
+// The same in a line of an options file, in quotes or not: how to write it; empty if nothing is
+// wrong.
 std::string better_formula(const std::string& line) {
   const auto begin = line.find_first_not_of(" \t"), end = line.find_first_of(" \t", begin);
   const auto start = line.find_first_not_of(" \t", end);
@@ -33,16 +34,16 @@ std::string better_formula(const std::string& line) {
   return fmt::format("{} \" {}\"", option, parts.front());
 }
 
-// What is wrong with the name of an options file, or with how it comes to be read; empty if all is
-// well. `above` are the files that led to it. It is read twice, here and by PETSc: a pipe would be
-// empty then.
+// What is wrong with the name of an options file, or with the way to it; empty if nothing is.
+// `above` are the files that led to it. It is read twice, here and by PETSc: a pipe would be empty
+// then.
 std::string unfit_file(const std::string& name, const std::vector<std::string>& above) {
   std::error_code error;
   if (std::find(above.begin(), above.end(), name) != above.end()) {
     return "includes itself; take the inner -options_file out";
   }
   if (!std::filesystem::is_regular_file(name, error) && std::ifstream(name).good()) {
-    return "is no regular file; write the options to one";
+    return "is not a regular file; write the options to a regular file";
   }
   if (std::ifstream(name).good()) return "";
   return "cannot be read; check the name and that you may read it";

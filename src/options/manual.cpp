@@ -8,7 +8,6 @@
 #include "quantities.hpp"
 #include "stickslip/options/table.hpp"
 #include "stickslip/support/text.hpp"
-#include "words.hpp"
 
 namespace stickslip::options {
 namespace {
@@ -33,22 +32,83 @@ std::string entry(const std::string& head, const std::string& body) {
 
 std::string bold(std::string_view text) { return fmt::format("\\fB{}\\fR", roff(text)); }
 
-std::string item(const Option& option) {
+// The form, with the range or the words allowed; nothing for a file, of which the sentence speaks.
+std::string short_requirement(const Option& option) {
+  const std::string words = enumerate(option.words, "or");
+  switch (option.kind) {
+  case Kind::real:
+  case Kind::integer:
+  case Kind::numbers:
+    return fmt::format("{} in {}{}{}", option.form, option.range.text(),
+                       words.empty() ? "" : " or ", words);
+  case Kind::choice:
+  case Kind::flag: return words;
+  case Kind::path:
+  case Kind::input: return "";
+  default: return "form " + option.form;
+  }
+}
+
+// What it does, with its unit, default and range.
+std::string description(const Option& option) {
   std::string text = option.sentence;
   if (!option.unit.empty()) text += fmt::format(" [{}]", option.unit);
-  text += "; " + option.allowed;
+  const std::string must = short_requirement(option);
+  if (!must.empty()) text += "; " + must;
   if (!option.initial.empty()) text += "; default " + option.initial;
-  return entry(fmt::format("{} \\fI{}\\fR", bold("-" + option.name), option.form), text + ".");
+  return text + ".";
+}
+
+// "-sweep_mu_s, -sweep_mu_d, ..." of a group; empty if it has none.
+std::string swept_names(const Group& group) {
+  std::vector<std::string> names;
+  for (const auto& option : group.options) {
+    if (swept_by(option) != nullptr) names.push_back("-" + option.name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+constexpr const char* kSwept =
+    "values of the option of the same name; numbers in its unit and range.";
+
+std::string item(const Option& option) {
+  return entry(fmt::format("{} \\fI{}\\fR", bold("-" + option.name), option.form),
+               description(option));
 }
 
 std::string option_items() {
   std::string text;
   for (const auto& group : table()) {
     text += fmt::format(".SS {}\n{}\n", roff(group.title), roff(group.explanation + "."));
-    for (const auto& option : group.options) text += item(option);
+    const std::string swept = swept_names(group);
+    if (!swept.empty()) text += entry(bold(swept) + " \\fInumbers\\fR", kSwept);
+    for (const auto& option : group.options) {
+      if (swept_by(option) == nullptr) text += item(option);
+    }
   }
   text += ".SS Other\n";
   for (const auto& other : other_options()) text += entry(bold(other.name), other.sentence + ".");
+  return text;
+}
+
+std::string form_items() {
+  std::string text;
+  for (const auto& form : forms()) {
+    text += entry(fmt::format("\\fI{}\\fR", form.name), form.meaning + ".");
+  }
+  return text;
+}
+
+// The title of a quantity and the keys that it writes.
+std::string description(const QuantityRow& row) {
+  const auto keys = keys_of(row);
+  return keys.empty() ? fmt::format("{}.", row.title)
+                      : fmt::format("{}: {}.", row.title, fmt::join(keys, ", "));
+}
+
+std::string quantity_items() {
+  std::string text;
+  for (const auto& row : quantity_table()) text += entry(bold(row.word), description(row));
   return text;
 }
 
@@ -70,7 +130,7 @@ constexpr const char* kSynopsis = R"(.B stickslip
 .RI [\fB\-\fIname " value" " ...]"
 )";
 
-std::string description() {
+std::string introduction() {
   return paragraph("A body of unit mass slides on a rough floor, pushed by a random force X with a "
                    "finite correlation time. The program computes the stationary distribution of "
                    "the force and the velocity, spectra, durations and more of this piecewise "
@@ -157,48 +217,49 @@ std::string completer(const Option& option) {
   }
 }
 
-// A cell of a Markdown table, where a bar would end it.
-std::string cell(const std::string& text) {
-  std::string escaped;
-  for (char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
-  return escaped.empty() ? " " : escaped;
+// A name and, in a column of its own, what it is; below the name if that is too long.
+std::string help_entry(const std::string& name, const std::string& meaning) {
+  constexpr std::size_t column = 21, width = 76;
+  const bool beside = name.size() + 3 <= column;
+  const std::string gap =
+      beside ? std::string(column - 2 - name.size(), ' ') : "\n" + std::string(column, ' ');
+  return fmt::format("  {}{}{}\n", name, gap, wrap(meaning, width, column));
 }
 
-// What each route gives, from the rules that refuse the rest.
-std::string table_of_routes() {
-  std::string text = "\n## What each route gives\n\n"
-                     "For every scene: with symmetry, with a bias, with drag that is not odd, with "
-                     "thresholds that\n"
-                     "differ by direction; fluid_queue for those without drag. By either scheme "
-                     "where the route has\n"
-                     "one. A number is the reason why there is nothing to be had.\n\n| quantity |";
-  std::string rule = "| --- |", reasons;
-  int number = 0;
-  for (const auto& route : kRoutes) {
-    text += fmt::format(" {} |", route.word);
-    rule += " --- |";
-    if (route.value == Route::excursion) continue;  // gives all
-    reasons += fmt::format("{}. `-route {}`: {}.\n", ++number, route.word, limit_of(route.value));
+std::string form_help() {
+  std::string text = "\nForms of values:\n";
+  for (const auto& form : forms()) {
+    text += help_entry(form.name, form.meaning + ".");
   }
-  text += "\n" + rule + "\n";
+  return text;
+}
+
+std::string quantity_help() {
+  std::string text;
   for (const auto& row : quantity_table()) {
-    text += fmt::format("| {} |", row.word);
-    int reason = 0;
-    for (const auto& route : kRoutes) {
-      const bool gives =
-          std::find(row.routes.begin(), row.routes.end(), route.value) != row.routes.end();
-      text += gives ? " yes |" : fmt::format(" {} |", reason);
-      ++reason;
-    }
-    text += "\n";
+    text += help_entry(fmt::format("  {}", row.word), description(row));
   }
-  return text + "\n" + reasons;
+  return text;
+}
+
+std::string group_help(const Group& group) {
+  std::string text = fmt::format("\n{}. {}.\n", group.title, wrap(group.explanation, 88, 2));
+  const std::string swept = swept_names(group);
+  if (!swept.empty()) {
+    text += help_entry(wrap(swept, 94, 2), kSwept);
+  }
+  for (const auto& option : group.options) {
+    if (swept_by(option) != nullptr) continue;
+    text += help_entry("-" + option.name, description(option));
+    if (option.name == "quantities") text += quantity_help();
+  }
+  return text;
 }
 
 std::string other_help() {
   std::string text = "\nOther:\n";
   for (const auto& other : other_options()) {
-    text += fmt::format("  {:<18} {}\n", other.name, wrap(other.sentence, 76, 21));
+    text += help_entry(other.name, other.sentence + ".");
   }
   std::string meanings;
   for (const auto& [status, meaning] : exit_meanings()) {
@@ -214,37 +275,10 @@ std::string help_text() {
       "stickslip: dry friction under random forcing, to the digits you ask for\n\n"
       "  stickslip -options_file scene.opts [-name value ...]\n\n"
       "Every choice is a PETSc option, on the line or in an options file; the last one given "
-      "counts.\n";
-  for (const auto& group : table()) {
-    text += fmt::format("\n{}. {}\n", group.title, wrap(group.explanation, 88, 2));
-    for (const auto& option : group.options) {
-      const std::string initial =
-          option.initial.empty() ? "" : fmt::format(" (default {})", option.initial);
-      const std::string unit = option.unit.empty() ? "" : fmt::format(" [{}]", option.unit);
-      text += fmt::format(
-          "  -{:<17} {}\n", option.name,
-          wrap(fmt::format("{}{}{}; {}", option.sentence, unit, initial, option.allowed), 76, 21));
-    }
-  }
+      "counts.\n" +
+      form_help();
+  for (const auto& group : table()) text += group_help(group);
   return text + other_help();
-}
-
-std::string reference_page() {
-  std::string text =
-      "# Options\n\n"
-      "Generated by `stickslip -reference` from the table that also validates the options.\n"
-      "Give them on the command line or in an options file (`-options_file scene.opts`, one\n"
-      "`-name value` a line, `#` for comments); the last one given counts.\n";
-  for (const auto& group : table()) {
-    text += fmt::format("\n## {}\n\n{}.\n\n", group.title, group.explanation);
-    text += "| option | form | unit | default | allowed | meaning |\n";
-    text += "| --- | --- | --- | --- | --- | --- |\n";
-    for (const auto& o : group.options) {
-      text += fmt::format("| `-{}` | {} | {} | {} | {} | {} |\n", o.name, o.form, cell(o.unit),
-                          cell(o.initial), cell(o.allowed), cell(o.sentence));
-    }
-  }
-  return text + table_of_routes();
 }
 
 std::string roff(std::string_view text) {
@@ -260,8 +294,9 @@ std::string man_page(std::string_view version) {
                      roff(version)) +
          section("NAME", roff("stickslip, stickslip-complex") + " \\- " +
                              roff("dry friction under random forcing") + "\n") +
-         section("SYNOPSIS", kSynopsis) + section("DESCRIPTION", description()) +
-         section("OPTIONS", option_items()) + section("EXIT STATUS", exit_items()) +
+         section("SYNOPSIS", kSynopsis) + section("DESCRIPTION", introduction()) +
+         section("VALUES", form_items()) + section("OPTIONS", option_items()) +
+         section("QUANTITIES", quantity_items()) + section("EXIT STATUS", exit_items()) +
          section("EXAMPLES", examples()) + section("FILES", files()) +
          section("SEE ALSO", "\\fBmpiexec\\fR(1)\n");
 }

@@ -101,7 +101,7 @@ class SceneReader {
   void check_friction() {
     const auto& forwards = scene_.friction;
     const auto backwards = forwards.mirrored();
-    const char* grows = "friction cannot grow when the body starts to slide";
+    const char* grows = "dynamic friction cannot exceed static friction";
     if (forwards.mu_d > forwards.mu_s) {
       report("mu_d", fmt::format("must be in (0, mu_s], and mu_s = {:g}", forwards.mu_s), grows);
     }
@@ -115,11 +115,12 @@ class SceneReader {
     const double force = scene_.bias + mean, mu_d = force > 0 ? forwards.mu_d : backwards.mu_d;
     if (drag_law_.expression || !scene_.drag.is_none() || std::abs(force) < mu_d) return;
     const auto noise = mean == 0 ? "" : fmt::format("with the mean {:g} of the noise ", mean);
-    report(
-        "bias",
-        fmt::format("{}drives a sliding body for ever: without drag only mu_d = {:g} holds it back",
-                    noise, mu_d),
-        "take a bias smaller than mu_d, or add drag");
+    report("bias",
+           fmt::format(
+               "{}accelerates a sliding body for ever: without drag, friction mu_d = {:g} alone "
+               "opposes it",
+               noise, mu_d),
+           "take a bias smaller than mu_d, or add drag");
   }
 
   // The levels that exist, and that on some of them bodies stick and on some they slide.
@@ -130,10 +131,10 @@ class SceneReader {
         fmt::format("levels, from {:g} to {:g}, shifted by the bias {:g}",
                     noise.level(noise.lowest()), noise.level(noise.highest()), scene_.bias);
     if (process.lowest_static() > process.static_index()) {
-      report("mu_s", "holds the body on none of the noise's " + range + ": nothing ever sticks",
+      report("mu_s", "holds the body on none of the noise " + range + ": the body never sticks",
              "take a larger -mu_s or another -bias");
     } else if (!process.starts_upwards() && !process.starts_downwards()) {
-      report("mu_s", "holds the body on all of the noise's " + range + ": nothing ever slides",
+      report("mu_s", "holds the body on all of the noise " + range + ": the body never slides",
              "take a smaller -mu_s or a larger -bias");
     }
   }
@@ -155,7 +156,7 @@ class SceneReader {
       highest = scene_.process(1).static_index();
       lowest = scene_.process(1).lowest_static();
     } catch (const std::out_of_range&) {
-      return report("delta", "gives more noise levels than can be counted", "take a larger step");
+      return report("delta", "gives more than 2147483647 noise levels", "take a larger step");
     }
     const bool word = settings_.given("noise_levels") && !scene_.noise_levels;
     if (word) scene_.noise_levels = full;
@@ -179,40 +180,40 @@ class SceneReader {
       const bool biased = scene_.bias != 0;
       const char* threshold = backwards && friction.mu_s_minus ? "mu_s_minus" : "mu_s";
       report(biased ? "bias" : threshold,
-             fmt::format("is never overcome by the noise, which reaches {:g}: no body at rest "
-                         "would ever start towards {} v",
+             fmt::format("is never exceeded by the noise, which is at most {:g}: a body at rest "
+                         "never starts towards {} v",
                          largest, backwards ? "negative" : "positive"),
              fmt::format("take {} below {:g}, or {} or -delta",
                          biased ? "|bias|" : fmt::format("-{}", threshold),
                          biased ? largest - mu_s : largest, stronger));
     } else if (k >= levels) {
-      const auto why =
-          fmt::format("is not below the largest noise level {:g}: nothing ever slides", largest);
+      const auto why = fmt::format(
+          "must be below the largest noise level {:g}: otherwise the body never slides", largest);
       if (levels < full) return report("mu_s", why, fmt::format("take -noise_levels above {}", k));
       report("mu_s", why, fmt::format("take -mu_s below {:g}, or {} or -delta", largest, stronger));
     } else if (lowest > highest) {
       report("mu_s",
-             fmt::format("holds the body on no noise level, which are {:g} apart and shifted by "
-                         "the bias {:g}: nothing ever sticks",
+             fmt::format("holds the body on no noise level (they are {:g} apart and shifted by the "
+                         "bias {:g}): the body never sticks",
                          delta, scene_.bias),
              "take a smaller -delta");
     }
   }
 
-  // On the lowest level bodies must come to rest from every velocity that they reach: others slide
-  // for ever.
+  // On the lowest level bodies must come to rest from every velocity that they reach: otherwise
+  // some slide for ever.
   void check_returns() {
     const auto process = scene_.meant();
-    for (const auto& half : {process, process.mirrored()}) {
-      const auto& noise = half.noise;
-      const double lowest = half.net_force(noise.lowest()),
-                   highest = half.net_force(noise.highest());
-      const double rise = half.drag.highest(half.drag.terminal_velocity(highest));
-      if (!half.starts_upwards() || lowest + rise < 0) continue;
+    for (const auto& branch : {process, process.mirrored()}) {
+      const auto& noise = branch.noise;
+      const double lowest = branch.net_force(noise.lowest()),
+                   highest = branch.net_force(noise.highest());
+      const double rise = branch.drag.highest(branch.drag.terminal_velocity(highest));
+      if (!branch.starts_upwards() || lowest + rise < 0) continue;
       return report(
           "mu_d",
-          fmt::format("does not stop sliding bodies: on the outermost level of the noise, "
-                      "{:g} from the mean, a force of {:g} still drives some",
+          fmt::format("does not stop sliding bodies: on the outermost noise level, {:g} from the "
+                      "mean, a force of {:g} still accelerates them",
                       noise.level(noise.lowest()) - noise.mean(), lowest + rise),
           "take a larger -mu_d, or levels on both sides of it");
     }
@@ -220,7 +221,7 @@ class SceneReader {
 
   void read_expression() {
     if (scene_.drag_expression.empty()) {
-      return report("drag", "needs a law in -drag_expression",
+      return report("drag", "needs a formula in -drag_expression",
                     "add for example -drag_expression \"-v - 0.1*v*abs(v)\"");
     }
     const auto process = scene_.meant();

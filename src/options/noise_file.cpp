@@ -31,7 +31,7 @@ model::LevelTable read_levels(const std::string& file) {
       levels.push_back({number("x", x), number("rate_up", up), number("rate_down", down)});
     }
   } catch (const ::io::error::base& problem) {
-    throw std::invalid_argument(fmt::format("is no CSV file of levels: {}", problem.what()));
+    throw std::invalid_argument(fmt::format("is not a CSV file of levels: {}", problem.what()));
   }
   try {
     return model::LevelTable(levels);

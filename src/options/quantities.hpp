@@ -6,16 +6,19 @@
 #include <vector>
 
 #include "stickslip/options/case.hpp"
+#include "stickslip/options/result_table.hpp"
 
 namespace stickslip::options {
 
 /// A quantity that can be asked for.
 struct QuantityRow {
-  const char* word;  ///< of -quantities
+  std::string word;  ///< of -quantities
   Quantity quantity;
+  std::string title;                 ///< what it is, in half a line
   std::vector<Route> routes;         ///< that give it, for every scene
   std::vector<std::string> options;  ///< that it depends on
-  bool of_one_run = false;           ///< a field or a path, which has no place in a sweep
+  std::vector<std::string> others;   ///< keys of other quantities that come with it
+  bool of_one_run;                   ///< a field or a path, which has no place in a sweep
 };
 
 /// Why a route does not give the quantities that it does not give.
@@ -24,16 +27,13 @@ struct QuantityRow {
 /// All quantities, in the order of the help text.
 [[nodiscard]] const std::vector<QuantityRow>& quantity_table();
 
+/// Keys of the results of a quantity, those of other quantities that come with it included.
+[[nodiscard]] std::vector<std::string> keys_of(const QuantityRow& row);
+
 /// The quantity that a result of that name asks for in a file to compare with, if any.
 [[nodiscard]] std::optional<Quantity> asked_by(const std::string& key);
 
 /// Whether anything asked for depends on the option (a name without dash).
 [[nodiscard]] bool depends_on(const Question& question, const std::string& option);
-
-/// Names of all results but derivatives and those of observables.
-[[nodiscard]] std::vector<std::string> plain_keys();
-
-/// Whether it looks like a result of an observable or a derivative: pi(v^2), dP_stick_dmu_d.
-[[nodiscard]] bool is_composed_key(const std::string& key);
 
 }  // namespace stickslip::options

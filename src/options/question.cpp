@@ -16,15 +16,17 @@ namespace {
 // A misspelled name would be left out, and the rest agree.
 void check_keys(const Settings& settings, const std::vector<Reference>& references,
                 Problems& problems) {
-  const auto keys = plain_keys();
+  std::vector<std::string> keys;
+  for (const auto& row : result_table()) {
+    if (!row.is_pattern()) keys.push_back(row.key);
+  }
   std::set<std::string> unknown;
   for (const auto& reference : references) {
     const std::string& key = reference.quantity;
-    const bool known = std::count(keys.begin(), keys.end(), key) > 0 || is_composed_key(key);
-    if (known || !unknown.insert(key).second) continue;
+    if (find_result(key) != nullptr || !unknown.insert(key).second) continue;
     const std::string near = nearest_word(key, keys);
-    settings.report(problems, "compare", fmt::format("names {}, which is no result", key),
-                    near.empty() ? "-help tells the results of each of -quantities"
+    settings.report(problems, "compare", fmt::format("holds {}, which is no key of a result", key),
+                    near.empty() ? "-help lists the keys of every quantity"
                                  : fmt::format("did you mean {}?", near));
   }
 }
@@ -43,8 +45,8 @@ std::vector<Reference> read_compared(const Settings& settings, Problems& problem
   return references;
 }
 
-// The quantities named; else those of the file to compare with; else the default ones. Of those
-// that nobody named, the ones that the route gives.
+// The quantities given; else those of the file to compare with; else the default ones. Of those
+// that are not given, the ones that the route gives.
 void read_quantities(const Settings& settings, Request& request, Problems& problems) {
   auto& question = request.question;
   const bool given = settings.given("quantities");
@@ -67,8 +69,8 @@ void read_quantities(const Settings& settings, Request& request, Problems& probl
   }
   if (refused.empty() || (!given && !question.quantities.empty())) return;
   settings.report(problems, "quantities",
-                  fmt::format("{} cannot be had by -route {}: {}; it gives {}",
-                              enumerate(refused, "and"), settings.text("route"),
+                  fmt::format("-route {} does not give {} ({}); it gives {}",
+                              settings.text("route"), enumerate(refused, "and"),
                               limit_of(request.method.route), enumerate(given_by_route, "and")),
                   "take -route excursion, or other quantities");
 }
@@ -94,7 +96,7 @@ read_observables(const Settings& settings, const model::Friction& friction, Prob
   std::vector<model::Observable> observables;
   const auto texts = split(settings.text("observable"), ';');
   if (settings.given("observable") && texts.empty()) {
-    settings.report(problems, "observable", "names no function of the state", example);
+    settings.report(problems, "observable", "must name a function of the state", example);
   }
   for (auto text = texts.begin(); text != texts.end(); ++text) {
     if (std::find(texts.begin(), text, *text) != text) {
@@ -116,10 +118,10 @@ std::vector<double> probed_levels(const model::Scene& scene, const model::Observ
   const double seen = std::min(noise.place(largest_force(scene) + scene.friction.mu_d), 1e9);
   const int highest = std::min(noise.highest(), static_cast<int>(seen)),
             lowest = std::max(noise.lowest(), static_cast<int>(-seen));
-  constexpr int half = 8;
+  constexpr int count = 8;
   std::set<int> levels;
-  for (int n = -half; n <= half; ++n) {
-    levels.insert(static_cast<int>((n > 0 ? highest : -lowest) * (n * 1.0 / half)));
+  for (int n = -count; n <= count; ++n) {
+    levels.insert(static_cast<int>((n > 0 ? highest : -lowest) * (n * 1.0 / count)));
   }
   for (double number : f.numbers) {
     for (double x : {number, -number}) {
@@ -177,20 +179,21 @@ model::Start read_state(const Settings& settings, const model::Scene& scene, dou
     settings.report(
         problems, "start",
         noise.table
-            ? fmt::format("starts on no noise level, which lie in [{:g}, {:g}]", lowest, highest)
-            : fmt::format("starts on no noise level, which are {:g} apart up to {:g}", scene.delta,
-                          highest),
+            ? fmt::format("must start on a noise level; the levels lie in [{:g}, {:g}]", lowest,
+                          highest)
+            : fmt::format("must start on a noise level; the levels are {:g} apart up to {:g}",
+                          scene.delta, highest),
         fmt::format("take x = {:g}", noise.level(static_cast<int>(std::round(place)))));
     return {};
   }
-  const auto half = v < 0 ? process.mirrored() : process;
+  const auto branch = v < 0 ? process.mirrored() : process;
   const double largest =
-      half.drag.terminal_velocity(half.net_force(half.noise.highest())) * (v < 0 ? -1 : 1);
+      branch.drag.terminal_velocity(branch.net_force(branch.noise.highest())) * (v < 0 ? -1 : 1);
   if (std::abs(v) > std::abs(largest)) {
     settings.report(
         problems, "start",
-        fmt::format("starts at a velocity that no body reaches: on the highest level "
-                    "of the noise it tends to {:g}",
+        fmt::format("starts at a velocity that no body reaches: the terminal velocity on the "
+                    "highest noise level is {:g}",
                     largest),
         fmt::format("take v in [{:g}, {:g}]", std::min(0.0, largest), std::max(0.0, largest)));
   }
@@ -206,7 +209,7 @@ void read_start(const Settings& settings, Request& request, Problems& problems) 
   const bool up = process.starts_upwards(), down = process.starts_downwards();
   if ((text == "s+" && !up) || (text == "s-" && !down)) {
     settings.report(problems, "start",
-                    "is no state: the noise has no level beyond those that stick",
+                    "does not exist: the noise has no level beyond the static ones on that side",
                     up ? "take -start s+" : "take -start s-");
   } else if (text == "s+") {
     start = {process.static_index() + 1};
@@ -227,16 +230,17 @@ void check_speeds(const Settings& settings, const Request& request, Problems& pr
   if (!request.question.wants(Quantity::peak)) return;
   const auto process = request.scene.meant();
   double reached = 0;
-  for (const auto& half : {process, process.mirrored()}) {
-    reached = std::max(reached, half.drag.terminal_velocity(half.net_force(half.noise.highest())));
+  for (const auto& branch : {process, process.mirrored()}) {
+    reached =
+        std::max(reached, branch.drag.terminal_velocity(branch.net_force(branch.noise.highest())));
   }
   for (double speed : request.question.velocity) {
     if (speed < reached) continue;
     settings.report(problems, "velocity",
-                    fmt::format("holds {:g}, which no body reaches: on the highest level of the "
-                                "noise speeds tend to {:g}",
+                    fmt::format("holds {:g}, which no body reaches: the terminal velocity on the "
+                                "highest noise level is {:g}",
                                 speed, reached),
-                    "take smaller speeds");
+                    fmt::format("take speeds below {:g}", reached));
     return;
   }
 }
@@ -249,7 +253,7 @@ void check_horizon(const Settings& settings, const Request& request, Problems& p
   if (!request.question.wants(Quantity::trajectory) || jumps <= most) return;
   settings.report(
       problems, "horizon",
-      fmt::format("means {:.1e} jumps of the noise, and {:.0e} can be kept", jumps, most),
+      fmt::format("means {:.1e} jumps of the noise, and at most {:.0e} are kept", jumps, most),
       fmt::format("take at most {:.3g}", horizon * most / jumps));
 }
 

@@ -10,7 +10,7 @@
 
 namespace stickslip::options {
 
-// model.cpp
+// model_parameters.cpp
 
 /// The parameters of the model; v_max and the noise levels may stay open.
 [[nodiscard]] model::Scene read_scene(const Settings& settings, Problems& problems);
@@ -31,7 +31,7 @@ void require_readable(const std::string& file);
 
 // question.cpp
 
-/// What is asked for, for the scene and the method that the request holds already.
+/// The quantities and their arguments, for the model and the method that the request holds already.
 void read_question(const Settings& settings, Request& request, Problems& problems);
 
 // rules.cpp

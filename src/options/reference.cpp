@@ -12,7 +12,7 @@
 #include <stdexcept>
 
 #define CSV_IO_NO_THREAD  // small files
-// Fast C++ CSV Parser: header only, tells file and line of what is wrong.
+// Fast C++ CSV Parser: header only, reports the file and line of an error.
 #include <libfccp/csv.h>
 
 #include "reading.hpp"
@@ -99,15 +99,15 @@ std::vector<Reference> read_json(const std::string& file) {
       v.error = numbers(result.at("error"));
       v.scalar = !result.at("value").is_array();
       if (result.contains("ci95")) read_intervals(result["ci95"], v);
-      for (const char* name : {"lambda", "omega", "time", "distance", "inverse_distance",
-                               "velocity", "k", "n", "mode"}) {
-        if (result.contains(name)) v.argument = numbers(result[name]);
+      for (const auto& [name, values] : result.items()) {
+        const bool abscissa = name != "value" && name != "error" && name != "ci95";
+        if (abscissa && values.is_array()) v.argument = numbers(values);
       }
       append(key, v, all);
     }
   } catch (const Json::exception& problem) {
     throw std::invalid_argument(
-        fmt::format("is no JSON summary of this program ({})", problem.what()));
+        fmt::format("is not a JSON summary of this program ({})", problem.what()));
   }
   return all;
 }
@@ -151,10 +151,10 @@ Values values_of(hid_t group) {
 }
 
 std::vector<Reference> read_hdf5(const std::string& file) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // failures are told by exceptions
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // failures are reported by exceptions
   const Hdf5Id id(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!id.valid()) {
-    throw std::invalid_argument("is no readable HDF5 file, or another program is writing it");
+    throw std::invalid_argument("is not a readable HDF5 file, or another program is writing it");
   }
   const Hdf5Id results(H5Gopen2(id, "/results", H5P_DEFAULT), H5Gclose);
   if (!results.valid()) throw std::invalid_argument("has no group /results");
@@ -227,19 +227,20 @@ std::vector<Reference> read_csv(const std::string& file) {
       Reference r{quantity, cell(argument, "argument", line)};
       const auto found = cell(value, "value", line);
       if (!found || quantity.empty()) {
-        throw std::invalid_argument(fmt::format("line {}: no quantity or no value", line));
+        throw std::invalid_argument(
+            fmt::format("line {}: a quantity and a value are needed", line));
       }
       r.value = *found;
       r.low = cell(low, "low", line).value_or(r.value);
       r.high = cell(high, "high", line).value_or(r.value);
       if (r.low > r.value || r.high < r.value) {
-        throw std::invalid_argument(
-            fmt::format("line {}: low <= value <= high does not hold", line));
+        throw std::invalid_argument(fmt::format("line {}: low <= value <= high must hold", line));
       }
       all.push_back(std::move(r));
     }
   } catch (const ::io::error::base& problem) {
-    throw std::invalid_argument(fmt::format("is no CSV file of references: {}", problem.what()));
+    throw std::invalid_argument(
+        fmt::format("is not a CSV file of reference values: {}", problem.what()));
   }
   return all;
 }
@@ -266,7 +267,7 @@ std::vector<Reference> read_references(const std::string& file) {
                                                      {".csv", read_csv}};
   const auto reader = readers.find(std::filesystem::path(file).extension());
   if (reader == readers.end()) {
-    throw std::invalid_argument("has none of the endings .h5, .json and .csv");
+    throw std::invalid_argument("must end in .h5, .json or .csv");
   }
   auto all = reader->second(file);
   if (all.empty()) throw std::invalid_argument("holds no values");

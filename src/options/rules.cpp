@@ -27,10 +27,10 @@ class Rules {
     warn({"tau"}, levels && !drag_law_.expression, with_noise);
     warn({"delta", "noise_levels", "noise_deviation"}, levels, with_noise);
     warn({"lambda"}, r_.method.route != Route::lambda && !asked("lambda"));
-    warn({"excursions"}, !simulates);
+    warn({"excursions"}, !simulates, "without -route monte_carlo");
     warn({"seed"}, !simulates && !asked("seed"));
-    warn({"checkpoint"}, !simulates && !swept);
-    warn({"sweep_csv", "sweep_ranks"}, !swept);
+    warn({"checkpoint"}, !simulates && !swept, "without -route monte_carlo or a sweep");
+    warn({"sweep_csv", "sweep_ranks"}, !swept, "without a sweep");
     warn({"study_steps", "study_repeats", "study_csv"}, !study_, "without -study");
     for (const char* option :
          {"observable", "time", "start", "horizon", "transient_solver", "omega", "spectrum_solver",
@@ -45,27 +45,27 @@ class Rules {
     const bool hp = r_.method.scheme == Scheme::hp, queue = route == Route::fluid_queue;
     const bool direct = r_.method.spectrum_solver == SpectrumSolver::direct;
     const bool weakens = meaning(kFrictionLaws, settings_.text("friction"));
-    const std::string no_choice = "is no choice of -route " + settings_.text("route");
+    const std::string no_choice = "does not apply to -route " + settings_.text("route");
     refuse({"drag_expression"}, !drag_law_.expression,
-           "is not the drag, which is that of -drag " + r_.scene.drag_name,
+           "belongs to -drag expression, and -drag is " + r_.scene.drag_name,
            "add -drag expression, or leave it out");
     for (const auto& [option, noise] : {std::pair{"telegraph_amplitude", "telegraph"},
                                         {"telegraph_rate", "telegraph"},
                                         {"noise_file", "file"}}) {
       refuse({option}, r_.scene.noise.name != noise,
-             "is not of the noise, which is that of -noise " + r_.scene.noise.name,
-             "name its -noise, or leave it out");
+             fmt::format("belongs to -noise {}, and -noise is {}", noise, r_.scene.noise.name),
+             fmt::format("add -noise {}, or leave it out", noise));
     }
     refuse({"stribeck_velocity", "stribeck_exponent"}, !weakens, "belongs to -friction stribeck",
            "add -friction stribeck, or leave it out");
     refuse({"route"}, queue && !r_.scene.process(1).drag.is_none(),
-           "needs b = 0 and Coulomb friction: only then is the model a fluid queue",
+           "needs a model without drag, b = 0, and Coulomb friction: only then is it a fluid queue",
            "add -drag none, leave -friction out, or take -route excursion");
     refuse({"v_max"}, route != Route::excursion, no_choice,
            "leave it out, or take -route excursion");
     refuse({"scheme", "degree", "layers", "noise_degree", "noise_grading", "p"},
-           queue || route == Route::monte_carlo, no_choice + ", which has no grid in v",
-           "leave it out");
+           queue || route == Route::monte_carlo,
+           no_choice + ", which does not discretise the velocity", "leave it out");
     refuse({"degree", "layers", "noise_degree", "noise_grading"}, !hp, "belongs to -scheme hp",
            "leave it out, or take -scheme hp");
     refuse({"p"}, hp, "belongs to -scheme upwind", "leave it out, or take -scheme upwind");
@@ -77,12 +77,12 @@ class Rules {
     const bool of_steps =
         r_.study.kind == StudyKind::steps || r_.study.kind == StudyKind::heuristic;
     refuse({"study"}, of_steps && r_.scene.noise.name != "ou",
-           "takes smaller and smaller -delta, which -noise " + r_.scene.noise.name + " has not",
+           "decreases -delta, which -noise " + r_.scene.noise.name + " does not have",
            "leave it out, or take -noise ou");
-    refuse({"plan"}, r_.plan_only && study_, "foretells one run, not a study", "leave -study out");
+    refuse({"plan"}, r_.plan_only && study_, "predicts one run, not a study", "leave -study out");
   }
 
-  // What the question lacks, or cannot have.
+  // What the quantities need, or exclude.
   void needs() {
     using enum Quantity;
     const bool by_lambda = r_.method.route == Route::lambda;
@@ -92,29 +92,31 @@ class Rules {
     });
     const bool one_lambda = q_.lambda.empty() || (q_.lambda.size() == 1 && q_.lambda[0] != 0);
     require("lambda", asked("lambda") && q_.lambda.empty(),
-            "asks for functions of lambda and no values are given",
+            "asks for functions of lambda, but no values of lambda are given",
             "add for example -lambda 0.1,1,10");
     require("observable", (q_.wants(resolvent) || q_.wants(expectation)) && q_.observables.empty(),
-            "asks for functions of the state and none are given",
+            "asks for averages of functions of the state, but none are given",
             "add for example -observable \"v^2; stick\"");
     require("time", asked("time") && q_.time.empty(),
-            "asks for functions of time and no times are given",
+            "asks for functions of time, but no times are given",
             "add for example -time 0.01:10:31:log");
     require("velocity", q_.wants(peak) && q_.velocity.empty(),
-            "asks for functions of a speed and none are given",
+            "asks for functions of a speed, but no speeds are given",
             "add for example -velocity 0.1:2:20");
     report("velocity", std::count(q_.velocity.begin(), q_.velocity.end(), 0) > 0,
-           "must be positive: every slide is faster than 0", "leave 0 out");
+           "must be positive: every sliding phase exceeds the speed 0", "leave 0 out");
     report("distance", std::count(q_.distance.begin(), q_.distance.end(), 0) > 0,
-           "must be positive: f_slip has no value at 0", "leave 0 out");
-    require("output", q_.wants(density), "asks for density, a field that needs a file",
+           "must be positive: f_slip is not defined at 0", "leave 0 out");
+    require("output", q_.wants(density), "asks for density, a field, which needs a file",
             "add -output FILE.h5");
     require("trajectory", q_.wants(trajectory) && r_.output.output.empty(),
             "asks for a trajectory, which needs a file",
             "add -output FILE.h5 or -trajectory FILE.csv");
     report("quantities", q_.wants(sensitivity) && !derivable,
-           "asks for derivatives and for nothing to derive", "add sticking, moments or noise_law");
-    report("quantities", study_ && others, "of a study are sticking, moments and noise_law",
+           "asks for derivatives (sensitivity), but for no scalars to differentiate",
+           "add sticking, moments or noise_law");
+    report("quantities", study_ && others,
+           "must be sticking, moments and noise_law, or some of these, in a study",
            "leave the others out");
     report("lambda", by_lambda && !one_lambda, "must be one positive number with -route lambda",
            "leave it out to have it chosen from -accuracy");
@@ -125,24 +127,25 @@ class Rules {
 
   [[nodiscard]] bool asked(const char* option) const { return depends_on(q_, option); }
 
-  void warn(Options options, bool when, const std::string& why = "on what is asked for") {
+  void warn(Options options, bool when, const std::string& why = "on the quantities asked for") {
     for (const char* option : options) {
       if (!when || !settings_.given(option)) continue;
-      r_.warnings.push_back(fmt::format("-{} has no effect {}", option, why));
+      r_.warnings.push_back(fmt::format("-{} = {} has no effect {}; leave it out", option,
+                                        settings_.text(option), why));
     }
   }
 
-  void refuse(Options options, bool when, const std::string& why, const char* fix) {
+  void refuse(Options options, bool when, const std::string& why, const std::string& fix) {
     for (const char* option : options) report(option, when && settings_.given(option), why, fix);
   }
 
-  // The question is refused, unless an option is given that may have been misread.
-  void require(const char* option, bool when, const char* why, const char* fix) {
+  // The quantities are refused, unless the option is given: then it may have been misread.
+  void require(const char* option, bool when, const std::string& why, const std::string& fix) {
     report("quantities", when && !settings_.given(option), why, fix);
   }
 
   // Given or not: values may come from the file to compare with.
-  void report(const char* option, bool when, const std::string& why, const char* fix) {
+  void report(const char* option, bool when, const std::string& why, const std::string& fix) {
     if (when) settings_.report(problems_, option, why, fix);
   }
 

@@ -27,7 +27,7 @@ std::optional<std::string> value_in_database(const std::string& name) {
 
 void check_words(const Option& option, const std::string& value, Problems& problems) {
   const auto given = option.kind == Kind::list ? split(value, ',') : std::vector{value};
-  const std::string must = "must be " + option.allowed;
+  const std::string must = "must be " + requirement(option);
   if (given.empty()) problems.add(option, value, must, "");
   for (auto word = given.begin(); word != given.end(); ++word) {
     if (std::count(option.words.begin(), option.words.end(), *word) == 0) {
@@ -41,7 +41,7 @@ void check_words(const Option& option, const std::string& value, Problems& probl
 }
 
 void check_numbers(const Option& option, const std::string& value, Problems& problems) {
-  const std::string must = "must be " + option.allowed;
+  const std::string must = "must be " + requirement(option);
   const auto numbers = parse_numbers(value);
   if (!numbers)
     return problems.add(option, value, must, "write for example 0.1,1 or 0.01:10:31:log");
@@ -55,7 +55,7 @@ void check_number(const Option& option, const std::string& value, Problems& prob
   const auto number = parse_number(value);
   const bool fits = number && option.range.contains(*number) &&
                     (option.kind == Kind::real || *number == std::floor(*number));
-  if (!is_word && !fits) problems.add(option, value, "must be " + option.allowed, option.fix);
+  if (!is_word && !fits) problems.add(option, value, "must be " + requirement(option), option.fix);
 }
 
 void check_value(const Option& option, const std::string& value, Problems& problems) {
@@ -76,7 +76,7 @@ void check_value(const Option& option, const std::string& value, Problems& probl
   case Kind::path:
   case Kind::input:
     if (!value.empty()) return;
-    problems.add(option, value, "must be " + option.allowed, "name the file after the option");
+    problems.add(option, value, "must be " + requirement(option), "name the file after the option");
   }
 }
 

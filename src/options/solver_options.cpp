@@ -88,10 +88,9 @@ std::string nearest_option(const SolverRole& role, const std::string& name) {
 std::string unknown_option(const std::string& name) {
   if (const SolverRole* role = role_of(name)) {
     const std::string near = nearest_option(*role, name);
-    return fmt::format("-{}: the solver of this role knows no such option; {}-{}{} shows what it "
-                       "uses",
-                       name, near.empty() ? "" : fmt::format("did you mean -{}? ", near),
-                       role->prefix, role->read_later.front());
+    return fmt::format("-{}: this solver has no such option; {}-{}{} shows its options", name,
+                       near.empty() ? "" : fmt::format("did you mean -{}? ", near), role->prefix,
+                       role->read_later.front());
   }
   const auto names = all_names();
   const std::string near = nearest_word("-" + name, names);

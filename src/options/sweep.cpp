@@ -17,14 +17,8 @@ namespace stickslip::options {
 namespace {
 
 constexpr double kMostPoints = 100000;
-constexpr const char* kSwept = "swept";   // in the place of a value, in records of what was used
+constexpr const char* kSwept = "swept";   // in the place of a value, in the options as used
 constexpr std::size_t kMostMessages = 8;  // of the points
-
-// The option of the scene that an option sweeps; nullptr for any other option.
-const Option* swept_by(const Option& option) {
-  constexpr std::string_view prefix = "sweep_";
-  return option.name.starts_with(prefix) ? find(option.name.substr(prefix.size())) : nullptr;
-}
 
 std::vector<SweepAxis> read_axes(const Settings& settings, Problems& problems) {
   std::vector<SweepAxis> axes;
@@ -46,8 +40,8 @@ void check_size(const std::vector<SweepAxis>& axes, Problems& problems) {
   double points = 1;
   for (const auto& axis : axes) points *= static_cast<double>(axis.values.size());
   if (points <= kMostPoints) return;
-  problems.add(fmt::format("-sweep_{}: makes {:.0f} points in all, and {:.0f} are allowed; take "
-                           "fewer values, or several sweeps",
+  problems.add(fmt::format("-sweep_{}: makes {:.0f} points in all, and at most {:.0f} are allowed; "
+                           "take fewer values, or several sweeps",
                            axes.back().option, points, kMostPoints));
 }
 
@@ -59,17 +53,17 @@ void check_alone(const Settings& settings, Problems& problems) {
   };
   constexpr const char* leave = "leave it out, or the -sweep_ options";
   refuse("study", "makes a series of runs of its own", leave);
-  refuse("plan", "foretells one run, not a sweep",
-         "leave the -sweep_ options out to foretell its scene");
+  refuse("plan", "predicts one run, not a sweep", "leave the -sweep_ options out to predict a run");
   for (const char* name : {"compare", "trajectory"}) {
     refuse(name, "is a file for one run, not for a sweep", leave);
   }
   const auto asked = settings.list("quantities");
   for (const auto& row : quantity_table()) {
     if (!row.of_one_run || std::count(asked.begin(), asked.end(), row.word) == 0) continue;
-    settings.report(problems, "quantities",
-                    fmt::format("asks for {}, which a sweep has no place for", row.word),
-                    "run the scenes that you want to look at one by one");
+    settings.report(
+        problems, "quantities",
+        fmt::format("asks for {}, a field or a path, which a sweep does not write", row.word),
+        "run the points of interest one by one");
   }
 }
 
@@ -80,12 +74,12 @@ void check_ranks(const Settings& settings, Problems& problems) {
                   "take fewer, or start more with mpiexec -n");
 }
 
-// A swept option without effect would give the same numbers over and over.
+// A swept option without effect would give the same results at all points.
 void check_effects(const Sweep& sweep, const Request& request, Problems& problems) {
   for (const auto& axis : sweep.axes()) {
     for (const auto& warning : request.warnings) {
-      if (!warning.starts_with(fmt::format("-{} has no effect", axis.option))) continue;
-      problems.add(fmt::format("-sweep_{}: {}; leave it out", axis.option, warning));
+      if (!warning.starts_with(fmt::format("-{} = ", axis.option))) continue;
+      problems.add(fmt::format("-sweep_{}: {}", axis.option, warning));
     }
   }
 }
@@ -116,7 +110,7 @@ void check_points(const Sweep& sweep, Problems& problems) {
     problems.add(where(sweep, points_of[messages[n]]) + messages[n]);
   }
   if (messages.size() <= kMostMessages) return;
-  problems.add(fmt::format("and {} more like these", messages.size() - kMostMessages));
+  problems.add(fmt::format("and {} more problems of this kind", messages.size() - kMostMessages));
 }
 
 bool is_axis(const std::vector<SweepAxis>& axes, const std::string& name) {

@@ -181,8 +181,8 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
 
 void append_displacement(const std::vector<double>& time, const Displacement& displacement,
                          Results& results) {
-  Result mean = array("displacement_mean", "velocity*time", "time", time);
-  Result variance = array("displacement_variance", "velocity^2*time^2", "time", time);
+  Result mean = array("displacement_mean", time);
+  Result variance = array("displacement_variance", time);
   for (const auto& value : displacement.mean) append_value(mean, value);
   for (const auto& value : displacement.variance) append_value(variance, value);
   results.push_back(std::move(mean));

@@ -210,19 +210,18 @@ void append_duration_moments(const model::Process& process, const SideChain& sid
   append(kMeanSlide, moments.mean_slide);
   append(kMeanStick, moments.mean_stick);
   append(kMeanExcursion, moments.mean_excursion);
-  append({"var_slide", "time^2"}, moments.var_slide);
-  append({"var_stick", "time^2"}, moments.var_stick);
-  append({"var_excursion", "time^2"}, moments.var_excursion);
-  append({"f_slide_0", "1/time"}, {slide_density_at_zero(process, sides), 0});
+  append({"var_slide"}, moments.var_slide);
+  append({"var_stick"}, moments.var_stick);
+  append({"var_excursion"}, moments.var_excursion);
+  append({"f_slide_0"}, {slide_density_at_zero(process, sides), 0});
   append(kFStick0, {stick_density_at_zero(process, entry.front().value, entry.back().value),
                     stick_density_at_zero(process, entry.front().error, entry.back().error)});
 }
 
-void append_distribution(const std::string& name, const Abscissa& abscissa,
+void append_distribution(const std::string& name, const std::vector<double>& abscissa,
                          const DurationDistribution& durations, Results& results) {
-  Result density = array("f_" + name, abscissa.unit_of_density, abscissa.name, abscissa.values);
-  Result distribution =
-      array("cdf_" + name, "", abscissa.name, abscissa.values, Kind::distribution);
+  Result density = array("f_" + name, abscissa);
+  Result distribution = array("cdf_" + name, abscissa, Kind::distribution);
   for (const auto& value : durations.density) append_value(density, value);
   for (const auto& value : durations.distribution) append_value(distribution, value);
   results.push_back(std::move(density));

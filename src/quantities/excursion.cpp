@@ -108,7 +108,7 @@ void append_hitting_distribution(const model::Process& process, const Excursion&
   std::vector<double> levels;
   for (int i = process.lowest_static(); i <= process.static_index(); ++i) levels.push_back(i);
   const auto append = [&](const char* key, const std::vector<double>& entry) {
-    Result distribution = array(key, "", "k", levels);
+    Result distribution = array(key, levels);
     distribution.value = entry;
     distribution.error.assign(entry.size(), 0.0);
     results.push_back(std::move(distribution));

@@ -112,14 +112,14 @@ FirstPassage first_passage(operators::Systems& systems, const SideChain& sides, 
 void append_first_passages(const std::vector<double>& speed,
                            const std::vector<FirstPassage>& passages, Results& results) {
   const auto append = [&](const Name& name, Uncertain FirstPassage::*member) {
-    Result result = array(name.key, name.unit, "velocity", speed, name.kind);
+    Result result = array(name.key, speed, name.kind);
     result.each_by_its_size = true;
     for (const auto& passage : passages) append_value(result, passage.*member);
     results.push_back(std::move(result));
   };
-  append({"P_peak", "", Kind::probability}, &FirstPassage::exceeded);
-  append({"mean_first_passage", "time", Kind::positive_mean}, &FirstPassage::from_slide);
-  append({"mean_first_passage_rest", "time", Kind::positive_mean}, &FirstPassage::from_rest);
+  append({"P_peak", Kind::probability}, &FirstPassage::exceeded);
+  append({"mean_first_passage", Kind::positive_mean}, &FirstPassage::from_slide);
+  append({"mean_first_passage_rest", Kind::positive_mean}, &FirstPassage::from_rest);
 }
 
 }  // namespace stickslip::quantities

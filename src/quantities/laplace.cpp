@@ -21,7 +21,7 @@ Uncertain stick_transform(const model::Process& process, double lambda,
 
 void append_stick_transform(const model::Process& process, const std::vector<double>& lambda,
                             const std::vector<Uncertain>& entry, Results& results) {
-  Result result = array("F_stick", "", "lambda", lambda, Kind::transform);
+  Result result = array("F_stick", lambda, Kind::transform);
   for (double value : lambda) append_value(result, stick_transform(process, value, entry));
   results.push_back(std::move(result));
 }
@@ -41,7 +41,7 @@ SlidingTransforms sliding_transforms(operators::Systems& systems,
 void append_laplace(const std::vector<double>& lambda,
                     const std::vector<DurationTransforms>& transforms, Results& results) {
   const auto append = [&](const char* key, Uncertain DurationTransforms::*member) {
-    Result result = array(key, "", "lambda", lambda, Kind::transform);
+    Result result = array(key, lambda, Kind::transform);
     for (const auto& t : transforms) append_value(result, t.*member);
     results.push_back(std::move(result));
   };

@@ -146,8 +146,8 @@ void append_relaxation(const RelaxationSector& sector, Results& results) {
   const std::string key = relaxation_key(sector.symmetry);
   std::vector<double> number;
   for (std::size_t n = 0; n < modes.size(); ++n) number.push_back(static_cast<double>(n + 1));
-  Result decay = array(key, "1/time", "mode", number);
-  Result frequency = array(key + "_frequency", "1/time", "mode", number);
+  Result decay = array(key, number);
+  Result frequency = array(key + "_frequency", number);
   for (const auto& mode : modes) {
     decay.value.push_back(mode.rate.real());
     const double error = mode.residual + mode.spread;

@@ -190,7 +190,7 @@ void append_resolvent(const std::vector<double>& lambda,
   // Differences of the two parities have no accuracy of their own size where they nearly cancel.
   const auto append = [&](const std::string& key, bool each_by_its_size, const auto& value,
                           Kind kind = Kind::other) {
-    Result result = array(key, "", "lambda", lambda, kind);
+    Result result = array(key, lambda, kind);
     for (const auto& r : resolvents) append_value(result, value(r));
     result.each_by_its_size = each_by_its_size;
     results.push_back(std::move(result));
@@ -215,8 +215,9 @@ void append_resolvent(const std::vector<double>& lambda,
     // Beside averages it may not take their name.
     const bool taken = std::any_of(results.begin(), results.end(),
                                    [&](const Result& r) { return r.key == key("pi"); });
-    append(key(taken ? "pi_lambda" : "pi"), true, member(&ObservableTransforms::pi_lambda),
+    append(key("pi_lambda"), true, member(&ObservableTransforms::pi_lambda),
            observables[n].within_unit() ? Kind::probability : Kind::other);
+    if (!taken) results.back().key = key("pi");
     append(key("mu"), false, member(&ObservableTransforms::mu_lambda));
     if (symmetric) continue;
     if (finite) append(key("u_minus"), true, member(&ObservableTransforms::u_from_minus));

@@ -8,6 +8,7 @@
 #include "stickslip/model/noise_chain.hpp"
 #include "stickslip/model/unit.hpp"
 #include "stickslip/operators/static_chain.hpp"
+#include "stickslip/options/table.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
 
@@ -18,27 +19,27 @@ using operators::KolmogorovOperator;
 using operators::Parameter;
 using operators::Symmetry;
 
-// Of the option.
-struct Naming {
-  const char *name, *unit;
-};
-
-Naming naming(Parameter parameter) {
-  switch (parameter) {
-  case Parameter::mu_d: return {"mu_d", "force"};
-  case Parameter::mu_d_minus: return {"mu_d_minus", "force"};
-  case Parameter::mu_s: return {"mu_s", "force"};
-  case Parameter::stribeck_velocity: return {"stribeck_velocity", "velocity"};
-  case Parameter::tau: return {"tau", "time"};
-  case Parameter::drag_coefficient: return {"drag_coefficient", "1/time"};
-  }
-  return {"", ""};
+// The option that sets a parameter.
+const options::Option& option_of(Parameter parameter) {
+  const auto name = [parameter] {
+    switch (parameter) {
+    case Parameter::mu_d: return "mu_d";
+    case Parameter::mu_d_minus: return "mu_d_minus";
+    case Parameter::mu_s: return "mu_s";
+    case Parameter::stribeck_velocity: return "stribeck_velocity";
+    case Parameter::tau: return "tau";
+    case Parameter::drag_coefficient: return "drag_coefficient";
+    }
+    return "";
+  };
+  return *options::find(name());
 }
 
 Result derivative(const Name& of, Parameter parameter, Uncertain value) {
-  const auto [name, unit] = naming(parameter);
-  const model::Unit quotient = model::Unit::parse(of.unit) / model::Unit::parse(unit);
-  return scalar(fmt::format("d{}_d{}", of.key, name), quotient.text(), value);
+  const auto& by = option_of(parameter);
+  const model::Unit quotient =
+      model::Unit::parse(options::unit_of(of.key)) / model::Unit::parse(by.unit);
+  return scalar(fmt::format("d{}_d{}", of.key, by.name), quotient.text(), value);
 }
 
 /// Differences between neighbouring static levels, those beyond the ends included, of the mean

@@ -77,14 +77,14 @@ void append_slip_moments(const model::Process& process, const SlipMoments& momen
 
 void append_slip_transform(const std::vector<double>& inverse_distance,
                            const std::vector<Uncertain>& transform, Results& results) {
-  Result result = array("F_slip", "", "inverse_distance", inverse_distance, Kind::transform);
+  Result result = array("F_slip", inverse_distance, Kind::transform);
   for (const auto& value : transform) append_value(result, value);
   results.push_back(std::move(result));
 }
 
 void append_slip(const std::vector<double>& distance, const DurationDistribution& slips,
                  Results& results) {
-  append_distribution("slip", {"distance", "1/(velocity*time)", distance}, slips, results);
+  append_distribution("slip", distance, slips, results);
 }
 
 }  // namespace stickslip::quantities

@@ -244,7 +244,7 @@ Spectrum direct_spectrum(MPI_Comm comm, operators::Systems& systems,
 
 void append_spectrum(const std::vector<double>& omega, const Spectrum& spectrum, Results& results) {
   if (!omega.empty()) {
-    Result s = array("S_v", "velocity^2*time", "omega", omega, Kind::spectrum);
+    Result s = array("S_v", omega, Kind::spectrum);
     for (const auto& value : spectrum.value) append_value(s, value);
     results.push_back(std::move(s));
   }
@@ -253,9 +253,9 @@ void append_spectrum(const std::vector<double>& omega, const Spectrum& spectrum,
 }
 
 void append_shape(const SpectrumShape& shape, Results& results) {
-  results.push_back(scalar("fwhm", "1/time", shape.fwhm));
-  results.push_back(scalar("t_corr", "time", Uncertain{1, 0} / shape.fwhm));
-  results.push_back(scalar("variance_from_spectrum", "velocity^2", shape.variance));
+  results.push_back(scalar({"fwhm"}, shape.fwhm));
+  results.push_back(scalar({"t_corr"}, Uncertain{1, 0} / shape.fwhm));
+  results.push_back(scalar({"variance_from_spectrum"}, shape.variance));
 }
 
 }  // namespace stickslip::quantities

@@ -65,7 +65,7 @@ void append_averages(const StationaryDistribution& distribution, const Kolmogoro
     const Kind kind = f.within_unit() ? Kind::probability : Kind::drift;
     const auto append = [&](const char* given, Uncertain value) {
       const std::string key = "pi(" + f.name + given + ")";
-      results.push_back(scalar({key.c_str(), "", kind}, value));
+      results.push_back(scalar({key.c_str(), kind}, value));
     };
     append("", (sum.stick + sum.slide) / excursion);
     append("|stick", sum.stick / stick);

@@ -25,13 +25,12 @@ std::vector<Average> averages(const Setting& setting) {
   };
   std::vector<Average> all;
   const auto add = [&all](const quantities::Name& name, const model::Observable::Function& f) {
-    all.push_back({name.key, name.unit, name.kind, f});
+    all.push_back({name.key, name.kind, f});
   };
   const auto within = named("|x|<=mu_s"), stick = named("stick"), slide = named("slide");
   const double low = process.noise.level(process.lowest_static()),
                high = process.noise.level(process.static_index());
-  add({"P_moving_levels", ""},
-      [=](double x, double, double) { return x < low || x > high ? 1 : 0; });
+  add({"P_moving_levels"}, [=](double x, double, double) { return x < low || x > high ? 1 : 0; });
   if (question.wants(Quantity::sticking) || question.wants(Quantity::averages)) {
     add(quantities::kPStick, stick);
     add(quantities::kPSlide, slide);
@@ -52,9 +51,9 @@ std::vector<Average> averages(const Setting& setting) {
     const Kind kind = observable.within_unit() ? Kind::probability : Kind::drift;
     const auto given = [&](const char* phase, const model::Observable::Function& in, int number) {
       const auto part = [=](double x, double y, double v) { return f(x, y, v) * in(x, y, v); };
-      all.push_back({"pi(" + observable.name + phase + ")", "", kind, part, number});
+      all.push_back({"pi(" + observable.name + phase + ")", kind, part, number});
     };
-    all.push_back({"pi(" + observable.name + ")", "", kind, f});
+    all.push_back({"pi(" + observable.name + ")", kind, f});
     given("|stick", stick, kStick);
     given("|slide", slide, kSlide);
   }
@@ -78,9 +77,7 @@ void append_averages(const Setting& setting, const std::vector<Uncertain>& value
     double share = std::abs(value.value);
     if (phase && n == kStick) share = std::min(share, std::abs(values[kSlide].value));
     value.error += defect * share;
-    auto result = scalar(all[n].key, all[n].unit, value);
-    result.kind = all[n].kind;
-    results.push_back(std::move(result));
+    results.push_back(scalar({all[n].key.c_str(), all[n].kind}, value));
   }
   if (question.wants(Quantity::moments) && !process.drifts()) {
     results.push_back(quantities::scalar(quantities::kEV, 0, 0));  // by symmetry

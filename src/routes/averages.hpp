@@ -12,7 +12,7 @@
 namespace stickslip::routes {
 
 struct Average {
-  std::string key, unit;
+  std::string key;
   quantities::Kind kind;
   model::Observable::Function f;
   int given = -1;  ///< number of the average that it is divided by, of a phase; -1: none

@@ -98,10 +98,9 @@ void append_durations(operators::Systems& systems, const Setting& setting, Evalu
   const auto stick =
       quantities::stick_distribution(setting.discretisation.process, entry_law(distribution), time);
   const auto excursion = quantities::excursion_distribution(systems, distribution, time, tolerance);
-  const quantities::Abscissa by_time{"time", "1/time", time};
-  quantities::append_distribution("slide", by_time, slide, evaluation.results);
-  quantities::append_distribution("stick", by_time, stick, evaluation.results);
-  quantities::append_distribution("excursion", by_time, excursion, evaluation.results);
+  quantities::append_distribution("slide", time, slide, evaluation.results);
+  quantities::append_distribution("stick", time, stick, evaluation.results);
+  quantities::append_distribution("excursion", time, excursion, evaluation.results);
   evaluation.checks.emplace_back("slide_pairs", slide.pairs);
   evaluation.checks.emplace_back("excursion_pairs", excursion.pairs);
 }
@@ -113,9 +112,9 @@ quantities::TransientMethod transient_method(const options::Method& method) {
 }
 
 void append_function_of_time(const std::vector<double>& time, const std::string& key,
-                             const std::string& unit, const std::vector<Uncertain>& values,
-                             Results& results, quantities::Kind kind = quantities::Kind::other) {
-  auto result = quantities::array(key, unit, "time", time, kind);
+                             const std::vector<Uncertain>& values, Results& results,
+                             quantities::Kind kind = quantities::Kind::other) {
+  auto result = quantities::array(key, time, kind);
   for (const auto& value : values) quantities::append_value(result, value);
   results.push_back(std::move(result));
 }
@@ -126,7 +125,7 @@ void append_autocorrelation(operators::Systems& systems, const Setting& setting,
   const auto method = transient_method(setting.given.method);
   const auto values = quantities::autocorrelation(systems, *evaluation.distribution, question.time,
                                                   method, 0.1 * question.accuracy);
-  append_function_of_time(question.time, "C_vv", "velocity^2", values, evaluation.results);
+  append_function_of_time(question.time, "C_vv", values, evaluation.results);
 }
 
 void append_expectations(operators::Systems& systems, const Setting& setting,
@@ -138,11 +137,11 @@ void append_expectations(operators::Systems& systems, const Setting& setting,
         quantities::expectation(systems, *evaluation.distribution, f, question.start, question.time,
                                 method, 0.1 * question.accuracy);
     const auto kind = f.within_unit() ? quantities::Kind::probability : quantities::Kind::other;
-    append_function_of_time(question.time, "E(" + f.name + ")", "", expectation.value,
+    append_function_of_time(question.time, "E(" + f.name + ")", expectation.value,
                             evaluation.results, kind);
     const std::string stationary = "stationary(" + f.name + ")";
-    evaluation.results.push_back(quantities::scalar({stationary.c_str(), "", kind},
-                                                    expectation.stationary, expectation.unseen));
+    evaluation.results.push_back(
+        quantities::scalar({stationary.c_str(), kind}, expectation.stationary, expectation.unseen));
   }
 }
 

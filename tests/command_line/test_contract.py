@@ -32,9 +32,9 @@ class Refusals(Case):
         self.refuse("-tau", "nan", told=("-tau = nan",))
         self.refuse("-drag_coefficient", "-1", told=("must not grow",))
         self.refuse("-delta", "0.25", "-noise_levels", "99", told=("at most 32",))
-        self.refuse("-delta", "0.25", "-mu_s", "8", told=("nothing ever slides",))
+        self.refuse("-delta", "0.25", "-mu_s", "8", told=("never slides",))
         resolvent = ("-quantities", "resolvent", "-lambda", "1", "-observable")
-        self.refuse(*resolvent, "", told=("names no function of the state",))
+        self.refuse(*resolvent, "", told=("must name a function of the state",))
         self.refuse(*resolvent, "v^2; v; v^2", told=("names v^2 twice", "name it once"))
 
     def test_names(self):
@@ -83,7 +83,7 @@ class Refusals(Case):
         for key, told in (("P_stik", "did you mean P_stick?"), ("zzzzzz", "-help"),
                           ("q(v^2)", "q(v^2)"), ("dP_stik_dtau", "dP_stik_dtau"), ("d_dtau", "d_dtau")):
             file.write_text(header + f"P_slide,,0.8,0,1\n{key},,0.2,0,1\n")
-            self.refuse(*SMALL, "-compare", file, told=(f"names {key}, which is no result", told))
+            self.refuse(*SMALL, "-compare", file, told=(f"holds {key}, which is no key of a result", told))
         file.write_text(header + "P_stick,,0.2,0,1\nvar_slide,,0.2,0,1\n")
         s = self.summary(*SMALL, "-compare", file)
         self.assertEqual(s["comparison"]["left_out"], ["var_slide"])

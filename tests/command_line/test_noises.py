@@ -58,26 +58,26 @@ class Noises(Case):
         self.refuse_file("# two\n" + HEADER + "-1,1,0.5\n1,0,1\n", "line 3: rate_down = 0.5")
 
     def test_bodies_that_never_slide_or_never_stick(self):
-        self.refuse(*TELEGRAPH, "-bias", "0", told=("-mu_s = 1", "nothing ever slides"))
-        self.refuse(*TELEGRAPH, "-telegraph_amplitude", "2", told=("-mu_s = 1", "nothing ever sticks"))
+        self.refuse(*TELEGRAPH, "-bias", "0", told=("-mu_s = 1", "never slides"))
+        self.refuse(*TELEGRAPH, "-telegraph_amplitude", "2", told=("-mu_s = 1", "never sticks"))
         (self.folder / "weak.csv").write_text(HEADER + "-0.5,1,0\n0.5,0,1\n")
         self.refuse("-noise", "file", "-noise_file", "weak.csv",
-                    told=("-mu_s = 1: holds the body on all", "nothing ever slides"))
+                    told=("-mu_s = 1: holds the body on all", "never slides"))
 
     def test_options_of_another_noise(self):
         for option, value in (("-telegraph_amplitude", "1"), ("-telegraph_rate", "1"), ("-noise_file", "x.csv")):
-            self.refuse(option, value, told=(f"{option} = {value}: is not of the noise",))
-        self.refuse(*TELEGRAPH, "-noise_file", "x.csv", told=("-noise_file = x.csv: is not of the noise",))
+            self.refuse(option, value, told=(f"{option} = {value}: belongs to -noise",))
+        self.refuse(*TELEGRAPH, "-noise_file", "x.csv", told=("-noise_file = x.csv: belongs to -noise file, and -noise is telegraph",))
         for study in ("delta", "heuristic"):
             self.refuse(*TELEGRAPH, "-study", study, "-quantities", "sticking",
-                        told=(f"-study = {study}", "-noise telegraph has not"))
-        self.refuse(*TELEGRAPH, "-sweep_tau", "1,2", told=("-tau has no effect with -noise telegraph",))
+                        told=(f"-study = {study}", "-noise telegraph does not have"))
+        self.refuse(*TELEGRAPH, "-sweep_tau", "1,2", told=("-tau = 1 has no effect with -noise telegraph",))
 
     def test_options_without_effect(self):
         for option in ("-tau", "-delta", "-noise_levels", "-noise_deviation"):
             with self.subTest(option=option):
                 done = self.run_ok(*TELEGRAPH, option, "1", "-quantities", "sticking")
-                self.assertIn(f"{option} has no effect with -noise telegraph", done.stderr)
+                self.assertIn(f"{option} = 1 has no effect with -noise telegraph; leave it out", done.stderr)
         self.assertEqual(self.run_ok(*TELEGRAPH, "-quantities", "sticking").stderr, "")
 
 

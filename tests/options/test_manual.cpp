@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "stickslip/options/manual.hpp"
+#include "stickslip/options/result_table.hpp"
 #include "stickslip/options/table.hpp"
 
 using namespace stickslip::options;
@@ -45,11 +46,20 @@ TEST_CASE("manual page: every option with its form, unit, range and default") {
     CHECK_THAT(page, Catch::Contains("\n.SS " + roff(group.title) + "\n"));
     for (const auto& option : group.options) {
       INFO(option.name);
+      if (swept_by(option) != nullptr) {
+        CHECK_THAT(page, Catch::Contains(roff("-" + option.name)));
+        continue;
+      }
       const auto head = "\n\\fB" + roff("-" + option.name) + "\\fR \\fI" + option.form + "\\fR\n";
       REQUIRE_THAT(page, Catch::Contains(head));
       const auto text = line_after(page, head.substr(1));
       CHECK_THAT(text, Catch::Contains(roff(option.sentence)));
-      CHECK_THAT(text, Catch::Contains(roff(option.allowed)));
+      if (option.kind != Kind::list) {
+        for (const auto& word : option.words) CHECK_THAT(text, Catch::Contains(roff(word)));
+      }
+      if (option.kind == Kind::real || option.kind == Kind::integer) {
+        CHECK_THAT(text, Catch::Contains(roff(option.range.text())));
+      }
       if (!option.unit.empty()) {
         CHECK_THAT(text, Catch::Contains(fmt::format("[{}]", roff(option.unit))));
       }
@@ -58,6 +68,18 @@ TEST_CASE("manual page: every option with its form, unit, range and default") {
       }
     }
   }
+}
+
+TEST_CASE("manual page: every form of values, every quantity with its keys") {
+  const std::string page = man_page("1.2");
+  for (const auto& form : forms()) {
+    CHECK_THAT(page, Catch::Contains("\n\\fI" + form.name + "\\fR\n" + roff(form.meaning)));
+  }
+  const auto* quantities = find("quantities");
+  for (const auto& word : quantities->words) {
+    CHECK_THAT(page, Catch::Contains("\n\\fB" + roff(word) + "\\fR\n"));
+  }
+  for (const auto& row : result_table()) CHECK_THAT(page, Catch::Contains(roff(row.key)));
 }
 
 TEST_CASE("manual page: the options outside the table, every exit status, the version, no date") {

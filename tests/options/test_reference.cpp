@@ -72,32 +72,35 @@ TEST_CASE("reference: columns of CSV may come in any order, and with others betw
   check(all[0], "E_V2", {}, 2, 1, 3);
 }
 
-TEST_CASE("reference: bad rows of CSV are told with their lines") {
+TEST_CASE("reference: bad rows of CSV are reported with their lines") {
   const std::string good = kHeader + "P_stick,,0.25,0.2,0.3\n";
-  const auto told = [&](const std::string& row) { return complaint("a.csv", good + row + "\n"); };
+  const auto reported = [&](const std::string& row) {
+    return complaint("a.csv", good + row + "\n");
+  };
   using Catch::Contains;
-  CHECK_THAT(told("E_V2,,abc,,"), Contains("line 3") && Contains("value = abc"));
-  CHECK_THAT(told("E_V2,,1x,,"), Contains("line 3") && Contains("value = 1x"));
-  CHECK_THAT(told("E_V2,,nan,,"), Contains("line 3") && Contains("no finite number"));
+  CHECK_THAT(reported("E_V2,,abc,,"), Contains("line 3") && Contains("value = abc"));
+  CHECK_THAT(reported("E_V2,,1x,,"), Contains("line 3") && Contains("value = 1x"));
+  CHECK_THAT(reported("E_V2,,nan,,"), Contains("line 3") && Contains("no finite number"));
   for (const std::string text : {"0x10", "+-1", "1e400", "1 2"}) {
-    CHECK_THAT(told("E_V2,," + text + ",,"), Contains("line 3") && Contains("value = " + text));
+    CHECK_THAT(reported("E_V2,," + text + ",,"), Contains("line 3") && Contains("value = " + text));
   }
-  CHECK_THAT(told("E_V2,,1,inf,"), Contains("line 3") && Contains("low = inf"));
-  CHECK_THAT(told("E_V2,one,1,,"), Contains("line 3") && Contains("argument = one"));
-  CHECK_THAT(told("E_V2,,,,"), Contains("line 3") && Contains("no value"));
-  CHECK_THAT(told(",,1,,"), Contains("line 3") && Contains("no quantity"));
-  CHECK_THAT(told("E_V2,,1,2,3"), Contains("line 3") && Contains("low <= value <= high"));
-  CHECK_THAT(told("E_V2,,1,0,0.5"), Contains("line 3") && Contains("low <= value <= high"));
-  CHECK_THAT(told("E_V2,,1"), Contains("3") && Contains("a.csv"));
-  CHECK_THAT(told("E_V2,,1,0,2,9"), Contains("3") && Contains("a.csv"));
+  CHECK_THAT(reported("E_V2,,1,inf,"), Contains("line 3") && Contains("low = inf"));
+  CHECK_THAT(reported("E_V2,one,1,,"), Contains("line 3") && Contains("argument = one"));
+  CHECK_THAT(reported("E_V2,,,,"), Contains("line 3") && Contains("a value are needed"));
+  CHECK_THAT(reported(",,1,,"), Contains("line 3") && Contains("a quantity and"));
+  CHECK_THAT(reported("E_V2,,1,2,3"), Contains("line 3") && Contains("low <= value <= high"));
+  CHECK_THAT(reported("E_V2,,1,0,0.5"), Contains("line 3") && Contains("low <= value <= high"));
+  CHECK_THAT(reported("E_V2,,1"), Contains("3") && Contains("a.csv"));
+  CHECK_THAT(reported("E_V2,,1,0,2,9"), Contains("3") && Contains("a.csv"));
 }
 
 TEST_CASE("reference: CSV without its header, or with nothing below it") {
   using Catch::Contains;
-  CHECK_THAT(complaint("a.csv", "P_stick,,0.25,0.2,0.3\n"), Contains("no CSV file of references"));
+  CHECK_THAT(complaint("a.csv", "P_stick,,0.25,0.2,0.3\n"),
+             Contains("not a CSV file of reference values"));
   CHECK_THAT(complaint("a.csv", "quantity,value\nP_stick,1\n"),
-             Contains("no CSV file of references"));
-  CHECK_THAT(complaint("a.csv", ""), Contains("no CSV file of references"));
+             Contains("not a CSV file of reference values"));
+  CHECK_THAT(complaint("a.csv", ""), Contains("not a CSV file of reference values"));
   CHECK_THAT(complaint("a.csv", kHeader), Contains("holds no values"));
 }
 
@@ -139,30 +142,30 @@ TEST_CASE("reference: arguments of JSON by any of their names, and intervals of 
 
 TEST_CASE("reference: JSON that is broken, of others, or lacks something") {
   using Catch::Contains;
-  CHECK_THAT(complaint("a.json", ""), Contains("no JSON summary"));
-  CHECK_THAT(complaint("a.json", "{\"results\": "), Contains("no JSON summary"));
-  CHECK_THAT(complaint("a.json", "{\"values\": {}}"), Contains("no JSON summary"));
-  CHECK_THAT(complaint("a.json", "[1]"), Contains("no JSON summary"));
+  CHECK_THAT(complaint("a.json", ""), Contains("not a JSON summary"));
+  CHECK_THAT(complaint("a.json", "{\"results\": "), Contains("not a JSON summary"));
+  CHECK_THAT(complaint("a.json", "{\"values\": {}}"), Contains("not a JSON summary"));
+  CHECK_THAT(complaint("a.json", "[1]"), Contains("not a JSON summary"));
   CHECK_THAT(complaint("a.json", R"({"results": {}})"), Contains("holds no values"));
   CHECK_THAT(complaint("a.json", R"({"results": {"a": {"value": "x", "error": 0}}})"),
-             Contains("no JSON summary"));
+             Contains("not a JSON summary"));
   CHECK_THAT(complaint("a.json", R"({"results": {"a": {"value": 1}}})"),
-             Contains("no JSON summary"));
+             Contains("not a JSON summary"));
   CHECK_THAT(
       complaint("a.json", R"({"results": {"a": {"omega": [1], "value": [1, 2], "error": [0]}}})"),
       Contains("a lacks"));
   CHECK_THAT(complaint("a.json", R"({"results": {"a": {"value": [1, 2], "error": [0, 0]}}})"),
              Contains("a lacks"));
   CHECK_THAT(complaint("a.json", R"({"results": {"a": {"value": 1, "error": 0, "ci95": []}}})"),
-             Contains("lacks") || Contains("no JSON summary"));
+             Contains("lacks") || Contains("not a JSON summary"));
 }
 
 TEST_CASE("reference: files of other kinds are refused") {
   using Catch::Contains;
-  CHECK_THAT(complaint("a.txt", kHeader), Contains(".h5, .json and .csv"));
-  CHECK_THAT(complaint("csv", kHeader), Contains(".h5, .json and .csv"));
-  CHECK_THAT(complaint("a.h5", "no HDF5"), Contains("no readable HDF5 file"));
-  CHECK_THAT(complaint("a.hdf5", ""), Contains("no readable HDF5 file"));
+  CHECK_THAT(complaint("a.txt", kHeader), Contains(".h5, .json or .csv"));
+  CHECK_THAT(complaint("csv", kHeader), Contains(".h5, .json or .csv"));
+  CHECK_THAT(complaint("a.h5", "no HDF5"), Contains("not a readable HDF5 file"));
+  CHECK_THAT(complaint("a.hdf5", ""), Contains("not a readable HDF5 file"));
   const test::TemporaryFolder folder;
   CHECK_THROWS_WITH(read_references(folder / "none.csv"), Contains("cannot be read"));
 }

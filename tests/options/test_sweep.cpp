@@ -29,12 +29,12 @@ std::string complaint(const Options& options) {
 
 }  // namespace
 
-TEST_CASE("sweep: every number of the scene can be swept, and nothing else") {
+TEST_CASE("sweep: every number of the model can be swept, and nothing else") {
   for (const auto& group : table()) {
     for (const auto& option : group.options) {
       INFO(option.name);
       const bool number = option.kind == Kind::real || option.kind == Kind::integer;
-      CHECK((find("sweep_" + option.name) != nullptr) == (number && group.title == "Scene"));
+      CHECK((find("sweep_" + option.name) != nullptr) == (number && group.title == "Model"));
     }
   }
 }
@@ -84,7 +84,7 @@ TEST_CASE("sweep: values need to be valid at their points only") {
 TEST_CASE("sweep: refusals name the point, the option and a way out") {
   struct Refusal {
     Options options;
-    std::vector<std::string> told;
+    std::vector<std::string> reported;
   };
   const std::vector<Refusal> refusals{
       {{{"-sweep_mu_d", "0.5,-1"}}, {"-sweep_mu_d = -1", "(0, inf)"}},
@@ -92,9 +92,10 @@ TEST_CASE("sweep: refusals name the point, the option and a way out") {
       {{{"-sweep_mud", "1"}}, {"-sweep_mud", "did you mean -sweep_mu_d?"}},
       {{{"-sweep_seed", "1"}}, {"-sweep_seed", "unknown option"}},
       {{{"-sweep_mu_d", "0.5,0.25,0.5"}}, {"-sweep_mu_d", "names 0.5 twice"}},
-      {{{"-delta", "0.25"}, {"-sweep_mu_s", "1,8"}}, {"at mu_s = 8: ", "nothing ever slides"}},
+      {{{"-delta", "0.25"}, {"-sweep_mu_s", "1,8"}}, {"at mu_s = 8: ", "never slides"}},
       {{{"-sweep_noise_levels", "20,20.5"}}, {"at noise_levels = 20.5: ", "whole number"}},
-      {{{"-sweep_drag_cubic", "0,1"}}, {"-sweep_drag_cubic", "no effect with -drag linear"}},
+      {{{"-sweep_drag_cubic", "0,1"}},
+       {"-sweep_drag_cubic", "no effect with -drag linear", "leave it out"}},
       {{{"-sweep_tau", "1,2"}, {"-study", "p"}}, {"-study = p", "-sweep_"}},
       {{{"-sweep_tau", "1,2"}, {"-compare", "a.csv"}}, {"-compare = a.csv", "one run"}},
       {{{"-sweep_tau", "1,2"}, {"-quantities", "sticking,density"}}, {"asks for density"}},
@@ -104,13 +105,13 @@ TEST_CASE("sweep: refusals name the point, the option and a way out") {
       {{{"-sweep_tau", "1:2:1000"}, {"-sweep_mu_d", "0.1:1:1000"}}, {"1000000 points"}},
       {{{"-sweep_tau", "1,2"}, {"-sweep_csv", "/no/such/x"}}, {"-sweep_csv = /no/such/x"}}};
   for (const auto& refusal : refusals) {
-    const std::string told = complaint(refusal.options);
-    for (const auto& part : refusal.told) CHECK_THAT(told, Catch::Contains(part));
+    const std::string reported = complaint(refusal.options);
+    for (const auto& part : refusal.reported) CHECK_THAT(reported, Catch::Contains(part));
   }
 }
 
 TEST_CASE(
-    "sweep: what holds everywhere is said once, what holds at many points with their number") {
+    "sweep: what holds everywhere is reported once, what holds at many points with their number") {
   const std::string everywhere = complaint({{"-sweep_tau", "1,2,3"}, {"-summary", "/no/such/x"}});
   CHECK_THAT(everywhere, Catch::StartsWith("-summary = /no/such/x"));
   CHECK(everywhere.find("-summary", 1) == everywhere.npos);
@@ -118,11 +119,12 @@ TEST_CASE(
              Catch::StartsWith("at mu_d = 2, tau = 0.5 and 2 more points: "));
 }
 
-TEST_CASE("sweep: of many different complaints eight are told, and how many more there are") {
-  const std::string told = complaint({{"-sweep_mu_d", "2:11:10"}});
-  CHECK_THAT(told, Catch::Contains("-mu_d = 9:") && Catch::EndsWith("\nand 2 more like these"));
-  CHECK(told.find("-mu_d = 10:") == told.npos);
-  CHECK(complaint({{"-sweep_mu_d", "2:9:8"}}).find("more like these") == told.npos);
+TEST_CASE("sweep: of many different complaints eight are reported, and how many more there are") {
+  const std::string reported = complaint({{"-sweep_mu_d", "2:11:10"}});
+  CHECK_THAT(reported, Catch::Contains("-mu_d = 9:") &&
+                           Catch::EndsWith("\nand 2 more problems of this kind"));
+  CHECK(reported.find("-mu_d = 10:") == reported.npos);
+  CHECK(complaint({{"-sweep_mu_d", "2:9:8"}}).find("more problems") == reported.npos);
 }
 
 TEST_CASE("sweep: files belong to the whole, and its own options are useless without it") {

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
-#include <fstream>
 #include <set>
 #include <sstream>
 
+#include "../common/temporary.hpp"
 #include "stickslip/options/manual.hpp"
 #include "stickslip/options/settings.hpp"
 #include "stickslip/options/table.hpp"
@@ -44,22 +44,59 @@ TEST_CASE("option table: names are unique, defaults obey their own rules") {
 }
 
 TEST_CASE("option table: help and reference name every option and its default") {
+  const std::string help = help_text(), page = reference_page();
   for (const auto& group : table()) {
     for (const auto& option : group.options) {
-      CHECK_THAT(help_text(), Catch::Contains("-" + option.name));
-      CHECK_THAT(reference_page(), Catch::Contains("`-" + option.name + "`"));
+      CHECK_THAT(help, Catch::Contains("-" + option.name));
+      CHECK_THAT(page, Catch::Contains("`-" + option.name + "`"));
       if (!option.initial.empty()) {
-        CHECK_THAT(on_one_line(help_text()), Catch::Contains("default " + option.initial));
+        CHECK_THAT(on_one_line(help), Catch::Contains("default " + option.initial));
       }
     }
   }
 }
 
+TEST_CASE("option table: the form of every value is explained") {
+  std::set<std::string> explained;
+  for (const auto& form : forms()) CHECK(explained.insert(form.name).second);
+  std::set<std::string> used;
+  for (const auto& option : all_options()) used.insert(option.form);
+  CHECK(used == explained);
+}
+
+TEST_CASE("option table: what a value must be, and what its form leaves open") {
+  const auto check = [](const char* name, const char* must, const char* open) {
+    const Option* option = find(name);
+    REQUIRE(option != nullptr);
+    CHECK(requirement(*option) == must);
+    CHECK(allowed(*option) == open);
+  };
+  check("mu_s", "a number in (0, inf)", "(0, inf)");
+  check("noise_levels", "a whole number in [1, 1e+09] or full", "[1, 1e+09], full");
+  check("scheme", "hp or upwind", "hp, upwind");
+  check("plan", "yes or no", "yes, no");
+  check("omega", "numbers in [0, inf) as a,b,c or first:last:count or first:last:count:log",
+        "[0, inf)");
+  check("output", "a file name", "");
+}
+
+TEST_CASE("option table: a sweep is of the option that its name ends with") {
+  CHECK(swept_by(*find("sweep_mu_d")) == find("mu_d"));
+  CHECK(swept_by(*find("sweep_ranks")) == nullptr);
+  CHECK(swept_by(*find("mu_d")) == nullptr);
+}
+
+TEST_CASE("option table: the help text fits a terminal of 100 columns") {
+  std::istringstream lines(help_text());
+  std::string line;
+  while (std::getline(lines, line)) {
+    INFO(line);
+    CHECK(line.size() <= 100);
+  }
+}
+
 TEST_CASE("option table: the committed reference page is the generated one") {
-  std::ifstream file(std::string(STICKSLIP_SOURCE) + "/docs/options.md");
-  std::stringstream page;
-  page << file.rdbuf();
-  CHECK(page.str() == reference_page());
+  CHECK(test::content(std::string(STICKSLIP_SOURCE) + "/docs/options.md") == reference_page());
 }
 
 TEST_CASE("ranges: ends belong or not as the text says") {

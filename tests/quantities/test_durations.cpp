@@ -464,8 +464,8 @@ TEST_CASE("durations: named results, means only where there are none yet") {
   const double edge = process.noise.rate() * process.noise.up(2);
   CHECK(value("f_stick_0") == Approx(0.4 * edge).epsilon(1e-14));
   const std::vector<double> time{1, 2};
-  quantities::append_distribution("slide", {"time", "1/time", time},
-                                  {{{0.5, 0}, {0.25, 0}}, {{0.1, 0}, {0.6, 0}}, 0}, results);
+  quantities::append_distribution("slide", time, {{{0.5, 0}, {0.25, 0}}, {{0.1, 0}, {0.6, 0}}, 0},
+                                  results);
   CHECK(value("f_slide") == 0.5);
   CHECK(value("cdf_slide") == 0.1);
 }

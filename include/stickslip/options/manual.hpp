@@ -1,5 +1,6 @@
 #pragma once
-/// Help, pages and the completion of the command line, made from the table of options.
+/// Help, pages and the completion of the command line, made from the tables of options,
+/// quantities and results.
 
 #include <string>
 #include <string_view>
@@ -9,8 +10,12 @@ namespace stickslip::options {
 /// The text of -help.
 [[nodiscard]] std::string help_text();
 
-/// The reference page in Markdown (docs/options.md).
+/// The reference page of options in Markdown (docs/options.md).
 [[nodiscard]] std::string reference_page();
+
+/// The tables of quantities and of the keys of a summary in Markdown, which stand between two marks
+/// in docs/quantities.md.
+[[nodiscard]] std::string quantity_tables();
 
 /// `text` as one line of running text in roff: no character acts as a command, and dashes can be
 /// copied from the page.

@@ -1,5 +1,5 @@
 #pragma once
-/// Values of other origin to hold results against (-compare).
+/// Values of other origin to compare results with (-compare).
 
 #include <optional>
 #include <string>
@@ -17,8 +17,8 @@ struct Reference {
 /// Reads HDF5 or JSON written by this program (simulated or computed; errors of computed values
 /// count as intervals), or CSV with a header and the columns quantity, argument, value, low, high;
 /// an empty argument is a scalar, and empty bounds are no width. Histograms (f_slide, ...) of
-/// simulations are left out: their distribution functions say the same without cells. Throws
-/// std::invalid_argument that says what is wrong and where. Local.
+/// simulations are left out: their distribution functions hold the same without cells. Throws
+/// std::invalid_argument with what is wrong and where. Local.
 [[nodiscard]] std::vector<Reference> read_references(const std::string& file);
 
 /// Whether simulations give averages over cells for a result, not values at points.

@@ -40,20 +40,20 @@ struct Request : Case {
   int sweep_ranks = 1;                 ///< that share a point
   bool plan_only = false;
   std::vector<std::string> warnings;
-  /// All options of the table as used, name and value, for the record.
+  /// All options of the table as used, name and value, for the provenance.
   std::vector<std::pair<std::string, std::string>> resolved;
 };
 
 /// Reads and validates everything before anything is computed. `argv` is searched for words that
-/// belong to no option. Throws BadInput that tells all problems at once: name, value, allowed
-/// range, fix; for an unknown option the nearest known one. Local; the same on every rank.
+/// belong to no option. Throws BadInput with all problems at once: name, value, allowed range,
+/// fix; for an unknown option the nearest known one. Local; the same on every rank.
 [[nodiscard]] Request read_request(const std::vector<std::string>& argv);
 
 /// Puts a blank before formulas that begin with a sign, such as the value of -drag_expression
 /// -v*abs(v), which PETSc would take for an option.
 void shield_formulas(std::vector<std::string>& argv);
 
-/// Tells what is wrong with the options files named in `argv`, before PETSc reads them.
+/// Reports what is wrong with the options files named in `argv`, before PETSc reads them.
 /// Throws BadInput with file, line and fix.
 void check_options_files(const std::vector<std::string>& argv);
 

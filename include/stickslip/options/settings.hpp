@@ -10,7 +10,7 @@
 
 namespace stickslip::options {
 
-/// Messages about everything that is wrong with the input, told together.
+/// Messages about everything that is wrong with the input, reported together.
 class Problems {
  public:
   void add(std::string message) { messages_.push_back(std::move(message)); }

@@ -1,5 +1,5 @@
 #pragma once
-/// -sweep_<option>: a run for each combination of values of some options of the scene.
+/// -sweep_<option>: a run for each combination of values of some options of the model.
 
 #include <cstddef>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace stickslip::options {
 
-/// An option of the scene with the values it takes.
+/// An option of the model with the values it takes.
 struct SweepAxis {
   std::string option;  ///< without the dash
   std::string unit;    ///< empty for pure numbers

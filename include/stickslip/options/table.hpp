@@ -38,14 +38,19 @@ struct Range {
 struct Option {
   std::string name;                ///< without the dash
   Kind kind;                       ///< form of the value
-  std::string form;                ///< "number", "word", "file", ...: what stands after the name
-  std::string allowed;             ///< "a number in (0, inf)", "linear, none or cubic", ...
+  std::string form;                ///< of the value, by the name that forms() explains
   std::string unit;                ///< of a number; empty if it has none
   std::string initial;             ///< default as text; empty: see `sentence`
   Range range;                     ///< of a number
   std::vector<std::string> words;  ///< allowed words; beside numbers for kind integer
   std::string sentence;            ///< what it does
   std::string fix;                 ///< what to do about a value out of range; may be empty
+};
+
+/// A form of values.
+struct Form {
+  std::string name;  ///< "number", "word", "file", ...: what stands after the name of an option
+  std::string meaning;
 };
 
 struct Group {
@@ -64,6 +69,18 @@ struct ExitMeaning {
   int status;
   std::string meaning;
 };
+
+/// What a value must be, in a sentence: "a number in (0, inf)", "linear, none or cubic".
+[[nodiscard]] std::string requirement(const Option& option);
+
+/// The range or the words that its form leaves open; empty if there are none.
+[[nodiscard]] std::string allowed(const Option& option);
+
+/// The option of the model that an option sweeps; nullptr for any other option.
+[[nodiscard]] const Option* swept_by(const Option& option);
+
+/// All forms of values.
+[[nodiscard]] std::span<const Form> forms();
 
 /// All options by group, in the order of the help text.
 [[nodiscard]] std::span<const Group> table();

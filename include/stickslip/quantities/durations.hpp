@@ -71,12 +71,8 @@ void append_duration_moments(const model::Process& process, const SideChain& sid
                              const DurationMoments& moments, const std::vector<Uncertain>& entry,
                              Results& results);
 
-/// f_NAME and cdf_NAME by an abscissa.
-struct Abscissa {
-  const char *name, *unit_of_density;
-  const std::vector<double>& values;
-};
-void append_distribution(const std::string& name, const Abscissa& abscissa,
+/// f_NAME and cdf_NAME at the values of their abscissa.
+void append_distribution(const std::string& name, const std::vector<double>& abscissa,
                          const DurationDistribution& durations, Results& results);
 
 }  // namespace stickslip::quantities

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "stickslip/options/result_table.hpp"
+
 namespace stickslip::quantities {
 
 /// What a result is, whatever it is called: its range and direction (accuracy/result_bounds.hpp),
@@ -21,34 +23,33 @@ enum class Kind {
   spectrum        ///< a power spectral density, >= 0
 };
 
-/// What a scalar is called, in which unit, and what it is.
+/// What a scalar is called and what it is. Its unit and meaning stand in the table of results.
 struct Name {
   const char* key;
-  const char* unit;
   Kind kind = Kind::other;
 };
 
 // Those that several solution methods compute.
-inline constexpr Name kPStick{"P_stick", "", Kind::share};
-inline constexpr Name kPSlide{"P_slide", "", Kind::share};
-inline constexpr Name kPWithin{"P_X_le_mu_s", "", Kind::probability};
-inline constexpr Name kMeanStick{"mean_stick", "time", Kind::positive_mean};
-inline constexpr Name kMeanSlide{"mean_slide", "time", Kind::positive_mean};
-inline constexpr Name kMeanExcursion{"mean_excursion", "time", Kind::positive_mean};
-inline constexpr Name kMeanSlip{"mean_slip", "velocity*time", Kind::positive_mean};
-inline constexpr Name kVarSlip{"var_slip", "velocity^2*time^2"};
-inline constexpr Name kMeanSlipNet{"mean_slip_net", "velocity*time", Kind::drift};
-inline constexpr Name kVarSlipNet{"var_slip_net", "velocity^2*time^2"};
-inline constexpr Name kEV2{"E_V2", "velocity^2", Kind::positive_mean};
-inline constexpr Name kEAbsV{"E_absV", "velocity", Kind::mean};
-inline constexpr Name kEXV{"E_XV", "force*velocity", Kind::mean};
-inline constexpr Name kEV{"E_V", "velocity", Kind::drift};
-inline constexpr Name kEX2{"E_X2", "force^2", Kind::positive_mean};
-inline constexpr Name kFStick0{"f_stick_0", "1/time"};
-inline constexpr Name kSlipRate{"slip_rate", "1/time", Kind::positive_mean};
-inline constexpr Name kFrictionPower{"friction_power", "force*velocity", Kind::positive_mean};
-inline constexpr Name kS0{"S_0", "velocity^2*time", Kind::spectrum};
-inline constexpr Name kDiffusivity{"diffusivity", "velocity^2*time"};
+inline constexpr Name kPStick{"P_stick", Kind::share};
+inline constexpr Name kPSlide{"P_slide", Kind::share};
+inline constexpr Name kPWithin{"P_X_le_mu_s", Kind::probability};
+inline constexpr Name kMeanStick{"mean_stick", Kind::positive_mean};
+inline constexpr Name kMeanSlide{"mean_slide", Kind::positive_mean};
+inline constexpr Name kMeanExcursion{"mean_excursion", Kind::positive_mean};
+inline constexpr Name kMeanSlip{"mean_slip", Kind::positive_mean};
+inline constexpr Name kVarSlip{"var_slip"};
+inline constexpr Name kMeanSlipNet{"mean_slip_net", Kind::drift};
+inline constexpr Name kVarSlipNet{"var_slip_net"};
+inline constexpr Name kEV2{"E_V2", Kind::positive_mean};
+inline constexpr Name kEAbsV{"E_absV", Kind::mean};
+inline constexpr Name kEXV{"E_XV", Kind::mean};
+inline constexpr Name kEV{"E_V", Kind::drift};
+inline constexpr Name kEX2{"E_X2", Kind::positive_mean};
+inline constexpr Name kFStick0{"f_stick_0"};
+inline constexpr Name kSlipRate{"slip_rate", Kind::positive_mean};
+inline constexpr Name kFrictionPower{"friction_power", Kind::positive_mean};
+inline constexpr Name kS0{"S_0", Kind::spectrum};
+inline constexpr Name kDiffusivity{"diffusivity"};
 
 /// A scalar (no abscissa, one value) or an array over an abscissa.
 struct Result {
@@ -73,8 +74,9 @@ using Results = std::vector<Result>;
 [[nodiscard]] inline Result scalar(std::string key, std::string unit, double value, double error) {
   return {std::move(key), std::move(unit), "", {}, {value}, {error}};
 }
+/// A scalar of the table of results, with its unit.
 [[nodiscard]] inline Result scalar(const Name& name, double value, double error) {
-  return {name.key, name.unit, "", {}, {value}, {error}, name.kind};
+  return {name.key, options::unit_of(name.key), "", {}, {value}, {error}, name.kind};
 }
 
 /// An array result without values yet. Transforms and spectra, which span decades, are meant
@@ -90,6 +92,11 @@ using Results = std::vector<Result>;
           {},
           kind,
           each};
+}
+/// An array of the table of results, with its unit and the name of its abscissa.
+[[nodiscard]] inline Result array(const std::string& key, std::vector<double> abscissa,
+                                  Kind kind = Kind::other) {
+  return array(key, options::unit_of(key), options::abscissa_of(key), std::move(abscissa), kind);
 }
 
 /// Largest error relative to the size of the values; infinite where one is not a number.

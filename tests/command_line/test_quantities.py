@@ -1,0 +1,98 @@
+"""The keys that the program writes, beside the tables of -help and -reference_quantities."""
+
+import collections
+import json
+import re
+import unittest
+
+from running import Case, run
+
+SMALL = ("-delta", "0.5", "-mu_d", "0.5", "-accuracy", "1e-3", "-excursions", "2000")  # of monte_carlo
+# With symmetry, without it, and with every parameter of sensitivity.
+MODELS = {"symmetric": (), "biased": ("-bias", "0.2", "-mu_d_minus", "0.4"),
+          "stribeck": ("-bias", "0.2", "-friction", "stribeck", "-stribeck_velocity", "0.1")}
+ARGUMENTS = {"-lambda": "0.5,1", "-omega": "0.5,1", "-time": "0.5,1", "-distance": "0.5,1",
+             "-inverse_distance": "0.5,1", "-velocity": "0.2,0.4", "-observable": "v^2"}
+FIELDS = ("density", "trajectory")
+DERIVATIVE = re.compile(r"d\w+_d(mu_d|mu_d_minus|mu_s|stribeck_velocity|tau|drag_coefficient)$")
+
+
+def table(page, heading):
+    """Rows of the first table below a heading, as dictionaries without the marks of Markdown."""
+    lines = iter(page[page.index(f"## {heading}\n"):].splitlines())
+    rows = [line for line in lines if line.startswith("|")]
+    cells = [[re.sub(r"[`\\]", "", cell).strip() for cell in re.split(r"(?<!\\)\|", row)[1:-1]]
+             for row in rows]
+    return [dict(zip(cells[0], row)) for row in cells[2:] if len(row) == len(cells[0])]
+
+
+def pattern(key):
+    """pi(f) for pi(v^2), dA_dp for derivatives."""
+    return "dA_dp" if DERIVATIVE.match(key) else key.replace("(v^2", "(f")
+
+
+class Keys(Case):
+    def setUp(self):
+        super().setUp()
+        page = self.run_ok("-reference_quantities").stdout
+        self.quantities = {row["quantity"]: row for row in table(page.split("## Keys")[0], "Quantities")}
+        self.keys = {row["key"]: row for row in table(page, "Keys")}
+        legend = re.sub(r"\s+", " ", page)
+        self.routes = {letter: route for letter, route in re.findall(r"\b([A-Z]) `(\w+)`", legend)}
+        self.assertEqual(len(self.routes), 6)
+
+    def written(self, quantities, *options):
+        """What a run wrote: for each pattern its unit and the name of its abscissa."""
+        used = {name for quantity in quantities for name in self.quantities[quantity]["its options"].split(", ")}
+        arguments = [word for name, value in ARGUMENTS.items() if name in used
+                     for word in (name, value)]
+        file = self.folder / "summary.json"
+        done = run(*SMALL, *options, *arguments, "-quantities", ",".join(quantities), "-summary", file)
+        self.assertIn(done.returncode, (0, 3), done.stderr)  # 3: a small sample is not accurate
+        results = json.loads(file.read_text())["results"]
+        return {pattern(key): (result.get("unit", ""),
+                               "".join(set(result) - {"value", "error", "ci95", "unit"}))
+                for key, result in results.items()}
+
+    def test_every_key_is_in_the_table_with_its_unit_and_abscissa_and_by_the_routes_named(self):
+        given = collections.defaultdict(set)
+        for letter, route in self.routes.items():
+            asked = [name for name, row in self.quantities.items()
+                     if letter in row["-route"].split() and name not in FIELDS]
+            for model, options in MODELS.items():
+                if route == "fluid_queue":
+                    if model == "stribeck":
+                        continue
+                    options = (*options, "-drag", "none")
+                found = self.written(asked, "-route", route, *options)
+                for key, (unit, abscissa) in found.items():
+                    with self.subTest(route=route, model=model, key=key):
+                        row = self.keys[key]
+                        self.assertEqual(abscissa, row["over"])
+                        if key != "dA_dp":
+                            self.assertEqual(unit, "" if "[" in row["unit"] else row["unit"])
+                    given[key].add(letter)
+        for key, row in self.keys.items():
+            with self.subTest(key=key):
+                self.assertEqual(given[key], set(row["-route"].split()))
+
+    def test_help_names_the_keys_of_every_quantity(self):
+        text = self.run_ok("-help").stdout
+        entries = re.findall(r"^    (\w+) +((?:.*)(?:\n {21}.*)*)", text, re.MULTILINE)
+        named = {name: set(re.sub(r"\s+", " ", entry).partition(": ")[2].rstrip(".").split(", "))
+                 for name, entry in entries}
+        for quantity in self.quantities:
+            if quantity in FIELDS:
+                continue
+            with self.subTest(quantity=quantity):
+                asked = [quantity, "sticking"] if quantity == "sensitivity" else [quantity]
+                found = set().union(*(self.written(asked, *options) for options in MODELS.values()))
+                if quantity == "sensitivity":
+                    found &= {"dA_dp"}
+                if quantity == "resolvent":  # by itself it has the name of the average
+                    found = {key.replace("pi(", "pi_lambda(") for key in found}
+                self.assertEqual(found, named[quantity])
+
+
+if __name__ == "__main__":
+    unittest.main()
