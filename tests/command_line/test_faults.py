@@ -144,7 +144,7 @@ class Disks(Faults):
                                            "o.h5"), "o.h5")
 
     def test_a_sweep_keeps_what_fitted(self):
-        """no room for the record of a sweep: status 1, the points that fitted are kept"""
+        """no space for the checkpoint of a sweep: status 1, the points that fitted are kept"""
         options = ("-delta", "0.5", "-sweep_mu_d", "0.1:1:8", "-checkpoint", "kept")
         status, told = self.limited(resource.RLIMIT_FSIZE, 9000, *options)
         self.assertEqual(status, 1, told)
