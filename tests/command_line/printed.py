@@ -183,15 +183,15 @@ def trimmed(text):
 def differences(page, output):
     """What a block of a page has otherwise than the output of its commands: a sentence for each line."""
     lines, segments = trimmed(output), segments_of(trimmed(page))
-    tokens, told = parsed(lines), []
+    tokens, found = parsed(lines), []
     for segment, place in zip(segments, placed(segments, lines, tokens)):
         for n, line in enumerate(segment, place):
             what = disagreement(line, tokens[n]) if n < len(lines) else "is not printed"
             if what:
-                told.append(f"{line.strip() or 'an empty line'}: {what}")
+                found.append(f"{line.strip() or 'an empty line'}: {what}")
     if len(segments) == 1 and len(lines) > len(segments[0]):
-        told.append(f"{lines[len(segments[0])].strip() or 'an empty line'}: is printed, and not on the page")
-    return told
+        found.append(f"{lines[len(segments[0])].strip() or 'an empty line'}: is printed, and not on the page")
+    return found
 
 
 def renewed(page, output):

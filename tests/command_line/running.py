@@ -11,12 +11,12 @@ import unittest
 BINARIES = pathlib.Path(os.environ["STICKSLIP_BINARIES"])
 SOURCES = pathlib.Path(__file__).resolve().parents[2]
 VARIANTS = os.environ.get("STICKSLIP_VARIANTS", "real,complex").split(",")
-TWINS = ("stickslip", "stickslip-complex") if "complex" in VARIANTS else ("stickslip",)
+PROGRAMS = ("stickslip", "stickslip-complex") if "complex" in VARIANTS else ("stickslip",)
 
 
-def run(*options, twin="stickslip", ranks=0, folder=None, environment=None):
+def run(*options, program="stickslip", ranks=0, folder=None, environment=None):
     """The finished process; options are words of the command line."""
-    command = [str(BINARIES / twin), *map(str, options)]
+    command = [str(BINARIES / program), *map(str, options)]
     if ranks:
         command = ["mpiexec", "-n", str(ranks), *command]
     return subprocess.run(command, capture_output=True, text=True, cwd=folder, timeout=600,

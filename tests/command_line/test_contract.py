@@ -7,7 +7,7 @@ import unittest
 import h5py
 import numpy
 
-from running import Case, TWINS, SOURCES, run
+from running import Case, PROGRAMS, SOURCES, run
 
 SMALL = ("-mu_d", "0.25", "-delta", "0.5")
 
@@ -221,11 +221,11 @@ class Summary(Case):
                     "E_absV", "E_XV", "E_V", "P_X_le_mu_s", "E_X2", "f_stick_0"):
             self.assertIn("value", s["results"][key])
             self.assertGreaterEqual(s["results"][key]["error"], 0)
-        law = s["results"]["entry_law"]
-        self.assertEqual(law["k"], [-2, -1, 0, 1, 2])
-        self.assertEqual(len(law["value"]), 5)
-        self.assertEqual(len(law["error"]), 5)
-        self.assertAlmostEqual(sum(law["value"]), 1, 12)
+        entries = s["results"]["entry_law"]
+        self.assertEqual(entries["k"], [-2, -1, 0, 1, 2])
+        self.assertEqual(len(entries["value"]), 5)
+        self.assertEqual(len(entries["error"]), 5)
+        self.assertAlmostEqual(sum(entries["value"]), 1, 12)
         for key in ("assemblies", "factorizations_real", "factorizations_complex", "solves",
                     "unknowns"):
             self.assertIn(key, s["plan"])
@@ -237,10 +237,10 @@ class Summary(Case):
         self.assertEqual(s["plan"]["assemblies"], 0)
         self.assertEqual(s["results"]["P_X_le_mu_s"]["value"], 51766 / 65536)
 
-    @unittest.skipIf(len(TWINS) < 2, "built with real scalars alone")
-    def test_twins_agree(self):
+    @unittest.skipIf(len(PROGRAMS) < 2, "built with real scalars alone")
+    def test_build_variants_agree(self):
         options = (*SMALL, "-quantities", "sticking,moments,entry_law", "-accuracy", "1e-10")
-        real, complex_ = (self.summary(*options, twin=twin)["results"] for twin in TWINS)
+        real, complex_ = (self.summary(*options, program=program)["results"] for program in PROGRAMS)
         self.assertEqual(list(real), list(complex_))
         for key, result in real.items():
             for a, b in zip(numpy.atleast_1d(result["value"]),
@@ -268,8 +268,8 @@ class Hdf5(Case):
             self.assertIn("commit", file["record"].attrs)
 
     def test_density(self):
-        for twin in TWINS:
-            s = self.summary(*self.OPTIONS, "-output", "out.h5", twin=twin)
+        for program in PROGRAMS:
+            s = self.summary(*self.OPTIONS, "-output", "out.h5", program=program)
             with h5py.File(self.folder / "out.h5") as file:
                 d = {name: numpy.array(file["density"][name]) for name in file["density"]}
             self.assertEqual(d["pdf"].shape, (len(d["x"]), len(d["v"])))

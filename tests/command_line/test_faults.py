@@ -43,8 +43,8 @@ class Faults(Case):
         """A run under a resource limit."""
         process = self.start(*options,
                              preexec_fn=lambda: resource.setrlimit(kind, (amount, amount)))
-        _, told = process.communicate(timeout=120)
-        return process.returncode, told
+        _, message = process.communicate(timeout=120)
+        return process.returncode, message
 
     def ranks_of(self, parent):
         """Process numbers of both ranks, once they run."""
@@ -124,9 +124,9 @@ class Killed(Faults):
 
 
 class Disks(Faults):
-    def check_too_large(self, status, told, *kept):
-        self.assertEqual(status, 1, told)
-        self.assertIn("stickslip: ", told)
+    def check_too_large(self, status, message, *kept):
+        self.assertEqual(status, 1, message)
+        self.assertIn("stickslip: ", message)
         self.assertEqual(self.names(), sorted(kept))
         for name in kept:
             self.assertEqual((self.folder / name).read_text(), "old")
@@ -136,19 +136,19 @@ class Disks(Faults):
         # A limit of file sizes, which needs no rights, behaves as a full disk does.
         for option, name in (("-output", "o.h5"), ("-summary", "s.json")):
             (self.folder / name).write_text("old")
-            status, told = self.limited(resource.RLIMIT_FSIZE, 2000, *DENSITY[:-2], option, name)
-            self.check_too_large(status, told, name)
+            status, message = self.limited(resource.RLIMIT_FSIZE, 2000, *DENSITY[:-2], option, name)
+            self.check_too_large(status, message, name)
             (self.folder / name).unlink()
         (self.folder / "o.h5").write_text("old")
         self.check_too_large(*self.limited(resource.RLIMIT_FSIZE, 10000, *DENSITY, "-output",
                                            "o.h5"), "o.h5")
 
     def test_a_sweep_keeps_what_fitted(self):
-        """no space for the checkpoint of a sweep: status 1, the points that fitted are kept"""
+        """no room for the checkpoint of a sweep: status 1, the points that fitted are kept"""
         options = ("-delta", "0.5", "-sweep_mu_d", "0.1:1:8", "-checkpoint", "kept")
-        status, told = self.limited(resource.RLIMIT_FSIZE, 9000, *options)
-        self.assertEqual(status, 1, told)
-        self.assertIn("cannot write kept", told)
+        status, message = self.limited(resource.RLIMIT_FSIZE, 9000, *options)
+        self.assertEqual(status, 1, message)
+        self.assertIn("cannot write kept", message)
         self.assertTrue((self.folder / "kept").read_text().endswith("}\n"))
         held = self.summary(*options)["sweep"]["from_record"]
         self.assertGreater(held, 0)
@@ -194,16 +194,16 @@ class Disks(Faults):
 
 class Memory(Faults):
     def test_limits(self):
-        """ulimit -v of 400, 500, 600 MB: told before it is allocated or when it runs out, status 4"""
+        """ulimit -v of 400, 500, 600 MB: reported before it is allocated or when it runs out, status 4"""
         for megabytes in (400, 500, 600):
-            status, told = self.limited(resource.RLIMIT_AS, megabytes << 20, "-mu_d", "0.25",
+            status, message = self.limited(resource.RLIMIT_AS, megabytes << 20, "-mu_d", "0.25",
                                         "-delta", "0.0078125", "-accuracy", "1e-10",
                                         "-slide_pc_type", "elements", "-noise_degree", "0",
                                         "-summary", "s.json")
-            self.assertIn(status, (3, 4), told)
-            self.assertNotIn("Segmentation", told)
+            self.assertIn(status, (3, 4), message)
+            self.assertNotIn("Segmentation", message)
             if status == 4:
-                self.assertIn("memory", told)
+                self.assertIn("memory", message)
                 self.assertEqual(self.names(), [])
 
     def test_workspace_of_mumps(self):
@@ -225,9 +225,9 @@ class OneRank(Faults):
         process = self.start(*LONG, "-checkpoint", place / "kept", ranks=2)
         self.wait_for_file(place / "kept", process)
         place.rename(self.folder / "moved")
-        _, told = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 1, told)
-        self.assertIn("kept", told)
+        _, message = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 1, message)
+        self.assertIn("kept", message)
 
     def test_no_room_on_two_ranks(self):
         """no room for the field of two ranks: all end, no half file"""
@@ -235,8 +235,8 @@ class OneRank(Faults):
                              "-quantities", "sticking,density", "-output", "o.h5", ranks=2)
         for rank in self.ranks_of(process.pid):  # mpiexec itself keeps its room
             resource.prlimit(rank, resource.RLIMIT_FSIZE, (10000, 10000))
-        _, told = process.communicate(timeout=60)
-        self.assertNotEqual(process.returncode, 0, told)
+        _, message = process.communicate(timeout=60)
+        self.assertNotEqual(process.returncode, 0, message)
         self.assertFalse((self.folder / "o.h5").exists())
 
     def test_out_of_memory(self):
@@ -246,8 +246,8 @@ class OneRank(Faults):
         rank = self.ranks_of(process.pid)[1]
         time.sleep(0.5)
         resource.prlimit(rank, resource.RLIMIT_AS, (1 << 20, 1 << 20))
-        _, told = process.communicate(timeout=100)
-        self.assertNotEqual(process.returncode, 0, told)
+        _, message = process.communicate(timeout=100)
+        self.assertNotEqual(process.returncode, 0, message)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ import subprocess
 import sys
 import unittest
 
-from running import BINARIES, Case, TWINS
+from running import BINARIES, Case, PROGRAMS
 
 
 class Install(Case):
@@ -27,10 +27,10 @@ class Install(Case):
         return {file.name for file in (self.prefix / folder).iterdir()}
 
     def test_programs_with_page_and_completion(self):
-        self.assertEqual(self.installed("bin"), set(TWINS))
-        self.assertEqual(self.installed("share/man/man1"), {f"{name}.1" for name in TWINS})
-        self.assertEqual(self.installed("share/bash-completion/completions"), set(TWINS))
-        for name in TWINS:
+        self.assertEqual(self.installed("bin"), set(PROGRAMS))
+        self.assertEqual(self.installed("share/man/man1"), {f"{name}.1" for name in PROGRAMS})
+        self.assertEqual(self.installed("share/bash-completion/completions"), set(PROGRAMS))
+        for name in PROGRAMS:
             for option, file in (("-man_page", f"man/man1/{name}.1"),
                                  ("-completion", f"bash-completion/completions/{name}")):
                 printed = subprocess.run([self.prefix / "bin" / name, option],
@@ -39,7 +39,7 @@ class Install(Case):
 
     def test_installed_program_runs_an_installed_file(self):
         scene = self.prefix / "share/stickslip/options/quickstart.opts"
-        for name in TWINS:
+        for name in PROGRAMS:
             done = subprocess.run([self.prefix / "bin" / name, "-options_file", scene],
                                   cwd=self.folder, capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)

@@ -41,7 +41,7 @@ hp: error is the largest relative one of a scalar
 hp: one more digit costs 1.44 times the time; 1e-6 takes about 0.0056 s
 """
 COMPARISON = """\
-quantity          argument             value         reference 95 % confidence interval       z  verdict
+quantity          argument             value         reference 95 % confidence     z  verdict
 E_V2                            0.1780263033      0.1767987401 [0.1750339, 0.1785636]    1.36  agrees
 """
 

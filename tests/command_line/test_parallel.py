@@ -7,7 +7,7 @@ import unittest
 import h5py
 import numpy
 
-from running import BINARIES, Case, TWINS, run
+from running import BINARIES, Case, PROGRAMS, run
 
 
 class Together(Case):
@@ -23,7 +23,7 @@ class Together(Case):
 
 class OneRankAlone(Case):
     def test_bad_input_of_one_rank_ends_all(self):
-        """bad input of one rank of two (its folder is missing): told once, status 2, all end"""
+        """bad input of one rank of two (its folder is missing): reported once, status 2, all end"""
         (self.folder / "here" / "place").mkdir(parents=True)
         options = [str(BINARIES / "stickslip"), "-delta", "0.5", "-output", "place/out.h5"]
         done = subprocess.run(["mpiexec", "-n", "1", "-wdir", str(self.folder / "here"), *options,
@@ -50,8 +50,8 @@ class Ranks(Case):
             numpy.testing.assert_allclose(other_field, field, rtol=1e-9, atol=1e-12)
 
     def test_hp(self):
-        for twin in TWINS:
-            self.compare(*self.OPTIONS, twin=twin)
+        for program in PROGRAMS:
+            self.compare(*self.OPTIONS, program=program)
 
     def test_every_level_a_node(self):
         self.compare(*self.OPTIONS, "-noise_degree", "0", "-slide_pc_type", "lu")

@@ -31,9 +31,9 @@ class Plans(Case):
         self.assertEqual(plan["factorizations"] * steps, run["plan"]["factorizations_real"])
         self.assertEqual(plan["solves"] * steps, run["plan"]["solves"])
         self.assertFalse(plan["adaptive"])
-        for told, made in zip(plan["steps"], run["cost"]["steps"]):
-            self.assertEqual(told["unknowns"], made["unknowns"])
-            self.assertEqual(told["nonzeros"], made["nonzeros"])
+        for predicted, made in zip(plan["steps"], run["cost"]["steps"]):
+            self.assertEqual(predicted["unknowns"], made["unknowns"])
+            self.assertEqual(predicted["nonzeros"], made["nonzeros"])
 
     def test_other_routes(self):
         self.assertIn("closed-form results", self.run_ok("-quantities", "noise_law", "-plan").stdout)

@@ -64,10 +64,10 @@ class Pictures(Case):
         self.assertEqual(self.drawn("path.csv", "named.png"), ["named.png"])
         self.assertIn("s/E_X2.png", self.drawn("s.csv"))
 
-    def refused(self, *words, told):
+    def refused(self, *words, message):
         done = plot(*words, folder=self.folder)
         self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
-        for part in (words[0], told):
+        for part in (words[0], message):
             self.assertIn(part, done.stderr)
         self.assertEqual(list(self.folder.glob("*.png")), [])
 
@@ -76,12 +76,12 @@ class Pictures(Case):
         (self.folder / "text.h5").write_text("text")
         (self.folder / "cut.h5").write_bytes((self.folder / "scalars.h5").read_bytes()[:-9])
         (self.folder / "foreign.csv").write_text("a,b\n1,2\n")
-        self.refused("none.h5", told="no such file")
-        self.refused("text.h5", told="HDF5")
-        self.refused("cut.h5", told="HDF5")
-        self.refused("foreign.csv", told="neither a sweep nor a path")
+        self.refused("none.h5", message="no such file")
+        self.refused("text.h5", message="HDF5")
+        self.refused("cut.h5", message="HDF5")
+        self.refused("foreign.csv", message="neither a sweep nor a path")
         self.run_ok(*SCENE, "-output", "scalars.h5", "-quantities", "noise_law")
-        self.refused("scalars.h5", told="nothing to draw; ask the program")
+        self.refused("scalars.h5", message="nothing to draw; ask the program")
         self.run_ok(*SCENE, "-output", "path.h5", "-quantities", "trajectory")
         for picture in ("none/path.png", "path.foo"):
             done = plot("path.h5", picture, folder=self.folder)

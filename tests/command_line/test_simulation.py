@@ -99,7 +99,7 @@ class Expressions(Case):
                 self.run_ok(*options, *more, *simulate)
                 self.run_ok(*options, *other, *simulate, status=3)
 
-    def test_records_hold_the_law(self):
+    def test_files_hold_the_drag_law(self):
         s = self.summary(*self.LAW, "-tanh(v)", "-output", "out.h5")
         self.assertEqual(s["scene"]["drag_expression"], "-tanh(v)")
         self.assertNotIn("drag_coefficient", s["scene"])
@@ -122,35 +122,35 @@ class Expressions(Case):
 
 
 class Refusals(Case):
-    def refuse(self, *options, told):
+    def refuse(self, *options, message):
         done = run(*options, folder=self.folder)
         self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
-        for part in told:
+        for part in message:
             self.assertIn(part, done.stderr)
 
     def test_months(self):
-        self.refuse("-mu_s", "6", "-mu_d", "0.25", *SIMULATE[2:], told=("-excursions", "days"))
-        self.refuse(*SIMULATE, "-excursions", "1e15", told=("-excursions", "days"))
+        self.refuse("-mu_s", "6", "-mu_d", "0.25", *SIMULATE[2:], message=("-excursions", "days"))
+        self.refuse(*SIMULATE, "-excursions", "1e15", message=("-excursions", "days"))
 
     def test_choices_of_a_grid(self):
         for option, value in (("-degree", "5"), ("-layers", "3"), ("-p", "8"), ("-scheme", "hp")):
-            self.refuse(*SIMULATE, option, value, told=(option, "no choice of -route monte_carlo"))
+            self.refuse(*SIMULATE, option, value, message=(option, "no choice of -route monte_carlo"))
 
     def test_numbers(self):
-        self.refuse(*SIMULATE, "-excursions", "1", told=("-excursions = 1",))
-        self.refuse(*SIMULATE, "-excursions", "2.5", told=("-excursions = 2.5",))
-        self.refuse(*SIMULATE, "-seed", "-1", told=("-seed = -1",))
+        self.refuse(*SIMULATE, "-excursions", "1", message=("-excursions = 1",))
+        self.refuse(*SIMULATE, "-excursions", "2.5", message=("-excursions = 2.5",))
+        self.refuse(*SIMULATE, "-seed", "-1", message=("-seed = -1",))
         self.refuse(*SMALL, "-quantities", "trajectory", "-trajectory", "t.csv", "-horizon", "0",
-                    told=("-horizon = 0",))
+                    message=("-horizon = 0",))
         self.refuse(*SMALL, "-quantities", "trajectory", "-trajectory", "t.csv", "-horizon", "1e9",
-                    told=("-horizon", "jumps"))
+                    message=("-horizon", "jumps"))
 
     def test_trajectory_without_a_file(self):
         self.refuse(*SMALL, "-quantities", "trajectory",
-                    told=("-quantities", "-output FILE.h5 or -trajectory FILE.csv"))
+                    message=("-quantities", "-output FILE.h5 or -trajectory FILE.csv"))
 
     def test_questions_it_cannot_answer(self):
-        self.refuse(*SIMULATE, "-quantities", "relaxation", told=("relaxation", "monte_carlo"))
+        self.refuse(*SIMULATE, "-quantities", "relaxation", message=("relaxation", "monte_carlo"))
 
 
 class Checkpoints(Case):
@@ -192,12 +192,12 @@ class Checkpoints(Case):
         few = (*SIMULATE, "-excursions", "20000", "-checkpoint", file)
         self.run_ok(*few)
         good = file.read_text()
-        for options, told in (((), "damaged"), (("-seed", "2"), '-seed "1", not "2"'),
+        for options, message in (((), "damaged"), (("-seed", "2"), '-seed "1", not "2"'),
                               (("-mu_d", "0.3"), '-mu_d "0.25", not "0.3"')):
             file.write_text(good if options else good[:-100])
             done = run(*few, *options, folder=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn(told, done.stderr)
+            self.assertIn(message, done.stderr)
             self.assertIn("-checkpoint", done.stderr)
 
 
@@ -262,7 +262,7 @@ class Compared(Case):
 
     def test_bad_files(self):
         header = "quantity,argument,value,low,high\n"
-        for name, text, told in (
+        for name, text, message in (
                 ("none.csv", None, "cannot be read"),
                 ("a.txt", header, ".h5, .json and .csv"),
                 ("a.csv", header + "P_stick,,x,,\n", "line 2"),
@@ -276,7 +276,7 @@ class Compared(Case):
             self.assertEqual(done.returncode, 2, name + done.stdout)
             self.assertEqual(done.stdout, "")
             self.assertIn(f"-compare = {name}", done.stderr)
-            self.assertIn(told, done.stderr)
+            self.assertIn(message, done.stderr)
 
     def test_hdf5_of_others(self):
         with h5py.File(self.folder / "a.h5", "w") as file:

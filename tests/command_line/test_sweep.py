@@ -22,15 +22,15 @@ MANY = ("-delta", "0.25", "-sweep_mu_d", "0.1:1:6", "-sweep_tau", "0.5:2:8")
 
 
 class Interrupted(Case):
-    def killed_at(self, count, seconds, record, *options, ranks=0):
-        """Starts a sweep and kills all its processes, `seconds` after the record holds so many
+    def killed_at(self, count, seconds, checkpoint, *options, ranks=0):
+        """Starts a sweep and kills all its processes, `seconds` after the checkpoint holds so many
         points; whether that came before its end."""
         command = [str(BINARIES / "stickslip"), *options]
         if ranks:
             command = ["mpiexec", "-n", str(ranks), *command]
         with subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL,
                               stderr=subprocess.DEVNULL, start_new_session=True) as process:
-            while process.poll() is None and self.points(record) < count:
+            while process.poll() is None and self.points(checkpoint) < count:
                 time.sleep(0.001)
             try:
                 process.wait(seconds)
@@ -40,20 +40,20 @@ class Interrupted(Case):
                 return True
 
     @staticmethod
-    def points(record):
-        """Finished points in a record."""
-        return max(0, record.read_text().count("\n") - 1) if record.exists() else 0
+    def points(checkpoint):
+        """Finished points in a checkpoint."""
+        return max(0, checkpoint.read_text().count("\n") - 1) if checkpoint.exists() else 0
 
     def check(self, ranks):
         moment = random.Random(ranks)
-        whole, pieces, record = (self.folder / name for name in ("whole.csv", "pieces.csv", "kept"))
+        whole, pieces, checkpoint = (self.folder / name for name in ("whole.csv", "pieces.csv", "kept"))
         self.run_ok(*MANY, "-sweep_csv", whole, ranks=ranks)
-        options = (*MANY, "-checkpoint", str(record), "-sweep_csv", str(pieces))
+        options = (*MANY, "-checkpoint", str(checkpoint), "-sweep_csv", str(pieces))
         kills = 0
-        while self.points(record) < 36:
-            kills += self.killed_at(self.points(record) + moment.randrange(9),
-                                    moment.uniform(0.001, 0.03), record, *options, ranks=ranks)
-            self.assertFalse(pieces.exists() and self.points(record) < 48)
+        while self.points(checkpoint) < 36:
+            kills += self.killed_at(self.points(checkpoint) + moment.randrange(9),
+                                    moment.uniform(0.001, 0.03), checkpoint, *options, ranks=ranks)
+            self.assertFalse(pieces.exists() and self.points(checkpoint) < 48)
         self.assertGreater(kills, 1)
         s = self.summary(*options, ranks=ranks)
         self.assertGreater(s["sweep"]["from_record"], 0)
@@ -68,14 +68,14 @@ class Interrupted(Case):
         """kill -9 at random moments of a sweep on three ranks: the same"""
         self.check(3)
 
-    def test_times_come_from_the_record(self):
+    def test_times_come_from_the_checkpoint(self):
         options = (*SMALL, "-checkpoint", "kept")
         first, second = self.summary(*options), self.summary(*options, ranks=2)
         self.assertEqual(second["sweep"]["from_record"], 6)
         self.assertEqual(second["runs"], first["runs"])
 
-    def test_a_lost_record_ends_all_ranks(self):
-        """folder of a record vanishes under three ranks: a message, status 1, all end"""
+    def test_a_lost_checkpoint_ends_all_ranks(self):
+        """folder of a checkpoint vanishes under three ranks: a message, status 1, all end"""
         place = self.folder / "place"
         place.mkdir()
         with subprocess.Popen(["mpiexec", "-n", "3", BINARIES / "stickslip", "-delta", "0.25",
@@ -85,9 +85,9 @@ class Interrupted(Case):
             self.addCleanup(process.kill)
             self.wait_for_file(place / "kept", process)
             place.rename(self.folder / "moved")  # at once, unlike removing file by file
-            _, told = process.communicate(timeout=60)
+            _, message = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 1)
-        self.assertIn("kept: No such file", told)
+        self.assertIn("kept: No such file", message)
 
 
 class Numbers(Case):
@@ -177,36 +177,36 @@ class Files(Case):
 
 
 class Ends(Case):
-    def refuse(self, *options, told):
+    def refuse(self, *options, message):
         before = {f.name: f.read_bytes() for f in self.folder.iterdir()}
         done = run(*options, "-sweep_csv", "out.csv", folder=self.folder)
         self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
         self.assertEqual({f.name: f.read_bytes() for f in self.folder.iterdir()}, before)
-        for part in told:
+        for part in message:
             self.assertIn(part, done.stderr)
 
     def test_bad_input(self):
-        self.refuse("-sweep_mu_d", "0.5,2", "-checkpoint", "kept", told=("at mu_d = 2: ",))
-        self.refuse("-sweep_mud", "0.5", told=("did you mean -sweep_mu_d?",))
-        self.refuse("-sweep_tau", "0", told=("-sweep_tau = 0", "(0, inf)"))
-        self.refuse("-sweep_tau", "1,2", "-study", "p", told=("-study = p",))
-        self.refuse("-sweep_tau", "1,2", "-quantities", "density", told=("density",))
+        self.refuse("-sweep_mu_d", "0.5,2", "-checkpoint", "kept", message=("at mu_d = 2: ",))
+        self.refuse("-sweep_mud", "0.5", message=("did you mean -sweep_mu_d?",))
+        self.refuse("-sweep_tau", "0", message=("-sweep_tau = 0", "(0, inf)"))
+        self.refuse("-sweep_tau", "1,2", "-study", "p", message=("-study = p",))
+        self.refuse("-sweep_tau", "1,2", "-quantities", "density", message=("density",))
 
-    def test_foreign_and_damaged_records(self):
+    def test_foreign_and_damaged_checkpoints(self):
         kept = self.folder / "kept"
         self.run_ok(*SMALL, "-checkpoint", kept)
         good = kept.read_text()
-        for told, *other in (("-accuracy", "-accuracy", "1e-5"),
+        for message, *other in (("-accuracy", "-accuracy", "1e-5"),
                              ("-sweep_tau", "-sweep_tau", "0.5:1:3"),
                              ('-mu_s "1", not "swept"', "-sweep_mu_s", "1,2"),
                              ("-slide_mat_mumps_icntl_7", "-slide_mat_mumps_icntl_7", "0")):
-            self.refuse(*SMALL, "-checkpoint", kept, *other, told=("-checkpoint", told))
-        self.refuse(*SMALL, "-checkpoint", kept, "-route", "monte_carlo", told=("-route",))
+            self.refuse(*SMALL, "-checkpoint", kept, *other, message=("-checkpoint", message))
+        self.refuse(*SMALL, "-checkpoint", kept, "-route", "monte_carlo", message=("-route",))
         for bad in ("precious", good + "{}\n", good.replace('"reached"', '"well"', 1)):
             kept.write_text(bad)
-            self.refuse(*SMALL, "-checkpoint", kept, told=("-checkpoint", "remove it"))
+            self.refuse(*SMALL, "-checkpoint", kept, message=("-checkpoint", "remove it"))
 
-    def test_every_rank_knows_a_foreign_record_but_one_speaks(self):
+    def test_every_rank_knows_a_foreign_checkpoint_but_one_reports(self):
         (self.folder / "kept").write_text("precious")
         done = run(*SMALL, "-checkpoint", "kept", ranks=3, folder=self.folder)
         self.assertEqual(done.returncode, 2)

@@ -21,7 +21,7 @@ QUICK = ("test_faults.Disks", "test_faults.Memory", "test_faults.OneRank",
          "test_parallel.OneRankAlone.test_bad_input_of_one_rank_ends_all")
 LONG = ("test_faults.Killed", "test_sweep.Interrupted.test_killed_and_continued",
         "test_sweep.Interrupted.test_killed_and_continued_on_three_ranks",
-        "test_sweep.Interrupted.test_a_lost_record_ends_all_ranks")
+        "test_sweep.Interrupted.test_a_lost_checkpoint_ends_all_ranks")
 SEED = "2"  # ctest has the first
 
 

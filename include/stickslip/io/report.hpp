@@ -12,7 +12,7 @@
 
 namespace stickslip::io {
 
-/// Wall times of a run beside those in the solver statistics [s].
+/// Wall times of a run beside those of the solver statistics [s].
 struct RunTimes {
   double start_up = 0;  ///< before this program's own work: dynamic linking, MPI and PETSc
   double total = 0;     ///< since the process began
