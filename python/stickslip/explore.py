@@ -111,7 +111,7 @@ class Solver(threading.Thread):
                         found: Results | Exception = self._compute(cancel=cancel, **{**options, **asked})
                 except Cancelled:
                     break
-                except (BadInput, OutOfMemory, ProgramError) as problem:
+                except (BadInput, OutOfMemory, ProgramError, ImportError) as problem:
                     found = problem
                 self.results.put((number, part, found))
                 if isinstance(found, Exception):
@@ -384,10 +384,10 @@ def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = F
     BadInput, ProgramError
         If the program does not take the options.
     """
-    options: dict[str, Any] = {"accuracy": accuracy}
+    options: dict[str, Any] = {"options_file": file} if file else {}
+    options["accuracy"] = accuracy  # behind the file, whose own accuracy does not count
     scene: Mapping[str, Any] = {}
     if file:
-        options["options_file"] = file
         found = run(**options, **FIRST)
         if isinstance(found, Sweep):
             raise BadInput(f"{file} is a sweep; leave the options -sweep_... out")

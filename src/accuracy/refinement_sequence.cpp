@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 namespace stickslip::accuracy {
@@ -36,6 +37,33 @@ double largest(const std::vector<double>& values) {
   return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
 }
 
+double least_positive(const std::vector<double>& values) {
+  double least = std::numeric_limits<double>::infinity();
+  for (double value : values) least = value > 0 ? std::min(least, value) : least;
+  return least;
+}
+
+// Functions of the time t are inverse Laplace transforms at rates up to 12/t. For those of the path
+// length d, of bodies with the acceleration a, layers at v = 0 are resolved five times finer than
+// sqrt(a d/12). Levels of -delta smooth what the layers would resolve; a table has few.
+double fastest_inverted(const options::Case& given) {
+  using options::Quantity;
+  constexpr double of_contour = 12;
+  const options::Question& question = given.question;
+  const auto process = given.scene.meant();
+  if (!process.noise.table) return 0;
+  double rate = 0;
+  if (question.wants(Quantity::duration_density)) {
+    rate = of_contour / least_positive(question.time);
+  }
+  if (question.wants(Quantity::slip)) {
+    const double force = std::max(process.net_force(process.noise.highest()),
+                                  process.mirrored().net_force(process.mirrored().noise.highest()));
+    rate = std::max(rate, 5 * std::sqrt(of_contour * force / least_positive(question.distance)));
+  }
+  return rate;
+}
+
 velocity::Rates fastest_rates(const options::Case& given) {
   using options::Quantity;
   const options::Question& question = given.question;
@@ -44,6 +72,7 @@ velocity::Rates fastest_rates(const options::Case& given) {
       given.method.route == options::Route::lambda) {
     rates.lambda = largest(question.lambda);
   }
+  rates.lambda = std::max(rates.lambda, fastest_inverted(given));
   if (question.wants(Quantity::spectrum)) rates.omega = largest(question.omega);
   if (question.wants(Quantity::peak)) rates.speed = largest(question.velocity);
   return rates;

@@ -7,6 +7,7 @@
 
 #include "quantities.hpp"
 #include "reading.hpp"
+#include "stickslip/options/result_table.hpp"
 #include "stickslip/support/text.hpp"
 #include "stickslip/velocity/mesh.hpp"
 
@@ -75,13 +76,14 @@ void read_quantities(const Settings& settings, Request& request, Problems& probl
                   "take -route excursion, or other quantities");
 }
 
-// The values given, or those of the file to compare with.
+// The values given, or those of the file to compare with: of results over the abscissa `option`.
 std::vector<double> arguments(const Settings& settings, const std::vector<Reference>& references,
-                              const std::string& option, Quantity quantity) {
+                              const std::string& option) {
   std::vector<double> values = settings.numbers(option);
   if (settings.given(option)) return values;
   for (const auto& reference : references) {
-    const bool asks = reference.argument && asked_by(reference.quantity) == quantity;
+    const ResultRow* row = find_result(reference.quantity);
+    const bool asks = reference.argument && row != nullptr && row->abscissa == option;
     const double value = reference.argument.value_or(0);
     if (asks && value >= 0 && std::count(values.begin(), values.end(), value) == 0) {
       values.push_back(value);
@@ -264,12 +266,12 @@ void read_question(const Settings& settings, Request& request, Problems& problem
   question.references = read_compared(settings, problems);
   read_quantities(settings, request, problems);
   const auto& known = question.references;
-  question.lambda = arguments(settings, known, "lambda", Quantity::laplace);
-  question.omega = arguments(settings, known, "omega", Quantity::spectrum);
-  question.time = arguments(settings, known, "time", Quantity::duration_density);
-  question.distance = arguments(settings, known, "distance", Quantity::slip);
-  question.inverse_distance = settings.numbers("inverse_distance");
-  question.velocity = arguments(settings, known, "velocity", Quantity::peak);
+  question.lambda = arguments(settings, known, "lambda");
+  question.omega = arguments(settings, known, "omega");
+  question.time = arguments(settings, known, "time");
+  question.distance = arguments(settings, known, "distance");
+  question.inverse_distance = arguments(settings, known, "inverse_distance");
+  question.velocity = arguments(settings, known, "velocity");
   question.observables = read_observables(settings, request.scene.friction, problems);
   question.accuracy = settings.real("accuracy");
   question.accuracy_given = settings.given("accuracy");

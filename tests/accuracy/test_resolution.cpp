@@ -385,6 +385,27 @@ TEST_CASE(
   CHECK(rates({sticking}) == std::pair{700.0, 0.0});
 }
 
+TEST_CASE("refinement sequence: functions of short times have layers where noise levels are few") {
+  using enum options::Quantity;
+  options::Case given;
+  given.scene = scene(1, 0.5, 1, 0.25);
+  given.question.time = {0, 3, 0.5};
+  given.question.distance = {3, 0.25};
+  const auto rate = [&](options::Quantity quantity) {
+    given.question.quantities = {quantity};
+    return accuracy::RefinementSequence(given).refinement_level(1).rates.lambda;
+  };
+  CHECK(rate(duration_density) == 0);
+  given.scene.noise.name = "telegraph";
+  const std::vector<model::Level> rows{{-1, 1, 0}, {1, 0, 1}};
+  given.scene.noise.table = std::make_shared<const model::LevelTable>(rows);
+  given.scene.bias = 0.25;
+  CHECK(rate(duration_density) == Approx(24));
+  // The net force on X = 1 is 1 + bias - mu_d.
+  CHECK(rate(slip) == Approx(5 * std::sqrt(12 * 0.75 / 0.25)));
+  CHECK(rate(sticking) == 0);
+}
+
 // By MUMPS alone, whose count is its own; its analysis is enough for memory, entries come from
 // factors.
 TEST_CASE("memory: predicted within a factor 2.5 of what MUMPS counts", "[slow]") {

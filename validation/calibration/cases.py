@@ -107,6 +107,9 @@ GROUPS = {
                         {"quantities": "entry_law,laplace", "lambda": "0.1,0.5,2,8"}),
     "spectra": Group("power spectral densities", quick, {"quantities": "spectrum", "omega": "0.1,0.5,2,8,30"}, cases=40),
     "durations": Group("densities of durations", quick, {"quantities": "duration_density", **TIMES}, truth=1e-8, cases=20),
+    "short_times": Group("durations and slips under telegraph noise", telegraph, {
+        "quantities": "duration_density,slip", "time": "0.02,0.1,0.5,2", "distance": "0.02,0.1,0.5,2"},
+        (1e-2, 1e-3), 1e-5, cases=20),
     "slips": Group("slips and displacement", quick, {
         "quantities": "slip,peak,displacement", "distance": "0.1,0.3,1,3", "inverse_distance": "0.3,1,5",
         "velocity": "0.1,0.3", **TIMES}, (1e-2, 1e-4), 1e-6, cases=12),
