@@ -102,7 +102,7 @@ GROUPS = {
     "scalars": Group("Coulomb friction", coulomb, SCALARS, (1e-2, 1e-4, 1e-6, 1e-8), 1e-12, most=2, cases=300),
     "nodes": Group("noise levels on nodes", fine, SCALARS, truth=1e-10, most=3),
     "telegraph": Group("telegraph noise", telegraph, SCALARS, truth=1e-10, most=3),
-    "weakening": Group("weakening friction", weakening, SCALARS, truth=1e-10, most=3),
+    "weakening": Group("Stribeck friction", weakening, SCALARS, truth=1e-10, most=3),
     "transforms": Group("transforms and hitting distributions", coulomb,
                         {"quantities": "entry_law,laplace", "lambda": "0.1,0.5,2,8"}),
     "spectra": Group("power spectral densities", quick, {"quantities": "spectrum", "omega": "0.1,0.5,2,8,30"}, cases=40),

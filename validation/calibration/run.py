@@ -17,6 +17,7 @@ import pathlib
 import random
 import shutil
 import sys
+import textwrap
 
 import numpy
 
@@ -136,7 +137,7 @@ def judge(entry, name, rows):
 
 def write_page(page, table, words, picture):
     """The table between its marks, the picture beside the page."""
-    lines = [words, "", f"| {' | '.join(COLUMNS_OF_TABLE)} |", "|" + " --- |" * len(COLUMNS_OF_TABLE),
+    lines = [*textwrap.wrap(words, 118), "", f"| {' | '.join(COLUMNS_OF_TABLE)} |", "|" + " --- |" * len(COLUMNS_OF_TABLE),
              *(f"| {' | '.join(row)} |" for row in table)]
     before, rest = page.read_text().split(MARK)
     after = rest[rest.index(END):]
