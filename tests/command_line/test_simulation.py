@@ -134,7 +134,7 @@ class Refusals(Case):
 
     def test_choices_of_a_grid(self):
         for option, value in (("-degree", "5"), ("-layers", "3"), ("-p", "8"), ("-scheme", "hp")):
-            self.refuse(*SIMULATE, option, value, message=(option, "no choice of -route monte_carlo"))
+            self.refuse(*SIMULATE, option, value, message=(option, "does not apply to -route monte_carlo"))
 
     def test_numbers(self):
         self.refuse(*SIMULATE, "-excursions", "1", message=("-excursions = 1",))
@@ -264,12 +264,12 @@ class Compared(Case):
         header = "quantity,argument,value,low,high\n"
         for name, text, message in (
                 ("none.csv", None, "cannot be read"),
-                ("a.txt", header, ".h5, .json and .csv"),
+                ("a.txt", header, ".h5, .json or .csv"),
                 ("a.csv", header + "P_stick,,x,,\n", "line 2"),
                 ("b.csv", header, "holds no values"),
                 ("c.csv", "P_stick,1\n", "no CSV file of references"),
                 ("a.json", "{", "no JSON summary"),
-                ("a.h5", "text", "no readable HDF5 file")):
+                ("a.h5", "text", "not a readable HDF5 file")):
             if text is not None:
                 (self.folder / name).write_text(text)
             done = run(*SMALL, "-compare", name, folder=self.folder)
