@@ -15,7 +15,7 @@ SMALL = ("-mu_d", "0.25", "-delta", "0.5")
 class Refusals(Case):
     """Bad input ends with status 2 and a message, and touches nothing."""
 
-    def refuse(self, *options, told=()):
+    def refuse(self, *options, message=()):
         kept = self.folder / "kept.json"
         kept.write_text("precious")
         done = run(*options, "-summary", kept, folder=self.folder)
@@ -23,38 +23,38 @@ class Refusals(Case):
         self.assertEqual(done.stdout, "")
         self.assertEqual(kept.read_text(), "precious")
         self.assertEqual([f.name for f in self.folder.iterdir() if ".part" in f.name], [])
-        for part in told:
+        for part in message:
             self.assertIn(part, done.stderr)
 
     def test_values_out_of_range(self):
-        self.refuse("-delta", "-0.5", told=("-delta = -0.5", "(0, inf)"))
-        self.refuse("-mu_d", "2", told=("-mu_d = 2", "(0, mu_s]"))
-        self.refuse("-tau", "nan", told=("-tau = nan",))
-        self.refuse("-drag_coefficient", "-1", told=("must not grow",))
-        self.refuse("-delta", "0.25", "-noise_levels", "99", told=("at most 32",))
-        self.refuse("-delta", "0.25", "-mu_s", "8", told=("never slides",))
+        self.refuse("-delta", "-0.5", message=("-delta = -0.5", "(0, inf)"))
+        self.refuse("-mu_d", "2", message=("-mu_d = 2", "(0, mu_s]"))
+        self.refuse("-tau", "nan", message=("-tau = nan",))
+        self.refuse("-drag_coefficient", "-1", message=("must not grow",))
+        self.refuse("-delta", "0.25", "-noise_levels", "99", message=("at most 32",))
+        self.refuse("-delta", "0.25", "-mu_s", "8", message=("never slides",))
         resolvent = ("-quantities", "resolvent", "-lambda", "1", "-observable")
-        self.refuse(*resolvent, "", told=("must name a function of the state",))
-        self.refuse(*resolvent, "v^2; v; v^2", told=("names v^2 twice", "name it once"))
+        self.refuse(*resolvent, "", message=("must name a function of the state",))
+        self.refuse(*resolvent, "v^2; v; v^2", message=("names v^2 twice", "name it once"))
 
     def test_names(self):
-        self.refuse("-detla", "0.5", told=("did you mean -delta?",))
-        self.refuse("-mu_s=3", told=("-mu_s=3", "unknown option"))
-        self.refuse("-slide_mat_mumps_icntl_77", "3", told=("-slide_mat_mumps_icntl_77",))
-        self.refuse("scene.opts", told=("belongs to no option",))
+        self.refuse("-detla", "0.5", message=("did you mean -delta?",))
+        self.refuse("-mu_s=3", message=("-mu_s=3", "unknown option"))
+        self.refuse("-slide_mat_mumps_icntl_77", "3", message=("-slide_mat_mumps_icntl_77",))
+        self.refuse("scene.opts", message=("belongs to no option",))
 
     def test_solvers(self):
         for pc in ("shell", "mg", "eisenstat", "ml", "hmg", "foo"):
             self.refuse(*SMALL, "-slide_pc_type", pc,
-                        told=(f"-slide_pc_type = {pc}: must be elements, lu",))
-        self.refuse(*SMALL, "-slide_pc_type", "iluu", told=("did you mean ilu?",))
-        self.refuse(*SMALL, "-slide_ksp_type", "gmre", told=("-slide_ksp_type = gmre: must be preonly",
+                        message=(f"-slide_pc_type = {pc}: must be elements, lu",))
+        self.refuse(*SMALL, "-slide_pc_type", "iluu", message=("did you mean ilu?",))
+        self.refuse(*SMALL, "-slide_ksp_type", "gmre", message=("-slide_ksp_type = gmre: must be preonly",
                                                               "did you mean gmres?"))
-        self.refuse(*SMALL, "-slide_pc_typ", "lu", told=("-slide_pc_typ:", "did you mean -slide_pc_type?"))
-        self.refuse(*SMALL, "-relax_eps_tpye", "x", told=("did you mean -relax_eps_type?",))
-        self.refuse(*SMALL, "-backward_ts_type", "foo", told=("-backward_ts_type = foo:",))
+        self.refuse(*SMALL, "-slide_pc_typ", "lu", message=("-slide_pc_typ:", "did you mean -slide_pc_type?"))
+        self.refuse(*SMALL, "-relax_eps_tpye", "x", message=("did you mean -relax_eps_type?",))
+        self.refuse(*SMALL, "-backward_ts_type", "foo", message=("-backward_ts_type = foo:",))
         self.refuse(*SMALL, "-slide_pc_factor_mat_solver_type", "foo",
-                    told=("-slide_pc_factor_mat_solver_type = foo:",))
+                    message=("-slide_pc_factor_mat_solver_type = foo:",))
         for pc in ("elements", "lu", "qr", "redundant"):
             self.run_ok(*SMALL, "-slide_pc_type", pc, "-accuracy", "1e-3")
         self.run_ok(*SMALL, "-slide_ksp_type", "gmres", "-accuracy", "1e-3")
@@ -62,10 +62,10 @@ class Refusals(Case):
     def test_observables_with_jumps_and_kinks_in_v(self):
         asks = ("-mu_d", "0.5", "-delta", "0.25", "-lambda", "0", "-time", "1", "-observable")
         for quantity in ("resolvent", "expectation"):
-            for observable, told in (("v^2; v>x", "v>x jumps or has a kink at v = "), ("1/(v-2)", "unbounded at v = 2"),
+            for observable, message in (("v^2; v>x", "v>x jumps or has a kink at v = "), ("1/(v-2)", "unbounded at v = 2"),
                                      ("rint(40*v)", "65 or more")):
                 self.refuse(*asks, observable, "-quantities", quantity,
-                            told=(f"-observable = {observable}", told, "-scheme upwind"))
+                            message=(f"-observable = {observable}", message, "-scheme upwind"))
         for fine in ("tanh(50*v)", "x>0.5", "v>0", "(x>0.5)*abs(v)", "v>50", "x==1.25 && v<-3"):
             self.run_ok(*asks, fine, "-quantities", "resolvent", "-accuracy", "1e-3")
         right = (("abs(v)>0.5", 0.198608934333), ("min(abs(v),0.5)", 0.202385358765))
@@ -80,10 +80,10 @@ class Refusals(Case):
     def test_references_of_unknown_results(self):
         header = "quantity,argument,value,low,high\n"
         file = self.folder / "a.csv"
-        for key, told in (("P_stik", "did you mean P_stick?"), ("zzzzzz", "-help"),
+        for key, message in (("P_stik", "did you mean P_stick?"), ("zzzzzz", "-help"),
                           ("q(v^2)", "q(v^2)"), ("dP_stik_dtau", "dP_stik_dtau"), ("d_dtau", "d_dtau")):
             file.write_text(header + f"P_slide,,0.8,0,1\n{key},,0.2,0,1\n")
-            self.refuse(*SMALL, "-compare", file, told=(f"holds {key}, which is no key of a result", told))
+            self.refuse(*SMALL, "-compare", file, message=(f"holds {key}, which is no key of a result", message))
         file.write_text(header + "P_stick,,0.2,0,1\nvar_slide,,0.2,0,1\n")
         s = self.summary(*SMALL, "-compare", file)
         self.assertEqual(s["comparison"]["left_out"], ["var_slide"])
@@ -103,25 +103,25 @@ class Refusals(Case):
         asks = ("-mu_d", "0.25", "-delta", "0.25", "-quantities", "expectation", "-observable",
                 "v^2", "-time", "1", "-start")
         for start, end in (("1.25,100", "[0, 7.75]"), ("1.25,-100", "[-7.75, 0]")):
-            self.refuse(*asks, start, told=(f"-start = {start}: starts at a velocity that no body",
+            self.refuse(*asks, start, message=(f"-start = {start}: starts at a velocity that no body",
                                             f"take v in {end}"))
         for scheme in (("-scheme", "hp"), ("-scheme", "upwind", "-p", "16")):
             self.refuse(*asks, "0,7.2", *scheme,
-                        told=("-start = 0,7.2: starts beyond the largest v", "take |v| at most"))
-        self.refuse(*asks, "8,0", told=("-start = 8,0: starts beyond the largest x",
+                        message=("-start = 0,7.2: starts beyond the largest v", "take |v| at most"))
+        self.refuse(*asks, "8,0", message=("-start = 8,0: starts beyond the largest x",
                                         "take |x| at most 6.75, or -noise_levels full"))
         self.run_ok(*asks, "8,0", "-noise_levels", "full", "-accuracy", "0.1")
         self.run_ok(*asks, "1.25,5", "-accuracy", "1e-4")
         trajectory = (*SMALL, "-quantities", "trajectory", "-trajectory", "t.csv", "-horizon", "1")
-        self.refuse(*trajectory, "-start", "1,100", told=("no body reaches",))
+        self.refuse(*trajectory, "-start", "1,100", message=("no body reaches",))
         self.run_ok(*trajectory, "-start", "1,100", "-drag", "none")
 
     def test_files(self):
-        self.refuse("-options_file", "/no/such/file", told=("cannot be read",))
-        self.refuse("-output", "/no/such/folder/x.h5", told=("-output", "does not exist"))
+        self.refuse("-options_file", "/no/such/file", message=("cannot be read",))
+        self.refuse("-output", "/no/such/folder/x.h5", message=("-output", "does not exist"))
         broken = self.folder / "broken.opts"
         broken.write_text("-mu_s 1\nmu_d 0.5\n")
-        self.refuse("-options_file", broken, told=("broken.opts:2",))
+        self.refuse("-options_file", broken, message=("broken.opts:2",))
 
     def test_every_rank_knows_but_one_speaks(self):
         done = run("-delta", "-1", ranks=2, folder=self.folder)
@@ -137,8 +137,8 @@ class Statuses(Case):
         scene = ("-mu_d", "0.5")
         self.run_ok(*scene, "-accuracy", "1e-14")
         self.assertIn("rounding limits", self.run_ok(*scene, "-accuracy", "1e-15", status=3).stdout)
-        told = self.run_ok("-accuracy", "1e-16", status=2).stderr
-        self.assertIn("double precision allows down to about 1e-14", told)
+        message = self.run_ok("-accuracy", "1e-16", status=2).stderr
+        self.assertIn("double precision allows down to about 1e-14", message)
 
     def test_accuracy_not_reached_still_writes(self):
         file = self.folder / "s.json"

@@ -10,35 +10,35 @@ HEADER = "x,rate_up,rate_down\n"
 
 
 class Noises(Case):
-    def refuse(self, *options, told):
+    def refuse(self, *options, message):
         done = run(*options, folder=self.folder)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertEqual(done.stdout, "")
-        for part in told:
+        for part in message:
             self.assertIn(part, done.stderr)
 
-    def refuse_file(self, text, *told):
+    def refuse_file(self, text, *message):
         (self.folder / "levels.csv").write_text(text)
         self.refuse("-noise", "file", "-noise_file", "levels.csv",
-                    told=("-noise_file = levels.csv: ", *told))
+                    message=("-noise_file = levels.csv: ", *message))
 
     def test_what_a_noise_needs(self):
         self.refuse("-noise", "telegraph", "-telegraph_rate", "1",
-                    told=("-noise = telegraph: needs -telegraph_amplitude",))
+                    message=("-noise = telegraph: needs -telegraph_amplitude",))
         self.refuse("-noise", "telegraph", "-telegraph_amplitude", "1",
-                    told=("-noise = telegraph: needs -telegraph_rate",))
-        self.refuse("-noise", "file", told=("-noise = file: needs -noise_file",))
+                    message=("-noise = telegraph: needs -telegraph_rate",))
+        self.refuse("-noise", "file", message=("-noise = file: needs -noise_file",))
 
     def test_values_out_of_range(self):
-        self.refuse("-noise_deviation", "0", told=("-noise_deviation = 0", "(0, inf)"))
+        self.refuse("-noise_deviation", "0", message=("-noise_deviation = 0", "(0, inf)"))
         for option in ("-telegraph_amplitude", "-telegraph_rate"):
-            self.refuse(*TELEGRAPH, option, "-1", told=(f"{option} = -1", "(0, inf)"))
-        self.refuse("-noise", "telegrah", told=("-noise = telegrah", "did you mean telegraph?"))
+            self.refuse(*TELEGRAPH, option, "-1", message=(f"{option} = -1", "(0, inf)"))
+        self.refuse("-noise", "telegrah", message=("-noise = telegrah", "did you mean telegraph?"))
 
     def test_files_that_cannot_be_read(self):
         for name in ("none.csv", "."):  # a folder is no file
             self.refuse("-noise", "file", "-noise_file", name,
-                        told=(f"-noise_file = {name}: cannot be read",))
+                        message=(f"-noise_file = {name}: cannot be read",))
 
     def test_files_of_another_form(self):
         self.refuse_file("", "Header missing")
@@ -58,20 +58,20 @@ class Noises(Case):
         self.refuse_file("# two\n" + HEADER + "-1,1,0.5\n1,0,1\n", "line 3: rate_down = 0.5")
 
     def test_bodies_that_never_slide_or_never_stick(self):
-        self.refuse(*TELEGRAPH, "-bias", "0", told=("-mu_s = 1", "never slides"))
-        self.refuse(*TELEGRAPH, "-telegraph_amplitude", "2", told=("-mu_s = 1", "never sticks"))
+        self.refuse(*TELEGRAPH, "-bias", "0", message=("-mu_s = 1", "never slides"))
+        self.refuse(*TELEGRAPH, "-telegraph_amplitude", "2", message=("-mu_s = 1", "never sticks"))
         (self.folder / "weak.csv").write_text(HEADER + "-0.5,1,0\n0.5,0,1\n")
         self.refuse("-noise", "file", "-noise_file", "weak.csv",
-                    told=("-mu_s = 1: holds the body on all", "never slides"))
+                    message=("-mu_s = 1: holds the body on all", "never slides"))
 
     def test_options_of_another_noise(self):
         for option, value in (("-telegraph_amplitude", "1"), ("-telegraph_rate", "1"), ("-noise_file", "x.csv")):
-            self.refuse(option, value, told=(f"{option} = {value}: belongs to -noise",))
-        self.refuse(*TELEGRAPH, "-noise_file", "x.csv", told=("-noise_file = x.csv: belongs to -noise file, and -noise is telegraph",))
+            self.refuse(option, value, message=(f"{option} = {value}: belongs to -noise",))
+        self.refuse(*TELEGRAPH, "-noise_file", "x.csv", message=("-noise_file = x.csv: belongs to -noise file, and -noise is telegraph",))
         for study in ("delta", "heuristic"):
             self.refuse(*TELEGRAPH, "-study", study, "-quantities", "sticking",
-                        told=(f"-study = {study}", "-noise telegraph does not have"))
-        self.refuse(*TELEGRAPH, "-sweep_tau", "1,2", told=("-tau = 1 has no effect with -noise telegraph",))
+                        message=(f"-study = {study}", "-noise telegraph does not have"))
+        self.refuse(*TELEGRAPH, "-sweep_tau", "1,2", message=("-tau = 1 has no effect with -noise telegraph",))
 
     def test_options_without_effect(self):
         for option in ("-tau", "-delta", "-noise_levels", "-noise_deviation"):

@@ -165,7 +165,7 @@ TEST_CASE("summary: every number stands at its own key") {
   CHECK(s["provenance"]["options"] == Json{{"mu_d", "0.25"}});
 }
 
-TEST_CASE("summary: the cost is told in all and by steps") {
+TEST_CASE("summary: the cost is reported in all and by steps") {
   const Json cost = summary_of(outcome())["cost"];
   CHECK(cost["seconds"] == 4.0);
   CHECK(cost["start_up_seconds"] == 0.5);

@@ -120,7 +120,7 @@ def texts(root):
         for path in sorted((root / folder).rglob("*.py")):
             if path.parent.name != "lint" and not is_built(path, root):
                 yield Text(path, python_texts(path.read_text()))
-    for folder in ("include", "src"):
+    for folder in ("include", "src", "tests"):
         for ending in ("*.hpp", "*.cpp"):
             for path in sorted((root / folder).rglob(ending)):
                 yield Text(path, comments_and_strings(path.read_text()))

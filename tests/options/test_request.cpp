@@ -375,7 +375,7 @@ TEST_CASE("request: the fluid queue has neither drag nor a grid in v") {
   CHECK_NOTHROW(Given("-route fluid_queue -drag_coefficient 0").read());
 }
 
-TEST_CASE("request: a velocity cut by hand is for excursions alone") {
+TEST_CASE("request: a truncation velocity by hand is for excursions alone") {
   CHECK(Given("-v_max 5").read().scene.v_max == 5.0);
   for (const std::string route : {"lambda", "hitting", "null_vector", "fluid_queue -drag none"}) {
     check_refusal({"-v_max 5 -route " + route, {"-v_max = 5", "does not apply to -route"}});
