@@ -93,9 +93,9 @@ def probability(f):
     """Shares add up to one, and are those of mean durations."""
     (stick, a), (slide, b) = f.number("P_stick"), f.number("P_slide")
     yield identity("P_stick + P_slide = 1", abs(stick + slide - 1), a + b, 1)
-    (stick, c), (slide, d), (whole, e) = map(f.number, ("mean_stick", "mean_slide", "mean_excursion"))
-    yield identity("means add up", abs(stick + slide - whole), c + d + e, whole)
-    yield identity("P_slide = slide/excursion", abs(slide - slid / whole),
+    (mean_stick, c), (mean_slide, d), (whole, e) = map(f.number, ("mean_stick", "mean_slide", "mean_excursion"))
+    yield identity("means add up", abs(mean_stick + mean_slide - whole), c + d + e, whole)
+    yield identity("P_slide = slide/excursion", abs(slide - mean_slide / whole),
                    b + d / whole + e * slide / whole, slide)
 
 
