@@ -267,8 +267,8 @@ class Compared(Case):
                 ("a.txt", header, ".h5, .json or .csv"),
                 ("a.csv", header + "P_stick,,x,,\n", "line 2"),
                 ("b.csv", header, "holds no values"),
-                ("c.csv", "P_stick,1\n", "no CSV file of references"),
-                ("a.json", "{", "no JSON summary"),
+                ("c.csv", "P_stick,1\n", "not a CSV file of reference values"),
+                ("a.json", "{", "not a JSON summary"),
                 ("a.h5", "text", "not a readable HDF5 file")):
             if text is not None:
                 (self.folder / name).write_text(text)
