@@ -34,7 +34,7 @@ std::string bold(std::string_view text) { return fmt::format("\\fB{}\\fR", roff(
 
 // The form, with the range or the words allowed; nothing for a file, of which the sentence speaks.
 std::string short_requirement(const Option& option) {
-  const std::string words = enumerate(option.words, "or");
+  std::string words = enumerate(option.words, "or");
   switch (option.kind) {
   case Kind::real:
   case Kind::integer:
