@@ -296,7 +296,7 @@ std::string Range::text() const {
 }
 
 std::string requirement(const Option& option) {
-  const std::string words = enumerate(option.words, "or");
+  std::string words = enumerate(option.words, "or");
   switch (option.kind) {
   case Kind::real: return "a number in " + option.range.text();
   case Kind::integer:
@@ -315,7 +315,7 @@ std::string requirement(const Option& option) {
 }
 
 std::string allowed(const Option& option) {
-  const std::string words = fmt::format("{}", fmt::join(option.words, ", "));
+  std::string words = fmt::format("{}", fmt::join(option.words, ", "));
   switch (option.kind) {
   case Kind::real:
   case Kind::integer:
