@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <string_view>
 
 namespace stickslip::accuracy {
 namespace {
@@ -13,9 +12,7 @@ using quantities::Result;
 using quantities::Results;
 
 // Of the root mean square of relative errors of the means of a family.
-constexpr double kShared = 0.3;
-// Of what the errors of both mean durations make of their ratio, in which common ones cancel.
-constexpr double kOfPhases = 0.5;
+constexpr double kShared = 0.65;
 // A mean that changes less does not depend on the grid, as the mean duration of sticking at a
 // single static level.
 constexpr double kUnchanged = 1e-13;
@@ -71,23 +68,6 @@ void share_between_means(Changes& errors, const Results& results) {
   }
 }
 
-// Relative error of a mean; 0 if there is no such result.
-double relative_error(std::string_view key, const Changes& errors, const Results& results) {
-  for (std::size_t r = 0; r < results.size(); ++r) {
-    if (results[r].key == key) return errors[r][0] / std::abs(results[r].value[0]);
-  }
-  return 0;
-}
-
-void share_with_phases(Changes& errors, const Results& results) {
-  const double of_ratio = kOfPhases * odds(results) *
-                          std::hypot(relative_error(quantities::kMeanStick.key, errors, results),
-                                     relative_error(quantities::kMeanSlide.key, errors, results));
-  for (std::size_t r = 0; r < results.size(); ++r) {
-    if (results[r].kind == Kind::share) errors[r][0] = std::max(errors[r][0], of_ratio);
-  }
-}
-
 void share_between_neighbours(std::vector<double>& errors, const Result& result) {
   if (result.is_scalar() || result.abscissa_name == "mode") return;
   const std::vector<double> own = errors;
@@ -104,10 +84,10 @@ void share_between_neighbours(std::vector<double>& errors, const Result& result)
 
 }  // namespace
 
-void require_rounding(double rounding, Results& results) {
+void require_least_error(double least, Results& results) {
   for (auto& result : results) {
     for (std::size_t e = 0; e < result.value.size(); ++e) {
-      result.error[e] = std::max(result.error[e], rounding * std::abs(result.value[e]));
+      result.error[e] = std::max(result.error[e], least * std::abs(result.value[e]));
     }
   }
 }
@@ -129,7 +109,6 @@ Changes add_discretisation(const ErrorPerChange& factor, const Results& coarse,
     }
   }
   share_between_means(errors, results);
-  share_with_phases(errors, results);
   for (std::size_t r = 0; r < results.size(); ++r) {
     share_between_neighbours(errors[r], results[r]);
     for (std::size_t e = 0; e < errors[r].size(); ++e) results[r].error[e] += errors[r][e];

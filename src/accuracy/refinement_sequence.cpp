@@ -11,7 +11,7 @@ namespace {
 // Errors of hp functionals fall about tenfold a degree, more at low degrees than at high ones. Each
 // change is the error one degree lower, unless that vanishes by accident; the two together rarely
 // do. For each degree; see validation/calibration.
-constexpr ErrorPerChange kHpErrorPerChange{0.08, 0.005, 1.3};
+constexpr ErrorPerChange kHpErrorPerChange{0.07, 0.0026, 2.2};
 // Where friction weakens errors fall as they otherwise do so many degrees higher.
 constexpr int kDegreesOfWeakening = 4;
 constexpr int kLowestDegree = 5, kHighestDegree = 19;
@@ -102,8 +102,10 @@ RefinementSequence::RefinementSequence(const options::Case& given)
   integrands_ = integrands_of(given.question);
   branches_ = options::on_full_grid(given.method.route) || !given.scene.symmetric() ? 2 : 1;
   // On nodes the residuals of eigenvectors, which stand for errors, stay five times larger.
-  all_levels_ = options::on_full_grid(given.method.route) || method_.noise_degree == 0 ||
-                given.question.wants(options::Quantity::relaxation);
+  modes_ = given.question.wants(options::Quantity::relaxation);
+  all_levels_ = options::on_full_grid(given.method.route) || method_.noise_degree == 0 || modes_;
+  tail_counts_ = modes_ || !given.question.observables.empty() ||
+                 given.question.wants(options::Quantity::peak);
   last_ = method_.fixed() ? 1 : free_refinement_levels();
 }
 
@@ -132,9 +134,11 @@ double RefinementSequence::tail_tolerance(int n) const {
   if (method_.scheme == options::Scheme::upwind) return 1e-3 * std::min(accuracy_, 1e-6);
   if (method_.scheme == options::Scheme::none)
     return std::max(accuracy_ * std::pow(1e-2, n), 1e-18);
-  // The first refinement level reaches as far as the second: where a body may start does not
-  // depend on what is only compared with.
-  return std::max(std::pow(10.0, -(degree(std::max(n, 0)) + 3)), 1e-18);
+  // The first level reaches as far as the second where later ones reach further: where a body may
+  // start does not depend on what is only compared with.
+  const double tolerance = std::pow(10.0, -(degree(tail_counts_ ? std::max(n, 0) : 1) + 4));
+  // Modes have a mean square under the density: what its root is at the end is an error.
+  return modes_ ? std::max(tolerance * tolerance, 1e-36) : std::max(tolerance, 1e-18);
 }
 
 noise::Grouping RefinementSequence::grouping(int n) const {
@@ -169,6 +173,7 @@ Resolution RefinementSequence::made(int n) const {
     r = hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n), rates(n),
                       grouping(n));
     r.integrands = integrands_;
+    r.whole_tail = tail_counts_;
     r.least_degree = n + 1;  // so that all degrees rise from one refinement level to the next
     break;
   case options::Scheme::upwind:

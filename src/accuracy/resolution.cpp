@@ -24,6 +24,7 @@ velocity::MeshRule mesh_rule(const Resolution& resolution) {
   rule.least_degree = resolution.least_degree;
   rule.layers = resolution.layers;
   rule.tolerance = std::pow(10.0, -(resolution.degree + 1));
+  rule.whole_tail = resolution.whole_tail;
   rule.rates = resolution.rates;
   rule.integrands = resolution.integrands;
   return rule;
@@ -120,16 +121,38 @@ void set_levels(const model::Scene& scene, double tolerance, double speed, Resol
 
 }  // namespace
 
+namespace {
+
+double terminal_velocity(const model::Process& process) {
+  const auto of_branch = [](const model::Process& branch) {
+    return branch.drag.terminal_velocity(branch.net_force(branch.noise.highest()));
+  };
+  return std::max(of_branch(process), of_branch(process.mirrored()));
+}
+
+}  // namespace
+
 double velocity_end(const model::Scene& scene, int levels, double tolerance) {
-  const auto process = scene.process(levels), mirrored = process.mirrored();
-  const double terminal =
-      std::max(process.drag.terminal_velocity(process.net_force(process.noise.highest())),
-               mirrored.drag.terminal_velocity(mirrored.net_force(mirrored.noise.highest())));
+  const auto process = scene.process(levels);
+  const double terminal = terminal_velocity(process);
   if (scene.v_max) return std::min(*scene.v_max, terminal);
   const double tail = velocity::tail_velocity(process, tolerance);
   // Holding states cost a little: a truncation must save something.
   return tail < 0.8 * terminal ? tail : terminal;
 }
+
+namespace {
+
+// Three times the tolerance where something is cut: 1.2 was seen of the noise for a variance of
+// durations, 0.3 of the velocity for that of slips, where the tolerance is a hundredth.
+double truncation(const model::Scene& scene, const Resolution& r, double tolerance) {
+  constexpr double margin = 3;
+  const bool cuts_levels = r.levels < scene.meant().noise.highest();
+  const bool cuts_velocities = !scene.v_max && r.v_max < terminal_velocity(scene.process(r.levels));
+  return cuts_levels || cuts_velocities ? margin * tolerance : 0;
+}
+
+}  // namespace
 
 Resolution hp_resolution(const model::Scene& scene, int degree, int layers, double tolerance,
                          const velocity::Rates& rates, const noise::Grouping& grouping) {
@@ -138,7 +161,9 @@ Resolution hp_resolution(const model::Scene& scene, int degree, int layers, doub
   r.degree = degree;
   r.rates = rates;
   set_levels(scene, tolerance, rates.speed, r);
-  r.v_max = velocity_end(scene, r.levels, tolerance);
+  constexpr double of_velocities = 1e-2;
+  r.v_max = velocity_end(scene, r.levels, of_velocities * tolerance);
+  r.truncation = truncation(scene, r, tolerance);
   r.layers = layers > 0 ? layers : velocity::natural_layers(scene.process(r.levels), mesh_rule(r));
   r.grouping = grouping;
   r.noise = grouped(scene.process(r.levels), grouping);

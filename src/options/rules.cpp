@@ -115,6 +115,11 @@ class Rules {
     report("quantities", q_.wants(sensitivity) && !derivable,
            "asks for derivatives (sensitivity), but for no scalars to differentiate",
            "add sticking, moments or noise_law");
+    const bool unbounded = !r_.scene.v_max && !r_.scene.process(1).drag.bounds_velocity();
+    report("quantities", q_.wants(relaxation) && unbounded,
+           "asks for relaxation, but where drag does not bound the velocity the spectrum of the "
+           "generator is continuous: its leading eigenvalues would be those of a truncation",
+           "take autocorrelation or spectrum, or a drag that grows");
     report("quantities", study_ && others,
            "must be sticking, moments and noise_law, or some of these, in a study",
            "leave the others out");

@@ -367,6 +367,21 @@ std::vector<double> element_ends(const model::Process& process, const MeshRule& 
 
 namespace {
 
+// Errors in the tail count as much as its density: half a degree for each digit below 1e-3. One for
+// each, or from the first digit on, took another refinement level in every third case of weak drag.
+std::vector<int> degrees_less_in_tail(const model::Process& process, const MeshRule& rule,
+                                      const std::vector<double>& ends) {
+  constexpr double free_digits = 3, degrees_per_digit = 0.5;
+  std::vector<int> less(ends.size() - 1, 0);
+  if (rule.whole_tail) return less;
+  const LogDensity upper(process), lower(process.mirrored());
+  for (std::size_t e = 0; e < less.size(); ++e) {
+    const double digits = -std::max(upper(ends[e]), lower(ends[e])) / std::numbers::ln10;
+    less[e] = std::max(0, static_cast<int>(degrees_per_digit * (digits - free_digits)));
+  }
+  return less;
+}
+
 // An element at v holds a share of what is asked for that falls like v^0.8 to v (levels that it
 // concerns times how far the solution is from constant there), half a digit from one element to the
 // next, and a degree is worth a digit. One degree for two elements changed no error of seven cases
@@ -379,6 +394,7 @@ namespace {
 std::vector<int> regular_degrees(const model::Process& process, const MeshRule& rule,
                                  const std::vector<double>& ends, int degree) {
   constexpr int most_where_left = 2;  // degrees less
+  constexpr int more_in_tail = 2;     // than least_degree: elements are long there
   const int layers = rule.layers > 0 ? rule.layers : natural_layers(process, rule);
   std::vector<int> degrees(ends.size() - 1, degree);
   const bool early = rule.rates.lambda * process.noise.correlation_time() > 1;
@@ -391,6 +407,11 @@ std::vector<int> regular_degrees(const model::Process& process, const MeshRule& 
     const int below_leaving = std::max(static_cast<int>(slow) - e, 0);
     const int less = std::min((layers - 1 - e) / 2, most_where_left + below_leaving / 2);
     degrees[e] = std::max(std::min(rule.least_degree, degree), degree - less);
+  }
+  const auto in_tail = degrees_less_in_tail(process, rule, ends);
+  for (std::size_t e = 0; e < degrees.size(); ++e) {
+    const int least = std::min(rule.least_degree + more_in_tail, degrees[e]);
+    degrees[e] = std::max(least, degrees[e] - in_tail[e]);
   }
   return degrees;
 }

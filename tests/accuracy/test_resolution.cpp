@@ -7,6 +7,7 @@
 #include "stickslip/accuracy/refinement_sequence.hpp"
 #include "stickslip/accuracy/resolution.hpp"
 #include "stickslip/model/drag_law.hpp"
+#include "stickslip/model/observable.hpp"
 #include "stickslip/operators/solver_policy.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/velocity/velocity_discretisation.hpp"
@@ -176,6 +177,50 @@ TEST_CASE("resolution: what the user fixes stays fixed") {
   CHECK(hp_resolution(s, 5, 0, 1e-12).layers > 0);
 }
 
+TEST_CASE("resolution: what is cut off is an error, and nothing where nothing is cut") {
+  auto s = scene(1, 0.25, 1, 0.25);
+  s.drag = {0.01, 0};
+  CHECK(hp_resolution(s, 5, 0, 1e-8).truncation == Approx(3e-8));
+  s.drag = {1, 0};  // the terminal velocity of the highest level is near
+  CHECK(hp_resolution(s, 5, 0, 1e-8).truncation == Approx(3e-8));
+  s.noise_levels = 8;
+  CHECK(hp_resolution(s, 5, 0, 1e-8).truncation == 0);
+  s.drag = {0.01, 0};
+  CHECK(hp_resolution(s, 5, 0, 1e-8).truncation == Approx(3e-8));
+  s.v_max = 2;  // the error of which is reported
+  CHECK(hp_resolution(s, 5, 0, 1e-8).truncation == 0);
+}
+
+TEST_CASE("refinement sequence: elements stay where they are, unless the tail counts") {
+  options::Case given;
+  given.scene = scene(1, 0.25, 1, 0.125);
+  given.scene.drag = {0.01, 0};
+  given.question.accuracy = 1e-6;
+  const auto ends = [&](const accuracy::RefinementSequence& sequence, int n) {
+    const auto d = accuracy::discretise(given.scene, sequence.refinement_level(n));
+    return std::vector(d.velocities->cells().begin(), d.velocities->cells().end());
+  };
+  const accuracy::RefinementSequence steady(given);
+  for (int n = 0; n <= steady.last(); ++n) {
+    CHECK(ends(steady, n) == ends(steady, -1));
+    CHECK(steady.refinement_level(n).levels == steady.refinement_level(-1).levels);
+  }
+  CHECK_FALSE(steady.refinement_level(1).whole_tail);
+  const auto further = [&] {
+    const accuracy::RefinementSequence sequence(given);
+    CHECK(ends(sequence, 0).back() == ends(sequence, -1).back());
+    for (int n = 1; n <= 4; ++n) CHECK(ends(sequence, n).back() > ends(sequence, n - 1).back());
+    CHECK(sequence.refinement_level(1).whole_tail);
+  };
+  given.question.quantities = {options::Quantity::peak};
+  further();
+  given.question.quantities = {options::Quantity::relaxation};
+  further();
+  given.question.quantities = {options::Quantity::averages};
+  given.question.observables.push_back(model::parse_observable("v^8", given.scene.friction));
+  further();
+}
+
 TEST_CASE("refinement sequence: every level is finer in every respect") {
   options::Case given;
   given.scene = scene(1, 0.25, 1, 0.125);
@@ -263,14 +308,14 @@ TEST_CASE("refinement sequence: two hp changes make an error, the larger the hig
   const accuracy::RefinementSequence sequence(given);
   for (int n = 1; n < 5; ++n) {
     const int degree = sequence.refinement_level(n).degree;
-    CHECK(sequence.error_per_change(n).last == Approx(0.08 * degree));
-    CHECK(sequence.error_per_change(n).earlier == Approx(0.005 * degree));
+    CHECK(sequence.error_per_change(n).last == Approx(0.07 * degree));
+    CHECK(sequence.error_per_change(n).earlier == Approx(0.0026 * degree));
   }
   CHECK_FALSE(sequence.first_order());
   given.scene.friction.stribeck = model::Stribeck{0.1, 1};
   const accuracy::RefinementSequence weakening(given);
   const int degree = weakening.refinement_level(1).degree;
-  CHECK(weakening.error_per_change(1).last == Approx(0.08 * (degree + 4)));
+  CHECK(weakening.error_per_change(1).last == Approx(0.07 * (degree + 4)));
 }
 
 TEST_CASE(
@@ -297,14 +342,21 @@ TEST_CASE(
 TEST_CASE("refinement sequence: truncation is allowed a part of what the discretisation leaves") {
   options::Case given;
   given.scene = scene(1, 0.25, 1, 0.25);
-  given.question.quantities = {options::Quantity::entry_law};
   given.question.accuracy = 1e-6;
+  given.question.quantities = {options::Quantity::entry_law};
   const accuracy::RefinementSequence hp(given);
-  CHECK(hp.tail_tolerance(-1) == hp.tail_tolerance(0));
+  for (int n = -1; n < 4; ++n) CHECK(hp.tail_tolerance(n) == Approx(1e-12));
+  given.question.quantities = {options::Quantity::peak};
+  const accuracy::RefinementSequence peak(given);
+  given.question.quantities = {options::Quantity::relaxation};
+  const accuracy::RefinementSequence modes(given);
+  CHECK(peak.tail_tolerance(-1) == peak.tail_tolerance(0));
   for (int n = 0; n < 4; ++n) {
-    const double expected = std::pow(10.0, -hp.refinement_level(n).degree);
-    CHECK(hp.tail_tolerance(n) == Approx(1e-3 * expected));
+    const double expected = std::pow(10.0, -(peak.refinement_level(n).degree + 4));
+    CHECK(peak.tail_tolerance(n) == Approx(expected));
+    CHECK(modes.tail_tolerance(n) == Approx(expected * expected));
   }
+  given.question.quantities = {options::Quantity::sticking};
   given.method.scheme = options::Scheme::upwind;
   CHECK(accuracy::RefinementSequence(given).tail_tolerance(1) == Approx(1e-9));
   given.question.accuracy = 1e-3;

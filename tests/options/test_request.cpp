@@ -336,6 +336,9 @@ TEST_CASE("request: quantities that need a file or times, or derive nothing, are
   const std::vector<Refusal> refusals{
       {"-quantities trajectory", {"needs a file", "-trajectory FILE.csv"}},
       {"-quantities sensitivity,relaxation", {"no scalars to differentiate", "add sticking"}},
+      {"-quantities relaxation -drag none", {"the generator is continuous", "a drag that grows"}},
+      {"-quantities relaxation -drag expression -drag_expression 0-v/(1+abs(v))",
+       {"the generator is continuous"}},
       {"-quantities expectation -observable v", {"no times are given", "add for example -time"}}};
   for (const auto& refusal : refusals) check_refusal(refusal);
 }

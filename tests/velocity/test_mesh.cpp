@@ -58,6 +58,7 @@ TEST_CASE("mesh: the number of layers can be fixed, and moves only what lies nea
 TEST_CASE("mesh: degrees fall by one in two layers towards v = 0, and only there") {
   const auto p = process(0.25, 1, 0.25, {1, 0});
   auto rule = rule_to(7, 8);
+  rule.whole_tail = true;
   CHECK(velocity::element_ends(p, rule).size() == 11);
   CHECK(velocity::element_degrees(p, rule, 9) == std::vector{6, 6, 7, 7, 8, 8, 9, 9, 9, 9});
   CHECK(velocity::element_degrees(p, rule, 4) == std::vector{2, 2, 2, 2, 3, 3, 4, 4, 4, 4});
@@ -74,10 +75,34 @@ TEST_CASE("mesh: degrees fall by one in two layers towards v = 0, and only there
   CHECK(velocity::element_degrees(p, rule, 9) == std::vector(elements, 9));
 }
 
+// Without drag the density is exp(-mu_d v/D), D = 2/tau: a digit each ln(10) D/mu_d.
+TEST_CASE("mesh: degrees fall by a half for each digit that the density is below 1e-3") {
+  const auto p = process(0.5, 1, 0.25, {0, 0});
+  auto rule = rule_to(velocity::tail_velocity(p, 1e-14));
+  rule.least_degree = 3;
+  const auto ends = velocity::element_ends(p, rule);
+  const auto degrees = velocity::element_degrees(p, rule, 9);
+  rule.whole_tail = true;
+  const auto whole = velocity::element_degrees(p, rule, 9);
+  const double digit = std::log(10) * p.noise.intensity() / p.friction.mu_d;
+  int lowered = 0;
+  for (std::size_t e = 0; e < degrees.size(); ++e) {
+    const int less = std::max(0, static_cast<int>((ends[e] / digit - 3) / 2));
+    CHECK(degrees[e] == std::max(5, whole[e] - less));
+    lowered += degrees[e] < whole[e] ? 1 : 0;
+  }
+  CHECK(degrees.back() == 5);
+  CHECK(lowered > 1);
+  rule.whole_tail = false;
+  CHECK(velocity::element_degrees(p, rule, 3).back() == 3);
+}
+
 TEST_CASE("mesh: degrees fall by two at most where bodies that leave v = 0 might turn back") {
   const auto fall = [](const model::Process& p, double leaving) {
     const auto ends = velocity::element_ends(p, rule_to(7));
-    const auto degrees = velocity::element_degrees(p, rule_to(7), 9);
+    auto rule = rule_to(7);
+    rule.whole_tail = true;
+    const auto degrees = velocity::element_degrees(p, rule, 9);
     int above = 0, below = 0;
     for (std::size_t e = 0; e < degrees.size(); ++e) {
       int& most = ends[e + 1] >= leaving ? above : below;
@@ -389,6 +414,7 @@ TEST_CASE("mesh: what is steep is halved until it is resolved, and not elsewhere
 TEST_CASE("mesh: degrees of added elements are those of the regular one") {
   const auto p = process(0.25, 1, 0.25, {1, 0});
   auto rule = rule_to(7, 8);
+  rule.whole_tail = true;
   const auto plain = velocity::element_ends(p, rule);
   rule.integrands.breaks = {plain[1] / 2, plain[3] * 1.001, 0.9};
   const auto ends = velocity::element_ends(p, rule);

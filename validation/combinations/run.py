@@ -91,6 +91,11 @@ def is_symmetric(case):
     return not case["bias"] and case["directions"] == "alike" and case["drag"] != "lopsided"
 
 
+def drag_of(case):
+    """Modes need a drag that bounds the velocity."""
+    return "linear" if (case["question"], case["drag"]) == ("modes", "none") else case["drag"]
+
+
 def options_of(case, mirrored):
     """Options of a case or of its mirror image."""
     (mu_s, mu_d), (tau, delta) = case["mu"], case["noise"]
@@ -101,7 +106,7 @@ def options_of(case, mirrored):
         here, there = there, here
     sign = -1 if mirrored else 1
     options = {"mu_s": here[0], "mu_d": here[1], "tau": tau, "delta": delta,
-               "quantities": QUESTIONS[case["question"]], **DRAGS[case["drag"]][mirrored]}
+               "quantities": QUESTIONS[case["question"]], **DRAGS[drag_of(case)][mirrored]}
     if case["directions"] != "alike":
         options |= {"mu_s_minus": there[0], "mu_d_minus": there[1]}
     if case["bias"]:

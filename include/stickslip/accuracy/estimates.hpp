@@ -7,10 +7,10 @@
 
 namespace stickslip::accuracy {
 
-/// error >= rounding |value| for every value. Sums of positive terms over levels are rounded even
+/// error >= least |value| for every value. Sums of positive terms over levels are rounded even
 /// where nothing else is wrong, as for a mean duration of sticking that has the same hitting
-/// distribution on every discretisation.
-void require_rounding(double rounding, quantities::Results& results);
+/// distribution on every discretisation; what all discretisations cut off changes with none.
+void require_least_error(double least, quantities::Results& results);
 
 /// |change| from one discretisation to the next, by result and entry.
 using Changes = std::vector<std::vector<double>>;
@@ -25,7 +25,7 @@ struct ErrorPerChange {
 /// Adds the error of the discretisation,
 ///
 ///   d = |(last |change from coarse|, earlier |change before|)|,   Euclidean norm,
-///   error += |(d, 0.3 size rms(d/size))|,
+///   error += |(d, 0.65 size rms(d/size))|,
 ///
 /// where the mean square is over the means of the same stationary distribution and family, whose
 /// errors are alike within a decade or two: a change that vanishes by accident hides an error,
@@ -33,11 +33,7 @@ struct ErrorPerChange {
 /// the velocity the other. The size of a mean is its value; that of P_stick and P_slide, of which
 /// P_slide/P_stick is a ratio of two durations, is P_stick P_slide. What changes by less than 1e-13
 /// does not depend on the discretisation and takes no share; the drift, which may vanish, gives
-/// none. Where mean_stick and mean_slide are among the results, P_stick and P_slide have at least
-/// half of what follows from the errors of both,
-///
-///   error = 0.5 P_stick P_slide |(error of mean_stick/mean_stick, error of
-///   mean_slide/mean_slide)|.
+/// none.
 ///
 /// An entry u_i of an array over anything but modes gets at least
 ///

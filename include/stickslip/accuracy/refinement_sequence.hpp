@@ -10,8 +10,11 @@
 namespace stickslip::accuracy {
 
 /// Refinement levels below 1 only serve for comparison; each further refinement level is finer in
-/// every respect (degrees or points, noise range, truncation velocity), so that the change from one
-/// refinement level to the next shows the error of the coarser one, whatever its cause.
+/// degrees or points and noise nodes, so that the change from one refinement level to the next shows
+/// the error of the coarser one. All have the same elements, as they reach as far: how the errors of
+/// two levels on other elements compare is at random. What is cut off is an error of its own
+/// (Resolution::truncation). Where the tail may weigh anything, as what observables, first passages
+/// and relaxation modes make of it, each level reaches further than the one before instead.
 class RefinementSequence {
  public:
   explicit RefinementSequence(const options::Case& given);
@@ -46,6 +49,8 @@ class RefinementSequence {
   velocity::Integrands integrands_;
   int branches_ = 1;
   bool all_levels_ = false;  // every noise level is a node
+  bool tail_counts_ = false;
+  bool modes_ = false;
   int last_;
   mutable std::map<int, Resolution> refinement_levels_;  // those asked for so far
 };

@@ -26,6 +26,8 @@ struct Resolution {
   std::shared_ptr<const noise::Nodes> noise;  ///< of that grouping; none: every level is a node
   int table_levels = 0;                       ///< of a noise from a table
   double v_max = 0;                           ///< end of the velocity discretisation [velocity]
+  double truncation = 0;    ///< hp: relative error that both ends may leave, 0 where nothing is cut
+  bool whole_tail = false;  ///< hp: degrees do not fall with the density
   int branches = 1;  ///< 1: reduced by symmetry, v > 0 only; 2: both signs of v
   options::Factors factors = options::Factors::own;
 
@@ -47,7 +49,8 @@ struct Resolution {
 [[nodiscard]] double velocity_end(const model::Scene& scene, int levels, double tolerance);
 
 /// hp of polynomial degree `degree` in v, the noise levels grouped so, all that is open chosen for
-/// truncation errors of `tolerance`; `layers` 0 are chosen for equations with rates up to `rates`.
+/// truncation errors of `tolerance`, a hundredth of it in v, of which moments are asked for;
+/// `layers` 0 are chosen for equations with rates up to `rates`.
 /// O(noise levels).
 [[nodiscard]] Resolution hp_resolution(const model::Scene& scene, int degree, int layers,
                                        double tolerance, const velocity::Rates& rates = {},

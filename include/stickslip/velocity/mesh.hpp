@@ -29,6 +29,7 @@ struct MeshRule {
   int layers = 0;            ///< elements of the graded part; 0: from smallest_scale
   int least_degree = 2;      ///< of an element where those elsewhere have at least this one
   double tolerance = 1e-12;  ///< relative error that the smallest elements may leave
+  bool whole_tail = false;   ///< degrees do not fall with the density
   Rates rates;
   Integrands integrands;
 };
