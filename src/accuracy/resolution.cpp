@@ -13,6 +13,7 @@
 #include "stickslip/support/errors.hpp"
 #include "stickslip/velocity/hp_discretisation.hpp"
 #include "stickslip/velocity/mesh.hpp"
+#include "stickslip/velocity/tail.hpp"
 #include "stickslip/velocity/upwind_discretisation.hpp"
 
 namespace stickslip::accuracy {

@@ -9,7 +9,7 @@
 #include "reading.hpp"
 #include "stickslip/options/result_table.hpp"
 #include "stickslip/support/text.hpp"
-#include "stickslip/velocity/mesh.hpp"
+#include "stickslip/velocity/tail.hpp"
 
 namespace stickslip::options {
 namespace {

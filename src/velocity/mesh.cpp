@@ -9,6 +9,8 @@
 #include <numbers>
 #include <set>
 
+#include "log_density.hpp"
+
 namespace stickslip::velocity {
 namespace {
 
@@ -97,30 +99,6 @@ double speed_of_leaving(const model::Process& process) {
   return 0.6 * std::min(cubed(process), cubed(process.mirrored())) /
          (process.noise.rate() * step * step);
 }
-
-// log of the stationary density of white noise of intensity D on the positive branch, exp((-slope v
-// + int b)/D) with slope = F(0+) - g, g the mean force, against its largest value. Large speeds
-// make of some noises a stronger one.
-struct LogDensity {
-  explicit LogDensity(const model::Process& process)
-      : drag(process.drag), slope(process.friction.at_rest() - process.mean_force()) {
-    extrema.push_back(drag.terminal_velocity(-slope));
-    if (drag.rises_until > 0) extrema = drag.balances(-slope);
-    intensity = process.noise.tail_intensity();
-    for (double v : extrema) highest = std::max(highest, -slope * v + drag.potential(v));
-  }
-  /// Raised by `by`.
-  [[nodiscard]] double operator()(double v, double by = 0) const {
-    return by - (highest + slope * v - drag.potential(v)) / intensity;
-  }
-
-  model::Drag drag;
-  double slope;
-  // Rising: where drag balances a bias beyond mu_d; under forces that weaken more, minima too.
-  std::vector<double> extrema;
-  double highest = 0;  // at v = 0
-  double intensity;
-};
 
 bool has_waves(const model::Process& process, const MeshRule& rule) {
   return rule.rates.omega > 4 * process.noise.rate();
@@ -438,34 +416,6 @@ std::vector<int> element_degrees(const model::Process& process, const MeshRule& 
     }
   }
   return degrees;
-}
-
-namespace {
-
-// Of the positive branch.
-double upper_tail(const model::Process& process, double tolerance) {
-  const double drop = -std::log(tolerance) + 5;  // 5: polynomial factors of the moments
-  const LogDensity log_density(process);
-  const double slope = log_density.slope;
-  const auto left = [&](double v) { return log_density(v, drop); };
-  double last = 0;  // with a density that counts
-  for (double v : log_density.extrema) last = left(v) > 0 ? v : last;
-  double end = std::max(slope > 0 ? drop * log_density.intensity / slope : 1.0, 2 * last);
-  const bool open = slope <= 0 || process.drag.rises_until > 0;
-  while (open && left(end) > 0 && end < process.drag.reach) end *= 2;
-  end = std::min(end, process.drag.reach);
-  if (process.drag.is_none() || !std::isfinite(left(end)) || left(end) > 0) return end;
-  std::uintmax_t iterations = 200;
-  const auto bracket = boost::math::tools::toms748_solve(
-      left, last, end, boost::math::tools::eps_tolerance<double>(20), iterations);
-  return bracket.second;
-}
-
-}  // namespace
-
-double tail_velocity(const model::Process& process, double tolerance) {
-  const double upper = upper_tail(process, tolerance);
-  return process.symmetric() ? upper : std::max(upper, upper_tail(process.mirrored(), tolerance));
 }
 
 }  // namespace stickslip::velocity

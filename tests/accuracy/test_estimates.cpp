@@ -106,7 +106,8 @@ TEST_CASE("estimates: the drift takes its share of the errors of means, and give
   const Results means{scalar(quantities::kEAbsV, -10, 0), scalar(quantities::kEV, 0.5, 0),
                       scalar(quantities::kFStick0, 1, 0)};
   // A density is no mean.
-  check_errors(changed(means, {2, 100, small}), {std::hypot(2, 1.3), std::hypot(100, 0.065), small});
+  check_errors(changed(means, {2, 100, small}),
+               {std::hypot(2, 1.3), std::hypot(100, 0.065), small});
   check_errors(changed(means, {2, small, small}),
                {std::hypot(2, 1.3), std::hypot(small, 0.065), small});
   const Results drift{scalar(quantities::kEV, 0.5, 0)};

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "stickslip/velocity/mesh.hpp"
+#include "stickslip/velocity/tail.hpp"
 
 using namespace stickslip;
 using velocity::MeshRule;

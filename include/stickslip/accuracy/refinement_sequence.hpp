@@ -10,11 +10,12 @@
 namespace stickslip::accuracy {
 
 /// Refinement levels below 1 only serve for comparison; each further refinement level is finer in
-/// degrees or points and noise nodes, so that the change from one refinement level to the next shows
-/// the error of the coarser one. All have the same elements, as they reach as far: how the errors of
-/// two levels on other elements compare is at random. What is cut off is an error of its own
-/// (Resolution::truncation). Where the tail may weigh anything, as what observables, first passages
-/// and relaxation modes make of it, each level reaches further than the one before instead.
+/// degrees or points and noise nodes, so that the change from one refinement level to the next
+/// shows the error of the coarser one. All have the same elements, as they reach as far: how the
+/// errors of two levels on other elements compare is at random. What is cut off is an error of its
+/// own (Resolution::truncation). Where the tail may weigh anything, as what observables, first
+/// passages and relaxation modes make of it, each level reaches further than the one before
+/// instead.
 class RefinementSequence {
  public:
   explicit RefinementSequence(const options::Case& given);

@@ -28,7 +28,7 @@ struct Resolution {
   double v_max = 0;                           ///< end of the velocity discretisation [velocity]
   double truncation = 0;    ///< hp: relative error that both ends may leave, 0 where nothing is cut
   bool whole_tail = false;  ///< hp: degrees do not fall with the density
-  int branches = 1;  ///< 1: reduced by symmetry, v > 0 only; 2: both signs of v
+  int branches = 1;         ///< 1: reduced by symmetry, v > 0 only; 2: both signs of v
   options::Factors factors = options::Factors::own;
 
   [[nodiscard]] std::int64_t noise_nodes() const {

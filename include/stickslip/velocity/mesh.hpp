@@ -52,9 +52,4 @@ struct MeshRule {
 [[nodiscard]] std::vector<int> element_degrees(const model::Process& process, const MeshRule& rule,
                                                int degree);
 
-/// Velocity beyond which the stationary density is below `tolerance`, from its white-noise bound
-/// exp(-(mu_d - |bias|) v + int_0^v b): coloured noise and discrete levels only shorten the tail.
-/// Without drag the bias must be smaller than mu_d.
-[[nodiscard]] double tail_velocity(const model::Process& process, double tolerance);
-
 }  // namespace stickslip::velocity

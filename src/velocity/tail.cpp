@@ -1,0 +1,39 @@
+#include "stickslip/velocity/tail.hpp"
+
+#include <algorithm>
+#include <boost/math/tools/roots.hpp>
+#include <cmath>
+#include <cstdint>
+
+#include "log_density.hpp"
+
+namespace stickslip::velocity {
+namespace {
+
+// Of the positive branch.
+double upper_tail(const model::Process& process, double tolerance) {
+  const double drop = -std::log(tolerance) + 5;  // 5: polynomial factors of the moments
+  const LogDensity log_density(process);
+  const double slope = log_density.slope;
+  const auto left = [&](double v) { return log_density(v, drop); };
+  double last = 0;  // with a density that counts
+  for (double v : log_density.extrema) last = left(v) > 0 ? v : last;
+  double end = std::max(slope > 0 ? drop * log_density.intensity / slope : 1.0, 2 * last);
+  const bool open = slope <= 0 || process.drag.rises_until > 0;
+  while (open && left(end) > 0 && end < process.drag.reach) end *= 2;
+  end = std::min(end, process.drag.reach);
+  if (process.drag.is_none() || !std::isfinite(left(end)) || left(end) > 0) return end;
+  std::uintmax_t iterations = 200;
+  const auto bracket = boost::math::tools::toms748_solve(
+      left, last, end, boost::math::tools::eps_tolerance<double>(20), iterations);
+  return bracket.second;
+}
+
+}  // namespace
+
+double tail_velocity(const model::Process& process, double tolerance) {
+  const double upper = upper_tail(process, tolerance);
+  return process.symmetric() ? upper : std::max(upper, upper_tail(process.mirrored(), tolerance));
+}
+
+}  // namespace stickslip::velocity
