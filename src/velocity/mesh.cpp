@@ -345,21 +345,6 @@ std::vector<double> element_ends(const model::Process& process, const MeshRule& 
 
 namespace {
 
-// Errors in the tail count as much as its density: half a degree for each digit below 1e-3. One for
-// each, or from the first digit on, took another refinement level in every third case of weak drag.
-std::vector<int> degrees_less_in_tail(const model::Process& process, const MeshRule& rule,
-                                      const std::vector<double>& ends) {
-  constexpr double free_digits = 3, degrees_per_digit = 0.5;
-  std::vector<int> less(ends.size() - 1, 0);
-  if (rule.whole_tail) return less;
-  const LogDensity upper(process), lower(process.mirrored());
-  for (std::size_t e = 0; e < less.size(); ++e) {
-    const double digits = -std::max(upper(ends[e]), lower(ends[e])) / std::numbers::ln10;
-    less[e] = std::max(0, static_cast<int>(degrees_per_digit * (digits - free_digits)));
-  }
-  return less;
-}
-
 // An element at v holds a share of what is asked for that falls like v^0.8 to v (levels that it
 // concerns times how far the solution is from constant there), half a digit from one element to the
 // next, and a degree is worth a digit. One degree for two elements changed no error of seven cases
@@ -369,14 +354,10 @@ std::vector<int> degrees_less_in_tail(const model::Process& process, const MeshR
 // 1e4 times larger with degrees falling by eight, and unchanged with two. With less than degree 2
 // the first refinement levels had errors above their estimates (mu_d = 0.9). Waves are as steep in
 // every element, and what ends within 1/lambda before the noise changes comes from small v.
-std::vector<int> regular_degrees(const model::Process& process, const MeshRule& rule,
-                                 const std::vector<double>& ends, int degree) {
+void lower_towards_rest(const model::Process& process, const MeshRule& rule,
+                        const std::vector<double>& ends, std::vector<int>& degrees) {
   constexpr int most_where_left = 2;  // degrees less
-  constexpr int more_in_tail = 2;     // than least_degree: elements are long there
   const int layers = rule.layers > 0 ? rule.layers : natural_layers(process, rule);
-  std::vector<int> degrees(ends.size() - 1, degree);
-  const bool early = rule.rates.lambda * process.noise.correlation_time() > 1;
-  if (early || has_waves(process, rule)) return degrees;
   const double leaving = speed_of_leaving(process);
   const int graded = std::min(layers, static_cast<int>(degrees.size()));
   const auto slow = std::count_if(ends.begin() + 1, ends.begin() + 1 + graded,
@@ -384,13 +365,31 @@ std::vector<int> regular_degrees(const model::Process& process, const MeshRule& 
   for (int e = 0; e < graded; ++e) {
     const int below_leaving = std::max(static_cast<int>(slow) - e, 0);
     const int less = std::min((layers - 1 - e) / 2, most_where_left + below_leaving / 2);
-    degrees[e] = std::max(std::min(rule.least_degree, degree), degree - less);
+    degrees[e] = std::max(std::min(rule.least_degree, degrees[e]), degrees[e] - less);
   }
-  const auto in_tail = degrees_less_in_tail(process, rule, ends);
+}
+
+// Errors in the tail count as much as its density: half a degree for each digit below 1e-3. One for
+// each, or from the first digit on, took another refinement level in every third case of weak drag.
+void lower_in_tail(const model::Process& process, const MeshRule& rule,
+                   const std::vector<double>& ends, std::vector<int>& degrees) {
+  constexpr double free_digits = 3, degrees_per_digit = 0.5;
+  constexpr int more = 2;  // than least_degree: elements are long there
+  const LogDensity upper(process), lower(process.mirrored());
   for (std::size_t e = 0; e < degrees.size(); ++e) {
-    const int least = std::min(rule.least_degree + more_in_tail, degrees[e]);
-    degrees[e] = std::max(least, degrees[e] - in_tail[e]);
+    const double digits = -std::max(upper(ends[e]), lower(ends[e])) / std::numbers::ln10;
+    const int less = std::max(0, static_cast<int>(degrees_per_digit * (digits - free_digits)));
+    degrees[e] = std::max(std::min(rule.least_degree + more, degrees[e]), degrees[e] - less);
   }
+}
+
+std::vector<int> regular_degrees(const model::Process& process, const MeshRule& rule,
+                                 const std::vector<double>& ends, int degree) {
+  std::vector<int> degrees(ends.size() - 1, degree);
+  if (has_waves(process, rule)) return degrees;
+  const bool early = rule.rates.lambda * process.noise.correlation_time() > 1;
+  if (!early) lower_towards_rest(process, rule, ends, degrees);
+  if (!rule.whole_tail) lower_in_tail(process, rule, ends, degrees);
   return degrees;
 }
 
