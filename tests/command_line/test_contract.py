@@ -109,7 +109,7 @@ class Refusals(Case):
             self.refuse(*asks, "0,7.2", *scheme,
                         message=("-start = 0,7.2: starts beyond the largest v", "take |v| at most"))
         self.refuse(*asks, "8,0", message=("-start = 8,0: starts beyond the largest x",
-                                        "take |x| at most 6.75, or -noise_levels full"))
+                                        "take |x| at most 7, or -noise_levels full"))
         self.run_ok(*asks, "8,0", "-noise_levels", "full", "-accuracy", "0.1")
         self.run_ok(*asks, "1.25,5", "-accuracy", "1e-4")
         trajectory = (*SMALL, "-quantities", "trajectory", "-trajectory", "t.csv", "-horizon", "1")
