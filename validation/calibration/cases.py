@@ -104,7 +104,7 @@ GROUPS = {
     "telegraph": Group("telegraph noise", telegraph, SCALARS, truth=1e-10, most=3),
     "weakening": Group("Stribeck friction", weakening, SCALARS, truth=1e-10, most=3),
     "transforms": Group("transforms and hitting distributions", coulomb,
-                        {"quantities": "entry_law,laplace", "lambda": "0.1,0.5,2,8"}),
+                        {"quantities": "entry_law,laplace", "lambda": "0.1,0.5,2,8"}, most=5),
     "spectra": Group("power spectral densities", quick, {"quantities": "spectrum", "omega": "0.1,0.5,2,8,30"}, cases=40),
     "durations": Group("densities of durations", quick, {"quantities": "duration_density", **TIMES}, truth=1e-8, cases=20),
     "short_times": Group("durations and slips under telegraph noise", telegraph, {
