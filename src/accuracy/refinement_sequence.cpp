@@ -12,6 +12,8 @@ namespace {
 // change is the error one degree lower, unless that vanishes by accident; the two together rarely
 // do. For each degree; see validation/calibration.
 constexpr ErrorPerChange kHpErrorPerChange{0.07, 0.0026, 2.2};
+// Where elements move from level to level changes tell less.
+constexpr double kOnOtherElements = 1.4;
 // Where friction weakens errors fall as they otherwise do so many degrees higher.
 constexpr int kDegreesOfWeakening = 4;
 constexpr int kLowestDegree = 5, kHighestDegree = 19;
@@ -190,7 +192,8 @@ ErrorPerChange RefinementSequence::error_per_change(int n) const {
   switch (method_.scheme) {
   case options::Scheme::hp: {
     const int weakening = scene_.friction.stribeck ? kDegreesOfWeakening : 0;
-    const double degrees = std::max(1, degree(n) + weakening);
+    const double moving = tail_counts_ ? kOnOtherElements : 1;
+    const double degrees = moving * std::max(1, degree(n) + weakening);
     return {degrees * kHpErrorPerChange.last, degrees * kHpErrorPerChange.earlier,
             kHpErrorPerChange.alone};
   }

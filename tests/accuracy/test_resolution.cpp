@@ -316,6 +316,9 @@ TEST_CASE("refinement sequence: two hp changes make an error, the larger the hig
   const accuracy::RefinementSequence weakening(given);
   const int degree = weakening.refinement_level(1).degree;
   CHECK(weakening.error_per_change(1).last == Approx(0.07 * (degree + 4)));
+  given.question.quantities = {options::Quantity::peak};
+  CHECK(accuracy::RefinementSequence(given).error_per_change(1).last ==
+        Approx(1.4 * 0.07 * (degree + 4)));
 }
 
 TEST_CASE(
