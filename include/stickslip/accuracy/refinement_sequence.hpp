@@ -50,8 +50,8 @@ class RefinementSequence {
   velocity::Integrands integrands_;
   int branches_ = 1;
   bool all_levels_ = false;  // every noise level is a node
-  bool tail_counts_ = false;
-  bool modes_ = false;
+  bool tail_counts_ = false;  // what is asked for may weigh the tail anyhow
+  bool modes_ = false;        // relaxation modes are asked for
   int last_;
   mutable std::map<int, Resolution> refinement_levels_;  // those asked for so far
 };
