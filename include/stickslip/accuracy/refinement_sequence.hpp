@@ -49,7 +49,7 @@ class RefinementSequence {
   velocity::Rates rates_;  // of the equations to be solved
   velocity::Integrands integrands_;
   int branches_ = 1;
-  bool all_levels_ = false;  // every noise level is a node
+  bool all_levels_ = false;   // every noise level is a node
   bool tail_counts_ = false;  // what is asked for may weigh the tail anyhow
   bool modes_ = false;        // relaxation modes are asked for
   int last_;
