@@ -123,7 +123,8 @@ TEST_CASE("rounding: derivatives are off by what those of the mean durations are
 TEST_CASE(
     "rounding: what an identity lacks is added to every number of the stationary distribution") {
   using enum Quantity;
-  const auto r = given(scene(0.15, 0.005, 1.0 / 1024, 0.25, {1, 0}), {sticking, moments, entry_law});
+  const auto r =
+      given(scene(0.15, 0.005, 1.0 / 1024, 0.25, {1, 0}), {sticking, moments, entry_law});
   const auto d = test::on_hp(r.scene, 6, 1e-9);
   const auto found = evaluate(r, d);
   const double defect = found.distribution->excursion().conservation_defect(d);
