@@ -120,10 +120,6 @@ void set_levels(const model::Scene& scene, double tolerance, double speed, Resol
   if (scene.noise.table) r.table_levels = scene.process(r.levels).noise.count();
 }
 
-}  // namespace
-
-namespace {
-
 double terminal_velocity(const model::Process& process) {
   const auto of_branch = [](const model::Process& branch) {
     return branch.drag.terminal_velocity(branch.net_force(branch.noise.highest()));

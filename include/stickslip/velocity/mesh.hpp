@@ -48,7 +48,8 @@ struct MeshRule {
 
 /// Polynomial degree of each of these elements, at most `degree`: what happens at v concerns levels
 /// within about v^(1/3) of mu_d alone, so that elements nearer to v = 0 need fewer digits; but not
-/// more than two where bodies that have just left v = 0 might turn back.
+/// more than two where bodies that have just left v = 0 might turn back. In the tail, unless it is
+/// whole, digits count by the density. Where waves are followed all degrees are equal.
 [[nodiscard]] std::vector<int> element_degrees(const model::Process& process, const MeshRule& rule,
                                                int degree);
 
