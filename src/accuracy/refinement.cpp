@@ -26,12 +26,14 @@ using quantities::StationaryDistribution;
 
 std::string gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / 1e9); }
 
-Solved evaluated(MPI_Comm comm, const options::Case& given, const Resolution& resolution) {
+Solved evaluated(MPI_Comm comm, const options::Case& given, const Resolution& resolution,
+                 const std::shared_ptr<quantities::Recipes>& recipes) {
   Solved solved;
   Step& step = solved.step;
   step.resolution = resolution;
   const double start = petsc::wall_seconds();
-  const routes::Setting setting{comm, given, discretise(given.scene, resolution), step.statistics};
+  const routes::Setting setting{comm, given, discretise(given.scene, resolution), step.statistics,
+                                recipes};
   solved.evaluation = routes::evaluate(setting);
   quantities::leave_out_missing_side(setting.discretisation.process, solved.evaluation.results);
   const double rounding = model::rounding_of_sums(setting.discretisation.process.noise);
@@ -106,7 +108,7 @@ class Refiner {
     const Resolution& resolution = sequence_.refinement_level(n);
     const int step_number = static_cast<int>(outcome_.steps.size());
     if (progress_) progress_(step_number, resolution, expected_seconds(resolution));
-    auto [evaluation, step] = evaluated(comm_, given_, resolution);
+    auto [evaluation, step] = evaluated(comm_, given_, resolution, recipes_);
     remember_rounding(evaluation.results);
     if (!outcome_.steps.empty()) add_discretisation(n, evaluation.results);
     outcome_.results = std::move(evaluation.results);
@@ -258,8 +260,9 @@ class Refiner {
   std::vector<double> rounding_;                                    // relative, of each result
   double last_rounding_ = std::numeric_limits<double>::infinity();  // of the limiting result
   int refinements_in_vain_ = 0;
-  double last_omega_ = 0;                                       // of waves that elements followed
-  Changes changes_;                                             // of the last step
+  double last_omega_ = 0;  // of waves that elements followed
+  Changes changes_;        // of the last step
+  std::shared_ptr<quantities::Recipes> recipes_ = std::make_shared<quantities::Recipes>();
   std::shared_ptr<const StationaryDistribution> distribution_;  // of the last step, if needed
   std::optional<quantities::SpeedDistribution> speed_;
 };
@@ -307,7 +310,7 @@ bool needs_system(const options::Case& given) {
 
 Solved solve_on(MPI_Comm comm, const options::Case& given, const Resolution& resolution) {
   require_memory(comm, given.scene, resolution);
-  return evaluated(comm, given, resolution);
+  return evaluated(comm, given, resolution, std::make_shared<quantities::Recipes>());
 }
 
 Outcome refine(MPI_Comm comm, const options::Case& given, const Progress& progress,

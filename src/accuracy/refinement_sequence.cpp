@@ -101,6 +101,7 @@ RefinementSequence::RefinementSequence(const options::Case& given)
     : scene_(given.scene), method_(given.method), accuracy_(given.question.accuracy) {
   first_degree_ = method_.degree.value_or(starting_degree(given.question));
   rates_ = fastest_rates(given);
+  table_ = given.scene.meant().noise.table != nullptr;
   integrands_ = integrands_of(given.question);
   branches_ = options::on_full_grid(given.method.route) || !given.scene.symmetric() ? 2 : 1;
   // On nodes the residuals of eigenvectors, which stand for errors, stay five times larger.
@@ -155,10 +156,11 @@ noise::Grouping RefinementSequence::grouping(int n) const {
 }
 
 // Elements follow waves where the first estimate asks for it: in most cases the noise damps them.
+// Levels of a table may not, and then changes between coarse discretisations say nothing.
 velocity::Rates RefinementSequence::rates(int n) const {
   constexpr int first_with_waves = 2;
   velocity::Rates rates = rates_;
-  if (n < first_with_waves && !method_.fixed()) rates.omega = 0;
+  if (n < first_with_waves && !method_.fixed() && !table_) rates.omega = 0;
   return rates;
 }
 

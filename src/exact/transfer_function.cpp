@@ -56,4 +56,28 @@ std::complex<double> TransferFunction::operator()(std::complex<double> z) const 
   return sum;
 }
 
+std::vector<Complex> TransferFunction::from_right(Complex z) const {
+  const std::size_t size = right_.size();
+  std::vector<Complex> x = right_;
+  for (std::size_t c = size; c-- > 0;) {
+    x[c] /= z - t(c, c);
+    for (std::size_t r = 0; r < c; ++r) x[r] += t(r, c) * x[c];
+  }
+  return q_ * x;
+}
+
+// The transpose: forward substitution, and then x Q^H, the conjugate of Q conj(x).
+std::vector<Complex> TransferFunction::from_left(Complex z) const {
+  const std::size_t size = left_.size();
+  std::vector<Complex> x = left_;
+  for (std::size_t c = 0; c < size; ++c) {
+    for (std::size_t r = 0; r < c; ++r) x[c] += x[r] * t(r, c);
+    x[c] /= z - t(c, c);
+  }
+  for (Complex& entry : x) entry = std::conj(entry);
+  x = q_ * x;
+  for (Complex& entry : x) entry = std::conj(entry);
+  return x;
+}
+
 }  // namespace stickslip::exact

@@ -12,17 +12,24 @@
 namespace stickslip::operators {
 namespace {
 
-using petsc::add_product;
+using algebra::add_product;
 using petsc::check;
-using petsc::DenseFactors;
-using petsc::DenseMatrix;
-using petsc::Scalars;
-using Couplings = std::vector<LinearSteps::Coupling>;
+
+MPI_Datatype type_of(double) { return MPI_DOUBLE; }
+MPI_Datatype type_of(std::complex<double>) { return MPI_C_DOUBLE_COMPLEX; }
+
+// Sums over all ranks, in place.
+template <class Scalar>
+void sum_over_ranks(MPI_Comm comm, std::vector<Scalar>& x) {
+  const auto size = static_cast<int>(x.size());
+  MPI_Allreduce(MPI_IN_PLACE, x.data(), size, type_of(Scalar()), MPI_SUM, comm);
+}
 
 // Sends a matrix from its owner to all ranks.
-void send(MPI_Comm comm, int owner, int rows, int columns, DenseMatrix& a) {
-  if (petsc::rank(comm) != owner) a = DenseMatrix(rows, columns);
-  MPI_Bcast(a.data(), rows * columns, MPIU_SCALAR, owner, comm);
+template <class Scalar>
+void send(MPI_Comm comm, int owner, int rows, int columns, algebra::Matrix<Scalar>& a) {
+  if (petsc::rank(comm) != owner) a = algebra::Matrix<Scalar>(rows, columns);
+  MPI_Bcast(a.data(), rows * columns, type_of(Scalar()), owner, comm);
 }
 
 /// Rows of a matrix, wherever they are.
@@ -41,7 +48,6 @@ class RowsOnAllRanks {
   ~RowsOnAllRanks() { (void)MatDestroySubMatrices(1, &rows_); }
   RowsOnAllRanks(const RowsOnAllRanks&) = delete;
   RowsOnAllRanks& operator=(const RowsOnAllRanks&) = delete;
-
   [[nodiscard]] petsc::RowView row(std::size_t n) const {
     return {rows_[0], static_cast<PetscInt>(n)};
   }
@@ -51,31 +57,38 @@ class RowsOnAllRanks {
   Mat* rows_ = nullptr;
 };
 
+}  // namespace
+
 /// The rows of static states: a tridiagonal chain with its exits.
-struct StaticRows {
+template <class Scalar>
+struct ElementElimination<Scalar>::StaticRows {
   struct Exit {
     std::size_t level;  // of the chain
     PetscInt column;
-    PetscScalar rate;
+    Scalar rate;
   };
-  LinearSteps::Tridiagonal chain;
+  typename Steps::Tridiagonal chain;
   std::vector<Exit> exits;
 };
 
-StaticRows read_chain(Mat matrix, const std::vector<PetscInt>& rows) {
-  const std::size_t size = rows.size();
+template <class Scalar>
+auto ElementElimination<Scalar>::read_chain(Mat matrix) const -> StaticRows {
+  const std::size_t size = static_rows_.size();
   StaticRows at_rest;
   for (Scalars* band : {&at_rest.chain.diagonal, &at_rest.chain.below, &at_rest.chain.above}) {
     band->assign(size, 0.0);
   }
-  const RowsOnAllRanks all(matrix, rows);
+  // From the lambda of the matrix to that of the factors.
+  const Scalar more = lambda_ * rate_of(clock_, 0) - data_->lambda * rate_of(data_->clock, 0);
+  const RowsOnAllRanks all(matrix, static_rows_);
   for (std::size_t n = 0; n < size; ++n) {
+    at_rest.chain.diagonal[n] = more;
     all.row(n).for_each([&](PetscInt column, PetscScalar value) {
-      if (column == rows[n]) {
+      if (column == static_rows_[n]) {
         at_rest.chain.diagonal[n] += value;
-      } else if (n > 0 && column == rows[n - 1]) {
+      } else if (n > 0 && column == static_rows_[n - 1]) {
         at_rest.chain.below[n] += value;
-      } else if (n + 1 < size && column == rows[n + 1]) {
+      } else if (n + 1 < size && column == static_rows_[n + 1]) {
         at_rest.chain.above[n] += value;
       } else {
         at_rest.exits.push_back({n, column, -value});
@@ -86,10 +99,9 @@ StaticRows read_chain(Mat matrix, const std::vector<PetscInt>& rows) {
   return at_rest;
 }
 
-}  // namespace
-
 /// A velocity branch; lists by noise node count along it.
-struct ElementElimination::Line {
+template <class Scalar>
+struct ElementElimination<Scalar>::Line {
   Branch branch = Branch::positive;
   const velocity::HpDiscretisation* velocities = nullptr;
   const noise::Nodes* noise;
@@ -99,10 +111,10 @@ struct ElementElimination::Line {
   std::vector<int> rising;                  // by end of elements: first node that rises there
   std::size_t first_element = 0;            // counted over all branches
   std::size_t begin = 0;                    // in w: of the values at v = 0, those at v_1 ...
-  std::vector<std::unique_ptr<ElementSystem>> elements;  // those of this rank
-  std::vector<ElementSystem::Response> responses;        // of shared ones, until they are used
-  DenseMatrix reflection;                                // R at v = 0
-  LinearSteps outwards;                                  // from the values that fall at v = 0
+  std::vector<std::unique_ptr<Element>> elements;  // those of this rank
+  std::vector<Response> responses;                 // of shared ones, until they are used
+  DenseMatrix reflection;                          // R at v = 0
+  Steps outwards;                                  // from the values that fall at v = 0
 
   [[nodiscard]] int count() const { return static_cast<int>(net_force.size()); }
   [[nodiscard]] std::size_t falling_at(int end) const {
@@ -111,9 +123,13 @@ struct ElementElimination::Line {
   [[nodiscard]] std::size_t rising_at(int end) const { return falling_at(end) + rising[end]; }
 };
 
-ElementElimination::ElementElimination(Mat matrix, std::shared_ptr<const MatrixData> data,
-                                       bool share)
-    : data_(std::move(data)), comm_(share ? data_->states.comm() : PETSC_COMM_SELF) {
+template <class Scalar>
+ElementElimination<Scalar>::ElementElimination(Mat matrix, std::shared_ptr<const MatrixData> data,
+                                               Scalar lambda, Clock clock, bool share)
+    : data_(std::move(data)),
+      lambda_(lambda),
+      clock_(clock),
+      comm_(share ? data_->states.comm() : PETSC_COMM_SELF) {
   const StateSpace& states = data_->states;
   const auto& process = data_->discretisation.process;
   for (Branch branch : states.branches()) {
@@ -130,14 +146,13 @@ ElementElimination::ElementElimination(Mat matrix, std::shared_ptr<const MatrixD
   if (petsc::ranks(comm_) > 1) make_shared_elements();
   for (Line& line : lines_) reflect(line);
   meet(matrix);
-  petsc::VecHandle any;
-  check(MatCreateVecs(matrix, nullptr, any.out()));
-  check(VecScatterCreateToAll(any, scatter_.out(), all_.out()));
 }
 
-ElementElimination::~ElementElimination() = default;
+template <class Scalar>
+ElementElimination<Scalar>::~ElementElimination() = default;
 
-ElementElimination::Line ElementElimination::line_of(Branch branch) const {
+template <class Scalar>
+auto ElementElimination<Scalar>::line_of(Branch branch) const -> Line {
   const auto& [process, noise, velocities] = data_->discretisation;
   const StateSpace& states = data_->states;
   const bool upper = branch == Branch::positive;
@@ -165,20 +180,22 @@ ElementElimination::Line ElementElimination::line_of(Branch branch) const {
 }
 
 // The rank that has an element.
-int ElementElimination::owner(const Line& line, std::size_t e) const {
+template <class Scalar>
+int ElementElimination<Scalar>::owner(const Line& line, std::size_t e) const {
   return static_cast<int>((line.first_element + e) % static_cast<std::size_t>(petsc::ranks(comm_)));
 }
 
-ElementSystem::Response ElementElimination::make_element(Line& line, std::size_t e) const {
-  ElementSystem::Response response;
-  line.elements[e] =
-      std::make_unique<ElementSystem>(*line.noise, *line.velocities, static_cast<int>(e),
-                                      line.net_force, data_->lambda, data_->clock, response);
+template <class Scalar>
+auto ElementElimination<Scalar>::make_element(Line& line, std::size_t e) const -> Response {
+  Response response;
+  line.elements[e] = std::make_unique<Element>(*line.noise, *line.velocities, static_cast<int>(e),
+                                               line.net_force, lambda_, clock_, response);
   return response;
 }
 
 // All before the first is sent: one that fails ends all ranks alike.
-void ElementElimination::make_shared_elements() {
+template <class Scalar>
+void ElementElimination<Scalar>::make_shared_elements() {
   std::string failure;
   for (Line& line : lines_) {
     line.responses.resize(line.elements.size());
@@ -195,9 +212,10 @@ void ElementElimination::make_shared_elements() {
 }
 
 // What an element makes of the values beyond its ends, on all ranks.
-ElementSystem::Response ElementElimination::response(Line& line, std::size_t e) const {
+template <class Scalar>
+auto ElementElimination<Scalar>::response(Line& line, std::size_t e) const -> Response {
   if (petsc::ranks(comm_) == 1) return make_element(line, e);
-  ElementSystem::Response s = std::move(line.responses[e]);
+  Response s = std::move(line.responses[e]);
   const int all = line.count(), inner = line.rising[e], outer = line.rising[e + 1];
   send(comm_, owner(line, e), all - inner, inner, s.inner_inner);
   send(comm_, owner(line, e), all - inner, all - outer, s.inner_outer);
@@ -207,13 +225,14 @@ ElementSystem::Response ElementElimination::response(Line& line, std::size_t e) 
 }
 
 // What holding states make of the values that fall at v_max; where bodies are killed, nothing.
-DenseMatrix ElementElimination::hold(const Line& line) {
+template <class Scalar>
+auto ElementElimination<Scalar>::hold(const Line& line) -> DenseMatrix {
   const noise::Nodes& noise = *line.noise;
   const int below = line.rising[line.velocities->elements()], held = line.count() - below;
   if (line.velocities->kills_at_top()) return {held, below};
   DenseMatrix own(held, held), jumps(held, below);
   for (int l = 0; l < held; ++l) {
-    own(l, l) = data_->lambda * rate_of(data_->clock, line.velocities->v_max());
+    own(l, l) = lambda_ * rate_of(clock_, line.velocities->v_max());
     for (const auto& [to, rate] : noise.jumps(noise.first() + below + l)) {
       const int place = to - noise.first();
       own(l, l) += rate;
@@ -231,7 +250,8 @@ DenseMatrix ElementElimination::hold(const Line& line) {
 }
 
 // From v_max down to v = 0: w takes up what each element gives, as it comes back from above.
-void ElementElimination::reflect(Line& line) {
+template <class Scalar>
+void ElementElimination<Scalar>::reflect(Line& line) {
   DenseMatrix reflection = hold(line);
   std::vector<std::pair<DenseMatrix, DenseMatrix>> outwards;
   for (int e = line.velocities->elements(); e-- > 0;) {
@@ -261,7 +281,9 @@ void ElementElimination::reflect(Line& line) {
 }
 
 // What a branch finds in the static states, of its nodes that fall to v = 0 from `fall` on.
-void ElementElimination::add_shares(const Line& line, std::size_t fall, Couplings& shares) const {
+template <class Scalar>
+void ElementElimination<Scalar>::add_shares(const Line& line, std::size_t fall,
+                                            Couplings& shares) const {
   const StateSpace& states = data_->states;
   const noise::Nodes& noise = *line.noise;
   const Branch other = states.symmetry_reduced() ? line.branch : opposite(line.branch);
@@ -281,7 +303,9 @@ void ElementElimination::add_shares(const Line& line, std::size_t fall, Coupling
 }
 
 // What a branch finds on the other one, or reflected.
-void ElementElimination::add_crossings(const Line& line, std::size_t fall, Couplings& found) const {
+template <class Scalar>
+void ElementElimination<Scalar>::add_crossings(const Line& line, std::size_t fall,
+                                               Couplings& found) const {
   const Line& other = lines_[data_->states.symmetry_reduced() || &line != &lines_[0] ? 0 : 1];
   const int crossing = -data_->states.last_static(other.branch) - line.noise->first();
   for (int l = 0; l < crossing; ++l) {
@@ -290,7 +314,8 @@ void ElementElimination::add_crossings(const Line& line, std::size_t fall, Coupl
 }
 
 // The place in w of the node next to the static levels to which an entry of a static row belongs.
-std::size_t ElementElimination::exit_at(PetscInt column) const {
+template <class Scalar>
+std::size_t ElementElimination<Scalar>::exit_at(PetscInt column) const {
   for (const Line& line : lines_) {
     const int node = data_->states.last_static(line.branch) + 1 - line.noise->first();
     if (node == line.count()) continue;
@@ -304,7 +329,8 @@ std::size_t ElementElimination::exit_at(PetscInt column) const {
 
 // What falls to v = 0 continues on the other branch, or comes to rest and leaves by an exit. With C
 // what falling nodes find there, from the values of rising ones, 1 - C R is left to solve.
-void ElementElimination::meet(Mat matrix) {
+template <class Scalar>
+void ElementElimination<Scalar>::meet(Mat matrix) {
   const std::size_t fall = length_;  // what falling nodes find
   Couplings shares, found, returned;
   for (const Line& line : lines_) {
@@ -313,8 +339,8 @@ void ElementElimination::meet(Mat matrix) {
     for (int l = 0; l < line.rising[0]; ++l) returned.push_back({length_++, line.begin + l, 1});
   }
   const std::size_t falling = length_ - fall;
-  StaticRows at_rest = read_chain(matrix, static_rows_);
-  LinearSteps leaving;
+  StaticRows at_rest = read_chain(matrix);
+  Steps leaving;
   for (const auto& [level, column, rate] : at_rest.exits) {
     DenseMatrix left(static_cast<int>(static_rows_.size()), 1);
     left(static_cast<int>(level), 0) = rate;
@@ -349,8 +375,9 @@ void ElementElimination::meet(Mat matrix) {
   between_.append(std::move(leaving));
 }
 
+template <class Scalar>
 template <class Visit>
-void ElementElimination::for_each_own_element(Visit visit) const {
+void ElementElimination<Scalar>::for_each_own_element(Visit visit) const {
   for (const Line& line : lines_) {
     for (std::size_t e = 0; e < line.elements.size(); ++e) {
       if (line.elements[e]) visit(line, static_cast<int>(e), *line.elements[e]);
@@ -359,9 +386,10 @@ void ElementElimination::for_each_own_element(Visit visit) const {
 }
 
 // Calls visit(place in a list of the element, row) for its unknowns.
+template <class Scalar>
 template <class Visit>
-void ElementElimination::for_each_unknown(const Line& line, const ElementSystem& element,
-                                          Visit visit) {
+void ElementElimination<Scalar>::for_each_unknown(const Line& line, const Element& element,
+                                                  Visit visit) {
   std::size_t place = 0;
   for (const auto& [first, stride] : line.nodes) {
     for (int m = 0; m < element.nodes(); ++m) {
@@ -371,8 +399,9 @@ void ElementElimination::for_each_unknown(const Line& line, const ElementSystem&
 }
 
 // Calls visit(place in w, row) for the unknowns that are part of w.
+template <class Scalar>
 template <class Visit>
-void ElementElimination::for_each_unknown_between(Visit visit) const {
+void ElementElimination<Scalar>::for_each_unknown_between(Visit visit) const {
   for (const Line& line : lines_) {
     std::size_t place = line.rising_at(line.velocities->elements());
     for (PetscInt row : line.holding) visit(place++, row);
@@ -380,47 +409,46 @@ void ElementElimination::for_each_unknown_between(Visit visit) const {
   for (std::size_t n = 0; n < static_rows_.size(); ++n) visit(static_begin_ + n, static_rows_[n]);
 }
 
-void ElementElimination::solve(Vec b, Vec x, bool transposed) const {
-  check(VecScatterBegin(scatter_, b, all_, INSERT_VALUES, SCATTER_FORWARD));
-  check(VecScatterEnd(scatter_, b, all_, INSERT_VALUES, SCATTER_FORWARD));
+template <class Scalar>
+void ElementElimination<Scalar>::solve(Scalars& x, bool transposed) const {
   Scalars w(length_, 0.0);
   std::vector<Scalars> f;  // by element of this rank
-  {
-    petsc::WriteView all(all_);
-    for_each_own_element([&](const Line& line, int e, const ElementSystem& element) {
-      Scalars& own = f.emplace_back(static_cast<std::size_t>(element.size()));
-      for_each_unknown(line, element, [&](std::size_t n, PetscInt row) { own[n] = all[row]; });
-      Scalars alone = own;
-      element.solve(alone, transposed);
-      element.collect(transposed ? element.taken() : element.given(), alone, &w[line.falling_at(e)],
-                      &w[line.falling_at(e + 1)]);
-    });
-    MPI_Allreduce(MPI_IN_PLACE, w.data(), static_cast<int>(w.size()), MPIU_SCALAR, MPIU_SUM, comm_);
-    for_each_unknown_between([&](std::size_t n, PetscInt row) { w[n] += all[row]; });
-    between_.run(w, transposed);
-    std::fill(all.data(), all.data() + all.size(), 0.0);
-    auto own = f.begin();
-    for_each_own_element([&](const Line& line, int e, const ElementSystem& element) {
-      element.distribute(transposed ? element.given() : element.taken(), &w[line.falling_at(e)],
-                         &w[line.falling_at(e + 1)], *own);
-      element.solve(*own, transposed);
-      for_each_unknown(line, element, [&](std::size_t n, PetscInt row) { all[row] = (*own)[n]; });
-      ++own;
-    });
-    if (petsc::rank(comm_) == 0) {
-      for_each_unknown_between([&](std::size_t n, PetscInt row) { all[row] = w[n]; });
-    }
-    MPI_Allreduce(MPI_IN_PLACE, all.data(), all.size(), MPIU_SCALAR, MPIU_SUM, comm_);
-    petsc::WriteView local(x);
-    std::copy_n(all.data() + data_->states.local_begin(), local.size(), local.data());
+  for_each_own_element([&](const Line& line, int e, const Element& element) {
+    Scalars& own = f.emplace_back(static_cast<std::size_t>(element.size()));
+    for_each_unknown(line, element, [&](std::size_t n, PetscInt row) { own[n] = x[row]; });
+    Scalars alone = own;
+    element.solve(alone, transposed);
+    element.collect(transposed ? element.taken() : element.given(), alone, &w[line.falling_at(e)],
+                    &w[line.falling_at(e + 1)]);
+  });
+  sum_over_ranks(comm_, w);
+  for_each_unknown_between([&](std::size_t n, PetscInt row) { w[n] += x[row]; });
+  between_.run(w, transposed);
+  std::fill(x.begin(), x.end(), 0.0);
+  auto own = f.begin();
+  for_each_own_element([&](const Line& line, int e, const Element& element) {
+    element.distribute(transposed ? element.given() : element.taken(), &w[line.falling_at(e)],
+                       &w[line.falling_at(e + 1)], *own);
+    element.solve(*own, transposed);
+    for_each_unknown(line, element, [&](std::size_t n, PetscInt row) { x[row] = (*own)[n]; });
+    ++own;
+  });
+  if (petsc::rank(comm_) == 0) {
+    for_each_unknown_between([&](std::size_t n, PetscInt row) { x[row] = w[n]; });
   }
+  sum_over_ranks(comm_, x);
 }
 
-double ElementElimination::entries() const {
+template <class Scalar>
+double ElementElimination<Scalar>::entries() const {
   double sum = between_.entries();
-  for_each_own_element(
-      [&](const Line&, int, const ElementSystem& element) { sum += element.entries(); });
+  for_each_own_element([&](const Line&, int, const Element& element) { sum += element.entries(); });
   return sum;
 }
+
+template class ElementElimination<std::complex<double>>;
+#if !defined(PETSC_USE_COMPLEX)
+template class ElementElimination<double>;
+#endif
 
 }  // namespace stickslip::operators

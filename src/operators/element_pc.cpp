@@ -10,6 +10,7 @@
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/linear_solver.hpp"
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/petsc/vectors.hpp"
 #include "stickslip/support/errors.hpp"
 
 namespace stickslip::operators {
@@ -30,7 +31,8 @@ Events& events() {
 
 /// What a PC of this type owns.
 struct Elements {
-  std::unique_ptr<ElementElimination> factors;
+  std::unique_ptr<ElementElimination<PetscScalar>> factors;
+  std::unique_ptr<petsc::WholeVectors> vectors;
   PetscBool share = PETSC_TRUE;
   double entries = 0;  // of this rank, when factored
 };
@@ -81,7 +83,9 @@ PetscErrorCode set_up(PC pc) {
     const auto data = data_for(pc);
     Elements& own = elements_of(pc);
     own.factors.reset();  // before there are others
-    own.factors = std::make_unique<ElementElimination>(pc->pmat, data, own.share == PETSC_TRUE);
+    own.factors =
+        std::make_unique<ElementElimination<PetscScalar>>(pc->pmat, data, own.share == PETSC_TRUE);
+    own.vectors = std::make_unique<petsc::WholeVectors>(pc->pmat);
     own.entries = own.factors->entries();
     check(PetscLogFlops(cost_of(pc, *data).operations / petsc::ranks(data->states.comm())));
   });
@@ -91,8 +95,11 @@ template <bool transposed>
 PetscErrorCode apply(PC pc, Vec b, Vec x) {
   return guarded([=] {
     const LoggedEvent logged(events().solve, pc);
-    elements_of(pc).factors->solve(b, x, transposed);
-    check(PetscLogFlops(2 * elements_of(pc).entries));
+    const Elements& own = elements_of(pc);
+    auto all = own.vectors->gathered(b);
+    own.factors->solve(all, transposed);
+    own.vectors->scatter(all, x, [](PetscScalar entry) { return entry; });
+    check(PetscLogFlops(2 * own.entries));
   });
 }
 
@@ -106,6 +113,7 @@ PetscErrorCode set_from_options(PC pc, PetscOptionItems* PetscOptionsObject) {
 
 PetscErrorCode reset(PC pc) {
   elements_of(pc).factors.reset();
+  elements_of(pc).vectors.reset();
   return 0;
 }
 

@@ -1,21 +1,24 @@
 #include "stickslip/operators/element_system.hpp"
 
 #include <algorithm>
+#include <complex>
 #include <cstddef>
 #include <utility>
 
 namespace stickslip::operators {
 namespace {
 
-using petsc::DenseMatrix;
-using petsc::Scalars;
+using algebra::add_product;
+template <class Scalar>
+using DenseMatrix = algebra::Matrix<Scalar>;
 
 // (c x 1)^T X, c the coefficients of the noise nodes of X.
-DenseMatrix contracted(std::span<const double> c, int nodes, const DenseMatrix& x) {
-  DenseMatrix y(nodes, x.columns());
+template <class Scalar>
+DenseMatrix<Scalar> contracted(std::span<const double> c, int nodes, const DenseMatrix<Scalar>& x) {
+  DenseMatrix<Scalar> y(nodes, x.columns());
   for (int column = 0; column < x.columns(); ++column) {
     for (std::size_t l = 0; l < c.size(); ++l) {
-      const PetscScalar* from = x.column(column) + l * static_cast<std::size_t>(nodes);
+      const Scalar* from = x.column(column) + l * static_cast<std::size_t>(nodes);
       for (int m = 0; m < nodes; ++m) y(m, column) += c[l] * from[m];
     }
   }
@@ -23,8 +26,9 @@ DenseMatrix contracted(std::span<const double> c, int nodes, const DenseMatrix& 
 }
 
 // rates x 1: the same at each of the nodes.
-DenseMatrix at_each(std::span<const double> rates, int nodes) {
-  DenseMatrix columns(static_cast<int>(rates.size()) * nodes, nodes);
+template <class Scalar>
+DenseMatrix<Scalar> at_each(std::span<const double> rates, int nodes) {
+  DenseMatrix<Scalar> columns(static_cast<int>(rates.size()) * nodes, nodes);
   for (std::size_t l = 0; l < rates.size(); ++l) {
     for (int m = 0; m < nodes; ++m) columns(static_cast<int>(l) * nodes + m, m) = rates[l];
   }
@@ -32,15 +36,17 @@ DenseMatrix at_each(std::span<const double> rates, int nodes) {
 }
 
 // Copies a block beside what is there.
-void place(const DenseMatrix& block, int row, int column, DenseMatrix& to) {
+template <class Scalar>
+void place(const DenseMatrix<Scalar>& block, int row, int column, DenseMatrix<Scalar>& to) {
   for (int c = 0; c < block.columns(); ++c) {
     std::copy_n(block.column(c), block.rows(), to.column(column + c) + row);
   }
 }
 
-DenseMatrix part(const DenseMatrix& a, const std::vector<int>& rows,
-                 const std::vector<int>& columns) {
-  DenseMatrix result(static_cast<int>(rows.size()), static_cast<int>(columns.size()));
+template <class Scalar>
+DenseMatrix<Scalar> part(const DenseMatrix<Scalar>& a, const std::vector<int>& rows,
+                         const std::vector<int>& columns) {
+  DenseMatrix<Scalar> result(static_cast<int>(rows.size()), static_cast<int>(columns.size()));
   for (int c = 0; c < result.columns(); ++c) {
     for (int r = 0; r < result.rows(); ++r) result(r, c) = a(rows[r], columns[c]);
   }
@@ -58,7 +64,8 @@ int first_rising(std::span<const double> speeds, double drag) {
 /// The block-tridiagonal LU over groups, upwards, and what unit values beyond the ends make of the
 /// element: forward over the groups, and back, all of them at once. Columns of responses are inputs
 /// and rows outputs, in the order of noise nodes, so that those of the groups up to one come first.
-class ElementSystem::Elimination {
+template <class Scalar>
+class ElementSystem<Scalar>::Elimination {
  public:
   /// `rates` of the own nodes among each other: by noise node, q x q by rows, zero diagonals. The
   /// first `rising_inner`, `rising_outer` nodes fall at the ends. `lambda` is by velocity node.
@@ -85,7 +92,7 @@ class ElementSystem::Elimination {
   }
 
   [[nodiscard]] Response response() {
-    result_ = DenseMatrix(outputs_, inputs_);
+    result_ = Matrix(outputs_, inputs_);
     forward();
     back();
     return {part(result_, inner_out_, inner_in_), part(result_, inner_out_, outer_in_),
@@ -94,8 +101,8 @@ class ElementSystem::Elimination {
 
   /// The LU as steps; lists end with places for values on the first and on the last level of each
   /// group. The factors are gone then.
-  [[nodiscard]] LinearSteps steps() {
-    LinearSteps steps;
+  [[nodiscard]] LinearSteps<Scalar> steps() {
+    LinearSteps<Scalar> steps;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       Group& group = groups_[g];
       if (g > 0) {
@@ -119,9 +126,9 @@ class ElementSystem::Elimination {
   struct Group {
     const noise::Nodes::Group* noise;
     int begin, count;  // noise nodes from 0
-    petsc::DenseFactors factors;
-    DenseMatrix to_next;    // D^-1 (a x 1): what values on the next group make here
-    DenseMatrix to_before;  // D^-1 (b x 1): the same for the group before
+    algebra::LuFactors<Scalar> factors;
+    Matrix to_next;    // D^-1 (a x 1): what values on the next group make here
+    Matrix to_before;  // D^-1 (b x 1): the same for the group before
   };
   // Whether a noise node takes the value beyond an end; else it gives one there.
   struct Takes {
@@ -142,8 +149,8 @@ class ElementSystem::Elimination {
   [[nodiscard]] std::size_t last(std::size_t group) const { return first(group) + q_; }
 
   // The rows and columns of a group.
-  [[nodiscard]] DenseMatrix block(const Group& group) const {
-    DenseMatrix a(group.count * q_, group.count * q_);
+  [[nodiscard]] Matrix block(const Group& group) const {
+    Matrix a(group.count * q_, group.count * q_);
     for (int l = 0; l < group.count; ++l) {
       const int node = group.noise->begin + l;
       double jumps = 0;
@@ -169,10 +176,10 @@ class ElementSystem::Elimination {
   }
 
   void eliminate() {
-    DenseMatrix returns;  // (d x 1)^T D^-1 (a x 1) of the group before
+    Matrix returns;  // (d x 1)^T D^-1 (a x 1) of the group before
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       Group& group = groups_[g];
-      DenseMatrix a = block(group);
+      Matrix a = block(group);
       const auto& to_below = group.noise->to_below;
       const auto first = group.noise->at_first();
       for (int l = 0; g > 0 && l < group.count; ++l) {
@@ -183,13 +190,13 @@ class ElementSystem::Elimination {
           }
         }
       }
-      group.factors = petsc::DenseFactors(std::move(a));
+      group.factors = algebra::LuFactors<Scalar>(std::move(a));
       if (g > 0) {
-        group.to_before = at_each(to_below, q_);
+        group.to_before = at_each<Scalar>(to_below, q_);
         group.factors.solve(group.to_before);
       }
       if (g + 1 < groups_.size()) {
-        group.to_next = at_each(group.noise->to_above, q_);
+        group.to_next = at_each<Scalar>(group.noise->to_above, q_);
         group.factors.solve(group.to_next);
         returns = contracted(group.noise->at_last(), q_, group.to_next);
       }
@@ -206,9 +213,9 @@ class ElementSystem::Elimination {
   }
 
   // What the inputs of a group make of it alone.
-  [[nodiscard]] DenseMatrix own(const Group& group) const {
+  [[nodiscard]] Matrix own(const Group& group) const {
     const auto ports = ports_of(group, true);
-    DenseMatrix columns(group.count * q_, static_cast<int>(ports.size()));
+    Matrix columns(group.count * q_, static_cast<int>(ports.size()));
     for (int c = 0; c < columns.columns(); ++c) {
       const auto& rates = ports[c].inner ? s_.taken_.inner : s_.taken_.outer;
       const auto from = rates.begin() + static_cast<std::ptrdiff_t>(ports[c].noise) * q_;
@@ -219,9 +226,9 @@ class ElementSystem::Elimination {
   }
 
   // Rows of the outputs of a group.
-  [[nodiscard]] DenseMatrix outputs(const Group& group, const DenseMatrix& x) const {
+  [[nodiscard]] Matrix outputs(const Group& group, const Matrix& x) const {
     const auto ports = ports_of(group, false);
-    DenseMatrix y(static_cast<int>(ports.size()), x.columns());
+    Matrix y(static_cast<int>(ports.size()), x.columns());
     for (int c = 0; c < x.columns(); ++c) {
       for (int r = 0; r < y.rows(); ++r) {
         const auto& weights = ports[r].inner ? s_.given_.inner : s_.given_.outer;
@@ -234,28 +241,28 @@ class ElementSystem::Elimination {
   }
 
   void forward() {
-    DenseMatrix last;  // values on the last level of the group before
+    Matrix last;  // values on the last level of the group before
     int column = 0, row = 0;
     for (const Group& group : groups_) {
-      const DenseMatrix alone = own(group);
+      const Matrix alone = own(group);
       const int inputs = alone.columns();
-      const auto extended = [&](const DenseMatrix& through, const DenseMatrix& here) {
-        DenseMatrix all(here.rows(), column + inputs);
+      const auto extended = [&](const Matrix& through, const Matrix& here) {
+        Matrix all(here.rows(), column + inputs);
         if (column > 0) add_product(1, through, last, column, all);
         place(here, 0, column, all);
         return all;
       };
       const bool begins = group.begin == 0;
       const auto map = [&](const auto& functional) {
-        const DenseMatrix through = begins ? DenseMatrix() : functional(group.to_before);
+        const Matrix through = begins ? Matrix() : functional(group.to_before);
         return extended(through, functional(alone));
       };
       const auto on = [&](std::span<const double> c) {
-        return map([&](const DenseMatrix& x) { return contracted(c, q_, x); });
+        return map([&](const Matrix& x) { return contracted(c, q_, x); });
       };
-      const DenseMatrix given = map([&](const DenseMatrix& x) { return outputs(group, x); });
+      const Matrix given = map([&](const Matrix& x) { return outputs(group, x); });
       place(given, row, 0, result_);
-      DenseMatrix next = on(group.noise->at_last());
+      Matrix next = on(group.noise->at_last());
       on_first_.push_back(group.count == 1 ? next : on(group.noise->at_first()));
       last = std::move(next);
       column += inputs;
@@ -265,13 +272,13 @@ class ElementSystem::Elimination {
   }
 
   void back() {
-    DenseMatrix next(q_, inputs_);  // values on the first level of the group above
+    Matrix next(q_, inputs_);  // values on the first level of the group above
     for (std::size_t g = groups_.size(); g-- > 0;) {
       const Group& group = groups_[g];
-      DenseMatrix here(q_, inputs_);
+      Matrix here(q_, inputs_);
       place(on_first_[g], 0, 0, here);
       if (g + 1 < groups_.size()) {
-        const DenseMatrix given = outputs(group, group.to_next) * next;
+        const Matrix given = outputs(group, group.to_next) * next;
         const int row = rows_[g] - given.rows();
         for (int c = 0; c < inputs_; ++c) {
           for (int r = 0; r < given.rows(); ++r) result_(row + r, c) += given(r, c);
@@ -291,16 +298,16 @@ class ElementSystem::Elimination {
   int inputs_ = 0, outputs_ = 0;
   std::vector<int> inner_in_, outer_in_, inner_out_, outer_out_;
   std::vector<Group> groups_;
-  DenseMatrix result_;
-  std::vector<DenseMatrix>
-      on_first_;           // by group: values on its first level, before those above count
-  std::vector<int> rows_;  // by group: outputs up to it
+  Matrix result_;
+  std::vector<Matrix> on_first_;  // by group: values on its first level, before those above count
+  std::vector<int> rows_;         // by group: outputs up to it
 };
 
-ElementSystem::ElementSystem(const noise::Nodes& noise,
-                             const velocity::HpDiscretisation& velocities, int element,
-                             std::span<const double> net_force, PetscScalar lambda, Clock clock,
-                             Response& response)
+template <class Scalar>
+ElementSystem<Scalar>::ElementSystem(const noise::Nodes& noise,
+                                     const velocity::HpDiscretisation& velocities, int element,
+                                     std::span<const double> net_force, Scalar lambda, Clock clock,
+                                     Response& response)
     : count_(noise.count()),
       nodes_(velocities.element(element).reference->size),
       first_(velocities.element(element).first) {
@@ -341,14 +348,16 @@ ElementSystem::ElementSystem(const noise::Nodes& noise,
   length_ = elimination.length();
 }
 
-void ElementSystem::solve(Scalars& x, bool transposed) const {
+template <class Scalar>
+void ElementSystem<Scalar>::solve(Scalars& x, bool transposed) const {
   x.resize(static_cast<std::size_t>(size()));
   x.resize(length_, 0.0);
   steps_.run(x, transposed);
 }
 
-void ElementSystem::collect(const Ports& ports, const Scalars& x, PetscScalar* at_inner,
-                            PetscScalar* at_outer) const {
+template <class Scalar>
+void ElementSystem<Scalar>::collect(const Ports& ports, const Scalars& x, Scalar* at_inner,
+                                    Scalar* at_outer) const {
   std::size_t place = 0;
   for (int l = 0; l < count_; ++l) {
     for (int m = 0; m < nodes_; ++m, ++place) {
@@ -358,8 +367,9 @@ void ElementSystem::collect(const Ports& ports, const Scalars& x, PetscScalar* a
   }
 }
 
-void ElementSystem::distribute(const Ports& ports, const PetscScalar* at_inner,
-                               const PetscScalar* at_outer, Scalars& x) const {
+template <class Scalar>
+void ElementSystem<Scalar>::distribute(const Ports& ports, const Scalar* at_inner,
+                                       const Scalar* at_outer, Scalars& x) const {
   std::size_t place = 0;
   for (int l = 0; l < count_; ++l) {
     for (int m = 0; m < nodes_; ++m, ++place) {
@@ -367,5 +377,8 @@ void ElementSystem::distribute(const Ports& ports, const PetscScalar* at_inner,
     }
   }
 }
+
+template class ElementSystem<double>;
+template class ElementSystem<std::complex<double>>;
 
 }  // namespace stickslip::operators

@@ -1,13 +1,12 @@
 #include "stickslip/operators/linear_steps.hpp"
 
 #include <algorithm>
+#include <complex>
 #include <iterator>
 #include <utility>
 
 namespace stickslip::operators {
 namespace {
-
-using petsc::Scalars;
 
 template <class... Cases>
 struct Overloaded : Cases... {
@@ -18,14 +17,16 @@ Overloaded(Cases...) -> Overloaded<Cases...>;
 
 }  // namespace
 
-void LinearSteps::Tridiagonal::factor() {
+template <class Scalar>
+void LinearSteps<Scalar>::Tridiagonal::factor() {
   for (std::size_t n = 1; n < diagonal.size(); ++n) {
     below[n] /= diagonal[n - 1];
     diagonal[n] -= below[n] * above[n - 1];
   }
 }
 
-void LinearSteps::Tridiagonal::solve(PetscScalar* x, bool transposed) const {
+template <class Scalar>
+void LinearSteps<Scalar>::Tridiagonal::solve(Scalar* x, bool transposed) const {
   const std::size_t size = diagonal.size();
   if (size == 0) return;
   if (!transposed) {
@@ -39,24 +40,31 @@ void LinearSteps::Tridiagonal::solve(PetscScalar* x, bool transposed) const {
   for (std::size_t n = size - 1; n-- > 0;) x[n] -= below[n + 1] * x[n + 1];
 }
 
-void LinearSteps::add(petsc::DenseMatrix a, std::size_t from, std::size_t to) {
+template <class Scalar>
+void LinearSteps<Scalar>::add(Matrix a, std::size_t from, std::size_t to) {
   steps_.emplace_back(Product{std::move(a), from, to});
 }
 
-void LinearSteps::add(std::vector<Coupling> couplings) {
+template <class Scalar>
+void LinearSteps<Scalar>::add(std::vector<Coupling> couplings) {
   steps_.emplace_back(std::move(couplings));
 }
 
-void LinearSteps::contract(std::span<const double> c, int block, std::size_t from, std::size_t to) {
+template <class Scalar>
+void LinearSteps<Scalar>::contract(std::span<const double> c, int block, std::size_t from,
+                                   std::size_t to) {
   steps_.emplace_back(Contraction{{c.begin(), c.end()}, block, to, from, false});
 }
 
-void LinearSteps::spread(std::span<const double> c, int block, std::size_t from, std::size_t to) {
+template <class Scalar>
+void LinearSteps<Scalar>::spread(std::span<const double> c, int block, std::size_t from,
+                                 std::size_t to) {
   steps_.emplace_back(Contraction{{c.begin(), c.end()}, block, from, to, true});
 }
 
-void LinearSteps::Contraction::run(PetscScalar* w, bool transposed) const {
-  PetscScalar *const single = w + one, *row = w + many;
+template <class Scalar>
+void LinearSteps<Scalar>::Contraction::run(Scalar* w, bool transposed) const {
+  Scalar *const single = w + one, *row = w + many;
   for (const double weight : c) {
     if (spreads != transposed) {
       for (int m = 0; m < block; ++m) row[m] += weight * single[m];
@@ -67,23 +75,27 @@ void LinearSteps::Contraction::run(PetscScalar* w, bool transposed) const {
   }
 }
 
-void LinearSteps::solve(petsc::DenseFactors a, std::size_t at) {
-  steps_.emplace_back(Solve<petsc::DenseFactors>{std::move(a), at});
+template <class Scalar>
+void LinearSteps<Scalar>::solve(Factors a, std::size_t at) {
+  steps_.emplace_back(Solve<Factors>{std::move(a), at});
 }
 
-void LinearSteps::solve(Tridiagonal a, std::size_t at) {
+template <class Scalar>
+void LinearSteps<Scalar>::solve(Tridiagonal a, std::size_t at) {
   steps_.emplace_back(Solve<Tridiagonal>{std::move(a), at});
 }
 
-void LinearSteps::append(LinearSteps other) {
+template <class Scalar>
+void LinearSteps<Scalar>::append(LinearSteps other) {
   std::move(other.steps_.begin(), other.steps_.end(), std::back_inserter(steps_));
 }
 
-void LinearSteps::run(Scalars& w, bool transposed) const {
+template <class Scalar>
+void LinearSteps<Scalar>::run(Scalars& w, bool transposed) const {
   const Overloaded carry_out{
       [&](const Product& p) {
         const std::size_t from = transposed ? p.to : p.from, to = transposed ? p.from : p.to;
-        petsc::add_product(p.a, w.data() + from, w.data() + to, transposed);
+        algebra::add_product(p.a, w.data() + from, w.data() + to, transposed);
       },
       [&](const std::vector<Coupling>& couplings) {
         if (!transposed) {
@@ -103,7 +115,8 @@ void LinearSteps::run(Scalars& w, bool transposed) const {
   }
 }
 
-double LinearSteps::entries() const {
+template <class Scalar>
+double LinearSteps<Scalar>::entries() const {
   double count = 0;
   const Overloaded add{
       [&](const Product& p) { count += 1.0 * p.a.rows() * p.a.columns(); },
@@ -111,10 +124,13 @@ double LinearSteps::entries() const {
         count += static_cast<double>(2 * couplings.size());
       },
       [&](const Contraction& contraction) { count += static_cast<double>(contraction.c.size()); },
-      [&](const Solve<petsc::DenseFactors>& s) { count += 1.0 * s.a.size() * s.a.size(); },
+      [&](const Solve<Factors>& s) { count += 1.0 * s.a.size() * s.a.size(); },
       [&](const Solve<Tridiagonal>& s) { count += static_cast<double>(3 * s.a.diagonal.size()); }};
   for (const Step& step : steps_) std::visit(add, step);
   return count;
 }
+
+template class LinearSteps<double>;
+template class LinearSteps<std::complex<double>>;
 
 }  // namespace stickslip::operators

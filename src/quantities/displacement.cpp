@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
@@ -10,6 +12,7 @@
 namespace stickslip::quantities {
 namespace {
 
+using operators::ComplexVector;
 using operators::KolmogorovOperator;
 using operators::State;
 using operators::StateKind;
@@ -77,7 +80,41 @@ class CoupledPencil final : public Pencil {
     join(x2, x1, x);
   }
 
+  [[nodiscard]] std::unique_ptr<ShiftedPencil> shifted(std::complex<double> z) override {
+    return std::make_unique<Shifted>(*this, z);
+  }
+
  private:
+  class Shifted final : public ShiftedPencil {
+   public:
+    Shifted(const CoupledPencil& pencil, std::complex<double> z)
+        : pencil_(pencil), outer_(pencil.outer_.shifted(z)), inner_(pencil.inner_.shifted(z)) {}
+
+    [[nodiscard]] ComplexVector solve(const ComplexVector& b, bool transposed) override {
+      Parts real = pencil_.apart(b.real), imaginary = pencil_.apart(b.imaginary);
+      if (transposed) solve_with(*outer_, real.outer, imaginary.outer, true);
+      if (!transposed) solve_with(*inner_, real.inner, imaginary.inner, false);
+      for (const Parts* parts : {&real, &imaginary}) pencil_.send(*parts, transposed);
+      if (transposed) solve_with(*inner_, real.inner, imaginary.inner, true);
+      if (!transposed) solve_with(*outer_, real.outer, imaginary.outer, false);
+      ComplexVector x{petsc::copy_of(b.real), petsc::copy_of(b.imaginary)};
+      join(real.outer, real.inner, x.real);
+      join(imaginary.outer, imaginary.inner, x.imaginary);
+      return x;
+    }
+
+   private:
+    static void solve_with(ShiftedPencil& factors, petsc::VecHandle& real,
+                           petsc::VecHandle& imaginary, bool transposed) {
+      ComplexVector x = factors.solve({std::move(real), std::move(imaginary)}, transposed);
+      real = std::move(x.real);
+      imaginary = std::move(x.imaginary);
+    }
+
+    const CoupledPencil& pencil_;
+    std::unique_ptr<ShiftedPencil> outer_, inner_;
+  };
+
   struct Parts {
     petsc::VecHandle outer, inner;
   };
@@ -95,6 +132,11 @@ class CoupledPencil final : public Pencil {
     petsc::WriteView to(all);
     std::copy(second.data(), second.data() + second.size(),
               std::copy(first.data(), first.data() + first.size(), to.data()));
+  }
+  // What a solution of the part that comes first sends into the other one.
+  void send(const Parts& parts, bool transposed) const {
+    transposed ? couple(1, parts.outer, outer_places_, parts.inner, inner_places_)
+               : couple(1, parts.inner, inner_places_, parts.outer, outer_places_);
   }
   // y += sign f x.
   void couple(double sign, Vec x, const std::vector<PetscInt>& from, Vec y,
@@ -119,7 +161,7 @@ petsc::VecHandle scaled(Vec x, double factor) {
 
 Displacement displacement(operators::Systems& systems, const StationaryDistribution& distribution,
                           const model::Start& start, const std::vector<double>& time,
-                          double tolerance) {
+                          const ModelTolerance& tolerance) {
   const TimeScales scales = time_scales(systems.process());
   ProcessPencil inner(systems, distribution.velocity_symmetry(), StaticPhase::kept);
   const auto velocity = distribution.velocity(inner.a());
@@ -138,9 +180,10 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
   const bool beside_stationary = !stationary && longest > memory;
   if (stationary || beside_stationary) {
     const double unit = 2 * variance * tau * tau * spread;
-    x.variance = time_curve(inner, {scaled(v, 2), velocity.c, weight}, Nature::smooth, {{2, unit}},
-                            time, scales, tolerance)
-                     .value[0];
+    x.variance =
+        time_curve(inner, {scaled(v, 2), velocity.c, weight}, Nature::smooth, {{2, unit}}, time,
+                   scales, tolerance.value, tolerance.recipe("variance of displacement"))
+            .value[0];
   }
   if (!stationary) {
     // In units of the standard deviation of the velocity and of tau.
@@ -152,7 +195,7 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
                            none = inner.a().zeros(), nothing = outer.a().zeros();
     if (counts(first)) {
       x.mean = time_curve(inner, {b, first, weight}, Nature::rough, {{1, std::sqrt(spread)}}, time,
-                          scales, tolerance)
+                          scales, tolerance.value, tolerance.recipe("mean of displacement"))
                    .value[0];
     }
     if (beside_stationary) {
@@ -162,7 +205,8 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
     const petsc::VecHandle all_b = both.joined(nothing, b), all_c = both.joined(second, none),
                            all = both.joined(distribution.weight_on(outer.a()), weight);
     const auto square =
-        time_curve(both, {all_b, all_c, all}, Nature::rough, {{1, spread}}, time, scales, tolerance)
+        time_curve(both, {all_b, all_c, all}, Nature::rough, {{1, spread}}, time, scales,
+                   tolerance.value, tolerance.recipe("square of displacement"))
             .value[0];
     for (std::size_t n = 0; n < time.size(); ++n) {
       x.variance[n] = x.variance[n] + variance * tau * tau * (square[n] - x.mean[n] * x.mean[n]);

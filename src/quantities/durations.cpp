@@ -108,12 +108,12 @@ DurationDistribution stick_distribution(const model::Process& process,
 
 // f(t) = g exp(L t) r, g where excursions start, r = -L 1 the rate of ending where `static_phase`
 // kills.
-DurationDistribution distribution_until_killed(operators::Systems& systems,
+DurationDistribution distribution_until_killed(const std::string& name, operators::Systems& systems,
                                                StaticPhase static_phase, operators::Clock clock,
                                                const StationaryDistribution& stationary,
                                                const std::vector<double>& time, double mean,
                                                const TimeScales& scales, double at_zero,
-                                               double tolerance) {
+                                               const ModelTolerance& tolerance) {
   std::vector<double> later;
   for (double t : time) {
     if (t > 0) later.push_back(t);
@@ -128,7 +128,7 @@ DurationDistribution distribution_until_killed(operators::Systems& systems,
     check(MatMult(a.matrix(), one, b));
     for (Vec end : {Vec(b), Vec(c)}) pencil.by_clock(-1, end);
     curve = time_curve(pencil, {b, c, d}, ReducedModel::Nature::rough, {{0, 1 / mean}, {1, 1}},
-                       later, scales, tolerance);
+                       later, scales, tolerance.value, tolerance.recipe(name));
   }
   result.pairs = curve.pairs;
   std::size_t next = 0;
@@ -141,9 +141,10 @@ DurationDistribution distribution_until_killed(operators::Systems& systems,
 
 DurationDistribution slide_distribution(operators::Systems& systems,
                                         const StationaryDistribution& stationary,
-                                        const std::vector<double>& time, double tolerance) {
+                                        const std::vector<double>& time,
+                                        const ModelTolerance& tolerance) {
   return distribution_until_killed(
-      systems, StaticPhase::killing, operators::Clock::time, stationary, time,
+      "slide", systems, StaticPhase::killing, operators::Clock::time, stationary, time,
       stationary.excursion().mean_slide(), time_scales(systems.process()),
       slide_density_at_zero(systems.process(), stationary.sides()), tolerance);
 }
@@ -151,10 +152,11 @@ DurationDistribution slide_distribution(operators::Systems& systems,
 // No excursion ends at once: a sliding phase would have to, and then a sticking phase.
 DurationDistribution excursion_distribution(operators::Systems& systems,
                                             const StationaryDistribution& stationary,
-                                            const std::vector<double>& time, double tolerance) {
-  return distribution_until_killed(systems, StaticPhase::killed_on_exit, operators::Clock::time,
-                                   stationary, time, stationary.excursion().mean_excursion(),
-                                   time_scales(systems.process()), 0, tolerance);
+                                            const std::vector<double>& time,
+                                            const ModelTolerance& tolerance) {
+  return distribution_until_killed(
+      "excursion", systems, StaticPhase::killed_on_exit, operators::Clock::time, stationary, time,
+      stationary.excursion().mean_excursion(), time_scales(systems.process()), 0, tolerance);
 }
 
 double slide_density_at_zero(const model::Process& process, const SideChain& sides) {

@@ -1,6 +1,7 @@
 #include "stickslip/quantities/pencil.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
@@ -56,6 +57,32 @@ void ProcessPencil::solve(double z, Vec b, Vec x, bool transposed, bool refined)
     transposed ? factors.solve_transposed_once(scaled, x) : factors.solve_once(scaled, x);
   }
   by_clock(1, x);
+}
+
+class ProcessPencil::Shifted final : public ShiftedPencil {
+ public:
+  Shifted(const ProcessPencil& pencil, std::complex<double> z)
+      : pencil_(pencil), solver_(pencil.a_, z, pencil.key_.clock, pencil.systems_.statistics()) {}
+
+  [[nodiscard]] operators::ComplexVector solve(const operators::ComplexVector& b,
+                                               bool transposed) override {
+    operators::ComplexVector scaled{petsc::copy_of(b.real), petsc::copy_of(b.imaginary)};
+    const auto by_clock = [this](const operators::ComplexVector& x) {
+      for (Vec part : {Vec(x.real), Vec(x.imaginary)}) pencil_.by_clock(1, part);
+    };
+    by_clock(scaled);
+    auto solution = solver_.solve(scaled, transposed);
+    by_clock(solution.x);
+    return std::move(solution.x);
+  }
+
+ private:
+  const ProcessPencil& pencil_;
+  operators::ComplexSolver solver_;
+};
+
+std::unique_ptr<ShiftedPencil> ProcessPencil::shifted(std::complex<double> z) {
+  return std::make_unique<Shifted>(*this, z);
 }
 
 }  // namespace stickslip::quantities

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
+#include <utility>
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
@@ -43,31 +44,125 @@ int room_for(int pairs, Vec vec) {
   return static_cast<int>(std::min<PetscInt>(pairs, entries));
 }
 
-// Y^T X of the first columns.
-Matrix<double> products(BV x, BV y, int size) {
+// Y^T X, of columns of X from `first_x` and of Y from `first_y` on, to the same places of `to`.
+void add_products(BV x, BV y, int first_x, int first_y, int size, Matrix<double>& to) {
+  if (first_x >= size || first_y >= size) return;
+  check(BVSetActiveColumns(x, first_x, size));
+  check(BVSetActiveColumns(y, first_y, size));
   petsc::MatHandle dense;
   check(MatCreateSeqDense(PETSC_COMM_SELF, size, size, nullptr, dense.out()));
   check(BVDot(x, y, dense));
-  Matrix<double> result(size, size);
   const PetscScalar* values = nullptr;
   check(MatDenseGetArrayRead(dense, &values));
-  for (int c = 0; c < size; ++c) {
-    for (int r = 0; r < size; ++r) result(r, c) = PetscRealPart(values[c * size + r]);
+  for (int c = first_x; c < size; ++c) {
+    for (int r = first_y; r < size; ++r) to(r, c) = PetscRealPart(values[c * size + r]);
   }
   check(MatDenseRestoreArrayRead(dense, &values));
-  return result;
+  // Or new columns would be orthogonalised against these alone.
+  check(BVSetActiveColumns(x, 0, size));
+  check(BVSetActiveColumns(y, 0, size));
 }
 
 // Y^T v of the first columns.
 std::vector<double> products(BV y, Vec v, int size) {
   std::vector<PetscScalar> dots(static_cast<std::size_t>(size));
+  check(BVSetActiveColumns(y, 0, size));
   check(BVDotVec(y, v, dots.data()));
   std::vector<double> result;
   for (const auto& dot : dots) result.push_back(PetscRealPart(dot));
   return result;
 }
 
+// The local rows of the first columns.
+Matrix<double> local_rows(BV basis, int size) {
+  Matrix<double> rows;
+  for (int c = 0; c < size; ++c) {
+    Vec column = nullptr;
+    check(BVGetColumn(basis, c, &column));
+    {
+      const petsc::ReadView values(column);
+      if (c == 0) rows = Matrix<double>(values.size(), size);
+      for (PetscInt r = 0; r < values.size(); ++r) rows(r, c) = PetscRealPart(values[r]);
+    }
+    check(BVRestoreColumn(basis, c, &column));
+  }
+  return rows;
+}
+
+void sum(MPI_Comm comm, std::vector<double>& x) {
+  MPI_Allreduce(MPI_IN_PLACE, x.data(), static_cast<int>(x.size()), MPI_DOUBLE, MPI_SUM, comm);
+}
+
+// X^T y, over all ranks.
+std::vector<double> products(MPI_Comm comm, const Matrix<double>& x, const double* y) {
+  std::vector<double> dots(static_cast<std::size_t>(x.columns()), 0.0);
+  algebra::add_product(x, y, dots.data(), true);
+  sum(comm, dots);
+  return dots;
+}
+
 }  // namespace
+
+Residual::Residual(BV basis, BV image, int size, Vec end)
+    : t_(size, size), b_v_(products(basis, end, size)) {
+  constexpr double rounding = 1e-15;
+  const auto comm = PetscObjectComm(reinterpret_cast<PetscObject>(end));
+  add_products(image, basis, 0, 0, size, t_);
+  // What is left of the images and, in the last column, of b.
+  const Matrix<double> v = local_rows(basis, size);
+  Matrix<double> left(v.rows(), size + 1);
+  const Matrix<double> images = local_rows(image, size);
+  std::copy_n(images.data(), static_cast<std::size_t>(v.rows()) * size, left.data());
+  const petsc::ReadView values(end);
+  for (PetscInt r = 0; r < values.size(); ++r) left(r, size) = PetscRealPart(values[r]);
+  Matrix<double> coordinates(size, size + 1);
+  std::copy_n(t_.data(), static_cast<std::size_t>(size) * size, coordinates.data());
+  std::copy(b_v_.begin(), b_v_.end(), coordinates.column(size));
+  algebra::add_product(-1, v, coordinates, size + 1, left);
+  // Gram-Schmidt with pivots; what remains in the end is rounding.
+  std::vector<double> squares(static_cast<std::size_t>(size) + 1);
+  std::vector<std::vector<double>> rows;
+  double largest = 0;
+  while (static_cast<int>(rows.size()) <= size) {
+    for (int c = 0; c <= size; ++c) {
+      const double* column = left.column(c);
+      squares[c] = std::inner_product(column, column + left.rows(), column, 0.0);
+    }
+    sum(comm, squares);
+    const auto pivot = std::max_element(squares.begin(), squares.end());
+    largest = std::max(largest, *pivot);
+    if (!(*pivot > rounding * rounding * largest)) break;
+    std::vector<double> q(left.column(static_cast<int>(pivot - squares.begin())),
+                          left.column(static_cast<int>(pivot - squares.begin())) + left.rows());
+    for (double& entry : q) entry /= std::sqrt(*pivot);
+    rows.push_back(products(comm, left, q.data()));
+    for (int c = 0; c <= size; ++c) {
+      for (int r = 0; r < left.rows(); ++r) left(r, c) -= q[r] * rows.back()[c];
+    }
+  }
+  r_ = Matrix<double>(static_cast<int>(rows.size()), size);
+  for (int r = 0; r < r_.rows(); ++r) {
+    for (int c = 0; c < size; ++c) r_(r, c) = rows[r][c];
+    b_q_.push_back(rows[r][size]);
+  }
+}
+
+double Residual::operator()(std::complex<double> z,
+                            const std::vector<std::complex<double>>& y) const {
+  double squares = 0;
+  const auto add = [&](const std::vector<double>& b, const Matrix<double>& a,
+                       std::complex<double> diagonal) {
+    std::vector<std::complex<double>> left(b.begin(), b.end());
+    for (int c = 0; c < a.columns(); ++c) {
+      for (int r = 0; r < a.rows(); ++r) left[r] -= a(r, c) * y[c];
+      if (diagonal != 0.0) left[c] -= diagonal * y[c];
+    }
+    for (const auto& entry : left) squares += std::norm(entry);
+  };
+  add(b_v_, t_, z);
+  add(b_q_, r_, 0);
+  return std::sqrt(squares);
+}
 
 ReducedModel::ReducedModel(Pencil& pencil, const Ends& ends, Nature nature, int most_pairs)
     : pencil_(pencil),
@@ -78,6 +173,7 @@ ReducedModel::ReducedModel(Pencil& pencil, const Ends& ends, Nature nature, int 
       right_(basis_like(ends.b, most_pairs_)),
       left_(basis_like(ends.b, most_pairs_)),
       image_(basis_like(ends.b, most_pairs_)),
+      left_image_(basis_like(ends.b, most_pairs_)),
       b_(copy_of(ends.b)),
       c_(copy_of(ends.c)) {
   check(VecSqrtAbs(root_));
@@ -86,11 +182,12 @@ ReducedModel::ReducedModel(Pencil& pencil, const Ends& ends, Nature nature, int 
   check(VecPointwiseMult(b_, b_, root_));
   check(VecPointwiseMult(c_, c_, inverse_root_));
   if (nature == Nature::rough) return;
-  const petsc::VecHandle ab = copy_of(b_), ca = copy_of(c_);
-  multiply(b_, ab, false);
-  multiply(c_, ca, true);
+  ab_ = copy_of(b_);
+  ca_ = copy_of(c_);
+  multiply(b_, ab_, false);
+  multiply(c_, ca_, true);
   append(b_, c_);
-  append(ab, ca);
+  append(ab_, ca_);
 }
 
 // y = D^1/2 A D^-1/2 x or its transpose.
@@ -102,25 +199,23 @@ void ReducedModel::multiply(Vec x, Vec y, bool transposed) const {
 }
 
 bool ReducedModel::append(Vec v, Vec w) {
-  if (!appended(right_, pairs_, v) || !appended(left_, pairs_, w)) return false;
+  if (full() || !appended(right_, pairs_, v) || !appended(left_, pairs_, w)) return false;
   const petsc::VecHandle column = copy_of(v), image = copy_of(v);
-  check(BVCopyVec(right_, pairs_, column));
-  multiply(column, image, false);
-  check(BVInsertVec(image_, pairs_, image));
+  for (const bool transposed : {false, true}) {
+    check(BVCopyVec(transposed ? left_ : right_, pairs_, column));
+    multiply(column, image, transposed);
+    check(BVInsertVec(transposed ? left_image_ : image_, pairs_, image));
+  }
   ++pairs_;
   return true;
 }
 
-// v <- (s + A)^-1 v and w <- w (s + A)^-1, scaled.
-void ReducedModel::resolve(double shift, Vec v, Vec w) {
-  const petsc::VecHandle b = copy_of(v), c = copy_of(w);
-  check(VecPointwiseMult(b, b, inverse_root_));
-  check(VecPointwiseMult(c, c, root_));
-  const bool refined = nature_ == Nature::rough;
-  pencil_.solve(shift, b, v, false, refined);
-  pencil_.solve(shift, c, w, true, refined);
-  check(VecPointwiseMult(v, v, root_));
-  check(VecPointwiseMult(w, w, inverse_root_));
+// x <- (s + A)^-1 x, or the transpose, scaled.
+void ReducedModel::resolve(double shift, Vec x, bool transposed, bool refined) const {
+  const petsc::VecHandle b = copy_of(x);
+  check(VecPointwiseMult(b, b, transposed ? root_ : inverse_root_));
+  pencil_.solve(shift, b, x, transposed, refined);
+  check(VecPointwiseMult(x, x, transposed ? inverse_root_ : root_));
 }
 
 int ReducedModel::extend(double shift, int count) {
@@ -128,7 +223,9 @@ int ReducedModel::extend(double shift, int count) {
   if (chain.v == nullptr) chain = {copy_of(b_), copy_of(c_)};
   int added = 0;
   for (; added < count && !full(); ++added) {
-    resolve(shift, chain.v, chain.w);
+    const bool refined = nature_ == Nature::rough;
+    resolve(shift, chain.v, false, refined);
+    resolve(shift, chain.w, true, refined);
     if (!append(chain.v, chain.w)) break;
     // The chain continues from the new direction alone, as Arnoldi's process does.
     check(BVCopyVec(right_, pairs_ - 1, chain.v));
@@ -137,186 +234,83 @@ int ReducedModel::extend(double shift, int count) {
   return added;
 }
 
-Reduced ReducedModel::reduce() const {
-  for (BV basis : {BV(right_), BV(left_), BV(image_)}) check(BVSetActiveColumns(basis, 0, pairs_));
-  const algebra::SingularValues g(products(right_, left_, pairs_));
-  const Matrix<double> projected = products(image_, left_, pairs_);
+// (z + A)^-1 of a real vector, or the transpose, both scaled like V or W.
+operators::ComplexVector ReducedModel::shifted(ShiftedPencil& factors, Vec real,
+                                               bool transposed) const {
+  const petsc::VecHandle before = transposed ? copy_of(root_) : copy_of(inverse_root_);
+  const Vec after = transposed ? inverse_root_ : root_;
+  operators::ComplexVector b{copy_of(real), copy_of(real)};
+  check(VecPointwiseMult(b.real, real, before));
+  check(VecSet(b.imaginary, 0));
+  operators::ComplexVector x = factors.solve(b, transposed);
+  for (Vec part : {Vec(x.real), Vec(x.imaginary)}) check(VecPointwiseMult(part, part, after));
+  return x;
+}
+
+Truth ReducedModel::truth(std::complex<double> z, bool far) const {
+  Truth found;
+  found.z = z;
+  found.far = far;
+  const Vec b = far ? ab_ : b_;
+  if (z.imag() == 0) {
+    found.x = {copy_of(b), copy_of(b)};
+    check(VecSet(found.x.imaginary, 0));
+    resolve(z.real(), found.x.real, false, true);
+  } else {
+    found.factors = pencil_.shifted(z);
+    found.x = shifted(*found.factors, b, false);
+  }
+  found.value = operators::dot(far ? ca_ : c_, found.x);
+  return found;
+}
+
+int ReducedModel::interpolate(const Truth& truth) {
+  if (truth.z.imag() == 0) {
+    const petsc::VecHandle w = copy_of(c_);
+    resolve(truth.z.real(), w, true, true);
+    return append(truth.x.real, w) ? 1 : 0;
+  }
+  const auto w = shifted(*truth.factors, c_, true);
+  int added = append(truth.x.real, w.real) ? 1 : 0;
+  if (append(truth.x.imaginary, w.imaginary)) ++added;
+  return added;
+}
+
+Reduced ReducedModel::reduce() {
+  const auto grown = [this](const Matrix<double>& old) {
+    Matrix<double> all(pairs_, pairs_);
+    for (int c = 0; c < projected_pairs_; ++c) {
+      std::copy_n(old.column(c), projected_pairs_, all.column(c));
+    }
+    return all;
+  };
+  overlap_ = grown(overlap_);
+  projected_ = grown(projected_);
+  for (const auto& [x, to] : {std::pair{BV(right_), &overlap_}, {BV(image_), &projected_}}) {
+    add_products(x, left_, projected_pairs_, 0, pairs_, *to);
+    add_products(x, left_, 0, projected_pairs_, pairs_, *to);
+  }
+  projected_pairs_ = pairs_;
+  const algebra::SingularValues g(overlap_);
   // Directions of V and W that are orthogonal to the rounding of the products see nothing of each
   // other; the others are scaled so that W^T V = 1.
   constexpr double rounding = 1e-14;
   const int seen = static_cast<int>(
       std::count_if(g.value.begin(), g.value.end(), [](double s) { return s > rounding; }));
-  Matrix<double> to_left(seen, pairs_), to_right(pairs_, seen);
+  Reduced r;
+  r.to_left = Matrix<double>(seen, pairs_);
+  r.to_right = Matrix<double>(pairs_, seen);
   for (int n = 0; n < seen; ++n) {
     const double scale = 1 / std::sqrt(g.value[n]);
     for (int row = 0; row < pairs_; ++row) {
-      to_left(n, row) = scale * g.left(row, n);
-      to_right(row, n) = scale * g.right_transposed(n, row);
+      r.to_left(n, row) = scale * g.left(row, n);
+      r.to_right(row, n) = scale * g.right_transposed(n, row);
     }
   }
-  Reduced r;
-  r.m = -1.0 * (to_left * projected * to_right);
-  r.beta = to_left * products(left_, b_, pairs_);
-  r.gamma = products(right_, c_, pairs_) * to_right;
+  r.m = -1.0 * (r.to_left * projected_ * r.to_right);
+  r.beta = r.to_left * products(left_, b_, pairs_);
+  r.gamma = products(right_, c_, pairs_) * r.to_right;
   return r;
-}
-
-Reduced whole_model(const Pencil& pencil, const Ends& ends, bool scaled) {
-  PetscInt size = 0;
-  check(VecGetSize(ends.b, &size));
-  const int n = static_cast<int>(size);
-  const petsc::BvHandle units = basis_like(ends.b, n), images = basis_like(ends.b, n);
-  const petsc::VecHandle unit = copy_of(ends.b), image = copy_of(ends.b);
-  for (int column = 0; column < n; ++column) {
-    check(VecSet(unit, 0));
-    check(VecSetValue(unit, column, 1, INSERT_VALUES));
-    check(VecAssemblyBegin(unit));
-    check(VecAssemblyEnd(unit));
-    pencil.multiply(unit, image, false);
-    check(BVInsertVec(units, column, unit));
-    check(BVInsertVec(images, column, image));
-  }
-  Reduced r{-1.0 * products(images, units, n), products(units, ends.b, n),
-            products(units, ends.c, n)};
-  if (!scaled) return r;
-  const auto weight = products(units, ends.weight, n);
-  for (int j = 0; j < n; ++j) {
-    const double root = std::sqrt(weight[j]);
-    for (int i = 0; i < n; ++i) {
-      r.m(j, i) *= root;
-      r.m(i, j) /= root;
-    }
-    r.beta[j] *= root;
-    r.gamma[j] /= root;
-  }
-  return r;
-}
-
-namespace {
-
-/// The search for a good model.
-class Search {
- public:
-  Search(ReducedModel& model, const Questions& questions) : model_(model), questions_(questions) {}
-
-  Answers run() {
-    shifts_ = questions_.first_shifts;
-    extend();  // a first model is not worth its questions
-    grow();
-    int barren = 0;  // blocks in a row that did not help
-    while (!model_.full() && barren < questions_.patience &&
-           best_.relative_error > questions_.tolerance) {
-      const double before = best_.relative_error;
-      const bool grew = grow();
-      barren = grew && best_.relative_error < 0.3 * before ? 0 : barren + 1;
-      if (barren > 0) add_shift();
-    }
-    doubt_best();
-    best_.pairs = model_.pairs();
-    best_.shifts = shifts_;
-    return std::move(best_);
-  }
-
- private:
-  static constexpr int kBlock = 4;
-
-  // About a block of pairs, shared out over the shifts: many pairs at few shifts are nearly
-  // dependent.
-  bool extend() {
-    const int each = std::max(1, kBlock / static_cast<int>(shifts_.size()));
-    int added = 0;
-    for (double shift : shifts_) added += model_.extend(shift, each);
-    return added > 0;
-  }
-
-  bool grow() {
-    const bool grew = extend();
-    Answers now;
-    now.model = model_.reduce();
-    now.value = questions_.values(now.model);
-    judge(now);
-    met_.push_back(now.value);
-    if (best_.value.empty() || now.relative_error < best_.relative_error) {
-      best_ = std::move(now);
-      best_at_ = met_.size() - 1;
-    }
-    return grew;
-  }
-
-  [[nodiscard]] double size(double value) const {
-    return questions_.each_by_its_size ? std::abs(value) : 1;
-  }
-
-  // The changes of a value fall from block to block. Once those of rough ends have grown they are
-  // noise that adds up: a value is then no better known than it is far from all met since.
-  void judge(Answers& now) {
-    const std::size_t last = met_.empty() ? 0 : met_.size() - 1;
-    double largest = 0;
-    for (std::size_t n = 0; n < now.value.size(); ++n) {
-      largest = std::max(largest, distance(now.value, last, n) / size(now.value[n]));
-    }
-    if (model_.nature() == ReducedModel::Nature::rough && largest > change_) {
-      noisy_from_ = std::min(noisy_from_, last);
-    }
-    change_ = largest;
-    relative_.clear();
-    for (std::size_t n = 0; n < now.value.size(); ++n) {
-      double error = std::numeric_limits<double>::epsilon() * size(now.value[n]);
-      for (std::size_t m = std::min(noisy_from_, last); m <= last; ++m) {
-        error = std::max(error, distance(now.value, m, n));
-      }
-      now.error.push_back(error);
-      relative_.push_back(error / size(now.value[n]));
-    }
-    now.relative_error = *std::max_element(relative_.begin(), relative_.end());
-  }
-
-  // From value n of the model met m-th; the first has only its size to be judged by.
-  [[nodiscard]] double distance(const std::vector<double>& value, std::size_t m,
-                                std::size_t n) const {
-    const double change = met_.empty() ? size(value[n]) : std::abs(value[n] - met_[m][n]);
-    // A projection may have a pole on the wrong side; the next ones have it elsewhere.
-    return std::isfinite(change) ? change : std::numeric_limits<double>::infinity();
-  }
-
-  // The best of several that miss the tolerance owes something to chance. The next one, which was
-  // to be better, shows how much: the error lies between the changes before and after it.
-  void doubt_best() {
-    if (model_.nature() == ReducedModel::Nature::smooth || best_at_ + 1 == met_.size() ||
-        best_.relative_error <= questions_.tolerance) {
-      return;
-    }
-    for (std::size_t n = 0; n < best_.value.size(); ++n) {
-      const double after = distance(best_.value, best_at_ + 1, n);
-      best_.error[n] = std::max(best_.error[n], std::sqrt(best_.error[n] * after));
-      best_.relative_error = std::max(best_.relative_error, best_.error[n] / size(best_.value[n]));
-    }
-  }
-
-  // Where the error is largest, unless a shift is near.
-  void add_shift() {
-    const auto worst = std::max_element(relative_.begin(), relative_.end()) - relative_.begin();
-    const double shift = std::clamp(questions_.shift[worst], questions_.lowest, questions_.highest);
-    for (double s : shifts_) {
-      if (std::abs(std::log(shift / s)) < std::log(1.5)) return;
-    }
-    shifts_.push_back(shift);
-  }
-
-  ReducedModel& model_;
-  const Questions& questions_;
-  Answers best_;
-  std::size_t best_at_ = 0;
-  std::vector<std::vector<double>> met_;  // values of all models
-  std::size_t noisy_from_ = std::numeric_limits<std::size_t>::max();
-  double change_ = std::numeric_limits<double>::infinity();
-  std::vector<double> shifts_, relative_;
-};
-
-}  // namespace
-
-Answers ask(ReducedModel& model, const Questions& questions) {
-  return Search(model, questions).run();
 }
 
 }  // namespace stickslip::quantities

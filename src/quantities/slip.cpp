@@ -55,12 +55,13 @@ Uncertain slip_transform(operators::Systems& systems, const StationaryDistributi
 
 DurationDistribution slip_distribution(operators::Systems& systems,
                                        const StationaryDistribution& distribution,
-                                       const std::vector<double>& distance, double tolerance) {
+                                       const std::vector<double>& distance,
+                                       const ModelTolerance& tolerance) {
   const Excursion& excursion = distribution.excursion();
   const double mean = mean_slip(excursion), typical = mean / excursion.mean_slide();
   const auto [correlation, rate, stopping] = time_scales(systems.process());
   return distribution_until_killed(
-      systems, StaticPhase::killing, Clock::path_length, distribution, distance, mean,
+      "slip", systems, StaticPhase::killing, Clock::path_length, distribution, distance, mean,
       {correlation * typical, rate / typical, stopping * typical}, 0, tolerance);
 }
 

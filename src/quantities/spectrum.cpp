@@ -5,7 +5,6 @@
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <complex>
-#include <cstdio>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -13,7 +12,7 @@
 #include "stickslip/exact/transfer_function.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
-#include "stickslip/quantities/reduced_model.hpp"
+#include "stickslip/petsc/vectors.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -22,9 +21,13 @@ using operators::KolmogorovOperator;
 using operators::StaticPhase;
 using petsc::check;
 
-// Waves that the noise hardly damps (delta = tau = 1, omega tau above 10) take up to 150 pairs, and
-// many blocks of them that do not help yet; all else is done after 30.
-constexpr int kMostPairs = 240, kPatience = 50;
+constexpr int kMostPairs = 160;
+// The lowest shift, in units of the rate at which the velocity forgets itself.
+constexpr double kSlowest = 1e-2;
+
+// Without symmetry L is singular. S_v, an even function of omega, is the same there as at 0 to
+// rounding, and what rounding adds to the solution is a multiple of 1, which c does not see.
+constexpr double kNearZero = 1e-10;  // of the rate at which things change
 
 // i w; nothing in real arithmetic, where it is not asked for.
 PetscScalar imaginary([[maybe_unused]] double w) {
@@ -64,14 +67,17 @@ std::vector<double> geometric(double first, double last, double ratio) {
   return values;
 }
 
-// Frequencies at which a model is judged: those asked for, 0, enough for the half width, and a
-// dense grid up to the largest, where models may agree at single frequencies before they are right.
-std::vector<double> judged(const std::vector<double>& omega, double tau) {
+// Frequencies at which a model is judged, rising: those asked for, 0, enough for the half width,
+// and a grid up to the largest, where models may agree at single frequencies before they are right.
+// `slow` and `fast` are the slowest and the fastest rate that shape the spectrum.
+std::vector<double> judged(const std::vector<double>& omega, double slow, double fast) {
   std::vector<double> all = omega;
   all.push_back(0);
-  for (double w : geometric(0.1 / tau, 20 / tau, 1.5)) all.push_back(w);
+  for (double w : geometric(0.1 * slow, 20 * fast, 1.5)) all.push_back(w);
   const double last = omega.empty() ? 0 : *std::max_element(omega.begin(), omega.end());
-  for (double w : geometric(1.3 / tau, std::min(last, 100 / tau), 1.1)) all.push_back(w);
+  for (double w : geometric(1.3 * fast, std::min(last, 100 * fast), 1.1)) all.push_back(w);
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
 
@@ -119,9 +125,19 @@ Uncertain integral(const Density& s, double tau, double relative_error) {
   return {sum / std::numbers::pi, (doubt + relative_error * sum) / std::numbers::pi};
 }
 
-// Without symmetry L is singular. S_v, an even function of omega, is the same there as at 0 to
-// rounding, and what rounding adds to the solution is a multiple of 1, which c does not see.
-constexpr double kNearZero = 1e-10;  // of 1/tau
+// The integral of the autocorrelation over its value at 0, by one solve next to lambda = 0: without
+// symmetry L is singular.
+double correlation_time(ProcessPencil& pencil, Vec b, Vec c) {
+  const double variance = petsc::dot(c, b);
+  const petsc::VecHandle x = petsc::copy_of(b);
+  double time = pencil.a().discretisation().process.noise.correlation_time();
+  for (double before = 0; before < 0.5 * time;) {
+    before = time;
+    pencil.solve(kSlowest / time, b, x, false, false);
+    time = std::abs(petsc::dot(c, x)) / variance;
+  }
+  return time;
+}
 
 /// S_v at single frequencies by complex solves.
 class DirectSpectrum {
@@ -170,51 +186,55 @@ SpectrumShape shape_of(const Density& s, double tau, double bulk_error, double e
 
 ReducedSpectrum reduced_spectrum(operators::Systems& systems,
                                  const StationaryDistribution& distribution,
-                                 const std::vector<double>& omega, double tolerance) {
+                                 const std::vector<double>& omega,
+                                 const ModelTolerance& tolerance) {
   const auto& noise = systems.process().noise;
   const double turn = 1 / noise.correlation_time();
   ProcessPencil pencil(systems, distribution.velocity_symmetry(), StaticPhase::kept);
   const auto [b, c] = distribution.velocity(pencil.a());
   const petsc::VecHandle d = distribution.weight_on(pencil.a());
   ReducedModel model(pencil, {b, c, d}, ReducedModel::Nature::smooth, kMostPairs);
-  const std::vector<double> frequencies = judged(omega, noise.correlation_time());
+  const double memory = correlation_time(pencil, b, c);
+  const double least = distribution.process().symmetric() ? 0 : kNearZero / memory;
+  const std::vector<double> frequencies =
+      judged(omega, std::min(turn, 1 / memory), std::max(turn, 1 / memory));
   Questions questions;
   questions.values = [&](const Reduced& reduced) {
     const ReducedFunction s(reduced, turn);
-    std::vector<double> values;
-    for (double w : frequencies) values.push_back(s(w));
+    std::vector<Uncertain> values;
+    for (double w : frequencies) values.push_back({s(w), 0});
     return values;
   };
-  questions.shift = frequencies;
-  questions.each_by_its_size = true;
-  questions.tolerance = tolerance;
-  questions.patience = kPatience;
-  // A little above the slowest rates: they come early anyway, the tail does not.
-  questions.first_shifts = {5 * turn};
-  // Beyond the rate of the noise the moments at infinity rule.
-  questions.lowest = 0.05 * turn;
-  questions.highest = std::max(turn, noise.rate());
-  const Answers answers = ask(model, questions);
-
-  ReducedSpectrum result;
-  for (std::size_t n = 0; n < omega.size(); ++n) {
-    result.spectrum.value.push_back({answers.value[n], answers.error[n]});
+  for (std::size_t n = 0; n < frequencies.size(); ++n) {
+    questions.points.emplace_back(0, std::max(frequencies[n], least));
+    questions.terms.push_back({{n, 2}});
   }
-  result.spectrum.at_zero = {answers.value[omega.size()], answers.error[omega.size()]};
+  questions.each_by_its_size = true;
+  questions.tolerance = tolerance.value;
+  questions.first = {{kSlowest / memory, 1}, {5 * turn, 8}};
+  questions.lowest = kSlowest / memory;
+  questions.far = turn;
+  const Answers answers = ask(model, questions, tolerance.recipe("spectrum"));
+
+  const auto at = [&](double w) -> Uncertain {
+    const auto n = static_cast<std::size_t>(
+        std::lower_bound(frequencies.begin(), frequencies.end(), w) - frequencies.begin());
+    return {answers.value[n], answers.error[n]};
+  };
+  ReducedSpectrum result;
+  for (double w : omega) result.spectrum.value.push_back(at(w));
+  result.spectrum.at_zero = at(0);
   const ReducedFunction s(answers.model, turn);
   // What lies far out in the tail does not matter to the width.
   double bulk_error = 0;
   for (std::size_t n = 0; n < frequencies.size(); ++n) {
-    if (frequencies[n] > 10 * turn) continue;
+    if (frequencies[n] > 10 * std::max(turn, 1 / memory)) continue;
     bulk_error = std::max(bulk_error, answers.error[n] / std::abs(answers.value[n]));
   }
   result.shape = shape_of(s, noise.correlation_time(), bulk_error, answers.relative_error);
   // What the integral leaves of c v = E[V^2], known to rounding here, the model has not seen.
-  PetscScalar variance = 0;
-  check(VecTDot(c, b, &variance));
   auto& integrated = result.shape.variance;
-  integrated.error =
-      std::max(integrated.error, std::abs(integrated.value - PetscRealPart(variance)));
+  integrated.error = std::max(integrated.error, std::abs(integrated.value - petsc::dot(c, b)));
   result.pairs = answers.pairs;
   result.shifts = answers.shifts;
   return result;

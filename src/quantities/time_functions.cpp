@@ -1,60 +1,90 @@
 #include "stickslip/quantities/time_functions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 
 #include "stickslip/exact/transfer_function.hpp"
-#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/vectors.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
-using petsc::check;
-
-constexpr int kPoints = 24;
-constexpr double kTalbotError = 1e-13;  // of the largest value
-
-/// Points and weights of sum Re w F(z) for t = 1, upper half of the contour.
+/// Points and weights of sum Re w F(z) for t = 1, upper half of Talbot's contour.
 struct Contour {
   std::vector<std::complex<double>> z, weight;
 
-  Contour() {
+  explicit Contour(int points) {
     constexpr double a = 0.5017, b = 0.6407, c = 0.6122, d = 0.2645;
-    for (int n = kPoints / 2; n < kPoints; ++n) {
-      const double theta = std::numbers::pi * (2.0 * n + 1 - kPoints) / kPoints;
+    for (int n = points / 2; n < points; ++n) {
+      const double theta = std::numbers::pi * (2.0 * n + 1 - points) / points;
       const double sine = std::sin(b * theta), cotangent = std::cos(b * theta) / sine;
       const std::complex<double> point(a * theta * cotangent - c, d * theta);
       const std::complex<double> slope(a * cotangent - a * b * theta / (sine * sine), d);
-      z.push_back(static_cast<double>(kPoints) * point);
+      z.push_back(static_cast<double>(points) * point);
       // exp(z) dz/(2 pi i), doubled for the lower half
       weight.push_back(2.0 * std::exp(z.back()) * slope * std::complex<double>(0, -1));
     }
   }
 };
 
+// An error dH of the transfer function is one of its inverse at the time t,
+//
+//   |df| <= (e/pi) int |dH((1 + i y)/t)| dy/t,  y >= 0,
+//
+// which two points of this line stand for: what is off further out is over long before t.
+void add_points(const std::vector<Fold>& folds, const std::vector<double>& time,
+                Questions& questions) {
+  constexpr std::array<std::pair<double, double>, 2> line{{{0, 1}, {2, 2}}};
+  struct Place {
+    std::complex<double> z;
+    std::size_t time;
+    double width;
+  };
+  std::vector<Place> places;
+  for (std::size_t n = 0; n < time.size(); ++n) {
+    for (const auto& [y, width] : line) {
+      places.push_back({std::complex<double>(1, y) / time[n], n, width / time[n]});
+    }
+  }
+  std::sort(places.begin(), places.end(),
+            [](const Place& a, const Place& b) { return std::abs(a.z) < std::abs(b.z); });
+  questions.terms.resize(folds.size() * time.size());
+  for (const Place& place : places) {
+    for (std::size_t f = 0; f < folds.size(); ++f) {
+      const double weight = std::numbers::e / std::numbers::pi * place.width /
+                            (std::pow(std::abs(place.z), folds[f].n) * folds[f].unit);
+      questions.terms[f * time.size() + place.time].push_back({questions.points.size(), weight});
+    }
+    questions.points.push_back(place.z);
+  }
+}
+
 }  // namespace
 
-std::vector<std::vector<double>> evaluate(const Reduced& reduced, const std::vector<double>& time,
-                                          const std::vector<int>& folds) {
-  static const Contour contour;
+std::vector<std::vector<Uncertain>>
+evaluate(const Reduced& reduced, const std::vector<double>& time, const std::vector<int>& folds) {
+  static const std::array<Contour, 2> contours{Contour(24), Contour(28)};
   const exact::TransferFunction transfer(reduced.m, reduced.gamma, reduced.beta);
-  std::vector<std::vector<double>> values(folds.size(), std::vector<double>(time.size(), 0.0));
-  for (std::size_t at = 0; at < time.size(); ++at) {
-    const double t = time[at];
-    for (std::size_t n = 0; t > 0 && n < contour.z.size(); ++n) {
-      const auto z = contour.z[n] / t;
-      const auto term = contour.weight[n] * transfer(z) / t;
-      for (std::size_t f = 0; f < folds.size(); ++f) {
-        values[f][at] += (folds[f] == 0 ? term : term / std::pow(z, folds[f])).real();
+  std::vector<std::vector<Uncertain>> values(folds.size());
+  for (double t : time) {
+    std::vector<std::array<double, 2>> found(folds.size(), {0, 0});
+    for (std::size_t k = 0; k < contours.size(); ++k) {
+      const auto& [points, weights] = contours[k];
+      for (std::size_t n = 0; n < points.size(); ++n) {
+        const auto z = points[n] / t;
+        const auto term = weights[n] * transfer(z) / t;
+        for (std::size_t f = 0; f < folds.size(); ++f) {
+          found[f][k] += (folds[f] == 0 ? term : term / std::pow(z, folds[f])).real();
+        }
       }
     }
-    for (std::size_t f = 0; t == 0 && f < folds.size(); ++f) {
-      if (folds[f] > 0) continue;
-      values[f][at] =
-          std::inner_product(reduced.gamma.begin(), reduced.gamma.end(), reduced.beta.begin(), 0.0);
+    for (std::size_t f = 0; f < folds.size(); ++f) {
+      values[f].push_back({found[f][0], std::abs(found[f][1] - found[f][0])});
     }
   }
   return values;
@@ -75,27 +105,31 @@ TimeScales time_scales(const model::Process& process) {
 
 TimeCurve time_curve(Pencil& pencil, const Ends& ends, ReducedModel::Nature nature,
                      const std::vector<Fold>& folds, const std::vector<double>& time,
-                     const TimeScales& scales, double tolerance) {
-  constexpr int most_pairs = 80;
+                     const TimeScales& scales, double tolerance, Recipe& recipe) {
+  constexpr int most_pairs = 120;
+  std::vector<double> later;
+  std::copy_if(time.begin(), time.end(), std::back_inserter(later), [](double t) { return t > 0; });
   ReducedModel model(pencil, ends, nature, most_pairs);
   std::vector<int> orders;
   for (const Fold& fold : folds) orders.push_back(fold.n);
   Questions questions;
   questions.values = [&](const Reduced& reduced) {
-    const auto found = evaluate(reduced, time, orders);
-    std::vector<double> values;
+    const auto found = evaluate(reduced, later, orders);
+    std::vector<Uncertain> values;
     for (std::size_t f = 0; f < folds.size(); ++f) {
-      for (double value : found[f]) values.push_back(value / folds[f].unit);
+      for (Uncertain value : found[f]) values.push_back(1 / folds[f].unit * value);
     }
     return values;
   };
-  const auto [tau, rate, stopping] = scales;
-  for (std::size_t n = 0; n < folds.size() * time.size(); ++n) {
-    questions.shift.push_back(2 / std::max(time[n % time.size()], 1e-6 * tau));
+  add_points(folds, later, questions);
+  for (std::size_t n = 0; n < folds.size() * later.size(); ++n) {
+    questions.shift.push_back(2 / std::max(later[n % later.size()], 1e-6 * scales.correlation));
   }
   questions.tolerance = tolerance;
+  questions.highest = 1e6 / scales.correlation;
   // From the slowest rates to beyond the rate of the noise. Under fast noise velocities are slower
   // than it by any factor, and long times depend on them.
+  const auto [tau, rate, stopping] = scales;
   const double longest = *std::max_element(time.begin(), time.end());
   double low = 0.3 / tau;
   const double high = std::max(30 / tau, 12 * rate);
@@ -108,28 +142,24 @@ TimeCurve time_curve(Pencil& pencil, const Ends& ends, ReducedModel::Nature natu
     questions.lowest = 0.5 * slowest;
   }
   for (int n = 0; n < shifts; ++n) {
-    questions.first_shifts.push_back(low * std::pow(high / low, n / (shifts - 1.0)));
-  }
-  questions.highest = 1e6 / tau;
-  Answers answers = ask(model, questions);
-  PetscInt size = 0;
-  check(VecGetSize(ends.b, &size));
-  // Few levels of the noise leave little to reduce, and functions that no reduced model follows.
-  constexpr PetscInt small = 400;
-  if (answers.relative_error > tolerance && size <= small) {
-    answers.value = questions.values(whole_model(pencil, ends, true));
-    const auto other = questions.values(whole_model(pencil, ends, false));
-    for (std::size_t n = 0; n < other.size(); ++n) {
-      answers.error[n] = std::abs(other[n] - answers.value[n]) + kTalbotError;
-    }
+    questions.first.push_back({low * std::pow(high / low, n / (shifts - 1.0)), 3});
   }
   TimeCurve curve;
+  Answers answers;
+  if (!later.empty()) {
+    const bool smooth = nature == ReducedModel::Nature::smooth;
+    answers = smooth ? ask(model, questions, recipe) : until_still(model, questions, recipe);
+  }
   curve.pairs = answers.pairs;
   auto value = answers.value.begin(), error = answers.error.begin();
   for (const Fold& fold : folds) {
     auto& values = curve.value.emplace_back();
-    for (std::size_t n = 0; n < time.size(); ++n) {
-      values.push_back({fold.unit * *value++, fold.unit * *error++});
+    for (double t : time) {
+      if (t > 0) {
+        values.push_back({fold.unit * *value++, fold.unit * *error++});
+      } else {
+        values.push_back({fold.n > 0 ? 0 : petsc::dot(ends.c, ends.b), 0});
+      }
     }
   }
   return curve;

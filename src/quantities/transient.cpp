@@ -39,20 +39,20 @@ std::vector<double> stepped(operators::Systems& systems, const KolmogorovOperato
 }
 
 // c exp(L t) b; errors in units of `unit`.
-std::vector<Uncertain> curve(operators::Systems& systems,
+std::vector<Uncertain> curve(const std::string& name, operators::Systems& systems,
                              const StationaryDistribution& distribution, ProcessPencil& pencil,
                              Vec b, Vec c, ReducedModel::Nature nature,
                              const std::vector<double>& time, double unit, TransientMethod method,
-                             double tolerance) {
+                             const ModelTolerance& tolerance) {
   const KolmogorovOperator& a = pencil.a();
   if (method == TransientMethod::krylov) {
     const petsc::VecHandle weight = distribution.weight_on(a);
     return time_curve(pencil, {b, c, weight}, nature, {{0, unit}}, time,
-                      time_scales(systems.process()), tolerance)
+                      time_scales(systems.process()), tolerance.value, tolerance.recipe(name))
         .value[0];
   }
   // Errors of steps add up; a run with coarser steps shows how far.
-  const double fine = 0.03 * tolerance * unit, coarse = 10 * fine;
+  const double fine = 0.03 * tolerance.value * unit, coarse = 10 * fine;
   const auto values = stepped(systems, a, b, c, time, fine);
   const auto others = stepped(systems, a, b, c, time, coarse);
   std::vector<Uncertain> result;
@@ -79,17 +79,18 @@ bool counts(Vec functional) {
 std::vector<Uncertain> autocorrelation(operators::Systems& systems,
                                        const StationaryDistribution& distribution,
                                        const std::vector<double>& time, TransientMethod method,
-                                       double tolerance) {
+                                       const ModelTolerance& tolerance) {
   ProcessPencil whole(systems, distribution.velocity_symmetry(), StaticPhase::kept);
   const auto velocity = distribution.velocity(whole.a());
   const double variance = dot(velocity.c, velocity.b);
-  return curve(systems, distribution, whole, velocity.b, velocity.c, ReducedModel::Nature::smooth,
-               time, variance, method, tolerance);
+  return curve("autocorrelation", systems, distribution, whole, velocity.b, velocity.c,
+               ReducedModel::Nature::smooth, time, variance, method, tolerance);
 }
 
 Expectation expectation(operators::Systems& systems, const StationaryDistribution& distribution,
                         const model::Observable& f, const model::Start& start,
-                        const std::vector<double>& time, TransientMethod method, double tolerance) {
+                        const std::vector<double>& time, TransientMethod method,
+                        const ModelTolerance& tolerance) {
   Expectation result;
   result.value.resize(time.size());
   double unseen = 0;
@@ -115,8 +116,9 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
     }
     const petsc::VecHandle c = start_on(a, start);
     if (!counts(c)) continue;  // as odd functions at rest at x = 0
-    const auto of_part = curve(systems, distribution, whole, b, c, ReducedModel::Nature::rough,
-                               time, unit, method, tolerance);
+    const std::string name = "E(" + f.name + ")" + std::to_string(static_cast<int>(symmetry));
+    const auto of_part = curve(name, systems, distribution, whole, b, c,
+                               ReducedModel::Nature::rough, time, unit, method, tolerance);
     for (std::size_t n = 0; n < time.size(); ++n) result.value[n] = result.value[n] + of_part[n];
   }
   for (auto& value : result.value) value.error += unseen;

@@ -75,15 +75,19 @@ quantities::Spectrum direct_spectrum(const Setting& setting) {
                                      setting.given.question.omega);
 }
 
+// A tenth of the accuracy, so that reduced models do not rule the error.
+quantities::ModelTolerance tolerance_of(const Setting& setting) {
+  return {0.1 * setting.given.question.accuracy, setting.recipes};
+}
+
 void append_spectrum(operators::Systems& systems, const Setting& setting, Evaluation& evaluation) {
   const Question& question = setting.given.question;
   if (setting.given.method.spectrum_solver == options::SpectrumSolver::direct) {
     quantities::append_spectrum(question.omega, direct_spectrum(setting), evaluation.results);
     return;
   }
-  // A tenth of the accuracy, so that the projection does not rule the error.
   const auto reduced = quantities::reduced_spectrum(systems, *evaluation.distribution,
-                                                    question.omega, 0.1 * question.accuracy);
+                                                    question.omega, tolerance_of(setting));
   quantities::append_spectrum(question.omega, reduced.spectrum, evaluation.results);
   quantities::append_shape(reduced.shape, evaluation.results);
   evaluation.checks.emplace_back("krylov_pairs", reduced.pairs);
@@ -93,7 +97,7 @@ void append_spectrum(operators::Systems& systems, const Setting& setting, Evalua
 void append_durations(operators::Systems& systems, const Setting& setting, Evaluation& evaluation) {
   const auto& time = setting.given.question.time;
   const auto& distribution = *evaluation.distribution;
-  const double tolerance = 0.1 * setting.given.question.accuracy;
+  const auto tolerance = tolerance_of(setting);
   const auto slide = quantities::slide_distribution(systems, distribution, time, tolerance);
   const auto stick =
       quantities::stick_distribution(setting.discretisation.process, entry_law(distribution), time);
@@ -124,7 +128,7 @@ void append_autocorrelation(operators::Systems& systems, const Setting& setting,
   const Question& question = setting.given.question;
   const auto method = transient_method(setting.given.method);
   const auto values = quantities::autocorrelation(systems, *evaluation.distribution, question.time,
-                                                  method, 0.1 * question.accuracy);
+                                                  method, tolerance_of(setting));
   append_function_of_time(question.time, "C_vv", values, evaluation.results);
 }
 
@@ -135,7 +139,7 @@ void append_expectations(operators::Systems& systems, const Setting& setting,
   for (const auto& f : question.observables) {
     const auto expectation =
         quantities::expectation(systems, *evaluation.distribution, f, question.start, question.time,
-                                method, 0.1 * question.accuracy);
+                                method, tolerance_of(setting));
     const auto kind = f.within_unit() ? quantities::Kind::probability : quantities::Kind::other;
     append_function_of_time(question.time, "E(" + f.name + ")", expectation.value,
                             evaluation.results, kind);
@@ -198,8 +202,6 @@ class Execution {
   }
   [[nodiscard]] Results& results() { return evaluation_.results; }
   [[nodiscard]] const model::Process& process() const { return setting_.discretisation.process; }
-  // So that reduced models do not rule the error.
-  [[nodiscard]] double tolerance() const { return 0.1 * question_.accuracy; }
 
   void find_distribution() {
     evaluation_.distribution = std::make_shared<StationaryDistribution>(systems_);
@@ -247,7 +249,7 @@ class Execution {
   void find_slip_distribution() {
     const auto& distance = question_.distance;
     const auto slips =
-        quantities::slip_distribution(systems_, distribution(), distance, tolerance());
+        quantities::slip_distribution(systems_, distribution(), distance, tolerance_of(setting_));
     quantities::append_slip(distance, slips, results());
     evaluation_.checks.emplace_back("slip_pairs", slips.pairs);
   }
@@ -260,7 +262,7 @@ class Execution {
 
   void find_displacement() {
     const auto x = quantities::displacement(systems_, distribution(), question_.start,
-                                            question_.time, tolerance());
+                                            question_.time, tolerance_of(setting_));
     quantities::append_displacement(question_.time, x, results());
   }
 

@@ -100,8 +100,39 @@ double speed_of_leaving(const model::Process& process) {
          (process.noise.rate() * step * step);
 }
 
+// Whether the noise leaves waves of that frequency that graded elements do not follow. Levels of
+// -delta jump equally fast; those of a table may be left so rarely that waves live long on them.
 bool has_waves(const model::Process& process, const MeshRule& rule) {
-  return rule.rates.omega > 4 * process.noise.rate();
+  const auto& noise = process.noise;
+  double slowest = 4 * noise.rate();
+  for (int i = noise.lowest(); noise.table && i <= noise.highest(); ++i) {
+    slowest = std::min(slowest, noise.rate(i));
+  }
+  return rule.rates.omega > slowest;
+}
+
+// The same for the levels of a table, each with its own rate, at the speed v: one wave an element.
+// Bodies carry a phase from v = 0 or to it, for as long as their level lasts: none where they are
+// beyond a speed at which the drag holds them.
+double wave_width_of_table(const model::Process& process, double omega, double v) {
+  constexpr int steps = 40;
+  constexpr double lives = 20;  // of a level, after which nothing is left of a wave
+  const auto& noise = process.noise;
+  double slowest = std::numeric_limits<double>::infinity();
+  for (int i = noise.lowest(); i <= noise.highest(); ++i) {
+    if (omega <= noise.rate(i)) continue;
+    for (const auto& side : {process, process.mirrored()}) {
+      const auto speed = [&](double u) { return side.net_force(i) + side.drag(u); };
+      const double start = speed(0);
+      double jumps = 0;
+      for (int n = 0; n < steps && jumps < lives; ++n) {
+        const double at = speed((n + 0.5) / steps * v);
+        jumps += at * start > 0 ? noise.rate(i) * v / steps / std::abs(at) : lives;
+      }
+      if (jumps < lives) slowest = std::min(slowest, std::abs(speed(v)));
+    }
+  }
+  return 2 * std::numbers::pi * slowest / std::min(omega, 40 * noise.rate());
 }
 
 double end_of_thinnest_waves(const model::Process& process) {
@@ -116,6 +147,7 @@ double end_of_thinnest_waves(const model::Process& process) {
 // damping is so strong that graded elements do, and waves much faster than the noise are small
 // beside the smooth part, so that they are followed up to 40 Lambda only.
 double wave_width(const model::Process& process, double omega, double v) {
+  if (process.noise.table) return wave_width_of_table(process, omega, v);
   const double rate = process.noise.rate(), gap = gap_below(process);
   const double slowest = v < end_of_thinnest_waves(process)
                              ? gap

@@ -1,9 +1,10 @@
 #include <catch2/catch.hpp>
 
 #include "stickslip/operators/linear_steps.hpp"
+#include "stickslip/petsc/scalars.hpp"
 
 using namespace stickslip;
-using operators::LinearSteps;
+using LinearSteps = operators::LinearSteps<PetscScalar>;
 using petsc::DenseMatrix;
 using petsc::Scalars;
 

@@ -1,144 +1,248 @@
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <complex>
 #include <limits>
+#include <memory>
 
 #include "../common/solved.hpp"
+#include "stickslip/exact/transfer_function.hpp"
 #include "stickslip/petsc/vectors.hpp"
-#include "stickslip/quantities/reduced_model.hpp"
+#include "stickslip/quantities/model_search.hpp"
 
 using namespace stickslip;
 using operators::StaticPhase;
 using operators::Symmetry;
 using quantities::Answers;
 using quantities::Questions;
+using quantities::Recipe;
+using quantities::Reduced;
 using quantities::ReducedModel;
+using quantities::Uncertain;
+using Complex = std::complex<double>;
 
 namespace {
 
-using Script = std::vector<std::vector<double>>;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
-/// A model of some process whose answers are given beforehand, one list of values after the other;
-/// the last one is repeated.
-class Scripted {
+/// The model of the autocorrelation of the velocity of some process.
+class Velocity {
  public:
-  explicit Scripted(Script script, int most_pairs = 60)
-      : script_(std::move(script)),
-        solved_(test::on_hp(test::scene(1, 0.25, 1, 0.5, {1, 0}), 4, 1e-6)),
-        model_(made(most_pairs)) {
-    questions.values = [this](const quantities::Reduced&) {
-      return script_[std::min(asked++, script_.size() - 1)];
-    };
-    questions.shift.assign(script_.front().size(), 1.0);
-    questions.first_shifts = {1};
+  explicit Velocity(double delta = 0.25, double mu_d = 0.25, int most_pairs = 80)
+      : solved_(test::on_hp(test::scene(1, mu_d, 1, delta, {1, 0}), 6, 1e-6)),
+        pencil_(solved_.systems, Symmetry::odd, StaticPhase::kept) {
+    auto ends = solved_.distribution.velocity(pencil_.a());
+    b_ = std::move(ends.b);
+    c_ = std::move(ends.c);
+    weight_ = solved_.distribution.weight_on(pencil_.a());
+    most_pairs_ = most_pairs;
   }
 
-  [[nodiscard]] Answers ask() { return quantities::ask(*model_, questions); }
-
-  Questions questions;
-  std::size_t asked = 0;
+  [[nodiscard]] std::unique_ptr<ReducedModel> model() {
+    return std::make_unique<ReducedModel>(pencil_, quantities::Ends{b_, c_, weight_},
+                                          ReducedModel::Nature::smooth, most_pairs_);
+  }
+  /// c (z + A)^-1 b at these points, each by its size.
+  [[nodiscard]] static Questions at(const std::vector<Complex>& points, double tolerance) {
+    Questions questions;
+    questions.points = points;
+    for (std::size_t n = 0; n < points.size(); ++n) questions.terms.push_back({{n, 1}});
+    questions.values = [points](const Reduced& r) {
+      const exact::TransferFunction transfer(r.m, r.gamma, r.beta);
+      std::vector<Uncertain> values;
+      for (const Complex z : points) values.push_back({std::abs(transfer(z)), 0});
+      return values;
+    };
+    questions.each_by_its_size = true;
+    questions.tolerance = tolerance;
+    questions.first = {{5, 2}};
+    questions.lowest = 0.01;
+    return questions;
+  }
 
  private:
-  std::unique_ptr<ReducedModel> made(int most_pairs) {
-    pencil_ = std::make_unique<quantities::ProcessPencil>(solved_.systems, Symmetry::odd,
-                                                          StaticPhase::kept);
-    const auto [b, c] = solved_.distribution.velocity(pencil_->a());
-    const petsc::VecHandle weight = solved_.distribution.weight_on(pencil_->a());
-    return std::make_unique<ReducedModel>(*pencil_, quantities::Ends{b, c, weight},
-                                          ReducedModel::Nature::smooth, most_pairs);
-  }
-
-  Script script_;
   test::Solved solved_;
-  std::unique_ptr<quantities::ProcessPencil> pencil_;
-  std::unique_ptr<ReducedModel> model_;
+  quantities::ProcessPencil pencil_;
+  petsc::VecHandle b_, c_, weight_;
+  int most_pairs_;
 };
+
+const std::vector<Complex> kFrequencies{{0, 0.01}, {0, 0.1}, {0, 0.5}, {0, 2}, {0, 7}, {0, 20}};
 
 }  // namespace
 
-TEST_CASE("reduced model: stops at the tolerance, with what the last vectors changed") {
-  Scripted s(Script{{1}, {1.25}, {1.3125}, {1.328125}, {2}});
-  s.questions.tolerance = 0.02;
-  const Answers found = s.ask();
-  CHECK(s.asked == 4);
-  CHECK(found.value == std::vector<double>{1.328125});
-  CHECK(found.error == std::vector<double>{0.015625});
-  CHECK(found.relative_error == 0.015625);
-  CHECK(found.shifts == std::vector<double>{1});
-  // b, L b and a block more than there were questions.
-  CHECK(found.pairs == 2 + 4 * 5);
-}
-
-TEST_CASE("reduced model: errors relative to each value, or absolute; the largest counts") {
-  const Script script{{64, -0.5}, {64.5, -0.5625}, {64.5, -0.5625}};
-  for (bool each : {false, true}) {
-    Scripted s(script);
-    s.questions.tolerance = each ? 0.2 : 0.6;
-    s.questions.each_by_its_size = each;
-    const Answers found = s.ask();
-    CHECK(s.asked == 2);
-    CHECK(found.error == std::vector<double>{0.5, 0.0625});
-    CHECK(found.relative_error == Approx(each ? 0.0625 / 0.5625 : 0.5).epsilon(1e-14));
+TEST_CASE("reduced model: the error is the product of both residuals with the resolvent") {
+  Velocity velocity;
+  auto model = velocity.model();
+  model->extend(5, 2);
+  const Reduced reduced = model->reduce();
+  const exact::TransferFunction transfer(reduced.m, reduced.gamma, reduced.beta);
+  const auto residual = [&](Complex z) {
+    const auto expand = [](const algebra::Matrix<double>& a, const std::vector<Complex>& x,
+                           bool transposed) {
+      std::vector<Complex> y(static_cast<std::size_t>(transposed ? a.columns() : a.rows()), 0.0);
+      for (int r = 0; r < a.rows(); ++r) {
+        for (int c = 0; c < a.columns(); ++c) {
+          transposed ? y[c] += a(r, c) * x[r] : y[r] += a(r, c) * x[c];
+        }
+      }
+      return y;
+    };
+    return model->right_residual()(z, expand(reduced.to_right, transfer.from_right(z), false)) *
+           model->left_residual()(z, expand(reduced.to_left, transfer.from_left(z), true));
+  };
+  for (const Complex z : kFrequencies) {
+    INFO("z = " << z);
+    const double error = std::abs(model->truth(z, false).value - transfer(z));
+    CHECK(error > 1e-12);  // or there is nothing to see
+    // |(z + A)^-1| is at most the slowest time of the odd functions, below 3 here.
+    CHECK(error < 3 * residual(z));
+    CHECK(error > 1e-6 * residual(z));
   }
 }
 
-TEST_CASE("reduced model: a first model has no error but its size") {
-  Scripted s(Script{{-8, 2}, {-8, 2}}, 10);  // full after one question
-  s.questions.each_by_its_size = true;
-  const Answers found = s.ask();
-  CHECK(s.asked == 1);
-  CHECK(found.error == std::vector<double>{8, 2});
-  CHECK(found.relative_error == 1);
-  CHECK(found.pairs == 10);
+TEST_CASE("reduced model: no error where it was made from a true solution") {
+  Velocity velocity;
+  auto model = velocity.model();
+  model->extend(5, 2);
+  for (const Complex z : {Complex(0, 0.3), Complex(0.4, 0)}) {
+    const auto truth = model->truth(z, false);
+    const auto before = model->reduce();
+    const double error =
+        std::abs(truth.value - exact::TransferFunction(before.m, before.gamma, before.beta)(z));
+    CHECK(model->interpolate(truth) == (z.imag() == 0 ? 1 : 2));
+    const auto after = model->reduce();
+    const exact::TransferFunction transfer(after.m, after.gamma, after.beta);
+    CHECK(error > 1e-9 * std::abs(truth.value));
+    CHECK(std::abs(truth.value - transfer(z)) < 1e-12 * std::abs(truth.value));
+  }
 }
 
-TEST_CASE("reduced model: what does not change is still rounded") {
-  Scripted s(Script{{8}, {8}});
-  s.questions.each_by_its_size = true;
-  const Answers found = s.ask();
-  CHECK(s.asked == 2);
-  CHECK(found.error == std::vector<double>{8 * kEpsilon});
-  CHECK(found.relative_error == kEpsilon);
+TEST_CASE("reduced model: far out, the form without leading terms keeps its digits") {
+  Velocity velocity;
+  const auto model = velocity.model();
+  const Complex z(0, 3);
+  const auto near = model->truth(z, false), far = model->truth(z, true);
+  // c (z + A)^-1 b = c b/z - c A b/z^2 + c A (z + A)^-1 A b/z^2, and c A b = 0 as E[V dV/dt] = 0.
+  const auto huge = model->truth({0, 1e6}, true);
+  CHECK(std::abs((near.value - far.value / (z * z)).real()) < 1e-12 * std::abs(near.value));
+  CHECK(std::isfinite(std::abs(huge.value)));
+  CHECK(std::abs(huge.value) > 0);
+}
+
+TEST_CASE("reduced model: errors hold at points that the search never saw") {
+  for (double tolerance : {1e-3, 1e-6, 1e-9}) {
+    Velocity velocity;
+    auto model = velocity.model();
+    Recipe recipe;
+    const Answers found = quantities::ask(*model, Velocity::at(kFrequencies, tolerance), recipe);
+    INFO("tolerance " << tolerance << ", pairs " << found.pairs);
+    CHECK(found.relative_error <= tolerance);
+    CHECK(found.truths >= 2);  // at both ends
+    const exact::TransferFunction transfer(found.model.m, found.model.gamma, found.model.beta);
+    for (const Complex z :
+         {Complex(0, 0.03), Complex(0, 0.25), Complex(0, 1), Complex(0, 4), Complex(0, 12)}) {
+      const Complex truth = model->truth(z, false).value;
+      CHECK(std::abs(truth - transfer(z)) <= 2 * tolerance * std::abs(truth));
+    }
+  }
+}
+
+// What is slow beside the first shift is seen all the same.
+TEST_CASE("reduced model: a first shift far above the spectrum is no trap") {
+  Velocity velocity;
+  auto model = velocity.model();
+  auto questions = Velocity::at(kFrequencies, 1e-7);
+  questions.first = {{1e4, 4}};
+  Recipe recipe;
+  const Answers found = quantities::ask(*model, questions, recipe);
+  CHECK(found.relative_error <= 1e-7);
+  for (std::size_t n = 0; n < kFrequencies.size(); ++n) {
+    const double truth = std::abs(model->truth(kFrequencies[n], false).value);
+    INFO(n << " " << found.error[n] / truth << " " << found.value[n] / truth - 1);
+    CHECK(std::abs(found.value[n] - truth) <= found.error[n] + 1e-13 * truth);
+  }
+}
+
+TEST_CASE("reduced model: full, it says how far it is") {
+  Velocity velocity(0.25, 0.25, 6);
+  auto model = velocity.model();
+  Recipe recipe;
+  const Answers found = quantities::ask(*model, Velocity::at(kFrequencies, 1e-10), recipe);
+  CHECK(found.pairs == 6);
+  CHECK(found.relative_error > 1e-10);
+  for (std::size_t n = 0; n < kFrequencies.size(); ++n) {
+    const double truth = std::abs(model->truth(kFrequencies[n], false).value);
+    CHECK(std::abs(found.value[n] - truth) <= found.error[n] + 1e-13 * truth);
+  }
+}
+
+TEST_CASE("reduced model: a recipe makes the same model at once") {
+  Velocity velocity;
+  Recipe recipe;
+  auto first = velocity.model(), second = velocity.model();
+  const auto questions = Velocity::at(kFrequencies, 1e-7);
+  const Answers found = quantities::ask(*first, questions, recipe);
+  const auto steps = recipe.steps.size();
+  const Answers again = quantities::ask(*second, questions, recipe);
+  CHECK(again.pairs == found.pairs);
+  CHECK(recipe.steps.size() == steps);
+  CHECK(again.truths <= found.truths);
+  for (std::size_t n = 0; n < kFrequencies.size(); ++n) {
+    CHECK(again.value[n] == Approx(found.value[n]).epsilon(1e-10));
+  }
+}
+
+namespace {
+
+/// Answers that are given beforehand, whatever the model is; true solutions are of the model.
+struct Scripted {
+  Questions questions;
+  std::size_t asked = 0;
+
+  Scripted(std::vector<std::vector<double>> script, double tolerance) {
+    questions.points = {{1, 0}};
+    questions.values = [this, script](const Reduced&) {
+      std::vector<Uncertain> values;
+      for (double v : script[std::min(asked, script.size() - 1)]) values.push_back({v, 0});
+      ++asked;
+      return values;
+    };
+    questions.terms.resize(script.front().size());  // true solutions say nothing of these values
+    questions.shift.assign(script.front().size(), 1.0);
+    questions.first = {{1, 1}};
+    questions.highest = 100;
+    questions.tolerance = tolerance;
+  }
+};
+
+Answers grown(Scripted& scripted, int most_pairs = 60) {
+  Velocity velocity(0.5, 0.25, most_pairs);
+  auto model = velocity.model();
+  Recipe recipe;
+  return quantities::until_still(*model, scripted.questions, recipe);
+}
+
+}  // namespace
+
+TEST_CASE("reduced model: stands still within what the last vectors changed") {
+  Scripted s({{1}, {1.25}, {1.3125}, {1.328125}, {2}}, 0.02);
+  const Answers found = grown(s);
+  CHECK(s.asked == 4);
+  CHECK(found.value == std::vector<double>{1.328125});
+  CHECK(found.error == std::vector<double>{0.015625});
 }
 
 TEST_CASE("reduced model: the best one met is kept, when patience ends") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  Scripted s(Script{{1}, {1.125}, {1.15625}, {2}, {nan}, {4}, {4}});
-  s.questions.tolerance = 1e-9;
-  s.questions.patience = 3;
-  const Answers found = s.ask();
-  CHECK(s.asked == 6);
+  Scripted s({{1}, {1.125}, {1.15625}, {2}, {nan}, {4}, {4}, {4}}, 1e-9);
+  const Answers found = grown(s);
   CHECK(found.value == std::vector<double>{1.15625});
-  CHECK(found.error == std::vector<double>{0.03125});
+  // The next model was to be better: the error lies between the changes before and after it.
+  CHECK(found.error[0] == Approx(std::sqrt(0.03125 * 0.84375)));
 }
 
-// An error that falls by less than 0.3 is no help.
-TEST_CASE("reduced model: patience begins anew with whatever helps") {
-  Scripted slow(Script{{0}, {0.5}, {0.75}, {0.875}, {0.9375}});
-  slow.questions.patience = 2;
-  (void)slow.ask();
-  CHECK(slow.asked == 3);
-  Scripted fast(Script{{0}, {0.5}, {0.625}, {0.6875}, {0.6875}});
-  fast.questions.patience = 2;
-  (void)fast.ask();
-  CHECK(fast.asked == 5);  // 1, 0.5, 0.125 helps, 0.0625, rounding
-}
-
-TEST_CASE("reduced model: shifts go where the error is largest, unless one is near") {
-  const auto shifts = [](double at_worst, double lowest, double highest) {
-    Scripted s(Script{{0, 0}, {0.5, 1}, {0.5, 2}, {0.5, 3}});
-    s.questions.shift = {50, at_worst};
-    s.questions.lowest = lowest;
-    s.questions.highest = highest;
-    s.questions.patience = 2;
-    return s.ask().shifts;
-  };
-  using Shifts = std::vector<double>;
-  CHECK(shifts(7, 0, 100) == Shifts{1, 7});
-  CHECK(shifts(7, 0, 5) == Shifts{1, 5});
-  CHECK(shifts(7, 20, 100) == Shifts{1, 20});
-  CHECK(shifts(1.6, 0, 100) == Shifts{1, 1.6});
-  CHECK(shifts(1.4, 0, 100) == Shifts{1});
-  CHECK(shifts(0.7, 0, 100) == Shifts{1});
-  CHECK(shifts(0.6, 0, 100) == Shifts{1, 0.6});
+TEST_CASE("reduced model: what true solutions miss is an error") {
+  Scripted s({{1}, {1}}, 1e-12);
+  s.questions.terms = {{{0, 1e6}}};  // of the transfer function at 1, a million times
+  const Answers found = grown(s, 8);
+  CHECK(found.truths == 1);
+  CHECK(found.error[0] > 1e-12);
 }

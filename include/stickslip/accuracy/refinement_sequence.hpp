@@ -52,6 +52,7 @@ class RefinementSequence {
   bool all_levels_ = false;   // every noise level is a node
   bool tail_counts_ = false;  // what is asked for may weigh the tail anyhow
   bool modes_ = false;        // relaxation modes are asked for
+  bool table_ = false;        // the noise has levels of its own
   int last_;
   mutable std::map<int, Resolution> refinement_levels_;  // those asked for so far
 };

@@ -21,8 +21,15 @@ class TransferFunction {
 
   /// Infinite at an eigenvalue of M.
   [[nodiscard]] std::complex<double> operator()(std::complex<double> z) const;
+  /// (z - M)^-1 right, and left (z - M)^-1.
+  [[nodiscard]] std::vector<std::complex<double>> from_right(std::complex<double> z) const;
+  [[nodiscard]] std::vector<std::complex<double>> from_left(std::complex<double> z) const;
 
  private:
+  [[nodiscard]] std::complex<double> t(std::size_t row, std::size_t column) const {
+    const std::size_t at = column * right_.size() + row;
+    return {t_real_[at], t_imaginary_[at]};
+  }
   void set_ends(const std::vector<double>& left, const std::vector<double>& right);
 
   algebra::Matrix<std::complex<double>> q_;

@@ -3,6 +3,7 @@
 
 #include <petscmat.h>
 
+#include <complex>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -33,47 +34,64 @@ namespace stickslip::operators {
 ///
 /// Ranks share the elements; what is between them each rank eliminates alike, so that results do
 /// not depend on the number of ranks.
+///
+/// `Scalar` is PetscScalar, or std::complex<double> with either: lambda may be complex where the
+/// matrix, of which only the static states are read, is real.
+template <class Scalar>
 class ElementElimination {
  public:
+  using Scalars = std::vector<Scalar>;
+
   /// Factors `matrix`, which carries `data`; of its entries the rows of static states are read, the
   /// others follow from the discretisation. Without `share` each rank factors all elements.
   /// Collective. Throws NotReached where the matrix is singular.
-  ElementElimination(Mat matrix, std::shared_ptr<const MatrixData> data, bool share = true);
+  ElementElimination(Mat matrix, std::shared_ptr<const MatrixData> data, bool share = true)
+      : ElementElimination(matrix, data, data->lambda, data->clock, share) {}
+  /// The same with another lambda, by another clock.
+  ElementElimination(Mat matrix, std::shared_ptr<const MatrixData> data, Scalar lambda, Clock clock,
+                     bool share = true);
   ~ElementElimination();
 
-  /// x = A^-1 b, or A^-T b without conjugation. Collective.
-  void solve(Vec b, Vec x, bool transposed) const;
+  /// x <- A^-1 x, or A^-T x without conjugation, x the whole vector on every rank. Collective.
+  void solve(Scalars& x, bool transposed) const;
 
   /// Numbers kept by this rank.
   [[nodiscard]] double entries() const;
 
  private:
-  using Scalars = petsc::Scalars;
-  using DenseMatrix = petsc::DenseMatrix;
-  using Couplings = std::vector<LinearSteps::Coupling>;
+  using DenseMatrix = algebra::Matrix<Scalar>;
+  using DenseFactors = algebra::LuFactors<Scalar>;
+  using Element = ElementSystem<Scalar>;
+  using Response = typename Element::Response;
+  using Steps = LinearSteps<Scalar>;
+  using Couplings = std::vector<typename Steps::Coupling>;
   struct Line;
+  struct StaticRows;
 
   [[nodiscard]] Line line_of(Branch branch) const;
   [[nodiscard]] int owner(const Line& line, std::size_t e) const;
-  [[nodiscard]] ElementSystem::Response make_element(Line& line, std::size_t e) const;
+  [[nodiscard]] Response make_element(Line& line, std::size_t e) const;
   void make_shared_elements();
-  [[nodiscard]] ElementSystem::Response response(Line& line, std::size_t e) const;
+  [[nodiscard]] Response response(Line& line, std::size_t e) const;
   [[nodiscard]] DenseMatrix hold(const Line& line);
   void reflect(Line& line);
   [[nodiscard]] double sign() const { return data_->states.symmetry() == Symmetry::odd ? -1 : 1; }
   void add_shares(const Line& line, std::size_t fall, Couplings& shares) const;
   void add_crossings(const Line& line, std::size_t fall, Couplings& found) const;
   [[nodiscard]] std::size_t exit_at(PetscInt column) const;
+  [[nodiscard]] StaticRows read_chain(Mat matrix) const;
   void meet(Mat matrix);
 
   template <class Visit>
   void for_each_own_element(Visit visit) const;
   template <class Visit>
-  static void for_each_unknown(const Line& line, const ElementSystem& element, Visit visit);
+  static void for_each_unknown(const Line& line, const Element& element, Visit visit);
   template <class Visit>
   void for_each_unknown_between(Visit visit) const;
 
   std::shared_ptr<const MatrixData> data_;
+  Scalar lambda_;
+  Clock clock_;
   MPI_Comm comm_;  // of the ranks that share elements
   std::vector<Line> lines_;
   std::vector<PetscInt> static_rows_;  // of static states, from the lowest level up
@@ -81,9 +99,7 @@ class ElementElimination {
   // The list w: values between elements, holding states among them; static states; what falling
   // nodes find at v = 0.
   std::size_t static_begin_ = 0, length_ = 0;
-  LinearSteps between_;  // (1 - S)^-1
-  petsc::Handle<VecScatter, VecScatterDestroy> scatter_;
-  petsc::VecHandle all_;  // a whole vector
+  Steps between_;  // (1 - S)^-1
 };
 
 }  // namespace stickslip::operators

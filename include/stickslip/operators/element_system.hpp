@@ -6,8 +6,7 @@
 
 #include "stickslip/noise/nodes.hpp"
 #include "stickslip/operators/linear_steps.hpp"
-#include "stickslip/operators/matrix_data.hpp"
-#include "stickslip/petsc/scalars.hpp"
+#include "stickslip/operators/system_key.hpp"
 #include "stickslip/velocity/hp_discretisation.hpp"
 
 namespace stickslip::operators {
@@ -23,24 +22,27 @@ namespace stickslip::operators {
 ///
 /// Along the noise the system is block tridiagonal over groups, its couplings of the rank of the
 /// element's nodes: jumps reach the next group through its first or last level alone. LU factors by
-/// groups. Lists run by noise nodes 0 ... M-1, then by the q nodes of the element. Local.
+/// groups. Lists run by noise nodes 0 ... M-1, then by the q nodes of the element. For double and
+/// std::complex<double>. Local.
+template <class Scalar>
 class ElementSystem {
  public:
-  using Scalars = petsc::Scalars;
+  using Scalars = std::vector<Scalar>;
+  using Matrix = algebra::Matrix<Scalar>;
 
   /// What the values beyond the ends make of those given, by sides:
   ///
   ///   (values at a) = inner_inner (beyond a) + inner_outer (beyond b),
   ///   (values at b) = outer_inner (beyond a) + outer_outer (beyond b).
   struct Response {
-    petsc::DenseMatrix inner_inner, inner_outer, outer_inner, outer_outer;
+    Matrix inner_inner, inner_outer, outer_inner, outer_outer;
   };
 
   /// For the speeds x_l + g - mu_d + b(v), `net_force` being x_l + g - mu_d by node; the response
   /// goes to `response`. O(M q^3 groups' sizes^2 + M^2 q). Throws NotReached if a block is
   /// singular.
   ElementSystem(const noise::Nodes& noise, const velocity::HpDiscretisation& velocities,
-                int element, std::span<const double> net_force, PetscScalar lambda, Clock clock,
+                int element, std::span<const double> net_force, Scalar lambda, Clock clock,
                 Response& response);
 
   [[nodiscard]] int size() const { return count_ * nodes_; }
@@ -58,10 +60,9 @@ class ElementSystem {
   [[nodiscard]] const Ports& taken() const { return taken_; }
   [[nodiscard]] const Ports& given() const { return given_; }
   /// Adds to the values of all noise nodes at both ends what a list sends there.
-  void collect(const Ports& ports, const Scalars& x, PetscScalar* at_inner,
-               PetscScalar* at_outer) const;
+  void collect(const Ports& ports, const Scalars& x, Scalar* at_inner, Scalar* at_outer) const;
   /// Adds to a list what those values send.
-  void distribute(const Ports& ports, const PetscScalar* at_inner, const PetscScalar* at_outer,
+  void distribute(const Ports& ports, const Scalar* at_inner, const Scalar* at_outer,
                   Scalars& x) const;
 
   /// Of the factors.
@@ -73,7 +74,7 @@ class ElementSystem {
   int count_, nodes_, first_;
   std::size_t length_ = 0;  // of a list with the places that the steps need besides
   Ports taken_, given_;
-  LinearSteps steps_;
+  LinearSteps<Scalar> steps_;
 };
 
 }  // namespace stickslip::operators

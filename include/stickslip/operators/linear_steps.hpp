@@ -7,21 +7,24 @@
 #include <variant>
 #include <vector>
 
-#include "stickslip/petsc/scalars.hpp"
+#include "stickslip/algebra/dense.hpp"
 
 namespace stickslip::operators {
 
 /// A linear map of a list in place. Each step adds a multiple of one part of the list to another,
 /// or solves a small system on one; the transposed map runs the transposed steps from the last to
-/// the first, so that one description serves both. Local.
+/// the first, so that one description serves both. For double and std::complex<double>. Local.
+template <class Scalar>
 class LinearSteps {
  public:
-  using Scalars = petsc::Scalars;
+  using Scalars = std::vector<Scalar>;
+  using Matrix = algebra::Matrix<Scalar>;
+  using Factors = algebra::LuFactors<Scalar>;
 
   /// w[to] += weight w[from].
   struct Coupling {
     std::size_t from, to;
-    PetscScalar weight;
+    Scalar weight;
   };
   /// LU factors of a tridiagonal matrix: pivots, multipliers, upper diagonal; below[0] and the last
   /// of `above` mean nothing.
@@ -29,11 +32,11 @@ class LinearSteps {
     Scalars diagonal, below, above;
     /// Factors in place, without exchanges.
     void factor();
-    void solve(PetscScalar* x, bool transposed) const;
+    void solve(Scalar* x, bool transposed) const;
   };
 
   /// w[to ...] += A w[from ...].
-  void add(petsc::DenseMatrix a, std::size_t from, std::size_t to);
+  void add(Matrix a, std::size_t from, std::size_t to);
   /// One after the other.
   void add(std::vector<Coupling> couplings);
   /// w[to ...] += sum_l c_l w[from + l block ...], of `block` entries; and w[to + l block ...] +=
@@ -41,7 +44,7 @@ class LinearSteps {
   void contract(std::span<const double> c, int block, std::size_t from, std::size_t to);
   void spread(std::span<const double> c, int block, std::size_t from, std::size_t to);
   /// w[at ...] <- A^-1 w[at ...].
-  void solve(petsc::DenseFactors a, std::size_t at);
+  void solve(Factors a, std::size_t at);
   void solve(Tridiagonal a, std::size_t at);
   /// The steps of another map after those of this one.
   void append(LinearSteps other);
@@ -54,7 +57,7 @@ class LinearSteps {
 
  private:
   struct Product {
-    petsc::DenseMatrix a;
+    Matrix a;
     std::size_t from, to;
   };
   struct Contraction {
@@ -62,15 +65,15 @@ class LinearSteps {
     int block;
     std::size_t one, many;  // places of the block and of its multiples
     bool spreads;
-    void run(PetscScalar* w, bool transposed) const;
+    void run(Scalar* w, bool transposed) const;
   };
-  template <class Factors>
+  template <class Kind>
   struct Solve {
-    Factors a;
+    Kind a;
     std::size_t at;
   };
-  using Step = std::variant<Product, std::vector<Coupling>, Contraction, Solve<petsc::DenseFactors>,
-                            Solve<Tridiagonal>>;
+  using Step =
+      std::variant<Product, std::vector<Coupling>, Contraction, Solve<Factors>, Solve<Tridiagonal>>;
   std::vector<Step> steps_;
 };
 

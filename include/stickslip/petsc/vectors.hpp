@@ -2,6 +2,7 @@
 /// Local views of distributed vectors and matrices, and the inner product of vectors.
 
 #include <span>
+#include <vector>
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/handle.hpp"
@@ -71,6 +72,36 @@ class RowView {
   PetscInt row_, count_ = 0;
   const PetscInt* columns_ = nullptr;
   const PetscScalar* values_ = nullptr;
+};
+
+/// The vectors of a matrix, whole on every rank.
+class WholeVectors {
+ public:
+  /// Collective.
+  explicit WholeVectors(Mat matrix) {
+    VecHandle any;
+    check(MatCreateVecs(matrix, nullptr, any.out()));
+    check(VecScatterCreateToAll(any, scatter_.out(), all_.out()));
+    check(VecGetOwnershipRange(any, &begin_, nullptr));
+  }
+  /// All entries of a vector. Collective.
+  [[nodiscard]] std::vector<PetscScalar> gathered(Vec vec) const {
+    check(VecScatterBegin(scatter_, vec, all_, INSERT_VALUES, SCATTER_FORWARD));
+    check(VecScatterEnd(scatter_, vec, all_, INSERT_VALUES, SCATTER_FORWARD));
+    const ReadView all(all_);
+    return {all.data(), all.data() + all.size()};
+  }
+  /// Sets the entries of this rank to part(entry), for all of them on every rank. Local.
+  template <class Scalar, class Part>
+  void scatter(const std::vector<Scalar>& all, Vec vec, Part part) const {
+    WriteView local(vec);
+    for (PetscInt n = 0; n < local.size(); ++n) local[n] = part(all[begin_ + n]);
+  }
+
+ private:
+  Handle<VecScatter, VecScatterDestroy> scatter_;
+  VecHandle all_;
+  PetscInt begin_ = 0;
 };
 
 /// Collective.

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "stickslip/model/start.hpp"
+#include "stickslip/quantities/model_search.hpp"
 #include "stickslip/quantities/transient.hpp"
 
 namespace stickslip::quantities {
@@ -27,7 +28,7 @@ struct Displacement {
 [[nodiscard]] Displacement displacement(operators::Systems& systems,
                                         const StationaryDistribution& distribution,
                                         const model::Start& start, const std::vector<double>& time,
-                                        double tolerance);
+                                        const ModelTolerance& tolerance);
 
 /// displacement_mean and displacement_variance.
 void append_displacement(const std::vector<double>& time, const Displacement& displacement,

@@ -33,21 +33,22 @@ struct DurationDistribution {
 [[nodiscard]] DurationDistribution slide_distribution(operators::Systems& systems,
                                                       const StationaryDistribution& stationary,
                                                       const std::vector<double>& time,
-                                                      double tolerance);
+                                                      const ModelTolerance& tolerance);
 
 /// Excursions: the same with the static states kept and killed when they are left.
 [[nodiscard]] DurationDistribution excursion_distribution(operators::Systems& systems,
                                                           const StationaryDistribution& stationary,
                                                           const std::vector<double>& time,
-                                                          double tolerance);
+                                                          const ModelTolerance& tolerance);
 
 /// Of what a clock shows when the process is killed, started as excursions start; `mean` of that,
-/// and its density `at_zero`. Both of the above are this. Collective.
+/// and its density `at_zero`. Both of the above are this, by their names. Collective.
 [[nodiscard]] DurationDistribution
-distribution_until_killed(operators::Systems& systems, operators::StaticPhase static_phase,
-                          operators::Clock clock, const StationaryDistribution& stationary,
-                          const std::vector<double>& time, double mean, const TimeScales& scales,
-                          double at_zero, double tolerance);
+distribution_until_killed(const std::string& name, operators::Systems& systems,
+                          operators::StaticPhase static_phase, operators::Clock clock,
+                          const StationaryDistribution& stationary, const std::vector<double>& time,
+                          double mean, const TimeScales& scales, double at_zero,
+                          const ModelTolerance& tolerance);
 
 /// f_slide(0+): a sliding phase can only end at once if one jump back from the level of its start
 /// reverses it.

@@ -1,12 +1,30 @@
 #pragma once
 /// Linear evolution equations of which reduced models are made.
 
+#include <complex>
+#include <memory>
 #include <set>
 
+#include "stickslip/operators/complex_solver.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/handle.hpp"
 
 namespace stickslip::quantities {
+
+/// (z + A)^-1 at one complex z. Collective.
+class ShiftedPencil {
+ public:
+  virtual ~ShiftedPencil() = default;
+  /// x = (z + A)^-1 b, or with the transpose (no conjugation), after iterative refinement. Throws
+  /// NotReached.
+  [[nodiscard]] virtual operators::ComplexVector solve(const operators::ComplexVector& b,
+                                                       bool transposed) = 0;
+
+ protected:
+  ShiftedPencil() = default;
+  ShiftedPencil(const ShiftedPencil&) = default;
+  ShiftedPencil& operator=(const ShiftedPencil&) = default;
+};
 
 /// u' = -A u on discrete states: c (z + A)^-1 b is the Laplace transform of c exp(-A t) b. All
 /// members are collective.
@@ -18,6 +36,9 @@ class Pencil {
   /// x = (z + A)^-1 b, or with the transpose: by one solve, or with iterative refinement. A new z >
   /// 0 takes a factorisation. Throws NoMemory or NotReached.
   virtual void solve(double z, Vec b, Vec x, bool transposed, bool refined) = 0;
+  /// Factors of z + A for a complex z, at three to four times the cost of real ones; they must not
+  /// outlive the pencil. Throws NoMemory or NotReached.
+  [[nodiscard]] virtual std::unique_ptr<ShiftedPencil> shifted(std::complex<double> z) = 0;
 
  protected:
   Pencil() = default;
@@ -44,8 +65,11 @@ class ProcessPencil final : public Pencil {
 
   void multiply(Vec x, Vec y, bool transposed) const override;
   void solve(double z, Vec b, Vec x, bool transposed, bool refined) override;
+  [[nodiscard]] std::unique_ptr<ShiftedPencil> shifted(std::complex<double> z) override;
 
  private:
+  class Shifted;
+
   operators::Systems& systems_;
   operators::SystemKey key_;
   operators::KolmogorovOperator a_;

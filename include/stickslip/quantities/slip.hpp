@@ -32,7 +32,7 @@ struct SlipMoments {
 [[nodiscard]] DurationDistribution slip_distribution(operators::Systems& systems,
                                                      const StationaryDistribution& distribution,
                                                      const std::vector<double>& distance,
-                                                     double tolerance);
+                                                     const ModelTolerance& tolerance);
 
 /// mean_slip = E[S] = E|V| mean_excursion.
 void append_mean_slip(const Excursion& excursion, Results& results);

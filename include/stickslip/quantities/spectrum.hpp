@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "stickslip/operators/systems.hpp"
+#include "stickslip/quantities/model_search.hpp"
 #include "stickslip/quantities/results.hpp"
 #include "stickslip/quantities/stationary.hpp"
 #include "stickslip/quantities/uncertain.hpp"
@@ -46,12 +47,12 @@ struct ReducedSpectrum {
   std::vector<double> shifts;  ///< real shifts used [1/time]
 };
 
-/// By two-sided rational Krylov projection: a few real factorisations for all frequencies. The
-/// error at each frequency is what the last vectors changed there; shifts are added where it is
-/// largest, until all relative errors are below `tolerance` or nothing improves. Collective.
+/// By two-sided rational Krylov projection: a few real factorisations for all frequencies, and true
+/// solutions by complex ones where ask() compares them. Collective.
 [[nodiscard]] ReducedSpectrum reduced_spectrum(operators::Systems& systems,
                                                const StationaryDistribution& distribution,
-                                               const std::vector<double>& omega, double tolerance);
+                                               const std::vector<double>& omega,
+                                               const ModelTolerance& tolerance);
 
 /// By one factorisation of i omega - L for each frequency, its analysis done once. Complex scalars
 /// only. Collective; on several ranks each takes its share of the frequencies, alone: `systems` and

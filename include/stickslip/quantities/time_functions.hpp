@@ -3,17 +3,17 @@
 
 #include <vector>
 
-#include "stickslip/quantities/reduced_model.hpp"
+#include "stickslip/quantities/model_search.hpp"
 #include "stickslip/quantities/uncertain.hpp"
 
 namespace stickslip::quantities {
 
-/// n-fold integrals from 0 to t of gamma exp(m t) beta, for each n of `folds` one for each time. By
-/// quadrature of the inverse Laplace transform on Talbot's contour with the parameters of Weideman
-/// (SIAM J. Numer. Anal. 44, 2006), whose error is about 10^-14 of the largest value. Growing modes
-/// that a two-sided projection may have lie outside the contour and do no harm, as they would to
-/// exp(m t). Local. O(size^2) a time. Times >= 0.
-[[nodiscard]] std::vector<std::vector<double>>
+/// n-fold integrals from 0 to t of gamma exp(m t) beta, for each n of `folds` one for each time >
+/// 0, by quadrature of the inverse Laplace transform on Talbot's contour with the parameters of
+/// Weideman (SIAM J. Numer. Anal. 44, 2006); the error is what another contour makes of it. Growing
+/// modes that a two-sided projection may have lie outside the contour and do no harm, as they would
+/// to exp(m t). Local. O(size^2) a time.
+[[nodiscard]] std::vector<std::vector<Uncertain>>
 evaluate(const Reduced& reduced, const std::vector<double>& time, const std::vector<int>& folds);
 
 /// An n-fold integral that is wanted to a tolerance times `unit`.
@@ -37,7 +37,7 @@ struct TimeCurve {
 /// small, with A itself. Collective.
 [[nodiscard]] TimeCurve time_curve(Pencil& pencil, const Ends& ends, ReducedModel::Nature nature,
                                    const std::vector<Fold>& folds, const std::vector<double>& time,
-                                   const TimeScales& scales, double tolerance);
+                                   const TimeScales& scales, double tolerance, Recipe& recipe);
 /// Those of a process, by the clock of time.
 [[nodiscard]] TimeScales time_scales(const model::Process& process);
 

@@ -7,6 +7,7 @@
 #include "stickslip/model/observable.hpp"
 #include "stickslip/model/start.hpp"
 #include "stickslip/operators/systems.hpp"
+#include "stickslip/quantities/model_search.hpp"
 #include "stickslip/quantities/results.hpp"
 #include "stickslip/quantities/stationary.hpp"
 #include "stickslip/quantities/uncertain.hpp"
@@ -32,7 +33,8 @@ enum class TransientMethod { krylov, stepping };
 [[nodiscard]] std::vector<Uncertain> autocorrelation(operators::Systems& systems,
                                                      const StationaryDistribution& distribution,
                                                      const std::vector<double>& time,
-                                                     TransientMethod method, double tolerance);
+                                                     TransientMethod method,
+                                                     const ModelTolerance& tolerance);
 
 /// E[f(Z_t)] = mean of exp(L t) f over the start, with symmetry by its even and odd parts, and
 /// pi(f), to which it tends. Errors are relative to the root of pi(f^2), part by part. Collective.
@@ -45,6 +47,6 @@ struct Expectation {
                                       const StationaryDistribution& distribution,
                                       const model::Observable& f, const model::Start& start,
                                       const std::vector<double>& time, TransientMethod method,
-                                      double tolerance);
+                                      const ModelTolerance& tolerance);
 
 }  // namespace stickslip::quantities

@@ -13,6 +13,7 @@
 #include "stickslip/options/case.hpp"
 #include "stickslip/petsc/solver_choice.hpp"
 #include "stickslip/petsc/solver_statistics.hpp"
+#include "stickslip/quantities/recipe.hpp"
 #include "stickslip/quantities/relaxation.hpp"
 #include "stickslip/quantities/results.hpp"
 
@@ -28,6 +29,8 @@ struct Setting {
   const options::Case& given;
   operators::Discretisation discretisation;
   petsc::SolverStatistics& statistics;
+  /// Of reduced models, from one refinement level to the next.
+  std::shared_ptr<quantities::Recipes> recipes = std::make_shared<quantities::Recipes>();
 };
 
 struct Evaluation {

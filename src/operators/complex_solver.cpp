@@ -1,0 +1,211 @@
+#include "stickslip/operators/complex_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "stickslip/operators/element_elimination.hpp"
+#include "stickslip/operators/solver_policy.hpp"
+#include "stickslip/operators/systems.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/linear_solver.hpp"
+#include "stickslip/petsc/solver_choice.hpp"
+#include "stickslip/petsc/vectors.hpp"
+#include "stickslip/support/errors.hpp"
+
+namespace stickslip::operators {
+namespace {
+
+using petsc::check;
+using Complex = std::complex<double>;
+
+// What a solution keeps of its right-hand side after one step of refinement.
+constexpr double kLargestCorrection = 1e-3;
+
+bool serves_elements(const KolmogorovOperator& a) {
+  const std::string implied = petsc::implied_pc_type(kSlidePrefix);
+  const char* type = implied.empty() ? default_pc_type(a.discretisation()) : implied.c_str();
+  return std::strcmp(type, petsc::kElementsPc) == 0;
+}
+
+double norm(const ComplexVector& x) {
+  PetscReal real = 0, imaginary = 0;
+  check(VecNorm(x.real, NORM_2, &real));
+  check(VecNorm(x.imaginary, NORM_2, &imaginary));
+  return std::hypot(real, imaginary);
+}
+
+}  // namespace
+
+std::complex<double> dot(Vec c, const ComplexVector& x) {
+  return {petsc::dot(c, x.real), petsc::dot(c, x.imaginary)};
+}
+
+class ComplexSolver::Factors {
+ public:
+  virtual ~Factors() = default;
+  virtual void solve(const ComplexVector& b, const ComplexVector& x, bool transposed) = 0;
+
+ protected:
+  Factors() = default;
+  Factors(const Factors&) = delete;
+  Factors& operator=(const Factors&) = delete;
+};
+
+class ComplexSolver::ByElements final : public Factors {
+ public:
+  ByElements(const KolmogorovOperator& a, Complex z, Clock clock)
+      : factors_(a.matrix(), data_of(a.matrix()), z, clock), vectors_(a.matrix()) {}
+
+  void solve(const ComplexVector& b, const ComplexVector& x, bool transposed) override {
+    const auto real = vectors_.gathered(b.real), imaginary = vectors_.gathered(b.imaginary);
+    std::vector<Complex> all(real.size());
+    for (std::size_t n = 0; n < all.size(); ++n) {
+      all[n] = {PetscRealPart(real[n]), PetscRealPart(imaginary[n])};
+    }
+    factors_.solve(all, transposed);
+    vectors_.scatter(all, x.real, [](Complex entry) { return entry.real(); });
+    vectors_.scatter(all, x.imaginary, [](Complex entry) { return entry.imag(); });
+  }
+
+ private:
+  ElementElimination<Complex> factors_;
+  petsc::WholeVectors vectors_;
+};
+
+/// The real and then the imaginary parts of each rank.
+class ComplexSolver::InRealForm final : public Factors {
+ public:
+  InRealForm(const KolmogorovOperator& a, Complex z, Vec rates,
+             petsc::SolverStatistics& statistics) {
+    check(MatGetOwnershipRange(a.matrix(), &begin_, &end_));
+    check(MatGetOwnershipRanges(a.matrix(), &ranges_));
+    const PetscInt local = 2 * (end_ - begin_);
+    const auto object = reinterpret_cast<PetscObject>(a.matrix());
+    check(MatCreate(PetscObjectComm(object), matrix_.out()));
+    check(MatSetSizes(matrix_, local, local, PETSC_DETERMINE, PETSC_DETERMINE));
+    check(MatSetType(matrix_, MATAIJ));
+    PetscInt most = 0;
+    for (PetscInt row = begin_; row < end_; ++row) {
+      const petsc::RowView view(a.matrix(), row);
+      PetscInt count = 2;
+      view.for_each([&](PetscInt, PetscScalar) { ++count; });
+      most = std::max(most, count);
+    }
+    check(MatSeqAIJSetPreallocation(matrix_, most, nullptr));
+    check(MatMPIAIJSetPreallocation(matrix_, most, nullptr, most, nullptr));
+    for (PetscInt row = begin_; row < end_; ++row) add_row(a.matrix(), row, z, rates);
+    check(MatAssemblyBegin(matrix_, MAT_FINAL_ASSEMBLY));
+    check(MatAssemblyEnd(matrix_, MAT_FINAL_ASSEMBLY));
+    factors_ = std::make_unique<petsc::Factorization>(matrix_, kSlidePrefix, statistics, PCLU);
+  }
+
+  void solve(const ComplexVector& b, const ComplexVector& x, bool transposed) override {
+    petsc::VecHandle all, solved;
+    check(MatCreateVecs(matrix_, all.out(), solved.out()));
+    {
+      const petsc::ReadView real(b.real), imaginary(b.imaginary);
+      petsc::WriteView to(all);
+      std::copy_n(imaginary.data(), imaginary.size(),
+                  std::copy_n(real.data(), real.size(), to.data()));
+    }
+    transposed ? factors_->solve_transposed_once(all, solved) : factors_->solve_once(all, solved);
+    const petsc::ReadView from(solved);
+    petsc::WriteView real(x.real), imaginary(x.imaginary);
+    std::copy_n(from.data(), real.size(), real.data());
+    std::copy_n(from.data() + real.size(), imaginary.size(), imaginary.data());
+  }
+
+ private:
+  // Of the real part; the imaginary one follows after all real ones of its rank.
+  [[nodiscard]] PetscInt place(PetscInt index, bool imaginary) const {
+    PetscInt rank = 0;
+    while (ranges_[rank + 1] <= index) ++rank;
+    return ranges_[rank] + index + (imaginary ? ranges_[rank + 1] - ranges_[rank] : 0);
+  }
+
+  void add_row(Mat a, PetscInt row, Complex z, Vec rates) const {
+    double rate = 1;
+    if (rates != nullptr) rate = PetscRealPart(petsc::ReadView(rates)[row - begin_]);
+    const petsc::RowView view(a, row);
+    for (bool imaginary : {false, true}) {
+      const PetscInt at = place(row, imaginary);
+      const auto add = [&](PetscInt column, PetscScalar value) {
+        check(MatSetValue(matrix_, at, column, value, ADD_VALUES));
+      };
+      view.for_each(
+          [&](PetscInt column, PetscScalar value) { add(place(column, imaginary), value); });
+      add(at, rate * z.real());
+      add(place(row, !imaginary), (imaginary ? 1 : -1) * rate * z.imag());
+    }
+  }
+
+  PetscInt begin_ = 0, end_ = 0;
+  const PetscInt* ranges_ = nullptr;
+  petsc::MatHandle matrix_;
+  std::unique_ptr<petsc::Factorization> factors_;
+};
+
+ComplexSolver::ComplexSolver(const KolmogorovOperator& a, Complex z, Clock clock,
+                             petsc::SolverStatistics& statistics)
+    : a_(a), z_(z), statistics_(statistics) {
+  if (clock != Clock::time) {
+    rates_ = a.zeros();
+    petsc::WriteView rates(rates_);
+    PetscInt at = 0;
+    a.states().for_each_local([&](const State& state) {
+      rates[at++] = rate_of(clock, state, *a.discretisation().velocities);
+    });
+  }
+  if (!serves_elements(a)) {
+    factors_ = std::make_unique<InRealForm>(a, z, rates_, statistics);
+    return;
+  }
+  const petsc::PhaseTimer timer("factorisation", statistics_.factorization_seconds);
+  factors_ = std::make_unique<ByElements>(a, z, clock);
+  ++statistics_.factorizations_complex;
+}
+
+ComplexSolver::~ComplexSolver() = default;
+
+ComplexVector ComplexSolver::residual(const ComplexVector& b, const ComplexVector& x,
+                                      bool transposed) const {
+  ComplexVector r{petsc::copy_of(b.real), petsc::copy_of(b.imaginary)};
+  const petsc::VecHandle image = a_.zeros();
+  const auto subtract = [&](Vec part, Vec from, double factor) {
+    check(VecCopy(part, image));
+    if (rates_ != nullptr) check(VecPointwiseMult(image, image, rates_));
+    check(VecAXPY(from, -factor, image));
+  };
+  for (const auto& [part, from] :
+       {std::pair{Vec(x.real), Vec(r.real)}, std::pair{Vec(x.imaginary), Vec(r.imaginary)}}) {
+    check(transposed ? MatMultTranspose(a_.matrix(), part, image)
+                     : MatMult(a_.matrix(), part, image));
+    check(VecAXPY(from, -1, image));
+  }
+  subtract(x.real, r.real, z_.real());
+  subtract(x.imaginary, r.real, -z_.imag());
+  subtract(x.imaginary, r.imaginary, z_.real());
+  subtract(x.real, r.imaginary, z_.imag());
+  return r;
+}
+
+ComplexSolver::Solution ComplexSolver::solve(const ComplexVector& b, bool transposed) {
+  const petsc::PhaseTimer timer("solve", statistics_.solve_seconds);
+  Solution s{{a_.zeros(), a_.zeros()}, {a_.zeros(), a_.zeros()}};
+  factors_->solve(b, s.x, transposed);
+  factors_->solve(residual(b, s.x, transposed), s.correction, transposed);
+  check(VecAXPY(s.x.real, 1, s.correction.real));
+  check(VecAXPY(s.x.imaginary, 1, s.correction.imaginary));
+  ++statistics_.solves;
+  ++statistics_.corrections;
+  const double size = norm(s.x), change = norm(s.correction);
+  if (!(change <= kLargestCorrection * size)) {
+    throw NotReached("complex factors of z - L are too inaccurate for iterative refinement");
+  }
+  return s;
+}
+
+}  // namespace stickslip::operators

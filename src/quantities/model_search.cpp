@@ -1,0 +1,301 @@
+#include "stickslip/quantities/model_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "stickslip/exact/transfer_function.hpp"
+
+namespace stickslip::quantities {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr int kBlock = 4;  // pairs at a time
+// Rounding of a model, relative.
+constexpr double kFloor = 3e-13;
+// Shifts nearer than that to each other find nearly dependent vectors.
+constexpr double kNear = 1.5;
+// Errors between true solutions may be that much larger than residuals make them.
+constexpr double kCaution = 3;
+// Where a deviation is that much larger beside the residuals than elsewhere, it is rounding.
+constexpr double kRounded = 1e3;
+
+double distance(Complex a, Complex b) {
+  constexpr double least = 1e-300;
+  return std::abs(std::log(std::max(std::abs(a), least) / std::max(std::abs(b), least)));
+}
+
+/// A reduced model with what it takes to see its errors.
+class Judged {
+ public:
+  Judged(ReducedModel& model)
+      : reduced(model.reduce()),
+        transfer(reduced.m, reduced.gamma, reduced.beta),
+        beyond_(transfer.between(reduced.gamma * reduced.m, reduced.m * reduced.beta)),
+        right_(model.right_residual()),
+        left_(model.left_residual()) {}
+
+  // |r_b| |r_c|.
+  [[nodiscard]] double residuals(Complex z) const {
+    return right_(z, expanded(reduced.to_right, transfer.from_right(z), false)) *
+           left_(z, expanded(reduced.to_left, transfer.from_left(z), true));
+  }
+
+  // |H - H_r|.
+  [[nodiscard]] double deviation(const Truth& truth) const {
+    const Complex z = truth.z;
+    if (!truth.far) return std::abs(truth.value - transfer(z));
+    return std::abs(truth.value - beyond_(z)) / std::norm(z);
+  }
+
+  Reduced reduced;
+  exact::TransferFunction transfer;
+
+ private:
+  static std::vector<Complex> expanded(const algebra::Matrix<double>& a,
+                                       const std::vector<Complex>& x, bool transposed) {
+    std::vector<Complex> y(static_cast<std::size_t>(transposed ? a.columns() : a.rows()), 0.0);
+    for (int c = 0; c < a.columns(); ++c) {
+      for (int r = 0; r < a.rows(); ++r) {
+        transposed ? y[c] += a(r, c) * x[r] : y[r] += a(r, c) * x[c];
+      }
+    }
+    return y;
+  }
+
+  exact::TransferFunction beyond_;
+  Residual right_, left_;
+};
+
+class Search {
+ public:
+  Search(ReducedModel& model, const Questions& questions, Recipe& recipe)
+      : model_(model), questions_(questions), recipe_(recipe), replayed_(!recipe.steps.empty()) {}
+
+  Answers run() {
+    const auto steps = replayed_ ? std::exchange(recipe_.steps, {}) : questions_.first;
+    for (const auto& step : steps) carry_out(step);
+    judge();
+    if (!replayed_) {
+      verify(0);
+      if (questions_.points.size() > 1) verify(questions_.points.size() - 1);
+    }
+    while (true) {
+      const std::size_t point = worst_point();
+      if (now_.relative_error <= questions_.tolerance) {
+        if (known(point)) break;
+        const double expected = errors_[point];
+        verify(point);
+        if (errors_[point] <= expected && now_.relative_error <= questions_.tolerance) break;
+      } else if (!improve(point)) {
+        if (!known(point)) verify(point);
+        break;
+      }
+    }
+    if (!truths_.empty()) recipe_.scales = scales();
+    evaluate_best();
+    best_.truths = static_cast<int>(truths_.size());
+    best_.pairs = model_.pairs();
+    best_.shifts.assign(shifts_.begin(), shifts_.end());
+    return std::move(best_);
+  }
+
+ private:
+  void carry_out(const Recipe::Step& step) {
+    if (step.z.imag() == 0 && step.pairs > 0) {
+      if (model_.extend(step.z.real(), step.pairs) == 0) return;
+      shifts_.insert(step.z.real());
+    } else {
+      const Truth truth = model_.truth(step.z, false);
+      if (model_.interpolate(truth) == 0) return;
+    }
+    recipe_.steps.push_back(step);
+  }
+
+  void judge() {
+    judged_ = std::make_unique<Judged>(model_);
+    now_ = {};
+    now_.model = judged_->reduced;
+    if (questions_.each_by_its_size) evaluate(now_);
+    residuals_.clear();
+    for (const Complex z : questions_.points) residuals_.push_back(judged_->residuals(z));
+    estimate();
+  }
+
+  [[nodiscard]] bool made_from(Complex z) const {
+    return std::any_of(recipe_.steps.begin(), recipe_.steps.end(),
+                       [z](const Recipe::Step& step) { return step.pairs == 0 && step.z == z; });
+  }
+
+  // What true solutions show beside the residuals, |z| (z + A)^-1 being of order one.
+  [[nodiscard]] std::vector<Recipe::Scale> scales() const {
+    std::vector<Recipe::Scale> found;
+    for (const auto& truth : truths_) {
+      if (made_from(truth.z)) continue;
+      const double error = judged_->deviation(truth);
+      found.push_back({truth.z, error / judged_->residuals(truth.z) * size_of(truth.z),
+                       error / std::abs(judged_->transfer(truth.z))});
+    }
+    return found;
+  }
+  [[nodiscard]] double size_of(Complex z) const { return std::max(std::abs(z), questions_.lowest); }
+
+  // Of all values, from what true solutions show.
+  void estimate() {
+    std::vector<Recipe::Scale> known = scales(), rounded;
+    if (replayed_) known.insert(known.end(), recipe_.scales.begin(), recipe_.scales.end());
+    const auto least = std::min_element(known.begin(), known.end(), [](auto& a, auto& b) {
+      return a.beside_residuals < b.beside_residuals;
+    });
+    if (least != known.end()) {
+      const double most = kRounded * least->beside_residuals;
+      const auto first = std::partition(known.begin(), known.end(), [most](const auto& scale) {
+        return scale.beside_residuals <= most;
+      });
+      rounded.assign(first, known.end());
+      known.erase(first, known.end());
+    }
+    const auto nearest = [](const std::vector<Recipe::Scale>& all, Complex z) {
+      return std::min_element(all.begin(), all.end(), [z](auto& a, auto& b) {
+        return distance(a.z, z) < distance(b.z, z);
+      });
+    };
+    errors_.clear();
+    for (std::size_t p = 0; p < questions_.points.size(); ++p) {
+      const Complex z = questions_.points[p];
+      const auto truth = std::find_if(truths_.begin(), truths_.end(),
+                                      [z](const Truth& solved) { return solved.z == z; });
+      if (truth != truths_.end()) {
+        errors_.push_back(judged_->deviation(*truth));
+        continue;
+      }
+      double error = kCaution * residuals_[p] / size_of(z);
+      if (!known.empty()) error *= nearest(known, z)->beside_residuals;
+      if (!rounded.empty()) error += nearest(rounded, z)->relative * std::abs(judged_->transfer(z));
+      errors_.push_back(error);
+    }
+    now_.error.clear();
+    relative_.clear();
+    for (std::size_t n = 0; n < questions_.terms.size(); ++n) {
+      double error = kFloor * size(n);
+      for (const auto& [point, weight] : questions_.terms[n]) error += weight * errors_[point];
+      // A projection may have a pole on the wrong side; the next ones have it elsewhere.
+      if (!std::isfinite(error)) error = std::numeric_limits<double>::infinity();
+      now_.error.push_back(error);
+      relative_.push_back(error / size(n));
+    }
+    now_.relative_error = *std::max_element(relative_.begin(), relative_.end());
+    if (best_.error.empty() || truths_.size() != best_truths_ ||
+        now_.relative_error < best_.relative_error) {
+      best_ = now_;
+      best_truths_ = truths_.size();
+    }
+  }
+
+  [[nodiscard]] double size(std::size_t n) const {
+    return questions_.each_by_its_size ? std::abs(now_.value[n]) : 1;
+  }
+
+  // What adds most to the error of the worst value.
+  [[nodiscard]] std::size_t worst_point() const {
+    const auto worst = std::max_element(relative_.begin(), relative_.end()) - relative_.begin();
+    const auto& terms = questions_.terms[static_cast<std::size_t>(worst)];
+    return std::max_element(terms.begin(), terms.end(),
+                            [this](auto& a, auto& b) {
+                              return a.weight * errors_[a.point] < b.weight * errors_[b.point];
+                            })
+        ->point;
+  }
+
+  [[nodiscard]] bool known(std::size_t point) const {
+    return std::any_of(truths_.begin(), truths_.end(),
+                       [&](const Truth& truth) { return truth.z == questions_.points[point]; });
+  }
+
+  void verify(std::size_t point) {
+    const Complex z = questions_.points[point];
+    truths_.push_back(model_.truth(z, std::abs(z) >= questions_.far));
+    if (truths_.size() > 1) truths_[truths_.size() - 2].factors.reset();
+    estimate();
+  }
+
+  // By pairs at a shift near the point, and by interpolation where they have been tried.
+  bool improve(std::size_t point) {
+    if (model_.full()) return false;
+    const Complex z = questions_.points[point];
+    const bool tried = before_ < std::numeric_limits<double>::infinity() &&
+                       now_.relative_error > 0.3 * before_ && distance(z, last_) < std::log(2.0);
+    before_ = now_.relative_error;
+    last_ = z;
+    if (tried) return interpolate(point);
+    double shift = std::max(std::abs(z), questions_.lowest);
+    for (double s : shifts_) {
+      if (distance(s, shift) < std::log(kNear)) shift = s;
+    }
+    const int pairs = model_.pairs();
+    carry_out({shift, kBlock});
+    if (model_.pairs() == pairs) return interpolate(point);
+    judge();
+    return true;
+  }
+
+  bool interpolate(std::size_t point) {
+    if (static_cast<int>(truths_.size()) >= questions_.most_truths) return false;
+    if (!known(point)) {
+      verify(point);
+      if (now_.relative_error <= questions_.tolerance) return true;
+      if (worst_point() != point) return true;
+    }
+    const Complex z = questions_.points[point];
+    const auto truth = std::find_if(truths_.begin(), truths_.end(),
+                                    [z](const Truth& known) { return known.z == z; });
+    if (truth->factors == nullptr) *truth = model_.truth(z, truth->far);
+    if (model_.interpolate(*truth) == 0) return false;
+    recipe_.steps.push_back({z, 0});
+    judge();
+    return true;
+  }
+
+  void evaluate(Answers& answers) {
+    answers.value.clear();
+    evaluation_.clear();
+    for (const auto& [value, error] : questions_.values(answers.model)) {
+      answers.value.push_back(value);
+      evaluation_.push_back(error);
+    }
+  }
+
+  // The values, with what their evaluation adds to their errors.
+  void evaluate_best() {
+    evaluate(best_);
+    for (std::size_t n = 0; n < best_.value.size(); ++n) {
+      best_.error[n] += evaluation_[n];
+      const double size = questions_.each_by_its_size ? std::abs(best_.value[n]) : 1;
+      best_.relative_error = std::max(best_.relative_error, best_.error[n] / size);
+    }
+  }
+
+  ReducedModel& model_;
+  const Questions& questions_;
+  Recipe& recipe_;
+  bool replayed_;
+  std::unique_ptr<Judged> judged_;
+  std::vector<Truth> truths_;
+  std::vector<double> residuals_, errors_;     // by point
+  std::vector<double> relative_, evaluation_;  // by value
+  Answers now_, best_;
+  std::size_t best_truths_ = 0;
+  std::set<double> shifts_;
+  double before_ = std::numeric_limits<double>::infinity();
+  Complex last_ = 0;
+};
+
+}  // namespace
+
+Answers ask(ReducedModel& model, const Questions& questions, Recipe& recipe) {
+  return Search(model, questions, recipe).run();
+}
+
+}  // namespace stickslip::quantities
