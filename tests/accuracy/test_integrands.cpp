@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "stickslip/accuracy/refinement.hpp"
 #include "stickslip/accuracy/refinement_sequence.hpp"

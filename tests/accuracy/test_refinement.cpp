@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <random>
 
+#include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "stickslip/accuracy/estimates.hpp"
 #include "stickslip/accuracy/refinement.hpp"

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "../common/catch.hpp"
 #include "../common/scenes.hpp"
 #include "../common/temporary.hpp"
 #include "stickslip/accuracy/refinement.hpp"

@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 #include <limits>
 
+#include "../common/catch.hpp"
 #include "../common/solved.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/quantities/reduced_model.hpp"

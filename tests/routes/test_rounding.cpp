@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <set>
 
 #include "../../src/routes/averages.hpp"
+#include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "../common/options.hpp"
 #include "../common/scenes.hpp"

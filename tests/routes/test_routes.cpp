@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <set>
 
+#include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "../common/scenes.hpp"
 #include "stickslip/routes/evaluation.hpp"

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <stdexcept>
 
+#include "../common/catch.hpp"
 #include "stickslip/algebra/dense.hpp"
 #include "stickslip/io/report.hpp"
 #include "stickslip/studies/extrapolation.hpp"
