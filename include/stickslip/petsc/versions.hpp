@@ -12,4 +12,21 @@ using OptionItems = PetscOptionItems*;
 using OptionItems = PetscOptionItems;
 #endif
 
+/// Makes a container the owner of the T, made by new, that it points to. Returns PETSc's error
+/// code.
+template <class T>
+[[nodiscard]] PetscErrorCode own_contents(PetscContainer container) {
+#if PETSC_VERSION_LT(3, 23, 0)
+  return PetscContainerSetUserDestroy(container, [](void* contents) -> PetscErrorCode {
+    delete static_cast<T*>(contents);
+    return 0;
+  });
+#else
+  return PetscContainerSetCtxDestroy(container, [](void** contents) -> PetscErrorCode {
+    delete static_cast<T*>(*contents);
+    return 0;
+  });
+#endif
+}
+
 }  // namespace stickslip::petsc
