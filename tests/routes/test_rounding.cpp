@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <string_view>
 
 #include "../../src/routes/averages.hpp"
 #include "../common/catch.hpp"
@@ -39,11 +40,11 @@ Evaluation evaluate(const Case& r, const test::Discrete& d) {
   return routes::evaluate({PETSC_COMM_WORLD, r, d, statistics});
 }
 
-const Result& result(const Results& results, const std::string& key) {
+const Result& result(const Results& results, std::string_view key) {
   for (const auto& r : results) {
     if (r.key == key) return r;
   }
-  throw std::invalid_argument(key);
+  throw std::invalid_argument(std::string(key));
 }
 
 double error(const Results& results, const std::string& key) {

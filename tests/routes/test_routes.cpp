@@ -1,6 +1,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <string_view>
 
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
@@ -32,11 +33,11 @@ Evaluation evaluate(const options::Case& r, const test::Discrete& d) {
   return routes::evaluate({PETSC_COMM_WORLD, r, d, statistics});
 }
 
-const Result& result(const Evaluation& evaluation, const std::string& key) {
+const Result& result(const Evaluation& evaluation, std::string_view key) {
   for (const auto& r : evaluation.results) {
     if (r.key == key) return r;
   }
-  throw std::invalid_argument(key);
+  throw std::invalid_argument(std::string(key));
 }
 
 double check_value(const Evaluation& evaluation, const std::string& name) {
