@@ -22,8 +22,9 @@ template <class T>
     return 0;
   });
 #else
-  return PetscContainerSetCtxDestroy(container, [](void** contents) -> PetscErrorCode {
-    delete static_cast<T*>(*contents);
+  // The address of the pointer: a void** in 3.23, a void* later.
+  return PetscContainerSetCtxDestroy(container, [](auto address) -> PetscErrorCode {
+    delete *static_cast<T**>(static_cast<void*>(address));
     return 0;
   });
 #endif
