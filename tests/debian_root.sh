@@ -11,7 +11,7 @@ make_root() {
   debootstrap --variant=minbase "$1" "$2.part" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}" >"$2.log" 2>&1 ||
     { tail -n 20 "$2.log" >&2; return 1; }
   # Mirrors that are snapshots are out of date by intention, and nothing here has to survive a crash.
-  echo 'Acquire::Check-Valid-Until "false";' >"$2.part/etc/apt/apt.conf.d/10snapshot"
+  echo 'Acquire::Check-Valid-Until "false"; Dpkg::Use-Pty "false";' >"$2.part/etc/apt/apt.conf.d/10tests"
   echo force-unsafe-io >"$2.part/etc/dpkg/dpkg.cfg.d/unsafe-io"
   mv "$2.part" "$2"
 }
