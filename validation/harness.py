@@ -16,7 +16,8 @@ warnings.simplefilter("ignore", stickslip.AccuracyWarning)  # a discretisation f
 
 # Open MPI refuses root, and more ranks than cores, without these settings.
 MPI_PERMISSIONS = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-                   "OMPI_MCA_rmaps_base_oversubscribe": "1"}
+                   "OMPI_MCA_rmaps_base_oversubscribe": "1",  # Open MPI 4
+                   "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe"}  # Open MPI 5
 
 
 def seed_of(options):

@@ -62,7 +62,7 @@ double change_between(double low, double high, bool pushed, const Drag& b, doubl
   for (;;) {
     const double middle = low + (high - low) / 2;
     if (!(low < middle && middle < high)) return high;
-    (force + b(middle) > 0 == pushed ? low : high) = middle;
+    ((force + b(middle) > 0) == pushed ? low : high) = middle;
   }
 }
 
@@ -130,7 +130,7 @@ std::vector<double> Drag::balances(double force) const {
   while (high < 0x1p300) {
     const double low = high;
     high *= low < rises_until ? kFine : 2;
-    if (force + (*this)(high) > 0 == pushed) continue;
+    if ((force + (*this)(high) > 0) == pushed) continue;
     found.push_back(change_between(low, high, pushed, *this, force));
     pushed = !pushed;
     if (!pushed && low >= rises_until) break;

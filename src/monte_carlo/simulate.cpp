@@ -1,6 +1,7 @@
 #include "stickslip/monte_carlo/simulate.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>

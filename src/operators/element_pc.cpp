@@ -1,6 +1,9 @@
 #include "stickslip/operators/element_pc.hpp"
 
 #include <fmt/format.h>
+// The only private header of PETSc in this project. A PC type fills the structure of its
+// operations, which PETSc declares here and installs for this purpose; its public interface has
+// PCSHELL alone, which is no type of its own in options and views, and is not told of a reset.
 #include <petsc/private/pcimpl.h>
 
 #include <memory>
@@ -11,6 +14,7 @@
 #include "stickslip/petsc/linear_solver.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
+#include "stickslip/petsc/versions.hpp"
 #include "stickslip/support/errors.hpp"
 
 namespace stickslip::operators {
@@ -104,7 +108,7 @@ PetscErrorCode apply(PC pc, Vec b, Vec x) {
 }
 
 // NOLINTNEXTLINE(readability-identifier-naming): the name that PETSc's macros expect
-PetscErrorCode set_from_options(PC pc, PetscOptionItems* PetscOptionsObject) {
+PetscErrorCode set_from_options(PC pc, petsc::OptionItems PetscOptionsObject) {
   PetscBool& share = elements_of(pc).share;
   PetscOptionsHeadBegin(PetscOptionsObject, "Elimination of velocity elements");
   return PetscOptionsBool("-pc_elements_share", "Ranks share the elements, or each factors all",

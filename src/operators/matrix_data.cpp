@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/versions.hpp"
 
 namespace stickslip::operators {
 namespace {
@@ -12,11 +13,6 @@ using Shared = std::shared_ptr<const MatrixData>;
 
 constexpr const char* kName = "stickslip_data";
 
-PetscErrorCode destroy(void* data) {
-  delete static_cast<Shared*>(data);
-  return 0;
-}
-
 }  // namespace
 
 void attach(Mat matrix, Shared data) {
@@ -24,7 +20,7 @@ void attach(Mat matrix, Shared data) {
   PetscContainer container = nullptr;
   check(PetscContainerCreate(PetscObjectComm(object), &container));
   check(PetscContainerSetPointer(container, new Shared(std::move(data))));
-  check(PetscContainerSetUserDestroy(container, destroy));
+  check(petsc::own_contents<Shared>(container));
   check(PetscObjectCompose(object, kName, reinterpret_cast<PetscObject>(container)));
   check(PetscContainerDestroy(&container));
 }

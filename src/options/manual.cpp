@@ -1,6 +1,7 @@
 #include "stickslip/options/manual.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>

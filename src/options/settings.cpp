@@ -1,6 +1,7 @@
 #include "stickslip/options/settings.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <petscsys.h>
 
 #include <algorithm>

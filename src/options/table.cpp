@@ -1,6 +1,7 @@
 #include "stickslip/options/table.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "stickslip/support/text.hpp"
 #include "words.hpp"

@@ -26,7 +26,7 @@ KSP solver_of(EPS eps) {
 void keep_space_small_for_one(EPS eps) {
   PetscInt wanted = 0, space = 0, projected = 0;
   check(EPSGetDimensions(eps, &wanted, &space, &projected));
-  const bool open = space == PETSC_DEFAULT && projected == PETSC_DEFAULT;
+  const bool open = space < 0 && projected < 0;  // by a constant of PETSc, another from 3.22 on
   if (wanted == 1 && open) check(EPSSetDimensions(eps, 1, 4, PETSC_DEFAULT));
 }
 
@@ -59,20 +59,19 @@ EpsHandle configured_eigensolver(Mat matrix, const std::string& prefix, double t
 Eigensolver::Eigensolver(Mat matrix, const std::string& prefix, double target, int wanted,
                          SolverStatistics& statistics)
     : matrix_(matrix), prefix_(prefix) {
-  double total = 0;
-  const double symbolic_before = logged_seconds("MatLUFactorSym");
-  const double numeric_before = logged_seconds("MatLUFactorNum");
+  double total = 0, symbolic = 0, numeric = 0;
   {
     const PhaseTimer timer("eigenvalues", total);
+    const EventTimer analysis("MatLUFactorSym"), factoring("MatLUFactorNum");
     eps_ = configured_eigensolver(matrix, prefix, target, wanted);
     const DefaultOrdering amf(prefix + "st_");
     check(EPSSetUp(eps_));
     require_factored(solver_of(eps_), prefix + "st_");
     check(EPSSolve(eps_));
     collect_pairs();
+    symbolic = analysis.seconds();
+    numeric = factoring.seconds();
   }
-  const double symbolic = logged_seconds("MatLUFactorSym") - symbolic_before;
-  const double numeric = logged_seconds("MatLUFactorNum") - numeric_before;
   statistics.analysis_seconds += symbolic;
   statistics.factorization_seconds += numeric;
   statistics.solve_seconds += total - symbolic - numeric;

@@ -37,13 +37,13 @@ void Factorization::update() {
 }
 
 void Factorization::factor() {
-  double total = 0;
-  const double symbolic_before = logged_seconds("MatLUFactorSym");
+  double total = 0, symbolic = 0;
   {
     const PhaseTimer timer("factorisation", total);
+    const EventTimer analysis("MatLUFactorSym");
     petsc::factor(ksp_, matrix_, prefix_);
+    symbolic = analysis.seconds();
   }
-  const double symbolic = logged_seconds("MatLUFactorSym") - symbolic_before;
   statistics_.analysis_seconds += symbolic;
   statistics_.factorization_seconds += total - symbolic;
   record_factors(ksp_, statistics_);

@@ -27,6 +27,14 @@ void shorten_start_of_single_process() {
   setenv("HWLOC_COMPONENTS", "-gl", keep_users_choice);
 }
 
+// PETSc after 3.18 ends with a list of the options that it has not read. This program refuses what
+// nobody reads, with the name that was meant.
+void list_no_options_at_the_end() {
+  PetscBool given = PETSC_FALSE;
+  check(PetscOptionsHasName(nullptr, nullptr, "-options_left", &given));
+  if (given == PETSC_FALSE) check(PetscOptionsSetValue(nullptr, "-options_left", "no"));
+}
+
 // PETSc's own words, without the chain of its functions.
 [[noreturn]] void refuse_start(PetscErrorCode code) {
   try {
@@ -51,6 +59,7 @@ Session::Session(int& argc, char**& argv) : arguments_(argv, argv + argc) {
   collect_error_messages();
   const PetscErrorCode code = SlepcInitialize(&count, &values, nullptr, nullptr);
   if (code != 0) refuse_start(code);
+  list_no_options_at_the_end();
   check(PetscLogDefaultBegin());  // the statistics read event times
   (void)ranks_on_node();          // all ranks are here
   take_blas_space();

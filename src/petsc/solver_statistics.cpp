@@ -1,6 +1,5 @@
 #include "stickslip/petsc/solver_statistics.hpp"
 
-#include <petsclog.h>
 #include <petsctime.h>
 
 #include <algorithm>
@@ -15,6 +14,13 @@ PetscLogStage stage_named(const char* name) {
   check(PetscLogStageGetId(name, &stage));
   if (stage < 0) check(PetscLogStageRegister(name, &stage));
   return stage;
+}
+
+// So far, in the current stage.
+double logged_seconds(PetscLogEvent event) {
+  PetscEventPerfInfo info{};
+  check(PetscLogEventGetPerfInfo(PETSC_DETERMINE, event, &info));
+  return info.time;
 }
 
 }  // namespace
@@ -56,18 +62,11 @@ PhaseTimer::~PhaseTimer() {
   (void)PetscLogStagePop();
 }
 
-double logged_seconds(const char* event) {
-  PetscLogEvent id = -1;
-  check(PetscLogEventGetId(event, &id));
-  PetscStageLog log = nullptr;
-  check(PetscLogGetStageLog(&log));
-  double seconds = 0;
-  for (int stage = 0; stage < log->numStages; ++stage) {
-    PetscEventPerfInfo info{};
-    check(PetscLogEventGetPerfInfo(stage, id, &info));
-    seconds += info.time;
-  }
-  return seconds;
+EventTimer::EventTimer(const char* event) {
+  check(PetscLogEventGetId(event, &event_));
+  before_ = logged_seconds(event_);
 }
+
+double EventTimer::seconds() const { return logged_seconds(event_) - before_; }
 
 }  // namespace stickslip::petsc

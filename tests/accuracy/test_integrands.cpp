@@ -1,6 +1,7 @@
-#include <catch2/catch.hpp>
 #include <cmath>
+#include <string_view>
 
+#include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "stickslip/accuracy/refinement.hpp"
 #include "stickslip/accuracy/refinement_sequence.hpp"
@@ -45,11 +46,11 @@ Outcome solve(options::Case r, double accuracy) {
   return accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
 }
 
-const quantities::Result& result(const Outcome& outcome, const std::string& key) {
+const quantities::Result& result(const Outcome& outcome, std::string_view key) {
   for (const auto& r : outcome.results) {
     if (r.key == key) return r;
   }
-  throw std::invalid_argument(key);
+  throw std::invalid_argument(std::string(key));
 }
 
 double value(const Outcome& outcome, const std::string& key) {

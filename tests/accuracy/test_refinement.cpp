@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <random>
+#include <string_view>
 
+#include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "stickslip/accuracy/estimates.hpp"
 #include "stickslip/accuracy/refinement.hpp"
@@ -30,11 +31,11 @@ options::Case given(double mu_s, double mu_d, double tau, double delta, model::D
 
 Outcome solve(const options::Case& r) { return accuracy::refine(PETSC_COMM_WORLD, r, {}, {}); }
 
-const quantities::Result& result(const Outcome& outcome, const std::string& key) {
+const quantities::Result& result(const Outcome& outcome, std::string_view key) {
   for (const auto& r : outcome.results) {
     if (r.key == key) return r;
   }
-  throw std::invalid_argument(key);
+  throw std::invalid_argument(std::string(key));
 }
 
 double value(const Outcome& outcome, const std::string& key) {

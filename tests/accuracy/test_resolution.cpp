@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../common/catch.hpp"
 #include "../common/options.hpp"
 #include "stickslip/accuracy/refinement.hpp"
 #include "stickslip/accuracy/refinement_sequence.hpp"

@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 #include <limits>
 
+#include "../common/catch.hpp"
 #include "stickslip/accuracy/result_bounds.hpp"
 
 using namespace stickslip;

@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 #include <complex>
 
+#include "../common/catch.hpp"
 #include "stickslip/algebra/dense.hpp"
 #include "stickslip/support/errors.hpp"
 

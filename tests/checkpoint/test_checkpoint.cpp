@@ -1,6 +1,6 @@
+#include "../common/catch.hpp"
 #include "stickslip/checkpoint/checkpoint.hpp"
 
-#include <catch2/catch.hpp>
 #include <fstream>
 
 #include "../common/temporary.hpp"

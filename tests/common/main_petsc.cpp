@@ -1,13 +1,13 @@
 /// Starts PETSc around Catch2: the same cases run on every rank, only rank 0 reports unless another
 /// rank fails.
 
-#define CATCH_CONFIG_RUNNER
+#define CATCH_CONFIG_RUNNER  // of Catch2 2
 #include <mpi.h>
 
-#include <catch2/catch.hpp>
 #include <iostream>
 #include <sstream>
 
+#include "catch.hpp"
 #include "stickslip/operators/element_pc.hpp"
 #include "stickslip/petsc/blas.hpp"
 #include "stickslip/petsc/session.hpp"

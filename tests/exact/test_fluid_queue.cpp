@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
 
+#include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "stickslip/exact/fluid_queue.hpp"
 

@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
 
+#include "../common/catch.hpp"
 #include "stickslip/exact/transfer_function.hpp"
 
 using stickslip::algebra::LuFactors;

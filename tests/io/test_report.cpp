@@ -1,9 +1,9 @@
+#include "../common/catch.hpp"
 #include "stickslip/io/report.hpp"
 
 #include <hdf5.h>
 #include <petscsys.h>
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <sstream>
 

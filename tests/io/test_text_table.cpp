@@ -1,6 +1,5 @@
+#include "../common/catch.hpp"
 #include "stickslip/io/text_table.hpp"
-
-#include <catch2/catch.hpp>
 
 using stickslip::io::spaced;
 using stickslip::io::TextTable;

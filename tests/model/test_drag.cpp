@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "../common/catch.hpp"
 #include "stickslip/model/drag.hpp"
 
 using stickslip::model::Drag;

@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../common/catch.hpp"
 #include "stickslip/model/drag_law.hpp"
 
 using stickslip::model::Drag;

@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 #include <stdexcept>
 
+#include "../common/catch.hpp"
 #include "stickslip/model/friction.hpp"
 #include "stickslip/model/grid_index.hpp"
 #include "stickslip/model/process.hpp"

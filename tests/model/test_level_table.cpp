@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "stickslip/model/noise_chain.hpp"
 #include "stickslip/model/process.hpp"

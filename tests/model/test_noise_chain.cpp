@@ -1,8 +1,8 @@
 #include <boost/math/distributions/binomial.hpp>
-#include <catch2/catch.hpp>
 #include <limits>
 #include <numeric>
 
+#include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "stickslip/model/noise_chain.hpp"
 

@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
 #include <vector>
 
+#include "../common/catch.hpp"
 #include "stickslip/model/observable.hpp"
 #include "stickslip/support/errors.hpp"
 

@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../common/catch.hpp"
 #include "stickslip/model/process.hpp"
 
 using namespace stickslip;

@@ -1,6 +1,6 @@
+#include "../common/catch.hpp"
 #include "stickslip/model/unit.hpp"
 
-#include <catch2/catch.hpp>
 #include <stdexcept>
 
 using stickslip::model::Unit;

@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
+#include "../common/catch.hpp"
 #include "../common/scenes.hpp"
 #include "../common/temporary.hpp"
 #include "stickslip/accuracy/refinement.hpp"
@@ -66,11 +67,11 @@ std::vector<double> numbers(const Results& results) {
   return all;
 }
 
-const quantities::Result& result(const Results& results, const std::string& key) {
+const quantities::Result& result(const Results& results, std::string_view key) {
   for (const auto& r : results) {
     if (r.key == key) return r;
   }
-  throw std::invalid_argument(key);
+  throw std::invalid_argument(std::string(key));
 }
 
 std::string complaint(const Case& r, const std::string& checkpoint = {}) {

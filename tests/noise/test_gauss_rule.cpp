@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
 
+#include "../common/catch.hpp"
 #include "stickslip/noise/gauss_rule.hpp"
 
 using namespace stickslip;

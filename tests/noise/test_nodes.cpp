@@ -1,10 +1,10 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <map>
 #include <stdexcept>
 #include <vector>
 
+#include "../common/catch.hpp"
 #include "stickslip/noise/nodes.hpp"
 
 using namespace stickslip;

@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "../common/catch.hpp"
 #include "../common/scenes.hpp"
 #include "stickslip/model/drag_law.hpp"
 #include "stickslip/operators/element_elimination.hpp"

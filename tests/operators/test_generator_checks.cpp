@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../common/catch.hpp"
 #include "stickslip/operators/generator_checks.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/handle.hpp"

@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <numeric>
 
+#include "../common/catch.hpp"
 #include "../common/full_grid.hpp"
 #include "../common/near.hpp"
 #include "stickslip/operators/kolmogorov_operator.hpp"

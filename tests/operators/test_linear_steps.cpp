@@ -1,5 +1,4 @@
-#include <catch2/catch.hpp>
-
+#include "../common/catch.hpp"
 #include "stickslip/operators/linear_steps.hpp"
 #include "stickslip/petsc/scalars.hpp"
 

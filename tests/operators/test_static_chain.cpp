@@ -1,8 +1,8 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 
+#include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "stickslip/operators/static_chain.hpp"
 

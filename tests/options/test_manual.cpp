@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "../common/catch.hpp"
 #include "stickslip/options/manual.hpp"
 #include "stickslip/options/result_table.hpp"
 #include "stickslip/options/table.hpp"

@@ -1,8 +1,8 @@
 #include <hdf5.h>
 
-#include <catch2/catch.hpp>
 #include <fstream>
 
+#include "../common/catch.hpp"
 #include "../common/temporary.hpp"
 #include "stickslip/options/reference.hpp"
 

@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <petscsys.h>
 
 #include <cstdio>
 #include <fstream>
 
+#include "../common/catch.hpp"
 #include "../common/temporary.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/petsc/check.hpp"

@@ -1,6 +1,6 @@
+#include "../common/catch.hpp"
 #include "stickslip/options/result_table.hpp"
 
-#include <catch2/catch.hpp>
 #include <cstddef>
 #include <set>
 #include <sstream>

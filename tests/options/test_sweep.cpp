@@ -1,6 +1,5 @@
+#include "../common/catch.hpp"
 #include "stickslip/options/sweep.hpp"
-
-#include <catch2/catch.hpp>
 
 #include "../common/options.hpp"
 #include "stickslip/support/errors.hpp"

@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <set>
 #include <sstream>
 
+#include "../common/catch.hpp"
 #include "../common/temporary.hpp"
 #include "stickslip/options/manual.hpp"
 #include "stickslip/options/settings.hpp"

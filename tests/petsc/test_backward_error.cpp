@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 #include <vector>
 
+#include "../common/catch.hpp"
 #include "../common/matrices.hpp"
 #include "stickslip/petsc/backward_error.hpp"
 #include "stickslip/petsc/check.hpp"

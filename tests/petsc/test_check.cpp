@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <new>
 #include <petscmat.h>
 #include <stdexcept>
 
+#include "../common/catch.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/handle.hpp"
 #include "stickslip/support/errors.hpp"

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <petscsys.h>
 
 #include <algorithm>
@@ -7,6 +6,7 @@
 #include <numbers>
 #include <type_traits>
 
+#include "../common/catch.hpp"
 #include "../common/matrices.hpp"
 #include "../common/options.hpp"
 #include "stickslip/petsc/check.hpp"

@@ -1,5 +1,4 @@
-#include <catch2/catch.hpp>
-
+#include "../common/catch.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/handle.hpp"
 

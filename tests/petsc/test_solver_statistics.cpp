@@ -1,5 +1,4 @@
-#include <catch2/catch.hpp>
-
+#include "../common/catch.hpp"
 #include "stickslip/petsc/solver_statistics.hpp"
 
 using namespace stickslip;

@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../common/catch.hpp"
 #include "../common/exponential.hpp"
 #include "../common/matrices.hpp"
 #include "../common/options.hpp"

@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 
+#include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "../common/solved.hpp"
 #include "stickslip/model/noise_chain.hpp"

@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 
+#include "../common/catch.hpp"
 #include "../common/exponential.hpp"
 #include "../common/full_grid.hpp"
 #include "../common/near.hpp"

@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 #include <numeric>
 
+#include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "../common/scenes.hpp"
 #include "stickslip/exact/fluid_queue.hpp"

@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <memory>
 
+#include "../common/catch.hpp"
 #include "../common/solved.hpp"
 #include "stickslip/exact/transfer_function.hpp"
 #include "stickslip/petsc/vectors.hpp"

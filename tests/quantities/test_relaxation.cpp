@@ -1,9 +1,9 @@
 #include <petscsys.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../common/catch.hpp"
 #include "../common/scenes.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/check.hpp"

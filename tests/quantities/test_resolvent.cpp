@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "../common/scenes.hpp"
 #include "stickslip/petsc/check.hpp"

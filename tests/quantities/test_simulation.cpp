@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 
+#include "../common/catch.hpp"
 #include "../common/simulation.hpp"
 #include "../common/solved.hpp"
 #include "stickslip/quantities/durations.hpp"

@@ -1,7 +1,7 @@
 #include <boost/math/quadrature/gauss.hpp>
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "../common/solved.hpp"
 #include "stickslip/petsc/vectors.hpp"

@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
 #include <numeric>
 
+#include "../common/catch.hpp"
 #include "../common/full_grid.hpp"
 #include "../common/near.hpp"
 #include "../common/solved.hpp"

@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 
+#include "../common/catch.hpp"
 #include "../common/full_grid.hpp"
 #include "../common/near.hpp"
 #include "stickslip/accuracy/resolution.hpp"

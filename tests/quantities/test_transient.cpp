@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../common/catch.hpp"
 #include "../common/exponential.hpp"
 #include "../common/full_grid.hpp"
 #include "../common/near.hpp"

@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "../common/catch.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/quantities/uncertain.hpp"
 

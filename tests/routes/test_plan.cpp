@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../common/catch.hpp"
 #include "../common/scenes.hpp"
 #include "stickslip/accuracy/prediction.hpp"
 #include "stickslip/accuracy/refinement.hpp"

@@ -1,9 +1,11 @@
-#include <catch2/catch.hpp>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
+#include <string_view>
 
 #include "../../src/routes/averages.hpp"
+#include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "../common/options.hpp"
 #include "../common/scenes.hpp"
@@ -39,11 +41,11 @@ Evaluation evaluate(const Case& r, const test::Discrete& d) {
   return routes::evaluate({PETSC_COMM_WORLD, r, d, statistics});
 }
 
-const Result& result(const Results& results, const std::string& key) {
+const Result& result(const Results& results, std::string_view key) {
   for (const auto& r : results) {
     if (r.key == key) return r;
   }
-  throw std::invalid_argument(key);
+  throw std::invalid_argument(std::string(key));
 }
 
 double error(const Results& results, const std::string& key) {
@@ -123,19 +125,24 @@ TEST_CASE("rounding: derivatives are off by what those of the mean durations are
 TEST_CASE(
     "rounding: what an identity lacks is added to every number of the stationary distribution") {
   using enum Quantity;
-  const auto r =
-      given(scene(0.15, 0.005, 1.0 / 1024, 0.25, {1, 0}), {sticking, moments, entry_law});
-  const auto d = test::on_hp(r.scene, 6, 1e-9);
-  const auto found = evaluate(r, d);
-  const double defect = found.distribution->excursion().conservation_defect(d);
-  REQUIRE(defect > 1e-14);  // the noise is far faster than sliding phases
-  const auto& results = found.results;
-  const double stick = value(results, "mean_stick");
-  CHECK(error(results, "mean_stick") == Approx(defect * stick).margin(2e-15 * stick));
-  for (const auto& each : results) {
-    INFO(each.key);
-    CHECK(each.error[0] >= defect * std::abs(each.value[0]));
+  double largest = 0;
+  for (double mu_d : {0.003, 0.005, 0.007, 0.01, 0.014}) {
+    const auto r =
+        given(scene(0.15, mu_d, 1.0 / 1024, 0.25, {1, 0}), {sticking, moments, entry_law});
+    const auto d = test::on_hp(r.scene, 6, 1e-9);
+    const auto found = evaluate(r, d);
+    const double defect = found.distribution->excursion().conservation_defect(d);
+    largest = std::max(largest, defect);
+    const auto& results = found.results;
+    const double stick = value(results, "mean_stick");
+    CHECK(error(results, "mean_stick") == Approx(defect * stick).margin(2e-15 * stick));
+    for (const auto& each : results) {
+      INFO(each.key << " at mu_d " << mu_d);
+      CHECK(each.error[0] >= defect * std::abs(each.value[0]));
+    }
   }
+  // The noise is far faster than sliding phases; but rounding may happen to cancel in one case.
+  CHECK(largest > 1e-14);
 }
 
 TEST_CASE("rounding: averages by hand, with the error of a probability that is known") {

@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
+#include "../common/catch.hpp"
 #include "stickslip/simulation/comoments.hpp"
 
 using stickslip::simulation::Comoments;

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
+#include "../common/catch.hpp"
 #include "../common/simulation.hpp"
 #include "stickslip/simulation/excursions.hpp"
 #include "stickslip/simulation/flow.hpp"

@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 
+#include "../common/catch.hpp"
 #include "../common/quadrature.hpp"
 #include "stickslip/simulation/flow.hpp"
 

@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../common/catch.hpp"
 #include "stickslip/simulation/path.hpp"
 #include "stickslip/simulation/sampler.hpp"
 

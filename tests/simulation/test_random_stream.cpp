@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 #include <vector>
 
+#include "../common/catch.hpp"
 #include "stickslip/simulation/random_stream.hpp"
 
 using stickslip::simulation::RandomStream;

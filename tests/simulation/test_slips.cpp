@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <vector>
 
+#include "../common/catch.hpp"
 #include "stickslip/simulation/path.hpp"
 #include "stickslip/simulation/sampler.hpp"
 

@@ -1,10 +1,10 @@
 #include <array>
 #include <boost/math/special_functions/beta.hpp>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <limits>
 
+#include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "stickslip/simulation/sampler.hpp"
 #include "stickslip/simulation/tally.hpp"

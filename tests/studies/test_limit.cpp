@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <span>
 #include <vector>
 
+#include "../common/catch.hpp"
 #include "stickslip/studies/limit.hpp"
 
 using namespace stickslip::studies;

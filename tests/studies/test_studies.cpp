@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <stdexcept>
+#include <string_view>
 
+#include "../common/catch.hpp"
 #include "stickslip/algebra/dense.hpp"
 #include "stickslip/io/report.hpp"
 #include "stickslip/studies/extrapolation.hpp"
@@ -35,11 +36,11 @@ Request request(StudyKind kind, double mu_d, double delta, int steps) {
 
 Study result(const Request& r) { return studies::run_study(PETSC_COMM_WORLD, r, r.study, {}); }
 
-const Table& table(const Study& study, const std::string& name) {
+const Table& table(const Study& study, std::string_view name) {
   for (const auto& t : study.tables) {
     if (t.name == name) return t;
   }
-  throw std::invalid_argument(name);
+  throw std::invalid_argument(std::string(name));
 }
 
 std::vector<double> column(const Table& t, const std::string& name) {

@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 #include <fstream>
 
+#include "../common/catch.hpp"
 #include "../common/temporary.hpp"
 #include "stickslip/support/atomic_file.hpp"
 

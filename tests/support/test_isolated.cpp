@@ -1,8 +1,8 @@
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <csignal>
 
+#include "../common/catch.hpp"
 #include "stickslip/support/isolated.hpp"
 
 using stickslip::isolated;

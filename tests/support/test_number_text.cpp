@@ -1,6 +1,6 @@
+#include "../common/catch.hpp"
 #include "stickslip/support/number_text.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 

@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 #include <stdexcept>
 
+#include "../common/catch.hpp"
 #include "stickslip/support/seal.hpp"
 
 using stickslip::sealed;

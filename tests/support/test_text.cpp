@@ -1,5 +1,4 @@
-#include <catch2/catch.hpp>
-
+#include "../common/catch.hpp"
 #include "stickslip/support/text.hpp"
 
 using stickslip::enumerate;

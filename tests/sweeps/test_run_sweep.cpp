@@ -1,9 +1,9 @@
+#include "../common/catch.hpp"
 #include "stickslip/sweeps/run_sweep.hpp"
 
 #include <hdf5.h>
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 

@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <numeric>
 
+#include "../common/catch.hpp"
 #include "stickslip/velocity/hp_discretisation.hpp"
 
 using namespace stickslip;

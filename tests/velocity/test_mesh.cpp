@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 
+#include "../common/catch.hpp"
 #include "stickslip/velocity/mesh.hpp"
 #include "stickslip/velocity/tail.hpp"
 

@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 
+#include "../common/catch.hpp"
 #include "stickslip/velocity/upwind_discretisation.hpp"
 
 using namespace stickslip;

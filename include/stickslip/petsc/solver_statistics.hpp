@@ -1,7 +1,7 @@
 #pragma once
 /// What was really done: counts, sizes and wall time by phase.
 
-#include <petscsys.h>
+#include <petsclog.h>
 
 #include <cstdint>
 #include <string>
@@ -52,7 +52,16 @@ class PhaseTimer {
   double start_;
 };
 
-/// Wall seconds that PETSc has logged for an event such as "MatLUFactorSym" so far, all stages.
-[[nodiscard]] double logged_seconds(const char* event);
+/// Wall seconds that PETSc logs from here on for an event such as "MatLUFactorSym", in the stage
+/// that is current when it is asked for, which has to be the one of the construction. Local.
+class EventTimer {
+ public:
+  explicit EventTimer(const char* event);
+  [[nodiscard]] double seconds() const;
+
+ private:
+  PetscLogEvent event_ = -1;
+  double before_ = 0;
+};
 
 }  // namespace stickslip::petsc
