@@ -11,6 +11,10 @@ from running import SOURCES, Case
 CMAKE = """#!/bin/sh
 echo "$@" >> "$CMAKE_CALLS"
 """
+# Every package is installed.
+QUERY = """#!/bin/sh
+for package; do echo "installed $package"; done
+"""
 PROGRAM = """#!/bin/sh
 pwd; echo "$@"; [ $# -lt 2 ] || cat "$2"
 """
@@ -32,7 +36,7 @@ class Bootstrap(Case):
         shutil.copy(SOURCES / "bootstrap", self.sources)
         shutil.copy(SOURCES / "packages.txt", self.sources)
         (self.sources / "python").symlink_to(SOURCES / "python")
-        for file, text in ((commands / "cmake", CMAKE), (self.build / "stickslip", PROGRAM)):
+        for file, text in ((commands / "cmake", CMAKE), (commands / "dpkg-query", QUERY), (self.build / "stickslip", PROGRAM)):
             file.write_text(text)
             file.chmod(0o755)
         (self.build / "build.ninja").touch()
@@ -96,6 +100,14 @@ class Bootstrap(Case):
             self.assertIn("-G Ninja -DCMAKE_BUILD_TYPE=Release", line)
             self.assertIn("--fresh", line)
             self.assertTrue(kept.exists())
+
+    def test_a_moved_folder_of_the_sanitizers(self):
+        check = self.sources / "build-check"
+        check.mkdir()
+        for sources, fresh in ((self.sources, False), ("/gone", True)):
+            (check / "CMakeCache.txt").write_text(CACHE.format(sources=sources, build=check, project="stickslip"))
+            self.bootstrap("fuzz", status=127)  # nothing was compiled
+            self.assertEqual("--fresh" in self.calls.read_text().splitlines()[0], fresh)
 
     def test_the_same_folder_by_another_name(self):
         link = self.folder / "link"
