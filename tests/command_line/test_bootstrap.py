@@ -101,6 +101,10 @@ class Bootstrap(Case):
             self.assertIn("--fresh", line)
             self.assertTrue(kept.exists())
 
+    def test_the_report_announces_how_long_it_takes(self):
+        self.assertIn("about an hour", self.bootstrap("report", "--help", status=None).stderr)
+        self.assertIn("four minutes", self.bootstrap("report", "--help", "--quick", status=None).stderr)
+
     def test_a_moved_folder_of_the_sanitizers(self):
         check = self.sources / "build-check"
         check.mkdir()

@@ -6,7 +6,7 @@ usage: python3 validation/calibration/run.py [--quick] [--groups NAMES] [--cases
 
 Cases (cases.py) follow from the seed and their number. Each is run at several accuracies, and at a much
 higher one, whose values stand for the true ones. A value counts where that run is three times as accurate as
-the estimate to be judged. --quick takes 200 cases of scalars and 20 of transforms; without it up to 300 of every group.
+the estimate to be judged. --quick takes 50 cases of scalars and 6 of transforms; without it up to 300 of every group.
 --page puts table and picture into the manual.
 """
 
@@ -36,7 +36,7 @@ COLUMNS = ("group", "case", "accuracy", "key", "entry", "value", "error", "truth
 COLUMNS_OF_TABLE = ("accuracy", "cases", "values", "not judged, %", "misses", "cases with a miss, %", "worst",
                     "median width", "ninth decile")
 MARK, END = "<!-- made by validation/calibration/run.py -->", "<!-- end -->"
-QUICK = {"scalars": 200, "transforms": 20}
+QUICK = {"scalars": 50, "transforms": 6}
 
 
 class LeftOut(Exception):
