@@ -2,8 +2,8 @@
 
 usage: python3 validation/slips/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
---quick simulates a fifth of the excursions, takes white noise from fewer correlation times, and counts costs at a larger
-delta.
+--quick simulates a fifth of the excursions, takes white noise from fewer correlation times, and counts costs at
+a larger delta.
 """
 
 import math
