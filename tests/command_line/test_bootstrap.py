@@ -83,9 +83,10 @@ class Bootstrap(Case):
     def test_a_new_build_folder(self):
         (self.build / "CMakeCache.txt").unlink()
         (self.build / "build.ninja").unlink()
-        self.assertRegex(self.bootstrap("build").stderr, "(?s)configuring .*minutes")
+        done = self.bootstrap("build", STICKSLIP_CMAKE_OPTIONS="-DONE=1 -DTWO=2")
+        self.assertRegex(done.stderr, "(?s)configuring .*minutes")
         line, = self.configurations()
-        self.assertIn("-G Ninja -DCMAKE_BUILD_TYPE=Release", line)
+        self.assertIn("-G Ninja -DCMAKE_BUILD_TYPE=Release -DONE=1 -DTWO=2", line)
         self.assertNotIn("--fresh", line)
 
     def test_a_moved_or_copied_checkout_is_configured_anew(self):
