@@ -12,10 +12,15 @@ try:
     from .program import AccuracyWarning, BadInput, Cancelled, OutOfMemory, ProgramError, TimedOut, Unsolved, find_program
     from .results import Density, Result, Results
     from .sweeps import Sweep
+    from .version import __version__
 except ImportError as problem:
     if sys.argv[:1] == ["-m"]:  # python3 -m stickslip, which ends with the sentence alone
         sys.exit(str(problem))
     raise
 
 __all__ = ["AccuracyWarning", "BadInput", "Cancelled", "Density", "OutOfMemory", "ProgramError", "Result", "Results",
-           "Sweep", "TimedOut", "Unsolved", "find_program", "load", "run", "sweep"]
+           "Sweep", "TimedOut", "Unsolved", "__version__", "find_program", "load", "run", "sweep"]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -36,6 +36,16 @@ def main(words: Sequence[str] | None = None) -> int:
     return arguments.act(arguments)
 
 
+def explore_command() -> int:
+    """The console script stickslip-explore."""
+    return main(["explore", *sys.argv[1:]])
+
+
+def plot_command() -> int:
+    """The console script stickslip-plot."""
+    return main(["plot", *sys.argv[1:]])
+
+
 def explore_scene(arguments: argparse.Namespace) -> int:
     """Shows the window until it is closed; returns the exit status."""
     try:

@@ -14,6 +14,7 @@ from . import results, sweeps
 from .needed import needed
 from .program import (DONE, NO_MEMORY, SHORT, AccuracyWarning, Finished, OutOfMemory, ProgramError, Unsolved, execute,
                       find_program, words_of)
+from .reference import with_options
 from .results import Results
 from .sweeps import Sweep
 
@@ -23,6 +24,7 @@ FIELDS = ("density", "trajectory", "relaxation")  # what only HDF5 holds
 Path = str | os.PathLike[str]
 
 
+@with_options
 def run(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = None, program: Path | None = None,
         cancel: threading.Event | None = None, **options: Any) -> Results:
     """Run the program once.
@@ -40,8 +42,9 @@ def run(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = Non
     cancel
         Ends the run when another thread sets it.
     **options
-        The program's options by name: numbers, text, sequences of them, or True for an option without a value.
-        Write `lambda_` for lambda. The program checks them.
+        Parameters of the model and options of the program by name: numbers, text, sequences of them, or True for
+        an option without a value. Write `lambda_` for lambda. The program checks them. help() lists all of them at
+        the end.
 
     Returns
     -------
@@ -97,6 +100,7 @@ def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | N
     return found
 
 
+@with_options
 def sweep(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = None, program: Path | None = None,
           **options: Any) -> Sweep:
     """Run the program for every combination of values of some options.

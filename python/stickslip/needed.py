@@ -1,10 +1,11 @@
-"""Modules that Debian ships by themselves; where one is missing, the error names its package."""
+"""Modules of other projects; where one is missing, the error says how to install it."""
 
 import importlib
 from types import ModuleType
 
-PACKAGES = {"numpy": "python3-numpy", "h5py": "python3-h5py", "matplotlib": "python3-matplotlib",
-            "tkinter": "python3-tk", "tornado": "python3-tornado"}
+COMMANDS = {name: f"pip install {name}, or on Debian apt-get install python3-{name}"
+            for name in ("numpy", "h5py", "matplotlib", "tornado")}
+COMMANDS["tkinter"] = "on Debian apt-get install python3-tk"  # a part of Python, which pip does not have
 
 
 def needed(name: str) -> ModuleType:
@@ -22,12 +23,12 @@ def needed(name: str) -> ModuleType:
     Raises
     ------
     ImportError
-        In one sentence that names the Debian package.
+        In one sentence that names the commands of pip and apt.
     """
     try:
         return importlib.import_module(name)
     except ImportError as problem:
         top = name.partition(".")[0]
         if isinstance(problem, ModuleNotFoundError) and problem.name == top:
-            raise ImportError(f"stickslip needs {top} for this: apt-get install {PACKAGES[top]}") from None
+            raise ImportError(f"stickslip needs {top} for this: {COMMANDS[top]}") from None
         raise

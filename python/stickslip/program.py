@@ -1,6 +1,7 @@
 """Finds the program, runs it, and turns its exit statuses into exceptions."""
 
 import dataclasses
+import json
 import math
 import os
 import pathlib
@@ -9,6 +10,7 @@ import signal
 import subprocess
 import threading
 import time
+import urllib.parse
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -16,6 +18,11 @@ DONE, BAD_INPUT, SHORT, NO_MEMORY = 0, 2, 3, 4  # exit statuses
 TAIL = 20  # lines of what the program printed, in messages
 LOOK = 0.01  # seconds between looks at whether a run is still wanted
 GRACE = 5  # seconds from the request to end until the program is killed
+# Words that Open MPI prints when it refuses to start the ranks, what it refuses, and the variables that allow it.
+REFUSALS = (
+    ("attempt to run as root", "to run as root, as in a container",
+     {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}),
+    ("not enough slots available", "to start more ranks than there are cores", {"OMPI_MCA_rmaps_base_oversubscribe": "1"}))
 PACKAGE = pathlib.Path(__file__).resolve().parent
 
 
@@ -76,8 +83,8 @@ def find_program() -> pathlib.Path:
     Returns
     -------
     path
-        The environment variable STICKSLIP, the build or install tree that the package belongs to, or PATH, in
-        this order.
+        The environment variable STICKSLIP, the build or install tree that the package belongs to, the build of the
+        sources that pip installed the package from, or PATH, in this order.
 
     Raises
     ------
@@ -85,15 +92,27 @@ def find_program() -> pathlib.Path:
         If no place has it.
     """
     given = os.environ.get("STICKSLIP")
-    installed = PACKAGE.parent.name.endswith("-packages")  # PREFIX/lib/python3/dist-packages
-    beside = PACKAGE.parents[3] / "bin" / "stickslip" if installed else PACKAGE.parents[1] / "build" / "stickslip"
-    for place in [given] if given else [beside, shutil.which("stickslip")]:
+    own = _places_of_the_package()
+    for place in [given] if given else [*own, shutil.which("stickslip")]:
         if place and pathlib.Path(place).is_file() and os.access(place, os.X_OK):
             return pathlib.Path(place).resolve()
     if given:
         raise ProgramError(f"the environment variable STICKSLIP names {given}, which is no program")
     raise ProgramError(f"the program stickslip is not found: the environment variable STICKSLIP is not set, there is "
-                       f"none beside the package ({beside}), and none in PATH; ./bootstrap build makes it")
+                       f"none beside the package ({', '.join(map(str, own))}), and none in PATH; ./bootstrap build in "
+                       "the folder of the sources makes it")
+
+
+def _places_of_the_package() -> list[pathlib.Path]:
+    """Where the program is if it was built or installed with the package."""
+    if not PACKAGE.parent.name.endswith("-packages"):  # PREFIX/lib/python3/dist-packages
+        return [PACKAGE.parents[1] / "build" / "stickslip"]
+    places = [PACKAGE.parents[3] / "bin" / "stickslip"]
+    for record in PACKAGE.parent.glob("stickslip-*.dist-info/direct_url.json"):  # by pip: where from
+        url = urllib.parse.urlparse(json.loads(record.read_text()).get("url", ""))
+        if url.scheme == "file":
+            places.append(pathlib.Path(urllib.parse.unquote(url.path)).parent / "build" / "stickslip")
+    return places
 
 
 def words_of(options: Mapping[str, Any]) -> list[str]:
@@ -156,7 +175,8 @@ def execute(words: Sequence[str], timeout: float | None = None, cancel: threadin
         process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                    start_new_session=True)
     except OSError as problem:
-        raise ProgramError(f"{words[0]} does not run: {problem.strerror}") from None
+        advice = "; apt-get install openmpi-bin" if words[0] == "mpiexec" else ""
+        raise ProgramError(f"{words[0]} does not run: {problem.strerror}{advice}") from None
     try:
         out, err = (text.decode(errors="replace") for text in _printed(process, timeout, cancel))
     except BaseException as problem:
@@ -199,6 +219,10 @@ def _end(process: subprocess.Popen) -> None:
 
 def _end_of(finished: Finished) -> str:
     """Of a program that failed: the signal or the exit status, and the last lines."""
+    for words, what, environment in REFUSALS:
+        if words in finished.err:
+            return (f"mpiexec refuses {what}; set {' and '.join(f'{n}={v}' for n, v in environment.items())} in the "
+                    f"environment, in Python by os.environ.update({environment})")
     status = finished.status
     number = -status if status < 0 else status - 128  # shells and mpiexec add 128
     try:

@@ -96,14 +96,16 @@ bool is_option_name(const std::string& word) {
 void check_stray_words(const std::vector<std::string>& argv, Problems& problems) {
   for (std::size_t n = 0; n < argv.size(); ++n) {
     const bool is_value = n > 0 && is_option_name(argv[n - 1]);
-    if (is_option_name(argv[n]) || is_value) continue;
+    const bool after_sign = n > 0 && argv[n - 1] == "=";  // of which the option complains
+    if (is_option_name(argv[n]) || is_value || after_sign) continue;
     const bool in_list = argv[n].starts_with(',') || (n > 0 && argv[n - 1].ends_with(','));
     std::error_code error;
     const bool is_file = std::filesystem::is_regular_file(argv[n], error);
     problems.add(fmt::format("{}: belongs to no option; {}", argv[n],
-                             in_list   ? "lists have no spaces, as in a,b"
-                             : is_file ? "did you mean -options_file " + argv[n] + "?"
-                                       : "options look like -name value"));
+                             in_list         ? "lists have no spaces, as in a,b"
+                             : is_file       ? "did you mean -options_file " + argv[n] + "?"
+                             : find(argv[n]) ? "did you mean -" + argv[n] + "?"
+                                             : "options look like -name value"));
   }
 }
 

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "stickslip/options/synonyms.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/text.hpp"
@@ -32,7 +33,7 @@ void check_words(const Option& option, const std::string& value, Problems& probl
   if (given.empty()) problems.add(option, value, must, "");
   for (auto word = given.begin(); word != given.end(); ++word) {
     if (std::count(option.words.begin(), option.words.end(), *word) == 0) {
-      const std::string near = nearest_word(*word, option.words);
+      const std::string near = meant_word(option, *word);
       problems.add(option, *word, must, near.empty() ? "" : "did you mean " + near + "?");
     }
     if (std::find(given.begin(), word, *word) != word) {
@@ -60,6 +61,10 @@ void check_number(const Option& option, const std::string& value, Problems& prob
 }
 
 void check_value(const Option& option, const std::string& value, Problems& problems) {
+  if (value == "=") {
+    return problems.add(option, value, "is no value",
+                        "write -" + option.name + " value, without =");
+  }
   const bool is_list = option.kind == Kind::list || option.kind == Kind::numbers;
   if (is_list && value.ends_with(',')) {
     return problems.add(option, value, "ends with a comma", "lists have no spaces, as in a,b");

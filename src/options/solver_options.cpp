@@ -5,6 +5,7 @@
 #include <array>
 
 #include "reading.hpp"
+#include "stickslip/options/synonyms.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/solver_choice.hpp"
 #include "stickslip/support/text.hpp"
@@ -92,10 +93,7 @@ std::string unknown_option(const std::string& name) {
                        near.empty() ? "" : fmt::format("did you mean -{}? ", near), role->prefix,
                        role->read_later.front());
   }
-  const auto names = all_names();
-  const std::string near = nearest_word("-" + name, names);
-  return fmt::format("-{}: unknown option; {}", name,
-                     near.empty() ? "-help lists all" : "did you mean " + near + "?");
+  return fmt::format("-{}: unknown option; {}", name, suggestion_for_option(name));
 }
 
 // Names of all options in the database, without the dash.

@@ -39,9 +39,22 @@ class Refusals(Case):
 
     def test_names(self):
         self.refuse("-detla", "0.5", message=("did you mean -delta?",))
-        self.refuse("-mu_s=3", message=("-mu_s=3", "unknown option"))
+        self.refuse("-mu_s=3", message=("-mu_s=3", "unknown option", "write -mu_s 3"))
+        self.refuse("-mu_s", "=", "3", message=("-mu_s = =: is no value", "write -mu_s value, without ="))
+        self.refuse("mu_s", "3", message=("mu_s: belongs to no option; did you mean -mu_s?",))
         self.refuse("-slide_mat_mumps_icntl_77", "3", message=("-slide_mat_mumps_icntl_77",))
         self.refuse("scene.opts", message=("belongs to no option",))
+
+    def test_names_of_the_literature_and_of_other_programs(self):
+        for words, message in (("-ksp_view", "did you mean -slide_ksp_view?"), ("-pc_type lu", "did you mean -slide_pc_type?"),
+                               ("-mu_d=0.5", "write -mu_d 0.5"), ("-sigma 2", "did you mean -noise_deviation?"),
+                               ("-record force.csv", "did you mean -noise_file? See docs/recorded_forces.md"),
+                               ("-quantities psd", "did you mean spectrum?"),
+                               ("-quantities sticking,msd", "-quantities = msd: must be"),
+                               ("-quantities msd", "did you mean displacement?"),
+                               ("-quantities first_passage", "did you mean peak?"),
+                               ("-quantities P_stick", "did you mean sticking?"), ("-route mc", "did you mean monte_carlo?")):
+            self.refuse(*words.split(), message=(message,))
 
     def test_solvers(self):
         for pc in ("shell", "mg", "eisenstat", "ml", "hmg", "foo"):

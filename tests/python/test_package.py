@@ -1,5 +1,6 @@
 """The Python package, as a script meets it."""
 
+import inspect
 import json
 import os
 import pathlib
@@ -202,13 +203,45 @@ class Failures(Case):
                 with mock.patch.object(program, "PACKAGE", package):
                     self.assertEqual(stickslip.find_program(), file)
 
+    def test_the_program_of_the_sources_that_pip_installed_from(self):
+        packages = self.folder / "venv" / "lib" / "python3.11" / "site-packages"
+        record = packages / "stickslip-0.1.0.dist-info" / "direct_url.json"
+        file = self.folder / "my sources" / "build" / "stickslip"
+        for place in (record, file):
+            place.parent.mkdir(parents=True)
+        record.write_text(json.dumps({"dir_info": {}, "url": (self.folder / "my sources" / "python").as_uri()}))
+        with mock.patch.object(program, "PACKAGE", packages / "stickslip"), mock.patch.dict(os.environ, PATH="/none"):
+            os.environ.pop("STICKSLIP")
+            with self.assertRaisesRegex(stickslip.ProgramError, str(file)):
+                stickslip.find_program()
+            file.write_text("")
+            file.chmod(0o755)
+            self.assertEqual(stickslip.find_program(), file)
+
+    def test_what_mpiexec_refuses(self):
+        for printed, words in (("mpiexec has detected an attempt to run as root.", "to run as root.*OMPI_ALLOW_RUN_AS_ROOT=1 and "
+                                "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 in the environment"),
+                               ("There are not enough slots available in the system", "more ranks than there are cores; set "
+                                "OMPI_MCA_rmaps_base_oversubscribe=1")):
+            mpiexec = self.folder / "mpiexec"
+            mpiexec.write_text(f"#!/bin/sh\necho '{printed}' >&2; seq 100 >&2; exit 1\n")
+            mpiexec.chmod(0o755)
+            with mock.patch.dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}"):
+                self.assertRaisesRegex(stickslip.ProgramError, words, stickslip.run, ranks=2)
+        with mock.patch.dict(os.environ, PATH="/none"):
+            self.assertRaisesRegex(stickslip.ProgramError, "mpiexec does not run.*openmpi-bin", stickslip.run, ranks=2)
+
+    @staticmethod
+    def advice(name):
+        return f"pip install {name}, or on Debian apt-get install python3-{name}"
+
     def test_a_missing_module_is_one_sentence(self):
         for name, script in (("numpy", "import stickslip"),
                              ("h5py", "import stickslip; stickslip.load('a.h5')"),
                              ("matplotlib", "import stickslip.plots")):
             done = self.python("-c", f"import sys; sys.modules['{name}'] = None; {script}")
             self.assertEqual(done.stderr.splitlines()[-1],
-                             f"ImportError: stickslip needs {name} for this: apt-get install python3-{name}")
+                             f"ImportError: stickslip needs {name} for this: {self.advice(name)}")
 
     def test_the_command_line_tells_a_missing_module_in_one_sentence(self):
         stickslip.run(**SMALL, quantities="density", keep=self.folder / "density.h5")
@@ -218,11 +251,36 @@ class Failures(Case):
                 done = self.python("-m", "stickslip", "plot", "density.h5",
                                    PYTHONPATH=f"{hidden}:{SOURCES / 'python'}")
             self.assertEqual((done.returncode, done.stdout, done.stderr), (
-                1, "", f"stickslip needs {name} for this: apt-get install python3-{name}\n"))
+                1, "", f"stickslip needs {name} for this: {self.advice(name)}\n"))
 
     def test_matplotlib_is_imported_only_to_draw(self):
         done = self.python("-c", "import sys, stickslip; print('matplotlib' in sys.modules, 'h5py' in sys.modules)")
         self.assertEqual(done.stdout, "False False\n", done.stderr)
+
+
+class Reference(Case):
+    def test_help_lists_what_the_program_lists(self):
+        for function in (stickslip.run, stickslip.sweep):
+            shown = inspect.getdoc(function)
+            self.assertRegex(shown, "(?s)^Run the program .*Parameters\n-----.*\n  -mu_d  .*\n  -quantities  ")
+        printed = subprocess.run([BINARIES / "stickslip", "-help"], capture_output=True, text=True, check=True).stdout
+        options = printed[printed.index("Model."):printed.index("Other:")].splitlines()
+        self.assertEqual(sorted({*options} - {*shown.splitlines()}), [])
+
+    def test_help_without_a_program(self):
+        with mock.patch.dict(os.environ, STICKSLIP="/none"):
+            self.assertRegex(inspect.getdoc(stickslip.run), "(?s)^Run the program once.*STICKSLIP names /none")
+        with self.fake("exit 1"):
+            self.assertRegex(inspect.getdoc(stickslip.run), "could not be asked")
+
+    def test_public_names(self):
+        self.assertEqual(dir(stickslip), sorted(stickslip.__all__))
+        for name in dir(stickslip):
+            self.assertTrue(hasattr(stickslip, name), name)
+
+    def test_one_version(self):
+        self.assertRegex((SOURCES / "CMakeLists.txt").read_text(), rf"project\(stickslip VERSION {stickslip.__version__} ")
+        self.assertRegex((SOURCES / "CITATION.cff").read_text(), rf"\nversion: {stickslip.__version__}\n")
 
 
 class Sweeps(Case):

@@ -114,3 +114,6 @@ GROUPS = {
         "quantities": "slip,peak,displacement", "distance": "0.1,0.3,1,3", "inverse_distance": "0.3,1,5",
         "velocity": "0.1,0.3", **TIMES}, (1e-2, 1e-4), 1e-6, cases=12),
 }
+# What --quick takes: transforms at coarse steps of the noise, which take a fraction of the time.
+QUICK = {"scalars": dataclasses.replace(GROUPS["scalars"], cases=60),
+         "transforms": dataclasses.replace(GROUPS["transforms"], scene=quick, cases=20)}

@@ -6,7 +6,7 @@ usage: python3 validation/calibration/run.py [--quick] [--groups NAMES] [--cases
 
 Cases (cases.py) follow from the seed and their number. Each is run at several accuracies, and at a much
 higher one, whose values stand for the true ones. A value counts where that run is three times as accurate as
-the estimate to be judged. --quick takes 200 cases of scalars and 20 of transforms; without it up to 300 of every group.
+the estimate to be judged. --quick takes 60 cases of scalars and 20 of transforms; without it up to 300 of every group.
 --page puts table and picture into the manual.
 """
 
@@ -22,7 +22,7 @@ import textwrap
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from cases import GROUPS
+from cases import GROUPS, QUICK
 from entry import Entry, subplots
 from harness import words_of
 
@@ -36,7 +36,6 @@ COLUMNS = ("group", "case", "accuracy", "key", "entry", "value", "error", "truth
 COLUMNS_OF_TABLE = ("accuracy", "cases", "values", "not judged, %", "misses", "cases with a miss, %", "worst",
                     "median width", "ninth decile")
 MARK, END = "<!-- made by validation/calibration/run.py -->", "<!-- end -->"
-QUICK = {"scalars": 200, "transforms": 20}
 
 
 class LeftOut(Exception):
@@ -55,9 +54,8 @@ def pairs(result):
     return numpy.array([numpy.atleast_1d(numpy.array(result[part], float)) for part in ("value", "error")]).T
 
 
-def judged(program, seed, name, number):
+def judged(program, seed, group, name, number):
     """Rows of one case."""
-    group = GROUPS[name]
     scene = group.scene(random.Random(f"{seed} {name} {number}"))
     options = {**scene, **group.asked}
     truth = results_of(program, {**options, "accuracy": group.truth})
@@ -72,8 +70,12 @@ def judged(program, seed, name, number):
     return rows
 
 
+def group_of(arguments, name):
+    return QUICK.get(name, GROUPS[name]) if arguments.quick else GROUPS[name]
+
+
 def number_of_cases(arguments, name):
-    return arguments.cases or (QUICK[name] if arguments.quick else GROUPS[name].cases)
+    return arguments.cases or group_of(arguments, name).cases
 
 
 def collect(entry, names):
@@ -81,7 +83,8 @@ def collect(entry, names):
     arguments, rows, left_out = entry.arguments, [], 0
     asked = [(name, number) for name in names for number in range(number_of_cases(arguments, name))]
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        running = [pool.submit(judged, entry.program.path, arguments.seed, *one) for one in asked]
+        running = [pool.submit(judged, entry.program.path, arguments.seed, group_of(arguments, name), name, number)
+                   for name, number in asked]
         for count, one in enumerate(running, 1):
             try:
                 rows += one.result()
@@ -175,7 +178,7 @@ def main():
                   ("--page", {"type": pathlib.Path, "help": "put table and picture into this page"}))
     arguments = entry.arguments
     names = arguments.groups.split(",") if arguments.groups else [*(QUICK if entry.quick else GROUPS)]
-    if unknown := sorted(set(names) - set(QUICK if entry.quick and not arguments.cases else GROUPS)):
+    if unknown := sorted(set(names) - set(GROUPS)):
         sys.exit(f"no group {', '.join(unknown)}; there are {', '.join(GROUPS)}")
     rows, left_out = collect(entry, names)
     file = arguments.csv or entry.file("calibration.csv")
