@@ -235,8 +235,8 @@ TEST_CASE("table: values with their errors, absolute and relative") {
                                "mu_s_minus = 1 (acts as 0.9375)"));
   r.scene.bias = 0.5;
   const std::string text = io::table(r, outcome(), {0.5, 4});
-  CHECK(row(text, "mu_s") == Words{"mu_s", "=",     "1", "mu_d", "=",    "0.25",    "tau",   "=",
-                                   "2",    "delta", "=", "0.5",  "drag", "linear,", "c",     "=",
+  CHECK(row(text, "mu_s") == Words{"mu_s", "=",     "1", "mu_d", "=",    "0.25",    "tau", "=",
+                                   "2",    "delta", "=", "0.5",  "drag", "linear,", "c",   "=",
                                    "3,",   "c3",    "=", "4",    "bias", "=",       "0.5"});
   CHECK(row(text, "E_V2") == Words{"E_V2", "-4.0", "5.0e-01", "1.2e-01", "velocity^2"});
   CHECK(row(text, "P_stick") == Words{"P_stick", "0.25", "3.1e-02", "1.2e-01"});
