@@ -39,9 +39,12 @@ class Knob:
     start: float
     log: bool = False
     choice: tuple[str, str] | None = None
+    whole: bool = False
 
     def at(self, place: float) -> float:
         """The value at a place of the slider, with three digits."""
+        if self.whole:
+            return round(place)
         return float(f"{10**place if self.log else place:.3g}")
 
     def place(self, value: float) -> float:
@@ -50,14 +53,14 @@ class Knob:
 
 
 KNOBS = (Knob("mu_s", "$\\mu_s$", 0.1, 3, 1), Knob("mu_d", "$\\mu_d$", 0.05, 3, 0.5),
-         Knob("tau", "$\\tau$", 0.05, 10, 1, True), Knob("delta", "$\\delta$", 0.02, 1, 0.125, True),
+         Knob("tau", "$\\tau$", 0.05, 10, 1, True), Knob("delta_per_mu_s", "$\\mu_s/\\delta$", 1, 32, 8, whole=True),
          Knob("bias", "bias", -0.9, 0.9, 0), Knob("drag_coefficient", "drag", 0, 3, 1),
          Knob("drag_cubic", "cubic drag", 0, 3, 1, False, ("drag", "cubic")),
          Knob("stribeck_velocity", "$v_s$", 0.01, 10, 0.3, True, ("friction", "stribeck")),
          Knob("telegraph_amplitude", "amplitude", 0.1, 3, 1, False, ("noise", "telegraph")),
          Knob("telegraph_rate", "rate", 0.05, 10, 1, True, ("noise", "telegraph")))
 CHOICES = {"drag": ("linear", "none", "cubic"), "friction": ("coulomb", "stribeck"), "noise": ("ou", "telegraph")}
-WITHOUT = {"none": ("drag_coefficient",), "telegraph": ("tau", "delta")}  # options that a choice leaves no use for
+WITHOUT = {"none": ("drag_coefficient",), "telegraph": ("tau", "delta_per_mu_s")}  # options that a choice leaves no use for
 FIRST = {"quantities": "sticking,moments,density"}
 SECOND = {"quantities": "spectrum,duration_density", "omega": FREQUENCIES, "time": TIMES}
 
@@ -142,6 +145,7 @@ class Explorer:
         self.sliders: dict[str, Any] = {}
         self.choices: dict[str, str] = {}
         self.moved: set[str] = set()  # knobs and choices that the user turned
+        self.by_steps = bool(scene.get("delta_per_mu_s"))  # in the file, which then has no delta
         self.asked_at = 0.0
         self._lay_out(scene)
         self._show_knobs()
@@ -185,7 +189,7 @@ class Explorer:
         self.status = self.figure.text(0.06, 0.012, "", fontsize=9)
         for n, knob in enumerate(KNOBS):
             place = self.figure.add_axes((0.5 if n < 6 else 0.8, 0.31 - 0.045 * (n % 6), 0.19 if n < 6 else 0.12, 0.03))
-            start = scene.get(knob.option)
+            start = self._start(knob, scene)
             start = knob.start if not isinstance(start, (int, float)) else min(max(start, knob.low), knob.high)
             slider = widgets.Slider(place, knob.label, knob.place(knob.low),
                                     knob.place(knob.high), valinit=knob.place(start))
@@ -206,6 +210,11 @@ class Explorer:
             button = widgets.Button(self.figure.add_axes((0.66 + 0.11 * n, 0.005, 0.1, 0.035)), label)
             button.on_clicked(lambda _, act=act: self.show(act()))
             setattr(self, f"_button_{n}", button)
+
+    def _start(self, knob: Knob, scene: Mapping[str, Any]) -> Any:
+        if knob.option == "delta_per_mu_s" and "delta" in scene:
+            return max(1, round(scene.get("mu_s", 1) / scene["delta"]))
+        return scene.get(knob.option)
 
     def _in_use(self, knob: Knob) -> bool:
         unused = any(knob.option in WITHOUT.get(value, ()) for value in self.choices.values())
@@ -230,6 +239,12 @@ class Explorer:
         for knob in KNOBS:
             if self._in_use(knob) and (knob.option in self.moved or knob.choice or "options_file" not in self.options):
                 scene[knob.option] = knob.at(self.sliders[knob.option].val)
+        # mu_s stays on a noise level, so that pictures follow it without steps.
+        steps = scene.pop("delta_per_mu_s", None)
+        if self.choices["noise"] == "ou" and (steps or "mu_s" in scene):
+            mu_s, steps = (knob.at(self.sliders[knob.option].val) for knob in KNOBS
+                           if knob.option in ("mu_s", "delta_per_mu_s"))
+            scene |= {"delta_per_mu_s": steps} if self.by_steps else {"delta": mu_s / steps}
         return scene
 
     def turn(self, option: str) -> None:

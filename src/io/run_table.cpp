@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "stickslip/io/parts.hpp"
+#include "stickslip/model/effective_friction.hpp"
 #include "stickslip/support/number_text.hpp"
 #include "stickslip/support/statistics.hpp"
 #include "stickslip/support/text.hpp"
@@ -41,13 +42,17 @@ std::string scene_text(const model::Scene& s) {
   const auto add = [&](const char* name, double value) {
     parts.push_back(fmt::format("{} = {:g}", name, value));
   };
-  add("mu_s", s.friction.mu_s);
+  const auto add_static = [&](const char* name, double given, std::optional<double> effective) {
+    add(name, given);
+    if (effective) parts.back() += fmt::format(" (acts as {:g})", *effective);
+  };
+  const auto backwards = s.friction.mirrored();
+  const auto along = model::effective_mu_s(s, false), against = model::effective_mu_s(s, true);
+  add_static("mu_s", s.friction.mu_s, along);
   add("mu_d", s.friction.mu_d);
-  if (!s.friction.symmetric()) {
-    const auto backwards = s.friction.mirrored();
-    add("mu_s_minus", backwards.mu_s);
-    add("mu_d_minus", backwards.mu_d);
-  }
+  if (!s.friction.symmetric() || against != along)
+    add_static("mu_s_minus", backwards.mu_s, against);
+  if (!s.friction.symmetric()) add("mu_d_minus", backwards.mu_d);
   if (const auto& stribeck = s.friction.stribeck) {
     add("stribeck_velocity", stribeck->velocity);
     add("stribeck_exponent", stribeck->exponent);

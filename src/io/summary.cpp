@@ -2,6 +2,7 @@
 
 #include "stickslip/io/parts.hpp"
 #include "stickslip/io/provenance.hpp"
+#include "stickslip/model/effective_friction.hpp"
 #include "stickslip/petsc/memory.hpp"
 
 namespace stickslip::io {
@@ -25,6 +26,9 @@ Json scene_json(const model::Scene& s) {
     scene["mu_s_minus"] = s.friction.mirrored().mu_s;
     scene["mu_d_minus"] = s.friction.mirrored().mu_d;
   }
+  const auto along = model::effective_mu_s(s, false), against = model::effective_mu_s(s, true);
+  if (along) scene["mu_s_effective"] = *along;
+  if (against && !s.symmetric()) scene["mu_s_minus_effective"] = *against;
   if (const auto& stribeck = s.friction.stribeck) {
     scene["friction"] = "stribeck";
     scene["stribeck_velocity"] = stribeck->velocity;

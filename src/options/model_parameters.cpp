@@ -7,6 +7,8 @@
 
 #include "reading.hpp"
 #include "stickslip/model/drag_law.hpp"
+#include "stickslip/model/effective_friction.hpp"
+#include "stickslip/support/text.hpp"
 #include "words.hpp"
 
 namespace stickslip::options {
@@ -34,9 +36,10 @@ class SceneReader {
 
   void read_numbers() {
     scene_.tau = settings_.real("tau");
-    scene_.delta = settings_.real("delta");
-    read_noise();
     scene_.friction = {settings_.real("mu_s"), settings_.real("mu_d")};
+    const auto steps = settings_.integer("delta_per_mu_s");
+    scene_.delta = steps ? scene_.friction.mu_s / *steps : settings_.real("delta");
+    read_noise();
     const auto by_direction = [this](const char* option) {
       return settings_.given(option) ? std::optional(settings_.real(option)) : std::nullopt;
     };
@@ -139,6 +142,18 @@ class SceneReader {
     }
   }
 
+  // No level besides 0.
+  void report_coarse_steps(double sigma) {
+    const double largest = std::sqrt(2) * sigma;
+    const bool by_mu_s = settings_.given("delta_per_mu_s");
+    report(by_mu_s ? "delta_per_mu_s" : "delta",
+           fmt::format("leaves no noise level besides 0: {} = {:g} must be at most 2",
+                       scene_.noise.deviation ? "(delta/noise_deviation)^2" : "tau delta^2",
+                       std::pow(scene_.delta / sigma, 2)),
+           by_mu_s ? fmt::format("take at least {:.0f}", std::ceil(scene_.friction.mu_s / largest))
+                   : fmt::format("take -delta at most {:g}", largest));
+  }
+
   void check_noise() {
     if (scene_.noise.table) {
       scene_.noise_levels.reset();
@@ -156,17 +171,16 @@ class SceneReader {
       highest = scene_.process(1).static_index();
       lowest = scene_.process(1).lowest_static();
     } catch (const std::out_of_range&) {
-      return report("delta", "gives more than 2147483647 noise levels", "take a larger step");
+      const bool by_mu_s = settings_.given("delta_per_mu_s");
+      return report(by_mu_s ? "delta_per_mu_s" : "delta", "gives more than 2147483647 noise levels",
+                    "take a larger step");
     }
     const bool word = settings_.given("noise_levels") && !scene_.noise_levels;
     if (word) scene_.noise_levels = full;
     const int levels = scene_.noise_levels.value_or(full), k = std::max(highest, -lowest);
     const double largest = levels * delta;
     if (full < 1) {
-      report("delta",
-             fmt::format("leaves no noise level besides 0: {} = {:g} must be at most 2",
-                         own ? "(delta/noise_deviation)^2" : "tau delta^2", ratio),
-             fmt::format("take -delta at most {:g}", std::sqrt(2) * sigma));
+      report_coarse_steps(sigma);
     } else if (levels > full) {
       report(
           "noise_levels",
@@ -256,6 +270,26 @@ double largest_force(const model::Scene& scene) {
 
 model::Scene read_scene(const Settings& settings, Problems& problems) {
   return SceneReader(settings, problems).read();
+}
+
+std::string step_warning(const model::Scene& scene) {
+  std::vector<std::string> acting;
+  for (bool backwards : {false, true}) {
+    const auto effective = model::effective_mu_s(scene, backwards);
+    if (!effective || (backwards && scene.symmetric())) continue;
+    acting.push_back(fmt::format("mu_s{} = {:g} acts as {:g}", backwards ? "_minus" : "",
+                                 backwards ? scene.friction.mirrored().mu_s : scene.friction.mu_s,
+                                 *effective));
+  }
+  if (acting.empty()) return "";
+  const std::string fix =
+      scene.symmetric()
+          ? fmt::format("-delta_per_mu_s {:.0f} in the place of -delta puts mu_s on a level",
+                        std::max(1.0, std::round(scene.friction.mu_s / scene.delta)))
+          : "take a -delta of which mu_s - bias and mu_s_minus + bias are multiples";
+  return fmt::format(
+      "{} on bodies at rest, which stick on noise levels up to it, and these are {:g} apart; {}",
+      enumerate(acting, "and"), scene.delta, fix);
 }
 
 }  // namespace stickslip::options

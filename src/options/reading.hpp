@@ -18,6 +18,10 @@ namespace stickslip::options {
 /// The largest force that occurs: X passes mu_s by 12 standard deviations with probability e^-72.
 [[nodiscard]] double largest_force(const model::Scene& scene);
 
+/// What to say where static friction acts with another value than the one given, because it lies
+/// between two noise levels; empty where it does not.
+[[nodiscard]] std::string step_warning(const model::Scene& scene);
+
 // reference.cpp
 
 /// Throws std::invalid_argument unless it is a regular file that can be read.

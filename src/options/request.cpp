@@ -71,7 +71,9 @@ Request request_of(const Settings& settings, Problems& problems) {
   for (const auto& option : all_options()) check_writable(settings, option, problems);
   if (request.method.route == Route::fluid_queue) request.method.scheme = Scheme::none;
   for (const auto& option : all_options()) {
-    request.resolved.emplace_back(option.name, settings.text(option.name));
+    const bool derived = option.name == "delta" && settings.given("delta_per_mu_s");
+    request.resolved.emplace_back(option.name,
+                                  derived ? "mu_s/delta_per_mu_s" : settings.text(option.name));
   }
   return request;
 }
@@ -88,6 +90,8 @@ Request read_request(const std::vector<std::string>& argv) {
   if (sweeps(settings)) return read_sweep(settings);
   Request request = request_of(settings, problems);
   problems.raise();
+  const std::string steps = step_warning(request.scene);
+  if (!steps.empty() && request.study.kind == StudyKind::none) request.warnings.push_back(steps);
   return request;
 }
 

@@ -49,6 +49,13 @@ class Rules {
     refuse({"drag_expression"}, !drag_law_.expression,
            "belongs to -drag expression, and -drag is " + r_.scene.drag_name,
            "add -drag expression, or leave it out");
+    refuse(
+        {"delta_per_mu_s"}, r_.scene.noise.name != "ou",
+        fmt::format("divides mu_s into steps of -noise ou, and -noise is {}", r_.scene.noise.name),
+        "leave it out, or take -noise ou");
+    refuse({"delta_per_mu_s"}, settings_.given("delta"),
+           "gives the noise step, and so does -delta = " + settings_.text("delta"),
+           "leave one of them out");
     for (const auto& [option, noise] : {std::pair{"telegraph_amplitude", "telegraph"},
                                         {"telegraph_rate", "telegraph"},
                                         {"noise_file", "file"}}) {

@@ -92,14 +92,20 @@ std::string where(const Sweep& sweep, const std::vector<std::size_t>& points) {
   return fmt::format("at {}{}: ", sweep.place(points.front()), more);
 }
 
-// What is wrong with the points, each message once with the places it holds at.
-void check_points(const Sweep& sweep, Problems& problems) {
+// What is wrong with the points, each message once with the places it holds at. Returns where
+// static friction acts with another value than the one given.
+std::string check_points(const Sweep& sweep, Problems& problems) {
   std::map<std::string, std::vector<std::size_t>> points_of;
+  std::vector<std::size_t> between_levels;
+  std::string step;
   std::vector<std::string> messages;
   for (std::size_t point = 0; point < sweep.size(); ++point) {
     Problems own;
     const Request request = sweep.request(point, own);
     if (point == 0) check_effects(sweep, request, problems);
+    const std::string warning = own.empty() ? step_warning(request.scene) : "";
+    if (!warning.empty()) between_levels.push_back(point);
+    if (step.empty()) step = warning;
     for (const auto& message : own.messages()) {
       auto& points = points_of[message];
       if (points.empty()) messages.push_back(message);
@@ -109,8 +115,10 @@ void check_points(const Sweep& sweep, Problems& problems) {
   for (std::size_t n = 0; n < std::min(messages.size(), kMostMessages); ++n) {
     problems.add(where(sweep, points_of[messages[n]]) + messages[n]);
   }
-  if (messages.size() <= kMostMessages) return;
-  problems.add(fmt::format("and {} more problems of this kind", messages.size() - kMostMessages));
+  if (messages.size() > kMostMessages) {
+    problems.add(fmt::format("and {} more problems of this kind", messages.size() - kMostMessages));
+  }
+  return step.empty() ? "" : where(sweep, between_levels) + step;
 }
 
 bool is_axis(const std::vector<SweepAxis>& axes, const std::string& name) {
@@ -200,9 +208,10 @@ Request read_sweep(const Settings& settings) {
   check_ranks(settings, problems);
   problems.raise();
   const auto sweep = std::make_shared<const Sweep>(settings, std::move(axes));
-  check_points(*sweep, problems);
+  const std::string step = check_points(*sweep, problems);
   problems.raise();
   Request request = sweep->request(0);
+  if (!step.empty()) request.warnings.push_back(step);
   request.sweep = sweep;
   request.output = read_output(settings);
   for (auto& [name, value] : request.resolved) {

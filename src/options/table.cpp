@@ -94,6 +94,11 @@ std::vector<Option> noise_options() {
            "for white noise take a small value such as 0.01"),
       real("delta", "force", "0.125", positive(), "step between neighbouring noise levels",
            "the continuous noise is the limit of small steps such as 0.125"),
+      integer(
+          "delta_per_mu_s", "", whole(1, 1e6),
+          "number n of noise steps up to mu_s, in the place of -delta: delta = mu_s/n puts mu_s "
+          "on a level, so that results are continuous in mu_s",
+          "take for example 8"),
       integer("noise_levels", "", whole(1, 1e9),
               "number N of noise levels on each side of 0; `full` is the largest possible, 2 "
               "(deviation/delta)^2. Unless given, the noise is that of full, truncated where "

@@ -528,3 +528,18 @@ TEST_CASE("refinement: a spectrum that a coarse grid makes negative at 0 has no 
   CHECK(result(outcome, "S_0").error[0] > std::abs(value(outcome, "S_0")));
   CHECK(std::isnan(value(outcome, "fwhm")));
 }
+
+// The last line of defence: whatever the error estimates say, a probability above 1 is no result.
+TEST_CASE("refinement: results outside their bounds are not said to be reached") {
+  auto r = given(1, 0.25, 1, 0.5, {1, 0});
+  r.question.quantities = {Quantity::averages};
+  model::Observable f{.name = "f", .value = [](double, double, double) { return 2; }};
+  f.quadratic = true;
+  r.question.observables = {f};
+  CHECK(solve(r).reached);  // 2 is its mean
+  f.least = 0, f.most = 1;
+  r.question.observables = {f};
+  const auto outcome = solve(r);
+  CHECK_FALSE(outcome.reached);
+  CHECK_THAT(outcome.shortfall, Catch::StartsWith("pi(f) is 2"));
+}

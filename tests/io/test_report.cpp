@@ -144,6 +144,8 @@ TEST_CASE("summary: every number stands at its own key") {
                            {"drag_coefficient", 3.0},
                            {"drag_cubic", 4.0},
                            {"bias", 0.0625},
+                           {"mu_s_effective", 0.5625},  // X <= 0.5 sticks
+                           {"mu_s_minus_effective", 0.9375},
                            {"noise_levels_meant", 4},
                            {"noise_levels", 40},
                            {"v_max", 7.5}});
@@ -227,10 +229,15 @@ TEST_CASE("summary: simulations and comparisons") {
 }
 
 TEST_CASE("table: values with their errors, absolute and relative") {
-  const std::string text = io::table(request(), outcome(), {0.5, 4});
-  CHECK(row(text, "mu_s") == Words{"mu_s", "=",     "1", "mu_d", "=",    "0.25",    "tau",   "=",
-                                   "2",    "delta", "=", "0.5",  "drag", "linear,", "c",     "=",
-                                   "3,",   "c3",    "=", "4",    "bias", "=",       "0.0625"});
+  auto r = request();
+  CHECK_THAT(io::table(r, outcome(), {0.5, 4}),
+             Catch::StartsWith("mu_s = 1 (acts as 0.5625)   mu_d = 0.25   "
+                               "mu_s_minus = 1 (acts as 0.9375)"));
+  r.scene.bias = 0.5;
+  const std::string text = io::table(r, outcome(), {0.5, 4});
+  CHECK(row(text, "mu_s") == Words{"mu_s", "=",     "1", "mu_d", "=",    "0.25",    "tau", "=",
+                                   "2",    "delta", "=", "0.5",  "drag", "linear,", "c",   "=",
+                                   "3,",   "c3",    "=", "4",    "bias", "=",       "0.5"});
   CHECK(row(text, "E_V2") == Words{"E_V2", "-4.0", "5.0e-01", "1.2e-01", "velocity^2"});
   CHECK(row(text, "P_stick") == Words{"P_stick", "0.25", "3.1e-02", "1.2e-01"});
   CHECK(row(text, "0.5") == Words{"0.5", "3.0", "2.5e-01"});

@@ -1,5 +1,6 @@
 #include <petscsys.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 
@@ -92,6 +93,41 @@ TEST_CASE("request: values arrive where they belong") {
   CHECK_FALSE(r.question.wants(Quantity::sticking));
   CHECK(r.method.points == 12);
   CHECK(r.method.fixed());
+}
+
+TEST_CASE("request: steps of the noise by how many go up to mu_s") {
+  const Request r = Given("-mu_s 1.07 -delta_per_mu_s 8").read();
+  CHECK(r.scene.delta == 1.07 / 8);
+  CHECK(r.warnings.empty());
+  const auto& used = r.resolved;
+  CHECK(std::count(used.begin(), used.end(),
+                   std::pair<std::string, std::string>{"delta", "mu_s/delta_per_mu_s"}) == 1);
+  const std::vector<Refusal> refusals{
+      {"-delta_per_mu_s 2.5", {"-delta_per_mu_s = 2.5", "whole number"}},
+      {"-delta_per_mu_s 0", {"-delta_per_mu_s = 0", "[1, 1e+06]"}},
+      {"-delta_per_mu_s 8 -delta 0.125", {"-delta_per_mu_s = 8", "-delta = 0.125", "leave one"}},
+      {"-delta_per_mu_s 8 -noise telegraph -telegraph_amplitude 1 -telegraph_rate 1 -bias 0.3",
+       {"-delta_per_mu_s = 8", "-noise is telegraph"}},
+      {"-delta_per_mu_s 1 -mu_s 3", {"-delta_per_mu_s = 1: leaves no noise level", "at least 3"}},
+      {"-delta_per_mu_s 3 -mu_s 1e9", {"-delta_per_mu_s = 3"}}};
+  for (const auto& refusal : refusals) check_refusal(refusal);
+}
+
+TEST_CASE("request: mu_s that acts as another value is reported with it and a way out") {
+  CHECK(Given("-mu_s 1.125").read().warnings.empty());
+  CHECK(Given("-mu_s 1.07 -study delta").read().warnings.empty());  // has steps of its own
+  const auto plain = Given("-mu_s 1.07").read().warnings;
+  REQUIRE(plain.size() == 1);
+  CHECK_THAT(plain[0], Catch::StartsWith("mu_s = 1.07 acts as 1 on bodies at rest") &&
+                           Catch::Contains("-delta_per_mu_s 9"));
+  const auto biased = Given("-bias 0.3").read().warnings;
+  REQUIRE(biased.size() == 1);
+  CHECK_THAT(biased[0],
+             Catch::StartsWith("mu_s = 1 acts as 0.925 and mu_s_minus = 1 acts as 0.95") &&
+                 Catch::Contains("-delta of which"));
+  const auto by_direction = Given("-mu_s_minus 1.3").read().warnings;
+  REQUIRE(by_direction.size() == 1);
+  CHECK_THAT(by_direction[0], Catch::StartsWith("mu_s_minus = 1.3 acts as 1.25"));
 }
 
 TEST_CASE("request: full stands for the largest noise range") {

@@ -1,6 +1,8 @@
-#include "../common/catch.hpp"
 #include "stickslip/options/sweep.hpp"
 
+#include <set>
+
+#include "../common/catch.hpp"
 #include "../common/options.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -140,6 +142,17 @@ TEST_CASE("sweep: files belong to the whole, and its own options are useless wit
   CHECK(read({{"-sweep_csv", "x.csv"}, {"-checkpoint", "c"}}).warnings.size() == 2);
 }
 
+TEST_CASE("sweep: points at which mu_s acts as another value are reported, once") {
+  const auto warnings = read({{"-sweep_mu_s", "1,1.07,1.2"}}).warnings;
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings[0], Catch::StartsWith("at mu_s = 1.07 and 1 more points: mu_s = 1.07 acts"));
+  const auto fine = read({{"-sweep_mu_s", "1,1.07,1.2"}, {"-delta_per_mu_s", "8"}});
+  CHECK(fine.warnings.empty());
+  CHECK(fine.sweep->request(1).scene.delta == 1.07 / 8);
+  CHECK_THAT(complaint({{"-sweep_delta", "0.25,0.2"}, {"-delta_per_mu_s", "8"}}),
+             Catch::Contains("-delta_per_mu_s = 8"));
+}
+
 TEST_CASE("sweep: its identity is made of what changes numbers") {
   const auto identity = [](const Options& options) { return read(options).sweep->identity(); };
   const auto one = identity({{"-sweep_tau", "1,2"}});
@@ -149,4 +162,19 @@ TEST_CASE("sweep: its identity is made of what changes numbers") {
   CHECK(identity({{"-sweep_tau", "1,2"}, {"-mu_d", "0.5"}}) != one);
   CHECK(identity({{"-sweep_tau", "1,2"}, {"-accuracy", "1e-7"}}) != one);
   CHECK(identity({{"-sweep_tau", "1,2"}, {"-slide_mat_mumps_icntl_14", "50"}}) != one);
+}
+
+// From the table, so that a new option belongs to it unless it is named here.
+TEST_CASE("sweep: every option but those of the output belongs to its identity") {
+  std::set<std::string> names;
+  const auto request = read({{"-sweep_tau", "1,2"}});
+  for (const auto& [name, value] : request.sweep->identity()) names.insert(name);
+  for (const auto& group : table()) {
+    for (const auto& option : group.options) {
+      const bool free =
+          group.title == "Output" || option.name == "plan" || option.name == "checkpoint";
+      INFO(option.name);
+      CHECK(names.contains(option.name) != free);
+    }
+  }
 }

@@ -114,7 +114,7 @@ class Knobs(Case):
         self.assertNotIn("telegraph_rate", shown())
         made.choose("noise", "telegraph")
         self.assertLessEqual({"telegraph_rate", "telegraph_amplitude"}, shown())
-        self.assertFalse({"tau", "delta"} & made.scene().keys())
+        self.assertFalse({"tau", "delta", "delta_per_mu_s"} & made.scene().keys())
         self.assertEqual(made.scene()["noise"], "telegraph")
         made.choose("drag", "none")
         self.assertNotIn("drag_coefficient", made.scene())
@@ -124,6 +124,21 @@ class Knobs(Case):
         self.assertEqual(made.scene()["tau"], 2.0)
         made.sliders["tau"].set_val(numpy.log10(0.123456))
         self.assertEqual(made.scene()["tau"], 0.123)
+
+    def test_mu_s_stays_on_a_noise_level(self):
+        made = self.explorer()
+        self.assertEqual(made.scene()["delta"], 0.5)
+        made.sliders["mu_s"].set_val(1.07)
+        self.assertEqual(made.scene()["delta"], 1.07 / 2)
+        made.sliders["delta_per_mu_s"].set_val(3)
+        self.assertEqual(made.scene()["delta"], 1.07 / 3)
+        self.settled(made)
+        by_file = self.folder / "steps.opts"
+        by_file.write_text("-mu_d 0.4\n-delta_per_mu_s 2\n")
+        made = self.explorer({**COARSE, "options_file": by_file}, {"mu_d": 0.4, "delta_per_mu_s": "2"})
+        made.sliders["mu_s"].set_val(0.93)
+        self.assertEqual(made.scene(), {"mu_s": 0.93, "delta_per_mu_s": 2})
+        self.settled(made)
 
     def test_of_a_scene_in_a_file_only_what_was_moved_changes(self):
         file = self.folder / "scene.opts"

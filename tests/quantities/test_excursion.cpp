@@ -97,3 +97,17 @@ TEST_CASE("excursion: closed forms of the noise have the rounding of its sums") 
   CHECK(rounding >= std::numeric_limits<double>::epsilon());
   for (const auto& r : results) CHECK(r.error[0] == Approx(rounding * r.value[0]));
 }
+
+// The levels -2 ... 1 stick; Lambda = 8, and the rate of the way out is 3.5 above and 3 below.
+TEST_CASE("excursion: sticking phases end at once from the level at either end, at its own rate") {
+  CHECK(quantities::stick_density_at_zero(process(0.2), 0.5, 0.25) == Approx(0.5 * 3 + 0.25 * 3.5));
+}
+
+TEST_CASE("excursion: what excursions from either side lose counts, whichever loses more") {
+  for (const auto& [plus, minus] : {std::pair{-3e-9, 1e-9}, {1e-9, -3e-9}}) {
+    Excursion up = by_hand(), down = by_hand();
+    up.lost_probability = plus;
+    down.lost_probability = minus;
+    CHECK(quantities::joined({0.5, 0.5}, up, down).lost_probability == 3e-9);
+  }
+}

@@ -1,4 +1,4 @@
-"""Random cases by group: what is asked for, at which accuracies, and how parameters are drawn."""
+"""Random cases by group: what is asked for, at which accuracies, how parameters are drawn, and what is the truth."""
 
 import dataclasses
 import math
@@ -84,13 +84,53 @@ def weakening(random):
                       "stribeck_exponent": random.choice((1, 2))}
 
 
+def few(random, most=5):
+    """Levels of a file with random rates, even or anywhere: some hold the body, the outer ones move it."""
+    count = random.randint(3, most)
+    rates = [log_uniform(random, 0.05, 20) for _ in range(count - 1)], [log_uniform(random, 0.05, 20) for _ in range(count - 1)]
+    if random.random() < 0.4:
+        half = sorted(random.uniform(0.1, 2) for _ in range(count // 2))
+        half[-1] = random.uniform(1.2, 2.5)
+        x = [-one for one in reversed(half)] + [0.0] * (count % 2) + half
+        rates = rates[0], rates[0][::-1]
+    else:
+        x = sorted(random.uniform(-0.95, 0.95) for _ in range(count - 2))
+        x = [-random.uniform(0.96, 2.5), *x, random.uniform(1.2, 2.5)]
+    if not any(abs(one) <= 1 for one in x):
+        x[0] = -0.5
+    levels = list(zip(x, [*rates[0], 0.0], [0.0, *rates[1]]))
+    options = drag(random)
+    while options["drag"] == "none":
+        options = drag(random)
+    return options | {"mu_s": 1, "mu_d": random.uniform(0.05, 1), "noise": "file", "levels": levels}
+
+
+def many(random):
+    return few(random, 9)
+
+
+def pulses(random):
+    """Rare strong levels beside one that holds the body."""
+    strong, rare, back = random.uniform(1.5, 6), log_uniform(random, 1e-3, 0.3), log_uniform(random, 1, 30)
+    weak = random.uniform(-0.3, 0.3)
+    levels = [(-strong * random.uniform(0.5, 1), back, 0), (weak, rare, rare * random.uniform(0, 1)), (strong, 0, back)]
+    return few(random) | {"levels": levels}
+
+
+def weak_friction(random):
+    """Friction that the noise hardly feels, and a short memory."""
+    tau, mu_s = log_uniform(random, 0.01, 0.1), log_uniform(random, 0.02, 0.3)
+    return {"mu_s": mu_s, "mu_d": mu_s * random.uniform(0.3, 1), "tau": tau, "drag_coefficient": random.uniform(0.2, 2),
+            "delta": random.uniform(0.2, 0.6) / math.sqrt(tau)}
+
+
 @dataclasses.dataclass(frozen=True)
 class Group:
     what: str
     scene: object  # of a random.Random
     asked: dict
     accuracies: tuple = (1e-2, 1e-4, 1e-6)
-    truth: float = 1e-9
+    truth: float | str = 1e-9  # the accuracy of a finer run, or "direct": direct.py, or "complex": of stickslip-complex
     most: float = 10  # runs of 100 with an estimate too small; arrays have many values
     worst: float = 3  # error by estimate
     cases: int = 60
@@ -113,6 +153,25 @@ GROUPS = {
     "slips": Group("slips and displacement", quick, {
         "quantities": "slip,peak,displacement", "distance": "0.1,0.3,1,3", "inverse_distance": "0.3,1,5",
         "velocity": "0.1,0.3", **TIMES}, (1e-2, 1e-4), 1e-6, cases=12),
+    "few_levels": Group("few levels: scalars", many, SCALARS, truth="direct", most=3, cases=40),
+    "few_spectra": Group("few levels: spectra", many, {"quantities": "spectrum", "omega": "0.01,0.1,0.5,2,8,30"},
+                         truth="direct", cases=30),
+    "few_modes": Group("few levels: relaxation modes", many, {"quantities": "relaxation"}, truth="direct", cases=30),
+    "few_times": Group("few levels: durations, slips and autocovariance", few, {
+        "quantities": "duration_density,slip,autocorrelation", "time": "1,3,8", "distance": "0.5,2,5"},
+        (1e-2, 1e-4), "direct", cases=12),
+    "pulses": Group("pulses: spectra and modes", pulses,
+                    {"quantities": "sticking,spectrum,relaxation", "omega": "0.001,0.1,1,10"}, truth="direct", cases=30),
+    "pulse_times": Group("pulses: durations, slips and autocovariance", pulses, {
+        "quantities": "duration_density,slip,autocorrelation", "time": "1,5,30", "distance": "0.5,2,5"},
+        (1e-2, 1e-4), "direct", cases=12),
+    "jumps": Group("observables that jump", few, {
+        "quantities": "averages,expectation", "observable": "stick;abs(v)>0.2", "time": "1,3,8", "start": "s+"},
+        (1e-2, 1e-4), "direct", cases=12),
+    "weak_friction": Group("weak friction, short memory: spectra", weak_friction,
+                           {"quantities": "spectrum", "omega": "0.1,1,5,30"}, truth="complex", cases=20),
+    "far_spectra": Group("omega far above and below the rates", quick,
+                         {"quantities": "spectrum", "omega": "1e-4,1e-2,1,1e2,1e3"}, truth="complex", cases=20),
 }
 # What --quick takes: transforms at coarse steps of the noise, which take a fraction of the time.
 QUICK = {"scalars": dataclasses.replace(GROUPS["scalars"], cases=60),

@@ -1,12 +1,14 @@
-"""How well error estimates hold: random cases against much finer runs.
+"""How well error estimates hold: random cases against direct solves and much finer runs.
 
 usage: python3 validation/calibration/run.py [--quick] [--groups NAMES] [--cases N] [--seed N] [--jobs N]
                                              [--csv FILE] [--page docs/accuracy.md] [--program build/stickslip]
-                                             [--report FOLDER]
+                                             [--complex-program build/stickslip-complex] [--report FOLDER]
 
-Cases (cases.py) follow from the seed and their number. Each is run at several accuracies, and at a much
-higher one, whose values stand for the true ones. A value counts where that run is three times as accurate as
-the estimate to be judged. --quick takes 60 cases of scalars and 20 of transforms; without it up to 300 of every group.
+Cases (cases.py) follow from the seed and their number. Each is run at several accuracies. What stands for the truth
+is, by group, a run at a much higher accuracy, or dense complex solves of another discretisation (direct.py), or the
+direct solves of stickslip-complex. A value counts where the truth is known three times as well as the
+estimate to be judged claims. Runs that take over 20 times what -plan predicts are listed. --quick takes 60 cases of
+scalars and 20 of transforms; without it up to 300 of every group.
 --page puts table and picture into the manual.
 """
 
@@ -18,19 +20,23 @@ import random
 import shutil
 import sys
 import textwrap
+import zlib
 
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # cases run side by side
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import direct
 from cases import GROUPS, QUICK
 from entry import Entry, subplots
-from harness import words_of
+from harness import ROOT, words_of
 
 import stickslip
 from stickslip.plots.style import COLOURS
 
 SECONDS = 120  # the longest run; a case that takes longer is left out
 LEAST = 1e-16  # smaller errors are drawn there
+SLOW, LEAST_SECONDS = 20, 1.0  # times the prediction, of runs that take so long
 ROUNDING = 4 * numpy.finfo(float).eps
 COLUMNS = ("group", "case", "accuracy", "key", "entry", "value", "error", "truth", "truth_error", "command")
 COLUMNS_OF_TABLE = ("accuracy", "cases", "values", "not judged, %", "misses", "cases with a miss, %", "worst",
@@ -42,9 +48,9 @@ class LeftOut(Exception):
     """A case that the program refuses, or that takes too long."""
 
 
-def results_of(program, options):
+def run(program, options):
     try:
-        return stickslip.run(program=program, timeout=SECONDS, **options).summary["results"]
+        return stickslip.run(program=program, timeout=SECONDS, **options).summary
     except (stickslip.BadInput, stickslip.Unsolved, stickslip.TimedOut) as reason:
         raise LeftOut(str(reason)) from None
 
@@ -54,20 +60,67 @@ def pairs(result):
     return numpy.array([numpy.atleast_1d(numpy.array(result[part], float)) for part in ("value", "error")]).T
 
 
-def judged(program, seed, group, name, number):
-    """Rows of one case."""
-    scene = group.scene(random.Random(f"{seed} {name} {number}"))
+def truth_of(entry, options, truth):
+    """Values and doubts by key."""
+    if truth == "direct":
+        return {key: numpy.array(pair).T for key, pair in direct.truth(options).items()}
+    program, more = entry.program.path, {"accuracy": truth}
+    if truth == "complex":
+        program, more = entry.arguments.complex_program, {"accuracy": 1e-8, "spectrum_solver": "direct"}
+    return {key: pairs(result) for key, result in run(program, {**for_program(entry, options), **more})["results"].items()}
+
+
+def for_program(entry, options):
+    """The options with the levels in a file."""
+    if "levels" not in options:
+        return options
+    text = "x,rate_up,rate_down\n" + "".join(f"{x!r},{up!r},{down!r}\n" for x, up, down in options["levels"])
+    file = entry.file(f"levels_{zlib.crc32(text.encode()):08x}.csv")
+    file.write_text(text)
+    return {name: value for name, value in options.items() if name != "levels"} | {"noise_file": file}
+
+
+def known(truth, key, values):
+    """Pairs of truth and doubt beside the values; nothing where the truth is not known."""
+    if key in truth:
+        return truth[key]
+    if "rates" not in truth or not key.startswith("relaxation") or key.endswith("frequency"):
+        return None
+    rates = truth["rates"]
+    nearest = [numpy.abs(rates[:, 0].real - value).argmin() for value in values]
+    return [(rates[n, 0].real, rates[n, 1].real) for n in nearest]
+
+
+def too_slow(entry, asked, summary):
+    """Seconds by prediction, if there are far too many."""
+    seconds = summary["cost"]["seconds"] - summary["cost"]["start_up_seconds"]
+    if entry.quick or seconds < LEAST_SECONDS:
+        return 0
+    ratio = seconds / max(run(entry.program.path, {**asked, "plan": True})["plan"]["seconds"], 1e-3)
+    return ratio if ratio > SLOW else 0
+
+
+def judged(entry, name, number):
+    """Rows of one case, and its runs that were too slow."""
+    group = group_of(entry.arguments, name)
+    scene = group.scene(random.Random(f"{entry.arguments.seed} {name} {number}"))
     options = {**scene, **group.asked}
-    truth = results_of(program, {**options, "accuracy": group.truth})
-    rows = []
+    truth = truth_of(entry, options, group.truth)
+    rows, slow = [], []
     for accuracy in group.accuracies:
-        asked = {**options, "accuracy": accuracy}
-        found = results_of(program, asked)
+        asked = {**for_program(entry, options), "accuracy": accuracy}
+        summary = run(entry.program.path, asked)
+        found = summary["results"]
         command = " ".join(["stickslip", *(f"'{w}'" if "*" in w else w for w in words_of(asked))])
+        if ratio := too_slow(entry, asked, summary):
+            slow.append((ratio, command))
         for key, result in found.items():
-            for entry, ((value, error), (true, doubt)) in enumerate(zip(pairs(result), pairs(truth[key]))):
-                rows.append((name, number, accuracy, key, entry, value, error, true, doubt, command))
-    return rows
+            values = pairs(result)
+            if (true := known(truth, key, values[:, 0])) is None:
+                continue
+            for n, ((value, error), (exact, doubt)) in enumerate(zip(values, true)):
+                rows.append((name, number, accuracy, key, n, value, error, exact, doubt, command))
+    return rows, slow
 
 
 def group_of(arguments, name):
@@ -79,31 +132,34 @@ def number_of_cases(arguments, name):
 
 
 def collect(entry, names):
-    """Rows of all cases in their order, and the number of those left out."""
-    arguments, rows, left_out = entry.arguments, [], 0
+    """Rows of all cases in their order, runs that were too slow, and the number of cases left out."""
+    arguments, rows, slow, left_out = entry.arguments, [], [], 0
     asked = [(name, number) for name in names for number in range(number_of_cases(arguments, name))]
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        running = [pool.submit(judged, entry.program.path, arguments.seed, group_of(arguments, name), name, number)
-                   for name, number in asked]
+        running = [pool.submit(judged, entry, *one) for one in asked]
         for count, one in enumerate(running, 1):
             try:
-                rows += one.result()
+                more = one.result()
+                rows, slow = rows + more[0], slow + more[1]
             except LeftOut:
                 left_out += 1
+            except stickslip.ProgramError as problem:
+                entry.verdict(False, f"{one[0]}, case {one[1]}, runs", str(problem))
             except BaseException:
                 pool.shutdown(cancel_futures=True)  # the others are not waited for
                 raise
             if count % 50 == 0:
                 print(f"{count} of {len(asked)} cases", file=sys.stderr, flush=True)
-    return rows, left_out
+    return rows, slow, left_out
 
 
 class Judgement:
     """Ratios of rows that count."""
 
     def __init__(self, rows):
-        _, self.case, _, _, _, self.value, self.error, truth, doubt, _ = (
+        group, case, _, _, _, self.value, self.error, truth, doubt, _ = (
             numpy.array(column) for column in zip(*rows))
+        self.case = numpy.array([f"{a} {b}" for a, b in zip(group, case)])
         self.true = numpy.abs(self.value - truth)
         rounding = ROUNDING * numpy.abs(truth)
         counts = (3 * doubt <= self.error) & (self.error > rounding) & numpy.isfinite(self.error)
@@ -174,13 +230,14 @@ def main():
                   ("--cases", {"type": int, "help": "number of cases of each group"}),
                   ("--seed", {"type": int, "default": 1}),
                   ("--jobs", {"type": int, "default": os.cpu_count()}),
+                  ("--complex-program", {"type": pathlib.Path, "default": ROOT / "build" / "stickslip-complex"}),
                   ("--csv", {"type": pathlib.Path, "help": "leave every value judged in this file"}),
                   ("--page", {"type": pathlib.Path, "help": "put table and picture into this page"}))
     arguments = entry.arguments
     names = arguments.groups.split(",") if arguments.groups else [*(QUICK if entry.quick else GROUPS)]
     if unknown := sorted(set(names) - set(GROUPS)):
         sys.exit(f"no group {', '.join(unknown)}; there are {', '.join(GROUPS)}")
-    rows, left_out = collect(entry, names)
+    rows, slow, left_out = collect(entry, names)
     file = arguments.csv or entry.file("calibration.csv")
     with open(file, "w", newline="") as stream:
         csv.writer(stream).writerows([COLUMNS, *rows])
@@ -189,6 +246,13 @@ def main():
     entry.text(words)
     table = [line for name in names for line in judge(entry, name, [row for row in rows if row[0] == name])]
     entry.table("estimates against errors", COLUMNS_OF_TABLE, table)
+    if slow:
+        entry.table(f"runs over {SLOW} times their prediction", ("times", "command"),
+                    [(f"{ratio:.0f}", command) for ratio, command in sorted(slow, reverse=True)])
+    misses = Judgement(rows)
+    entry.text(f"In all, {100 * misses.missed.mean():.2f} % of the values and {misses.bad:.1f} % of the cases have an "
+               f"estimate too small, the worst by {misses.excess.max():.3g}; {len(slow)} runs took over {SLOW} times "
+               "their prediction.")
     entry.figure(draw(rows), "calibration.png", "Each dot is a value. Below the first line the estimate is too "
                  "small; above the others it is 10 and 100 times too wide.")
     if arguments.page:

@@ -1,0 +1,19 @@
+#include "stickslip/model/effective_friction.hpp"
+
+#include <cmath>
+
+namespace stickslip::model {
+
+std::optional<double> effective_mu_s(const Scene& scene, bool backwards) {
+  if (scene.noise.table) return std::nullopt;
+  const Process forwards = scene.process(1), process = backwards ? forwards.mirrored() : forwards;
+  const double given = process.friction.mu_s,
+               effective = process.noise.level(process.static_index()) + process.bias;
+  constexpr double rounding = 1e-9;  // of the sum, and of what people write
+  if (std::abs(effective - given) <= rounding * (given + std::abs(process.bias))) {
+    return std::nullopt;
+  }
+  return effective;
+}
+
+}  // namespace stickslip::model
