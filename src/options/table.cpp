@@ -132,6 +132,11 @@ std::vector<Option> drag_options() {
       real("v_max", "velocity", "", positive(),
            "truncation velocity: bodies that reach it wait there until the noise falls. Unless "
            "given, the largest velocity that matters at -accuracy"),
+      real(
+          "speed_limit", "velocity", "", positive(),
+          "largest speed of the body: forces that would drive it beyond are lost, as the inflow of "
+          "a full buffer is. A part of the model, where -v_max only truncates it",
+          "leave it out for a body that is as fast as forces make it"),
   };
 }
 

@@ -149,11 +149,15 @@ TEST_CASE("request: without symmetry") {
                              "-start s-")
                            .read();
   CHECK(down.question.start.level == -6);  // x = -1.25 holds, -1.5 does not
+  CHECK_NOTHROW(Given("-bias 8 -delta 0.25").read());
+  CHECK_NOTHROW(Given("-mu_s_minus 1e12 -delta 0.25").read());
   const std::vector<Refusal> refusals{
       {"-bias 1 -drag none", {"-bias = 1", "for ever", "smaller than mu_d"}},
       {"-bias -0.6 -mu_d_minus 0.5 -drag none", {"-bias = -0.6", "mu_d = 0.5 alone", "for ever"}},
-      {"-bias 8 -delta 0.25", {"-bias = 8", "never exceeded", "towards negative v", "below 7"}},
-      {"-mu_s_minus 9 -delta 0.25", {"-mu_s_minus = 9", "never exceeded", "negative", "below 8"}},
+      {"-bias 0.5 -mu_s 9 -delta 0.25", {"-mu_s = 9", "never slides", "P_stick = 1", "below 8.5"}},
+      {"-mu_s 9 -mu_s_minus 8.5 -delta 0.25", {"-mu_s_minus = 8.5", "never slides", "below 8"}},
+      {"-bias 0.5 -mu_s_minus 1e12 -start s- -quantities trajectory -trajectory t.csv",
+       {"-start = s-", "other side alone", "s+"}},
       {"-mu_s_minus 0.5 -mu_d 0.75", {"-mu_s_minus = 0.5", "they are 0.75 and 0.5"}},
       {"-mu_d_minus 1.25",
        {"-mu_d_minus = 1.25", "(0, mu_s_minus]", "cannot exceed static friction"}},
