@@ -147,6 +147,8 @@ void examine(Observable& f, const std::vector<double>& x, double step, double re
   Examination examination(f, reach);
   constexpr std::array signs{1.0, -1.0};
   constexpr std::size_t too_many = 65;
+  const double lowest = *std::min_element(x.begin(), x.end()),
+               highest = *std::max_element(x.begin(), x.end());
   std::vector<Break> found;
   for (double level : x) {
     for (double sign : signs) merge(found, examination.look(level, sign));
@@ -155,6 +157,7 @@ void examine(Observable& f, const std::vector<double>& x, double step, double re
   }
   for (double level : x) {
     const double next = level > 0 ? level - step : level + step;
+    if (next < lowest || next > highest) continue;  // the noise does not get there
     for (double sign : signs) {
       for (const Break& b : examination.look(next, sign)) {
         const auto same = [&b](const Break& other) { return b.same_as(other); };

@@ -105,17 +105,21 @@ class SceneReader {
     const auto backwards = forwards.mirrored();
     const char* grows = "dynamic friction cannot exceed static friction";
     if (forwards.mu_d > forwards.mu_s) {
-      report("mu_d", fmt::format("must be in (0, mu_s], and mu_s = {:g}", forwards.mu_s), grows);
+      report("mu_d", fmt::format("must be in [0, mu_s], and mu_s = {:g}", forwards.mu_s), grows);
     }
     if (!forwards.symmetric() && backwards.mu_d > backwards.mu_s) {
       report(forwards.mu_d_minus ? "mu_d_minus" : "mu_s_minus",
-             fmt::format("must keep mu_d_minus in (0, mu_s_minus]; they are {:g} and {:g}",
+             fmt::format("must keep mu_d_minus in [0, mu_s_minus]; they are {:g} and {:g}",
                          backwards.mu_d, backwards.mu_s),
              grows);
     }
     const double mean = scene_.noise.table ? scene_.noise.table->mean() : 0;
     const double force = scene_.bias + mean, mu_d = force > 0 ? forwards.mu_d : backwards.mu_d;
     if (drag_law_.expression || !scene_.drag.is_none() || std::abs(force) < mu_d) return;
+    if (force == 0) {
+      return report("mu_d", "leaves nothing that slows a body: there is no drag either",
+                    "take a positive -mu_d, or add drag");
+    }
     const auto noise = mean == 0 ? "" : fmt::format("with the mean {:g} of the noise ", mean);
     report("bias",
            fmt::format(

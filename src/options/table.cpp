@@ -64,15 +64,15 @@ std::vector<Option> friction_options() {
            "static friction coefficient: a body at rest sticks while the force on it is at most "
            "mu_s",
            "friction must be able to hold the body"),
-      real("mu_d", "force", "1", positive(), "dynamic friction coefficient, at most mu_s",
-           "for sliding without friction take a small value such as 1e-8"),
+      real("mu_d", "force", "1", not_negative(), "dynamic friction coefficient, at most mu_s",
+           "friction must not drive the body"),
       real("mu_s_minus", "force", "", positive(),
            "static friction coefficient against motion towards negative v; mu_s unless given. "
            "Where the directions differ, both velocity branches are computed",
            "friction must be able to hold the body"),
-      real("mu_d_minus", "force", "", positive(),
+      real("mu_d_minus", "force", "", not_negative(),
            "dynamic friction coefficient while v < 0, at most mu_s_minus; mu_d unless given",
-           "for sliding without friction take a small value such as 1e-8"),
+           "friction must not drive the body"),
       choice("friction", "coulomb", words_of(kFrictionLaws),
              "friction law. coulomb: F = mu_d at every speed. stribeck: F(v) = mu_d + (mu_s - "
              "mu_d) exp(-(|v|/v_s)^gamma), with the coefficients of each direction"),
