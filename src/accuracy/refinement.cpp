@@ -7,6 +7,8 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "stickslip/accuracy/estimates.hpp"
@@ -93,7 +95,8 @@ class Refiner {
       }
       if (sequence_.first_order() && hopeless(n)) return;
     }
-    outcome_.shortfall = given_.method.fixed()
+    outcome_.shortfall = !limit_.empty() ? limit_
+                         : given_.method.fixed()
                              ? "-degree, -layers or -p fixes the discretisation; leave them out to "
                                "have it refined"
                              : "the refinement sequence ends here";
@@ -147,43 +150,84 @@ class Refiner {
     distribution_ = std::move(distribution);
   }
 
-  [[nodiscard]] bool finished() {
-    Step& step = outcome_.steps.back();
+  // The largest relative error of a step, of results that are not given up; its rounding.
+  double judge(Step& step) const {
     double rounding = 0;
+    step.estimate = 0;
     for (std::size_t r = 0; r < outcome_.results.size(); ++r) {
-      const double error = quantities::relative_error(outcome_.results[r]);
-      if (error <= step.estimate) continue;
+      const auto& result = outcome_.results[r];
+      const double error = quantities::relative_error(result);
+      if (result.diagnostic || given_up_.contains(result.key) || error <= step.estimate) continue;
       step.estimate = error;
-      step.limiting_key = outcome_.results[r].key;
+      step.limiting_key = result.key;
       rounding = rounding_[r];
     }
-    outcome_.reached = step.estimate <= question_.accuracy;
-    if (outcome_.reached) {
-      check_truncation();
-      check_bounds();
-      return true;
+    return rounding;
+  }
+
+  // What rounding limits is given up, and the others are refined on.
+  [[nodiscard]] bool finished() {
+    Step& step = outcome_.steps.back();
+    for (;;) {
+      const double rounding = judge(step);
+      if (step.estimate <= question_.accuracy) {
+        conclude(step);
+        return true;
+      }
+      // What a finer discretisation still improves is no limit yet, and one that only now resolves
+      // the waves has nothing to be compared with.
+      if (step.resolution.rates.omega > last_omega_) {
+        last_omega_ = step.resolution.rates.omega;
+        last_rounding_ = std::numeric_limits<double>::infinity();
+      }
+      const bool falls = rounding < 0.5 * std::exchange(last_rounding_, rounding);
+      if (rounding <= question_.accuracy || falls) return false;
+      // What reduced models miss on coarse grids, and what sums over nodes overlook of an
+      // observable, falls unevenly.
+      const int patience = question_.observables.empty() ? 2 : 3;
+      if (++refinements_in_vain_ < patience) return false;
+      give_up(step, rounding);
     }
-    // What a finer discretisation still improves is no limit yet, and one that only now resolves
-    // the waves has nothing to be compared with.
-    if (step.resolution.rates.omega > last_omega_) {
-      last_omega_ = step.resolution.rates.omega;
-      last_rounding_ = std::numeric_limits<double>::infinity();
-    }
-    const bool falls = rounding < 0.5 * std::exchange(last_rounding_, rounding);
-    if (rounding <= question_.accuracy || falls) return false;
-    // What reduced models miss on coarse grids, and what sums over nodes overlook of an observable,
-    // falls unevenly.
-    const int patience = question_.observables.empty() ? 2 : 3;
-    if (++refinements_in_vain_ < patience) return false;
+  }
+
+  void give_up(const Step& step, double rounding) {
     const bool by_lambda = given_.method.route == options::Route::lambda;
     const double least = std::max(rounding, step.estimate);
     const std::string looser = least < 0.05
                                    ? fmt::format("take {}-accuracy {:.0e}",
                                                  by_lambda ? "another -lambda or " : "", 2 * least)
                                    : "no digit of it is certain: leave it out";
-    outcome_.shortfall = fmt::format("{} the relative error of {} to {:.1e}; {}", what_limits(),
-                                     step.limiting_key, least, looser);
-    return true;
+    if (given_up_.empty()) {
+      limit_ = fmt::format("{} the relative error of {} to {:.1e}; {}", what_limits(),
+                           step.limiting_key, least, looser);
+    }
+    given_up_.insert(step.limiting_key);
+    refinements_in_vain_ = 0;
+    last_rounding_ = std::numeric_limits<double>::infinity();
+  }
+
+  void conclude(Step& step) {
+    outcome_.reached = given_up_.empty();
+    outcome_.shortfall = limit_;
+    check_truncation();
+    check_partial();
+    check_bounds();
+    given_up_.clear();
+    (void)judge(step);  // for the table, of all
+  }
+
+  // Entries beyond double precision leave the others as they are.
+  void check_partial() {
+    for (const auto& result : outcome_.results) {
+      for (std::size_t n = 0; n < result.value.size(); ++n) {
+        if (!result.partial || !std::isnan(result.value[n])) continue;
+        outcome_.reached = false;
+        outcome_.shortfall = fmt::format(
+            "{} at {} = {:g} is beyond double precision, being too rare; leave that entry out",
+            result.key, result.abscissa_name, result.abscissa[n]);
+        return;
+      }
+    }
   }
 
   [[nodiscard]] const char* what_limits() const {
@@ -211,7 +255,7 @@ class Refiner {
 
   // A truncation velocity given by hand is no part of the model: the mass beyond it is an error.
   void check_truncation() {
-    if (!given_.scene.v_max || !speed_) return;
+    if (!given_.scene.v_max || given_.scene.limits_speed || !speed_) return;
     const double held = speed_->at_top, sliding = 1 - speed_->at_rest;
     if (held <= question_.accuracy * sliding) return;
     outcome_.reached = false;
@@ -260,8 +304,10 @@ class Refiner {
   std::vector<double> rounding_;                                    // relative, of each result
   double last_rounding_ = std::numeric_limits<double>::infinity();  // of the limiting result
   int refinements_in_vain_ = 0;
-  double last_omega_ = 0;  // of waves that elements followed
-  Changes changes_;        // of the last step
+  std::set<std::string> given_up_;  // keys of results that rounding limits
+  std::string limit_;               // what limits the first of them
+  double last_omega_ = 0;           // of waves that elements followed
+  Changes changes_;                 // of the last step
   std::shared_ptr<quantities::Recipes> recipes_ = std::make_shared<quantities::Recipes>();
   std::shared_ptr<const StationaryDistribution> distribution_;  // of the last step, if needed
   std::optional<quantities::SpeedDistribution> speed_;

@@ -91,11 +91,14 @@ int levels_for(const model::Scene& scene, double tolerance, double speed) {
   const double per_force = tilt(scene);
   const auto last = [&](const model::Process& side) {
     const auto& noise = side.noise;
+    const bool both = side.starts_downwards();
+    // Where bodies do not start on this side, the other one decides.
+    if (!side.starts_upwards()) return noise.table ? noise.highest() : 1;
     const double needed =
         speed > 0 ? side.friction.at_rest() - side.bias - side.drag(speed) : -HUGE_VAL;
     double log_weight = 0;  // of level i against the first that does not stick and has the force
     int end = side.static_index() + 1;
-    if (noise.symmetric()) end = std::max(end, 1 - side.lowest_static());
+    if (noise.symmetric() && both) end = std::max(end, 1 - side.lowest_static());
     end = std::min(end, noise.highest());
     for (int i = end + 1; i <= noise.highest(); ++i) {
       const double below = noise.level(i - 1), step = noise.level(i) - below;

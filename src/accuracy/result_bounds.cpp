@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -46,7 +47,8 @@ std::string place(const Result& result, std::size_t n) {
 std::string out_of_range(const Result& result, double highest) {
   for (std::size_t n = 0; n < result.value.size(); ++n) {
     const double value = result.value[n], slack = result.error[n] + kRounding;
-    if (value >= -slack && value <= highest + slack) continue;
+    const bool beyond_precision = result.partial && std::isnan(value);
+    if (beyond_precision || (value >= -slack && value <= highest + slack)) continue;
     return fmt::format("{} is {:.9g}{}", result.key, value, place(result, n));
   }
   return "";

@@ -41,6 +41,7 @@ Json scene_json(const model::Scene& s) {
     scene["drag_cubic"] = s.drag.cubic;
   }
   scene["bias"] = s.bias;
+  if (s.limits_speed) scene["speed_limit"] = *s.v_max;
   return scene;
 }
 

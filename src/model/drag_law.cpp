@@ -43,9 +43,9 @@ struct Side {
 double reach_of(const Side& b, double force, const Friction& friction, double bias,
                 double intensity) {
   constexpr double ratio = 1.02, far = 1e6, farthest = 1e100;
-  const double mu_d = friction.mu_d, drop = 51 * intensity;
+  const double mu_d = friction.mu_d, drop = 51 * intensity, scale = mu_d > 0 ? mu_d : friction.mu_s;
   double left = drop, slope = 1, held = 0;
-  for (double v = 1e-12 / mu_d; v < far / mu_d || (slope > 0 && v < farthest); v *= ratio) {
+  for (double v = 1e-12 / scale; v < far / scale || (slope > 0 && v < farthest); v *= ratio) {
     const double drag = -b(v);
     if (force <= drag) return 2 * v;
     slope = friction(v) - std::abs(bias) + drag;
@@ -57,7 +57,7 @@ double reach_of(const Side& b, double force, const Friction& friction, double bi
       bias == 0 ? fmt::format("drives a body for ever from about v = {:.2g} on", b.sign * held)
                 : fmt::format("does not hold a body that the bias {:g} drives", bias);
   throw UnfitLaw(fmt::format("{}: it is {:g} at v = {:g}, and friction takes {:g}", driven,
-                             b.sign * b(far / mu_d) + 0.0, b.sign * far / mu_d, mu_d),
+                             b.sign * b(far / scale) + 0.0, b.sign * far / scale, mu_d),
                  "check the signs, as in \"-v - 0.1*v*abs(v)\"; take a smaller bias, or a drag "
                  "that grows");
 }

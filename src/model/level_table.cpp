@@ -92,8 +92,12 @@ LevelTable::LevelTable(std::vector<Level> levels)
   if (!std::isnormal(intensity_) || !std::isnormal(variance_)) {
     throw UnfitTable(count, "the rates lead to probabilities beyond double precision");
   }
-  upper_tail_ = tail_intensity();
-  lower_tail_ = even_ ? upper_tail_ : mirrored().tail_intensity();
+  const auto all_forces = [](const LevelTable& table) {
+    const double top = table.levels_.back().x - table.mean_;
+    return table.tail_intensity(0.05 * top, 0.95 * top);
+  };
+  upper_tail_ = all_forces(*this);
+  lower_tail_ = even_ ? upper_tail_ : all_forces(mirrored());
 }
 
 // Whether theta (X - m - f) + Q has negative eigenvalues alone: the pivots of its negative are
@@ -108,12 +112,15 @@ bool LevelTable::decays(double theta, double force) const {
   return true;
 }
 
-double LevelTable::tail_intensity() const {
+double LevelTable::tail_intensity(double least, double most) const {
   const double top = levels_.back().x - mean_;
   constexpr int forces = 20, halvings = 12;
   double largest = intensity_;
   for (int n = 1; n < forces; ++n) {
-    const double force = top * n / forces;
+    // In even ratios, as pulses are much larger than what they overcome.
+    const double share = static_cast<double>(n - 1) / (forces - 2),
+                 force = least > 0 ? least * std::pow(most / least, share) : share * most;
+    if (!(force > 0) || force >= top) continue;
     double low = force / intensity_, high = low;
     while (!decays(low, force) && low > 1e-6 * high) low /= 2;
     while (decays(high, force)) high *= 2;

@@ -53,11 +53,13 @@ double NoiseChain::correlation_time() const {
 }
 
 int NoiseChain::last_up_to(double x) const {
-  return table ? first_beyond(*table, x, true) - 1 : floor_index(x / delta);
+  if (table) return first_beyond(*table, x, true) - 1;
+  return floor_index(std::clamp<double>(x / delta, -levels - 1.0, levels));
 }
 
 int NoiseChain::first_from(double x) const {
-  return table ? first_beyond(*table, x, false) : -floor_index(-x / delta);
+  if (table) return first_beyond(*table, x, false);
+  return -floor_index(std::clamp<double>(-x / delta, -levels - 1.0, levels));
 }
 
 std::optional<int> NoiseChain::find(double x) const {

@@ -27,29 +27,33 @@ std::string not_finite(const std::string& text, double value, double x, double y
 }
 
 // Tried at rest, as motion starts and in slow motion, where every process has states like these.
-void require_finite(const Expression& f, const Friction& friction) {
+void require_finite(const std::string& text, const Function& f, const Friction& friction) {
   const double some_x = friction.mu_s / 2, some_v = 1e-3;
   for (double x : {0.0, some_x, -some_x}) {
     for (double y : {0.0, 1.0, -1.0}) {
       for (double v : {0.0, y * some_v}) {
-        const double value = f({x, y, v});
+        const double value = f(x, y, v);
         if (std::isfinite(value)) continue;
-        throw std::invalid_argument(not_finite(f.text(), value, x, y, v));
+        throw std::invalid_argument(not_finite(text, value, x, y, v));
       }
     }
   }
 }
 
 Observable from_expression(const std::string& text, const Friction& friction) {
-  const Expression f(text, {"x", "y", "v"}, {{"mu_s", friction.mu_s}, {"mu_d", friction.mu_d}});
-  require_finite(f, friction);
+  const Expression formula(text, {"x", "y", "v", "stick", "slide"},
+                           {{"mu_s", friction.mu_s}, {"mu_d", friction.mu_d}});
+  const auto f = [formula](double x, double y, double v) {
+    return formula({x, y, v, y == 0 ? 1.0 : 0.0, y == 0 ? 0.0 : 1.0});
+  };
+  require_finite(text, f, friction);
   auto numbers = numbers_in(text);
   numbers.insert(numbers.end(), {friction.mu_s, friction.mu_d});
   return {text,
-          [f](double x, double y, double v) {
-            const double value = f({x, y, v});
+          [f, text](double x, double y, double v) {
+            const double value = f(x, y, v);
             if (std::isfinite(value)) return value;
-            throw Failure(ExitStatus::bad_input, not_finite(f.text(), value, x, y, v));
+            throw Failure(ExitStatus::bad_input, not_finite(text, value, x, y, v));
           },
           numbers};
 }
@@ -143,6 +147,8 @@ void examine(Observable& f, const std::vector<double>& x, double step, double re
   Examination examination(f, reach);
   constexpr std::array signs{1.0, -1.0};
   constexpr std::size_t too_many = 65;
+  const double lowest = *std::min_element(x.begin(), x.end()),
+               highest = *std::max_element(x.begin(), x.end());
   std::vector<Break> found;
   for (double level : x) {
     for (double sign : signs) merge(found, examination.look(level, sign));
@@ -151,6 +157,7 @@ void examine(Observable& f, const std::vector<double>& x, double step, double re
   }
   for (double level : x) {
     const double next = level > 0 ? level - step : level + step;
+    if (next < lowest || next > highest) continue;  // the noise does not get there
     for (double sign : signs) {
       for (const Break& b : examination.look(next, sign)) {
         const auto same = [&b](const Break& other) { return b.same_as(other); };

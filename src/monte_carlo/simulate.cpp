@@ -34,7 +34,7 @@ constexpr double kSecondsBetweenFiles = 3, kSecondsBetweenReports = 1;
 
 // What is tallied.
 void add_followed(const Case& given, checkpoint::Identity& found) {
-  const auto wanted = wanted_of(given.question, given.scene.process(1));
+  const auto wanted = wanted_of(given.question, given.scene.meant());
   const auto add = [&](const char* name, const auto& values) {
     found.emplace_back(name, values.empty() ? "none" : fmt::format("{}", fmt::join(values, ",")));
   };

@@ -75,15 +75,24 @@ struct Nodes::Upper {
     constexpr double rounding = 1e-9;
     const double widest = (1 - rounding) * grouping.width * noise.standard_deviation();
     const int size = grouping.degree == 0 ? std::numeric_limits<int>::max() : grouping.degree + 1;
+    // What starts far out in the tail passes levels of very different weights alike, and against
+    // these it is a polynomial on short groups alone.
+    constexpr double far = -32, most_of_weight = 8;
+    double weight = 0;  // of a level, in the logarithm
     for (int first = 1; first <= noise.highest();) {
       int last = first;
+      const double at_first = weight;
       while (grouping.degree > 0 && last < noise.highest() &&
              noise.level(last + 1) - noise.level(first) < widest &&
              special.allow(first, last + 1, grouping.grading)) {
+        const double step = std::log(model::weight_ratio(noise, last + 1));
+        if (weight < far && weight - at_first + step < -most_of_weight) break;
+        weight += step;
         ++last;
       }
       last - first + 1 <= size ? add_levels(first, last) : add_group(first, last, size);
       first = last + 1;
+      if (first <= noise.highest()) weight += std::log(model::weight_ratio(noise, first));
     }
   }
 

@@ -37,8 +37,13 @@ KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& disc
           clock})) {
   RowAssembler rows(discretisation, states(), lambda, clock, static_phase, derivative);
   rows.assemble();
-  trace_upper_ = rows.trace_at_exit(Branch::positive);
-  if (!states().symmetry_reduced()) trace_lower_ = rows.trace_at_exit(Branch::negative);
+  // Where all excursions start on one side, so do those that are taken for the other's.
+  const auto& process = discretisation.process;
+  trace_upper_ = rows.trace_at_exit(process.starts_upwards() ? Branch::positive : Branch::negative);
+  if (!states().symmetry_reduced()) {
+    trace_lower_ =
+        rows.trace_at_exit(process.starts_downwards() ? Branch::negative : Branch::positive);
+  }
   static_coupling_ = std::move(rows.static_coupling);
   top_coupling_ = std::move(rows.top_coupling);
   if (!derivative && symmetry != Symmetry::odd && PetscRealPart(lambda) >= 0) {
@@ -67,6 +72,44 @@ KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& disc
 void KolmogorovOperator::shift(PetscScalar by) {
   check(MatShift(matrix_, by));
   data_->lambda += by;
+}
+
+void KolmogorovOperator::kill_in_one_state() {
+  const auto& [process, noise, velocities] = discretisation();
+  const auto& chain = process.noise;
+  const bool forwards = process.mean_force() >= 0;
+  const auto along = forwards ? process : process.mirrored();
+  const Branch branch = forwards ? Branch::positive : Branch::negative;
+  const int level = std::clamp(along.noise.last_up_to(along.noise.mean()), along.noise.lowest(),
+                               along.noise.highest());
+  const auto& nodes = nodes_along(branch);
+  const int n = std::clamp(nodes.last_up_to(level), nodes.first(), nodes.last());
+  const double speed =
+      std::max(chain.standard_deviation() * chain.correlation_time(),
+               along.drag.terminal_velocity(along.mean_force() - along.friction.at_rest()));
+  const auto& speeds = velocities->nodes();
+  const auto node =
+      std::lower_bound(speeds.begin(), speeds.end() - 1, std::min(speed, velocities->v_max() / 2));
+  const PetscInt state =
+      states().index({StateKind::node, branch, n, static_cast<int>(node - speeds.begin())});
+  const PetscInt begin = states().local_begin(), end = begin + states().local_size();
+  if (state >= begin && state < end) {
+    check(MatSetValue(matrix_, state, state, chain.rate(), ADD_VALUES));
+  }
+  check(MatAssemblyBegin(matrix_, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(matrix_, MAT_FINAL_ASSEMBLY));
+  killing_state_ = state;
+}
+
+petsc::VecHandle KolmogorovOperator::value_in_that_state() const {
+  petsc::VecHandle g = zeros();
+  const PetscInt state = killing_state_.value(), begin = states().local_begin();
+  if (state >= begin && state < begin + states().local_size()) {
+    check(VecSetValue(g, state, 1, INSERT_VALUES));
+  }
+  check(VecAssemblyBegin(g));
+  check(VecAssemblyEnd(g));
+  return g;
 }
 
 petsc::VecHandle KolmogorovOperator::zeros() const {

@@ -13,6 +13,7 @@ StaticChain::StaticChain(const model::NoiseChain& chain, int low, int high, doub
     throw std::invalid_argument("levels outside the noise");
   }
   if (!(lambda >= 0)) throw std::invalid_argument("negative Laplace parameter");
+  if (high < low) return;
   up_exit_ = chain.up_rate(high);
   down_exit_ = chain.down_rate(low);
   double killing_below = 0;

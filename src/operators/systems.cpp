@@ -39,10 +39,19 @@ KolmogorovOperator assemble_derivative(MPI_Comm comm, const Discretisation& disc
   });
 }
 
+namespace {
+
+// Elements know of no killing in one state.
+const char* pc_type_of(const KolmogorovOperator& a) {
+  return a.kills_in_one_state() ? "lu" : default_pc_type(a.discretisation());
+}
+
+}  // namespace
+
 std::unique_ptr<petsc::Factorization> factorization(const KolmogorovOperator& a,
                                                     petsc::SolverStatistics& statistics) {
   return std::make_unique<petsc::Factorization>(a.matrix(), kSlidePrefix, statistics,
-                                                default_pc_type(a.discretisation()));
+                                                pc_type_of(a));
 }
 
 KolmogorovOperator Systems::assembled(const SystemKey& key) {
@@ -50,8 +59,11 @@ KolmogorovOperator Systems::assembled(const SystemKey& key) {
     return assemble(comm_, discretisation, key.lambda, key.symmetry, key.static_phase, statistics_,
                     key.clock);
   };
-  return std::isinf(key.speed_limit) ? of(discretisation_)
-                                     : of(discretisation_.killing_at(key.speed_limit));
+  if (!std::isinf(key.speed_limit)) return of(discretisation_.killing_at(key.speed_limit));
+  KolmogorovOperator a = of(discretisation_);
+  const bool singular = key.lambda == 0 && key.static_phase == StaticPhase::killing;
+  if (singular && !process().sticks()) a.kill_in_one_state();
+  return a;
 }
 
 System& Systems::at(const SystemKey& key) {
@@ -62,8 +74,7 @@ System& Systems::at(const SystemKey& key) {
 
 petsc::Analysis Systems::analyse(const SystemKey& key) {
   const auto a = assembled(key);
-  return petsc::Factorization::analyse(a.matrix(), kSlidePrefix, statistics_,
-                                       default_pc_type(a.discretisation()));
+  return petsc::Factorization::analyse(a.matrix(), kSlidePrefix, statistics_, pc_type_of(a));
 }
 
 }  // namespace stickslip::operators

@@ -53,6 +53,8 @@ class SceneReader {
     scene_.bias = settings_.real("bias");
     scene_.noise_levels = settings_.integer("noise_levels");
     if (settings_.given("v_max")) scene_.v_max = settings_.real("v_max");
+    scene_.limits_speed = settings_.given("speed_limit");
+    if (scene_.limits_speed) scene_.v_max = settings_.real("speed_limit");
   }
 
   void read_noise() {
@@ -106,17 +108,21 @@ class SceneReader {
     const auto backwards = forwards.mirrored();
     const char* grows = "dynamic friction cannot exceed static friction";
     if (forwards.mu_d > forwards.mu_s) {
-      report("mu_d", fmt::format("must be in (0, mu_s], and mu_s = {:g}", forwards.mu_s), grows);
+      report("mu_d", fmt::format("must be in [0, mu_s], and mu_s = {:g}", forwards.mu_s), grows);
     }
     if (!forwards.symmetric() && backwards.mu_d > backwards.mu_s) {
       report(forwards.mu_d_minus ? "mu_d_minus" : "mu_s_minus",
-             fmt::format("must keep mu_d_minus in (0, mu_s_minus]; they are {:g} and {:g}",
+             fmt::format("must keep mu_d_minus in [0, mu_s_minus]; they are {:g} and {:g}",
                          backwards.mu_d, backwards.mu_s),
              grows);
     }
     const double mean = scene_.noise.table ? scene_.noise.table->mean() : 0;
     const double force = scene_.bias + mean, mu_d = force > 0 ? forwards.mu_d : backwards.mu_d;
     if (drag_law_.expression || !scene_.drag.is_none() || std::abs(force) < mu_d) return;
+    if (force == 0) {
+      return report("mu_d", "leaves nothing that slows a body: there is no drag either",
+                    "take a positive -mu_d, or add drag");
+    }
     const auto noise = mean == 0 ? "" : fmt::format("with the mean {:g} of the noise ", mean);
     report("bias",
            fmt::format(
@@ -126,20 +132,38 @@ class SceneReader {
            "take a bias smaller than mu_d, or add drag");
   }
 
-  // The levels that exist, and that on some of them bodies stick and on some they slide.
-  void check_table() {
+  // That there is a level on which bodies slide. Where there is none on which they stick, what asks
+  // for sticking phases is refused elsewhere.
+  void check_starts() {
     const auto process = scene_.meant();
     const auto& noise = process.noise;
-    const auto range =
-        fmt::format("levels, from {:g} to {:g}, shifted by the bias {:g}",
-                    noise.level(noise.lowest()), noise.level(noise.highest()), scene_.bias);
-    if (process.lowest_static() > process.static_index()) {
-      report("mu_s", "holds the body on none of the noise " + range + ": the body never sticks",
-             "take a larger -mu_s or another -bias");
-    } else if (!process.starts_upwards() && !process.starts_downwards()) {
-      report("mu_s", "holds the body on all of the noise " + range + ": the body never slides",
-             "take a smaller -mu_s or a larger -bias");
+    if (process.starts_upwards() || process.starts_downwards()) return;
+    const double lowest = noise.level(noise.lowest()), highest = noise.level(noise.highest());
+    const auto backwards = scene_.friction.mirrored();
+    const bool upwards =
+        highest + scene_.bias - scene_.friction.mu_s >= -lowest - scene_.bias - backwards.mu_s;
+    const double most = upwards ? highest + scene_.bias : -lowest - scene_.bias;
+    const char* threshold = upwards || !scene_.friction.mu_s_minus ? "mu_s" : "mu_s_minus";
+    const auto why = fmt::format(
+        "holds the body on all of the noise levels, from {:g} to {:g}, {}: the body never slides, "
+        "P_stick = 1 and V = 0",
+        lowest, highest,
+        scene_.bias == 0 ? "whichever occurs"
+                         : fmt::format("shifted by the bias {:g}", scene_.bias));
+    if (scene_.noise_levels && *scene_.noise_levels < scene_.full_levels()) {
+      const auto all = scene_.process(scene_.full_levels());
+      const int k = std::min(all.static_index(), -all.lowest_static());
+      if (k < scene_.full_levels()) {
+        return report(threshold, why, fmt::format("take -noise_levels above {}", k));
+      }
     }
+    const char* stronger = scene_.noise.name != "ou" ? "a stronger noise"
+                           : scene_.noise.deviation
+                               ? "a larger -noise_deviation or a smaller -delta"
+                               : "a smaller -tau or -delta";
+    report(threshold, why,
+           most > 0 ? fmt::format("take -{} below {:g}, or {}", threshold, most, stronger)
+                    : fmt::format("take {}", stronger));
   }
 
   // No level besides 0.
@@ -157,19 +181,16 @@ class SceneReader {
   void check_noise() {
     if (scene_.noise.table) {
       scene_.noise_levels.reset();
-      return check_table();
+      return check_starts();
     }
     if (scene_.noise.name != "ou") return;  // reported
     const double delta = scene_.delta,
                  sigma = scene_.noise.deviation.value_or(1 / std::sqrt(scene_.tau)),
                  ratio = delta * delta / (sigma * sigma);
     const bool own = scene_.noise.deviation.has_value();
-    const char* stronger = own ? "a larger -noise_deviation" : "smaller -tau";
-    int full = 0, highest = 0, lowest = 0;
+    int full = 0;
     try {
       full = scene_.full_levels();
-      highest = scene_.process(1).static_index();
-      lowest = scene_.process(1).lowest_static();
     } catch (const std::out_of_range&) {
       const bool by_mu_s = settings_.given("delta_per_mu_s");
       return report(by_mu_s ? "delta_per_mu_s" : "delta", "gives more than 2147483647 noise levels",
@@ -177,8 +198,7 @@ class SceneReader {
     }
     const bool word = settings_.given("noise_levels") && !scene_.noise_levels;
     if (word) scene_.noise_levels = full;
-    const int levels = scene_.noise_levels.value_or(full), k = std::max(highest, -lowest);
-    const double largest = levels * delta;
+    const int levels = scene_.noise_levels.value_or(full);
     if (full < 1) {
       report_coarse_steps(sigma);
     } else if (levels > full) {
@@ -187,30 +207,8 @@ class SceneReader {
           fmt::format("gives {} = {:g} with L_X = N delta, but jump probabilities need at most 2",
                       own ? "delta L_X/noise_deviation^2" : "tau delta L_X", ratio * levels),
           fmt::format("take at most {}, or full", full));
-    } else if (k >= levels && lowest + highest != 0) {
-      const bool backwards = -lowest > highest;
-      const auto& friction = scene_.friction;
-      const double mu_s = backwards ? friction.mirrored().mu_s : friction.mu_s;
-      const bool biased = scene_.bias != 0;
-      const char* threshold = backwards && friction.mu_s_minus ? "mu_s_minus" : "mu_s";
-      report(biased ? "bias" : threshold,
-             fmt::format("is never exceeded by the noise, which is at most {:g}: a body at rest "
-                         "never starts towards {} v",
-                         largest, backwards ? "negative" : "positive"),
-             fmt::format("take {} below {:g}, or {} or -delta",
-                         biased ? "|bias|" : fmt::format("-{}", threshold),
-                         biased ? largest - mu_s : largest, stronger));
-    } else if (k >= levels) {
-      const auto why = fmt::format(
-          "must be below the largest noise level {:g}: otherwise the body never slides", largest);
-      if (levels < full) return report("mu_s", why, fmt::format("take -noise_levels above {}", k));
-      report("mu_s", why, fmt::format("take -mu_s below {:g}, or {} or -delta", largest, stronger));
-    } else if (lowest > highest) {
-      report("mu_s",
-             fmt::format("holds the body on no noise level (they are {:g} apart and shifted by the "
-                         "bias {:g}): the body never sticks",
-                         delta, scene_.bias),
-             "take a smaller -delta");
+    } else {
+      check_starts();
     }
   }
 

@@ -16,7 +16,7 @@ model::LevelTable read_levels(const std::string& file) {
   std::vector<model::Level> levels;
   std::vector<unsigned> lines;
   try {
-    ::io::CSVReader<3, ::io::trim_chars<' ', '\t', '\r'>, ::io::no_quote_escape<','>,
+    ::io::CSVReader<3, ::io::trim_chars<' ', '\t', '\r'>, ::io::double_quote_escape<',', '"'>,
                     ::io::throw_on_overflow, ::io::single_and_empty_line_comment<'#'>>
         reader(file);
     reader.read_header(::io::ignore_no_column, "x", "rate_up", "rate_down");
@@ -31,7 +31,10 @@ model::LevelTable read_levels(const std::string& file) {
       levels.push_back({number("x", x), number("rate_up", up), number("rate_down", down)});
     }
   } catch (const ::io::error::base& problem) {
-    throw std::invalid_argument(fmt::format("is not a CSV file of levels: {}", problem.what()));
+    throw std::invalid_argument(
+        fmt::format("is not a CSV file of levels: {}. A record of a force or an acceleration over "
+                    "time (CSV, AT2, SAC) becomes one as docs/recorded_forces.md shows",
+                    problem.what()));
   }
   try {
     return model::LevelTable(levels);

@@ -108,7 +108,9 @@ read_observables(const Settings& settings, const model::Friction& friction, Prob
     try {
       observables.push_back(model::parse_observable(*text, friction));
     } catch (const std::invalid_argument& error) {
-      settings.report(problems, "observable", error.what(), example);
+      const std::string why = error.what();
+      const bool named = texts.size() == 1 || why.starts_with(*text);
+      settings.report(problems, "observable", named ? why : *text + ": " + why, example);
     }
   }
   return observables;
@@ -207,11 +209,11 @@ void read_start(const Settings& settings, Request& request, Problems& problems) 
   using enum model::Start::Kind;
   const std::string text = settings.text("start");
   model::Start& start = request.question.start;
-  const auto process = request.scene.process(1);
+  const auto process = request.scene.meant();
   const bool up = process.starts_upwards(), down = process.starts_downwards();
   if ((text == "s+" && !up) || (text == "s-" && !down)) {
     settings.report(problems, "start",
-                    "does not exist: the noise has no level beyond the static ones on that side",
+                    "does not occur: from rest bodies start on the other side alone",
                     up ? "take -start s+" : "take -start s-");
   } else if (text == "s+") {
     start = {process.static_index() + 1};
@@ -236,13 +238,16 @@ void check_speeds(const Settings& settings, const Request& request, Problems& pr
     reached =
         std::max(reached, branch.drag.terminal_velocity(branch.net_force(branch.noise.highest())));
   }
+  const bool limited = request.scene.limits_speed && *request.scene.v_max < reached;
+  if (limited) reached = *request.scene.v_max;
   for (double speed : request.question.velocity) {
     if (speed < reached) continue;
-    settings.report(problems, "velocity",
-                    fmt::format("holds {:g}, which no body reaches: the terminal velocity on the "
-                                "highest noise level is {:g}",
-                                speed, reached),
-                    fmt::format("take speeds below {:g}", reached));
+    settings.report(
+        problems, "velocity",
+        fmt::format("holds {:g}, which no body reaches: {} is {:g}", speed,
+                    limited ? "-speed_limit" : "the terminal velocity on the highest noise level",
+                    reached),
+        fmt::format("take speeds below {:g}", reached));
     return;
   }
 }

@@ -5,6 +5,7 @@
 #include "quantities.hpp"
 #include "reading.hpp"
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/support/text.hpp"
 #include "words.hpp"
 
 namespace stickslip::options {
@@ -68,7 +69,8 @@ class Rules {
     refuse({"route"}, queue && !r_.scene.process(1).drag.is_none(),
            "needs a model without drag, b = 0, and Coulomb friction: only then is it a fluid queue",
            "add -drag none, leave -friction out, or take -route excursion");
-    refuse({"v_max"}, route != Route::excursion, no_choice,
+    refuse({"speed_limit"}, settings_.given("v_max"), "does not go with -v_max", "leave one out");
+    refuse({"v_max", "speed_limit"}, route != Route::excursion, no_choice,
            "leave it out, or take -route excursion");
     refuse({"scheme", "degree", "layers", "noise_degree", "noise_grading", "p"},
            queue || route == Route::monte_carlo,
@@ -122,6 +124,7 @@ class Rules {
     report("quantities", q_.wants(sensitivity) && !derivable,
            "asks for derivatives (sensitivity), but for no scalars to differentiate",
            "add sticking, moments or noise_law");
+    require_sticking();
     const bool unbounded = !r_.scene.v_max && !r_.scene.process(1).drag.bounds_velocity();
     report("quantities", q_.wants(relaxation) && unbounded,
            "asks for relaxation, but where drag does not bound the velocity the spectrum of the "
@@ -136,6 +139,34 @@ class Rules {
 
  private:
   using Options = std::initializer_list<const char*>;
+
+  // Where no level of the noise holds the body, there are no phases, and the rest exists.
+  void require_sticking() {
+    if (!problems_.empty() || r_.scene.meant().sticks()) return;
+    using enum Quantity;
+    std::vector<std::string> without, missing;
+    for (const auto& row : quantity_table()) {
+      const auto of_velocity = {moments,         averages,     noise_law,   density,    spectrum,
+                                autocorrelation, displacement, expectation, relaxation, trajectory};
+      const bool exists = std::count(of_velocity.begin(), of_velocity.end(), row.quantity) > 0;
+      if (exists) without.emplace_back(row.word);
+      if (!exists && q_.wants(row.quantity)) missing.emplace_back(row.word);
+    }
+    const auto noise = r_.scene.meant().noise;
+    const auto why =
+        fmt::format("holds the body on none of the noise levels, from {:g} to {:g}, shifted by the "
+                    "bias {:g}: the body never sticks, and ",
+                    noise.level(noise.lowest()), noise.level(noise.highest()), r_.scene.bias);
+    const std::string finer = noise.table ? "" : ", or a smaller -delta";
+    report("mu_s", !missing.empty(), why + enumerate(missing, "and") + " are about sticking phases",
+           fmt::format("take -quantities of {}, or a larger -mu_s{}", enumerate(without, "and"),
+                       finer));
+    const Route route = r_.method.route;
+    report("route", missing.empty() && route != Route::excursion && route != Route::null_vector,
+           "follows excursions, which end with a sticking phase; with this -mu_s the body never "
+           "sticks",
+           "take -route excursion or null_vector");
+  }
 
   [[nodiscard]] bool asked(const char* option) const { return depends_on(q_, option); }
 

@@ -65,15 +65,15 @@ std::vector<Option> friction_options() {
            "static friction coefficient: a body at rest sticks while the force on it is at most "
            "mu_s",
            "friction must be able to hold the body"),
-      real("mu_d", "force", "1", positive(), "dynamic friction coefficient, at most mu_s",
-           "for sliding without friction take a small value such as 1e-8"),
+      real("mu_d", "force", "1", not_negative(), "dynamic friction coefficient, at most mu_s",
+           "friction must not drive the body"),
       real("mu_s_minus", "force", "", positive(),
            "static friction coefficient against motion towards negative v; mu_s unless given. "
            "Where the directions differ, both velocity branches are computed",
            "friction must be able to hold the body"),
-      real("mu_d_minus", "force", "", positive(),
+      real("mu_d_minus", "force", "", not_negative(),
            "dynamic friction coefficient while v < 0, at most mu_s_minus; mu_d unless given",
-           "for sliding without friction take a small value such as 1e-8"),
+           "friction must not drive the body"),
       choice("friction", "coulomb", words_of(kFrictionLaws),
              "friction law. coulomb: F = mu_d at every speed. stribeck: F(v) = mu_d + (mu_s - "
              "mu_d) exp(-(|v|/v_s)^gamma), with the coefficients of each direction"),
@@ -138,6 +138,11 @@ std::vector<Option> drag_options() {
       real("v_max", "velocity", "", positive(),
            "truncation velocity: bodies that reach it wait there until the noise falls. Unless "
            "given, the largest velocity that matters at -accuracy"),
+      real(
+          "speed_limit", "velocity", "", positive(),
+          "largest speed of the body: forces that would drive it beyond are lost, as the inflow of "
+          "a full buffer is. A part of the model, where -v_max only truncates it",
+          "leave it out for a body that is as fast as forces make it"),
   };
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <set>
 #include <span>
@@ -31,6 +32,12 @@ double Excursion::mean_drift(const noise::Nodes& noise) const {
 
 double Excursion::conservation_defect(const operators::Discretisation& discretisation) const {
   const auto& [process, noise, velocities] = discretisation;
+  if (!process.sticks()) {
+    const auto seen = marginal_of_noise(discretisation, *this),
+               exact = model::stationary_distribution(process.noise);
+    return std::transform_reduce(seen.begin(), seen.end(), exact.begin(), 0.0, std::plus<>(),
+                                 [](double p, double q) { return std::abs(p - q); });
+  }
   const int highest = noise->last_up_to(process.static_index()),
             lowest = -noise->mirrored().last_up_to(-process.lowest_static());
   double beyond = 0;
@@ -66,8 +73,8 @@ Excursion joined(const SideChain& sides, const Excursion& plus, const Excursion&
   }
   all.entry_plus = plus.entry;
   all.entry_minus = minus.entry;
-  all.lost_probability =
-      std::max(std::abs(plus.lost_probability), std::abs(minus.lost_probability));
+  all.lost_probability = sides.share_of_plus() * std::abs(plus.lost_probability) +
+                         sides.share_of_minus() * std::abs(minus.lost_probability);
   return all;
 }
 

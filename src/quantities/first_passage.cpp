@@ -1,12 +1,13 @@
 #include "stickslip/quantities/first_passage.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
-#include "stickslip/support/errors.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -58,10 +59,6 @@ struct Passage {
 
 Passage passage(const SideChain& sides, const Sticking& sticking, const SlidingPhase& plus,
                 const SlidingPhase& minus, SlidingPhase rest) {
-  if (!(plus.reached + minus.reached > 0)) {
-    throw NotReached(
-        "a speed of -velocity is reached too rarely for double precision; take smaller ones");
-  }
   const double across =
       plus.down * minus.reached + plus.reached * minus.up + plus.reached * minus.reached;
   const double from_plus =
@@ -104,7 +101,13 @@ FirstPassage first_passage(operators::Systems& systems, const SideChain& sides, 
   const auto rest = follow(a.mean_at_zero(model::stationary_distribution(process.noise)));
   const Passage p = passage(sides, sticking, plus.first, minus.first, rest.first),
                 q = passage(sides, sticking, plus.second, minus.second, rest.second);
-  return {{p.exceeded, std::abs(p.exceeded - q.exceeded)},
+  // Reached so rarely that rounding is all there is.
+  const double rounding = std::abs(p.exceeded - q.exceeded);
+  if (!(p.exceeded > 2 * rounding)) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    return {{none, none}, {none, none}, {none, none}};
+  }
+  return {{p.exceeded, rounding},
           {p.from_slide, std::abs(p.from_slide - q.from_slide)},
           {p.from_rest, std::abs(p.from_rest - q.from_rest)}};
 }
@@ -115,6 +118,8 @@ void append_first_passages(const std::vector<double>& speed,
     Result result = array(name.key, speed, name.kind);
     result.each_by_its_size = true;
     for (const auto& passage : passages) append_value(result, passage.*member);
+    result.partial = std::any_of(result.value.begin(), result.value.end(),
+                                 [](double value) { return std::isnan(value); });
     results.push_back(std::move(result));
   };
   append({"P_peak", Kind::probability}, &FirstPassage::exceeded);

@@ -117,6 +117,18 @@ Function one() {
 }
 
 // From s- everything is the same for even functions, and the opposite for odd ones.
+struct Mirrored {
+  Uncertain same, other, w_one;
+  double lambda;
+
+  [[nodiscard]] Resolvent empty() const { return {{same, other, w_one}, {other, same, w_one}, {}}; }
+  // 1 - h_o = (1 - h_e) + 2 h^- and 1 - h_e = lambda w(s+; 1): a positive sum.
+  [[nodiscard]] ObservableTransforms of(Uncertain w_even, Uncertain w_odd) const {
+    const Uncertain mu = w_odd / (lambda * w_one + 2.0 * other);
+    return {w_even + w_odd, w_even - w_odd, w_even / w_one, mu, -1.0 * mu, {}, {}};
+  }
+};
+
 Resolvent by_parity(operators::Systems& systems, double lambda,
                     const std::vector<model::Observable>& observables) {
   Sector even(systems, lambda, Symmetry::even), odd(systems, lambda, Symmetry::odd);
@@ -128,18 +140,32 @@ Resolvent by_parity(operators::Systems& systems, double lambda,
   }
   systems.release({lambda, Symmetry::even});
   const Uncertain h_odd = odd.exit_transform(Branch::positive).plus;
-  const Uncertain same = 0.5 * (h_even + h_odd), other = 0.5 * (h_even - h_odd);
-  Resolvent r{{same, other, w_one}, {other, same, w_one}, {}};
-  // 1 - h_o = (1 - h_e) + 2 h^- and 1 - h_e = lambda w(s+; 1): a positive sum.
-  const Uncertain one_minus_h_odd = lambda * w_one + 2.0 * other;
+  const Mirrored sides{0.5 * (h_even + h_odd), 0.5 * (h_even - h_odd), w_one, lambda};
+  Resolvent r = sides.empty();
   for (std::size_t n = 0; n < observables.size(); ++n) {
     const auto& f = observables[n];
-    const Uncertain w_odd = odd.integral(operators::part_of(f, Symmetry::odd), f.quadratic).plus;
-    const Uncertain mu = w_odd / one_minus_h_odd;
     r.of.push_back(
-        {w_even[n] + w_odd, w_even[n] - w_odd, w_even[n] / w_one, mu, -1.0 * mu, {}, {}});
+        sides.of(w_even[n], odd.integral(operators::part_of(f, Symmetry::odd), f.quadratic).plus));
   }
   systems.release({lambda, Symmetry::odd});
+  return r;
+}
+
+// The same where no level lies at 0, and both branches are kept.
+Resolvent by_mirror(operators::Systems& systems, double lambda,
+                    const std::vector<model::Observable>& observables) {
+  Sector all(systems, lambda, Symmetry::none);
+  const Mirrored sides{all.exit_transform(Branch::positive).plus,
+                       all.exit_transform(Branch::negative).plus, all.integral(one(), true).plus,
+                       lambda};
+  Resolvent r = sides.empty();
+  for (const auto& f : observables) {
+    const auto w = [&](Symmetry parity) {
+      return all.integral(operators::part_of(f, parity), f.quadratic).plus;
+    };
+    r.of.push_back(sides.of(w(Symmetry::even), w(Symmetry::odd)));
+  }
+  systems.release({lambda, Symmetry::none});
   return r;
 }
 
@@ -173,9 +199,9 @@ Resolvent by_side(operators::Systems& systems, double lambda,
 
 Resolvent resolvent(operators::Systems& systems, double lambda,
                     const std::vector<model::Observable>& observables) {
-  const bool symmetric = systems.process().symmetric();
-  Resolvent r =
-      symmetric ? by_parity(systems, lambda, observables) : by_side(systems, lambda, observables);
+  const auto& process = systems.process();
+  const auto by = process.symmetric() ? by_parity : process.drifts() ? by_side : by_mirror;
+  Resolvent r = by(systems, lambda, observables);
   for (auto& t : r.of) {
     if (lambda == 0) continue;
     t.u = (1 / lambda) * t.pi_lambda + t.mu_lambda;

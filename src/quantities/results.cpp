@@ -9,7 +9,7 @@ namespace {
 
 double largest(const std::vector<double>& values) {
   double size = 0;
-  for (double v : values) size = std::max(size, std::abs(v));
+  for (double v : values) size = std::fmax(size, std::abs(v));
   return size;
 }
 
@@ -19,6 +19,7 @@ double relative_error(const Result& result) {
   const double size = largest(result.value);
   double relative = 0;
   for (std::size_t n = 0; n < result.value.size(); ++n) {
+    if (result.partial && std::isnan(result.value[n])) continue;
     const bool number = !std::isnan(result.value[n]) && !std::isnan(result.error[n]);
     if (!number) return std::numeric_limits<double>::infinity();
     if (result.error[n] == 0) continue;

@@ -276,6 +276,7 @@ void append_shape(const SpectrumShape& shape, Results& results) {
   results.push_back(scalar({"fwhm"}, shape.fwhm));
   results.push_back(scalar({"t_corr"}, Uncertain{1, 0} / shape.fwhm));
   results.push_back(scalar({"variance_from_spectrum"}, shape.variance));
+  results.back().diagnostic = true;
 }
 
 }  // namespace stickslip::quantities

@@ -10,6 +10,7 @@ namespace stickslip::quantities {
 namespace {
 
 using operators::KolmogorovOperator;
+using operators::Symmetry;
 
 /// Integrals of f over an excursion.
 struct Integral {
@@ -21,7 +22,8 @@ struct Integral {
 Integral integral(const StationaryDistribution& distribution, double defect,
                   const KolmogorovOperator& a, const model::Observable& f) {
   const auto& process = distribution.process();
-  const auto part = operators::part_of(f, operators::symmetry_of(process));
+  // Where mirrored states are as likely, odd functions have exactly no average.
+  const auto part = operators::part_of(f, process.drifts() ? Symmetry::none : Symmetry::even);
   Integral sum;
   const auto &now = distribution.excursion().stick_time,
              &before = distribution.uncorrected().stick_time;
@@ -68,13 +70,16 @@ void append_averages(const StationaryDistribution& distribution, const Kolmogoro
       results.push_back(scalar({key.c_str(), kind}, value));
     };
     append("", (sum.stick + sum.slide) / excursion);
+    if (!distribution.process().sticks()) continue;
     append("|stick", sum.stick / stick);
     append("|slide", sum.slide / slide);
   }
   const Integral power =
       integral(distribution, defect, a, model::friction_power(distribution.process().friction));
   results.push_back(scalar(kFrictionPower, power.slide / excursion));
-  results.push_back(scalar(kSlipRate, Uncertain{1, 0} / excursion));
+  if (distribution.process().sticks()) {
+    results.push_back(scalar(kSlipRate, Uncertain{1, 0} / excursion));
+  }
 }
 
 }  // namespace stickslip::quantities

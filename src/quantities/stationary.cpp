@@ -106,6 +106,21 @@ StationaryDistribution::StationaryDistribution(Systems& systems)
     if (monotone) operators::require_occupation(s.x, process());
     return normalised(a, std::move(s));
   };
+  if (!process().sticks()) {
+    // The null vector of L, over a time that is as good as any other.
+    auto s = system.factors().solve_transposed(a.value_in_that_state());
+    petsc::check(VecAYPX(s.correction, -1, s.x));
+    for (const auto& nu : {&s.x, &s.correction}) {
+      PetscScalar time = 0;
+      petsc::check(VecSum(*nu, &time));
+      petsc::check(VecScale(*nu, 1.0 / time));
+    }
+    excursion_ = excursion_of(a, s.x, 0);
+    uncorrected_ = excursion_of(a, s.correction, 0);
+    occupation_ = std::move(s.x);
+    uncorrected_occupation_ = std::move(s.correction);
+    return;
+  }
   Occupation plus = from(Branch::positive);
   if (process().symmetric()) {
     excursion_ = excursion_of(a, plus.nu, plus.lost);

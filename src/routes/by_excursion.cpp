@@ -290,7 +290,7 @@ class Execution {
     }
     if (resolvents_.empty()) return;
     quantities::append_resolvent(lambda, question_.observables, resolvents_,
-                                 setting_.discretisation.process.symmetric(), results());
+                                 !setting_.discretisation.process.drifts(), results());
   }
 
   const Setting& setting_;

@@ -68,7 +68,9 @@ class Planner {
   }
 
   void plan_distribution() {
-    add({Work::stationary_distribution, 0, {{ground(), 0, symmetric_ ? 1 : 2}}});
+    add({Work::stationary_distribution,
+         0,
+         {{ground(), 0, symmetric_ || !given_.scene.meant().sticks() ? 1 : 2}}});
     if (question_.wants(Quantity::averages)) add({Work::averages, 0, {{ground(), 0, 0}}});
     if (!question_.wants(Quantity::entry_law)) return;
     Task orientation{Work::orientation};
@@ -81,7 +83,7 @@ class Planner {
   void plan_sensitivity() {
     const bool moments = question_.wants(Quantity::moments);
     if (!moments && !question_.wants(Quantity::sticking)) return;
-    const int durations = given_.scene.process(1).static_index() > 0 ? 2 : 1;
+    const int durations = given_.scene.meant().static_index() > 0 ? 2 : 1;
     // Without symmetry the side of the next excursion, and E_V.
     const int sides = symmetric_ ? 0 : 1;
     const int adjoints = durations + sides + (moments ? 3 + sides : 0);
@@ -160,8 +162,9 @@ class Planner {
                                          const) const {
     const auto& f = question_.observables;
     return static_cast<int>(std::count_if(f.begin(), f.end(), [&](const model::Observable& g) {
-      const auto process = given_.scene.process(1);
-      for (int i = 0; i <= 3 * process.static_index() + 3; ++i) {
+      const auto process = given_.scene.meant();
+      const int last = std::min(3 * process.static_index() + 3, process.noise.highest());
+      for (int i = 0; i <= last; ++i) {
         const double x = process.noise.level(i);
         if (i <= process.static_index() && (g.*part)(x, 0, 0) != 0) return true;
         for (double v : {0.01, 0.3, 2.0}) {

@@ -90,6 +90,11 @@ class Walker : public Walk {
 void begin_stationary(Walk& walk, const model::Process& process, RandomStream& random) {
   constexpr int excursions = 1000;
   const double share = random.uniform();
+  if (!process.sticks()) {
+    walk.begin(random, {.kind = model::Start::Kind::rest});
+    walk.advance(excursions * (1 + share) * process.noise.correlation_time());
+    return;
+  }
   const model::Start start{process.exit_level(true)};
   walk.begin(random, start);
   for (int n = 0; n < excursions; ++n) walk.end_excursion();

@@ -3,6 +3,7 @@
 /// of the velocity discretisation are chosen.
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "stickslip/model/process.hpp"
@@ -13,11 +14,20 @@ namespace stickslip::velocity {
 /// v + int b)/D) with slope = F(0+) - g, g the mean force, against its largest value. Large speeds
 /// make of some noises a stronger one.
 struct LogDensity {
-  explicit LogDensity(const model::Process& process)
+  /// At speeds up to `end`.
+  LogDensity(const model::Process& process, double end)
       : drag(process.drag), slope(process.friction.at_rest() - process.mean_force()) {
     extrema.push_back(drag.terminal_velocity(-slope));
     if (drag.rises_until > 0) extrema = drag.balances(-slope);
-    intensity = process.noise.tail_intensity();
+    end = std::min(end, drag.reach);
+    // The forces that slow bodies on the way; where drag rises, any.
+    if (drag.is_none()) {
+      intensity = process.noise.tail_intensity(slope, slope);
+    } else if (drag.rises_until == 0 && std::isfinite(end)) {
+      intensity = process.noise.tail_intensity(std::max(slope, 0.0), slope - drag(end));
+    } else {
+      intensity = process.noise.tail_intensity();
+    }
     for (double v : extrema) highest = std::max(highest, -slope * v + drag.potential(v));
   }
   /// Raised by `by`.

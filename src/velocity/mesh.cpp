@@ -249,17 +249,44 @@ int natural_layers(const model::Process& process, const MeshRule& rule) {
 
 namespace {
 
+/// decay_rate(), and beyond the speeds that bodies reach on both velocity branches that of the
+/// branch on which they do, where the next element may end.
+class DecayRate {
+ public:
+  DecayRate(const model::Process& process, const MeshRule& rule)
+      : process_(process),
+        ratio_(rule.ratio),
+        upper_(process, rule.v_max),
+        lower_(process.mirrored(), rule.v_max) {}
+
+  [[nodiscard]] double operator()(double v) const {
+    constexpr double nothing = -45;  // below all rounding
+    const double both = decay_rate(process_, v), up = upper_(v), down = lower_(v);
+    if (std::max(up, down) < nothing || std::min(up, down) > nothing) return both;
+    const LogDensity& counts = up > down ? upper_ : lower_;
+    const double own = std::abs(counts.slope - counts.drag(v / ratio_));
+    return std::min(both, own / process_.noise.intensity());
+  }
+
+ private:
+  const model::Process& process_;
+  double ratio_;
+  LogDensity upper_, lower_;
+};
+
 // Without regard to what the drag and the integrands are like.
 std::vector<double> regular_ends(const model::Process& process, const MeshRule& rule) {
+  const DecayRate rate(process, rule);
   const int layers = rule.layers > 0 ? rule.layers : natural_layers(process, rule);
   const double graded = graded_end(process, rule);
   std::vector<double> ends{0};
   for (int n = layers - 1; n >= 0; --n) ends.push_back(graded * std::pow(rule.ratio, n));
   while (ends.back() < rule.v_max) {
-    const double step = rule.decay / decay_rate(process, ends.back());
-    const double next = ends.back() + std::min(step, ends.back() * (1 / rule.ratio - 1));
+    const double width =
+        std::min(rule.decay / rate(ends.back()), ends.back() * (1 / rule.ratio - 1));
+    const double next = ends.back() + width;
     // A remainder much shorter than its neighbour is merged into it.
-    ends.push_back(next + 0.3 * step >= rule.v_max ? rule.v_max : next);
+    ends.push_back(next + 0.3 * width >= rule.v_max ? rule.v_max : next);
   }
   return has_waves(process, rule) ? split_for_waves(process, rule.rates.omega, ends) : ends;
 }
@@ -305,7 +332,9 @@ std::set<double> graded_towards(const Layers& breaks, double ratio, const std::s
 class Halving {
  public:
   Halving(const model::Process& process, const MeshRule& rule)
-      : functions_(rule.integrands.functions), upper_(process), lower_(process.mirrored()) {
+      : functions_(rule.integrands.functions),
+        upper_(process, rule.v_max),
+        lower_(process.mirrored(), rule.v_max) {
     if (process.drag.law) functions_.emplace_back(process.drag.law);
     if (!process.drag.odd()) functions_.emplace_back(lower_.drag.law);
     sizes_.assign(functions_.size(), 0);
@@ -407,7 +436,7 @@ void lower_in_tail(const model::Process& process, const MeshRule& rule,
                    const std::vector<double>& ends, std::vector<int>& degrees) {
   constexpr double free_digits = 3, degrees_per_digit = 0.5;
   constexpr int more = 2;  // than least_degree: elements are long there
-  const LogDensity upper(process), lower(process.mirrored());
+  const LogDensity upper(process, rule.v_max), lower(process.mirrored(), rule.v_max);
   for (std::size_t e = 0; e < degrees.size(); ++e) {
     const double digits = -std::max(upper(ends[e]), lower(ends[e])) / std::numbers::ln10;
     const int less = std::max(0, static_cast<int>(degrees_per_digit * (digits - free_digits)));

@@ -4,16 +4,17 @@
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "log_density.hpp"
 
 namespace stickslip::velocity {
 namespace {
 
-// Of the positive branch.
-double upper_tail(const model::Process& process, double tolerance) {
+// Of the positive branch, if it is not beyond `most`.
+double upper_tail(const model::Process& process, double tolerance, double most) {
   const double drop = -std::log(tolerance) + 5;  // 5: polynomial factors of the moments
-  const LogDensity log_density(process);
+  const LogDensity log_density(process, most);
   const double slope = log_density.slope;
   const auto left = [&](double v) { return log_density(v, drop); };
   double last = 0;  // with a density that counts
@@ -27,6 +28,19 @@ double upper_tail(const model::Process& process, double tolerance) {
   const auto bracket = boost::math::tools::toms748_solve(
       left, last, end, boost::math::tools::eps_tolerance<double>(20), iterations);
   return bracket.second;
+}
+
+// Where bodies are less fast, the forces that slow them are smaller, and of those that pulses of
+// the noise overcome only these count.
+double upper_tail(const model::Process& process, double tolerance) {
+  constexpr int most = 20;
+  double end = upper_tail(process, tolerance, std::numeric_limits<double>::infinity());
+  for (int n = 0; n < most; ++n) {
+    const double next = upper_tail(process, tolerance, end);
+    if (!(next < 0.99 * end)) break;
+    end = next;
+  }
+  return end;
 }
 
 }  // namespace

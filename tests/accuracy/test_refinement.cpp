@@ -239,7 +239,7 @@ TEST_CASE("refinement: error estimates are honest and not far off", "[slow][real
                            scenes % 7 == 6 ? 0.5 : 0.0};
     options::Case r = given(mu_s, mu_d, tau, delta, drag);
     if (delta > std::sqrt(1 / tau)) continue;
-    if (r.scene.process(1).static_index() >= r.scene.full_levels() - 1) continue;
+    if (r.scene.meant().static_index() >= r.scene.full_levels() - 1) continue;
     if (accuracy::levels_for(r.scene, 1e-12) > 80) continue;
     ++scenes;
     r.question.accuracy = std::pow(10.0, -4 - scenes % 4);

@@ -35,6 +35,23 @@ TEST_CASE("process: static levels shift against the bias") {
   }
 }
 
+TEST_CASE("process: levels end, and a side from which nearly nothing starts does not count") {
+  const auto process = [](double bias, double mu_s_minus, int levels) {
+    return Process{{1, 0.125, levels}, {1, 1, mu_s_minus}, {1, 0}, bias};
+  };
+  // s- is next to x = -1, next to -12.5, with a share of about e^-80, and nowhere.
+  const auto both = process(0, 1, 128), rare = process(0.25, 12.25, 128),
+             none = process(0, 1e12, 128);
+  CHECK((both.starts_upwards() && both.starts_downwards()));
+  CHECK((rare.starts_upwards() && !rare.starts_downwards()));
+  CHECK((none.starts_upwards() && !none.starts_downwards()));
+  CHECK((none.mirrored().starts_downwards() && !none.mirrored().starts_upwards()));
+  CHECK(none.lowest_static() == -128);
+  CHECK(none.exit_level(false) == none.exit_level(true));
+  CHECK_FALSE(process(0, 9, 6).starts_upwards());  // x <= 0.75
+  CHECK_FALSE(Process{{1, 0.5, 8}, {0.1, 0.1}, {1, 0}, 0.2}.sticks());
+}
+
 TEST_CASE("process: the mirror swaps directions, and its own mirror is the process") {
   const Process process{{1, 0.25, 8}, {1, 0.5}, one_sided(), 0.3};
   const Process mirrored = process.mirrored();

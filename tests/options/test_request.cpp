@@ -185,14 +185,18 @@ TEST_CASE("request: without symmetry") {
                              "-start s-")
                            .read();
   CHECK(down.question.start.level == -6);  // x = -1.25 holds, -1.5 does not
+  CHECK_NOTHROW(Given("-bias 8 -delta 0.25").read());
+  CHECK_NOTHROW(Given("-mu_s_minus 1e12 -delta 0.25").read());
   const std::vector<Refusal> refusals{
       {"-bias 1 -drag none", {"-bias = 1", "for ever", "smaller than mu_d"}},
       {"-bias -0.6 -mu_d_minus 0.5 -drag none", {"-bias = -0.6", "mu_d = 0.5 alone", "for ever"}},
-      {"-bias 8 -delta 0.25", {"-bias = 8", "never exceeded", "towards negative v", "below 7"}},
-      {"-mu_s_minus 9 -delta 0.25", {"-mu_s_minus = 9", "never exceeded", "negative", "below 8"}},
+      {"-bias 0.5 -mu_s 9 -delta 0.25", {"-mu_s = 9", "never slides", "P_stick = 1", "below 8.5"}},
+      {"-mu_s 9 -mu_s_minus 8.5 -delta 0.25", {"-mu_s_minus = 8.5", "never slides", "below 8"}},
+      {"-bias 0.5 -mu_s_minus 1e12 -start s- -quantities trajectory -trajectory t.csv",
+       {"-start = s-", "other side alone", "s+"}},
       {"-mu_s_minus 0.5 -mu_d 0.75", {"-mu_s_minus = 0.5", "they are 0.75 and 0.5"}},
       {"-mu_d_minus 1.25",
-       {"-mu_d_minus = 1.25", "(0, mu_s_minus]", "cannot exceed static friction"}},
+       {"-mu_d_minus = 1.25", "[0, mu_s_minus]", "cannot exceed static friction"}},
       {"-bias 0.2 -mu_s 0.1 -mu_d 0.1 -delta 0.5", {"-mu_s = 0.1", "never sticks"}}};
   for (const auto& refusal : refusals) check_refusal(refusal);
 }
@@ -214,7 +218,7 @@ TEST_CASE("request: every refusal names option, value, range and a way out") {
       {"-delta -0.5", {"-delta = -0.5", "(0, inf)", "0.125"}},
       {"-tau nan", {"-tau = nan", "(0, inf)"}},
       {"-tau 1e400", {"-tau = 1e400", "(0, inf)"}},
-      {"-mu_s 1 -mu_d 2", {"-mu_d = 2", "(0, mu_s]", "mu_s = 1"}},
+      {"-mu_s 1 -mu_d 2", {"-mu_d = 2", "[0, mu_s]", "mu_s = 1"}},
       {"-drag_coefficient -1", {"-drag_coefficient = -1", "[0, inf)", "must not grow"}},
       {"-delta 0.25 -noise_levels 99", {"-noise_levels = 99", "at most 2", "at most 32"}},
       {"-delta 0.25 -mu_s 8", {"-mu_s = 8", "never slides", "below 8"}},
@@ -592,7 +596,7 @@ TEST_CASE("request: friction that weakens needs its speed, and Coulomb friction 
       {"-stribeck_exponent 2 -friction coulomb", {"-stribeck_exponent = 2", "-friction stribeck"}},
       {law + "0", {"-stribeck_velocity = 0", "(0, inf)", "-friction coulomb"}},
       {law + "1 -stribeck_exponent -1", {"-stribeck_exponent = -1", "(0, inf)"}},
-      {law + "1 -mu_d 2", {"-mu_d = 2", "(0, mu_s]"}},
+      {law + "1 -mu_d 2", {"-mu_d = 2", "[0, mu_s]"}},
       {law + "1 -drag none -bias 0.5", {"-bias = 0.5", "for ever"}},
       {law + "1 -drag none -route fluid_queue",
        {"needs a model without drag, b = 0, and Coulomb friction"}},

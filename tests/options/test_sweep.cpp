@@ -79,7 +79,7 @@ TEST_CASE("sweep: values need to be valid at their points only") {
   // mu_d = 1 without a sweep, which is above mu_s here.
   CHECK_NOTHROW(read({{"-sweep_mu_s", "0.5,0.75"}, {"-sweep_mu_d", "0.25,0.5"}}));
   CHECK_THAT(complaint({{"-sweep_mu_s", "0.5,0.75"}, {"-sweep_mu_d", "0.25,0.6"}}),
-             Catch::StartsWith("at mu_s = 0.5, mu_d = 0.6: -mu_d = 0.6: must be in (0, mu_s]"));
+             Catch::StartsWith("at mu_s = 0.5, mu_d = 0.6: -mu_d = 0.6: must be in [0, mu_s]"));
 }
 
 TEST_CASE("sweep: refusals name the point, the option and a way out") {

@@ -140,7 +140,7 @@ class Runs(Case):
 
 class Failures(Case):
     def test_bad_input_is_told_in_the_words_of_the_program(self):
-        for options, message in (({"mu_d": 2}, r"^-mu_d = 2: must be in \(0, mu_s\]"),
+        for options, message in (({"mu_d": 2}, r"^-mu_d = 2: must be in \[0, mu_s\]"),
                               ({"detla": 0.5}, "did you mean -delta?")):
             with self.assertRaisesRegex(ValueError, message) as caught:
                 stickslip.run(**options)

@@ -142,7 +142,7 @@ TEST_CASE("stationary distribution: P(|X| <= mu_s) summed over the grid at every
   const double delta = GENERATE(0.5, 0.25);
   auto s = scene(1, 0.25, 1, delta, {1, 0});
   s.noise_levels = s.full_levels();
-  const int k = s.process(1).static_index();
+  const int k = s.meant().static_index();
   const double closed = model::noise_moments(s.meant().noise, -k, k).within;
   std::vector<accuracy::Resolution> resolutions{accuracy::hp_resolution(s, 1, 0, 1e-8),
                                                 accuracy::hp_resolution(s, 8, 0, 1e-8)};

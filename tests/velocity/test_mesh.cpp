@@ -12,7 +12,8 @@ using velocity::MeshRule;
 namespace {
 
 model::Process process(double mu_d, double tau, double delta, model::Drag drag) {
-  return {{tau, delta, 30}, {std::max(1.0, mu_d), mu_d}, drag};
+  const int beyond_rest = 30 + static_cast<int>(std::max(1.0, mu_d) / delta);
+  return {{tau, delta, beyond_rest}, {std::max(1.0, mu_d), mu_d}, drag};
 }
 
 MeshRule rule_to(double v_max, int layers = 0) {

@@ -36,7 +36,10 @@ class LevelTable {
   [[nodiscard]] double intensity() const { return intensity_; }
   /// What intensity() is to speeds that need X to stay high: where a force f slows a body, its
   /// density falls like exp(-theta v), theta > 0 the root of lim log E[exp(theta int_0^t (X - m -
-  /// f))]/t = 0; the largest f/theta.
+  /// f))]/t = 0; the largest f/theta over forces from `least` to `most`, and intensity() if that is
+  /// more. O(levels).
+  [[nodiscard]] double tail_intensity(double least, double most) const;
+  /// The same over all forces.
   [[nodiscard]] double upper_tail() const { return upper_tail_; }
   [[nodiscard]] double rate() const { return rate_; }  ///< largest rate of leaving a level
   [[nodiscard]] double step() const { return step_; }  ///< smallest distance of neighbours
@@ -50,7 +53,6 @@ class LevelTable {
 
  private:
   [[nodiscard]] bool decays(double theta, double force) const;
-  [[nodiscard]] double tail_intensity() const;
 
   std::vector<Level> levels_;
   int lowest_, mode_ = 0;

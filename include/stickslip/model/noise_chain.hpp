@@ -61,12 +61,15 @@ struct NoiseChain {
   [[nodiscard]] double intensity() const;
   /// The same for large speeds; see LevelTable.
   [[nodiscard]] double tail_intensity() const { return table ? table->upper_tail() : intensity(); }
+  /// The same where forces from `least` to `most` slow bodies.
+  [[nodiscard]] double tail_intensity(double least, double most) const {
+    return table ? table->tail_intensity(least, most) : intensity();
+  }
   /// intensity()/variance [time].
   [[nodiscard]] double correlation_time() const;
 
-  /// Highest level <= x, and lowest one >= x, where rounding counts as equal. Levels of a
-  /// table end: the result is in [lowest() - 1, highest() + 1]. Throws std::out_of_range
-  /// beyond int.
+  /// Highest level <= x, and lowest one >= x, where rounding counts as equal; lowest() - 1 and
+  /// highest() + 1 where there is none.
   [[nodiscard]] int last_up_to(double x) const;
   [[nodiscard]] int first_from(double x) const;
   /// The level with x_i = x up to rounding.

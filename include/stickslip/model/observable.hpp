@@ -40,8 +40,8 @@ struct Observable {
 /// Names that need no expression: 1, x, v, v^2, |v|, stick, slide, |x|<=mu_s.
 [[nodiscard]] const std::vector<std::string>& observable_names();
 
-/// A named observable or an expression in x, y, v (and mu_s, mu_d), such as "x*v" or
-/// "y == 0 ? x^2 : 0", read by muParser. Levels that equal mu_s up to rounding count as below it in
+/// A named observable or an expression in x, y, v, stick and slide (and mu_s, mu_d), such as "x*v"
+/// or "stick*x^2", read by muParser. Levels that equal mu_s up to rounding count as below it in
 /// |x|<=mu_s. Throws std::invalid_argument with the parser's message and the place of the error,
 /// and for an assignment, more than one expression, or one that is not finite at rest or in slow
 /// motion. Where an expression is not finite in another state, its value throws Failure of bad
@@ -56,7 +56,7 @@ struct Observable {
 
 /// Finds the breaks of f in v, 0 < |v| <= reach, on the levels x and for both signs of v, as
 /// breaks() does. Throws std::invalid_argument, with the reason, where f is unbounded, for more
-/// than 64 breaks, and for one on a level `step` nearer to 0 that no level of x shows: it moves
+/// than 64 breaks, and for one on a level `step` nearer to 0, between levels of x, that none of these shows: it moves
 /// with x, and elements cannot end there on all levels. Jumps at v = 0 and in x do not count. About
 /// 14 000 values of f a level and sign.
 void examine(Observable& f, const std::vector<double>& x, double step, double reach);

@@ -37,19 +37,18 @@ struct Process {
   [[nodiscard]] int lowest_static() const {
     return noise.first_from(-friction.mirrored().mu_s - bias);
   }
-  /// Whether bodies at rest can start upwards: there is a level s+. A table that ends at the levels
-  /// that stick has none, and excursions have one side.
-  [[nodiscard]] bool starts_upwards() const {
-    return !noise.table || static_index() < noise.highest();
-  }
-  [[nodiscard]] bool starts_downwards() const {
-    return !noise.table || lowest_static() > noise.lowest();
-  }
-  /// The level from which excursions to one side start; if the noise has one side alone, its.
+  /// Whether bodies at rest start upwards: there is a level s+ beyond those that stick, and of the
+  /// jumps by which the noise leaves these, more than one in 1e18 leads there. Otherwise all
+  /// excursions start downwards. O(levels that stick).
+  [[nodiscard]] bool starts_upwards() const;
+  [[nodiscard]] bool starts_downwards() const { return mirrored().starts_upwards(); }
+  /// The level from which excursions to one side start; if they start on the other one alone, its.
   [[nodiscard]] int exit_level(bool upwards) const {
     const bool there = upwards ? starts_upwards() : starts_downwards();
     return upwards == there ? static_index() + 1 : lowest_static() - 1;
   }
+  /// Whether there are levels on which bodies stick. On none, v = 0 is passed and never held.
+  [[nodiscard]] bool sticks() const { return lowest_static() <= static_index(); }
   /// g + E[X]: what drives bodies over long times.
   [[nodiscard]] double mean_force() const { return bias + noise.mean(); }
   /// x_i + g - F(0+): the speed of V at v = 0+ on level i.

@@ -31,6 +31,7 @@ struct Scene {
   double bias = 0;                  ///< constant force g
   std::optional<int> noise_levels;  ///< N, if fixed by the user
   std::optional<double> v_max;      ///< truncation velocity, if fixed by the user
+  bool limits_speed = false;        ///< v_max is part of the model: no body is faster
 
   [[nodiscard]] bool symmetric() const { return process(1).symmetric(); }
   /// The range that is meant when noise_levels is open: full_range(), or that of the table.

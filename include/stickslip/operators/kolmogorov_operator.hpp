@@ -70,6 +70,16 @@ class KolmogorovOperator {
   void shift(PetscScalar by);
   [[nodiscard]] PetscInt64 nonzeros() const { return nonzeros_; }
 
+  /// Kills in one sliding state s at a rate kappa, for a body that never rests, where nothing else
+  /// kills and -L is singular. A process that starts anew in s whenever it is killed there is the
+  /// one without killing: nu (-L + kappa e_s e_s^T) = e_s has the solution with nu L = 0, as the
+  /// rows of L sum to zero, and nu_s = 1/kappa. A state of a middle speed on the level next to the
+  /// mean. The matrix is no longer that of its MatrixData. Collective.
+  void kill_in_one_state();
+  [[nodiscard]] bool kills_in_one_state() const { return killing_state_.has_value(); }
+  /// u -> u(s). Collective.
+  [[nodiscard]] petsc::VecHandle value_in_that_state() const;
+
   /// The functional u -> u(s+) (positive) or u(s-) (negative; with both branches only) as a vector.
   /// Collective.
   [[nodiscard]] petsc::VecHandle trace_at_exit(Branch branch = Branch::positive) const;
@@ -127,6 +137,7 @@ class KolmogorovOperator {
   std::vector<PetscScalar> values_;
   petsc::MatHandle matrix_;
   PetscInt64 nonzeros_ = 0;
+  std::optional<PetscInt> killing_state_;
 };
 
 /// The part of f that belongs to a symmetry; f itself where there is none. It refers to f.

@@ -33,7 +33,8 @@ struct Excursion {
   /// Relative violation of an identity that holds exactly on every discretisation: by renewal,
   /// the time spent on levels that do not stick is their probability times E[tau_1]. What is left
   /// is rounding, of the matrix entries too, which residuals do not see. The square of
-  /// lost_probability is added: scaling has removed its first order.
+  /// lost_probability is added: scaling has removed its first order. Of a body that never rests,
+  /// how far the distribution of the noise is from its own.
   [[nodiscard]] double conservation_defect(const operators::Discretisation& discretisation) const;
 };
 

@@ -62,6 +62,10 @@ struct Result {
   Kind kind = Kind::other;
   /// Whether accuracy is meant relative to each value of an array, not to the largest one.
   bool each_by_its_size = false;
+  /// Whether it shows how good others are, and was not asked for: its error decides nothing.
+  bool diagnostic = false;
+  /// Whether values that are not numbers lie beyond double precision; the others do not.
+  bool partial = false;
   /// 95 % confidence intervals, one for each value; none for deterministic results.
   std::vector<std::pair<double, double>> ci95 = {};
 
@@ -99,7 +103,8 @@ using Results = std::vector<Result>;
   return array(key, options::unit_of(key), options::abscissa_of(key), std::move(abscissa), kind);
 }
 
-/// Largest error relative to the size of the values; infinite where one is not a number.
+/// Largest error relative to the size of the values; infinite where one is not a number, unless the
+/// result is partial.
 [[nodiscard]] double relative_error(const Result& result);
 
 }  // namespace stickslip::quantities

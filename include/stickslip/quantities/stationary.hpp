@@ -20,6 +20,9 @@ namespace stickslip::quantities {
 ///
 /// h+-(i) the probability that a sticking phase that begins on level i ends upwards or downwards,
 /// all sums positive, nu = p+ nu+ + p- nu- takes the place of the nu above.
+///
+/// A body that never rests has no excursions: nu is the null vector of A, as
+/// KolmogorovOperator::kill_in_one_state() says, scaled to the time 1.
 class StationaryDistribution {
  public:
   /// One transposed solve with systems.at(0, even), or two with systems.at(0, none). Collective.

@@ -1,0 +1,81 @@
+"""Inputs with answers that are known from elsewhere: closed forms, other methods, other programs."""
+
+import unittest
+
+import running
+
+DATA = running.SOURCES / "tests" / "data"
+
+
+def noise(file):
+    return f"-noise file -noise_file {DATA / file} "
+
+
+SLOPE = "-mu_s 4.759 -mu_d 4.759 -bias 4 -noise_deviation 0.3 -tau 0.05 -drag none -quantities sticking "
+EVEN = "-mu_s 0.6 -mu_d 0.42 -drag cubic -drag_coefficient 0.5 -drag_cubic 0.4 "
+NEVER_STICKS = "-noise telegraph -telegraph_amplitude 2 -telegraph_rate 1 "
+
+# Command line, key, right value, its relative precision, where it comes from. A run has to reach its accuracy and to
+# state an error that covers the difference.
+RIGHT = [
+    (SLOPE + "-delta 0.02", "P_stick", 0.98986751487933, 1e-13, "fluid queue; simulation agrees"),
+    (SLOPE + "-delta 0.03", "P_stick", 0.9901919937, 1e-9, "the same chain from a file"),
+    (noise("pulses1e6.csv") + "-mu_s 0.5 -mu_d 0.5 -drag none", "P_stick", 0.17157287525381, 1e-12,
+     "3 - 2 sqrt(2), pulses of no duration"),
+    (noise("onoff3.csv") + "-mu_s 1.7 -mu_d 1.7 -drag none -speed_limit 0.5", "P_stick", 0.727076041303699, 1e-14,
+     "fluid queue with a finite buffer"),
+    (noise("eight_levels_even.csv") + EVEN + '-quantities resolvent -observable min(abs(v),0.4) -lambda 0.5',
+     "mu(min(abs(v),0.4))", 0, 0, "mirror symmetry"),
+    (noise("eight_levels_even.csv") + EVEN + "-quantities averages -observable v*abs(x)", "pi(v*abs(x))", 0, 0,
+     "mirror symmetry"),
+    (noise("below_zero.csv") + "-mu_s 0.5 -mu_d 0.5 -quantities averages -observable (v>0.3)*(x>0)",
+     "pi((v>0.3)*(x>0))", 0, 0, "x is never positive"),
+    (noise("pulses1e6.csv") + "-mu_s 0.5 -mu_d 0.5 -drag_coefficient 0.3", "P_stick", 0.286478143, 6e-9,
+     "the same with -v_max 200"),
+    ("-mu_s 1 -mu_d 1 -bias 0.9 -noise_deviation 0.1 -delta 0.05 -drag none", "P_stick", 0.742568542298927, 1e-13,
+     "fluid queue"),
+    ("-mu_s 1 -mu_d 0.8 -mu_s_minus 1e12 -drag none -bias 0.3", "E_V2", 3.41180160460, 5e-12, "fluid queue"),
+    ("-mu_s 1 -mu_d 0.8 -mu_s_minus 1e12 -drag none -bias -0.3", "P_stick", 0.7685816999975, 1e-12,
+     "fluid queue"),
+    (noise("quoted_header.csv") + "-quantities noise_law", "E_X2", 1.5, 1e-15, "three levels alike"),
+    ("-mu_d 0", "P_stick", 0.07530091, 1e-7, "the limit of small mu_d, and of the route null_vector"),
+    ("-mu_s 1e-8 -mu_d 1e-8 -tau 0.002 -delta 2.7950849718747373 -drag expression -drag_expression -tanh(v)", "E_V2",
+     2.464393, 1e-6, "the same at -accuracy 1e-8"),
+    ("-drag_coefficient 1e-6 -bias 0.5 -mu_d 0.5 -delta 0.25", "E_XV", 0.999194051, 2e-9,
+     "mu_d E|V| + c E[V^2] - bias E[V]"),
+    (NEVER_STICKS + "-quantities moments", "E_V2", 1 / 3, 1e-15, "moments of the two densities"),
+    ("-noise_levels full -tau 3 -delta 0.281 -noise_deviation 0.42 -quantities noise_law", "E_X2", 0.17457228, 1e-7,
+     "birth-death chain that jumps inwards at the rate Lambda from its ends"),
+]
+
+# Command line, exit status, what is said.
+SAID = [
+    ("-mu_s 20 -mu_d 20 -bias 1 -noise_deviation 0.5 -tau 0.01 -delta 0.05 -drag none", 2,
+     ("-mu_s = 20", "never slides", "P_stick = 1", "below 11")),
+    (NEVER_STICKS + "-quantities sticking,moments,slip", 2, ("-mu_s = 1", "never sticks", "sticking and slip")),
+    (NEVER_STICKS + "-quantities moments -route monte_carlo", 2, ("-route = monte_carlo", "never sticks")),
+    ("-quantities averages -observable stick*x;foo(v);v^2;x+", 2, ("foo(v): Unexpected", "x+: Unexpected")),
+    (noise("record.csv"), 2, ("not a CSV file of levels", "docs/recorded_forces.md")),
+    ("-mu_d 0 -drag none", 2, ("-mu_d = 0", "nothing that slows")),
+    ("-speed_limit 1 -v_max 1 -drag none", 2, ("-speed_limit = 1", "-v_max")),
+]
+
+
+class Cases(running.Case):
+    def test_values(self):
+        for line, key, value, precision, source in RIGHT:
+            with self.subTest(line=line, source=source):
+                found = self.summary(*line.split())["results"][key]
+                at, error = (x[0] if isinstance(x, list) else x for x in (found["value"], found["error"]))
+                self.assertLessEqual(abs(at - value), error + precision * abs(value), f"{at} instead of {value}")
+
+    def test_messages(self):
+        for line, status, parts in SAID:
+            with self.subTest(line=line):
+                said = self.run_ok(*line.split(), status=status).stderr
+                for part in parts:
+                    self.assertIn(part, said)
+
+
+if __name__ == "__main__":
+    unittest.main()
