@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <utility>
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
@@ -32,31 +31,6 @@ void send(MPI_Comm comm, int owner, int rows, int columns, algebra::Matrix<Scala
   MPI_Bcast(a.data(), rows * columns, type_of(Scalar()), owner, comm);
 }
 
-/// Rows of a matrix, wherever they are.
-class RowsOnAllRanks {
- public:
-  RowsOnAllRanks(Mat matrix, const std::vector<PetscInt>& rows) {
-    PetscInt columns = 0;
-    check(MatGetSize(matrix, nullptr, &columns));
-    IsHandle of_rows, of_columns;
-    check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(rows.size()), rows.data(),
-                          PETSC_USE_POINTER, of_rows.out()));
-    check(ISCreateStride(PETSC_COMM_SELF, columns, 0, 1, of_columns.out()));
-    IS row = of_rows, column = of_columns;
-    check(MatCreateSubMatrices(matrix, 1, &row, &column, MAT_INITIAL_MATRIX, &rows_));
-  }
-  ~RowsOnAllRanks() { (void)MatDestroySubMatrices(1, &rows_); }
-  RowsOnAllRanks(const RowsOnAllRanks&) = delete;
-  RowsOnAllRanks& operator=(const RowsOnAllRanks&) = delete;
-  [[nodiscard]] petsc::RowView row(std::size_t n) const {
-    return {rows_[0], static_cast<PetscInt>(n)};
-  }
-
- private:
-  using IsHandle = petsc::Handle<IS, ISDestroy>;
-  Mat* rows_ = nullptr;
-};
-
 }  // namespace
 
 /// The rows of static states: a tridiagonal chain with its exits.
@@ -80,7 +54,7 @@ auto ElementElimination<Scalar>::read_chain(Mat matrix) const -> StaticRows {
   }
   // From the lambda of the matrix to that of the factors.
   const Scalar more = lambda_ * rate_of(clock_, 0) - data_->lambda * rate_of(data_->clock, 0);
-  const RowsOnAllRanks all(matrix, static_rows_);
+  const petsc::RowsOnAllRanks all(matrix, static_rows_);
   for (std::size_t n = 0; n < size; ++n) {
     at_rest.chain.diagonal[n] = more;
     all.row(n).for_each([&](PetscInt column, PetscScalar value) {
@@ -379,8 +353,8 @@ template <class Scalar>
 template <class Visit>
 void ElementElimination<Scalar>::for_each_own_element(Visit visit) const {
   for (const Line& line : lines_) {
-    for (std::size_t e = 0; e < line.elements.size(); ++e) {
-      if (line.elements[e]) visit(line, static_cast<int>(e), *line.elements[e]);
+    for (int e = 0; e < static_cast<int>(line.elements.size()); ++e) {
+      if (line.elements[e]) visit(line, e, *line.elements[e]);
     }
   }
 }
@@ -414,9 +388,9 @@ void ElementElimination<Scalar>::solve(Scalars& x, bool transposed) const {
   Scalars w(length_, 0.0);
   std::vector<Scalars> f;  // by element of this rank
   for_each_own_element([&](const Line& line, int e, const Element& element) {
-    Scalars& own = f.emplace_back(static_cast<std::size_t>(element.size()));
-    for_each_unknown(line, element, [&](std::size_t n, PetscInt row) { own[n] = x[row]; });
-    Scalars alone = own;
+    Scalars alone(static_cast<std::size_t>(element.size()));
+    for_each_unknown(line, element, [&](std::size_t n, PetscInt row) { alone[n] = x[row]; });
+    f.push_back(alone);
     element.solve(alone, transposed);
     element.collect(transposed ? element.taken() : element.given(), alone, &w[line.falling_at(e)],
                     &w[line.falling_at(e + 1)]);

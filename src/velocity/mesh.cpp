@@ -10,6 +10,7 @@
 #include <set>
 
 #include "log_density.hpp"
+#include "waves.hpp"
 
 namespace stickslip::velocity {
 namespace {
@@ -99,82 +100,6 @@ double speed_of_leaving(const model::Process& process) {
   return 0.6 * std::min(cubed(process), cubed(process.mirrored())) /
          (process.noise.rate() * step * step);
 }
-
-// Whether the noise leaves waves of that frequency that graded elements do not follow. Levels of
-// -delta jump equally fast; those of a table may be left so rarely that waves live long on them.
-bool has_waves(const model::Process& process, const MeshRule& rule) {
-  const auto& noise = process.noise;
-  double slowest = 4 * noise.rate();
-  for (int i = noise.lowest(); noise.table && i <= noise.highest(); ++i) {
-    slowest = std::min(slowest, noise.rate(i));
-  }
-  return rule.rates.omega > slowest;
-}
-
-// The same for the levels of a table, each with its own rate, at the speed v: one wave an element.
-// Bodies carry a phase from v = 0 or to it, for as long as their level lasts: none where they are
-// beyond a speed at which the drag holds them.
-double wave_width_of_table(const model::Process& process, double omega, double v) {
-  constexpr int steps = 40;
-  constexpr double lives = 20;  // of a level, after which nothing is left of a wave
-  const auto& noise = process.noise;
-  double slowest = std::numeric_limits<double>::infinity();
-  for (int i = noise.lowest(); i <= noise.highest(); ++i) {
-    if (omega <= noise.rate(i)) continue;
-    for (const auto& side : {process, process.mirrored()}) {
-      const auto speed = [&](double u) { return side.net_force(i) + side.drag(u); };
-      const double start = speed(0);
-      double jumps = 0;
-      for (int n = 0; n < steps && jumps < lives; ++n) {
-        const double at = speed((n + 0.5) / steps * v);
-        jumps += at * start > 0 ? noise.rate(i) * v / steps / std::abs(at) : lives;
-      }
-      if (jumps < lives) slowest = std::min(slowest, std::abs(speed(v)));
-    }
-  }
-  return 2 * std::numbers::pi * slowest / std::min(omega, 40 * noise.rate());
-}
-
-double end_of_thinnest_waves(const model::Process& process) {
-  return 20 * gap_below(process) / process.noise.rate();
-}
-
-// Widest element that resolves the waves of frequency omega at v. A body that rests after the time
-// s sees the phase exp(i omega s): on a level at a distance a from mu_d the wave length is
-// 2 pi a/omega, and jumps of the noise damp it as exp(-Lambda v/a). Two waves an element are
-// enough at the degrees in use; where Lambda v/a > 20 nothing is left of a wave, and then the next
-// level, delta further from mu_d, has the shortest ones. Up to 4 Lambda the
-// damping is so strong that graded elements do, and waves much faster than the noise are small
-// beside the smooth part, so that they are followed up to 40 Lambda only.
-double wave_width(const model::Process& process, double omega, double v) {
-  if (process.noise.table) return wave_width_of_table(process, omega, v);
-  const double rate = process.noise.rate(), gap = gap_below(process);
-  const double slowest = v < end_of_thinnest_waves(process)
-                             ? gap
-                             : std::max(gap + process.noise.step(), rate * v / 20);
-  return 4 * std::numbers::pi * slowest / std::min(omega, 40 * rate);
-}
-
-// Splits elements that are too wide for the waves. Those of a level very near to mu_d end within
-// the first element: only the part that has them is split for them.
-std::vector<double> split_for_waves(const model::Process& process, double omega,
-                                    std::vector<double> ends) {
-  const double thinnest = end_of_thinnest_waves(process);
-  if (thinnest < ends[1]) ends.insert(ends.begin() + 1, thinnest);
-  std::vector<double> split{ends.front()};
-  for (std::size_t n = 1; n < ends.size(); ++n) {
-    const double start = ends[n - 1], width = ends[n] - start;
-    const auto pieces =
-        static_cast<int>(std::ceil(width / wave_width(process, omega, start) - 1e-9));
-    for (int p = 1; p < pieces; ++p) split.push_back(start + width * p / pieces);
-    split.push_back(ends[n]);
-  }
-  return split;
-}
-
-}  // namespace
-
-namespace {
 
 // Elements graded towards a place where the solution is like |v - v*|^power, for an error below the
 // tolerance: that of the smallest one is its length to the power + 1.
@@ -288,7 +213,9 @@ std::vector<double> regular_ends(const model::Process& process, const MeshRule& 
     // A remainder much shorter than its neighbour is merged into it.
     ends.push_back(next + 0.3 * width >= rule.v_max ? rule.v_max : next);
   }
-  return has_waves(process, rule) ? split_for_waves(process, rule.rates.omega, ends) : ends;
+  return has_waves(process, rule.rates.omega)
+             ? split_for_waves(process, rule.rates.omega, gap_below(process), ends)
+             : ends;
 }
 
 // A regular end that would leave a sliver beside a break gives way to it.
@@ -447,7 +374,7 @@ void lower_in_tail(const model::Process& process, const MeshRule& rule,
 std::vector<int> regular_degrees(const model::Process& process, const MeshRule& rule,
                                  const std::vector<double>& ends, int degree) {
   std::vector<int> degrees(ends.size() - 1, degree);
-  if (has_waves(process, rule)) return degrees;
+  if (has_waves(process, rule.rates.omega)) return degrees;
   const bool early = rule.rates.lambda * process.noise.correlation_time() > 1;
   if (!early) lower_towards_rest(process, rule, ends, degrees);
   if (!rule.whole_tail) lower_in_tail(process, rule, ends, degrees);

@@ -56,9 +56,9 @@ struct Observable {
 
 /// Finds the breaks of f in v, 0 < |v| <= reach, on the levels x and for both signs of v, as
 /// breaks() does. Throws std::invalid_argument, with the reason, where f is unbounded, for more
-/// than 64 breaks, and for one on a level `step` nearer to 0, between levels of x, that none of these shows: it moves
-/// with x, and elements cannot end there on all levels. Jumps at v = 0 and in x do not count. About
-/// 14 000 values of f a level and sign.
+/// than 64 breaks, and for one on a level `step` nearer to 0, between levels of x, that none of
+/// these shows: it moves with x, and elements cannot end there on all levels. Jumps at v = 0 and in
+/// x do not count. About 14 000 values of f a level and sign.
 void examine(Observable& f, const std::vector<double>& x, double step, double reach);
 
 }  // namespace stickslip::model

@@ -74,6 +74,29 @@ class RowView {
   const PetscScalar* values_ = nullptr;
 };
 
+/// Rows of a matrix, wherever they are. Collective.
+class RowsOnAllRanks {
+ public:
+  RowsOnAllRanks(Mat matrix, const std::vector<PetscInt>& rows) {
+    PetscInt columns = 0;
+    check(MatGetSize(matrix, nullptr, &columns));
+    IndexSet of_rows, of_columns;
+    const auto count = static_cast<PetscInt>(rows.size());
+    check(ISCreateGeneral(PETSC_COMM_SELF, count, rows.data(), PETSC_USE_POINTER, of_rows.out()));
+    check(ISCreateStride(PETSC_COMM_SELF, columns, 0, 1, of_columns.out()));
+    IS row = of_rows, column = of_columns;
+    check(MatCreateSubMatrices(matrix, 1, &row, &column, MAT_INITIAL_MATRIX, &rows_));
+  }
+  ~RowsOnAllRanks() { (void)MatDestroySubMatrices(1, &rows_); }
+  RowsOnAllRanks(const RowsOnAllRanks&) = delete;
+  RowsOnAllRanks& operator=(const RowsOnAllRanks&) = delete;
+  [[nodiscard]] RowView row(std::size_t n) const { return {rows_[0], static_cast<PetscInt>(n)}; }
+
+ private:
+  using IndexSet = petsc::Handle<IS, ISDestroy>;
+  Mat* rows_ = nullptr;
+};
+
 /// The vectors of a matrix, whole on every rank.
 class WholeVectors {
  public:

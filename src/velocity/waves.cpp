@@ -1,0 +1,86 @@
+#include "waves.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace stickslip::velocity {
+namespace {
+
+// The widest element for the levels of a table, each with its own rate, at the speed v: one wave an
+// element. Bodies carry a phase from v = 0 or to it, for as long as their level lasts: none where
+// they are beyond a speed at which the drag holds them.
+double wave_width_of_table(const model::Process& process, double omega, double v) {
+  constexpr int steps = 40;
+  constexpr double lives = 20;  // of a level, after which nothing is left of a wave
+  const auto& noise = process.noise;
+  double slowest = std::numeric_limits<double>::infinity();
+  for (const auto& side : {process, process.mirrored()}) {
+    std::array<double, steps> drag{};  // in the middle of each step from 0 to v
+    for (int n = 0; n < steps; ++n) drag[n] = side.drag((n + 0.5) / steps * v);
+    const double at_end = side.drag(v);
+    for (int i = noise.lowest(); i <= noise.highest(); ++i) {
+      if (omega <= noise.rate(i)) continue;
+      const double force = side.net_force(i);
+      double jumps = 0;
+      for (int n = 0; n < steps && jumps < lives; ++n) {
+        const double speed = force + drag[n];
+        jumps += speed * force > 0 ? noise.rate(i) * v / steps / std::abs(speed) : lives;
+      }
+      if (jumps < lives) slowest = std::min(slowest, std::abs(force + at_end));
+    }
+  }
+  return 2 * std::numbers::pi * slowest / std::min(omega, 40 * noise.rate());
+}
+
+double end_of_thinnest_waves(const model::Process& process, double gap) {
+  return 20 * gap / process.noise.rate();
+}
+
+// Widest element that resolves the waves of frequency omega at v. A body that rests after the time
+// s sees the phase exp(i omega s): on a level at a distance a from mu_d the wave length is
+// 2 pi a/omega, and jumps of the noise damp it as exp(-Lambda v/a). Two waves an element are
+// enough at the degrees in use; where Lambda v/a > 20 nothing is left of a wave, and then the next
+// level, delta further from mu_d, has the shortest ones. Up to 4 Lambda the
+// damping is so strong that graded elements do, and waves much faster than the noise are small
+// beside the smooth part, so that they are followed up to 40 Lambda only.
+double wave_width(const model::Process& process, double omega, double gap, double v) {
+  if (process.noise.table) return wave_width_of_table(process, omega, v);
+  const double rate = process.noise.rate();
+  const double slowest = v < end_of_thinnest_waves(process, gap)
+                             ? gap
+                             : std::max(gap + process.noise.step(), rate * v / 20);
+  return 4 * std::numbers::pi * slowest / std::min(omega, 40 * rate);
+}
+
+}  // namespace
+
+bool has_waves(const model::Process& process, double omega) {
+  const auto& noise = process.noise;
+  double slowest = 4 * noise.rate();
+  for (int i = noise.lowest(); noise.table && i <= noise.highest(); ++i) {
+    slowest = std::min(slowest, noise.rate(i));
+  }
+  return omega > slowest;
+}
+
+// Splits elements that are too wide for the waves. Those of a level very near to mu_d end within
+// the first element: only the part that has them is split for them.
+std::vector<double> split_for_waves(const model::Process& process, double omega, double gap,
+                                    std::vector<double> ends) {
+  const double thinnest = end_of_thinnest_waves(process, gap);
+  if (thinnest < ends[1]) ends.insert(ends.begin() + 1, thinnest);
+  std::vector<double> split{ends.front()};
+  for (std::size_t n = 1; n < ends.size(); ++n) {
+    const double start = ends[n - 1], width = ends[n] - start;
+    const auto pieces =
+        static_cast<int>(std::ceil(width / wave_width(process, omega, gap, start) - 1e-9));
+    for (int p = 1; p < pieces; ++p) split.push_back(start + width * p / pieces);
+    split.push_back(ends[n]);
+  }
+  return split;
+}
+
+}  // namespace stickslip::velocity
