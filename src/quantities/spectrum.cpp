@@ -27,7 +27,8 @@ constexpr double kSlowest = 1e-2;
 
 // Without symmetry L is singular. S_v, an even function of omega, is the same there as at 0 to
 // rounding, and what rounding adds to the solution is a multiple of 1, which c does not see.
-constexpr double kNearZero = 1e-10;  // of the rate at which things change
+constexpr double kNearZero = 1e-10;         // of 1/tau
+constexpr double kNearZeroOfMemory = 1e-6;  // of the rate at which the velocity forgets itself
 
 // i w; nothing in real arithmetic, where it is not asked for.
 PetscScalar imaginary([[maybe_unused]] double w) {
@@ -195,7 +196,7 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems,
   const petsc::VecHandle d = distribution.weight_on(pencil.a());
   ReducedModel model(pencil, {b, c, d}, ReducedModel::Nature::smooth, kMostPairs);
   const double memory = correlation_time(pencil, b, c);
-  const double least = distribution.process().symmetric() ? 0 : kNearZero / memory;
+  const double least = distribution.process().symmetric() ? 0 : kNearZeroOfMemory / memory;
   const std::vector<double> frequencies =
       judged(omega, std::min(turn, 1 / memory), std::max(turn, 1 / memory));
   Questions questions;

@@ -35,7 +35,7 @@ const std::set<std::string> kFree{"excursions",  // more of them extend a simula
                                   "transient_solver"};
 
 // Options that change only along with others: each command line below has its own.
-const std::set<std::string> kWithOthers{"friction", "noise"};
+const std::set<std::string> kWithOthers{"friction", "noise", "speed_limit"};
 
 std::string all_simulated() {
   std::vector<std::string> words;

@@ -88,7 +88,7 @@ TEST_CASE("sweep: refusals name the point, the option and a way out") {
     std::vector<std::string> reported;
   };
   const std::vector<Refusal> refusals{
-      {{{"-sweep_mu_d", "0.5,-1"}}, {"-sweep_mu_d = -1", "(0, inf)"}},
+      {{{"-sweep_mu_d", "0.5,-1"}}, {"-sweep_mu_d = -1", "[0, inf)"}},
       {{{"-sweep_mu_d", "a"}}, {"-sweep_mu_d = a", "first:last:count"}},
       {{{"-sweep_mud", "1"}}, {"-sweep_mud", "did you mean -sweep_mu_d?"}},
       {{{"-sweep_seed", "1"}}, {"-sweep_seed", "unknown option"}},
