@@ -30,7 +30,7 @@ double distance(Complex a, Complex b) {
 /// A reduced model with what it takes to see its errors.
 class Judged {
  public:
-  Judged(ReducedModel& model)
+  explicit Judged(ReducedModel& model)
       : reduced(model.reduce()),
         transfer(reduced.m, reduced.gamma, reduced.beta),
         beyond_(transfer.between(reduced.gamma * reduced.m, reduced.m * reduced.beta)),
