@@ -206,9 +206,15 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems,
     for (double w : frequencies) values.push_back({s(w), 0});
     return values;
   };
+  // Beyond all rates S_v and, as moments at infinity agree, its error fall as omega^-4, and only
+  // the part of H that is small there counts: it is compared where that is not lost in the other
+  // one.
+  const double end = 30 * std::max(turn, 1 / memory);
   for (std::size_t n = 0; n < frequencies.size(); ++n) {
-    questions.points.emplace_back(0, std::max(frequencies[n], least));
-    questions.terms.push_back({{n, 2}});
+    const double w = std::min(frequencies[n], end);
+    questions.points.emplace_back(0, std::max(w, least));
+    questions.terms.push_back(
+        {{n, frequencies[n] > end ? 2 * std::pow(end / frequencies[n], 4) : 2}});
   }
   questions.each_by_its_size = true;
   questions.tolerance = tolerance.value;
