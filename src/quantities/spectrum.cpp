@@ -206,10 +206,10 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems,
     for (double w : frequencies) values.push_back({s(w), 0});
     return values;
   };
-  // Beyond all rates S_v and, as moments at infinity agree, its error fall as omega^-4, and only
-  // the part of H that is small there counts: it is compared where that is not lost in the other
-  // one.
-  const double end = 30 * std::max(turn, 1 / memory);
+  // Beyond all rates S_v and, as moments at infinity agree, its error fall as omega^-4. There the
+  // real part of c A (z + A)^-1 A b, which S_v is made of, falls below the rounding of its
+  // imaginary part: models are compared where it still has its digits.
+  const double end = 1e3 * std::max(turn, 1 / memory);
   for (std::size_t n = 0; n < frequencies.size(); ++n) {
     const double w = std::min(frequencies[n], end);
     questions.points.emplace_back(0, std::max(w, least));
@@ -217,6 +217,7 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems,
         {{n, frequencies[n] > end ? 2 * std::pow(end / frequencies[n], 4) : 2}});
   }
   questions.each_by_its_size = true;
+  questions.real_part = true;
   questions.tolerance = tolerance.value;
   questions.first = {{kSlowest / memory, 1}, {5 * turn, 8}};
   questions.lowest = kSlowest / memory;
