@@ -38,6 +38,7 @@ class Predictor {
   PredictedStep follow(const routes::Plan& plan) {
     for (const auto& key : plan.systems()) assemble(key);
     for (const auto& task : plan.tasks) step_.seconds += seconds_of(task);
+    if (!step_.resolution.waves.empty()) step_.seconds += seconds_of_waves();
     return step_;
   }
 
@@ -47,7 +48,7 @@ class Predictor {
   };
 
   [[nodiscard]] routes::Setting setting(petsc::SolverStatistics& statistics) const {
-    return {comm_, given_, discretisation_, statistics};
+    return {comm_, given_, discretisation_, statistics, {}, {}};
   }
 
   const Predicted& assemble(const SystemKey& key) {
@@ -93,6 +94,16 @@ class Predictor {
     return seconds + task.derivatives * like.assembly +
            task.usual_factorizations * (like.assembly + like.factorization) +
            task.usual_solves * like.solve;
+  }
+
+  // Each on elements of its own, as all factorisations together scale with the work.
+  double seconds_of_waves() {
+    Resolution alone = step_.resolution;
+    alone.waves.clear();
+    const Predicted& like = assemble({0, operators::symmetry_of(discretisation_.process)});
+    const double more =
+        relative_work(given_.scene, step_.resolution) / relative_work(given_.scene, alone) - 1;
+    return more * (like.assembly + like.factorization);
   }
 
   MPI_Comm comm_;

@@ -34,8 +34,11 @@ Solved evaluated(MPI_Comm comm, const options::Case& given, const Resolution& re
   Step& step = solved.step;
   step.resolution = resolution;
   const double start = petsc::wall_seconds();
-  const routes::Setting setting{comm, given, discretise(given.scene, resolution), step.statistics,
-                                recipes};
+  routes::Setting setting{comm,    given, discretise(given.scene, resolution), step.statistics,
+                          recipes, {}};
+  for (double omega : resolution.waves) {
+    setting.waves.emplace(omega, discretise(given.scene, following(resolution, omega)));
+  }
   solved.evaluation = routes::evaluate(setting);
   quantities::leave_out_missing_side(setting.discretisation.process, solved.evaluation.results);
   const double rounding = model::rounding_of_sums(setting.discretisation.process.noise);
@@ -176,8 +179,7 @@ class Refiner {
       }
       // What a finer discretisation still improves is no limit yet, and one that only now resolves
       // the waves has nothing to be compared with.
-      if (step.resolution.rates.omega > last_omega_) {
-        last_omega_ = step.resolution.rates.omega;
+      if (step.resolution.waves.size() > std::exchange(waves_, step.resolution.waves.size())) {
         last_rounding_ = std::numeric_limits<double>::infinity();
       }
       const bool falls = rounding < 0.5 * std::exchange(last_rounding_, rounding);
@@ -306,7 +308,7 @@ class Refiner {
   int refinements_in_vain_ = 0;
   std::set<std::string> given_up_;  // keys of results that rounding limits
   std::string limit_;               // what limits the first of them
-  double last_omega_ = 0;           // of waves that elements followed
+  std::size_t waves_ = 0;           // that elements followed
   Changes changes_;                 // of the last step
   std::shared_ptr<quantities::Recipes> recipes_ = std::make_shared<quantities::Recipes>();
   std::shared_ptr<const StationaryDistribution> distribution_;  // of the last step, if needed

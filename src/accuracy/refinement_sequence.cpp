@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
 
@@ -75,7 +76,6 @@ velocity::Rates fastest_rates(const options::Case& given) {
     rates.lambda = largest(question.lambda);
   }
   rates.lambda = std::max(rates.lambda, fastest_inverted(given));
-  if (question.wants(Quantity::spectrum)) rates.omega = largest(question.omega);
   if (question.wants(Quantity::peak)) rates.speed = largest(question.velocity);
   return rates;
 }
@@ -101,6 +101,7 @@ RefinementSequence::RefinementSequence(const options::Case& given)
     : scene_(given.scene), method_(given.method), accuracy_(given.question.accuracy) {
   first_degree_ = method_.degree.value_or(starting_degree(given.question));
   rates_ = fastest_rates(given);
+  if (given.question.wants(options::Quantity::spectrum)) omega_ = given.question.omega;
   table_ = given.scene.meant().noise.table != nullptr;
   integrands_ = integrands_of(given.question);
   branches_ = options::on_full_grid(given.method.route) || !given.scene.symmetric() ? 2 : 1;
@@ -157,11 +158,14 @@ noise::Grouping RefinementSequence::grouping(int n) const {
 
 // Elements follow waves where the first estimate asks for it: in most cases the noise damps them.
 // Levels of a table may not, and then changes between coarse discretisations say nothing.
-velocity::Rates RefinementSequence::rates(int n) const {
+std::vector<double> RefinementSequence::waves(int n) const {
   constexpr int first_with_waves = 2;
-  velocity::Rates rates = rates_;
-  if (n < first_with_waves && !method_.fixed() && !table_) rates.omega = 0;
-  return rates;
+  if (n < first_with_waves && !method_.fixed() && !table_) return {};
+  std::vector<double> waves;
+  const auto process = scene_.meant();
+  std::copy_if(omega_.begin(), omega_.end(), std::back_inserter(waves),
+               [&](double omega) { return velocity::has_waves(process, omega); });
+  return waves;
 }
 
 const Resolution& RefinementSequence::refinement_level(int n) const {
@@ -174,14 +178,15 @@ Resolution RefinementSequence::made(int n) const {
   Resolution r;
   switch (method_.scheme) {
   case options::Scheme::hp:
-    r = hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n), rates(n),
+    r = hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n), rates_,
                       grouping(n));
+    r.waves = waves(n);
     r.integrands = integrands_;
     r.whole_tail = tail_counts_;
     r.least_degree = n + 1;  // so that all degrees rise from one refinement level to the next
     break;
   case options::Scheme::upwind:
-    r = upwind_resolution(scene_, points(n), tail_tolerance(n), rates(n));
+    r = upwind_resolution(scene_, points(n), tail_tolerance(n), rates_);
     break;
   case options::Scheme::none: r = exact_resolution(scene_, tail_tolerance(n)); break;
   }

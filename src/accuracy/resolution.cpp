@@ -187,6 +187,13 @@ Resolution exact_resolution(const model::Scene& scene, double tolerance) {
   return r;
 }
 
+Resolution following(const Resolution& resolution, double omega) {
+  Resolution r = resolution;
+  r.waves.clear();
+  r.rates.omega = omega;
+  return r;
+}
+
 operators::Discretisation discretise(const model::Scene& scene, const Resolution& resolution) {
   std::shared_ptr<velocity::VelocityDiscretisation> velocities;
   if (resolution.scheme != options::Scheme::none) {
@@ -236,6 +243,12 @@ options::Factors factors_of(const Resolution& r) {
 
 // The matrix, its magnitudes and what a solver copies come on top of the factors.
 double predicted_bytes(const model::Scene& scene, const Resolution& resolution, int ranks) {
+  if (!resolution.waves.empty()) {
+    // The most frequent ones have most elements.
+    constexpr double complex_factors = 2;
+    const double omega = *std::max_element(resolution.waves.begin(), resolution.waves.end());
+    return complex_factors * predicted_bytes(scene, following(resolution, omega), ranks);
+  }
   const auto n = static_cast<double>(unknowns(scene, resolution));
   if (resolution.scheme == options::Scheme::none) {
     constexpr double dense_matrices = 30;
@@ -254,7 +267,12 @@ double predicted_bytes(const model::Scene& scene, const Resolution& resolution, 
 double relative_work(const model::Scene& scene, const Resolution& resolution) {
   const auto n = static_cast<double>(unknowns(scene, resolution));
   if (resolution.scheme == options::Scheme::none) return n * n * n;
-  return factor_cost(scene, resolution, factors_of(resolution), 1).operations;
+  double work = factor_cost(scene, resolution, factors_of(resolution), 1).operations;
+  constexpr double real_and_complex = 5;
+  for (double omega : resolution.waves) {
+    work += real_and_complex * relative_work(scene, following(resolution, omega));
+  }
+  return work;
 }
 
 }  // namespace stickslip::accuracy

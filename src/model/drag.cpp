@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 namespace stickslip::model {
 namespace {
@@ -47,12 +48,18 @@ double steepest_secant(const Drag& b, double v) {
   return steepest;
 }
 
-// Panels of one ratio, since the scale on which b bends is not known.
+// Panels of one ratio, since the scale on which b bends is not known, until two add nothing.
 double integral(const Drag& b, double v) {
   using Rule = boost::math::quadrature::gauss<double, 15>;
   const auto value = [&](double u) { return b(u); };
-  double sum = 0;
-  for (int n = 0; n < 60; ++n, v /= 2) sum += Rule::integrate(value, v / 2, v);
+  constexpr double nothing = 1e-18;
+  double sum = 0, before = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < 60; ++n, v /= 2) {
+    const double part = Rule::integrate(value, v / 2, v);
+    sum += part;
+    const double size = std::abs(part);
+    if (std::max(size, std::exchange(before, size)) < nothing * std::abs(sum)) break;
+  }
   return sum;
 }
 

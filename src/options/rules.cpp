@@ -4,7 +4,6 @@
 
 #include "quantities.hpp"
 #include "reading.hpp"
-#include "stickslip/petsc/session.hpp"
 #include "stickslip/support/text.hpp"
 #include "words.hpp"
 
@@ -44,7 +43,6 @@ class Rules {
   void conflicts() {
     const Route route = r_.method.route;
     const bool hp = r_.method.scheme == Scheme::hp, queue = route == Route::fluid_queue;
-    const bool direct = r_.method.spectrum_solver == SpectrumSolver::direct;
     const bool weakens = meaning(kFrictionLaws, settings_.text("friction"));
     const std::string no_choice = "does not apply to -route " + settings_.text("route");
     refuse({"drag_expression"}, !drag_law_.expression,
@@ -78,8 +76,6 @@ class Rules {
     refuse({"degree", "layers", "noise_degree", "noise_grading"}, !hp, "belongs to -scheme hp",
            "leave it out, or take -scheme hp");
     refuse({"p"}, hp, "belongs to -scheme upwind", "leave it out, or take -scheme upwind");
-    refuse({"spectrum_solver"}, direct && !petsc::complex_scalars(), "needs complex scalars",
-           "run stickslip-complex with the same options, or take krylov");
     refuse({"route", "scheme", "degree", "layers", "noise_degree", "noise_grading", "p", "v_max",
             "compare", "checkpoint", "noise_levels"},
            study_, "is chosen by -study itself", "leave it out");

@@ -212,10 +212,11 @@ std::vector<Option> method_options() {
   const auto discretisation = discretisation_options();
   all.insert(all.end(), discretisation.begin(), discretisation.end());
   const std::vector<Option> others{
-      choice("spectrum_solver", "krylov", words_of(kSpectrumSolvers),
-             "krylov: two-sided rational Krylov projection, a few real factorisations for all "
-             "frequencies. direct: one complex factorisation per frequency (stickslip-complex), a "
-             "check that gives S_v, S_0 and diffusivity"),
+      choice(
+          "spectrum_solver", "krylov", words_of(kSpectrumSolvers),
+          "krylov: two-sided rational Krylov projection, a few real factorisations for all "
+          "frequencies but those whose waves need elements of their own. direct: complex factors "
+          "for each frequency, a check that gives S_v, S_0 and diffusivity"),
       choice("transient_solver", "krylov", words_of(kTransientSolvers),
              "krylov: reduced models for all times at once. stepping: the backward Kolmogorov "
              "equation by PETSc's time steppers (-backward_ts_...), a check"),

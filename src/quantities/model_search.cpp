@@ -30,10 +30,9 @@ double distance(Complex a, Complex b) {
 /// A reduced model with what it takes to see its errors.
 class Judged {
  public:
-  Judged(ReducedModel& model, bool real_part)
+  explicit Judged(ReducedModel& model)
       : reduced(model.reduce()),
         transfer(reduced.m, reduced.gamma, reduced.beta),
-        real_part_(real_part),
         beyond_(transfer.between(reduced.gamma * reduced.m, reduced.m * reduced.beta)),
         right_(model.right_residual()),
         left_(model.left_residual()) {}
@@ -44,12 +43,11 @@ class Judged {
            left_(z, expanded(reduced.to_left, transfer.from_left(z), true));
   }
 
-  // |H - H_r|, or of its real part.
+  // |H - H_r|.
   [[nodiscard]] double deviation(const Truth& truth) const {
     const Complex z = truth.z;
-    const Complex difference =
-        truth.far ? (truth.value - beyond_(z)) / std::norm(z) : truth.value - transfer(z);
-    return real_part_ ? std::abs(difference.real()) : std::abs(difference);
+    if (!truth.far) return std::abs(truth.value - transfer(z));
+    return std::abs(truth.value - beyond_(z)) / std::norm(z);
   }
 
   Reduced reduced;
@@ -67,7 +65,6 @@ class Judged {
     return y;
   }
 
-  bool real_part_;
   exact::TransferFunction beyond_;
   Residual right_, left_;
 };
@@ -118,7 +115,7 @@ class Search {
   }
 
   void judge() {
-    judged_ = std::make_unique<Judged>(model_, questions_.real_part);
+    judged_ = std::make_unique<Judged>(model_);
     now_ = {};
     now_.model = judged_->reduced;
     if (questions_.each_by_its_size) evaluate(now_);

@@ -10,8 +10,8 @@
 #include <numbers>
 
 #include "stickslip/exact/transfer_function.hpp"
+#include "stickslip/operators/complex_solver.hpp"
 #include "stickslip/petsc/check.hpp"
-#include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
 
 namespace stickslip::quantities {
@@ -29,15 +29,6 @@ constexpr double kSlowest = 1e-2;
 // rounding, and what rounding adds to the solution is a multiple of 1, which c does not see.
 constexpr double kNearZero = 1e-10;         // of 1/tau
 constexpr double kNearZeroOfMemory = 1e-6;  // of the rate at which the velocity forgets itself
-
-// i w; nothing in real arithmetic, where it is not asked for.
-PetscScalar imaginary([[maybe_unused]] double w) {
-#if defined(PETSC_USE_COMPLEX)
-  return {0, w};
-#else
-  return 0;
-#endif
-}
 
 /// S_v of a reduced model.
 class ReducedFunction {
@@ -151,32 +142,30 @@ class DirectSpectrum {
         turn_(1 / systems.process().noise.correlation_time()),
         least_(distribution.process().symmetric() ? 0 : kNearZero * turn_),
         velocity_(distribution.velocity(a_)),
-        acceleration_(a_.zeros()),
-        cl_(a_.zeros()) {
-    check(MatMult(a_.matrix(), velocity_.b, acceleration_));
-    check(MatMultTranspose(a_.matrix(), velocity_.c, cl_));
-    check(VecScale(acceleration_, -1));
+        ab_(a_.zeros()),
+        ca_(a_.zeros()) {
+    check(MatMult(a_.matrix(), velocity_.b, ab_));
+    check(MatMultTranspose(a_.matrix(), velocity_.c, ca_));
   }
 
   [[nodiscard]] Uncertain operator()(double omega) {
-    shift_to(std::max(omega, least_));
-    if (omega <= turn_) return 2.0 * value_of(velocity_.c, factors_->solve(velocity_.b));
-    return (2 / (omega * omega)) * value_of(cl_, factors_->solve(acceleration_));
+    operators::ComplexSolver solver(a_, {0, std::max(omega, least_)}, operators::Clock::time,
+                                    statistics_);
+    const bool far = omega > turn_;
+    const auto solution =
+        solver.solve({petsc::copy_of(far ? ab_ : velocity_.b), a_.zeros()}, false);
+    const Vec c = far ? ca_ : velocity_.c;
+    const double factor = far ? -2 / (omega * omega) : 2;
+    return {factor * petsc::dot(c, solution.x.real),
+            std::abs(factor * petsc::dot(c, solution.correction.real))};
   }
 
  private:
-  void shift_to(double omega) {
-    a_.shift(imaginary(omega - std::exchange(omega_, omega)));
-    if (factors_) return factors_->update();
-    factors_ = operators::factorization(a_, statistics_);
-  }
-
   KolmogorovOperator a_;
   petsc::SolverStatistics& statistics_;
-  double turn_, least_, omega_ = 0;
+  double turn_, least_;
   StationaryDistribution::Velocity velocity_;
-  petsc::VecHandle acceleration_, cl_;
-  std::unique_ptr<petsc::Factorization> factors_;
+  petsc::VecHandle ab_, ca_;
 };
 
 }  // namespace
@@ -207,8 +196,8 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems,
     return values;
   };
   // Beyond all rates S_v and, as moments at infinity agree, its error fall as omega^-4. There the
-  // real part of c A (z + A)^-1 A b, which S_v is made of, falls below the rounding of its
-  // imaginary part: models are compared where it still has its digits.
+  // real part of c A (z + A)^-1 A b, which S_v is made of, falls below the rounding of the
+  // imaginary one: models are compared where that does not count yet.
   const double end = 1e3 * std::max(turn, 1 / memory);
   for (std::size_t n = 0; n < frequencies.size(); ++n) {
     const double w = std::min(frequencies[n], end);
@@ -217,7 +206,6 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems,
         {{n, frequencies[n] > end ? 2 * std::pow(end / frequencies[n], 4) : 2}});
   }
   questions.each_by_its_size = true;
-  questions.real_part = true;
   questions.tolerance = tolerance.value;
   questions.first = {{kSlowest / memory, 1}, {5 * turn, 8}};
   questions.lowest = kSlowest / memory;
@@ -248,26 +236,13 @@ ReducedSpectrum reduced_spectrum(operators::Systems& systems,
   return result;
 }
 
-Spectrum direct_spectrum(MPI_Comm comm, operators::Systems& systems,
-                         const StationaryDistribution& distribution,
-                         const std::vector<double>& omega) {
+std::vector<Uncertain> direct_spectrum(operators::Systems& systems,
+                                       const StationaryDistribution& distribution,
+                                       const std::vector<double>& omega) {
   DirectSpectrum direct(systems, distribution);
-  const std::size_t count = omega.size() + 1;  // and omega = 0
-  std::vector<double> value(count, 0.0), error(count, 0.0);
-  const auto rank = static_cast<std::size_t>(petsc::rank(comm));
-  const auto ranks = static_cast<std::size_t>(petsc::ranks(comm));
-  for (std::size_t n = rank; n < count; n += ranks) {
-    const Uncertain s = direct(n < omega.size() ? omega[n] : 0);
-    value[n] = s.value;
-    error[n] = s.error;
-  }
-  for (auto* all : {&value, &error}) {
-    MPI_Allreduce(MPI_IN_PLACE, all->data(), static_cast<int>(count), MPI_DOUBLE, MPI_SUM, comm);
-  }
-  Spectrum spectrum;
-  for (std::size_t n = 0; n < omega.size(); ++n) spectrum.value.push_back({value[n], error[n]});
-  spectrum.at_zero = {value.back(), error.back()};
-  return spectrum;
+  std::vector<Uncertain> values;
+  for (double w : omega) values.push_back(direct(w));
+  return values;
 }
 
 void append_spectrum(const std::vector<double>& omega, const Spectrum& spectrum, Results& results) {

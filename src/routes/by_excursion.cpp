@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "routes.hpp"
 #include "stickslip/operators/systems.hpp"
@@ -64,31 +66,50 @@ std::vector<Uncertain> entry_law(const StationaryDistribution& distribution) {
   return entry;
 }
 
-// On several ranks each computes the stationary distribution for itself, then its share of the
-// frequencies.
-quantities::Spectrum direct_spectrum(const Setting& setting) {
-  const MPI_Comm comm = petsc::ranks(setting.comm) > 1 ? PETSC_COMM_SELF : setting.comm;
-  operators::Systems systems(comm, setting.discretisation, setting.statistics);
-  const StationaryDistribution distribution(systems);
-  systems.release({0, operators::symmetry_of(systems.process())});
-  return quantities::direct_spectrum(setting.comm, systems, distribution,
-                                     setting.given.question.omega);
-}
-
 // A tenth of the accuracy, so that reduced models do not rule the error.
 quantities::ModelTolerance tolerance_of(const Setting& setting) {
   return {0.1 * setting.given.question.accuracy, setting.recipes};
 }
 
-void append_spectrum(operators::Systems& systems, const Setting& setting, Evaluation& evaluation) {
-  const Question& question = setting.given.question;
-  if (setting.given.method.spectrum_solver == options::SpectrumSolver::direct) {
-    quantities::append_spectrum(question.omega, direct_spectrum(setting), evaluation.results);
-    return;
+// Puts values at the frequencies of waves, each found on elements of its own, between the others.
+void put_waves(const Setting& setting, quantities::Spectrum& spectrum) {
+  auto smooth = std::move(spectrum.value);
+  auto next = smooth.begin();
+  for (double omega : setting.given.question.omega) {
+    const auto wave = setting.waves.find(omega);
+    if (wave == setting.waves.end()) {
+      spectrum.value.push_back(*next++);
+      continue;
+    }
+    operators::Systems systems(setting.comm, wave->second, setting.statistics);
+    const StationaryDistribution distribution(systems);
+    systems.release({0, operators::symmetry_of(systems.process())});
+    spectrum.value.push_back(quantities::direct_spectrum(systems, distribution, {omega}).front());
   }
-  const auto reduced = quantities::reduced_spectrum(systems, *evaluation.distribution,
-                                                    question.omega, tolerance_of(setting));
-  quantities::append_spectrum(question.omega, reduced.spectrum, evaluation.results);
+}
+
+void append_spectrum(operators::Systems& systems, const Setting& setting, Evaluation& evaluation) {
+  const auto& omega = setting.given.question.omega;
+  const auto& distribution = *evaluation.distribution;
+  std::vector<double> smooth;
+  std::copy_if(omega.begin(), omega.end(), std::back_inserter(smooth),
+               [&](double w) { return !setting.waves.contains(w); });
+  quantities::Spectrum spectrum;
+  const auto append = [&] {
+    put_waves(setting, spectrum);
+    quantities::append_spectrum(omega, spectrum, evaluation.results);
+  };
+  if (setting.given.method.spectrum_solver == options::SpectrumSolver::direct) {
+    smooth.push_back(0);
+    spectrum.value = quantities::direct_spectrum(systems, distribution, smooth);
+    spectrum.at_zero = spectrum.value.back();
+    spectrum.value.pop_back();
+    return append();
+  }
+  const auto reduced =
+      quantities::reduced_spectrum(systems, distribution, smooth, tolerance_of(setting));
+  spectrum = reduced.spectrum;
+  append();
   quantities::append_shape(reduced.shape, evaluation.results);
   evaluation.checks.emplace_back("krylov_pairs", reduced.pairs);
   evaluation.checks.emplace_back("krylov_shifts", static_cast<double>(reduced.shifts.size()));

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "stickslip/velocity/mesh.hpp"
+
 namespace stickslip::velocity {
 namespace {
 

@@ -7,11 +7,6 @@
 
 namespace stickslip::velocity {
 
-/// Whether the noise leaves waves of that frequency [1/time] that graded elements do not follow.
-/// Levels of -delta jump equally fast; those of a table may be left so rarely that waves live long
-/// on them. O(levels).
-[[nodiscard]] bool has_waves(const model::Process& process, double omega);
-
 /// The element ends with those between that the waves need; `gap` is the distance from rest down to
 /// the nearest level [force]. O(elements levels) for a table.
 [[nodiscard]] std::vector<double> split_for_waves(const model::Process& process, double omega,

@@ -13,6 +13,9 @@ def noise(file):
 
 SLOPE = "-mu_s 4.759 -mu_d 4.759 -bias 4 -noise_deviation 0.3 -tau 0.05 -drag none -quantities sticking "
 EVEN = "-mu_s 0.6 -mu_d 0.42 -drag cubic -drag_coefficient 0.5 -drag_cubic 0.4 "
+WHITE = "-mu_s 1 -mu_d 1 -drag none -quantities spectrum "
+SIX = "-mu_s 1.3 -mu_d 0.026 -drag expression -drag_expression -1.5*tanh(v)-0.1*v -quantities spectrum -omega "
+CUBIC = "-mu_s 0.7 -mu_d 0.4 -tau 4 -delta 0.25 -drag cubic -drag_coefficient 2 -drag_cubic 1 -quantities spectrum "
 NEVER_STICKS = "-noise telegraph -telegraph_amplitude 2 -telegraph_rate 1 "
 
 # Command line, key, right value, its relative precision, where it comes from. A run has to reach its accuracy and to
@@ -46,6 +49,19 @@ RIGHT = [
     (NEVER_STICKS + "-quantities moments", "E_V2", 1 / 3, 1e-15, "moments of the two densities"),
     ("-noise_levels full -tau 3 -delta 0.281 -noise_deviation 0.42 -quantities noise_law", "E_X2", 0.17457228, 1e-7,
      "birth-death chain that jumps inwards at the rate Lambda from its ends"),
+    (WHITE + "-tau 1e-5 -delta 39.528470752104745 -accuracy 1e-2", "S_0", 9.9999, 1e-5,
+     "white noise, 10/mu^4, with its first correction"),
+    (WHITE + "-tau 1e-5 -delta 39.528470752104745 -accuracy 1e-3", "S_0", 9.9999, 1e-5, "the same"),
+    (WHITE + "-tau 1e-4 -delta 12.5 -accuracy 1e-3", "S_0", 9.99939, 1e-6, "the same"),
+    (noise("pulses100.csv") + "-mu_s 0.5 -mu_d 0.5 -drag none -quantities spectrum -accuracy 1e-2", "S_0",
+     203.593098283, 1e-9, "closed form of the fluid queue in 60 digits"),
+    (noise("six_levels.csv") + SIX + "25", "S_v", 3.2550586283e-7, 1e-10, "collocation, and another code's elements"),
+    (noise("six_levels.csv") + SIX + "100,25,4", "S_v", 1.283445886e-9, 1e-7, "complex solves on finer elements"),
+    (noise("five_levels.csv") + "-mu_s 1.3 -mu_d 0.13 -drag_coefficient 0.3 -quantities spectrum -omega 4,0.3 "
+     "-accuracy 1e-3", "S_v", 3.39391094e-4, 1e-8, "collocation"),
+    (CUBIC + "-omega 50,10", "S_v", 1.031693678618e-8, 1e-9, "complex solves at degree 19"),
+    ("-mu_s 1 -mu_d 0.5 -delta 0.25 -quantities spectrum -omega 1e3,1", "S_v", 1.882297346e-12, 1e-7,
+     "the same at -accuracy 1e-8, waves on two levels alike"),
 ]
 
 # Command line, exit status, what is said.

@@ -20,8 +20,6 @@ using test::Solved;
 
 namespace {
 
-constexpr bool kComplex = PetscDefined(USE_COMPLEX);
-
 ReducedSpectrum reduced(Solved& s, const std::vector<double>& omega, double tolerance) {
   return quantities::reduced_spectrum(s.systems, s.distribution, omega, tolerance);
 }
@@ -135,30 +133,25 @@ TEST_CASE("spectrum: known values by the reduced model", "[parallel]") {
 }
 
 TEST_CASE("spectrum: known values by complex solves") {
-  if (!kComplex) return;
   for (const auto& table : known_values()) {
     Solved s(test::on_hp(scene(1, 0.25, 1, table.delta, {1, 0}), 9));
-    const auto direct = quantities::direct_spectrum(PETSC_COMM_WORLD, s.systems, s.distribution,
-                                                    frequencies(table));
+    const auto direct = quantities::direct_spectrum(s.systems, s.distribution, frequencies(table));
     for (std::size_t n = 0; n < table.values.size(); ++n) {
       INFO("delta " << table.delta << " omega " << table.values[n].omega);
-      CHECK(is(direct.value[n].value, table.values[n]));
+      CHECK(is(direct[n].value, table.values[n]));
     }
-    CHECK(direct.at_zero.value == Approx(direct.value[0].value).epsilon(1e-14));
-    CHECK(s.statistics.factorizations_complex >= 5);
+    CHECK(s.statistics.factorizations_complex >= 4);
   }
 }
 
 TEST_CASE("spectrum: the reduced model agrees with complex solves, within its errors", "[slow]") {
-  if (!kComplex) return;
-  const std::vector<double> omega{1e-3, 0.01, 0.05, 0.1, 0.3, 0.7, 1, 2, 5, 10, 25, 50};
+  const std::vector<double> omega{0, 1e-3, 0.01, 0.05, 0.1, 0.3, 0.7, 1, 2, 5, 10, 25, 50};
   for (const auto& [name, d] : samples()) {
     Solved s(d);
     const auto r = reduced(s, omega, 1e-9);
-    const auto direct =
-        quantities::direct_spectrum(PETSC_COMM_WORLD, s.systems, s.distribution, omega);
+    const auto direct = quantities::direct_spectrum(s.systems, s.distribution, omega);
     for (std::size_t n = 0; n < omega.size(); ++n) {
-      const Uncertain one = r.spectrum.value[n], other = direct.value[n];
+      const Uncertain one = r.spectrum.value[n], other = direct[n];
       INFO(name << " omega " << omega[n] << " error " << one.error / one.value);
       CHECK(relative_difference(one.value, other.value) < 1e-8);
       CHECK(one.error < 1e-8 * one.value);
@@ -166,29 +159,25 @@ TEST_CASE("spectrum: the reduced model agrees with complex solves, within its er
       const double slack = omega[n] < 25 ? 1e-12 : 3e-9;
       CHECK(std::abs(one.value - other.value) < 10 * (one.error + other.error) + slack * one.value);
     }
-    CHECK(relative_difference(r.spectrum.at_zero.value, direct.at_zero.value) < 1e-8);
+    CHECK(relative_difference(r.spectrum.at_zero.value, direct[0].value) < 1e-8);
     CHECK(r.shifts.size() < 10);
     CHECK(r.pairs <= 80);
   }
 }
 
-// Factored anew or not, on one rank or distributed: the same numbers.
+// On one rank or distributed: the same numbers.
 TEST_CASE("spectrum: complex solves on several ranks give what one gives", "[parallel]") {
-  if (!kComplex) return;
   const std::vector<double> omega{0.03, 0.5, 2, 7, 20};
   const auto d = test::on_hp(scene(1, 0.25, 1, 0.5, {1, 0}), 6, 1e-9);
   Solved alone(d, PETSC_COMM_SELF), together(d);
-  const auto shared =
-      quantities::direct_spectrum(PETSC_COMM_WORLD, alone.systems, alone.distribution, omega);
-  const auto own =
-      quantities::direct_spectrum(PETSC_COMM_SELF, alone.systems, alone.distribution, omega);
+  const auto shared = quantities::direct_spectrum(together.systems, together.distribution, omega);
+  const auto own = quantities::direct_spectrum(alone.systems, alone.distribution, omega);
   const auto r = reduced(together, omega, 1e-9);
-  REQUIRE(shared.value.size() == omega.size());
+  REQUIRE(shared.size() == omega.size());
   for (std::size_t n = 0; n < omega.size(); ++n) {
-    CHECK(relative_difference(shared.value[n].value, own.value[n].value) < 1e-13);
-    CHECK(relative_difference(shared.value[n].value, r.spectrum.value[n].value) < 1e-7);
+    CHECK(relative_difference(shared[n].value, own[n].value) < 1e-13);
+    CHECK(relative_difference(shared[n].value, r.spectrum.value[n].value) < 1e-7);
   }
-  CHECK(relative_difference(shared.at_zero.value, own.at_zero.value) < 1e-13);
 }
 
 // No symmetry reduction, no excursions, no PETSc. Beyond 1/tau what the scheme makes of E[V dV/dt]

@@ -2,6 +2,7 @@
 /// Discretisations in the order in which refinement tries them.
 
 #include <map>
+#include <vector>
 
 #include "stickslip/accuracy/estimates.hpp"
 #include "stickslip/accuracy/resolution.hpp"
@@ -38,15 +39,16 @@ class RefinementSequence {
   [[nodiscard]] int free_refinement_levels() const;
   [[nodiscard]] Resolution made(int n) const;
   [[nodiscard]] noise::Grouping grouping(int n) const;
-  [[nodiscard]] velocity::Rates rates(int n) const;
+  [[nodiscard]] std::vector<double> waves(int n) const;
   [[nodiscard]] int degree(int n) const;
   [[nodiscard]] int points(int n) const;
 
   model::Scene scene_;
   options::Method method_;
   double accuracy_;
-  int first_degree_ = 0;   // of refinement level 1
-  velocity::Rates rates_;  // of the equations to be solved
+  int first_degree_ = 0;       // of refinement level 1
+  velocity::Rates rates_;      // of the equations to be solved
+  std::vector<double> omega_;  // of a spectrum
   velocity::Integrands integrands_;
   int branches_ = 1;
   bool all_levels_ = false;   // every noise level is a node

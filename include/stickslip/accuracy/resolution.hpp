@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "stickslip/model/scene.hpp"
 #include "stickslip/noise/nodes.hpp"
@@ -19,6 +20,7 @@ struct Resolution {
   int least_degree = 2;                       ///< hp: of an element, unless `degree` is smaller
   int layers = 0;                             ///< hp: elements graded towards v = 0
   velocity::Rates rates;                      ///< hp: fastest rates that the elements resolve
+  std::vector<double> waves;                  ///< hp: frequencies with elements of their own
   velocity::Integrands integrands;            ///< hp: that the elements resolve
   int points = 0;                             ///< upwind: nodes per noise step
   int levels = 0;                             ///< N, noise levels on each side of 0, if not a table
@@ -62,6 +64,9 @@ struct Resolution {
 
 /// No discretisation in v: only the noise range is chosen.
 [[nodiscard]] Resolution exact_resolution(const model::Scene& scene, double tolerance);
+
+/// The resolution with elements that follow waves of the frequency omega.
+[[nodiscard]] Resolution following(const Resolution& resolution, double omega);
 
 /// Without a velocity discretisation if the scheme has none.
 [[nodiscard]] operators::Discretisation discretise(const model::Scene& scene,

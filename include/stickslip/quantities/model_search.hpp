@@ -19,7 +19,7 @@ struct Questions {
   std::function<std::vector<Uncertain>(const Reduced&)> values;
   /// Where they need it; the first and the last one are the low and the high end.
   std::vector<std::complex<double>> points;
-  /// A value is off by at most the sum of weight |H - H_r|(points[point]), or of its real part.
+  /// A value is off by at most the sum of weight |H - H_r|(points[point]).
   struct Term {
     std::size_t point;
     double weight;
@@ -27,7 +27,6 @@ struct Questions {
   std::vector<std::vector<Term>> terms;  ///< by value
   std::vector<double> shift;             ///< by value: one that serves it, for until_still()
   bool each_by_its_size = false;  ///< whether `tolerance` is relative to each value, or absolute
-  bool real_part = false;         ///< whether the real part of H alone counts
   double tolerance = 1e-8;
   std::vector<Recipe::Step> first;                       ///< what a model begins with
   double lowest = 0, highest = 1e300;                    ///< range of further shifts

@@ -54,12 +54,11 @@ struct ReducedSpectrum {
                                                const std::vector<double>& omega,
                                                const ModelTolerance& tolerance);
 
-/// By one factorisation of i omega - L for each frequency, its analysis done once. Complex scalars
-/// only. Collective; on several ranks each takes its share of the frequencies, alone: `systems` and
-/// `distribution` then live on one rank each, and `comm` has all of them.
-[[nodiscard]] Spectrum direct_spectrum(MPI_Comm comm, operators::Systems& systems,
-                                       const StationaryDistribution& distribution,
-                                       const std::vector<double>& omega);
+/// S_v by complex factors of i omega - L, new ones for each frequency. Collective. Throws NoMemory
+/// or NotReached.
+[[nodiscard]] std::vector<Uncertain> direct_spectrum(operators::Systems& systems,
+                                                     const StationaryDistribution& distribution,
+                                                     const std::vector<double>& omega);
 
 /// S_v by omega, S_0, diffusivity = S_0/2.
 void append_spectrum(const std::vector<double>& omega, const Spectrum& spectrum, Results& results);

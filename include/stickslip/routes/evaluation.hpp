@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -31,6 +32,8 @@ struct Setting {
   petsc::SolverStatistics& statistics;
   /// Of reduced models, from one refinement level to the next.
   std::shared_ptr<quantities::Recipes> recipes = std::make_shared<quantities::Recipes>();
+  /// By frequencies whose waves need elements of their own.
+  std::map<double, operators::Discretisation> waves;
 };
 
 struct Evaluation {

@@ -34,6 +34,11 @@ struct MeshRule {
   Integrands integrands;
 };
 
+/// Whether the noise leaves waves of the frequency omega [1/time] that graded elements do not
+/// follow. Levels of -delta jump equally fast; those of a table may be left so rarely that waves
+/// live long on them. O(levels).
+[[nodiscard]] bool has_waves(const model::Process& process, double omega);
+
 /// Thickness of the finest layer at v = 0 that a solution of (lambda - L) u = f shows, or one for
 /// any smaller lambda [velocity].
 [[nodiscard]] double smallest_scale(const model::Process& process, double lambda = 0);
