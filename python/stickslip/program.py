@@ -74,9 +74,8 @@ class Finished:
     err: str
 
     def message(self) -> str:
-        """What the program reports about its end, without its name in front, and without what MPI prints before it or in
-        frames."""
-        own = re.search(rf"^{NAME}", self.err, re.MULTILINE)
+        """What the program reports about its end, without its name in front and what MPI prints before it or in frames."""
+        own = re.search(rf"(?<!\S){NAME}", self.err)  # even within a line, as the ranks print at the same time
         printed = (self.err[own.start():] if own else self.err).partition("-" * 60)[0].strip()
         return re.sub(rf"^{NAME}", "", printed, flags=re.MULTILINE) or last_lines(self.out, 1)
 

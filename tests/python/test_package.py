@@ -168,8 +168,8 @@ class Failures(Case):
 
     def test_what_mpi_prints_is_not_the_message(self):
         frame, printed = "-" * 74, self.folder / "printed"
-        printed.write_text(f"{frame}\nWARNING: no device\n{frame}\n[host:1] btl_tcp: no network\nstickslip: -a = 1: wrong\n"
-                           f"-b = 2: wrong\n{frame}\nMPI_ABORT was invoked\n{frame}\n")
+        printed.write_text(f"{frame}\nWARNING: no device\n{frame}\n[host:1] btl_tcp: no network\n[host:2] "
+                           f"stickslip: -a = 1: wrong\n-b = 2: wrong\n{frame}\nMPI_ABORT was invoked\n{frame}\n")
         with self.fake(f"cat '{printed}' >&2; exit 2"):
             self.assertRaisesRegex(stickslip.BadInput, r"^-a = 1: wrong\n-b = 2: wrong$", stickslip.run)
 
