@@ -5,6 +5,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -15,6 +16,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 DONE, BAD_INPUT, SHORT, NO_MEMORY = 0, 2, 3, 4  # exit statuses
+NAME = "stickslip(-complex)?: "  # in front of what it reports
 TAIL = 20  # lines of what the program printed, in messages
 LOOK = 0.01  # seconds between looks at whether a run is still wanted
 GRACE = 5  # seconds from the request to end until the program is killed
@@ -22,7 +24,8 @@ GRACE = 5  # seconds from the request to end until the program is killed
 REFUSALS = (
     ("attempt to run as root", "to run as root, as in a container",
      {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}),
-    ("not enough slots available", "to start more ranks than there are cores", {"OMPI_MCA_rmaps_base_oversubscribe": "1"}))
+    ("not enough slots available", "to start more ranks than there are cores",
+     {"OMPI_MCA_rmaps_base_oversubscribe": "1", "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe"}))  # 4 and 5
 PACKAGE = pathlib.Path(__file__).resolve().parent
 
 
@@ -71,10 +74,10 @@ class Finished:
     err: str
 
     def message(self) -> str:
-        """What the program reports about its end, without its name in front and what mpiexec adds in frames."""
-        printed = self.err.partition("-" * 60)[0].strip() or last_lines(self.out, 1)
-        return "\n".join(line.removeprefix("stickslip: ").removeprefix("stickslip-complex: ")
-                         for line in printed.splitlines())
+        """What the program reports about its end, without its name in front and what MPI prints before it or in frames."""
+        own = re.search(rf"(?<!\S){NAME}", self.err)  # even within a line, as the ranks print at the same time
+        printed = (self.err[own.start():] if own else self.err).partition("-" * 60)[0].strip()
+        return re.sub(rf"^{NAME}", "", printed, flags=re.MULTILINE) or last_lines(self.out, 1)
 
 
 def find_program() -> pathlib.Path:

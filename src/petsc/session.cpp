@@ -4,7 +4,10 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
+#include <optional>
 #include <string>
+#include <system_error>
 
 #include "stickslip/petsc/blas.hpp"
 #include "stickslip/petsc/check.hpp"
@@ -27,12 +30,46 @@ void shorten_start_of_single_process() {
   setenv("HWLOC_COMPONENTS", "-gl", keep_users_choice);
 }
 
+// Open MPI 5 makes a folder in TMPDIR, one for all single processes of a user, and leaves it there.
+// None of them needs it: each starts with a TMPDIR of its own, which goes when MPI has started.
+class StartFolder {
+ public:
+  StartFolder() {
+    if (under_mpiexec()) return;
+    std::error_code failure;
+    std::string name = std::filesystem::temp_directory_path(failure) / "stickslip-start-XXXXXX";
+    if (failure || mkdtemp(name.data()) == nullptr) return;
+    folder_ = name;
+    if (const char* given = std::getenv(variable); given != nullptr) given_ = given;
+    setenv(variable, name.c_str(), 1);
+  }
+  StartFolder(const StartFolder&) = delete;
+  StartFolder& operator=(const StartFolder&) = delete;
+  ~StartFolder() {
+    if (folder_.empty()) return;
+    if (given_) setenv(variable, given_->c_str(), 1);
+    if (!given_) unsetenv(variable);
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+
+ private:
+  static constexpr const char* variable = "TMPDIR";
+  std::filesystem::path folder_;
+  std::optional<std::string> given_;
+};
+
 // PETSc after 3.18 ends with a list of the options that it has not read. This program refuses what
 // nobody reads, with the name that was meant.
 void list_no_options_at_the_end() {
   PetscBool given = PETSC_FALSE;
   check(PetscOptionsHasName(nullptr, nullptr, "-options_left", &given));
   if (given == PETSC_FALSE) check(PetscOptionsSetValue(nullptr, "-options_left", "no"));
+}
+
+PetscErrorCode start(int& count, char**& values) {
+  const StartFolder folder;
+  return SlepcInitialize(&count, &values, nullptr, nullptr);
 }
 
 // PETSc's own words, without the chain of its functions.
@@ -57,7 +94,7 @@ Session::Session(int& argc, char**& argv) : arguments_(argv, argv + argc) {
   int count = argc + 1;
   char** values = arguments_.data();
   collect_error_messages();
-  const PetscErrorCode code = SlepcInitialize(&count, &values, nullptr, nullptr);
+  const PetscErrorCode code = start(count, values);
   if (code != 0) refuse_start(code);
   list_no_options_at_the_end();
   check(PetscLogDefaultBegin());  // the statistics read event times

@@ -13,8 +13,8 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr int kBlock = 4;  // pairs at a time
-// Rounding of a model, relative.
-constexpr double kFloor = 3e-13;
+// Rounding of a model, relative: mostly below the first one, at times up to the second.
+constexpr double kFloor = 3e-13, kMostRounding = 3e-12;
 // Shifts nearer than that to each other find nearly dependent vectors.
 constexpr double kNear = 1.5;
 // Errors between true solutions may be that much larger than residuals make them.
@@ -142,10 +142,20 @@ class Search {
   }
   [[nodiscard]] double size_of(Complex z) const { return std::max(std::abs(z), questions_.lowest); }
 
+  // What true solutions show of rounding, relative: residuals do not see it, and points in between
+  // have as much of it as the best of them.
+  [[nodiscard]] static double rounding_among(const std::vector<Recipe::Scale>& known) {
+    if (known.empty()) return 0;
+    double least = kMostRounding;
+    for (const auto& scale : known) least = std::min(least, scale.relative);
+    return least;
+  }
+
   // Of all values, from what true solutions show.
   void estimate() {
     std::vector<Recipe::Scale> known = scales(), rounded;
     if (replayed_) known.insert(known.end(), recipe_.scales.begin(), recipe_.scales.end());
+    const double rounding = rounding_among(known);
     const auto least = std::min_element(known.begin(), known.end(), [](auto& a, auto& b) {
       return a.beside_residuals < b.beside_residuals;
     });
@@ -174,7 +184,7 @@ class Search {
       double error = kCaution * residuals_[p] / size_of(z);
       if (!known.empty()) error *= nearest(known, z)->beside_residuals;
       if (!rounded.empty()) error += nearest(rounded, z)->relative * std::abs(judged_->transfer(z));
-      errors_.push_back(error);
+      errors_.push_back(std::max(error, rounding * std::abs(judged_->transfer(z))));
     }
     now_.error.clear();
     relative_.clear();

@@ -166,6 +166,13 @@ class Failures(Case):
         with self.fake("echo rounding leaves nothing >&2; exit 3"):
             self.assertRaisesRegex(stickslip.Unsolved, "^rounding leaves nothing$", stickslip.run)
 
+    def test_what_mpi_prints_is_not_the_message(self):
+        frame, printed = "-" * 74, self.folder / "printed"
+        printed.write_text(f"{frame}\nWARNING: no device\n{frame}\n[host:1] btl_tcp: no network\n[host:2] "
+                           f"stickslip: -a = 1: wrong\n-b = 2: wrong\n{frame}\nMPI_ABORT was invoked\n{frame}\n")
+        with self.fake(f"cat '{printed}' >&2; exit 2"):
+            self.assertRaisesRegex(stickslip.BadInput, r"^-a = 1: wrong\n-b = 2: wrong$", stickslip.run)
+
     def test_results_of_before_are_not_taken_for_those_of_now(self):
         file = self.folder / "summary.json"
         stickslip.run(**SMALL, summary=file)
@@ -222,7 +229,7 @@ class Failures(Case):
         for printed, words in (("mpiexec has detected an attempt to run as root.", "to run as root.*OMPI_ALLOW_RUN_AS_ROOT=1 and "
                                 "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 in the environment"),
                                ("There are not enough slots available in the system", "more ranks than there are cores; set "
-                                "OMPI_MCA_rmaps_base_oversubscribe=1")):
+                                "OMPI_MCA_rmaps_base_oversubscribe=1 and PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe")):
             mpiexec = self.folder / "mpiexec"
             mpiexec.write_text(f"#!/bin/sh\necho '{printed}' >&2; seq 100 >&2; exit 1\n")
             mpiexec.chmod(0o755)
