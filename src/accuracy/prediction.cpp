@@ -48,7 +48,7 @@ class Predictor {
   };
 
   [[nodiscard]] routes::Setting setting(petsc::SolverStatistics& statistics) const {
-    return {comm_, given_, discretisation_, statistics, {}, {}};
+    return {comm_, given_, discretisation_, statistics};
   }
 
   const Predicted& assemble(const SystemKey& key) {

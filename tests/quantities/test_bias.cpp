@@ -153,7 +153,7 @@ TEST_CASE("bias: the excursions agree with the null vector") {
       petsc::SolverStatistics statistics;
       const auto evaluate = [&](options::Route route) {
         r.method.route = route;
-        return routes::evaluate({PETSC_COMM_WORLD, r, d, statistics, {}, {}}).results;
+        return routes::evaluate({PETSC_COMM_WORLD, r, d, statistics}).results;
       };
       const auto excursions = evaluate(options::Route::excursion);
       std::map<std::string, double> found;

@@ -183,7 +183,7 @@ TEST_CASE("rounding: averages by hand, with the error of a probability that is k
   const Case r = given(plain(), {Quantity::sticking, Quantity::moments, Quantity::noise_law});
   const auto process = r.scene.process(8);
   petsc::SolverStatistics statistics;
-  const routes::Setting setting{PETSC_COMM_WORLD, r, {process, nullptr}, statistics, {}, {}};
+  const routes::Setting setting{PETSC_COMM_WORLD, r, {process, nullptr}, statistics};
   const double beyond = model::noise_moments(process.noise, -2, 2).beyond;
   for (const auto& [stick, slide] : {std::pair{0.3, 0.7}, {0.9, 0.1}}) {
     const std::vector<Uncertain> values{{beyond * (1 - 1e-3), 0},

@@ -33,7 +33,7 @@ struct Setting {
   /// Of reduced models, from one refinement level to the next.
   std::shared_ptr<quantities::Recipes> recipes = std::make_shared<quantities::Recipes>();
   /// By frequencies whose waves need elements of their own.
-  std::map<double, operators::Discretisation> waves;
+  std::map<double, operators::Discretisation> waves = {};
 };
 
 struct Evaluation {
