@@ -17,9 +17,9 @@ namespace {
 double wave_width_of_table(const model::Process& process, double omega, double v) {
   constexpr int steps = 40;
   constexpr double lives = 20;  // of a level, after which nothing is left of a wave
-  const auto& noise = process.noise;
   double slowest = std::numeric_limits<double>::infinity();
   for (const auto& side : {process, process.mirrored()}) {
+    const auto& noise = side.noise;
     std::array<double, steps> drag{};  // in the middle of each step from 0 to v
     for (int n = 0; n < steps; ++n) drag[n] = side.drag((n + 0.5) / steps * v);
     const double at_end = side.drag(v);
@@ -34,7 +34,7 @@ double wave_width_of_table(const model::Process& process, double omega, double v
       if (jumps < lives) slowest = std::min(slowest, std::abs(force + at_end));
     }
   }
-  return 2 * std::numbers::pi * slowest / std::min(omega, 40 * noise.rate());
+  return 2 * std::numbers::pi * slowest / std::min(omega, 40 * process.noise.rate());
 }
 
 double end_of_thinnest_waves(const model::Process& process, double gap) {

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
+#include <vector>
 
 #include "../common/catch.hpp"
 #include "stickslip/velocity/mesh.hpp"
@@ -306,6 +308,21 @@ TEST_CASE("mesh: every element has two waves at most, and none is split in vain"
     }
     CHECK(waves.size() == count);
     for (double end : calm) CHECK(std::count(waves.begin(), waves.end(), end) == 1);
+  }
+}
+
+// Widths are those that both branches need. Levels of a table have other numbers when mirrored.
+TEST_CASE("mesh: elements follow waves of a lopsided table on both branches alike") {
+  auto p = process(0.026, 1, 0.25, {0.1, 0});
+  p.noise.table = std::make_shared<const model::LevelTable>(
+      std::vector<model::Level>{{-0.7, 0.8, 0}, {1, 0.2, 0.1}, {1.7, 0.9, 0.4}, {3, 0, 0.1}});
+  REQUIRE(p.noise.lowest() != -p.noise.highest());
+  auto rule = rule_to(16);
+  for (double omega : {4.0, 25.0, 100.0}) {
+    rule.rates.omega = omega;
+    REQUIRE(velocity::has_waves(p, omega));
+    const auto ends = velocity::element_ends(p, rule);
+    CHECK((velocity::element_ends(p.mirrored(), rule) == ends));
   }
 }
 
