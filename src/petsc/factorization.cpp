@@ -30,12 +30,6 @@ Factorization::Factorization(Mat matrix, const std::string& prefix, SolverStatis
   factor();
 }
 
-void Factorization::update() {
-  check(KSPSetOperators(ksp_, matrix_, matrix_));
-  measure_.forget();
-  factor();
-}
-
 void Factorization::factor() {
   double total = 0, symbolic = 0;
   {

@@ -44,9 +44,6 @@ class Factorization {
   void solve_once(Vec b, Vec x);
   void solve_transposed_once(Vec b, Vec x);
 
-  /// Factors again after the values of the matrix have changed; the analysis is kept.
-  void update();
-
   /// Orders and analyses `matrix` as the constructor would, and stops there. Collective.
   [[nodiscard]] static Analysis analyse(Mat matrix, const std::string& prefix,
                                         SolverStatistics& statistics, PCType pc_type = PCLU);
