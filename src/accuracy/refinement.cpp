@@ -34,8 +34,8 @@ Solved evaluated(MPI_Comm comm, const options::Case& given, const Resolution& re
   Step& step = solved.step;
   step.resolution = resolution;
   const double start = petsc::wall_seconds();
-  routes::Setting setting{comm,    given, discretise(given.scene, resolution), step.statistics,
-                          recipes, {}};
+  routes::Setting setting{comm, given, discretise(given.scene, resolution), step.statistics,
+                          recipes};
   for (double omega : resolution.waves) {
     setting.waves.emplace(omega, discretise(given.scene, following(resolution, omega)));
   }

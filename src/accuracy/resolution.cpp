@@ -57,17 +57,28 @@ double tilt(const model::Scene& scene) {
   return 2 * std::min(mu_d, most) / variance;
 }
 
-std::shared_ptr<velocity::VelocityDiscretisation>
-velocities_of(const model::Scene& scene, const Resolution& resolution, bool mirrored = false) {
+// Of v > 0, and on the same nodes of v < 0 where the drag is another one there.
+std::shared_ptr<velocity::VelocityDiscretisation> velocities_of(const model::Scene& scene,
+                                                                const Resolution& resolution) {
   const auto process = scene.process(resolution.levels);
-  const model::Drag drag = mirrored ? process.drag.mirrored() : process.drag;
+  const auto on_both_branches = [&](const auto& with_drag) {
+    std::shared_ptr<velocity::VelocityDiscretisation> velocities = with_drag(process.drag);
+    if (!process.drag.odd()) velocities->set_mirrored(with_drag(process.drag.mirrored()));
+    return velocities;
+  };
   if (resolution.scheme == options::Scheme::upwind) {
     const double spacing = upwind_step(scene) / resolution.points;
     const auto count = static_cast<int>(upwind_nodes(scene, resolution));
-    return std::make_shared<velocity::UpwindDiscretisation>(spacing, count, drag);
+    return on_both_branches([&](const model::Drag& drag) {
+      return std::make_shared<velocity::UpwindDiscretisation>(spacing, count, drag);
+    });
   }
-  const auto ends = velocity::element_ends(process, mesh_rule(resolution));
-  return std::make_shared<velocity::HpDiscretisation>(ends, hp_degrees(scene, resolution), drag);
+  const auto rule = mesh_rule(resolution);
+  const auto ends = velocity::element_ends(process, rule);
+  const auto degrees = velocity::element_degrees(process, rule, ends, resolution.degree);
+  return on_both_branches([&](const model::Drag& drag) {
+    return std::make_shared<velocity::HpDiscretisation>(ends, degrees, drag);
+  });
 }
 
 // Groups keep what stands for each of their levels.
@@ -196,11 +207,7 @@ Resolution following(const Resolution& resolution, double omega) {
 
 operators::Discretisation discretise(const model::Scene& scene, const Resolution& resolution) {
   std::shared_ptr<velocity::VelocityDiscretisation> velocities;
-  if (resolution.scheme != options::Scheme::none) {
-    velocities = velocities_of(scene, resolution);
-    const bool odd = scene.process(1).drag.odd();
-    if (!odd) velocities->set_mirrored(velocities_of(scene, resolution, true));
-  }
+  if (resolution.scheme != options::Scheme::none) velocities = velocities_of(scene, resolution);
   return {scene.process(resolution.levels), std::move(velocities), resolution.noise};
 }
 

@@ -4,7 +4,6 @@
 
 #include "routes.hpp"
 #include "stickslip/operators/systems.hpp"
-#include "stickslip/petsc/session.hpp"
 #include "stickslip/quantities/displacement.hpp"
 #include "stickslip/quantities/durations.hpp"
 #include "stickslip/quantities/first_passage.hpp"
@@ -94,22 +93,20 @@ void append_spectrum(operators::Systems& systems, const Setting& setting, Evalua
   std::vector<double> smooth;
   std::copy_if(omega.begin(), omega.end(), std::back_inserter(smooth),
                [&](double w) { return !setting.waves.contains(w); });
-  quantities::Spectrum spectrum;
-  const auto append = [&] {
-    put_waves(setting, spectrum);
-    quantities::append_spectrum(omega, spectrum, evaluation.results);
-  };
-  if (setting.given.method.spectrum_solver == options::SpectrumSolver::direct) {
+  const bool direct = setting.given.method.spectrum_solver == options::SpectrumSolver::direct;
+  quantities::ReducedSpectrum reduced;
+  auto& spectrum = reduced.spectrum;
+  if (direct) {
     smooth.push_back(0);
     spectrum.value = quantities::direct_spectrum(systems, distribution, smooth);
     spectrum.at_zero = spectrum.value.back();
     spectrum.value.pop_back();
-    return append();
+  } else {
+    reduced = quantities::reduced_spectrum(systems, distribution, smooth, tolerance_of(setting));
   }
-  const auto reduced =
-      quantities::reduced_spectrum(systems, distribution, smooth, tolerance_of(setting));
-  spectrum = reduced.spectrum;
-  append();
+  put_waves(setting, spectrum);
+  quantities::append_spectrum(omega, spectrum, evaluation.results);
+  if (direct) return;
   quantities::append_shape(reduced.shape, evaluation.results);
   evaluation.checks.emplace_back("krylov_pairs", reduced.pairs);
   evaluation.checks.emplace_back("krylov_shifts", static_cast<double>(reduced.shifts.size()));

@@ -383,9 +383,14 @@ std::vector<int> regular_degrees(const model::Process& process, const MeshRule& 
 
 }  // namespace
 
-// Of the regular element in which an element ends; towards a parting degrees fall as towards v = 0.
 std::vector<int> element_degrees(const model::Process& process, const MeshRule& rule, int degree) {
-  const auto regular = regular_ends(process, rule), ends = element_ends(process, rule);
+  return element_degrees(process, rule, element_ends(process, rule), degree);
+}
+
+// Of the regular element in which an element ends; towards a parting degrees fall as towards v = 0.
+std::vector<int> element_degrees(const model::Process& process, const MeshRule& rule,
+                                 const std::vector<double>& ends, int degree) {
+  const auto regular = regular_ends(process, rule);
   const auto of_regular = regular_degrees(process, rule, regular, degree);
   std::vector<int> degrees;
   for (std::size_t e = 1; e < ends.size(); ++e) {

@@ -57,5 +57,8 @@ struct MeshRule {
 /// whole, digits count by the density. Where waves are followed all degrees are equal.
 [[nodiscard]] std::vector<int> element_degrees(const model::Process& process, const MeshRule& rule,
                                                int degree);
+/// The same of element ends that are known: observables and drag laws cost more than all else.
+[[nodiscard]] std::vector<int> element_degrees(const model::Process& process, const MeshRule& rule,
+                                               const std::vector<double>& ends, int degree);
 
 }  // namespace stickslip::velocity
