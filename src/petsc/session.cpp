@@ -40,21 +40,21 @@ class StartFolder {
     std::string name = std::filesystem::temp_directory_path(failure) / "stickslip-start-XXXXXX";
     if (failure || mkdtemp(name.data()) == nullptr) return;
     folder_ = name;
-    if (const char* given = std::getenv(variable); given != nullptr) given_ = given;
-    setenv(variable, name.c_str(), 1);
+    if (const char* given = std::getenv(kVariable); given != nullptr) given_ = given;
+    setenv(kVariable, name.c_str(), 1);
   }
   StartFolder(const StartFolder&) = delete;
   StartFolder& operator=(const StartFolder&) = delete;
   ~StartFolder() {
     if (folder_.empty()) return;
-    if (given_) setenv(variable, given_->c_str(), 1);
-    if (!given_) unsetenv(variable);
+    if (given_) setenv(kVariable, given_->c_str(), 1);
+    if (!given_) unsetenv(kVariable);
     std::error_code ignored;
     std::filesystem::remove_all(folder_, ignored);
   }
 
  private:
-  static constexpr const char* variable = "TMPDIR";
+  static constexpr const char* kVariable = "TMPDIR";
   std::filesystem::path folder_;
   std::optional<std::string> given_;
 };

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "routes.hpp"
 #include "stickslip/operators/systems.hpp"
@@ -72,7 +73,7 @@ quantities::ModelTolerance tolerance_of(const Setting& setting) {
 
 // Puts values at the frequencies of waves, each found on elements of its own, between the others.
 void put_waves(const Setting& setting, quantities::Spectrum& spectrum) {
-  auto smooth = std::move(spectrum.value);
+  const auto smooth = std::exchange(spectrum.value, {});
   auto next = smooth.begin();
   for (double omega : setting.given.question.omega) {
     const auto wave = setting.waves.find(omega);
