@@ -111,7 +111,8 @@ class Refiner {
   }
 
   void solve(int n) {
-    const Resolution& resolution = sequence_.refinement_level(n);
+    Resolution resolution = sequence_.refinement_level(n);
+    leave_out_settled(resolution.waves);
     const int step_number = static_cast<int>(outcome_.steps.size());
     if (progress_) progress_(step_number, resolution, expected_seconds(resolution));
     auto [evaluation, step] = evaluated(comm_, given_, resolution, recipes_);
@@ -122,6 +123,24 @@ class Refiner {
     follow(std::move(evaluation.distribution));
     outcome_.total += step.statistics;
     outcome_.steps.push_back(std::move(step));
+  }
+
+  // Waves are followed only where a frequency misses the accuracy without, and from then on.
+  void leave_out_settled(std::vector<double>& waves) const {
+    if (outcome_.steps.empty()) return;
+    const auto& followed = outcome_.steps.back().resolution.waves;
+    const auto settled = [&](double omega) {
+      if (std::count(followed.begin(), followed.end(), omega) > 0) return false;
+      return std::all_of(
+          outcome_.results.begin(), outcome_.results.end(),
+          [&](const quantities::Result& spectrum) {
+            if (spectrum.kind != quantities::Kind::spectrum || spectrum.is_scalar()) return true;
+            const auto& omegas = spectrum.abscissa;
+            const auto at = std::find(omegas.begin(), omegas.end(), omega) - omegas.begin();
+            return spectrum.error[at] <= question_.accuracy * std::abs(spectrum.value[at]);
+          });
+    };
+    waves.erase(std::remove_if(waves.begin(), waves.end(), settled), waves.end());
   }
 
   [[nodiscard]] double expected_seconds(const Resolution& next) const {

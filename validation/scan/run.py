@@ -2,9 +2,10 @@
 
 usage: python3 validation/scan/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
-One option at a time goes from end to end, everything else as in mu_s = tau = 1, mu_d = 1/2, delta = 1/4. A
-place where the seconds jump by more than ten from one value to the next is a claim that fails. --quick
-takes every other value.
+One option at a time goes from end to end, everything else as in mu_s = tau = 1, mu_d = 1/2, delta = 1/4. The
+largest jump from one value to the next shows where a user who moves an option a little waits much longer.
+Nothing is claimed, as seconds depend on the machine and on what else it does. --quick takes every other
+value.
 """
 
 import pathlib
@@ -13,10 +14,8 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from entry import Entry
-from harness import worse
 
 SCENE = {"mu_d": 0.5, "delta": 0.25, "accuracy": 1e-6}
-MOST = 10  # times the seconds of the value before
 LEAST = 1  # seconds that nobody waits for, and that a busy machine takes for nothing
 # What is asked for, the option, and its values.
 SCANS = (
@@ -55,12 +54,11 @@ def scan(entry, quantities, option, values):
 
 def main():
     entry = Entry(__doc__, "beyond the paper")
-    rows, jumps = [], []
+    rows = []
     for quantities, option, values in SCANS:
         found = scan(entry, quantities, option, values[::2] if entry.quick else values)
         seconds = [max(s, LEAST) for _, s, _ in found]
         largest = max(max(b / a, a / b) for a, b in zip(seconds, seconds[1:]))
-        jumps.append(largest)
         slowest = max(found, key=lambda one: one[1])
         missed = [f"{value:g}" for value, _, reached in found if not reached]
         rows.append((quantities, option, f"{found[0][0]:g} ... {found[-1][0]:g}",
@@ -69,7 +67,6 @@ def main():
     entry.table("Seconds over the range of an option",
                 ("quantities", "option", "range", "seconds", "slowest at", "largest jump",
                  "accuracy missed at"), rows)
-    entry.claim("times the seconds of the next value", worse(*jumps), MOST)
     entry.end()
 
 
