@@ -25,15 +25,27 @@ constexpr int kDegreesLessInNoise = 1;
 double order_margin(int points) { return 1.5 * (1 + 2.0 / points); }
 constexpr int kFirstPoints = 8;
 
-// Degree at which the estimate, the error one degree below, is expected to meet the accuracy:
-// errors are about 10^-d at degree d, ten times that for the density of sticking times at 0+, and
-// a hundred times for the tail of a spectrum. (On coarser elements reduced models search long for
-// waves that are not resolved.)
+// Degree at which the estimate, the error one degree below, is expected to meet the accuracy.
+// Errors are about 10^-d at degree d; those of displacements tenfold smaller, those of the density
+// of sticking times at 0+ tenfold larger, of the tail of a spectrum and of densities of durations a
+// hundredfold. (On coarser elements reduced models search long for waves that are not resolved.)
+// Densities of path lengths lose a digit in one and a half degrees.
 int starting_degree(const options::Question& question) {
+  using options::Quantity;
   const double digits = -std::log10(question.accuracy);
-  int extra = question.wants(options::Quantity::entry_law) ? 2 : 1;
-  if (question.wants(options::Quantity::spectrum)) extra = 3;
-  return std::clamp(static_cast<int>(std::ceil(digits)) + extra, kLowestDegree, kHighestDegree);
+  const auto degree = [digits](Quantity quantity) {
+    switch (quantity) {
+    case Quantity::displacement: return digits;
+    case Quantity::entry_law: return digits + 2;
+    case Quantity::spectrum:
+    case Quantity::duration_density: return digits + 3;
+    case Quantity::slip: return 1.5 * digits + 2;
+    default: return digits + 1;
+    }
+  };
+  double highest = 0;
+  for (Quantity quantity : question.quantities) highest = std::max(highest, degree(quantity));
+  return std::clamp(static_cast<int>(std::ceil(highest)), kLowestDegree, kHighestDegree);
 }
 
 double largest(const std::vector<double>& values) {

@@ -331,9 +331,14 @@ TEST_CASE(
     return accuracy::RefinementSequence(given).refinement_level(1).degree;
   };
   // Errors are 10^-d at degree d, and the estimate is that of a degree less; ten times that for
-  // densities at 0+.
+  // densities at 0+, a hundred times for densities of durations; those of path lengths fall slower.
   CHECK(first(1e-6, options::Quantity::sticking) == 7);
   CHECK(first(1e-6, options::Quantity::entry_law) == 8);
+  CHECK(first(1e-6, options::Quantity::duration_density) == 9);
+  CHECK(first(1e-6, options::Quantity::slip) == 11);
+  CHECK(first(1e-6, options::Quantity::displacement) == 6);
+  given.question.quantities = {options::Quantity::slip, options::Quantity::sticking};
+  CHECK(accuracy::RefinementSequence(given).refinement_level(1).degree == 11);
   CHECK(first(3e-7, options::Quantity::sticking) == 8);
   CHECK(first(0.1, options::Quantity::sticking) == 5);
   CHECK(first(1e-30, options::Quantity::sticking) == 19);
