@@ -304,6 +304,7 @@ TEST_CASE("refinement sequence: first-order changes are extrapolated, with a mar
 
 TEST_CASE("refinement sequence: two hp changes make an error, the larger the higher the degree") {
   options::Case given;
+  given.question.quantities = {options::Quantity::sticking};
   given.scene = scene(1, 0.25, 1, 0.25);
   const accuracy::RefinementSequence sequence(given);
   for (int n = 1; n < 5; ++n) {
