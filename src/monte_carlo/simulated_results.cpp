@@ -8,13 +8,28 @@
 #include <string>
 #include <utility>
 
+#include "stickslip/catalogue/autocorrelation_keys.hpp"
+#include "stickslip/catalogue/averages_keys.hpp"
+#include "stickslip/catalogue/displacement_keys.hpp"
+#include "stickslip/catalogue/duration_density_keys.hpp"
+#include "stickslip/catalogue/entry_law_keys.hpp"
+#include "stickslip/catalogue/expectation_keys.hpp"
+#include "stickslip/catalogue/laplace_keys.hpp"
+#include "stickslip/catalogue/moments_keys.hpp"
+#include "stickslip/catalogue/noise_law_keys.hpp"
+#include "stickslip/catalogue/peak_keys.hpp"
+#include "stickslip/catalogue/resolvent_keys.hpp"
+#include "stickslip/catalogue/slip_keys.hpp"
+#include "stickslip/catalogue/spectrum_keys.hpp"
+#include "stickslip/catalogue/sticking_keys.hpp"
 #include "stickslip/quantities/excursion.hpp"
 
 namespace stickslip::monte_carlo {
 namespace {
 
+using catalogue::Kind;
+using catalogue::Row;
 using options::Quantity;
-using quantities::Kind;
 using quantities::Result;
 using quantities::Results;
 using simulation::Duration;
@@ -72,19 +87,20 @@ class Estimates {
     if (wants(moments)) append_moments();
     if (wants(averages)) append_averages();
     if (wants(noise_law)) {
-      scalar(quantities::kPWithin, tally_.stationary(Integrand::inside));
-      scalar(quantities::kEX2, tally_.stationary(Integrand::x_square));
+      scalar(catalogue::kPWithin, tally_.stationary(Integrand::inside));
+      scalar(catalogue::kEX2, tally_.stationary(Integrand::x_square));
     }
     if (wants(entry_law)) append_hitting_distribution();
     if (wants(laplace)) append_laplace();
-    if (wants(stick_duration_transform) && !wants(laplace)) transform("F_stick", Duration::stick);
+    if (wants(stick_duration_transform) && !wants(laplace))
+      transform(catalogue::kTransformStick, Duration::stick);
     if (wants(duration_density)) append_durations();
     if (wants(slip)) append_slip();
     if (wants(peak)) append_peak();
     if (wants(spectrum)) append_spectrum();
     if (wants(resolvent)) append_resolvent();
     if (wants(autocorrelation)) {
-      over("C_vv", Kind::other, question_.time,
+      over(catalogue::kAutocovariance, question_.time,
            [&](std::size_t n) { return tally_.autocorrelation(n); });
     }
     if (wants(displacement)) append_displacement();
@@ -93,37 +109,46 @@ class Estimates {
   }
 
  private:
-  void scalar(const quantities::Name& name, const Estimate& e) { scalar(name.key, name.kind, e); }
-  void scalar(const std::string& key, Kind kind, const Estimate& e) {
-    Result result{key, options::unit_of(key), "", {}, {}, {}, kind};
-    append_value(result, e);
+  void add(Result result, std::size_t count, const auto& estimate) {
+    result.value.clear();
+    result.error.clear();
+    for (std::size_t n = 0; n < count; ++n) append_value(result, estimate(n));
     results_.push_back(std::move(result));
   }
-  // An array of estimate(n) over the n-th abscissa.
-  template <class Estimates>
-  void over(const std::string& key, Kind kind, const std::vector<double>& abscissa,
-            const Estimates& estimate) {
-    Result result = quantities::array(key, abscissa, kind);
-    for (std::size_t n = 0; n < abscissa.size(); ++n) append_value(result, estimate(n));
-    results_.push_back(std::move(result));
+  void scalar(const Row& row, const Estimate& e) {
+    add(quantities::scalar(row, 0, 0), 1, [&](std::size_t) { return e; });
+  }
+  void scalar(const Row& row, const std::string& f, const Estimate& e) {
+    add(quantities::scalar(row, f, 0, 0), 1, [&](std::size_t) { return e; });
+  }
+  // An array of estimate(n) over the n-th abscissa. What no sample met has no size of its own.
+  void over(const Row& row, const std::vector<double>& abscissa, const auto& estimate) {
+    over(quantities::array(row, abscissa), estimate);
+  }
+  void over(Result result, const auto& estimate) {
+    if (result.kind == Kind::probability || result.kind == Kind::other) {
+      result.each_by_its_size = false;
+    }
+    const std::size_t count = result.abscissa.size();
+    add(std::move(result), count, estimate);
   }
 
   void append_sticking() {
-    scalar(quantities::kPStick, tally_.share(Duration::stick));
-    scalar(quantities::kPSlide, tally_.share(Duration::slide));
-    scalar(quantities::kMeanStick, tally_.mean(Duration::stick));
-    scalar(quantities::kMeanSlide, tally_.mean(Duration::slide));
-    scalar(quantities::kMeanExcursion, tally_.mean(Duration::excursion));
+    scalar(catalogue::kPStick, tally_.share(Duration::stick));
+    scalar(catalogue::kPSlide, tally_.share(Duration::slide));
+    scalar(catalogue::kMeanStick, tally_.mean(Duration::stick));
+    scalar(catalogue::kMeanSlide, tally_.mean(Duration::slide));
+    scalar(catalogue::kMeanExcursion, tally_.mean(Duration::excursion));
   }
 
   void append_moments() {
-    scalar(quantities::kEV2, tally_.stationary(Integrand::v_square));
-    scalar(quantities::kEAbsV, tally_.stationary(Integrand::v_size));
-    scalar(quantities::kEXV, tally_.stationary(Integrand::x_v));
+    scalar(catalogue::kEV2, tally_.stationary(Integrand::v_square));
+    scalar(catalogue::kEAbsV, tally_.stationary(Integrand::v_size));
+    scalar(catalogue::kEXV, tally_.stationary(Integrand::x_v));
     if (!process_.drifts()) {
-      results_.push_back(quantities::scalar(quantities::kEV, 0, 0));
+      results_.push_back(quantities::scalar(catalogue::kEV, 0, 0));
     } else {
-      scalar(quantities::kEV, tally_.stationary(Integrand::v));
+      scalar(catalogue::kEV, tally_.stationary(Integrand::v));
     }
   }
 
@@ -140,13 +165,13 @@ class Estimates {
   void append_averages() {
     const auto& friction = process_.friction;
     for (std::size_t f = 0; f < question_.observables.size(); ++f) {
-      for (const auto& [given, e] : tally_.averages(f)) {
-        scalar("pi(" + question_.observables[f].name + given + ")", Kind::other,
-               given == "|stick" ? e : of_function(question_.observables[f], e));
+      for (const auto& [row, e] : tally_.averages(f)) {
+        scalar(*row, question_.observables[f].name,
+               row == &catalogue::kPiStick ? e : of_function(question_.observables[f], e));
       }
     }
-    scalar({"slip_rate"}, tally_.slip_rate());
-    scalar(quantities::kFrictionPower,
+    scalar(catalogue::kSlipRate, tally_.slip_rate());
+    scalar(catalogue::kFrictionPower,
            friction.weakens() ? tally_.averages(question_.observables.size())[0].second
                               : tally_.mean_of_speeds(friction.mu_d, friction.mirrored().mu_d));
   }
@@ -157,123 +182,121 @@ class Estimates {
     std::vector<double> levels;
     for (int i = lowest; i <= highest; ++i) levels.push_back(i);
     for (std::size_t side = 0; side < (process_.symmetric() ? 1 : 2); ++side) {
-      over(side == 0 ? "entry_law" : "entry_law_minus", Kind::other, levels,
+      over(side == 0 ? catalogue::kEntryLawPlus : catalogue::kEntryLawMinus, levels,
            [&](std::size_t n) { return tally_.entry(side, static_cast<int>(levels[n])); });
     }
-    scalar(quantities::kFStick0,
-           tally_.first_exit(noise.up_rate(highest), noise.down_rate(lowest)));
+    scalar(catalogue::kFStick0, tally_.first_exit(noise.up_rate(highest), noise.down_rate(lowest)));
   }
 
   void append_laplace() {
-    for (const auto& [key, duration] : names("F_")) transform(key, duration);
-    for (const auto& [key, duration] : names("var_")) {
-      scalar(key, Kind::other, tally_.variance(duration));
-    }
+    transform(catalogue::kTransformSlide, Duration::slide);
+    transform(catalogue::kTransformStick, Duration::stick);
+    transform(catalogue::kTransformExcursion, Duration::excursion);
+    scalar(catalogue::kVarSlide, tally_.variance(Duration::slide));
+    scalar(catalogue::kVarStick, tally_.variance(Duration::stick));
+    scalar(catalogue::kVarExcursion, tally_.variance(Duration::excursion));
   }
 
-  void transform(const std::string& key, Duration duration) {
-    over(key, Kind::transform, question_.lambda,
-         [&](std::size_t n) { return tally_.laplace(n, duration); });
+  void transform(const Row& row, Duration duration) {
+    over(row, question_.lambda, [&](std::size_t n) { return tally_.laplace(n, duration); });
   }
 
   // Averages over cells, and the distribution function.
-  void append_distribution(const std::string& name, Variable variable,
+  void append_distribution(const Row& density, const Row& distribution, Variable variable,
                            const std::vector<double>& at) {
     const auto cells = cells_around(at);
-    over("f_" + name, Kind::other, at, [&](std::size_t n) {
+    over(density, at, [&](std::size_t n) {
       const auto [low, high] = cells[n];
       return divided(tally_.probability(variable, low, high), high - low);
     });
-    over("cdf_" + name, Kind::distribution, at,
-         [&](std::size_t n) { return tally_.probability(variable, 0, at[n]); });
+    over(distribution, at, [&](std::size_t n) { return tally_.probability(variable, 0, at[n]); });
   }
 
   void append_durations() {
-    append_distribution("slide", Variable::slide, question_.time);
-    append_distribution("stick", Variable::stick, question_.time);
-    append_distribution("excursion", Variable::excursion, question_.time);
+    append_distribution(catalogue::kDensitySlide, catalogue::kCdfSlide, Variable::slide,
+                        question_.time);
+    append_distribution(catalogue::kDensityStick, catalogue::kCdfStick, Variable::stick,
+                        question_.time);
+    append_distribution(catalogue::kDensityExcursion, catalogue::kCdfExcursion, Variable::excursion,
+                        question_.time);
   }
 
   void append_slip() {
-    for (const auto& [key, e] : tally_.slip()) {
-      const bool net = key == "mean_slip_net";
-      const Kind kind = net ? Kind::drift : Kind::positive_mean;
-      scalar(key, kind, net && !process_.drifts() ? Estimate{} : e);
+    for (const auto& [row, e] : tally_.slip()) {
+      const bool still = row == &catalogue::kMeanSlipNet && !process_.drifts();
+      scalar(*row, still ? Estimate{} : e);
     }
     if (!question_.distance.empty()) {
-      append_distribution("slip", Variable::path, question_.distance);
+      append_distribution(catalogue::kDensitySlip, catalogue::kCdfSlip, Variable::path,
+                          question_.distance);
     }
     if (question_.inverse_distance.empty()) return;
-    over("F_slip", Kind::transform, question_.inverse_distance,
+    over(catalogue::kTransformSlip, question_.inverse_distance,
          [&](std::size_t n) { return tally_.slip_transform(n); });
   }
 
   void append_peak() {
     const auto& w = question_.velocity;
-    over("P_peak", Kind::probability, w, [&](std::size_t n) {
+    over(catalogue::kPPeak, w, [&](std::size_t n) {
       return tally_.probability(Variable::peak, w[n], std::numeric_limits<double>::infinity());
     });
     for (std::size_t from : {0, 1}) {
-      over(tally_.first_passage(w[0])[from].first, Kind::positive_mean, w,
+      over(*tally_.first_passage(w[0])[from].first, w,
            [&](std::size_t n) { return tally_.first_passage(w[n])[from].second; });
-      results_.back().each_by_its_size = true;
     }
   }
 
   void append_spectrum() {
     if (!question_.omega.empty()) {
-      over("S_v", Kind::spectrum, question_.omega,
-           [&](std::size_t n) { return tally_.spectrum(n); });
+      over(catalogue::kSV, question_.omega, [&](std::size_t n) { return tally_.spectrum(n); });
     }
     const Estimate s = tally_.spectrum_at_zero();
-    scalar(quantities::kS0, s);
-    scalar(quantities::kDiffusivity, divided(s, 2));
+    scalar(catalogue::kS0, s);
+    scalar(catalogue::kDiffusivity, divided(s, 2));
   }
 
   void append_resolvent() {
     const auto& lambda = question_.lambda;
-    const auto append = [&](const simulation::Named& first, const std::string& f, const auto& at) {
-      for (std::size_t which = 0; which < first.size(); ++which) {
-        const bool average = first[which].first == "pi";
-        const std::string key = (average ? "pi_lambda" : first[which].first) + f;
-        if (key.starts_with("u") && *std::min_element(lambda.begin(), lambda.end()) == 0) continue;
-        over(key, Kind::other, lambda, [&](std::size_t n) { return at(n)[which].second; });
-        // Beside averages it may not take their name.
-        if (average && !question_.wants(Quantity::averages)) results_.back().key = "pi" + f;
-      }
-    };
-    append(tally_.exits(0), "", [&](std::size_t n) { return tally_.exits(n); });
+    for (std::size_t which = 0; which < tally_.exits(0).size(); ++which) {
+      over(*tally_.exits(0)[which].first, lambda,
+           [&](std::size_t n) { return tally_.exits(n)[which].second; });
+    }
+    const double least = *std::min_element(lambda.begin(), lambda.end());
     const std::size_t largest =
         static_cast<std::size_t>(std::max_element(lambda.begin(), lambda.end()) - lambda.begin());
     for (std::size_t f = 0; f < question_.observables.size(); ++f) {
-      append(tally_.resolvent(largest, f), "(" + question_.observables[f].name + ")",
-             [&](std::size_t n) { return tally_.resolvent(n, f); });
+      const std::string& name = question_.observables[f].name;
+      const auto all = tally_.resolvent(largest, f);
+      for (std::size_t which = 0; which < all.size(); ++which) {
+        const Row& row = *all[which].first;
+        if (least == 0 && (&row == &catalogue::kU || &row == &catalogue::kUMinus)) continue;
+        over(quantities::array(row, name, lambda),
+             [&](std::size_t n) { return tally_.resolvent(n, f)[which].second; });
+        // Beside averages it may not take their name.
+        const bool average = &row == &catalogue::kPiLambda;
+        if (average && !question_.wants(Quantity::averages)) {
+          results_.back().key = catalogue::kPi.key_of(name);
+        }
+      }
     }
   }
 
   void append_displacement() {
     const bool still = !process_.drifts() && question_.start.kind != model::Start::Kind::state;
-    over("displacement_mean", Kind::drift, question_.time,
+    over(catalogue::kDisplacementMean, question_.time,
          [&](std::size_t n) { return still ? Estimate{} : tally_.travel(n)[0].second; });
-    over("displacement_variance", Kind::positive_mean, question_.time,
+    over(catalogue::kDisplacementVariance, question_.time,
          [&](std::size_t n) { return tally_.travel(n)[1].second; });
   }
 
   void append_expectations() {
     for (std::size_t f = 0; f < question_.observables.size(); ++f) {
-      const std::string of = "(" + question_.observables[f].name + ")";
-      over("E" + of, Kind::other, question_.time, [&](std::size_t n) {
-        return of_function(question_.observables[f], tally_.expectation(f, n));
-      });
-      scalar("stationary" + of, Kind::other,
-             of_function(question_.observables[f], tally_.averages(f)[0].second));
+      const auto& observable = question_.observables[f];
+      over(quantities::array(catalogue::kExpectationOf, observable.name, question_.time),
+           [&](std::size_t n) { return of_function(observable, tally_.expectation(f, n)); });
+      scalar(catalogue::kStationaryOf, observable.name,
+             of_function(observable, tally_.averages(f)[0].second));
     }
-  }
-
-  static std::vector<std::pair<std::string, Duration>> names(const std::string& prefix) {
-    return {{prefix + "slide", Duration::slide},
-            {prefix + "stick", Duration::stick},
-            {prefix + "excursion", Duration::excursion}};
   }
 
   const options::Question& question_;

@@ -34,10 +34,4 @@ std::vector<std::vector<std::string>> rows_of(std::string_view table, std::size_
   return rows;
 }
 
-std::vector<Route> routes_of(std::string_view list) {
-  std::vector<Route> routes;
-  for (const auto& word : split(list, ',')) routes.push_back(known(kRoutes, word));
-  return routes;
-}
-
 }  // namespace stickslip::options

@@ -101,15 +101,17 @@ std::string form_items() {
 }
 
 // The title of a quantity and the keys that it writes.
-std::string description(const QuantityRow& row) {
-  const auto keys = keys_of(row);
-  return keys.empty() ? fmt::format("{}.", row.title)
-                      : fmt::format("{}: {}.", row.title, fmt::join(keys, ", "));
+std::string description(const catalogue::Entry& quantity) {
+  const auto keys = keys_of(quantity);
+  return keys.empty() ? fmt::format("{}.", quantity.title)
+                      : fmt::format("{}: {}.", quantity.title, fmt::join(keys, ", "));
 }
 
 std::string quantity_items() {
   std::string text;
-  for (const auto& row : quantity_table()) text += entry(bold(row.word), description(row));
+  for (const auto* quantity : catalogue::entries()) {
+    text += entry(bold(std::string(quantity->word)), description(*quantity));
+  }
   return text;
 }
 
@@ -237,8 +239,8 @@ std::string form_help() {
 
 std::string quantity_help() {
   std::string text;
-  for (const auto& row : quantity_table()) {
-    text += help_entry(fmt::format("  {}", row.word), description(row));
+  for (const auto* quantity : catalogue::entries()) {
+    text += help_entry(fmt::format("  {}", quantity->word), description(*quantity));
   }
   return text;
 }

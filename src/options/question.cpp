@@ -7,7 +7,7 @@
 
 #include "quantities.hpp"
 #include "reading.hpp"
-#include "stickslip/options/result_table.hpp"
+#include "stickslip/catalogue/entry.hpp"
 #include "stickslip/support/text.hpp"
 #include "stickslip/velocity/tail.hpp"
 
@@ -18,13 +18,15 @@ namespace {
 void check_keys(const Settings& settings, const std::vector<Reference>& references,
                 Problems& problems) {
   std::vector<std::string> keys;
-  for (const auto& row : result_table()) {
-    if (!row.is_pattern()) keys.push_back(row.key);
+  for (const auto* entry : catalogue::entries()) {
+    for (const auto* row : entry->rows) {
+      if (!row->is_pattern()) keys.emplace_back(row->key);
+    }
   }
   std::set<std::string> unknown;
   for (const auto& reference : references) {
     const std::string& key = reference.quantity;
-    if (find_result(key) != nullptr || !unknown.insert(key).second) continue;
+    if (catalogue::find_row(key) != nullptr || !unknown.insert(key).second) continue;
     const std::string near = nearest_word(key, keys);
     settings.report(problems, "compare", fmt::format("holds {}, which is no key of a result", key),
                     near.empty() ? "-help lists the keys of every quantity"
@@ -52,21 +54,21 @@ void read_quantities(const Settings& settings, Request& request, Problems& probl
   auto& question = request.question;
   const bool given = settings.given("quantities");
   const auto words = settings.list("quantities");
-  const auto asked = [&](const QuantityRow& row) {
+  const auto asked = [&](const catalogue::Entry& entry) {
     const auto& known = question.references;
-    if (given || known.empty()) return std::count(words.begin(), words.end(), row.word) > 0;
-    return std::any_of(known.begin(), known.end(), [&row](const Reference& reference) {
-      return asked_by(reference.quantity) == row.quantity;
+    if (given || known.empty()) return std::count(words.begin(), words.end(), entry.word) > 0;
+    return std::any_of(known.begin(), known.end(), [&entry](const Reference& reference) {
+      const auto* row = catalogue::find_row(reference.quantity);
+      return row != nullptr && row->asks && catalogue::entry_of(reference.quantity) == &entry;
     });
   };
   std::vector<std::string> given_by_route, refused;
-  for (const auto& row : quantity_table()) {
-    const auto& routes = row.routes;
-    const bool gives = std::count(routes.begin(), routes.end(), request.method.route) > 0;
-    if (gives) given_by_route.emplace_back(row.word);
-    if (!asked(row)) continue;
-    if (gives) question.quantities.insert(row.quantity);
-    if (!gives) refused.emplace_back(row.word);
+  for (const auto* entry : catalogue::entries()) {
+    const bool gives = entry->routes.contains(request.method.route);
+    if (gives) given_by_route.emplace_back(entry->word);
+    if (!asked(*entry)) continue;
+    if (gives) question.quantities.insert(entry->quantity);
+    if (!gives) refused.emplace_back(entry->word);
   }
   if (refused.empty() || (!given && !question.quantities.empty())) return;
   settings.report(problems, "quantities",
@@ -82,7 +84,7 @@ std::vector<double> arguments(const Settings& settings, const std::vector<Refere
   std::vector<double> values = settings.numbers(option);
   if (settings.given(option)) return values;
   for (const auto& reference : references) {
-    const ResultRow* row = find_result(reference.quantity);
+    const auto* row = catalogue::find_row(reference.quantity);
     const bool asks = reference.argument && row != nullptr && row->abscissa == option;
     const double value = reference.argument.value_or(0);
     if (asks && value >= 0 && std::count(values.begin(), values.end(), value) == 0) {

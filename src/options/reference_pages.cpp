@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kWidth = 110;
 
 // `text` with a backslash before each of the characters.
-std::string escaped(const std::string& text, std::string_view characters) {
+std::string escaped(std::string_view text, std::string_view characters) {
   std::string result;
   for (const char c : text) {
     if (characters.find(c) != characters.npos) result += '\\';
@@ -27,9 +27,9 @@ std::string escaped(const std::string& text, std::string_view characters) {
 
 // A cell of a Markdown table: a bar would end it, and stars would set what is between them in
 // italics.
-std::string cell(const std::string& text) { return escaped(text, "|*"); }
+std::string cell(std::string_view text) { return escaped(text, "|*"); }
 
-std::string code(const std::string& text) { return fmt::format("`{}`", escaped(text, "|")); }
+std::string code(std::string_view text) { return fmt::format("`{}`", escaped(text, "|")); }
 
 std::string row(const std::vector<std::string>& cells) {
   return fmt::format("| {} |\n", fmt::join(cells, " | "));
@@ -72,11 +72,11 @@ char letter(Route route) {
 }
 
 // The letters of the routes that give a result, those of `without` left out.
-std::string letters(const std::vector<Route>& routes, const std::vector<Route>& without = {}) {
+std::string letters(catalogue::Routes routes, catalogue::Routes without = {}) {
   std::string text;
-  for (const Route route : routes) {
-    if (std::count(without.begin(), without.end(), route) > 0) continue;
-    text += fmt::format("{}{}", text.empty() ? "" : " ", letter(route));
+  for (const auto& route : kRoutes) {
+    if (!routes.contains(route.value) || without.contains(route.value)) continue;
+    text += fmt::format("{}{}", text.empty() ? "" : " ", letter(route.value));
   }
   return text;
 }
@@ -99,11 +99,11 @@ std::string routes_explained() {
 
 std::string quantity_rows() {
   std::string text = head({"quantity", "what it gives", "its options", "-route"});
-  for (const auto& q : quantity_table()) {
+  for (const auto* q : catalogue::entries()) {
     std::vector<std::string> options;
-    for (const auto& option : q.options) options.push_back(code("-" + option));
-    text += row({code(q.word), cell(q.title), fmt::format("{}", fmt::join(options, ", ")),
-                 letters(q.routes)});
+    for (const auto& option : split(q->options, ',')) options.push_back(code("-" + option));
+    text += row({code(q->word), cell(q->title), fmt::format("{}", fmt::join(options, ", ")),
+                 letters(q->routes)});
   }
   return text;
 }
@@ -111,12 +111,11 @@ std::string quantity_rows() {
 std::string result_rows() {
   std::string text = head(
       {"key", "quantity", "symbol", "definition", "unit", "over", "convention", "paper", "-route"});
-  for (const auto& q : quantity_table()) {
-    for (const auto& r : result_table()) {
-      if (r.quantity != q.quantity) continue;
-      text += row({code(r.key), code(q.word), code(r.symbol), cell(r.definition), cell(r.unit),
-                   cell(r.abscissa), cell(r.convention), r.paper.empty() ? "-" : cell(r.paper),
-                   letters(q.routes, r.without)});
+  for (const auto* q : catalogue::entries()) {
+    for (const auto* r : q->rows) {
+      text += row({code(r->key), code(q->word), code(r->symbol), cell(r->definition), cell(r->unit),
+                   cell(r->abscissa), cell(r->convention), r->paper.empty() ? "-" : cell(r->paper),
+                   letters(q->routes, r->without)});
     }
   }
   return text;

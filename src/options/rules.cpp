@@ -139,14 +139,10 @@ class Rules {
   // Where no level of the noise holds the body, there are no phases, and the rest exists.
   void require_sticking() {
     if (!problems_.empty() || r_.scene.meant().sticks()) return;
-    using enum Quantity;
     std::vector<std::string> without, missing;
-    for (const auto& row : quantity_table()) {
-      const auto of_velocity = {moments,         averages,     noise_law,   density,    spectrum,
-                                autocorrelation, displacement, expectation, relaxation, trajectory};
-      const bool exists = std::count(of_velocity.begin(), of_velocity.end(), row.quantity) > 0;
-      if (exists) without.emplace_back(row.word);
-      if (!exists && q_.wants(row.quantity)) missing.emplace_back(row.word);
+    for (const auto* entry : catalogue::entries()) {
+      if (!entry->of_phases) without.emplace_back(entry->word);
+      if (entry->of_phases && q_.wants(entry->quantity)) missing.emplace_back(entry->word);
     }
     const auto noise = r_.scene.meant().noise;
     const auto why =

@@ -58,11 +58,12 @@ void check_alone(const Settings& settings, Problems& problems) {
     refuse(name, "is a file for one run, not for a sweep", leave);
   }
   const auto asked = settings.list("quantities");
-  for (const auto& row : quantity_table()) {
-    if (!row.of_one_run || std::count(asked.begin(), asked.end(), row.word) == 0) continue;
+  for (const auto& word : asked) {
+    const auto* entry = catalogue::find_entry(word);
+    if (entry == nullptr || !entry->of_one_run) continue;
     settings.report(
         problems, "quantities",
-        fmt::format("asks for {}, a field or a path, which a sweep does not write", row.word),
+        fmt::format("asks for {}, a field or a path, which a sweep does not write", word),
         "run the points of interest one by one");
   }
 }

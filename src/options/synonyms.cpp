@@ -6,7 +6,7 @@
 
 #include "literal_table.hpp"
 #include "quantities.hpp"
-#include "stickslip/options/result_table.hpp"
+#include "stickslip/catalogue/entry.hpp"
 #include "stickslip/support/text.hpp"
 
 namespace stickslip::options {
@@ -134,10 +134,8 @@ std::string suggestion_for_option(const std::string& name) {
 
 std::string meant_word(const Option& option, const std::string& word) {
   if (const Synonyms* row = synonyms_of(word, option.name)) return row->word;
-  const ResultRow* result = option.name == "quantities" ? find_result(word) : nullptr;
-  for (const auto& quantity : quantity_table()) {
-    if (result != nullptr && quantity.quantity == result->quantity) return quantity.word;
-  }
+  const auto* quantity = option.name == "quantities" ? catalogue::entry_of(word) : nullptr;
+  if (quantity != nullptr) return std::string(quantity->word);
   return nearest_word(word, option.words);
 }
 

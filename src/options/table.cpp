@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "quantities.hpp"
 #include "stickslip/support/text.hpp"
 #include "words.hpp"
 
@@ -156,8 +157,7 @@ std::vector<Option> model_options() {
 
 std::vector<Option> quantity_options() {
   return {
-      list("quantities", "sticking,moments,noise_law", words_of(kQuantities),
-           "quantities to compute"),
+      list("quantities", "sticking,moments,noise_law", quantity_words(), "quantities to compute"),
       arguments("lambda", "1/time",
                 "arguments of the Laplace transforms and the resolvent (laplace, F_stick, "
                 "resolvent). With -route lambda one positive value, chosen from -accuracy unless "

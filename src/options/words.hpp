@@ -15,26 +15,6 @@ struct Word {
   Value value;
 };
 
-inline constexpr Word<Quantity> kQuantities[] = {{"sticking", Quantity::sticking},
-                                                 {"moments", Quantity::moments},
-                                                 {"averages", Quantity::averages},
-                                                 {"noise_law", Quantity::noise_law},
-                                                 {"entry_law", Quantity::entry_law},
-                                                 {"density", Quantity::density},
-                                                 {"laplace", Quantity::laplace},
-                                                 {"F_stick", Quantity::stick_duration_transform},
-                                                 {"resolvent", Quantity::resolvent},
-                                                 {"relaxation", Quantity::relaxation},
-                                                 {"spectrum", Quantity::spectrum},
-                                                 {"duration_density", Quantity::duration_density},
-                                                 {"autocorrelation", Quantity::autocorrelation},
-                                                 {"slip", Quantity::slip},
-                                                 {"peak", Quantity::peak},
-                                                 {"displacement", Quantity::displacement},
-                                                 {"expectation", Quantity::expectation},
-                                                 {"trajectory", Quantity::trajectory},
-                                                 {"sensitivity", Quantity::sensitivity}};
-
 /// What a drag law is made of.
 struct DragLaw {
   bool linear, cubic, expression;

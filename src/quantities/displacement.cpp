@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "stickslip/catalogue/displacement_keys.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/quantities/time_functions.hpp"
@@ -174,8 +175,8 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
   x.mean.resize(time.size());
   x.variance.resize(time.size());
   const bool stationary = start.kind == model::Start::Kind::stationary;
-  // From there E[x^2] grows as S_0 t, which a model of rough ends does not resolve: beyond the time
-  // of memory the model gives only what another start changes, which stays bounded.
+  // From there E[x^2] grows as S_v(0) t, which a model of rough ends does not resolve: beyond the
+  // time of memory the model gives only what another start changes, which stays bounded.
   constexpr double memory = 10;  // correlation times
   const bool beside_stationary = !stationary && longest > memory;
   if (stationary || beside_stationary) {
@@ -225,8 +226,8 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
 
 void append_displacement(const std::vector<double>& time, const Displacement& displacement,
                          Results& results) {
-  Result mean = array("displacement_mean", time);
-  Result variance = array("displacement_variance", time);
+  Result mean = array(catalogue::kDisplacementMean, time);
+  Result variance = array(catalogue::kDisplacementVariance, time);
   for (const auto& value : displacement.mean) append_value(mean, value);
   for (const auto& value : displacement.variance) append_value(variance, value);
   results.push_back(std::move(mean));

@@ -5,6 +5,9 @@
 #include <numeric>
 #include <string>
 
+#include "stickslip/catalogue/entry_law_keys.hpp"
+#include "stickslip/catalogue/laplace_keys.hpp"
+#include "stickslip/catalogue/sticking_keys.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
 
@@ -204,26 +207,27 @@ DurationMoments duration_moments(operators::Systems& systems,
 void append_duration_moments(const model::Process& process, const SideChain& sides,
                              const DurationMoments& moments, const std::vector<Uncertain>& entry,
                              Results& results) {
-  const auto append = [&](const Name& name, Uncertain value) {
+  const auto append = [&](const Row& row, Uncertain value) {
     const bool there = std::any_of(results.begin(), results.end(),
-                                   [&](const Result& result) { return result.key == name.key; });
-    if (!there) results.push_back(scalar(name, value));
+                                   [&](const Result& result) { return result.key == row.key; });
+    if (!there) results.push_back(scalar(row, value));
   };
-  append(kMeanSlide, moments.mean_slide);
-  append(kMeanStick, moments.mean_stick);
-  append(kMeanExcursion, moments.mean_excursion);
-  append({"var_slide"}, moments.var_slide);
-  append({"var_stick"}, moments.var_stick);
-  append({"var_excursion"}, moments.var_excursion);
-  append({"f_slide_0"}, {slide_density_at_zero(process, sides), 0});
-  append(kFStick0, {stick_density_at_zero(process, entry.front().value, entry.back().value),
-                    stick_density_at_zero(process, entry.front().error, entry.back().error)});
+  append(catalogue::kMeanSlide, moments.mean_slide);
+  append(catalogue::kMeanStick, moments.mean_stick);
+  append(catalogue::kMeanExcursion, moments.mean_excursion);
+  append(catalogue::kVarSlide, moments.var_slide);
+  append(catalogue::kVarStick, moments.var_stick);
+  append(catalogue::kVarExcursion, moments.var_excursion);
+  append(catalogue::kFSlide0, {slide_density_at_zero(process, sides), 0});
+  append(catalogue::kFStick0,
+         {stick_density_at_zero(process, entry.front().value, entry.back().value),
+          stick_density_at_zero(process, entry.front().error, entry.back().error)});
 }
 
-void append_distribution(const std::string& name, const std::vector<double>& abscissa,
-                         const DurationDistribution& durations, Results& results) {
-  Result density = array("f_" + name, abscissa);
-  Result distribution = array("cdf_" + name, abscissa, Kind::distribution);
+void append_distribution(const Row& density_row, const Row& distribution_row,
+                         const std::vector<double>& abscissa, const DurationDistribution& durations,
+                         Results& results) {
+  Result density = array(density_row, abscissa), distribution = array(distribution_row, abscissa);
   for (const auto& value : durations.density) append_value(density, value);
   for (const auto& value : durations.distribution) append_value(distribution, value);
   results.push_back(std::move(density));

@@ -8,6 +8,10 @@
 #include <span>
 #include <string>
 
+#include "stickslip/catalogue/entry_law_keys.hpp"
+#include "stickslip/catalogue/moments_keys.hpp"
+#include "stickslip/catalogue/noise_law_keys.hpp"
+#include "stickslip/catalogue/sticking_keys.hpp"
 #include "stickslip/operators/static_chain.hpp"
 
 namespace stickslip::quantities {
@@ -81,11 +85,11 @@ Excursion joined(const SideChain& sides, const Excursion& plus, const Excursion&
 void append_sticking(const Excursion& excursion, Results& results) {
   const double slide = excursion.mean_slide(), stick = excursion.mean_stick();
   const double total = excursion.mean_excursion();
-  results.push_back(scalar(kPStick, stick / total, 0));
-  results.push_back(scalar(kPSlide, slide / total, 0));
-  results.push_back(scalar(kMeanStick, stick, 0));
-  results.push_back(scalar(kMeanSlide, slide, 0));
-  results.push_back(scalar(kMeanExcursion, total, 0));
+  results.push_back(scalar(catalogue::kPStick, stick / total, 0));
+  results.push_back(scalar(catalogue::kPSlide, slide / total, 0));
+  results.push_back(scalar(catalogue::kMeanStick, stick, 0));
+  results.push_back(scalar(catalogue::kMeanSlide, slide, 0));
+  results.push_back(scalar(catalogue::kMeanExcursion, total, 0));
 }
 
 void append_moments(const operators::Discretisation& discretisation, const Excursion& excursion,
@@ -100,30 +104,30 @@ void append_moments(const operators::Discretisation& discretisation, const Excur
       force_times_velocity += along->x(n) * distance[place++];
     }
   }
-  results.push_back(scalar(kEV2, sum(excursion.slide_square) / total, 0));
-  results.push_back(scalar(kEAbsV, sum(excursion.slide_distance) / total, 0));
-  results.push_back(scalar(kEXV, force_times_velocity / total, 0));
+  results.push_back(scalar(catalogue::kEV2, sum(excursion.slide_square) / total, 0));
+  results.push_back(scalar(catalogue::kEAbsV, sum(excursion.slide_distance) / total, 0));
+  results.push_back(scalar(catalogue::kEXV, force_times_velocity / total, 0));
   // A difference of the two velocity branches: exact to the size of E|V|.
   const bool drifts = discretisation.process.drifts();
   const double rounding = excursion.conservation_defect(discretisation) * sum(distance);
-  results.push_back(
-      scalar(kEV, drifts ? excursion.mean_drift(noise) / total : 0, drifts ? rounding / total : 0));
+  results.push_back(scalar(catalogue::kEV, drifts ? excursion.mean_drift(noise) / total : 0,
+                           drifts ? rounding / total : 0));
 }
 
 void append_hitting_distribution(const model::Process& process, const Excursion& excursion,
                                  Results& results) {
   std::vector<double> levels;
   for (int i = process.lowest_static(); i <= process.static_index(); ++i) levels.push_back(i);
-  const auto append = [&](const char* key, const std::vector<double>& entry) {
-    Result distribution = array(key, levels);
+  const auto append = [&](const Row& row, const std::vector<double>& entry) {
+    Result distribution = array(row, levels);
     distribution.value = entry;
     distribution.error.assign(entry.size(), 0.0);
     results.push_back(std::move(distribution));
   };
-  append("entry_law", excursion.entry_plus);
-  if (!excursion.entry_minus.empty()) append("entry_law_minus", excursion.entry_minus);
+  append(catalogue::kEntryLawPlus, excursion.entry_plus);
+  if (!excursion.entry_minus.empty()) append(catalogue::kEntryLawMinus, excursion.entry_minus);
   results.push_back(
-      scalar(kFStick0,
+      scalar(catalogue::kFStick0,
              stick_density_at_zero(process, excursion.entry.front(), excursion.entry.back()), 0));
 }
 
@@ -138,8 +142,8 @@ void append_noise_distribution(const model::Process& process, Results& results) 
   const double mu_s = process.friction.mu_s;
   const auto moments = model::noise_moments(noise, noise.first_from(-mu_s), noise.last_up_to(mu_s));
   const double rounding = model::rounding_of_sums(noise);
-  results.push_back(scalar(kPWithin, moments.within, rounding * moments.within));
-  results.push_back(scalar(kEX2, moments.square, rounding * moments.square));
+  results.push_back(scalar(catalogue::kPWithin, moments.within, rounding * moments.within));
+  results.push_back(scalar(catalogue::kEX2, moments.square, rounding * moments.square));
 }
 
 void leave_out_missing_side(const model::Process& process, Results& results) {

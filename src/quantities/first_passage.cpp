@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "stickslip/catalogue/peak_keys.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
 
@@ -114,17 +115,16 @@ FirstPassage first_passage(operators::Systems& systems, const SideChain& sides, 
 
 void append_first_passages(const std::vector<double>& speed,
                            const std::vector<FirstPassage>& passages, Results& results) {
-  const auto append = [&](const Name& name, Uncertain FirstPassage::*member) {
-    Result result = array(name.key, speed, name.kind);
-    result.each_by_its_size = true;
+  const auto append = [&](const Row& row, Uncertain FirstPassage::*member) {
+    Result result = array(row, speed);
     for (const auto& passage : passages) append_value(result, passage.*member);
     result.partial = std::any_of(result.value.begin(), result.value.end(),
                                  [](double value) { return std::isnan(value); });
     results.push_back(std::move(result));
   };
-  append({"P_peak", Kind::probability}, &FirstPassage::exceeded);
-  append({"mean_first_passage", Kind::positive_mean}, &FirstPassage::from_slide);
-  append({"mean_first_passage_rest", Kind::positive_mean}, &FirstPassage::from_rest);
+  append(catalogue::kPPeak, &FirstPassage::exceeded);
+  append(catalogue::kFirstPassage, &FirstPassage::from_slide);
+  append(catalogue::kFirstPassageRest, &FirstPassage::from_rest);
 }
 
 }  // namespace stickslip::quantities

@@ -1,5 +1,6 @@
 #include "stickslip/quantities/laplace.hpp"
 
+#include "stickslip/catalogue/laplace_keys.hpp"
 #include "stickslip/operators/static_chain.hpp"
 
 namespace stickslip::quantities {
@@ -21,7 +22,7 @@ Uncertain stick_transform(const model::Process& process, double lambda,
 
 void append_stick_transform(const model::Process& process, const std::vector<double>& lambda,
                             const std::vector<Uncertain>& entry, Results& results) {
-  Result result = array("F_stick", lambda, Kind::transform);
+  Result result = array(catalogue::kTransformStick, lambda);
   for (double value : lambda) append_value(result, stick_transform(process, value, entry));
   results.push_back(std::move(result));
 }
@@ -40,14 +41,14 @@ SlidingTransforms sliding_transforms(operators::Systems& systems,
 
 void append_laplace(const std::vector<double>& lambda,
                     const std::vector<DurationTransforms>& transforms, Results& results) {
-  const auto append = [&](const char* key, Uncertain DurationTransforms::*member) {
-    Result result = array(key, lambda, Kind::transform);
+  const auto append = [&](const Row& row, Uncertain DurationTransforms::*member) {
+    Result result = array(row, lambda);
     for (const auto& t : transforms) append_value(result, t.*member);
     results.push_back(std::move(result));
   };
-  append("F_slide", &DurationTransforms::slide);
-  append("F_stick", &DurationTransforms::stick);
-  append("F_excursion", &DurationTransforms::excursion);
+  append(catalogue::kTransformSlide, &DurationTransforms::slide);
+  append(catalogue::kTransformStick, &DurationTransforms::stick);
+  append(catalogue::kTransformExcursion, &DurationTransforms::excursion);
 }
 
 }  // namespace stickslip::quantities

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "stickslip/catalogue/relaxation_keys.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/eigensolver.hpp"
 #include "stickslip/petsc/vectors.hpp"
@@ -132,22 +133,34 @@ RelaxationSector relaxation_modes(operators::Systems& systems, Symmetry symmetry
   return {symmetry, std::move(modes)};
 }
 
-std::string relaxation_key(Symmetry symmetry) {
+const Row& relaxation_row(Symmetry symmetry) {
   switch (symmetry) {
-  case Symmetry::even: return "relaxation_even";
-  case Symmetry::odd: return "relaxation_odd";
+  case Symmetry::even: return catalogue::kRelaxationEven;
+  case Symmetry::odd: return catalogue::kRelaxationOdd;
   case Symmetry::none: break;
   }
-  return "relaxation";
+  return catalogue::kRelaxationAll;
 }
+
+namespace {
+
+const Row& frequency_row(Symmetry symmetry) {
+  switch (symmetry) {
+  case Symmetry::even: return catalogue::kRelaxationEvenFrequency;
+  case Symmetry::odd: return catalogue::kRelaxationOddFrequency;
+  case Symmetry::none: break;
+  }
+  return catalogue::kRelaxationAllFrequency;
+}
+
+}  // namespace
 
 void append_relaxation(const RelaxationSector& sector, Results& results) {
   const auto& modes = sector.modes;
-  const std::string key = relaxation_key(sector.symmetry);
   std::vector<double> number;
   for (std::size_t n = 0; n < modes.size(); ++n) number.push_back(static_cast<double>(n + 1));
-  Result decay = array(key, number);
-  Result frequency = array(key + "_frequency", number);
+  Result decay = array(relaxation_row(sector.symmetry), number);
+  Result frequency = array(frequency_row(sector.symmetry), number);
   for (const auto& mode : modes) {
     decay.value.push_back(mode.rate.real());
     const double error = mode.residual + mode.spread;

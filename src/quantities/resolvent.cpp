@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "stickslip/catalogue/averages_keys.hpp"
+#include "stickslip/catalogue/resolvent_keys.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
 
@@ -213,41 +215,41 @@ Resolvent resolvent(operators::Systems& systems, double lambda,
 void append_resolvent(const std::vector<double>& lambda,
                       const std::vector<model::Observable>& observables,
                       const std::vector<Resolvent>& resolvents, bool symmetric, Results& results) {
-  // Differences of the two parities have no accuracy of their own size where they nearly cancel.
-  const auto append = [&](const std::string& key, bool each_by_its_size, const auto& value,
-                          Kind kind = Kind::other) {
-    Result result = array(key, lambda, kind);
+  const auto add = [&](Result result, const auto& value) {
     for (const auto& r : resolvents) append_value(result, value(r));
-    result.each_by_its_size = each_by_its_size;
     results.push_back(std::move(result));
   };
-  append("h_plus", true, [](const Resolvent& r) { return r.from_plus.h_plus; });
-  append("h_minus", !symmetric, [](const Resolvent& r) { return r.from_plus.h_minus; });
-  append("w_one", true, [](const Resolvent& r) { return r.from_plus.w_one; });
+  const auto append = [&](const Row& row, const auto& value) { add(array(row, lambda), value); };
+  append(catalogue::kHPlus, [](const Resolvent& r) { return r.from_plus.h_plus; });
+  append(catalogue::kHMinus, [](const Resolvent& r) { return r.from_plus.h_minus; });
+  // A difference of the two parities has no accuracy of its own size where they nearly cancel.
+  if (symmetric) results.back().each_by_its_size = false;
+  append(catalogue::kWOne, [](const Resolvent& r) { return r.from_plus.w_one; });
   if (!symmetric) {
-    append("h_plus_from_minus", true, [](const Resolvent& r) { return r.from_minus.h_plus; });
-    append("h_minus_from_minus", true, [](const Resolvent& r) { return r.from_minus.h_minus; });
-    append("w_one_from_minus", true, [](const Resolvent& r) { return r.from_minus.w_one; });
+    append(catalogue::kHPlusFromMinus, [](const Resolvent& r) { return r.from_minus.h_plus; });
+    append(catalogue::kHMinusFromMinus, [](const Resolvent& r) { return r.from_minus.h_minus; });
+    append(catalogue::kWOneFromMinus, [](const Resolvent& r) { return r.from_minus.w_one; });
   }
   const bool finite = std::all_of(lambda.begin(), lambda.end(), [](double l) { return l > 0; });
   for (std::size_t n = 0; n < observables.size(); ++n) {
-    const auto key = [&](const char* what) { return what + ("(" + observables[n].name + ")"); };
-    const auto member = [n](Uncertain ObservableTransforms::*value) {
-      return [n, value](const Resolvent& r) { return r.of[n].*value; };
+    const std::string& f = observables[n].name;
+    const auto of = [&](const Row& row, Uncertain ObservableTransforms::*value) {
+      add(array(row, f, lambda), [n, value](const Resolvent& r) { return r.of[n].*value; });
     };
-    if (finite) append(key("u"), true, member(&ObservableTransforms::u));
-    append(key("w_plus"), false, member(&ObservableTransforms::w_plus));
-    append(key("w_minus"), false, member(&ObservableTransforms::w_minus));
+    if (finite) of(catalogue::kU, &ObservableTransforms::u);
+    of(catalogue::kWPlus, &ObservableTransforms::w_plus);
+    of(catalogue::kWMinus, &ObservableTransforms::w_minus);
     // Beside averages it may not take their name.
+    const std::string average = catalogue::kPi.key_of(f);
     const bool taken = std::any_of(results.begin(), results.end(),
-                                   [&](const Result& r) { return r.key == key("pi"); });
-    append(key("pi_lambda"), true, member(&ObservableTransforms::pi_lambda),
-           observables[n].within_unit() ? Kind::probability : Kind::other);
-    if (!taken) results.back().key = key("pi");
-    append(key("mu"), false, member(&ObservableTransforms::mu_lambda));
+                                   [&](const Result& r) { return r.key == average; });
+    of(catalogue::kPiLambda, &ObservableTransforms::pi_lambda);
+    if (observables[n].within_unit()) results.back().kind = Kind::probability;
+    if (!taken) results.back().key = average;
+    of(catalogue::kMu, &ObservableTransforms::mu_lambda);
     if (symmetric) continue;
-    if (finite) append(key("u_minus"), true, member(&ObservableTransforms::u_from_minus));
-    append(key("mu_minus"), false, member(&ObservableTransforms::mu_from_minus));
+    if (finite) of(catalogue::kUMinus, &ObservableTransforms::u_from_minus);
+    of(catalogue::kMuMinus, &ObservableTransforms::mu_from_minus);
   }
 }
 

@@ -5,6 +5,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "stickslip/catalogue/moments_keys.hpp"
+#include "stickslip/catalogue/noise_law_keys.hpp"
+#include "stickslip/catalogue/sensitivity_keys.hpp"
+#include "stickslip/catalogue/sticking_keys.hpp"
 #include "stickslip/model/noise_chain.hpp"
 #include "stickslip/model/unit.hpp"
 #include "stickslip/operators/static_chain.hpp"
@@ -35,11 +39,12 @@ const options::Option& option_of(Parameter parameter) {
   return *options::find(name());
 }
 
-Result derivative(const Name& of, Parameter parameter, Uncertain value) {
+Result derivative(const Row& of, Parameter parameter, Uncertain value) {
   const auto& by = option_of(parameter);
-  const model::Unit quotient =
-      model::Unit::parse(options::unit_of(of.key)) / model::Unit::parse(by.unit);
-  return scalar(fmt::format("d{}_d{}", of.key, by.name), quotient.text(), value);
+  Result result = scalar(catalogue::kDerivative, value);
+  result.key = fmt::format("d{}_d{}", of.key, by.name);
+  result.unit = (model::Unit::parse(of.unit) / model::Unit::parse(by.unit)).text();
+  return result;
 }
 
 /// Differences between neighbouring static levels, those beyond the ends included, of the mean
@@ -194,9 +199,9 @@ Sensitivity::Gradient Sensitivity::ratio(double mean, const Gradient& of_mean) c
   return gradient;
 }
 
-void Sensitivity::append(const Name& name, const Gradient& gradient, Results& results) const {
+void Sensitivity::append(const Row& row, const Gradient& gradient, Results& results) const {
   for (std::size_t n = 0; n < parameters_.size(); ++n) {
-    results.push_back(derivative(name, parameters_[n], gradient[n]));
+    results.push_back(derivative(row, parameters_[n], gradient[n]));
   }
 }
 
@@ -211,25 +216,25 @@ void Sensitivity::append_sticking(Results& results) const {
     sliding.push_back((1 / total) * (down - up));
     whole.push_back(slide_[n] + stick_[n]);
   }
-  append(kPStick, sticking, results);
-  append(kPSlide, sliding, results);
-  append(kMeanStick, stick_, results);
-  append(kMeanSlide, slide_, results);
-  append(kMeanExcursion, whole, results);
+  append(catalogue::kPStick, sticking, results);
+  append(catalogue::kPSlide, sliding, results);
+  append(catalogue::kMeanStick, stick_, results);
+  append(catalogue::kMeanSlide, slide_, results);
+  append(catalogue::kMeanExcursion, whole, results);
 }
 
 void Sensitivity::append_moments(Results& results) const {
   const auto mean = [this](const KolmogorovOperator::Observable& f) {
     return petsc::dot(distribution_.occupation(), system_.a().values(f));
   };
-  const auto add = [&](const Name& name, const KolmogorovOperator::Observable& f) {
-    append(name, ratio(mean(f), sliding_mean(f)), results);
+  const auto add = [&](const Row& row, const KolmogorovOperator::Observable& f) {
+    append(row, ratio(mean(f), sliding_mean(f)), results);
   };
-  add(kEV2, [](double, double, double v) { return v * v; });
-  add(kEAbsV, [](double, double, double v) { return std::abs(v); });
-  add(kEXV, [](double x, double, double v) { return x * v; });
+  add(catalogue::kEV2, [](double, double, double v) { return v * v; });
+  add(catalogue::kEAbsV, [](double, double, double v) { return std::abs(v); });
+  add(catalogue::kEXV, [](double x, double, double v) { return x * v; });
   if (distribution_.process().drifts()) {
-    add(kEV, [](double, double, double v) { return v; });
+    add(catalogue::kEV, [](double, double, double v) { return v; });
   }
 }
 
@@ -257,8 +262,9 @@ void append_noise_sensitivity(const model::Process& process, Results& results) {
   const double rounding = model::rounding_of_sums(noise);
   const double size = std::abs(square_score) + std::abs(square * mean_score);
   const double within_size = std::abs(beyond * within_score) + std::abs(within * beyond_score);
-  results.push_back(derivative(kPWithin, Parameter::tau, {by_within, rounding * within_size}));
-  results.push_back(derivative(kEX2, Parameter::tau, {by_square, rounding * size}));
+  results.push_back(
+      derivative(catalogue::kPWithin, Parameter::tau, {by_within, rounding * within_size}));
+  results.push_back(derivative(catalogue::kEX2, Parameter::tau, {by_square, rounding * size}));
 }
 
 }  // namespace stickslip::quantities

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "stickslip/catalogue/slip_keys.hpp"
 #include "stickslip/petsc/check.hpp"
 
 namespace stickslip::quantities {
@@ -13,7 +14,7 @@ using operators::StaticPhase;
 using operators::Symmetry;
 using petsc::check;
 
-double mean_slip(const Excursion& excursion) {
+double mean_path(const Excursion& excursion) {
   const auto& distance = excursion.slide_distance;
   return std::accumulate(distance.begin(), distance.end(), 0.0);
 }
@@ -58,7 +59,7 @@ DurationDistribution slip_distribution(operators::Systems& systems,
                                        const std::vector<double>& distance,
                                        const ModelTolerance& tolerance) {
   const Excursion& excursion = distribution.excursion();
-  const double mean = mean_slip(excursion), typical = mean / excursion.mean_slide();
+  const double mean = mean_path(excursion), typical = mean / excursion.mean_slide();
   const auto [correlation, rate, stopping] = time_scales(systems.process());
   return distribution_until_killed(
       "slip", systems, StaticPhase::killing, Clock::path_length, distribution, distance, mean,
@@ -66,26 +67,27 @@ DurationDistribution slip_distribution(operators::Systems& systems,
 }
 
 void append_mean_slip(const Excursion& excursion, Results& results) {
-  results.push_back(scalar(kMeanSlip, mean_slip(excursion), 0));
+  results.push_back(scalar(catalogue::kMeanSlip, mean_path(excursion), 0));
 }
 
 void append_slip_moments(const model::Process& process, const SlipMoments& moments,
                          Results& results) {
-  results.push_back(scalar(kVarSlip, moments.variance));
-  results.push_back(scalar(kMeanSlipNet, process.drifts() ? moments.net_mean : Uncertain{}));
-  results.push_back(scalar(kVarSlipNet, moments.net_variance));
+  results.push_back(scalar(catalogue::kVarSlip, moments.variance));
+  results.push_back(
+      scalar(catalogue::kMeanSlipNet, process.drifts() ? moments.net_mean : Uncertain{}));
+  results.push_back(scalar(catalogue::kVarSlipNet, moments.net_variance));
 }
 
 void append_slip_transform(const std::vector<double>& inverse_distance,
                            const std::vector<Uncertain>& transform, Results& results) {
-  Result result = array("F_slip", inverse_distance, Kind::transform);
+  Result result = array(catalogue::kTransformSlip, inverse_distance);
   for (const auto& value : transform) append_value(result, value);
   results.push_back(std::move(result));
 }
 
 void append_slip(const std::vector<double>& distance, const DurationDistribution& slips,
                  Results& results) {
-  append_distribution("slip", distance, slips, results);
+  append_distribution(catalogue::kDensitySlip, catalogue::kCdfSlip, distance, slips, results);
 }
 
 }  // namespace stickslip::quantities

@@ -9,6 +9,7 @@
 #include <memory>
 #include <numbers>
 
+#include "stickslip/catalogue/spectrum_keys.hpp"
 #include "stickslip/exact/transfer_function.hpp"
 #include "stickslip/operators/complex_solver.hpp"
 #include "stickslip/petsc/check.hpp"
@@ -247,18 +248,18 @@ std::vector<Uncertain> direct_spectrum(operators::Systems& systems,
 
 void append_spectrum(const std::vector<double>& omega, const Spectrum& spectrum, Results& results) {
   if (!omega.empty()) {
-    Result s = array("S_v", omega, Kind::spectrum);
+    Result s = array(catalogue::kSV, omega);
     for (const auto& value : spectrum.value) append_value(s, value);
     results.push_back(std::move(s));
   }
-  results.push_back(scalar(kS0, spectrum.at_zero));
-  results.push_back(scalar(kDiffusivity, 0.5 * spectrum.at_zero));
+  results.push_back(scalar(catalogue::kS0, spectrum.at_zero));
+  results.push_back(scalar(catalogue::kDiffusivity, 0.5 * spectrum.at_zero));
 }
 
 void append_shape(const SpectrumShape& shape, Results& results) {
-  results.push_back(scalar({"fwhm"}, shape.fwhm));
-  results.push_back(scalar({"t_corr"}, Uncertain{1, 0} / shape.fwhm));
-  results.push_back(scalar({"variance_from_spectrum"}, shape.variance));
+  results.push_back(scalar(catalogue::kFullWidth, shape.full_width));
+  results.push_back(scalar(catalogue::kCorrelationTime, Uncertain{1, 0} / shape.full_width));
+  results.push_back(scalar(catalogue::kVarianceFromSpectrum, shape.variance));
   results.back().diagnostic = true;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "stickslip/catalogue/averages_keys.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/quantities/uncertain.hpp"
@@ -64,21 +65,20 @@ void append_averages(const StationaryDistribution& distribution, const Kolmogoro
                   excursion = mean(&Excursion::mean_excursion);
   for (const auto& f : observables) {
     const Integral sum = integral(distribution, defect, a, f);
-    const Kind kind = f.within_unit() ? Kind::probability : Kind::drift;
-    const auto append = [&](const char* given, Uncertain value) {
-      const std::string key = "pi(" + f.name + given + ")";
-      results.push_back(scalar({key.c_str(), kind}, value));
+    const auto append = [&](const Row& row, Uncertain value) {
+      results.push_back(scalar(row, f.name, value));
+      if (f.within_unit()) results.back().kind = Kind::probability;
     };
-    append("", (sum.stick + sum.slide) / excursion);
+    append(catalogue::kPi, (sum.stick + sum.slide) / excursion);
     if (!distribution.process().sticks()) continue;
-    append("|stick", sum.stick / stick);
-    append("|slide", sum.slide / slide);
+    append(catalogue::kPiStick, sum.stick / stick);
+    append(catalogue::kPiSlide, sum.slide / slide);
   }
   const Integral power =
       integral(distribution, defect, a, model::friction_power(distribution.process().friction));
-  results.push_back(scalar(kFrictionPower, power.slide / excursion));
+  results.push_back(scalar(catalogue::kFrictionPower, power.slide / excursion));
   if (distribution.process().sticks()) {
-    results.push_back(scalar(kSlipRate, Uncertain{1, 0} / excursion));
+    results.push_back(scalar(catalogue::kSlipRate, Uncertain{1, 0} / excursion));
   }
 }
 

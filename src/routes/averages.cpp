@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stickslip/catalogue/averages_keys.hpp"
+#include "stickslip/catalogue/moments_keys.hpp"
+#include "stickslip/catalogue/noise_law_keys.hpp"
+#include "stickslip/catalogue/sticking_keys.hpp"
 #include "stickslip/model/noise_chain.hpp"
 
 namespace stickslip::routes {
@@ -24,40 +28,43 @@ std::vector<Average> averages(const Setting& setting) {
     return model::parse_observable(f, process.friction).value;
   };
   std::vector<Average> all;
-  const auto add = [&all](const quantities::Name& name, const model::Observable::Function& f) {
-    all.push_back({name.key, name.kind, f});
+  const auto add = [&all](const quantities::Row& row, const model::Observable::Function& f) {
+    all.push_back({quantities::scalar(row, 0, 0), f});
   };
   const auto within = named("|x|<=mu_s"), stick = named("stick"), slide = named("slide");
   const double low = process.noise.level(process.lowest_static()),
                high = process.noise.level(process.static_index());
-  add({"P_moving_levels"}, [=](double x, double, double) { return x < low || x > high ? 1 : 0; });
+  all.push_back({{}, [=](double x, double, double) { return x < low || x > high ? 1 : 0; }});
   if (question.wants(Quantity::sticking) || question.wants(Quantity::averages)) {
-    add(quantities::kPStick, stick);
-    add(quantities::kPSlide, slide);
+    add(catalogue::kPStick, stick);
+    add(catalogue::kPSlide, slide);
   }
   if (question.wants(Quantity::moments)) {
-    add(quantities::kEV2, named("v^2"));
-    add(quantities::kEAbsV, named("|v|"));
-    add(quantities::kEXV, named("x*v"));
-    if (process.drifts()) add(quantities::kEV, named("v"));
+    add(catalogue::kEV2, named("v^2"));
+    add(catalogue::kEAbsV, named("|v|"));
+    add(catalogue::kEXV, named("x*v"));
+    if (process.drifts()) add(catalogue::kEV, named("v"));
   }
   if (question.wants(Quantity::noise_law)) {
-    add(quantities::kPWithin, within);
-    add(quantities::kEX2, named("x^2"));
+    add(catalogue::kPWithin, within);
+    add(catalogue::kEX2, named("x^2"));
   }
   if (!question.wants(Quantity::averages)) return all;
   for (const auto& observable : question.observables) {
     const auto f = observable.value;
-    const Kind kind = observable.within_unit() ? Kind::probability : Kind::drift;
-    const auto given = [&](const char* phase, const model::Observable::Function& in, int number) {
-      const auto part = [=](double x, double y, double v) { return f(x, y, v) * in(x, y, v); };
-      all.push_back({"pi(" + observable.name + phase + ")", kind, part, number});
+    const auto append = [&](const quantities::Row& row, const model::Observable::Function& part,
+                            int given) {
+      all.push_back({quantities::scalar(row, observable.name, 0, 0), part, given});
+      if (observable.within_unit()) all.back().result.kind = Kind::probability;
     };
-    all.push_back({"pi(" + observable.name + ")", kind, f});
-    given("|stick", stick, kStick);
-    given("|slide", slide, kSlide);
+    const auto within_phase = [f](const model::Observable::Function& in) {
+      return [=](double x, double y, double v) { return f(x, y, v) * in(x, y, v); };
+    };
+    append(catalogue::kPi, f, -1);
+    append(catalogue::kPiStick, within_phase(stick), kStick);
+    append(catalogue::kPiSlide, within_phase(slide), kSlide);
   }
-  add(quantities::kFrictionPower, model::friction_power(process.friction).value);
+  add(catalogue::kFrictionPower, model::friction_power(process.friction).value);
   return all;
 }
 
@@ -71,16 +78,18 @@ void append_averages(const Setting& setting, const std::vector<Uncertain>& value
   const double defect = std::abs(values[kBeyond].value / beyond - 1);
   for (int n = kBeyond + 1; n < static_cast<int>(all.size()); ++n) {
     Uncertain value = values[n];
-    const bool phase = all[n].kind == Kind::share;
+    const bool phase = all[n].result.kind == Kind::share;
     if (phase && !question.wants(Quantity::sticking)) continue;
     if (all[n].given >= 0) value = value / values[all[n].given];
     double share = std::abs(value.value);
     if (phase && n == kStick) share = std::min(share, std::abs(values[kSlide].value));
     value.error += defect * share;
-    results.push_back(scalar({all[n].key.c_str(), all[n].kind}, value));
+    results.push_back(all[n].result);
+    results.back().value = {value.value};
+    results.back().error = {value.error};
   }
   if (question.wants(Quantity::moments) && !process.drifts()) {
-    results.push_back(quantities::scalar(quantities::kEV, 0, 0));  // by symmetry
+    results.push_back(quantities::scalar(catalogue::kEV, 0, 0));  // by symmetry
   }
 }
 

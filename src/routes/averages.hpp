@@ -2,7 +2,6 @@
 /// Stationary averages pi(f) behind sticking, moments, noise_law and averages, for solution methods
 /// that compute pi(f) for one f after the other.
 
-#include <string>
 #include <vector>
 
 #include "stickslip/model/observable.hpp"
@@ -12,13 +11,13 @@
 namespace stickslip::routes {
 
 struct Average {
-  std::string key;
-  quantities::Kind kind;
+  quantities::Result result;  ///< without its value
   model::Observable::Function f;
   int given = -1;  ///< number of the average that it is divided by, of a phase; -1: none
 };
 
-/// Those that are asked for, after P_moving_levels, which append_averages needs.
+/// Those that are asked for, after the probability of the levels on which a body always moves,
+/// which append_averages needs.
 [[nodiscard]] std::vector<Average> averages(const Setting& setting);
 
 /// Turns pi(f) of averages(setting) into results.

@@ -4,6 +4,9 @@
 #include <utility>
 
 #include "routes.hpp"
+#include "stickslip/catalogue/autocorrelation_keys.hpp"
+#include "stickslip/catalogue/duration_density_keys.hpp"
+#include "stickslip/catalogue/expectation_keys.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/quantities/displacement.hpp"
 #include "stickslip/quantities/durations.hpp"
@@ -121,9 +124,12 @@ void append_durations(operators::Systems& systems, const Setting& setting, Evalu
   const auto stick =
       quantities::stick_distribution(setting.discretisation.process, entry_law(distribution), time);
   const auto excursion = quantities::excursion_distribution(systems, distribution, time, tolerance);
-  quantities::append_distribution("slide", time, slide, evaluation.results);
-  quantities::append_distribution("stick", time, stick, evaluation.results);
-  quantities::append_distribution("excursion", time, excursion, evaluation.results);
+  quantities::append_distribution(catalogue::kDensitySlide, catalogue::kCdfSlide, time, slide,
+                                  evaluation.results);
+  quantities::append_distribution(catalogue::kDensityStick, catalogue::kCdfStick, time, stick,
+                                  evaluation.results);
+  quantities::append_distribution(catalogue::kDensityExcursion, catalogue::kCdfExcursion, time,
+                                  excursion, evaluation.results);
   evaluation.checks.emplace_back("slide_pairs", slide.pairs);
   evaluation.checks.emplace_back("excursion_pairs", excursion.pairs);
 }
@@ -134,10 +140,8 @@ quantities::TransientMethod transient_method(const options::Method& method) {
              : quantities::TransientMethod::stepping;
 }
 
-void append_function_of_time(const std::vector<double>& time, const std::string& key,
-                             const std::vector<Uncertain>& values, Results& results,
-                             quantities::Kind kind = quantities::Kind::other) {
-  auto result = quantities::array(key, time, kind);
+void append_function_of_time(quantities::Result result, const std::vector<Uncertain>& values,
+                             Results& results) {
   for (const auto& value : values) quantities::append_value(result, value);
   results.push_back(std::move(result));
 }
@@ -148,7 +152,8 @@ void append_autocorrelation(operators::Systems& systems, const Setting& setting,
   const auto method = transient_method(setting.given.method);
   const auto values = quantities::autocorrelation(systems, *evaluation.distribution, question.time,
                                                   method, tolerance_of(setting));
-  append_function_of_time(question.time, "C_vv", values, evaluation.results);
+  append_function_of_time(quantities::array(catalogue::kAutocovariance, question.time), values,
+                          evaluation.results);
 }
 
 void append_expectations(operators::Systems& systems, const Setting& setting,
@@ -159,12 +164,12 @@ void append_expectations(operators::Systems& systems, const Setting& setting,
     const auto expectation =
         quantities::expectation(systems, *evaluation.distribution, f, question.start, question.time,
                                 method, tolerance_of(setting));
-    const auto kind = f.within_unit() ? quantities::Kind::probability : quantities::Kind::other;
-    append_function_of_time(question.time, "E(" + f.name + ")", expectation.value,
-                            evaluation.results, kind);
-    const std::string stationary = "stationary(" + f.name + ")";
-    evaluation.results.push_back(
-        quantities::scalar({stationary.c_str(), kind}, expectation.stationary, expectation.unseen));
+    auto of_time = quantities::array(catalogue::kExpectationOf, f.name, question.time);
+    auto limit = quantities::scalar(catalogue::kStationaryOf, f.name, expectation.stationary,
+                                    expectation.unseen);
+    if (f.within_unit()) of_time.kind = limit.kind = quantities::Kind::probability;
+    append_function_of_time(std::move(of_time), expectation.value, evaluation.results);
+    evaluation.results.push_back(std::move(limit));
   }
 }
 

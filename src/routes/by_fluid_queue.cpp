@@ -1,3 +1,4 @@
+#include "stickslip/catalogue/noise_law_keys.hpp"
 #include "stickslip/exact/fluid_queue.hpp"
 
 #include <algorithm>
@@ -65,8 +66,8 @@ void append_noise_distribution(const model::Process& process,
     if (low <= i && i <= high) within += p;
     square += p * noise.level(i) * noise.level(i);
   }
-  results.push_back(quantities::scalar(quantities::kPWithin, within, 0));
-  results.push_back(quantities::scalar(quantities::kEX2, square, 0));
+  results.push_back(quantities::scalar(catalogue::kPWithin, within, 0));
+  results.push_back(quantities::scalar(catalogue::kEX2, square, 0));
 }
 
 /// What the queue gives of excursions as they follow one another.

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "routes.hpp"
+#include "stickslip/catalogue/sticking_keys.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/quantities/uncertain.hpp"
@@ -90,10 +91,10 @@ Evaluation by_hitting(const Setting& setting) {
   const double rounding = std::numeric_limits<double>::epsilon();
   const Uncertain p_stick{1 - p_slide.value, p_slide.error + rounding};
   Evaluation evaluation;
-  evaluation.results = {scalar(quantities::kPStick, p_stick), scalar(quantities::kPSlide, p_slide),
-                        scalar(quantities::kMeanStick, excursion - slide),
-                        scalar(quantities::kMeanSlide, slide),
-                        scalar(quantities::kMeanExcursion, excursion)};
+  evaluation.results = {scalar(catalogue::kPStick, p_stick), scalar(catalogue::kPSlide, p_slide),
+                        scalar(catalogue::kMeanStick, excursion - slide),
+                        scalar(catalogue::kMeanSlide, slide),
+                        scalar(catalogue::kMeanExcursion, excursion)};
   evaluation.checks = {{"R_hat", slide.value}, {"R_check", reaching.value}, {"R", leaving.value}};
   return evaluation;
 }

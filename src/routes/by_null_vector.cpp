@@ -3,6 +3,8 @@
 
 #include "averages.hpp"
 #include "routes.hpp"
+#include "stickslip/catalogue/averages_keys.hpp"
+#include "stickslip/catalogue/sticking_keys.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/eigensolver.hpp"
@@ -69,15 +71,16 @@ Uncertain mean_excursion(const Setting& setting, const KolmogorovOperator& a, Ve
 }
 
 void append_durations(Uncertain excursion, quantities::Results& results) {
-  const auto share = [&](const char* key) {
+  const auto share = [&](const quantities::Row& row) {
     const auto r = std::find_if(results.begin(), results.end(),
-                                [key](const auto& result) { return result.key == key; });
+                                [&row](const auto& result) { return result.key == row.key; });
     return Uncertain{r->value[0], r->error[0]};
   };
-  const Uncertain stick = share("P_stick") * excursion, slide = share("P_slide") * excursion;
-  results.push_back(scalar(quantities::kMeanStick, stick));
-  results.push_back(scalar(quantities::kMeanSlide, slide));
-  results.push_back(scalar(quantities::kMeanExcursion, excursion));
+  const Uncertain stick = share(catalogue::kPStick) * excursion,
+                  slide = share(catalogue::kPSlide) * excursion;
+  results.push_back(scalar(catalogue::kMeanStick, stick));
+  results.push_back(scalar(catalogue::kMeanSlide, slide));
+  results.push_back(scalar(catalogue::kMeanExcursion, excursion));
 }
 
 }  // namespace
@@ -112,7 +115,7 @@ Evaluation by_null_vector(const Setting& setting) {
     const Uncertain excursion = mean_excursion(setting, a, pi, before);
     if (question.wants(Quantity::sticking)) append_durations(excursion, evaluation.results);
     if (question.wants(Quantity::averages)) {
-      evaluation.results.push_back(scalar(quantities::kSlipRate, Uncertain{1, 0} / excursion));
+      evaluation.results.push_back(scalar(catalogue::kSlipRate, Uncertain{1, 0} / excursion));
     }
   }
   evaluation.checks = {{"norm_pi_M_over_norm_M", relative_residual(transposed, pi)},

@@ -1,5 +1,10 @@
 #include "stickslip/simulation/tally.hpp"
 
+#include "stickslip/catalogue/averages_keys.hpp"
+#include "stickslip/catalogue/displacement_keys.hpp"
+#include "stickslip/catalogue/peak_keys.hpp"
+#include "stickslip/catalogue/resolvent_keys.hpp"
+#include "stickslip/catalogue/slip_keys.hpp"
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -272,10 +277,10 @@ Estimate Tally::probability(Variable variable, double low, double high) const {
 Named Tally::slip() const {
   const Means m = means(displacement);
   const Smooth mean = m.overall(l), net = m.overall(d, -1);
-  return {{"mean_slip", m.estimate(mean)},
-          {"var_slip", m.estimate(m.overall(ll) - mean * mean)},
-          {"mean_slip_net", m.estimate(net)},
-          {"var_slip_net", m.estimate(m.overall(dd) - net * net)}};
+  return {{&catalogue::kMeanSlip, m.estimate(mean)},
+          {&catalogue::kVarSlip, m.estimate(m.overall(ll) - mean * mean)},
+          {&catalogue::kMeanSlipNet, m.estimate(net)},
+          {&catalogue::kVarSlipNet, m.estimate(m.overall(dd) - net * net)}};
 }
 
 Estimate Tally::slip_transform(std::size_t n) const {
@@ -314,20 +319,20 @@ Estimate Tally::spectrum(std::size_t n) const {
 Named Tally::averages(std::size_t f) const {
   const Means m = means(observed, f);
   const Smooth sliding = m.overall(f_slide), sticking = m.overall(f_stick);
-  return {{"", over_time(m, sliding + sticking)},
-          {"|stick", m.estimate(sticking / m.overall(stick))},
-          {"|slide", m.estimate(sliding / m.overall(slide))}};
+  return {{&catalogue::kPi, over_time(m, sliding + sticking)},
+          {&catalogue::kPiStick, m.estimate(sticking / m.overall(stick))},
+          {&catalogue::kPiSlide, m.estimate(sliding / m.overall(slide))}};
 }
 
 Named Tally::exits(std::size_t l) const {
   const Means m = means(discounted, l * wanted_.observables.size());
-  Named all{{"h_plus", m.estimate(m.at(0, h_same))},
-            {"h_minus", m.estimate(m.at(0, h_other))},
-            {"w_one", m.estimate(m.at(0, w_one))}};
+  Named all{{&catalogue::kHPlus, m.estimate(m.at(0, h_same))},
+            {&catalogue::kHMinus, m.estimate(m.at(0, h_other))},
+            {&catalogue::kWOne, m.estimate(m.at(0, w_one))}};
   if (symmetric_) return all;
-  all.insert(all.end(), {{"h_plus_from_minus", m.estimate(m.at(1, h_other))},
-                         {"h_minus_from_minus", m.estimate(m.at(1, h_same))},
-                         {"w_one_from_minus", m.estimate(m.at(1, w_one))}});
+  all.insert(all.end(), {{&catalogue::kHPlusFromMinus, m.estimate(m.at(1, h_other))},
+                         {&catalogue::kHMinusFromMinus, m.estimate(m.at(1, h_same))},
+                         {&catalogue::kWOneFromMinus, m.estimate(m.at(1, w_one))}});
   return all;
 }
 
@@ -343,14 +348,14 @@ Named Tally::resolvent(std::size_t l, std::size_t f) const {
   const Smooth apart =
       (one_minus * plus - one_plus * minus) / (s * (s + lambda * one_plus * one_minus));
   const Smooth mu = a * one_minus * apart, below = -1 * b * one_plus * apart;
-  Named all{{"w_plus", m.estimate(plus)},
-            {"w_minus", m.estimate(minus)},
-            {"pi", m.estimate(pi)},
-            {"mu", m.estimate(mu)}};
-  if (lambda > 0) all.emplace_back("u", m.estimate(pi / lambda + mu));
+  Named all{{&catalogue::kWPlus, m.estimate(plus)},
+            {&catalogue::kWMinus, m.estimate(minus)},
+            {&catalogue::kPiLambda, m.estimate(pi)},
+            {&catalogue::kMu, m.estimate(mu)}};
+  if (lambda > 0) all.emplace_back(&catalogue::kU, m.estimate(pi / lambda + mu));
   if (symmetric_) return all;
-  all.emplace_back("mu_minus", m.estimate(below));
-  if (lambda > 0) all.emplace_back("u_minus", m.estimate(pi / lambda + below));
+  all.emplace_back(&catalogue::kMuMinus, m.estimate(below));
+  if (lambda > 0) all.emplace_back(&catalogue::kUMinus, m.estimate(pi / lambda + below));
   return all;
 }
 
@@ -371,8 +376,9 @@ Named Tally::travel(std::size_t n) const {
   const Means m = means(travels, n);
   const bool even = symmetric_ && wanted_.start->kind != model::Start::Kind::state;
   const Smooth all = m.overall(weight), mean = m.overall(travelled, even ? -1 : 1) / all;
-  return {{"displacement_mean", m.estimate(mean)},
-          {"displacement_variance", m.estimate(m.overall(travelled_square) / all - mean * mean)}};
+  return {{&catalogue::kDisplacementMean, m.estimate(mean)},
+          {&catalogue::kDisplacementVariance,
+           m.estimate(m.overall(travelled_square) / all - mean * mean)}};
 }
 
 // From side s an excursion reaches w with probability p(s), ends before on the other side with
@@ -395,8 +401,8 @@ Named Tally::first_passage(double w) const {
     const double factor = std::exp(high / mean - 1);
     return {mean, mean / factor, mean * factor};
   };
-  return {{"mean_first_passage", estimate(m.share(0) * up + m.share(1) * down)},
-          {"mean_first_passage_rest",
+  return {{&catalogue::kFirstPassage, estimate(m.share(0) * up + m.share(1) * down)},
+          {&catalogue::kFirstPassageRest,
            estimate(m.at(0, rest) + m.at(0, rest_up) * up + m.at(0, rest_down) * down)}};
 }
 

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "../common/catch.hpp"
+#include "../common/made_results.hpp"
 #include "stickslip/accuracy/comparison.hpp"
 
 using namespace stickslip;
@@ -22,12 +23,12 @@ Reference reference(double value, double below, double above, std::optional<doub
 }
 
 Comparison one(const Reference& r, double value, double error) {
-  return compare({r}, {quantities::scalar("q", "", value, error)});
+  return compare({r}, {test::scalar("q", "", value, error)});
 }
 
 /// References with one standard deviation, and results `z` away from them.
 Comparison judged(const std::vector<double>& z) {
-  Result result = quantities::array("q", "", "omega", {});
+  Result result = test::array("q", "", "omega", {});
   std::vector<Reference> references;
   for (std::size_t n = 0; n < z.size(); ++n) {
     const auto at = static_cast<double>(n);
@@ -61,7 +62,7 @@ TEST_CASE("comparison: what is open above agrees with all above") {
 }
 
 TEST_CASE("comparison: half the interval of a simulated value is 1.96 standard deviations") {
-  Result simulated = quantities::scalar("q", "", 15, 4 * kNormal);
+  Result simulated = test::scalar("q", "", 15, 4 * kNormal);
   simulated.ci95 = {{15 - 4 * kNormal, 15 + 4 * kNormal}};
   const auto c = compare({reference(10, 3, 3)}, {simulated});
   CHECK(c.rows[0].z == Approx(1));
@@ -104,10 +105,10 @@ TEST_CASE("comparison: huge differences are reported, not lost to underflow") {
 }
 
 TEST_CASE("comparison: values are found by name and argument, others are left out once") {
-  Result array = quantities::array("S_v", "", "omega", {0, 1, 0.3});
+  Result array = test::array("S_v", "", "omega", {0, 1, 0.3});
   array.value = {5, 6, 7};
   array.error = {0, 0, 0};
-  const Results results{quantities::scalar("P_stick", "", 0.5, 0), array};
+  const Results results{test::scalar("P_stick", "", 0.5, 0), array};
   const auto c = compare({{"P_stick", {}, 0.5, 0.5, 0.5},
                           {"S_v", 0.1 * 3, 7, 7, 7},
                           {"S_v", 0.0, 5, 5, 5},

@@ -1,7 +1,13 @@
 #include <cmath>
 
 #include "../common/catch.hpp"
+#include "../common/made_results.hpp"
 #include "stickslip/accuracy/estimates.hpp"
+#include "stickslip/catalogue/averages_keys.hpp"
+#include "stickslip/catalogue/entry_law_keys.hpp"
+#include "stickslip/catalogue/moments_keys.hpp"
+#include "stickslip/catalogue/noise_law_keys.hpp"
+#include "stickslip/catalogue/sticking_keys.hpp"
 
 using namespace stickslip;
 using accuracy::add_discretisation;
@@ -17,7 +23,7 @@ namespace {
 constexpr double kShared = 0.65;
 
 Result modes(std::vector<double> values, std::vector<double> errors) {
-  Result r = array("relaxation_odd", "1/time", "mode", {1, 2, 3});
+  Result r = test::array("relaxation_odd", "1/time", "mode", {1, 2, 3});
   r.value = std::move(values);
   r.error = std::move(errors);
   return r;
@@ -41,14 +47,15 @@ void check_errors(const Results& results, const std::vector<double>& expected) {
 }  // namespace
 
 TEST_CASE("estimates: rounding and truncation make the least error, of every entry") {
-  Results results{scalar("a", "", -2, 0), scalar("b", "", 3, 1), modes({1, -4, 0}, {0, 5, 6})};
+  Results results{test::scalar("a", "", -2, 0), test::scalar("b", "", 3, 1),
+                  modes({1, -4, 0}, {0, 5, 6})};
   accuracy::require_least_error(0.25, results);
   check_errors(results, {0.5, 1, 0.25, 5, 6});
 }
 
 TEST_CASE("estimates: two changes are added as one length, each by its factor") {
-  const Results coarse{scalar("f", "", 3, 9), modes({1, 2}, {9, 9})};
-  Results results{scalar("f", "", 1, 0.5), modes({2, 2.5, 7}, {0, 0.25, 0})};
+  const Results coarse{test::scalar("f", "", 3, 9), modes({1, 2}, {9, 9})};
+  Results results{test::scalar("f", "", 1, 0.5), modes({2, 2.5, 7}, {0, 0.25, 0})};
   const Changes before{{16}, {0, 4}};
   const Changes changes = add_discretisation({3, 0.5}, coarse, before, results);
   check_errors(results, {0.5 + 10, 3, 0.25 + 2.5, 21});
@@ -56,15 +63,15 @@ TEST_CASE("estimates: two changes are added as one length, each by its factor") 
 }
 
 TEST_CASE("estimates: what shares no errors with means has a factor of its own") {
-  const Results coarse{scalar(quantities::kFStick0, 3, 9), scalar(quantities::kEX2, 3, 9)};
-  Results results{scalar(quantities::kFStick0, 1, 0), scalar(quantities::kEX2, 1, 0)};
+  const Results coarse{scalar(catalogue::kFStick0, 3, 9), scalar(catalogue::kEX2, 3, 9)};
+  Results results{scalar(catalogue::kFStick0, 1, 0), scalar(catalogue::kEX2, 1, 0)};
   (void)add_discretisation({3, 0.5, 4}, coarse, {{16}, {16}}, results);
   check_errors(results, {40, std::hypot(10, 6.5)});
 }
 
 TEST_CASE("estimates: without an earlier change the last one counts alone") {
-  Results results{scalar("f", "", 1, 0.5)};
-  (void)add_discretisation({3, 0.5}, {scalar("f", "", 3, 9)}, {}, results);
+  Results results{test::scalar("f", "", 1, 0.5)};
+  (void)add_discretisation({3, 0.5}, {test::scalar("f", "", 3, 9)}, {}, results);
   check_errors(results, {6.5});
 }
 
@@ -81,8 +88,8 @@ Results changed(Results results, const std::vector<double>& amounts) {
 }  // namespace
 
 TEST_CASE("estimates: a change through zero is no small error, as the other means show") {
-  const Results means{scalar(quantities::kEXV, 10, 0), scalar(quantities::kEV2, 4, 1e-9),
-                      scalar(quantities::kEAbsV, 2, 0)};
+  const Results means{scalar(catalogue::kEXV, 10, 0), scalar(catalogue::kEV2, 4, 1e-9),
+                      scalar(catalogue::kEAbsV, 2, 0)};
   // Relative changes of 0.3, 1e-12 and 0.4 have the mean square 0.25/3.
   const double shared = kShared * std::sqrt(0.25 / 3);
   check_errors(changed(means, {3, 4e-12, 0.8}),
@@ -90,10 +97,10 @@ TEST_CASE("estimates: a change through zero is no small error, as the other mean
 }
 
 TEST_CASE("estimates: durations and functions of the velocity share errors among themselves") {
-  const Results means{scalar(quantities::kMeanSlide, 10, 0),
-                      scalar(quantities::kMeanExcursion, 20, 0),
-                      scalar(quantities::kSlipRate, 0.05, 0), scalar(quantities::kEV2, 4, 0),
-                      scalar(quantities::kEAbsV, 2, 0)};
+  const Results means{scalar(catalogue::kMeanSlide, 10, 0),
+                      scalar(catalogue::kMeanExcursion, 20, 0),
+                      scalar(catalogue::kSlipRate, 0.05, 0), scalar(catalogue::kEV2, 4, 0),
+                      scalar(catalogue::kEAbsV, 2, 0)};
   // Relative changes of 0.3, 2e-12, 0.4 of durations and rates, and of 2e-12 and 0.5.
   const double of_time = kShared * std::sqrt(0.25 / 3), of_velocity = kShared * std::sqrt(0.25 / 2);
   check_errors(changed(means, {3, 4e-11, 0.02, 8e-12, 1}),
@@ -103,20 +110,20 @@ TEST_CASE("estimates: durations and functions of the velocity share errors among
 
 TEST_CASE("estimates: the drift takes its share of the errors of means, and gives none") {
   constexpr double small = 0x1p-20;
-  const Results means{scalar(quantities::kEAbsV, -10, 0), scalar(quantities::kEV, 0.5, 0),
-                      scalar(quantities::kFStick0, 1, 0)};
+  const Results means{scalar(catalogue::kEAbsV, -10, 0), scalar(catalogue::kEV, 0.5, 0),
+                      scalar(catalogue::kFStick0, 1, 0)};
   // A density is no mean.
   check_errors(changed(means, {2, 100, small}),
                {std::hypot(2, 1.3), std::hypot(100, 0.065), small});
   check_errors(changed(means, {2, small, small}),
                {std::hypot(2, 1.3), std::hypot(small, 0.065), small});
-  const Results drift{scalar(quantities::kEV, 0.5, 0)};
+  const Results drift{scalar(catalogue::kEV, 0.5, 0)};
   check_errors(changed(drift, {small}), {small});
 }
 
 TEST_CASE("estimates: what changes by less than 1e-13 does not depend on the discretisation") {
-  const Results means{scalar(quantities::kEAbsV, 8, 0), scalar(quantities::kEV2, 1, 0),
-                      scalar(quantities::kEXV, 1, 0)};
+  const Results means{scalar(catalogue::kEAbsV, 8, 0), scalar(catalogue::kEV2, 1, 0),
+                      scalar(catalogue::kEXV, 1, 0)};
   const double above = 0x1p-43, below = 0x1p-44;  // 1.1e-13 and 0.6e-13
   const double shared = kShared * 0.25 / std::sqrt(3);
   check_errors(changed(means, {2, above, below}), {std::hypot(2, 8 * shared), shared, below});
@@ -124,9 +131,9 @@ TEST_CASE("estimates: what changes by less than 1e-13 does not depend on the dis
 
 // P_stick = 1/(1 + q), q = mean_slide/mean_stick: dP_stick = P_stick P_slide dq/q.
 TEST_CASE("estimates: probabilities of the phases share what their ratio does") {
-  const Results shares{scalar(quantities::kPStick, 0.2, 0), scalar(quantities::kPSlide, 0.8, 0),
-                       scalar(quantities::kMeanExcursion, 10, 0),
-                       scalar(quantities::kPWithin, 0.5, 0)};
+  const Results shares{scalar(catalogue::kPStick, 0.2, 0), scalar(catalogue::kPSlide, 0.8, 0),
+                       scalar(catalogue::kMeanExcursion, 10, 0),
+                       scalar(catalogue::kPWithin, 0.5, 0)};
   const double shared = kShared * 0.5 * 0.16;
   constexpr double small = 0x1p-20;
   check_errors(changed(shares, {small, 1, 5, small}),
@@ -136,7 +143,7 @@ TEST_CASE("estimates: probabilities of the phases share what their ratio does") 
 }
 
 TEST_CASE("estimates: an entry has 0.7 of the error of its neighbours, and no more than relative") {
-  Result curve = array("f_stick", "1/time", "time", {1, 2, 3, 4, 5, 6});
+  Result curve = test::array("f_stick", "1/time", "time", {1, 2, 3, 4, 5, 6});
   curve.value = {8, 8, -16, 8, 2, 0};
   curve.error.assign(6, 0);
   Results results{curve};
@@ -151,7 +158,7 @@ TEST_CASE("estimates: an entry has 0.7 of the error of its neighbours, and no mo
 TEST_CASE("estimates: modes keep their own errors") {
   Result array_of_means = modes({1, 2, 3}, {1e-6, 1e-6, 1e-6});
   array_of_means.kind = Kind::mean;
-  Results results{scalar(quantities::kMeanStick, 10, 0), array_of_means};
+  Results results{scalar(catalogue::kMeanStick, 10, 0), array_of_means};
   Results coarse = results;
   coarse[0].value[0] = 15;
   (void)add_discretisation({1, 0}, coarse, {}, results);

@@ -1,7 +1,10 @@
 #include <limits>
 
 #include "../common/catch.hpp"
+#include "../common/made_results.hpp"
 #include "stickslip/accuracy/result_bounds.hpp"
+#include "stickslip/catalogue/moments_keys.hpp"
+#include "stickslip/catalogue/sticking_keys.hpp"
 
 using namespace stickslip;
 using accuracy::broken_bound;
@@ -20,8 +23,8 @@ Result transform(std::vector<double> values, double error = 0) {
 TEST_CASE("result bounds: sound results pass") {
   CHECK(broken_bound({}).empty());
   CHECK(broken_bound(
-            {quantities::scalar(quantities::kPStick, 1, 0),
-             quantities::scalar(quantities::kEXV, -3, 0),
+            {quantities::scalar(catalogue::kPStick, 1, 0),
+             quantities::scalar(catalogue::kEXV, -3, 0),
              transform({0.2, 0.6, 0.4}),
              {"cdf_slide", "", "time", {1, 2, 3}, {0, 0.5, 1}, {0, 0, 0}, Kind::distribution}})
             .empty());
@@ -30,24 +33,24 @@ TEST_CASE("result bounds: sound results pass") {
 
 TEST_CASE("result bounds: errors excuse what they cover") {
   CHECK(broken_bound({transform({0.41, 0.6, 0.4}, 0.006)}).empty());
-  CHECK(broken_bound({quantities::scalar(quantities::kPSlide, 1.01, 0.02)}).empty());
+  CHECK(broken_bound({quantities::scalar(catalogue::kPSlide, 1.01, 0.02)}).empty());
 }
 
 TEST_CASE("result bounds: every violation is reported with its place") {
   CHECK(broken_bound({transform({0.41, 0.6, 0.4})}) ==
         "F_slide rises from 0.4 at lambda = 1 to 0.41 at lambda = 2");
   CHECK(broken_bound({transform({0.2, 1.5, 0.4})}) == "F_slide is 1.5 at lambda = 0.5");
-  CHECK(broken_bound({quantities::scalar(quantities::kPStick, -0.1, 0.01)}) == "P_stick is -0.1");
+  CHECK(broken_bound({quantities::scalar(catalogue::kPStick, -0.1, 0.01)}) == "P_stick is -0.1");
   CHECK(broken_bound({{"cdf_stick", "", "time", {1, 2}, {0.5, 0.4}, {0, 0}, Kind::distribution}}) ==
         "cdf_stick falls from 0.5 at time = 1 to 0.4 at time = 2");
-  CHECK(broken_bound({quantities::scalar(quantities::kEV2, -1, 0)}) == "E_V2 is -1");
+  CHECK(broken_bound({quantities::scalar(catalogue::kEV2, -1, 0)}) == "E_V2 is -1");
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  CHECK(broken_bound({quantities::scalar(quantities::kMeanSlide, nan, 0)}) == "mean_slide is nan");
+  CHECK(broken_bound({quantities::scalar(catalogue::kMeanSlide, nan, 0)}) == "mean_slide is nan");
 }
 
 TEST_CASE("result bounds: an error excuses its own size, and 1e-10, and no more") {
   const auto passes = [](Kind kind, double value, double error) {
-    auto result = quantities::scalar("a", "", value, error);
+    auto result = test::scalar("a", "", value, error);
     result.kind = kind;
     return broken_bound({result}).empty();
   };
@@ -92,7 +95,7 @@ TEST_CASE("result bounds: simulated results scatter, and are left alone") {
 
 TEST_CASE("results: what is not a number has no finite error") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  CHECK_FALSE(quantities::relative_error(quantities::scalar("a", "", nan, 0)) < 1e300);
-  CHECK_FALSE(quantities::relative_error(quantities::scalar("a", "", 1, nan)) < 1e300);
-  CHECK(quantities::relative_error(quantities::scalar("a", "", 0, 0)) == 0);
+  CHECK_FALSE(quantities::relative_error(test::scalar("a", "", nan, 0)) < 1e300);
+  CHECK_FALSE(quantities::relative_error(test::scalar("a", "", 1, nan)) < 1e300);
+  CHECK(quantities::relative_error(test::scalar("a", "", 0, 0)) == 0);
 }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "../common/made_results.hpp"
 #include "../common/temporary.hpp"
 #include "stickslip/options/reference.hpp"
 #include "stickslip/support/atomic_file.hpp"
@@ -39,13 +40,13 @@ accuracy::Step step(double offset) {
 }
 
 quantities::Results results() {
-  quantities::Result array = quantities::array("S_v", "length^2/time", "omega", {0.5, 2});
+  quantities::Result array = test::array("S_v", "length^2/time", "omega", {0.5, 2});
   array.value = {3, 5};
   array.error = {0.25, 0.125};
   array.ci95 = {{2.5, 3.25}, {4.75, 5.5}};
-  auto simulated = quantities::scalar("P_stick", "", 0.25, 0.03125);
+  auto simulated = test::scalar("P_stick", "", 0.25, 0.03125);
   simulated.ci95 = {{0.2, 0.3}};
-  return {quantities::scalar("E_V2", "velocity^2", -4, 0.5), simulated, array};
+  return {test::scalar("E_V2", "velocity^2", -4, 0.5), simulated, array};
 }
 
 accuracy::Outcome outcome() {
@@ -253,9 +254,8 @@ TEST_CASE("table: values with their errors, absolute and relative") {
 
 TEST_CASE("table: digits are those that the error supports, and exact values are short") {
   auto o = outcome();
-  o.results = {quantities::scalar("a", "", 0.15648616853236219, 3e-10),
-               quantities::scalar("b", "", 0.1, 0), quantities::scalar("c", "", 0, 1e-3),
-               quantities::scalar("d", "", std::nan(""), std::nan(""))};
+  o.results = {test::scalar("a", "", 0.15648616853236219, 3e-10), test::scalar("b", "", 0.1, 0),
+               test::scalar("c", "", 0, 1e-3), test::scalar("d", "", std::nan(""), std::nan(""))};
   const std::string text = io::table(request(), o, {});
   CHECK(row(text, "a") == Words{"a", "0.1564861685", "3.0e-10", "1.9e-09"});
   CHECK(row(text, "b") == Words{"b", "0.1", "0", "0"});
@@ -266,7 +266,7 @@ TEST_CASE("table: digits are those that the error supports, and exact values are
 TEST_CASE("table: values end in one column, and a long key has a line of its own") {
   auto o = outcome();
   const std::string name(41, 'k');
-  o.results.push_back(quantities::scalar(name, "time", 0.5, 0));
+  o.results.push_back(test::scalar(name, "time", 0.5, 0));
   CHECK_THAT(io::table(request(), o, {}),
              Catch::Contains("\n"
                              "quantity  value    error  rel. error  unit\n"

@@ -15,7 +15,7 @@ import re
 import statistics
 import sys
 
-MODULES = ("support", "algebra", "model", "exact", "noise", "velocity", "simulation", "petsc",
+MODULES = ("support", "catalogue", "algebra", "model", "exact", "noise", "velocity", "simulation", "petsc",
            "checkpoint", "options", "operators", "quantities", "routes", "monte_carlo", "accuracy", "studies", "io", "sweeps", "app")
 SCALAR_MODULES = ("petsc", "operators", "quantities", "routes")
 LONGEST, LONG, MEDIAN = 60, 30, 8

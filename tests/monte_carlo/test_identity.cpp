@@ -7,7 +7,6 @@
 #include <optional>
 #include <set>
 
-#include "../../src/options/quantities.hpp"
 #include "../common/catch.hpp"
 #include "../common/options.hpp"
 #include "../common/temporary.hpp"
@@ -39,9 +38,9 @@ const std::set<std::string> kWithOthers{"friction", "noise"};
 
 std::string all_simulated() {
   std::vector<std::string> words;
-  for (const auto& row : quantity_table()) {
-    const bool simulated = std::count(row.routes.begin(), row.routes.end(), Route::monte_carlo) > 0;
-    if (simulated && !row.of_one_run) words.push_back(row.word);
+  for (const auto* entry : catalogue::entries()) {
+    const bool simulated = entry->routes.contains(Route::monte_carlo);
+    if (simulated && !entry->of_one_run) words.emplace_back(entry->word);
   }
   return fmt::format("{}", fmt::join(words, ","));
 }

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "../common/catch.hpp"
+#include "stickslip/catalogue/entry.hpp"
 #include "stickslip/options/manual.hpp"
-#include "stickslip/options/result_table.hpp"
 #include "stickslip/options/table.hpp"
 
 using namespace stickslip::options;
@@ -79,7 +79,11 @@ TEST_CASE("manual page: every form of values, every quantity with its keys") {
   for (const auto& word : quantities->words) {
     CHECK_THAT(page, Catch::Contains("\n\\fB" + roff(word) + "\\fR\n"));
   }
-  for (const auto& row : result_table()) CHECK_THAT(page, Catch::Contains(roff(row.key)));
+  for (const auto* entry : stickslip::catalogue::entries()) {
+    for (const auto* row : entry->rows) {
+      CHECK_THAT(page, Catch::Contains(roff(std::string(row->key))));
+    }
+  }
 }
 
 TEST_CASE("manual page: the options outside the table, every exit status, the version, no date") {

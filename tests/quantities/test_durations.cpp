@@ -5,9 +5,11 @@
 #include "../common/catch.hpp"
 #include "../common/exponential.hpp"
 #include "../common/full_grid.hpp"
+#include "../common/made_results.hpp"
 #include "../common/near.hpp"
 #include "../common/quadrature.hpp"
 #include "../common/solved.hpp"
+#include "stickslip/catalogue/duration_density_keys.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/time_stepper.hpp"
 #include "stickslip/quantities/durations.hpp"
@@ -447,7 +449,7 @@ TEST_CASE("durations: named results, means only where there are none yet") {
   const auto process = process_with(1.1, 1.1);
   const quantities::DurationMoments m{{1, 0.1}, {2, 0.1}, {3, 0.1}, {4, 0.1}, {5, 0.1}, {6, 0.1}};
   const std::vector<Uncertain> entry(5, Uncertain{0.2, 0});
-  quantities::Results results{quantities::scalar("mean_stick", "time", 7, 0)};
+  quantities::Results results{test::scalar("mean_stick", "time", 7, 0)};
   quantities::append_duration_moments(process, {}, m, entry, results);
   const auto value = [&](const std::string& key) {
     const auto same = [&key](const auto& result) { return result.key == key; };
@@ -464,8 +466,8 @@ TEST_CASE("durations: named results, means only where there are none yet") {
   const double edge = process.noise.rate() * process.noise.up(2);
   CHECK(value("f_stick_0") == Approx(0.4 * edge).epsilon(1e-14));
   const std::vector<double> time{1, 2};
-  quantities::append_distribution("slide", time, {{{0.5, 0}, {0.25, 0}}, {{0.1, 0}, {0.6, 0}}, 0},
-                                  results);
+  quantities::append_distribution(catalogue::kDensitySlide, catalogue::kCdfSlide, time,
+                                  {{{0.5, 0}, {0.25, 0}}, {{0.1, 0}, {0.6, 0}}, 0}, results);
   CHECK(value("f_slide") == 0.5);
   CHECK(value("cdf_slide") == 0.1);
 }

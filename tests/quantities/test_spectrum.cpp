@@ -241,8 +241,8 @@ TEST_CASE("spectrum: its integral is the variance, and half of S_v(0) is met at 
   for (const auto& [name, d] : small_samples()) {
     Solved s(d);
     const auto shape = reduced(s, {}, 1e-9).shape;
-    const auto r = reduced(s, {shape.fwhm.value / 2}, 1e-10);
-    INFO(name << " errors " << shape.variance.error << " " << shape.fwhm.error);
+    const auto r = reduced(s, {shape.full_width.value / 2}, 1e-10);
+    INFO(name << " errors " << shape.variance.error << " " << shape.full_width.error);
     CHECK(relative_difference(shape.variance.value, s.mean_square_velocity()) < 1e-8);
     CHECK(std::abs(shape.variance.value - s.mean_square_velocity()) < shape.variance.error);
     CHECK(relative_difference(2 * r.spectrum.value[0].value, r.spectrum.at_zero.value) < 1e-8);
@@ -262,7 +262,7 @@ TEST_CASE("spectrum: errors of values, width and variance cover those of better 
       CHECK(std::abs(one.value - better.value) < 10 * one.error);
     };
     INFO(name);
-    covers(rough.shape.fwhm, fine.shape.fwhm);
+    covers(rough.shape.full_width, fine.shape.full_width);
     covers(rough.shape.variance, fine.shape.variance);
     covers(rough.spectrum.at_zero, fine.spectrum.at_zero);
     for (std::size_t n = 0; n < omega.size(); ++n) {
@@ -276,7 +276,7 @@ TEST_CASE("spectrum: the white-noise limit", "[parallel]") {
   const auto at = [](double tau) {
     Solved s(test::on_hp(scene(1, 1, tau, 0.25 / std::sqrt(tau), {1, 0}), 6, 1e-9));
     const auto r = reduced(s, {}, 1e-7);
-    return std::vector<double>{r.spectrum.at_zero.value, 1 / r.shape.fwhm.value,
+    return std::vector<double>{r.spectrum.at_zero.value, 1 / r.shape.full_width.value,
                                s.mean_square_velocity()};
   };
   const auto coarse = at(1.0 / 64), fine = at(1.0 / 256);
@@ -295,9 +295,9 @@ TEST_CASE("spectrum: width and variance of a known one, with the errors of its v
     const auto s = [=](double omega) { return a / (1 + std::pow(omega / width, 4)); };
     const auto shape = quantities::shape_of(s, tau, 1e-4, 1e-3);
     INFO("width " << width);
-    CHECK(shape.fwhm.value == Approx(2 * width).epsilon(1e-12));
+    CHECK(shape.full_width.value == Approx(2 * width).epsilon(1e-12));
     // Two values with a relative error of 1e-4 each move the half width by 1e-4 w.
-    CHECK(shape.fwhm.error == Approx(2e-4 * width).epsilon(1e-6));
+    CHECK(shape.full_width.error == Approx(2e-4 * width).epsilon(1e-6));
     const double variance = a * width / (2 * std::sqrt(2));
     CHECK(shape.variance.value == Approx(variance).epsilon(1e-10));
     CHECK(shape.variance.error >= 1e-3 * variance);
@@ -307,7 +307,7 @@ TEST_CASE("spectrum: width and variance of a known one, with the errors of its v
 
 TEST_CASE("spectrum: one that never falls to half has no width") {
   const auto shape = quantities::shape_of([](double) { return 1.0; }, 1, 0, 0);
-  CHECK(std::isnan(shape.fwhm.value));
+  CHECK(std::isnan(shape.full_width.value));
 }
 
 TEST_CASE("spectrum: named results") {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "../common/catch.hpp"
+#include "../common/made_results.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/quantities/uncertain.hpp"
 
@@ -26,7 +27,7 @@ double worst(F f, Uncertain a, Uncertain b) {
 }
 
 Result several(std::vector<double> values, std::vector<double> errors) {
-  Result r = quantities::array("a", "", "n", {1, 2, 3});
+  Result r = test::array("a", "", "n", {1, 2, 3});
   r.value = std::move(values);
   r.error = std::move(errors);
   return r;

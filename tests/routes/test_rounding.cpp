@@ -4,7 +4,6 @@
 #include <set>
 #include <string_view>
 
-#include "../../src/options/quantities.hpp"
 #include "../../src/routes/averages.hpp"
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
@@ -81,10 +80,10 @@ Case given_all(const model::Scene& s) {
   const std::set<Quantity> by_reduced_models{spectrum,        relaxation,   duration_density,
                                              autocorrelation, displacement, expectation};
   Case r = given(s, {});
-  for (const auto& row : options::quantity_table()) {
-    const bool gives = std::count(row.routes.begin(), row.routes.end(), Route::excursion) > 0;
-    if (!gives || row.of_one_run || by_reduced_models.contains(row.quantity)) continue;
-    r.question.quantities.insert(row.quantity);
+  for (const auto* entry : catalogue::entries()) {
+    const bool gives = entry->routes.contains(Route::excursion);
+    if (!gives || entry->of_one_run || by_reduced_models.contains(entry->quantity)) continue;
+    r.question.quantities.insert(entry->quantity);
   }
   r.question.inverse_distance = {0.5};
   r.question.velocity = {0.1, 0.5, 1};

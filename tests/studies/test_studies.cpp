@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "../common/catch.hpp"
+#include "../common/made_results.hpp"
 #include "stickslip/algebra/dense.hpp"
 #include "stickslip/io/report.hpp"
 #include "stickslip/studies/extrapolation.hpp"
@@ -333,11 +334,8 @@ TEST_CASE("studies: the extrapolation of the paper continues with geometric chan
 TEST_CASE("studies: reports name every run and leave gaps where there is no number") {
   Study study;
   study.kind = "p";
-  study.runs.push_back({"upwind",
-                        {{"delta", 0.5}, {"p", 4}},
-                        {quantities::scalar("P_stick", "", 0.25, 0.125)},
-                        2.0,
-                        {}});
+  study.runs.push_back(
+      {"upwind", {{"delta", 0.5}, {"p", 4}}, {test::scalar("P_stick", "", 0.25, 0.125)}, 2.0, {}});
   study.tables.push_back({"P_stick",
                           "of p",
                           {{"p", studies::Digits::parameter}, {"kappa", studies::Digits::order}},

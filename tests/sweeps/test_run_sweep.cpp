@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "../common/made_results.hpp"
 #include "../common/options.hpp"
 #include "../common/temporary.hpp"
 #include "stickslip/accuracy/refinement.hpp"
@@ -51,7 +52,7 @@ void check_equal(const quantities::Results& found, const quantities::Results& ex
 SweepPoint made_by_hand(std::size_t point, double value) {
   SweepPoint run;
   run.point = point;
-  run.results = {quantities::scalar("E(max(x,v))", "force", value, 0.125)};
+  run.results = {test::scalar("E(max(x,v))", "force", value, 0.125)};
   run.seconds = 1;
   run.entry = "{}";
   return run;

@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "stickslip/catalogue/entry.hpp"
 #include "stickslip/model/observable.hpp"
 #include "stickslip/model/scene.hpp"
 #include "stickslip/model/start.hpp"
@@ -13,28 +14,8 @@
 
 namespace stickslip::options {
 
-/// What can be asked for by -quantities.
-enum class Quantity {
-  sticking,
-  moments,
-  averages,
-  noise_law,
-  entry_law,
-  density,
-  laplace,
-  stick_duration_transform,
-  resolvent,
-  relaxation,
-  spectrum,
-  duration_density,
-  slip,
-  peak,
-  autocorrelation,
-  displacement,
-  expectation,
-  trajectory,
-  sensitivity
-};
+using catalogue::Quantity;
+using catalogue::Route;
 
 /// Discretisation in v; `none` for the fluid queue, which needs none.
 enum class Scheme { hp, upwind, none };
@@ -42,9 +23,6 @@ enum class Scheme { hp, upwind, none };
 /// What factors the sliding operator, and where they go; the PETSc options of -slide_ decide.
 /// `own`: what fits the discretisation, element by element or by MUMPS in memory.
 enum class Factors { own, elements, in_memory, on_disk, incomplete };
-
-/// By which system of equations.
-enum class Route { excursion, lambda, hitting, null_vector, fluid_queue, monte_carlo };
 
 /// How functions of time are computed.
 enum class TransientSolver { krylov, stepping };

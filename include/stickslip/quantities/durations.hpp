@@ -72,8 +72,9 @@ void append_duration_moments(const model::Process& process, const SideChain& sid
                              const DurationMoments& moments, const std::vector<Uncertain>& entry,
                              Results& results);
 
-/// f_NAME and cdf_NAME at the values of their abscissa.
-void append_distribution(const std::string& name, const std::vector<double>& abscissa,
-                         const DurationDistribution& durations, Results& results);
+/// A density and its distribution function, of the given rows, at the values of their abscissa.
+void append_distribution(const Row& density_row, const Row& distribution_row,
+                         const std::vector<double>& abscissa, const DurationDistribution& durations,
+                         Results& results);
 
 }  // namespace stickslip::quantities

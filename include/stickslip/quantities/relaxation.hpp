@@ -34,8 +34,8 @@ struct RelaxationSector {
   std::vector<RelaxationMode> modes;
 };
 
-/// relaxation_even, relaxation_odd, or relaxation where there is no symmetry.
-[[nodiscard]] std::string relaxation_key(operators::Symmetry symmetry);
+/// Of the rates of functions of one symmetry.
+[[nodiscard]] const Row& relaxation_row(operators::Symmetry symmetry);
 
 /// The modes of functions of one symmetry with the smallest decay rates, the constant function left
 /// out: half as many as the eigensolver is asked for (-relax_eps_nev, 8 unless given), since those
@@ -49,7 +49,7 @@ struct RelaxationSector {
 [[nodiscard]] RelaxationSector relaxation_modes(operators::Systems& systems,
                                                 operators::Symmetry symmetry);
 
-/// relaxation_key() and the same with _frequency, by number of the mode.
+/// Rates and frequencies, by number of the mode.
 void append_relaxation(const RelaxationSector& sector, Results& results);
 
 }  // namespace stickslip::quantities

@@ -5,51 +5,12 @@
 #include <utility>
 #include <vector>
 
-#include "stickslip/options/result_table.hpp"
+#include "stickslip/catalogue/entry.hpp"
 
 namespace stickslip::quantities {
 
-/// What a result is, whatever it is called: its range and direction (accuracy/result_bounds.hpp),
-/// and with which others it shares errors (accuracy/estimates.hpp), follow from it.
-enum class Kind {
-  other,          ///< nothing more is known
-  probability,    ///< in [0, 1]
-  share,          ///< of the time: one of two probabilities whose sum is 1
-  mean,           ///< of what has either sign
-  drift,          ///< a mean that may vanish
-  positive_mean,  ///< of a duration or a square
-  transform,      ///< E[exp(-lambda T)]: in [0, 1], falls with lambda
-  distribution,   ///< P(T <= t): in [0, 1], rises with t
-  spectrum        ///< a power spectral density, >= 0
-};
-
-/// What a scalar is called and what it is. Its unit and meaning stand in the table of results.
-struct Name {
-  const char* key;
-  Kind kind = Kind::other;
-};
-
-// Those that several solution methods compute.
-inline constexpr Name kPStick{"P_stick", Kind::share};
-inline constexpr Name kPSlide{"P_slide", Kind::share};
-inline constexpr Name kPWithin{"P_X_le_mu_s", Kind::probability};
-inline constexpr Name kMeanStick{"mean_stick", Kind::positive_mean};
-inline constexpr Name kMeanSlide{"mean_slide", Kind::positive_mean};
-inline constexpr Name kMeanExcursion{"mean_excursion", Kind::positive_mean};
-inline constexpr Name kMeanSlip{"mean_slip", Kind::positive_mean};
-inline constexpr Name kVarSlip{"var_slip"};
-inline constexpr Name kMeanSlipNet{"mean_slip_net", Kind::drift};
-inline constexpr Name kVarSlipNet{"var_slip_net"};
-inline constexpr Name kEV2{"E_V2", Kind::positive_mean};
-inline constexpr Name kEAbsV{"E_absV", Kind::mean};
-inline constexpr Name kEXV{"E_XV", Kind::mean};
-inline constexpr Name kEV{"E_V", Kind::drift};
-inline constexpr Name kEX2{"E_X2", Kind::positive_mean};
-inline constexpr Name kFStick0{"f_stick_0"};
-inline constexpr Name kSlipRate{"slip_rate", Kind::positive_mean};
-inline constexpr Name kFrictionPower{"friction_power", Kind::positive_mean};
-inline constexpr Name kS0{"S_0", Kind::spectrum};
-inline constexpr Name kDiffusivity{"diffusivity"};
+using catalogue::Kind;
+using catalogue::Row;
 
 /// A scalar (no abscissa, one value) or an array over an abscissa.
 struct Result {
@@ -74,34 +35,13 @@ struct Result {
 
 using Results = std::vector<Result>;
 
-/// A scalar result.
-[[nodiscard]] inline Result scalar(std::string key, std::string unit, double value, double error) {
-  return {std::move(key), std::move(unit), "", {}, {value}, {error}};
-}
-/// A scalar of the table of results, with its unit.
-[[nodiscard]] inline Result scalar(const Name& name, double value, double error) {
-  return {name.key, options::unit_of(name.key), "", {}, {value}, {error}, name.kind};
-}
+/// A scalar, or an array without values yet, of a row of the catalogue.
+[[nodiscard]] Result scalar(const Row& row, double value, double error);
+[[nodiscard]] Result array(const Row& row, std::vector<double> abscissa);
 
-/// An array result without values yet. Transforms and spectra, which span decades, are meant
-/// relative to each value.
-[[nodiscard]] inline Result array(std::string key, std::string unit, std::string abscissa_name,
-                                  std::vector<double> abscissa, Kind kind = Kind::other) {
-  const bool each = kind == Kind::transform || kind == Kind::spectrum;
-  return {std::move(key),
-          std::move(unit),
-          std::move(abscissa_name),
-          std::move(abscissa),
-          {},
-          {},
-          kind,
-          each};
-}
-/// An array of the table of results, with its unit and the name of its abscissa.
-[[nodiscard]] inline Result array(const std::string& key, std::vector<double> abscissa,
-                                  Kind kind = Kind::other) {
-  return array(key, options::unit_of(key), options::abscissa_of(key), std::move(abscissa), kind);
-}
+/// The same of a row that stands for many results, for the observable `f`.
+[[nodiscard]] Result scalar(const Row& row, const std::string& f, double value, double error);
+[[nodiscard]] Result array(const Row& row, const std::string& f, std::vector<double> abscissa);
 
 /// Largest error relative to the size of the values; infinite where one is not a number, unless the
 /// result is partial.

@@ -53,7 +53,7 @@ class Sensitivity {
   [[nodiscard]] Gradient through(petsc::Solution h, const std::vector<double>& s) const;
   // value and mean of an integral over an excursion: the derivative of its ratio to mean_excursion.
   [[nodiscard]] Gradient ratio(double mean, const Gradient& of_mean) const;
-  void append(const Name& name, const Gradient& gradient, Results& results) const;
+  void append(const Row& row, const Gradient& gradient, Results& results) const;
 
   operators::System& system_;
   const StationaryDistribution& distribution_;

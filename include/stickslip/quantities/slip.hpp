@@ -34,10 +34,10 @@ struct SlipMoments {
                                                      const std::vector<double>& distance,
                                                      const ModelTolerance& tolerance);
 
-/// mean_slip = E[S] = E|V| mean_excursion.
+/// E[S] = E|V| mean_excursion.
 void append_mean_slip(const Excursion& excursion, Results& results);
 
-/// var_slip, mean_slip_net and var_slip_net.
+/// The variance of S, mean and variance of the net displacement.
 void append_slip_moments(const model::Process& process, const SlipMoments& moments,
                          Results& results);
 

@@ -30,9 +30,8 @@ struct Spectrum {
 
 /// What a reduced model knows besides: it is cheap at every frequency.
 struct SpectrumShape {
-  Uncertain
-      fwhm;  ///< full width at half of S_v(0) [1/time]; not a number if S_v never falls so far
-  Uncertain variance;  ///< (1/2 pi) int S_v d omega, which is E[V^2]
+  Uncertain full_width;  ///< at half of S_v(0) [1/time]; not a number if S_v never falls so far
+  Uncertain variance;    ///< (1/2 pi) int S_v d omega, which is E[V^2]
 };
 
 /// Of an even spectrum S(omega) that falls as omega^-4 beyond 1e5/tau and has relative errors
@@ -60,9 +59,9 @@ struct ReducedSpectrum {
                                                      const StationaryDistribution& distribution,
                                                      const std::vector<double>& omega);
 
-/// S_v by omega, S_0, diffusivity = S_0/2.
+/// S_v by omega and at 0, and the diffusivity, half of the latter.
 void append_spectrum(const std::vector<double>& omega, const Spectrum& spectrum, Results& results);
-/// fwhm, t_corr = 1/fwhm, variance_from_spectrum.
+/// The full width at half maximum, its inverse, and the variance from the spectrum.
 void append_shape(const SpectrumShape& shape, Results& results);
 
 }  // namespace stickslip::quantities

@@ -28,8 +28,8 @@ enum class TransientMethod { krylov, stepping };
 /// odd functions. Collective.
 [[nodiscard]] bool counts(Vec functional);
 
-/// C_vv(t) = E[(V_0 - m)(V_t - m)], m = E[V], as c exp(L t) b with the vectors of
-/// StationaryDistribution::velocity(). Errors are relative to C_vv(0). Collective.
+/// C(t) = E[(V_0 - m)(V_t - m)], m = E[V], as c exp(L t) b with the vectors of
+/// StationaryDistribution::velocity(). Errors are relative to C(0). Collective.
 [[nodiscard]] std::vector<Uncertain> autocorrelation(operators::Systems& systems,
                                                      const StationaryDistribution& distribution,
                                                      const std::vector<double>& time,

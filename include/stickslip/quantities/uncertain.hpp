@@ -34,12 +34,12 @@ struct Uncertain {
 /// functional . solution, with the effect of iterative refinement as its rounding. Collective.
 [[nodiscard]] Uncertain value_of(Vec functional, const petsc::Solution& solution);
 
-/// A scalar result.
-[[nodiscard]] inline Result scalar(std::string key, std::string unit, Uncertain value) {
-  return scalar(std::move(key), std::move(unit), value.value, value.error);
+/// A scalar of a row of the catalogue.
+[[nodiscard]] inline Result scalar(const Row& row, Uncertain value) {
+  return scalar(row, value.value, value.error);
 }
-[[nodiscard]] inline Result scalar(const Name& name, Uncertain value) {
-  return scalar(name, value.value, value.error);
+[[nodiscard]] inline Result scalar(const Row& row, const std::string& f, Uncertain value) {
+  return scalar(row, f, value.value, value.error);
 }
 
 inline void append_value(Result& array, Uncertain value) {

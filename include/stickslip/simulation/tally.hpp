@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "stickslip/catalogue/entry.hpp"
 #include "stickslip/simulation/comoments.hpp"
 #include "stickslip/simulation/excursions.hpp"
 #include "stickslip/simulation/histogram.hpp"
@@ -26,8 +27,8 @@ enum class Variable { slide, stick, excursion, path, peak };
 /// Functions of the state whose integrals over excursions are kept; inside is 1{|x| <= mu_s}.
 enum class Integrand { v_square, v_size, x_v, inside, x_square, v };
 
-/// Estimates by their names.
-using Named = std::vector<std::pair<std::string, Estimate>>;
+/// Estimates by their rows.
+using Named = std::vector<std::pair<const catalogue::Row*, Estimate>>;
 
 /// Counts and co-moments of excursions from both sides, or with symmetry from s+. Tallies of parts,
 /// merged in a fixed order, give the same bits however the parts were distributed.

@@ -1,0 +1,117 @@
+#pragma once
+/// The quantities that can be asked for, and every key that a summary can hold: what it means, in
+/// which unit, and how its error is judged. Each quantity has a file beside this one with all that
+/// is said of it; help, reference pages, validation and files follow from these.
+
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace stickslip::catalogue {
+
+/// What can be asked for by -quantities.
+enum class Quantity {
+  sticking,
+  moments,
+  averages,
+  noise_law,
+  entry_law,
+  density,
+  laplace,
+  stick_duration_transform,
+  resolvent,
+  relaxation,
+  spectrum,
+  duration_density,
+  slip,
+  peak,
+  autocorrelation,
+  displacement,
+  expectation,
+  trajectory,
+  sensitivity
+};
+
+/// By which system of equations.
+enum class Route { excursion, lambda, hitting, null_vector, fluid_queue, monte_carlo };
+
+/// A set of routes.
+class Routes {
+ public:
+  constexpr Routes() = default;
+  constexpr Routes(std::initializer_list<Route> routes) {
+    for (Route route : routes) bits_ |= 1U << static_cast<unsigned>(route);
+  }
+  [[nodiscard]] constexpr bool contains(Route route) const {
+    return (bits_ >> static_cast<unsigned>(route) & 1U) != 0;
+  }
+
+ private:
+  unsigned bits_ = 0;
+};
+
+/// What a result is, whatever it is called: its range and direction (accuracy/result_bounds.hpp),
+/// and with which others it shares errors (accuracy/estimates.hpp), follow from it.
+enum class Kind {
+  other,          ///< nothing more is known
+  probability,    ///< in [0, 1]
+  share,          ///< of the time: one of two probabilities whose sum is 1
+  mean,           ///< of what has either sign
+  drift,          ///< a mean that may vanish
+  positive_mean,  ///< of a duration or a square
+  transform,      ///< E[exp(-lambda T)]: in [0, 1], falls with lambda
+  distribution,   ///< P(T <= t): in [0, 1], rises with t
+  spectrum        ///< a power spectral density, >= 0
+};
+
+/// A result of a quantity. A key may stand for many: f is an observable, as in pi(f), A a scalar
+/// and p a parameter, as in dA_dp.
+struct Row {
+  std::string_view key;
+  std::string_view symbol;           ///< in the formulas of the model, in ASCII
+  std::string_view definition;       ///< one line
+  std::string_view unit = {};        ///< empty for pure numbers; [f] is the unit of the observable
+  std::string_view abscissa = {};    ///< of an array; empty for a scalar
+  std::string_view convention = {};  ///< normalisation, sign, start
+  std::string_view paper = {};       ///< equations or sections of the paper; empty if beyond it
+  Kind kind = Kind::other;
+  /// Whether the accuracy of an array is meant relative to each value, not to the largest one.
+  bool each_by_its_size = false;
+  Routes without = {};  ///< solution methods that give the quantity but not this result
+  /// Whether it stands for its quantity in a file to compare with, where -quantities is not given.
+  bool asks = false;
+
+  /// Whether the key stands for the results of many observables or parameters.
+  [[nodiscard]] constexpr bool is_pattern() const { return unit.find('[') != unit.npos; }
+  /// The key of the observable `f`, such as pi(v^2|stick).
+  [[nodiscard]] std::string key_of(std::string_view f) const;
+};
+
+/// A quantity that can be asked for.
+struct Entry {
+  Quantity quantity;
+  std::string_view word;          ///< of -quantities
+  std::string_view title;         ///< what it is, in half a line
+  Routes routes;                  ///< that give it, for every scene
+  std::string_view options = {};  ///< that it depends on, a comma list
+  std::string_view others = {};   ///< keys of other quantities that come with it, a comma list
+  std::span<const Row* const> rows = {};
+  bool of_phases = false;  ///< about sticking and sliding phases: nothing where a body never sticks
+  bool of_one_run = false;  ///< a field or a path, which has no place in a sweep
+};
+
+/// All quantities, in the order of the help text.
+[[nodiscard]] std::span<const Entry* const> entries();
+
+/// The quantity of a word; nullptr if there is none of that name.
+[[nodiscard]] const Entry* find_entry(std::string_view word);
+
+/// The quantity that gives a result with that key as written, such as pi(v^2|stick) or
+/// dP_stick_dtau; nullptr if none does.
+[[nodiscard]] const Entry* entry_of(std::string_view key);
+
+/// The row of a key as written; nullptr if no quantity gives such a result.
+[[nodiscard]] const Row* find_row(std::string_view key);
+
+}  // namespace stickslip::catalogue

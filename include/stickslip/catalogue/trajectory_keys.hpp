@@ -1,0 +1,16 @@
+#pragma once
+/// The quantity trajectory: a simulated path in the file of -output or -trajectory.
+
+#include "stickslip/catalogue/entry.hpp"
+
+namespace stickslip::catalogue {
+
+inline constexpr Entry kTrajectory{.quantity = Quantity::trajectory,
+                                   .word = "trajectory",
+                                   .title =
+                                       "a simulated path in the file of -output or -trajectory",
+                                   .routes = {Route::excursion, Route::monte_carlo},
+                                   .options = "start, horizon, seed",
+                                   .of_one_run = true};
+
+}  // namespace stickslip::catalogue

@@ -1,0 +1,94 @@
+#include "stickslip/catalogue/entry.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "stickslip/catalogue/autocorrelation_keys.hpp"
+#include "stickslip/catalogue/averages_keys.hpp"
+#include "stickslip/catalogue/density_keys.hpp"
+#include "stickslip/catalogue/displacement_keys.hpp"
+#include "stickslip/catalogue/duration_density_keys.hpp"
+#include "stickslip/catalogue/entry_law_keys.hpp"
+#include "stickslip/catalogue/expectation_keys.hpp"
+#include "stickslip/catalogue/laplace_keys.hpp"
+#include "stickslip/catalogue/moments_keys.hpp"
+#include "stickslip/catalogue/noise_law_keys.hpp"
+#include "stickslip/catalogue/peak_keys.hpp"
+#include "stickslip/catalogue/relaxation_keys.hpp"
+#include "stickslip/catalogue/resolvent_keys.hpp"
+#include "stickslip/catalogue/sensitivity_keys.hpp"
+#include "stickslip/catalogue/slip_keys.hpp"
+#include "stickslip/catalogue/spectrum_keys.hpp"
+#include "stickslip/catalogue/stick_transform_keys.hpp"
+#include "stickslip/catalogue/sticking_keys.hpp"
+#include "stickslip/catalogue/trajectory_keys.hpp"
+
+namespace stickslip::catalogue {
+namespace {
+
+constexpr const Entry* kAll[] = {&kSticking,        &kMoments,    &kAverages,   &kNoiseLaw,
+                                 &kEntryLaw,        &kDensity,    &kLaplace,    &kStickTransform,
+                                 &kResolvent,       &kRelaxation, &kSpectrum,   &kDurationDensity,
+                                 &kAutocorrelation, &kSlip,       &kPeak,       &kDisplacement,
+                                 &kExpectation,     &kTrajectory, &kSensitivity};
+
+// Whether `key` is the derivative of a scalar by a parameter, such as dP_stick_dtau.
+bool is_derivative(std::string_view key) {
+  const auto derivable = [](std::string_view of) {
+    const Entry* entry = entry_of(of);
+    return entry == &kSticking || entry == &kMoments || entry == &kNoiseLaw;
+  };
+  if (!key.starts_with('d')) return false;
+  for (const std::string_view by :
+       {"_dmu_d", "_dmu_d_minus", "_dmu_s", "_dstribeck_velocity", "_dtau", "_ddrag_coefficient"}) {
+    const std::size_t ends = 1 + by.size();
+    const bool has_both = key.size() > ends && key.ends_with(by);
+    if (has_both && derivable(key.substr(1, key.size() - ends))) return true;
+  }
+  return false;
+}
+
+// pi(f|stick) for pi(v^2|stick), dA_dp for dP_stick_dtau, and any other key as it is.
+std::string pattern_of(std::string_view key) {
+  const auto open = key.find('(');
+  if (open == key.npos || !key.ends_with(')')) {
+    return is_derivative(key) ? std::string(kDerivative.key) : std::string(key);
+  }
+  for (const std::string_view phase : {"|stick)", "|slide)"}) {
+    if (key.ends_with(phase)) return fmt::format("{}(f{}", key.substr(0, open), phase);
+  }
+  return fmt::format("{}(f)", key.substr(0, open));
+}
+
+std::pair<const Entry*, const Row*> find(std::string_view key) {
+  const std::string pattern = pattern_of(key);
+  for (const Entry* entry : kAll) {
+    for (const Row* row : entry->rows) {
+      if (row->key == pattern) return {entry, row};
+    }
+  }
+  return {nullptr, nullptr};
+}
+
+}  // namespace
+
+std::string Row::key_of(std::string_view f) const {
+  const auto open = key.find("(f") + 1;
+  return fmt::format("{}{}{}", key.substr(0, open), f, key.substr(open + 1));
+}
+
+std::span<const Entry* const> entries() { return kAll; }
+
+const Entry* find_entry(std::string_view word) {
+  const auto* const found = std::find_if(std::begin(kAll), std::end(kAll),
+                                         [&](const Entry* entry) { return entry->word == word; });
+  return found == std::end(kAll) ? nullptr : *found;
+}
+
+const Entry* entry_of(std::string_view key) { return find(key).first; }
+
+const Row* find_row(std::string_view key) { return find(key).second; }
+
+}  // namespace stickslip::catalogue
