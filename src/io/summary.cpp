@@ -3,45 +3,20 @@
 #include "stickslip/io/parts.hpp"
 #include "stickslip/io/provenance.hpp"
 #include "stickslip/model/effective_friction.hpp"
+#include "stickslip/model/scene_parameters.hpp"
 #include "stickslip/petsc/memory.hpp"
 
 namespace stickslip::io {
 
 Json scene_json(const model::Scene& s) {
-  Json scene{{"mu_s", s.friction.mu_s}, {"mu_d", s.friction.mu_d}, {"drag", s.drag_name}};
-  const auto& noise = s.noise;
-  if (noise.name == "telegraph") {
-    scene["telegraph_amplitude"] = noise.amplitude;
-    scene["telegraph_rate"] = noise.rate;
-  } else if (noise.name == "file") {
-    scene["noise_file"] = noise.file;
-  } else {
-    scene["tau"] = s.tau;
-    scene["delta"] = s.delta;
-    scene["noise_levels_meant"] = s.meant().noise.levels;
-    if (noise.deviation) scene["noise_deviation"] = *noise.deviation;
-  }
-  if (noise.name != "ou") scene["noise"] = noise.name;
-  if (!s.friction.symmetric()) {
-    scene["mu_s_minus"] = s.friction.mirrored().mu_s;
-    scene["mu_d_minus"] = s.friction.mirrored().mu_d;
+  Json scene;
+  for (const auto& [name, value] : model::parameters_of(s)) {
+    std::visit([&, key = name](const auto& one) { scene[key] = one; }, value);
+    if (name == "delta") scene["noise_levels_meant"] = s.meant().noise.levels;
   }
   const auto along = model::effective_mu_s(s, false), against = model::effective_mu_s(s, true);
   if (along) scene["mu_s_effective"] = *along;
   if (against && !s.symmetric()) scene["mu_s_minus_effective"] = *against;
-  if (const auto& stribeck = s.friction.stribeck) {
-    scene["friction"] = "stribeck";
-    scene["stribeck_velocity"] = stribeck->velocity;
-    scene["stribeck_exponent"] = stribeck->exponent;
-  }
-  if (s.drag.law) {
-    scene["drag_expression"] = s.drag_expression;
-  } else {
-    scene["drag_coefficient"] = s.drag.linear;
-    scene["drag_cubic"] = s.drag.cubic;
-  }
-  scene["bias"] = s.bias;
-  if (s.limits_speed) scene["speed_limit"] = *s.v_max;
   return scene;
 }
 

@@ -13,6 +13,7 @@
 
 #include "simulated_results.hpp"
 #include "stickslip/checkpoint/checkpoint.hpp"
+#include "stickslip/model/scene_parameters.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/simulation/sampler.hpp"
@@ -68,34 +69,23 @@ void add_followed(const Case& given, checkpoint::Identity& found) {
 // What fixes the numbers of a simulation, but for how many excursions there are: as understood, not
 // as written, since questions may come from the file of -compare.
 checkpoint::Identity identity(const Case& given) {
-  const auto text = [](auto value) { return fmt::format("{}", value); };
+  const auto text = [](const auto& value) { return fmt::format("{}", value); };
   const auto& s = given.scene;
-  checkpoint::Identity found{{"-mu_s", text(s.friction.mu_s)},
-                             {"-mu_d", text(s.friction.mu_d)},
-                             {"-mu_s_minus", text(s.friction.mirrored().mu_s)},
-                             {"-mu_d_minus", text(s.friction.mirrored().mu_d)},
-                             {"-tau", text(s.tau)},
-                             {"-delta", text(s.delta)},
-                             {"-noise_levels", s.noise_levels ? text(*s.noise_levels) : ""},
-                             {"-drag", s.drag_name},
-                             {"-drag_coefficient", text(s.drag.linear)},
-                             {"-drag_cubic", text(s.drag.cubic)}};
-  if (s.drag.law) found.emplace_back("-drag_expression", s.drag_expression);
-  if (s.noise.deviation) found.emplace_back("-noise_deviation", text(*s.noise.deviation));
+  checkpoint::Identity found;
+  for (const auto& [name, value] : model::parameters_of(s)) {
+    // Of a file its levels count, wherever it is; nothing truncates a simulated velocity.
+    if (name == "noise_file" || name == "speed_limit") continue;
+    found.emplace_back("-" + name, std::visit(text, value));
+  }
+  found.emplace_back("-noise_levels", s.noise_levels ? text(*s.noise_levels) : "");
   if (const auto& table = s.noise.table) {
     std::string levels;
     for (int i = table->lowest(); i <= table->highest(); ++i) {
       const auto& [x, up, down] = table->at(i);
       levels += fmt::format("{},{},{};", x, up, down);
     }
-    found.emplace_back("-noise", std::move(levels));
+    found.emplace_back("levels", std::move(levels));
   }
-  if (const auto& stribeck = s.friction.stribeck) {
-    found.emplace_back("-friction", "stribeck");
-    found.emplace_back("-stribeck_velocity", text(stribeck->velocity));
-    found.emplace_back("-stribeck_exponent", text(stribeck->exponent));
-  }
-  found.emplace_back("-bias", text(s.bias));
   found.emplace_back("-seed", text(given.method.seed));
   add_followed(given, found);
   return found;
