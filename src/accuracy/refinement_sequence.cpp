@@ -19,6 +19,7 @@ constexpr double kOnOtherElements = 1.4;
 constexpr int kDegreesOfWeakening = 4;
 constexpr int kLowestDegree = 5, kHighestDegree = 19;
 constexpr int kDegreesLessInNoise = 1;
+constexpr double kModesOnNodes = 1e-7;  // the least accuracy
 
 // First-order differences: the change from p/2 to p is the error at p up to what the order differs
 // from 1 (0.86 to 1.01 was seen for p >= 64; a few points are far from any order).
@@ -117,9 +118,11 @@ RefinementSequence::RefinementSequence(const options::Case& given)
   table_ = given.scene.meant().noise.table != nullptr;
   integrands_ = integrands_of(given.question);
   branches_ = options::on_full_grid(given.method.route) || !given.scene.symmetric() ? 2 : 1;
-  // On nodes the residuals of eigenvectors, which stand for errors, stay five times larger.
   modes_ = given.question.wants(options::Quantity::relaxation);
-  all_levels_ = options::on_full_grid(given.method.route) || method_.noise_degree == 0 || modes_;
+  // On nodes the residuals of eigenvectors, which stand for errors, stay about twice as large.
+  const bool near_rounding = modes_ && accuracy_ < kModesOnNodes;
+  all_levels_ =
+      options::on_full_grid(given.method.route) || method_.noise_degree == 0 || near_rounding;
   tail_counts_ = modes_ || !given.question.observables.empty() ||
                  given.question.wants(options::Quantity::peak);
   last_ = method_.fixed() ? 1 : free_refinement_levels();

@@ -1,6 +1,7 @@
 #include "stickslip/algebra/dense.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "stickslip/support/errors.hpp"
 
@@ -70,6 +71,72 @@ void expect_success(int info, const char* complaint) {
   if (info != 0) throw NotReached(complaint);
 }
 
+// Up to these sizes the loops below take less time than a call of BLAS.
+constexpr int kSmallSystem = 96, kFewColumns = 16;
+constexpr int kAtOnce = 4;  // columns
+
+template <int count>
+using Factors = std::array<double, count>;
+
+// y += A f, A with `count` columns from a on: the loop over rows goes to vectors of the processor.
+template <int count>
+void add_columns(int rows, const double* a, int stride, Factors<count> f, double* y) {
+  for (int r = 0; r < rows; ++r) {
+    double sum = 0;
+    for (int c = 0; c < count; ++c) sum += a[c * stride + r] * f[c];
+    y[r] += sum;
+  }
+}
+
+void add_small_product(const Matrix<double>& a, const double* x, double* y) {
+  int c = 0;
+  for (; c + kAtOnce <= a.columns(); c += kAtOnce) {
+    add_columns<kAtOnce>(a.rows(), a.column(c), a.rows(), {x[c], x[c + 1], x[c + 2], x[c + 3]}, y);
+  }
+  for (; c < a.columns(); ++c) add_columns<1>(a.rows(), a.column(c), a.rows(), {x[c]}, y);
+}
+
+// The columns of L from `begin` on. Their part of x stays in registers: what is stored by single
+// numbers is slow to load as a vector.
+template <int count>
+void eliminate_lower(const Matrix<double>& lu, int begin, double* x) {
+  Factors<count> f;
+  const double* a = lu.column(begin) + begin;
+  const int stride = lu.rows();
+  for (int c = 0; c < count; ++c) f[c] = -x[begin + c];
+  for (int c = 0; c < count; ++c) {
+    for (int r = c + 1; r < count; ++r) f[r] -= a[c * stride + r] * f[c];
+  }
+  for (int c = 0; c < count; ++c) x[begin + c] = -f[c];
+  const int end = begin + count;
+  add_columns<count>(stride - end, a + count, stride, f, x + end);
+}
+
+// The same for U.
+template <int count>
+void eliminate_upper(const Matrix<double>& lu, int begin, double* x) {
+  Factors<count> f;
+  const double* a = lu.column(begin) + begin;
+  const int stride = lu.rows();
+  for (int c = 0; c < count; ++c) f[c] = -x[begin + c];
+  for (int c = count; c-- > 0;) {
+    f[c] /= a[c * stride + c];
+    for (int r = 0; r < c; ++r) f[r] -= a[c * stride + r] * f[c];
+  }
+  for (int c = 0; c < count; ++c) x[begin + c] = -f[c];
+  add_columns<count>(begin, a - begin, stride, f, x);
+}
+
+// P A = L U as getrf leaves it: the unit diagonal of L left out, row exchanges counted from 1.
+void solve_small(const Matrix<double>& lu, const std::vector<int>& exchanges, double* x) {
+  const int n = lu.rows(), rest = n % kAtOnce;
+  for (int r = 0; r < n; ++r) std::swap(x[r], x[exchanges[r] - 1]);
+  for (int c = 0; c < n - rest; c += kAtOnce) eliminate_lower<kAtOnce>(lu, c, x);
+  for (int c = n - rest; c < n; ++c) eliminate_lower<1>(lu, c, x);
+  for (int c = n; c-- > n - rest;) eliminate_upper<1>(lu, c, x);
+  for (int c = n - rest; (c -= kAtOnce) >= 0;) eliminate_upper<kAtOnce>(lu, c, x);
+}
+
 }  // namespace
 
 template <class Scalar>
@@ -87,6 +154,9 @@ void add_product(const Matrix<Scalar>& a, const std::type_identity_t<Scalar>* x,
                  std::type_identity_t<Scalar>* y, bool transposed) {
   const int m = a.rows(), n = a.columns(), step = 1;
   if (m == 0 || n == 0) return;
+  if constexpr (std::is_same_v<Scalar, double>) {
+    if (!transposed && n <= kFewColumns) return add_small_product(a, x, y);
+  }
   const Scalar one = 1;
   Routines<Scalar>::gemv(transposed ? "T" : "N", &m, &n, &one, a.data(), &m, x, &step, &one, y,
                          &step);
@@ -110,6 +180,9 @@ template <class Scalar>
 void LuFactors<Scalar>::solve(Scalar* b, int columns, bool transposed) const {
   const int n = size();
   if (n == 0 || columns == 0) return;
+  if constexpr (std::is_same_v<Scalar, double>) {
+    if (!transposed && columns == 1 && n <= kSmallSystem) return solve_small(lu_, pivots_, b);
+  }
   int info = 0;  // nothing but wrong arguments
   Routines<Scalar>::getrs(transposed ? "T" : "N", &n, &columns, lu_.data(), &n, pivots_.data(), b,
                           &n, &info);

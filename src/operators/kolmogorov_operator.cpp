@@ -69,9 +69,14 @@ KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& disc
   MPI_Allreduce(MPI_IN_PLACE, &nonzeros_, 1, MPIU_INT64, MPI_SUM, comm);
 }
 
-void KolmogorovOperator::shift(PetscScalar by) {
-  check(MatShift(matrix_, by));
-  data_->lambda += by;
+petsc::MatHandle KolmogorovOperator::shifted(PetscScalar by) const {
+  petsc::MatHandle copy;
+  check(MatDuplicate(matrix_, MAT_COPY_VALUES, copy.out()));
+  check(MatShift(copy, by));
+  auto data = std::make_shared<MatrixData>(*data_);
+  data->lambda += by;
+  attach(copy, std::move(data));
+  return copy;
 }
 
 void KolmogorovOperator::kill_in_one_state() {

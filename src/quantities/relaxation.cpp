@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "stickslip/catalogue/relaxation_keys.hpp"
+#include "stickslip/operators/solver_policy.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/eigensolver.hpp"
 #include "stickslip/petsc/vectors.hpp"
@@ -123,8 +124,9 @@ RelaxationSector relaxation_modes(operators::Systems& systems, Symmetry symmetry
                                      operators::StaticPhase::kept, systems.statistics());
   // All rates have real parts >= 0; a target left of them, on the scale of the noise.
   const double target = -0.1 / process.noise.correlation_time();
-  const petsc::Eigensolver solver(a.matrix(), kRelaxPrefix, target, kAskedFor,
-                                  systems.statistics());
+  const petsc::Eigensolver solver(a.matrix(), kRelaxPrefix, target, kAskedFor, systems.statistics(),
+                                  {[&a](PetscScalar at) { return a.shifted(-at); },
+                                   operators::default_pc_type(systems.discretisation())});
   std::vector<RelaxationMode> modes;
   for (const auto* pair : chosen(solver.pairs(), symmetry)) {
     modes.push_back(mode_of(systems, a.states(), *pair));

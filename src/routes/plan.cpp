@@ -49,7 +49,7 @@ class Planner {
     }
     const int sectors = symmetric_ ? 2 : 1;
     if (question_.wants(Quantity::relaxation)) {
-      add_adaptive(Work::relaxation, sectors, 35 * sectors);
+      add_adaptive(Work::relaxation, sectors, 28 * sectors);
     }
     return std::move(plan_);
   }

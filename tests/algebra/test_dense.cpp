@@ -61,6 +61,28 @@ TEMPLATE_TEST_CASE("dense: factors solve from both sides", "", double, Complex) 
   }
 }
 
+// On both sides of the sizes up to which loops take the place of BLAS, and of its blocks.
+TEST_CASE("dense: products and solutions of all sizes") {
+  for (int n : {1, 2, 3, 4, 5, 6, 7, 8, 9, 15, 16, 17, 94, 95, 96, 97, 98}) {
+    const Matrix part = sample(n, n);
+    Matrix a(n, n);
+    std::vector<double> x(static_cast<std::size_t>(n)), b(x);
+    for (int c = 0; c < n; ++c) {
+      for (int r = 0; r < n; ++r) a(r, c) = part(n - 1 - r, c);  // rows to be exchanged
+      x[c] = c % 7 - 3;
+      for (int r = 0; r < n; ++r) b[r] += a(r, c) * x[c];
+    }
+    const auto product = a * x;
+    auto solved = b;
+    LuFactors(a).solve(solved, false);
+    INFO("size " << n);
+    for (int r = 0; r < n; ++r) {
+      CHECK(std::abs(product[r] - b[r]) < 1e-12);
+      CHECK(std::abs(solved[r] - x[r]) < 1e-9);
+    }
+  }
+}
+
 TEST_CASE("dense: singular matrices are refused, empty ones are fine") {
   CHECK_THROWS_AS(LuFactors(Matrix(2, 2)), NotReached);
   CHECK_NOTHROW(LuFactors(Matrix(0, 0)));

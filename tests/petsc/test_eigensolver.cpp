@@ -135,6 +135,40 @@ TEST_CASE("eigensolver: what it did is counted in the solver statistics", "[para
   CHECK(statistics.factor_entries <= 12 * 12);
 }
 
+TEST_CASE("eigensolver: the shifted matrix may be another one", "[parallel]") {
+  const MatHandle a = rotations(20);
+  std::vector<double> targets;
+  const ShiftedSolver shifted{[&](PetscScalar target) {
+    targets.push_back(PetscRealPart(target));
+    MatHandle copy;
+    check(MatDuplicate(a, MAT_COPY_VALUES, copy.out()));
+    check(MatShift(copy, -target));
+    return copy;
+  }};
+  const auto first = [&] {
+    SolverStatistics statistics;
+    const Eigensolver solver(a, "given_", -0.1, 4, statistics, shifted);
+    CHECK(solver.pairs()[3].residual < 1e-12);
+    return solver.pairs()[0].value.real();
+  };
+  CHECK(first() == Approx(1).epsilon(1e-10));
+  const Given target{{"-given_eps_target", "7.1"}};
+  CHECK(first() == Approx(7).epsilon(1e-8));
+  const Given shift{{"-given_st_shift", "7.2"}};
+  CHECK(first() == Approx(7).epsilon(1e-8));
+  CHECK(targets == std::vector<double>{-0.1, 7.1, 7.2});
+}
+
+// Of pairs that converge besides some would come or not by rounding.
+TEST_CASE("eigensolver: as many as wanted, and the conjugate of the last one", "[parallel]") {
+  const MatHandle a = rotations(20);
+  for (int wanted : {3, 4, 5}) {
+    SolverStatistics statistics;
+    const Eigensolver solver(a, "test_", -0.1, wanted, statistics);
+    CHECK(static_cast<int>(solver.pairs().size()) == (wanted == 4 ? 4 : wanted + 1));
+  }
+}
+
 TEST_CASE("eigensolver: options of the role override number and target", "[parallel]") {
   const MatHandle a = rotations(20);
   const Given given{{"-own_eps_nev", "4"},

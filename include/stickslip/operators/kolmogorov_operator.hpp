@@ -66,8 +66,9 @@ class KolmogorovOperator {
   [[nodiscard]] const StateSpace& states() const { return data_->states; }
   /// Carries the MatrixData of the operator.
   [[nodiscard]] Mat matrix() const { return matrix_; }
-  /// lambda += by, by the clock of time. Collective.
-  void shift(PetscScalar by);
+  /// The matrix at lambda + by, by the clock of time, with the MatrixData that belong to it.
+  /// Collective. A copy of the matrix.
+  [[nodiscard]] petsc::MatHandle shifted(PetscScalar by) const;
   [[nodiscard]] PetscInt64 nonzeros() const { return nonzeros_; }
 
   /// Kills in one sliding state s at a rate kappa, for a body that never rests, where nothing else

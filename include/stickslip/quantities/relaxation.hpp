@@ -39,8 +39,8 @@ struct RelaxationSector {
 
 /// The modes of functions of one symmetry with the smallest decay rates, the constant function left
 /// out: half as many as the eigensolver is asked for (-relax_eps_nev, 8 unless given), since those
-/// come in conjugate pairs, of which the member with frequency >= 0 is kept. One assembly and one
-/// factorisation. Collective. Throws NotReached or NoMemory.
+/// come in conjugate pairs, of which the member with frequency >= 0 is kept. One assembly, one
+/// factorisation and some 55 solves. Collective. Throws NotReached or NoMemory.
 ///
 /// Rounding splits a (nearly) defective double rate into rates about sqrt(rounding) apart, at times
 /// conjugate, at times real. So a frequency below 1e-5 |rate| counts as none: both members of such
