@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <type_traits>
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
@@ -14,21 +15,23 @@ namespace {
 using algebra::add_product;
 using petsc::check;
 
-MPI_Datatype type_of(double) { return MPI_DOUBLE; }
-MPI_Datatype type_of(std::complex<double>) { return MPI_C_DOUBLE_COMPLEX; }
+template <class Scalar>
+MPI_Datatype type() {
+  return std::is_same_v<Scalar, double> ? MPI_DOUBLE : MPI_C_DOUBLE_COMPLEX;
+}
 
 // Sums over all ranks, in place.
 template <class Scalar>
 void sum_over_ranks(MPI_Comm comm, std::vector<Scalar>& x) {
   const auto size = static_cast<int>(x.size());
-  MPI_Allreduce(MPI_IN_PLACE, x.data(), size, type_of(Scalar()), MPI_SUM, comm);
+  MPI_Allreduce(MPI_IN_PLACE, x.data(), size, type<Scalar>(), MPI_SUM, comm);
 }
 
 // Sends a matrix from its owner to all ranks.
 template <class Scalar>
 void send(MPI_Comm comm, int owner, int rows, int columns, algebra::Matrix<Scalar>& a) {
   if (petsc::rank(comm) != owner) a = algebra::Matrix<Scalar>(rows, columns);
-  MPI_Bcast(a.data(), rows * columns, type_of(Scalar()), owner, comm);
+  MPI_Bcast(a.data(), rows * columns, type<Scalar>(), owner, comm);
 }
 
 }  // namespace
