@@ -10,6 +10,7 @@ namespace {
 
 using Coefficients = std::array<double, kDragTerms>;
 
+constexpr double kError = 2e-14;  // of a panel, beside the size of b
 constexpr double kPi = boost::math::constants::pi<double>();
 
 double horner(const Coefficients& a, double x) {
@@ -45,7 +46,7 @@ const DragPanel& DragTable::at(double speed) {
   while (panel_.empty() || panel_.back().high <= speed) {
     const double low = panel_.empty() ? 0 : panel_.back().high, high = std::max(1.0, 2 * low);
     floor_ = 1e-3 * std::abs(drag_(high));
-    add(low, high, 0);
+    add(low, high, 0, std::numeric_limits<double>::infinity());
   }
   const auto holds = [&](std::size_t n) {
     return panel_[n].low <= speed && speed < panel_[n].high;
@@ -76,18 +77,21 @@ DragPanel DragTable::interpolant(double low, double high, double overlap) const 
   return {low, high, std::max(0.0, from - rounding), to + rounding, centre, a};
 }
 
-// Tried at places that no panel shares with its halves.
-bool DragTable::holds(const DragPanel& panel) const {
+// The largest error at places that no panel shares with its halves. At a speed u that is a double b
+// is known to a rounding of u b'(u) at best, however small b is there.
+double DragTable::relative_error(const DragPanel& panel) const {
   constexpr int places = 31;
-  double size = floor_, error = 0;
+  double size = std::max(floor_, panel.centre * std::abs(panel.coefficient[1])), error = 0;
   for (int n = 1; n <= places; ++n) {
     const double share = std::fmod(n * 0.618033988749895, 1);
     const double u = panel.from + (panel.to - panel.from) * share, b = drag_(u);
     size = std::max(size, std::abs(b));
     error = std::max(error, std::abs(b - horner(panel.coefficient, u - panel.centre)));
   }
-  return error <= 2e-14 * size;
+  return error / size;
 }
+
+bool DragTable::holds(const DragPanel& panel) const { return relative_error(panel) <= kError; }
 
 double DragTable::rough_place(double low, double high) const {
   for (;;) {
@@ -97,20 +101,28 @@ double DragTable::rough_place(double low, double high) const {
   }
 }
 
-void DragTable::add(double low, double high, int depth) {
+// Halves that are hardly better than their panel show the rounding of the law itself, as where
+// large terms of it cancel; small features of a law look so only until panels are short.
+void DragTable::add(double low, double high, int depth, double error_of_whole) {
+  constexpr int is_short = 8;
+  constexpr double is_small = 1e-8, hardly_better = 0.75;
   const double width = high - low;
+  double error = 0;
   for (double overlap : {0.25, 0.0}) {
     const DragPanel panel = interpolant(low, high, overlap);
+    error = relative_error(panel);
     const bool smallest = overlap == 0 && width <= 1e-13 * (1 + high);
-    if (smallest || holds(panel)) return panel_.push_back(panel);
+    const bool rounding = depth >= is_short && error < is_small && overlap == 0 &&
+                          error > hardly_better * error_of_whole;
+    if (smallest || rounding || error <= kError) return panel_.push_back(panel);
   }
   double middle = low + width / 2;
   if (depth >= 6) {
     const double rough = rough_place(low, high);
     if (std::abs(rough - middle) < 0.49 * width) middle = rough;
   }
-  add(low, middle, depth + 1);
-  add(middle, high, depth + 1);
+  add(low, middle, depth + 1, error);
+  add(middle, high, depth + 1, error);
 }
 
 }  // namespace stickslip::simulation

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <functional>
+#include <stdexcept>
 
 #include "../common/catch.hpp"
 #include "../common/quadrature.hpp"
@@ -281,6 +282,33 @@ TEST_CASE("flow: a kink of the drag ends a step from either side") {
   const auto falling = flow.move(0.6, -0.1, 10, true);
   CHECK(falling.stopped);
   CHECK(falling.time == Approx(0.3 / 0.4 + std::log(4.0)).epsilon(1e-12));
+}
+
+// b is 0 at a speed where its terms are not, and in the second law they cancel everywhere: there
+// no panel is as near to b as to a number of its own size.
+TEST_CASE("flow: panels of a drag law end at the rounding of the law") {
+  int evaluations = 0;
+  const auto counted = [&](std::function<double(double)> law) {
+    return [&evaluations, law](double v) {
+      if (++evaluations > 10000000) throw std::runtime_error("without end");
+      return law(v);
+    };
+  };
+  const std::vector<std::function<double(double)>> laws{
+      [](double v) { return -0.5 * v + 0.2 * std::tanh(3 * v); },
+      [](double v) { return (1e4 * v - v) - 1e4 * v; }};
+  for (const auto& law : laws) {
+    evaluations = 0;
+    simulation::DragTable table({0, 0, counted(law)});
+    for (double u : {0.01, 0.3, 0.4, 0.7, 1.5, 3.0}) {
+      const auto& panel = table.at(u);
+      double b = 0;
+      for (std::size_t n = panel.coefficient.size(); n-- > 0;) {
+        b = panel.coefficient[n] + (u - panel.centre) * b;
+      }
+      CHECK(b == Approx(law(u)).margin(2e-12));
+    }
+  }
 }
 
 TEST_CASE("flow: the table of a drag law holds it everywhere, to rounding") {

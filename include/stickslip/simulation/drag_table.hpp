@@ -20,9 +20,9 @@ struct DragPanel {
 };
 
 /// b(u) for u >= 0. The built-in laws are one panel. Of any other, Chebyshev interpolants on panels
-/// that are halved until they agree with it to 2e-14 of its size, and where they can be by a
-/// quarter longer on each side; kinks are found by bisection and end panels. Panels depend on the
-/// law alone, and are made as speeds come to need them. Local.
+/// that are halved until they agree with it to 2e-14 of its size or to its own rounding, and where
+/// they can be by a quarter longer on each side; kinks are found by bisection and end panels.
+/// Panels depend on the law alone, and are made as speeds come to need them. Local.
 class DragTable {
  public:
   explicit DragTable(const model::Drag& drag);
@@ -32,9 +32,10 @@ class DragTable {
 
  private:
   [[nodiscard]] DragPanel interpolant(double low, double high, double overlap) const;
+  [[nodiscard]] double relative_error(const DragPanel& panel) const;
   [[nodiscard]] bool holds(const DragPanel& panel) const;
   [[nodiscard]] double rough_place(double low, double high) const;
-  void add(double low, double high, int depth);
+  void add(double low, double high, int depth, double error_of_whole);
 
   model::Drag drag_;
   std::vector<DragPanel> panel_;  // in rising order without gaps
