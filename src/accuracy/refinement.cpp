@@ -190,17 +190,18 @@ class Refiner {
   // What rounding limits is given up, and the others are refined on.
   [[nodiscard]] bool finished() {
     Step& step = outcome_.steps.back();
+    const Step& before = outcome_.steps[outcome_.steps.size() - 2];
+    // One that only now resolves waves has nothing to be compared with.
+    if (step.resolution.waves.size() > before.resolution.waves.size()) {
+      last_rounding_ = std::numeric_limits<double>::infinity();
+    }
     for (;;) {
       const double rounding = judge(step);
       if (step.estimate <= question_.accuracy) {
         conclude(step);
         return true;
       }
-      // What a finer discretisation still improves is no limit yet, and one that only now resolves
-      // the waves has nothing to be compared with.
-      if (step.resolution.waves.size() > std::exchange(waves_, step.resolution.waves.size())) {
-        last_rounding_ = std::numeric_limits<double>::infinity();
-      }
+      // What a finer discretisation still improves is no limit yet.
       const bool falls = rounding < 0.5 * std::exchange(last_rounding_, rounding);
       if (rounding <= question_.accuracy || falls) return false;
       // What reduced models miss on coarse grids, and what sums over nodes overlook of an
@@ -327,7 +328,6 @@ class Refiner {
   int refinements_in_vain_ = 0;
   std::set<std::string> given_up_;  // keys of results that rounding limits
   std::string limit_;               // what limits the first of them
-  std::size_t waves_ = 0;           // that elements followed
   Changes changes_;                 // of the last step
   std::shared_ptr<quantities::Recipes> recipes_ = std::make_shared<quantities::Recipes>();
   std::shared_ptr<const StationaryDistribution> distribution_;  // of the last step, if needed

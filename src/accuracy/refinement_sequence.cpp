@@ -30,22 +30,14 @@ constexpr int kFirstPoints = 8;
 // Errors are about 10^-d at degree d; those of displacements tenfold smaller, those of the density
 // of sticking times at 0+ tenfold larger, of the tail of a spectrum and of densities of durations a
 // hundredfold. (On coarser elements reduced models search long for waves that are not resolved.)
-// Densities of path lengths lose a digit in one and a half degrees.
+// Densities of path lengths lose a digit in one and a half degrees. The catalogue has the numbers.
 int starting_degree(const options::Question& question) {
-  using options::Quantity;
   const double digits = -std::log10(question.accuracy);
-  const auto degree = [digits](Quantity quantity) {
-    switch (quantity) {
-    case Quantity::displacement: return digits;
-    case Quantity::entry_law: return digits + 2;
-    case Quantity::spectrum:
-    case Quantity::duration_density: return digits + 3;
-    case Quantity::slip: return 1.5 * digits + 2;
-    default: return digits + 1;
-    }
-  };
   double highest = 0;
-  for (Quantity quantity : question.quantities) highest = std::max(highest, degree(quantity));
+  for (const auto* entry : catalogue::entries()) {
+    if (!question.wants(entry->quantity)) continue;
+    highest = std::max(highest, entry->degrees_per_digit * digits + entry->degrees_besides);
+  }
   return std::clamp(static_cast<int>(std::ceil(highest)), kLowestDegree, kHighestDegree);
 }
 

@@ -70,7 +70,8 @@ void write_comparison(Hdf5File& file, const Json& comparison) {
 void write_modes(Hdf5File& file, const quantities::RelaxationSector& sector) {
   const auto& modes = sector.modes;
   if (modes.empty()) return;
-  const std::string group = fmt::format("/{}", quantities::relaxation_row(sector.symmetry).key);
+  const std::string group =
+      fmt::format("/{}", quantities::relaxation_rows(sector.symmetry).rate.key);
   write_axes(file, group, modes[0].real);
   for (std::size_t n = 0; n < modes.size(); ++n) {
     const std::string name = fmt::format("{}/mode_{}", group, n + 1);

@@ -109,17 +109,10 @@ class Estimates {
   }
 
  private:
-  void add(Result result, std::size_t count, const auto& estimate) {
-    result.value.clear();
-    result.error.clear();
-    for (std::size_t n = 0; n < count; ++n) append_value(result, estimate(n));
-    results_.push_back(std::move(result));
-  }
-  void scalar(const Row& row, const Estimate& e) {
-    add(quantities::scalar(row, 0, 0), 1, [&](std::size_t) { return e; });
-  }
-  void scalar(const Row& row, const std::string& f, const Estimate& e) {
-    add(quantities::scalar(row, f, 0, 0), 1, [&](std::size_t) { return e; });
+  void scalar(const Row& row, const Estimate& e) { scalar(quantities::blank(row), e); }
+  void scalar(Result blank, const Estimate& e) {
+    append_value(blank, e);
+    results_.push_back(std::move(blank));
   }
   // An array of estimate(n) over the n-th abscissa. What no sample met has no size of its own.
   void over(const Row& row, const std::vector<double>& abscissa, const auto& estimate) {
@@ -129,8 +122,8 @@ class Estimates {
     if (result.kind == Kind::probability || result.kind == Kind::other) {
       result.each_by_its_size = false;
     }
-    const std::size_t count = result.abscissa.size();
-    add(std::move(result), count, estimate);
+    for (std::size_t n = 0; n < result.abscissa.size(); ++n) append_value(result, estimate(n));
+    results_.push_back(std::move(result));
   }
 
   void append_sticking() {
@@ -166,7 +159,7 @@ class Estimates {
     const auto& friction = process_.friction;
     for (std::size_t f = 0; f < question_.observables.size(); ++f) {
       for (const auto& [row, e] : tally_.averages(f)) {
-        scalar(*row, question_.observables[f].name,
+        scalar(quantities::blank(*row, question_.observables[f]),
                row == &catalogue::kPiStick ? e : of_function(question_.observables[f], e));
       }
     }
@@ -257,25 +250,26 @@ class Estimates {
 
   void append_resolvent() {
     const auto& lambda = question_.lambda;
-    for (std::size_t which = 0; which < tally_.exits(0).size(); ++which) {
-      over(*tally_.exits(0)[which].first, lambda,
+    const auto exits = tally_.exits(0);
+    for (std::size_t which = 0; which < exits.size(); ++which) {
+      over(*exits[which].first, lambda,
            [&](std::size_t n) { return tally_.exits(n)[which].second; });
     }
     const double least = *std::min_element(lambda.begin(), lambda.end());
     const std::size_t largest =
         static_cast<std::size_t>(std::max_element(lambda.begin(), lambda.end()) - lambda.begin());
     for (std::size_t f = 0; f < question_.observables.size(); ++f) {
-      const std::string& name = question_.observables[f].name;
+      const auto& observable = question_.observables[f];
       const auto all = tally_.resolvent(largest, f);
       for (std::size_t which = 0; which < all.size(); ++which) {
         const Row& row = *all[which].first;
         if (least == 0 && (&row == &catalogue::kU || &row == &catalogue::kUMinus)) continue;
-        over(quantities::array(row, name, lambda),
+        over(quantities::array(quantities::blank(row, observable), lambda),
              [&](std::size_t n) { return tally_.resolvent(n, f)[which].second; });
         // Beside averages it may not take their name.
         const bool average = &row == &catalogue::kPiLambda;
         if (average && !question_.wants(Quantity::averages)) {
-          results_.back().key = catalogue::kPi.key_of(name);
+          results_.back().key = catalogue::kPi.key_of(observable.name);
         }
       }
     }
@@ -292,9 +286,10 @@ class Estimates {
   void append_expectations() {
     for (std::size_t f = 0; f < question_.observables.size(); ++f) {
       const auto& observable = question_.observables[f];
-      over(quantities::array(catalogue::kExpectationOf, observable.name, question_.time),
+      over(quantities::array(quantities::blank(catalogue::kExpectationOf, observable),
+                             question_.time),
            [&](std::size_t n) { return of_function(observable, tally_.expectation(f, n)); });
-      scalar(catalogue::kStationaryOf, observable.name,
+      scalar(quantities::blank(catalogue::kStationaryOf, observable),
              of_function(observable, tally_.averages(f)[0].second));
     }
   }

@@ -135,34 +135,22 @@ RelaxationSector relaxation_modes(operators::Systems& systems, Symmetry symmetry
   return {symmetry, std::move(modes)};
 }
 
-const Row& relaxation_row(Symmetry symmetry) {
+RelaxationRows relaxation_rows(Symmetry symmetry) {
+  using namespace catalogue;
   switch (symmetry) {
-  case Symmetry::even: return catalogue::kRelaxationEven;
-  case Symmetry::odd: return catalogue::kRelaxationOdd;
+  case Symmetry::even: return {kRelaxationEven, kRelaxationEvenFrequency};
+  case Symmetry::odd: return {kRelaxationOdd, kRelaxationOddFrequency};
   case Symmetry::none: break;
   }
-  return catalogue::kRelaxationAll;
+  return {kRelaxationAll, kRelaxationAllFrequency};
 }
-
-namespace {
-
-const Row& frequency_row(Symmetry symmetry) {
-  switch (symmetry) {
-  case Symmetry::even: return catalogue::kRelaxationEvenFrequency;
-  case Symmetry::odd: return catalogue::kRelaxationOddFrequency;
-  case Symmetry::none: break;
-  }
-  return catalogue::kRelaxationAllFrequency;
-}
-
-}  // namespace
 
 void append_relaxation(const RelaxationSector& sector, Results& results) {
   const auto& modes = sector.modes;
   std::vector<double> number;
   for (std::size_t n = 0; n < modes.size(); ++n) number.push_back(static_cast<double>(n + 1));
-  Result decay = array(relaxation_row(sector.symmetry), number);
-  Result frequency = array(frequency_row(sector.symmetry), number);
+  const auto rows = relaxation_rows(sector.symmetry);
+  Result decay = array(rows.rate, number), frequency = array(rows.frequency, number);
   for (const auto& mode : modes) {
     decay.value.push_back(mode.rate.real());
     const double error = mode.residual + mode.spread;

@@ -232,19 +232,18 @@ void append_resolvent(const std::vector<double>& lambda,
   }
   const bool finite = std::all_of(lambda.begin(), lambda.end(), [](double l) { return l > 0; });
   for (std::size_t n = 0; n < observables.size(); ++n) {
-    const std::string& f = observables[n].name;
+    const auto& f = observables[n];
     const auto of = [&](const Row& row, Uncertain ObservableTransforms::*value) {
-      add(array(row, f, lambda), [n, value](const Resolvent& r) { return r.of[n].*value; });
+      add(array(blank(row, f), lambda), [n, value](const Resolvent& r) { return r.of[n].*value; });
     };
     if (finite) of(catalogue::kU, &ObservableTransforms::u);
     of(catalogue::kWPlus, &ObservableTransforms::w_plus);
     of(catalogue::kWMinus, &ObservableTransforms::w_minus);
     // Beside averages it may not take their name.
-    const std::string average = catalogue::kPi.key_of(f);
+    const std::string average = catalogue::kPi.key_of(f.name);
     const bool taken = std::any_of(results.begin(), results.end(),
                                    [&](const Result& r) { return r.key == average; });
     of(catalogue::kPiLambda, &ObservableTransforms::pi_lambda);
-    if (observables[n].within_unit()) results.back().kind = Kind::probability;
     if (!taken) results.back().key = average;
     of(catalogue::kMu, &ObservableTransforms::mu_lambda);
     if (symmetric) continue;

@@ -14,10 +14,12 @@ double largest(const std::vector<double>& values) {
   return size;
 }
 
-// The unit of an observable is not known.
-Result empty(const Row& row, std::string key) {
-  return {.key = std::move(key),
-          .unit = row.is_pattern() ? "" : std::string(row.unit),
+}  // namespace
+
+Result blank(const Row& row) {
+  return {.key = std::string(row.key),
+          .unit =
+              row.is_pattern() ? "" : std::string(row.unit),  // that of an observable is not known
           .abscissa_name = std::string(row.abscissa),
           .abscissa = {},
           .value = {},
@@ -26,33 +28,22 @@ Result empty(const Row& row, std::string key) {
           .each_by_its_size = row.each_by_its_size};
 }
 
-Result scalar_of(Result result, double value, double error) {
-  result.value = {value};
-  result.error = {error};
+Result blank(const Row& row, const model::Observable& f) {
+  Result result = blank(row);
+  result.key = row.key_of(f.name);
+  if (row.is_mean_of_f && f.within_unit()) result.kind = Kind::probability;
   return result;
 }
 
-Result array_of(Result result, std::vector<double> abscissa) {
-  result.abscissa = std::move(abscissa);
-  return result;
+Result scalar(Result blank, double value, double error) {
+  blank.value = {value};
+  blank.error = {error};
+  return blank;
 }
 
-}  // namespace
-
-Result scalar(const Row& row, double value, double error) {
-  return scalar_of(empty(row, std::string(row.key)), value, error);
-}
-
-Result scalar(const Row& row, const std::string& f, double value, double error) {
-  return scalar_of(empty(row, row.key_of(f)), value, error);
-}
-
-Result array(const Row& row, std::vector<double> abscissa) {
-  return array_of(empty(row, std::string(row.key)), std::move(abscissa));
-}
-
-Result array(const Row& row, const std::string& f, std::vector<double> abscissa) {
-  return array_of(empty(row, row.key_of(f)), std::move(abscissa));
+Result array(Result blank, std::vector<double> abscissa) {
+  blank.abscissa = std::move(abscissa);
+  return blank;
 }
 
 double relative_error(const Result& result) {

@@ -66,8 +66,7 @@ void append_averages(const StationaryDistribution& distribution, const Kolmogoro
   for (const auto& f : observables) {
     const Integral sum = integral(distribution, defect, a, f);
     const auto append = [&](const Row& row, Uncertain value) {
-      results.push_back(scalar(row, f.name, value));
-      if (f.within_unit()) results.back().kind = Kind::probability;
+      results.push_back(scalar(blank(row, f), value));
     };
     append(catalogue::kPi, (sum.stick + sum.slide) / excursion);
     if (!distribution.process().sticks()) continue;

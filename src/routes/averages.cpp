@@ -29,7 +29,7 @@ std::vector<Average> averages(const Setting& setting) {
   };
   std::vector<Average> all;
   const auto add = [&all](const quantities::Row& row, const model::Observable::Function& f) {
-    all.push_back({quantities::scalar(row, 0, 0), f});
+    all.push_back({quantities::blank(row), f});
   };
   const auto within = named("|x|<=mu_s"), stick = named("stick"), slide = named("slide");
   const double low = process.noise.level(process.lowest_static()),
@@ -54,8 +54,7 @@ std::vector<Average> averages(const Setting& setting) {
     const auto f = observable.value;
     const auto append = [&](const quantities::Row& row, const model::Observable::Function& part,
                             int given) {
-      all.push_back({quantities::scalar(row, observable.name, 0, 0), part, given});
-      if (observable.within_unit()) all.back().result.kind = Kind::probability;
+      all.push_back({quantities::blank(row, observable), part, given});
     };
     const auto within_phase = [f](const model::Observable::Function& in) {
       return [=](double x, double y, double v) { return f(x, y, v) * in(x, y, v); };
@@ -84,9 +83,7 @@ void append_averages(const Setting& setting, const std::vector<Uncertain>& value
     double share = std::abs(value.value);
     if (phase && n == kStick) share = std::min(share, std::abs(values[kSlide].value));
     value.error += defect * share;
-    results.push_back(all[n].result);
-    results.back().value = {value.value};
-    results.back().error = {value.error};
+    results.push_back(scalar(all[n].result, value));
   }
   if (question.wants(Quantity::moments) && !process.drifts()) {
     results.push_back(quantities::scalar(catalogue::kEV, 0, 0));  // by symmetry

@@ -11,7 +11,7 @@
 namespace stickslip::routes {
 
 struct Average {
-  quantities::Result result;  ///< without its value
+  quantities::Result result;  ///< blank
   model::Observable::Function f;
   int given = -1;  ///< number of the average that it is divided by, of a phase; -1: none
 };

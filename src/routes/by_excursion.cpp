@@ -164,12 +164,11 @@ void append_expectations(operators::Systems& systems, const Setting& setting,
     const auto expectation =
         quantities::expectation(systems, *evaluation.distribution, f, question.start, question.time,
                                 method, tolerance_of(setting));
-    auto of_time = quantities::array(catalogue::kExpectationOf, f.name, question.time);
-    auto limit = quantities::scalar(catalogue::kStationaryOf, f.name, expectation.stationary,
-                                    expectation.unseen);
-    if (f.within_unit()) of_time.kind = limit.kind = quantities::Kind::probability;
-    append_function_of_time(std::move(of_time), expectation.value, evaluation.results);
-    evaluation.results.push_back(std::move(limit));
+    append_function_of_time(
+        quantities::array(quantities::blank(catalogue::kExpectationOf, f), question.time),
+        expectation.value, evaluation.results);
+    evaluation.results.push_back(quantities::scalar(quantities::blank(catalogue::kStationaryOf, f),
+                                                    expectation.stationary, expectation.unseen));
   }
 }
 

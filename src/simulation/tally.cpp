@@ -1,15 +1,16 @@
 #include "stickslip/simulation/tally.hpp"
 
-#include "stickslip/catalogue/averages_keys.hpp"
-#include "stickslip/catalogue/displacement_keys.hpp"
-#include "stickslip/catalogue/peak_keys.hpp"
-#include "stickslip/catalogue/resolvent_keys.hpp"
-#include "stickslip/catalogue/slip_keys.hpp"
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <stdexcept>
+
+#include "stickslip/catalogue/averages_keys.hpp"
+#include "stickslip/catalogue/displacement_keys.hpp"
+#include "stickslip/catalogue/peak_keys.hpp"
+#include "stickslip/catalogue/resolvent_keys.hpp"
+#include "stickslip/catalogue/slip_keys.hpp"
 
 namespace stickslip::simulation {
 namespace {

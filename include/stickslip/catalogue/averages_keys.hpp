@@ -11,19 +11,22 @@ inline constexpr Row kPi{.key = "pi(f)",
                          .unit = "[f]",
                          .convention = "average per time; Z = (X, Y, V)",
                          .paper = "(3.17), (4.1)",
-                         .kind = Kind::drift};
+                         .kind = Kind::drift,
+                         .is_mean_of_f = true};
 inline constexpr Row kPiStick{.key = "pi(f|stick)",
                               .symbol = "E[f(Z) given Y = 0]",
                               .definition = "average of f over the time at rest",
                               .unit = "[f]",
                               .convention = "average per time at rest",
-                              .kind = Kind::drift};
+                              .kind = Kind::drift,
+                              .is_mean_of_f = true};
 inline constexpr Row kPiSlide{.key = "pi(f|slide)",
                               .symbol = "E[f(Z) given Y != 0]",
                               .definition = "average of f over the time in sliding phases",
                               .unit = "[f]",
                               .convention = "average per time in motion",
-                              .kind = Kind::drift};
+                              .kind = Kind::drift,
+                              .is_mean_of_f = true};
 inline constexpr Row kSlipRate{.key = "slip_rate",
                                .symbol = "1/E_exc[T]",
                                .definition = "mean number of sliding phases per unit time",

@@ -28,6 +28,7 @@ inline constexpr Entry kDisplacement{.quantity = Quantity::displacement,
                                      .title = "mean and variance of the displacement from -start",
                                      .routes = {Route::excursion, Route::monte_carlo},
                                      .options = "time, start",
-                                     .rows = kDisplacementRows};
+                                     .rows = kDisplacementRows,
+                                     .degrees_besides = 0};
 
 }  // namespace stickslip::catalogue

@@ -64,6 +64,7 @@ inline constexpr Entry kDurationDensity{
     .routes = {Route::excursion, Route::monte_carlo},
     .options = "time, transient_solver",
     .rows = kDurationDensityRows,
+    .degrees_besides = 3,
     .of_phases = true};
 
 }  // namespace stickslip::catalogue

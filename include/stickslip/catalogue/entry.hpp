@@ -76,6 +76,8 @@ struct Row {
   std::string_view convention = {};  ///< normalisation, sign, start
   std::string_view paper = {};       ///< equations or sections of the paper; empty if beyond it
   Kind kind = Kind::other;
+  /// Whether it is a mean of the observable: a probability where that is between 0 and 1.
+  bool is_mean_of_f = false;
   /// Whether the accuracy of an array is meant relative to each value, not to the largest one.
   bool each_by_its_size = false;
   Routes without = {};  ///< solution methods that give the quantity but not this result
@@ -97,6 +99,9 @@ struct Entry {
   std::string_view options = {};  ///< that it depends on, a comma list
   std::string_view others = {};   ///< keys of other quantities that come with it, a comma list
   std::span<const Row* const> rows = {};
+  /// The degree of elements at which error estimates meet an accuracy of 10^-n is expected to be
+  /// degrees_per_digit n + degrees_besides.
+  double degrees_per_digit = 1, degrees_besides = 1;
   bool of_phases = false;  ///< about sticking and sliding phases: nothing where a body never sticks
   bool of_one_run = false;  ///< a field or a path, which has no place in a sweep
 };

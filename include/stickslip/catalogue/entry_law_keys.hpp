@@ -37,6 +37,7 @@ inline constexpr Entry kEntryLaw{
     .title = "hitting distribution at the onset of sticking",
     .routes = {Route::excursion, Route::fluid_queue, Route::monte_carlo},
     .rows = kEntryLawRows,
+    .degrees_besides = 2,
     .of_phases = true};
 
 }  // namespace stickslip::catalogue

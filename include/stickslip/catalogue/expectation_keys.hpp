@@ -12,13 +12,15 @@ inline constexpr Row kExpectationOf{
     .unit = "[f]",
     .abscissa = "time",
     .convention = "solution of the backward Kolmogorov equation",
-    .paper = "(2.21), (2.22)"};
+    .paper = "(2.21), (2.22)",
+    .is_mean_of_f = true};
 inline constexpr Row kStationaryOf{.key = "stationary(f)",
                                    .symbol = "pi(f)",
                                    .definition = "limit of E(f) for t -> infinity",
                                    .unit = "[f]",
                                    .convention = "average per time",
-                                   .paper = "(3.17)"};
+                                   .paper = "(3.17)",
+                                   .is_mean_of_f = true};
 
 inline constexpr const Row* kExpectationRows[] = {&kExpectationOf, &kStationaryOf};
 

@@ -85,6 +85,7 @@ inline constexpr Row kPiLambda{.key = "pi_lambda(f)",
                                .abscissa = "lambda",
                                .convention = "its key is pi(f) where averages is not asked for",
                                .paper = "(3.16)",
+                               .is_mean_of_f = true,
                                .each_by_its_size = true};
 inline constexpr Row kMu{.key = "mu(f)",
                          .symbol = "mu_lambda(f)",

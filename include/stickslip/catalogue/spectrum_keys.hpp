@@ -63,6 +63,7 @@ inline constexpr Entry kSpectrum{.quantity = Quantity::spectrum,
                                  .title = "power spectral density of the velocity, diffusivity",
                                  .routes = {Route::excursion, Route::monte_carlo},
                                  .options = "omega, spectrum_solver",
-                                 .rows = kSpectrumRows};
+                                 .rows = kSpectrumRows,
+                                 .degrees_besides = 3};
 
 }  // namespace stickslip::catalogue

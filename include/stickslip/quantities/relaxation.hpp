@@ -34,8 +34,11 @@ struct RelaxationSector {
   std::vector<RelaxationMode> modes;
 };
 
-/// Of the rates of functions of one symmetry.
-[[nodiscard]] const Row& relaxation_row(operators::Symmetry symmetry);
+/// What the rates and the frequencies of functions of one symmetry are called.
+struct RelaxationRows {
+  const Row &rate, &frequency;
+};
+[[nodiscard]] RelaxationRows relaxation_rows(operators::Symmetry symmetry);
 
 /// The modes of functions of one symmetry with the smallest decay rates, the constant function left
 /// out: half as many as the eigensolver is asked for (-relax_eps_nev, 8 unless given), since those

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "stickslip/catalogue/entry.hpp"
+#include "stickslip/model/observable.hpp"
 
 namespace stickslip::quantities {
 
@@ -35,13 +36,21 @@ struct Result {
 
 using Results = std::vector<Result>;
 
-/// A scalar, or an array without values yet, of a row of the catalogue.
-[[nodiscard]] Result scalar(const Row& row, double value, double error);
-[[nodiscard]] Result array(const Row& row, std::vector<double> abscissa);
+/// A result of a row of the catalogue, without abscissa and values; of one that stands for many
+/// results, that of the observable `f`.
+[[nodiscard]] Result blank(const Row& row);
+[[nodiscard]] Result blank(const Row& row, const model::Observable& f);
 
-/// The same of a row that stands for many results, for the observable `f`.
-[[nodiscard]] Result scalar(const Row& row, const std::string& f, double value, double error);
-[[nodiscard]] Result array(const Row& row, const std::string& f, std::vector<double> abscissa);
+/// A scalar, or an array without values yet, made from a blank.
+[[nodiscard]] Result scalar(Result blank, double value, double error);
+[[nodiscard]] Result array(Result blank, std::vector<double> abscissa);
+
+[[nodiscard]] inline Result scalar(const Row& row, double value, double error) {
+  return scalar(blank(row), value, error);
+}
+[[nodiscard]] inline Result array(const Row& row, std::vector<double> abscissa) {
+  return array(blank(row), std::move(abscissa));
+}
 
 /// Largest error relative to the size of the values; infinite where one is not a number, unless the
 /// result is partial.

@@ -34,12 +34,11 @@ struct Uncertain {
 /// functional . solution, with the effect of iterative refinement as its rounding. Collective.
 [[nodiscard]] Uncertain value_of(Vec functional, const petsc::Solution& solution);
 
-/// A scalar of a row of the catalogue.
-[[nodiscard]] inline Result scalar(const Row& row, Uncertain value) {
-  return scalar(row, value.value, value.error);
+[[nodiscard]] inline Result scalar(Result blank, Uncertain value) {
+  return scalar(std::move(blank), value.value, value.error);
 }
-[[nodiscard]] inline Result scalar(const Row& row, const std::string& f, Uncertain value) {
-  return scalar(row, f, value.value, value.error);
+[[nodiscard]] inline Result scalar(const Row& row, Uncertain value) {
+  return scalar(blank(row), value);
 }
 
 inline void append_value(Result& array, Uncertain value) {
