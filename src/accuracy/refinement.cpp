@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -18,6 +17,7 @@
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/quantities/excursion.hpp"
 #include "stickslip/support/errors.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::accuracy {
 namespace {
@@ -193,7 +193,7 @@ class Refiner {
     const Step& before = outcome_.steps[outcome_.steps.size() - 2];
     // One that only now resolves waves has nothing to be compared with.
     if (step.resolution.waves.size() > before.resolution.waves.size()) {
-      last_rounding_ = std::numeric_limits<double>::infinity();
+      last_rounding_ = kInfinity;
     }
     for (;;) {
       const double rounding = judge(step);
@@ -225,7 +225,7 @@ class Refiner {
     }
     given_up_.insert(step.limiting_key);
     refinements_in_vain_ = 0;
-    last_rounding_ = std::numeric_limits<double>::infinity();
+    last_rounding_ = kInfinity;
   }
 
   void conclude(Step& step) {
@@ -323,8 +323,8 @@ class Refiner {
   const Progress& progress_;
   RefinementSequence sequence_;
   Outcome outcome_;
-  std::vector<double> rounding_;                                    // relative, of each result
-  double last_rounding_ = std::numeric_limits<double>::infinity();  // of the limiting result
+  std::vector<double> rounding_;      // relative, of each result
+  double last_rounding_ = kInfinity;  // of the limiting result
   int refinements_in_vain_ = 0;
   std::set<std::string> given_up_;  // keys of results that rounding limits
   std::string limit_;               // what limits the first of them

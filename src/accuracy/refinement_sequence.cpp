@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <memory>
+
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::accuracy {
 namespace {
@@ -46,7 +47,7 @@ double largest(const std::vector<double>& values) {
 }
 
 double least_positive(const std::vector<double>& values) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   for (double value : values) least = value > 0 ? std::min(least, value) : least;
   return least;
 }

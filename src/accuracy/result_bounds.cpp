@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <vector>
+
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::accuracy {
 namespace {
@@ -16,7 +17,6 @@ using quantities::Kind;
 using quantities::Result;
 
 constexpr double kRounding = 1e-10;  // where errors are smaller, they are estimates themselves
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What a result has to keep to.
 struct Bounds {

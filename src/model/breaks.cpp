@@ -8,6 +8,8 @@
 #include <numbers>
 #include <regex>
 
+#include "stickslip/support/infinity.hpp"
+
 namespace stickslip::model {
 namespace {
 
@@ -22,9 +24,7 @@ struct Interval {
   Interval(const FunctionOfSpeed& f, double a, double b)
       : low(a), high(b), error(interpolation_error(f, a, b)), rise(std::abs(f(b) - f(a))) {}
   [[nodiscard]] double width() const { return high - low; }
-  [[nodiscard]] double size() const {
-    return std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
-  }
+  [[nodiscard]] double size() const { return std::isnan(error) ? kInfinity : error; }
   [[nodiscard]] double at(double t) const { return low + t * (high - low); }
   [[nodiscard]] bool divides() const { return width() > 1e-12 * high; }
   /// What rounding of v does to f.
@@ -75,7 +75,7 @@ class Search {
   // marks lie.
   [[nodiscard]] Bracket narrow(const Interval& all, double rounding) const {
     constexpr int unresolvable = 5;
-    constexpr double none = std::numeric_limits<double>::infinity(), narrow_enough = 1e-4;
+    constexpr double none = kInfinity, narrow_enough = 1e-4;
     std::vector<Interval> past{all};
     for (int alike = 0; past.back().divides() && !(past.back().error <= rounding);) {
       const Interval now = past.back();

@@ -6,13 +6,13 @@
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <utility>
+
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::model {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFine = 1.01;  // ratio of speeds at which laws that rise are looked at
 
 // b(h)/h at h = 2^-n, extrapolated to h = 0 in powers of h (Romberg, Ridders), from one side only:
@@ -53,7 +53,7 @@ double integral(const Drag& b, double v) {
   using Rule = boost::math::quadrature::gauss<double, 15>;
   const auto value = [&](double u) { return b(u); };
   constexpr double nothing = 1e-18;
-  double sum = 0, before = std::numeric_limits<double>::infinity();
+  double sum = 0, before = kInfinity;
   for (int n = 0; n < 60; ++n, v /= 2) {
     const double part = Rule::integrate(value, v / 2, v);
     sum += part;

@@ -12,7 +12,7 @@
 namespace stickslip::model {
 namespace {
 
-constexpr double kRounding = 1e-13;
+constexpr double kNegligible = 1e-13;
 
 double value_at(const Drag& b, double v) {
   const double value = b(v);
@@ -25,7 +25,7 @@ double value_at(const Drag& b, double v) {
 
 void require_zero_at_rest(const Drag& b, double mu_d) {
   const double value = value_at(b, 0);
-  if (std::abs(value) <= kRounding * mu_d) return;
+  if (std::abs(value) <= kNegligible * mu_d) return;
   throw UnfitLaw(fmt::format("is {:g} at v = 0; drag must vanish at rest", value),
                  "leave constants out: dry friction is -mu_d");
 }
@@ -78,7 +78,7 @@ bool rises(const Side& b, double reach, double mu_d) {
   double before = 0;
   for (double v : places(reach)) {
     const double now = b(v);
-    found = found || now > before + kRounding * (std::abs(before) + mu_d);
+    found = found || now > before + kNegligible * (std::abs(before) + mu_d);
     before = now;
   }
   return found;

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::model {
 namespace {
@@ -57,9 +58,7 @@ std::vector<double> weights(const std::vector<Level>& levels) {
 // With S_i = sum_(j <= i) pi_j (x_j - m), the intensity is sum_i S_i^2/(pi_i up_i): an edge passes
 // on all that lies below it. Summed from the end where all terms have one sign.
 LevelTable::LevelTable(std::vector<Level> levels)
-    : levels_(std::move(levels)),
-      lowest_(-places_below_zero(levels_)),
-      step_(std::numeric_limits<double>::infinity()) {
+    : levels_(std::move(levels)), lowest_(-places_below_zero(levels_)), step_(kInfinity) {
   require_chain(levels_);
   const auto w = weights(levels_);
   const std::size_t count = w.size();

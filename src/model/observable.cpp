@@ -12,13 +12,12 @@
 #include "stickslip/model/expression.hpp"
 #include "stickslip/model/grid_index.hpp"
 #include "stickslip/support/errors.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::model {
 namespace {
 
 using Function = std::function<double(double, double, double)>;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::string not_finite(const std::string& text, double value, double x, double y, double v) {
   return fmt::format("{} is {} at x = {:g}, y = {:g}, v = {:g}; it must be finite in every state, "

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <set>
 #include <string>
 #include <utility>
@@ -23,6 +22,7 @@
 #include "stickslip/catalogue/spectrum_keys.hpp"
 #include "stickslip/catalogue/sticking_keys.hpp"
 #include "stickslip/quantities/excursion.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::monte_carlo {
 namespace {
@@ -230,9 +230,8 @@ class Estimates {
 
   void append_peak() {
     const auto& w = question_.velocity;
-    over(catalogue::kPPeak, w, [&](std::size_t n) {
-      return tally_.probability(Variable::peak, w[n], std::numeric_limits<double>::infinity());
-    });
+    over(catalogue::kPPeak, w,
+         [&](std::size_t n) { return tally_.probability(Variable::peak, w[n], kInfinity); });
     for (std::size_t from : {0, 1}) {
       over(*tally_.first_passage(w[0])[from].first, w,
            [&](std::size_t n) { return tally_.first_passage(w[n])[from].second; });

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "stickslip/noise/gauss_rule.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::noise {
 namespace {
@@ -38,7 +39,7 @@ class SpecialPoints {
     for (double s : ends_) {
       if (low < s && s < high) return false;
     }
-    double distance = std::numeric_limits<double>::infinity();
+    double distance = kInfinity;
     for (double s : graded_) {
       distance = std::min({distance, std::abs(low - s), std::abs(high - s)});
     }

@@ -69,7 +69,7 @@ std::string swept_names(const Group& group) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-constexpr const char* kSwept =
+constexpr const char* kSweptHelp =
     "values of the option of the same name; numbers in its unit and range.";
 
 std::string item(const Option& option) {
@@ -82,7 +82,7 @@ std::string option_items() {
   for (const auto& group : table()) {
     text += fmt::format(".SS {}\n{}\n", roff(group.title), roff(group.explanation + "."));
     const std::string swept = swept_names(group);
-    if (!swept.empty()) text += entry(bold(swept) + " \\fInumbers\\fR", kSwept);
+    if (!swept.empty()) text += entry(bold(swept) + " \\fInumbers\\fR", kSweptHelp);
     for (const auto& option : group.options) {
       if (swept_by(option) == nullptr) text += item(option);
     }
@@ -249,7 +249,7 @@ std::string group_help(const Group& group) {
   std::string text = fmt::format("\n{}. {}.\n", group.title, wrap(group.explanation, 88, 2));
   const std::string swept = swept_names(group);
   if (!swept.empty()) {
-    text += help_entry(wrap(swept, 94, 2), kSwept);
+    text += help_entry(wrap(swept, 94, 2), kSweptHelp);
   }
   for (const auto& option : group.options) {
     if (swept_by(option) != nullptr) continue;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
@@ -18,6 +17,7 @@
 #include "reading.hpp"
 #include "stickslip/options/settings.hpp"
 #include "stickslip/support/hdf5_id.hpp"
+#include "stickslip/support/infinity.hpp"
 #include "stickslip/support/isolated.hpp"
 #include "stickslip/support/statistics.hpp"
 
@@ -69,7 +69,7 @@ void append(const std::string& key, const Values& v, std::vector<Reference>& all
 
 // JSON has no infinity: null stands for it.
 double number_or_infinity(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
+  return json.is_null() ? kInfinity : json.get<double>();
 }
 
 std::vector<double> numbers(const Json& json) {

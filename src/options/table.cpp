@@ -4,13 +4,13 @@
 #include <fmt/ranges.h>
 
 #include "quantities.hpp"
+#include "stickslip/support/infinity.hpp"
 #include "stickslip/support/text.hpp"
 #include "words.hpp"
 
 namespace stickslip::options {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr const char* kChosen = "leave it out to have it chosen from -accuracy";
 constexpr std::string_view kSweeps = "sweep_";
 

@@ -9,12 +9,12 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <limits>
 #include <system_error>
 #include <vector>
 
 #include "stickslip/petsc/memory.hpp"
 #include "stickslip/support/errors.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::petsc {
 namespace {
@@ -73,7 +73,7 @@ double measured_speed() {
   const std::vector<PetscScalar> a(entries, 0.5), b(entries, 0.25);
   std::vector<PetscScalar> c(entries, 0.0);
   const PetscScalar one = 1, zero = 0;
-  double best = std::numeric_limits<double>::infinity();
+  double best = kInfinity;
   for (int r = 0; r < repetitions; ++r) {
     const auto start = std::chrono::steady_clock::now();
     BLASgemm_("N", "N", &n, &n, &n, &one, a.data(), &n, b.data(), &n, &zero, c.data(), &n);

@@ -6,13 +6,13 @@
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/linear_solver.hpp"
+#include "stickslip/petsc/scalars.hpp"
 #include "stickslip/petsc/solver_choice.hpp"
 #include "stickslip/support/errors.hpp"
 
 namespace stickslip::petsc {
 namespace {
 
-constexpr bool kComplex = PetscDefined(USE_COMPLEX);
 constexpr double kTolerance = 1e-13;
 
 KSP solver_of(EPS eps) {

@@ -9,6 +9,7 @@
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/linear_solver.hpp"
+#include "stickslip/petsc/scalars.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -17,7 +18,6 @@ namespace {
 
 constexpr double kBackwardErrorLimit = 1e-12;
 constexpr int kMostRefinementSteps = 2;  // the second only where the first leaves too much
-constexpr bool kComplex = PetscDefined(USE_COMPLEX);
 
 }  // namespace
 

@@ -5,16 +5,16 @@
 
 #include <algorithm>
 #include <fstream>
-#include <limits>
 #include <sstream>
 #include <string>
 
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::petsc {
 namespace {
 
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+constexpr double kUnlimited = kInfinity;
 
 // The value of a line "Name:  12345 kB" in a file of /proc, in bytes.
 double proc_value(const char* file, const std::string& name) {

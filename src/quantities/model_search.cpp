@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "stickslip/exact/transfer_function.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -192,7 +193,7 @@ class Search {
       double error = kFloor * size(n);
       for (const auto& [point, weight] : questions_.terms[n]) error += weight * errors_[point];
       // A projection may have a pole on the wrong side; the next ones have it elsewhere.
-      if (!std::isfinite(error)) error = std::numeric_limits<double>::infinity();
+      if (!std::isfinite(error)) error = kInfinity;
       now_.error.push_back(error);
       relative_.push_back(error / size(n));
     }
@@ -235,8 +236,8 @@ class Search {
   bool improve(std::size_t point) {
     if (model_.full()) return false;
     const Complex z = questions_.points[point];
-    const bool tried = before_ < std::numeric_limits<double>::infinity() &&
-                       now_.relative_error > 0.3 * before_ && distance(z, last_) < std::log(2.0);
+    const bool tried = before_ < kInfinity && now_.relative_error > 0.3 * before_ &&
+                       distance(z, last_) < std::log(2.0);
     before_ = now_.relative_error;
     last_ = z;
     if (tried) return interpolate(point);
@@ -298,7 +299,7 @@ class Search {
   Answers now_, best_;
   std::size_t best_truths_ = 0;
   std::set<double> shifts_;
-  double before_ = std::numeric_limits<double>::infinity();
+  double before_ = kInfinity;
   Complex last_ = 0;
 };
 

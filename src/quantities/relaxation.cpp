@@ -6,6 +6,7 @@
 #include "stickslip/operators/solver_policy.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/eigensolver.hpp"
+#include "stickslip/petsc/scalars.hpp"
 #include "stickslip/petsc/vectors.hpp"
 
 namespace stickslip::quantities {
@@ -25,7 +26,7 @@ constexpr double kLeastFrequency = 1e-5;
 
 std::complex<double> entry(const petsc::ReadView& real, const petsc::ReadView& imaginary,
                            PetscInt n) {
-  if (PetscDefined(USE_COMPLEX)) return {PetscRealPart(real[n]), PetscImaginaryPart(real[n])};
+  if (petsc::kComplex) return {PetscRealPart(real[n]), PetscImaginaryPart(real[n])};
   return {PetscRealPart(real[n]), PetscRealPart(imaginary[n])};
 }
 

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
+
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -52,7 +53,7 @@ double relative_error(const Result& result) {
   for (std::size_t n = 0; n < result.value.size(); ++n) {
     if (result.partial && std::isnan(result.value[n])) continue;
     const bool number = !std::isnan(result.value[n]) && !std::isnan(result.error[n]);
-    if (!number) return std::numeric_limits<double>::infinity();
+    if (!number) return kInfinity;
     if (result.error[n] == 0) continue;
     const double own = result.each_by_its_size ? std::abs(result.value[n]) : size;
     relative = std::max(relative, result.error[n] / own);

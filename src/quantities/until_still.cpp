@@ -6,12 +6,12 @@
 
 #include "stickslip/exact/transfer_function.hpp"
 #include "stickslip/quantities/model_search.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class Growth {
  public:

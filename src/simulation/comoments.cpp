@@ -1,7 +1,8 @@
 #include "stickslip/simulation/comoments.hpp"
 
 #include <algorithm>
-#include <limits>
+
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::simulation {
 
@@ -34,7 +35,7 @@ void Comoments::merge(const Comoments& other) {
 }
 
 double Comoments::variance_of_mean(std::span<const double> weight) const {
-  if (count() < 2) return std::numeric_limits<double>::infinity();
+  if (count() < 2) return kInfinity;
   double sum = 0;
   std::size_t at = 1 + size_;
   for (std::size_t r = 0; r < size_; ++r) {

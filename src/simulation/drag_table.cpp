@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <boost/math/constants/constants.hpp>
 #include <cmath>
-#include <limits>
+
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::simulation {
 namespace {
@@ -38,15 +39,14 @@ Coefficients powers(const Coefficients& a) {
 
 DragTable::DragTable(const model::Drag& drag) : drag_(drag) {
   if (drag.law) return;
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  panel_.push_back({0, infinity, 0, infinity, 0, {0, -drag.linear, 0, -drag.cubic}});
+  panel_.push_back({0, kInfinity, 0, kInfinity, 0, {0, -drag.linear, 0, -drag.cubic}});
 }
 
 const DragPanel& DragTable::at(double speed) {
   while (panel_.empty() || panel_.back().high <= speed) {
     const double low = panel_.empty() ? 0 : panel_.back().high, high = std::max(1.0, 2 * low);
     floor_ = 1e-3 * std::abs(drag_(high));
-    add(low, high, 0, std::numeric_limits<double>::infinity());
+    add(low, high, 0, kInfinity);
   }
   const auto holds = [&](std::size_t n) {
     return panel_[n].low <= speed && speed < panel_[n].high;

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "stickslip/simulation/flow.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::simulation {
 namespace {
@@ -112,7 +113,7 @@ State Walk::advance(double time) {
 
 double Walk::end_excursion() {
   bool rested = false;
-  for (;; step(std::numeric_limits<double>::infinity())) {
+  for (;; step(kInfinity)) {
     const State now = state();
     if (rested && now.y != 0) return now.time;
     rested = rested || now.y == 0;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <stdexcept>
 
 #include "stickslip/catalogue/averages_keys.hpp"
@@ -11,6 +10,7 @@
 #include "stickslip/catalogue/peak_keys.hpp"
 #include "stickslip/catalogue/resolvent_keys.hpp"
 #include "stickslip/catalogue/slip_keys.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::simulation {
 namespace {
@@ -398,7 +398,7 @@ Named Tally::first_passage(double w) const {
   const Smooth down = never ? least : (a[1] * (p[0] + q[0]) + q[1] * a[0]) / det;
   const auto estimate = [&](const Smooth& time) -> Estimate {
     const auto [mean, low, high] = m.estimate(time);
-    if (never) return {mean, mean, std::numeric_limits<double>::infinity()};
+    if (never) return {mean, mean, kInfinity};
     const double factor = std::exp(high / mean - 1);
     return {mean, mean / factor, mean * factor};
   };

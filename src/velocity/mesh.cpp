@@ -4,13 +4,14 @@
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
 
 #include "log_density.hpp"
 #include "waves.hpp"
+
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::velocity {
 namespace {
@@ -58,7 +59,7 @@ double gap_below(const model::Process& process) {
 double speed_of_bend(const model::Drag& drag, double gap) {
   if (drag.rises_until == 0) return gap / std::abs(drag.slope_at_rest());
   const auto balances = drag.balances(-gap);
-  return balances.empty() ? std::numeric_limits<double>::infinity() : balances.front();
+  return balances.empty() ? kInfinity : balances.front();
 }
 
 // At lambda = 0 two layers can form at v = 0. The kinetic layer around x = mu_d mixes levels delta
@@ -93,7 +94,7 @@ double killed_layer(const model::Process& process, double lambda) {
 // where that is less.
 double speed_of_leaving(const model::Process& process) {
   const auto cubed = [](const model::Process& branch) {
-    if (!branch.starts_upwards()) return std::numeric_limits<double>::infinity();
+    if (!branch.starts_upwards()) return kInfinity;
     return std::pow(branch.net_force(branch.static_index() + 1), 3);
   };
   const double step = process.noise.step();

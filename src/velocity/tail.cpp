@@ -4,9 +4,10 @@
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "log_density.hpp"
+
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::velocity {
 namespace {
@@ -34,7 +35,7 @@ double upper_tail(const model::Process& process, double tolerance, double most) 
 // the noise overcome only these count.
 double upper_tail(const model::Process& process, double tolerance) {
   constexpr int most = 20;
-  double end = upper_tail(process, tolerance, std::numeric_limits<double>::infinity());
+  double end = upper_tail(process, tolerance, kInfinity);
   for (int n = 0; n < most; ++n) {
     const double next = upper_tail(process, tolerance, end);
     if (!(next < 0.99 * end)) break;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "stickslip/support/infinity.hpp"
 #include "stickslip/velocity/mesh.hpp"
 
 namespace stickslip::velocity {
@@ -17,7 +17,7 @@ namespace {
 double wave_width_of_table(const model::Process& process, double omega, double v) {
   constexpr int steps = 40;
   constexpr double lives = 20;  // of a level, after which nothing is left of a wave
-  double slowest = std::numeric_limits<double>::infinity();
+  double slowest = kInfinity;
   for (const auto& side : {process, process.mirrored()}) {
     const auto& noise = side.noise;
     std::array<double, steps> drag{};  // in the middle of each step from 0 to v

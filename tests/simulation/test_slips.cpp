@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <vector>
 
 #include "../common/catch.hpp"
 #include "stickslip/simulation/path.hpp"
 #include "stickslip/simulation/sampler.hpp"
+#include "stickslip/support/infinity.hpp"
 
 using namespace stickslip;
 using model::Start;
@@ -20,8 +20,6 @@ using simulation::Variable;
 using simulation::Wanted;
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 model::Process process(double bias = 0, double mu_d_minus = 0.25) {
   model::Process p{{1, 0.5, model::full_range(1, 0.5)}, {1, 0.25}, {1, 0}, bias};

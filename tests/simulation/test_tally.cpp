@@ -2,12 +2,12 @@
 #include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "stickslip/simulation/sampler.hpp"
 #include "stickslip/simulation/tally.hpp"
+#include "stickslip/support/infinity.hpp"
 
 using namespace stickslip;
 using simulation::Duration;
@@ -21,7 +21,6 @@ using simulation::Wanted;
 namespace {
 
 constexpr double kNormal = 1.959963984540054;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Wanted kWanted{true, true, {0.4, 1.5}, {0, 0.3}, {1, 2, 4}, true};
 
 /// With static levels |i| <= k; 0, 1 and 2 with k = 1 and a bias of -0.4.

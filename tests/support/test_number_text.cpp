@@ -1,15 +1,15 @@
 #include "../common/catch.hpp"
+#include "stickslip/support/infinity.hpp"
 #include "stickslip/support/number_text.hpp"
 
 #include <cmath>
-#include <limits>
 
 using stickslip::error_text;
+using stickslip::kInfinity;
 using stickslip::number_text;
 using stickslip::seconds_text;
 
 namespace {
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const double kNan = std::nan("");
 }  // namespace
 

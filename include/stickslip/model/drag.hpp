@@ -2,11 +2,11 @@
 /// Drag b(v): a force with b(0) = 0, as a rule falling with v.
 
 #include <functional>
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include "stickslip/model/friction.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::model {
 
@@ -18,7 +18,7 @@ struct Drag {
   std::function<double(double)> law = {};  ///< b(v), which then counts instead of the coefficients
   /// |v| up to which a law is known to be sound: twice the largest terminal velocity, or far in the
   /// tail.
-  double reach = std::numeric_limits<double>::infinity();
+  double reach = kInfinity;
   bool law_is_odd = true;           ///< b(-v) = -b(v)
   std::vector<double> breaks = {};  ///< |v| > 0 at which a law has kinks, rising
   double rises_until = 0;           ///< |v| beyond which a law falls; 0: it falls everywhere

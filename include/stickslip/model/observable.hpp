@@ -2,13 +2,13 @@
 /// Functions f(x, y, v) of the state, by name or as an expression.
 
 #include <functional>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "stickslip/model/breaks.hpp"
 #include "stickslip/model/friction.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::model {
 
@@ -22,8 +22,8 @@ struct Observable {
   // Set by examine().
   std::vector<double> levels = {};  ///< x on which it has been looked at
   std::vector<double> breaks = {};  ///< |v| at which it jumps or has a kink on any of them, rising
-  double least = -std::numeric_limits<double>::infinity();  ///< of the values seen
-  double most = std::numeric_limits<double>::infinity();
+  double least = -kInfinity;        ///< of the values seen
+  double most = kInfinity;
 
   /// Whether all values seen lie in [0, 1], as those of an indicator do.
   [[nodiscard]] bool within_unit() const { return least >= 0 && most <= 1; }

@@ -1,11 +1,11 @@
 #pragma once
 /// What an operator is of: the part that plans and reports need, independent of the scalar type.
 
-#include <limits>
 #include <tuple>
 #include <vector>
 
 #include "stickslip/model/process.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::operators {
 
@@ -63,7 +63,7 @@ struct SystemKey {
   Symmetry symmetry = Symmetry::even;
   StaticPhase static_phase = StaticPhase::killing;
   Clock clock = Clock::time;
-  double speed_limit = std::numeric_limits<double>::infinity();
+  double speed_limit = kInfinity;
   friend bool operator<(const SystemKey& a, const SystemKey& b) {
     return std::tie(a.lambda, a.symmetry, a.static_phase, a.clock, a.speed_limit) <
            std::tie(b.lambda, b.symmetry, b.static_phase, b.clock, b.speed_limit);

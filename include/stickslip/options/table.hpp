@@ -1,12 +1,13 @@
 #pragma once
 /// The one table of options: validation, help and pages are made from it.
 
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::options {
 
@@ -25,8 +26,8 @@ enum class Kind {
 
 /// An interval of numbers; unbounded and open by default.
 struct Range {
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
+  double low = -kInfinity;
+  double high = kInfinity;
   bool low_included = false;
   bool high_included = false;
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Dense matrices of PetscScalar.
+/// The scalar type of this build variant, and dense matrices of it.
 
 #include <petscsys.h>
 
@@ -8,6 +8,8 @@
 #include "stickslip/algebra/dense.hpp"
 
 namespace stickslip::petsc {
+
+inline constexpr bool kComplex = PetscDefined(USE_COMPLEX);
 
 using DenseMatrix = algebra::Matrix<PetscScalar>;
 using DenseFactors = algebra::LuFactors<PetscScalar>;

@@ -4,12 +4,12 @@
 #include <complex>
 #include <cstddef>
 #include <functional>
-#include <limits>
 #include <vector>
 
 #include "stickslip/quantities/recipe.hpp"
 #include "stickslip/quantities/reduced_model.hpp"
 #include "stickslip/quantities/uncertain.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::quantities {
 
@@ -28,9 +28,9 @@ struct Questions {
   std::vector<double> shift;             ///< by value: one that serves it, for until_still()
   bool each_by_its_size = false;  ///< whether `tolerance` is relative to each value, or absolute
   double tolerance = 1e-8;
-  std::vector<Recipe::Step> first;                       ///< what a model begins with
-  double lowest = 0, highest = 1e300;                    ///< range of further shifts
-  double far = std::numeric_limits<double>::infinity();  ///< |z| from where Truth::far is found
+  std::vector<Recipe::Step> first;     ///< what a model begins with
+  double lowest = 0, highest = 1e300;  ///< range of further shifts
+  double far = kInfinity;              ///< |z| from where Truth::far is found
   int most_truths =
       12;  ///< true solutions at most; where they are dear, the answers are what they are
 };
@@ -38,11 +38,10 @@ struct Questions {
 struct Answers {
   Reduced model;
   std::vector<double> value;
-  std::vector<double> error;  ///< absolute
-  double relative_error =
-      std::numeric_limits<double>::infinity();  ///< the largest, in the sense of the questions
-  int pairs = 0;                                ///< of vectors in the space
-  int truths = 0;                               ///< true solutions that were compared
+  std::vector<double> error;          ///< absolute
+  double relative_error = kInfinity;  ///< the largest, in the sense of the questions
+  int pairs = 0;                      ///< of vectors in the space
+  int truths = 0;                     ///< true solutions that were compared
   std::vector<double> shifts;
 };
 
