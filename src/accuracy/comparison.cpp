@@ -14,12 +14,13 @@ namespace {
 constexpr double kFamilyLevel = 1e-3;
 
 // The entry of `results` that the reference is about.
-std::optional<Compared> counterpart(const options::Reference& reference,
+std::optional<Compared> counterpart(const cases::Reference& reference,
                                     const quantities::Results& results) {
   for (const auto& result : results) {
     if (result.key != reference.quantity) continue;
     if (result.is_scalar() == reference.argument.has_value()) continue;
-    if (!result.ci95.empty() && options::is_histogram(result.key)) continue;
+    const auto* row = catalogue::find_row(result.key);
+    if (!result.ci95.empty() && row != nullptr && row->by_cells) continue;
     for (std::size_t n = 0; n < result.value.size(); ++n) {
       const bool same = result.is_scalar() || std::abs(result.abscissa[n] - *reference.argument) <=
                                                   1e-9 * std::abs(*reference.argument);
@@ -80,7 +81,7 @@ const char* verdict_text(Verdict verdict) {
   return "DISAGREES";
 }
 
-Comparison compare(const std::vector<options::Reference>& references,
+Comparison compare(const std::vector<cases::Reference>& references,
                    const quantities::Results& results) {
   Comparison comparison;
   for (const auto& reference : references) {

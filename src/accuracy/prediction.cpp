@@ -29,7 +29,7 @@ constexpr double kFixedSeconds = 5e-4;       // of a factorisation
 
 class Predictor {
  public:
-  Predictor(MPI_Comm comm, const options::Case& given, const Resolution& resolution)
+  Predictor(MPI_Comm comm, const cases::Case& given, const Resolution& resolution)
       : comm_(comm), given_(given), discretisation_(discretise(given.scene, resolution)) {
     step_.resolution = resolution;
     step_.unknowns = unknowns(given.scene, resolution);
@@ -107,7 +107,7 @@ class Predictor {
   }
 
   MPI_Comm comm_;
-  const options::Case& given_;
+  const cases::Case& given_;
   operators::Discretisation discretisation_;
   PredictedStep step_;
   std::map<SystemKey, Predicted> systems_;
@@ -116,11 +116,11 @@ class Predictor {
 
 }  // namespace
 
-Prediction predict(MPI_Comm comm, const options::Case& given) {
+Prediction predict(MPI_Comm comm, const cases::Case& given) {
   Prediction prediction;
   if (!needs_system(given)) return prediction;
   prediction.plan = routes::plan_of(given);
-  if (given.method.route == options::Route::monte_carlo) return prediction;
+  if (given.method.route == catalogue::Route::monte_carlo) return prediction;
   const RefinementSequence sequence(given);
   require_memory(comm, given.scene, sequence.refinement_level(1));
   for (int n = sequence.first(); n <= 1; ++n) {

@@ -22,13 +22,13 @@
 namespace stickslip::accuracy {
 namespace {
 
-using options::Quantity;
+using catalogue::Quantity;
 using quantities::Results;
 using quantities::StationaryDistribution;
 
 std::string gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / 1e9); }
 
-Solved evaluated(MPI_Comm comm, const options::Case& given, const Resolution& resolution,
+Solved evaluated(MPI_Comm comm, const cases::Case& given, const Resolution& resolution,
                  const std::shared_ptr<quantities::Recipes>& recipes) {
   Solved solved;
   Step& step = solved.step;
@@ -50,8 +50,8 @@ Solved evaluated(MPI_Comm comm, const options::Case& given, const Resolution& re
 
 // Beyond the levels and the velocity discretisation of the first discretisation there is nothing
 // but extrapolation.
-void require_start_within(const options::Case& given, const Resolution& first) {
-  const options::Question& question = given.question;
+void require_start_within(const cases::Case& given, const Resolution& first) {
+  const cases::Question& question = given.question;
   if (!question.wants(Quantity::expectation) && !question.wants(Quantity::displacement)) return;
   const auto noise = given.scene.process(first.levels).noise;
   const int level = question.start.level;
@@ -70,7 +70,7 @@ void require_start_within(const options::Case& given, const Resolution& first) {
 
 class Refiner {
  public:
-  Refiner(MPI_Comm comm, const options::Case& given, const Progress& progress)
+  Refiner(MPI_Comm comm, const cases::Case& given, const Progress& progress)
       : comm_(comm),
         given_(given),
         question_(given.question),
@@ -213,7 +213,7 @@ class Refiner {
   }
 
   void give_up(const Step& step, double rounding) {
-    const bool by_lambda = given_.method.route == options::Route::lambda;
+    const bool by_lambda = given_.method.route == catalogue::Route::lambda;
     const double least = std::max(rounding, step.estimate);
     const std::string looser = least < 0.05
                                    ? fmt::format("take {}-accuracy {:.0e}",
@@ -253,7 +253,7 @@ class Refiner {
   }
 
   [[nodiscard]] const char* what_limits() const {
-    if (given_.method.route == options::Route::lambda) return "lambda > 0 or rounding limits";
+    if (given_.method.route == catalogue::Route::lambda) return "lambda > 0 or rounding limits";
     if (question_.observables.empty()) return "rounding limits";
     return "rounding, or an observable too steep for the elements, limits";
   }
@@ -318,8 +318,8 @@ class Refiner {
   }
 
   MPI_Comm comm_;
-  const options::Case& given_;
-  const options::Question& question_;
+  const cases::Case& given_;
+  const cases::Question& question_;
   const Progress& progress_;
   RefinementSequence sequence_;
   Outcome outcome_;
@@ -336,12 +336,12 @@ class Refiner {
 
 // The distribution of the noise has a closed form; solution methods that check the model compute it
 // all the same.
-bool closed_noise_distribution(const options::Case& given) {
+bool closed_noise_distribution(const cases::Case& given) {
   return given.question.wants(Quantity::noise_law) &&
-         given.method.route == options::Route::excursion;
+         given.method.route == catalogue::Route::excursion;
 }
 
-Outcome by_simulation(MPI_Comm comm, const options::Case& given, const std::string& checkpoint,
+Outcome by_simulation(MPI_Comm comm, const cases::Case& given, const std::string& checkpoint,
                       const monte_carlo::SimulationProgress& progress) {
   Outcome outcome;
   auto simulated = monte_carlo::simulate(comm, given, checkpoint, progress);
@@ -365,8 +365,8 @@ void require_memory(MPI_Comm comm, const model::Scene& scene, const Resolution& 
       static_cast<double>(unknowns(scene, resolution)), gigabytes(need), gigabytes(have)));
 }
 
-bool needs_system(const options::Case& given) {
-  const options::Question& question = given.question;
+bool needs_system(const cases::Case& given) {
+  const cases::Question& question = given.question;
   std::size_t others = question.quantities.size();
   for (bool closed : {closed_noise_distribution(given), question.wants(Quantity::trajectory),
                       question.wants(Quantity::sensitivity)}) {
@@ -375,19 +375,19 @@ bool needs_system(const options::Case& given) {
   return others > 0;
 }
 
-Solved solve_on(MPI_Comm comm, const options::Case& given, const Resolution& resolution) {
+Solved solve_on(MPI_Comm comm, const cases::Case& given, const Resolution& resolution) {
   require_memory(comm, given.scene, resolution);
   return evaluated(comm, given, resolution, std::make_shared<quantities::Recipes>());
 }
 
-Outcome refine(MPI_Comm comm, const options::Case& given, const Progress& progress,
+Outcome refine(MPI_Comm comm, const cases::Case& given, const Progress& progress,
                const monte_carlo::SimulationProgress& simulation_progress,
                const std::string& checkpoint) {
-  const options::Question& question = given.question;
+  const cases::Question& question = given.question;
   Outcome outcome;
   outcome.reached = true;
   if (needs_system(given)) {
-    outcome = given.method.route == options::Route::monte_carlo
+    outcome = given.method.route == catalogue::Route::monte_carlo
                   ? by_simulation(comm, given, checkpoint, simulation_progress)
                   : Refiner(comm, given, progress).run();
   }

@@ -32,7 +32,7 @@ constexpr int kFirstPoints = 8;
 // of sticking times at 0+ tenfold larger, of the tail of a spectrum and of densities of durations a
 // hundredfold. (On coarser elements reduced models search long for waves that are not resolved.)
 // Densities of path lengths lose a digit in one and a half degrees. The catalogue has the numbers.
-int starting_degree(const options::Question& question) {
+int starting_degree(const cases::Question& question) {
   const double digits = -std::log10(question.accuracy);
   double highest = 0;
   for (const auto* entry : catalogue::entries()) {
@@ -55,10 +55,10 @@ double least_positive(const std::vector<double>& values) {
 // Functions of the time t are inverse Laplace transforms at rates up to 12/t. For those of the path
 // length d, of bodies with the acceleration a, layers at v = 0 are resolved five times finer than
 // sqrt(a d/12). Levels of -delta smooth what the layers would resolve; a table has few.
-double fastest_inverted(const options::Case& given) {
-  using options::Quantity;
+double fastest_inverted(const cases::Case& given) {
+  using catalogue::Quantity;
   constexpr double of_contour = 12;
-  const options::Question& question = given.question;
+  const cases::Question& question = given.question;
   const auto process = given.scene.meant();
   if (!process.noise.table) return 0;
   double rate = 0;
@@ -73,12 +73,12 @@ double fastest_inverted(const options::Case& given) {
   return rate;
 }
 
-velocity::Rates fastest_rates(const options::Case& given) {
-  using options::Quantity;
-  const options::Question& question = given.question;
+velocity::Rates fastest_rates(const cases::Case& given) {
+  using catalogue::Quantity;
+  const cases::Question& question = given.question;
   velocity::Rates rates;
   if (question.wants(Quantity::laplace) || question.wants(Quantity::resolvent) ||
-      given.method.route == options::Route::lambda) {
+      given.method.route == catalogue::Route::lambda) {
     rates.lambda = largest(question.lambda);
   }
   rates.lambda = std::max(rates.lambda, fastest_inverted(given));
@@ -87,7 +87,7 @@ velocity::Rates fastest_rates(const options::Case& given) {
 }
 
 // Observables on the levels on which they were looked at, once each whatever is done with them.
-velocity::Integrands integrands_of(const options::Question& question) {
+velocity::Integrands integrands_of(const cases::Question& question) {
   velocity::Integrands integrands;
   for (const auto& observable : question.observables) {
     const auto f = std::make_shared<const model::Observable>(observable);
@@ -103,35 +103,35 @@ velocity::Integrands integrands_of(const options::Question& question) {
 
 }  // namespace
 
-RefinementSequence::RefinementSequence(const options::Case& given)
+RefinementSequence::RefinementSequence(const cases::Case& given)
     : scene_(given.scene), method_(given.method), accuracy_(given.question.accuracy) {
   first_degree_ = method_.degree.value_or(starting_degree(given.question));
   rates_ = fastest_rates(given);
-  if (given.question.wants(options::Quantity::spectrum)) omega_ = given.question.omega;
+  if (given.question.wants(catalogue::Quantity::spectrum)) omega_ = given.question.omega;
   table_ = given.scene.meant().noise.table != nullptr;
   integrands_ = integrands_of(given.question);
-  branches_ = options::on_full_grid(given.method.route) || !given.scene.symmetric() ? 2 : 1;
-  modes_ = given.question.wants(options::Quantity::relaxation);
+  branches_ = cases::on_full_grid(given.method.route) || !given.scene.symmetric() ? 2 : 1;
+  modes_ = given.question.wants(catalogue::Quantity::relaxation);
   // On nodes the residuals of eigenvectors, which stand for errors, stay about twice as large.
   const bool near_rounding = modes_ && accuracy_ < kModesOnNodes;
   all_levels_ =
-      options::on_full_grid(given.method.route) || method_.noise_degree == 0 || near_rounding;
+      cases::on_full_grid(given.method.route) || method_.noise_degree == 0 || near_rounding;
   tail_counts_ = modes_ || !given.question.observables.empty() ||
-                 given.question.wants(options::Quantity::peak);
+                 given.question.wants(catalogue::Quantity::peak);
   last_ = method_.fixed() ? 1 : free_refinement_levels();
 }
 
 int RefinementSequence::free_refinement_levels() const {
   switch (method_.scheme) {
-  case options::Scheme::hp: return 1 + kHighestDegree - first_degree_;
-  case options::Scheme::upwind: return 20;
-  case options::Scheme::none: return 3;
+  case cases::Scheme::hp: return 1 + kHighestDegree - first_degree_;
+  case cases::Scheme::upwind: return 20;
+  case cases::Scheme::none: return 3;
   }
   return 1;
 }
 
 int RefinementSequence::first() const {
-  return method_.scheme == options::Scheme::hp && first_degree_ > 1 ? -1 : 0;
+  return method_.scheme == cases::Scheme::hp && first_degree_ > 1 ? -1 : 0;
 }
 
 int RefinementSequence::degree(int n) const { return std::max(0, first_degree_ + n - 1); }
@@ -143,9 +143,8 @@ int RefinementSequence::points(int n) const {
 }
 
 double RefinementSequence::tail_tolerance(int n) const {
-  if (method_.scheme == options::Scheme::upwind) return 1e-3 * std::min(accuracy_, 1e-6);
-  if (method_.scheme == options::Scheme::none)
-    return std::max(accuracy_ * std::pow(1e-2, n), 1e-18);
+  if (method_.scheme == cases::Scheme::upwind) return 1e-3 * std::min(accuracy_, 1e-6);
+  if (method_.scheme == cases::Scheme::none) return std::max(accuracy_ * std::pow(1e-2, n), 1e-18);
   // The first level reaches as far as the second where later ones reach further: where a body may
   // start does not depend on what is only compared with.
   const double tolerance = std::pow(10.0, -(degree(tail_counts_ ? std::max(n, 0) : 1) + 4));
@@ -185,7 +184,7 @@ const Resolution& RefinementSequence::refinement_level(int n) const {
 Resolution RefinementSequence::made(int n) const {
   Resolution r;
   switch (method_.scheme) {
-  case options::Scheme::hp:
+  case cases::Scheme::hp:
     r = hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n), rates_,
                       grouping(n));
     r.waves = waves(n);
@@ -193,10 +192,10 @@ Resolution RefinementSequence::made(int n) const {
     r.whole_tail = tail_counts_;
     r.least_degree = n + 1;  // so that all degrees rise from one refinement level to the next
     break;
-  case options::Scheme::upwind:
+  case cases::Scheme::upwind:
     r = upwind_resolution(scene_, points(n), tail_tolerance(n), rates_);
     break;
-  case options::Scheme::none: r = exact_resolution(scene_, tail_tolerance(n)); break;
+  case cases::Scheme::none: r = exact_resolution(scene_, tail_tolerance(n)); break;
   }
   r.branches = branches_;
   r.factors = method_.factors;
@@ -205,18 +204,18 @@ Resolution RefinementSequence::made(int n) const {
 
 ErrorPerChange RefinementSequence::error_per_change(int n) const {
   switch (method_.scheme) {
-  case options::Scheme::hp: {
+  case cases::Scheme::hp: {
     const int weakening = scene_.friction.stribeck ? kDegreesOfWeakening : 0;
     const double moving = tail_counts_ ? kOnOtherElements : 1;
     const double degrees = moving * std::max(1, degree(n) + weakening);
     return {degrees * kHpErrorPerChange.last, degrees * kHpErrorPerChange.earlier,
             kHpErrorPerChange.alone};
   }
-  case options::Scheme::upwind: {
+  case cases::Scheme::upwind: {
     const double ratio = static_cast<double>(points(n)) / points(n - 1);
     return {order_margin(points(n)) / std::abs(ratio - 1), 0};
   }
-  case options::Scheme::none: return {1, 0};
+  case cases::Scheme::none: return {1, 0};
   }
   return {};
 }

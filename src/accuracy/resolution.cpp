@@ -66,7 +66,7 @@ std::shared_ptr<velocity::VelocityDiscretisation> velocities_of(const model::Sce
     if (!process.drag.odd()) velocities->set_mirrored(with_drag(process.drag.mirrored()));
     return velocities;
   };
-  if (resolution.scheme == options::Scheme::upwind) {
+  if (resolution.scheme == cases::Scheme::upwind) {
     const double spacing = upwind_step(scene) / resolution.points;
     const auto count = static_cast<int>(upwind_nodes(scene, resolution));
     return on_both_branches([&](const model::Drag& drag) {
@@ -168,7 +168,7 @@ double truncation(const model::Scene& scene, const Resolution& r, double toleran
 Resolution hp_resolution(const model::Scene& scene, int degree, int layers, double tolerance,
                          const velocity::Rates& rates, const noise::Grouping& grouping) {
   Resolution r;
-  r.scheme = options::Scheme::hp;
+  r.scheme = cases::Scheme::hp;
   r.degree = degree;
   r.rates = rates;
   set_levels(scene, tolerance, rates.speed, r);
@@ -184,7 +184,7 @@ Resolution hp_resolution(const model::Scene& scene, int degree, int layers, doub
 Resolution upwind_resolution(const model::Scene& scene, int points, double tolerance,
                              const velocity::Rates& rates) {
   Resolution r;
-  r.scheme = options::Scheme::upwind;
+  r.scheme = cases::Scheme::upwind;
   r.points = points;
   set_levels(scene, tolerance, rates.speed, r);
   r.v_max = velocity_end(scene, r.levels, tolerance);
@@ -193,7 +193,7 @@ Resolution upwind_resolution(const model::Scene& scene, int points, double toler
 
 Resolution exact_resolution(const model::Scene& scene, double tolerance) {
   Resolution r;
-  r.scheme = options::Scheme::none;
+  r.scheme = cases::Scheme::none;
   set_levels(scene, tolerance, 0, r);
   return r;
 }
@@ -207,16 +207,16 @@ Resolution following(const Resolution& resolution, double omega) {
 
 operators::Discretisation discretise(const model::Scene& scene, const Resolution& resolution) {
   std::shared_ptr<velocity::VelocityDiscretisation> velocities;
-  if (resolution.scheme != options::Scheme::none) velocities = velocities_of(scene, resolution);
+  if (resolution.scheme != cases::Scheme::none) velocities = velocities_of(scene, resolution);
   return {scene.process(resolution.levels), std::move(velocities), resolution.noise};
 }
 
 std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution) {
   double nodes = 1;
-  if (resolution.scheme == options::Scheme::hp) {
+  if (resolution.scheme == cases::Scheme::hp) {
     const auto degrees = hp_degrees(scene, resolution);
     nodes = std::accumulate(degrees.begin(), degrees.end(), static_cast<double>(degrees.size()));
-  } else if (resolution.scheme == options::Scheme::upwind) {
+  } else if (resolution.scheme == cases::Scheme::upwind) {
     nodes = upwind_nodes(scene, resolution);
   }
   const double total = static_cast<double>(resolution.noise_nodes()) * nodes * resolution.branches;
@@ -228,11 +228,11 @@ namespace {
 
 // By the solver that will serve it.
 operators::FactorCost factor_cost(const model::Scene& scene, const Resolution& r,
-                                  options::Factors factors, int ranks) {
+                                  cases::Factors factors, int ranks) {
   const auto n = static_cast<double>(unknowns(scene, r));
   const auto noise = static_cast<double>(r.noise_nodes());
   constexpr double countable = 1e8;  // beyond, the matrix alone fills a machine
-  if (factors != options::Factors::elements || n > countable) {
+  if (factors != cases::Factors::elements || n > countable) {
     return operators::sparse_cost(factors, r.scheme, n, noise);
   }
   const auto velocities = velocities_of(scene, r);
@@ -242,7 +242,7 @@ operators::FactorCost factor_cost(const model::Scene& scene, const Resolution& r
   return {r.branches * cost.entries, r.branches * cost.bytes, r.branches * cost.operations};
 }
 
-options::Factors factors_of(const Resolution& r) {
+cases::Factors factors_of(const Resolution& r) {
   return operators::chosen_factors(r.factors, r.scheme, r.noise_nodes(), r.noise == nullptr);
 }
 
@@ -257,23 +257,23 @@ double predicted_bytes(const model::Scene& scene, const Resolution& resolution, 
     return complex_factors * predicted_bytes(scene, following(resolution, omega), ranks);
   }
   const auto n = static_cast<double>(unknowns(scene, resolution));
-  if (resolution.scheme == options::Scheme::none) {
+  if (resolution.scheme == cases::Scheme::none) {
     constexpr double dense_matrices = 30;
     return 8 * dense_matrices * n * n;
   }
-  const bool upwind = resolution.scheme == options::Scheme::upwind;
+  const bool upwind = resolution.scheme == cases::Scheme::upwind;
   const double row = upwind ? 4 : resolution.degree + 2.0 * resolution.grouping.degree + 6;
-  const options::Factors factors = factors_of(resolution);
+  const cases::Factors factors = factors_of(resolution);
   double copies = 60;
-  if (factors == options::Factors::elements) copies = 40;
-  if (factors == options::Factors::incomplete) copies = 120;
+  if (factors == cases::Factors::elements) copies = 40;
+  if (factors == cases::Factors::incomplete) copies = 120;
   const double scalars = petsc::complex_scalars() ? 2 : 1;
   return factor_cost(scene, resolution, factors, ranks).bytes + scalars * copies * row * n;
 }
 
 double relative_work(const model::Scene& scene, const Resolution& resolution) {
   const auto n = static_cast<double>(unknowns(scene, resolution));
-  if (resolution.scheme == options::Scheme::none) return n * n * n;
+  if (resolution.scheme == cases::Scheme::none) return n * n * n;
   double work = factor_cost(scene, resolution, factors_of(resolution), 1).operations;
   constexpr double real_and_complex = 5;
   for (double omega : resolution.waves) {

@@ -82,8 +82,8 @@ accuracy::Progress progress_of(const options::Request& request, bool first_rank)
   if (!request.output.progress || !first_rank) return {};
   return [&request](int step, const accuracy::Resolution& r, double seconds) {
     std::string velocity = "no grid in v";
-    if (r.scheme == options::Scheme::hp) velocity = fmt::format("degree {}", r.degree);
-    if (r.scheme == options::Scheme::upwind) velocity = fmt::format("p = {}", r.points);
+    if (r.scheme == cases::Scheme::hp) velocity = fmt::format("degree {}", r.degree);
+    if (r.scheme == cases::Scheme::upwind) velocity = fmt::format("p = {}", r.points);
     const std::string time = seconds < 1 ? "" : fmt::format(", about {:.0f} s", seconds);
     print_error(fmt::format("refinement level {}: {}, {} noise levels on each side, {} unknowns{}",
                             step + 1, velocity, r.levels, accuracy::unknowns(request.scene, r),

@@ -8,13 +8,13 @@
 namespace stickslip::io {
 
 // A velocity discretisation comes with a linear system; the fluid queue has neither.
-std::vector<TextTable::Column> size_columns(options::Scheme scheme) {
+std::vector<TextTable::Column> size_columns(cases::Scheme scheme) {
   std::vector<TextTable::Column> columns;
-  if (scheme == options::Scheme::hp) columns = {{"degree"}, {"layers"}};
-  if (scheme == options::Scheme::upwind) columns = {{"p"}};
+  if (scheme == cases::Scheme::hp) columns = {{"degree"}, {"layers"}};
+  if (scheme == cases::Scheme::upwind) columns = {{"p"}};
   columns.push_back({"levels", false, "noise"});
   columns.push_back({"nodes", false, "noise"});
-  if (scheme == options::Scheme::none) return columns;
+  if (scheme == cases::Scheme::none) return columns;
   columns.insert(columns.end(), {{"v_max"}, {"unknowns"}, {"nonzeros"}});
   return columns;
 }
@@ -24,13 +24,13 @@ std::string count_text(double count) { return count > 0 ? fmt::format("{:.2e}", 
 std::vector<std::string> size_cells(const accuracy::Resolution& r, std::int64_t unknowns,
                                     std::int64_t nonzeros) {
   std::vector<std::string> cells;
-  if (r.scheme == options::Scheme::hp) {
+  if (r.scheme == cases::Scheme::hp) {
     cells = {std::to_string(r.degree), std::to_string(r.layers)};
   }
-  if (r.scheme == options::Scheme::upwind) cells = {std::to_string(r.points)};
+  if (r.scheme == cases::Scheme::upwind) cells = {std::to_string(r.points)};
   cells.push_back(std::to_string(r.levels));
   cells.push_back(std::to_string(r.noise_nodes()));
-  if (r.scheme == options::Scheme::none) return cells;
+  if (r.scheme == cases::Scheme::none) return cells;
   cells.push_back(fmt::format("{:.4g}", r.v_max));
   cells.push_back(std::to_string(unknowns));
   cells.push_back(count_text(static_cast<double>(nonzeros)));
@@ -85,7 +85,7 @@ std::string simulation_lines(const monte_carlo::Simulated& simulated) {
 std::vector<std::string> step_cells(const accuracy::Step& step) {
   const auto& s = step.statistics;
   auto cells = size_cells(step.resolution, s.unknowns, s.nonzeros);
-  if (step.resolution.scheme != options::Scheme::none) {
+  if (step.resolution.scheme != cases::Scheme::none) {
     cells.push_back(fmt::format("{:.0f}", s.factor_megabytes));
     for (double seconds :
          {s.assembly_seconds, s.analysis_seconds + s.factorization_seconds, s.solve_seconds}) {
@@ -114,11 +114,11 @@ std::string estimate_lines(const std::vector<accuracy::Step>& steps) {
 
 }  // namespace
 
-std::string cost_table(options::Scheme scheme, const accuracy::Outcome& outcome) {
+std::string cost_table(cases::Scheme scheme, const accuracy::Outcome& outcome) {
   if (outcome.simulation) return simulation_lines(*outcome.simulation);
   if (outcome.steps.empty()) return "closed-form results only: no linear system was assembled\n";
   auto columns = size_columns(scheme);
-  if (scheme != options::Scheme::none) {
+  if (scheme != cases::Scheme::none) {
     columns.insert(columns.end(), {{"MB", false, "factors"},
                                    {"s", false, "assembly"},
                                    {"s", false, "factor"},

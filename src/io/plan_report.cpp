@@ -35,7 +35,7 @@ std::string solves_text(const routes::Use& use) {
   return fmt::format("{} forward", use.forward);
 }
 
-void add_task(const options::Question& question, const routes::Task& task, TextTable& table) {
+void add_task(const cases::Question& question, const routes::Task& task, TextTable& table) {
   std::string name = routes::task_name(question, task);
   const auto add = [&](const std::string& system, const std::string& solves) {
     table.add({name, system, solves});
@@ -51,7 +51,7 @@ void add_task(const options::Question& question, const routes::Task& task, TextT
   }
 }
 
-std::string tasks_table(const options::Question& question, const routes::Plan& plan) {
+std::string tasks_table(const cases::Question& question, const routes::Plan& plan) {
   if (plan.tasks.empty()) {
     return "sizes only: the linear systems of this solution method, on v of both signs, are not "
            "counted\n";
@@ -64,9 +64,9 @@ std::string tasks_table(const options::Question& question, const routes::Plan& p
                      plan.factorizations(), plan.solves());
 }
 
-std::string steps_table(options::Scheme scheme, const std::vector<accuracy::PredictedStep>& steps) {
+std::string steps_table(cases::Scheme scheme, const std::vector<accuracy::PredictedStep>& steps) {
   auto columns = size_columns(scheme);
-  const bool system = scheme != options::Scheme::none;
+  const bool system = scheme != cases::Scheme::none;
   if (system) {
     columns.insert(columns.end(), {{"entries", false, "factor"}, {"MB", false, "factors"}});
   }
@@ -96,7 +96,7 @@ Json step_json(const accuracy::PredictedStep& step) {
   return json;
 }
 
-Json task_json(const options::Question& question, const routes::Task& task) {
+Json task_json(const cases::Question& question, const routes::Task& task) {
   Json json{{"name", routes::task_name(question, task)}, {"systems", Json::array()}};
   for (const auto& use : task.uses) {
     json["systems"].push_back({{"lambda", use.system.lambda},
@@ -117,7 +117,7 @@ std::string table(const options::Request& request, const accuracy::Prediction& p
   if (!accuracy::needs_system(request)) {
     return text + "closed-form results only: no linear system is assembled, factored or solved\n";
   }
-  if (request.method.route == options::Route::monte_carlo) {
+  if (request.method.route == catalogue::Route::monte_carlo) {
     return text + fmt::format("{:g} excursions are simulated; no linear system is assembled\n",
                               request.method.excursions);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stickslip/effects/effect.hpp"
 #include "stickslip/io/parts.hpp"
 #include "stickslip/model/effective_friction.hpp"
 #include "stickslip/support/number_text.hpp"
@@ -10,32 +11,6 @@
 #include "stickslip/support/text.hpp"
 
 namespace stickslip::io {
-
-namespace {
-
-void add_noise(const model::Scene& s, std::vector<std::string>& parts) {
-  const auto& noise = s.noise;
-  if (noise.name == "file") {
-    parts.push_back("noise levels of " + noise.file);
-  } else if (noise.name == "telegraph") {
-    parts.push_back(
-        fmt::format("telegraph noise a = {:g}, rate = {:g}", noise.amplitude, noise.rate));
-  } else {
-    parts.push_back(fmt::format("tau = {:g}", s.tau));
-    parts.push_back(fmt::format("delta = {:g}", s.delta));
-    if (noise.deviation) parts.push_back(fmt::format("noise_deviation = {:g}", *noise.deviation));
-  }
-}
-
-std::string drag_text(const model::Scene& s) {
-  if (s.drag.law) return "drag b(v) = " + s.drag_expression;
-  std::string text = "drag " + s.drag_name;
-  if (s.drag.linear > 0) text += fmt::format(", c = {:g}", s.drag.linear);
-  if (s.drag.cubic > 0) text += fmt::format(", c3 = {:g}", s.drag.cubic);
-  return text;
-}
-
-}  // namespace
 
 std::string scene_text(const model::Scene& s) {
   std::vector<std::string> parts;
@@ -53,12 +28,9 @@ std::string scene_text(const model::Scene& s) {
   if (!s.friction.symmetric() || against != along)
     add_static("mu_s_minus", backwards.mu_s, against);
   if (!s.friction.symmetric()) add("mu_d_minus", backwards.mu_d);
-  if (const auto& stribeck = s.friction.stribeck) {
-    add("stribeck_velocity", stribeck->velocity);
-    add("stribeck_exponent", stribeck->exponent);
+  for (const auto* choice : effects::choices()) {
+    for (auto& part : effects::heading(choice->in(s), s)) parts.push_back(std::move(part));
   }
-  add_noise(s, parts);
-  parts.push_back(drag_text(s));
   if (s.bias != 0) add("bias", s.bias);
   return spaced(parts);
 }
@@ -119,7 +91,7 @@ std::string results_table(const quantities::Results& results) {
 // What stands in files alone.
 std::string elsewhere(const options::Request& request, const accuracy::Outcome& outcome) {
   std::string text;
-  if (request.question.wants(options::Quantity::density)) {
+  if (request.question.wants(catalogue::Quantity::density)) {
     text += fmt::format("density: in {}; error of the distribution function of |V| {}\n",
                         request.output.output, error_text(outcome.speed_error));
   }
@@ -176,8 +148,7 @@ std::string comparison_table(const accuracy::Comparison& comparison, const std::
                                           : "no significant disagreement");
 }
 
-std::string verdict_on_accuracy(const options::Question& question,
-                                const accuracy::Outcome& outcome) {
+std::string verdict_on_accuracy(const cases::Question& question, const accuracy::Outcome& outcome) {
   // Simulations go on to the number of excursions unless an accuracy is asked for.
   if (outcome.simulation && !question.accuracy_given) return "";
   return outcome.reached ? fmt::format("accuracy {:g} reached\n", question.accuracy)

@@ -1,16 +1,16 @@
 #include <nlohmann/json.hpp>
 
+#include "stickslip/effects/effect.hpp"
 #include "stickslip/io/parts.hpp"
 #include "stickslip/io/provenance.hpp"
 #include "stickslip/model/effective_friction.hpp"
-#include "stickslip/model/scene_parameters.hpp"
 #include "stickslip/petsc/memory.hpp"
 
 namespace stickslip::io {
 
 Json scene_json(const model::Scene& s) {
   Json scene;
-  for (const auto& [name, value] : model::parameters_of(s)) {
+  for (const auto& [name, value] : effects::parameters_of(s)) {
     std::visit([&, key = name](const auto& one) { scene[key] = one; }, value);
     if (name == "delta") scene["noise_levels_meant"] = s.meant().noise.levels;
   }
@@ -52,17 +52,17 @@ Json seconds_json(const petsc::SolverStatistics& statistics) {
 Json resolution_json(const accuracy::Resolution& r) {
   Json json;
   switch (r.scheme) {
-  case options::Scheme::hp:
+  case cases::Scheme::hp:
     json = {{"scheme", "hp"},
             {"degree", r.degree},
             {"layers", r.layers},
             {"noise_degree", r.grouping.degree},
             {"v_max", r.v_max}};
     break;
-  case options::Scheme::upwind:
+  case cases::Scheme::upwind:
     json = {{"scheme", "upwind"}, {"p", r.points}, {"v_max", r.v_max}};
     break;
-  case options::Scheme::none: json = {{"scheme", "none"}}; break;
+  case cases::Scheme::none: json = {{"scheme", "none"}}; break;
   }
   json["noise_levels"] = r.levels;
   json["noise_nodes"] = r.noise_nodes();
@@ -155,7 +155,7 @@ Json plan_of(const petsc::SolverStatistics& total) {
 
 }  // namespace
 
-Json run_json(const options::Case& given, const accuracy::Outcome& outcome, const RunTimes& times,
+Json run_json(const cases::Case& given, const accuracy::Outcome& outcome, const RunTimes& times,
               const std::string& compared) {
   Json json;
   json["scene"] = scene_of(given.scene, outcome);

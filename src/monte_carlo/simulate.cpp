@@ -13,7 +13,7 @@
 
 #include "simulated_results.hpp"
 #include "stickslip/checkpoint/checkpoint.hpp"
-#include "stickslip/model/scene_parameters.hpp"
+#include "stickslip/effects/effect.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/simulation/sampler.hpp"
@@ -22,7 +22,7 @@
 namespace stickslip::monte_carlo {
 namespace {
 
-using options::Case;
+using cases::Case;
 using quantities::Results;
 using simulation::Tally;
 using Clock = std::chrono::steady_clock;
@@ -72,7 +72,7 @@ checkpoint::Identity identity(const Case& given) {
   const auto text = [](const auto& value) { return fmt::format("{}", value); };
   const auto& s = given.scene;
   checkpoint::Identity found;
-  for (const auto& [name, value] : model::parameters_of(s)) {
+  for (const auto& [name, value] : effects::parameters_of(s)) {
     // Of a file its levels count, wherever it is; nothing truncates a simulated velocity.
     if (name == "noise_file" || name == "speed_limit") continue;
     found.emplace_back("-" + name, std::visit(text, value));
@@ -288,7 +288,7 @@ class Campaign {
 
   MPI_Comm comm_;
   const Case& given_;
-  const options::Question& question_;
+  const cases::Question& question_;
   const SimulationProgress& progress_;
   model::Process process_;
   simulation::Wanted wanted_;

@@ -28,8 +28,8 @@ namespace stickslip::monte_carlo {
 namespace {
 
 using catalogue::Kind;
+using catalogue::Quantity;
 using catalogue::Row;
-using options::Quantity;
 using quantities::Result;
 using quantities::Results;
 using simulation::Duration;
@@ -77,7 +77,7 @@ Estimate divided(const Estimate& e, double by) { return {e.value / by, e.low / b
 /// Turns a tally into results.
 class Estimates {
  public:
-  Estimates(const options::Question& question, const model::Process& process, const Tally& tally)
+  Estimates(const cases::Question& question, const model::Process& process, const Tally& tally)
       : question_(question), process_(process), tally_(tally) {}
 
   Results all() {
@@ -293,7 +293,7 @@ class Estimates {
     }
   }
 
-  const options::Question& question_;
+  const cases::Question& question_;
   const model::Process& process_;
   const Tally& tally_;
   Results results_;
@@ -301,7 +301,7 @@ class Estimates {
 
 }  // namespace
 
-simulation::Wanted wanted_of(const options::Question& question, const model::Process& process) {
+simulation::Wanted wanted_of(const cases::Question& question, const model::Process& process) {
   const auto wants = [&](Quantity q) { return question.wants(q); };
   simulation::Wanted wanted;
   wanted.moments = wants(Quantity::moments) || wants(Quantity::averages);
@@ -331,7 +331,7 @@ simulation::Wanted wanted_of(const options::Question& question, const model::Pro
   return wanted;
 }
 
-Results estimates(const options::Question& question, const model::Process& process,
+Results estimates(const cases::Question& question, const model::Process& process,
                   const Tally& tally) {
   Results all = Estimates(question, process, tally).all();
   quantities::leave_out_missing_side(process, all);

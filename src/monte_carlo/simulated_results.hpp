@@ -1,17 +1,17 @@
 #pragma once
 /// From what is asked to what is followed, and from a tally to results.
 
-#include "stickslip/options/case.hpp"
+#include "stickslip/cases/case.hpp"
 #include "stickslip/quantities/results.hpp"
 #include "stickslip/simulation/tally.hpp"
 
 namespace stickslip::monte_carlo {
 
-[[nodiscard]] simulation::Wanted wanted_of(const options::Question& question,
+[[nodiscard]] simulation::Wanted wanted_of(const cases::Question& question,
                                            const model::Process& process);
 
 /// Local.
-[[nodiscard]] quantities::Results estimates(const options::Question& question,
+[[nodiscard]] quantities::Results estimates(const cases::Question& question,
                                             const model::Process& process,
                                             const simulation::Tally& tally);
 

@@ -12,8 +12,8 @@
 namespace stickslip::operators {
 namespace {
 
-using options::Factors;
-using options::Scheme;
+using cases::Factors;
+using cases::Scheme;
 
 double scalar_bytes() { return petsc::complex_scalars() ? 16 : 8; }
 

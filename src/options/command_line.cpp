@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "reading.hpp"
+#include "stickslip/support/number_text.hpp"
 #include "stickslip/support/text.hpp"
 
 namespace stickslip::options {

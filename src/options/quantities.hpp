@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "stickslip/options/case.hpp"
+#include "stickslip/cases/case.hpp"
 
 namespace stickslip::options {
 

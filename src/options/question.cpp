@@ -8,6 +8,8 @@
 #include "quantities.hpp"
 #include "reading.hpp"
 #include "stickslip/catalogue/entry.hpp"
+#include "stickslip/model/largest_force.hpp"
+#include "stickslip/options/reference.hpp"
 #include "stickslip/support/text.hpp"
 #include "stickslip/velocity/tail.hpp"
 
@@ -121,7 +123,7 @@ read_observables(const Settings& settings, const model::Friction& friction, Prob
 // Up to 17 levels evenly, and those next to the numbers of f.
 std::vector<double> probed_levels(const model::Scene& scene, const model::Observable& f) {
   const auto noise = scene.meant().noise;
-  const double seen = std::min(noise.place(largest_force(scene) + scene.friction.mu_d), 1e9);
+  const double seen = std::min(noise.place(model::largest_force(scene) + scene.friction.mu_d), 1e9);
   const int highest = std::min(noise.highest(), static_cast<int>(seen)),
             lowest = std::max(noise.lowest(), static_cast<int>(-seen));
   constexpr int count = 8;
@@ -144,7 +146,7 @@ std::vector<double> probed_levels(const model::Scene& scene, const model::Observ
 // |v| beyond which nothing counts.
 double largest_speed(const model::Scene& scene) {
   constexpr double rounding = 1e-16;
-  const double force = largest_force(scene);
+  const double force = model::largest_force(scene);
   double speed =
       std::max(scene.drag.terminal_velocity(force), scene.drag.mirrored().terminal_velocity(force));
   speed = std::min(speed, velocity::tail_velocity(scene.meant(), rounding));

@@ -10,29 +10,6 @@
 
 namespace stickslip::options {
 
-// model_parameters.cpp
-
-/// The parameters of the model; v_max and the noise levels may stay open.
-[[nodiscard]] model::Scene read_scene(const Settings& settings, Problems& problems);
-
-/// The largest force that occurs: X passes mu_s by 12 standard deviations with probability e^-72.
-[[nodiscard]] double largest_force(const model::Scene& scene);
-
-/// What to say where static friction acts with another value than the one given, because it lies
-/// between two noise levels; empty where it does not.
-[[nodiscard]] std::string step_warning(const model::Scene& scene);
-
-// reference.cpp
-
-/// Throws std::invalid_argument unless it is a regular file that can be read.
-void require_readable(const std::string& file);
-
-// noise_file.cpp
-
-/// The levels in a CSV file with the columns x,rate_up,rate_down. Throws std::invalid_argument with
-/// the line and the value that is wrong.
-[[nodiscard]] model::LevelTable read_levels(const std::string& file);
-
 // question.cpp
 
 /// The quantities and their arguments, for the model and the method that the request holds already.

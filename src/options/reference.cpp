@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <stdexcept>
 
 #define CSV_IO_NO_THREAD  // small files
@@ -15,10 +14,13 @@
 #include <libfccp/csv.h>
 
 #include "reading.hpp"
+#include "stickslip/catalogue/entry.hpp"
 #include "stickslip/options/settings.hpp"
 #include "stickslip/support/hdf5_id.hpp"
 #include "stickslip/support/infinity.hpp"
 #include "stickslip/support/isolated.hpp"
+#include "stickslip/support/number_text.hpp"
+#include "stickslip/support/readable.hpp"
 #include "stickslip/support/statistics.hpp"
 
 namespace stickslip::options {
@@ -57,7 +59,8 @@ void append(const std::string& key, const Values& v, std::vector<Reference>& all
   require_equal_sizes(key, v);
   require_numbers(key, v);
   const bool simulated = !v.low.empty();
-  if (simulated && !v.scalar && is_histogram(key)) return;
+  const auto* row = catalogue::find_row(key);
+  if (simulated && !v.scalar && row != nullptr && row->by_cells) return;
   for (std::size_t n = 0; n < v.value.size(); ++n) {
     // A computed error is a bound; as a standard deviation it errs on the safe side.
     const double half = simulated ? 0 : kNormalQuantile * v.error[n];
@@ -246,17 +249,6 @@ std::vector<Reference> read_csv(const std::string& file) {
 }
 
 }  // namespace
-
-bool is_histogram(const std::string& key) {
-  static const std::set<std::string> keys{"f_slide", "f_stick", "f_excursion", "f_slip"};
-  return keys.contains(key);
-}
-
-void require_readable(const std::string& file) {
-  std::error_code error;
-  if (std::filesystem::is_regular_file(file, error) && std::ifstream(file).good()) return;
-  throw std::invalid_argument("cannot be read");
-}
 
 std::vector<Reference> read_references(const std::string& file) {
   require_readable(file);

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "reading.hpp"
+#include "stickslip/effects/read_scene.hpp"
 #include "words.hpp"
 
 namespace stickslip::options {
@@ -43,6 +44,33 @@ void check_writable(const Settings& settings, const Option& option, Problems& pr
   }
 }
 
+/// The settings as effects see them.
+class GivenSettings : public effects::Given {
+ public:
+  GivenSettings(const Settings& settings, Problems& problems)
+      : settings_(settings), problems_(problems) {}
+  [[nodiscard]] bool has(const std::string& option) const override {
+    return settings_.given(option);
+  }
+  [[nodiscard]] double real(const std::string& option) const override {
+    return settings_.real(option);
+  }
+  [[nodiscard]] std::string text(const std::string& option) const override {
+    return settings_.text(option);
+  }
+  [[nodiscard]] std::optional<int> integer(const std::string& option) const override {
+    return settings_.integer(option);
+  }
+  void refuse(const std::string& option, const std::string& why, const std::string& fix) override {
+    settings_.report(problems_, option, why, fix);
+  }
+  [[nodiscard]] bool sound() const override { return problems_.empty(); }
+
+ private:
+  const Settings& settings_;
+  Problems& problems_;
+};
+
 }  // namespace
 
 Output read_output(const Settings& settings) {
@@ -59,7 +87,8 @@ Output read_output(const Settings& settings) {
 
 Request request_of(const Settings& settings, Problems& problems) {
   Request request;
-  request.scene = read_scene(settings, problems);
+  GivenSettings given(settings, problems);
+  request.scene = effects::read_scene(given);
   request.method = read_method(settings);
   read_question(settings, request, problems);
   request.study = {meaning(kStudies, settings.text("study")), settings.integer("study_steps"),
@@ -90,7 +119,7 @@ Request read_request(const std::vector<std::string>& argv) {
   if (sweeps(settings)) return read_sweep(settings);
   Request request = request_of(settings, problems);
   problems.raise();
-  const std::string steps = step_warning(request.scene);
+  const std::string steps = effects::step_warning(request.scene);
   if (!steps.empty() && request.study.kind == StudyKind::none) request.warnings.push_back(steps);
   return request;
 }

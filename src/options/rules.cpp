@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "quantities.hpp"
 #include "reading.hpp"
+#include "stickslip/effects/effect.hpp"
 #include "stickslip/support/text.hpp"
-#include "words.hpp"
 
 namespace stickslip::options {
 namespace {
@@ -16,16 +17,27 @@ class Rules {
   Rules(const Settings& settings, Request& request, Problems& problems)
       : settings_(settings), r_(request), q_(request.question), problems_(problems) {}
 
+  // Options of effects that none of those in use knows, each by the first effect that does.
+  void of_other_effects() {
+    std::set<std::string> seen;
+    for (const auto* choice : effects::choices()) {
+      const auto& word = choice->word_in(r_.scene);
+      for (const auto* effect : choice->effects) {
+        for (const auto& [option, refused] : effect->parameters) {
+          if (!seen.insert(option.name).second || is_known(option.name)) continue;
+          warn({option.name.c_str()}, !refused, fmt::format("with -{} {}", choice->option, word));
+          refuse({option.name.c_str()}, refused,
+                 fmt::format("belongs to -{0} {1}, and -{0} is {2}", choice->option, effect->word,
+                             word),
+                 fmt::format("add -{} {}, or leave it out", choice->option, effect->word));
+        }
+      }
+    }
+  }
+
   // Options without effect.
   void unused() {
     const bool simulates = r_.method.route == Route::monte_carlo, swept = sweeps(settings_);
-    const std::string with_drag = "with -drag " + r_.scene.drag_name;
-    warn({"drag_coefficient"}, !drag_law_.linear, with_drag);
-    warn({"drag_cubic"}, !drag_law_.cubic, with_drag);
-    const bool levels = r_.scene.noise.name != "ou";
-    const std::string with_noise = "with -noise " + r_.scene.noise.name;
-    warn({"tau"}, levels && !drag_law_.expression, with_noise);
-    warn({"delta", "noise_levels", "noise_deviation"}, levels, with_noise);
     warn({"lambda"}, r_.method.route != Route::lambda && !asked("lambda"));
     warn({"excursions"}, !simulates, "without -route monte_carlo");
     warn({"seed"}, !simulates && !asked("seed"));
@@ -43,27 +55,7 @@ class Rules {
   void conflicts() {
     const Route route = r_.method.route;
     const bool hp = r_.method.scheme == Scheme::hp, queue = route == Route::fluid_queue;
-    const bool weakens = meaning(kFrictionLaws, settings_.text("friction"));
     const std::string no_choice = "does not apply to -route " + settings_.text("route");
-    refuse({"drag_expression"}, !drag_law_.expression,
-           "belongs to -drag expression, and -drag is " + r_.scene.drag_name,
-           "add -drag expression, or leave it out");
-    refuse(
-        {"delta_per_mu_s"}, r_.scene.noise.name != "ou",
-        fmt::format("divides mu_s into steps of -noise ou, and -noise is {}", r_.scene.noise.name),
-        "leave it out, or take -noise ou");
-    refuse({"delta_per_mu_s"}, settings_.given("delta"),
-           "gives the noise step, and so does -delta = " + settings_.text("delta"),
-           "leave one of them out");
-    for (const auto& [option, noise] : {std::pair{"telegraph_amplitude", "telegraph"},
-                                        {"telegraph_rate", "telegraph"},
-                                        {"noise_file", "file"}}) {
-      refuse({option}, r_.scene.noise.name != noise,
-             fmt::format("belongs to -noise {}, and -noise is {}", noise, r_.scene.noise.name),
-             fmt::format("add -noise {}, or leave it out", noise));
-    }
-    refuse({"stribeck_velocity", "stribeck_exponent"}, !weakens, "belongs to -friction stribeck",
-           "add -friction stribeck, or leave it out");
     refuse({"route"}, queue && !r_.scene.process(1).drag.is_none(),
            "needs a model without drag, b = 0, and Coulomb friction: only then is it a fluid queue",
            "add -drag none, leave -friction out, or take -route excursion");
@@ -81,7 +73,7 @@ class Rules {
            study_, "is chosen by -study itself", "leave it out");
     const bool of_steps =
         r_.study.kind == StudyKind::steps || r_.study.kind == StudyKind::heuristic;
-    refuse({"study"}, of_steps && r_.scene.noise.name != "ou",
+    refuse({"study"}, of_steps && !effects::noises().in(r_.scene).knows("delta"),
            "decreases -delta, which -noise " + r_.scene.noise.name + " does not have",
            "leave it out, or take -noise ou");
     refuse({"plan"}, r_.plan_only && study_, "predicts one run, not a study", "leave -study out");
@@ -136,6 +128,14 @@ class Rules {
  private:
   using Options = std::initializer_list<const char*>;
 
+  // Whether an effect in use knows the option.
+  [[nodiscard]] bool is_known(const std::string& option) const {
+    const auto all = effects::choices();
+    return std::any_of(all.begin(), all.end(), [&](const effects::Choice* choice) {
+      return choice->in(r_.scene).knows(option);
+    });
+  }
+
   // Where no level of the noise holds the body, there are no phases, and the rest exists.
   void require_sticking() {
     if (!problems_.empty() || r_.scene.meant().sticks()) return;
@@ -188,7 +188,6 @@ class Rules {
   Request& r_;
   const Question& q_;
   Problems& problems_;
-  const DragLaw drag_law_ = meaning(kDragLaws, r_.scene.drag_name);
   const bool study_ = r_.study.kind != StudyKind::none;
 };
 
@@ -196,6 +195,7 @@ class Rules {
 
 void check_rules(const Settings& settings, Request& request, Problems& problems) {
   Rules rules(settings, request, problems);
+  rules.of_other_effects();
   rules.unused();
   rules.conflicts();
   rules.needs();

@@ -5,12 +5,12 @@
 #include <petscsys.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "stickslip/options/synonyms.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/support/errors.hpp"
+#include "stickslip/support/number_text.hpp"
 #include "stickslip/support/text.hpp"
 
 namespace stickslip::options {
@@ -117,17 +117,6 @@ std::optional<std::vector<double>> parse_numbers(const std::string& text) {
   }
   if (values.empty()) return std::nullopt;
   return values;
-}
-
-std::optional<double> parse_number(const std::string& text) {
-  double value = 0;
-  const bool plus = text.starts_with('+') && !text.starts_with("+-");
-  const char* begin = text.data() + (plus ? 1 : 0);
-  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
-    return std::nullopt;
-  }
-  return value;
 }
 
 void Problems::add(const Option& option, const std::string& value, const std::string& why,

@@ -11,6 +11,7 @@
 
 #include "quantities.hpp"
 #include "reading.hpp"
+#include "stickslip/effects/read_scene.hpp"
 #include "stickslip/petsc/session.hpp"
 
 namespace stickslip::options {
@@ -104,7 +105,7 @@ std::string check_points(const Sweep& sweep, Problems& problems) {
     Problems own;
     const Request request = sweep.request(point, own);
     if (point == 0) check_effects(sweep, request, problems);
-    const std::string warning = own.empty() ? step_warning(request.scene) : "";
+    const std::string warning = own.empty() ? effects::step_warning(request.scene) : "";
     if (!warning.empty()) between_levels.push_back(point);
     if (step.empty()) step = warning;
     for (const auto& message : own.messages()) {

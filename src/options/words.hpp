@@ -15,17 +15,6 @@ struct Word {
   Value value;
 };
 
-/// What a drag law is made of.
-struct DragLaw {
-  bool linear, cubic, expression;
-};
-
-inline constexpr Word<DragLaw> kDragLaws[] = {{"linear", {true, false, false}},
-                                              {"none", {false, false, false}},
-                                              {"cubic", {true, true, false}},
-                                              {"expression", {false, false, true}}};
-/// Whether friction weakens with the speed.
-inline constexpr Word<bool> kFrictionLaws[] = {{"coulomb", false}, {"stribeck", true}};
 inline constexpr Word<Scheme> kSchemes[] = {{"hp", Scheme::hp}, {"upwind", Scheme::upwind}};
 inline constexpr Word<SpectrumSolver> kSpectrumSolvers[] = {{"krylov", SpectrumSolver::krylov},
                                                             {"direct", SpectrumSolver::direct}};

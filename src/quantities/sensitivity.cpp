@@ -9,10 +9,10 @@
 #include "stickslip/catalogue/noise_law_keys.hpp"
 #include "stickslip/catalogue/sensitivity_keys.hpp"
 #include "stickslip/catalogue/sticking_keys.hpp"
+#include "stickslip/effects/model_options.hpp"
 #include "stickslip/model/noise_chain.hpp"
 #include "stickslip/model/unit.hpp"
 #include "stickslip/operators/static_chain.hpp"
-#include "stickslip/options/table.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
 
@@ -24,7 +24,7 @@ using operators::Parameter;
 using operators::Symmetry;
 
 // The option that sets a parameter.
-const options::Option& option_of(Parameter parameter) {
+const effects::Option& option_of(Parameter parameter) {
   const auto name = [parameter] {
     switch (parameter) {
     case Parameter::mu_d: return "mu_d";
@@ -36,7 +36,7 @@ const options::Option& option_of(Parameter parameter) {
     }
     return "";
   };
-  return *options::find(name());
+  return effects::model_option(name());
 }
 
 Result derivative(const Row& of, Parameter parameter, Uncertain value) {

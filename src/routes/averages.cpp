@@ -12,7 +12,7 @@
 namespace stickslip::routes {
 namespace {
 
-using options::Quantity;
+using catalogue::Quantity;
 using quantities::Kind;
 using quantities::Uncertain;
 
@@ -22,7 +22,7 @@ constexpr int kBeyond = 0, kStick = 1, kSlide = 2;
 }  // namespace
 
 std::vector<Average> averages(const Setting& setting) {
-  const options::Question& question = setting.given.question;
+  const cases::Question& question = setting.given.question;
   const auto& process = setting.discretisation.process;
   const auto named = [&](const char* f) {
     return model::parse_observable(f, process.friction).value;
@@ -70,7 +70,7 @@ std::vector<Average> averages(const Setting& setting) {
 void append_averages(const Setting& setting, const std::vector<Uncertain>& values,
                      quantities::Results& results) {
   const auto all = averages(setting);
-  const options::Question& question = setting.given.question;
+  const cases::Question& question = setting.given.question;
   const auto& process = setting.discretisation.process;
   const double beyond =
       model::noise_moments(process.noise, process.lowest_static(), process.static_index()).beyond;

@@ -24,10 +24,10 @@
 namespace stickslip::routes {
 namespace {
 
+using cases::Case;
+using cases::Question;
+using catalogue::Quantity;
 using operators::Symmetry;
-using options::Case;
-using options::Quantity;
-using options::Question;
 using quantities::Results;
 using quantities::StationaryDistribution;
 using quantities::Uncertain;
@@ -97,7 +97,7 @@ void append_spectrum(operators::Systems& systems, const Setting& setting, Evalua
   std::vector<double> smooth;
   std::copy_if(omega.begin(), omega.end(), std::back_inserter(smooth),
                [&](double w) { return !setting.waves.contains(w); });
-  const bool direct = setting.given.method.spectrum_solver == options::SpectrumSolver::direct;
+  const bool direct = setting.given.method.spectrum_solver == cases::SpectrumSolver::direct;
   quantities::ReducedSpectrum reduced;
   auto& spectrum = reduced.spectrum;
   if (direct) {
@@ -134,8 +134,8 @@ void append_durations(operators::Systems& systems, const Setting& setting, Evalu
   evaluation.checks.emplace_back("excursion_pairs", excursion.pairs);
 }
 
-quantities::TransientMethod transient_method(const options::Method& method) {
-  return method.transient_solver == options::TransientSolver::krylov
+quantities::TransientMethod transient_method(const cases::Method& method) {
+  return method.transient_solver == cases::TransientSolver::krylov
              ? quantities::TransientMethod::krylov
              : quantities::TransientMethod::stepping;
 }

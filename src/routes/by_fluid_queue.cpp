@@ -15,8 +15,8 @@
 namespace stickslip::routes {
 namespace {
 
+using catalogue::Quantity;
 using exact::FluidQueue;
-using options::Quantity;
 using quantities::Excursion;
 using quantities::Uncertain;
 

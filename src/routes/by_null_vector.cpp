@@ -109,7 +109,7 @@ Evaluation by_null_vector(const Setting& setting) {
     values.push_back({value, std::abs(value - integral(a, before, average.f))});
   }
   append_averages(setting, values, evaluation.results);
-  using options::Quantity;
+  using catalogue::Quantity;
   const auto& question = setting.given.question;
   if (question.wants(Quantity::sticking) || question.wants(Quantity::averages)) {
     const Uncertain excursion = mean_excursion(setting, a, pi, before);

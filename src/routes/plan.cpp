@@ -11,9 +11,9 @@
 namespace stickslip::routes {
 namespace {
 
+using cases::Case;
+using catalogue::Quantity;
 using operators::Symmetry;
-using options::Case;
-using options::Quantity;
 
 // Anything but resolvents, modes and closed forms.
 bool needs_distribution(const Case& given) {
@@ -147,7 +147,7 @@ class Planner {
   }
 
   void plan_spectrum() {
-    if (given_.method.spectrum_solver == options::SpectrumSolver::direct) {
+    if (given_.method.spectrum_solver == cases::SpectrumSolver::direct) {
       const int frequencies = static_cast<int>(question_.omega.size()) + 1;  // and 0
       add_adaptive(Work::spectrum, frequencies + 1,
                    frequencies + 1);  // and the stationary distribution alone
@@ -181,7 +181,7 @@ class Planner {
   }
 
   const Case& given_;
-  const options::Question& question_;
+  const cases::Question& question_;
   const bool symmetric_ = given_.scene.symmetric();
   Plan plan_;
 };
@@ -218,11 +218,11 @@ bool Plan::adaptive() const {
 }
 
 Plan plan_of(const Case& given) {
-  if (given.method.route != options::Route::excursion) return {};
+  if (given.method.route != catalogue::Route::excursion) return {};
   return Planner(given).plan();
 }
 
-std::string task_name(const options::Question& question, const Task& task) {
+std::string task_name(const cases::Question& question, const Task& task) {
   const auto at_lambda = [&](const char* what) {
     return fmt::format("{} at lambda = {:g}", what, question.lambda[task.at]);
   };

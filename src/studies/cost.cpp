@@ -57,8 +57,8 @@ class CostStudy {
   [[nodiscard]] int upwind_steps() const { return setting_.study.steps.value_or(7); }
   void announce(const std::string& what) { setting_.report(++number_, count_, what); }
 
-  [[nodiscard]] static options::Case hp_case(const options::Case& given) {
-    options::Case hp = given;
+  [[nodiscard]] static cases::Case hp_case(const cases::Case& given) {
+    cases::Case hp = given;
     hp.method = {};
     return hp;
   }
@@ -137,7 +137,7 @@ class CostStudy {
   // The error is the standard deviation of the interval: the error of a single run is random.
   void simulations() {
     Curve curve{"monte_carlo", "excursions", {}};
-    options::Case given = setting_.given;
+    cases::Case given = setting_.given;
     given.question.accuracy_given = false;
     for (int n = 0; n < kSimulations; ++n) {
       given.method.excursions = 1000 * std::pow(4, n);
@@ -152,7 +152,7 @@ class CostStudy {
     curves_.push_back(std::move(curve));
   }
 
-  [[nodiscard]] Run simulated(const options::Case& given) const {
+  [[nodiscard]] Run simulated(const cases::Case& given) const {
     auto simulation = monte_carlo::simulate(setting_.comm, given, "", {});
     return {"monte_carlo",
             {{"excursions", given.method.excursions}},

@@ -88,7 +88,7 @@ class Grid {
   // Extrapolation itself is right to a few digits.
   static constexpr double kTail = 1e-6;
 
-  [[nodiscard]] options::Case case_at(int l) const {
+  [[nodiscard]] cases::Case case_at(int l) const {
     return with_delta(setting_.given, std::ldexp(1, -l));
   }
 

@@ -11,7 +11,7 @@ namespace stickslip::studies {
 /// What every study is given.
 struct Setting {
   MPI_Comm comm;
-  const options::Case& given;
+  const cases::Case& given;
   const options::StudyOptions& study;
   const StudyProgress& progress;
 
@@ -35,18 +35,17 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// Sets the errors of the results to their distances from the values of the same name in `known`.
 void set_errors(const quantities::Results& known, quantities::Results& results);
 /// The case with another noise step, and without choices of the discretisation made by hand.
-[[nodiscard]] options::Case with_delta(const options::Case& given, double delta);
+[[nodiscard]] cases::Case with_delta(const cases::Case& given, double delta);
 /// Noise and velocity of upwind runs are truncated where they weigh less: far less than the error
 /// of the scheme, which is about 1/p.
 constexpr double kUpwindTail = 1e-9;
 /// Upwind with p points per noise step.
-[[nodiscard]] Run upwind_run(const Setting& setting, const options::Case& given, int points,
+[[nodiscard]] Run upwind_run(const Setting& setting, const cases::Case& given, int points,
                              double tail = kUpwindTail);
 /// Throws NoMemory if that run would not fit: no study computes for long only to end there.
-void require_upwind_memory(const Setting& setting, const options::Case& given, int points,
+void require_upwind_memory(const Setting& setting, const cases::Case& given, int points,
                            double tail = kUpwindTail);
 /// Refined hp.
-[[nodiscard]] Run converged_run(const Setting& setting, const options::Case& given,
-                                double accuracy);
+[[nodiscard]] Run converged_run(const Setting& setting, const cases::Case& given, double accuracy);
 
 }  // namespace stickslip::studies

@@ -7,7 +7,7 @@
 
 namespace stickslip::studies {
 
-Study run_study(MPI_Comm comm, const options::Case& given, const options::StudyOptions& study,
+Study run_study(MPI_Comm comm, const cases::Case& given, const options::StudyOptions& study,
                 const StudyProgress& progress) {
   const Setting setting{comm, given, study, progress};
   switch (study.kind) {
@@ -42,8 +42,8 @@ void set_errors(const quantities::Results& known, quantities::Results& results) 
   }
 }
 
-options::Case with_delta(const options::Case& given, double delta) {
-  options::Case other = given;
+cases::Case with_delta(const cases::Case& given, double delta) {
+  cases::Case other = given;
   other.scene.delta = delta;
   other.scene.noise_levels.reset();
   other.method = {};
@@ -52,16 +52,16 @@ options::Case with_delta(const options::Case& given, double delta) {
 
 namespace {
 
-options::Case upwind_case(const options::Case& given) {
-  options::Case upwind = given;
+cases::Case upwind_case(const cases::Case& given) {
+  cases::Case upwind = given;
   upwind.method = {};
-  upwind.method.scheme = options::Scheme::upwind;
+  upwind.method.scheme = cases::Scheme::upwind;
   return upwind;
 }
 
 }  // namespace
 
-void require_upwind_memory(const Setting& setting, const options::Case& given, int points,
+void require_upwind_memory(const Setting& setting, const cases::Case& given, int points,
                            double tail) {
   const auto upwind = upwind_case(given);
   try {
@@ -74,7 +74,7 @@ void require_upwind_memory(const Setting& setting, const options::Case& given, i
   }
 }
 
-Run upwind_run(const Setting& setting, const options::Case& given, int points, double tail) {
+Run upwind_run(const Setting& setting, const cases::Case& given, int points, double tail) {
   const auto upwind = upwind_case(given);
   const auto resolution = accuracy::upwind_resolution(upwind.scene, points, tail);
   auto [evaluation, step] = accuracy::solve_on(setting.comm, upwind, resolution);
@@ -85,8 +85,8 @@ Run upwind_run(const Setting& setting, const options::Case& given, int points, d
           step.statistics};
 }
 
-Run converged_run(const Setting& setting, const options::Case& given, double accuracy) {
-  options::Case hp = given;
+Run converged_run(const Setting& setting, const cases::Case& given, double accuracy) {
+  cases::Case hp = given;
   hp.method = {};
   hp.question.accuracy = accuracy;
   const auto outcome = accuracy::refine(setting.comm, hp, {}, {});

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <string>
 
@@ -39,6 +40,17 @@ std::string error_text(double error) {
 std::string seconds_text(double seconds) {
   const double decimals = seconds < 1 ? 3 : 3 - std::floor(std::log10(seconds));
   return fmt::format("{:.{}f}", seconds, static_cast<int>(std::clamp(decimals, 0.0, 3.0)));
+}
+
+std::optional<double> parse_number(const std::string& text) {
+  double value = 0;
+  const bool plus = text.starts_with('+') && !text.starts_with("+-");
+  const char* begin = text.data() + (plus ? 1 : 0);
+  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
 }
 
 }  // namespace stickslip

@@ -74,7 +74,7 @@ quantities::Result result_of(const std::string& key, const Json& json) {
   return result;
 }
 
-Json entry_of(MPI_Comm comm, const options::Case& given, std::size_t point) {
+Json entry_of(MPI_Comm comm, const cases::Case& given, std::size_t point) {
   const double start = petsc::wall_seconds();
   try {
     const auto outcome = accuracy::refine(comm, given, {});
@@ -104,7 +104,7 @@ const char* status_text(Status status) {
   return "";
 }
 
-SweepPoint compute_run(MPI_Comm comm, const options::Case& given, std::size_t point) {
+SweepPoint compute_run(MPI_Comm comm, const cases::Case& given, std::size_t point) {
   return read_run(entry_of(comm, given, point).dump());
 }
 

@@ -9,7 +9,7 @@ using namespace stickslip;
 using accuracy::compare;
 using accuracy::Comparison;
 using accuracy::Verdict;
-using options::Reference;
+using cases::Reference;
 using quantities::Result;
 using quantities::Results;
 

@@ -11,13 +11,13 @@
 
 using namespace stickslip;
 using accuracy::Outcome;
-using options::Quantity;
+using catalogue::Quantity;
 using test::relative_difference;
 
 namespace {
 
-options::Case moments(const std::string& law = "") {
-  options::Case r;
+cases::Case moments(const std::string& law = "") {
+  cases::Case r;
   r.scene.friction = {1, 0.5};
   r.scene.tau = 1;
   r.scene.delta = 0.25;
@@ -27,8 +27,8 @@ options::Case moments(const std::string& law = "") {
 }
 
 // Averages by the resolvent at lambda = 0.
-options::Case averages(const std::vector<std::string>& observables, const std::string& law = "") {
-  options::Case r = moments(law);
+cases::Case averages(const std::vector<std::string>& observables, const std::string& law = "") {
+  cases::Case r = moments(law);
   r.question.quantities = {Quantity::resolvent};
   r.question.lambda = {0};
   std::vector<double> x;
@@ -41,7 +41,7 @@ options::Case averages(const std::vector<std::string>& observables, const std::s
   return r;
 }
 
-Outcome solve(options::Case r, double accuracy) {
+Outcome solve(cases::Case r, double accuracy) {
   r.question.accuracy = accuracy;
   return accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
 }

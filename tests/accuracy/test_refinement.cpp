@@ -14,13 +14,13 @@
 
 using namespace stickslip;
 using accuracy::Outcome;
-using options::Quantity;
+using catalogue::Quantity;
 using test::relative_difference;
 
 namespace {
 
-options::Case given(double mu_s, double mu_d, double tau, double delta, model::Drag drag) {
-  options::Case r;
+cases::Case given(double mu_s, double mu_d, double tau, double delta, model::Drag drag) {
+  cases::Case r;
   r.scene.friction = {mu_s, mu_d};
   r.scene.tau = tau;
   r.scene.delta = delta;
@@ -29,7 +29,7 @@ options::Case given(double mu_s, double mu_d, double tau, double delta, model::D
   return r;
 }
 
-Outcome solve(const options::Case& r) { return accuracy::refine(PETSC_COMM_WORLD, r, {}, {}); }
+Outcome solve(const cases::Case& r) { return accuracy::refine(PETSC_COMM_WORLD, r, {}, {}); }
 
 const quantities::Result& result(const Outcome& outcome, std::string_view key) {
   for (const auto& r : outcome.results) {
@@ -42,13 +42,13 @@ double value(const Outcome& outcome, const std::string& key) {
   return result(outcome, key).value[0];
 }
 
-quantities::Results solved_alone(const options::Case& r, int n) {
+quantities::Results solved_alone(const cases::Case& r, int n) {
   const auto resolution = accuracy::RefinementSequence(r).refinement_level(n);
   return accuracy::solve_on(PETSC_COMM_WORLD, r, resolution).evaluation.results;
 }
 
 // Error estimates of a refinement level from its values and those before, solved one by one.
-quantities::Results estimated(const options::Case& r, int n) {
+quantities::Results estimated(const cases::Case& r, int n) {
   const accuracy::RefinementSequence sequence(r);
   auto found = solved_alone(r, n);
   const auto coarse = solved_alone(r, n - 1);
@@ -62,7 +62,7 @@ quantities::Results estimated(const options::Case& r, int n) {
 }
 
 // Times a step takes from the times of those before.
-std::vector<double> expected_seconds(const options::Case& r, Outcome& outcome) {
+std::vector<double> expected_seconds(const cases::Case& r, Outcome& outcome) {
   std::vector<double> expected;
   outcome = accuracy::refine(
       PETSC_COMM_WORLD, r,
@@ -70,18 +70,18 @@ std::vector<double> expected_seconds(const options::Case& r, Outcome& outcome) {
   return expected;
 }
 
-double work(const options::Case& r, int n) {
+double work(const cases::Case& r, int n) {
   return accuracy::relative_work(r.scene, accuracy::RefinementSequence(r).refinement_level(n));
 }
 
 // The value of one hand-made discretisation.
-double at_degree(options::Case r, int degree, const char* key) {
+double at_degree(cases::Case r, int degree, const char* key) {
   r.method.degree = degree;
   return value(solve(r), key);
 }
 
-double at_points(options::Case r, int points, const char* key) {
-  r.method.scheme = options::Scheme::upwind;
+double at_points(cases::Case r, int points, const char* key) {
+  r.method.scheme = cases::Scheme::upwind;
   r.method.points = points;
   r.question.quantities = {Quantity::sticking, Quantity::moments};
   return value(solve(r), key);
@@ -139,7 +139,7 @@ TEST_CASE("refinement: known values to nine digits at accuracy 1e-10", "[slow][r
        {{"P_stick", 0.453441658945}, {"E_V2", 0.566213687113}, {"f_stick_0", 0.308665061}}},
       {1, 0.25, 1.0 / 4, none, {{"P_stick", 0.0444301477306}, {"E_V2", 29.5037230587}}}};
   for (const auto& c : cases) {
-    options::Case r = given(c.mu_s, c.mu_d, 1, c.delta, c.drag);
+    cases::Case r = given(c.mu_s, c.mu_d, 1, c.delta, c.drag);
     r.question.accuracy = 1e-10;
     if (c.mu_s == 6) r.question.quantities = {Quantity::sticking, Quantity::moments};
     const Outcome outcome = solve(r);
@@ -166,7 +166,7 @@ TEST_CASE("refinement: densities of sticking times at 0+", "[slow][real]") {
         Case{0.5, 1.0 / 32, 8.36837}, Case{0.75, 1.0 / 8, 0.68153}, Case{0.75, 1.0 / 16, 1.24353},
         Case{0.75, 1.0 / 32, 2.36272}, Case{1, 1.0 / 8, 0.132599}, Case{1, 1.0 / 16, 0.185010},
         Case{1, 1.0 / 32, 0.260757}}) {
-    options::Case r = given(1, c.mu_d, 1, c.delta, {1, 0});
+    cases::Case r = given(1, c.mu_d, 1, c.delta, {1, 0});
     r.question.accuracy = 1e-7;
     INFO("mu_d " << c.mu_d << " delta " << c.delta);
     CHECK(std::abs(value(solve(r), "f_stick_0") - c.known) < 6e-6);
@@ -188,8 +188,8 @@ TEST_CASE("refinement: hp errors fall tenfold and more with two degrees", "[slow
 }
 
 TEST_CASE("refinement: upwind is of first order in 1/p", "[slow][real]") {
-  const options::Case r = given(1, 0.25, 1, 1.0 / 2, {1, 0});
-  options::Case fine = r;
+  const cases::Case r = given(1, 0.25, 1, 1.0 / 2, {1, 0});
+  cases::Case fine = r;
   fine.question.accuracy = 1e-12;
   const Outcome reference = solve(fine);
   for (const char* key : {"P_stick", "E_V2"}) {
@@ -204,11 +204,11 @@ TEST_CASE("refinement: upwind is of first order in 1/p", "[slow][real]") {
 }
 
 TEST_CASE("refinement: estimates of fixed upwind grids cover their errors", "[slow][real]") {
-  options::Case r = given(1, 0.25, 1, 1.0 / 2, {1, 0});
-  options::Case fine = r;
+  cases::Case r = given(1, 0.25, 1, 1.0 / 2, {1, 0});
+  cases::Case fine = r;
   fine.question.accuracy = 1e-11;
   const Outcome exact = solve(fine);
-  r.method.scheme = options::Scheme::upwind;
+  r.method.scheme = cases::Scheme::upwind;
   for (int p : {1, 2, 3, 16, 64}) {
     r.method.points = p;
     const Outcome outcome = solve(r);
@@ -237,7 +237,7 @@ TEST_CASE("refinement: error estimates are honest and not far off", "[slow][real
     const double mu_d = scenes % 2 == 0 ? mu_s : mu_s * uniform(0.1, 1);
     const model::Drag drag{scenes % 5 == 4 ? 0 : std::exp2(uniform(-3, 3)),
                            scenes % 7 == 6 ? 0.5 : 0.0};
-    options::Case r = given(mu_s, mu_d, tau, delta, drag);
+    cases::Case r = given(mu_s, mu_d, tau, delta, drag);
     if (delta > std::sqrt(1 / tau)) continue;
     if (r.scene.meant().static_index() >= r.scene.full_levels() - 1) continue;
     if (accuracy::levels_for(r.scene, 1e-12) > 80) continue;
@@ -264,7 +264,7 @@ TEST_CASE("refinement: error estimates are honest and not far off", "[slow][real
 }
 
 TEST_CASE("refinement: what is zero by symmetry is exactly zero", "[parallel]") {
-  options::Case r = given(1, 0.25, 1, 0.5, {1, 0});
+  cases::Case r = given(1, 0.25, 1, 0.5, {1, 0});
   r.question.quantities = {Quantity::moments};
   const Outcome outcome = solve(r);
   CHECK(value(outcome, "E_V") == 0);
@@ -273,7 +273,7 @@ TEST_CASE("refinement: what is zero by symmetry is exactly zero", "[parallel]") 
 
 TEST_CASE("refinement: no error is below the rounding of the value") {
   // Without drag on a full range nothing but rounding changes from one discretisation to the next.
-  options::Case r = given(1, 0.3, 1, 0.5, {0, 0});
+  cases::Case r = given(1, 0.3, 1, 0.5, {0, 0});
   r.question.accuracy = 1e-10;
   const Outcome outcome = solve(r);
   for (const auto& found : outcome.results) {
@@ -285,7 +285,7 @@ TEST_CASE("refinement: no error is below the rounding of the value") {
 
 // With a single static level every discretisation gives the same mean duration of sticking.
 TEST_CASE("refinement: no error is below what all discretisations cut off") {
-  options::Case r = given(0.4, 0.3, 1, 0.5, {0, 0});
+  cases::Case r = given(0.4, 0.3, 1, 0.5, {0, 0});
   r.question.quantities = {Quantity::sticking};
   r.question.accuracy = 1e-2;
   const Outcome outcome = solve(r);
@@ -295,7 +295,7 @@ TEST_CASE("refinement: no error is below what all discretisations cut off") {
 }
 
 TEST_CASE("refinement: only what is asked for is done") {
-  options::Case r = given(1, 0.25, 1, 0.5, {1, 0});
+  cases::Case r = given(1, 0.25, 1, 0.5, {1, 0});
   r.question.quantities = {Quantity::noise_law};
   const Outcome noise = solve(r);
   CHECK(noise.total.assemblies == 0);
@@ -318,7 +318,7 @@ TEST_CASE("refinement: only what is asked for is done") {
 }
 
 TEST_CASE("refinement: a fixed discretisation is not refined, and its errors are reported") {
-  options::Case r = given(1, 0.25, 1, 0.25, {1, 0});
+  cases::Case r = given(1, 0.25, 1, 0.25, {1, 0});
   r.question.quantities = {Quantity::sticking};
   r.method.degree = 3;
   const Outcome coarse = solve(r);
@@ -330,7 +330,7 @@ TEST_CASE("refinement: a fixed discretisation is not refined, and its errors are
 }
 
 TEST_CASE("refinement: rounding is distinguished from discretisation") {
-  options::Case r = given(1, 0.25, 1.0 / 64, 0.5, {1, 0});
+  cases::Case r = given(1, 0.25, 1.0 / 64, 0.5, {1, 0});
   r.question.quantities = {Quantity::sticking, Quantity::moments};
   r.question.accuracy = 1e-15;
   const Outcome outcome = solve(r);
@@ -339,9 +339,9 @@ TEST_CASE("refinement: rounding is distinguished from discretisation") {
 }
 
 TEST_CASE("refinement: the upwind scheme reports early what an accuracy would take") {
-  options::Case r = given(1, 0.25, 1, 0.25, {1, 0});
+  cases::Case r = given(1, 0.25, 1, 0.25, {1, 0});
   r.question.quantities = {Quantity::sticking};
-  r.method.scheme = options::Scheme::upwind;
+  r.method.scheme = cases::Scheme::upwind;
   r.question.accuracy = 1e-9;
   const Outcome outcome = solve(r);
   CHECK_FALSE(outcome.reached);
@@ -353,8 +353,8 @@ TEST_CASE("refinement: the upwind scheme reports early what an accuracy would ta
 }
 
 TEST_CASE("refinement: refuses what cannot fit before allocating it") {
-  options::Case r = given(1, 0.25, 1, 1.0 / 64, {1, 0});
-  r.method.scheme = options::Scheme::upwind;
+  cases::Case r = given(1, 0.25, 1, 1.0 / 64, {1, 0});
+  r.method.scheme = cases::Scheme::upwind;
   r.method.points = 5000000;
   CHECK_THROWS_AS(solve(r), NoMemory);
 }
@@ -362,15 +362,15 @@ TEST_CASE("refinement: refuses what cannot fit before allocating it") {
 TEST_CASE("refinement: estimates are made of the last changes, and of the errors of the solution "
           "method") {
   struct Case {
-    options::Method method;
+    cases::Method method;
     model::Drag drag;
     double accuracy;
     int steps;
   };
   const auto c = GENERATE(Case{{}, {0.1, 3}, 1e-5, 4}, Case{{}, {0.1, 3}, 1e-6, 5},
                           Case{{}, {0.1, 3}, 1e-7, 5}, Case{{.degree = 4}, {1, 0}, 1e-5, 3},
-                          Case{{.scheme = options::Scheme::upwind, .points = 16}, {1, 0}, 1e-5, 2});
-  options::Case r = given(1, 0.25, c.drag.cubic > 0 ? 4 : 1, c.drag.cubic > 0 ? 0.25 : 0.5, c.drag);
+                          Case{{.scheme = cases::Scheme::upwind, .points = 16}, {1, 0}, 1e-5, 2});
+  cases::Case r = given(1, 0.25, c.drag.cubic > 0 ? 4 : 1, c.drag.cubic > 0 ? 0.25 : 0.5, c.drag);
   r.question.accuracy = c.accuracy;
   r.method = c.method;
   const Outcome outcome = solve(r);
@@ -395,7 +395,7 @@ TEST_CASE("refinement: estimates are made of the last changes, and of the errors
 }
 
 TEST_CASE("refinement: an accuracy is reached at its estimate, and not below") {
-  options::Case r = given(1, 0.25, 1, 0.5, {1, 0});
+  cases::Case r = given(1, 0.25, 1, 0.5, {1, 0});
   r.method.degree = 4;
   const double estimate = solve(r).steps.back().estimate;
   r.question.accuracy = 1.001 * estimate;
@@ -405,7 +405,7 @@ TEST_CASE("refinement: an accuracy is reached at its estimate, and not below") {
 }
 
 TEST_CASE("refinement: the density is judged by the distribution of |V|", "[parallel]") {
-  options::Case r = given(1, 0.25, 1, 0.5, {1, 0});
+  cases::Case r = given(1, 0.25, 1, 0.5, {1, 0});
   r.question.quantities = {Quantity::density};
   r.method.degree = 4;
   const accuracy::RefinementSequence sequence(r);
@@ -421,7 +421,7 @@ TEST_CASE("refinement: the density is judged by the distribution of |V|", "[para
 }
 
 TEST_CASE("refinement: a truncation velocity by hand is an error of the time spent at it") {
-  options::Case r = given(1, 0.25, 1, 0.5, {1, 0});
+  cases::Case r = given(1, 0.25, 1, 0.5, {1, 0});
   r.question.quantities = {Quantity::sticking};
   r.scene.v_max = 1;
   r.method.degree = 5;
@@ -442,11 +442,11 @@ TEST_CASE("refinement: a truncation velocity by hand is an error of the time spe
 
 TEST_CASE("refinement: a digit more takes the steps by which estimates fall") {
   const bool hp = GENERATE(true, false);
-  options::Case r = hp ? given(1, 0.25, 4, 0.25, {0.1, 3}) : given(1, 0.25, 1, 0.5, {1, 0});
+  cases::Case r = hp ? given(1, 0.25, 4, 0.25, {0.1, 3}) : given(1, 0.25, 1, 0.5, {1, 0});
   r.question.quantities = {Quantity::sticking, Quantity::moments};
   r.question.accuracy = hp ? 1e-6 : 0.05;
   if (hp) r.question.quantities.insert(Quantity::entry_law);
-  if (!hp) r.method.scheme = options::Scheme::upwind;
+  if (!hp) r.method.scheme = cases::Scheme::upwind;
   const Outcome outcome = solve(r);
   REQUIRE(outcome.reached);
   const int last = static_cast<int>(outcome.steps.size()) - 1;
@@ -465,7 +465,7 @@ TEST_CASE("refinement: a digit more takes the steps by which estimates fall") {
 }
 
 TEST_CASE("refinement: a step is expected to take the time of the last one, by its work") {
-  options::Case r = given(1, 0.25, 1, 0.25, {1, 0});
+  cases::Case r = given(1, 0.25, 1, 0.25, {1, 0});
   r.question.accuracy = 1e-5;
   Outcome outcome;
   const auto expected = expected_seconds(r, outcome);
@@ -479,7 +479,7 @@ TEST_CASE("refinement: a step is expected to take the time of the last one, by i
 }
 
 TEST_CASE("refinement: the solver statistics of a run are those of its steps") {
-  options::Case r = given(1, 0.25, 1, 0.5, {1, 0});
+  cases::Case r = given(1, 0.25, 1, 0.5, {1, 0});
   r.question.quantities = {Quantity::sticking, Quantity::moments};
   const Outcome outcome = solve(r);
   petsc::SolverStatistics sum;
@@ -491,14 +491,14 @@ TEST_CASE("refinement: the solver statistics of a run are those of its steps") {
 }
 
 TEST_CASE("refinement: closed forms and paths need no system, all else does") {
-  const auto needs = [](std::set<Quantity> quantities, options::Route route) {
-    options::Case r;
+  const auto needs = [](std::set<Quantity> quantities, catalogue::Route route) {
+    cases::Case r;
     r.question.quantities = std::move(quantities);
     r.method.route = route;
     return accuracy::needs_system(r);
   };
   using enum Quantity;
-  using options::Route;
+  using catalogue::Route;
   CHECK_FALSE(needs({noise_law}, Route::excursion));
   CHECK(needs({noise_law}, Route::null_vector));
   CHECK_FALSE(needs({noise_law, trajectory, sensitivity}, Route::excursion));
@@ -507,7 +507,7 @@ TEST_CASE("refinement: closed forms and paths need no system, all else does") {
 }
 
 TEST_CASE("refinement: what reduced models miss on coarse grids ends no refinement") {
-  options::Case r = given(1, 0.5, 1, 0.25, {1, 0});
+  cases::Case r = given(1, 0.5, 1, 0.25, {1, 0});
   r.question.quantities = {Quantity::slip};
   for (int k = 0; k <= 12; ++k) {
     r.question.distance.push_back(0.03 * std::pow(10 / 0.03, k / 12.0));
@@ -535,7 +535,7 @@ TEST_CASE("refinement: elements follow the waves that count, and no others", "[s
 }
 
 TEST_CASE("refinement: a spectrum that a coarse grid makes negative at 0 has no half width") {
-  options::Case r = given(1, 0.9275472130746147, 0.34511921289195263, 0.0625, {0, 0});
+  cases::Case r = given(1, 0.9275472130746147, 0.34511921289195263, 0.0625, {0, 0});
   r.scene.bias = 0.14093038741631342;
   r.question.quantities = {Quantity::spectrum};
   r.question.omega = {1};

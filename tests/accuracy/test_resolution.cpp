@@ -108,7 +108,7 @@ TEST_CASE("velocity end: of both signs the faster one counts") {
 TEST_CASE("resolution: unknowns are levels times nodes, on each velocity branch") {
   const auto s = scene(1, 0.25, 1, 0.25);
   accuracy::Resolution upwind;
-  upwind.scheme = options::Scheme::upwind;
+  upwind.scheme = cases::Scheme::upwind;
   upwind.levels = 5;
   upwind.points = 4;
   upwind.v_max = 3.125;  // 50 nodes
@@ -141,7 +141,7 @@ TEST_CASE("resolution: the work of a band, or of blocks of noise nodes") {
   both.branches = 2;
   CHECK(accuracy::relative_work(s, both) == Approx(2 * blocks.operations));
   auto by_mumps = hp;
-  by_mumps.factors = options::Factors::in_memory;
+  by_mumps.factors = cases::Factors::in_memory;
   CHECK(accuracy::relative_work(s, by_mumps) == Approx(band));
   const auto upwind = accuracy::upwind_resolution(s, 2, 1e-6);
   const double all = static_cast<double>(accuracy::unknowns(s, upwind));
@@ -192,7 +192,7 @@ TEST_CASE("resolution: what is cut off is an error, and nothing where nothing is
 }
 
 TEST_CASE("refinement sequence: elements stay where they are, unless the tail counts") {
-  options::Case given;
+  cases::Case given;
   given.scene = scene(1, 0.25, 1, 0.125);
   given.scene.drag = {0.01, 0};
   given.question.accuracy = 1e-6;
@@ -212,20 +212,20 @@ TEST_CASE("refinement sequence: elements stay where they are, unless the tail co
     for (int n = 1; n <= 4; ++n) CHECK(ends(sequence, n).back() > ends(sequence, n - 1).back());
     CHECK(sequence.refinement_level(1).whole_tail);
   };
-  given.question.quantities = {options::Quantity::peak};
+  given.question.quantities = {catalogue::Quantity::peak};
   further();
-  given.question.quantities = {options::Quantity::relaxation};
+  given.question.quantities = {catalogue::Quantity::relaxation};
   further();
-  given.question.quantities = {options::Quantity::averages};
+  given.question.quantities = {catalogue::Quantity::averages};
   given.question.observables.push_back(model::parse_observable("v^8", given.scene.friction));
   further();
 }
 
 TEST_CASE("refinement sequence: every level is finer in every respect") {
-  options::Case given;
+  cases::Case given;
   given.scene = scene(1, 0.25, 1, 0.125);
   given.scene.drag = {0.01, 0};
-  const auto quantity = GENERATE(options::Quantity::sticking, options::Quantity::entry_law);
+  const auto quantity = GENERATE(catalogue::Quantity::sticking, catalogue::Quantity::entry_law);
   given.question.quantities = {quantity};
   given.question.accuracy = GENERATE(0.1, 1e-8);
   const accuracy::RefinementSequence sequence(given);
@@ -248,7 +248,7 @@ TEST_CASE("refinement sequence: every level is finer in every respect") {
 }
 
 TEST_CASE("refinement sequence: what is fixed by hand is compared with two degrees less") {
-  options::Case given;
+  cases::Case given;
   given.scene = scene(1, 0.25, 1, 0.25);
   given.method.degree = 4;
   const accuracy::RefinementSequence fixed(given);
@@ -265,11 +265,11 @@ TEST_CASE("refinement sequence: what is fixed by hand is compared with two degre
 }
 
 TEST_CASE("refinement sequence: first-order schemes are compared with one discretisation") {
-  options::Case given;
+  cases::Case given;
   given.scene = scene(1, 0.25, 1, 0.25);
-  given.method.scheme = options::Scheme::none;
+  given.method.scheme = cases::Scheme::none;
   CHECK(accuracy::RefinementSequence(given).first() == 0);
-  given.method = {.scheme = options::Scheme::upwind, .points = 1};
+  given.method = {.scheme = cases::Scheme::upwind, .points = 1};
   const accuracy::RefinementSequence one_point(given);
   CHECK(one_point.refinement_level(1).points == 1);
   CHECK(one_point.refinement_level(0).points == 2);  // nothing coarser exists
@@ -280,9 +280,9 @@ TEST_CASE("refinement sequence: first-order schemes are compared with one discre
 
 // Of errors that fall as C/p the estimate is 1.5 to 2 times too large, more where p is small.
 TEST_CASE("refinement sequence: first-order changes are extrapolated, with a margin") {
-  options::Case given;
+  cases::Case given;
   given.scene = scene(1, 0.25, 1, 0.25);
-  given.method.scheme = options::Scheme::upwind;
+  given.method.scheme = cases::Scheme::upwind;
   const accuracy::RefinementSequence sequence(given);
   for (int n = 1; n < 6; ++n) {
     const double coarse = 1.0 / sequence.refinement_level(n - 1).points,
@@ -303,8 +303,8 @@ TEST_CASE("refinement sequence: first-order changes are extrapolated, with a mar
 }
 
 TEST_CASE("refinement sequence: two hp changes make an error, the larger the higher the degree") {
-  options::Case given;
-  given.question.quantities = {options::Quantity::sticking};
+  cases::Case given;
+  given.question.quantities = {catalogue::Quantity::sticking};
   given.scene = scene(1, 0.25, 1, 0.25);
   const accuracy::RefinementSequence sequence(given);
   for (int n = 1; n < 5; ++n) {
@@ -317,47 +317,47 @@ TEST_CASE("refinement sequence: two hp changes make an error, the larger the hig
   const accuracy::RefinementSequence weakening(given);
   const int degree = weakening.refinement_level(1).degree;
   CHECK(weakening.error_per_change(1).last == Approx(0.07 * (degree + 4)));
-  given.question.quantities = {options::Quantity::peak};
+  given.question.quantities = {catalogue::Quantity::peak};
   CHECK(accuracy::RefinementSequence(given).error_per_change(1).last ==
         Approx(1.4 * 0.07 * (degree + 4)));
 }
 
 TEST_CASE(
     "refinement sequence: the first estimate is expected at the accuracy, within degrees 5 to 19") {
-  options::Case given;
+  cases::Case given;
   given.scene = scene(1, 0.25, 1, 0.25);
-  const auto first = [&](double accuracy, options::Quantity quantity) {
+  const auto first = [&](double accuracy, catalogue::Quantity quantity) {
     given.question.accuracy = accuracy;
     given.question.quantities = {quantity};
     return accuracy::RefinementSequence(given).refinement_level(1).degree;
   };
   // Errors are 10^-d at degree d, and the estimate is that of a degree less; ten times that for
   // densities at 0+, a hundred times for densities of durations; those of path lengths fall slower.
-  CHECK(first(1e-6, options::Quantity::sticking) == 7);
-  CHECK(first(1e-6, options::Quantity::entry_law) == 8);
-  CHECK(first(1e-6, options::Quantity::duration_density) == 9);
-  CHECK(first(1e-6, options::Quantity::slip) == 11);
-  CHECK(first(1e-6, options::Quantity::displacement) == 6);
-  given.question.quantities = {options::Quantity::slip, options::Quantity::sticking};
+  CHECK(first(1e-6, catalogue::Quantity::sticking) == 7);
+  CHECK(first(1e-6, catalogue::Quantity::entry_law) == 8);
+  CHECK(first(1e-6, catalogue::Quantity::duration_density) == 9);
+  CHECK(first(1e-6, catalogue::Quantity::slip) == 11);
+  CHECK(first(1e-6, catalogue::Quantity::displacement) == 6);
+  given.question.quantities = {catalogue::Quantity::slip, catalogue::Quantity::sticking};
   CHECK(accuracy::RefinementSequence(given).refinement_level(1).degree == 11);
-  CHECK(first(3e-7, options::Quantity::sticking) == 8);
-  CHECK(first(0.1, options::Quantity::sticking) == 5);
-  CHECK(first(1e-30, options::Quantity::sticking) == 19);
+  CHECK(first(3e-7, catalogue::Quantity::sticking) == 8);
+  CHECK(first(0.1, catalogue::Quantity::sticking) == 5);
+  CHECK(first(1e-30, catalogue::Quantity::sticking) == 19);
   given.question.accuracy = 1e-6;
   const accuracy::RefinementSequence sequence(given);
   CHECK(sequence.refinement_level(sequence.last()).degree == 19);
 }
 
 TEST_CASE("refinement sequence: truncation is allowed a part of what the discretisation leaves") {
-  options::Case given;
+  cases::Case given;
   given.scene = scene(1, 0.25, 1, 0.25);
   given.question.accuracy = 1e-6;
-  given.question.quantities = {options::Quantity::entry_law};
+  given.question.quantities = {catalogue::Quantity::entry_law};
   const accuracy::RefinementSequence hp(given);
   for (int n = -1; n < 4; ++n) CHECK(hp.tail_tolerance(n) == Approx(1e-12));
-  given.question.quantities = {options::Quantity::peak};
+  given.question.quantities = {catalogue::Quantity::peak};
   const accuracy::RefinementSequence peak(given);
-  given.question.quantities = {options::Quantity::relaxation};
+  given.question.quantities = {catalogue::Quantity::relaxation};
   const accuracy::RefinementSequence modes(given);
   CHECK(peak.tail_tolerance(-1) == peak.tail_tolerance(0));
   for (int n = 0; n < 4; ++n) {
@@ -365,21 +365,21 @@ TEST_CASE("refinement sequence: truncation is allowed a part of what the discret
     CHECK(peak.tail_tolerance(n) == Approx(expected));
     CHECK(modes.tail_tolerance(n) == Approx(expected * expected));
   }
-  given.question.quantities = {options::Quantity::sticking};
-  given.method.scheme = options::Scheme::upwind;
+  given.question.quantities = {catalogue::Quantity::sticking};
+  given.method.scheme = cases::Scheme::upwind;
   CHECK(accuracy::RefinementSequence(given).tail_tolerance(1) == Approx(1e-9));
   given.question.accuracy = 1e-3;
   CHECK(accuracy::RefinementSequence(given).tail_tolerance(3) == Approx(1e-9));
   given.question.accuracy = 1e-8;
   CHECK(accuracy::RefinementSequence(given).tail_tolerance(3) == Approx(1e-11));
-  given.method.scheme = options::Scheme::none;
+  given.method.scheme = cases::Scheme::none;
   CHECK(accuracy::RefinementSequence(given).tail_tolerance(0) == Approx(1e-8));
   CHECK(accuracy::RefinementSequence(given).tail_tolerance(2) == Approx(1e-12));
   CHECK(accuracy::RefinementSequence(given).tail_tolerance(20) == Approx(1e-18));
 }
 
 TEST_CASE("refinement sequence: the noise is on nodes, of a degree by hand, or on all levels") {
-  options::Case given;
+  cases::Case given;
   given.scene = scene(1, 0.25, 1, 1.0 / 32);
   given.method.noise_grading = 3;
   const accuracy::RefinementSequence free(given);
@@ -397,42 +397,42 @@ TEST_CASE("refinement sequence: the noise is on nodes, of a degree by hand, or o
   given.method.noise_degree.reset();
   // The solution methods of the paper use single levels alone.
   for (auto route :
-       {options::Route::lambda, options::Route::hitting, options::Route::null_vector}) {
+       {catalogue::Route::lambda, catalogue::Route::hitting, catalogue::Route::null_vector}) {
     given.method.route = route;
     CHECK_FALSE(accuracy::RefinementSequence(given).refinement_level(1).noise);
   }
-  given.method.route = options::Route::excursion;
+  given.method.route = catalogue::Route::excursion;
   // Modes near the limits of rounding use them as well.
-  given.question.quantities = {options::Quantity::relaxation};
+  given.question.quantities = {catalogue::Quantity::relaxation};
   given.question.accuracy = 1e-8;
   CHECK_FALSE(accuracy::RefinementSequence(given).refinement_level(1).noise);
   given.question.accuracy = 1e-7;
   CHECK(accuracy::RefinementSequence(given).refinement_level(1).noise);
-  given.question.quantities = {options::Quantity::sticking};
+  given.question.quantities = {catalogue::Quantity::sticking};
   CHECK(accuracy::RefinementSequence(given).refinement_level(1).noise);
-  given.method.scheme = options::Scheme::upwind;
+  given.method.scheme = cases::Scheme::upwind;
   CHECK_FALSE(accuracy::RefinementSequence(given).refinement_level(1).noise);
 }
 
 TEST_CASE("refinement sequence: both signs of v where there is no symmetry, or none is used") {
-  options::Case given;
+  cases::Case given;
   given.scene = scene(1, 0.25, 1, 0.25);
   CHECK(accuracy::RefinementSequence(given).refinement_level(1).branches == 1);
-  given.method.route = options::Route::null_vector;
+  given.method.route = catalogue::Route::null_vector;
   CHECK(accuracy::RefinementSequence(given).refinement_level(1).branches == 2);
-  given.method.route = options::Route::excursion;
+  given.method.route = catalogue::Route::excursion;
   given.scene.bias = 0.2;
   CHECK(accuracy::RefinementSequence(given).refinement_level(1).branches == 2);
 }
 
 TEST_CASE(
     "refinement sequence: elements resolve the fastest rate of what is asked for, and no other") {
-  using enum options::Quantity;
-  options::Case given;
+  using enum catalogue::Quantity;
+  cases::Case given;
   given.scene = scene(1, 0.25, 1, 0.25);
   given.question.lambda = {3, 700, 2};
   given.question.omega = {1, 200, 5};
-  const auto rates = [&](std::set<options::Quantity> quantities, int refinement_level = 1) {
+  const auto rates = [&](std::set<catalogue::Quantity> quantities, int refinement_level = 1) {
     given.question.quantities = std::move(quantities);
     const accuracy::RefinementSequence sequence(given);
     const auto& found = sequence.refinement_level(refinement_level);
@@ -449,17 +449,17 @@ TEST_CASE(
   given.method.degree = 8;
   CHECK(rates({spectrum}) == std::pair{0.0, waves});
   given.method.degree.reset();
-  given.method.route = options::Route::lambda;
+  given.method.route = catalogue::Route::lambda;
   CHECK(rates({sticking}) == std::pair{700.0, none});
 }
 
 TEST_CASE("refinement sequence: functions of short times have layers where noise levels are few") {
-  using enum options::Quantity;
-  options::Case given;
+  using enum catalogue::Quantity;
+  cases::Case given;
   given.scene = scene(1, 0.5, 1, 0.25);
   given.question.time = {0, 3, 0.5};
   given.question.distance = {3, 0.25};
-  const auto rate = [&](options::Quantity quantity) {
+  const auto rate = [&](catalogue::Quantity quantity) {
     given.question.quantities = {quantity};
     return accuracy::RefinementSequence(given).refinement_level(1).rates.lambda;
   };
@@ -487,10 +487,10 @@ TEST_CASE("memory: predicted within a factor 2.5 of what MUMPS counts", "[slow]"
     const auto s = scene(1, 0.25, 1, c.delta);
     auto resolution = c.points > 0 ? accuracy::upwind_resolution(s, c.points, 1e-8)
                                    : hp_resolution(s, c.degree, 0, 1e-8);
-    resolution.factors = options::Factors::in_memory;
-    options::Case given;
+    resolution.factors = cases::Factors::in_memory;
+    cases::Case given;
     given.scene = s;
-    given.question.quantities = {options::Quantity::sticking};
+    given.question.quantities = {catalogue::Quantity::sticking};
     const auto statistics = accuracy::solve_on(MPI_COMM_WORLD, given, resolution).step.statistics;
     const double predicted = accuracy::predicted_bytes(s, resolution);
     const double scalars = petsc::complex_scalars() ? 2 : 1;

@@ -26,6 +26,7 @@
 #include "stickslip/model/observable.hpp"
 #include "stickslip/monte_carlo/simulate.hpp"
 #include "stickslip/operators/element_pc.hpp"
+#include "stickslip/options/reference.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"

@@ -317,7 +317,7 @@ TEST_CASE("table: the cost has room in 100 columns") {
   last.limiting_key = "dmean_excursion_dstribeck_velocity";
   last.checks = {{"excursion_pairs", 123}, {"norm_pi_M_over_norm_M", 3.185e-19}};
   auto r = request();
-  for (auto scheme : {options::Scheme::hp, options::Scheme::upwind, options::Scheme::none}) {
+  for (auto scheme : {cases::Scheme::hp, cases::Scheme::upwind, cases::Scheme::none}) {
     r.method.scheme = scheme;
     for (auto& step : o.steps) step.resolution.scheme = scheme;
     for (const auto& line : lines(io::table(r, o, {}))) {
@@ -424,10 +424,10 @@ TEST_CASE("reports: references read from a summary and from HDF5 are what was wr
   io::write_hdf5(PETSC_COMM_SELF, r, outcome(), {0.5, 4});
   write_text(json, io::summary(PETSC_COMM_SELF, r, outcome(), {0.5, 4}));
   const double half = 1.959963984540054 * 0.5;
-  const std::vector<options::Reference> written{{"E_V2", {}, -4, -4 - half, -4 + half},
-                                                {"P_stick", {}, 0.25, 0.2, 0.3},
-                                                {"S_v", 0.5, 3, 2.5, 3.25},
-                                                {"S_v", 2.0, 5, 4.75, 5.5}};
+  const std::vector<cases::Reference> written{{"E_V2", {}, -4, -4 - half, -4 + half},
+                                              {"P_stick", {}, 0.25, 0.2, 0.3},
+                                              {"S_v", 0.5, 3, 2.5, 3.25},
+                                              {"S_v", 2.0, 5, 4.75, 5.5}};
   for (const auto& file : {r.output.output, json}) {
     const auto read = options::read_references(file);
     REQUIRE(read.size() == written.size());
@@ -496,7 +496,7 @@ TEST_CASE("plan reports: sizes, solves and seconds in their places") {
   p.steps = {{step(0).resolution, 1001, 20002, 3e5, 12, 4e6, 0.25, 0.125}};
   p.seconds = 7;
   auto r = request();
-  r.question.quantities = {options::Quantity::sticking};
+  r.question.quantities = {catalogue::Quantity::sticking};
   const std::string text = io::table(r, p);
   CHECK(row(text, "8") ==
         Words{"8", "5", "40", "81", "7.5", "1001", "2.00e+04", "3.00e+05", "12", "0.250"});

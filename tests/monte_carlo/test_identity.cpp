@@ -14,6 +14,7 @@
 #include "stickslip/options/request.hpp"
 #include "stickslip/options/settings.hpp"
 #include "stickslip/support/errors.hpp"
+#include "stickslip/support/number_text.hpp"
 
 using namespace stickslip;
 using namespace stickslip::options;

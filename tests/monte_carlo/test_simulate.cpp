@@ -16,8 +16,8 @@
 #include "stickslip/support/seal.hpp"
 
 using namespace stickslip;
-using options::Case;
-using options::Quantity;
+using cases::Case;
+using catalogue::Quantity;
 using quantities::Results;
 using test::scene;
 
@@ -29,7 +29,7 @@ constexpr double kRound = 64 * 256;  // excursions after which it may stop
 Case given(const model::Scene& s, double excursions) {
   Case r;
   r.scene = s;
-  r.method.route = options::Route::monte_carlo;
+  r.method.route = catalogue::Route::monte_carlo;
   r.question.quantities = {Quantity::sticking,    Quantity::moments,          Quantity::averages,
                            Quantity::noise_law,   Quantity::entry_law,        Quantity::laplace,
                            Quantity::resolvent,   Quantity::duration_density, Quantity::spectrum,
@@ -491,7 +491,7 @@ Case covering(const model::Scene& s) {
 }
 
 Results computed(Case r, double accuracy = 1e-8) {
-  r.method.route = options::Route::excursion;
+  r.method.route = catalogue::Route::excursion;
   r.question.accuracy = accuracy;
   const auto outcome = accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
   INFO(outcome.shortfall);

@@ -34,7 +34,7 @@ struct Case {
 model::Scene plain(double mu_d, double delta) { return test::scene(1, mu_d, 1, delta, {1, 0}); }
 
 // With holding states and without, on levels and on nodes, drags of both kinds, one static level.
-std::vector<Case> cases() {
+std::vector<Case> samples() {
   auto truncated = plain(0.25, 0.25), biased = plain(0.6, 0.2), driven = plain(0.5, 0.25);
   truncated.v_max = 1;
   biased.bias = 0.3;
@@ -107,7 +107,7 @@ void check_solves(const KolmogorovOperator& a, bool share = true) {
 
 TEST_CASE("element elimination: solves every kind of system, forward and transposed",
           "[parallel]") {
-  for (const auto& c : cases()) {
+  for (const auto& c : samples()) {
     for (StaticPhase static_phase : {StaticPhase::killing, StaticPhase::kept,
                                      StaticPhase::killed_on_exit, StaticPhase::killing_edges}) {
       INFO(c.name << ", symmetry " << static_cast<int>(c.symmetry) << ", static phase "
@@ -119,7 +119,7 @@ TEST_CASE("element elimination: solves every kind of system, forward and transpo
 }
 
 TEST_CASE("element elimination: by the clock of path length, and killed at a speed", "[parallel]") {
-  for (const auto& c : cases()) {
+  for (const auto& c : samples()) {
     INFO(c.name << ", symmetry " << static_cast<int>(c.symmetry));
     const KolmogorovOperator slow(PETSC_COMM_WORLD, c.on, 3, c.symmetry, StaticPhase::killing,
                                   Clock::path_length);
@@ -138,7 +138,7 @@ TEST_CASE("element elimination: follows a shift of the operator", "[parallel]") 
 #if defined(PETSC_USE_COMPLEX)
   shift = PetscScalar(0.5, 12);
 #endif
-  for (const auto& c : cases()) {
+  for (const auto& c : samples()) {
     INFO(c.name);
     const KolmogorovOperator a(PETSC_COMM_WORLD, c.on, 0.1, c.symmetry, StaticPhase::kept);
     check_solves(a, a.shifted(shift));

@@ -18,11 +18,11 @@
 #include "stickslip/support/errors.hpp"
 
 using namespace stickslip;
+using cases::Factors;
+using cases::Scheme;
 using operators::KolmogorovOperator;
 using operators::StaticPhase;
 using operators::Symmetry;
-using options::Factors;
-using options::Scheme;
 using petsc::check;
 
 namespace {

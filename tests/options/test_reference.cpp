@@ -7,8 +7,8 @@
 #include "stickslip/options/reference.hpp"
 
 using namespace stickslip;
+using cases::Reference;
 using options::read_references;
-using options::Reference;
 
 namespace {
 

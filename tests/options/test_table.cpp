@@ -6,6 +6,7 @@
 #include "stickslip/options/manual.hpp"
 #include "stickslip/options/settings.hpp"
 #include "stickslip/options/table.hpp"
+#include "stickslip/support/number_text.hpp"
 #include "stickslip/support/text.hpp"
 
 using namespace stickslip;

@@ -11,8 +11,8 @@
 #include "stickslip/routes/evaluation.hpp"
 
 using namespace stickslip;
-using options::Quantity;
-using options::Route;
+using catalogue::Quantity;
+using catalogue::Route;
 using test::relative_difference;
 using test::scene;
 
@@ -39,8 +39,8 @@ const std::set<Quantity> kAll{
 constexpr const char* kObservables[][2] = {
     {"v^2", "v^2"}, {"x*v + v", "x*v - v"}, {"y == 0 ? x + 1 : v*v*v", "y == 0 ? 1 - x : -v*v*v"}};
 
-options::Case everything(const model::Scene& s, bool mirrored = false) {
-  options::Case c;
+cases::Case everything(const model::Scene& s, bool mirrored = false) {
+  cases::Case c;
   c.scene = s;
   c.question.quantities = kAll;
   c.question.lambda = {0.3, 3};
@@ -56,7 +56,7 @@ options::Case everything(const model::Scene& s, bool mirrored = false) {
   return c;
 }
 
-Values evaluated(const options::Case& c, const test::Discrete& d) {
+Values evaluated(const cases::Case& c, const test::Discrete& d) {
   petsc::SolverStatistics statistics;
   Values values;
   for (const auto& r : routes::evaluate({PETSC_COMM_WORLD, c, d, statistics}).results) {
@@ -196,7 +196,7 @@ TEST_CASE("asymmetry: the solution methods agree") {
   auto s = asymmetric();
   for (bool drag : {true, false}) {
     if (!drag) s.drag = {0, 0};
-    options::Case c;
+    cases::Case c;
     c.scene = s;
     c.question.accuracy = 1e-9;
     c.question.lambda = {0.3, 3};

@@ -147,17 +147,17 @@ TEST_CASE("bias: the excursions agree with the null vector") {
     for (double bias : {0.1, -0.3}) {
       const auto s = biased(base, bias);
       const auto d = test::on_upwind(s, 3);
-      options::Case r;
+      cases::Case r;
       r.scene = s;
-      r.question.quantities = {options::Quantity::sticking, options::Quantity::moments};
+      r.question.quantities = {catalogue::Quantity::sticking, catalogue::Quantity::moments};
       petsc::SolverStatistics statistics;
-      const auto evaluate = [&](options::Route route) {
+      const auto evaluate = [&](catalogue::Route route) {
         r.method.route = route;
         return routes::evaluate({PETSC_COMM_WORLD, r, d, statistics}).results;
       };
-      const auto excursions = evaluate(options::Route::excursion);
+      const auto excursions = evaluate(catalogue::Route::excursion);
       std::map<std::string, double> found;
-      for (const auto& result : evaluate(options::Route::null_vector)) {
+      for (const auto& result : evaluate(catalogue::Route::null_vector)) {
         found[result.key] = result.value[0];
       }
       for (const auto& result : excursions) {

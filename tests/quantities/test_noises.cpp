@@ -7,8 +7,8 @@
 #include "stickslip/accuracy/refinement.hpp"
 
 using namespace stickslip;
-using options::Quantity;
-using options::Route;
+using catalogue::Quantity;
+using catalogue::Route;
 using test::relative_difference;
 using test::scene;
 
@@ -18,7 +18,7 @@ using Values = std::map<std::string, quantities::Result>;
 
 Values values(const model::Scene& s, Route route = Route::excursion, double accuracy = 1e-10,
               const std::set<Quantity>& asked = {Quantity::sticking, Quantity::moments}) {
-  options::Case c;
+  cases::Case c;
   c.scene = s;
   c.method.route = route;
   c.question.quantities = asked;
@@ -137,7 +137,7 @@ TEST_CASE("noise levels in groups: unsymmetric ones as well as symmetric ones", 
   const auto solve = [](const model::Scene& of) {
     const auto d = test::on_nodes(of, 10, 6);
     petsc::SolverStatistics statistics;
-    options::Case c;
+    cases::Case c;
     c.scene = of;
     c.question.quantities = {Quantity::sticking, Quantity::moments};
     Values by_key;

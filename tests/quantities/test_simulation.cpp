@@ -28,7 +28,7 @@ struct Case {
   std::uint64_t seed;
 };
 
-std::vector<Case> cases() {
+std::vector<Case> samples() {
   return {{"linear drag", {1, 0.25, 1, 0.5, 1}, 1},
           {"no drag", {1, 1, 1, 0.5, 0}, 2},
           {"off the grid", {1.1, 1.1, 1, 0.5, 1}, 3}};
@@ -103,7 +103,7 @@ double deviation(const Estimate& found, double known) {
 TEST_CASE(
     "simulation: sliding phases, sticking phases and excursions have the distributions computed",
     "[slow][real]") {
-  for (const auto& c : cases()) {
+  for (const auto& c : samples()) {
     Solved s(discrete(c.process));
     const auto pilot = Simulation(c.process, 100 + c.seed).run(kCount / 20);
     for (double p : p_values(s, pilot, Simulation(c.process, c.seed).run(kCount))) {
@@ -115,7 +115,7 @@ TEST_CASE(
 }
 
 TEST_CASE("simulation: a jump rate off by two per cent is seen", "[slow][real]") {
-  auto c = cases()[0];
+  auto c = samples()[0];
   Solved s(discrete(c.process));
   const auto pilot = Simulation(c.process, 100 + c.seed).run(kCount / 20);
   c.process.hurry = 1.02;
@@ -128,7 +128,7 @@ TEST_CASE("simulation: a jump rate off by two per cent is seen", "[slow][real]")
 // After a sliding and a sticking phase the next excursion is independent of all before.
 TEST_CASE("simulation: time at rest, means, and the tail of the spectrum within 4 sigma",
           "[slow][real]") {
-  for (const auto& c : cases()) {
+  for (const auto& c : samples()) {
     Solved s(discrete(c.process, 10));
     const auto found = Simulation(c.process, 10 + c.seed).run(kCount / 2);
     const std::vector<double> ones(found.slide.size(), 1.0);
@@ -147,7 +147,7 @@ TEST_CASE("simulation: time at rest, means, and the tail of the spectrum within 
 
 // The waiting times, the noise alone: sticking phases do not depend on how fast the body was.
 TEST_CASE("simulation: without drag and with, a handful of excursions ends") {
-  for (const auto& c : cases()) {
+  for (const auto& c : samples()) {
     const auto all = Simulation(c.process, c.seed).run(1000);
     REQUIRE(all.excursion.size() == 1000);
     for (std::size_t n = 0; n < all.slide.size(); ++n) {

@@ -7,9 +7,9 @@
 #include "stickslip/routes/plan.hpp"
 
 using namespace stickslip;
+using cases::Case;
+using catalogue::Quantity;
 using operators::Symmetry;
-using options::Case;
-using options::Quantity;
 using test::scene;
 
 namespace {
@@ -52,7 +52,7 @@ model::Scene truncated() {
   return s;
 }
 
-const std::vector<Example>& cases() {
+const std::vector<Example>& samples() {
   using enum Quantity;
   static const std::vector<Example> all{
       {"noise alone", {noise_law}, {0, 0, 0}},
@@ -111,7 +111,7 @@ Case given(const Example& c) {
 }  // namespace
 
 TEST_CASE("plan: what is predicted is what is done") {
-  for (const auto& c : cases()) {
+  for (const auto& c : samples()) {
     INFO(c.name);
     const Case r = given(c);
     const auto plan = accuracy::needs_system(r) ? routes::plan_of(r) : routes::Plan{};

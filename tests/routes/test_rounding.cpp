@@ -13,9 +13,9 @@
 #include "stickslip/routes/evaluation.hpp"
 
 using namespace stickslip;
-using options::Case;
-using options::Quantity;
-using options::Route;
+using cases::Case;
+using catalogue::Quantity;
+using catalogue::Route;
 using quantities::Result;
 using quantities::Results;
 using quantities::Uncertain;

@@ -9,9 +9,9 @@
 #include "stickslip/routes/evaluation.hpp"
 
 using namespace stickslip;
-using options::Quantity;
-using options::Route;
-using options::Scheme;
+using cases::Scheme;
+using catalogue::Quantity;
+using catalogue::Route;
 using quantities::Result;
 using routes::Evaluation;
 using test::relative_difference;
@@ -19,8 +19,8 @@ using test::scene;
 
 namespace {
 
-options::Case given(const model::Scene& s, Route route, std::set<Quantity> quantities) {
-  options::Case r;
+cases::Case given(const model::Scene& s, Route route, std::set<Quantity> quantities) {
+  cases::Case r;
   r.scene = s;
   r.method.route = route;
   r.question.quantities = std::move(quantities);
@@ -28,7 +28,7 @@ options::Case given(const model::Scene& s, Route route, std::set<Quantity> quant
   return r;
 }
 
-Evaluation evaluate(const options::Case& r, const test::Discrete& d) {
+Evaluation evaluate(const cases::Case& r, const test::Discrete& d) {
   petsc::SolverStatistics statistics;
   return routes::evaluate({PETSC_COMM_WORLD, r, d, statistics});
 }

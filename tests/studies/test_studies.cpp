@@ -16,7 +16,7 @@
 #include "stickslip/support/number_text.hpp"
 
 using namespace stickslip;
-using options::Quantity;
+using catalogue::Quantity;
 using options::Request;
 using options::StudyKind;
 using studies::Study;

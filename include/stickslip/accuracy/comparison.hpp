@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "stickslip/options/reference.hpp"
+#include "stickslip/cases/case.hpp"
 #include "stickslip/quantities/results.hpp"
 
 namespace stickslip::accuracy {
@@ -17,7 +17,7 @@ enum class Verdict { agrees, by_chance, disagrees };
 
 /// One value beside its reference.
 struct Compared {
-  options::Reference reference;
+  cases::Reference reference;
   double value = 0, error = 0;  ///< ours
   double z = 0;                 ///< difference in standard deviations
   Verdict verdict = Verdict::agrees;
@@ -33,7 +33,7 @@ struct Comparison {
 /// on the side of our value with our error (a bound, or half of a confidence interval if ours is
 /// simulated). |z| < 1.96 agrees; what is beyond is chance unless Holm's step-down test rejects it
 /// at the family-wise level 1e-3. References without counterpart are left out. Local.
-[[nodiscard]] Comparison compare(const std::vector<options::Reference>& references,
+[[nodiscard]] Comparison compare(const std::vector<cases::Reference>& references,
                                  const quantities::Results& results);
 
 }  // namespace stickslip::accuracy

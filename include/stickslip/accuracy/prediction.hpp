@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "stickslip/accuracy/resolution.hpp"
-#include "stickslip/options/case.hpp"
+#include "stickslip/cases/case.hpp"
 #include "stickslip/routes/plan.hpp"
 
 namespace stickslip::accuracy {
@@ -35,6 +35,6 @@ struct Prediction {
 /// one or two steps more than predicted. Solution methods other than excursion: the sizes only,
 /// with seconds
 /// 0. Collective. Throws NoMemory as the run would.
-[[nodiscard]] Prediction predict(MPI_Comm comm, const options::Case& given);
+[[nodiscard]] Prediction predict(MPI_Comm comm, const cases::Case& given);
 
 }  // namespace stickslip::accuracy

@@ -9,8 +9,8 @@
 
 #include "stickslip/accuracy/comparison.hpp"
 #include "stickslip/accuracy/resolution.hpp"
+#include "stickslip/cases/case.hpp"
 #include "stickslip/monte_carlo/simulate.hpp"
-#include "stickslip/options/case.hpp"
 #include "stickslip/petsc/solver_statistics.hpp"
 #include "stickslip/quantities/density.hpp"
 #include "stickslip/quantities/relaxation.hpp"
@@ -32,7 +32,7 @@ struct Step {
 
 /// Whether anything asked for takes a discretisation or a simulation; closed forms and paths do
 /// not.
-[[nodiscard]] bool needs_system(const options::Case& given);
+[[nodiscard]] bool needs_system(const cases::Case& given);
 
 /// Throws NoMemory, with what would help, if the predicted need exceeds what is free. Collective.
 void require_memory(MPI_Comm comm, const model::Scene& scene, const Resolution& resolution);
@@ -46,7 +46,7 @@ struct Solved {
 
 /// Solves a case on one discretisation. Collective. Throws NoMemory before anything
 /// is allocated that would not fit, NotReached when a solver fails.
-[[nodiscard]] Solved solve_on(MPI_Comm comm, const options::Case& given,
+[[nodiscard]] Solved solve_on(MPI_Comm comm, const cases::Case& given,
                               const Resolution& resolution);
 
 struct Outcome {
@@ -75,7 +75,7 @@ using Progress = std::function<void(int, const Resolution&, double)>;
 /// every scalar meets the accuracy, when rounding forbids it, or at the end of the refinement
 /// sequence. Collective. Throws NoMemory before anything is allocated that would not fit,
 /// NotReached when a solver fails.
-[[nodiscard]] Outcome refine(MPI_Comm comm, const options::Case& given, const Progress& progress,
+[[nodiscard]] Outcome refine(MPI_Comm comm, const cases::Case& given, const Progress& progress,
                              const monte_carlo::SimulationProgress& simulation_progress = {},
                              const std::string& checkpoint = {});
 

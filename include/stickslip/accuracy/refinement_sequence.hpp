@@ -6,7 +6,7 @@
 
 #include "stickslip/accuracy/estimates.hpp"
 #include "stickslip/accuracy/resolution.hpp"
-#include "stickslip/options/case.hpp"
+#include "stickslip/cases/case.hpp"
 
 namespace stickslip::accuracy {
 
@@ -19,7 +19,7 @@ namespace stickslip::accuracy {
 /// instead.
 class RefinementSequence {
  public:
-  explicit RefinementSequence(const options::Case& given);
+  explicit RefinementSequence(const cases::Case& given);
 
   /// Number of the first refinement level: -1, or 0 where the order of convergence is known or
   /// there is nothing coarser.
@@ -31,7 +31,7 @@ class RefinementSequence {
   /// How the error of refinement level n >= 1 follows from changes.
   [[nodiscard]] ErrorPerChange error_per_change(int n) const;
   /// Whether the error falls only as a power of the unknowns.
-  [[nodiscard]] bool first_order() const { return method_.scheme == options::Scheme::upwind; }
+  [[nodiscard]] bool first_order() const { return method_.scheme == cases::Scheme::upwind; }
   /// Truncation error allowed on refinement level n, relative.
   [[nodiscard]] double tail_tolerance(int n) const;
 
@@ -44,7 +44,7 @@ class RefinementSequence {
   [[nodiscard]] int points(int n) const;
 
   model::Scene scene_;
-  options::Method method_;
+  cases::Method method_;
   double accuracy_;
   int first_degree_ = 0;       // of refinement level 1
   velocity::Rates rates_;      // of the equations to be solved

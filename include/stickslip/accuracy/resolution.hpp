@@ -6,16 +6,16 @@
 #include <memory>
 #include <vector>
 
+#include "stickslip/cases/case.hpp"
 #include "stickslip/model/scene.hpp"
 #include "stickslip/noise/nodes.hpp"
 #include "stickslip/operators/discretisation.hpp"
-#include "stickslip/options/case.hpp"
 #include "stickslip/velocity/mesh.hpp"
 
 namespace stickslip::accuracy {
 
 struct Resolution {
-  options::Scheme scheme = options::Scheme::hp;
+  cases::Scheme scheme = cases::Scheme::hp;
   int degree = 0;                             ///< hp: largest polynomial degree of an element
   int least_degree = 2;                       ///< hp: of an element, unless `degree` is smaller
   int layers = 0;                             ///< hp: elements graded towards v = 0
@@ -31,7 +31,7 @@ struct Resolution {
   double truncation = 0;    ///< hp: relative error that both ends may leave, 0 where nothing is cut
   bool whole_tail = false;  ///< hp: degrees do not fall with the density
   int branches = 1;         ///< 1: reduced by symmetry, v > 0 only; 2: both signs of v
-  options::Factors factors = options::Factors::own;
+  cases::Factors factors = cases::Factors::own;
 
   [[nodiscard]] std::int64_t noise_nodes() const {
     if (noise) return noise->count();

@@ -80,6 +80,8 @@ struct Row {
   bool is_mean_of_f = false;
   /// Whether the accuracy of an array is meant relative to each value, not to the largest one.
   bool each_by_its_size = false;
+  /// Whether simulations give averages over cells, not values at points.
+  bool by_cells = false;
   Routes without = {};  ///< solution methods that give the quantity but not this result
   /// Whether it stands for its quantity in a file to compare with, where -quantities is not given.
   bool asks = false;

@@ -38,6 +38,7 @@ inline constexpr Row kDensitySlip{.key = "f_slip",
                                   .unit = "1/(velocity*time)",
                                   .abscissa = "distance",
                                   .convention = "monte_carlo: average over a cell",
+                                  .by_cells = true,
                                   .asks = true};
 inline constexpr Row kCdfSlip{.key = "cdf_slip",
                               .symbol = "P(S <= d)",

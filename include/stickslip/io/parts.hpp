@@ -21,14 +21,14 @@ using Json = nlohmann::ordered_json;
 /// The model parameters, on as many lines as they take.
 [[nodiscard]] std::string scene_text(const model::Scene& scene);
 /// The columns that tell the size of a discretisation, and their cells.
-[[nodiscard]] std::vector<TextTable::Column> size_columns(options::Scheme scheme);
+[[nodiscard]] std::vector<TextTable::Column> size_columns(cases::Scheme scheme);
 [[nodiscard]] std::vector<std::string> size_cells(const accuracy::Resolution& resolution,
                                                   std::int64_t unknowns, std::int64_t nonzeros);
 /// Entries of a matrix or factorisation; "-" for none, where they are not known.
 [[nodiscard]] std::string count_text(double count);
 /// A row for each refinement level: its size, memory, times and largest relative error estimate;
 /// then iterations, and what the solution method reports of itself. Of a simulation its size.
-[[nodiscard]] std::string cost_table(options::Scheme scheme, const accuracy::Outcome& outcome);
+[[nodiscard]] std::string cost_table(cases::Scheme scheme, const accuracy::Outcome& outcome);
 /// A number in a cell of CSV; nothing for NaN.
 [[nodiscard]] std::string cell(double value, int digits);
 /// A line of CSV (RFC 4180: what holds a comma stands in quotes).
@@ -39,7 +39,7 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json results_json(const quantities::Results& results);
 /// What one run found and what it cost: scene, results, accuracy, comparison if any, cost, plan.
 /// `compared` is the name of the file of the references.
-[[nodiscard]] Json run_json(const options::Case& given, const accuracy::Outcome& outcome,
+[[nodiscard]] Json run_json(const cases::Case& given, const accuracy::Outcome& outcome,
                             const RunTimes& times, const std::string& compared = {});
 [[nodiscard]] Json comparison_json(const accuracy::Comparison& comparison,
                                    const std::string& compared);

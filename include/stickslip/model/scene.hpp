@@ -6,17 +6,21 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "stickslip/model/process.hpp"
 
 namespace stickslip::model {
 
+/// Values by the names of their options.
+using Parameters = std::vector<std::pair<std::string, std::variant<double, std::string>>>;
+
 /// The noise as the user gave it: word of -noise, and what belongs to it.
 struct NoiseChoice {
   std::string name = "ou";
   std::optional<double> deviation = {};          ///< of "ou", if it has its own [force]
-  double amplitude = 0, rate = 0;                ///< of "telegraph" [force], [1/time]
-  std::string file = {};                         ///< of "file"
   std::shared_ptr<const LevelTable> table = {};  ///< the levels of all but "ou"
 };
 
@@ -24,10 +28,12 @@ struct Scene {
   double tau = 1;        ///< noise correlation time [time]
   double delta = 0.125;  ///< noise step [force]
   NoiseChoice noise;
+  std::string friction_name = "coulomb";
   Friction friction;  ///< mu_s, mu_d [force]
   std::string drag_name = "linear";
   std::string drag_expression;  ///< b(v) as text, of the drag law "expression"
   Drag drag;
+  Parameters own = {};              ///< values of its noise or laws that have no place above
   double bias = 0;                  ///< constant force g
   std::optional<int> noise_levels;  ///< N, if fixed by the user
   std::optional<double> v_max;      ///< truncation velocity, if fixed by the user

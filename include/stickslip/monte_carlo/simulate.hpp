@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "stickslip/options/case.hpp"
+#include "stickslip/cases/case.hpp"
 #include "stickslip/quantities/results.hpp"
 
 namespace stickslip::monte_carlo {
@@ -37,7 +37,7 @@ struct Simulated {
 /// a file name in `checkpoint` the tally is read from that file if it exists, and written to it
 /// every few seconds. Collective. Throws BadInput when the checkpoint belongs to another run or is
 /// damaged, and when it would take more than a month.
-[[nodiscard]] Simulated simulate(MPI_Comm comm, const options::Case& given,
+[[nodiscard]] Simulated simulate(MPI_Comm comm, const cases::Case& given,
                                  const std::string& checkpoint, const SimulationProgress& progress);
 
 }  // namespace stickslip::monte_carlo

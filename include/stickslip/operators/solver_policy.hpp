@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
+#include "stickslip/cases/case.hpp"
 #include "stickslip/noise/nodes.hpp"
 #include "stickslip/operators/discretisation.hpp"
-#include "stickslip/options/case.hpp"
 #include "stickslip/velocity/hp_discretisation.hpp"
 
 namespace stickslip::operators {
@@ -15,8 +15,8 @@ namespace stickslip::operators {
 /// of their nodes and MUMPS takes ten times as long, and up to 700 levels that are nodes
 /// themselves, which have two neighbours alone: both are even at some 900. All else goes to MUMPS,
 /// in memory. A solver reports what it cannot do; the advice then is -slide_pc_type lu.
-[[nodiscard]] options::Factors chosen_factors(options::Factors asked, options::Scheme scheme,
-                                              std::int64_t noise_nodes, bool all_levels);
+[[nodiscard]] cases::Factors chosen_factors(cases::Factors asked, cases::Scheme scheme,
+                                            std::int64_t noise_nodes, bool all_levels);
 
 /// The default of -slide_pc_type by the same rule.
 [[nodiscard]] const char* default_pc_type(const Discretisation& discretisation);
@@ -44,7 +44,7 @@ struct FactorCost {
 /// two-dimensional grid to MUMPS, where the shorter side m decides: 4.5 n m^0.52 entries were
 /// counted for m = 65 ... 257. 9 to 12 bytes a real entry, of which a third stays in memory when
 /// factors go to disk; incomplete factors count as none. Operations up to a factor.
-[[nodiscard]] FactorCost sparse_cost(options::Factors factors, options::Scheme scheme,
-                                     double unknowns, double noise_nodes);
+[[nodiscard]] FactorCost sparse_cost(cases::Factors factors, cases::Scheme scheme, double unknowns,
+                                     double noise_nodes);
 
 }  // namespace stickslip::operators

@@ -7,9 +7,19 @@
 #include <utility>
 #include <vector>
 
-#include "stickslip/options/case.hpp"
+#include "stickslip/cases/case.hpp"
 
 namespace stickslip::options {
+
+using cases::Case;
+using cases::Factors;
+using cases::Method;
+using cases::Question;
+using cases::Scheme;
+using cases::SpectrumSolver;
+using cases::TransientSolver;
+using catalogue::Quantity;
+using catalogue::Route;
 
 /// -study: series of runs.
 enum class StudyKind { none, points, steps, heuristic, cost };

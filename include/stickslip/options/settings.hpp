@@ -53,9 +53,6 @@ class Settings {
   std::map<std::string, std::string> text_;
 };
 
-/// A finite decimal number that fills the whole text.
-[[nodiscard]] std::optional<double> parse_number(const std::string& text);
-
 /// a,b,c as they are, first:last:count evenly spaced, first:last:count:log evenly in the logarithm.
 [[nodiscard]] std::optional<std::vector<double>> parse_numbers(const std::string& text);
 

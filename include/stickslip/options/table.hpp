@@ -1,52 +1,18 @@
 #pragma once
 /// The one table of options: validation, help and pages are made from it.
 
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "stickslip/support/infinity.hpp"
+#include "stickslip/effects/option.hpp"
 
 namespace stickslip::options {
 
-/// What a value must look like.
-enum class Kind {
-  real,     ///< a finite decimal number
-  integer,  ///< a whole number
-  choice,   ///< one of a few words
-  list,     ///< a comma list of words, each at most once
-  numbers,  ///< a,b,c or first:last:count or first:last:count:log
-  text,     ///< free text
-  flag,     ///< yes or no; yes if it stands alone
-  path,     ///< a file to write
-  input,    ///< a file to read
-};
-
-/// An interval of numbers; unbounded and open by default.
-struct Range {
-  double low = -kInfinity;
-  double high = kInfinity;
-  bool low_included = false;
-  bool high_included = false;
-
-  [[nodiscard]] bool contains(double value) const;
-  /// "(0, inf)".
-  [[nodiscard]] std::string text() const;
-};
-
-struct Option {
-  std::string name;                ///< without the dash
-  Kind kind;                       ///< form of the value
-  std::string form;                ///< of the value, by the name that forms() explains
-  std::string unit;                ///< of a number; empty if it has none
-  std::string initial;             ///< default as text; empty: see `sentence`
-  Range range;                     ///< of a number
-  std::vector<std::string> words;  ///< allowed words; beside numbers for kind integer
-  std::string sentence;            ///< what it does
-  std::string fix;                 ///< what to do about a value out of range; may be empty
-};
+using effects::Kind;
+using effects::Option;
+using effects::Range;
 
 /// A form of values.
 struct Form {

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "stickslip/cases/case.hpp"
 #include "stickslip/operators/discretisation.hpp"
 #include "stickslip/operators/system_key.hpp"
-#include "stickslip/options/case.hpp"
 #include "stickslip/petsc/solver_choice.hpp"
 #include "stickslip/petsc/solver_statistics.hpp"
 #include "stickslip/quantities/recipe.hpp"
@@ -27,7 +27,7 @@ namespace stickslip::routes {
 /// A case on one discretisation.
 struct Setting {
   MPI_Comm comm;
-  const options::Case& given;
+  const cases::Case& given;
   operators::Discretisation discretisation;
   petsc::SolverStatistics& statistics;
   /// Of reduced models, from one refinement level to the next.

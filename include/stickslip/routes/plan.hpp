@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "stickslip/cases/case.hpp"
 #include "stickslip/operators/system_key.hpp"
-#include "stickslip/options/case.hpp"
 
 namespace stickslip::routes {
 
@@ -68,9 +68,9 @@ struct Plan {
 
 /// The least set of work for the quantities asked for. Solution methods other than excursion do one
 /// thing each, and their plan is empty. Local.
-[[nodiscard]] Plan plan_of(const options::Case& given);
+[[nodiscard]] Plan plan_of(const cases::Case& given);
 
 /// "stationary distribution", "resolvent at lambda = 0.5".
-[[nodiscard]] std::string task_name(const options::Question& question, const Task& task);
+[[nodiscard]] std::string task_name(const cases::Question& question, const Task& task);
 
 }  // namespace stickslip::routes

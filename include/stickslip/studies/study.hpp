@@ -65,7 +65,7 @@ using StudyProgress = std::function<void(int, int, const std::string&)>;
 /// cost: error against time for upwind, Richardson, hp and Monte Carlo.
 ///
 /// Collective. Throws what the runs throw.
-[[nodiscard]] Study run_study(MPI_Comm comm, const options::Case& given,
+[[nodiscard]] Study run_study(MPI_Comm comm, const cases::Case& given,
                               const options::StudyOptions& study, const StudyProgress& progress);
 
 }  // namespace stickslip::studies

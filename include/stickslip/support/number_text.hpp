@@ -1,6 +1,7 @@
 #pragma once
-/// Numbers as tables print them.
+/// Numbers as tables print them, and as users write them.
 
+#include <optional>
 #include <string>
 
 namespace stickslip {
@@ -16,5 +17,8 @@ namespace stickslip {
 
 /// Seconds to the millisecond, of long times fewer decimals.
 [[nodiscard]] std::string seconds_text(double seconds);
+
+/// A finite decimal number that fills the whole text.
+[[nodiscard]] std::optional<double> parse_number(const std::string& text);
 
 }  // namespace stickslip

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <string>
 
-#include "stickslip/options/case.hpp"
+#include "stickslip/cases/case.hpp"
 #include "stickslip/quantities/results.hpp"
 
 namespace stickslip::sweeps {
@@ -28,7 +28,7 @@ struct SweepPoint {
 
 /// Computes a point on its own; failures of solvers and of memory become its status. Collective.
 /// Throws what is no stickslip::Failure.
-[[nodiscard]] SweepPoint compute_run(MPI_Comm comm, const options::Case& given, std::size_t point);
+[[nodiscard]] SweepPoint compute_run(MPI_Comm comm, const cases::Case& given, std::size_t point);
 
 /// The run of an entry of `runs`, JSON in one line. Throws std::exception, nlohmann's too, if it is
 /// none.

@@ -1,8 +1,8 @@
 #include <fstream>
 
-#include "../../src/options/reading.hpp"
 #include "../common/catch.hpp"
 #include "../common/temporary.hpp"
+#include "stickslip/effects/noise_file.hpp"
 
 using namespace stickslip;
 
@@ -13,7 +13,7 @@ std::string complaint(const std::string& rows) {
   const std::string file = folder / "levels.csv";
   std::ofstream(file) << "# measured\nx,rate_up,rate_down\n" << rows;
   try {
-    (void)options::read_levels(file);
+    (void)effects::read_levels(file);
   } catch (const std::invalid_argument& unfit) {
     return unfit.what();
   }

@@ -7,9 +7,13 @@
 #define CSV_IO_NO_THREAD  // small files
 #include <libfccp/csv.h>
 
-#include "reading.hpp"
+#include "all.hpp"
+#include "levels.hpp"
+#include "stickslip/effects/noise_file.hpp"
+#include "stickslip/support/number_text.hpp"
+#include "stickslip/support/readable.hpp"
 
-namespace stickslip::options {
+namespace stickslip::effects {
 
 model::LevelTable read_levels(const std::string& file) {
   require_readable(file);
@@ -45,4 +49,32 @@ model::LevelTable read_levels(const std::string& file) {
   }
 }
 
-}  // namespace stickslip::options
+namespace {
+
+constexpr const char* kFile = "noise_file";
+
+void read_noise_file(Given& given, model::Scene& scene) {
+  if (!given.needs("noise", kFile, "levels.csv")) return;
+  const std::string file = given.text(kFile);
+  scene.own.emplace_back(kFile, file);
+  set_levels(given, scene, kFile, "write CSV with the columns x,rate_up,rate_down, x rising",
+             [&file] { return read_levels(file); });
+}
+
+}  // namespace
+
+const Effect kNoiseFile{
+    .word = "file",
+    .sentence = "any birth-death chain",
+    .parameters = {{Option::file(kFile, Kind::input,
+                                 "CSV with the columns x,rate_up,rate_down: the levels of -noise "
+                                 "file in rising order, and the rates of jumps to the next level "
+                                 "up and down, 0 at the ends"),
+                    true}},
+    .read = read_noise_file,
+    .complete = has_levels,
+    .heading = [](const model::Scene& scene) {
+      return "noise levels of " + std::get<std::string>(own_value(scene, kFile));
+    }};
+
+}  // namespace stickslip::effects

@@ -4,15 +4,15 @@
 #include <cstdint>
 #include <optional>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "stickslip/catalogue/entry.hpp"
 #include "stickslip/model/observable.hpp"
 #include "stickslip/model/scene.hpp"
 #include "stickslip/model/start.hpp"
-#include "stickslip/options/reference.hpp"
 
-namespace stickslip::options {
+namespace stickslip::cases {
 
 using catalogue::Quantity;
 using catalogue::Route;
@@ -34,6 +34,13 @@ enum class SpectrumSolver { krylov, direct };
 [[nodiscard]] inline bool on_full_grid(Route route) {
   return route == Route::lambda || route == Route::hitting || route == Route::null_vector;
 }
+
+/// A value of other origin, with a 95 % confidence interval.
+struct Reference {
+  std::string quantity;            ///< key of a result, such as P_stick or S_v
+  std::optional<double> argument;  ///< lambda, omega, time or k, for an array
+  double value = 0, low = 0, high = 0;
+};
 
 /// What is asked for, and how accurate it has to be.
 struct Question {
@@ -81,4 +88,4 @@ struct Case {
   Method method;
 };
 
-}  // namespace stickslip::options
+}  // namespace stickslip::cases

@@ -1,0 +1,98 @@
+#pragma once
+/// Friction laws, noises and drag laws. Each is a file that declares its word, its options and how
+/// it is made; all else that speaks of them follows from these declarations.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "stickslip/effects/option.hpp"
+#include "stickslip/model/scene.hpp"
+
+namespace stickslip::effects {
+
+/// The values of options, and where to complain about them.
+class Given {
+ public:
+  Given() = default;
+  Given(const Given&) = delete;
+  Given& operator=(const Given&) = delete;
+  virtual ~Given() = default;
+
+  /// Whether the user gave the option.
+  [[nodiscard]] virtual bool has(const std::string& option) const = 0;
+  /// The value as given, or its default. Of numbers there is one of the two.
+  [[nodiscard]] virtual double real(const std::string& option) const = 0;
+  [[nodiscard]] virtual std::string text(const std::string& option) const = 0;
+  /// Nothing if neither exists or a word was given.
+  [[nodiscard]] virtual std::optional<int> integer(const std::string& option) const = 0;
+  /// Reports what is wrong with the value of an option, and what to do about it.
+  virtual void refuse(const std::string& option, const std::string& why,
+                      const std::string& fix) = 0;
+  /// Whether nothing has been refused so far.
+  [[nodiscard]] virtual bool sound() const = 0;
+
+  /// Whether the user gave an option that `choice` cannot do without, else refused.
+  bool needs(const std::string& choice, const std::string& option, const std::string& example);
+};
+
+/// An option of an effect, and what happens where no effect in use knows it.
+struct Parameter {
+  Option option;
+  bool refused_elsewhere = false;  ///< otherwise a warning says that it has no effect
+};
+
+/// One of the words of a choice, such as -drag cubic.
+struct Effect {
+  std::string_view word;
+  std::string_view sentence;  ///< what it is, for the help of its choice
+  std::vector<Parameter> parameters = {};
+  /// Puts the values of its options into a scene that holds friction coefficients and bias.
+  void (*read)(Given&, model::Scene&) = nullptr;
+  /// Makes what depends on other options, once the scene holds all numbers. Returns whether the
+  /// scene is as the effect needs it; where not, that is reported.
+  bool (*complete)(Given&, model::Scene&) = nullptr;
+  /// The values that files state; those of Scene::own that it knows, where it is not there.
+  model::Parameters (*values)(const model::Scene&) = nullptr;
+  /// The same for the headings of tables; "name = value" of each where it is not there.
+  std::string (*heading)(const model::Scene&) = nullptr;
+  /// Of a noise: how to make it stronger, where it never moves a body.
+  std::string (*stronger)(const model::Scene&) = nullptr;
+
+  [[nodiscard]] bool knows(std::string_view option) const;
+};
+
+/// An option whose words are effects, the default first.
+struct Choice {
+  std::string_view option;
+  std::string_view title;  ///< what is chosen, for its help
+  std::span<const Effect* const> effects;
+  const std::string& (*word_in)(const model::Scene&);
+
+  /// The effect of that word; the default where there is none.
+  [[nodiscard]] const Effect& of(std::string_view word) const;
+  [[nodiscard]] const Effect& in(const model::Scene& scene) const { return of(word_in(scene)); }
+};
+
+/// -friction, -noise and -drag.
+[[nodiscard]] const Choice& frictions();
+[[nodiscard]] const Choice& noises();
+[[nodiscard]] const Choice& drags();
+[[nodiscard]] std::span<const Choice* const> choices();
+
+/// The value of that name in Scene::own, which has one.
+[[nodiscard]] const std::variant<double, std::string>& own_value(const model::Scene& scene,
+                                                                 std::string_view name);
+
+/// All that fixes the process of a scene, each by the name of its option, in the order in which
+/// files hold them: friction, the word of the drag law, noise, what is beside the defaults, and the
+/// coefficients of the drag. Left out are the range of the noise, the levels of a table, and a
+/// truncation velocity that is no part of the model.
+[[nodiscard]] model::Parameters parameters_of(const model::Scene& scene);
+
+/// What the headings of tables say of an effect of a scene, such as "tau = 1" and "delta = 0.125".
+[[nodiscard]] std::vector<std::string> heading(const Effect& effect, const model::Scene& scene);
+
+}  // namespace stickslip::effects

@@ -1,0 +1,18 @@
+#pragma once
+/// From the values of the model's options to a scene.
+
+#include <string>
+
+#include "stickslip/effects/effect.hpp"
+
+namespace stickslip::effects {
+
+/// The parameters of the model; v_max and the noise levels may stay open. What is wrong with them,
+/// each by itself or together, is refused.
+[[nodiscard]] model::Scene read_scene(Given& given);
+
+/// What to say where static friction acts with another value than the one given, because it lies
+/// between two noise levels; empty where it does not.
+[[nodiscard]] std::string step_warning(const model::Scene& scene);
+
+}  // namespace stickslip::effects

@@ -1,0 +1,12 @@
+#pragma once
+/// The largest force of a scene.
+
+#include "stickslip/model/scene.hpp"
+
+namespace stickslip::model {
+
+/// The largest force on a body that slides [force]: X passes mu_s by 12 standard deviations with
+/// probability e^-72.
+[[nodiscard]] double largest_force(const Scene& scene);
+
+}  // namespace stickslip::model

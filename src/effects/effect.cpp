@@ -1,0 +1,122 @@
+#include "stickslip/effects/effect.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "all.hpp"
+
+namespace stickslip::effects {
+namespace {
+
+model::Parameters values_in(const Effect& effect, const model::Scene& scene) {
+  if (effect.values != nullptr) return effect.values(scene);
+  model::Parameters own;
+  for (const auto& each : scene.own) {
+    if (effect.knows(each.first)) own.push_back(each);
+  }
+  return own;
+}
+
+}  // namespace
+
+bool Given::needs(const std::string& choice, const std::string& option,
+                  const std::string& example) {
+  if (has(option)) return true;
+  refuse(choice, fmt::format("needs -{}", option),
+         fmt::format("add for example -{} {}", option, example));
+  return false;
+}
+
+bool Effect::knows(std::string_view option) const {
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [option](const Parameter& p) { return p.option.name == option; });
+}
+
+const Effect& Choice::of(std::string_view word) const {
+  const auto found = std::find_if(effects.begin(), effects.end(),
+                                  [word](const Effect* effect) { return effect->word == word; });
+  return found != effects.end() ? **found : *effects.front();
+}
+
+const Choice& frictions() {
+  static constexpr const Effect* effects[] = {&kCoulomb, &kStribeck};
+  static const Choice choice{
+      "friction", "friction law", effects,
+      [](const model::Scene& s) -> const std::string& { return s.friction_name; }};
+  return choice;
+}
+
+const Choice& noises() {
+  static constexpr const Effect* effects[] = {&kOrnsteinUhlenbeck, &kTelegraph, &kNoiseFile};
+  static const Choice choice{
+      "noise", "noise X", effects,
+      [](const model::Scene& s) -> const std::string& { return s.noise.name; }};
+  return choice;
+}
+
+const Choice& drags() {
+  static constexpr const Effect* effects[] = {&kLinearDrag, &kNoDrag, &kCubicDrag,
+                                              &kDragExpression};
+  static const Choice choice{
+      "drag", "drag law b(v)", effects,
+      [](const model::Scene& s) -> const std::string& { return s.drag_name; }};
+  return choice;
+}
+
+std::span<const Choice* const> choices() {
+  static const Choice* const all[] = {&frictions(), &noises(), &drags()};
+  return all;
+}
+
+const std::variant<double, std::string>& own_value(const model::Scene& scene,
+                                                   std::string_view name) {
+  for (const auto& each : scene.own) {
+    if (each.first == name) return each.second;
+  }
+  throw std::logic_error(fmt::format("the scene has no {}", name));
+}
+
+model::Parameters parameters_of(const model::Scene& s) {
+  model::Parameters all{
+      {"mu_s", s.friction.mu_s}, {"mu_d", s.friction.mu_d}, {"drag", s.drag_name}};
+  const auto add = [&all](const std::string& name, const auto& value) {
+    const bool known = std::any_of(all.begin(), all.end(),
+                                   [&name](const auto& each) { return each.first == name; });
+    if (!known) all.emplace_back(name, value);
+  };
+  const auto add_values = [&](const Choice& choice) {
+    for (const auto& [name, value] : values_in(choice.in(s), s)) add(name, value);
+  };
+  const auto add_word = [&](const Choice& choice) {
+    if (&choice.in(s) != choice.effects.front()) {
+      add(std::string(choice.option), choice.word_in(s));
+    }
+  };
+  add_values(noises());
+  add_word(noises());
+  if (!s.friction.symmetric()) {
+    add("mu_s_minus", s.friction.mirrored().mu_s);
+    add("mu_d_minus", s.friction.mirrored().mu_d);
+  }
+  add_word(frictions());
+  add_values(frictions());
+  add_values(drags());
+  add("bias", s.bias);
+  if (s.limits_speed) add("speed_limit", *s.v_max);
+  return all;
+}
+
+std::vector<std::string> heading(const Effect& effect, const model::Scene& scene) {
+  if (effect.heading != nullptr) return {effect.heading(scene)};
+  std::vector<std::string> parts;
+  for (const auto& [name, value] : values_in(effect, scene)) {
+    const auto* number = std::get_if<double>(&value);
+    parts.push_back(name + " = " +
+                    (number != nullptr ? fmt::format("{:g}", *number) : std::get<1>(value)));
+  }
+  return parts;
+}
+
+}  // namespace stickslip::effects

@@ -1,0 +1,31 @@
+#include "all.hpp"
+#include "polynomial_drag.hpp"
+
+namespace stickslip::effects {
+
+Option drag_coefficient() {
+  return Option::real(kDragCoefficient, "1/time", "1", Range::not_negative(), "c of the drag law",
+                      kDragMayNotGrow);
+}
+
+void read_linear_drag(Given& given, model::Scene& scene) {
+  scene.drag = {given.real(kDragCoefficient), 0};
+}
+
+const Effect kLinearDrag{.word = "linear",
+                         .sentence = "-c v",
+                         .parameters = {{drag_coefficient()}},
+                         .read = read_linear_drag,
+                         .values = drag_coefficients,
+                         .heading = drag_heading};
+
+const Effect kNoDrag{.word = "none",
+                     .sentence = "0",
+                     .read =
+                         [](Given&, model::Scene& scene) {
+                           scene.drag = {0, 0};
+                         },
+                     .values = drag_coefficients,
+                     .heading = drag_heading};
+
+}  // namespace stickslip::effects

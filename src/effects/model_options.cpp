@@ -1,0 +1,94 @@
+#include "stickslip/effects/model_options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "stickslip/effects/effect.hpp"
+
+namespace stickslip::effects {
+namespace {
+
+// The option of a choice, and those of its effects. What an earlier one has declared is left out.
+void append(const Choice& all, std::vector<Option>& options) {
+  std::vector<std::string> words, meanings;
+  for (const auto* effect : all.effects) {
+    words.emplace_back(effect->word);
+    meanings.push_back(fmt::format("{}: {}", effect->word, effect->sentence));
+  }
+  options.push_back({std::string(all.option),
+                     Kind::choice,
+                     "word",
+                     "",
+                     words.front(),
+                     {},
+                     words,
+                     fmt::format("{}. {}", all.title, fmt::join(meanings, ". ")),
+                     ""});
+  for (const auto* effect : all.effects) {
+    for (const auto& parameter : effect->parameters) {
+      const auto& name = parameter.option.name;
+      const bool declared = std::any_of(options.begin(), options.end(),
+                                        [&name](const Option& o) { return o.name == name; });
+      if (!declared) options.push_back(parameter.option);
+    }
+  }
+}
+
+std::vector<Option> made() {
+  std::vector<Option> all{
+      Option::real(
+          "mu_s", "force", "1", Range::positive(),
+          "static friction coefficient: a body at rest sticks while the force on it is at most "
+          "mu_s",
+          "friction must be able to hold the body"),
+      Option::real("mu_d", "force", "1", Range::not_negative(),
+                   "dynamic friction coefficient, at most mu_s",
+                   "friction must not drive the body"),
+      Option::real(
+          "mu_s_minus", "force", "", Range::positive(),
+          "static friction coefficient against motion towards negative v; mu_s unless given. "
+          "Where the directions differ, both velocity branches are computed",
+          "friction must be able to hold the body"),
+      Option::real(
+          "mu_d_minus", "force", "", Range::not_negative(),
+          "dynamic friction coefficient while v < 0, at most mu_s_minus; mu_d unless given",
+          "friction must not drive the body")};
+  for (const auto* each : choices()) append(*each, all);
+  const std::vector<Option> others{
+      Option::real(
+          "bias", "force", "0", {},
+          "constant force g added to X, such as the weight along an inclined plane. It breaks the "
+          "symmetry: both velocity branches are computed",
+          "take for example 0.1"),
+      Option::real(
+          "v_max", "velocity", "", Range::positive(),
+          "truncation velocity: bodies that reach it wait there until the noise falls. Unless "
+          "given, the largest velocity that matters at -accuracy",
+          kChosen),
+      Option::real(
+          "speed_limit", "velocity", "", Range::positive(),
+          "largest speed of the body: forces that would drive it beyond are lost, as the inflow of "
+          "a full buffer is. A part of the model, where -v_max only truncates it",
+          "leave it out for a body that is as fast as forces make it")};
+  all.insert(all.end(), others.begin(), others.end());
+  return all;
+}
+
+}  // namespace
+
+const std::vector<Option>& model_options() {
+  static const auto all = made();
+  return all;
+}
+
+const Option& model_option(std::string_view name) {
+  for (const auto& option : model_options()) {
+    if (option.name == name) return option;
+  }
+  throw std::logic_error(fmt::format("-{} is no option of the model", name));
+}
+
+}  // namespace stickslip::effects

@@ -1,0 +1,120 @@
+#include "ou_noise.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "all.hpp"
+
+namespace stickslip::effects {
+namespace {
+
+constexpr const char *kDelta = "delta", *kSteps = "delta_per_mu_s", *kLevels = "noise_levels",
+                     *kDeviation = "noise_deviation";
+
+void read_ou(Given& given, model::Scene& scene) {
+  scene.tau = given.real(kTau);
+  const auto steps = given.integer(kSteps);
+  if (steps && given.has(kDelta)) {
+    given.refuse(kSteps, "gives the noise step, and so does -delta = " + given.text(kDelta),
+                 "leave one of them out");
+  }
+  scene.delta = steps ? scene.friction.mu_s / *steps : given.real(kDelta);
+  scene.noise_levels = given.integer(kLevels);
+  if (given.has(kDeviation)) scene.noise.deviation = given.real(kDeviation);
+}
+
+// The option by which the noise step was given.
+const char* step_option(const Given& given) { return given.has(kSteps) ? kSteps : kDelta; }
+
+void refuse_coarse_steps(Given& given, const model::Scene& scene, double sigma) {
+  const double largest = std::sqrt(2) * sigma;
+  const char* option = step_option(given);
+  given.refuse(option,
+               fmt::format("leaves no noise level besides 0: {} = {:g} must be at most 2",
+                           scene.noise.deviation ? "(delta/noise_deviation)^2" : "tau delta^2",
+                           std::pow(scene.delta / sigma, 2)),
+               option == kSteps
+                   ? fmt::format("take at least {:.0f}", std::ceil(scene.friction.mu_s / largest))
+                   : fmt::format("take -delta at most {:g}", largest));
+}
+
+bool check_levels(Given& given, model::Scene& scene) {
+  const double delta = scene.delta,
+               sigma = scene.noise.deviation.value_or(1 / std::sqrt(scene.tau)),
+               ratio = delta * delta / (sigma * sigma);
+  int full = 0;
+  try {
+    full = scene.full_levels();
+  } catch (const std::out_of_range&) {
+    given.refuse(step_option(given), "gives more than 2147483647 noise levels",
+                 "take a larger step");
+    return false;
+  }
+  const bool word = given.has(kLevels) && !scene.noise_levels;
+  if (word) scene.noise_levels = full;
+  const int levels = scene.noise_levels.value_or(full);
+  if (full < 1) {
+    refuse_coarse_steps(given, scene, sigma);
+    return false;
+  }
+  if (levels > full) {
+    given.refuse(
+        kLevels,
+        fmt::format("gives {} = {:g} with L_X = N delta, but jump probabilities need at most 2",
+                    scene.noise.deviation ? "delta L_X/noise_deviation^2" : "tau delta L_X",
+                    ratio * levels),
+        fmt::format("take at most {}, or full", full));
+    return false;
+  }
+  return true;
+}
+
+model::Parameters ou_values(const model::Scene& scene) {
+  model::Parameters all{{kTau, scene.tau}, {kDelta, scene.delta}};
+  if (scene.noise.deviation) all.emplace_back(kDeviation, *scene.noise.deviation);
+  return all;
+}
+
+std::string stronger_ou(const model::Scene& scene) {
+  return scene.noise.deviation ? "a larger -noise_deviation or a smaller -delta"
+                               : "a smaller -tau or -delta";
+}
+
+}  // namespace
+
+Option tau_option() {
+  return Option::real(kTau, "time", "1", Range::positive(), "correlation time of -noise ou",
+                      "for white noise take a small value such as 0.01");
+}
+
+const Effect kOrnsteinUhlenbeck{
+    .word = "ou",
+    .sentence = "the chain of the paper, which tends to the Ornstein-Uhlenbeck process as -delta "
+                "-> 0",
+    .parameters =
+        {{tau_option()},
+         {Option::real(kDelta, "force", "0.125", Range::positive(),
+                       "step between neighbouring noise levels",
+                       "the continuous noise is the limit of small steps such as 0.125")},
+         {Option::integer(kSteps, "", Range::whole(1, 1e6),
+                          "number n of noise steps up to mu_s, in the place of -delta: delta = "
+                          "mu_s/n puts mu_s on a level, so that results are continuous in mu_s",
+                          "take for example 8"),
+          true},
+         {Option::integer(kLevels, "", Range::whole(1, 1e9),
+                          "number N of noise levels on each side of 0; `full` is the largest "
+                          "possible, 2 (deviation/delta)^2. Unless given, the noise is that of "
+                          "full, truncated where -accuracy allows it",
+                          kChosen, {"full"})},
+         {Option::real(kDeviation, "force", "", Range::positive(),
+                       "standard deviation of X with -noise ou; 1/sqrt(tau) unless given, with "
+                       "which X tends to white noise of fixed intensity as tau -> 0",
+                       "take the standard deviation of the measured force")}},
+    .read = read_ou,
+    .complete = check_levels,
+    .values = ou_values,
+    .stronger = stronger_ou};
+
+}  // namespace stickslip::effects

@@ -1,0 +1,169 @@
+#include "stickslip/effects/read_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "stickslip/model/effective_friction.hpp"
+#include "stickslip/support/text.hpp"
+
+namespace stickslip::effects {
+namespace {
+
+/// Reads the parameters of the model one after the other, as far as they make sense.
+class SceneReader {
+ public:
+  explicit SceneReader(Given& given) : given_(given) {}
+
+  model::Scene read() {
+    read_numbers();
+    for (const auto* choice : choices()) {
+      const auto& effect = choice->in(scene_);
+      if (effect.read != nullptr) effect.read(given_, scene_);
+    }
+    check_friction();
+    if (complete(noises())) check_starts();
+    if (given_.sound()) (void)complete(drags());  // which looks at the noise
+    if (scene_.noise.table && given_.sound()) check_returns();
+    return scene_;
+  }
+
+ private:
+  void report(const char* option, const std::string& why, const std::string& fix) {
+    given_.refuse(option, why, fix);
+  }
+
+  void read_numbers() {
+    scene_.friction = {given_.real("mu_s"), given_.real("mu_d")};
+    const auto by_direction = [this](const char* option) {
+      return given_.has(option) ? std::optional(given_.real(option)) : std::nullopt;
+    };
+    scene_.friction.mu_s_minus = by_direction("mu_s_minus");
+    scene_.friction.mu_d_minus = by_direction("mu_d_minus");
+    scene_.friction_name = given_.text("friction");
+    scene_.noise.name = given_.text("noise");
+    scene_.drag_name = given_.text("drag");
+    scene_.bias = given_.real("bias");
+    if (given_.has("v_max")) scene_.v_max = given_.real("v_max");
+    scene_.limits_speed = given_.has("speed_limit");
+    if (scene_.limits_speed) scene_.v_max = given_.real("speed_limit");
+  }
+
+  // Whether the scene is as the effect needs it.
+  bool complete(const Choice& choice) {
+    const auto& effect = choice.in(scene_);
+    return effect.complete == nullptr || effect.complete(given_, scene_);
+  }
+
+  void check_friction() {
+    const auto& forwards = scene_.friction;
+    const auto backwards = forwards.mirrored();
+    const char* grows = "dynamic friction cannot exceed static friction";
+    if (forwards.mu_d > forwards.mu_s) {
+      report("mu_d", fmt::format("must be in [0, mu_s], and mu_s = {:g}", forwards.mu_s), grows);
+    }
+    if (!forwards.symmetric() && backwards.mu_d > backwards.mu_s) {
+      report(forwards.mu_d_minus ? "mu_d_minus" : "mu_s_minus",
+             fmt::format("must keep mu_d_minus in [0, mu_s_minus]; they are {:g} and {:g}",
+                         backwards.mu_d, backwards.mu_s),
+             grows);
+    }
+    const double mean = scene_.noise.table ? scene_.noise.table->mean() : 0;
+    const double force = scene_.bias + mean, mu_d = force > 0 ? forwards.mu_d : backwards.mu_d;
+    const bool made_later = drags().in(scene_).complete != nullptr;
+    if (made_later || !scene_.drag.is_none() || std::abs(force) < mu_d) return;
+    if (force == 0) {
+      return report("mu_d", "leaves nothing that slows a body: there is no drag either",
+                    "take a positive -mu_d, or add drag");
+    }
+    const auto noise = mean == 0 ? "" : fmt::format("with the mean {:g} of the noise ", mean);
+    report("bias",
+           fmt::format(
+               "{}accelerates a sliding body for ever: without drag, friction mu_d = {:g} alone "
+               "opposes it",
+               noise, mu_d),
+           "take a bias smaller than mu_d, or add drag");
+  }
+
+  // That there is a level on which bodies slide. Where there is none on which they stick, what asks
+  // for sticking phases is refused elsewhere.
+  void check_starts() {
+    const auto process = scene_.meant();
+    const auto& noise = process.noise;
+    if (process.starts_upwards() || process.starts_downwards()) return;
+    const double lowest = noise.level(noise.lowest()), highest = noise.level(noise.highest());
+    const auto backwards = scene_.friction.mirrored();
+    const bool upwards =
+        highest + scene_.bias - scene_.friction.mu_s >= -lowest - scene_.bias - backwards.mu_s;
+    const double most = upwards ? highest + scene_.bias : -lowest - scene_.bias;
+    const char* threshold = upwards || !scene_.friction.mu_s_minus ? "mu_s" : "mu_s_minus";
+    const auto why = fmt::format(
+        "holds the body on all of the noise levels, from {:g} to {:g}, {}: the body never slides, "
+        "P_stick = 1 and V = 0",
+        lowest, highest,
+        scene_.bias == 0 ? "whichever occurs"
+                         : fmt::format("shifted by the bias {:g}", scene_.bias));
+    if (scene_.noise_levels && *scene_.noise_levels < scene_.full_levels()) {
+      const auto all = scene_.process(scene_.full_levels());
+      const int k = std::min(all.static_index(), -all.lowest_static());
+      if (k < scene_.full_levels()) {
+        return report(threshold, why, fmt::format("take -noise_levels above {}", k));
+      }
+    }
+    const auto& made_by = noises().in(scene_);
+    const auto stronger =
+        made_by.stronger != nullptr ? made_by.stronger(scene_) : std::string("a stronger noise");
+    report(threshold, why,
+           most > 0 ? fmt::format("take -{} below {:g}, or {}", threshold, most, stronger)
+                    : fmt::format("take {}", stronger));
+  }
+
+  // On the lowest level bodies must come to rest from every velocity that they reach: otherwise
+  // some slide for ever.
+  void check_returns() {
+    const auto process = scene_.meant();
+    for (const auto& branch : {process, process.mirrored()}) {
+      const auto& noise = branch.noise;
+      const double lowest = branch.net_force(noise.lowest()),
+                   highest = branch.net_force(noise.highest());
+      const double rise = branch.drag.highest(branch.drag.terminal_velocity(highest));
+      if (!branch.starts_upwards() || lowest + rise < 0) continue;
+      return report(
+          "mu_d",
+          fmt::format("does not stop sliding bodies: on the outermost noise level, {:g} from the "
+                      "mean, a force of {:g} still accelerates them",
+                      noise.level(noise.lowest()) - noise.mean(), lowest + rise),
+          "take a larger -mu_d, or levels on both sides of it");
+    }
+  }
+
+  Given& given_;
+  model::Scene scene_;
+};
+
+}  // namespace
+
+model::Scene read_scene(Given& given) { return SceneReader(given).read(); }
+
+std::string step_warning(const model::Scene& scene) {
+  std::vector<std::string> acting;
+  for (bool backwards : {false, true}) {
+    const auto effective = model::effective_mu_s(scene, backwards);
+    if (!effective || (backwards && scene.symmetric())) continue;
+    acting.push_back(fmt::format("mu_s{} = {:g} acts as {:g}", backwards ? "_minus" : "",
+                                 backwards ? scene.friction.mirrored().mu_s : scene.friction.mu_s,
+                                 *effective));
+  }
+  if (acting.empty()) return "";
+  const std::string fix =
+      scene.symmetric()
+          ? fmt::format("-delta_per_mu_s {:.0f} in the place of -delta puts mu_s on a level",
+                        std::max(1.0, std::round(scene.friction.mu_s / scene.delta)))
+          : "take a -delta of which mu_s - bias and mu_s_minus + bias are multiples";
+  return fmt::format(
+      "{} on bodies at rest, which stick on noise levels up to it, and these are {:g} apart; {}",
+      enumerate(acting, "and"), scene.delta, fix);
+}
+
+}  // namespace stickslip::effects

@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include "all.hpp"
+#include "levels.hpp"
+
+namespace stickslip::effects {
+namespace {
+
+constexpr const char *kAmplitude = "telegraph_amplitude", *kRate = "telegraph_rate";
+
+void read_telegraph(Given& given, model::Scene& scene) {
+  if (!given.needs("noise", kAmplitude, "1") || !given.needs("noise", kRate, "1")) return;
+  const double a = given.real(kAmplitude), rate = given.real(kRate);
+  scene.own.insert(scene.own.end(), {{kAmplitude, a}, {kRate, rate}});
+  set_levels(given, scene, kRate, "take for example -telegraph_amplitude 1 -telegraph_rate 1", [=] {
+    return model::LevelTable({{-a, rate, 0}, {a, 0, rate}});
+  });
+}
+
+std::string telegraph_text(const model::Scene& scene) {
+  return fmt::format("telegraph noise a = {:g}, rate = {:g}",
+                     std::get<double>(own_value(scene, kAmplitude)),
+                     std::get<double>(own_value(scene, kRate)));
+}
+
+}  // namespace
+
+const Effect kTelegraph{
+    .word = "telegraph",
+    .sentence = "two levels",
+    .parameters = {{Option::real(kAmplitude, "force", "", Range::positive(),
+                                 "amplitude a of -noise telegraph, X = a or -a",
+                                 "take for example 1"),
+                    true},
+                   {Option::real(kRate, "1/time", "", Range::positive(),
+                                 "rate of the jumps between a and -a; the correlation time is "
+                                 "1/(2 rate)",
+                                 "take for example 1"),
+                    true}},
+    .read = read_telegraph,
+    .complete = has_levels,
+    .heading = telegraph_text};
+
+}  // namespace stickslip::effects

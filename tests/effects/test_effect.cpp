@@ -1,0 +1,126 @@
+#include <map>
+#include <set>
+
+#include "../common/catch.hpp"
+#include "stickslip/effects/model_options.hpp"
+#include "stickslip/effects/read_scene.hpp"
+#include "stickslip/support/number_text.hpp"
+
+using namespace stickslip;
+
+namespace {
+
+/// Values as a user would give them, and what is said about them.
+class Values : public effects::Given {
+ public:
+  explicit Values(std::map<std::string, std::string> given) : given_(std::move(given)) {}
+
+  [[nodiscard]] bool has(const std::string& option) const override {
+    return given_.contains(option);
+  }
+  [[nodiscard]] std::string text(const std::string& option) const override {
+    return has(option) ? given_.at(option) : effects::model_option(option).initial;
+  }
+  [[nodiscard]] double real(const std::string& option) const override {
+    return parse_number(text(option)).value();
+  }
+  [[nodiscard]] std::optional<int> integer(const std::string& option) const override {
+    const auto number = parse_number(text(option));
+    return number ? std::optional(static_cast<int>(*number)) : std::nullopt;
+  }
+  void refuse(const std::string& option, const std::string& why, const std::string&) override {
+    said_ += "-" + option + " " + why + "\n";
+  }
+  [[nodiscard]] bool sound() const override { return said_.empty(); }
+  [[nodiscard]] const std::string& said() const { return said_; }
+
+ private:
+  std::map<std::string, std::string> given_;
+  std::string said_;
+};
+
+std::string said_of(std::map<std::string, std::string> given) {
+  Values values(std::move(given));
+  (void)effects::read_scene(values);
+  return values.said();
+}
+
+model::Scene scene_of(std::map<std::string, std::string> given) {
+  Values values(std::move(given));
+  auto scene = effects::read_scene(values);
+  INFO(values.said());
+  REQUIRE(values.sound());
+  return scene;
+}
+
+std::vector<std::string> heading_of(const effects::Choice& choice, const model::Scene& scene) {
+  return effects::heading(choice.in(scene), scene);
+}
+
+using Parts = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("effects: words are told apart, and what they declare are options of the model") {
+  for (const auto* choice : effects::choices()) {
+    CHECK(effects::model_option(choice->option).initial == choice->effects.front()->word);
+    std::set<std::string_view> words;
+    for (const auto* effect : choice->effects) {
+      INFO(effect->word);
+      CHECK(words.insert(effect->word).second);
+      CHECK(&choice->of(effect->word) == effect);
+      CHECK(!effect->sentence.empty());
+      for (const auto& [option, refused] : effect->parameters) {
+        CHECK(effects::model_option(option.name).sentence == option.sentence);
+        CHECK(effect->knows(option.name));
+      }
+    }
+  }
+  CHECK_THROWS_AS(effects::model_option("mass"), std::logic_error);
+}
+
+TEST_CASE("effects: values reach the scene, its headings and its parameters") {
+  const auto plain = scene_of({{"mu_d", "0.5"}});
+  CHECK(heading_of(effects::frictions(), plain).empty());
+  CHECK(heading_of(effects::noises(), plain) == Parts{"tau = 1", "delta = 0.125"});
+  CHECK(heading_of(effects::drags(), plain) == Parts{"drag linear, c = 1"});
+  const auto other = scene_of({{"mu_d", "0.5"},
+                               {"friction", "stribeck"},
+                               {"stribeck_velocity", "0.2"},
+                               {"noise", "telegraph"},
+                               {"telegraph_amplitude", "2"},
+                               {"telegraph_rate", "3"},
+                               {"drag", "cubic"},
+                               {"drag_coefficient", "0"},
+                               {"drag_cubic", "4"}});
+  CHECK(other.friction.stribeck->velocity == 0.2);
+  CHECK(other.noise.table->at(other.noise.table->highest()).x == 2);
+  CHECK(other.noise.table->at(other.noise.table->highest()).down == 3);
+  CHECK(other.drag(2) == -32);
+  CHECK(heading_of(effects::frictions(), other) ==
+        Parts{"stribeck_velocity = 0.2", "stribeck_exponent = 1"});
+  CHECK(heading_of(effects::noises(), other) == Parts{"telegraph noise a = 2, rate = 3"});
+  CHECK(heading_of(effects::drags(), other) == Parts{"drag cubic, c3 = 4"});
+  const auto formula = scene_of(
+      {{"mu_d", "0.5"}, {"drag", "expression"}, {"drag_expression", "-tau*v"}, {"tau", "2"}});
+  CHECK(formula.drag(1) == -2);
+  CHECK(heading_of(effects::drags(), formula) == Parts{"drag b(v) = -tau*v"});
+}
+
+TEST_CASE("effects: what they lack or cannot be is refused") {
+  using Catch::Contains;
+  CHECK_THAT(said_of({{"noise", "telegraph"}}), Contains("-noise needs -telegraph_amplitude"));
+  CHECK_THAT(said_of({{"noise", "telegraph"}, {"telegraph_amplitude", "2"}}),
+             Contains("-noise needs -telegraph_rate"));
+  CHECK_THAT(said_of({{"noise", "file"}}), Contains("-noise needs -noise_file"));
+  CHECK_THAT(said_of({{"noise", "file"}, {"noise_file", "none.csv"}}),
+             Contains("-noise_file cannot be read"));
+  CHECK_THAT(said_of({{"friction", "stribeck"}}), Contains("-friction needs -stribeck_velocity"));
+  CHECK_THAT(said_of({{"drag", "expression"}}), Contains("-drag needs a formula"));
+  CHECK_THAT(said_of({{"delta_per_mu_s", "8"}, {"delta", "0.1"}}),
+             Contains("so does -delta = 0.1"));
+  CHECK_THAT(said_of({{"delta", "2"}}), Contains("-delta leaves no noise level besides 0"));
+  CHECK_THAT(said_of({{"noise_levels", "1000"}}), Contains("-noise_levels gives tau delta L_X"));
+  CHECK_THAT(said_of({{"mu_s", "100"}}), Contains("the body never slides"));
+  CHECK_THAT(said_of({{"mu_d", "2"}}), Contains("-mu_d must be in [0, mu_s]"));
+}

@@ -1,0 +1,85 @@
+"""A drag law and a noise that are a file each: all that the program does with effects follows from what they declare."""
+
+import csv
+import os
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "command_line"))
+import unittest
+
+from running import BINARIES, SOURCES, Case, run
+
+sys.path.insert(0, str(SOURCES / "python"))
+import stickslip
+
+PROGRAM = "stickslip-extended"
+MODEL = ("-mu_d", "0.5", "-accuracy", "1e-5")
+DRAG = ("-drag", "quadratic", "-drag_quadratic", "2")
+NOISE = ("-noise", "three_levels", "-pulse_force", "2", "-pulse_rate", "0.5", "-pulse_end_rate", "3")
+QUADRATIC, PULSES = (*MODEL, *DRAG), (*MODEL, *NOISE)
+
+
+class Extension(Case):
+    def solved(self, *options):
+        return self.summary(*options, program=PROGRAM)
+
+    def test_help_lists_what_they_declare(self):
+        text = self.run_ok("-help", program=PROGRAM).stdout
+        for part in ("-drag_quadratic", "c2 of the quadratic drag law", "-sweep_drag_quadratic", "-pulse_force",
+                     "three_levels"):
+            self.assertIn(part, text)
+
+    def test_values_are_validated(self):
+        for options, part in (((*QUADRATIC, "-drag_quadratic", "-1"), "-drag_quadratic = -1: must be a number in (0, inf)"),
+                              ((*MODEL, "-pulse_rate", "1"), "belongs to -noise three_levels, and -noise is ou"),
+                              ((*MODEL, "-noise", "three_levels"), "-noise = three_levels: needs -pulse_force"),
+                              ((*MODEL, "-drag", "quadratc"), "did you mean quadratic?")):
+            done = run(*options, program=PROGRAM, folder=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(part, done.stderr)
+        done = self.run_ok(*MODEL, "-drag_quadratic", "2", program=PROGRAM)
+        self.assertIn("-drag_quadratic = 2 has no effect with -drag linear", done.stderr)
+
+    def test_the_drag_law_is_that_of_its_formula(self):
+        own = self.solved(*QUADRATIC)
+        self.assertIn("drag_quadratic = 2", self.printed)
+        self.assertEqual((own["scene"]["drag"], own["scene"]["drag_quadratic"]), ("quadratic", 2))
+        formula = self.solved(*MODEL, "-drag", "expression", "-drag_expression", " -2*v*abs(v)")
+        self.assertEqual(own["results"], formula["results"])
+
+    def test_the_noise_is_that_of_its_levels(self):
+        own = self.solved(*PULSES)
+        self.assertEqual(own["scene"]["pulse_end_rate"], 3)
+        (self.folder / "levels.csv").write_text("x,rate_up,rate_down\n-2,3,0\n0,0.5,0.5\n2,0,3\n")
+        levels = self.solved(*MODEL, "-noise", "file", "-noise_file", "levels.csv")
+        self.assertEqual(own["results"], levels["results"])
+
+    def test_both_are_simulated_and_a_checkpoint_knows_their_values(self):
+        both = ("-mu_d", "0.5", *DRAG, *NOISE)
+        computed = self.folder / "computed.json"
+        self.run_ok(*both, "-summary", computed, program=PROGRAM)
+        simulation = (*both, "-route", "monte_carlo", "-excursions", "20000", "-checkpoint", "simulation.h5")
+        self.run_ok(*simulation, "-compare", computed, program=PROGRAM)
+        for change in (("-drag_quadratic", "2.5"), ("-pulse_rate", "0.6")):
+            done = run(*simulation, *change, program=PROGRAM, folder=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(change[0], done.stderr)
+
+    def test_a_sweep(self):
+        self.run_ok(*QUADRATIC[:-2], "-sweep_drag_quadratic", "1,2", "-sweep_csv", "sweep.csv", program=PROGRAM)
+        lines = (self.folder / "sweep.csv").read_text().splitlines()
+        rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+        single = self.solved(*QUADRATIC)["results"]["E_V2"]["value"]
+        self.assertEqual([float(row["drag_quadratic"]) for row in rows], [1, 2])
+        self.assert_close(float(rows[1]["E_V2"]), single, 1e-12)
+
+    def test_python(self):
+        os.environ["STICKSLIP"] = str(BINARIES / PROGRAM)
+        self.addCleanup(os.environ.pop, "STICKSLIP")
+        results = stickslip.run(mu_d=0.5, accuracy=1e-5, drag="quadratic", drag_quadratic=2)
+        self.assertEqual(results["E_V2"].value, self.solved(*QUADRATIC)["results"]["E_V2"]["value"])
+
+
+if __name__ == "__main__":
+    unittest.main()
