@@ -23,7 +23,8 @@ class Given {
 
   /// Whether the user gave the option.
   [[nodiscard]] virtual bool has(const std::string& option) const = 0;
-  /// The value as given, or its default. Of numbers there is one of the two.
+  /// The value as given, or its default. A number without default may be asked for only where it
+  /// was given.
   [[nodiscard]] virtual double real(const std::string& option) const = 0;
   [[nodiscard]] virtual std::string text(const std::string& option) const = 0;
   /// Nothing if neither exists or a word was given.
@@ -54,9 +55,10 @@ struct Effect {
   /// Makes what depends on other options, once the scene holds all numbers. Returns whether the
   /// scene is as the effect needs it; where not, that is reported.
   bool (*complete)(Given&, model::Scene&) = nullptr;
-  /// The values that files state; those of Scene::own that it knows, where it is not there.
+  /// The values that files state. Without this function they are those of Scene::own that the
+  /// effect knows.
   model::Parameters (*values)(const model::Scene&) = nullptr;
-  /// The same for the headings of tables; "name = value" of each where it is not there.
+  /// The same for the headings of tables. Without this function they say "name = value" of each.
   std::string (*heading)(const model::Scene&) = nullptr;
   /// Of a noise: how to make it stronger, where it never moves a body.
   std::string (*stronger)(const model::Scene&) = nullptr;
