@@ -86,7 +86,7 @@ class Bootstrap(Case):
         done = self.bootstrap("build", STICKSLIP_CMAKE_OPTIONS="-DONE=1 -DTWO=2")
         self.assertRegex(done.stderr, "(?s)configuring .*minutes")
         line, = self.configurations()
-        self.assertIn("-G Ninja -DCMAKE_BUILD_TYPE=Release -DONE=1 -DTWO=2", line)
+        self.assertIn("-G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DONE=1 -DTWO=2", line)
         self.assertNotIn("--fresh", line)
 
     def test_a_moved_or_copied_checkout_is_configured_anew(self):
