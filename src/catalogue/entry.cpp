@@ -41,8 +41,8 @@ bool is_derivative(std::string_view key) {
     return entry == &kSticking || entry == &kMoments || entry == &kNoiseLaw;
   };
   if (!key.starts_with('d')) return false;
-  for (const std::string_view by :
-       {"_dmu_d", "_dmu_d_minus", "_dmu_s", "_dstribeck_velocity", "_dtau", "_ddrag_coefficient"}) {
+  for (const std::string_view parameter : kDifferentiatedBy) {
+    const std::string by = fmt::format("_d{}", parameter);
     const std::size_t ends = 1 + by.size();
     const bool has_both = key.size() > ends && key.ends_with(by);
     if (has_both && derivable(key.substr(1, key.size() - ends))) return true;

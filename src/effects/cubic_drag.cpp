@@ -34,6 +34,7 @@ const Effect kCubicDrag{
                                  "c3 of the cubic drag law", kDragMayNotGrow)}},
     .read = read_cubic_drag,
     .values = drag_coefficients,
-    .heading = drag_heading};
+    .heading = drag_heading,
+    .derivatives = {by_drag_coefficient()}};
 
 }  // namespace stickslip::effects

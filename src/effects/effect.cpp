@@ -108,6 +108,26 @@ model::Parameters parameters_of(const model::Scene& s) {
   return all;
 }
 
+std::vector<model::Derivative> derivatives_of(const model::Scene& s) {
+  using model::BranchFriction;
+  std::vector<model::Derivative> all{{"mu_d", [](const BranchFriction& here, double v) {
+                                        return here.own_mu_d ? 0.0 : -here.friction.share(v);
+                                      }}};
+  const auto append = [&](const Choice& choice) {
+    const auto& own = choice.in(s).derivatives;
+    all.insert(all.end(), own.begin(), own.end());
+  };
+  append(noises());
+  if (s.friction.mu_d_minus) {
+    all.push_back({"mu_d_minus", [](const BranchFriction& here, double v) {
+                     return here.own_mu_d ? -here.friction.share(v) : 0.0;
+                   }});
+  }
+  append(frictions());
+  append(drags());
+  return all;
+}
+
 std::vector<std::string> heading(const Effect& effect, const model::Scene& scene) {
   if (effect.heading != nullptr) return {effect.heading(scene)};
   std::vector<std::string> parts;

@@ -12,12 +12,17 @@ void read_linear_drag(Given& given, model::Scene& scene) {
   scene.drag = {given.real(kDragCoefficient), 0};
 }
 
+model::Derivative by_drag_coefficient() {
+  return {kDragCoefficient, [](const model::BranchFriction&, double v) { return -v; }};
+}
+
 const Effect kLinearDrag{.word = "linear",
                          .sentence = "-c v",
                          .parameters = {{drag_coefficient()}},
                          .read = read_linear_drag,
                          .values = drag_coefficients,
-                         .heading = drag_heading};
+                         .heading = drag_heading,
+                         .derivatives = {by_drag_coefficient()}};
 
 const Effect kNoDrag{.word = "none",
                      .sentence = "0",

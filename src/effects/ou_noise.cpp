@@ -25,19 +25,21 @@ void read_ou(Given& given, model::Scene& scene) {
   if (given.has(kDeviation)) scene.noise.deviation = given.real(kDeviation);
 }
 
-// The option by which the noise step was given.
-const char* step_option(const Given& given) { return given.has(kSteps) ? kSteps : kDelta; }
+// Reports a noise step, as -delta or by how many of them go up to mu_s.
+void refuse_step(Given& given, const std::string& why, const std::string& steps_fix,
+                 const std::string& delta_fix) {
+  const bool by_steps = given.has(kSteps);
+  given.refuse(by_steps ? kSteps : kDelta, why, by_steps ? steps_fix : delta_fix);
+}
 
 void refuse_coarse_steps(Given& given, const model::Scene& scene, double sigma) {
   const double largest = std::sqrt(2) * sigma;
-  const char* option = step_option(given);
-  given.refuse(option,
-               fmt::format("leaves no noise level besides 0: {} = {:g} must be at most 2",
-                           scene.noise.deviation ? "(delta/noise_deviation)^2" : "tau delta^2",
-                           std::pow(scene.delta / sigma, 2)),
-               option == kSteps
-                   ? fmt::format("take at least {:.0f}", std::ceil(scene.friction.mu_s / largest))
-                   : fmt::format("take -delta at most {:g}", largest));
+  refuse_step(given,
+              fmt::format("leaves no noise level besides 0: {} = {:g} must be at most 2",
+                          scene.noise.deviation ? "(delta/noise_deviation)^2" : "tau delta^2",
+                          std::pow(scene.delta / sigma, 2)),
+              fmt::format("take at least {:.0f}", std::ceil(scene.friction.mu_s / largest)),
+              fmt::format("take -delta at most {:g}", largest));
 }
 
 bool check_levels(Given& given, model::Scene& scene) {
@@ -48,8 +50,8 @@ bool check_levels(Given& given, model::Scene& scene) {
   try {
     full = scene.full_levels();
   } catch (const std::out_of_range&) {
-    given.refuse(step_option(given), "gives more than 2147483647 noise levels",
-                 "take a larger step");
+    const char* fix = "take a larger step";
+    refuse_step(given, "gives more than 2147483647 noise levels", fix, fix);
     return false;
   }
   const bool word = given.has(kLevels) && !scene.noise_levels;
@@ -115,6 +117,7 @@ const Effect kOrnsteinUhlenbeck{
     .read = read_ou,
     .complete = check_levels,
     .values = ou_values,
+    .derivatives = {{kTau}},
     .stronger = stronger_ou};
 
 }  // namespace stickslip::effects

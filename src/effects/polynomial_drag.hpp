@@ -12,6 +12,9 @@ inline constexpr const char* kDragMayNotGrow =
 [[nodiscard]] Option drag_coefficient();
 void read_linear_drag(Given& given, model::Scene& scene);
 
+/// Derivative by the coefficient.
+[[nodiscard]] model::Derivative by_drag_coefficient();
+
 /// Files state the coefficients of all of them.
 [[nodiscard]] model::Parameters drag_coefficients(const model::Scene& scene);
 [[nodiscard]] std::string drag_heading(const model::Scene& scene);

@@ -16,6 +16,16 @@ model::Parameters stribeck_values(const model::Scene& scene) {
   return {{kVelocity, stribeck->velocity}, {kExponent, stribeck->exponent}};
 }
 
+// At fixed static levels.
+double by_mu_s(const model::BranchFriction& here, double v) {
+  return here.own_mu_s ? 0.0 : here.friction.share(v) - 1;
+}
+
+double by_velocity(const model::BranchFriction& here, double v) {
+  const auto& friction = here.friction;
+  return (friction.mu_s - friction.mu_d) * friction.stribeck->share_by_velocity(v);
+}
+
 }  // namespace
 
 const Effect kCoulomb{.word = "coulomb", .sentence = "F = mu_d at every speed"};
@@ -35,6 +45,7 @@ const Effect kStribeck{
                                  "take 1, or 2 for friction that is flat at rest"),
                     true}},
     .read = read_stribeck,
-    .values = stribeck_values};
+    .values = stribeck_values,
+    .derivatives = {{"mu_s", by_mu_s}, {kVelocity, by_velocity}}};
 
 }  // namespace stickslip::effects

@@ -23,14 +23,15 @@ KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& disc
 
 KolmogorovOperator KolmogorovOperator::derivative(MPI_Comm comm,
                                                   const Discretisation& discretisation,
-                                                  Symmetry symmetry, Parameter theta) {
+                                                  Symmetry symmetry,
+                                                  const model::Derivative& theta) {
   return {comm, discretisation, 0, symmetry, StaticPhase::killing, Clock::time, theta};
 }
 
 KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation,
                                        PetscScalar lambda, Symmetry symmetry,
                                        StaticPhase static_phase, Clock clock,
-                                       std::optional<Parameter> derivative)
+                                       std::optional<model::Derivative> derivative)
     : data_(std::make_shared<MatrixData>(MatrixData{
           discretisation,
           StateSpace(comm, discretisation, symmetry, static_phase != StaticPhase::killing), lambda,

@@ -20,7 +20,7 @@ class RowAssembler {
   using Functional = std::vector<std::pair<PetscInt, double>>;
 
   RowAssembler(const Discretisation& discretisation, const StateSpace& states, PetscScalar lambda,
-               Clock clock, StaticPhase static_phase, std::optional<Parameter> derivative)
+               Clock clock, StaticPhase static_phase, std::optional<model::Derivative> derivative)
       : derivative_(derivative),
         noise_(*discretisation.noise),
         chain_(discretisation.process.noise),
@@ -115,7 +115,7 @@ class RowAssembler {
   void for_each_jump(Branch branch, int n, Visit visit) const {
     if (!derivative_) {
       for (const auto& [to, rate] : side(branch).noise.jumps(n)) visit(to, rate);
-    } else if (*derivative_ == Parameter::tau) {
+    } else if (derivative_->is_of_jumps()) {
       if (changes_of_ != n) {
         changes_ = noise_.jumps_by_tau(n);
         changes_of_ = n;
@@ -283,24 +283,17 @@ class RowAssembler {
   }
   [[nodiscard]] double reflection() const { return states_.symmetry() == Symmetry::odd ? -1 : 1; }
   [[nodiscard]] velocity::SpeedChange speed_change(Branch branch) const {
+    if (derivative_->is_of_jumps()) return [](double) { return 0.0; };
     const auto& given = upper_.process.friction;
-    const bool lower = branch == Branch::negative, own_d = lower && given.mu_d_minus,
-               own_s = lower && given.mu_s_minus;
-    return [=, theta = *derivative_, f = side(branch).process.friction](double v) {
-      switch (theta) {
-      case Parameter::mu_d: return own_d ? 0.0 : -f.share(v);
-      case Parameter::mu_d_minus: return own_d ? -f.share(v) : 0.0;
-      case Parameter::mu_s: return own_s ? 0.0 : f.share(v) - 1;
-      case Parameter::stribeck_velocity:
-        return (f.mu_s - f.mu_d) * f.stribeck->share_by_velocity(v);
-      case Parameter::tau: break;
-      case Parameter::drag_coefficient: return -v;
-      }
-      return 0.0;
+    const bool lower = branch == Branch::negative;
+    return [change = derivative_->acceleration,
+            here = model::BranchFriction{side(branch).process.friction, lower && given.mu_s_minus,
+                                         lower && given.mu_d_minus}](double v) {
+      return change(here, v);
     };
   }
 
-  std::optional<Parameter> derivative_;
+  std::optional<model::Derivative> derivative_;
   const noise::Nodes& noise_;
   const model::NoiseChain& chain_;
   Side upper_, lower_;

@@ -32,7 +32,7 @@ KolmogorovOperator assemble(MPI_Comm comm, const Discretisation& discretisation,
 }
 
 KolmogorovOperator assemble_derivative(MPI_Comm comm, const Discretisation& discretisation,
-                                       Symmetry symmetry, Parameter theta,
+                                       Symmetry symmetry, const model::Derivative& theta,
                                        petsc::SolverStatistics& statistics) {
   return entered(statistics, [&] {
     return KolmogorovOperator::derivative(comm, discretisation, symmetry, theta);

@@ -20,27 +20,11 @@ namespace stickslip::quantities {
 namespace {
 
 using operators::KolmogorovOperator;
-using operators::Parameter;
 using operators::Symmetry;
 
-// The option that sets a parameter.
-const effects::Option& option_of(Parameter parameter) {
-  const auto name = [parameter] {
-    switch (parameter) {
-    case Parameter::mu_d: return "mu_d";
-    case Parameter::mu_d_minus: return "mu_d_minus";
-    case Parameter::mu_s: return "mu_s";
-    case Parameter::stribeck_velocity: return "stribeck_velocity";
-    case Parameter::tau: return "tau";
-    case Parameter::drag_coefficient: return "drag_coefficient";
-    }
-    return "";
-  };
-  return effects::model_option(name());
-}
-
-Result derivative(const Row& of, Parameter parameter, Uncertain value) {
-  const auto& by = option_of(parameter);
+// `option` is the one that sets the parameter.
+Result derivative(const Row& of, std::string_view option, Uncertain value) {
+  const auto& by = effects::model_option(option);
   Result result = scalar(catalogue::kDerivative, value);
   result.key = fmt::format("d{}_d{}", of.key, by.name);
   result.unit = (model::Unit::parse(of.unit) / model::Unit::parse(by.unit)).text();
@@ -95,27 +79,14 @@ ByTau static_phase_by_tau(const model::Process& process, const std::vector<doubl
 
 }  // namespace
 
-std::vector<Parameter> parameters_of(const model::Scene& scene) {
-  std::vector<Parameter> parameters{Parameter::mu_d};
-  if (!scene.noise.table) parameters.push_back(Parameter::tau);
-  if (scene.friction.mu_d_minus) parameters.push_back(Parameter::mu_d_minus);
-  if (scene.friction.stribeck) {
-    parameters.insert(parameters.end(), {Parameter::mu_s, Parameter::stribeck_velocity});
-  }
-  if (scene.drag_name == "linear" || scene.drag_name == "cubic") {
-    parameters.push_back(Parameter::drag_coefficient);
-  }
-  return parameters;
-}
-
 Sensitivity::Sensitivity(operators::Systems& systems, const StationaryDistribution& distribution,
-                         std::vector<Parameter> parameters)
+                         std::vector<model::Derivative> parameters)
     : system_(systems.at(0, operators::symmetry_of(systems.process()))),
       distribution_(distribution),
       parameters_(std::move(parameters)),
       upwards_(operators::StaticChain::of(systems.process()).upward_exit_transform()) {
   const Symmetry symmetry = operators::symmetry_of(systems.process());
-  for (Parameter theta : parameters_) {
+  for (const auto& theta : parameters_) {
     changes_.push_back(operators::assemble_derivative(systems.comm(), systems.discretisation(),
                                                       symmetry, theta, systems.statistics()));
   }
@@ -144,7 +115,7 @@ Sensitivity::Gradient Sensitivity::sticking_mean() const {
         through(system_.factors().solve(system_.a().from_static({mean.begin(), mean.end()})), mean);
   }
   for (std::size_t n = 0; n < parameters_.size(); ++n) {
-    if (parameters_[n] != Parameter::tau) continue;
+    if (!parameters_[n].is_of_jumps()) continue;
     const double by_tau = static_phase_by_tau(process, stick_time).sticking;
     const double uncorrected =
         static_phase_by_tau(process, distribution_.uncorrected().stick_time).sticking;
@@ -180,7 +151,7 @@ Sensitivity::Gradient Sensitivity::through(petsc::Solution h, const std::vector<
       return -petsc::dot(distribution_.occupation(), image);
     };
     const double moved = petsc::dot(distribution_.occupation(), change.from_static(values));
-    const double chain = parameters_[n] != Parameter::tau
+    const double chain = !parameters_[n].is_of_jumps()
                              ? 0
                              : worth * static_phase_by_tau(distribution_.process(),
                                                            distribution_.excursion().stick_time)
@@ -201,7 +172,7 @@ Sensitivity::Gradient Sensitivity::ratio(double mean, const Gradient& of_mean) c
 
 void Sensitivity::append(const Row& row, const Gradient& gradient, Results& results) const {
   for (std::size_t n = 0; n < parameters_.size(); ++n) {
-    results.push_back(derivative(row, parameters_[n], gradient[n]));
+    results.push_back(derivative(row, parameters_[n].option, gradient[n]));
   }
 }
 
@@ -262,9 +233,8 @@ void append_noise_sensitivity(const model::Process& process, Results& results) {
   const double rounding = model::rounding_of_sums(noise);
   const double size = std::abs(square_score) + std::abs(square * mean_score);
   const double within_size = std::abs(beyond * within_score) + std::abs(within * beyond_score);
-  results.push_back(
-      derivative(catalogue::kPWithin, Parameter::tau, {by_within, rounding * within_size}));
-  results.push_back(derivative(catalogue::kEX2, Parameter::tau, {by_square, rounding * size}));
+  results.push_back(derivative(catalogue::kPWithin, "tau", {by_within, rounding * within_size}));
+  results.push_back(derivative(catalogue::kEX2, "tau", {by_square, rounding * size}));
 }
 
 }  // namespace stickslip::quantities

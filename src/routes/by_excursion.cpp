@@ -7,6 +7,7 @@
 #include "stickslip/catalogue/autocorrelation_keys.hpp"
 #include "stickslip/catalogue/duration_density_keys.hpp"
 #include "stickslip/catalogue/expectation_keys.hpp"
+#include "stickslip/effects/effect.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/quantities/displacement.hpp"
 #include "stickslip/quantities/durations.hpp"
@@ -246,7 +247,7 @@ class Execution {
 
   void find_sensitivity() {
     const quantities::Sensitivity sensitivity(systems_, distribution(),
-                                              quantities::parameters_of(given_.scene));
+                                              effects::derivatives_of(given_.scene));
     if (question_.wants(Quantity::sticking)) sensitivity.append_sticking(results());
     if (question_.wants(Quantity::moments)) sensitivity.append_moments(results());
   }

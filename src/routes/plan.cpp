@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <numeric>
 
+#include "stickslip/effects/effect.hpp"
 #include "stickslip/quantities/sensitivity.hpp"
 
 namespace stickslip::routes {
@@ -88,7 +89,7 @@ class Planner {
     const int sides = symmetric_ ? 0 : 1;
     const int adjoints = durations + sides + (moments ? 3 + sides : 0);
     Task task{Work::sensitivity, 0, {{ground(), adjoints, 0}}};
-    task.derivatives = static_cast<int>(quantities::parameters_of(given_.scene).size());
+    task.derivatives = static_cast<int>(effects::derivatives_of(given_.scene).size());
     add(std::move(task));
   }
 

@@ -313,6 +313,7 @@ TEST_CASE("refinement sequence: two hp changes make an error, the larger the hig
     CHECK(sequence.error_per_change(n).earlier == Approx(0.0026 * degree));
   }
   CHECK_FALSE(sequence.first_order());
+  given.scene.friction_name = "stribeck";
   given.scene.friction.stribeck = model::Stribeck{0.1, 1};
   const accuracy::RefinementSequence weakening(given);
   const int degree = weakening.refinement_level(1).degree;

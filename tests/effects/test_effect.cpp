@@ -1,7 +1,10 @@
+#include <fmt/format.h>
+
 #include <map>
 #include <set>
 
 #include "../common/catch.hpp"
+#include "stickslip/catalogue/entry.hpp"
 #include "stickslip/effects/model_options.hpp"
 #include "stickslip/effects/read_scene.hpp"
 #include "stickslip/support/number_text.hpp"
@@ -73,6 +76,10 @@ TEST_CASE("effects: words are told apart, and what they declare are options of t
       for (const auto& [option, refused] : effect->parameters) {
         CHECK(effects::model_option(option.name).sentence == option.sentence);
         CHECK(effect->knows(option.name));
+      }
+      for (const auto& parameter : effect->derivatives) {
+        CHECK(effects::model_option(parameter.option).kind == effects::Kind::real);
+        CHECK(catalogue::find_row(fmt::format("dP_stick_d{}", parameter.option)) != nullptr);
       }
     }
   }

@@ -6,6 +6,7 @@
 #include "../common/catch.hpp"
 #include "../common/full_grid.hpp"
 #include "../common/near.hpp"
+#include "stickslip/effects/effect.hpp"
 #include "stickslip/operators/kolmogorov_operator.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
@@ -425,10 +426,9 @@ TEST_CASE("kolmogorov operator: with a bias rows of the whole process sum to 0",
 // dA by a difference of A on the same velocity discretisation: A is linear in mu_d and c, and
 // smooth in tau.
 TEST_CASE("kolmogorov operator: derivatives are limits of differences", "[parallel]") {
-  using operators::Parameter;
   const auto process = rough_process(9);
   struct Step {
-    Parameter parameter;
+    std::string_view parameter;
     model::Process above, below;
     double width;
   };
@@ -440,10 +440,9 @@ TEST_CASE("kolmogorov operator: derivatives are limits of differences", "[parall
     return p;
   };
   const double h = 1e-4;
-  const std::vector<Step> steps{
-      {Parameter::mu_d, changed(h, 0, 0), changed(-h, 0, 0), 2 * h},
-      {Parameter::tau, changed(0, h, 0), changed(0, -h, 0), 2 * h},
-      {Parameter::drag_coefficient, changed(0, 0, h), changed(0, 0, -h), 2 * h}};
+  const std::vector<Step> steps{{"mu_d", changed(h, 0, 0), changed(-h, 0, 0), 2 * h},
+                                {"tau", changed(0, h, 0), changed(0, -h, 0), 2 * h},
+                                {"drag_coefficient", changed(0, 0, h), changed(0, 0, -h), 2 * h}};
   const auto on = [](const model::Process& p, bool hp) {
     std::shared_ptr<velocity::VelocityDiscretisation> velocities;
     if (hp) {
@@ -454,10 +453,14 @@ TEST_CASE("kolmogorov operator: derivatives are limits of differences", "[parall
     }
     return operators::Discretisation(p, velocities);
   };
-  for (const Step& step : steps) {
+  const auto parameters = effects::derivatives_of({});
+  REQUIRE(parameters.size() == steps.size());
+  for (std::size_t place = 0; place < steps.size(); ++place) {
+    const Step& step = steps[place];
+    REQUIRE(parameters[place].option == step.parameter);
     for (bool hp : {true, false}) {
       const auto derivative = KolmogorovOperator::derivative(PETSC_COMM_WORLD, on(process, hp),
-                                                             Symmetry::even, step.parameter);
+                                                             Symmetry::even, parameters[place]);
       const auto at = [&](const model::Process& p) {
         return KolmogorovOperator(PETSC_COMM_WORLD, on(p, hp), 0, Symmetry::even,
                                   StaticPhase::killing);

@@ -4,11 +4,11 @@
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "../common/solved.hpp"
+#include "stickslip/effects/effect.hpp"
 #include "stickslip/model/noise_chain.hpp"
 #include "stickslip/quantities/sensitivity.hpp"
 
 using namespace stickslip;
-using operators::Parameter;
 using quantities::Results;
 using test::relative_difference;
 using test::scene;
@@ -39,7 +39,7 @@ Values scalars(const model::Scene& s) {
 Values derivatives(const model::Scene& s) {
   Solved solved(test::on_hp(s, kDegree));
   const quantities::Sensitivity sensitivity(solved.systems, solved.distribution,
-                                            quantities::parameters_of(s));
+                                            effects::derivatives_of(s));
   Results results;
   sensitivity.append_sticking(results);
   sensitivity.append_moments(results);
@@ -90,6 +90,7 @@ TEST_CASE("sensitivity: adjoints agree with extrapolated differences", "[slow][r
   lopsided.friction.mu_d_minus = 0.7;
   strong.drag_name = "cubic";
   auto weakening = scene(1.1, 0.4, 1, 0.5, {1, 0}), by_side = lopsided;
+  weakening.friction_name = by_side.friction_name = "stribeck";
   weakening.friction.stribeck = {0.3, 1};
   by_side.friction.stribeck = {0.5, 2};
   by_side.friction.mu_s = 1.1;
@@ -122,7 +123,7 @@ TEST_CASE("sensitivity: one factorisation, one solve a functional") {
   Solved solved(test::on_hp(s, 4));
   const auto before = solved.statistics;
   const quantities::Sensitivity sensitivity(solved.systems, solved.distribution,
-                                            quantities::parameters_of(s));
+                                            effects::derivatives_of(s));
   CHECK(solved.statistics.solves - before.solves == 2);
   CHECK(solved.statistics.assemblies - before.assemblies == 3);
   CHECK(solved.statistics.factorizations_real + solved.statistics.factorizations_complex == 1);
@@ -145,7 +146,9 @@ TEST_CASE("sensitivity: a single static level") {
 TEST_CASE("sensitivity: a drag law without coefficient has no derivative by it") {
   auto s = scene(1, 0.5, 1, 0.5, {0, 0});
   s.drag_name = "none";
-  CHECK(quantities::parameters_of(s) == std::vector{Parameter::mu_d, Parameter::tau});
+  std::vector<std::string_view> parameters;
+  for (const auto& theta : effects::derivatives_of(s)) parameters.push_back(theta.option);
+  CHECK(parameters == std::vector<std::string_view>{"mu_d", "tau"});
 }
 
 // d E[X^2]/d tau = -1/tau^2 on the full range, where E[X^2] = 1/tau but for tails.

@@ -16,6 +16,7 @@ namespace {
 
 model::Scene weakening(double mu_d, double velocity, double exponent = 1) {
   auto s = scene(1, mu_d, 1, 0.25, {1, 0});
+  s.friction_name = "stribeck";
   s.friction.stribeck = {velocity, exponent};
   return s;
 }
@@ -119,6 +120,7 @@ TEST_CASE("stribeck: the distribution in white noise, of drag and friction that 
   by_drag.drag =
       model::parse_drag("0.3*(1 - exp(-10*abs(v)))*sign(v) - v", by_drag.friction, 1, 100);
   auto by_friction = scene(0.5, 0.2, 1, 1, {1, 0});
+  by_friction.friction_name = "stribeck";
   by_friction.friction.stribeck = {0.1, 1};
   for (auto s : {by_drag, by_friction}) {
     std::vector<Values> found;

@@ -51,6 +51,7 @@ bool is_on_grid(const test::Discrete& d) { return d.velocities->keeps_origin(); 
 
 model::Scene weakening() {
   auto s = scene(1, 0.5, 1, 0.5, {1, 0});
+  s.friction_name = "stribeck";
   s.friction.stribeck = {0.1, 1};
   return s;
 }

@@ -14,6 +14,10 @@ inline constexpr Row kDerivative{
     .convention = "p: mu_d, mu_d_minus if given, tau at fixed N, drag_coefficient, with -friction "
                   "stribeck also mu_s and stribeck_velocity; the static levels are held fixed"};
 
+/// The parameters p of these keys.
+inline constexpr std::string_view kDifferentiatedBy[] = {
+    "mu_d", "mu_d_minus", "mu_s", "stribeck_velocity", "tau", "drag_coefficient"};
+
 inline constexpr const Row* kSensitivityRows[] = {&kDerivative};
 
 inline constexpr Entry kSensitivity{

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "stickslip/effects/option.hpp"
+#include "stickslip/model/derivative.hpp"
 #include "stickslip/model/scene.hpp"
 
 namespace stickslip::effects {
@@ -60,6 +61,9 @@ struct Effect {
   model::Parameters (*values)(const model::Scene&) = nullptr;
   /// The same for the headings of tables. Without this function they say "name = value" of each.
   std::string (*heading)(const model::Scene&) = nullptr;
+  /// The parameters by which results can be differentiated where the effect is in use. They need
+  /// not be its own: friction that weakens lets mu_s act on sliding bodies.
+  std::vector<model::Derivative> derivatives = {};
   /// Of a noise: how to make it stronger, where it never moves a body.
   std::string (*stronger)(const model::Scene&) = nullptr;
 
@@ -93,6 +97,10 @@ struct Choice {
 /// coefficients of the drag. Left out are the range of the noise, the levels of a table, and a
 /// truncation velocity that is no part of the model.
 [[nodiscard]] model::Parameters parameters_of(const model::Scene& scene);
+
+/// The parameters by which results of a scene can be differentiated: mu_d, mu_d_minus where it is
+/// given, and those that its effects declare.
+[[nodiscard]] std::vector<model::Derivative> derivatives_of(const model::Scene& scene);
 
 /// What the headings of tables say of an effect of a scene, such as "tau = 1" and "delta = 0.125".
 [[nodiscard]] std::vector<std::string> heading(const Effect& effect, const model::Scene& scene);

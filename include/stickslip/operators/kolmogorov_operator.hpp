@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "stickslip/model/derivative.hpp"
 #include "stickslip/model/observable.hpp"
 #include "stickslip/operators/matrix_data.hpp"
 #include "stickslip/petsc/handle.hpp"
@@ -60,7 +61,8 @@ class KolmogorovOperator {
   /// the derivative of the process. Collective.
   [[nodiscard]] static KolmogorovOperator derivative(MPI_Comm comm,
                                                      const Discretisation& discretisation,
-                                                     Symmetry symmetry, Parameter theta);
+                                                     Symmetry symmetry,
+                                                     const model::Derivative& theta);
 
   [[nodiscard]] const Discretisation& discretisation() const { return data_->discretisation; }
   [[nodiscard]] const StateSpace& states() const { return data_->states; }
@@ -118,7 +120,7 @@ class KolmogorovOperator {
  private:
   KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda,
                      Symmetry symmetry, StaticPhase static_phase, Clock clock,
-                     std::optional<Parameter> derivative);
+                     std::optional<model::Derivative> derivative);
 
   // The nodes by which states of a branch are counted.
   [[nodiscard]] const noise::Nodes& nodes_along(Branch branch) const {

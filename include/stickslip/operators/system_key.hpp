@@ -38,16 +38,6 @@ enum class StaticPhase {
   killing_edges    ///< unknowns, but killed on reaching (x_+-k, 0, 0) (R-check of Prop. 4.1)
 };
 
-/// Parameters of the process by which operators can be differentiated.
-enum class Parameter {
-  mu_d,        ///< in both directions, unless they have their own
-  mu_d_minus,  ///< of motion towards negative v alone
-  mu_s,        ///< of friction that weakens, at fixed static levels; as mu_d by direction
-  stribeck_velocity,
-  tau,              ///< at a fixed number of noise levels
-  drag_coefficient  ///< c of the linear part of the drag
-};
-
 /// What lambda is per unit of: with the path length for a clock the process runs at the speed |v|,
 /// and lambda - L becomes lambda |v| - L.
 enum class Clock { time, path_length };

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "stickslip/model/derivative.hpp"
 #include "stickslip/operators/discretisation.hpp"
 #include "stickslip/operators/kolmogorov_operator.hpp"
 #include "stickslip/petsc/factorization.hpp"
@@ -23,10 +24,9 @@ assemble(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda
          StaticPhase static_phase, petsc::SolverStatistics& statistics, Clock clock = Clock::time);
 
 /// The same for its derivative. Collective.
-[[nodiscard]] KolmogorovOperator assemble_derivative(MPI_Comm comm,
-                                                     const Discretisation& discretisation,
-                                                     Symmetry symmetry, Parameter theta,
-                                                     petsc::SolverStatistics& statistics);
+[[nodiscard]] KolmogorovOperator
+assemble_derivative(MPI_Comm comm, const Discretisation& discretisation, Symmetry symmetry,
+                    const model::Derivative& theta, petsc::SolverStatistics& statistics);
 
 /// The solver of an operator, which must live as long: by default of the type default_pc_type().
 /// Collective. Throws NoMemory or NotReached.

@@ -4,17 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "stickslip/model/scene.hpp"
+#include "stickslip/model/derivative.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/quantities/results.hpp"
 #include "stickslip/quantities/stationary.hpp"
 #include "stickslip/quantities/uncertain.hpp"
 
 namespace stickslip::quantities {
-
-/// mu_d, mu_d_minus where it is given, tau, mu_s and stribeck_velocity where friction has one, and
-/// drag_coefficient where `drag` is linear or cubic.
-[[nodiscard]] std::vector<operators::Parameter> parameters_of(const model::Scene& scene);
 
 /// Derivatives of means over an excursion, M = nu f + entry . s, for a function f of the sliding
 /// states and static values s. With the adjoint h, A h = f - A_us s,
@@ -33,9 +29,9 @@ namespace stickslip::quantities {
 /// mean_stick takes no solve, and has no derivative but that by tau.
 class Sensitivity {
  public:
-  /// Solves for the durations. Collective.
+  /// Solves for the durations; effects::derivatives_of has the parameters of a scene. Collective.
   Sensitivity(operators::Systems& systems, const StationaryDistribution& distribution,
-              std::vector<operators::Parameter> parameters);
+              std::vector<model::Derivative> parameters);
 
   /// dKEY_dPARAMETER for each KEY of the functions of excursion.hpp with these names. Collective.
   void append_sticking(Results& results) const;
@@ -57,7 +53,7 @@ class Sensitivity {
 
   operators::System& system_;
   const StationaryDistribution& distribution_;
-  std::vector<operators::Parameter> parameters_;
+  std::vector<model::Derivative> parameters_;
   std::vector<double> upwards_;                         // h of leaving upwards, by static level
   petsc::Solution rising_;                              // the same of the sliding states, if needed
   std::vector<operators::KolmogorovOperator> changes_;  // dA, by parameter
