@@ -166,7 +166,6 @@ double Residual::operator()(std::complex<double> z,
 
 ReducedModel::ReducedModel(Pencil& pencil, const Ends& ends, Nature nature, int most_pairs)
     : pencil_(pencil),
-      nature_(nature),
       root_(copy_of(ends.weight)),
       inverse_root_(copy_of(ends.weight)),
       most_pairs_(room_for(most_pairs, ends.b)),
@@ -223,9 +222,8 @@ int ReducedModel::extend(double shift, int count) {
   if (chain.v == nullptr) chain = {copy_of(b_), copy_of(c_)};
   int added = 0;
   for (; added < count && !full(); ++added) {
-    const bool refined = nature_ == Nature::rough;
-    resolve(shift, chain.v, false, refined);
-    resolve(shift, chain.w, true, refined);
+    resolve(shift, chain.v, false, false);
+    resolve(shift, chain.w, true, false);
     if (!append(chain.v, chain.w)) break;
     // The chain continues from the new direction alone, as Arnoldi's process does.
     check(BVCopyVec(right_, pairs_ - 1, chain.v));

@@ -71,8 +71,7 @@ class Residual {
 class ReducedModel {
  public:
   /// Smooth b and c: V and W start with b, A b, c, c A. Rough ones, such as the value at a point,
-  /// give no information at infinity; then W^T V is near singular all the same (1e-11 was seen),
-  /// and the solves of the chains are refined, which leaves seven digits of the largest value.
+  /// give no information at infinity; then W^T V is near singular all the same (1e-11 was seen).
   enum class Nature { smooth, rough };
   /// `pencil` must live as long; `ends.weight` > 0. Collective.
   ReducedModel(Pencil& pencil, const Ends& ends, Nature nature, int most_pairs);
@@ -88,7 +87,6 @@ class ReducedModel {
   /// By complex factors, which it keeps. `far` for smooth ends alone. Collective.
   [[nodiscard]] Truth truth(std::complex<double> z, bool far) const;
 
-  [[nodiscard]] Nature nature() const { return nature_; }
   [[nodiscard]] int pairs() const { return pairs_; }
   [[nodiscard]] bool full() const { return pairs_ >= most_pairs_; }
   /// The projection on all vectors so far, without directions of V and W that see nothing of the
@@ -106,7 +104,6 @@ class ReducedModel {
                                                  bool transposed) const;
 
   Pencil& pencil_;
-  Nature nature_;
   petsc::VecHandle root_, inverse_root_;  // D^1/2, D^-1/2
   int most_pairs_, pairs_ = 0;
   petsc::BvHandle right_, left_;                 // D^1/2 V, D^-1/2 W
