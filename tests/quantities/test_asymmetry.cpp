@@ -279,7 +279,7 @@ TEST_CASE("averages: of the phases, and what symmetry makes zero", "[parallel]")
 // A start is a measure: in the stationary one nothing changes, and rest is a mixture of starts.
 TEST_CASE("expectation: from rest and from the stationary distribution", "[parallel]") {
   for (double bias : {0.0, 0.2}) {
-    auto s = test::on_full_noise(scene(1, 0.4, 1, 0.5, {1, 0}));
+    auto s = test::on_full_noise(scene(1, 0.4, 1, 1, {1, 0}));
     s.bias = bias;
     const auto d = test::on_hp(s, 6);
     auto c = everything(s);
@@ -293,14 +293,13 @@ TEST_CASE("expectation: from rest and from the stationary distribution", "[paral
     const auto stationary = from({0, 0, model::Start::Kind::stationary}),
                rest = from({0, 0, model::Start::Kind::rest});
     const auto weights = model::stationary_distribution(d.process.noise);
+    std::vector<std::map<std::string, std::vector<double>>> at_level;
+    for (int i = -s.full_levels(); i <= s.full_levels(); ++i) at_level.push_back(from({i, 0}));
     for (const auto& f : c.question.observables) {
       const std::string key = "E(" + f.name + ")", limit = "stationary(" + f.name + ")";
       std::vector<double> mixed(3, 0.0);
-      for (int i = -s.full_levels(); i <= s.full_levels(); ++i) {
-        const auto one = from({i, 0});
-        for (std::size_t n = 0; n < 3; ++n) {
-          mixed[n] += weights[s.full_levels() + i] * one.at(key)[n];
-        }
+      for (std::size_t i = 0; i < weights.size(); ++i) {
+        for (std::size_t n = 0; n < 3; ++n) mixed[n] += weights[i] * at_level[i].at(key)[n];
       }
       for (std::size_t n = 0; n < 3; ++n) {
         INFO(key << " " << n);

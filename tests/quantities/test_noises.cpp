@@ -113,13 +113,13 @@ TEST_CASE("telegraph noise: the mirror image starts downwards") {
   CHECK_FALSE(down.contains("h_plus"));
 }
 
-TEST_CASE("noise levels moved by a constant force are the same process") {
+TEST_CASE("noise levels moved by a constant force are the same process", "[real]") {
   const std::set<Quantity> asked{
       Quantity::sticking, Quantity::moments,         Quantity::entry_law,       Quantity::laplace,
       Quantity::spectrum, Quantity::autocorrelation, Quantity::duration_density};
   const auto s = scene(1, 0.45, 1, 0.5, {1, 0.1});
   const auto expected = values(s, Route::excursion, 1e-9, asked);
-  for (double shift : {0.0, 0.13, -0.4}) {
+  for (double shift : {0.13, -0.4}) {
     auto found = values(moved(s, shift), Route::excursion, 1e-9, asked);
     for (const char* key : {"C_vv", "f_slide", "cdf_slide", "f_excursion", "cdf_excursion",
                             "variance_from_spectrum"}) {

@@ -137,12 +137,13 @@ TEST_CASE("rounding: derivatives are off by what those of the mean durations are
 
 // With a single static level all sticking phases are alike, whatever the refinement.
 TEST_CASE(
-    "rounding: what an identity lacks is added to every number of the stationary distribution") {
+    "rounding: what an identity lacks is added to every number of the stationary distribution",
+    "[real]") {
   using enum Quantity;
   double largest = 0;
-  for (double mu_d : {0.003, 0.005, 0.007, 0.01, 0.014}) {
+  for (double mu_d : {0.003, 0.005, 0.01}) {
     const auto r =
-        given(scene(0.15, mu_d, 1.0 / 1024, 0.25, {1, 0}), {sticking, moments, entry_law});
+        given(scene(0.15, mu_d, 1.0 / 256, 0.25, {1, 0}), {sticking, moments, entry_law});
     const auto d = test::on_hp(r.scene, 6, 1e-9);
     const auto found = evaluate(r, d);
     const double defect = found.distribution->excursion().conservation_defect(d);
