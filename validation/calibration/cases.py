@@ -97,7 +97,7 @@ def few(random, most=5):
         x = sorted(random.uniform(-0.95, 0.95) for _ in range(count - 2))
         x = [-random.uniform(0.96, 2.5), *x, random.uniform(1.2, 2.5)]
     if not any(abs(one) <= 1 for one in x):
-        x[0] = -0.5
+        x[(count - 1) // 2] = -0.5  # between those that move the body either way
     levels = list(zip(x, [*rates[0], 0.0], [0.0, *rates[1]]))
     options = drag(random)
     while options["drag"] == "none":
