@@ -49,6 +49,7 @@ bool set_drag(Given& given, model::Scene& scene, const char* option, const std::
 const Effect kDragExpression{
     .word = "expression",
     .sentence = "the formula of -drag_expression",
+    .others = {"quadratic", "formula", "custom"},
     .parameters = {{Option::text_of(
                         kExpression, "formula", "",
                         "b(v) of -drag expression, such as \"-v - 0.1*v*abs(v)\". b(0) = 0, and "

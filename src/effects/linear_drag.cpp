@@ -5,7 +5,11 @@ namespace stickslip::effects {
 
 Option drag_coefficient() {
   return Option::real(kDragCoefficient, "1/time", "1", Range::not_negative(), "c of the drag law",
-                      kDragMayNotGrow);
+                      kDragMayNotGrow,
+                      {.symbol = "c",
+                       .label = "drag coefficient",
+                       .slider = Slider{.low = 0, .high = 3, .start = 1},
+                       .others = {"c", "gamma", "damping", "viscosity"}});
 }
 
 void read_linear_drag(Given& given, model::Scene& scene) {
@@ -18,6 +22,7 @@ model::Derivative by_drag_coefficient() {
 
 const Effect kLinearDrag{.word = "linear",
                          .sentence = "-c v",
+                         .others = {"viscous", "stokes"},
                          .parameters = {{drag_coefficient()}},
                          .read = read_linear_drag,
                          .values = drag_coefficients,
@@ -26,6 +31,7 @@ const Effect kLinearDrag{.word = "linear",
 
 const Effect kNoDrag{.word = "none",
                      .sentence = "0",
+                     .others = {"no", "off", "zero"},
                      .read =
                          [](Given&, model::Scene& scene) {
                            scene.drag = {0, 0};

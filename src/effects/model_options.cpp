@@ -43,26 +43,40 @@ std::vector<Option> made() {
           "mu_s", "force", "1", Range::positive(),
           "static friction coefficient: a body at rest sticks while the force on it is at most "
           "mu_s",
-          "friction must be able to hold the body"),
+          "friction must be able to hold the body",
+          {.symbol = "\\mu_s",
+           .label = "static friction",
+           .slider = Slider{.low = 0.1, .high = 3, .start = 1},
+           .others = {"static_friction"}}),
       Option::real("mu_d", "force", "1", Range::not_negative(),
-                   "dynamic friction coefficient, at most mu_s",
-                   "friction must not drive the body"),
+                   "dynamic friction coefficient, at most mu_s", "friction must not drive the body",
+                   {.symbol = "\\mu_d",
+                    .label = "dynamic friction",
+                    .slider = Slider{.low = 0.05, .high = 3, .start = 0.5},
+                    .others = {"mu", "mu_k", "friction_coefficient", "dynamic_friction",
+                               "kinetic_friction"}}),
       Option::real(
           "mu_s_minus", "force", "", Range::positive(),
           "static friction coefficient against motion towards negative v; mu_s unless given. "
           "Where the directions differ, both velocity branches are computed",
-          "friction must be able to hold the body"),
+          "friction must be able to hold the body",
+          {.symbol = "\\mu_s^-", .label = "static friction towards negative velocities"}),
       Option::real(
           "mu_d_minus", "force", "", Range::not_negative(),
           "dynamic friction coefficient while v < 0, at most mu_s_minus; mu_d unless given",
-          "friction must not drive the body")};
+          "friction must not drive the body",
+          {.symbol = "\\mu_d^-", .label = "dynamic friction towards negative velocities"})};
   for (const auto* each : choices()) append(*each, all);
   const std::vector<Option> others{
       Option::real(
           "bias", "force", "0", {},
           "constant force g added to X, such as the weight along an inclined plane. It breaks the "
           "symmetry: both velocity branches are computed",
-          "take for example 0.1"),
+          "take for example 0.1",
+          {.symbol = "g",
+           .label = "bias",
+           .slider = Slider{.low = -0.9, .high = 0.9, .start = 0},
+           .others = {"g", "force", "gravity", "tilt", "slope"}}),
       Option::real(
           "v_max", "velocity", "", Range::positive(),
           "truncation velocity: bodies that reach it wait there until the noise falls. Unless "

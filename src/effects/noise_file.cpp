@@ -69,7 +69,11 @@ const Effect kNoiseFile{
     .parameters = {{Option::file(kFile, Kind::input,
                                  "CSV with the columns x,rate_up,rate_down: the levels of -noise "
                                  "file in rising order, and the rates of jumps to the next level "
-                                 "up and down, 0 at the ends"),
+                                 "up and down, 0 at the ends",
+                                 {.label = "levels of",
+                                  .others = {"record", "recording", "force_file", "force_record",
+                                             "forcing", "data"},
+                                  .page = "docs/recorded_forces.md"}),
                     true}},
     .read = read_noise_file,
     .complete = has_levels,

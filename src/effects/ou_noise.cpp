@@ -88,32 +88,46 @@ std::string stronger_ou(const model::Scene& scene) {
 
 Option tau_option() {
   return Option::real(kTau, "time", "1", Range::positive(), "correlation time of -noise ou",
-                      "for white noise take a small value such as 0.01");
+                      "for white noise take a small value such as 0.01",
+                      {.symbol = "\\tau",
+                       .label = "correlation time of the noise",
+                       .slider = Slider{.low = 0.05, .high = 10, .start = 1, .logarithmic = true},
+                       .others = {"tau_c", "t_corr", "correlation_time"}});
 }
 
 const Effect kOrnsteinUhlenbeck{
     .word = "ou",
     .sentence = "the chain of the paper, which tends to the Ornstein-Uhlenbeck process as -delta "
                 "-> 0",
+    .others = {"gaussian", "ornstein_uhlenbeck", "white"},
     .parameters =
         {{tau_option()},
-         {Option::real(kDelta, "force", "0.125", Range::positive(),
-                       "step between neighbouring noise levels",
-                       "the continuous noise is the limit of small steps such as 0.125")},
+         {Option::real(
+             kDelta, "force", "0.125", Range::positive(), "step between neighbouring noise levels",
+             "the continuous noise is the limit of small steps such as 0.125",
+             {.symbol = "\\delta", .label = "noise step", .others = {"dx", "step", "noise_step"}})},
          {Option::integer(kSteps, "", Range::whole(1, 1e6),
                           "number n of noise steps up to mu_s, in the place of -delta: delta = "
                           "mu_s/n puts mu_s on a level, so that results are continuous in mu_s",
-                          "take for example 8"),
+                          "take for example 8", {},
+                          {.symbol = "\\mu_s/\\delta",
+                           .label = "noise steps up to static friction",
+                           .slider = Slider{.low = 1, .high = 32, .start = 8}}),
           true},
-         {Option::integer(kLevels, "", Range::whole(1, 1e9),
-                          "number N of noise levels on each side of 0; `full` is the largest "
-                          "possible, 2 (deviation/delta)^2. Unless given, the noise is that of "
-                          "full, truncated where -accuracy allows it",
-                          kChosen, {"full"})},
+         {Option::integer(
+             kLevels, "", Range::whole(1, 1e9),
+             "number N of noise levels on each side of 0; `full` is the largest "
+             "possible, 2 (deviation/delta)^2. Unless given, the noise is that of "
+             "full, truncated where -accuracy allows it",
+             kChosen, {"full"},
+             {.symbol = "N", .label = "noise levels on each side", .others = {"levels"}})},
          {Option::real(kDeviation, "force", "", Range::positive(),
                        "standard deviation of X with -noise ou; 1/sqrt(tau) unless given, with "
                        "which X tends to white noise of fixed intensity as tau -> 0",
-                       "take the standard deviation of the measured force")}},
+                       "take the standard deviation of the measured force",
+                       {.symbol = "\\sigma",
+                        .label = "standard deviation of the noise",
+                        .others = {"sigma", "std", "stddev", "deviation", "intensity", "rms"}})}},
     .read = read_ou,
     .complete = check_levels,
     .values = ou_values,

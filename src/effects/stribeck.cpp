@@ -28,7 +28,8 @@ double by_velocity(const model::BranchFriction& here, double v) {
 
 }  // namespace
 
-const Effect kCoulomb{.word = "coulomb", .sentence = "F = mu_d at every speed"};
+const Effect kCoulomb{
+    .word = "coulomb", .sentence = "F = mu_d at every speed", .others = {"dry", "constant"}};
 
 const Effect kStribeck{
     .word = "stribeck",
@@ -38,11 +39,16 @@ const Effect kStribeck{
                         kVelocity, "velocity", "", Range::positive(),
                         "Stribeck velocity v_s: friction falls from mu_s to mu_d over speeds of "
                         "this size",
-                        "for a fall at once take -friction coulomb"),
+                        "for a fall at once take -friction coulomb",
+                        {.symbol = "v_s",
+                         .label = "Stribeck velocity",
+                         .slider =
+                             Slider{.low = 0.01, .high = 10, .start = 0.3, .logarithmic = true}}),
                     true},
                    {Option::real(kExponent, "", "1", Range::positive(),
                                  "exponent gamma of -friction stribeck",
-                                 "take 1, or 2 for friction that is flat at rest"),
+                                 "take 1, or 2 for friction that is flat at rest",
+                                 {.symbol = "\\gamma", .label = "Stribeck exponent"}),
                     true}},
     .read = read_stribeck,
     .values = stribeck_values,

@@ -28,15 +28,23 @@ std::string telegraph_text(const model::Scene& scene) {
 const Effect kTelegraph{
     .word = "telegraph",
     .sentence = "two levels",
-    .parameters = {{Option::real(kAmplitude, "force", "", Range::positive(),
-                                 "amplitude a of -noise telegraph, X = a or -a",
-                                 "take for example 1"),
-                    true},
-                   {Option::real(kRate, "1/time", "", Range::positive(),
-                                 "rate of the jumps between a and -a; the correlation time is "
-                                 "1/(2 rate)",
-                                 "take for example 1"),
-                    true}},
+    .others = {"dichotomous", "two_level", "rtn"},
+    .parameters =
+        {{Option::real(kAmplitude, "force", "", Range::positive(),
+                       "amplitude a of -noise telegraph, X = a or -a", "take for example 1",
+                       {.symbol = "a",
+                        .label = "amplitude of the noise",
+                        .slider = Slider{.low = 0.1, .high = 3, .start = 2}}),
+          true},
+         {Option::real(
+              kRate, "1/time", "", Range::positive(),
+              "rate of the jumps between a and -a; the correlation time is "
+              "1/(2 rate)",
+              "take for example 1",
+              {.symbol = "\\kappa",
+               .label = "rate of the jumps",
+               .slider = Slider{.low = 0.05, .high = 10, .start = 1, .logarithmic = true}}),
+          true}},
     .read = read_telegraph,
     .complete = has_levels,
     .heading = telegraph_text};

@@ -7,60 +7,47 @@
 #include "literal_table.hpp"
 #include "quantities.hpp"
 #include "stickslip/catalogue/entry.hpp"
+#include "stickslip/effects/effect.hpp"
+#include "stickslip/effects/model_options.hpp"
 #include "stickslip/support/text.hpp"
 
 namespace stickslip::options {
 namespace {
 
-// Option, its word, other names for it, page of the manual.
+// Option, its word, other names for it; without the model, which declares its own.
 constexpr const char* kRows = R"(
-mu_s | - | static_friction | -
-mu_d | - | mu, mu_k, friction_coefficient, dynamic_friction, kinetic_friction | -
-tau | - | tau_c, t_corr, correlation_time | -
-delta | - | dx, step, noise_step | -
-noise_levels | - | levels | -
-noise_deviation | - | sigma, std, stddev, deviation, intensity, rms | -
-noise_file | - | record, recording, force_file, force_record, forcing, data | docs/recorded_forces.md
-drag_coefficient | - | c, gamma, damping, viscosity | -
-bias | - | g, force, gravity, tilt, slope | -
-quantities | - | q, compute, observables | -
-omega | - | freq, frequency, frequencies | -
-time | - | t, times | -
-velocity | - | speed, speeds | -
-observable | - | function, functions | -
-accuracy | - | tol, tolerance, rtol, precision, eps, error, digits | -
-start | - | x0, v0, initial, initial_state | -
-route | - | method, solver, algorithm | -
-excursions | - | samples, n_samples, trials, paths | -
-horizon | - | duration, t_max, t_end, t_final | -
-summary | - | json | -
-output | - | o, out, h5, hdf5, save | -
-compare | - | reference, check | -
-options_file | - | config, input, file | -
-help | - | h | -
-quantities | sticking | stick, mean_durations | -
-quantities | moments | variance, mean_square, energy | -
-quantities | entry_law | hitting, entry, onset | -
-quantities | density | pdf, stationary, distribution, invariant_measure, histogram | -
-quantities | laplace | transform, transforms, laplace_transform | -
-quantities | relaxation | eigenvalues, spectral_gap, gap, modes, relaxation_time | -
-quantities | spectrum | psd, power, power_spectrum, power_spectral_density, spectral_density | -
-quantities | duration_density | durations, survival, duration_distribution | -
-quantities | autocorrelation | acf, vacf, correlation, autocovariance | -
-quantities | slip | avalanche, slide_length | -
-quantities | peak | first_passage, fpt, mfpt, passage, exit_time, largest_speed | -
-quantities | displacement | msd, mean_square_displacement, diffusion | -
-quantities | trajectory | path, sample_path, simulation | -
-quantities | sensitivity | derivatives, gradient, gradients | -
-route | monte_carlo | mc, simulation, simulate | -
-noise | ou | gaussian, ornstein_uhlenbeck, white | -
-noise | telegraph | dichotomous, two_level, rtn | -
-drag | linear | viscous, stokes | -
-drag | none | no, off, zero | -
-drag | expression | quadratic, formula, custom | -
-friction | coulomb | dry, constant | -
-scheme | hp | dg, fem, galerkin | -
-scheme | upwind | finite_difference, fd | -
+quantities | - | q, compute, observables
+omega | - | freq, frequency, frequencies
+time | - | t, times
+velocity | - | speed, speeds
+observable | - | function, functions
+accuracy | - | tol, tolerance, rtol, precision, eps, error, digits
+start | - | x0, v0, initial, initial_state
+route | - | method, solver, algorithm
+excursions | - | samples, n_samples, trials, paths
+horizon | - | duration, t_max, t_end, t_final
+summary | - | json
+output | - | o, out, h5, hdf5, save
+compare | - | reference, check
+options_file | - | config, input, file
+help | - | h
+quantities | sticking | stick, mean_durations
+quantities | moments | variance, mean_square, energy
+quantities | entry_law | hitting, entry, onset
+quantities | density | pdf, stationary, distribution, invariant_measure, histogram
+quantities | laplace | transform, transforms, laplace_transform
+quantities | relaxation | eigenvalues, spectral_gap, gap, modes, relaxation_time
+quantities | spectrum | psd, power, power_spectrum, power_spectral_density, spectral_density
+quantities | duration_density | durations, survival, duration_distribution
+quantities | autocorrelation | acf, vacf, correlation, autocovariance
+quantities | slip | avalanche, slide_length
+quantities | peak | first_passage, fpt, mfpt, passage, exit_time, largest_speed
+quantities | displacement | msd, mean_square_displacement, diffusion
+quantities | trajectory | path, sample_path, simulation
+quantities | sensitivity | derivatives, gradient, gradients
+route | monte_carlo | mc, simulation, simulate
+scheme | hp | dg, fem, galerkin
+scheme | upwind | finite_difference, fd
 )";
 
 // How options of PETSc's objects begin, and the prefixes of the solvers that have such an object.
@@ -115,9 +102,18 @@ std::string apart(const std::string& name, std::size_t sign) {
 std::span<const Synonyms> all_synonyms() {
   static const auto all = [] {
     std::vector<Synonyms> rows;
-    for (const auto& cells : rows_of(kRows, 4)) {
-      rows.push_back({cells[0], cells[1], split(cells[2], ','), cells[3]});
+    const auto add = [&rows](const Synonyms& row) {
+      if (!row.others.empty()) rows.push_back(row);
+    };
+    for (const auto& option : effects::model_options()) {
+      add({option.name, "", option.shown.others, option.shown.page});
     }
+    for (const auto* choice : effects::choices()) {
+      for (const auto* effect : choice->effects) {
+        add({std::string(choice->option), std::string(effect->word), effect->others, ""});
+      }
+    }
+    for (const auto& cells : rows_of(kRows, 3)) add({cells[0], cells[1], split(cells[2], ','), ""});
     return rows;
   }();
   return all;

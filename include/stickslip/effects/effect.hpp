@@ -49,7 +49,9 @@ struct Parameter {
 /// One of the words of a choice, such as -drag cubic.
 struct Effect {
   std::string_view word;
-  std::string_view sentence;  ///< what it is, for the help of its choice
+  /// What it is, for the help of its choice; of a drag law b(v), with the symbols of its options.
+  std::string_view sentence;
+  std::vector<std::string> others = {};  ///< words that mean it elsewhere
   std::vector<Parameter> parameters = {};
   /// Puts the values of its options into a scene that holds friction coefficients and bias.
   void (*read)(Given&, model::Scene&) = nullptr;

@@ -1,7 +1,8 @@
 #pragma once
 /// What is known of an option of the command line: the form and the range of its value, its
-/// default, and what it does.
+/// default, what it does, and how pictures show it.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,23 @@ struct Range {
   static Range whole(double low, double high) { return {low, high, true, true}; }
 };
 
+/// Ends of a slider over a number, and where it stands at first.
+struct Slider {
+  double low;
+  double high;
+  double start;
+  bool logarithmic = false;
+};
+
+/// How an option is shown, and what else it is called.
+struct Shown {
+  std::string symbol = {};               ///< TeX, such as "c_3"
+  std::string label = {};                ///< before the symbol on an axis
+  std::optional<Slider> slider = {};     ///< over what is worth to be explored
+  std::vector<std::string> others = {};  ///< names of the literature and of other programs
+  std::string page = {};                 ///< of the manual where to read more
+};
+
 struct Option {
   std::string name;                ///< without the dash
   Kind kind;                       ///< form of the value
@@ -48,21 +66,23 @@ struct Option {
   std::vector<std::string> words;  ///< allowed words; beside numbers for kind integer
   std::string sentence;            ///< what it does
   std::string fix;                 ///< what to do about a value out of range; may be empty
+  Shown shown = {};
 
   static Option real(const char* name, const char* unit, const char* initial, Range range,
-                     const char* sentence, const char* fix) {
-    return {name, Kind::real, "number", unit, initial, range, {}, sentence, fix};
+                     const char* sentence, const char* fix, const Shown& shown = {}) {
+    return {name, Kind::real, "number", unit, initial, range, {}, sentence, fix, shown};
   }
   static Option integer(const char* name, const char* initial, Range range, const char* sentence,
-                        const char* fix, const std::vector<std::string>& words = {}) {
-    return {name, Kind::integer, "integer", "", initial, range, words, sentence, fix};
+                        const char* fix, const std::vector<std::string>& words = {},
+                        const Shown& shown = {}) {
+    return {name, Kind::integer, "integer", "", initial, range, words, sentence, fix, shown};
   }
   static Option text_of(const char* name, const char* form, const char* initial,
                         const char* sentence) {
     return {name, Kind::text, form, "", initial, {}, {}, sentence, ""};
   }
-  static Option file(const char* name, Kind kind, const char* sentence) {
-    return {name, kind, "file", "", "", {}, {}, sentence, ""};
+  static Option file(const char* name, Kind kind, const char* sentence, const Shown& shown = {}) {
+    return {name, kind, "file", "", "", {}, {}, sentence, "", shown};
   }
 };
 
