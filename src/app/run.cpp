@@ -62,6 +62,7 @@ std::string text_asked_for(const std::vector<std::string>& words) {
   if (asked("-help") || asked("--help") || asked("-h")) return options::help_text();
   if (asked("-version") || asked("--version")) return io::version_text();
   if (asked("-reference")) return options::reference_page();
+  if (asked("-reference_json")) return options::reference_json();
   if (asked("-reference_quantities")) return options::quantity_tables();
   if (asked("-man_page")) return options::man_page(io::version_number());
   if (asked("-completion")) return options::completion();

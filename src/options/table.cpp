@@ -285,6 +285,7 @@ std::span<const OtherOption> other_options() {
        "stop"},
       {"-version", "print the versions of the program and its libraries and stop"},
       {"-reference", "print the table of options in Markdown and stop"},
+      {"-reference_json", "print the table of options as JSON for other programs and stop"},
       {"-reference_quantities", "print the tables of quantities and keys in Markdown and stop"},
       {"-man_page", "print the manual page in roff and stop"},
       {"-completion", "print the completion of the command line for bash and stop"},

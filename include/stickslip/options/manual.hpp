@@ -13,6 +13,13 @@ namespace stickslip::options {
 /// The reference page of options in Markdown (docs/options.md).
 [[nodiscard]] std::string reference_page();
 
+/// The table of options as JSON: {"options": [...]}, in the order of the help text. Each has name,
+/// group, form, unit, default, range and sentence as the page has them, empty where there is none;
+/// words; for a choice of effects what each word means; symbol in TeX and label of pictures; slider
+/// {low, high, start, logarithmic} or null; and belongs_to, by choice the words of the effects that
+/// know the option, {} where all do.
+[[nodiscard]] std::string reference_json();
+
 /// The tables of quantities and of the keys of a summary in Markdown, which stand between two marks
 /// in docs/quantities.md.
 [[nodiscard]] std::string quantity_tables();

@@ -1,0 +1,70 @@
+#include <nlohmann/json.hpp>
+
+#include "stickslip/effects/effect.hpp"
+#include "stickslip/options/manual.hpp"
+#include "stickslip/options/table.hpp"
+
+namespace stickslip::options {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+
+// What each word of a choice of effects means; {} for any other option.
+OrderedJson meanings_of(const Option& option) {
+  OrderedJson meanings = OrderedJson::object();
+  for (const auto* choice : effects::choices()) {
+    if (choice->option != option.name) continue;
+    for (const auto* effect : choice->effects) {
+      meanings[std::string(effect->word)] = effect->sentence;
+    }
+  }
+  return meanings;
+}
+
+OrderedJson owners_of(const Option& option) {
+  OrderedJson owners = OrderedJson::object();
+  for (const auto* choice : effects::choices()) {
+    for (const auto* effect : choice->effects) {
+      if (effect->knows(option.name)) owners[std::string(choice->option)].push_back(effect->word);
+    }
+  }
+  return owners;
+}
+
+OrderedJson json_of(const std::optional<effects::Slider>& slider) {
+  if (!slider) return nullptr;
+  return {{"low", slider->low},
+          {"high", slider->high},
+          {"start", slider->start},
+          {"logarithmic", slider->logarithmic}};
+}
+
+OrderedJson json_of(const Option& option, const Group& group) {
+  const bool ranged =
+      option.kind == Kind::real || option.kind == Kind::integer || option.kind == Kind::numbers;
+  return {{"name", option.name},
+          {"group", group.title},
+          {"form", option.form},
+          {"unit", option.unit},
+          {"default", option.initial},
+          {"range", ranged ? option.range.text() : ""},
+          {"words", option.words},
+          {"meanings", meanings_of(option)},
+          {"sentence", option.sentence},
+          {"symbol", option.shown.symbol},
+          {"label", option.shown.label},
+          {"slider", json_of(option.shown.slider)},
+          {"belongs_to", owners_of(option)}};
+}
+
+}  // namespace
+
+std::string reference_json() {
+  OrderedJson options = OrderedJson::array();
+  for (const auto& group : table()) {
+    for (const auto& option : group.options) options.push_back(json_of(option, group));
+  }
+  return OrderedJson{{"options", options}}.dump(1) + "\n";
+}
+
+}  // namespace stickslip::options
