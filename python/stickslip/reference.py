@@ -1,9 +1,12 @@
-"""The options of the program at the end of docstrings."""
+"""What the program says of its options: at the end of docstrings, and to pictures and the explorer."""
 
+import functools
 import inspect
+import json
+import pathlib
 import subprocess
-from collections.abc import Callable
-from typing import TypeVar
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
 
 from .program import ProgramError, find_program
 
@@ -28,12 +31,38 @@ def with_options(function: Function) -> Function:
     return function
 
 
+def declared() -> Mapping[str, Mapping[str, Any]]:
+    """Options of the program by name, each as -reference_json prints it.
+
+    Raises
+    ------
+    ProgramError
+        If there is no program that can be asked.
+    """
+    return _declared(find_program())
+
+
+@functools.lru_cache
+def _declared(program: pathlib.Path) -> Mapping[str, Mapping[str, Any]]:
+    try:
+        return {option["name"]: option for option in json.loads(_printed(program, "-reference_json"))["options"]}
+    except ValueError:
+        raise ProgramError(f"{program} does not say what its options are") from None
+
+
+def _printed(program: pathlib.Path, word: str) -> str:
+    try:
+        return subprocess.run([program, word], stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                              timeout=SECONDS, check=True).stdout
+    except (OSError, subprocess.SubprocessError) as problem:
+        raise ProgramError(str(problem)) from None
+
+
 def options_text() -> str:
     """What `stickslip -help` prints of parameters and options, or in one sentence why it cannot be asked."""
     try:
-        printed = subprocess.run([find_program(), "-help"], stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                                 timeout=SECONDS, check=True).stdout
-    except (ProgramError, OSError, subprocess.SubprocessError) as problem:
+        printed = _printed(find_program(), "-help")
+    except ProgramError as problem:
         return f"The options are those of the program, which could not be asked for them: {problem}."
     begin = max(printed.find("Forms of values"), 0)
     end = printed.find("\nOther:", begin)

@@ -21,6 +21,7 @@ os.environ["STICKSLIP"] = str(BINARIES / "stickslip")
 sys.path.insert(0, str(SOURCES / "python"))
 import stickslip
 from stickslip import program
+from stickslip.plots import style
 
 SMALL = {"mu_d": 0.25, "delta": 0.5, "accuracy": 1e-3}
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -440,6 +441,32 @@ class Pictures(Case):
                 self.assertEqual(len(axes.containers if bars else axes.collections), 3, key)
         s = stickslip.sweep(mu_d=[0.1, 0.2, 0.3, 0.4, 0.5, 0.6], tau=[1, 2], delta=0.5, quantities="noise_law")
         self.assertEqual(len(s.plot()["E_X2"].axes), 2)  # a map with its scale
+
+    def test_titles_say_what_the_parameters_are(self):
+        coulomb = r"$\mu_s$ = 1, $\mu_d$ = 0.25, "
+        levels = self.folder / "levels.csv"
+        levels.write_text("x,rate_up,rate_down\n-2,1,0\n0,1,1\n2,0,1\n")
+        for options, title in (
+                ({}, coulomb + r"$\tau$ = 1, $\delta$ = 1/2, $b(v) = -v$"),
+                ({"delta": None, "delta_per_mu_s": 2, "noise_deviation": 0.8, "noise_levels": "full", "bias": 0.1},
+                 coulomb + r"$\tau$ = 1, $\sigma$ = 0.8, $\delta$ = 1/2, $b(v) = -v$, $g$ = 0.1"),
+                ({"friction": "stribeck", "stribeck_velocity": 0.3, "drag": "cubic", "drag_cubic": 2, "mu_s_minus": 2},
+                 coulomb + r"$\mu_s^-$ = 2, $v_s$ = 0.3, $\gamma$ = 1, $\tau$ = 1, $\delta$ = 1/2, $b(v) = -v - 2 v^3$"),
+                ({"noise": "telegraph", "telegraph_amplitude": 2, "telegraph_rate": 3, "drag": "none", "delta": None},
+                 coulomb + r"$a$ = 2, $\kappa$ = 3, $b(v) = 0$"),
+                ({"noise": "file", "noise_file": levels, "drag": "expression", "drag_expression": " -2*v", "delta": None},
+                 coulomb + r"levels of levels.csv, $b(v) = -2*v$")):
+            file = self.folder / "density.h5"
+            self.assertEqual(style.title(stickslip.run(**{**SMALL, **options}, quantities="density", keep=file)), title)
+            self.assertEqual(style.title(stickslip.load(file)), title)
+
+    def test_pictures_without_a_program_have_the_names_of_options(self):
+        density = stickslip.run(**SMALL, quantities="density")
+        sweep = stickslip.sweep(tau=[1, 2], delta=0.5, quantities="noise_law")
+        with self.fake("exit 1"):
+            figure = density.plot(self.folder / "density.png")["density"]
+            self.assertIn("mu_s = 1, mu_d = 0.25, ", figure._suptitle.get_text())
+            self.assertEqual(sweep.plot()["E_X2"].axes[0].get_xlabel(), "tau")
 
     def test_pictures_on_request(self):
         s = stickslip.sweep(bias=[0.1, 0.2], delta=0.5, quantities="sticking,moments,spectrum", accuracy=1e-2)

@@ -162,7 +162,7 @@ def correlation_time(items: Sequence[Results]) -> "Figure":
     """Correlation time of the velocity against that of the noise; files that differ by tau alone make a curve."""
     curves: dict[Any, list[tuple[float, float, float]]] = {}
     for item in items:
-        key = (drag(item), number(item, "mu_d"), number(item, "mu_s"), number(item, "delta"))
+        key = (drag(item), number(item, "mu_d"), number(item, "mu_s"), step(item) or 0)
         curves.setdefault(key, []).append((number(item, "tau"), item["t_corr"].value, item["t_corr"].error))
     curves = dict(sorted(curves.items(), key=lambda curve: (curve[0][0] == "0", -curve[0][1])))
     same_noise = len({key[2:] for key in curves}) == 1

@@ -1,12 +1,14 @@
-"""What the pictures share: colours, curves with their errors, and the words for parameters."""
+"""What the pictures share: colours, curves with their errors, and the words for results and parameters."""
 
 import functools
 import pathlib
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..needed import needed
+from ..program import ProgramError
+from ..reference import declared
 from ..results import Result, Results
 
 if TYPE_CHECKING:
@@ -27,14 +29,11 @@ LOOK = {"figure.facecolor": "white", "axes.grid": True, "grid.color": "#e4e4e4",
 ABSCISSAE = {"omega": r"angular frequency $\omega$  [1/time]", "time": "time $t$  [time]",
              "lambda": r"$\lambda$  [1/time]", "k": "level $i$", "distance": "path length $d$  [length]",
              "inverse_distance": "$s$  [1/length]", "velocity": "speed $w$  [velocity]", "mode": "mode"}
-WORDS = {"mu_s": r"static friction $\mu_s$", "mu_d": r"dynamic friction $\mu_d$", "bias": "bias $g$",
-         "tau": r"correlation time of the noise $\tau$", "delta": r"noise step $\delta$",
-         "noise_deviation": r"standard deviation of the noise $\sigma$", "drag_coefficient": "drag coefficient $c$",
-         "stribeck_velocity": "Stribeck velocity $v_s$", "P_stick": r"probability of sticking $P_\mathrm{stick}$",
-         "P_slide": r"probability of sliding $P_\mathrm{slide}$", "mean_stick": "mean duration of sticking",
-         "mean_slide": "mean duration of sliding", "mean_excursion": "mean duration of an excursion",
+WORDS = {"P_stick": r"probability of sticking $P_\mathrm{stick}$", "P_slide": r"probability of sliding $P_\mathrm{slide}$",
+         "mean_stick": "mean duration of sticking", "mean_slide": "mean duration of sliding", "mean_excursion": "mean duration of an excursion",
          "E_V": "mean velocity $E[V]$", "E_V2": "$E[V^2]$", "E_absV": "mean speed $E[|V|]$", "E_XV": "$E[XV]$",
          "S_v": "power spectral density $S_v$", "diffusivity": "diffusivity $S_0/2$"}
+LEVELS = ("delta", "delta_per_mu_s", "noise_levels")  # of the noise: distance, stated apart, and range, which is not
 
 
 def styled(draw: Callable[..., Any]) -> Callable[..., Any]:
@@ -110,46 +109,109 @@ def number(results: Results, option: str) -> float:
     return float(results.options[option])
 
 
+def known() -> Mapping[str, Mapping[str, Any]]:
+    """What the program declares of its options; nothing where there is none to ask."""
+    try:
+        return declared()
+    except ProgramError:
+        return {}
+
+
+def symbol(option: str) -> str:
+    """Of an option; TeX. Its name where it has none."""
+    text = known().get(option, {}).get("symbol")
+    return f"${text}$" if text else option
+
+
+def on_axis(option: str) -> str:
+    """Words and symbol of an option; TeX. Its name where it has neither."""
+    shown = known().get(option, {"label": "", "symbol": ""})
+    return f"{shown['label']} {symbol(option) if shown['symbol'] else ''}".strip() or option
+
+
+def parameters(results: Results) -> dict[str, str]:
+    """What the options of the model were, by name, but for those without effect. Of options that the program does not
+    know, or where there is none to ask, those that can be swept."""
+    options, declarations, found = results.options, known(), {}
+    for name in dict.fromkeys((*declarations, *options)):
+        option = declarations.get(name)
+        text = options.get(name, option["default"] if option and option["meanings"] else "")
+        if not text or option is None and f"sweep_{name}" not in options:
+            continue
+        in_use = option is None or option["group"] == "Model" and (not option["belongs_to"] or users(results, name))
+        absent = option and option["default"] == "0" and float(text) == 0
+        if in_use and not absent:
+            found[name] = text
+    return found
+
+
+def users(results: Results, option: str) -> set[str]:
+    """Choices of effects, such as noise, whose word has this option."""
+    declarations = known()
+    owners = declarations[option]["belongs_to"] if option in declarations else {}
+    return {choice for choice, words in owners.items()
+            if results.options.get(choice, declarations[choice]["default"]) in words}
+
+
+def stated(option: str, text: str, form: Callable[[float], str] = "{:g}".format) -> str:
+    """An option and its value; TeX."""
+    if known().get(option, {}).get("form") == "file":
+        return f"{on_axis(option)} {pathlib.Path(text).name}"
+    try:
+        text = form(float(text))
+    except ValueError:
+        pass  # a word
+    return f"{symbol(option)} = {text}"
+
+
 def step(results: Results) -> float | None:
     """Distance of the noise levels; none where these are given one by one."""
-    return number(results, "delta") if results.options.get("noise", "ou") == "ou" else None
+    used = parameters(results)
+    if "delta_per_mu_s" in used:
+        return number(results, "mu_s") / number(results, "delta_per_mu_s")
+    return number(results, "delta") if "delta" in used else None
 
 
 def memory(results: Results) -> str:
-    """The noise in words, without its step; TeX."""
-    options = results.options
-    if options.get("noise") == "telegraph":
-        return rf"$a$ = {number(results, 'telegraph_amplitude'):g}, $\kappa$ = {number(results, 'telegraph_rate'):g}"
-    if options.get("noise") == "file":
-        return f"levels of {pathlib.Path(options['noise_file']).name}"
-    given = options.get("noise_deviation")
-    return rf"$\tau$ = {fraction(number(results, 'tau'))}" + (rf", $\sigma$ = {float(given):g}" if given else "")
+    """The noise in words, without its step; TeX. All parameters where there is no program that knows those of the noise."""
+    return ", ".join(stated(name, text, fraction) for name, text in parameters(results).items()
+                     if name not in LEVELS and ("noise" in users(results, name) or name not in known()))
 
 
 def noise(results: Results) -> str:
     """The noise in words; TeX."""
     delta = step(results)
-    return memory(results) + (rf", $\delta$ = {fraction(delta)}" if delta else "")
+    return memory(results) + (f", {symbol('delta')} = {fraction(delta)}" if delta else "")
 
 
 def drag(results: Results) -> str:
-    """b(v) in words."""
-    kind = results.options["drag"]
-    if kind == "expression":
-        return results.options["drag_expression"]
-    linear = "v" if number(results, "drag_coefficient") == 1 else "c v"
-    return {"none": "0", "linear": f"-{linear}"}.get(kind, f"-{linear} - c_3 v^3")
+    """b(v): what the program says of the drag law, with numbers for their symbols; TeX."""
+    law = results.options["drag"]
+    text = known().get("drag", {}).get("meanings", {}).get(law, law)
+    for name, option in known().items():
+        value = results.options.get(name)
+        if not value or law not in option["belongs_to"].get("drag", ()):
+            continue
+        if option["form"] == "formula":
+            return value.strip()
+        if plain := re.sub(r"[\\_{}]", "", option["symbol"]):
+            text = re.sub(rf"\b{plain}\b ?", "" if float(value) == 1 else f"{float(value):g} ", text)
+    return text
 
 
 def title(results: Results) -> str:
     """The model parameters in one line; TeX. Empty where the file does not have them."""
     if not results.options:
         return ""
-    bias = number(results, "bias")
-    weakening = results.options.get("friction") == "stribeck"
-    return (rf"$\mu_s$ = {number(results, 'mu_s'):g}, $\mu_d$ = {number(results, 'mu_d'):g}, "
-            + (f"$v_s$ = {number(results, 'stribeck_velocity'):g}, " if weakening else "")
-            + rf"{noise(results)}, $b(v) = {drag(results)}$" + (f", bias {bias:g}" if bias else ""))
+    parts = []
+    for name, text in parameters(results).items():
+        if name == "noise":
+            parts.append(noise(results))
+        elif name == "drag":
+            parts.append(f"$b(v) = {drag(results)}$")
+        elif not users(results, name) & {"noise", "drag"} and not known().get(name, {}).get("meanings"):
+            parts.append(stated(name, text))
+    return ", ".join(parts)
 
 
 def fraction(x: float) -> str:

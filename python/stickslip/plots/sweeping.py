@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 from ..results import Result, Results
 from ..sweeps import Sweep
 from . import style
-from .style import ABSCISSAE, COLOURS, MARKERS, STYLES, WORDS, Figure, bars, decades, numpy, scale, styled, units
+from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, WORDS, Figure, bars, decades, numpy, on_axis, scale, styled,
+                    symbol, units)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,12 +45,12 @@ def _array(sweep: Sweep, result: Result) -> "Figure":
         abscissa = result.abscissa if result.abscissa.ndim == 1 else result.abscissa[at]
         one = Result(result.key, result.value[at], result.error[at], result.unit, result.dims[-1:],
                      result.abscissa_name, abscissa, None if result.ci95 is None else result.ci95[at])
-        style.curve(axes, one, n, label=f"{_symbol(last)} = {values[point]:g}")
+        style.curve(axes, one, n, label=f"{symbol(last)} = {values[point]:g}")
     name = result.abscissa_name
     low, high = numpy.nanmin(result.value), numpy.nanmax(result.value)
     axes.set(xscale=scale(abscissa), xlabel=ABSCISSAE.get(name, name), ylabel=_label(sweep, result.key),
              **({"yscale": "log", "ylim": (low / 2, high * 2)} if 0 < 100 * low < high else {}))
-    axes.set_title(", ".join(f"{_symbol(name)} = {sweep.coords[name][0]:g}" for name in others), fontsize=9)
+    axes.set_title(", ".join(f"{symbol(name)} = {sweep.coords[name][0]:g}" for name in others), fontsize=9)
     axes.legend()
     return figure
 
@@ -61,14 +62,14 @@ def _scalar(sweep: Sweep, result: Result) -> "Figure":
     value, error, reached = result.value[first], result.error[first], (sweep.status == "reached")[first]
     ci95 = None if result.ci95 is None else result.ci95[first]
     if len(sweep.dims) > 2:
-        axes.set_title(", ".join(f"{_symbol(name)} = {sweep.coords[name][0]:g}" for name in sweep.dims[2:]), fontsize=9)
+        axes.set_title(", ".join(f"{symbol(name)} = {sweep.coords[name][0]:g}" for name in sweep.dims[2:]), fontsize=9)
     if len(names) == 2 and len(value) > FEW:
         _map(figure, axes, sweep, result, value, reached)
         return figure
     x = sweep.coords[names[-1]]
     rows = [numpy.s_[:]] if len(names) == 1 else range(len(value))
     for n, row in enumerate(rows):
-        label = f"{_symbol(names[0])} = {sweep.coords[names[0]][n]:g}" if len(names) == 2 else None
+        label = f"{symbol(names[0])} = {sweep.coords[names[0]][n]:g}" if len(names) == 2 else None
         curve(axes, x, value[row], error[row], n, label, None if ci95 is None else ci95[row], reached[row])
     if len(names) == 2:
         axes.legend()
@@ -111,13 +112,9 @@ def _map(figure: "Figure", axes: "Axes", sweep: Sweep, result: Result, value: "n
 
 
 def _label(sweep: Sweep, name: str) -> str:
-    unit = sweep[name].unit if name in sweep else sweep.units.get(name, "")
-    return WORDS.get(name, name) + units(unit)
-
-
-def _symbol(name: str) -> str:
-    """Of an option; its words end with it."""
-    return WORDS.get(name, name).rpartition(" ")[2]
+    if name in sweep:
+        return WORDS.get(name, name) + units(sweep[name].unit)
+    return on_axis(name) + units(sweep.units.get(name, ""))
 
 
 @styled
