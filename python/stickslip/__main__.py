@@ -11,10 +11,10 @@ next to the file, under its name. A file that holds several kinds of results mak
 its name. A sweep makes a picture of each result, in the folder PICTURE/. Several files share a picture. Prints where
 the pictures are. Exit status 2 if there is nothing to draw."""
 
-EXPLORE = """Sliders over mu_s, mu_d, tau, mu_s/delta, bias and drag, choices of drag, friction law and noise. The stationary
-distribution with its marginals, probabilities and mean durations with their errors, the power spectral density of the
-velocity and the densities of durations follow. Buttons save the parameters as an options file, and the picture. In a
-window (python3-tk), or in a browser on this machine (python3-tornado)."""
+EXPLORE = """Sliders over the model parameters, choices of friction law, noise and drag. The stationary distribution with its
+marginals, probabilities and mean durations with their errors, the power spectral density of the velocity and the
+densities of durations follow. Buttons save the parameters as an options file, and the picture. In a window
+(python3-tk), or in a browser on this machine (python3-tornado)."""
 
 
 def main(words: Sequence[str] | None = None) -> int:

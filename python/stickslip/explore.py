@@ -7,13 +7,15 @@ import queue
 import threading
 import time
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from .calls import run
 from .needed import needed
 from .plots.fields import SLIDE, STICK, cells_around
+from .plots.style import symbol
 from .program import BadInput, Cancelled, OutOfMemory, ProgramError
+from .reference import declared
 from .results import Results
 from .sweeps import Sweep
 
@@ -24,13 +26,14 @@ POLL = 20  # milliseconds between looks for new results
 LEAST = 1e-3  # probability outside of what is shown
 REFUSED = "#b00000"
 ROWS = 200  # of the picture of the density
+KNOBS_BELOW = 6  # one another
 SHOWN = 1e-6  # of the largest value of a curve
 TIMES, FREQUENCIES = "0.02:20:60:log", "0.02:50:60:log"
 
 
 @dataclasses.dataclass(frozen=True)
 class Knob:
-    """A slider: an option, its range, and the choice that it belongs to."""
+    """A slider: an option, its range, and by choice the words that it belongs to, none if it is in any scene."""
 
     option: str
     label: str
@@ -38,7 +41,7 @@ class Knob:
     high: float
     start: float
     log: bool = False
-    choice: tuple[str, str] | None = None
+    choices: Mapping[str, Sequence[str]] = dataclasses.field(default_factory=dict)
     whole: bool = False
 
     def at(self, place: float) -> float:
@@ -52,17 +55,25 @@ class Knob:
         return float(numpy.log10(value)) if self.log else value
 
 
-KNOBS = (Knob("mu_s", "$\\mu_s$", 0.1, 3, 1), Knob("mu_d", "$\\mu_d$", 0.05, 3, 0.5),
-         Knob("tau", "$\\tau$", 0.05, 10, 1, True), Knob("delta_per_mu_s", "$\\mu_s/\\delta$", 1, 32, 8, whole=True),
-         Knob("bias", "bias", -0.9, 0.9, 0), Knob("drag_coefficient", "drag", 0, 3, 1),
-         Knob("drag_cubic", "cubic drag", 0, 3, 1, False, ("drag", "cubic")),
-         Knob("stribeck_velocity", "$v_s$", 0.01, 10, 0.3, True, ("friction", "stribeck")),
-         Knob("telegraph_amplitude", "amplitude", 0.1, 3, 1, False, ("noise", "telegraph")),
-         Knob("telegraph_rate", "rate", 0.05, 10, 1, True, ("noise", "telegraph")))
-CHOICES = {"drag": ("linear", "none", "cubic"), "friction": ("coulomb", "stribeck"), "noise": ("ou", "telegraph")}
-WITHOUT = {"none": ("drag_coefficient",), "telegraph": ("tau", "delta_per_mu_s")}  # options that a choice leaves no use for
 FIRST = {"quantities": "sticking,moments,density"}
 SECOND = {"quantities": "spectrum,duration_density", "omega": FREQUENCIES, "time": TIMES}
+
+
+def knobs() -> list[Knob]:
+    """Sliders over the options for which the program has one."""
+    return [Knob(name, symbol(name), slider["low"], slider["high"], slider["start"], slider["logarithmic"],
+                 option["belongs_to"], option["form"] == "integer")
+            for name, option in declared().items() if (slider := option["slider"])]
+
+
+def choices() -> dict[str, list[str]]:
+    """By choice the words that sliders can complete: those without options that are texts or files."""
+    def complete(choice: str, word: str) -> bool:
+        return all(option["form"] in ("number", "integer") for option in declared().values()
+                   if word in option["belongs_to"].get(choice, ()))
+
+    return {choice: [word for word in option["meanings"] if complete(choice, word)]
+            for choice, option in declared().items() if option["meanings"]}
 
 
 class Solver(threading.Thread):
@@ -142,6 +153,7 @@ class Explorer:
                  folder: pathlib.Path = pathlib.Path(), compute: Callable[..., Results] = run) -> None:
         self.figure, self.options, self.folder = figure, dict(options), folder
         self.solver = Solver(compute)
+        self.knobs, self.offered = knobs(), choices()
         self.sliders: dict[str, Any] = {}
         self.choices: dict[str, str] = {}
         self.moved: set[str] = set()  # knobs and choices that the user turned
@@ -187,17 +199,16 @@ class Explorer:
             axes.legend(fontsize=8, loc="lower left")
         self.words = self.figure.text(0.06, 0.335, "", va="top", family="monospace", fontsize=8.5)
         self.status = self.figure.text(0.06, 0.012, "", fontsize=9)
-        for n, knob in enumerate(KNOBS):
-            place = self.figure.add_axes((0.5 if n < 6 else 0.8, 0.31 - 0.045 * (n % 6), 0.19 if n < 6 else 0.12, 0.03))
+        for knob in self.knobs:
             start = self._start(knob, scene)
             start = knob.start if not isinstance(start, (int, float)) else min(max(start, knob.low), knob.high)
-            slider = widgets.Slider(place, knob.label, knob.place(knob.low),
-                                    knob.place(knob.high), valinit=knob.place(start))
+            slider = widgets.Slider(self.figure.add_axes((0, 0, 1, 1), label=knob.option), knob.label,
+                                    knob.place(knob.low), knob.place(knob.high), valinit=knob.place(start))
             slider.on_changed(lambda _, option=knob.option: self.turn(option))
             self.sliders[knob.option] = slider
-        for n, (option, values) in enumerate(CHOICES.items()):
+        for n, (option, values) in enumerate(self.offered.items()):
             value = str(scene.get(option, values[0]))
-            values = values if value in values else (*values, value)
+            values = values if value in values else [*values, value]
             self.choices[option] = value
             place = self.figure.add_axes((0.28, 0.25 - 0.1 * n, 0.11, 0.095))
             place.text(0.97, 0.9, option, ha="right", va="top", fontsize=9, color="gray", transform=place.transAxes)
@@ -217,16 +228,24 @@ class Explorer:
         return scene.get(knob.option)
 
     def _in_use(self, knob: Knob) -> bool:
-        unused = any(knob.option in WITHOUT.get(value, ()) for value in self.choices.values())
-        return not unused and (knob.choice is None or self.choices[knob.choice[0]] == knob.choice[1])
+        return not knob.choices or any(self.choices[choice] in words for choice, words in knob.choices.items())
+
+    def _turned(self, knob: Knob) -> bool:
+        """Whether the slider counts rather than the options file: it was moved, or chosen by a word that has it."""
+        chosen = {choice for choice, words in knob.choices.items() if self.choices[choice] in words}
+        return "options_file" not in self.options or bool(self.moved & {knob.option, *chosen})
 
     def _show_knobs(self) -> None:
-        """Sliders that the choices leave no use for are hidden; the others show their value."""
-        for knob in KNOBS:
-            slider = self.sliders[knob.option]
-            slider.ax.set_visible(self._in_use(knob))
-            slider.set_active(self._in_use(knob))
+        """Sliders that the choices leave no use for are hidden; the others follow one another and show their value."""
+        shown = 0
+        for knob in self.knobs:
+            slider, used = self.sliders[knob.option], self._in_use(knob)
+            slider.ax.set_visible(used)
+            slider.set_active(used)
             slider.valtext.set_text(f"{knob.at(slider.val):g}")
+            column, row = divmod(shown, KNOBS_BELOW)
+            slider.ax.set_position((0.46 + 0.28 * column, 0.31 - 0.045 * row, 0.19, 0.03))
+            shown += used
 
     # From knobs to the program
 
@@ -234,16 +253,16 @@ class Explorer:
         """Options of the program that the knobs stand for."""
         scene: dict[str, Any] = {}
         for option, value in self.choices.items():
-            if option in self.moved or value != CHOICES[option][0] and value in CHOICES[option]:
+            if option in self.moved or value != self.offered[option][0] and value in self.offered[option]:
                 scene[option] = value
-        for knob in KNOBS:
-            if self._in_use(knob) and (knob.option in self.moved or knob.choice or "options_file" not in self.options):
+        for knob in self.knobs:
+            if self._in_use(knob) and self._turned(knob):
                 scene[knob.option] = knob.at(self.sliders[knob.option].val)
         # mu_s stays on a noise level, so that pictures follow it without steps.
         steps = scene.pop("delta_per_mu_s", None)
-        if self.choices["noise"] == "ou" and (steps or "mu_s" in scene):
-            mu_s, steps = (knob.at(self.sliders[knob.option].val) for knob in KNOBS
-                           if knob.option in ("mu_s", "delta_per_mu_s"))
+        mu_s, by_steps = (knob for knob in self.knobs if knob.option in ("mu_s", "delta_per_mu_s"))
+        if self._in_use(by_steps) and (steps or "mu_s" in scene):
+            mu_s, steps = (knob.at(self.sliders[knob.option].val) for knob in (mu_s, by_steps))
             scene |= {"delta_per_mu_s": steps} if self.by_steps else {"delta": mu_s / steps}
         return scene
 
