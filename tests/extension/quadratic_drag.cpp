@@ -23,8 +23,13 @@ bool make_quadratic_drag(Given& given, model::Scene& scene) {
 const Effect kQuadraticDrag{
     .word = "quadratic",
     .sentence = "-c2 v |v|",
+    .others = {"newton"},
     .parameters = {{Option::real(kQuadratic, "1/length", "1", Range::positive(),
-                                 "c2 of the quadratic drag law", "drag must slow a body down")}},
+                                 "c2 of the quadratic drag law", "drag must slow a body down",
+                                 {.symbol = "c_2",
+                                  .label = "quadratic drag coefficient",
+                                  .slider = Slider{.low = 0.1, .high = 3, .start = 2},
+                                  .others = {"newton_drag"}})}},
     .read = read_quadratic_drag,
     .complete = make_quadratic_drag};
 

@@ -5,13 +5,19 @@ import os
 import pathlib
 import sys
 
+import matplotlib
+
+matplotlib.use("Agg")
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "command_line"))
 import unittest
 
 from running import BINARIES, SOURCES, Case, run
 
 sys.path.insert(0, str(SOURCES / "python"))
+import matplotlib.pyplot as plt
 import stickslip
+from stickslip import explore
+from stickslip.plots import style
 
 PROGRAM = "stickslip-extended"
 MODEL = ("-mu_d", "0.5", "-accuracy", "1e-5")
@@ -74,11 +80,46 @@ class Extension(Case):
         self.assertEqual([float(row["drag_quadratic"]) for row in rows], [1, 2])
         self.assert_close(float(rows[1]["E_V2"]), single, 1e-12)
 
-    def test_python(self):
+    def test_other_names_of_options_and_words(self):
+        for options, meant in ((("-newton_drag", "1"), "-drag_quadratic"), (("-drag", "newton"), "quadratic")):
+            done = run(*MODEL, *options, program=PROGRAM, folder=self.folder)
+            self.assertIn(f"did you mean {meant}?", done.stderr)
+
+    def use_in_python(self):
         os.environ["STICKSLIP"] = str(BINARIES / PROGRAM)
         self.addCleanup(os.environ.pop, "STICKSLIP")
+
+    def test_python(self):
+        self.use_in_python()
         results = stickslip.run(mu_d=0.5, accuracy=1e-5, drag="quadratic", drag_quadratic=2)
         self.assertEqual(results["E_V2"].value, self.solved(*QUADRATIC)["results"]["E_V2"]["value"])
+
+    def test_pictures_name_their_parameters(self):
+        self.use_in_python()
+        both = {"mu_d": 0.5, "accuracy": 1e-2, "drag": "quadratic", "drag_quadratic": 2, "noise": "three_levels",
+                "pulse_force": 2, "pulse_end_rate": 3}
+        self.assertEqual(style.title(stickslip.run(**both)),
+                         r"$\mu_s$ = 1, $\mu_d$ = 0.5, $F$ = 2, $\nu$ = 1, pulse_end_rate = 3, $b(v) = -2 v |v|$")
+        axes = stickslip.sweep(**{**both, "pulse_rate": [0.5, 1]}).plot()["P_stick"].axes[0]
+        self.assertEqual(axes.get_xlabel(), r"rate of the pulses $\nu$")
+
+    def test_the_explorer_has_their_sliders(self):
+        self.use_in_python()
+        asked = []
+        made = explore.Explorer(plt.figure(), {}, {}, compute=lambda cancel, **options: asked.append(options))
+        self.addCleanup(made.solver.close)
+
+        def shown():
+            return {option for option, slider in made.sliders.items() if slider.ax.get_visible()}
+
+        own = {"drag_quadratic", "pulse_force", "pulse_rate"}
+        self.assertFalse(own & shown())
+        made.choose("drag", "quadratic")
+        made.choose("noise", "three_levels")
+        self.assertEqual(own | {"mu_s", "mu_d", "bias"}, shown())
+        self.assertEqual(made.sliders["drag_quadratic"].label.get_text(), "$c_2$")
+        self.assertEqual({option: made.scene()[option] for option in own},
+                         {"drag_quadratic": 2, "pulse_force": 2, "pulse_rate": 0.5})
 
 
 if __name__ == "__main__":
