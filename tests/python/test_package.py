@@ -452,6 +452,8 @@ class Pictures(Case):
                  coulomb + r"$\tau$ = 1, $\sigma$ = 0.8, $\delta$ = 1/2, $b(v) = -v$, $g$ = 0.1"),
                 ({"friction": "stribeck", "stribeck_velocity": 0.3, "drag": "cubic", "drag_cubic": 2, "mu_s_minus": 2},
                  coulomb + r"$\mu_s^-$ = 2, $v_s$ = 0.3, $\gamma$ = 1, $\tau$ = 1, $\delta$ = 1/2, $b(v) = -v - 2 v^3$"),
+                ({"drag": "cubic", "drag_coefficient": 0, "drag_cubic": 1},
+                 coulomb + r"$\tau$ = 1, $\delta$ = 1/2, $b(v) = -v^3$"),
                 ({"noise": "telegraph", "telegraph_amplitude": 2, "telegraph_rate": 3, "drag": "none", "delta": None},
                  coulomb + r"$a$ = 2, $\kappa$ = 3, $b(v) = 0$"),
                 ({"noise": "file", "noise_file": levels, "drag": "expression", "drag_expression": " -2*v", "delta": None},

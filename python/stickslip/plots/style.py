@@ -195,8 +195,9 @@ def drag(results: Results) -> str:
         if option["form"] == "formula":
             return value.strip()
         if plain := re.sub(r"[\\_{}]", "", option["symbol"]):
-            text = re.sub(rf"\b{plain}\b ?", "" if float(value) == 1 else f"{float(value):g} ", text)
-    return text
+            text = re.sub(rf"\s*[-+]?\s*\b{plain}\b \S+", "", text) if float(value) == 0 else re.sub(
+                rf"\b{plain}\b ?", "" if float(value) == 1 else f"{float(value):g} ", text)
+    return re.sub(r"^\s*- ", "-", text) or "0"
 
 
 def title(results: Results) -> str:
