@@ -6,23 +6,27 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
-#include "simulated_results.hpp"
 #include "stickslip/checkpoint/checkpoint.hpp"
 #include "stickslip/effects/effect.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/quantities/excursion.hpp"
 #include "stickslip/simulation/sampler.hpp"
 #include "stickslip/support/errors.hpp"
+#include "stickslip/support/text.hpp"
 
 namespace stickslip::monte_carlo {
 namespace {
 
 using cases::Case;
+using catalogue::Kind;
 using quantities::Results;
 using simulation::Tally;
 using Clock = std::chrono::steady_clock;
@@ -33,36 +37,29 @@ constexpr int kRound = 64;   // batches between merges
 constexpr long kWhole = long{kRound} * kBatch;
 constexpr double kSecondsBetweenFiles = 3, kSecondsBetweenReports = 1;
 
-// What is tallied.
-void add_followed(const Case& given, checkpoint::Identity& found) {
-  const auto wanted = wanted_of(given.question, given.scene.meant());
-  const auto add = [&](const char* name, const auto& values) {
-    found.emplace_back(name, values.empty() ? "none" : fmt::format("{}", fmt::join(values, ",")));
-  };
-  std::vector<std::string> followed, observables;
-  for (const auto& [name, whether] : {std::pair{"moments", wanted.moments},
-                                      {"noise_law", wanted.noise},
-                                      {"spectrum or slip", wanted.displacement},
-                                      {"laplace", !wanted.lambda.empty()},
-                                      {"resolvent", !wanted.discount.empty()},
-                                      {"duration_density", !wanted.edges.empty()},
-                                      {"expectation", wanted.expectation},
-                                      {"displacement", wanted.travel},
-                                      {"autocorrelation", wanted.autocorrelation}}) {
-    if (whether) followed.emplace_back(name);
+// The quantities, and what else of the question they depend on.
+void add_question(const cases::Question& question, checkpoint::Identity& found) {
+  std::vector<std::string_view> words, observables;
+  std::set<std::string> options;
+  for (const auto* entry : catalogue::entries()) {
+    if (!question.wants(entry->quantity) || entry->of_one_run) continue;
+    words.push_back(entry->word);
+    for (auto& option : split(entry->options, ',')) options.insert(std::move(option));
   }
-  for (const auto& f : wanted.observables) observables.push_back(f.name);
-  add("-quantities", followed);
-  add("-observable", observables);
-  add("-lambda", wanted.discount.empty() ? wanted.lambda : wanted.discount);
-  add("-omega", wanted.omega);
-  add("-time", wanted.edges.empty() ? wanted.time : given.question.time);
-  add("-velocity", wanted.speeds);
-  add("-inverse_distance", wanted.inverse_distance);
-  add("-distance", wanted.path_edges.empty() ? wanted.path_edges : given.question.distance);
-  if (const auto& start = wanted.start) {
-    found.emplace_back(
-        "-start", fmt::format("{} {} {}", static_cast<int>(start->kind), start->level, start->v));
+  for (const auto& f : question.observables) observables.emplace_back(f.name);
+  const auto& start = question.start;
+  const auto text = [](const auto& values) { return fmt::format("{}", fmt::join(values, ",")); };
+  found.emplace_back("-quantities", text(words));
+  for (const auto& [option, value] :
+       {std::pair{"observable", text(observables)},
+        {"lambda", text(question.lambda)},
+        {"omega", text(question.omega)},
+        {"time", text(question.time)},
+        {"velocity", text(question.velocity)},
+        {"inverse_distance", text(question.inverse_distance)},
+        {"distance", text(question.distance)},
+        {"start", fmt::format("{} {} {}", static_cast<int>(start.kind), start.level, start.v)}}) {
+    if (options.contains(option)) found.emplace_back(fmt::format("-{}", option), value);
   }
 }
 
@@ -87,8 +84,23 @@ checkpoint::Identity identity(const Case& given) {
     found.emplace_back("levels", std::move(levels));
   }
   found.emplace_back("-seed", text(given.method.seed));
-  add_followed(given, found);
+  add_question(given.question, found);
   return found;
+}
+
+// What no sample met has no size of its own.
+quantities::Result result_of(const simulation::Estimated& e) {
+  auto result = e.observable ? quantities::blank(*e.row, *e.observable) : quantities::blank(*e.row);
+  if (!e.key.empty()) result.key = e.key;
+  result.abscissa = e.abscissa;
+  const bool of_events = result.kind == Kind::probability || result.kind == Kind::other;
+  if (of_events && !result.is_scalar()) result.each_by_its_size = false;
+  for (const auto& [value, low, high] : e.values) {
+    result.value.push_back(value);
+    result.error.push_back(std::max(high - value, value - low));
+    if (!e.exact) result.ci95.emplace_back(low, high);
+  }
+  return result;
 }
 
 class Campaign {
@@ -100,9 +112,8 @@ class Campaign {
         question_(given.question),
         progress_(progress),
         process_(given.scene.meant()),
-        wanted_(wanted_of(given.question, process_)),
-        sampler_(process_, wanted_),
-        tally_(sampler_.empty()) {
+        sampler_(given.question, process_),
+        tally_(given.question, process_) {
     if (file.empty()) return;
     checkpoint_.emplace(file, checkpoint::Kind::simulation, identity(given));
   }
@@ -138,14 +149,14 @@ class Campaign {
   // Every sticking phase begins at most at the edge of the static levels, and a path lasts as long
   // as asked.
   void require_time() const {
+    const auto& wanted = tally_.wanted();
     const auto chain = operators::StaticChain::of(process_);
     const auto sticking = chain.integral(std::vector<double>(chain.size(), 1.0));
     const double sides = process_.symmetric() ? 1 : 2,
-                 stationary = wanted_.stationary_paths() ? sides : 0,
-                 sticking_phases = sides + stationary + (wanted_.speeds.empty() ? 0 : 1),
-                 walks = (wanted_.chosen_paths() ? 1 : 0) + stationary,
-                 longest =
-                     walks > 0 ? *std::max_element(wanted_.time.begin(), wanted_.time.end()) : 0;
+                 stationary = wanted.stationary_paths ? sides : 0,
+                 sticking_phases = sides + stationary + (wanted.speeds.empty() ? 0 : 1),
+                 walks = (wanted.start ? 1 : 0) + stationary,
+                 longest = walks > 0 ? std::ranges::max(wanted.time) : 0;
     constexpr double jump = 15e-9, month = 30 * 86400.0;
     const double jumps =
         process_.noise.rate() *
@@ -174,7 +185,8 @@ class Campaign {
   void restore(const std::string& state) {
     const Json json = Json::parse(state);
     const Json& rounds = json.at("rounds");
-    tally_.unpack(json.at("tally").get<std::vector<double>>());
+    tally_.clear();
+    tally_.merge(json.at("tally").get<std::vector<double>>());
     if (!rounds.is_number_integer() || done() != rounds.get<double>() * kRound * kBatch) {
       throw std::invalid_argument("rounds and excursions of the tally differ");
     }
@@ -195,12 +207,12 @@ class Campaign {
     for (long b = petsc::rank(comm_); b < batches; b += ranks) {
       const auto count = static_cast<int>(std::min<long>(kBatch, excursions - b * kBatch));
       const auto number = static_cast<std::uint64_t>(rounds_ * kRound + b);
-      const auto part = sampler_.batch(given_.method.seed, number, count);
+      const Tally& part = sampler_.batch(given_.method.seed, number, count);
       const auto packed = part.pack();
       own.insert(own.end(), packed.begin(), packed.end());
       if (!predicted_) predict(part);
     }
-    merge(own, batches);
+    merge(std::move(own), batches);
   }
 
   // The first batch shows how long it will take.
@@ -213,30 +225,26 @@ class Campaign {
     report(s);
   }
 
-  // Batches in their order, whoever made them.
-  void merge(const std::vector<double>& own, long batches) {
-    const int ranks = petsc::ranks(comm_);
-    const auto size = static_cast<long>(tally_.packed_size());
-    std::vector<int> counts, starts;
-    int total = 0;
-    for (int r = 0; r < ranks; ++r) {
-      const long share = batches > r ? (batches - r + ranks - 1) / ranks : 0;
-      starts.push_back(total);
-      counts.push_back(static_cast<int>(share * size));
-      total += counts.back();
-    }
-    std::vector<double> all(static_cast<std::size_t>(total));
-    MPI_Allgatherv(own.data(), static_cast<int>(own.size()), MPI_DOUBLE, all.data(), counts.data(),
-                   starts.data(), MPI_DOUBLE, comm_);
-    Tally part = sampler_.empty();
+  // Batches in their order, whoever made them; ranks with one less send room for another.
+  void merge(std::vector<double> own, long batches) {
+    const long size = static_cast<long>(tally_.pack().size()), ranks = petsc::ranks(comm_),
+               share = (batches + ranks - 1) / ranks * size;
+    own.resize(static_cast<std::size_t>(share));
+    std::vector<double> all(static_cast<std::size_t>(ranks * share));
+    MPI_Allgather(own.data(), static_cast<int>(share), MPI_DOUBLE, all.data(),
+                  static_cast<int>(share), MPI_DOUBLE, comm_);
     for (long b = 0; b < batches; ++b) {
-      const double* packed = all.data() + starts[b % ranks] + b / ranks * size;
-      part.unpack({packed, static_cast<std::size_t>(size)});
-      tally_.merge(part);
+      const double* packed = all.data() + b % ranks * share + b / ranks * size;
+      tally_.merge({packed, static_cast<std::size_t>(size)});
     }
   }
 
-  [[nodiscard]] Results results() const { return estimates(question_, process_, tally_); }
+  [[nodiscard]] Results results() const {
+    Results all;
+    std::ranges::transform(tally_.estimates(), std::back_inserter(all), result_of);
+    quantities::leave_out_missing_side(process_, all);
+    return all;
+  }
 
   [[nodiscard]] std::pair<double, std::string> worst(const Results& results) const {
     std::pair<double, std::string> worst{0, ""};
@@ -291,7 +299,6 @@ class Campaign {
   const cases::Question& question_;
   const SimulationProgress& progress_;
   model::Process process_;
-  simulation::Wanted wanted_;
   simulation::Sampler sampler_;
   Tally tally_;
   std::optional<checkpoint::Checkpoint> checkpoint_;

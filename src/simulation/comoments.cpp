@@ -8,26 +8,27 @@ namespace stickslip::simulation {
 
 void Comoments::add(std::span<const double> sample, double times) {
   double* const mean = numbers_.data() + 1;
+  double* const deviation = deviation_.data();
   double* product = mean + size_;
   const double count = numbers_[0] += times, weight = times * (count - times) / count;
-  for (std::size_t n = 0; n < size_; ++n) {
-    deviation_[n] = sample[n] - mean[n];
-    mean[n] += times * deviation_[n] / count;
-  }
   for (std::size_t r = 0; r < size_; ++r) {
-    for (std::size_t c = 0; c <= r; ++c) *product++ += weight * deviation_[r] * deviation_[c];
+    deviation[r] = sample[r] - mean[r];
+    mean[r] += times * deviation[r] / count;
+    const double weighted = weight * deviation[r];
+    for (std::size_t c = 0; c <= r; ++c) *product++ += weighted * deviation[c];
   }
 }
 
-void Comoments::merge(const Comoments& other) {
-  if (other.count() == 0) return;
-  const double total = count() + other.count(), share = other.count() / total;
+void Comoments::merge(std::span<const double> others) {
+  const double more = others[0];
+  if (more == 0) return;
+  const double total = count() + more, share = more / total;
   const double weight = count() * share;
-  for (std::size_t n = 0; n < size_; ++n) deviation_[n] = other.mean(n) - mean(n);
+  for (std::size_t n = 0; n < size_; ++n) deviation_[n] = others[1 + n] - mean(n);
   std::size_t at = 1 + size_;
   for (std::size_t r = 0; r < size_; ++r) {
     for (std::size_t c = 0; c <= r; ++c, ++at) {
-      numbers_[at] += other.numbers_[at] + weight * deviation_[r] * deviation_[c];
+      numbers_[at] += others[at] + weight * deviation_[r] * deviation_[c];
     }
     numbers_[1 + r] += deviation_[r] * share;
   }

@@ -119,12 +119,11 @@ class Source : public ExcursionSource {
  private:
   // Until rest; `wait` is the time to the next jump of the noise.
   void slide(RandomStream& random, Excursion& e, double& wait, int i) {
-    const bool integrals = wanted_.moments || wanted_.displacement || !wanted_.omega.empty();
     int sign = levels_.direction(i);
     double speed = 0;
     for (;;) {
       const double force = levels_.force(sign, i);
-      const Piece piece = flow(sign).move(speed, force, wait, integrals);
+      const Piece piece = flow(sign).move(speed, force, wait, wanted_.integrals);
       if (!wanted_.observables.empty()) observe_slide(e, piece.time, speed, i, sign);
       follow_passages(e, piece, speed, i, sign);
       follow(e, piece, i, sign);
@@ -236,6 +235,13 @@ class Source : public ExcursionSource {
 };
 
 }  // namespace
+
+std::size_t Wanted::observe(const model::Observable& f) {
+  const auto found = std::ranges::find(observables, f.name, &model::Observable::name);
+  const auto place = static_cast<std::size_t>(found - observables.begin());
+  if (found == observables.end()) observables.push_back(f);
+  return place;
+}
 
 std::unique_ptr<ExcursionSource> make_source(const model::Process& process, const Wanted& wanted) {
   if (process.drag.is_linear()) return std::make_unique<Source<LinearFlow>>(process, wanted);

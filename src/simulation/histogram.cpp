@@ -54,4 +54,9 @@ Estimate Histogram::mean(const Weight& weight) const {
   return jeffreys(std::array{moments(0, weight), moments(1, weight)}, weight);
 }
 
+Estimate Histogram::probability(double low, double high) const {
+  const std::size_t first = low > 0 ? bin(low) : 0, last = std::isfinite(high) ? bin(high) : bins_;
+  return mean([&](std::size_t n) { return first <= n && n < last ? 1.0 : 0.0; });
+}
+
 }  // namespace stickslip::simulation

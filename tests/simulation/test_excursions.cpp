@@ -6,6 +6,7 @@
 
 #include "../common/catch.hpp"
 #include "../common/simulation.hpp"
+#include "../common/tallies.hpp"
 #include "stickslip/simulation/excursions.hpp"
 #include "stickslip/simulation/flow.hpp"
 #include "stickslip/simulation/path.hpp"
@@ -18,7 +19,7 @@ using simulation::Wanted;
 
 namespace {
 
-const Wanted kAll{true, true, {0, 0.7, 5}, {}, {}};
+const Wanted kAll{.integrals = true, .noise = true, .omega = {0, 0.7, 5}};
 
 // With 2/(tau delta^2) a whole number, so that the noise is the urn and its distribution binomial.
 model::Process process(double mu_s, double mu_d, double tau, double delta, model::Drag drag) {
@@ -30,7 +31,7 @@ struct Case {
   model::Process process;
 };
 
-std::vector<Case> cases() {
+std::vector<Case> processes() {
   return {{"linear drag", process(1, 0.25, 1, 0.5, {1, 0})},
           {"no drag", process(1, 1, 1, 0.5, {0, 0})},
           {"off the grid", process(1.1, 1.1, 1, 0.5, {1, 0})},
@@ -163,7 +164,7 @@ double difference(double count_a, double all_a, double count_b, double all_b) {
 }  // namespace
 
 TEST_CASE("excursions: every one begins and ends at rest, with what that means") {
-  for (const auto& c : cases()) {
+  for (const auto& c : processes()) {
     INFO(c.name);
     const int k = c.process.static_index();
     for (const auto& e : draw(c.process, kAll, 2000)) {
@@ -188,7 +189,7 @@ TEST_CASE("excursions: every one begins and ends at rest, with what that means")
 // -Im/omega -> int t v dt as omega -> 0.
 TEST_CASE("excursions: transforms put the motion between the start and the end of sliding") {
   constexpr double omega = 1e-4;
-  for (const auto& c : {cases()[0], cases()[1], cases()[4]}) {
+  for (const auto& c : {processes()[0], processes()[1], processes()[4]}) {
     INFO(c.name);
     for (const auto& e : draw(c.process, {true, false, {omega}, {}, {}}, 500)) {
       const bool turned = e.transform[0].real() < 0.999 * e.path;  // round on the way
@@ -215,7 +216,7 @@ TEST_CASE("excursions: transform at omega = 0 is the path unless the body was tu
 }
 
 TEST_CASE("excursions: durations are the same whatever is followed, and repeat") {
-  for (const auto& c : cases()) {
+  for (const auto& c : processes()) {
     const auto bare = draw(c.process, {}, 500), full = draw(c.process, kAll, 500),
                other = draw(c.process, {}, 500, 2);
     for (std::size_t n = 0; n < bare.size(); ++n) {
@@ -230,7 +231,7 @@ TEST_CASE("excursions: durations are the same whatever is followed, and repeat")
 
 // A cubic term too small to count sends the same case through the integrator.
 TEST_CASE("excursions: the integrator follows the closed forms jump by jump") {
-  for (auto c : cases()) {
+  for (auto c : processes()) {
     INFO(c.name);
     const auto exact = draw(c.process, kAll, 300);
     c.process.drag.cubic = 1e-300;
@@ -251,7 +252,7 @@ TEST_CASE("excursions: the integrator follows the closed forms jump by jump") {
 }
 
 TEST_CASE("excursions: the noise on the way has the binomial distribution within 4 sigma") {
-  for (const auto& c : cases()) {
+  for (const auto& c : processes()) {
     INFO(c.name);
     const int levels = c.process.noise.levels, k = c.process.static_index();
     double within = 0;
@@ -275,7 +276,7 @@ TEST_CASE("excursions: the noise on the way has the binomial distribution within
 
 TEST_CASE(
     "excursions: sticking times and turns follow from the entry by closed sums, within 4 sigma") {
-  for (const auto& c : cases()) {
+  for (const auto& c : processes()) {
     INFO(c.name);
     const int k = c.process.static_index();
     const auto sticking = mean_sticking_times(c.process.noise, k), turn = turns(c.process.noise, k);
@@ -300,7 +301,7 @@ TEST_CASE(
 
 // Where bodies turn round on the way, too: signs on a path are its own.
 TEST_CASE("excursions: sliding ends where it does along a path, within 4 sigma") {
-  auto all_cases = cases();
+  auto all_cases = processes();
   all_cases.push_back({"turned round", process(0.5, 0.5, 1, 0.5, {1, 0})});
   for (const auto& c : all_cases) {
     INFO(c.name);
@@ -357,8 +358,7 @@ TEST_CASE("excursions: energy is conserved without symmetry, from both sides") {
 }
 
 TEST_CASE("excursions: without symmetry they are those along a path, within 4 sigma") {
-  Wanted wanted;
-  wanted.displacement = true;
+  const Wanted wanted{.integrals = true};
   for (const auto& c : cases_without_symmetry()) {
     const auto along = excursions_along(c.process, 20000);
     for (std::size_t side : {0, 1}) {
@@ -405,7 +405,6 @@ TEST_CASE("excursions: integrals of observables are right in the mean, within 4 
   biased.bias = 0.3;
   for (const auto& p : {process(1, 0.25, 1, 0.5, {1, 0}), biased}) {
     Wanted wanted = kAll;
-    wanted.displacement = true;
     for (const char* f : {"1", "v^2", "x*v", "abs(x) <= 1 ? 1 : 0", "stick", "v"}) {
       wanted.observables.push_back(model::parse_observable(f, p.friction));
     }
@@ -440,22 +439,20 @@ TEST_CASE(
               k = c.process.noise.last_up_to(c.process.friction.mu_s);
     double within = 0;
     for (int i = -k; i <= k; ++i) within += binomial(levels, i);
-    Wanted wanted;
-    wanted.noise = true;
-    simulation::Sampler sampler(c.process, wanted);
-    const auto tally = sampler.batch(1, 0, 10000);
+    simulation::Sampler sampler({.quantities = {catalogue::Quantity::noise_law}}, c.process);
+    const auto& tally = sampler.batch(1, 0, 10000);
     const auto holds = [](const simulation::Estimate& e, double value) {
       return std::abs(e.value - value) < 4 * (e.high - e.value) / 1.96;
     };
-    CHECK(holds(tally.stationary(simulation::Integrand::inside), within));
-    CHECK(holds(tally.stationary(simulation::Integrand::x_square), 1 / c.process.noise.tau));
+    CHECK(holds(test::estimate(tally, "P_X_le_mu_s"), within));
+    CHECK(holds(test::estimate(tally, "E_X2"), 1 / c.process.noise.tau));
   }
 }
 
 // Another program of the same process, and one with rates off by two per cent.
 TEST_CASE("excursions: durations agree with a simulation that shares nothing") {
   constexpr int count = 200000;
-  for (const auto& c : cases()) {
+  for (const auto& c : processes()) {
     INFO(c.name);
     const auto& p = c.process;
     const auto all = draw(p, {}, count);

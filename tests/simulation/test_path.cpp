@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "../common/catch.hpp"
+#include "../common/tallies.hpp"
 #include "stickslip/simulation/path.hpp"
 #include "stickslip/simulation/sampler.hpp"
 
@@ -181,9 +182,9 @@ TEST_CASE("path: levels are drawn in proportion to their probabilities") {
 // Of starts at times within long paths, with means over time known from excursions.
 TEST_CASE("path: a stationary start has the stationary distribution within 4 sigma") {
   const auto p = process(1, 0.25, 1, 0.5, {1, 0});
-  simulation::Wanted wanted;
-  wanted.moments = true;
-  const auto known = simulation::Sampler(p, wanted).batch(1, 0, 50000);
+  using catalogue::Quantity;
+  simulation::Sampler sampler({.quantities = {Quantity::sticking, Quantity::moments}}, p);
+  const auto& known = sampler.batch(1, 0, 50000);
   constexpr int count = 1000;
   double square = 0, fourth = 0, resting = 0;
   for (std::uint64_t seed = 1; seed <= count; ++seed) {
@@ -194,8 +195,8 @@ TEST_CASE("path: a stationary start has the stationary distribution within 4 sig
     fourth += std::pow(path.v[0], 4) / count;
     resting += path.y[0] == 0 ? 1.0 / count : 0;
   }
-  const double share = known.share(simulation::Duration::stick).value;
-  CHECK(std::abs(square - known.stationary(simulation::Integrand::v_square).value) <
+  const double share = test::estimate(known, "P_stick").value;
+  CHECK(std::abs(square - test::estimate(known, "E_V2").value) <
         4 * std::sqrt((fourth - square * square) / count));
   CHECK(std::abs(resting - share) < 4 * std::sqrt(share * (1 - share) / count));
 }

@@ -5,19 +5,19 @@
 #include <vector>
 
 #include "../common/catch.hpp"
+#include "../common/tallies.hpp"
 #include "stickslip/simulation/path.hpp"
 #include "stickslip/simulation/sampler.hpp"
 #include "stickslip/support/infinity.hpp"
 
 using namespace stickslip;
+using catalogue::Quantity;
 using model::Start;
-using simulation::Duration;
 using simulation::Estimate;
-using simulation::Integrand;
 using simulation::Sampler;
 using simulation::Tally;
-using simulation::Variable;
-using simulation::Wanted;
+using test::estimate;
+using test::estimates;
 
 namespace {
 
@@ -35,12 +35,13 @@ model::Process telegraph() {
   return p;
 }
 
-Tally batches(const model::Process& p, const Wanted& wanted, int count, std::uint64_t seed = 1) {
+Tally batches(const model::Process& p, const cases::Question& question, int count,
+              std::uint64_t seed = 1) {
   constexpr int most = 10000;
-  Sampler sampler(p, wanted);
-  Tally all = sampler.empty();
+  Sampler sampler(question, p);
+  Tally all(question, p);
   for (int n = 0; n < count / most; ++n) {
-    all.merge(sampler.batch(seed, static_cast<std::uint64_t>(n), most));
+    all.merge(sampler.batch(seed, static_cast<std::uint64_t>(n), most).pack());
   }
   return all;
 }
@@ -95,52 +96,52 @@ bool agree(const Estimate& a, const Estimate& b) {
 }  // namespace
 
 TEST_CASE("slips: closed forms of telegraph noise without drag, within 4.5 sigma") {
-  Wanted wanted;
-  wanted.displacement = true;
-  wanted.speeds = {0.6};
-  const auto t = batches(telegraph(), wanted, 200000);
-  CHECK(holds(t.mean(Duration::slide), 5));
-  CHECK(holds(t.slip()[0].second, 12));
-  CHECK(t.slip()[2].second.value == Approx(t.slip()[0].second.value));
-  const auto peak = t.probability(Variable::peak, 0.6, kInfinity);
+  const cases::Question question{.quantities = {Quantity::sticking, Quantity::slip, Quantity::peak},
+                                 .velocity = {0.6}};
+  const auto t = batches(telegraph(), question, 200000);
+  CHECK(holds(estimate(t, "mean_slide"), 5));
+  CHECK(holds(estimate(t, "mean_slip"), 12));
+  CHECK(estimate(t, "mean_slip_net").value == Approx(estimate(t, "mean_slip").value));
+  const auto peak = estimate(t, "P_peak");
   CHECK(holds(peak, 0.5399345734));
   CHECK(peak.high - peak.low < 0.005);
 }
 
 TEST_CASE(
     "slips: path and displacement of a sliding phase are speeds times durations of excursions") {
-  Wanted wanted;
-  wanted.displacement = true;
+  const cases::Question question{
+      .quantities = {Quantity::sticking, Quantity::moments, Quantity::slip}};
   for (double bias : {0.0, 0.3}) {
-    const auto t = batches(process(bias, 0.5), wanted, 10000);
-    const double time = t.mean(Duration::excursion).value;
-    CHECK(t.slip()[0].second.value ==
-          Approx(time * t.stationary(Integrand::v_size).value).epsilon(1e-12));
-    CHECK(t.slip()[2].second.value ==
-          Approx(time * t.stationary(Integrand::v).value).epsilon(1e-12).margin(1e-15));
+    const auto t = batches(process(bias, 0.5), question, 10000);
+    const double time = estimate(t, "mean_excursion").value;
+    CHECK(estimate(t, "mean_slip").value ==
+          Approx(time * estimate(t, "E_absV").value).epsilon(1e-12));
+    CHECK(estimate(t, "mean_slip_net").value ==
+          Approx(time * estimate(t, "E_V").value).epsilon(1e-12).margin(1e-15));
   }
 }
 
 // The moments of L are derivatives of its transform, and the transform an integral of its
 // distribution.
 TEST_CASE("slips: transform, distribution and moments of the path belong to one another") {
-  Wanted wanted;
-  wanted.displacement = true;
-  wanted.inverse_distance = {1e-4, 2};
-  for (int n = 1; n <= 2000; ++n) wanted.path_edges.push_back(0.01 * n);
+  cases::Question question{.quantities = {Quantity::slip}, .inverse_distance = {1e-4, 2}};
+  for (int n = 1; n <= 1000; ++n) question.distance.push_back(0.02 * n);
   for (double bias : {0.0, 0.3}) {
-    const auto t = batches(process(bias), wanted, 20000);
-    const double mean = t.slip()[0].second.value, variance = t.slip()[1].second.value, s = 1e-4;
-    CHECK((1 - t.slip_transform(0).value) / s ==
+    const auto t = batches(process(bias), question, 20000);
+    const double mean = estimate(t, "mean_slip").value, variance = estimate(t, "var_slip").value,
+                 s = 1e-4;
+    CHECK((1 - estimate(t, "F_slip", 0).value) / s ==
           Approx(mean - s / 2 * (variance + mean * mean)).epsilon(1e-6));
-    double sum = 0;
-    for (int n = 0; n < 2000; ++n) {
-      const double low = n == 0 ? 0 : wanted.path_edges[static_cast<std::size_t>(n) - 1];
-      const double high = wanted.path_edges[static_cast<std::size_t>(n)];
-      sum += t.probability(Variable::path, low, high).value * std::exp(-(low + high));
+    double sum = 0, low = 0, below = 0;
+    const auto cdf = estimates(t, "cdf_slip");
+    for (std::size_t n = 0; n < cdf.size(); ++n) {
+      const double high = question.distance[n];
+      sum += (cdf[n].value - below) * std::exp(-(low + high));
+      low = high;
+      below = cdf[n].value;
     }
-    CHECK(t.slip_transform(1).value == Approx(sum).epsilon(1e-3));
-    CHECK(t.slip()[3].second.value <= variance + mean * mean);
+    CHECK(estimate(t, "F_slip", 1).value == Approx(sum).epsilon(1e-3));
+    CHECK(estimate(t, "var_slip_net").value <= variance + mean * mean);
   }
 }
 
@@ -148,20 +149,20 @@ TEST_CASE("slips: transform, distribution and moments of the path belong to one 
 TEST_CASE("passages: mean times are those of paths followed until they pass") {
   for (double bias : {0.0, 0.3}) {
     const auto p = process(bias, 1);
-    Wanted wanted;
-    wanted.speeds = {0.3, 0.8};
-    const auto t = batches(p, wanted, 60000);
+    const cases::Question question{.quantities = {Quantity::peak}, .velocity = {0.8, 0.3}};
+    const auto t = batches(p, question, 60000);
     const double up = share_upwards(p);
-    for (double w : wanted.speeds) {
+    for (std::size_t n : {0, 1}) {
+      const double w = question.velocity[n];
       INFO("bias " << bias << ", w " << w);
-      const auto found = t.first_passage(w);
       const auto plus = mean_passage(p, {p.exit_level(true)}, w, 20000),
                  minus = mean_passage(p, {p.exit_level(false)}, w, 20000);
       const double value = up * plus.value + (1 - up) * minus.value,
                    half = std::hypot(up * (plus.high - plus.value),
                                      (1 - up) * (minus.high - minus.value));
-      CHECK(agree(found[0].second, {value, value - half, value + half}));
-      CHECK(agree(found[1].second, mean_passage(p, {0, 0, Start::Kind::rest}, w, 20000)));
+      CHECK(agree(estimate(t, "mean_first_passage", n), {value, value - half, value + half}));
+      CHECK(agree(estimate(t, "mean_first_passage_rest", n),
+                  mean_passage(p, {0, 0, Start::Kind::rest}, w, 20000)));
     }
   }
 }
@@ -169,7 +170,7 @@ TEST_CASE("passages: mean times are those of paths followed until they pass") {
 // A cubic term too small to count sends the same case through the integrator.
 TEST_CASE("passages: closed forms and the integrator cross at the same times, in rising order") {
   auto p = process();
-  const Wanted wanted{.speeds = {0.01, 0.3, 0.7, 1.5}};
+  const simulation::Wanted wanted{.speeds = {0.01, 0.3, 0.7, 1.5}};
   const auto exact = simulation::make_source(p, wanted);
   p.drag.cubic = 1e-300;
   const auto integrated = simulation::make_source(p, wanted);
@@ -195,21 +196,22 @@ TEST_CASE("passages: closed forms and the integrator cross at the same times, in
 
 TEST_CASE("passages: of a speed that is never reached there is a lower bound") {
   for (double bias : {0.0, 0.3}) {
-    const auto t = batches(process(bias), {.speeds = {1e-3, 50}}, 10000);
-    const auto peak = t.probability(Variable::peak, 50, kInfinity);
+    const auto t = batches(
+        process(bias), {.quantities = {Quantity::sticking, Quantity::peak}, .velocity = {50, 1e-3}},
+        10000);
+    const auto peak = estimate(t, "P_peak");
     CHECK(peak.value == 0);
     CHECK(peak.low == 0);
     CHECK(peak.high > 1e-5);
-    for (const auto& [name, e] : t.first_passage(50)) {
-      INFO(name);
-      const double least = t.samples() * t.mean(Duration::excursion).value / -std::log(0.025);
-      CHECK(e.low == Approx(least).epsilon(0.01));
-      CHECK(e.value == e.low);
-      CHECK(e.high == kInfinity);
-    }
-    for (const auto& [name, e] : t.first_passage(1e-3)) {
-      CHECK(e.low > 0);
-      CHECK(e.value / e.low == Approx(e.high / e.value));
+    for (const char* key : {"mean_first_passage", "mean_first_passage_rest"}) {
+      INFO(key);
+      const auto never = estimate(t, key, 0), often = estimate(t, key, 1);
+      const double least = t.samples() * estimate(t, "mean_excursion").value / -std::log(0.025);
+      CHECK(never.low == Approx(least).epsilon(0.01));
+      CHECK(never.value == never.low);
+      CHECK(never.high == kInfinity);
+      CHECK(often.low > 0);
+      CHECK(often.value / often.low == Approx(often.high / often.value));
     }
   }
 }
@@ -217,15 +219,14 @@ TEST_CASE("passages: of a speed that is never reached there is a lower bound") {
 TEST_CASE("displacement: a stationary path spreads as E[V^2] t^2 and then as S_v(0) t") {
   for (double bias : {0.0, 0.3}) {
     INFO("bias " << bias);
-    Wanted wanted;
-    wanted.moments = wanted.displacement = wanted.travel = true;
-    wanted.start = Start{0, 0, Start::Kind::stationary};
-    wanted.time = {30, 1e-3, 20, 5};
-    const auto t = batches(process(bias, 0.5), wanted, 20000);
-    const auto mean = [&](std::size_t n) { return t.travel(n)[0].second; };
-    const auto variance = [&](std::size_t n) { return t.travel(n)[1].second; };
-    const auto drift = t.stationary(Integrand::v), square = t.stationary(Integrand::v_square),
-               rate = t.spectrum_at_zero();
+    const cases::Question question{
+        .quantities = {Quantity::moments, Quantity::spectrum, Quantity::displacement},
+        .time = {30, 1e-3, 20, 5},
+        .start = {0, 0, Start::Kind::stationary}};
+    const auto t = batches(process(bias, 0.5), question, 20000);
+    const auto mean = [&](std::size_t n) { return estimate(t, "displacement_mean", n); };
+    const auto variance = [&](std::size_t n) { return estimate(t, "displacement_variance", n); };
+    const auto drift = estimate(t, "E_V"), square = estimate(t, "E_V2"), rate = estimate(t, "S_0");
     const double spread = variance(0).value - variance(2).value;
     const double error =
         std::hypot(variance(0).high - variance(0).value, variance(2).high - variance(2).value) +
@@ -245,18 +246,19 @@ TEST_CASE("displacement: a stationary path spreads as E[V^2] t^2 and then as S_v
 
 // E[x(t)] is the integral of E[V], and up to a first jump all is known.
 TEST_CASE("displacement: from a state it is the integral of the mean velocity") {
-  Wanted wanted;
-  wanted.travel = wanted.expectation = true;
-  wanted.start = Start{1, -0.75};
-  wanted.observables = {model::parse_observable("v", {1, 0.25})};
-  for (int n = 0; n <= 40; ++n) wanted.time.push_back(0.05 * n);
-  const auto t = batches(process(), wanted, 20000);
+  cases::Question question{.quantities = {Quantity::displacement, Quantity::expectation},
+                           .observables = {model::parse_observable("v", {1, 0.25})},
+                           .start = {1, -0.75}};
+  for (int n = 0; n <= 40; ++n) question.time.push_back(0.05 * n);
+  const auto t = batches(process(), question, 20000);
   double sum = 0;
   for (std::size_t n = 1; n <= 40; ++n) {
-    sum += 0.025 * (t.expectation(0, n - 1).value + t.expectation(0, n).value);
-    CHECK(t.travel(n)[0].second.value == Approx(sum).epsilon(0.01));
+    sum += 0.025 * (estimate(t, "E(v)", n - 1).value + estimate(t, "E(v)", n).value);
+    CHECK(estimate(t, "displacement_mean", n).value == Approx(sum).epsilon(0.01));
   }
-  CHECK(t.travel(0)[0].second.value == 0);
-  CHECK(t.travel(1)[0].second.value == Approx(0.05 * (-0.75 + 0.025 * 1.5)).epsilon(0.01));
-  CHECK(t.travel(40)[1].second.value > t.travel(20)[1].second.value);
+  CHECK(estimate(t, "displacement_mean", 0).value == 0);
+  CHECK(estimate(t, "displacement_mean", 1).value ==
+        Approx(0.05 * (-0.75 + 0.025 * 1.5)).epsilon(0.01));
+  CHECK(estimate(t, "displacement_variance", 40).value >
+        estimate(t, "displacement_variance", 20).value);
 }

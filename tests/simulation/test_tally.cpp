@@ -5,27 +5,33 @@
 
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
+#include "../common/tallies.hpp"
 #include "stickslip/simulation/sampler.hpp"
 #include "stickslip/simulation/tally.hpp"
-#include "stickslip/support/infinity.hpp"
 
 using namespace stickslip;
-using simulation::Duration;
+using catalogue::Quantity;
 using simulation::Estimate;
 using simulation::Excursion;
-using simulation::Integrand;
 using simulation::Tally;
-using simulation::Variable;
-using simulation::Wanted;
+using test::estimate;
 
 namespace {
 
 constexpr double kNormal = 1.959963984540054;
-const Wanted kWanted{true, true, {0.4, 1.5}, {0, 0.3}, {1, 2, 4}, true};
+const cases::Question kQuestion{.quantities = {Quantity::sticking, Quantity::moments,
+                                               Quantity::noise_law, Quantity::averages,
+                                               Quantity::entry_law, Quantity::laplace,
+                                               Quantity::duration_density, Quantity::spectrum},
+                                .lambda = {0, 0.3},
+                                .omega = {0.4, 1.5},
+                                .time = {1, 2, 4}};
 
 /// With static levels |i| <= k; 0, 1 and 2 with k = 1 and a bias of -0.4.
 model::Process process(int k, double bias = 0) {
-  return {{1, 0.5, 8}, {0.5 * k + 0.1, 0.1}, {1, 0}, bias};
+  model::Process p{{1, 0.5, 8}, {0.5 * k + 0.1, 0.1}, {1, 0}, bias};
+  if (bias != 0) p.friction.mu_d_minus = 0.3;
+  return p;
 }
 
 std::vector<Excursion> sample() {
@@ -51,8 +57,8 @@ std::vector<Excursion> sample() {
   return all;
 }
 
-Tally of(const std::vector<Excursion>& all, const Wanted& wanted = kWanted) {
-  Tally tally(process(1), wanted);
+Tally of(const std::vector<Excursion>& all, const cases::Question& question = kQuestion) {
+  Tally tally(question, process(1));
   for (const auto& e : all) tally.add(0, e);
   return tally;
 }
@@ -103,7 +109,7 @@ double weighted_spectrum(const std::vector<Excursion>& all, const std::vector<do
   std::complex<double> c, d, cd;
   for (std::size_t n = 0; n < all.size(); ++n) {
     const auto& e = all[n];
-    const auto turn = (e.turned ? -1.0 : 1.0) * std::polar(1.0, -kWanted.omega[w] * duration(e));
+    const auto turn = (e.turned ? -1.0 : 1.0) * std::polar(1.0, -kQuestion.omega[w] * duration(e));
     power += weight[n] * std::norm(e.transform[w]);
     time += weight[n] * duration(e);
     c += weight[n] * e.transform[w];
@@ -140,64 +146,67 @@ TEST_CASE("tally: a sample of four by hand") {
   const auto t = of(sample());
   CHECK(t.samples() == 4);
   CHECK(t.jumps() == 40);
-  CHECK(t.share(Duration::slide).value == Approx(6.5 / 14.5).epsilon(1e-14));
-  CHECK(t.share(Duration::stick).value == Approx(8.0 / 14.5).epsilon(1e-14));
-  CHECK(t.mean(Duration::slide).value == Approx(6.5 / 4).epsilon(1e-14));
-  CHECK(t.mean(Duration::excursion).value == Approx(14.5 / 4).epsilon(1e-14));
-  CHECK(t.stationary(Integrand::v_square).value == Approx(4.25 / 14.5).epsilon(1e-14));
-  CHECK(t.probability(Variable::slide, 1, 2).value == 0.25);
-  CHECK(t.laplace(0, Duration::excursion).value == 1);
+  CHECK(estimate(t, "P_slide").value == Approx(6.5 / 14.5).epsilon(1e-14));
+  CHECK(estimate(t, "P_stick").value == Approx(8.0 / 14.5).epsilon(1e-14));
+  CHECK(estimate(t, "mean_slide").value == Approx(6.5 / 4).epsilon(1e-14));
+  CHECK(estimate(t, "mean_excursion").value == Approx(14.5 / 4).epsilon(1e-14));
+  CHECK(estimate(t, "E_V2").value == Approx(4.25 / 14.5).epsilon(1e-14));
+  CHECK(estimate(t, "cdf_slide", 1).value - estimate(t, "cdf_slide", 0).value == 0.25);
+  CHECK(estimate(t, "F_excursion", 0).value == 1);
 }
 
 TEST_CASE("tally: stationary means with intervals of the delta method") {
   const auto all = sample();
   const auto t = of(all);
-  check_ratio(t.share(Duration::slide), all, [](const Excursion& e) { return e.slide; });
-  check_ratio(t.share(Duration::stick), all, [](const Excursion& e) { return e.stick; });
-  check_ratio(t.stationary(Integrand::v_square), all, [](const Excursion& e) { return e.square; });
-  check_ratio(t.stationary(Integrand::v_size), all, [](const Excursion& e) { return e.path; });
-  check_ratio(t.stationary(Integrand::x_v), all, [](const Excursion& e) { return e.product; });
-  check_ratio(t.stationary(Integrand::inside), all, [](const Excursion& e) { return e.within; });
-  check_ratio(t.stationary(Integrand::x_square), all,
-              [](const Excursion& e) { return e.noise_square; });
+  check_ratio(estimate(t, "P_slide"), all, [](const Excursion& e) { return e.slide; });
+  check_ratio(estimate(t, "P_stick"), all, [](const Excursion& e) { return e.stick; });
+  check_ratio(estimate(t, "E_V2"), all, [](const Excursion& e) { return e.square; });
+  check_ratio(estimate(t, "E_absV"), all, [](const Excursion& e) { return e.path; });
+  check_ratio(estimate(t, "E_XV"), all, [](const Excursion& e) { return e.product; });
+  check_ratio(estimate(t, "P_X_le_mu_s"), all, [](const Excursion& e) { return e.within; });
+  check_ratio(estimate(t, "E_X2"), all, [](const Excursion& e) { return e.noise_square; });
 }
 
 TEST_CASE("tally: means of durations and of their exponentials") {
   const auto all = sample();
   const auto t = of(all);
-  const std::vector<std::pair<Duration, Value>> durations{
-      {Duration::slide, [](const Excursion& e) { return e.slide; }},
-      {Duration::stick, [](const Excursion& e) { return e.stick; }},
-      {Duration::excursion, duration}};
+  const std::vector<std::pair<std::string, Value>> durations{
+      {"slide", [](const Excursion& e) { return e.slide; }},
+      {"stick", [](const Excursion& e) { return e.stick; }},
+      {"excursion", duration}};
   for (const auto& [which, of_excursion] : durations) {
-    check_mean(t.mean(which), all, of_excursion);
+    check_mean(estimate(t, "mean_" + which), all, of_excursion);
     for (std::size_t n = 0; n < 2; ++n) {
-      const double lambda = kWanted.lambda[n];
-      check_mean(t.laplace(n, which), all,
+      const double lambda = kQuestion.lambda[n];
+      check_mean(estimate(t, "F_" + which, n), all,
                  [&, f = of_excursion](const Excursion& e) { return std::exp(-lambda * f(e)); });
     }
   }
 }
 
+// Cells [0.5, 1.5), [1.5, 3) and [3, 5) around 1, 2 and 4.
 TEST_CASE("tally: cells of histograms count low <= D < high") {
   const auto t = of(sample());  // sliding 1, 0.5, 3, 2; sticking 2, 1.5, 0.5, 4
-  check_proportion(t.probability(Variable::slide, 0, 1), 1, 4);
-  check_proportion(t.probability(Variable::slide, 1, 2), 1, 4);
-  check_proportion(t.probability(Variable::slide, 2, 4), 2, 4);
-  check_proportion(t.probability(Variable::slide, 4, kInfinity), 0, 4);
-  check_proportion(t.probability(Variable::slide, 0, kInfinity), 4, 4);
-  check_proportion(t.probability(Variable::stick, 4, kInfinity), 1, 4);
-  check_proportion(t.probability(Variable::stick, 1, 4), 2, 4);
-  check_proportion(t.probability(Variable::excursion, 0, 4), 3, 4);
+  check_proportion(estimate(t, "cdf_slide", 0), 1, 4);
+  check_proportion(estimate(t, "cdf_slide", 1), 2, 4);
+  check_proportion(estimate(t, "cdf_slide", 2), 4, 4);
+  check_proportion(estimate(t, "cdf_stick", 0), 1, 4);
+  check_proportion(estimate(t, "cdf_stick", 2), 3, 4);
+  check_proportion(estimate(t, "cdf_excursion", 2), 3, 4);
+  check_proportion(estimate(t, "f_slide", 0), 2, 4);
+  check_proportion(estimate(t, "f_slide", 1), 1, 4, 1 / 1.5);
+  check_proportion(estimate(t, "f_stick", 1), 2, 4, 1 / 1.5);
+  check_proportion(estimate(t, "f_excursion", 2), 2, 4, 0.5);
 }
 
 TEST_CASE("tally: entries are proportions in [0, 1] that hold their value") {
   const auto t = of(sample());
-  check_proportion(t.entry(0, -1), 1, 4);
-  check_proportion(t.entry(0, 0), 1, 4);
-  check_proportion(t.entry(0, 1), 2, 4);
-  check_proportion(t.first_exit(3, 3), 3, 4, 3);
-  const auto never = of({sample()[0]}).entry(0, 1), always = of({sample()[0]}).entry(0, -1);
+  check_proportion(estimate(t, "entry_law", 0), 1, 4);
+  check_proportion(estimate(t, "entry_law", 1), 1, 4);
+  check_proportion(estimate(t, "entry_law", 2), 2, 4);
+  check_proportion(estimate(t, "f_stick_0"), 3, 4, process(1).noise.up_rate(1));
+  const auto never = estimate(of({sample()[0]}), "entry_law", 2),
+             always = estimate(of({sample()[0]}), "entry_law", 0);
   CHECK(never.value == 0);
   CHECK(never.low == 0);
   CHECK(never.high > 0.5);
@@ -211,7 +220,7 @@ TEST_CASE("tally: spectrum and its interval") {
   const auto all = sample();
   const auto t = of(all);
   for (std::size_t w = 0; w < 2; ++w) {
-    check_influence(t.spectrum(w), 4, [&](const std::vector<double>& weight) {
+    check_influence(estimate(t, "S_v", w), 4, [&](const std::vector<double>& weight) {
       return weighted_spectrum(all, weight, w);
     });
   }
@@ -219,9 +228,9 @@ TEST_CASE("tally: spectrum and its interval") {
 
 // Pushes of +-1 that last 1 and turn by the toss of a coin: S is that of one push.
 TEST_CASE("tally: the spectrum of pushes without memory is that of one") {
-  const Wanted wanted{true, false, {2}, {}, {}};
+  const cases::Question question{.quantities = {Quantity::spectrum}, .omega = {2}};
   const auto push = (1.0 - std::polar(1.0, -2.0)) / std::complex<double>(0, 2);
-  Tally t(process(0), wanted);
+  Tally t(question, process(0));
   for (bool turned : {false, true}) {
     Excursion e;
     e.slide = 1;
@@ -229,27 +238,28 @@ TEST_CASE("tally: the spectrum of pushes without memory is that of one") {
     e.transform = {push};
     t.add(0, e);
   }
-  CHECK(t.spectrum(0).value == Approx(std::norm(push)).epsilon(1e-14));
+  CHECK(estimate(t, "S_v", 0).value == Approx(std::norm(push)).epsilon(1e-14));
 }
 
 TEST_CASE("tally: one static level is left by both ways") {
-  Tally t(process(0), {});
+  Tally t({.quantities = {Quantity::sticking, Quantity::entry_law}}, process(0));
   for (int n = 0; n < 3; ++n) {
     Excursion e;
     e.slide = e.stick = n + 1;
     t.add(0, e);
   }
-  check_proportion(t.entry(0, 0), 3, 3);
-  CHECK(t.first_exit(5, 5).value == 10);
-  CHECK(t.first_exit(5, 5).high == 10);
-  CHECK(t.share(Duration::stick).value == 0.5);
-  CHECK(t.share(Duration::stick).high == Approx(0.5).epsilon(1e-14));
+  check_proportion(estimate(t, "entry_law", 0), 3, 3);
+  const double rate = process(0).noise.up_rate(0) + process(0).noise.down_rate(0);
+  CHECK(estimate(t, "f_stick_0").value == rate);
+  CHECK(estimate(t, "f_stick_0").high == rate);
+  CHECK(estimate(t, "P_stick").value == 0.5);
+  CHECK(estimate(t, "P_stick").high == Approx(0.5).epsilon(1e-14));
 }
 
 TEST_CASE("tally: merged parts are the whole") {
   const auto all = sample();
   auto merged = of({all[0]});
-  merged.merge(of({all[1], all[2], all[3]}));
+  merged.merge(of({all[1], all[2], all[3]}).pack());
   const auto whole = of(all);
   const auto a = merged.pack(), b = whole.pack();
   REQUIRE(a.size() == b.size());
@@ -257,22 +267,40 @@ TEST_CASE("tally: merged parts are the whole") {
     CHECK(a[n] == Approx(b[n]).epsilon(1e-13).margin(1e-15));
 }
 
-TEST_CASE("tally: packed and unpacked it is the same, of other questions it is refused") {
+TEST_CASE(
+    "tally: packed and merged into nothing it is the same, of other questions it is refused") {
   const auto whole = of(sample());
   auto back = of({sample()[0]});
-  back.unpack(whole.pack());
+  back.clear();
+  CHECK(back.samples() == 0);
+  back.merge(whole.pack());
   CHECK(back.pack() == whole.pack());
-  CHECK(whole.packed_size() == whole.pack().size());
-  CHECK(back.spectrum(1).low == whole.spectrum(1).low);
+  CHECK(estimate(back, "S_v", 1).low == estimate(whole, "S_v", 1).low);
   auto numbers = whole.pack();
   numbers.pop_back();
-  CHECK_THROWS_AS(back.unpack(numbers), std::invalid_argument);
-  CHECK_THROWS_AS(back.unpack({}), std::invalid_argument);
-  CHECK_THROWS_AS(Tally(process(2), kWanted).unpack(whole.pack()), std::invalid_argument);
+  CHECK_THROWS_AS(back.merge(numbers), std::invalid_argument);
+  CHECK_THROWS_AS(back.merge({}), std::invalid_argument);
+  CHECK_THROWS_AS(Tally(kQuestion, process(2)).merge(whole.pack()), std::invalid_argument);
+}
+
+TEST_CASE("tally: there are estimates for each quantity that is said to be simulated") {
+  for (const auto* entry : catalogue::entries()) {
+    INFO(entry->word);
+    const bool simulated = entry->routes.contains(catalogue::Route::monte_carlo);
+    const auto p = process(1);
+    const Tally t({.quantities = {entry->quantity},
+                   .lambda = {1},
+                   .observables = {model::parse_observable("v", p.friction)},
+                   .omega = {1},
+                   .time = {1},
+                   .velocity = {1}},
+                  p);
+    CHECK(t.estimates().empty() == (!simulated || entry->of_one_run));
+  }
 }
 
 TEST_CASE("tally: a batch is fixed by seed and number") {
-  simulation::Sampler sampler({{1, 0.5, 8}, {1, 0.25}, {1, 0}}, kWanted);
+  simulation::Sampler sampler(kQuestion, {{1, 0.5, 8}, {1, 0.25}, {1, 0}});
   const auto batch = [&](std::uint64_t seed, std::uint64_t number) {
     return sampler.batch(seed, number, 20).pack();
   };
@@ -296,8 +324,8 @@ double weighted(const std::vector<Excursion>& all, const Weights& weight, const 
 struct TwoSides {
   std::vector<Excursion> plus, minus;
 
-  [[nodiscard]] Tally tally(const Wanted& wanted = kWanted) const {
-    Tally t(process(1, -0.4), wanted);
+  [[nodiscard]] Tally tally(const cases::Question& question = kQuestion) const {
+    Tally t(question, process(1, -0.4));
     for (const auto& e : plus) t.add(0, e);
     for (const auto& e : minus) t.add(1, e);
     return t;
@@ -362,20 +390,20 @@ TEST_CASE("tally: means over both sides are those of a long path") {
     };
   };
   const Value slide = [](const Excursion& e) { return e.slide; };
-  check_sides(t.mean(Duration::slide), mean(slide));
-  check_sides(t.mean(Duration::excursion), mean(duration));
-  check_sides(t.share(Duration::slide), over_time(slide));
-  check_sides(t.stationary(Integrand::v), over_time([](const Excursion& e) { return e.drift; }));
-  check_sides(t.mean_of_speeds(2, 3), over_time([](const Excursion& e) {
-                return (e.path + e.drift) + 1.5 * (e.path - e.drift);
+  check_sides(estimate(t, "mean_slide"), mean(slide));
+  check_sides(estimate(t, "mean_excursion"), mean(duration));
+  check_sides(estimate(t, "P_slide"), over_time(slide));
+  check_sides(estimate(t, "E_V"), over_time([](const Excursion& e) { return e.drift; }));
+  check_sides(estimate(t, "friction_power"), over_time([](const Excursion& e) {
+                return 0.05 * (e.path + e.drift) + 0.15 * (e.path - e.drift);
               }));
-  check_sides(t.slip_rate(),
+  check_sides(estimate(t, "slip_rate"),
               [&](const Weights& weight) { return 1 / two.overall(weight, duration); });
-  check_sides(t.variance(Duration::excursion), [&](const Weights& weight) {
+  check_sides(estimate(t, "var_excursion"), [&](const Weights& weight) {
     const double m = two.overall(weight, duration);
     return two.overall(weight, [m](const Excursion& e) { return std::pow(duration(e) - m, 2); });
   });
-  check_sides(t.laplace(1, Duration::slide),
+  check_sides(estimate(t, "F_slide", 1),
               mean([](const Excursion& e) { return std::exp(-0.3 * e.slide); }));
 }
 
@@ -383,36 +411,37 @@ TEST_CASE("tally: means over both sides are those of a long path") {
 TEST_CASE("tally: shares over both sides are those of a long path") {
   const auto two = two_sides();
   const auto t = two.tally();
-  const auto long_slide = [](const Excursion& e) { return e.slide >= 2 ? 1.0 : 0.0; };
+  const auto short_slide = [](const Excursion& e) { return e.slide < 2 ? 1.0 : 0.0; };
+  const auto lowest = [](const Excursion& e) { return e.entry == 0 ? 1.0 : 0.0; };
   const Weights even(10, 0.2);
-  CHECK(t.probability(Variable::slide, 2, kInfinity).value ==
-        Approx(two.overall(even, long_slide)).epsilon(1e-13));
-  CHECK(t.first_exit(3, 0).value == 0);  // no sliding phase ended on the highest level
-  check_proportion(t.entry(0, 1), 2, 5);
-  check_proportion(t.entry(1, 1), 3, 5);
-  check_proportion(t.entry(1, 2), 0, 5);
+  CHECK(estimate(t, "cdf_slide", 1).value == Approx(two.overall(even, short_slide)).epsilon(1e-13));
+  // No sliding phase ended on the highest level.
+  const double rate = process(1, -0.4).noise.down_rate(0);
+  CHECK(estimate(t, "f_stick_0").value == Approx(rate * two.overall(even, lowest)).epsilon(1e-13));
+  check_proportion(estimate(t, "entry_law", 1), 2, 5);
+  check_proportion(estimate(t, "entry_law_minus", 1), 3, 5);
+  check_proportion(estimate(t, "entry_law_minus", 2), 0, 5);
 }
 
 // Many samples, where both intervals are the same.
 TEST_CASE("tally: intervals of shares over both sides are those of means") {
   const auto two = two_sides();
-  Tally t(process(1, -0.4), kWanted);
+  Tally t(kQuestion, process(1, -0.4));
   for (int n = 0; n < 20000; ++n) {
     t.add(0, two.plus[static_cast<std::size_t>(n * 7 % 5)]);
     t.add(1, two.minus[static_cast<std::size_t>(n * 3 % 5)]);
   }
-  const auto share = t.probability(Variable::stick, 1, 2);
-  Wanted wanted = kWanted;
-  Tally other(process(1, -0.4), wanted);
+  const auto share = estimate(t, "cdf_stick", 1);
+  Tally other(kQuestion, process(1, -0.4));
   for (int n = 0; n < 20000; ++n) {
     for (std::size_t side : {0, 1}) {
       const std::size_t at = static_cast<std::size_t>(side == 0 ? n * 7 % 5 : n * 3 % 5);
       auto e = (side == 0 ? two.plus : two.minus)[at];
-      e.slide = e.stick >= 1 && e.stick < 2 ? 1 : 0;
+      e.slide = e.stick < 2 ? 1 : 0;
       other.add(side, e);
     }
   }
-  const auto mean = other.mean(Duration::slide);
+  const auto mean = estimate(other, "mean_slide");
   CHECK(share.value == Approx(mean.value).epsilon(1e-12));
   CHECK(share.high - share.low == Approx(mean.high - mean.low).epsilon(1e-3));
 }
@@ -456,14 +485,14 @@ double spread_by_steps(const TwoSides& two, const Weights& weight) {
 
 TEST_CASE("tally: the spread about the drift grows at the rate S_v(0)") {
   const auto two = two_sides();
-  check_sides(two.tally().spectrum_at_zero(),
+  check_sides(estimate(two.tally(), "S_0"),
               [&](const Weights& weight) { return spread_by_steps(two, weight); });
 }
 
 // With s- the mirror image of s+ both forms are the same.
 TEST_CASE("tally: two sides that mirror each other give what symmetry gives") {
   const auto all = sample();
-  Tally two(process(1, 1e-300), kWanted);
+  Tally two(kQuestion, process(1, 1e-300));
   for (auto e : all) {
     two.add(0, e);
     e.drift = -e.drift;
@@ -473,12 +502,11 @@ TEST_CASE("tally: two sides that mirror each other give what symmetry gives") {
   }
   const auto one = of(all);
   for (std::size_t w : {0, 1}) {
-    CHECK(two.spectrum(w).value == Approx(one.spectrum(w).value).epsilon(1e-12));
+    CHECK(estimate(two, "S_v", w).value == Approx(estimate(one, "S_v", w).value).epsilon(1e-12));
   }
-  CHECK(two.spectrum_at_zero().value == Approx(one.spectrum_at_zero().value).epsilon(1e-12));
-  CHECK(two.share(Duration::slide).value ==
-        Approx(one.share(Duration::slide).value).epsilon(1e-13));
-  CHECK(two.probability(Variable::slide, 1, 2).value == 0.25);
+  CHECK(estimate(two, "S_0").value == Approx(estimate(one, "S_0").value).epsilon(1e-12));
+  CHECK(estimate(two, "P_slide").value == Approx(estimate(one, "P_slide").value).epsilon(1e-13));
+  CHECK(estimate(two, "f_slide", 1).value == 0.25 / 1.5);
 }
 
 TEST_CASE("tally: both sides merged and packed are the whole") {
@@ -488,12 +516,12 @@ TEST_CASE("tally: both sides merged and packed are the whole") {
   second.plus.erase(second.plus.begin(), second.plus.begin() + 2);
   second.minus.erase(second.minus.begin());
   auto merged = first.tally();
-  merged.merge(second.tally());
+  merged.merge(second.tally().pack());
   const auto a = merged.pack(), b = two.tally().pack();
   REQUIRE(a.size() == b.size());
   for (std::size_t n = 0; n < a.size(); ++n)
     CHECK(a[n] == Approx(b[n]).epsilon(1e-13).margin(1e-14));
-  Tally again(process(1, -0.4), kWanted);
-  again.unpack(b);
+  Tally again(kQuestion, process(1, -0.4));
+  again.merge(b);
   CHECK(again.pack() == b);
 }

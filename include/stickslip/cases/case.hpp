@@ -44,19 +44,19 @@ struct Reference {
 
 /// What is asked for, and how accurate it has to be.
 struct Question {
-  std::set<Quantity> quantities;
-  std::vector<double> lambda;  ///< of laplace and resolvent; one for -route lambda [1/time]
-  std::vector<model::Observable> observables;  ///< of averages, resolvent and expectation
-  std::vector<double> omega;                   ///< of spectrum [1/time]
-  std::vector<double> time;                    ///< of functions of time [time]
-  std::vector<double> distance;                ///< of the densities of slip [velocity*time]
-  std::vector<double> inverse_distance;        ///< of the transform of slip
-  std::vector<double> velocity;                ///< of peak [velocity]
-  model::Start start;                          ///< of expectation, displacement and trajectory
-  double horizon = 100;                        ///< end of the trajectory [time]
+  std::set<Quantity> quantities = {};
+  std::vector<double> lambda = {};  ///< of laplace and resolvent; one for -route lambda [1/time]
+  std::vector<model::Observable> observables = {};  ///< of averages, resolvent and expectation
+  std::vector<double> omega = {};                   ///< of spectrum [1/time]
+  std::vector<double> time = {};                    ///< of functions of time [time]
+  std::vector<double> distance = {};                ///< of the densities of slip [velocity*time]
+  std::vector<double> inverse_distance = {};        ///< of the transform of slip
+  std::vector<double> velocity = {};                ///< of peak [velocity]
+  model::Start start = {};                          ///< of expectation, displacement and trajectory
+  double horizon = 100;                             ///< end of the trajectory [time]
   double accuracy = 1e-6;
-  bool accuracy_given = false;        ///< by the user
-  std::vector<Reference> references;  ///< of -compare
+  bool accuracy_given = false;             ///< by the user
+  std::vector<Reference> references = {};  ///< of -compare
 
   [[nodiscard]] bool wants(Quantity q) const { return quantities.contains(q); }
 };

@@ -20,8 +20,8 @@ class Comoments {
 
   /// `times` samples, all alike. O(size^2).
   void add(std::span<const double> sample, double times = 1);
-  /// As if all samples of `other` had been added.
-  void merge(const Comoments& other);
+  /// As if all samples of others of the same size had been added, of which these are the numbers.
+  void merge(std::span<const double> others);
 
   /// Variance of the mean of sum_n weight_n sample_n; infinite for fewer than two samples.
   [[nodiscard]] double variance_of_mean(std::span<const double> weight) const;

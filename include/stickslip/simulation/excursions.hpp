@@ -15,32 +15,21 @@
 
 namespace stickslip::simulation {
 
-/// What is followed and counted besides the durations.
+/// What is followed besides the durations.
 struct Wanted {
-  bool moments = false;             ///< integrals of v^2, |v|, x v
+  bool integrals = false;           ///< of v, v^2, |v|, x v
   bool noise = false;               ///< of 1{|x| <= mu_s}, x^2
-  std::vector<double> omega = {};   ///< spectrum at these frequencies [1/time]
-  std::vector<double> lambda = {};  ///< Laplace transforms of durations [1/time]
-  std::vector<double> edges = {};   ///< rising edges of the cells of histograms of durations [time]
-  bool displacement = false;        ///< int v dt, int |v| dt and their spread
-  std::vector<model::Observable> observables = {};  ///< integrals of them, and values along paths
-  std::vector<double> discount = {};                ///< resolvent of them at these lambda [1/time]
-  std::vector<double> time = {};                    ///< along paths [time]
-  std::optional<model::Start> start = {};           ///< of paths
-  bool expectation = false;                         ///< of observables along paths
-  bool travel = false;                              ///< int v dt along paths and its spread
-  bool autocorrelation = false;                     ///< of v along stationary paths
-  std::vector<double> path_edges = {};              ///< rising edges of paths [velocity*time]
-  std::vector<double> inverse_distance = {};        ///< transforms of paths
-  std::vector<double> speeds = {};                  ///< rising; when |v| reaches them [velocity]
+  std::vector<double> omega = {};   ///< transforms of v at these frequencies [1/time]
+  std::vector<double> speeds = {};  ///< rising; when |v| reaches them [velocity]
+  std::vector<model::Observable> observables = {};  ///< integrals of them
+  std::vector<double> discount = {};       ///< discounted ones of them at these lambda [1/time]
+  std::vector<double> time = {};           ///< along paths [time]
+  std::optional<model::Start> start = {};  ///< of paths from a state or from rest
+  bool stationary_paths = false;
+  bool travel = false;  ///< int v dt along paths
 
-  /// Whether there are paths that start from a state or from rest, and stationary ones.
-  [[nodiscard]] bool chosen_paths() const {
-    return start && start->kind != model::Start::Kind::stationary;
-  }
-  [[nodiscard]] bool stationary_paths() const {
-    return autocorrelation || (start && !chosen_paths());
-  }
+  /// The place among the observables of one that is to be followed; each has a name of its own.
+  std::size_t observe(const model::Observable& f);
 };
 
 /// Integrals of f over the sliding and the sticking phase of an excursion; with symmetry of its
@@ -73,6 +62,7 @@ struct Excursion {
   std::vector<Discounted> discounted = {};  ///< by lambda and observable
   double peak = 0;                          ///< largest |v|
   std::vector<double> passages = {};        ///< when |v| first reached the speeds that it reached
+  const Excursion* from_rest = nullptr;     ///< another one from rest, where speeds are wanted
 };
 
 /// Draws independent excursions from s+ (side 0) or s- (side 1); with symmetry those from s- are

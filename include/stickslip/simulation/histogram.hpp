@@ -1,9 +1,11 @@
 #pragma once
-/// How many excursions fall into each of some bins.
+/// How many excursions have a number between edges.
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "stickslip/simulation/comoments.hpp"
@@ -12,15 +14,15 @@
 namespace stickslip::simulation {
 
 /// Counts by the side from which an excursion starts, by whether it ends on the other one, and by
-/// bin. With symmetry all start at s+.
+/// bin, of which the n-th is below the n-th of the rising edges. With symmetry all start at s+.
 class Histogram {
  public:
-  Histogram(bool symmetric, std::size_t bins) : bins_(bins), counts_((symmetric ? 2 : 4) * bins) {}
+  Histogram(bool symmetric, std::vector<double> edges)
+      : edges_(std::move(edges)), bins_(edges_.size() + 1), counts_((symmetric ? 2 : 4) * bins_) {}
 
-  void add(std::size_t side, bool turned, std::size_t bin) {
-    counts_[(2 * side + (turned ? 1 : 0)) * bins_ + bin] += 1;
+  void add(std::size_t side, bool turned, double value) {
+    counts_[(2 * side + (turned ? 1 : 0)) * bins_ + bin(value)] += 1;
   }
-  [[nodiscard]] std::size_t bins() const { return bins_; }
   [[nodiscard]] std::span<double> counts() { return counts_; }
   [[nodiscard]] std::span<const double> counts() const { return counts_; }
 
@@ -29,12 +31,19 @@ class Histogram {
   using Weight = std::function<double(std::size_t bin)>;
   [[nodiscard]] Estimate mean(const Weight& weight) const;
   [[nodiscard]] Estimate mean(std::size_t side, const Weight& weight) const;
+  /// Probability of low <= value < high; low and high are edges, or 0 and infinity.
+  [[nodiscard]] Estimate probability(double low, double high) const;
 
  private:
+  [[nodiscard]] std::size_t bin(double value) const {
+    const auto above = std::upper_bound(edges_.begin(), edges_.end(), value);
+    return static_cast<std::size_t>(above - edges_.begin());
+  }
   /// Of 1{turned} and weight(bin) over the excursions from one side.
   [[nodiscard]] Comoments moments(std::size_t side, const Weight& weight) const;
   [[nodiscard]] Estimate jeffreys(std::span<const Comoments> sides, const Weight& weight) const;
 
+  std::vector<double> edges_;
   std::size_t bins_;
   std::vector<double> counts_;
 };

@@ -1,9 +1,12 @@
 #pragma once
-/// Smooth functions of means of excursions, with intervals by the delta method.
+/// Sums over excursions, and smooth functions of their means with intervals by the delta method.
 
+#include <array>
 #include <complex>
 #include <cstddef>
+#include <cstring>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <valarray>
 #include <vector>
@@ -16,6 +19,10 @@ namespace stickslip::simulation {
 struct Estimate {
   double value = 0, low = 0, high = 0;
 };
+
+[[nodiscard]] inline Estimate operator/(const Estimate& e, double by) {
+  return {e.value / by, e.low / by, e.high / by};
+}
 
 /// A function of means and its derivative by each of them; none of a constant.
 struct Smooth {
@@ -46,6 +53,8 @@ class Means {
   [[nodiscard]] Smooth at(std::size_t side, std::size_t n, double parity = 1) const;
   /// Mean n + i (mean n + 1).
   [[nodiscard]] Smooth complex_at(std::size_t side, std::size_t n, double parity = 1) const;
+  /// The share of excursions from one side that end on the other.
+  [[nodiscard]] Smooth turned(std::size_t side) const { return at(side, 0); }
   /// The share of excursions from one side in a long path: sides are a Markov chain.
   [[nodiscard]] Smooth share(std::size_t side) const;
   /// Mean n over all excursions of a long path.
@@ -56,6 +65,58 @@ class Means {
 
  private:
   std::span<const Comoments> sides_;
+};
+
+/// Means and covariances over excursions from each side of the numbers in a struct of doubles and
+/// complex numbers, such as
+///
+///   struct Phases { double slide, stick; };
+///   sums.add(side, turned, {1.5, 0.5});
+///   sums.estimate(sums.overall(&Phases::slide));
+///
+/// Copies share what is kept, which has to outlive them. Local.
+template <class Sample>
+class Sums : public Means {
+  static_assert(std::is_trivially_copyable_v<Sample> && sizeof(Sample) % sizeof(double) == 0);
+
+ public:
+  /// Size of the co-moments: whether an excursion turns, and the numbers.
+  static constexpr std::size_t kSize = 1 + sizeof(Sample) / sizeof(double);
+
+  explicit Sums(std::span<Comoments> sides) : Means(sides), sides_(sides) {}
+
+  /// Of an excursion from a side; `turned`: the next one starts from the other side. O(kSize^2).
+  void add(std::size_t side, bool turned, const Sample& sample) {
+    std::array<double, kSize> numbers{turned ? 1.0 : 0.0};
+    std::memcpy(&numbers[1], &sample, sizeof(Sample));
+    sides_[side].add(numbers);
+  }
+
+  /// As those of Means.
+  template <class Number>
+  [[nodiscard]] Smooth at(std::size_t side, Number Sample::*which, double parity = 1) const {
+    if constexpr (std::is_same_v<Number, double>) return Means::at(side, column(which), parity);
+    return complex_at(side, column(which), parity);
+  }
+  [[nodiscard]] Smooth overall(double Sample::*which, double parity = 1) const {
+    return Means::overall(column(which), parity);
+  }
+  /// What a long path gathers in a unit of time, given what it gathers in an excursion. The sample
+  /// has the durations of both phases.
+  [[nodiscard]] Estimate over_time(const Smooth& total) const {
+    return estimate(total / (overall(&Sample::slide) + overall(&Sample::stick)));
+  }
+
+ private:
+  template <class Number>
+  static std::size_t column(Number Sample::*which) {
+    static constexpr Sample sample{};
+    const auto* const begin = reinterpret_cast<const char*>(&sample);
+    const auto* const here = reinterpret_cast<const char*>(&(sample.*which));
+    return 1 + static_cast<std::size_t>(here - begin) / sizeof(double);
+  }
+
+  std::span<Comoments> sides_;
 };
 
 }  // namespace stickslip::simulation

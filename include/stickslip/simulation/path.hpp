@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "stickslip/model/process.hpp"
@@ -14,6 +15,18 @@ namespace stickslip::simulation {
 /// The process at some time; y = sign of the motion, 0 at rest; displacement since the beginning.
 struct State {
   double time = 0, x = 0, y = 0, v = 0, displacement = 0;
+};
+
+/// A path and its states at some times. A stationary one begins at a uniformly distributed time of
+/// an excursion from one side, and weighs as much as that lasts. The others have side 0 and weight
+/// 1.
+struct FollowedPath {
+  State first = {};
+  std::span<const State> states = {};
+  bool stationary = false;
+  std::size_t side = 0;
+  bool turned = false;  ///< whether that excursion is followed by one from the other side
+  double weight = 1;
 };
 
 /// A path of the process, followed event by event. Between events X and Y stay and V follows the

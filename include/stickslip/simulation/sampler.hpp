@@ -15,17 +15,17 @@ namespace stickslip::simulation {
 /// paths that are wanted. Local.
 class Sampler {
  public:
-  Sampler(const model::Process& process, const Wanted& wanted);
+  Sampler(const cases::Question& question, const model::Process& process);
 
-  /// No samples yet.
-  [[nodiscard]] Tally empty() const { return {process_, wanted_}; }
-  /// `count` < 2^16 samples by the random streams of their batch, at most 2^44 of them.
-  [[nodiscard]] Tally batch(std::uint64_t seed, std::uint64_t batch, int count);
+  /// `count` < 2^16 samples by the random streams of their batch, at most 2^44 of them; until the
+  /// next batch.
+  [[nodiscard]] const Tally& batch(std::uint64_t seed, std::uint64_t batch, int count);
 
  private:
-  void add_stationary(const RandomStream& random, std::size_t side, double place, Tally& tally);
-  [[nodiscard]] const std::vector<State>& follow(const State& first);
+  void add_stationary(const RandomStream& random, std::size_t side, double place);
+  [[nodiscard]] std::pair<State, std::span<const State>> follow();
 
+  Tally tally_;
   model::Process process_;
   Wanted wanted_;
   std::unique_ptr<ExcursionSource> source_, from_rest_;
