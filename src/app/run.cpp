@@ -17,16 +17,16 @@
 
 #include "stickslip/accuracy/refinement.hpp"
 #include "stickslip/io/provenance.hpp"
-#include "stickslip/io/report.hpp"
+#include "stickslip/io/reports.hpp"
 #include "stickslip/operators/element_pc.hpp"
 #include "stickslip/options/manual.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/options/table.hpp"
+#include "stickslip/outputs/report.hpp"
 #include "stickslip/petsc/blas.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/solver_choice.hpp"
-#include "stickslip/support/atomic_file.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/sweeps/sweep_report.hpp"
 
@@ -42,14 +42,6 @@ double seconds_since(Clock::time_point start) {
 void print_error(const std::string& text) {
   std::fputs((text + "\n").c_str(), stderr);
   std::fflush(stderr);
-}
-
-bool printed(const std::string& text) {
-  return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
-}
-
-void print(const std::string& text) {
-  if (!printed(text)) throw std::runtime_error("standard output cannot be written");
 }
 
 bool contains(const std::vector<std::string>& words, const char* word) {
@@ -80,7 +72,7 @@ void warn(const options::Request& request) {
 }
 
 accuracy::Progress progress_of(const options::Request& request, bool first_rank) {
-  if (!request.output.progress || !first_rank) return {};
+  if (!request.files.progress || !first_rank) return {};
   return [&request](int step, const accuracy::Resolution& r, double seconds) {
     std::string velocity = "no grid in v";
     if (r.scheme == cases::Scheme::hp) velocity = fmt::format("degree {}", r.degree);
@@ -93,7 +85,7 @@ accuracy::Progress progress_of(const options::Request& request, bool first_rank)
 }
 
 monte_carlo::SimulationProgress simulation_progress_of(const options::Request& request) {
-  if (!request.output.progress) return {};
+  if (!request.files.progress) return {};
   return [](const monte_carlo::SimulationState& s) {
     const double share = 100 * s.excursions / s.wanted;
     print_error(fmt::format(
@@ -110,47 +102,31 @@ int status_of(const accuracy::Outcome& outcome) {
 }
 
 studies::StudyProgress study_progress_of(const options::Request& request, bool first_rank) {
-  if (!request.output.progress || !first_rank) return {};
+  if (!request.files.progress || !first_rank) return {};
   return [start = Clock::now()](int number, int count, const std::string& what) {
     print_error(fmt::format("study, run {} of {}: {} ({:.0f} s so far)", number, count, what,
                             seconds_since(start)));
   };
 }
 
-/// The table and the summary of what was found. By the first rank.
-template <class Found>
-void deliver(const options::Request& request, const Found& found, const io::RunTimes& times) {
-  const std::string& file = request.output.summary;
-  if (!file.empty()) write_text(file, summary(MPI_COMM_WORLD, request, found, times));
-  print(table(request, found, times));
-}
-
 int run_study(const options::Request& request, Clock::time_point start, double start_up) {
   const MPI_Comm comm = MPI_COMM_WORLD;
-  const bool first_rank = petsc::rank(comm) == 0;
-  const auto study =
-      studies::run_study(comm, request, request.study, study_progress_of(request, first_rank));
+  const auto study = studies::run_study(comm, request, request.study,
+                                        study_progress_of(request, petsc::rank(comm) == 0));
   const io::RunTimes times{start_up, start_up + seconds_since(start)};
-  if (!request.output.output.empty()) io::write_hdf5(comm, request, study, times);
-  if (!first_rank) return 0;
-  if (!request.output.study_csv.empty()) write_text(request.output.study_csv, io::csv(study));
-  deliver(request, study, times);
+  outputs::write_all(io::report_of(comm, request, study, times), request.files.written);
   return 0;
 }
 
 int report_plan(const options::Request& request) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const auto prediction = accuracy::predict(comm, request);
-  if (petsc::rank(comm) != 0) return 0;
-  if (!request.output.summary.empty()) {
-    write_text(request.output.summary, io::summary(comm, request, prediction));
-  }
-  print(io::table(request, prediction));
+  outputs::write_all(io::report_of(comm, request, prediction), request.files.written);
   return 0;
 }
 
 sweeps::SweepProgress sweep_progress_of(const options::Request& request) {
-  if (!request.output.progress) return {};
+  if (!request.files.progress) return {};
   return [&request, last = Clock::time_point()](const sweeps::State& s) mutable {
     if (s.status == "reached" && s.done < s.count && seconds_since(last) < 1) return;
     last = Clock::now();
@@ -162,16 +138,11 @@ sweeps::SweepProgress sweep_progress_of(const options::Request& request) {
 
 int run_sweep(const options::Request& request, Clock::time_point start, double start_up) {
   const MPI_Comm comm = MPI_COMM_WORLD;
-  const bool first_rank = petsc::rank(comm) == 0;
   const auto sweep = sweeps::run_sweep(comm, request, sweep_progress_of(request));
   int status = sweeps::exit_status(sweep.runs);
-  if (first_rank) {
+  if (petsc::rank(comm) == 0) {
     const io::RunTimes times{start_up, start_up + seconds_since(start)};
-    if (!request.output.output.empty()) sweeps::write_hdf5(comm, request, sweep, times);
-    if (!request.output.sweep_csv.empty()) {
-      write_text(request.output.sweep_csv, sweeps::csv(request, sweep));
-    }
-    deliver(request, sweep, times);
+    outputs::write_all(sweeps::report_of(comm, request, sweep, times), request.files.written);
     if (status != 0)
       print_error("stickslip: some points failed or missed the accuracy; the table lists them");
   }
@@ -183,15 +154,9 @@ int compute(const options::Request& request, Clock::time_point start, double sta
   const MPI_Comm comm = MPI_COMM_WORLD;
   const bool first_rank = petsc::rank(comm) == 0;
   const auto outcome = accuracy::refine(comm, request, progress_of(request, first_rank),
-                                        simulation_progress_of(request), request.output.checkpoint);
+                                        simulation_progress_of(request), request.files.checkpoint);
   const io::RunTimes times{start_up, start_up + seconds_since(start)};
-  if (!request.output.output.empty()) io::write_hdf5(comm, request, outcome, times);
-  if (first_rank) {
-    if (!request.output.trajectory.empty() && outcome.path) {
-      write_text(request.output.trajectory, io::csv(*outcome.path));
-    }
-    deliver(request, outcome, times);
-  }
+  outputs::write_all(io::report_of(comm, request, outcome, times), request.files.written);
   return status_of(outcome);
 }
 
@@ -270,7 +235,8 @@ int run(int argc, char** argv) {
   options::shield_formulas(words);
   const std::string text = text_asked_for(words);
   if (!text.empty()) {
-    return static_cast<int>(printed(text) ? ExitStatus::done : ExitStatus::other);
+    const bool printed = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+    return static_cast<int>(printed ? ExitStatus::done : ExitStatus::other);
   }
   try {
     options::check_options_files(words);

@@ -109,9 +109,7 @@ Json task_json(const cases::Question& question, const routes::Task& task) {
   return json;
 }
 
-}  // namespace
-
-std::string table(const options::Request& request, const accuracy::Prediction& prediction) {
+std::string text_of(const options::Request& request, const accuracy::Prediction& prediction) {
   std::string text = scene_text(request.scene) + "\n";
   const auto& plan = prediction.plan;
   if (!accuracy::needs_system(request)) {
@@ -130,8 +128,7 @@ std::string table(const options::Request& request, const accuracy::Prediction& p
                      prediction.seconds);
 }
 
-std::string summary(MPI_Comm comm, const options::Request& request,
-                    const accuracy::Prediction& prediction) {
+Json tree_of(const options::Request& request, const accuracy::Prediction& prediction) {
   Json tasks = Json::array(), steps = Json::array();
   for (const auto& task : prediction.plan.tasks) {
     tasks.push_back(task_json(request.question, task));
@@ -144,7 +141,17 @@ std::string summary(MPI_Comm comm, const options::Request& request,
                   {"adaptive", prediction.plan.adaptive()},
                   {"steps", std::move(steps)},
                   {"seconds", prediction.seconds}};
-  return summary_text(comm, request, {{"scene", scene_json(request.scene)}, {"plan", plan}});
+  return {{"scene", scene_json(request.scene)}, {"plan", plan}};
+}
+
+}  // namespace
+
+outputs::Report report_of(MPI_Comm comm, const options::Request& request,
+                          const accuracy::Prediction& prediction) {
+  outputs::Report report = report_from(comm, request, outputs::Subject::plan, {});
+  report.text = text_of(request, prediction);
+  report.tree = [&request, &prediction] { return tree_of(request, prediction); };
+  return report;
 }
 
 }  // namespace stickslip::io

@@ -39,18 +39,6 @@ std::string cell(double value, int digits) {
   return std::isnan(value) ? "" : fmt::format("{:.{}g}", value, digits);
 }
 
-std::string csv_line(const std::vector<std::string>& cells) {
-  std::string line;
-  for (const auto& text : cells) {
-    const bool plain = text.find_first_of(",\"\n") == text.npos;
-    std::string inside;
-    for (char c : text) inside += c == '"' ? "\"\"" : std::string(1, c);
-    line += plain ? text + "," : "\"" + inside + "\",";
-  }
-  if (!line.empty()) line.pop_back();
-  return line + "\n";
-}
-
 namespace {
 
 constexpr std::size_t kLongestKey = 40;  // longer ones have a line of their own
@@ -92,8 +80,9 @@ std::string results_table(const quantities::Results& results) {
 std::string elsewhere(const options::Request& request, const accuracy::Outcome& outcome) {
   std::string text;
   if (request.question.wants(catalogue::Quantity::density)) {
+    const auto files = request.files.holding(catalogue::Quantity::density);
     text += fmt::format("density: in {}; error of the distribution function of |V| {}\n",
-                        request.output.output, error_text(outcome.speed_error));
+                        enumerate(files, "and"), error_text(outcome.speed_error));
   }
   if (outcome.path) {
     text += fmt::format("trajectory up to time {:g}: {} events\n", request.question.horizon,
@@ -160,26 +149,17 @@ std::string verdict_on_accuracy(const cases::Question& question, const accuracy:
 
 }  // namespace
 
-std::string table(const options::Request& request, const accuracy::Outcome& outcome,
-                  const RunTimes& times) {
+std::string run_table(const options::Request& request, const accuracy::Outcome& outcome,
+                      const RunTimes& times) {
   std::string text = scene_text(request.scene) + "\n" + results_table(outcome.results);
   if (outcome.simulation) text += "errors are half widths of 95 % confidence intervals\n";
   text += elsewhere(request, outcome);
-  if (outcome.comparison) text += comparison_table(*outcome.comparison, request.output.compared);
+  if (outcome.comparison) text += comparison_table(*outcome.comparison, request.files.compared);
   text += "\n" + cost_table(request.method.scheme, outcome);
   text += verdict_on_accuracy(request.question, outcome);
   text += fmt::format("{:.2f} s in total, {:.2f} s of it start-up\n", times.total, times.start_up);
   if (outcome.next_digit_seconds > 0) {
     text += fmt::format("one more digit would take about {:.2g} s\n", outcome.next_digit_seconds);
-  }
-  return text;
-}
-
-std::string csv(const simulation::Path& path) {
-  std::string text = "time,x,y,v\n";
-  for (std::size_t n = 0; n < path.time.size(); ++n) {
-    text += fmt::format("{:.17g},{:.17g},{:g},{:.17g}\n", path.time[n], path.x[n], path.y[n],
-                        path.v[n]);
   }
   return text;
 }

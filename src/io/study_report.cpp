@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "stickslip/io/hdf5_file.hpp"
 #include "stickslip/io/parts.hpp"
 #include "stickslip/support/number_text.hpp"
 
@@ -48,7 +46,7 @@ Json run_json(const model::Scene& meant, const studies::Run& run) {
   cost["seconds"] = run.seconds;
   cost["unknowns"] = run.statistics.unknowns;
   cost["factor_megabytes"] = run.statistics.factor_megabytes;
-  return {{"scene", scene}, {"results", results_json(run.results)}, {"cost", cost}};
+  return {{"scene", scene}, {"results", outputs::results_json(run.results)}, {"cost", cost}};
 }
 
 Json table_json(const studies::Table& table) {
@@ -60,10 +58,8 @@ Json table_json(const studies::Table& table) {
   return json;
 }
 
-}  // namespace
-
-std::string table(const options::Request& request, const studies::Study& study,
-                  const RunTimes& times) {
+std::string text_of(const options::Request& request, const studies::Study& study,
+                    const RunTimes& times) {
   std::string text = scene_text(request.scene);
   for (const auto& table : study.tables) text += table_text(table);
   text += "\n";
@@ -71,21 +67,21 @@ std::string table(const options::Request& request, const studies::Study& study,
   return text + fmt::format("{} runs, {:.2f} s in total\n", study.runs.size(), times.total);
 }
 
-std::string summary(MPI_Comm comm, const options::Request& request, const studies::Study& study,
-                    const RunTimes& times) {
+Json tree_of(const options::Request& request, const studies::Study& study, const RunTimes& times) {
   Json tree{{"scene", scene_json(request.scene)}, {"runs", Json::array()}};
   for (const auto& run : study.runs) tree["runs"].push_back(run_json(request.scene, run));
   tree["study"]["kind"] = study.kind;
   for (const auto& table : study.tables) tree["study"]["tables"][table.name] = table_json(table);
   tree["study"]["conclusions"] = study.conclusions;
   tree["cost"]["seconds"] = times.total;
-  return summary_text(comm, request, std::move(tree));
+  return tree;
 }
 
-std::string csv(const studies::Study& study) {
-  std::string text =
-      "method,parameters,quantity,value,error,seconds,assembly,analysis,factorization,solve,"
-      "megabytes\n";
+// Every scalar of every run in a row.
+std::vector<std::vector<std::string>> rows_of(const studies::Study& study) {
+  std::vector<std::vector<std::string>> rows{{"method", "parameters", "quantity", "value", "error",
+                                              "seconds", "assembly", "analysis", "factorization",
+                                              "solve", "megabytes"}};
   for (const auto& run : study.runs) {
     std::string parameters;
     for (const auto& [name, value] : run.parameters) {
@@ -93,28 +89,25 @@ std::string csv(const studies::Study& study) {
     }
     const auto& l = run.statistics;
     for (const auto& r : run.results) {
-      text += csv_line({run.method, parameters, r.key, fmt::format("{:.17g}", r.value[0]),
-                        fmt::format("{:.3g}", r.error[0]), cell(run.seconds, 6),
-                        cell(l.assembly_seconds, 6), cell(l.analysis_seconds, 6),
-                        cell(l.factorization_seconds, 6), cell(l.solve_seconds, 6),
-                        cell(l.factor_megabytes, 6)});
+      rows.push_back({run.method, parameters, r.key, fmt::format("{:.17g}", r.value[0]),
+                      fmt::format("{:.3g}", r.error[0]), cell(run.seconds, 6),
+                      cell(l.assembly_seconds, 6), cell(l.analysis_seconds, 6),
+                      cell(l.factorization_seconds, 6), cell(l.solve_seconds, 6),
+                      cell(l.factor_megabytes, 6)});
     }
   }
-  return text;
+  return rows;
 }
 
-void write_hdf5(MPI_Comm comm, const options::Request& request, const studies::Study& study,
-                const RunTimes& times) {
-  Json tree{{"kind", study.kind}};
-  for (const auto& table : study.tables) {
-    std::string name = table.name;
-    std::replace(name.begin(), name.end(), ' ', '_');  // blanks are awkward to type
-    tree[name] = table_json(table);
-  }
-  Hdf5File file(comm, request.output.output);
-  write_tree(file, "/study", tree);
-  write_record(file, comm, request, times);
-  file.commit();
+}  // namespace
+
+outputs::Report report_of(MPI_Comm comm, const options::Request& request,
+                          const studies::Study& study, const RunTimes& times) {
+  outputs::Report report = report_from(comm, request, outputs::Subject::study, times);
+  report.text = text_of(request, study, times);
+  report.tree = [&request, &study, times] { return tree_of(request, study, times); };
+  report.rows = [&study] { return rows_of(study); };
+  return report;
 }
 
 }  // namespace stickslip::io

@@ -23,7 +23,7 @@ void check_rules(const Settings& settings, Request& request, Problems& problems)
 // request.cpp
 
 /// Names of the files, and whether progress is shown.
-[[nodiscard]] Output read_output(const Settings& settings);
+[[nodiscard]] Files read_files(const Settings& settings);
 
 /// The run that the settings ask for; what is wrong with it goes to `problems`.
 [[nodiscard]] Request request_of(const Settings& settings, Problems& problems);

@@ -6,6 +6,7 @@
 
 #include "reading.hpp"
 #include "stickslip/effects/read_scene.hpp"
+#include "stickslip/outputs/output.hpp"
 #include "words.hpp"
 
 namespace stickslip::options {
@@ -73,16 +74,26 @@ class GivenSettings : public effects::Given {
 
 }  // namespace
 
-Output read_output(const Settings& settings) {
+Files read_files(const Settings& settings) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  return {.summary = settings.text("summary"),
-          .output = settings.text("output"),
-          .trajectory = settings.text("trajectory"),
-          .checkpoint = settings.text("checkpoint"),
-          .compared = settings.text("compare"),
-          .study_csv = settings.text("study_csv"),
-          .sweep_csv = settings.text("sweep_csv"),
-          .progress = meaning(kProgress, settings.text("progress")).value_or(terminal)};
+  Files files{.written = {},
+              .checkpoint = settings.text("checkpoint"),
+              .compared = settings.text("compare"),
+              .progress = meaning(kProgress, settings.text("progress")).value_or(terminal)};
+  for (const auto* output : outputs::all()) {
+    const auto& name = output->option;
+    if (settings.given(name)) files.written[name] = settings.text(name);
+  }
+  return files;
+}
+
+std::vector<std::string> Files::holding(Quantity field) const {
+  std::vector<std::string> names;
+  for (const auto* output : outputs::all()) {
+    const auto file = written.find(output->option);
+    if (file != written.end() && output->fields.contains(field)) names.push_back(file->second);
+  }
+  return names;
 }
 
 Request request_of(const Settings& settings, Problems& problems) {
@@ -93,7 +104,7 @@ Request request_of(const Settings& settings, Problems& problems) {
   read_question(settings, request, problems);
   request.study = {meaning(kStudies, settings.text("study")), settings.integer("study_steps"),
                    settings.integer("study_repeats").value_or(3)};
-  request.output = read_output(settings);
+  request.files = read_files(settings);
   request.sweep_ranks = settings.integer("sweep_ranks").value_or(1);
   request.plan_only = settings.flag("plan");
   check_rules(settings, request, problems);

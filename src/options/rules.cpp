@@ -6,10 +6,13 @@
 #include "quantities.hpp"
 #include "reading.hpp"
 #include "stickslip/effects/effect.hpp"
+#include "stickslip/outputs/output.hpp"
 #include "stickslip/support/text.hpp"
 
 namespace stickslip::options {
 namespace {
+
+using outputs::Subject;
 
 /// The rules that relate options to one another. Each is a row: options, when it counts, message.
 class Rules {
@@ -42,8 +45,16 @@ class Rules {
     warn({"excursions"}, !simulates, "without -route monte_carlo");
     warn({"seed"}, !simulates && !asked("seed"));
     warn({"checkpoint"}, !simulates && !swept, "without -route monte_carlo or a sweep");
-    warn({"sweep_csv", "sweep_ranks"}, !swept, "without a sweep");
-    warn({"study_steps", "study_repeats", "study_csv"}, !study_, "without -study");
+    warn({"sweep_ranks"}, !swept, "without a sweep");
+    warn({"study_steps", "study_repeats"}, !study_, "without -study");
+    const auto subject = study_ ? Subject::study : swept ? Subject::sweep : Subject::run;
+    for (const auto* output : outputs::all()) {
+      const auto& of = output->subjects;
+      if (of.contains(subject) || of.contains(Subject::run)) continue;
+      const char* others = of.contains(Subject::study) ? "without -study" : "without -plan";
+      warn({output->option.c_str()}, true,
+           of.contains(Subject::sweep) ? "without a sweep" : others);
+    }
     for (const char* option :
          {"observable", "time", "start", "horizon", "transient_solver", "omega", "spectrum_solver",
           "distance", "inverse_distance", "velocity"}) {
@@ -104,11 +115,8 @@ class Rules {
            "must be positive: every sliding phase exceeds the speed 0", "leave 0 out");
     report("distance", std::count(q_.distance.begin(), q_.distance.end(), 0) > 0,
            "must be positive: f_slip is not defined at 0", "leave 0 out");
-    require("output", q_.wants(density), "asks for density, a field, which needs a file",
-            "add -output FILE.h5");
-    require("trajectory", q_.wants(trajectory) && r_.output.output.empty(),
-            "asks for a trajectory, which needs a file",
-            "add -output FILE.h5 or -trajectory FILE.csv");
+    require_file(density, "density, a field,");
+    require_file(trajectory, "a trajectory,");
     report("quantities", q_.wants(sensitivity) && !derivable,
            "asks for derivatives (sensitivity), but for no scalars to differentiate",
            "add sticking, moments or noise_law");
@@ -134,6 +142,17 @@ class Rules {
     return std::any_of(all.begin(), all.end(), [&](const effects::Choice* choice) {
       return choice->in(r_.scene).knows(option);
     });
+  }
+
+  // What is no number of the table needs a file of an output that holds it.
+  void require_file(Quantity field, const char* what) {
+    std::vector<std::string> fixes;
+    for (const auto* output : outputs::all()) {
+      if (!output->fields.contains(field)) continue;
+      fixes.push_back(fmt::format("-{} FILE.{}", output->option, output->ending));
+    }
+    report("quantities", q_.wants(field) && r_.files.holding(field).empty(),
+           fmt::format("asks for {} which needs a file", what), "add " + enumerate(fixes, "or"));
   }
 
   // Where no level of the noise holds the body, there are no phases, and the rest exists.

@@ -12,10 +12,13 @@
 #include "quantities.hpp"
 #include "reading.hpp"
 #include "stickslip/effects/read_scene.hpp"
+#include "stickslip/outputs/output.hpp"
 #include "stickslip/petsc/session.hpp"
 
 namespace stickslip::options {
 namespace {
+
+using outputs::Subject;
 
 constexpr double kMostPoints = 100000;
 constexpr const char* kSwept = "swept";   // in the place of a value, in the options as used
@@ -48,15 +51,19 @@ void check_size(const std::vector<SweepAxis>& axes, Problems& problems) {
 
 // What is about one run alone, or makes a series of its own.
 void check_alone(const Settings& settings, Problems& problems) {
-  const auto refuse = [&](const char* name, const char* why, const char* fix) {
+  const auto refuse = [&](const std::string& name, const char* why, const char* fix) {
     const bool used = settings.given(name) && settings.text(name) != find(name)->initial;
     if (used) settings.report(problems, name, why, fix);
   };
   constexpr const char* leave = "leave it out, or the -sweep_ options";
   refuse("study", "makes a series of runs of its own", leave);
   refuse("plan", "predicts one run, not a sweep", "leave the -sweep_ options out to predict a run");
-  for (const char* name : {"compare", "trajectory"}) {
-    refuse(name, "is a file for one run, not for a sweep", leave);
+  constexpr const char* of_one_run = "is a file for one run, not for a sweep";
+  refuse("compare", of_one_run, leave);
+  for (const auto* output : outputs::all()) {
+    const auto& of = output->subjects;
+    const bool of_runs = of.contains(Subject::run) && !of.contains(Subject::sweep);
+    if (of_runs) refuse(output->option, of_one_run, leave);
   }
   const auto asked = settings.list("quantities");
   for (const auto& word : asked) {
@@ -186,7 +193,7 @@ Request Sweep::request(std::size_t point, Problems& problems) const {
   for (std::size_t a = 0; a < at.size(); ++a) settings.set(axes_[a].option, at[a], problems);
   Request request;
   if (problems.empty()) request = request_of(settings, problems);
-  request.output = {};
+  request.files = {};
   return request;
 }
 
@@ -215,7 +222,7 @@ Request read_sweep(const Settings& settings) {
   Request request = sweep->request(0);
   if (!step.empty()) request.warnings.push_back(step);
   request.sweep = sweep;
-  request.output = read_output(settings);
+  request.files = read_files(settings);
   for (auto& [name, value] : request.resolved) {
     if (is_axis(sweep->axes(), name)) value = kSwept;
   }

@@ -7,6 +7,7 @@
 
 #include "quantities.hpp"
 #include "stickslip/effects/model_options.hpp"
+#include "stickslip/outputs/output.hpp"
 #include "stickslip/support/text.hpp"
 #include "words.hpp"
 
@@ -173,29 +174,19 @@ std::vector<Option> sweep_options() {
 }
 
 std::vector<Option> output_options() {
-  return {
-      Option::file("summary", Kind::path,
-                   "write results, error estimates, cost and provenance as JSON to this file"),
-      Option::file(
-          "output", Kind::path,
-          "write results and fields as HDF5 to this file; with density also FILE.xdmf, which "
-          "ParaView opens"),
-      Option::file("study_csv", Kind::path,
-                   "write every scalar of every run of a study as CSV to this file"),
-      Option::file(
-          "sweep_csv", Kind::path,
-          "write a row for each point of a sweep as CSV to this file: swept values, every scalar "
-          "with its error estimate, status"),
-      Option::file("trajectory", Kind::path,
-                   "write the trajectory as CSV with the columns time,x,y,v to this file"),
-      Option::file(
-          "compare", Kind::input,
-          "compare the results with those of this file: HDF5 or JSON of this program, or CSV with "
-          "the columns quantity,argument,value,low,high (95 % confidence intervals). What is to be "
-          "computed is taken from the file unless given. Exit status 3 if they disagree"),
-      choice("progress", "auto", words_of(kProgress),
-             "show progress on standard error; auto: if that is a terminal"),
-  };
+  std::vector<Option> options;
+  for (const auto* output : outputs::all()) {
+    if (output->option.empty()) continue;
+    options.push_back(Option::file(output->option, Kind::path, output->sentence));
+  }
+  options.push_back(Option::file(
+      "compare", Kind::input,
+      "compare the results with those of this file: HDF5 or JSON of this program, or CSV with the "
+      "columns quantity,argument,value,low,high (95 % confidence intervals). What is to be "
+      "computed is taken from the file unless given. Exit status 3 if they disagree"));
+  options.push_back(choice("progress", "auto", words_of(kProgress),
+                           "show progress on standard error; auto: if that is a terminal"));
+  return options;
 }
 
 }  // namespace

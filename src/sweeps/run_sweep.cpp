@@ -88,7 +88,7 @@ class Worker {
  public:
   Worker(MPI_Comm comm, const Request& request, const SweepProgress& progress)
       : comm_(comm), request_(request), sweep_(*request.sweep), progress_(progress) {
-    const auto& file = request.output.checkpoint;
+    const auto& file = request.files.checkpoint;
     if (file.empty()) return;
     checkpoint_.emplace(file, checkpoint::Kind::sweep, identity_of(comm, sweep_));
   }

@@ -1,7 +1,6 @@
 #include "stickslip/sweeps/sweep_report.hpp"
 
 #include <fmt/format.h>
-#include <petscsys.h>
 
 #include <algorithm>
 #include <array>
@@ -10,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "stickslip/io/hdf5_file.hpp"
 #include "stickslip/io/parts.hpp"
 #include "stickslip/support/number_text.hpp"
 #include "stickslip/support/text.hpp"
@@ -18,7 +16,7 @@
 namespace stickslip::sweeps {
 namespace {
 
-using io::Json;
+using outputs::Json;
 using quantities::Result;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -187,53 +185,8 @@ std::string counts(const SweepResult& result, const io::RunTimes& times) {
          fmt::format("{:.2f} s in total, {:.2f} s of it start-up\n", times.total, times.start_up);
 }
 
-/// Datasets over the axes of the sweep, the last index within a result.
-class Grid {
- public:
-  Grid(io::Hdf5File& file, const options::Sweep& sweep) : file_(file) {
-    std::string names;
-    for (const auto& axis : sweep.axes()) {
-      sizes_.push_back(axis.values.size());
-      file_.write_array("/sweep/" + axis.option, axis.values);
-      if (!axis.unit.empty()) file_.attribute("/sweep/" + axis.option, "unit", axis.unit);
-      names += (names.empty() ? "" : ",") + axis.option;
-    }
-    file_.attribute("/sweep", "axes", names);
-  }
-
-  void write(const std::string& name, const std::vector<double>& values) {
-    file_.write_array("/sweep/" + name, sizes_, values);
-  }
-
-  // Arrays may differ in length from point to point, as the levels at which sliding phases end do;
-  // NaN where there is nothing.
-  void write(const Column& column) {
-    const Result& r = *column.result;
-    const std::string path = "/sweep/" + io::hdf5_name(column.name);
-    std::size_t length = 0;
-    for (const auto& numbers : column.at) length = std::max(length, numbers.size());
-    std::vector<double> all;
-    for (auto numbers : column.at) {
-      numbers.resize(length, kNone);
-      all.insert(all.end(), numbers.begin(), numbers.end());
-    }
-    auto sizes = sizes_;
-    if (!r.is_scalar()) sizes.push_back(length);
-    file_.write_array(path, sizes, all);
-    if (!column.is_values()) return;
-    if (!r.unit.empty()) file_.attribute(path, "unit", r.unit);
-    if (!r.is_scalar()) file_.attribute(path, "abscissa", r.abscissa_name);
-  }
-
- private:
-  io::Hdf5File& file_;
-  std::vector<std::size_t> sizes_;
-};
-
-}  // namespace
-
-std::string table(const options::Request& request, const SweepResult& result,
-                  const io::RunTimes& times) {
+std::string text_of(const options::Request& request, const SweepResult& result,
+                    const io::RunTimes& times) {
   const auto& sweep = *request.sweep;
   std::string text = title(sweep) + fixed_options(request) + blocks(sweep, result.runs) + "\n";
   for (const auto& column : columns_of(result.runs)) {
@@ -244,26 +197,8 @@ std::string table(const options::Request& request, const SweepResult& result,
   return text + shortfalls(sweep, result.runs) + counts(result, times);
 }
 
-std::string csv(const options::Request& request, const SweepResult& result) {
-  const auto& sweep = *request.sweep;
-  const auto scalars = scalars_of(result.runs);
-  std::vector<std::string> cells;
-  for (const auto& axis : sweep.axes()) cells.push_back(axis.option);
-  for (const auto& scalar : scalars) cells.push_back(scalar.name);
-  cells.emplace_back("status");
-  std::string text = io::csv_line(cells);
-  for (const auto& run : result.runs) {
-    cells.clear();
-    for (double value : sweep.values(run.point)) cells.push_back(io::cell(value, 17));
-    for (const auto& scalar : scalars) cells.push_back(io::cell(scalar.number(run), 17));
-    cells.emplace_back(status_text(run.status));
-    text += io::csv_line(cells);
-  }
-  return text;
-}
-
-std::string summary(MPI_Comm comm, const options::Request& request, const SweepResult& result,
-                    const io::RunTimes& times) {
+Json tree_of(const options::Request& request, const SweepResult& result,
+             const io::RunTimes& times) {
   Json tree;
   for (const auto& axis : request.sweep->axes()) tree["sweep"]["axes"][axis.option] = axis.values;
   tree["sweep"]["points"] = result.runs.size();
@@ -271,25 +206,76 @@ std::string summary(MPI_Comm comm, const options::Request& request, const SweepR
   tree["runs"] = Json::array();
   for (const auto& run : result.runs) tree["runs"].push_back(Json::parse(run.entry));
   tree["cost"] = {{"seconds", times.total}, {"start_up_seconds", times.start_up}};
-  return io::summary_text(comm, request, std::move(tree));
+  return tree;
 }
 
-void write_hdf5(MPI_Comm comm, const options::Request& request, const SweepResult& result,
-                const io::RunTimes& times) {
-  io::Hdf5File file(PETSC_COMM_SELF, request.output.output);
-  file.make_group("/sweep");
-  Grid grid(file, *request.sweep);
-  for (const auto& column : columns_of(result.runs)) grid.write(column);
+std::vector<std::vector<std::string>> rows_of(const options::Sweep& sweep,
+                                              const std::vector<SweepPoint>& runs) {
+  const auto scalars = scalars_of(runs);
+  std::vector<std::vector<std::string>> rows(1);
+  for (const auto& axis : sweep.axes()) rows[0].push_back(axis.option);
+  for (const auto& scalar : scalars) rows[0].push_back(scalar.name);
+  rows[0].emplace_back("status");
+  for (const auto& run : runs) {
+    auto& cells = rows.emplace_back();
+    for (double value : sweep.values(run.point)) cells.push_back(io::cell(value, 17));
+    for (const auto& scalar : scalars) cells.push_back(io::cell(scalar.number(run), 17));
+    cells.emplace_back(status_text(run.status));
+  }
+  return rows;
+}
+
+// The last index is within a result. Arrays may differ in length from point to point, as the levels
+// at which sliding phases end do; NaN where there is nothing.
+outputs::Array array_of(const Column& column, std::vector<std::size_t> sizes) {
+  const Result& r = *column.result;
+  outputs::Array array{column.name, std::move(sizes), {}};
+  std::size_t length = 0;
+  for (const auto& numbers : column.at) length = std::max(length, numbers.size());
+  for (auto numbers : column.at) {
+    numbers.resize(length, kNone);
+    array.values.insert(array.values.end(), numbers.begin(), numbers.end());
+  }
+  if (!r.is_scalar()) array.sizes.push_back(length);
+  if (column.is_values() && !r.unit.empty()) array.notes.emplace_back("unit", r.unit);
+  if (column.is_values() && !r.is_scalar()) array.notes.emplace_back("abscissa", r.abscissa_name);
+  return array;
+}
+
+outputs::Grid grid_of(const options::Sweep& sweep, const std::vector<SweepPoint>& runs) {
+  outputs::Grid grid;
+  std::vector<std::size_t> sizes;
+  std::string names;
+  for (const auto& axis : sweep.axes()) {
+    sizes.push_back(axis.values.size());
+    grid.arrays.push_back({axis.option, {axis.values.size()}, axis.values});
+    if (!axis.unit.empty()) grid.arrays.back().notes.emplace_back("unit", axis.unit);
+    names += (names.empty() ? "" : ",") + axis.option;
+  }
+  grid.notes.emplace_back("axes", names);
+  for (const auto& column : columns_of(runs)) grid.arrays.push_back(array_of(column, sizes));
   std::vector<double> status, seconds;
-  for (const auto& run : result.runs) {
+  for (const auto& run : runs) {
     status.push_back(static_cast<double>(run.status));
     seconds.push_back(run.seconds);
   }
-  grid.write("status", status);
-  file.attribute("/sweep/status", "meaning", "0 reached, 1 not reached, 2 failed, 3 no memory");
-  grid.write("seconds", seconds);
-  io::write_record(file, comm, request, times);
-  file.commit();
+  grid.arrays.push_back(
+      {"status", sizes, status, {{"meaning", "0 reached, 1 not reached, 2 failed, 3 no memory"}}});
+  grid.arrays.push_back({"seconds", sizes, seconds});
+  return grid;
+}
+
+}  // namespace
+
+outputs::Report report_of(MPI_Comm comm, const options::Request& request, const SweepResult& sweep,
+                          const io::RunTimes& times) {
+  auto report = io::report_from(comm, request, outputs::Subject::sweep, times);
+  report.comm = MPI_COMM_SELF;
+  report.text = text_of(request, sweep, times);
+  report.tree = [&request, &sweep, times] { return tree_of(request, sweep, times); };
+  report.rows = [&request, &sweep] { return rows_of(*request.sweep, sweep.runs); };
+  report.grid = [&request, &sweep] { return grid_of(*request.sweep, sweep.runs); };
+  return report;
 }
 
 }  // namespace stickslip::sweeps

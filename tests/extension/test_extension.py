@@ -1,4 +1,5 @@
-"""A drag law and a noise that are a file each: all that the program does with effects follows from what they declare."""
+"""A drag law, a noise and an output that are a file each: all that the program does with them follows from what they
+declare."""
 
 import csv
 import os
@@ -79,6 +80,24 @@ class Extension(Case):
         single = self.solved(*QUADRATIC)["results"]["E_V2"]["value"]
         self.assertEqual([float(row["drag_quadratic"]) for row in rows], [1, 2])
         self.assert_close(float(rows[1]["E_V2"]), single, 1e-12)
+
+    def test_an_output_holds_the_results(self):
+        results = self.solved(*QUADRATIC, "-quantities", "sticking,entry_law", "-markdown", "table.md")["results"]
+        rows = [line.strip("| ").split(" | ") for line in (self.folder / "table.md").read_text().splitlines()]
+        self.assertEqual(rows[0], ["quantity", "value", "error"])
+        scalars = {key: r for key, r in results.items() if not isinstance(r["value"], list)}
+        self.assertEqual({key: (float(value), float(error)) for key, value, error in rows[2:]},
+                         {key: (r["value"], r["error"]) for key, r in scalars.items()})
+
+    def test_an_output_is_an_option_as_others_are(self):
+        for page in ("-help", "-reference", "-completion"):
+            self.assertIn("-markdown", self.run_ok(page, program=PROGRAM).stdout)
+        for options, part in ((("-markdown", "none/table.md"), "-markdown = none/table.md: is in a folder that does not"),
+                              (("-markdown", "table.md", "-sweep_mu_d", "0.5,1"), "is a file for one run, not for a"),
+                              (("-markdwn", "table.md"), "did you mean -markdown?")):
+            done = run(*MODEL, *options, program=PROGRAM, folder=self.folder)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(part, done.stderr)
 
     def test_other_names_of_options_and_words(self):
         for options, meant in ((("-newton_drag", "1"), "-drag_quadratic"), (("-drag", "newton"), "quadratic")):

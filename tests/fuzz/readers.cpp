@@ -21,13 +21,13 @@
 
 #include "../common/temporary.hpp"
 #include "mutation.hpp"
-#include "stickslip/io/hdf5_file.hpp"
 #include "stickslip/model/drag_law.hpp"
 #include "stickslip/model/observable.hpp"
 #include "stickslip/monte_carlo/simulate.hpp"
 #include "stickslip/operators/element_pc.hpp"
 #include "stickslip/options/reference.hpp"
 #include "stickslip/options/request.hpp"
+#include "stickslip/outputs/hdf5_file.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
@@ -197,9 +197,9 @@ class Corpus {
 
   std::string sweep_checkpoint() const {
     options::Request request = sweep();
-    request.output.checkpoint = folder_ / "seed.sweep";
+    request.files.checkpoint = folder_ / "seed.sweep";
     (void)sweeps::run_sweep(PETSC_COMM_SELF, request, {});
-    return test::content(request.output.checkpoint);
+    return test::content(request.files.checkpoint);
   }
   static options::Request sweep() {
     return request_of_line(std::string(kScene) +
@@ -215,7 +215,7 @@ class Corpus {
 
   std::string hdf5() const {
     const std::string file = folder_ / "seed.h5";
-    io::Hdf5File out(PETSC_COMM_SELF, file);
+    outputs::Hdf5File out(PETSC_COMM_SELF, file);
     for (const char* group : {"/results", "/results/P_stick", "/results/F_slide"}) {
       out.make_group(group);
     }
@@ -289,9 +289,10 @@ void report(const std::string& file) {
     throw BadInput(refusal.what());
   }
   if (conducted.runs[0].point >= request.sweep->size()) return;
-  (void)sweeps::table(request, conducted, {});
-  (void)sweeps::csv(request, conducted);
-  (void)sweeps::summary(PETSC_COMM_SELF, request, conducted, {});
+  const auto report = sweeps::report_of(PETSC_COMM_SELF, request, conducted, {});
+  (void)report.tree();
+  (void)report.rows();
+  (void)report.grid();
 }
 
 template <class Work>
@@ -306,7 +307,7 @@ void keeps_file_when_refused(const std::string& file, Work work) {
 }
 
 void go_on_with(options::Request request, const std::string& file) {
-  request.output.checkpoint = file;
+  request.files.checkpoint = file;
   keeps_file_when_refused(file, [&] {
     if (request.sweep) {
       (void)sweeps::run_sweep(PETSC_COMM_SELF, request, {});

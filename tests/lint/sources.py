@@ -16,8 +16,8 @@ import statistics
 import sys
 
 MODULES = ("support", "catalogue", "algebra", "model", "effects", "cases", "exact", "noise", "velocity", "simulation",
-           "petsc", "checkpoint", "operators", "quantities", "routes", "monte_carlo", "accuracy", "options", "studies",
-           "io", "sweeps", "app")
+           "petsc", "checkpoint", "operators", "quantities", "routes", "monte_carlo", "accuracy", "outputs", "options",
+           "studies", "io", "sweeps", "app")
 SCALAR_MODULES = ("petsc", "operators", "quantities", "routes")
 LONGEST, LONG, MEDIAN = 60, 30, 8
 LONGEST_FILE = 450

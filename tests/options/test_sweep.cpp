@@ -133,12 +133,12 @@ TEST_CASE("sweep: files belong to the whole, and its own options are useless wit
                           {"-summary", "s.json"},
                           {"-checkpoint", "c"},
                           {"-sweep_csv", "s.csv"}});
-  CHECK(r.output.sweep_csv == "s.csv");
-  CHECK(r.output.summary == "s.json");
-  CHECK(r.output.checkpoint == "c");
+  CHECK(r.files.written ==
+        std::map<std::string, std::string>{{"sweep_csv", "s.csv"}, {"summary", "s.json"}});
+  CHECK(r.files.checkpoint == "c");
   CHECK(r.warnings.empty());
-  CHECK(r.sweep->request(1).output.summary.empty());
-  CHECK(r.sweep->request(1).output.checkpoint.empty());
+  CHECK(r.sweep->request(1).files.written.empty());
+  CHECK(r.sweep->request(1).files.checkpoint.empty());
   CHECK(read({{"-sweep_csv", "x.csv"}, {"-checkpoint", "c"}}).warnings.size() == 2);
 }
 

@@ -7,8 +7,9 @@
 
 #include "../common/catch.hpp"
 #include "../common/made_results.hpp"
+#include "../common/written.hpp"
 #include "stickslip/algebra/dense.hpp"
-#include "stickslip/io/report.hpp"
+#include "stickslip/io/reports.hpp"
 #include "stickslip/studies/extrapolation.hpp"
 #include "stickslip/studies/limit.hpp"
 #include "stickslip/studies/study.hpp"
@@ -342,11 +343,13 @@ TEST_CASE("studies: reports name every run and leave gaps where there is no numb
                           {{4, std::nan("")}}});
   study.conclusions = {"so it is"};
   const Request r = request(StudyKind::points, 0.25, 0.5, 3);
-  const std::string text = io::table(r, study, {});
+  const auto report = io::report_of(PETSC_COMM_WORLD, r, study, {});
+  const std::string& text = report.text;
   CHECK(text.find("nan") == std::string::npos);
   CHECK(text.find("so it is") != std::string::npos);
-  CHECK(io::csv(study).find("upwind,delta=0.5;p=4,P_stick,0.25,0.125,2,") != std::string::npos);
-  const std::string json = io::summary(PETSC_COMM_WORLD, r, study, {});
+  CHECK(test::written(report, "study_csv").find("upwind,delta=0.5;p=4,P_stick,0.25,0.125,2,") !=
+        std::string::npos);
+  const std::string json = test::written(report, "summary");
   CHECK(json.find("\"runs\"") != std::string::npos);
   CHECK(json.find("null") != std::string::npos);
 }

@@ -10,6 +10,7 @@
 #include "../common/made_results.hpp"
 #include "../common/options.hpp"
 #include "../common/temporary.hpp"
+#include "../common/written.hpp"
 #include "stickslip/accuracy/refinement.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/solver_statistics.hpp"
@@ -32,6 +33,10 @@ Request read(const Options& options) {
 }
 
 SweepResult result(const Request& request) { return run_sweep(PETSC_COMM_WORLD, request, {}); }
+
+outputs::Report report(const Request& request, const SweepResult& sweep) {
+  return report_of(PETSC_COMM_SELF, request, sweep, {});
+}
 
 bool first_rank() { return petsc::rank(PETSC_COMM_WORLD) == 0; }
 
@@ -207,11 +212,12 @@ TEST_CASE("sweeps: CSV quotes what holds a comma and leaves gaps where there is 
   sweep.runs = {made_by_hand(0, 2), made_by_hand(1, std::nan("")), made_by_hand(2, 0)};
   sweep.runs[2].results.clear();
   sweep.runs[2].status = Status::failed;
-  CHECK(sweeps::csv(request, sweep) == "mu_d,\"E(max(x,v))\",\"E(max(x,v))_error\",status\n"
-                                       "0.25,2,0.125,reached\n"
-                                       "0.5,,0.125,reached\n"
-                                       "0.75,,,failed\n");
-  const std::string table = sweeps::table(request, sweep, {});
+  CHECK(test::written(report(request, sweep), "sweep_csv") ==
+        "mu_d,\"E(max(x,v))\",\"E(max(x,v))_error\",status\n"
+        "0.25,2,0.125,reached\n"
+        "0.5,,0.125,reached\n"
+        "0.75,,,failed\n");
+  const std::string table = report(request, sweep).text;
   CHECK_THAT(table, Catch::Contains("mu_d = 0.75: failed") &&
                         Catch::Contains("2 of 3 points reached") &&
                         !Catch::Contains("mu_d = swept"));
@@ -226,7 +232,7 @@ TEST_CASE("sweeps: ten points that fell short are reported, and how many more th
       sweep.runs.back().status = Status::failed;
       sweep.runs.back().message = "why" + std::to_string(n);
     }
-    const std::string table = sweeps::table(request, sweep, {});
+    const std::string table = report(request, sweep).text;
     CHECK_THAT(table, Catch::Contains("why9\n") && Catch::Contains(more));
     CHECK((table.find("more like these") != table.npos) == (count == 12));
     CHECK(table.find("why10") == table.npos);
@@ -236,12 +242,12 @@ TEST_CASE("sweeps: ten points that fell short are reported, and how many more th
 TEST_CASE("sweeps: HDF5 keeps both ends of intervals, and gaps where a point has no number") {
   const test::TemporaryFolder folder;
   const std::string file = folder / "out.h5";
-  const Request request = read({{"-sweep_mu_d", "0.25,0.5"}, {"-output", file}});
+  const Request request = read({{"-sweep_mu_d", "0.25,0.5"}});
   SweepResult sweep;
   sweep.runs = {made_by_hand(0, 2), made_by_hand(1, 3)};
   sweep.runs[0].results[0].ci95 = {{1.5, 2.75}};
   sweep.runs[1].results.clear();
-  sweeps::write_hdf5(PETSC_COMM_SELF, request, sweep, {});
+  test::write(report(request, sweep), "output", file);
   const Hdf5Id id(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   const auto first_and_second = [&](const std::string& name) {
     const Hdf5Id data(H5Dopen2(id, ("/sweep/E(max(x,v))" + name).c_str(), H5P_DEFAULT), H5Dclose);

@@ -81,7 +81,8 @@ struct Option {
                         const char* sentence) {
     return {name, Kind::text, form, "", initial, {}, {}, sentence, ""};
   }
-  static Option file(const char* name, Kind kind, const char* sentence, const Shown& shown = {}) {
+  static Option file(const std::string& name, Kind kind, const std::string& sentence,
+                     const Shown& shown = {}) {
     return {name, kind, "file", "", "", {}, {}, sentence, "", shown};
   }
 };

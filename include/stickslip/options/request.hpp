@@ -1,6 +1,7 @@
 #pragma once
 /// A validated run: what computes its results, and where they go.
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,13 +32,15 @@ struct StudyOptions {
   int repeats = 3;           ///< runs of which the median time is taken
 };
 
-/// Names of files, empty if not asked for, and what is shown on the way.
-struct Output {
-  std::string summary, output, trajectory;
-  std::string checkpoint;  ///< of -route monte_carlo and of sweeps
-  std::string compared;    ///< file of the references
-  std::string study_csv, sweep_csv;
+/// Names of files, and what is shown on the way.
+struct Files {
+  std::map<std::string, std::string> written;  ///< those asked for, by the option of the output
+  std::string checkpoint;  ///< of -route monte_carlo and of sweeps; empty if not asked for
+  std::string compared;    ///< file of the references; empty if there is none
   bool progress = false;
+
+  /// Those that will hold a quantity that is no number of a table.
+  [[nodiscard]] std::vector<std::string> holding(Quantity field) const;
 };
 
 class Sweep;
@@ -45,7 +48,7 @@ class Sweep;
 /// A case, whether it is one of a series, and where the results go.
 struct Request : Case {
   StudyOptions study;
-  Output output;
+  Files files;
   std::shared_ptr<const Sweep> sweep;  ///< none for a single run; then this is its first point
   int sweep_ranks = 1;                 ///< that share a point
   bool plan_only = false;

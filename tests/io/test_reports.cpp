@@ -1,5 +1,5 @@
 #include "../common/catch.hpp"
-#include "stickslip/io/report.hpp"
+#include "stickslip/io/reports.hpp"
 
 #include <hdf5.h>
 #include <petscsys.h>
@@ -9,8 +9,8 @@
 
 #include "../common/made_results.hpp"
 #include "../common/temporary.hpp"
+#include "../common/written.hpp"
 #include "stickslip/options/reference.hpp"
-#include "stickslip/support/atomic_file.hpp"
 #include "stickslip/support/hdf5_id.hpp"
 
 using namespace stickslip;
@@ -80,13 +80,25 @@ options::Request request() {
   r.scene.drag = {3, 4};
   r.scene.bias = 0.0625;
   r.question.accuracy = 1e-5;
-  r.output.compared = "a.csv";
+  r.files.compared = "a.csv";
   r.resolved = {{"mu_d", "0.25"}};
   return r;
 }
 
+template <class... Parts>
+outputs::Report report(const Parts&... parts) {
+  return io::report_of(PETSC_COMM_SELF, parts...);
+}
+
+const io::RunTimes kTimes{0.5, 4};
+
 Json summary_of(const accuracy::Outcome& o) {
-  return Json::parse(io::summary(PETSC_COMM_SELF, request(), o, {0.5, 4}));
+  return Json::parse(test::written(report(request(), o, kTimes), "summary"));
+}
+
+std::string table(const options::Request& r, const accuracy::Outcome& o,
+                  const io::RunTimes& times = {}) {
+  return report(r, o, times).text;
 }
 
 std::vector<std::string> lines(const std::string& text) {
@@ -231,11 +243,11 @@ TEST_CASE("summary: simulations and comparisons") {
 
 TEST_CASE("table: values with their errors, absolute and relative") {
   auto r = request();
-  CHECK_THAT(io::table(r, outcome(), {0.5, 4}),
+  CHECK_THAT(table(r, outcome(), kTimes),
              Catch::StartsWith("mu_s = 1 (acts as 0.5625)   mu_d = 0.25   "
                                "mu_s_minus = 1 (acts as 0.9375)"));
   r.scene.bias = 0.5;
-  const std::string text = io::table(r, outcome(), {0.5, 4});
+  const std::string text = table(r, outcome(), kTimes);
   CHECK(row(text, "mu_s") == Words{"mu_s", "=",     "1", "mu_d", "=",    "0.25",    "tau", "=",
                                    "2",    "delta", "=", "0.5",  "drag", "linear,", "c",   "=",
                                    "3,",   "c3",    "=", "4",    "bias", "=",       "0.5"});
@@ -256,7 +268,7 @@ TEST_CASE("table: digits are those that the error supports, and exact values are
   auto o = outcome();
   o.results = {test::scalar("a", "", 0.15648616853236219, 3e-10), test::scalar("b", "", 0.1, 0),
                test::scalar("c", "", 0, 1e-3), test::scalar("d", "", std::nan(""), std::nan(""))};
-  const std::string text = io::table(request(), o, {});
+  const std::string text = table(request(), o);
   CHECK(row(text, "a") == Words{"a", "0.1564861685", "3.0e-10", "1.9e-09"});
   CHECK(row(text, "b") == Words{"b", "0.1", "0", "0"});
   CHECK(row(text, "c") == Words{"c", "0", "1.0e-03", "-"});
@@ -267,7 +279,7 @@ TEST_CASE("table: values end in one column, and a long key has a line of its own
   auto o = outcome();
   const std::string name(41, 'k');
   o.results.push_back(test::scalar(name, "time", 0.5, 0));
-  CHECK_THAT(io::table(request(), o, {}),
+  CHECK_THAT(table(request(), o),
              Catch::Contains("\n"
                              "quantity  value    error  rel. error  unit\n"
                              "E_V2       -4.0  5.0e-01     1.2e-01  velocity^2\n"
@@ -284,7 +296,7 @@ TEST_CASE("table: refinement levels with their sizes and seconds, the first with
   auto o = outcome();
   o.results.clear();
   o.steps.insert(o.steps.begin(), step(-0.125));
-  const std::string text = io::table(request(), o, {});
+  const std::string text = table(request(), o);
   Words row_of_first{"8", "5", "40", "81", "7.5", "1001", "2.00e+04", "12"};
   Words row_of_last = row_of_first;
   for (const char* word : {"0.000", "0.500", "0.625", "1.875", "-"}) {
@@ -320,7 +332,7 @@ TEST_CASE("table: the cost has room in 100 columns") {
   for (auto scheme : {cases::Scheme::hp, cases::Scheme::upwind, cases::Scheme::none}) {
     r.method.scheme = scheme;
     for (auto& step : o.steps) step.resolution.scheme = scheme;
-    for (const auto& line : lines(io::table(r, o, {}))) {
+    for (const auto& line : lines(table(r, o))) {
       INFO(line);
       CHECK(line.size() <= 100);
     }
@@ -335,7 +347,7 @@ TEST_CASE("table: of a long array the first and the last six") {
     r.abscissa.clear();
     for (int n = 0; n < size; ++n) r.abscissa.push_back(100 + n);
     r.value = r.error = r.abscissa;
-    const std::string text = io::table(request(), o, {});
+    const std::string text = table(request(), o);
     for (int n = 0; n < size; ++n) {
       INFO(n << " of " << size);
       CHECK(row(text, std::to_string(100 + n)).empty() == (size == 13 && n == 6));
@@ -352,7 +364,7 @@ TEST_CASE("table: a comparison of many rows shows its ends and what disagrees") 
                                           accuracy::Verdict::agrees));
   }
   o.comparison->rows[23].verdict = accuracy::Verdict::disagrees;
-  const std::string text = io::table(request(), o, {});
+  const std::string text = table(request(), o);
   for (int n = 0; n < 50; ++n) {
     INFO(n);
     CHECK(row(text, "Q" + std::to_string(n)).empty() == (n >= 20 && n < 30 && n != 23));
@@ -362,7 +374,7 @@ TEST_CASE("table: a comparison of many rows shows its ends and what disagrees") 
                                    "disagreement") &&
                        Catch::Contains("E_X2: not computed here\n"));
   o.comparison->rows.clear();
-  CHECK_THAT(io::table(request(), o, {}), Catch::Contains("NOTHING was compared"));
+  CHECK_THAT(table(request(), o), Catch::Contains("NOTHING was compared"));
 }
 
 TEST_CASE("table: a simulation reports its size, and of accuracy only if one was asked for") {
@@ -371,29 +383,30 @@ TEST_CASE("table: a simulation reports its size, and of accuracy only if one was
   o.simulation->state = {1000, 2000, 4e6, 2, 6};
   o.simulation->continued_from = 400;
   auto r = request();
-  CHECK_THAT(io::table(r, o, {}),
+  CHECK_THAT(table(r, o),
              Catch::Contains("1000 excursions, 400 of them from the checkpoint, 4e+06 jumps of the "
                              "noise in 2.00 s (500 ns a jump)\n") &&
                  !Catch::Contains("accuracy 1e-05"));
   r.question.accuracy_given = true;
-  CHECK_THAT(io::table(r, o, {}), Catch::Contains("accuracy 1e-05 NOT reached"));
+  CHECK_THAT(table(r, o), Catch::Contains("accuracy 1e-05 NOT reached"));
 }
 
 TEST_CASE("trajectory: columns of CSV in the order of their names") {
-  CHECK(io::csv(simulation::Path{{0, 0.5}, {-1.5, 2}, {0, 1}, {0, 0.25}}) ==
+  auto o = outcome();
+  o.path = simulation::Path{{0, 0.5}, {-1.5, 2}, {0, 1}, {0, 0.25}};
+  CHECK(test::written(report(request(), o, kTimes), "trajectory") ==
         "time,x,y,v\n0,-1.5,0,0\n0.5,2,1,0.25\n");
 }
 
 TEST_CASE("HDF5: results, intervals, comparison and path at their paths") {
   const test::TemporaryFolder folder;
-  auto r = request();
-  r.output.output = folder / "out.h5";
+  const std::string file = folder / "out.h5";
   auto o = outcome();
   o.comparison =
       accuracy::Comparison{{compared("S_v", 2.5, accuracy::Verdict::by_chance)}, {}, false};
   o.path = simulation::Path{{0, 0.5}, {-1.5, 2}, {0, 1}, {0, 0.25}};
-  io::write_hdf5(PETSC_COMM_SELF, r, o, {0.5, 4});
-  const auto at = [&](const char* path) { return dataset(r.output.output, path); };
+  test::write(report(request(), o, kTimes), "output", file);
+  const auto at = [&](const char* path) { return dataset(file, path); };
   CHECK(at("/results/E_V2/value") == Numbers{-4});
   CHECK(at("/results/E_V2/error") == Numbers{0.5});
   CHECK(at("/results/P_stick/low") == Numbers{0.2});
@@ -418,17 +431,15 @@ TEST_CASE("HDF5: results, intervals, comparison and path at their paths") {
 // Without an interval, errors are standard deviations.
 TEST_CASE("reports: references read from a summary and from HDF5 are what was written") {
   const test::TemporaryFolder folder;
-  auto r = request();
-  r.output.output = folder / "out.h5";
-  const std::string json = folder / "out.json";
-  io::write_hdf5(PETSC_COMM_SELF, r, outcome(), {0.5, 4});
-  write_text(json, io::summary(PETSC_COMM_SELF, r, outcome(), {0.5, 4}));
+  const std::string hdf5 = folder / "out.h5", json = folder / "out.json";
+  test::write(report(request(), outcome(), kTimes), "output", hdf5);
+  test::write(report(request(), outcome(), kTimes), "summary", json);
   const double half = 1.959963984540054 * 0.5;
   const std::vector<cases::Reference> written{{"E_V2", {}, -4, -4 - half, -4 + half},
                                               {"P_stick", {}, 0.25, 0.2, 0.3},
                                               {"S_v", 0.5, 3, 2.5, 3.25},
                                               {"S_v", 2.0, 5, 4.75, 5.5}};
-  for (const auto& file : {r.output.output, json}) {
+  for (const auto& file : {hdf5, json}) {
     const auto read = options::read_references(file);
     REQUIRE(read.size() == written.size());
     for (std::size_t n = 0; n < read.size(); ++n) {
@@ -443,11 +454,13 @@ TEST_CASE("reports: references read from a summary and from HDF5 are what was wr
 
 TEST_CASE("study reports: CSV, JSON and HDF5 hold the same numbers") {
   const test::TemporaryFolder folder;
-  auto r = request();
-  r.output.output = folder / "out.h5";
+  const std::string file = folder / "out.h5";
+  const auto r = request();
   const auto s = study();
-  CHECK(lines(io::csv(s))[1] == "upwind,delta=0.5;p=4,E_V2,-4,0.5,2,0.125,0.25,0.5,0.75,12");
-  const Json json = Json::parse(io::summary(PETSC_COMM_SELF, r, s, {0.5, 4}));
+  const auto all = report(r, s, kTimes);
+  CHECK(lines(test::written(all, "study_csv"))[1] ==
+        "upwind,delta=0.5;p=4,E_V2,-4,0.5,2,0.125,0.25,0.5,0.75,12");
+  const Json json = Json::parse(test::written(all, "summary"));
   const auto& run = json["runs"][0];
   CHECK(run["scene"]["method"] == "upwind");
   CHECK(run["scene"]["p"] == 4.0);
@@ -463,10 +476,10 @@ TEST_CASE("study reports: CSV, JSON and HDF5 hold the same numbers") {
   CHECK(table["p"] == Json{4.0, 8.0});
   CHECK(table["kappa"] == Json{nullptr, 1.5});
   CHECK(json["cost"]["seconds"] == 4.0);
-  io::write_hdf5(PETSC_COMM_SELF, r, s, {0.5, 4});
-  CHECK(dataset(r.output.output, "/study/P_stick_on_a_level/p") == Numbers{4, 8});
-  CHECK(dataset(r.output.output, "/study/P_stick_on_a_level/kappa")[1] == 1.5);
-  const std::string text = io::table(r, s, {0.5, 4});
+  test::write(all, "output", file);
+  CHECK(dataset(file, "/study/P_stick_on_a_level/p") == Numbers{4, 8});
+  CHECK(dataset(file, "/study/P_stick_on_a_level/kappa")[1] == 1.5);
+  const std::string text = all.text;
   CHECK(row(text, "8") == Words{"8", "1.500"});
   CHECK(row(text, "4") == Words{"4"});
   CHECK_THAT(text, Catch::Contains("1 runs, 4.00 s in total"));
@@ -484,7 +497,7 @@ TEST_CASE("study reports: numbers have the digits of their columns") {
                 {"extrapolated", Digits::compared},
                 {"seconds", Digits::measurement}},
                {{0.2222222222, 0.15648616853236219, 3e-10, 1.23456, 0.123456789012, 0.0123456}}}};
-  CHECK(row(io::table(request(), s, {}), "0.222222") ==
+  CHECK(row(report(request(), s, io::RunTimes{}).text, "0.222222") ==
         Words{"0.222222", "0.1564861685", "3.0e-10", "1.235", "0.123456789", "0.0123"});
 }
 
@@ -497,7 +510,7 @@ TEST_CASE("plan reports: sizes, solves and seconds in their places") {
   p.seconds = 7;
   auto r = request();
   r.question.quantities = {catalogue::Quantity::sticking};
-  const std::string text = io::table(r, p);
+  const std::string text = report(r, p).text;
   CHECK(row(text, "8") ==
         Words{"8", "5", "40", "81", "7.5", "1001", "2.00e+04", "3.00e+05", "12", "0.250"});
   CHECK_THAT(text, Catch::Contains("total: 2 assemblies, 2 factorisations, 5 solves\n") &&
@@ -505,7 +518,7 @@ TEST_CASE("plan reports: sizes, solves and seconds in their places") {
                        Catch::Contains("3 forward") &&
                        Catch::Contains("lambda = 0.5, v of both signs") &&
                        Catch::Contains("2 transposed") && Catch::Contains("about 7 s for"));
-  const Json plan = Json::parse(io::summary(PETSC_COMM_SELF, r, p))["plan"];
+  const Json plan = Json::parse(test::written(report(r, p), "summary"))["plan"];
   CHECK(plan["solves"] == 5);
   CHECK(plan["adaptive"] == false);
   CHECK(plan["seconds"] == 7.0);
@@ -518,6 +531,7 @@ TEST_CASE("plan reports: sizes, solves and seconds in their places") {
   CHECK(s["factor_operations"] == 4e6);
   CHECK(s["seconds"] == 0.25);
   p.plan.tasks[1].adaptive = true;
-  CHECK_THAT(io::table(r, p), Catch::Contains("total, adaptive tasks not counted: 2 assemblies") &&
-                                  Catch::Contains("adaptive: about 0 factorisations"));
+  CHECK_THAT(report(r, p).text,
+             Catch::Contains("total, adaptive tasks not counted: 2 assemblies") &&
+                 Catch::Contains("adaptive: about 0 factorisations"));
 }

@@ -4,12 +4,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "stickslip/io/hdf5_file.hpp"
-#include "stickslip/io/parts.hpp"
+#include "stickslip/outputs/hdf5_file.hpp"
+#include "stickslip/outputs/report.hpp"
 #include "stickslip/petsc/session.hpp"
-#include "stickslip/quantities/density.hpp"
+#include "stickslip/support/atomic_file.hpp"
 
-namespace stickslip::io {
+namespace stickslip::outputs {
 namespace {
 
 void write_field(Hdf5File& file, const std::string& name, const quantities::PhaseField& field) {
@@ -24,22 +24,22 @@ void write_axes(Hdf5File& file, const std::string& group, const quantities::Phas
 }
 
 void write_density(Hdf5File& file, const quantities::DensityField& field, double error) {
+  const auto write = [&file](const char* name, const auto& values, const char* meaning) {
+    const std::string path = fmt::format("/density/{}", name);
+    file.write_array(path, values);
+    file.attribute(path, "meaning", meaning);
+  };
   write_axes(file, "/density", field.pdf);
-  file.write_array("/density/weights", field.weights);
-  file.write_array("/density/cells", field.cells);
+  write("weights", field.weights, "sum_j weights_j f(v_j) = integral of f");
+  write("cells", field.cells,
+        "between two of them the density is the polynomial through the nodes there");
+  write("atom", field.atom, "P(X = x_i, V = 0 and sticking)");
+  write("marginal_x", field.noise_marginal, "P(X = x_i), summed over the grid");
+  write("marginal_v", field.velocity_marginal, "density of V without its atom P_stick at 0");
   write_field(file, "/density/pdf", field.pdf);
-  file.write_array("/density/atom", field.atom);
-  file.write_array("/density/marginal_x", field.noise_marginal);
-  file.write_array("/density/marginal_v", field.velocity_marginal);
   file.attribute("/density/pdf", "meaning",
                  "P(X = x_i, V in dv)/dv by rows of x and columns of v, without the atom at v = 0");
   file.attribute("/density/pdf", "smallest_value", field.least);
-  file.attribute("/density/weights", "meaning", "sum_j weights_j f(v_j) = integral of f");
-  file.attribute("/density/cells", "meaning",
-                 "between two of them the density is the polynomial through the nodes there");
-  file.attribute("/density/atom", "meaning", "P(X = x_i, V = 0 and sticking)");
-  file.attribute("/density/marginal_x", "meaning", "P(X = x_i), summed over the grid");
-  file.attribute("/density/marginal_v", "meaning", "density of V without its atom P_stick at 0");
   file.attribute("/density", "error_of_distribution_function_of_speed", error);
   file.attribute("/density", "probability_at_velocity_cut", field.truncated_mass);
 }
@@ -52,19 +52,6 @@ void write_path(Hdf5File& file, const simulation::Path& path) {
   file.write_array("/trajectory/x", path.x);
   file.write_array("/trajectory/y", path.y);
   file.write_array("/trajectory/v", path.v);
-}
-
-// One group for each quantity, with a row for each of its arguments.
-void write_comparison(Hdf5File& file, const Json& comparison) {
-  Json tree{{"file", comparison["file"]}, {"disagrees", comparison["disagrees"]}};
-  for (const auto& row : comparison["rows"]) {
-    Json& group = tree[row["quantity"].get<std::string>()];
-    group["argument"].push_back(row.value("argument", 0.0));
-    for (const char* name : {"value", "error", "reference", "ci95", "z"}) {
-      group[name].push_back(row[name]);
-    }
-  }
-  write_tree(file, "/comparison", tree);
 }
 
 void write_modes(Hdf5File& file, const quantities::RelaxationSector& sector) {
@@ -110,13 +97,15 @@ std::string xdmf(const std::string& file_name, const quantities::DensityField& f
       rows, columns, item(columns, 0, "v"), item(rows, 0, "x"), item(rows, columns, "pdf"));
 }
 
-}  // namespace
-
+// A slash in a key would make a group of its own.
 std::string hdf5_name(std::string key) {
   std::replace(key.begin(), key.end(), '/', ':');
   return key;
 }
 
+/// Writes a tree to a group of its own: objects as groups, texts and truths (yes, no) as attributes
+/// of their group, numbers and arrays of numbers as datasets, ci95 as two of them, low and high.
+/// Collective with equal trees.
 void write_tree(Hdf5File& file, const std::string& group, const Json& tree) {
   const auto write = [&](const std::string& name, const Json& value) {
     const std::string path = group + "/" + hdf5_name(name);
@@ -147,30 +136,80 @@ void write_tree(Hdf5File& file, const std::string& group, const Json& tree) {
   }
 }
 
-void write_record(Hdf5File& file, MPI_Comm comm, const options::Request& request,
-                  const RunTimes& times) {
-  write_tree(file, "/record", provenance_json(comm, request));
-  file.attribute("/record", "seconds", times.total);
-}
-
-void write_hdf5(MPI_Comm comm, const options::Request& request, const accuracy::Outcome& outcome,
-                const RunTimes& times) {
-  Hdf5File file(comm, request.output.output);
-  write_tree(file, "/results", results_json(outcome.results));
-  write_record(file, comm, request, times);
-  file.attribute("/record", "accuracy_reached", outcome.reached ? "yes" : "no");
-  for (const auto& sector : outcome.modes) write_modes(file, sector);
-  if (outcome.path) write_path(file, *outcome.path);
-  if (outcome.comparison) {
-    write_comparison(file, comparison_json(*outcome.comparison, request.output.compared));
+// One group for each quantity, with a row for each of its arguments.
+void write_comparison(Hdf5File& file, const Json& comparison) {
+  Json tree{{"file", comparison["file"]}, {"disagrees", comparison["disagrees"]}};
+  for (const auto& row : comparison["rows"]) {
+    Json& group = tree[row["quantity"].get<std::string>()];
+    group["argument"].push_back(row.value("argument", 0.0));
+    for (const char* name : {"value", "error", "reference", "ci95", "z"}) {
+      group[name].push_back(row[name]);
+    }
   }
-  if (outcome.density) write_density(file, *outcome.density, outcome.speed_error);
-  file.commit();
-  if (!outcome.density || petsc::rank(comm) != 0) return;
-  const std::filesystem::path name = request.output.output;
-  std::filesystem::path beside = name;
-  beside.replace_extension(".xdmf");
-  write_text(beside.string(), xdmf(name.filename().string(), *outcome.density));
+  write_tree(file, "/comparison", tree);
 }
 
-}  // namespace stickslip::io
+void write_study(Hdf5File& file, const Json& study) {
+  Json tree{{"kind", study["kind"]}};
+  const Json tables = study.value("tables", Json::object());
+  for (const auto& [title, table] : tables.items()) {
+    std::string name = title;
+    std::replace(name.begin(), name.end(), ' ', '_');  // blanks are awkward to type
+    tree[name] = table;
+  }
+  write_tree(file, "/study", tree);
+}
+
+// A group with texts of its own.
+void write_texts(Hdf5File& file, const std::string& group, const Texts& texts) {
+  file.make_group(group);
+  for (const auto& [name, text] : texts) file.attribute(group, name, text);
+}
+
+void write_grid(Hdf5File& file, const Grid& grid) {
+  write_texts(file, "/sweep", grid.notes);
+  for (const auto& array : grid.arrays) {
+    const std::string path = "/sweep/" + hdf5_name(array.name);
+    file.write_array(path, array.sizes, array.values);
+    for (const auto& [name, text] : array.notes) file.attribute(path, name, text);
+  }
+}
+
+void write_results(Hdf5File& file, const Report& report) {
+  const Json tree = report.tree();
+  if (tree.contains("study")) return write_study(file, tree["study"]);
+  write_tree(file, "/results", tree["results"]);
+  if (tree.contains("comparison")) write_comparison(file, tree["comparison"]);
+  file.attribute("/record", "accuracy_reached",
+                 tree["accuracy"]["reached"].get<bool>() ? "yes" : "no");
+  for (const auto& sector : report.modes) write_modes(file, sector);
+  if (report.path != nullptr) write_path(file, *report.path);
+  if (report.density != nullptr) write_density(file, *report.density, report.speed_error);
+}
+
+void write_hdf5(const Report& report, const std::string& name) {
+  Hdf5File file(report.comm, name);
+  write_texts(file, "/record", report.provenance);
+  write_texts(file, "/record/options", report.options);
+  file.attribute("/record", "seconds", report.seconds);
+  report.grid ? write_grid(file, report.grid()) : write_results(file, report);
+  file.commit();
+  if (report.density == nullptr || petsc::rank(report.comm) != 0) return;
+  std::filesystem::path beside(name);
+  const std::string text = xdmf(beside.filename().string(), *report.density);
+  write_text(beside.replace_extension(".xdmf").string(), text);
+}
+
+}  // namespace
+
+extern const Output kHdf5{
+    .option = "output",
+    .ending = "h5",
+    .sentence = "write results and fields as HDF5 to this file; with density also FILE.xdmf, which "
+                "ParaView opens",
+    .subjects = {Subject::run, Subject::study, Subject::sweep},
+    .fields = {catalogue::Quantity::density, catalogue::Quantity::trajectory},
+    .collective = true,
+    .write = write_hdf5};
+
+}  // namespace stickslip::outputs

@@ -1,4 +1,4 @@
-#include "stickslip/io/hdf5_file.hpp"
+#include "stickslip/outputs/hdf5_file.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/hdf5_id.hpp"
 
-namespace stickslip::io {
+namespace stickslip::outputs {
 namespace {
 
 static_assert(sizeof(hid_t) == sizeof(std::int64_t));
@@ -133,4 +133,4 @@ void Hdf5File::commit() {
   MPI_Barrier(comm_);
 }
 
-}  // namespace stickslip::io
+}  // namespace stickslip::outputs

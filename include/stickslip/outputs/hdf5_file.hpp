@@ -10,7 +10,7 @@
 
 #include "stickslip/support/atomic_file.hpp"
 
-namespace stickslip::io {
+namespace stickslip::outputs {
 
 /// Written with the HDF5 library itself: PETSc's viewer would store every number of the complex
 /// program as a pair, and both programs write the same file. All members are collective with equal
@@ -45,4 +45,4 @@ class Hdf5File {
   std::int64_t id_;  // of HDF5, whose headers stay out of this one
 };
 
-}  // namespace stickslip::io
+}  // namespace stickslip::outputs

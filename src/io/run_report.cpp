@@ -20,28 +20,6 @@ Json scene_json(const model::Scene& s) {
   return scene;
 }
 
-Json results_json(const quantities::Results& results) {
-  Json json = Json::object();
-  for (const auto& r : results) {
-    if (r.is_scalar()) {
-      json[r.key] = {{"value", r.value[0]}, {"error", r.error[0]}};
-    } else {
-      json[r.key] = {{r.abscissa_name, r.abscissa}, {"value", r.value}, {"error", r.error}};
-    }
-    if (!r.unit.empty()) json[r.key]["unit"] = r.unit;
-    if (r.ci95.empty()) continue;
-    json[r.key]["ci95"] = r.is_scalar() ? Json(r.ci95[0]) : Json(r.ci95);
-  }
-  return json;
-}
-
-Json provenance_json(MPI_Comm comm, const options::Request& request) {
-  Json json;
-  for (const auto& [name, value] : provenance(comm)) json[name] = value;
-  for (const auto& [name, value] : request.resolved) json["options"][name] = value;
-  return json;
-}
-
 Json seconds_json(const petsc::SolverStatistics& statistics) {
   return {{"assembly_seconds", statistics.assembly_seconds},
           {"analysis_seconds", statistics.analysis_seconds},
@@ -69,6 +47,19 @@ Json resolution_json(const accuracy::Resolution& r) {
   return json;
 }
 
+outputs::Report report_from(MPI_Comm comm, const options::Request& request,
+                            outputs::Subject subject, const RunTimes& times) {
+  outputs::Report report;
+  report.subject = subject;
+  report.comm = comm;
+  report.provenance = provenance(comm);
+  report.options = request.resolved;
+  report.seconds = times.total;
+  return report;
+}
+
+namespace {
+
 Json comparison_json(const accuracy::Comparison& comparison, const std::string& compared) {
   Json rows = Json::array();
   for (const auto& c : comparison.rows) {
@@ -88,13 +79,6 @@ Json comparison_json(const accuracy::Comparison& comparison, const std::string& 
           {"left_out", comparison.left_out},
           {"rows", std::move(rows)}};
 }
-
-std::string summary_text(MPI_Comm comm, const options::Request& request, Json tree) {
-  tree["provenance"] = provenance_json(comm, request);
-  return tree.dump(2) + "\n";
-}
-
-namespace {
 
 Json scene_of(const model::Scene& meant, const accuracy::Outcome& outcome) {
   Json scene = scene_json(meant);
@@ -159,7 +143,7 @@ Json run_json(const cases::Case& given, const accuracy::Outcome& outcome, const 
               const std::string& compared) {
   Json json;
   json["scene"] = scene_of(given.scene, outcome);
-  json["results"] = results_json(outcome.results);
+  json["results"] = outputs::results_json(outcome.results);
   json["accuracy"] = {{"asked", given.question.accuracy}, {"reached", outcome.reached}};
   if (!outcome.reached) json["accuracy"]["shortfall"] = outcome.shortfall;
   if (outcome.comparison) json["comparison"] = comparison_json(*outcome.comparison, compared);
@@ -168,9 +152,18 @@ Json run_json(const cases::Case& given, const accuracy::Outcome& outcome, const 
   return json;
 }
 
-std::string summary(MPI_Comm comm, const options::Request& request,
-                    const accuracy::Outcome& outcome, const RunTimes& times) {
-  return summary_text(comm, request, run_json(request, outcome, times, request.output.compared));
+outputs::Report report_of(MPI_Comm comm, const options::Request& request,
+                          const accuracy::Outcome& outcome, const RunTimes& times) {
+  outputs::Report report = report_from(comm, request, outputs::Subject::run, times);
+  report.text = run_table(request, outcome, times);
+  report.tree = [&request, &outcome, times] {
+    return run_json(request, outcome, times, request.files.compared);
+  };
+  report.density = outcome.density ? &*outcome.density : nullptr;
+  report.speed_error = outcome.speed_error;
+  report.modes = outcome.modes;
+  report.path = outcome.path ? &*outcome.path : nullptr;
+  return report;
 }
 
 }  // namespace stickslip::io
