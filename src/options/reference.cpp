@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 
 #define CSV_IO_NO_THREAD  // small files
@@ -15,7 +16,7 @@
 
 #include "reading.hpp"
 #include "stickslip/catalogue/entry.hpp"
-#include "stickslip/options/settings.hpp"
+#include "stickslip/outputs/results_json.hpp"
 #include "stickslip/support/hdf5_id.hpp"
 #include "stickslip/support/infinity.hpp"
 #include "stickslip/support/isolated.hpp"
@@ -26,93 +27,58 @@
 namespace stickslip::options {
 namespace {
 
-using Json = nlohmann::json;
+using outputs::Json;
 
-/// An array of a file, or a scalar as an array of one.
-struct Values {
-  std::vector<double> argument, value, error, low, high;  // low, high: simulated ones only
-  bool scalar = false;
-};
-
-void require_equal_sizes(const std::string& key, const Values& v) {
-  const std::size_t n = v.value.size();
-  const bool intervals = v.low.empty() ? v.error.size() == n : v.low.size() == n;
-  if (n == 0 || !intervals || v.high.size() != v.low.size() ||
-      (!v.scalar && v.argument.size() != n)) {
-    throw std::invalid_argument(fmt::format("{} lacks values, errors or arguments", key));
-  }
-}
-
-void require_numbers(const std::string& key, const Values& v) {
+void require_numbers(const quantities::Result& r) {
+  if (r.value.empty()) throw std::invalid_argument(r.key + " lacks values");
   bool sound = true;
-  for (const auto* values : {&v.argument, &v.value}) {
+  for (const auto* values : {&r.abscissa, &r.value}) {
     for (double value : *values) sound = sound && std::isfinite(value);
   }
   // A simulation may have bounded a value from below alone.
-  const bool finite = v.low.empty();
-  for (double error : v.error) sound = sound && error >= 0 && (!finite || std::isfinite(error));
-  for (std::size_t n = 0; n < v.low.size(); ++n) sound = sound && v.low[n] <= v.high[n];
-  if (!sound) throw std::invalid_argument(key + " has values or errors that are no numbers");
+  const bool finite = r.ci95.empty();
+  for (double error : r.error) sound = sound && error >= 0 && (!finite || std::isfinite(error));
+  for (const auto& [low, high] : r.ci95) sound = sound && low <= high;
+  if (!sound) throw std::invalid_argument(r.key + " has values or errors that are no numbers");
 }
 
-void append(const std::string& key, const Values& v, std::vector<Reference>& all) {
-  require_equal_sizes(key, v);
-  require_numbers(key, v);
-  const bool simulated = !v.low.empty();
-  const auto* row = catalogue::find_row(key);
-  if (simulated && !v.scalar && row != nullptr && row->by_cells) return;
-  for (std::size_t n = 0; n < v.value.size(); ++n) {
+void append(quantities::Result r, std::vector<Reference>& all) {
+  const bool simulated = !r.ci95.empty();
+  // JSON has no infinity: null stands for it where an interval has one end.
+  const auto open = [](double& end) { end = std::isnan(end) ? kInfinity : end; };
+  if (simulated) std::for_each(r.error.begin(), r.error.end(), open);
+  for (auto& interval : r.ci95) open(interval.second);
+  require_numbers(r);
+  const auto* row = catalogue::find_row(r.key);
+  if (simulated && !r.is_scalar() && row != nullptr && row->by_cells) return;
+  for (std::size_t n = 0; n < r.value.size(); ++n) {
     // A computed error is a bound; as a standard deviation it errs on the safe side.
-    const double half = simulated ? 0 : kNormalQuantile * v.error[n];
-    all.push_back({key, v.scalar ? std::nullopt : std::optional(v.argument[n]), v.value[n],
-                   simulated ? v.low[n] : v.value[n] - half,
-                   simulated ? v.high[n] : v.value[n] + half});
+    const double half = simulated ? 0 : kNormalQuantile * r.error[n];
+    all.push_back({r.key, r.is_scalar() ? std::nullopt : std::optional(r.abscissa[n]), r.value[n],
+                   simulated ? r.ci95[n].first : r.value[n] - half,
+                   simulated ? r.ci95[n].second : r.value[n] + half});
   }
 }
 
-// JSON has no infinity: null stands for it.
-double number_or_infinity(const Json& json) {
-  return json.is_null() ? kInfinity : json.get<double>();
-}
-
-std::vector<double> numbers(const Json& json) {
-  if (!json.is_array()) return {number_or_infinity(json)};
-  std::vector<double> all;
-  for (const auto& number : json) all.push_back(number_or_infinity(number));
+// The results of a summary by their keys, whatever their order. `form` is for messages.
+std::vector<Reference> references_of(const std::string& text, const char* form) {
+  std::vector<Reference> all;
+  try {
+    auto results = outputs::results_of(Json::parse(text).at("results"));
+    std::sort(results.begin(), results.end(),
+              [](const auto& a, const auto& b) { return a.key < b.key; });
+    for (auto& result : results) append(std::move(result), all);
+  } catch (const Json::exception& problem) {
+    throw std::invalid_argument(
+        fmt::format("is not {} of this program ({})", form, problem.what()));
+  }
   return all;
-}
-
-void read_intervals(const Json& ci95, Values& v) {
-  const auto add = [&](const Json& pair) {
-    v.low.push_back(pair.at(0).get<double>());
-    v.high.push_back(number_or_infinity(pair.at(1)));
-  };
-  if (!ci95.at(0).is_array()) return add(ci95);
-  for (const auto& pair : ci95) add(pair);
 }
 
 std::vector<Reference> read_json(const std::string& file) {
-  std::ifstream stream(file);
-  std::vector<Reference> all;
-  try {
-    const Json json = Json::parse(stream);
-    for (const auto& [key, result] : json.at("results").items()) {
-      Values v;
-      v.value = numbers(result.at("value"));
-      v.error = numbers(result.at("error"));
-      v.scalar = !result.at("value").is_array();
-      if (result.contains("ci95")) read_intervals(result["ci95"], v);
-      for (const auto& [name, values] : result.items()) {
-        const bool abscissa = name != "value" && name != "error" && name != "ci95";
-        if (abscissa && values.is_array()) v.argument = numbers(values);
-      }
-      append(key, v, all);
-    }
-  } catch (const Json::exception& problem) {
-    throw std::invalid_argument(
-        fmt::format("is not a JSON summary of this program ({})", problem.what()));
-  }
-  return all;
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return references_of(text.str(), "a JSON summary");
 }
 
 std::vector<std::string> names_in(hid_t group) {
@@ -125,35 +91,39 @@ std::vector<std::string> names_in(hid_t group) {
   return names;
 }
 
-std::vector<double> dataset(hid_t group, const std::string& name, bool* scalar = nullptr) {
+// A number or an array of them.
+Json dataset(hid_t group, const std::string& name) {
   const Hdf5Id data(H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!data.valid()) throw std::invalid_argument(name + " is no dataset");
   const Hdf5Id space(H5Dget_space(data), H5Sclose);
   const hssize_t size = H5Sget_simple_extent_npoints(space);
   constexpr hssize_t most = 100000000;
   if (size < 0 || size > most) throw std::invalid_argument(name + " has an absurd size");
-  if (scalar != nullptr) *scalar = H5Sget_simple_extent_type(space) == H5S_SCALAR;
   std::vector<double> values(static_cast<std::size_t>(size));
   if (size > 0 &&
       H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
     throw std::invalid_argument(name + " cannot be read as numbers");
   }
-  return values;
+  const bool scalar = H5Sget_simple_extent_type(space) == H5S_SCALAR;
+  return scalar ? Json(values.at(0)) : Json(values);
 }
 
-Values values_of(hid_t group) {
-  Values v;
-  const std::map<std::string, std::vector<double>*> known{
-      {"value", &v.value}, {"error", &v.error}, {"low", &v.low}, {"high", &v.high}};
-  for (const auto& name : names_in(group)) {
-    const auto found = known.find(name);
-    auto& values = found == known.end() ? v.argument : *found->second;
-    values = dataset(group, name, name == "value" ? &v.scalar : nullptr);
+// As in a summary.
+Json result_in(hid_t group) {
+  Json result;
+  for (const auto& name : names_in(group)) result[name] = dataset(group, name);
+  if (!result.contains("low") || !result.contains("high")) return result;
+  const Json low = result["low"], high = result["high"];
+  result.erase("low");
+  result.erase("high");
+  if (!low.is_array()) result["ci95"] = {low, high};
+  for (std::size_t n = 0; low.is_array() && n < low.size(); ++n) {
+    result["ci95"].push_back({low[n], high.at(n)});
   }
-  return v;
+  return result;
 }
 
-std::vector<Reference> read_hdf5(const std::string& file) {
+std::string read_hdf5(const std::string& file) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // failures are reported by exceptions
   const Hdf5Id id(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!id.valid()) {
@@ -161,32 +131,13 @@ std::vector<Reference> read_hdf5(const std::string& file) {
   }
   const Hdf5Id results(H5Gopen2(id, "/results", H5P_DEFAULT), H5Gclose);
   if (!results.valid()) throw std::invalid_argument("has no group /results");
-  std::vector<Reference> all;
+  Json tree{{"results", Json::object()}};
   for (const auto& key : names_in(results)) {
     const Hdf5Id group(H5Gopen2(results, key.c_str(), H5P_DEFAULT), H5Gclose);
     if (!group.valid()) throw std::invalid_argument("/results/" + key + " is no group");
-    append(key, values_of(group), all);
+    tree["results"][key] = result_in(group);
   }
-  return all;
-}
-
-std::string text_of(const std::vector<Reference>& references) {
-  Json json = Json::array();
-  for (const auto& r : references) {
-    const Json argument = r.argument ? Json(*r.argument) : Json();
-    json.push_back({r.quantity, argument, r.value, r.low, r.high});
-  }
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-std::vector<Reference> references_of(const std::string& text) {
-  std::vector<Reference> all;
-  for (const auto& r : Json::parse(text)) {
-    const auto argument = r[1].is_null() ? std::nullopt : std::optional(r[1].get<double>());
-    all.push_back({r[0].get<std::string>(), argument, r[2].get<double>(), r[3].get<double>(),
-                   number_or_infinity(r[4])});
-  }
-  return all;
+  return tree.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 // The HDF5 library can crash, or never end, on damaged files; so another process reads them. A
@@ -196,7 +147,7 @@ std::vector<Reference> read_hdf5_apart(const std::string& file) {
   const auto text = isolated(
       [&]() -> std::string {
         try {
-          return text_of(read_hdf5(file));
+          return read_hdf5(file);
         } catch (const std::exception& problem) {
           return std::string("!") + problem.what();
         }
@@ -204,7 +155,7 @@ std::vector<Reference> read_hdf5_apart(const std::string& file) {
       seconds);
   if (!text) throw std::invalid_argument("is so damaged that the HDF5 library cannot read it");
   if (text->starts_with('!')) throw std::invalid_argument(text->substr(1));
-  return references_of(*text);
+  return references_of(*text, "an HDF5 file");
 }
 
 // A number, or nothing for an empty cell.

@@ -1,5 +1,5 @@
 #pragma once
-/// Results as JSON, in summaries and in checkpoints of sweeps.
+/// Results as JSON, in summaries and in checkpoints of sweeps, and read from it.
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -13,5 +13,10 @@ using Json = nlohmann::ordered_json;
 
 /// An object with the results by their keys.
 [[nodiscard]] Json results_json(const quantities::Results& results);
+
+/// The results of such an object, with what it states of them. JSON has no word for what is not
+/// finite: null is read as NaN. Throws Json::exception where something is missing or of another
+/// type, and std::invalid_argument where values, errors and arguments differ in number.
+[[nodiscard]] quantities::Results results_of(const Json& json);
 
 }  // namespace stickslip::outputs
