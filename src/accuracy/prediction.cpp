@@ -47,7 +47,7 @@ class Predictor {
     double assembly = 0, factorization = 0, solve = 0;  // seconds of one
   };
 
-  [[nodiscard]] routes::Setting setting(petsc::SolverStatistics& statistics) const {
+  [[nodiscard]] routes::Problem problem(petsc::SolverStatistics& statistics) const {
     return {comm_, given_, discretisation_, statistics};
   }
 
@@ -55,7 +55,7 @@ class Predictor {
     const auto known = systems_.find(key);
     if (known != systems_.end()) return known->second;
     petsc::SolverStatistics statistics;
-    const auto analysis = routes::analyse(setting(statistics), key);
+    const auto analysis = routes::analyse(problem(statistics), key);
     step_.unknowns = std::max<std::int64_t>(step_.unknowns, statistics.unknowns);
     step_.nonzeros = std::max(step_.nonzeros, statistics.nonzeros);
     step_.factor_entries = std::max(step_.factor_entries, analysis.factor_entries);

@@ -34,14 +34,14 @@ Solved evaluated(MPI_Comm comm, const cases::Case& given, const Resolution& reso
   Step& step = solved.step;
   step.resolution = resolution;
   const double start = petsc::wall_seconds();
-  routes::Setting setting{comm, given, discretise(given.scene, resolution), step.statistics,
+  routes::Problem problem{comm, given, discretise(given.scene, resolution), step.statistics,
                           recipes};
   for (double omega : resolution.waves) {
-    setting.waves.emplace(omega, discretise(given.scene, following(resolution, omega)));
+    problem.waves.emplace(omega, discretise(given.scene, following(resolution, omega)));
   }
-  solved.evaluation = routes::evaluate(setting);
-  quantities::leave_out_missing_side(setting.discretisation.process, solved.evaluation.results);
-  const double rounding = model::rounding_of_sums(setting.discretisation.process.noise);
+  solved.evaluation = routes::evaluate(problem);
+  quantities::leave_out_missing_side(problem.discretisation.process, solved.evaluation.results);
+  const double rounding = model::rounding_of_sums(problem.discretisation.process.noise);
   require_least_error(rounding + resolution.truncation, solved.evaluation.results);
   step.checks = std::move(solved.evaluation.checks);
   step.seconds = petsc::wall_seconds() - start;
@@ -380,9 +380,9 @@ Solved solve_on(MPI_Comm comm, const cases::Case& given, const Resolution& resol
   return evaluated(comm, given, resolution, std::make_shared<quantities::Recipes>());
 }
 
-Outcome refine(MPI_Comm comm, const cases::Case& given, const Progress& progress,
-               const monte_carlo::SimulationProgress& simulation_progress,
-               const std::string& checkpoint) {
+Outcome carry_out(MPI_Comm comm, const cases::Case& given, const Progress& progress,
+                  const monte_carlo::SimulationProgress& simulation_progress,
+                  const std::string& checkpoint) {
   const cases::Question& question = given.question;
   Outcome outcome;
   outcome.reached = true;

@@ -108,7 +108,7 @@ int levels_for(const model::Scene& scene, double tolerance, double speed) {
     const double needed =
         speed > 0 ? side.friction.at_rest() - side.bias - side.drag(speed) : -HUGE_VAL;
     double log_weight = 0;  // of level i against the first that does not stick and has the force
-    int end = side.static_index() + 1;
+    int end = side.highest_static() + 1;
     if (noise.symmetric() && both) end = std::max(end, 1 - side.lowest_static());
     end = std::min(end, noise.highest());
     for (int i = end + 1; i <= noise.highest(); ++i) {

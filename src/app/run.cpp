@@ -153,8 +153,9 @@ int run_sweep(const options::Request& request, Clock::time_point start, double s
 int compute(const options::Request& request, Clock::time_point start, double start_up) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const bool first_rank = petsc::rank(comm) == 0;
-  const auto outcome = accuracy::refine(comm, request, progress_of(request, first_rank),
-                                        simulation_progress_of(request), request.files.checkpoint);
+  const auto outcome =
+      accuracy::carry_out(comm, request, progress_of(request, first_rank),
+                          simulation_progress_of(request), request.files.checkpoint);
   const io::RunTimes times{start_up, start_up + seconds_since(start)};
   outputs::write_all(io::report_of(comm, request, outcome, times), request.files.written);
   return status_of(outcome);

@@ -106,7 +106,7 @@ class SceneReader {
                          : fmt::format("shifted by the bias {:g}", scene_.bias));
     if (scene_.noise_levels && *scene_.noise_levels < scene_.full_levels()) {
       const auto all = scene_.process(scene_.full_levels());
-      const int k = std::min(all.static_index(), -all.lowest_static());
+      const int k = std::min(all.highest_static(), -all.lowest_static());
       if (k < scene_.full_levels()) {
         return report(threshold, why, fmt::format("take -noise_levels above {}", k));
       }

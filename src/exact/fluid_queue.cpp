@@ -146,13 +146,13 @@ class Queue {
   Queue& operator=(const Queue&) = delete;
 
   [[nodiscard]] double residual() const { return starts() == 0 ? 0 : riccati_.residual(psi_); }
-  /// Bodies start in the phases static_index + 1 ... highest.
-  [[nodiscard]] int starts() const { return process_.noise.highest() - process_.static_index(); }
+  /// Bodies start in the phases highest_static + 1 ... highest.
+  [[nodiscard]] int starts() const { return process_.noise.highest() - process_.highest_static(); }
   [[nodiscard]] int lowest_static() const { return process_.lowest_static(); }
-  [[nodiscard]] int count_static() const { return process_.static_index() - lowest_static() + 1; }
+  [[nodiscard]] int count_static() const { return process_.highest_static() - lowest_static() + 1; }
 
-  /// Probability that a body that starts in phase static_index + 1 + start is back at 0 in phase i;
-  /// calls visit(i, p).
+  /// Probability that a body that starts in phase highest_static + 1 + start is back at 0 in phase
+  /// i; calls visit(i, p).
   template <class Visit>
   void for_each_return(int start, Visit visit) const {
     for (std::size_t c = 0; c < phases_.falling.size(); ++c) {

@@ -10,7 +10,7 @@ namespace stickslip::model {
 // by the stationary distribution of the noise: in logarithms, which neither overflow nor vanish.
 bool Process::starts_upwards() const {
   constexpr double negligible = 1e-18;
-  const int high = static_index(), low = lowest_static();
+  const int high = highest_static(), low = lowest_static();
   if (high >= noise.highest()) return false;
   if (low <= noise.lowest() || !sticks()) return true;
   double log_ratio = std::log(noise.up_rate(high) / noise.down_rate(low));

@@ -21,7 +21,7 @@ class SpecialPoints {
       return branch.noise.place(branch.friction.at_rest() - branch.bias);
     };
     const double mu_s = process.friction.mu_s;
-    graded_ = {standing(process), -standing(mirrored), process.static_index() + 0.5,
+    graded_ = {standing(process), -standing(mirrored), process.highest_static() + 0.5,
                process.lowest_static() - 0.5};
     for (double x : more) graded_.push_back(noise.place(x));
     ends_ = {noise.last_up_to(mu_s) + 0.5, noise.first_from(-mu_s) - 0.5};

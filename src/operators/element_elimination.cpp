@@ -113,7 +113,7 @@ ElementElimination<Scalar>::ElementElimination(Mat matrix, std::shared_ptr<const
     lines_.push_back(line_of(branch));
     length_ = lines_.back().falling_at(lines_.back().velocities->elements() + 1);
   }
-  for (int i = process.lowest_static(); i <= process.static_index(); ++i) {
+  for (int i = process.lowest_static(); i <= process.highest_static(); ++i) {
     if (!states.has_static_state(i)) continue;
     if (static_rows_.empty()) lowest_static_ = i;
     static_rows_.push_back(states.index({StateKind::static_phase, Branch::positive, i, 0}));

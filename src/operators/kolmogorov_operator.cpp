@@ -139,7 +139,7 @@ petsc::VecHandle KolmogorovOperator::trace_at_exit(Branch branch) const {
 void KolmogorovOperator::add_value_at(int i, double v, double weight, Vec functional) const {
   const auto& [process, noise, velocities] = discretisation();
   const int lowest = process.lowest_static();
-  const bool at_rest = v == 0 && i >= lowest && i <= process.static_index();
+  const bool at_rest = v == 0 && i >= lowest && i <= process.highest_static();
   const bool below = v < 0 || (v == 0 && (at_rest ? i < 0 : i < lowest));
   const bool mirrored = below && states().symmetry_reduced();
   const double sign = mirrored && states().symmetry() == Symmetry::odd ? -weight : weight;
@@ -191,7 +191,7 @@ petsc::VecHandle KolmogorovOperator::mean_at_zero(const std::vector<double>& p) 
 
 std::vector<PetscScalar> KolmogorovOperator::entry_rates(Vec nu) const {
   const int lowest = discretisation().process.lowest_static(),
-            count = discretisation().process.static_index() - lowest + 1;
+            count = discretisation().process.highest_static() - lowest + 1;
   std::vector<PetscScalar> rates(static_cast<std::size_t>(count), 0.0);
   const petsc::ReadView local(nu);
   for (const auto& c : static_coupling_) rates[c.level - lowest] += c.rate * local[c.row];

@@ -170,7 +170,7 @@ class RowAssembler {
   }
 
   void rates_at_rest(int i) {
-    const int highest = upper_.process.static_index(), lowest = upper_.process.lowest_static();
+    const int highest = upper_.process.highest_static(), lowest = upper_.process.lowest_static();
     if (static_phase_ == StaticPhase::killing_edges && (i == highest || i == lowest)) {
       killing_ = chain_.rate();  // value 0 there: killed at once
       return;

@@ -53,7 +53,7 @@ int below_in_pairs(int first, int last, int lowest, int highest, int n) {
 
 StateSpace::Side::Side(const model::Process& process, const noise::Nodes& noise,
                        const velocity::VelocityDiscretisation& velocities)
-    : last_static(noise.last_up_to(process.static_index())),
+    : last_static(noise.last_up_to(process.highest_static())),
       first_holding(first_holding_node(process, noise, velocities)) {}
 
 StateSpace::StateSpace(MPI_Comm comm, const Discretisation& discretisation, Symmetry symmetry,
@@ -69,7 +69,7 @@ StateSpace::StateSpace(MPI_Comm comm, const Discretisation& discretisation, Symm
       lower_(discretisation.process.mirrored(), discretisation.noise->mirrored(),
              discretisation.velocities->mirrored()),
       lowest_static_(lowest_static_level(symmetry, discretisation.process)),
-      highest_static_(discretisation.process.static_index()),
+      highest_static_(discretisation.process.highest_static()),
       rank_(petsc::rank(comm)) {
   require_countable(discretisation.noise->count() * (2.0 * nodes_ + 2) +
                     discretisation.process.noise.count());

@@ -220,7 +220,7 @@ void read_start(const Settings& settings, Request& request, Problems& problems) 
                     "does not occur: from rest bodies start on the other side alone",
                     up ? "take -start s+" : "take -start s-");
   } else if (text == "s+") {
-    start = {process.static_index() + 1};
+    start = {process.highest_static() + 1};
   } else if (text == "s-") {
     start = {process.lowest_static() - 1};
   } else if (text == "rest" || text == "stationary") {

@@ -34,7 +34,7 @@ void for_each_place(const StationaryDistribution& distribution, Visit visit) {
 std::vector<double> atoms(const StationaryDistribution& distribution) {
   const auto& process = distribution.process();
   const int n = -process.noise.lowest();
-  const int lowest = process.lowest_static(), highest = process.static_index();
+  const int lowest = process.lowest_static(), highest = process.highest_static();
   const auto& stick = distribution.excursion().stick_time;
   const double total = distribution.excursion().mean_excursion();
   std::vector<double> atom(static_cast<std::size_t>(process.noise.count()), 0.0);

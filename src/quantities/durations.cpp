@@ -25,7 +25,7 @@ class StickingFlow {
   StickingFlow(const model::Process& process, std::vector<double> start)
       : noise_(process.noise),
         lowest_(process.lowest_static()),
-        highest_(process.static_index()),
+        highest_(process.highest_static()),
         distribution_(std::move(start)) {}
 
   void advance(double time) {
@@ -164,7 +164,7 @@ DurationDistribution excursion_distribution(operators::Systems& systems,
 
 double slide_density_at_zero(const model::Process& process, const SideChain& sides) {
   const auto from_plus = [](const model::Process& seen) {
-    const int k = seen.static_index();
+    const int k = seen.highest_static();
     if (!seen.starts_upwards()) return 0.0;
     const double up = seen.net_force(k + 1), down = -seen.net_force(k);
     if (down <= 0) return 0.0;

@@ -42,7 +42,7 @@ double Excursion::conservation_defect(const operators::Discretisation& discretis
     return std::transform_reduce(seen.begin(), seen.end(), exact.begin(), 0.0, std::plus<>(),
                                  [](double p, double q) { return std::abs(p - q); });
   }
-  const int highest = noise->last_up_to(process.static_index()),
+  const int highest = noise->last_up_to(process.highest_static()),
             lowest = -noise->mirrored().last_up_to(-process.lowest_static());
   double beyond = 0;
   for (std::size_t n = 0; n < slide_time.size(); ++n) {
@@ -51,7 +51,7 @@ double Excursion::conservation_defect(const operators::Discretisation& discretis
     if (node < lowest || node > highest) beyond += slide_time[n];
   }
   const auto moments =
-      model::noise_moments(process.noise, process.lowest_static(), process.static_index());
+      model::noise_moments(process.noise, process.lowest_static(), process.highest_static());
   return std::abs(beyond / (moments.beyond * mean_excursion()) - 1) +
          lost_probability * lost_probability;
 }
@@ -117,7 +117,7 @@ void append_moments(const operators::Discretisation& discretisation, const Excur
 void append_hitting_distribution(const model::Process& process, const Excursion& excursion,
                                  Results& results) {
   std::vector<double> levels;
-  for (int i = process.lowest_static(); i <= process.static_index(); ++i) levels.push_back(i);
+  for (int i = process.lowest_static(); i <= process.highest_static(); ++i) levels.push_back(i);
   const auto append = [&](const Row& row, const std::vector<double>& entry) {
     Result distribution = array(row, levels);
     distribution.value = entry;
@@ -133,7 +133,7 @@ void append_hitting_distribution(const model::Process& process, const Excursion&
 
 double stick_density_at_zero(const model::Process& process, double lowest, double highest) {
   const auto& noise = process.noise;
-  return noise.up_rate(process.static_index()) * highest +
+  return noise.up_rate(process.highest_static()) * highest +
          noise.down_rate(process.lowest_static()) * lowest;
 }
 

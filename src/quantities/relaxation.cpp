@@ -73,7 +73,7 @@ RelaxationMode mode_of(const operators::Systems& systems, const operators::State
   const PhaseField empty(systems.discretisation(), states, PhaseField::Kind::function);
   RelaxationMode mode{pair.value, pair.residual, 0, empty, empty, {}};
   if (real_rate) mode.rate = pair.value.real();
-  mode.at_rest.resize(systems.process().static_index() - lowest + 1);
+  mode.at_rest.resize(systems.process().highest_static() - lowest + 1);
   const petsc::ReadView real(pair.real), imaginary(pair.imaginary);
   const auto scale = scale_of(systems.comm(), real, imaginary);
   PetscInt at = 0;

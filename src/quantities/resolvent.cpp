@@ -52,7 +52,7 @@ class Sector {
     switch (symmetry_) {
     case Symmetry::even: return solve(chain.exit_transform());
     case Symmetry::odd: {
-      const int k = process.static_index();
+      const int k = process.highest_static();
       return solve(spread_odd(StaticChain::odd(process.noise, k, lambda_).upward_exit_transform()));
     }
     case Symmetry::none: break;
@@ -85,7 +85,7 @@ class Sector {
   // up.
   [[nodiscard]] std::vector<double> static_integral(const Function& f) const {
     const auto& process = systems_.process();
-    const int highest = process.static_index();
+    const int highest = process.highest_static();
     const bool odd = symmetry_ == Symmetry::odd;
     std::vector<double> values;
     for (int i = odd ? 1 : process.lowest_static(); i <= highest; ++i) {

@@ -45,7 +45,7 @@ struct StaticDifferences {
   explicit StaticDifferences(const model::Process& process) {
     const auto& noise = process.noise;
     std::vector<double> from_below{0}, weight{1};
-    for (int i = process.lowest_static(); i <= process.static_index(); ++i) {
+    for (int i = process.lowest_static(); i <= process.highest_static(); ++i) {
       from_below.push_back((1 / noise.rate() + noise.down(i) * from_below.back()) / noise.up(i));
       weight.push_back(noise.down(i) / noise.up(i) * weight.back());
     }

@@ -48,7 +48,7 @@ Uncertain slip_transform(operators::Systems& systems, const StationaryDistributi
   const auto& process = systems.process();
   auto& system =
       systems.at({s, operators::symmetry_of(process), StaticPhase::killing, Clock::path_length});
-  const int levels = process.static_index() - process.lowest_static() + 1;
+  const int levels = process.highest_static() - process.lowest_static() + 1;
   const auto ended =
       system.a().from_static(std::vector<PetscScalar>(static_cast<std::size_t>(levels), 1.0));
   return value_of(distribution.starts(system.a()), system.factors().solve(ended));

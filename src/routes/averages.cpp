@@ -21,9 +21,9 @@ constexpr int kBeyond = 0, kStick = 1, kSlide = 2;
 
 }  // namespace
 
-std::vector<Average> averages(const Setting& setting) {
-  const cases::Question& question = setting.given.question;
-  const auto& process = setting.discretisation.process;
+std::vector<Average> averages(const Problem& problem) {
+  const cases::Question& question = problem.given.question;
+  const auto& process = problem.discretisation.process;
   const auto named = [&](const char* f) {
     return model::parse_observable(f, process.friction).value;
   };
@@ -33,7 +33,7 @@ std::vector<Average> averages(const Setting& setting) {
   };
   const auto within = named("|x|<=mu_s"), stick = named("stick"), slide = named("slide");
   const double low = process.noise.level(process.lowest_static()),
-               high = process.noise.level(process.static_index());
+               high = process.noise.level(process.highest_static());
   all.push_back({{}, [=](double x, double, double) { return x < low || x > high ? 1 : 0; }});
   if (question.wants(Quantity::sticking) || question.wants(Quantity::averages)) {
     add(catalogue::kPStick, stick);
@@ -67,13 +67,13 @@ std::vector<Average> averages(const Setting& setting) {
   return all;
 }
 
-void append_averages(const Setting& setting, const std::vector<Uncertain>& values,
+void append_averages(const Problem& problem, const std::vector<Uncertain>& values,
                      quantities::Results& results) {
-  const auto all = averages(setting);
-  const cases::Question& question = setting.given.question;
-  const auto& process = setting.discretisation.process;
+  const auto all = averages(problem);
+  const cases::Question& question = problem.given.question;
+  const auto& process = problem.discretisation.process;
   const double beyond =
-      model::noise_moments(process.noise, process.lowest_static(), process.static_index()).beyond;
+      model::noise_moments(process.noise, process.lowest_static(), process.highest_static()).beyond;
   const double defect = std::abs(values[kBeyond].value / beyond - 1);
   for (int n = kBeyond + 1; n < static_cast<int>(all.size()); ++n) {
     Uncertain value = values[n];

@@ -18,13 +18,13 @@ struct Average {
 
 /// Those that are asked for, after the probability of the levels on which a body always moves,
 /// which append_averages needs.
-[[nodiscard]] std::vector<Average> averages(const Setting& setting);
+[[nodiscard]] std::vector<Average> averages(const Problem& problem);
 
-/// Turns pi(f) of averages(setting) into results.
+/// Turns pi(f) of averages(problem) into results.
 ///
 /// P(|X| > mu_s) is known in closed form; its relative error is rounding in pi itself, which the
 /// residuals of solves do not see, and is added to all errors (for P_stick as a share of P_slide).
-void append_averages(const Setting& setting, const std::vector<quantities::Uncertain>& values,
+void append_averages(const Problem& problem, const std::vector<quantities::Uncertain>& values,
                      quantities::Results& results);
 
 }  // namespace stickslip::routes

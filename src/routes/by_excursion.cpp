@@ -71,34 +71,34 @@ std::vector<Uncertain> entry_law(const StationaryDistribution& distribution) {
 }
 
 // A tenth of the accuracy, so that reduced models do not rule the error.
-quantities::ModelTolerance tolerance_of(const Setting& setting) {
-  return {0.1 * setting.given.question.accuracy, setting.recipes};
+quantities::ModelTolerance tolerance_of(const Problem& problem) {
+  return {0.1 * problem.given.question.accuracy, problem.recipes};
 }
 
 // Puts values at the frequencies of waves, each found on elements of its own, between the others.
-void put_waves(const Setting& setting, quantities::Spectrum& spectrum) {
+void put_waves(const Problem& problem, quantities::Spectrum& spectrum) {
   const auto smooth = std::exchange(spectrum.value, {});
   auto next = smooth.begin();
-  for (double omega : setting.given.question.omega) {
-    const auto wave = setting.waves.find(omega);
-    if (wave == setting.waves.end()) {
+  for (double omega : problem.given.question.omega) {
+    const auto wave = problem.waves.find(omega);
+    if (wave == problem.waves.end()) {
       spectrum.value.push_back(*next++);
       continue;
     }
-    operators::Systems systems(setting.comm, wave->second, setting.statistics);
+    operators::Systems systems(problem.comm, wave->second, problem.statistics);
     const StationaryDistribution distribution(systems);
     systems.release({0, operators::symmetry_of(systems.process())});
     spectrum.value.push_back(quantities::direct_spectrum(systems, distribution, {omega}).front());
   }
 }
 
-void append_spectrum(operators::Systems& systems, const Setting& setting, Evaluation& evaluation) {
-  const auto& omega = setting.given.question.omega;
+void append_spectrum(operators::Systems& systems, const Problem& problem, Evaluation& evaluation) {
+  const auto& omega = problem.given.question.omega;
   const auto& distribution = *evaluation.distribution;
   std::vector<double> smooth;
   std::copy_if(omega.begin(), omega.end(), std::back_inserter(smooth),
-               [&](double w) { return !setting.waves.contains(w); });
-  const bool direct = setting.given.method.spectrum_solver == cases::SpectrumSolver::direct;
+               [&](double w) { return !problem.waves.contains(w); });
+  const bool direct = problem.given.method.spectrum_solver == cases::SpectrumSolver::direct;
   quantities::ReducedSpectrum reduced;
   auto& spectrum = reduced.spectrum;
   if (direct) {
@@ -107,9 +107,9 @@ void append_spectrum(operators::Systems& systems, const Setting& setting, Evalua
     spectrum.at_zero = spectrum.value.back();
     spectrum.value.pop_back();
   } else {
-    reduced = quantities::reduced_spectrum(systems, distribution, smooth, tolerance_of(setting));
+    reduced = quantities::reduced_spectrum(systems, distribution, smooth, tolerance_of(problem));
   }
-  put_waves(setting, spectrum);
+  put_waves(problem, spectrum);
   quantities::append_spectrum(omega, spectrum, evaluation.results);
   if (direct) return;
   quantities::append_shape(reduced.shape, evaluation.results);
@@ -117,13 +117,13 @@ void append_spectrum(operators::Systems& systems, const Setting& setting, Evalua
   evaluation.checks.emplace_back("krylov_shifts", static_cast<double>(reduced.shifts.size()));
 }
 
-void append_durations(operators::Systems& systems, const Setting& setting, Evaluation& evaluation) {
-  const auto& time = setting.given.question.time;
+void append_durations(operators::Systems& systems, const Problem& problem, Evaluation& evaluation) {
+  const auto& time = problem.given.question.time;
   const auto& distribution = *evaluation.distribution;
-  const auto tolerance = tolerance_of(setting);
+  const auto tolerance = tolerance_of(problem);
   const auto slide = quantities::slide_distribution(systems, distribution, time, tolerance);
   const auto stick =
-      quantities::stick_distribution(setting.discretisation.process, entry_law(distribution), time);
+      quantities::stick_distribution(problem.discretisation.process, entry_law(distribution), time);
   const auto excursion = quantities::excursion_distribution(systems, distribution, time, tolerance);
   quantities::append_distribution(catalogue::kDensitySlide, catalogue::kCdfSlide, time, slide,
                                   evaluation.results);
@@ -147,24 +147,24 @@ void append_function_of_time(quantities::Result result, const std::vector<Uncert
   results.push_back(std::move(result));
 }
 
-void append_autocorrelation(operators::Systems& systems, const Setting& setting,
+void append_autocorrelation(operators::Systems& systems, const Problem& problem,
                             Evaluation& evaluation) {
-  const Question& question = setting.given.question;
-  const auto method = transient_method(setting.given.method);
+  const Question& question = problem.given.question;
+  const auto method = transient_method(problem.given.method);
   const auto values = quantities::autocorrelation(systems, *evaluation.distribution, question.time,
-                                                  method, tolerance_of(setting));
+                                                  method, tolerance_of(problem));
   append_function_of_time(quantities::array(catalogue::kAutocovariance, question.time), values,
                           evaluation.results);
 }
 
-void append_expectations(operators::Systems& systems, const Setting& setting,
+void append_expectations(operators::Systems& systems, const Problem& problem,
                          Evaluation& evaluation) {
-  const Question& question = setting.given.question;
-  const auto method = transient_method(setting.given.method);
+  const Question& question = problem.given.question;
+  const auto method = transient_method(problem.given.method);
   for (const auto& f : question.observables) {
     const auto expectation =
         quantities::expectation(systems, *evaluation.distribution, f, question.start, question.time,
-                                method, tolerance_of(setting));
+                                method, tolerance_of(problem));
     append_function_of_time(
         quantities::array(quantities::blank(catalogue::kExpectationOf, f), question.time),
         expectation.value, evaluation.results);
@@ -176,11 +176,11 @@ void append_expectations(operators::Systems& systems, const Setting& setting,
 /// Carries out the tasks of a plan on one discretisation.
 class Execution {
  public:
-  explicit Execution(const Setting& setting)
-      : setting_(setting),
-        given_(setting.given),
+  explicit Execution(const Problem& problem)
+      : problem_(problem),
+        given_(problem.given),
         question_(given_.question),
-        systems_(setting.comm, setting.discretisation, setting.statistics) {}
+        systems_(problem.comm, problem.discretisation, problem.statistics) {}
 
   Evaluation run() {
     const Plan plan = plan_of(given_);
@@ -206,8 +206,8 @@ class Execution {
       resolvents_.push_back(
           quantities::resolvent(systems_, question_.lambda[task.at], question_.observables));
       return;
-    case Work::spectrum: return append_spectrum(systems_, setting_, evaluation_);
-    case Work::durations: return append_durations(systems_, setting_, evaluation_);
+    case Work::spectrum: return append_spectrum(systems_, problem_, evaluation_);
+    case Work::durations: return append_durations(systems_, problem_, evaluation_);
     case Work::slips:
       return quantities::append_slip_moments(
           process(), quantities::slip_moments(systems_, distribution()), results());
@@ -215,8 +215,8 @@ class Execution {
     case Work::slip_distribution: return find_slip_distribution();
     case Work::first_passage: return pass(question_.velocity[task.at]);
     case Work::displacement: return find_displacement();
-    case Work::autocorrelation: return append_autocorrelation(systems_, setting_, evaluation_);
-    case Work::expectation: return append_expectations(systems_, setting_, evaluation_);
+    case Work::autocorrelation: return append_autocorrelation(systems_, problem_, evaluation_);
+    case Work::expectation: return append_expectations(systems_, problem_, evaluation_);
     case Work::relaxation: return find_modes();
     }
   }
@@ -225,7 +225,7 @@ class Execution {
     return *evaluation_.distribution;
   }
   [[nodiscard]] Results& results() { return evaluation_.results; }
-  [[nodiscard]] const model::Process& process() const { return setting_.discretisation.process; }
+  [[nodiscard]] const model::Process& process() const { return problem_.discretisation.process; }
 
   void find_distribution() {
     evaluation_.distribution = std::make_shared<StationaryDistribution>(systems_);
@@ -233,7 +233,7 @@ class Execution {
   }
 
   void find_averages() {
-    const Symmetry symmetry = operators::symmetry_of(setting_.discretisation.process);
+    const Symmetry symmetry = operators::symmetry_of(problem_.discretisation.process);
     quantities::append_averages(distribution(), systems_.at(0, symmetry).a(), question_.observables,
                                 results());
   }
@@ -241,7 +241,7 @@ class Execution {
   void find_hitting_distribution() {
     evaluation_.distribution->orient(systems_);
     append_with_rounding(distribution(), results(), [this](const auto& excursion, Results& found) {
-      quantities::append_hitting_distribution(setting_.discretisation.process, excursion, found);
+      quantities::append_hitting_distribution(problem_.discretisation.process, excursion, found);
     });
   }
 
@@ -255,13 +255,13 @@ class Execution {
   void find_duration_moments() {
     const auto entry = entry_law(distribution());
     const auto moments = quantities::duration_moments(systems_, distribution(), entry);
-    quantities::append_duration_moments(setting_.discretisation.process, distribution().sides(),
+    quantities::append_duration_moments(problem_.discretisation.process, distribution().sides(),
                                         moments, entry, results());
   }
 
   void transform_durations(double lambda) {
     const auto t = quantities::sliding_transforms(systems_, distribution(), lambda);
-    const auto stick = quantities::stick_transform(setting_.discretisation.process, lambda,
+    const auto stick = quantities::stick_transform(problem_.discretisation.process, lambda,
                                                    entry_law(distribution()));
     transforms_.push_back({t.slide, stick, t.excursion});
   }
@@ -273,7 +273,7 @@ class Execution {
   void find_slip_distribution() {
     const auto& distance = question_.distance;
     const auto slips =
-        quantities::slip_distribution(systems_, distribution(), distance, tolerance_of(setting_));
+        quantities::slip_distribution(systems_, distribution(), distance, tolerance_of(problem_));
     quantities::append_slip(distance, slips, results());
     evaluation_.checks.emplace_back("slip_pairs", slips.pairs);
   }
@@ -286,17 +286,17 @@ class Execution {
 
   void find_displacement() {
     const auto x = quantities::displacement(systems_, distribution(), question_.start,
-                                            question_.time, tolerance_of(setting_));
+                                            question_.time, tolerance_of(problem_));
     quantities::append_displacement(question_.time, x, results());
   }
 
   void transform_stick_durations() {
-    quantities::append_stick_transform(setting_.discretisation.process, question_.lambda,
+    quantities::append_stick_transform(problem_.discretisation.process, question_.lambda,
                                        entry_law(distribution()), results());
   }
 
   void find_modes() {
-    for (Symmetry symmetry : operators::sectors_of(setting_.discretisation.process)) {
+    for (Symmetry symmetry : operators::sectors_of(problem_.discretisation.process)) {
       evaluation_.modes.push_back(quantities::relaxation_modes(systems_, symmetry));
       quantities::append_relaxation(evaluation_.modes.back(), results());
     }
@@ -314,10 +314,10 @@ class Execution {
     }
     if (resolvents_.empty()) return;
     quantities::append_resolvent(lambda, question_.observables, resolvents_,
-                                 !setting_.discretisation.process.drifts(), results());
+                                 !problem_.discretisation.process.drifts(), results());
   }
 
-  const Setting& setting_;
+  const Problem& problem_;
   const Case& given_;
   const Question& question_;
   operators::Systems systems_;
@@ -330,10 +330,10 @@ class Execution {
 
 }  // namespace
 
-Evaluation by_excursion(const Setting& setting) { return Execution(setting).run(); }
+Evaluation by_excursion(const Problem& problem) { return Execution(problem).run(); }
 
-petsc::Analysis analyse(const Setting& setting, const operators::SystemKey& key) {
-  operators::Systems systems(setting.comm, setting.discretisation, setting.statistics);
+petsc::Analysis analyse(const Problem& problem, const operators::SystemKey& key) {
+  operators::Systems systems(problem.comm, problem.discretisation, problem.statistics);
   return systems.analyse(key);
 }
 

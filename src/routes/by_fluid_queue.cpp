@@ -91,14 +91,14 @@ std::vector<Uncertain> uncertain(const std::vector<double>& p, double rounding) 
   return all;
 }
 
-void append_laplace(const Setting& setting, const Excursions& excursions, double rounding,
+void append_laplace(const Problem& problem, const Excursions& excursions, double rounding,
                     quantities::Results& results) {
-  const auto& process = setting.discretisation.process;
+  const auto& process = problem.discretisation.process;
   const auto transform = [&](double lambda, const std::vector<double>& entry) {
     return quantities::stick_transform(process, lambda, uncertain(entry, rounding));
   };
   std::vector<quantities::DurationTransforms> transforms;
-  for (double lambda : setting.given.question.lambda) {
+  for (double lambda : problem.given.question.lambda) {
     const FluidQueue killed = solve(process, lambda);
     const double plus = excursions.sides.share_of_plus(), minus = excursions.sides.share_of_minus();
     const double slide = plus * sum(killed.plus().entry) + minus * sum(killed.minus().entry);
@@ -107,15 +107,15 @@ void append_laplace(const Setting& setting, const Excursions& excursions, double
                           plus * transform(lambda, killed.plus().entry) +
                               minus * transform(lambda, killed.minus().entry)});
   }
-  quantities::append_laplace(setting.given.question.lambda, transforms, results);
+  quantities::append_laplace(problem.given.question.lambda, transforms, results);
 }
 
 }  // namespace
 
-Evaluation by_fluid_queue(const Setting& setting) {
-  const auto& question = setting.given.question;
-  const auto& process = setting.discretisation.process;
-  const petsc::PhaseTimer timer("fluid queue", setting.statistics.factorization_seconds);
+Evaluation by_fluid_queue(const Problem& problem) {
+  const auto& question = problem.given.question;
+  const auto& process = problem.discretisation.process;
+  const petsc::PhaseTimer timer("fluid queue", problem.statistics.factorization_seconds);
   const FluidQueue queue = solve(process, 0);
   const Excursions excursions = excursions_of(process, queue);
   const Excursion& excursion = excursions.mean;
@@ -124,13 +124,13 @@ Evaluation by_fluid_queue(const Setting& setting) {
   auto& results = evaluation.results;
   if (question.wants(Quantity::sticking)) quantities::append_sticking(excursion, results);
   if (question.wants(Quantity::moments))
-    quantities::append_moments(setting.discretisation, excursion, results);
+    quantities::append_moments(problem.discretisation, excursion, results);
   if (question.wants(Quantity::entry_law)) {
     quantities::append_hitting_distribution(process, excursion, results);
   }
   if (question.wants(Quantity::noise_law)) {
     append_noise_distribution(
-        process, quantities::marginal_of_noise(setting.discretisation, excursion), results);
+        process, quantities::marginal_of_noise(problem.discretisation, excursion), results);
   }
   for (auto& r : results) {
     // E_V is a difference of the two velocity branches.
@@ -141,7 +141,7 @@ Evaluation by_fluid_queue(const Setting& setting) {
       r.error[n] = rounding * std::max(std::abs(r.value[n]), least);
     }
   }
-  if (question.wants(Quantity::laplace)) append_laplace(setting, excursions, rounding, results);
+  if (question.wants(Quantity::laplace)) append_laplace(problem, excursions, rounding, results);
   if (question.wants(Quantity::stick_duration_transform) && !question.wants(Quantity::laplace)) {
     quantities::append_stick_transform(process, question.lambda,
                                        uncertain(excursion.entry, rounding), results);

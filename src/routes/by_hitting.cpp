@@ -22,10 +22,10 @@ struct Means {
 /// Problems on the full grid up to the time at which `static_phase` kills.
 class Hitting {
  public:
-  Hitting(const Setting& setting, StaticPhase static_phase)
-      : process_(setting.discretisation.process),
+  Hitting(const Problem& problem, StaticPhase static_phase)
+      : process_(problem.discretisation.process),
         static_phase_(static_phase),
-        systems_(setting.comm, setting.discretisation, setting.statistics),
+        systems_(problem.comm, problem.discretisation, problem.statistics),
         system_(systems_.at(0, Symmetry::none, static_phase)) {}
 
   /// Means of that time; where the process is killed at once it is 0.
@@ -36,7 +36,7 @@ class Hitting {
   [[nodiscard]] Means upwards() {
     const double rate = process_.noise.rate();
     return solve([this, rate](double x, bool at_rest) {
-      return at_rest && x == process_.noise.level(process_.static_index()) ? rate : 0.0;
+      return at_rest && x == process_.noise.level(process_.highest_static()) ? rate : 0.0;
     });
   }
 
@@ -44,7 +44,7 @@ class Hitting {
   [[nodiscard]] bool is_edge(double x) const {
     const auto& noise = process_.noise;
     return static_phase_ == StaticPhase::killing_edges &&
-           (x == noise.level(process_.static_index()) ||
+           (x == noise.level(process_.highest_static()) ||
             x == noise.level(process_.lowest_static()));
   }
 
@@ -65,12 +65,12 @@ class Hitting {
 
 }  // namespace
 
-Evaluation by_hitting(const Setting& setting) {
-  const auto& process = setting.discretisation.process;
+Evaluation by_hitting(const Problem& problem) {
+  const auto& process = problem.discretisation.process;
   const auto chain = operators::StaticChain::of(process);
   const auto from_edge = chain.integral(std::vector<double>(chain.size(), 1.0));
-  const Means slides = Hitting(setting, StaticPhase::killing).time();
-  Hitting edges(setting, StaticPhase::killing_edges);
+  const Means slides = Hitting(problem, StaticPhase::killing).time();
+  Hitting edges(problem, StaticPhase::killing_edges);
   const Means to_edge = edges.time();
   // From the edges on the static chain alone decides; s+ and s- are taken in their shares, which
   // with symmetry are equal, as all means are.

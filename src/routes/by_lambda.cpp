@@ -30,9 +30,9 @@ struct Trial {
 /// R = (lambda - M)^-1 read at s+.
 class FullGrid {
  public:
-  FullGrid(const Setting& setting, double lambda)
+  FullGrid(const Problem& problem, double lambda)
       : lambda_(lambda),
-        systems_(setting.comm, setting.discretisation, setting.statistics),
+        systems_(problem.comm, problem.discretisation, problem.statistics),
         system_(systems_.at(lambda, Symmetry::none, StaticPhase::kept)),
         at_exit_(system_.a().trace_at_exit()) {}
 
@@ -66,17 +66,17 @@ class FullGrid {
   petsc::VecHandle at_exit_;
 };
 
-Trial average_at(const Setting& setting, double lambda) {
-  FullGrid grid(setting, lambda);
+Trial average_at(const Problem& problem, double lambda) {
+  FullGrid grid(problem, lambda);
   Trial trial;
   trial.lambda = lambda;
   std::vector<Uncertain> values;
-  for (const auto& average : averages(setting)) {
+  for (const auto& average : averages(problem)) {
     const auto mean = grid.of(average.f);
     values.push_back(mean.value);
     trial.largest_bias = std::max(trial.largest_bias, mean.bias / std::abs(mean.value.value));
   }
-  append_averages(setting, values, trial.results);
+  append_averages(problem, values, trial.results);
   for (const auto& result : trial.results) {
     trial.largest_error = std::max(trial.largest_error, quantities::relative_error(result));
   }
@@ -88,20 +88,20 @@ Trial average_at(const Setting& setting, double lambda) {
 /// geometric means between the best lambda and its neighbours.
 class Search {
  public:
-  explicit Search(const Setting& setting) : setting_(setting) {}
+  explicit Search(const Problem& problem) : problem_(problem) {}
 
   Trial run() {
-    const double tau = setting_.discretisation.process.noise.correlation_time(),
-                 wanted = 0.25 * setting_.given.question.accuracy;
-    best_ = average_at(setting_, std::max(0.01 * setting_.given.question.accuracy, kSafe) / tau);
+    const double tau = problem_.discretisation.process.noise.correlation_time(),
+                 wanted = 0.25 * problem_.given.question.accuracy;
+    best_ = average_at(problem_, std::max(0.01 * problem_.given.question.accuracy, kSafe) / tau);
     for (int n = 1, means = 0; n < kMostTrials && means < kMostMeans; ++n) {
-      const double net_force = best_.largest_bias / wanted;
-      if (net_force <= 1) break;
+      const double ratio = best_.largest_bias / wanted;
+      if (ratio <= 1) break;
       if (smaller_ > 0) {
         try_lambda(std::sqrt(best_.lambda * (rounding_rules() ? larger_.lambda : smaller_)));
         ++means;
       } else {
-        try_lambda(std::max(best_.lambda / (2 * net_force), kSmallest / tau));
+        try_lambda(std::max(best_.lambda / (2 * ratio), kSmallest / tau));
       }
     }
     return std::move(best_);
@@ -115,7 +115,7 @@ class Search {
   }
 
   void try_lambda(double lambda) {
-    Trial trial = average_at(setting_, lambda);
+    Trial trial = average_at(problem_, lambda);
     const bool better = trial.largest_error < best_.largest_error;
     if (better) std::swap(trial, best_);
     if (trial.lambda < best_.lambda) {
@@ -125,16 +125,16 @@ class Search {
     }
   }
 
-  const Setting& setting_;
+  const Problem& problem_;
   Trial best_, larger_;  // the next larger one tried, no lambda if there is none
   double smaller_ = 0;   // the next smaller one, 0 if there is none
 };
 
 }  // namespace
 
-Evaluation by_lambda(const Setting& setting) {
-  const auto& fixed = setting.given.question.lambda;
-  Trial best = fixed.empty() ? Search(setting).run() : average_at(setting, fixed[0]);
+Evaluation by_lambda(const Problem& problem) {
+  const auto& fixed = problem.given.question.lambda;
+  Trial best = fixed.empty() ? Search(problem).run() : average_at(problem, fixed[0]);
   Evaluation evaluation;
   evaluation.results = std::move(best.results);
   evaluation.checks = {{"lambda", best.lambda}, {"largest_relative_bias", best.largest_bias}};

@@ -57,12 +57,12 @@ double integral(const KolmogorovOperator& a, Vec pi, const KolmogorovOperator::O
 
 // By renewal, excursions end at the rates Lambda alpha pi of the highest static level upwards and
 // Lambda (1 - alpha) pi of the lowest one downwards.
-Uncertain mean_excursion(const Setting& setting, const KolmogorovOperator& a, Vec pi, Vec before) {
-  const auto& process = setting.discretisation.process;
+Uncertain mean_excursion(const Problem& problem, const KolmogorovOperator& a, Vec pi, Vec before) {
+  const auto& process = problem.discretisation.process;
   const auto& noise = process.noise;
   const auto exits = [&](double x, double y, double) {
     if (y != 0) return 0.0;
-    const int high = process.static_index(), low = process.lowest_static();
+    const int high = process.highest_static(), low = process.lowest_static();
     return (x == noise.level(high) ? noise.up_rate(high) : 0) +
            (x == noise.level(low) ? noise.down_rate(low) : 0);
   };
@@ -85,15 +85,15 @@ void append_durations(Uncertain excursion, quantities::Results& results) {
 
 }  // namespace
 
-Evaluation by_null_vector(const Setting& setting) {
-  const auto a = operators::assemble(setting.comm, setting.discretisation, 0, Symmetry::none,
-                                     operators::StaticPhase::kept, setting.statistics);
+Evaluation by_null_vector(const Problem& problem) {
+  const auto a = operators::assemble(problem.comm, problem.discretisation, 0, Symmetry::none,
+                                     operators::StaticPhase::kept, problem.statistics);
   petsc::MatHandle transposed;  // of -M; its null vector is pi
   check(MatTranspose(a.matrix(), MAT_INITIAL_MATRIX, transposed.out()));
   // All eigenvalues of -M have real parts >= 0, and 0 is the one nearest to a small negative
   // target.
-  const double target = -1e-6 / setting.discretisation.process.noise.correlation_time();
-  petsc::Eigensolver solver(transposed, kNullPrefix, target, 1, setting.statistics);
+  const double target = -1e-6 / problem.discretisation.process.noise.correlation_time();
+  petsc::Eigensolver solver(transposed, kNullPrefix, target, 1, problem.statistics);
   const Vec before = solver.pairs()[0].real;
   normalise(before);
   petsc::VecHandle pi;
@@ -104,22 +104,22 @@ Evaluation by_null_vector(const Setting& setting) {
 
   Evaluation evaluation;
   std::vector<Uncertain> values;
-  for (const auto& average : averages(setting)) {
+  for (const auto& average : averages(problem)) {
     const double value = integral(a, pi, average.f);
     values.push_back({value, std::abs(value - integral(a, before, average.f))});
   }
-  append_averages(setting, values, evaluation.results);
+  append_averages(problem, values, evaluation.results);
   using catalogue::Quantity;
-  const auto& question = setting.given.question;
+  const auto& question = problem.given.question;
   if (question.wants(Quantity::sticking) || question.wants(Quantity::averages)) {
-    const Uncertain excursion = mean_excursion(setting, a, pi, before);
+    const Uncertain excursion = mean_excursion(problem, a, pi, before);
     if (question.wants(Quantity::sticking)) append_durations(excursion, evaluation.results);
     if (question.wants(Quantity::averages)) {
       evaluation.results.push_back(scalar(catalogue::kSlipRate, Uncertain{1, 0} / excursion));
     }
   }
   evaluation.checks = {{"norm_pi_M_over_norm_M", relative_residual(transposed, pi)},
-                       {"most_negative_pi", most_negative(setting.comm, pi)}};
+                       {"most_negative_pi", most_negative(problem.comm, pi)}};
   return evaluation;
 }
 

@@ -4,13 +4,13 @@
 
 namespace stickslip::routes {
 
-Evaluation evaluate(const Setting& setting) {
-  switch (setting.given.method.route) {
-  case catalogue::Route::excursion: return by_excursion(setting);
-  case catalogue::Route::lambda: return by_lambda(setting);
-  case catalogue::Route::hitting: return by_hitting(setting);
-  case catalogue::Route::null_vector: return by_null_vector(setting);
-  case catalogue::Route::fluid_queue: return by_fluid_queue(setting);
+Evaluation evaluate(const Problem& problem) {
+  switch (problem.given.method.route) {
+  case catalogue::Route::excursion: return by_excursion(problem);
+  case catalogue::Route::lambda: return by_lambda(problem);
+  case catalogue::Route::hitting: return by_hitting(problem);
+  case catalogue::Route::null_vector: return by_null_vector(problem);
+  case catalogue::Route::fluid_queue: return by_fluid_queue(problem);
   case catalogue::Route::monte_carlo: break;  // has no discretisation
   }
   return {};

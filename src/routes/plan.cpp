@@ -84,7 +84,7 @@ class Planner {
   void plan_sensitivity() {
     const bool moments = question_.wants(Quantity::moments);
     if (!moments && !question_.wants(Quantity::sticking)) return;
-    const int durations = given_.scene.meant().static_index() > 0 ? 2 : 1;
+    const int durations = given_.scene.meant().highest_static() > 0 ? 2 : 1;
     // Without symmetry the side of the next excursion, and E_V.
     const int sides = symmetric_ ? 0 : 1;
     const int adjoints = durations + sides + (moments ? 3 + sides : 0);
@@ -164,10 +164,10 @@ class Planner {
     const auto& f = question_.observables;
     return static_cast<int>(std::count_if(f.begin(), f.end(), [&](const model::Observable& g) {
       const auto process = given_.scene.meant();
-      const int last = std::min(3 * process.static_index() + 3, process.noise.highest());
+      const int last = std::min(3 * process.highest_static() + 3, process.noise.highest());
       for (int i = 0; i <= last; ++i) {
         const double x = process.noise.level(i);
-        if (i <= process.static_index() && (g.*part)(x, 0, 0) != 0) return true;
+        if (i <= process.highest_static() && (g.*part)(x, 0, 0) != 0) return true;
         for (double v : {0.01, 0.3, 2.0}) {
           if ((g.*part)(x, 1, v) != 0 || (g.*part)(-x, 1, v) != 0) return true;
         }

@@ -7,7 +7,7 @@ namespace stickslip::routes {
 
 /// Everything from the sliding operator and the static chain; see
 /// quantities::StationaryDistribution.
-[[nodiscard]] Evaluation by_excursion(const Setting& setting);
+[[nodiscard]] Evaluation by_excursion(const Problem& problem);
 
 /// pi(f) = lambda u_lambda(s+; f) + O(lambda) with (lambda - M) u_lambda = f on the full grid; one
 /// factorisation for all f.
@@ -19,16 +19,16 @@ namespace stickslip::routes {
 /// so that lambda R f - (lambda R)^2 f is the bias up to O(lambda^2). Unless -lambda fixes it,
 /// lambda starts at accuracy/100 (of 1/tau) and is lowered until the bias is below a quarter of the
 /// accuracy, or as far as rounding lets the whole error fall.
-[[nodiscard]] Evaluation by_lambda(const Setting& setting);
+[[nodiscard]] Evaluation by_lambda(const Problem& problem);
 
 /// P_slide = R^(s+)/(R-check(s+) + R(x_k)) of Prop. 4.1: mean times to rest, to the edge of rest,
 /// and from there to the exit, on the full grid and by the static chain.
-[[nodiscard]] Evaluation by_hitting(const Setting& setting);
+[[nodiscard]] Evaluation by_hitting(const Problem& problem);
 
 /// pi M = 0 by SLEPc on the full grid.
-[[nodiscard]] Evaluation by_null_vector(const Setting& setting);
+[[nodiscard]] Evaluation by_null_vector(const Problem& problem);
 
 /// b = 0 without a grid in v; see exact::FluidQueue.
-[[nodiscard]] Evaluation by_fluid_queue(const Setting& setting);
+[[nodiscard]] Evaluation by_fluid_queue(const Problem& problem);
 
 }  // namespace stickslip::routes

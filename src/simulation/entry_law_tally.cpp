@@ -5,7 +5,7 @@ namespace stickslip::simulation {
 
 void entry_law_tally(Tally& tally) {
   std::vector<double> levels;
-  const int lowest = tally.process().lowest_static(), highest = tally.process().static_index();
+  const int lowest = tally.process().lowest_static(), highest = tally.process().highest_static();
   for (int i = lowest; i <= highest; ++i) levels.push_back(i);
   const Histogram& entries = tally.histogram({levels.begin() + 1, levels.end()}, &Excursion::entry);
   tally.report([=, &entries](const Tally& t) {

@@ -18,7 +18,7 @@ class Levels {
  public:
   explicit Levels(const model::Process& process)
       : lowest_(process.lowest_static()),
-        highest_(process.static_index()),
+        highest_(process.highest_static()),
         least_within_(process.noise.first_from(-process.friction.mu_s)),
         most_within_(process.noise.last_up_to(process.friction.mu_s)),
         exit_{process.exit_level(true), process.exit_level(false)},
@@ -61,7 +61,7 @@ class Levels {
   static int reach(const model::Process& process) {
     const auto& noise = process.noise;
     const double far = 40 * noise.standard_deviation() / noise.step();
-    const int edge = std::max(process.static_index(), -process.lowest_static());
+    const int edge = std::max(process.highest_static(), -process.lowest_static());
     const double all = std::max(-noise.lowest(), noise.highest());
     return static_cast<int>(noise.table ? all : std::min(all, edge + 2 + far));
   }

@@ -26,7 +26,7 @@ class Walker : public Walk {
         backward_flow_(mirrored_.drag),
         travel_(travel),
         lowest_(process.lowest_static()),
-        highest_(process.static_index()) {}
+        highest_(process.highest_static()) {}
 
   void begin(const RandomStream& random, const model::Start& start) override {
     random_ = random;

@@ -36,12 +36,12 @@ Run median_run(int repeats, const std::function<Run()>& make) {
 
 class CostStudy {
  public:
-  explicit CostStudy(const Setting& setting) : setting_(setting), repeats_(setting.study.repeats) {
+  explicit CostStudy(const Context& context) : context_(context), repeats_(context.study.repeats) {
     study_.kind = "cost";
   }
 
   Study run_study() {
-    require_upwind_memory(setting_, setting_.given, kFirstPoints << (upwind_steps() - 1));
+    require_upwind_memory(context_, context_.given, kFirstPoints << (upwind_steps() - 1));
     count_ = 1 + kLastDegree - kFirstDegree + 1 + upwind_steps() + kSimulations;
     reference_ = reference();
     hp();
@@ -54,8 +54,8 @@ class CostStudy {
  private:
   static constexpr int kFirstDegree = 2, kLastDegree = 12, kSimulations = 6, kFirstPoints = 4;
 
-  [[nodiscard]] int upwind_steps() const { return setting_.study.steps.value_or(7); }
-  void announce(const std::string& what) { setting_.report(++number_, count_, what); }
+  [[nodiscard]] int upwind_steps() const { return context_.study.steps.value_or(7); }
+  void announce(const std::string& what) { context_.report(++number_, count_, what); }
 
   [[nodiscard]] static cases::Case hp_case(const cases::Case& given) {
     cases::Case hp = given;
@@ -66,10 +66,10 @@ class CostStudy {
   // Finer than every point that is compared with it, in degree and in layers.
   quantities::Results reference() {
     announce("reference");
-    const auto given = hp_case(setting_.given);
+    const auto given = hp_case(context_.given);
     auto resolution = accuracy::hp_resolution(given.scene, kFinestDegree, 0, 1e-18);
     resolution.layers += 2;
-    return scalars(accuracy::solve_on(setting_.comm, given, resolution).evaluation.results);
+    return scalars(accuracy::solve_on(context_.comm, given, resolution).evaluation.results);
   }
 
   // Largest relative error of a scalar.
@@ -90,13 +90,13 @@ class CostStudy {
 
   void hp() {
     Curve curve{"hp", "degree", {}};
-    const auto given = hp_case(setting_.given);
+    const auto given = hp_case(context_.given);
     for (int degree = kFirstDegree; degree <= kLastDegree; ++degree) {
       announce(fmt::format("hp, degree {}", degree));
       const auto resolution = accuracy::hp_resolution(
           given.scene, degree, 0, std::max(std::pow(10.0, -(degree + 3)), 1e-18));
       Run run = median_run(repeats_, [&] {
-        auto [evaluation, step] = accuracy::solve_on(setting_.comm, given, resolution);
+        auto [evaluation, step] = accuracy::solve_on(context_.comm, given, resolution);
         return Run{"hp",
                    {{"degree", degree}, {"layers", resolution.layers}},
                    scalars(evaluation.results),
@@ -114,7 +114,7 @@ class CostStudy {
     for (int n = 0; n < upwind_steps(); ++n) {
       const int points = kFirstPoints << n;
       announce(fmt::format("upwind, p = {}", points));
-      Run run = median_run(repeats_, [&] { return upwind_run(setting_, setting_.given, points); });
+      Run run = median_run(repeats_, [&] { return upwind_run(context_, context_.given, points); });
       set_errors(reference_, run.results);
       if (n > 0) add_extrapolated(extrapolated, study_.runs.back(), run, points);
       add(upwind, run, points, error_of(run.results));
@@ -137,7 +137,7 @@ class CostStudy {
   // The error is the standard deviation of the interval: the error of a single run is random.
   void simulations() {
     Curve curve{"monte_carlo", "excursions", {}};
-    cases::Case given = setting_.given;
+    cases::Case given = context_.given;
     given.question.accuracy_given = false;
     for (int n = 0; n < kSimulations; ++n) {
       given.method.excursions = 1000 * std::pow(4, n);
@@ -153,7 +153,7 @@ class CostStudy {
   }
 
   [[nodiscard]] Run simulated(const cases::Case& given) const {
-    auto simulation = monte_carlo::simulate(setting_.comm, given, "", {});
+    auto simulation = monte_carlo::simulate(context_.comm, given, "", {});
     return {"monte_carlo",
             {{"excursions", given.method.excursions}},
             scalars(simulation.results),
@@ -206,7 +206,7 @@ class CostStudy {
                        curve.method, std::pow(10, slope), at(6), at(9));
   }
 
-  const Setting& setting_;
+  const Context& context_;
   int repeats_, number_ = 0, count_ = 0;
   quantities::Results reference_;
   std::vector<Curve> curves_;
@@ -215,6 +215,6 @@ class CostStudy {
 
 }  // namespace
 
-Study study_cost(const Setting& setting) { return CostStudy(setting).run_study(); }
+Study study_cost(const Context& context) { return CostStudy(context).run_study(); }
 
 }  // namespace stickslip::studies

@@ -35,21 +35,21 @@ namespace {
 /// All runs of the index set, and the converged values of the two finest steps.
 class Grid {
  public:
-  explicit Grid(const Setting& setting) : setting_(setting) {}
+  explicit Grid(const Context& context) : context_(context) {}
 
   void run() {
     int number = 0, count = 2;
     each([&](int k, int l) {
-      require_upwind_memory(setting_, case_at(l), 1 << k, kTail);
+      require_upwind_memory(context_, case_at(l), 1 << k, kTail);
       ++count;
     });
     each([&](int k, int l) {
-      setting_.report(++number, count, fmt::format("p = {}, delta = 1/{}", 1 << k, 1 << l));
-      runs_[{k, l}] = upwind_run(setting_, case_at(l), 1 << k, kTail);
+      context_.report(++number, count, fmt::format("p = {}, delta = 1/{}", 1 << k, 1 << l));
+      runs_[{k, l}] = upwind_run(context_, case_at(l), 1 << k, kTail);
     });
     for (int l : {5, 6}) {
-      setting_.report(++number, count, fmt::format("hp, delta = 1/{}", 1 << l));
-      converged_[l] = converged_run(setting_, case_at(l), 1e-9);
+      context_.report(++number, count, fmt::format("hp, delta = 1/{}", 1 << l));
+      converged_[l] = converged_run(context_, case_at(l), 1e-9);
     }
   }
 
@@ -89,7 +89,7 @@ class Grid {
   static constexpr double kTail = 1e-6;
 
   [[nodiscard]] cases::Case case_at(int l) const {
-    return with_delta(setting_.given, std::ldexp(1, -l));
+    return with_delta(context_.given, std::ldexp(1, -l));
   }
 
   template <class Action>
@@ -101,15 +101,15 @@ class Grid {
     }
   }
 
-  const Setting& setting_;
+  const Context& context_;
   std::map<Place, Run> runs_;
   std::map<int, Run> converged_;
 };
 
 }  // namespace
 
-Study study_heuristic(const Setting& setting) {
-  Grid grid(setting);
+Study study_heuristic(const Context& context) {
+  Grid grid(context);
   grid.run();
   Study study;
   study.kind = "heuristic";

@@ -44,17 +44,17 @@ std::string conclusion(const Table& table, const quantities::Result& converged) 
 
 }  // namespace
 
-Study study_points(const Setting& setting) {
+Study study_points(const Context& context) {
   Study study;
   study.kind = "p";
-  const int steps = setting.study.steps.value_or(8);
-  require_upwind_memory(setting, setting.given, 1 << steps);
+  const int steps = context.study.steps.value_or(8);
+  require_upwind_memory(context, context.given, 1 << steps);
   for (int n = 1; n <= steps; ++n) {
-    setting.report(n, steps + 1, fmt::format("p = {}", 1 << n));
-    study.runs.push_back(upwind_run(setting, setting.given, 1 << n));
+    context.report(n, steps + 1, fmt::format("p = {}", 1 << n));
+    study.runs.push_back(upwind_run(context, context.given, 1 << n));
   }
-  setting.report(steps + 1, steps + 1, "hp, for comparison");
-  const Run converged = converged_run(setting, setting.given, 1e-10);
+  context.report(steps + 1, steps + 1, "hp, for comparison");
+  const Run converged = converged_run(context, context.given, 1e-10);
   for (auto& run : study.runs) set_errors(converged.results, run.results);
   for (const auto& result : converged.results) {
     // Closed forms do not come from the grid.

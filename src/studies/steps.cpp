@@ -13,13 +13,13 @@ namespace {
 /// One family of steps, with mu_s at the same place between the levels.
 class Family {
  public:
-  Family(const Setting& setting, double offset, std::string name)
-      : setting_(setting), name_(std::move(name)) {
-    const auto& friction = setting.given.scene.friction;
+  Family(const Context& context, double offset, std::string name)
+      : context_(context), name_(std::move(name)) {
+    const auto& friction = context.given.scene.friction;
     grazing_ = friction.mu_d == friction.mu_s;
     const double mu_s = friction.mu_s;
-    const double first = std::max(1.0, std::round(mu_s / setting.given.scene.delta - offset));
-    const int steps = setting.study.steps.value_or(8);
+    const double first = std::max(1.0, std::round(mu_s / context.given.scene.delta - offset));
+    const int steps = context.study.steps.value_or(8);
     for (int n = 0; n < steps; ++n) deltas_.push_back(mu_s / (first * (1 << n) + offset));
   }
 
@@ -29,9 +29,9 @@ class Family {
 
   void run(int& number, int count) {
     for (double delta : deltas_) {
-      setting_.report(++number, count, fmt::format("{}, delta = {:.6g}", name_, delta));
-      runs_.push_back(converged_run(setting_, with_delta(setting_.given, delta),
-                                    std::min(setting_.given.question.accuracy, 1e-9)));
+      context_.report(++number, count, fmt::format("{}, delta = {:.6g}", name_, delta));
+      runs_.push_back(converged_run(context_, with_delta(context_.given, delta),
+                                    std::min(context_.given.question.accuracy, 1e-9)));
     }
   }
 
@@ -67,7 +67,7 @@ class Family {
     return all;
   }
 
-  const Setting& setting_;
+  const Context& context_;
   std::string name_;
   bool grazing_ = false;  // mu_d = mu_s
   std::vector<double> deltas_;
@@ -84,10 +84,10 @@ std::string conclusion(const Table& table) {
 
 }  // namespace
 
-Study study_steps(const Setting& setting) {
+Study study_steps(const Context& context) {
   Study study;
   study.kind = "delta";
-  Family on_level(setting, 0, "on a level"), between(setting, 0.5, "between levels");
+  Family on_level(context, 0, "on a level"), between(context, 0.5, "between levels");
   const int count = static_cast<int>(on_level.deltas().size() + between.deltas().size());
   int number = 0;
   for (Family* family : {&on_level, &between}) {

@@ -9,7 +9,7 @@
 namespace stickslip::studies {
 
 /// What every study is given.
-struct Setting {
+struct Context {
   MPI_Comm comm;
   const cases::Case& given;
   const options::StudyOptions& study;
@@ -21,10 +21,10 @@ struct Setting {
   }
 };
 
-[[nodiscard]] Study study_points(const Setting& setting);
-[[nodiscard]] Study study_steps(const Setting& setting);
-[[nodiscard]] Study study_heuristic(const Setting& setting);
-[[nodiscard]] Study study_cost(const Setting& setting);
+[[nodiscard]] Study study_points(const Context& context);
+[[nodiscard]] Study study_steps(const Context& context);
+[[nodiscard]] Study study_heuristic(const Context& context);
+[[nodiscard]] Study study_cost(const Context& context);
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -40,12 +40,12 @@ void set_errors(const quantities::Results& known, quantities::Results& results);
 /// of the scheme, which is about 1/p.
 constexpr double kUpwindTail = 1e-9;
 /// Upwind with p points per noise step.
-[[nodiscard]] Run upwind_run(const Setting& setting, const cases::Case& given, int points,
+[[nodiscard]] Run upwind_run(const Context& context, const cases::Case& given, int points,
                              double tail = kUpwindTail);
 /// Throws NoMemory if that run would not fit: no study computes for long only to end there.
-void require_upwind_memory(const Setting& setting, const cases::Case& given, int points,
+void require_upwind_memory(const Context& context, const cases::Case& given, int points,
                            double tail = kUpwindTail);
 /// Refined hp.
-[[nodiscard]] Run converged_run(const Setting& setting, const cases::Case& given, double accuracy);
+[[nodiscard]] Run converged_run(const Context& context, const cases::Case& given, double accuracy);
 
 }  // namespace stickslip::studies

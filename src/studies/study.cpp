@@ -9,12 +9,12 @@ namespace stickslip::studies {
 
 Study run_study(MPI_Comm comm, const cases::Case& given, const options::StudyOptions& study,
                 const StudyProgress& progress) {
-  const Setting setting{comm, given, study, progress};
+  const Context context{comm, given, study, progress};
   switch (study.kind) {
-  case options::StudyKind::points: return study_points(setting);
-  case options::StudyKind::steps: return study_steps(setting);
-  case options::StudyKind::heuristic: return study_heuristic(setting);
-  case options::StudyKind::cost: return study_cost(setting);
+  case options::StudyKind::points: return study_points(context);
+  case options::StudyKind::steps: return study_steps(context);
+  case options::StudyKind::heuristic: return study_heuristic(context);
+  case options::StudyKind::cost: return study_cost(context);
   case options::StudyKind::none: break;
   }
   return {};
@@ -61,23 +61,23 @@ cases::Case upwind_case(const cases::Case& given) {
 
 }  // namespace
 
-void require_upwind_memory(const Setting& setting, const cases::Case& given, int points,
+void require_upwind_memory(const Context& context, const cases::Case& given, int points,
                            double tail) {
   const auto upwind = upwind_case(given);
   try {
-    accuracy::require_memory(setting.comm, upwind.scene,
+    accuracy::require_memory(context.comm, upwind.scene,
                              accuracy::upwind_resolution(upwind.scene, points, tail));
   } catch (const NoMemory& lack) {
-    const bool fixed = setting.study.kind == options::StudyKind::heuristic;
+    const bool fixed = context.study.kind == options::StudyKind::heuristic;
     throw NoMemory(fmt::format("upwind with p = {}, delta = {:g}: {}{}", points, upwind.scene.delta,
                                lack.what(), fixed ? "" : ", or fewer -study_steps"));
   }
 }
 
-Run upwind_run(const Setting& setting, const cases::Case& given, int points, double tail) {
+Run upwind_run(const Context& context, const cases::Case& given, int points, double tail) {
   const auto upwind = upwind_case(given);
   const auto resolution = accuracy::upwind_resolution(upwind.scene, points, tail);
-  auto [evaluation, step] = accuracy::solve_on(setting.comm, upwind, resolution);
+  auto [evaluation, step] = accuracy::solve_on(context.comm, upwind, resolution);
   return {"upwind",
           {{"delta", upwind.scene.delta}, {"p", points}},
           scalars(evaluation.results),
@@ -85,11 +85,11 @@ Run upwind_run(const Setting& setting, const cases::Case& given, int points, dou
           step.statistics};
 }
 
-Run converged_run(const Setting& setting, const cases::Case& given, double accuracy) {
+Run converged_run(const Context& context, const cases::Case& given, double accuracy) {
   cases::Case hp = given;
   hp.method = {};
   hp.question.accuracy = accuracy;
-  const auto outcome = accuracy::refine(setting.comm, hp, {}, {});
+  const auto outcome = accuracy::carry_out(context.comm, hp, {}, {});
   double seconds = 0;
   for (const auto& step : outcome.steps) seconds += step.seconds;
   return {"hp",

@@ -33,7 +33,7 @@ Json head(std::size_t point, Status status, const std::string& message) {
 Json entry_of(MPI_Comm comm, const cases::Case& given, std::size_t point) {
   const double start = petsc::wall_seconds();
   try {
-    const auto outcome = accuracy::refine(comm, given, {});
+    const auto outcome = accuracy::carry_out(comm, given, {});
     Json json =
         head(point, outcome.reached ? Status::reached : Status::not_reached, outcome.shortfall);
     json.update(io::run_json(given, outcome, {0, petsc::wall_seconds() - start}));

@@ -95,7 +95,7 @@ double killed_layer(const model::Process& process, double lambda) {
 double speed_of_leaving(const model::Process& process) {
   const auto cubed = [](const model::Process& branch) {
     if (!branch.starts_upwards()) return kInfinity;
-    return std::pow(branch.net_force(branch.static_index() + 1), 3);
+    return std::pow(branch.net_force(branch.highest_static() + 1), 3);
   };
   const double step = process.noise.step();
   return 0.6 * std::min(cubed(process), cubed(process.mirrored())) /

@@ -43,7 +43,7 @@ cases::Case averages(const std::vector<std::string>& observables, const std::str
 
 Outcome solve(cases::Case r, double accuracy) {
   r.question.accuracy = accuracy;
-  return accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
+  return accuracy::carry_out(PETSC_COMM_WORLD, r, {}, {});
 }
 
 const quantities::Result& result(const Outcome& outcome, std::string_view key) {

@@ -29,7 +29,7 @@ cases::Case given(double mu_s, double mu_d, double tau, double delta, model::Dra
   return r;
 }
 
-Outcome solve(const cases::Case& r) { return accuracy::refine(PETSC_COMM_WORLD, r, {}, {}); }
+Outcome solve(const cases::Case& r) { return accuracy::carry_out(PETSC_COMM_WORLD, r, {}, {}); }
 
 const quantities::Result& result(const Outcome& outcome, std::string_view key) {
   for (const auto& r : outcome.results) {
@@ -64,7 +64,7 @@ quantities::Results estimated(const cases::Case& r, int n) {
 // Times a step takes from the times of those before.
 std::vector<double> expected_seconds(const cases::Case& r, Outcome& outcome) {
   std::vector<double> expected;
-  outcome = accuracy::refine(
+  outcome = accuracy::carry_out(
       PETSC_COMM_WORLD, r,
       [&](int, const accuracy::Resolution&, double seconds) { expected.push_back(seconds); }, {});
   return expected;
@@ -239,7 +239,7 @@ TEST_CASE("refinement: error estimates are honest and not far off", "[slow][real
                            scenes % 7 == 6 ? 0.5 : 0.0};
     cases::Case r = given(mu_s, mu_d, tau, delta, drag);
     if (delta > std::sqrt(1 / tau)) continue;
-    if (r.scene.meant().static_index() >= r.scene.full_levels() - 1) continue;
+    if (r.scene.meant().highest_static() >= r.scene.full_levels() - 1) continue;
     if (accuracy::levels_for(r.scene, 1e-12) > 80) continue;
     ++scenes;
     r.question.accuracy = std::pow(10.0, -4 - scenes % 4);

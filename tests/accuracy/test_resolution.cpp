@@ -31,7 +31,7 @@ model::Scene scene(double mu_s, double mu_d, double tau, double delta) {
 TEST_CASE("noise range: beyond mu_s by as much as the tolerance asks, within the full range") {
   for (double mu_s : {0.1, 1.0, 6.0, 7.7}) {
     const auto s = scene(mu_s, mu_s / 4, 1, 0.25);
-    const int k = s.meant().static_index();
+    const int k = s.meant().highest_static();
     int before = 0;
     for (double tolerance : {1e-2, 1e-6, 1e-12, 1e-30}) {
       const int levels = levels_for(s, tolerance);

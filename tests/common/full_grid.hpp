@@ -21,7 +21,7 @@ class FullGrid {
         spacing_(spacing),
         n_(process.noise.levels),
         j_(nodes),
-        k_(process.static_index()),
+        k_(process.highest_static()),
         m_((2 * n_ + 1) * (2 * j_ + 1), (2 * n_ + 1) * (2 * j_ + 1)) {
     for (int i = -n_; i <= n_; ++i) {
       for (int j = -j_; j <= j_; ++j) add_state(i, j);

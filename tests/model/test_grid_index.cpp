@@ -47,7 +47,7 @@ TEST_CASE("net force: a level that equals mu_d in decimals has none") {
 
 TEST_CASE("static index: x_k <= mu_s < x_{k+1}") {
   const auto index = [](double mu_s, double delta) {
-    return stickslip::model::Process{{1, delta, 9}, {mu_s, mu_s}, {}}.static_index();
+    return stickslip::model::Process{{1, delta, 9}, {mu_s, mu_s}, {}}.highest_static();
   };
   CHECK(index(0.3, 0.1) == 3);
   CHECK(index(1, 0.25) == 4);

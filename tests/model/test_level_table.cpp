@@ -123,7 +123,7 @@ TEST_CASE("level table: far tails count in the intensity as they should") {
 
 TEST_CASE("process: a table that ends at the levels that stick is left on one side") {
   Process process{of(LevelTable({{-1, 1, 0}, {1, 0, 1}})), {1, 0.5}, {}, 0.3};
-  CHECK(process.static_index() == -1);
+  CHECK(process.highest_static() == -1);
   CHECK(process.lowest_static() == -1);
   CHECK(process.starts_upwards());
   CHECK_FALSE(process.starts_downwards());

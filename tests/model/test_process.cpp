@@ -26,7 +26,7 @@ TEST_CASE("process: static levels shift against the bias") {
                         Case{1.5, -10, -2}, Case{-3, 8, 16}}) {
     const Process process{{1, 0.25, 32}, {1, 0.5}, {1, 0}, c.bias};
     CHECK(process.lowest_static() == c.lowest);
-    CHECK(process.static_index() == c.highest);
+    CHECK(process.highest_static() == c.highest);
     // By what static means.
     for (int i = -20; i <= 20; ++i) {
       const bool holds = std::abs(process.noise.level(i) + c.bias) <= 1 + 1e-12;
@@ -56,7 +56,7 @@ TEST_CASE("process: the mirror swaps directions, and its own mirror is the proce
   const Process process{{1, 0.25, 8}, {1, 0.5}, one_sided(), 0.3};
   const Process mirrored = process.mirrored();
   CHECK(mirrored.bias == -0.3);
-  CHECK(mirrored.static_index() == -process.lowest_static());
+  CHECK(mirrored.highest_static() == -process.lowest_static());
   CHECK(mirrored.drag(0.7) == -process.drag(-0.7));
   // Sliding downwards at -v: dv/dt = x + g + mu_d + b(-v), seen from below.
   CHECK(mirrored.net_force(-2) == Approx(-0.5 - 0.3 - 0.5));

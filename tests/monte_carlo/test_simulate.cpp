@@ -493,7 +493,7 @@ Case covering(const model::Scene& s) {
 Results computed(Case r, double accuracy = 1e-8) {
   r.method.route = catalogue::Route::excursion;
   r.question.accuracy = accuracy;
-  const auto outcome = accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
+  const auto outcome = accuracy::carry_out(PETSC_COMM_WORLD, r, {}, {});
   INFO(outcome.shortfall);
   REQUIRE(outcome.reached);
   return outcome.results;

@@ -104,7 +104,7 @@ TEST_CASE("noise nodes: groups follow one another, mirrored, and contain no spec
         }
       }
       for (int end :
-           {p.static_index(), p.lowest_static() - 1, p.noise.last_up_to(p.friction.mu_s)}) {
+           {p.highest_static(), p.lowest_static() - 1, p.noise.last_up_to(p.friction.mu_s)}) {
         CHECK_FALSE((g.first <= end && end < g.last));
       }
     }
@@ -112,9 +112,9 @@ TEST_CASE("noise nodes: groups follow one another, mirrored, and contain no spec
     CHECK(node == nodes.last() + 1);
     for (int n = 0; n <= nodes.last(); ++n) CHECK(nodes.x(-n) == -nodes.x(n));
     for (int n = nodes.first(); n < nodes.last(); ++n) CHECK(nodes.x(n) < nodes.x(n + 1));
-    const auto& exit = nodes.group_at(p.static_index() + 1);
+    const auto& exit = nodes.group_at(p.highest_static() + 1);
     CHECK(exit.count == 1);
-    CHECK(nodes.last_up_to(p.static_index()) + 1 == exit.begin);
+    CHECK(nodes.last_up_to(p.highest_static()) + 1 == exit.begin);
   }
 }
 

@@ -332,7 +332,7 @@ double applied(Vec functional, Vec values) {
 // f at (x_i, v) by the definition of the process.
 double at_state(const model::Process& process, const KolmogorovOperator::Observable& f, int i,
                 double v) {
-  const bool rest = v == 0 && std::abs(i) <= process.static_index();
+  const bool rest = v == 0 && std::abs(i) <= process.highest_static();
   const double y = v > 0 || (v == 0 && i > 0) ? 1 : -1;
   return f(process.noise.level(i), rest ? 0 : y, v);
 }

@@ -24,7 +24,7 @@ model::Process process_on(int levels, double mu_s, double mu_d) {
 // Number of states of each kind by counting what the model says exists.
 PetscInt expected_size(const Discretisation& d, Symmetry symmetry, bool with_static_states) {
   const auto& [process, noise, velocities] = d;
-  const int k = process.static_index();
+  const int k = process.highest_static();
   const int branches = symmetry == Symmetry::none ? 2 : 1;
   int size = branches * noise->count() * velocities->size();
   if (velocities->keeps_origin()) size += branches * (noise->last() - k);

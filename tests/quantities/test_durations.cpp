@@ -100,7 +100,7 @@ std::vector<double> stepped_slide(Solved& s, const std::vector<double>& time, do
   const auto& process = s.systems.process();
   const KolmogorovOperator a(s.systems.comm(), s.systems.discretisation(), 0.0, Symmetry::even,
                              StaticPhase::killing);
-  const auto levels = 2 * static_cast<std::size_t>(process.static_index()) + 1;
+  const auto levels = 2 * static_cast<std::size_t>(process.highest_static()) + 1;
   const auto ends = a.from_static(std::vector<PetscScalar>(levels, 1.0));
   return stepped(a, ends, a.trace_at_exit(), time, tolerance);
 }
@@ -266,7 +266,7 @@ TEST_CASE("durations: upwind equals dense exponentials on the whole grid", "[par
     const model::Process process{{1, 0.5, c.levels}, {c.mu_s, c.mu_d}, c.drag};
     const double spacing = 0.25;
     const test::FullGrid grid(process, spacing, c.nodes);
-    const int k = process.static_index();
+    const int k = process.highest_static();
     const DenseDurations slide(grid, k, DenseDurations::Ends::at_rest);
     const DenseDurations excursion(grid, k, DenseDurations::Ends::after_rest);
     Solved s({process, std::make_shared<velocity::UpwindDiscretisation>(spacing, c.nodes, c.drag)});
@@ -312,7 +312,7 @@ TEST_CASE("durations: time steps on hp elements give the same excursions") {
 TEST_CASE("durations: sticking starts to end at the rate of its edges") {
   for (const auto& [name, d] : samples()) {
     Solved s(d);
-    const int k = d.process.static_index();
+    const int k = d.process.highest_static();
     const auto entry = s.entry();
     const double rate = d.process.noise.rate() * (d.process.noise.up(k) * entry.back().value +
                                                   d.process.noise.down(-k) * entry[0].value);
@@ -329,7 +329,7 @@ TEST_CASE("durations: sticking starts to end at the rate of its edges") {
 TEST_CASE("durations: sticking phases by dense exponentials, right relative to their size") {
   for (double mu_s : {0.3, 1.0, 1.7}) {
     const auto process = process_with(mu_s, 0.25);
-    const int k = process.static_index();
+    const int k = process.highest_static();
     const double rate = process.noise.rate();
     const int middle = k, left = 2 * k + 1;
     Matrix q(left + 1, left + 1);
@@ -360,7 +360,7 @@ TEST_CASE("durations: sticking phases by dense exponentials, right relative to t
 
 TEST_CASE("durations: sticking phases end, and errors of the hitting distribution propagate") {
   const model::Process process{{1, 0.25, 32}, {2.5, 0.25}, {1, 0}};
-  const auto k = static_cast<std::size_t>(process.static_index());
+  const auto k = static_cast<std::size_t>(process.highest_static());
   const double even = 1 / (2 * static_cast<double>(k) + 1);
   const std::vector<Uncertain> entry(2 * k + 1, Uncertain{even, 1e-9 * even});
   const auto duration = quantities::stick_distribution(process, entry, {1e4, 1, 10});

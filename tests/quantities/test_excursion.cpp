@@ -50,14 +50,14 @@ TEST_CASE("excursion: the time beyond mu_s is compared with its known share") {
 TEST_CASE("excursion: with a bias levels that stick do not count, on both velocity branches") {
   const auto inclined = process(0.5);  // levels -3 ... 1 stick
   REQUIRE(inclined.lowest_static() == -3);
-  REQUIRE(inclined.static_index() == 1);
+  REQUIRE(inclined.highest_static() == 1);
   const double above = model::noise_moments(inclined.noise, -3, 1).beyond;
   Excursion e = by_hand();                                              // 118 in all
   e.slide_time.insert(e.slide_time.end(), {0.25, 0.5, 1, 0, 0, 0, 8});  // 9.75 on 3, 2, 1 ... -3
   CHECK(e.conservation_defect(on_levels(0.5)) ==
         Approx(std::abs((6 + 7 + 0.25 + 0.5) / (127.75 * above) - 1)));
   const auto declined = process(-0.5);  // -1 ... 3
-  REQUIRE(declined.static_index() == 3);
+  REQUIRE(declined.highest_static() == 3);
   CHECK(e.conservation_defect(on_levels(-0.5)) ==
         Approx(std::abs((1 + 2 + 8) / (127.75 * above) - 1)));
 }

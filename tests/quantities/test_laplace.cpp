@@ -58,7 +58,7 @@ std::vector<test::Discrete> sample_discretisations() {
 DurationTransforms exact_transforms(const model::Process& process, double lambda) {
   const exact::FluidQueue queue(process), killed(process, lambda);
   const auto sticking =
-      operators::StaticChain(process.noise, process.static_index(), lambda).exit_transform();
+      operators::StaticChain(process.noise, process.highest_static(), lambda).exit_transform();
   const auto dot = [&](const std::vector<double>& p) {
     return Uncertain{std::inner_product(p.begin(), p.end(), sticking.begin(), 0.0), 0};
   };

@@ -27,7 +27,7 @@ Values values(const model::Scene& s, Route route = Route::excursion, double accu
   c.question.omega = {1};
   c.question.time = {0.7};
   Values by_key;
-  for (const auto& r : accuracy::refine(PETSC_COMM_WORLD, c, {}).results) by_key[r.key] = r;
+  for (const auto& r : accuracy::carry_out(PETSC_COMM_WORLD, c, {}).results) by_key[r.key] = r;
   return by_key;
 }
 

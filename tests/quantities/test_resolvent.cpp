@@ -181,7 +181,7 @@ TEST_CASE("resolvent: of the noise itself, in closed form", "[parallel]") {
     const auto s = test::on_full_noise(scene(1, 0.25, tau, 0.5, {1, 0}));
     const auto d = test::on_hp(s, 5);
     Discretised made(d);
-    const double x = d.process.noise.level(d.process.static_index() + 1);
+    const double x = d.process.noise.level(d.process.highest_static() + 1);
     for (double lambda : {1e-6, 0.3, 20.0}) {
       const auto r = quantities::resolvent(made.systems, lambda, observables({"x", "x^2", "1"}));
       CHECK(relative_difference(r.of[0].u.value, x / (lambda + 1 / tau)) < 1e-11);

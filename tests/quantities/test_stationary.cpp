@@ -100,7 +100,7 @@ TEST_CASE(
 
     quantities::Results entry;
     quantities::append_hitting_distribution(process, distribution.excursion(), entry);
-    const int k = process.static_index();
+    const int k = process.highest_static();
     for (int i = -k; i <= k; ++i) {
       const double expected = grid.mean_at_rest([&](int at) { return at == i ? 1.0 : 0.0; });
       CHECK(entry[0].value[i + k] == Approx(expected).epsilon(1e-10).margin(1e-14));
@@ -142,7 +142,7 @@ TEST_CASE("stationary distribution: P(|X| <= mu_s) summed over the grid at every
   const double delta = GENERATE(0.5, 0.25);
   auto s = scene(1, 0.25, 1, delta, {1, 0});
   s.noise_levels = s.full_levels();
-  const int k = s.meant().static_index();
+  const int k = s.meant().highest_static();
   const double closed = model::noise_moments(s.meant().noise, -k, k).within;
   std::vector<accuracy::Resolution> resolutions{accuracy::hp_resolution(s, 1, 0, 1e-8),
                                                 accuracy::hp_resolution(s, 8, 0, 1e-8)};

@@ -39,7 +39,7 @@ model::Observable sample_observable() {
 }
 
 double at_start(const model::Process& process, const model::Observable& f, const Start& s) {
-  const bool rest = s.v == 0 && std::abs(s.level) <= process.static_index();
+  const bool rest = s.v == 0 && std::abs(s.level) <= process.highest_static();
   const double y = s.v > 0 || (s.v == 0 && s.level > 0) ? 1 : -1;
   return f(process.noise.level(s.level), rest ? 0 : y, s.v);
 }

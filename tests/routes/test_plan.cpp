@@ -118,7 +118,7 @@ TEST_CASE("plan: what is predicted is what is done") {
     CHECK_FALSE(plan.adaptive());
     const Counts predicted{plan.assemblies(), plan.factorizations(), plan.solves()};
     CHECK(predicted == c.expected);
-    const auto outcome = accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
+    const auto outcome = accuracy::carry_out(PETSC_COMM_WORLD, r, {}, {});
     if (c.expected.factorizations == 0) {
       CHECK(outcome.steps.empty());
       continue;
@@ -141,7 +141,7 @@ TEST_CASE("plan: adaptive tasks are marked, and take complex arithmetic for comp
     const auto plan = routes::plan_of(r);
     CHECK(plan.adaptive());
     CHECK(plan.factorizations() == (q == relaxation ? 0 : 1));
-    const auto outcome = accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
+    const auto outcome = accuracy::carry_out(PETSC_COMM_WORLD, r, {}, {});
     const auto& l = outcome.steps.front().statistics;
     CHECK(l.factorizations_real + l.factorizations_complex >= plan.factorizations() + 1);
     CHECK(l.solves >= plan.solves());
@@ -154,7 +154,7 @@ TEST_CASE("plan: sizes are those of the run, by the analysis alone") {
     Case r = given({"", {Quantity::sticking, Quantity::entry_law}, {}});
     r.scene.delta = delta;
     const auto prediction = accuracy::predict(PETSC_COMM_WORLD, r);
-    const auto outcome = accuracy::refine(PETSC_COMM_WORLD, r, {}, {});
+    const auto outcome = accuracy::carry_out(PETSC_COMM_WORLD, r, {}, {});
     REQUIRE(prediction.steps.size() == 3);
     double seconds = 0;
     for (std::size_t n = 0; n < 3; ++n) {

@@ -183,7 +183,7 @@ TEST_CASE("rounding: averages by hand, with the error of a probability that is k
   const Case r = given(plain(), {Quantity::sticking, Quantity::moments, Quantity::noise_law});
   const auto process = r.scene.process(8);
   petsc::SolverStatistics statistics;
-  const routes::Setting setting{PETSC_COMM_WORLD, r, {process, nullptr}, statistics};
+  const routes::Problem problem{PETSC_COMM_WORLD, r, {process, nullptr}, statistics};
   const double beyond = model::noise_moments(process.noise, -2, 2).beyond;
   for (const auto& [stick, slide] : {std::pair{0.3, 0.7}, {0.9, 0.1}}) {
     const std::vector<Uncertain> values{{beyond * (1 - 1e-3), 0},
@@ -195,7 +195,7 @@ TEST_CASE("rounding: averages by hand, with the error of a probability that is k
                                         {0.5, 6e-9},
                                         {8, 7e-9}};
     Results found;
-    routes::append_averages(setting, values, found);
+    routes::append_averages(problem, values, found);
     CHECK(found.size() == 8);
     // P_stick = 1 - P_slide is no more wrong than the smaller one.
     CHECK(error(found, "P_stick") == Approx(1e-9 + 1e-3 * std::min(stick, slide)));

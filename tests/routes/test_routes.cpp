@@ -78,7 +78,7 @@ std::map<std::string, double> known_values(const model::Scene& s, const test::Di
   std::map<std::string, double> known;
   const auto r = given(s, Route::excursion, {Quantity::sticking, Quantity::moments});
   for (const auto& result : evaluate(r, d).results) known[result.key] = result.value[0];
-  const int k = d.process.static_index();
+  const int k = d.process.highest_static();
   const auto noise = model::noise_moments(d.process.noise, -k, k);
   known["P_X_le_mu_s"] = noise.within;
   known["E_X2"] = noise.square;

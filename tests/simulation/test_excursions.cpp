@@ -102,7 +102,7 @@ std::vector<double> turns(const model::NoiseChain& noise, int k) {
 
 /// Levels on which the sliding phases of a path end, in the frame of their beginnings.
 std::vector<int> entries_along(const model::Process& p, double horizon) {
-  const auto path = simulation::simulate_path(p, {p.static_index() + 1}, horizon, 1);
+  const auto path = simulation::simulate_path(p, {p.highest_static() + 1}, horizon, 1);
   std::vector<int> entries;
   double begun = path.y[0];
   for (std::size_t n = 1; n + 1 < path.y.size(); ++n) {
@@ -117,7 +117,7 @@ std::vector<int> entries_along(const model::Process& p, double horizon) {
 
 /// Durations, displacements and turns of the excursions of a path, by the side of their beginning.
 std::array<std::vector<Excursion>, 2> excursions_along(const model::Process& p, double horizon) {
-  const auto path = simulation::simulate_path(p, {p.static_index() + 1}, horizon, 3);
+  const auto path = simulation::simulate_path(p, {p.highest_static() + 1}, horizon, 3);
   std::array<std::vector<Excursion>, 2> all;
   double start = 1;
   Excursion e;
@@ -166,7 +166,7 @@ double difference(double count_a, double all_a, double count_b, double all_b) {
 TEST_CASE("excursions: every one begins and ends at rest, with what that means") {
   for (const auto& c : processes()) {
     INFO(c.name);
-    const int k = c.process.static_index();
+    const int k = c.process.highest_static();
     for (const auto& e : draw(c.process, kAll, 2000)) {
       REQUIRE(e.slide > 0);
       REQUIRE(e.stick > 0);
@@ -254,7 +254,7 @@ TEST_CASE("excursions: the integrator follows the closed forms jump by jump") {
 TEST_CASE("excursions: the noise on the way has the binomial distribution within 4 sigma") {
   for (const auto& c : processes()) {
     INFO(c.name);
-    const int levels = c.process.noise.levels, k = c.process.static_index();
+    const int levels = c.process.noise.levels, k = c.process.highest_static();
     double within = 0;
     for (int i = -k; i <= k; ++i) within += binomial(levels, i);
     const double variance = 1 / c.process.noise.tau;
@@ -278,7 +278,7 @@ TEST_CASE(
     "excursions: sticking times and turns follow from the entry by closed sums, within 4 sigma") {
   for (const auto& c : processes()) {
     INFO(c.name);
-    const int k = c.process.static_index();
+    const int k = c.process.highest_static();
     const auto sticking = mean_sticking_times(c.process.noise, k), turn = turns(c.process.noise, k);
     const auto all = draw(c.process, {}, 100000);
     for (int i = -k; i <= k; ++i) {
@@ -308,7 +308,7 @@ TEST_CASE("excursions: sliding ends where it does along a path, within 4 sigma")
     const auto along = entries_along(c.process, 100000);
     const auto all = draw(c.process, {}, 50000);
     REQUIRE(along.size() > 5000);
-    for (int i = -c.process.static_index(); i <= c.process.static_index(); ++i) {
+    for (int i = -c.process.highest_static(); i <= c.process.highest_static(); ++i) {
       const auto here = [i](const Excursion& e) { return e.entry == i; };
       const auto drawn = std::count_if(all.begin(), all.end(), here);
       const auto seen = std::count(along.begin(), along.end(), i);

@@ -76,7 +76,7 @@ TEST_CASE("sweeps: every point has the bits of a run of its own", "[parallel]") 
     if (!first_rank()) continue;
     REQUIRE(sweep.runs.size() == 6);
     for (std::size_t n = 0; n < 6; ++n) {
-      const auto alone = accuracy::refine(PETSC_COMM_SELF, request.sweep->request(n), {});
+      const auto alone = accuracy::carry_out(PETSC_COMM_SELF, request.sweep->request(n), {});
       CHECK(sweep.runs[n].point == n);
       CHECK(sweep.runs[n].status == Status::reached);
       check_equal(sweep.runs[n].results, alone.results);
@@ -92,7 +92,7 @@ TEST_CASE("sweeps: simulated points too, with their intervals", "[parallel]") {
                                 {"-excursions", "2000"}});
   const auto sweep = result(request);
   if (!first_rank()) return;
-  const auto alone = accuracy::refine(PETSC_COMM_SELF, request.sweep->request(1), {});
+  const auto alone = accuracy::carry_out(PETSC_COMM_SELF, request.sweep->request(1), {});
   CHECK_FALSE(alone.results[0].ci95.empty());
   check_equal(sweep.runs[1].results, alone.results);
 }
@@ -104,7 +104,7 @@ TEST_CASE("sweeps: several ranks to a point give the same up to rounding", "[par
   const auto sweep = result(request);
   if (!first_rank()) return;
   for (std::size_t n = 0; n < 2; ++n) {
-    const auto alone = accuracy::refine(PETSC_COMM_SELF, request.sweep->request(n), {});
+    const auto alone = accuracy::carry_out(PETSC_COMM_SELF, request.sweep->request(n), {});
     for (std::size_t r = 0; r < alone.results.size(); ++r) {
       CHECK(sweep.runs[n].results[r].value[0] == Approx(alone.results[r].value[0]).epsilon(1e-12));
     }

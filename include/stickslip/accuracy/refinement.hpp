@@ -75,8 +75,8 @@ using Progress = std::function<void(int, const Resolution&, double)>;
 /// every scalar meets the accuracy, when rounding forbids it, or at the end of the refinement
 /// sequence. Collective. Throws NoMemory before anything is allocated that would not fit,
 /// NotReached when a solver fails.
-[[nodiscard]] Outcome refine(MPI_Comm comm, const cases::Case& given, const Progress& progress,
-                             const monte_carlo::SimulationProgress& simulation_progress = {},
-                             const std::string& checkpoint = {});
+[[nodiscard]] Outcome carry_out(MPI_Comm comm, const cases::Case& given, const Progress& progress,
+                                const monte_carlo::SimulationProgress& simulation_progress = {},
+                                const std::string& checkpoint = {});
 
 }  // namespace stickslip::accuracy

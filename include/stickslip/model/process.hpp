@@ -32,7 +32,7 @@ struct Process {
   }
 
   /// The highest level that can stick; k with symmetry, where the levels |i| <= k stick.
-  [[nodiscard]] int static_index() const { return noise.last_up_to(friction.mu_s - bias); }
+  [[nodiscard]] int highest_static() const { return noise.last_up_to(friction.mu_s - bias); }
   /// The lowest level that can stick; -k with symmetry.
   [[nodiscard]] int lowest_static() const {
     return noise.first_from(-friction.mirrored().mu_s - bias);
@@ -45,10 +45,10 @@ struct Process {
   /// The level from which excursions to one side start; if they start on the other one alone, its.
   [[nodiscard]] int exit_level(bool upwards) const {
     const bool there = upwards ? starts_upwards() : starts_downwards();
-    return upwards == there ? static_index() + 1 : lowest_static() - 1;
+    return upwards == there ? highest_static() + 1 : lowest_static() - 1;
   }
   /// Whether there are levels on which bodies stick. On none, v = 0 is passed and never held.
-  [[nodiscard]] bool sticks() const { return lowest_static() <= static_index(); }
+  [[nodiscard]] bool sticks() const { return lowest_static() <= highest_static(); }
   /// g + E[X]: what drives bodies over long times.
   [[nodiscard]] double mean_force() const { return bias + noise.mean(); }
   /// x_i + g - F(0+): the speed of V at v = 0+ on level i.

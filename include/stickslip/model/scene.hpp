@@ -53,7 +53,7 @@ struct Scene {
                 bias};
     if (noise.table && levels < full_levels()) {
       all.noise.table = std::make_shared<const LevelTable>(noise.table->within(
-          std::min(-levels, all.lowest_static() - 1), std::max(levels, all.static_index() + 1)));
+          std::min(-levels, all.lowest_static() - 1), std::max(levels, all.highest_static() + 1)));
     }
     return all;
   }

@@ -22,7 +22,7 @@ class StaticChain {
       : StaticChain(chain, -k, k, lambda) {}
   /// The static levels of a process, with its bias.
   [[nodiscard]] static StaticChain of(const model::Process& process, double lambda = 0) {
-    return {process.noise, process.lowest_static(), process.static_index(), lambda};
+    return {process.noise, process.lowest_static(), process.highest_static(), lambda};
   }
 
   /// The levels 1 <= i <= k, killed on reaching 0: where odd functions live, whose differences

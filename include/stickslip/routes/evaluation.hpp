@@ -25,7 +25,7 @@ class StationaryDistribution;
 namespace stickslip::routes {
 
 /// A case on one discretisation.
-struct Setting {
+struct Problem {
   MPI_Comm comm;
   const cases::Case& given;
   operators::Discretisation discretisation;
@@ -49,10 +49,10 @@ struct Evaluation {
 
 /// Assembles, factors and solves what the question needs and nothing else. Collective. Throws
 /// NotReached or NoMemory.
-[[nodiscard]] Evaluation evaluate(const Setting& setting);
+[[nodiscard]] Evaluation evaluate(const Problem& problem);
 
 /// Assembles the system of a key and has its solver analyse it; nothing is factored. Sizes and
 /// times go to the statistics. Collective. Throws NoMemory.
-[[nodiscard]] petsc::Analysis analyse(const Setting& setting, const operators::SystemKey& key);
+[[nodiscard]] petsc::Analysis analyse(const Problem& problem, const operators::SystemKey& key);
 
 }  // namespace stickslip::routes
