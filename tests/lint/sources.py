@@ -41,6 +41,10 @@ def check_order(root):
             found = re.match(r'#include "stickslip/(\w+)/', line)
             if found and MODULES.index(found.group(1)) > own:
                 yield f"{path}: {line} points upwards"
+    guide = root / "docs" / "development.md"
+    drawn = re.search(r"those to their\nleft:\n\n((?: {4}.+\n)+)", guide.read_text())
+    if drawn is None or tuple(re.findall(r"\w+", drawn[1])) != MODULES:
+        yield f"{guide}: the map has another order of modules"
 
 
 DEPENDS_ON_SCALARS = re.compile(r"#include <(petsc(vec|mat|ksp|ts)|slepc(?!version)\w*)\.h>"
