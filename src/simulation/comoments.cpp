@@ -6,19 +6,6 @@
 
 namespace stickslip::simulation {
 
-void Comoments::add(std::span<const double> sample, double times) {
-  double* const mean = numbers_.data() + 1;
-  double* const deviation = deviation_.data();
-  double* product = mean + size_;
-  const double count = numbers_[0] += times, weight = times * (count - times) / count;
-  for (std::size_t r = 0; r < size_; ++r) {
-    deviation[r] = sample[r] - mean[r];
-    mean[r] += times * deviation[r] / count;
-    const double weighted = weight * deviation[r];
-    for (std::size_t c = 0; c <= r; ++c) *product++ += weighted * deviation[c];
-  }
-}
-
 void Comoments::merge(std::span<const double> others) {
   const double more = others[0];
   if (more == 0) return;

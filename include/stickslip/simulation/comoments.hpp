@@ -18,8 +18,23 @@ class Comoments {
   [[nodiscard]] double count() const { return numbers_[0]; }
   [[nodiscard]] double mean(std::size_t n) const { return numbers_[1 + n]; }
 
-  /// `times` samples, all alike. O(size^2).
-  void add(std::span<const double> sample, double times = 1);
+  /// `times` samples, all alike. Faster where their size is known to the compiler. O(size^2).
+  template <std::size_t size>
+  void add(std::span<const double, size> sample, double times) {
+    double* const mean = numbers_.data() + 1;
+    double* const deviation = deviation_.data();
+    double* product = mean + sample.size();
+    const double count = numbers_[0] += times, weight = times * (count - times) / count;
+    for (std::size_t r = 0; r < sample.size(); ++r) {
+      deviation[r] = sample[r] - mean[r];
+      mean[r] += times * deviation[r] / count;
+      const double weighted = weight * deviation[r];
+      for (std::size_t c = 0; c <= r; ++c) *product++ += weighted * deviation[c];
+    }
+  }
+  void add(std::span<const double> sample, double times = 1) {
+    add<std::dynamic_extent>(sample, times);
+  }
   /// As if all samples of others of the same size had been added, of which these are the numbers.
   void merge(std::span<const double> others);
 

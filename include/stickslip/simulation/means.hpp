@@ -1,10 +1,8 @@
 #pragma once
 /// Sums over excursions, and smooth functions of their means with intervals by the delta method.
 
-#include <array>
 #include <complex>
 #include <cstddef>
-#include <cstring>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -71,7 +69,7 @@ class Means {
 /// complex numbers, such as
 ///
 ///   struct Phases { double slide, stick; };
-///   sums.add(side, turned, {1.5, 0.5});
+///   sums.add(side, {turned, {1.5, 0.5}});
 ///   sums.estimate(sums.overall(&Phases::slide));
 ///
 /// Copies share what is kept, which has to outlive them. Local.
@@ -85,11 +83,15 @@ class Sums : public Means {
 
   explicit Sums(std::span<Comoments> sides) : Means(sides), sides_(sides) {}
 
-  /// Of an excursion from a side; `turned`: the next one starts from the other side. O(kSize^2).
-  void add(std::size_t side, bool turned, const Sample& sample) {
-    std::array<double, kSize> numbers{turned ? 1.0 : 0.0};
-    std::memcpy(&numbers[1], &sample, sizeof(Sample));
-    sides_[side].add(numbers);
+  /// A sample, and 1 where the next excursion starts from the other side.
+  struct Row {
+    double turned;
+    Sample sample;
+  };
+  /// Of an excursion from a side. O(kSize^2).
+  void add(std::size_t side, const Row& row) {
+    const std::span<const double, kSize> numbers(reinterpret_cast<const double*>(&row), kSize);
+    sides_[side].add(numbers, 1);
   }
 
   /// As those of Means.

@@ -75,7 +75,7 @@ class Tally {
   auto sums(const auto& of) {
     auto all = new_sums<decltype(of(Excursion{}))>(sides());
     of_excursions_.emplace_back([all, of](std::size_t side, const Excursion& e) mutable {
-      all.add(side, e.turned, of(e));
+      all.add(side, {e.turned ? 1.0 : 0.0, of(e)});
     });
     return all;
   }
@@ -92,7 +92,7 @@ class Tally {
     of_paths_.emplace_back([all, of, stationary](const FollowedPath& path) mutable {
       if (path.stationary != stationary) return;
       for (std::size_t n = 0; n < all.size(); ++n) {
-        all[n].add(path.side, path.turned, of(path, path.states[n]));
+        all[n].add(path.side, {path.turned ? 1.0 : 0.0, of(path, path.states[n])});
       }
     });
     return all;
