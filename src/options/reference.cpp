@@ -108,10 +108,17 @@ Json dataset(hid_t group, const std::string& name) {
   return scalar ? Json(values.at(0)) : Json(values);
 }
 
-// As in a summary.
-Json result_in(hid_t group) {
+// As in a summary, where null could be either what is no number or the open end of an interval.
+Json result_in(hid_t group, const std::string& key) {
   Json result;
-  for (const auto& name : names_in(group)) result[name] = dataset(group, name);
+  for (const auto& name : names_in(group)) {
+    const Json values = dataset(group, name);
+    const auto is_no_number = [](const Json& value) { return std::isnan(value.get<double>()); };
+    const bool sound = values.is_array() ? std::none_of(values.begin(), values.end(), is_no_number)
+                                         : !is_no_number(values);
+    if (!sound) throw std::invalid_argument(key + " has values or errors that are no numbers");
+    result[name] = values;
+  }
   if (!result.contains("low") || !result.contains("high")) return result;
   const Json low = result["low"], high = result["high"];
   result.erase("low");
@@ -135,7 +142,7 @@ std::string read_hdf5(const std::string& file) {
   for (const auto& key : names_in(results)) {
     const Hdf5Id group(H5Gopen2(results, key.c_str(), H5P_DEFAULT), H5Gclose);
     if (!group.valid()) throw std::invalid_argument("/results/" + key + " is no group");
-    tree["results"][key] = result_in(group);
+    tree["results"][key] = result_in(group, key);
   }
   return tree.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -1,6 +1,7 @@
 #include <hdf5.h>
 
 #include <fstream>
+#include <limits>
 
 #include "../common/catch.hpp"
 #include "../common/temporary.hpp"
@@ -181,6 +182,36 @@ TEST_CASE("reference: values that are no numbers are refused") {
   CHECK_THAT(json(R"({"value": 1, "error": null})"), Contains("a has values"));
   CHECK_THAT(json(R"({"value": null, "error": 1})"), Contains("a has values"));
   CHECK(json(R"({"value": 1, "error": null, "ci95": [1, null]})") == "nothing");
+}
+
+// In JSON null may stand for infinity; HDF5 has both.
+TEST_CASE("reference: what is no number in HDF5 is refused, an open interval is not") {
+  const test::TemporaryFolder folder;
+  const auto reading = [&](double error, double high) {
+    const std::string name = folder / "a.h5";
+    const hid_t file = H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    const hid_t results = H5Gcreate2(file, "/results", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                group = H5Gcreate2(results, "a", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                space = H5Screate(H5S_SCALAR);
+    for (const auto& [key, value] :
+         {std::pair{"value", 1.0}, {"error", error}, {"low", 0.5}, {"high", high}}) {
+      const hid_t data =
+          H5Dcreate2(group, key, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+      H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value);
+      H5Dclose(data);
+    }
+    H5Sclose(space);
+    H5Gclose(group);
+    H5Gclose(results);
+    H5Fclose(file);
+    return read_references(name);
+  };
+  using Catch::Contains;
+  const double infinite = std::numeric_limits<double>::infinity(),
+               none = std::numeric_limits<double>::quiet_NaN();
+  CHECK(reading(infinite, infinite).at(0).high == infinite);
+  CHECK_THROWS_WITH(reading(none, 2), Contains("a has values or errors that are no numbers"));
+  CHECK_THROWS_WITH(reading(1, none), Contains("a has values or errors that are no numbers"));
 }
 
 // A chunk of the file's own structure points outside, at which the library has crashed.
