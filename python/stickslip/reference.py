@@ -39,15 +39,21 @@ def declared() -> Mapping[str, Mapping[str, Any]]:
     ProgramError
         If there is no program that can be asked.
     """
-    return _declared(find_program())
+    found = _declared(find_program())
+    if isinstance(found, ProgramError):
+        raise found
+    return found
 
 
 @functools.lru_cache
-def _declared(program: pathlib.Path) -> Mapping[str, Mapping[str, Any]]:
+def _declared(program: pathlib.Path) -> Mapping[str, Mapping[str, Any]] | ProgramError:
+    """A failure is kept as well: pictures ask for every symbol, and each answer would take a process."""
     try:
         return {option["name"]: option for option in json.loads(_printed(program, "-reference_json"))["options"]}
+    except ProgramError as problem:
+        return problem
     except ValueError:
-        raise ProgramError(f"{program} does not say what its options are") from None
+        return ProgramError(f"{program} does not say what its options are")
 
 
 def _printed(program: pathlib.Path, word: str) -> str:

@@ -465,10 +465,11 @@ class Pictures(Case):
     def test_pictures_without_a_program_have_the_names_of_options(self):
         density = stickslip.run(**SMALL, quantities="density")
         sweep = stickslip.sweep(tau=[1, 2], delta=0.5, quantities="noise_law")
-        with self.fake("exit 1"):
+        with self.fake(f"echo asked >> '{self.folder}/asked'; exit 1"):
             figure = density.plot(self.folder / "density.png")["density"]
             self.assertIn("mu_s = 1, mu_d = 0.25, ", figure._suptitle.get_text())
             self.assertEqual(sweep.plot()["E_X2"].axes[0].get_xlabel(), "tau")
+        self.assertEqual((self.folder / "asked").read_text(), "asked\n")  # once for all symbols
 
     def test_pictures_on_request(self):
         s = stickslip.sweep(bias=[0.1, 0.2], delta=0.5, quantities="sticking,moments,spectrum", accuracy=1e-2)

@@ -30,7 +30,8 @@ ABSCISSAE = {"omega": r"angular frequency $\omega$  [1/time]", "time": "time $t$
              "lambda": r"$\lambda$  [1/time]", "k": "level $i$", "distance": "path length $d$  [length]",
              "inverse_distance": "$s$  [1/length]", "velocity": "speed $w$  [velocity]", "mode": "mode"}
 WORDS = {"P_stick": r"probability of sticking $P_\mathrm{stick}$", "P_slide": r"probability of sliding $P_\mathrm{slide}$",
-         "mean_stick": "mean duration of sticking", "mean_slide": "mean duration of sliding", "mean_excursion": "mean duration of an excursion",
+         "mean_stick": "mean duration of sticking", "mean_slide": "mean duration of sliding",
+         "mean_excursion": "mean duration of an excursion",
          "E_V": "mean velocity $E[V]$", "E_V2": "$E[V^2]$", "E_absV": "mean speed $E[|V|]$", "E_XV": "$E[XV]$",
          "S_v": "power spectral density $S_v$", "diffusivity": "diffusivity $S_0/2$"}
 LEVELS = ("delta", "delta_per_mu_s", "noise_levels")  # of the noise: distance, stated apart, and range, which is not
