@@ -227,7 +227,7 @@ class Campaign {
 
   // Batches in their order, whoever made them; ranks with one less send room for another.
   void merge(std::vector<double> own, long batches) {
-    const long size = static_cast<long>(tally_.pack().size()), ranks = petsc::ranks(comm_),
+    const long size = static_cast<long>(tally_.size()), ranks = petsc::ranks(comm_),
                share = (batches + ranks - 1) / ranks * size;
     own.resize(static_cast<std::size_t>(share));
     std::vector<double> all(static_cast<std::size_t>(ranks * share));

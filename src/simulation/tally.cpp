@@ -160,14 +160,21 @@ void Tally::clear() {
   each_row(*this, [](std::span<double> row) { std::ranges::fill(row, 0.0); });
 }
 
+std::size_t Tally::size() const {
+  std::size_t size = 0;
+  each_row(*this, [&](auto row) { size += row.size(); });
+  return size;
+}
+
 std::vector<double> Tally::pack() const {
   std::vector<double> numbers;
+  numbers.reserve(size());
   each_row(*this, [&](auto row) { numbers.insert(numbers.end(), row.begin(), row.end()); });
   return numbers;
 }
 
 void Tally::merge(std::span<const double> packed) {
-  if (packed.size() != pack().size()) throw std::invalid_argument("a tally of other questions");
+  if (packed.size() != size()) throw std::invalid_argument("a tally of other questions");
   const auto next = [&](std::size_t size) {
     return std::exchange(packed, packed.subspan(size)).first(size);
   };

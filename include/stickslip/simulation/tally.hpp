@@ -116,6 +116,7 @@ class Tally {
   [[nodiscard]] double jumps() const { return counts_[1]; }  ///< of the noise
 
   void clear();
+  [[nodiscard]] std::size_t size() const;  ///< count of all numbers
   /// All numbers in a row.
   [[nodiscard]] std::vector<double> pack() const;
   /// As if all samples of another tally had been added. Throws std::invalid_argument if it is not
