@@ -35,7 +35,7 @@ class Predictor {
     step_.unknowns = unknowns(given.scene, resolution);
   }
 
-  PredictedStep follow(const routes::Plan& plan) {
+  PredictedStep follow(const quantities::Plan& plan) {
     for (const auto& key : plan.systems()) assemble(key);
     for (const auto& task : plan.tasks) step_.seconds += seconds_of(task);
     if (!step_.resolution.waves.empty()) step_.seconds += seconds_of_waves();
@@ -83,7 +83,7 @@ class Predictor {
     return f;
   }
 
-  double seconds_of(const routes::Task& task) {
+  double seconds_of(const quantities::Task& task) {
     double seconds = 0;
     for (const auto& use : task.uses) {
       seconds += (use.forward + use.transposed) * assemble(use.system).solve;
@@ -119,7 +119,7 @@ class Predictor {
 Prediction predict(MPI_Comm comm, const cases::Case& given) {
   Prediction prediction;
   if (!needs_system(given)) return prediction;
-  prediction.plan = routes::plan_of(given);
+  prediction.plan = quantities::plan_of(given);
   if (given.method.route == catalogue::Route::monte_carlo) return prediction;
   const RefinementSequence sequence(given);
   require_memory(comm, given.scene, sequence.refinement_level(1));

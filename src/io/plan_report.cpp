@@ -30,13 +30,13 @@ std::string system_name(const operators::SystemKey& key) {
                      limit);
 }
 
-std::string solves_text(const routes::Use& use) {
+std::string solves_text(const quantities::Use& use) {
   if (use.forward == 0) return fmt::format("{} transposed", use.transposed);
   return fmt::format("{} forward", use.forward);
 }
 
-void add_task(const cases::Question& question, const routes::Task& task, TextTable& table) {
-  std::string name = routes::task_name(question, task);
+void add_task(const quantities::Task& task, TextTable& table) {
+  std::string name = task.name;
   const auto add = [&](const std::string& system, const std::string& solves) {
     table.add({name, system, solves});
     name.clear();
@@ -51,13 +51,13 @@ void add_task(const cases::Question& question, const routes::Task& task, TextTab
   }
 }
 
-std::string tasks_table(const cases::Question& question, const routes::Plan& plan) {
+std::string tasks_table(const quantities::Plan& plan) {
   if (plan.tasks.empty()) {
     return "sizes only: the linear systems of this solution method, on v of both signs, are not "
            "counted\n";
   }
   TextTable table({{"task", true}, {"linear system", true}, {"solves", true}});
-  for (const auto& task : plan.tasks) add_task(question, task, table);
+  for (const auto& task : plan.tasks) add_task(task, table);
   return "on each refinement level\n" + table.text() +
          fmt::format("total{}: {} assemblies, {} factorisations, {} solves\n",
                      plan.adaptive() ? ", adaptive tasks not counted" : "", plan.assemblies(),
@@ -96,8 +96,8 @@ Json step_json(const accuracy::PredictedStep& step) {
   return json;
 }
 
-Json task_json(const cases::Question& question, const routes::Task& task) {
-  Json json{{"name", routes::task_name(question, task)}, {"systems", Json::array()}};
+Json task_json(const quantities::Task& task) {
+  Json json{{"name", task.name}, {"systems", Json::array()}};
   for (const auto& use : task.uses) {
     json["systems"].push_back({{"lambda", use.system.lambda},
                                {"symmetry", symmetry_name(use.system.symmetry)},
@@ -119,8 +119,7 @@ std::string text_of(const options::Request& request, const accuracy::Prediction&
     return text + fmt::format("{:g} excursions are simulated; no linear system is assembled\n",
                               request.method.excursions);
   }
-  text += tasks_table(request.question, plan) + "\n" +
-          steps_table(request.method.scheme, prediction.steps);
+  text += tasks_table(plan) + "\n" + steps_table(request.method.scheme, prediction.steps);
   if (plan.tasks.empty()) return text;
   return text +
          fmt::format("about {:.2g} s for these refinement levels; finer ones follow if error "
@@ -130,9 +129,7 @@ std::string text_of(const options::Request& request, const accuracy::Prediction&
 
 Json tree_of(const options::Request& request, const accuracy::Prediction& prediction) {
   Json tasks = Json::array(), steps = Json::array();
-  for (const auto& task : prediction.plan.tasks) {
-    tasks.push_back(task_json(request.question, task));
-  }
+  for (const auto& task : prediction.plan.tasks) tasks.push_back(task_json(task));
   for (const auto& step : prediction.steps) steps.push_back(step_json(step));
   const Json plan{{"tasks", std::move(tasks)},
                   {"assemblies", prediction.plan.assemblies()},

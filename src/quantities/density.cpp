@@ -7,6 +7,7 @@
 
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
+#include "stickslip/quantities/plan.hpp"
 #include "stickslip/quantities/stationary.hpp"
 
 namespace stickslip::quantities {
@@ -125,5 +126,7 @@ double distance(const SpeedDistribution& a, const SpeedDistribution& b) {
   }
   return largest;
 }
+
+void density_tasks(Planner& planner) { planner.need_distribution(); }
 
 }  // namespace stickslip::quantities

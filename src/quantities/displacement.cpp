@@ -8,6 +8,7 @@
 #include "stickslip/catalogue/displacement_keys.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
+#include "stickslip/quantities/plan.hpp"
 #include "stickslip/quantities/time_functions.hpp"
 
 namespace stickslip::quantities {
@@ -224,14 +225,18 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
   return x;
 }
 
-void append_displacement(const std::vector<double>& time, const Displacement& displacement,
-                         Results& results) {
-  Result mean = array(catalogue::kDisplacementMean, time);
-  Result variance = array(catalogue::kDisplacementVariance, time);
-  for (const auto& value : displacement.mean) append_value(mean, value);
-  for (const auto& value : displacement.variance) append_value(variance, value);
-  results.push_back(std::move(mean));
-  results.push_back(std::move(variance));
+void displacement_tasks(Planner& planner) {
+  planner.need_distribution();
+  const bool stationary = planner.question().start.kind == model::Start::Kind::stationary;
+  const auto find = [](Computation& computation) {
+    const auto& question = computation.question();
+    const auto x = displacement(computation.systems, computation.distribution(), question.start,
+                                question.time, computation.tolerance());
+    append_array(array(catalogue::kDisplacementMean, question.time), x.mean, computation.results());
+    append_array(array(catalogue::kDisplacementVariance, question.time), x.variance,
+                 computation.results());
+  };
+  planner.add_adaptive("displacement", stationary ? 6 : 12, stationary ? 36 : 200, find);
 }
 
 }  // namespace stickslip::quantities

@@ -5,11 +5,13 @@
 #include <numeric>
 #include <string>
 
+#include "stickslip/catalogue/duration_density_keys.hpp"
 #include "stickslip/catalogue/entry_law_keys.hpp"
 #include "stickslip/catalogue/laplace_keys.hpp"
 #include "stickslip/catalogue/sticking_keys.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -227,11 +229,34 @@ void append_duration_moments(const model::Process& process, const SideChain& sid
 void append_distribution(const Row& density_row, const Row& distribution_row,
                          const std::vector<double>& abscissa, const DurationDistribution& durations,
                          Results& results) {
-  Result density = array(density_row, abscissa), distribution = array(distribution_row, abscissa);
-  for (const auto& value : durations.density) append_value(density, value);
-  for (const auto& value : durations.distribution) append_value(distribution, value);
-  results.push_back(std::move(density));
-  results.push_back(std::move(distribution));
+  append_array(array(density_row, abscissa), durations.density, results);
+  append_array(array(distribution_row, abscissa), durations.distribution, results);
+}
+
+namespace {
+
+void find_distributions(Computation& computation) {
+  using namespace catalogue;
+  const auto& time = computation.question().time;
+  const auto& distribution = computation.distribution();
+  const auto tolerance = computation.tolerance();
+  auto& systems = computation.systems;
+  auto& results = computation.results();
+  const auto slide = slide_distribution(systems, distribution, time, tolerance);
+  const auto stick = stick_distribution(computation.process(), distribution.entry(), time);
+  const auto excursion = excursion_distribution(systems, distribution, time, tolerance);
+  append_distribution(kDensitySlide, kCdfSlide, time, slide, results);
+  append_distribution(kDensityStick, kCdfStick, time, stick, results);
+  append_distribution(kDensityExcursion, kCdfExcursion, time, excursion, results);
+  computation.found.checks.emplace_back("slide_pairs", slide.pairs);
+  computation.found.checks.emplace_back("excursion_pairs", excursion.pairs);
+}
+
+}  // namespace
+
+void duration_density_tasks(Planner& planner) {
+  planner.need_distribution();
+  planner.add_adaptive("distributions of durations", 14, 160, find_distributions);
 }
 
 }  // namespace stickslip::quantities

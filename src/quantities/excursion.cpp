@@ -13,6 +13,8 @@
 #include "stickslip/catalogue/noise_law_keys.hpp"
 #include "stickslip/catalogue/sticking_keys.hpp"
 #include "stickslip/operators/static_chain.hpp"
+#include "stickslip/quantities/plan.hpp"
+#include "stickslip/quantities/stationary.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -92,6 +94,12 @@ void append_sticking(const Excursion& excursion, Results& results) {
   results.push_back(scalar(catalogue::kMeanExcursion, total, 0));
 }
 
+void sticking_tasks(Planner& planner) {
+  planner.append_from([](const auto&, const Excursion& excursion, Results& results) {
+    append_sticking(excursion, results);
+  });
+}
+
 void append_moments(const operators::Discretisation& discretisation, const Excursion& excursion,
                     Results& results) {
   const double total = excursion.mean_excursion();
@@ -114,6 +122,8 @@ void append_moments(const operators::Discretisation& discretisation, const Excur
                            drifts ? rounding / total : 0));
 }
 
+void moments_tasks(Planner& planner) { planner.append_from(append_moments); }
+
 void append_hitting_distribution(const model::Process& process, const Excursion& excursion,
                                  Results& results) {
   std::vector<double> levels;
@@ -129,6 +139,20 @@ void append_hitting_distribution(const model::Process& process, const Excursion&
   results.push_back(
       scalar(catalogue::kFStick0,
              stick_density_at_zero(process, excursion.entry.front(), excursion.entry.back()), 0));
+}
+
+void entry_law_tasks(Planner& planner) {
+  planner.need_distribution();
+  Task task{"hitting distribution (entry_law)"};
+  if (planner.symmetric()) task.uses = {{{0, operators::Symmetry::odd}, 0, 1}};
+  task.carry_out = [](Computation& computation) {
+    computation.found.distribution->orient(computation.systems);
+    const auto append = [](const auto& discretisation, const auto& excursion, Results& results) {
+      append_hitting_distribution(discretisation.process, excursion, results);
+    };
+    computation.distribution().append_from(append, computation.results());
+  };
+  planner.add(std::move(task));
 }
 
 double stick_density_at_zero(const model::Process& process, double lowest, double highest) {

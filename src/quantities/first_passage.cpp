@@ -1,5 +1,7 @@
 #include "stickslip/quantities/first_passage.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +11,8 @@
 #include "stickslip/catalogue/peak_keys.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/quantities/plan.hpp"
+#include "stickslip/quantities/stationary.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -113,18 +117,40 @@ FirstPassage first_passage(operators::Systems& systems, const SideChain& sides, 
           {p.from_rest, std::abs(p.from_rest - q.from_rest)}};
 }
 
-void append_first_passages(const std::vector<double>& speed,
-                           const std::vector<FirstPassage>& passages, Results& results) {
+namespace {
+
+void append_first_passages(const Computation& computation,
+                           const std::vector<FirstPassage>& passages) {
   const auto append = [&](const Row& row, Uncertain FirstPassage::*member) {
-    Result result = array(row, speed);
+    Result result = array(row, computation.question().velocity);
     for (const auto& passage : passages) append_value(result, passage.*member);
     result.partial = std::any_of(result.value.begin(), result.value.end(),
                                  [](double value) { return std::isnan(value); });
-    results.push_back(std::move(result));
+    computation.results().push_back(std::move(result));
   };
   append(catalogue::kPPeak, &FirstPassage::exceeded);
   append(catalogue::kFirstPassage, &FirstPassage::from_slide);
   append(catalogue::kFirstPassageRest, &FirstPassage::from_rest);
+}
+
+}  // namespace
+
+// From each side, and from rest.
+void peak_tasks(Planner& planner) {
+  const bool symmetric = planner.symmetric();
+  if (!symmetric) planner.need_distribution();  // which has the shares of both sides
+  const auto found = planner.collect<FirstPassage>(append_first_passages);
+  for (double speed : planner.question().velocity) {
+    auto system = planner.system();
+    system.speed_limit = speed;
+    const auto find = [=](Computation& computation) {
+      const SideChain sides = symmetric ? SideChain{} : computation.distribution().sides();
+      found->push_back(first_passage(computation.systems, sides, speed));
+    };
+    planner.add({fmt::format("first passage to |v| = {:g}", speed),
+                 {{system, 0, symmetric ? 2 : 3}},
+                 find});
+  }
 }
 
 }  // namespace stickslip::quantities

@@ -1,13 +1,25 @@
 #include "stickslip/quantities/laplace.hpp"
 
+#include <fmt/format.h>
+
 #include "stickslip/catalogue/laplace_keys.hpp"
 #include "stickslip/operators/static_chain.hpp"
+#include "stickslip/quantities/durations.hpp"
+#include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
 std::vector<double> stick_duration_transforms(const model::Process& process, double lambda) {
   return operators::StaticChain::of(process, lambda).exit_transform();
+}
+
+void find_duration_moments(Computation& computation) {
+  const auto& distribution = computation.distribution();
+  const auto entry = distribution.entry();
+  const auto moments = duration_moments(computation.systems, distribution, entry);
+  append_duration_moments(computation.process(), distribution.sides(), moments, entry,
+                          computation.results());
 }
 
 }  // namespace
@@ -25,6 +37,15 @@ void append_stick_transform(const model::Process& process, const std::vector<dou
   Result result = array(catalogue::kTransformStick, lambda);
   for (double value : lambda) append_value(result, stick_transform(process, value, entry));
   results.push_back(std::move(result));
+}
+
+void stick_transform_tasks(Planner& planner) {
+  if (planner.question().wants(catalogue::Quantity::laplace)) return;  // which has it, too
+  planner.need_distribution();
+  planner.add({"Laplace transforms of sticking phases", {}, [](Computation& computation) {
+                 append_stick_transform(computation.process(), computation.question().lambda,
+                                        computation.distribution().entry(), computation.results());
+               }});
 }
 
 SlidingTransforms sliding_transforms(operators::Systems& systems,
@@ -49,6 +70,26 @@ void append_laplace(const std::vector<double>& lambda,
   append(catalogue::kTransformSlide, &DurationTransforms::slide);
   append(catalogue::kTransformStick, &DurationTransforms::stick);
   append(catalogue::kTransformExcursion, &DurationTransforms::excursion);
+}
+
+void laplace_tasks(Planner& planner) {
+  planner.need_distribution();
+  planner.add({"moments of durations", {{planner.system(), 4, 0}}, find_duration_moments});
+  const auto found =
+      planner.collect<DurationTransforms>([](const auto& computation, const auto& all) {
+        append_laplace(computation.question().lambda, all, computation.results());
+      });
+  planner.add_at_each_lambda([&](double lambda) -> Task {
+    const auto find = [=](Computation& computation) {
+      const auto& distribution = computation.distribution();
+      const auto t = sliding_transforms(computation.systems, distribution, lambda);
+      const auto stick = stick_transform(computation.process(), lambda, distribution.entry());
+      found->push_back({t.slide, stick, t.excursion});
+    };
+    return {fmt::format("Laplace transforms at lambda = {:g}", lambda),
+            {{planner.system(lambda), 2, 0}},
+            find};
+  });
 }
 
 }  // namespace stickslip::quantities

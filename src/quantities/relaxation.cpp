@@ -8,6 +8,7 @@
 #include "stickslip/petsc/eigensolver.hpp"
 #include "stickslip/petsc/scalars.hpp"
 #include "stickslip/petsc/vectors.hpp"
+#include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -161,6 +162,17 @@ void append_relaxation(const RelaxationSector& sector, Results& results) {
   }
   results.push_back(std::move(decay));
   results.push_back(std::move(frequency));
+}
+
+void relaxation_tasks(Planner& planner) {
+  const int sectors = planner.symmetric() ? 2 : 1;
+  planner.add_adaptive("relaxation modes", sectors, 28 * sectors, [](Computation& computation) {
+    for (Symmetry symmetry : operators::sectors_of(computation.process())) {
+      auto& modes = computation.found.modes;
+      modes.push_back(relaxation_modes(computation.systems, symmetry));
+      append_relaxation(modes.back(), computation.results());
+    }
+  });
 }
 
 }  // namespace stickslip::quantities

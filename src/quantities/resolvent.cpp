@@ -1,5 +1,7 @@
 #include "stickslip/quantities/resolvent.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 
@@ -7,6 +9,7 @@
 #include "stickslip/catalogue/resolvent_keys.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -197,6 +200,24 @@ Resolvent by_side(operators::Systems& systems, double lambda,
   return r;
 }
 
+// How many observables have a part of that symmetry, as far as a sample of states shows; the others
+// are not solved for.
+int count_with(double (model::Observable::*part)(double, double, double) const,
+               const std::vector<model::Observable>& observables, const model::Scene& scene) {
+  const auto process = scene.meant();
+  const int last = std::min(3 * process.highest_static() + 3, process.noise.highest());
+  return static_cast<int>(std::ranges::count_if(observables, [&](const model::Observable& f) {
+    for (int i = 0; i <= last; ++i) {
+      const double x = process.noise.level(i);
+      if (i <= process.highest_static() && (f.*part)(x, 0, 0) != 0) return true;
+      for (double v : {0.01, 0.3, 2.0}) {
+        if ((f.*part)(x, 1, v) != 0 || (f.*part)(-x, 1, v) != 0) return true;
+      }
+    }
+    return false;
+  }));
+}
+
 }  // namespace
 
 Resolvent resolvent(operators::Systems& systems, double lambda,
@@ -250,6 +271,32 @@ void append_resolvent(const std::vector<double>& lambda,
     if (finite) of(catalogue::kUMinus, &ObservableTransforms::u_from_minus);
     of(catalogue::kMuMinus, &ObservableTransforms::mu_from_minus);
   }
+}
+
+// Both sectors for the exits, the even one for their discounted time.
+void resolvent_tasks(Planner& planner) {
+  const auto found = planner.collect<Resolvent>(
+      [](const Computation& computation, const auto& all) {
+        const auto& question = computation.question();
+        append_resolvent(question.lambda, question.observables, all,
+                         !computation.process().drifts(), computation.results());
+      },
+      true);
+  const auto& scene = planner.given().scene;
+  const auto& f = planner.question().observables;
+  const int even = planner.symmetric() ? count_with(&model::Observable::even, f, scene) : 0,
+            odd = planner.symmetric() ? count_with(&model::Observable::odd, f, scene) : 0;
+  planner.add_at_each_lambda([&](double lambda) {
+    Task task{fmt::format("resolvent at lambda = {:g}", lambda)};
+    task.uses = {{{lambda, Symmetry::even}, 2 + even, 0}, {{lambda, Symmetry::odd}, 1 + odd, 0}};
+    if (!planner.symmetric()) {
+      task.uses = {{{lambda, Symmetry::none}, 3 + static_cast<int>(f.size()), 0}};
+    }
+    task.carry_out = [=](Computation& computation) {
+      found->push_back(resolvent(computation.systems, lambda, computation.question().observables));
+    };
+    return task;
+  });
 }
 
 }  // namespace stickslip::quantities

@@ -9,12 +9,14 @@
 #include "stickslip/catalogue/noise_law_keys.hpp"
 #include "stickslip/catalogue/sensitivity_keys.hpp"
 #include "stickslip/catalogue/sticking_keys.hpp"
+#include "stickslip/effects/effect.hpp"
 #include "stickslip/effects/model_options.hpp"
 #include "stickslip/model/noise_chain.hpp"
 #include "stickslip/model/unit.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
+#include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -235,6 +237,30 @@ void append_noise_sensitivity(const model::Process& process, Results& results) {
   const double within_size = std::abs(beyond * within_score) + std::abs(within * beyond_score);
   results.push_back(derivative(catalogue::kPWithin, "tau", {by_within, rounding * within_size}));
   results.push_back(derivative(catalogue::kEX2, "tau", {by_square, rounding * size}));
+}
+
+// Adjoints of mean_slide and mean_stick, which every derivative needs, and of three moments. With a
+// single static level mean_stick needs none. Without symmetry there are the side of the next
+// excursion, and E_V.
+void sensitivity_tasks(Planner& planner) {
+  using catalogue::Quantity;
+  const bool sticking = planner.question().wants(Quantity::sticking),
+             moments = planner.question().wants(Quantity::moments);
+  if (!moments && !sticking) return;
+  const auto& scene = planner.given().scene;
+  const int durations = scene.meant().highest_static() > 0 ? 2 : 1;
+  const int sides = planner.symmetric() ? 0 : 1;
+  const int adjoints = durations + sides + (moments ? 3 + sides : 0);
+  const auto parameters = effects::derivatives_of(scene);
+  const auto find = [=](Computation& computation) {
+    const Sensitivity sensitivity(computation.systems, computation.distribution(), parameters);
+    if (sticking) sensitivity.append_sticking(computation.results());
+    if (moments) sensitivity.append_moments(computation.results());
+  };
+  planner.add({"sensitivity",
+               {{planner.system(), adjoints, 0}},
+               find,
+               static_cast<int>(parameters.size())});
 }
 
 }  // namespace stickslip::quantities

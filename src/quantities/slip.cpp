@@ -1,10 +1,13 @@
 #include "stickslip/quantities/slip.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numeric>
 
 #include "stickslip/catalogue/slip_keys.hpp"
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -70,24 +73,56 @@ void append_mean_slip(const Excursion& excursion, Results& results) {
   results.push_back(scalar(catalogue::kMeanSlip, mean_path(excursion), 0));
 }
 
-void append_slip_moments(const model::Process& process, const SlipMoments& moments,
-                         Results& results) {
+namespace {
+
+void find_moments(Computation& computation) {
+  const auto moments = slip_moments(computation.systems, computation.distribution());
+  const Uncertain net = computation.process().drifts() ? moments.net_mean : Uncertain{};
+  auto& results = computation.results();
   results.push_back(scalar(catalogue::kVarSlip, moments.variance));
-  results.push_back(
-      scalar(catalogue::kMeanSlipNet, process.drifts() ? moments.net_mean : Uncertain{}));
+  results.push_back(scalar(catalogue::kMeanSlipNet, net));
   results.push_back(scalar(catalogue::kVarSlipNet, moments.net_variance));
 }
 
-void append_slip_transform(const std::vector<double>& inverse_distance,
-                           const std::vector<Uncertain>& transform, Results& results) {
-  Result result = array(catalogue::kTransformSlip, inverse_distance);
-  for (const auto& value : transform) append_value(result, value);
-  results.push_back(std::move(result));
+void find_distribution(Computation& computation) {
+  const auto& distance = computation.question().distance;
+  const auto slips = slip_distribution(computation.systems, computation.distribution(), distance,
+                                       computation.tolerance());
+  append_distribution(catalogue::kDensitySlip, catalogue::kCdfSlip, distance, slips,
+                      computation.results());
+  computation.found.checks.emplace_back("slip_pairs", slips.pairs);
 }
 
-void append_slip(const std::vector<double>& distance, const DurationDistribution& slips,
-                 Results& results) {
-  append_distribution(catalogue::kDensitySlip, catalogue::kCdfSlip, distance, slips, results);
+}  // namespace
+
+void mean_slip_tasks(Planner& planner) {
+  planner.append_from([](const auto&, const Excursion& excursion, Results& results) {
+    append_mean_slip(excursion, results);
+  });
+}
+
+void slip_tasks(Planner& planner) {
+  Task moments{
+      "moments of slips", {{planner.system(), planner.symmetric() ? 3 : 4, 0}}, find_moments};
+  if (planner.symmetric()) moments.uses.push_back({{0, Symmetry::odd}, 1, 0});
+  planner.add(std::move(moments));
+  const auto found =
+      planner.collect<Uncertain>([](const Computation& computation, const auto& all) {
+        append_array(array(catalogue::kTransformSlip, computation.question().inverse_distance), all,
+                     computation.results());
+      });
+  for (double s : planner.question().inverse_distance) {
+    auto system = planner.system(s);
+    system.clock = Clock::path_length;
+    planner.add({fmt::format("transform of slips at s = {:g}", s),
+                 {{system, 1, 0}},
+                 [=](Computation& computation) {
+                   found->push_back(
+                       slip_transform(computation.systems, computation.distribution(), s));
+                 }});
+  }
+  if (planner.question().distance.empty()) return;
+  planner.add_adaptive("distribution of slips", 6, 80, find_distribution);
 }
 
 }  // namespace stickslip::quantities

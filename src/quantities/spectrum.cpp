@@ -14,6 +14,7 @@
 #include "stickslip/operators/complex_solver.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
+#include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -247,11 +248,7 @@ std::vector<Uncertain> direct_spectrum(operators::Systems& systems,
 }
 
 void append_spectrum(const std::vector<double>& omega, const Spectrum& spectrum, Results& results) {
-  if (!omega.empty()) {
-    Result s = array(catalogue::kSV, omega);
-    for (const auto& value : spectrum.value) append_value(s, value);
-    results.push_back(std::move(s));
-  }
+  if (!omega.empty()) append_array(array(catalogue::kSV, omega), spectrum.value, results);
   results.push_back(scalar(catalogue::kS0, spectrum.at_zero));
   results.push_back(scalar(catalogue::kDiffusivity, 0.5 * spectrum.at_zero));
 }
@@ -261,6 +258,62 @@ void append_shape(const SpectrumShape& shape, Results& results) {
   results.push_back(scalar(catalogue::kCorrelationTime, Uncertain{1, 0} / shape.full_width));
   results.push_back(scalar(catalogue::kVarianceFromSpectrum, shape.variance));
   results.back().diagnostic = true;
+}
+
+namespace {
+
+// Puts values at the frequencies of waves, each found on elements of its own, between the others.
+void put_waves(const Computation& computation, Spectrum& spectrum) {
+  const auto smooth = std::exchange(spectrum.value, {});
+  auto next = smooth.begin();
+  for (double omega : computation.question().omega) {
+    const auto wave = computation.problem.waves.find(omega);
+    if (wave == computation.problem.waves.end()) {
+      spectrum.value.push_back(*next++);
+      continue;
+    }
+    operators::Systems systems(computation.systems.comm(), wave->second,
+                               computation.systems.statistics());
+    const StationaryDistribution distribution(systems);
+    systems.release({0, operators::symmetry_of(systems.process())});
+    spectrum.value.push_back(direct_spectrum(systems, distribution, {omega}).front());
+  }
+}
+
+void find_spectrum(Computation& computation, bool direct) {
+  const auto& omega = computation.question().omega;
+  const auto& distribution = computation.distribution();
+  std::vector<double> smooth;
+  std::ranges::copy_if(omega, std::back_inserter(smooth),
+                       [&](double w) { return !computation.problem.waves.contains(w); });
+  ReducedSpectrum reduced;
+  auto& spectrum = reduced.spectrum;
+  if (direct) {
+    smooth.push_back(0);
+    spectrum.value = direct_spectrum(computation.systems, distribution, smooth);
+    spectrum.at_zero = spectrum.value.back();
+    spectrum.value.pop_back();
+  } else {
+    reduced = reduced_spectrum(computation.systems, distribution, smooth, computation.tolerance());
+  }
+  put_waves(computation, spectrum);
+  append_spectrum(omega, spectrum, computation.results());
+  if (direct) return;
+  append_shape(reduced.shape, computation.results());
+  auto& checks = computation.found.checks;
+  checks.emplace_back("krylov_pairs", reduced.pairs);
+  checks.emplace_back("krylov_shifts", static_cast<double>(reduced.shifts.size()));
+}
+
+}  // namespace
+
+void spectrum_tasks(Planner& planner) {
+  planner.need_distribution();
+  const bool direct = planner.given().method.spectrum_solver == cases::SpectrumSolver::direct;
+  // 0 as well, and the stationary distribution alone.
+  const int frequencies = static_cast<int>(planner.question().omega.size()) + 2;
+  planner.add_adaptive("spectrum", direct ? frequencies : 2, direct ? frequencies : 18,
+                       [=](Computation& computation) { find_spectrum(computation, direct); });
 }
 
 }  // namespace stickslip::quantities

@@ -5,6 +5,7 @@
 #include "stickslip/catalogue/averages_keys.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
+#include "stickslip/quantities/plan.hpp"
 #include "stickslip/quantities/uncertain.hpp"
 
 namespace stickslip::quantities {
@@ -79,6 +80,15 @@ void append_averages(const StationaryDistribution& distribution, const Kolmogoro
   if (distribution.process().sticks()) {
     results.push_back(scalar(catalogue::kSlipRate, Uncertain{1, 0} / excursion));
   }
+}
+
+void averages_tasks(Planner& planner) {
+  planner.need_distribution();
+  const auto system = planner.system();
+  planner.add({"averages", {{system, 0, 0}}, [system](Computation& computation) {
+                 append_averages(computation.distribution(), computation.systems.at(system).a(),
+                                 computation.question().observables, computation.results());
+               }});
 }
 
 }  // namespace stickslip::quantities

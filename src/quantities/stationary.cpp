@@ -163,6 +163,29 @@ void StationaryDistribution::orient(Systems& systems) {
   set(nu.correction, uncorrected_);
 }
 
+void StationaryDistribution::append_from(const FunctionOfExcursion& append,
+                                         Results& results) const {
+  Results corrected, uncorrected;
+  append(discretisation_, excursion_, corrected);
+  append(discretisation_, uncorrected_, uncorrected);
+  const double defect = excursion_.conservation_defect(discretisation_);
+  for (std::size_t r = 0; r < corrected.size(); ++r) {
+    auto& result = corrected[r];
+    for (std::size_t n = 0; n < result.value.size(); ++n) {
+      const double value = result.value[n];
+      result.error[n] += std::abs(value - uncorrected[r].value[n]) + defect * std::abs(value);
+    }
+    results.push_back(std::move(result));
+  }
+}
+
+std::vector<Uncertain> StationaryDistribution::entry() const {
+  const auto &p = excursion_.entry, &before = uncorrected_.entry;
+  std::vector<Uncertain> entry;
+  for (std::size_t n = 0; n < p.size(); ++n) entry.push_back({p[n], std::abs(p[n] - before[n])});
+  return entry;
+}
+
 petsc::VecHandle StationaryDistribution::starts(const KolmogorovOperator& a) const {
   petsc::VecHandle g = a.trace_at_exit(Branch::positive);
   if (a.states().symmetry_reduced()) return g;

@@ -4,9 +4,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "stickslip/catalogue/autocorrelation_keys.hpp"
+#include "stickslip/catalogue/expectation_keys.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/time_stepper.hpp"
 #include "stickslip/petsc/vectors.hpp"
+#include "stickslip/quantities/plan.hpp"
 #include "stickslip/quantities/time_functions.hpp"
 
 namespace stickslip::quantities {
@@ -123,6 +126,46 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
   }
   for (auto& value : result.value) value.error += unseen;
   return result;
+}
+
+namespace {
+
+TransientMethod method_of(const Computation& computation) {
+  const bool krylov =
+      computation.problem.given.method.transient_solver == cases::TransientSolver::krylov;
+  return krylov ? TransientMethod::krylov : TransientMethod::stepping;
+}
+
+void find_autocorrelation(Computation& computation) {
+  const auto& time = computation.question().time;
+  const auto values = autocorrelation(computation.systems, computation.distribution(), time,
+                                      method_of(computation), computation.tolerance());
+  append_array(array(catalogue::kAutocovariance, time), values, computation.results());
+}
+
+void find_expectations(Computation& computation) {
+  const auto& question = computation.question();
+  for (const auto& f : question.observables) {
+    const auto found =
+        expectation(computation.systems, computation.distribution(), f, question.start,
+                    question.time, method_of(computation), computation.tolerance());
+    auto& results = computation.results();
+    append_array(array(blank(catalogue::kExpectationOf, f), question.time), found.value, results);
+    results.push_back(scalar(blank(catalogue::kStationaryOf, f), found.stationary, found.unseen));
+  }
+}
+
+}  // namespace
+
+void autocorrelation_tasks(Planner& planner) {
+  planner.need_distribution();
+  planner.add_adaptive("autocorrelation", 6, 36, find_autocorrelation);
+}
+
+void expectation_tasks(Planner& planner) {
+  planner.need_distribution();
+  const auto observables = static_cast<int>(planner.question().observables.size());
+  planner.add_adaptive("expectations", 6 * observables, 36 * observables, find_expectations);
 }
 
 }  // namespace stickslip::quantities

@@ -5,8 +5,8 @@
 
 namespace stickslip::routes {
 
-/// Everything from the sliding operator and the static chain; see
-/// quantities::StationaryDistribution.
+/// Everything from the sliding operator and the static chain, task by task; see quantities::Plan
+/// and quantities::StationaryDistribution.
 [[nodiscard]] Evaluation by_excursion(const Problem& problem);
 
 /// pi(f) = lambda u_lambda(s+; f) + O(lambda) with (lambda - M) u_lambda = f on the full grid; one

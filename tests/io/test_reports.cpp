@@ -503,9 +503,8 @@ TEST_CASE("study reports: numbers have the digits of their columns") {
 
 TEST_CASE("plan reports: sizes, solves and seconds in their places") {
   accuracy::Prediction p;
-  p.plan.tasks = {
-      {routes::Work::stationary_distribution, 0, {{{0, operators::Symmetry::even}, 3, 0}}},
-      {routes::Work::orientation, 0, {{{0.5, operators::Symmetry::none}, 0, 2}}}};
+  p.plan.tasks = {{"stationary distribution", {{{0, operators::Symmetry::even}, 3, 0}}},
+                  {"hitting distribution", {{{0.5, operators::Symmetry::none}, 0, 2}}}};
   p.steps = {{step(0).resolution, 1001, 20002, 3e5, 12, 4e6, 0.25, 0.125}};
   p.seconds = 7;
   auto r = request();

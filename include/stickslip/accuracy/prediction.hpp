@@ -7,7 +7,7 @@
 
 #include "stickslip/accuracy/resolution.hpp"
 #include "stickslip/cases/case.hpp"
-#include "stickslip/routes/plan.hpp"
+#include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::accuracy {
 
@@ -24,7 +24,7 @@ struct PredictedStep {
 };
 
 struct Prediction {
-  routes::Plan plan;                 ///< of each step
+  quantities::Plan plan;             ///< of each step
   std::vector<PredictedStep> steps;  ///< the least number that can meet the accuracy
   double seconds = 0;                ///< of all of them and of what is not refined
 };

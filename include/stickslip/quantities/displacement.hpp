@@ -30,8 +30,4 @@ struct Displacement {
                                         const model::Start& start, const std::vector<double>& time,
                                         const ModelTolerance& tolerance);
 
-/// displacement_mean and displacement_variance.
-void append_displacement(const std::vector<double>& time, const Displacement& displacement,
-                         Results& results);
-
 }  // namespace stickslip::quantities

@@ -1,6 +1,7 @@
 #pragma once
 /// What follows for the stationary distribution from means over one excursion from s+.
 
+#include <functional>
 #include <vector>
 
 #include "stickslip/operators/discretisation.hpp"
@@ -55,6 +56,10 @@ struct SideChain {
 /// Means over all excursions from those over excursions from s+ and from s-.
 [[nodiscard]] Excursion joined(const SideChain& sides, const Excursion& plus,
                                const Excursion& minus);
+
+/// What appends results that follow from means over an excursion.
+using FunctionOfExcursion =
+    std::function<void(const operators::Discretisation&, const Excursion&, Results&)>;
 
 /// P_stick, P_slide, mean_stick, mean_slide, mean_excursion; ratios of positive sums.
 void append_sticking(const Excursion& excursion, Results& results);

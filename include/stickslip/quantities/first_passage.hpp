@@ -31,9 +31,4 @@ struct FirstPassage {
 [[nodiscard]] FirstPassage first_passage(operators::Systems& systems, const SideChain& sides,
                                          double speed);
 
-/// P_peak, mean_first_passage and mean_first_passage_rest by speed; each value counts by its own
-/// size.
-void append_first_passages(const std::vector<double>& speed,
-                           const std::vector<FirstPassage>& passages, Results& results);
-
 }  // namespace stickslip::quantities

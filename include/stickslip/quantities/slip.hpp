@@ -37,16 +37,4 @@ struct SlipMoments {
 /// E[S] = E|V| mean_excursion.
 void append_mean_slip(const Excursion& excursion, Results& results);
 
-/// The variance of S, mean and variance of the net displacement.
-void append_slip_moments(const model::Process& process, const SlipMoments& moments,
-                         Results& results);
-
-/// F_slip by inverse distance; each value counts by its own size.
-void append_slip_transform(const std::vector<double>& inverse_distance,
-                           const std::vector<Uncertain>& transform, Results& results);
-
-/// f_slip and cdf_slip.
-void append_slip(const std::vector<double>& distance, const DurationDistribution& slips,
-                 Results& results);
-
 }  // namespace stickslip::quantities

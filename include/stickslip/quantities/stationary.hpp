@@ -3,6 +3,7 @@
 
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/quantities/excursion.hpp"
+#include "stickslip/quantities/uncertain.hpp"
 
 namespace stickslip::quantities {
 
@@ -41,6 +42,11 @@ class StationaryDistribution {
   [[nodiscard]] const Excursion& excursion() const { return excursion_; }
   /// The same before iterative refinement of the solution: the difference shows rounding.
   [[nodiscard]] const Excursion& uncorrected() const { return uncorrected_; }
+  /// Appends what follows from the excursion, with rounding for error: the effect of iterative
+  /// refinement, and the defect of an exact identity.
+  void append_from(const FunctionOfExcursion& append, Results& results) const;
+  /// Excursion::entry, with the effect of iterative refinement.
+  [[nodiscard]] std::vector<Uncertain> entry() const;
 
   /// How excursions follow one another; with symmetry all start at s+.
   [[nodiscard]] const SideChain& sides() const { return sides_; }

@@ -46,4 +46,10 @@ inline void append_value(Result& array, Uncertain value) {
   array.error.push_back(value.error);
 }
 
+/// Appends an array with these values to the results.
+inline void append_array(Result array, const std::vector<Uncertain>& values, Results& results) {
+  for (const auto& value : values) append_value(array, value);
+  results.push_back(std::move(array));
+}
+
 }  // namespace stickslip::quantities

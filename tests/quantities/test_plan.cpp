@@ -4,7 +4,7 @@
 #include "../common/scenes.hpp"
 #include "stickslip/accuracy/prediction.hpp"
 #include "stickslip/accuracy/refinement.hpp"
-#include "stickslip/routes/plan.hpp"
+#include "stickslip/quantities/plan.hpp"
 
 using namespace stickslip;
 using cases::Case;
@@ -114,7 +114,7 @@ TEST_CASE("plan: what is predicted is what is done") {
   for (const auto& c : samples()) {
     INFO(c.name);
     const Case r = given(c);
-    const auto plan = accuracy::needs_system(r) ? routes::plan_of(r) : routes::Plan{};
+    const auto plan = accuracy::needs_system(r) ? quantities::plan_of(r) : quantities::Plan{};
     CHECK_FALSE(plan.adaptive());
     const Counts predicted{plan.assemblies(), plan.factorizations(), plan.solves()};
     CHECK(predicted == c.expected);
@@ -132,13 +132,33 @@ TEST_CASE("plan: what is predicted is what is done") {
   }
 }
 
+TEST_CASE("plan: what shares a system follows each other, and lets it go") {
+  using enum Quantity;
+  const auto plan = quantities::plan_of(
+      given({"", {resolvent, laplace, sticking, peak}, {}, truncated(), {0.5, 2}, {"v^2"}}));
+  std::vector<std::string> names;
+  for (const auto& task : plan.tasks) names.push_back(task.name);
+  CHECK(names ==
+        std::vector<std::string>{"stationary distribution", "moments of durations",
+                                 "Laplace transforms at lambda = 0.5", "resolvent at lambda = 0.5",
+                                 "Laplace transforms at lambda = 2", "resolvent at lambda = 2"});
+  const auto uses = [&plan](std::size_t from, double lambda) {
+    return plan.used_from(from).contains({lambda, Symmetry::even});
+  };
+  CHECK(uses(1, 0));
+  CHECK_FALSE(uses(2, 0));
+  CHECK(uses(3, 0.5));
+  CHECK_FALSE(uses(4, 0.5));
+  CHECK(uses(5, 2));
+}
+
 TEST_CASE("plan: adaptive tasks are marked, and take complex arithmetic for comparison alone") {
   using enum Quantity;
   for (Quantity q : {spectrum, duration_density, autocorrelation, expectation, relaxation}) {
     Case r = given({"", {q}, {}});
     r.question.time = {0.5, 2};
     r.question.observables.push_back(model::parse_observable("v^2", r.scene.friction));
-    const auto plan = routes::plan_of(r);
+    const auto plan = quantities::plan_of(r);
     CHECK(plan.adaptive());
     CHECK(plan.factorizations() == (q == relaxation ? 0 : 1));
     const auto outcome = accuracy::carry_out(PETSC_COMM_WORLD, r, {}, {});

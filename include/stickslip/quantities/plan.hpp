@@ -1,0 +1,109 @@
+#pragma once
+/// What is assembled, factored and solved on each discretisation, derived from the question.
+
+#include <functional>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "stickslip/cases/case.hpp"
+#include "stickslip/operators/system_key.hpp"
+#include "stickslip/quantities/computation.hpp"
+#include "stickslip/quantities/excursion.hpp"
+
+namespace stickslip::quantities {
+
+/// A system that a task solves with, and the right-hand sides.
+struct Use {
+  operators::SystemKey system;
+  int forward = 0, transposed = 0;
+};
+
+using Action = std::function<void(Computation&)>;
+
+struct Task {
+  std::string name;  ///< "stationary distribution", "resolvent at lambda = 0.5"
+  std::vector<Use> uses = {};
+  Action carry_out = {};  ///< collective
+  int derivatives = 0;    ///< of the operator, assembled and not factored
+  /// Whether it makes operators and factorisations of its own besides, as many as its accuracy
+  /// asks for: rational Krylov models, eigensolvers, time steps.
+  bool adaptive = false;
+  int usual_factorizations = 0, usual_solves = 0;  ///< of an adaptive task, for predictions
+};
+
+/// Tasks in the order of execution. Each system is assembled and factored when the first task asks
+/// for it, and freed after the last one has used it.
+struct Plan {
+  std::vector<Task> tasks;
+  std::vector<Action> afterwards = {};  ///< what appends results that several tasks have found
+
+  /// Each system once.
+  [[nodiscard]] std::set<operators::SystemKey> systems() const { return used_from(0); }
+  /// Systems that tasks from number `first` on use.
+  [[nodiscard]] std::set<operators::SystemKey> used_from(std::size_t first) const;
+  /// Operators assembled, systems factored and right-hand sides solved for by all tasks; of the
+  /// adaptive ones only what is known before.
+  [[nodiscard]] int assemblies() const;
+  [[nodiscard]] int factorizations() const { return static_cast<int>(systems().size()); }
+  [[nodiscard]] int solves() const;
+  [[nodiscard]] bool adaptive() const;
+};
+
+/// The least set of work for the quantities asked for. Solution methods other than excursion do one
+/// thing each, and their plan is empty. Local.
+[[nodiscard]] Plan plan_of(const cases::Case& given);
+
+/// Collects the tasks of quantities. Each quantity is a function in a file of its own that adds
+/// what it takes; plan.cpp lists them.
+class Planner {
+ public:
+  explicit Planner(const cases::Case& given) : given_(given) {}
+
+  [[nodiscard]] const cases::Case& given() const { return given_; }
+  [[nodiscard]] const cases::Question& question() const { return given_.question; }
+  [[nodiscard]] bool symmetric() const { return given_.scene.symmetric(); }
+  /// The system of the stationary distribution, and the same at another lambda.
+  [[nodiscard]] operators::SystemKey system(double lambda = 0) const;
+
+  /// Has the stationary distribution found before all else.
+  void need_distribution() { needs_distribution_ = true; }
+  /// What follows from means over excursions is appended with the stationary distribution.
+  void append_from(const FunctionOfExcursion& append);
+  void add(Task task) { plan_.tasks.push_back(std::move(task)); }
+  /// One with operators of its own, which carry the static states or are projected. The numbers are
+  /// those seen in most of thirty cases, in solves with iterative refinement.
+  void add_adaptive(std::string name, int factorizations, int solves, Action carry_out);
+  /// One for each lambda of the question. What all quantities do at one lambda is done in turn, as
+  /// they share its systems.
+  void add_at_each_lambda(const std::function<Task(double lambda)>& task);
+  /// Values that tasks find one at a time. They are appended together after all tasks, if there are
+  /// any; `last`: behind those of other quantities.
+  template <class Value>
+  [[nodiscard]] std::shared_ptr<std::vector<Value>>
+  collect(const std::function<void(const Computation&, const std::vector<Value>&)>& append,
+          bool last = false) {
+    const auto values = std::make_shared<std::vector<Value>>();
+    auto& actions = last ? last_ : plan_.afterwards;
+    actions.emplace_back([=](const Computation& computation) {
+      if (!values->empty()) append(computation, std::exchange(*values, {}));
+    });
+    return values;
+  }
+
+  /// All that has been added.
+  [[nodiscard]] Plan plan() &&;
+
+ private:
+  const cases::Case& given_;
+  Plan plan_;
+  std::vector<Action> last_;
+  bool needs_distribution_ = false;
+  std::vector<FunctionOfExcursion> of_excursions_;
+  // The place of the tasks at the first lambda, and how many there are at each.
+  std::size_t at_lambda_ = 0, at_each_lambda_ = 0;
+};
+
+}  // namespace stickslip::quantities
