@@ -1,5 +1,5 @@
-"""A drag law, a noise and an output that are a file each: all that the program does with them follows from what they
-declare."""
+"""A drag law, a noise, a quantity and an output with files of their own: all that the program does with them follows
+from what they declare."""
 
 import csv
 import os
@@ -23,6 +23,7 @@ from stickslip.plots import style
 PROGRAM = "stickslip-extended"
 MODEL = ("-mu_d", "0.5", "-accuracy", "1e-5")
 DRAG = ("-drag", "quadratic", "-drag_quadratic", "2")
+WAITING = (*MODEL, "-quantities", "waiting")
 NOISE = ("-noise", "three_levels", "-pulse_force", "2", "-pulse_rate", "0.5", "-pulse_end_rate", "3")
 QUADRATIC, PULSES = (*MODEL, *DRAG), (*MODEL, *NOISE)
 
@@ -81,6 +82,43 @@ class Extension(Case):
         self.assertEqual([float(row["drag_quadratic"]) for row in rows], [1, 2])
         self.assert_close(float(rows[1]["E_V2"]), single, 1e-12)
 
+    def test_a_quantity_is_in_the_help_and_in_the_plan(self):
+        text = self.run_ok("-help", program=PROGRAM).stdout
+        self.assertIn("mean time to the next start of a sliding phase: mean_waiting.", " ".join(text.split()))
+        self.assertIn("| `mean_waiting` |", self.run_ok("-reference_quantities", program=PROGRAM).stdout)
+        plan = self.solved(*WAITING, "-plan")["plan"]
+        self.assertEqual([task["name"] for task in plan["tasks"]], ["stationary distribution", "waiting times"])
+        self.assertEqual((plan["factorizations"], plan["solves"]), (1, 5))
+        done = run(*MODEL, "-quantities", "wating", program=PROGRAM, folder=self.folder)
+        self.assertIn("did you mean waiting?", done.stderr)
+
+    def test_a_quantity_is_computed_beside_others(self):
+        for bias in (), ("-bias", "0.3"):
+            results = self.solved(*MODEL, *bias, "-quantities", "waiting,laplace", "-lambda", "1")["results"]
+            mean, variance = (results[key]["value"] for key in ("mean_excursion", "var_excursion"))
+            self.assert_close(results["mean_waiting"]["value"], (variance + mean**2) / (2 * mean), 1e-12)
+            self.assertEqual(results["mean_waiting"]["unit"], "time")
+            self.assertLess(results["mean_waiting"]["error"], 1e-5 * results["mean_waiting"]["value"])
+
+    def test_a_quantity_is_simulated(self):
+        for bias in (), ("-bias", "0.3"):
+            computed = self.folder / "computed.json"
+            self.run_ok(*WAITING, *bias, "-summary", computed, program=PROGRAM)
+            simulation = ("-mu_d", "0.5", *bias, "-route", "monte_carlo", "-excursions", "20000")
+            self.run_ok(*simulation, "-compare", computed, program=PROGRAM)
+            self.run_ok(*simulation, "-quantities", "waiting", "-checkpoint", "simulation.h5", program=PROGRAM)
+            done = run(*simulation, "-quantities", "sticking", "-checkpoint", "simulation.h5", program=PROGRAM,
+                       folder=self.folder)
+            self.assertIn("-quantities", done.stderr)
+            (self.folder / "simulation.h5").unlink()
+
+    def test_a_sweep_of_a_quantity(self):
+        self.run_ok(*WAITING[2:], "-sweep_mu_d", "0.5,0.75", "-sweep_csv", "sweep.csv", program=PROGRAM)
+        lines = (self.folder / "sweep.csv").read_text().splitlines()
+        rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+        single = self.solved(*WAITING)["results"]["mean_waiting"]["value"]
+        self.assert_close(float(rows[0]["mean_waiting"]), single, 1e-12)
+
     def test_an_output_holds_the_results(self):
         results = self.solved(*QUADRATIC, "-quantities", "sticking,entry_law", "-markdown", "table.md")["results"]
         rows = [line.strip("| ").split(" | ") for line in (self.folder / "table.md").read_text().splitlines()]
@@ -112,6 +150,8 @@ class Extension(Case):
         self.use_in_python()
         results = stickslip.run(mu_d=0.5, accuracy=1e-5, drag="quadratic", drag_quadratic=2)
         self.assertEqual(results["E_V2"].value, self.solved(*QUADRATIC)["results"]["E_V2"]["value"])
+        results = stickslip.run(mu_d=0.5, accuracy=1e-5, quantities="waiting")
+        self.assertEqual(results["mean_waiting"].value, self.solved(*WAITING)["results"]["mean_waiting"]["value"])
 
     def test_pictures_name_their_parameters(self):
         self.use_in_python()

@@ -3,6 +3,7 @@
 /// which unit, and how its error is judged. Each quantity has a file beside this one with all that
 /// is said of it; help, reference pages, validation and files follow from these.
 
+#include <cstdint>
 #include <initializer_list>
 #include <span>
 #include <string>
@@ -11,7 +12,7 @@
 namespace stickslip::catalogue {
 
 /// What can be asked for by -quantities.
-enum class Quantity {
+enum class Quantity : std::uint64_t {
   sticking,
   moments,
   averages,
@@ -32,6 +33,13 @@ enum class Quantity {
   trajectory,
   sensitivity
 };
+
+/// One that no other file than its own and lists name; it needs no name above. By FNV-1a.
+[[nodiscard]] constexpr Quantity own_quantity(std::string_view word) {
+  std::uint64_t hash = 14695981039346656037U;
+  for (char c : word) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
+  return Quantity{hash};
+}
 
 /// By which system of equations.
 enum class Route { excursion, lambda, hitting, null_vector, fluid_queue, monte_carlo };

@@ -1,0 +1,13 @@
+#include "stickslip/simulation/tally.hpp"
+#include "waiting_keys.hpp"
+
+namespace stickslip::simulation {
+
+void waiting_tally(Tally& tally) {
+  tally.over_time(catalogue::kMeanWaiting, [](const Excursion& excursion) {
+    const double duration = excursion.slide + excursion.stick;
+    return duration * duration / 2;
+  });
+}
+
+}  // namespace stickslip::simulation
