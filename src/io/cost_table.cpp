@@ -39,34 +39,10 @@ std::vector<std::string> size_cells(const accuracy::Resolution& r, std::int64_t 
 
 namespace {
 
-// What solution methods report of themselves (Evaluation::checks), in words.
-const char* meaning(const std::string& check) {
-  static constexpr std::pair<std::string_view, const char*> meanings[]{
-      {"krylov_pairs", "pairs of Krylov vectors in the reduced model of the spectrum"},
-      {"krylov_shifts", "real shifts of the rational Krylov spaces of the spectrum"},
-      {"slide_pairs", "pairs of Krylov vectors in the reduced model of sliding durations"},
-      {"excursion_pairs", "pairs of Krylov vectors in the reduced model of excursion durations"},
-      {"slip_pairs", "pairs of Krylov vectors in the reduced model of slips"},
-      {"R_hat", "mean time from the onset of sliding to rest"},
-      {"R_check", "mean time from the onset of sliding to rest at an outermost static level"},
-      {"R", "mean time from rest at an outermost static level to the onset of sliding"},
-      {"lambda", "averages are lambda u_lambda(s+) at this rate"},
-      {"largest_relative_bias", "largest relative bias of an average from lambda > 0"},
-      {"norm_pi_M_over_norm_M", "residual of the null vector pi of the generator M"},
-      {"most_negative_pi", "smallest entry of pi"},
-      {"riccati_residual", "relative residual of the Riccati equations"},
-      {"lost_probability", "sum of the hitting distribution less 1"}};
-  for (const auto& [name, text] : meanings) {
-    if (name == check) return text;
-  }
-  return "";
-}
-
 std::string checks_table(const accuracy::Step& step) {
   std::string text;
-  for (const auto& [name, value] : step.checks) {
-    const std::string words = meaning(name);
-    text += fmt::format("{} = {:.4g}{}\n", name, value, words.empty() ? "" : ": " + words);
+  for (const auto& [name, value, meaning] : step.checks) {
+    text += fmt::format("{} = {:.4g}: {}\n", name, value, meaning);
   }
   return text;
 }

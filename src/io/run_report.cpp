@@ -99,7 +99,7 @@ Json step_of(const accuracy::Step& step) {
                {"backward_error", step.statistics.backward_error}});
   json.update(seconds_json(step.statistics));
   json["seconds"] = step.seconds;
-  for (const auto& [name, value] : step.checks) json["checks"][name] = value;
+  for (const auto& check : step.checks) json["checks"][check.name] = check.value;
   if (!step.limiting_key.empty()) {
     json["relative_error"] = step.estimate;
     json["limited_by"] = step.limiting_key;

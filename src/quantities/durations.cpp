@@ -248,8 +248,10 @@ void find_distributions(Computation& computation) {
   append_distribution(kDensitySlide, kCdfSlide, time, slide, results);
   append_distribution(kDensityStick, kCdfStick, time, stick, results);
   append_distribution(kDensityExcursion, kCdfExcursion, time, excursion, results);
-  computation.found.checks.emplace_back("slide_pairs", slide.pairs);
-  computation.found.checks.emplace_back("excursion_pairs", excursion.pairs);
+  computation.report("slide_pairs", slide.pairs,
+                     "pairs of Krylov vectors in the reduced model of sliding durations");
+  computation.report("excursion_pairs", excursion.pairs,
+                     "pairs of Krylov vectors in the reduced model of excursion durations");
 }
 
 }  // namespace

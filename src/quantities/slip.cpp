@@ -90,7 +90,8 @@ void find_distribution(Computation& computation) {
                                        computation.tolerance());
   append_distribution(catalogue::kDensitySlip, catalogue::kCdfSlip, distance, slips,
                       computation.results());
-  computation.found.checks.emplace_back("slip_pairs", slips.pairs);
+  computation.report("slip_pairs", slips.pairs,
+                     "pairs of Krylov vectors in the reduced model of slips");
 }
 
 }  // namespace

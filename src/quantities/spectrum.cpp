@@ -300,9 +300,10 @@ void find_spectrum(Computation& computation, bool direct) {
   append_spectrum(omega, spectrum, computation.results());
   if (direct) return;
   append_shape(reduced.shape, computation.results());
-  auto& checks = computation.found.checks;
-  checks.emplace_back("krylov_pairs", reduced.pairs);
-  checks.emplace_back("krylov_shifts", static_cast<double>(reduced.shifts.size()));
+  computation.report("krylov_pairs", reduced.pairs,
+                     "pairs of Krylov vectors in the reduced model of the spectrum");
+  computation.report("krylov_shifts", static_cast<double>(reduced.shifts.size()),
+                     "real shifts of the rational Krylov spaces of the spectrum");
 }
 
 }  // namespace

@@ -146,8 +146,9 @@ Evaluation by_fluid_queue(const Problem& problem) {
     quantities::append_stick_transform(process, question.lambda,
                                        uncertain(excursion.entry, rounding), results);
   }
-  evaluation.checks = {{"riccati_residual", queue.residual()},
-                       {"lost_probability", excursion.lost_probability}};
+  evaluation.checks = {
+      {"riccati_residual", queue.residual(), "relative residual of the Riccati equations"},
+      {"lost_probability", excursion.lost_probability, "sum of the hitting distribution less 1"}};
   return evaluation;
 }
 

@@ -95,7 +95,12 @@ Evaluation by_hitting(const Problem& problem) {
                         scalar(catalogue::kMeanStick, excursion - slide),
                         scalar(catalogue::kMeanSlide, slide),
                         scalar(catalogue::kMeanExcursion, excursion)};
-  evaluation.checks = {{"R_hat", slide.value}, {"R_check", reaching.value}, {"R", leaving.value}};
+  evaluation.checks = {
+      {"R_hat", slide.value, "mean time from the onset of sliding to rest"},
+      {"R_check", reaching.value,
+       "mean time from the onset of sliding to rest at an outermost static level"},
+      {"R", leaving.value,
+       "mean time from rest at an outermost static level to the onset of sliding"}};
   return evaluation;
 }
 

@@ -137,7 +137,9 @@ Evaluation by_lambda(const Problem& problem) {
   Trial best = fixed.empty() ? Search(problem).run() : average_at(problem, fixed[0]);
   Evaluation evaluation;
   evaluation.results = std::move(best.results);
-  evaluation.checks = {{"lambda", best.lambda}, {"largest_relative_bias", best.largest_bias}};
+  evaluation.checks = {{"lambda", best.lambda, "averages are lambda u_lambda(s+) at this rate"},
+                       {"largest_relative_bias", best.largest_bias,
+                        "largest relative bias of an average from lambda > 0"}};
   return evaluation;
 }
 

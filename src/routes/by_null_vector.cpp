@@ -118,8 +118,10 @@ Evaluation by_null_vector(const Problem& problem) {
       evaluation.results.push_back(scalar(catalogue::kSlipRate, Uncertain{1, 0} / excursion));
     }
   }
-  evaluation.checks = {{"norm_pi_M_over_norm_M", relative_residual(transposed, pi)},
-                       {"most_negative_pi", most_negative(problem.comm, pi)}};
+  evaluation.checks = {
+      {"norm_pi_M_over_norm_M", relative_residual(transposed, pi),
+       "residual of the null vector pi of the generator M"},
+      {"most_negative_pi", most_negative(problem.comm, pi), "smallest entry of pi"}};
   return evaluation;
 }
 

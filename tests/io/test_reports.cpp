@@ -327,7 +327,10 @@ TEST_CASE("table: the cost has room in 100 columns") {
   last.statistics.assembly_seconds = last.statistics.factorization_seconds = 98765.4321;
   last.statistics.solve_seconds = last.seconds = 98765.4321;
   last.limiting_key = "dmean_excursion_dstribeck_velocity";
-  last.checks = {{"excursion_pairs", 123}, {"norm_pi_M_over_norm_M", 3.185e-19}};
+  last.checks = {
+      {"excursion_pairs", 123,
+       "pairs of Krylov vectors in the reduced model of excursion durations"},
+      {"norm_pi_M_over_norm_M", 3.185e-19, "residual of the null vector pi of the generator M"}};
   auto r = request();
   for (auto scheme : {cases::Scheme::hp, cases::Scheme::upwind, cases::Scheme::none}) {
     r.method.scheme = scheme;

@@ -216,7 +216,7 @@ TEST_CASE("rounding: of the fluid queue four times its defects, more for fast bo
   r.method.route = Route::fluid_queue;
   const auto found = evaluate(r, {r.scene.process(12), nullptr});
   double defect = std::numeric_limits<double>::epsilon();
-  for (const auto& [name, left] : found.checks) defect += std::abs(left);
+  for (const auto& check : found.checks) defect += std::abs(check.value);
   const auto& results = found.results;
   const double speed = value(results, "E_absV") / value(results, "P_slide");
   for (const char* key : {"P_stick", "mean_slide", "E_V2", "E_XV", "F_slide", "F_stick"}) {

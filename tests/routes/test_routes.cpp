@@ -41,8 +41,8 @@ const Result& result(const Evaluation& evaluation, std::string_view key) {
 }
 
 double check_value(const Evaluation& evaluation, const std::string& name) {
-  for (const auto& [known, value] : evaluation.checks) {
-    if (known == name) return value;
+  for (const auto& check : evaluation.checks) {
+    if (check.name == name) return check.value;
   }
   throw std::invalid_argument(name);
 }

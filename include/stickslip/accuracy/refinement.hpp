@@ -26,8 +26,7 @@ struct Step {
   double seconds = 0;        ///< wall time of the whole step
   double estimate = 0;       ///< largest relative error estimate of a scalar; 0 if none yet
   std::string limiting_key;  ///< the scalar that has it
-  std::vector<std::pair<std::string, double>>
-      checks;  ///< what the solution method reports of itself
+  std::vector<quantities::Check> checks;  ///< what the solution method reports of itself
 };
 
 /// Whether anything asked for takes a discretisation or a simulation; closed forms and paths do

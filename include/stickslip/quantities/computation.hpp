@@ -5,8 +5,6 @@
 
 #include <map>
 #include <memory>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "stickslip/cases/case.hpp"
@@ -36,8 +34,7 @@ struct Evaluation {
   /// Errors are those of the solution method on this discretisation: rounding, and the bias of
   /// small lambda.
   Results results;
-  /// What the solution method reports of itself, by name, such as the lambda it used.
-  std::vector<std::pair<std::string, double>> checks;
+  std::vector<Check> checks;  ///< what the solution method reports of itself
   std::shared_ptr<StationaryDistribution> distribution;  ///< of method excursion, if it was needed
   std::vector<RelaxationSector> modes;                   ///< if asked for
 };
@@ -52,6 +49,9 @@ struct Computation {
   [[nodiscard]] const model::Process& process() const { return problem.discretisation.process; }
   [[nodiscard]] const StationaryDistribution& distribution() const { return *found.distribution; }
   [[nodiscard]] Results& results() const { return found.results; }
+  void report(const char* name, double value, std::string_view meaning) const {
+    found.checks.push_back({name, value, meaning});
+  }
   /// A tenth of the accuracy, so that reduced models do not rule the error.
   [[nodiscard]] ModelTolerance tolerance() const {
     return {0.1 * question().accuracy, problem.recipes};

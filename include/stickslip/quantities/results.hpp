@@ -2,6 +2,7 @@
 /// Named results with their errors.
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -35,6 +36,13 @@ struct Result {
 };
 
 using Results = std::vector<Result>;
+
+/// A number by which a solution method can be judged.
+struct Check {
+  std::string name;
+  double value = 0;
+  std::string_view meaning = {};  ///< in words
+};
 
 /// A result of a row of the catalogue, without abscissa and values; of one that stands for many
 /// results, that of the observable `f`.
