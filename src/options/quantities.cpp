@@ -12,25 +12,6 @@ std::vector<std::string> quantity_words() {
   return words;
 }
 
-const char* limit_of(Route route) {
-  switch (route) {
-  case Route::excursion: return "";
-  case Route::lambda:
-    return "lambda u_lambda tends to stationary averages as lambda -> 0, and gives nothing else";
-  case Route::hitting: return "mean hitting times give mean durations, and nothing else";
-  case Route::null_vector:
-    return "the left null vector of the generator is the stationary distribution, and gives its "
-           "averages alone";
-  case Route::fluid_queue:
-    return "the fluid queue gives the hitting distribution, durations and the moments of V up to "
-           "the second";
-  case Route::monte_carlo:
-    return "a sample has no eigenvalues, no derivatives, and no density at a point (take averages "
-           "of indicator functions such as abs(v)>0.5)";
-  }
-  return "";
-}
-
 std::vector<std::string> keys_of(const catalogue::Entry& entry) {
   std::vector<std::string> keys;
   for (const auto* row : entry.rows) keys.emplace_back(row->key);

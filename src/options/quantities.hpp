@@ -11,9 +11,6 @@ namespace stickslip::options {
 /// The words of all quantities, in the order of the help text.
 [[nodiscard]] std::vector<std::string> quantity_words();
 
-/// Why a route does not give the quantities that it does not give.
-[[nodiscard]] const char* limit_of(Route route);
-
 /// Keys of the results of a quantity, those of other quantities that come with it included.
 [[nodiscard]] std::vector<std::string> keys_of(const catalogue::Entry& entry);
 

@@ -76,7 +76,7 @@ void read_quantities(const Settings& settings, Request& request, Problems& probl
   settings.report(problems, "quantities",
                   fmt::format("-route {} does not give {} ({}); it gives {}",
                               settings.text("route"), enumerate(refused, "and"),
-                              limit_of(request.method.route), enumerate(given_by_route, "and")),
+                              request.method.row().limit, enumerate(given_by_route, "and")),
                   "take -route excursion, or other quantities");
 }
 
@@ -160,7 +160,7 @@ void examine_observables(const Settings& settings, Request& request, Problems& p
   const bool used = depends_on(request.question, "observable");
   if (!used) return;
   const bool elements =
-      request.method.scheme == Scheme::hp && request.method.route != Route::monte_carlo;
+      request.method.scheme == Scheme::hp && request.method.row().discretises_velocity;
   const auto& scene = request.scene;
   const double speed = largest_speed(scene);
   for (auto& f : request.question.observables) {

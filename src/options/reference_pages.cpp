@@ -1,17 +1,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cctype>
 
 #include "quantities.hpp"
 #include "stickslip/options/manual.hpp"
 #include "stickslip/options/table.hpp"
 #include "stickslip/support/text.hpp"
-#include "words.hpp"
 
 namespace stickslip::options {
 namespace {
+
+using catalogue::SolutionMethod;
 
 constexpr std::size_t kWidth = 110;
 
@@ -64,35 +64,34 @@ std::string swept_options(const Group& group) {
          "\n\n";
 }
 
-// A letter for a route.
-char letter(Route route) {
-  const auto* word = std::find_if(std::begin(kRoutes), std::end(kRoutes),
-                                  [route](const auto& each) { return each.value == route; });
-  return static_cast<char>(std::toupper(static_cast<unsigned char>(word->word[0])));
+// A letter for a solution method.
+char letter(const SolutionMethod& method) {
+  return static_cast<char>(std::toupper(static_cast<unsigned char>(method.word[0])));
 }
 
 // The letters of the routes that give a result, those of `without` left out.
 std::string letters(catalogue::Routes routes, catalogue::Routes without = {}) {
   std::string text;
-  for (const auto& route : kRoutes) {
-    if (!routes.contains(route.value) || without.contains(route.value)) continue;
-    text += fmt::format("{}{}", text.empty() ? "" : " ", letter(route.value));
+  for (const auto& method : catalogue::solution_methods()) {
+    if (!routes.contains(method.route) || without.contains(method.route)) continue;
+    text += fmt::format("{}{}", text.empty() ? "" : " ", letter(method));
   }
   return text;
 }
 
 std::string routes_explained() {
-  std::vector<std::string> names;
+  std::vector<std::string> names, without_drag;
   std::string limits;
-  for (const auto& route : kRoutes) {
-    names.push_back(fmt::format("{} `{}`", letter(route.value), route.word));
-    if (*limit_of(route.value) == 0) continue;  // gives all
-    limits += fmt::format("- `{}`: {}.\n", route.word, wrap(limit_of(route.value), 100, 2));
+  for (const auto& method : catalogue::solution_methods()) {
+    names.push_back(fmt::format("{} {}", letter(method), code(method.word)));
+    if (!method.without_drag.empty()) without_drag.push_back(code(method.word));
+    if (method.limit.empty()) continue;  // gives all
+    limits += fmt::format("- {}: {}.\n", code(method.word), wrap(method.limit, 100, 2));
   }
   return wrap(fmt::format("The column `-route` names the solution methods by letters: "
                           "{}. They hold with and without symmetry, for either `-scheme`; "
-                          "`fluid_queue` needs a model without drag.",
-                          enumerate(names, "and")),
+                          "{} needs a model without drag.",
+                          enumerate(names, "and"), enumerate(without_drag, "and")),
               kWidth, 0) +
          "\n\n" + limits;
 }

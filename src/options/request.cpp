@@ -13,7 +13,7 @@ namespace stickslip::options {
 namespace {
 
 Method read_method(const Settings& settings) {
-  return {.route = meaning(kRoutes, settings.text("route")),
+  return {.route = catalogue::method_of(settings.text("route")).route,
           .scheme = meaning(kSchemes, settings.text("scheme")),
           .degree = settings.integer("degree"),
           .layers = settings.integer("layers"),
@@ -109,7 +109,8 @@ Request request_of(const Settings& settings, Problems& problems) {
   request.plan_only = settings.flag("plan");
   check_rules(settings, request, problems);
   for (const auto& option : all_options()) check_writable(settings, option, problems);
-  if (request.method.route == Route::fluid_queue) request.method.scheme = Scheme::none;
+  const auto& method = request.method.row();
+  if (!method.discretises_velocity && !method.simulates) request.method.scheme = Scheme::none;
   for (const auto& option : all_options()) {
     const bool derived = option.name == "delta" && settings.given("delta_per_mu_s");
     request.resolved.emplace_back(option.name,

@@ -12,6 +12,7 @@
 namespace stickslip::options {
 namespace {
 
+using catalogue::SolutionMethod;
 using outputs::Subject;
 
 /// The rules that relate options to one another. Each is a row: options, when it counts, message.
@@ -40,11 +41,12 @@ class Rules {
 
   // Options without effect.
   void unused() {
-    const bool simulates = r_.method.route == Route::monte_carlo, swept = sweeps(settings_);
-    warn({"lambda"}, r_.method.route != Route::lambda && !asked("lambda"));
-    warn({"excursions"}, !simulates, "without -route monte_carlo");
+    const bool simulates = method_.simulates, swept = sweeps(settings_);
+    const std::string no_simulation = "without " + routes_that(&SolutionMethod::simulates, true);
+    warn({"lambda"}, !method_.small_lambda && !asked("lambda"));
+    warn({"excursions"}, !simulates, no_simulation);
     warn({"seed"}, !simulates && !asked("seed"));
-    warn({"checkpoint"}, !simulates && !swept, "without -route monte_carlo or a sweep");
+    warn({"checkpoint"}, !simulates && !swept, no_simulation + " or a sweep");
     warn({"sweep_ranks"}, !swept, "without a sweep");
     warn({"study_steps", "study_repeats"}, !study_, "without -study");
     const auto subject = study_ ? Subject::study : swept ? Subject::sweep : Subject::run;
@@ -64,18 +66,18 @@ class Rules {
 
   // Options that exclude one another.
   void conflicts() {
-    const Route route = r_.method.route;
-    const bool hp = r_.method.scheme == Scheme::hp, queue = route == Route::fluid_queue;
-    const std::string no_choice = "does not apply to -route " + settings_.text("route");
-    refuse({"route"}, queue && !r_.scene.process(1).drag.is_none(),
-           "needs a model without drag, b = 0, and Coulomb friction: only then is it a fluid queue",
+    const bool hp = r_.method.scheme == Scheme::hp;
+    const std::string no_choice = fmt::format("does not apply to -route {}", method_.word);
+    refuse({"route"}, !method_.without_drag.empty() && !r_.scene.process(1).drag.is_none(),
+           fmt::format("needs a model without drag, b = 0, and Coulomb friction: {}",
+                       method_.without_drag),
            "add -drag none, leave -friction out, or take -route excursion");
     refuse({"speed_limit"}, settings_.given("v_max"), "does not go with -v_max", "leave one out");
-    refuse({"v_max", "speed_limit"}, route != Route::excursion, no_choice,
-           "leave it out, or take -route excursion");
+    refuse({"v_max", "speed_limit"}, !method_.bounds_speed, no_choice,
+           "leave it out, or take " + routes_that(&SolutionMethod::bounds_speed, true));
     refuse({"scheme", "degree", "layers", "noise_degree", "noise_grading", "p"},
-           queue || route == Route::monte_carlo,
-           no_choice + ", which does not discretise the velocity", "leave it out");
+           !method_.discretises_velocity, no_choice + ", which does not discretise the velocity",
+           "leave it out");
     refuse({"degree", "layers", "noise_degree", "noise_grading"}, !hp, "belongs to -scheme hp",
            "leave it out, or take -scheme hp");
     refuse({"p"}, hp, "belongs to -scheme upwind", "leave it out, or take -scheme upwind");
@@ -93,7 +95,6 @@ class Rules {
   // What the quantities need, or exclude.
   void needs() {
     using enum Quantity;
-    const bool by_lambda = r_.method.route == Route::lambda;
     const bool derivable = q_.wants(sticking) || q_.wants(moments) || q_.wants(noise_law);
     const bool others = std::any_of(q_.quantities.begin(), q_.quantities.end(), [](Quantity q) {
       return q != sticking && q != moments && q != noise_law;
@@ -129,7 +130,8 @@ class Rules {
     report("quantities", study_ && others,
            "must be sticking, moments and noise_law, or some of these, in a study",
            "leave the others out");
-    report("lambda", by_lambda && !one_lambda, "must be one positive number with -route lambda",
+    report("lambda", method_.small_lambda && !one_lambda,
+           fmt::format("must be one positive number with -route {}", method_.word),
            "leave it out to have it chosen from -accuracy");
   }
 
@@ -172,11 +174,19 @@ class Rules {
     report("mu_s", !missing.empty(), why + enumerate(missing, "and") + " are about sticking phases",
            fmt::format("take -quantities of {}, or a larger -mu_s{}", enumerate(without, "and"),
                        finer));
-    const Route route = r_.method.route;
-    report("route", missing.empty() && route != Route::excursion && route != Route::null_vector,
+    report("route", missing.empty() && method_.needs_sticking,
            "follows excursions, which end with a sticking phase; with this -mu_s the body never "
            "sticks",
-           "take -route excursion or null_vector");
+           "take " + routes_that(&SolutionMethod::needs_sticking, false));
+  }
+
+  // "-route excursion or null_vector", of all methods that have a fact in their rows, or lack it.
+  [[nodiscard]] static std::string routes_that(bool SolutionMethod::*fact, bool value) {
+    std::vector<std::string> words;
+    for (const auto& method : catalogue::solution_methods()) {
+      if (method.*fact == value) words.emplace_back(method.word);
+    }
+    return "-route " + enumerate(words, "or");
   }
 
   [[nodiscard]] bool asked(const char* option) const { return depends_on(q_, option); }
@@ -207,6 +217,7 @@ class Rules {
   Request& r_;
   const Question& q_;
   Problems& problems_;
+  const SolutionMethod& method_ = r_.method.row();
   const bool study_ = r_.study.kind != StudyKind::none;
 };
 

@@ -32,8 +32,9 @@ Option integer(const char* name, const char* initial, Range range, const char* s
   return Option::integer(name, initial, range, sentence, fix);
 }
 
-Option choice(const char* name, const char* initial, const Words& words, const char* sentence) {
-  return {name, Kind::choice, "word", "", initial, {}, words, sentence, ""};
+Option choice(const char* name, std::string_view initial, const Words& words,
+              const std::string& sentence) {
+  return {name, Kind::choice, "word", "", std::string(initial), {}, words, sentence, ""};
 }
 
 Option list(const char* name, const char* initial, const Words& words, const char* sentence) {
@@ -103,13 +104,17 @@ std::vector<Option> discretisation_options() {
   };
 }
 
+Option route_option() {
+  std::string sentence = "solution method";
+  for (const auto& method : catalogue::solution_methods()) {
+    sentence += fmt::format(". {}: {}", method.word, method.sentence);
+  }
+  return choice("route", catalogue::solution_methods()[0].word,
+                words_of(catalogue::solution_methods()), sentence);
+}
+
 std::vector<Option> method_options() {
-  std::vector<Option> all{
-      choice("route", "excursion", words_of(kRoutes),
-             "solution method. excursion: one transposed solve gives the stationary distribution. "
-             "The others check it. lambda: lambda u_lambda for small lambda. hitting: mean hitting "
-             "times. null_vector: left null vector of the generator. fluid_queue: b = 0. "
-             "monte_carlo: simulation")};
+  std::vector<Option> all{route_option()};
   const auto discretisation = discretisation_options();
   all.insert(all.end(), discretisation.begin(), discretisation.end());
   const std::vector<Option> others{

@@ -20,10 +20,6 @@ inline constexpr Word<SpectrumSolver> kSpectrumSolvers[] = {{"krylov", SpectrumS
                                                             {"direct", SpectrumSolver::direct}};
 inline constexpr Word<TransientSolver> kTransientSolvers[] = {
     {"krylov", TransientSolver::krylov}, {"stepping", TransientSolver::stepping}};
-inline constexpr Word<Route> kRoutes[] = {
-    {"excursion", Route::excursion},     {"lambda", Route::lambda},
-    {"hitting", Route::hitting},         {"null_vector", Route::null_vector},
-    {"fluid_queue", Route::fluid_queue}, {"monte_carlo", Route::monte_carlo}};
 inline constexpr Word<StudyKind> kStudies[] = {{"none", StudyKind::none},
                                                {"p", StudyKind::points},
                                                {"delta", StudyKind::steps},

@@ -30,11 +30,6 @@ enum class TransientSolver { krylov, stepping };
 /// How the spectrum is computed.
 enum class SpectrumSolver { krylov, direct };
 
-/// Whether a route works on both signs of v, with both branches.
-[[nodiscard]] inline bool on_full_grid(Route route) {
-  return route == Route::lambda || route == Route::hitting || route == Route::null_vector;
-}
-
 /// A value of other origin, with a 95 % confidence interval.
 struct Reference {
   std::string quantity;            ///< key of a result, such as P_stick or S_v
@@ -75,6 +70,8 @@ struct Method {
   double excursions = 1e6;  ///< of -route monte_carlo, at most
   std::uint64_t seed = 1;   ///< of whatever is simulated
 
+  /// What is known of the solution method.
+  [[nodiscard]] const catalogue::SolutionMethod& row() const { return catalogue::method_of(route); }
   /// Whether the discretisation is chosen by hand.
   [[nodiscard]] bool fixed() const {
     return degree || layers || points || noise_degree.value_or(0) > 0;

@@ -3,10 +3,11 @@
 /// which unit, and how its error is judged. Each quantity has a file beside this one with all that
 /// is said of it; help, reference pages, validation and files follow from these.
 
-#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "stickslip/catalogue/solution_method.hpp"
 
 namespace stickslip::catalogue {
 
@@ -31,24 +32,6 @@ enum class Quantity {
   expectation,
   trajectory,
   sensitivity
-};
-
-/// By which system of equations.
-enum class Route { excursion, lambda, hitting, null_vector, fluid_queue, monte_carlo };
-
-/// A set of routes.
-class Routes {
- public:
-  constexpr Routes() = default;
-  constexpr Routes(std::initializer_list<Route> routes) {
-    for (Route route : routes) bits_ |= 1U << static_cast<unsigned>(route);
-  }
-  [[nodiscard]] constexpr bool contains(Route route) const {
-    return (bits_ >> static_cast<unsigned>(route) & 1U) != 0;
-  }
-
- private:
-  unsigned bits_ = 0;
 };
 
 /// What a result is, whatever it is called: its range and direction (accuracy/result_bounds.hpp),
