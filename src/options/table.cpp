@@ -294,16 +294,6 @@ std::span<const OtherOption> other_options() {
   return others;
 }
 
-std::span<const ExitMeaning> exit_meanings() {
-  static const std::vector<ExitMeaning> meanings{
-      {0, "done"},
-      {1, "other error"},
-      {2, "bad input"},
-      {3, "accuracy not reached or a solver failed (what was reached is still written)"},
-      {4, "would not fit in memory"}};
-  return meanings;
-}
-
 std::span<const Option> all_options() {
   static const auto all = [] {
     std::vector<Option> options;

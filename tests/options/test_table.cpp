@@ -1,9 +1,6 @@
 #include <set>
-#include <sstream>
 
 #include "../common/catch.hpp"
-#include "../common/temporary.hpp"
-#include "stickslip/options/manual.hpp"
 #include "stickslip/options/settings.hpp"
 #include "stickslip/options/table.hpp"
 #include "stickslip/support/number_text.hpp"
@@ -11,17 +8,6 @@
 
 using namespace stickslip;
 using namespace stickslip::options;
-
-namespace {
-
-std::string on_one_line(const std::string& text) {
-  std::istringstream words(text);
-  std::string line, word;
-  while (words >> word) line += word + " ";
-  return line;
-}
-
-}  // namespace
 
 TEST_CASE("option table: names are unique, defaults obey their own rules") {
   std::set<std::string> names;
@@ -39,19 +25,6 @@ TEST_CASE("option table: names are unique, defaults obey their own rules") {
         for (const auto& word : split(option.initial, ',')) {
           CHECK(std::find(option.words.begin(), option.words.end(), word) != option.words.end());
         }
-      }
-    }
-  }
-}
-
-TEST_CASE("option table: help and reference name every option and its default") {
-  const std::string help = help_text(), page = reference_page();
-  for (const auto& group : table()) {
-    for (const auto& option : group.options) {
-      CHECK_THAT(help, Catch::Contains("-" + option.name));
-      CHECK_THAT(page, Catch::Contains("`-" + option.name + "`"));
-      if (!option.initial.empty()) {
-        CHECK_THAT(on_one_line(help), Catch::Contains("default " + option.initial));
       }
     }
   }
@@ -85,19 +58,6 @@ TEST_CASE("option table: a sweep is of the option that its name ends with") {
   CHECK(swept_by(*find("sweep_mu_d")) == find("mu_d"));
   CHECK(swept_by(*find("sweep_ranks")) == nullptr);
   CHECK(swept_by(*find("mu_d")) == nullptr);
-}
-
-TEST_CASE("option table: the help text fits a terminal of 100 columns") {
-  std::istringstream lines(help_text());
-  std::string line;
-  while (std::getline(lines, line)) {
-    INFO(line);
-    CHECK(line.size() <= 100);
-  }
-}
-
-TEST_CASE("option table: the committed reference page is the generated one") {
-  CHECK(test::content(std::string(STICKSLIP_SOURCE) + "/docs/options.md") == reference_page());
 }
 
 TEST_CASE("ranges: ends belong or not as the text says") {

@@ -32,11 +32,6 @@ struct OtherOption {
   std::string sentence;
 };
 
-struct ExitMeaning {
-  int status;
-  std::string meaning;
-};
-
 /// What a value must be, in a sentence: "a number in (0, inf)", "linear, none or cubic".
 [[nodiscard]] std::string requirement(const Option& option);
 
@@ -57,9 +52,6 @@ struct ExitMeaning {
 
 /// Options outside the table, in the order of the help text.
 [[nodiscard]] std::span<const OtherOption> other_options();
-
-/// Every exit status.
-[[nodiscard]] std::span<const ExitMeaning> exit_meanings();
 
 /// The option of that name (without dash), or nullptr.
 [[nodiscard]] const Option* find(std::string_view name);

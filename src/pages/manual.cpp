@@ -1,17 +1,23 @@
-#include "stickslip/options/manual.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
-#include "quantities.hpp"
+#include "stickslip/catalogue/entry.hpp"
 #include "stickslip/options/table.hpp"
+#include "stickslip/pages/pages.hpp"
+#include "stickslip/support/errors.hpp"
 #include "stickslip/support/text.hpp"
 
-namespace stickslip::options {
+namespace stickslip::pages {
 namespace {
+
+using options::Group;
+using options::Kind;
+using options::Option;
+using options::swept_by;
 
 std::string escaped(char c) {
   static const std::map<char, std::string> escapes{{'\\', "\\e"},  {'-', "\\-"},   {'^', "\\(ha"},
@@ -79,7 +85,7 @@ std::string item(const Option& option) {
 
 std::string option_items() {
   std::string text;
-  for (const auto& group : table()) {
+  for (const auto& group : options::table()) {
     text += fmt::format(".SS {}\n{}\n", roff(group.title), roff(group.explanation + "."));
     const std::string swept = swept_names(group);
     if (!swept.empty()) text += entry(bold(swept) + " \\fInumbers\\fR", kSweptHelp);
@@ -88,21 +94,25 @@ std::string option_items() {
     }
   }
   text += ".SS Other\n";
-  for (const auto& other : other_options()) text += entry(bold(other.name), other.sentence + ".");
+  for (const auto& other : options::other_options())
+    text += entry(bold(other.name), other.sentence + ".");
   return text;
 }
 
 std::string form_items() {
   std::string text;
-  for (const auto& form : forms()) {
+  for (const auto& form : options::forms()) {
     text += entry(fmt::format("\\fI{}\\fR", form.name), form.meaning + ".");
   }
   return text;
 }
 
-// The title of a quantity and the keys that it writes.
+// The title of a quantity and the keys that it writes, those of other quantities that come with it
+// included.
 std::string description(const catalogue::Entry& quantity) {
-  const auto keys = keys_of(quantity);
+  auto keys = split(quantity.others, ',');
+  std::transform(quantity.rows.begin(), quantity.rows.end(), std::inserter(keys, keys.begin()),
+                 [](const catalogue::Row* row) { return std::string(row->key); });
   return keys.empty() ? fmt::format("{}.", quantity.title)
                       : fmt::format("{}: {}.", quantity.title, fmt::join(keys, ", "));
 }
@@ -117,8 +127,8 @@ std::string quantity_items() {
 
 std::string exit_items() {
   std::string text;
-  for (const auto& [status, meaning] : exit_meanings()) {
-    text += entry(bold(std::to_string(status)), meaning + ".");
+  for (const auto& [status, meaning] : kExitMeanings) {
+    text += entry(bold(std::to_string(status)), fmt::format("{}.", meaning));
   }
   return text;
 }
@@ -231,7 +241,7 @@ std::string help_entry(const std::string& name, const std::string& meaning) {
 
 std::string form_help() {
   std::string text = "\nForms of values:\n";
-  for (const auto& form : forms()) {
+  for (const auto& form : options::forms()) {
     text += help_entry(form.name, form.meaning + ".");
   }
   return text;
@@ -261,11 +271,11 @@ std::string group_help(const Group& group) {
 
 std::string other_help() {
   std::string text = "\nOther:\n";
-  for (const auto& other : other_options()) {
+  for (const auto& other : options::other_options()) {
     text += help_entry(other.name, other.sentence + ".");
   }
   std::string meanings;
-  for (const auto& [status, meaning] : exit_meanings()) {
+  for (const auto& [status, meaning] : kExitMeanings) {
     meanings += fmt::format("{}{} {}", meanings.empty() ? "" : "; ", status, meaning);
   }
   return text + fmt::format("\n{}.\n", wrap("Exit status: " + meanings, 88, 0));
@@ -280,7 +290,7 @@ std::string help_text() {
       "Every choice is a PETSc option, on the line or in an options file; the last one given "
       "counts.\n" +
       form_help();
-  for (const auto& group : table()) text += group_help(group);
+  for (const auto& group : options::table()) text += group_help(group);
   return text + other_help();
 }
 
@@ -306,13 +316,13 @@ std::string man_page(std::string_view version) {
 
 std::string completion() {
   std::string text = kCompletionHead;
-  text += fmt::format("  local names='{}'\n", fmt::join(all_names(), " "));
+  text += fmt::format("  local names='{}'\n", fmt::join(options::all_names(), " "));
   text += "  COMPREPLY=()\n  case ${COMP_WORDS[COMP_CWORD - 1]} in\n";
   text += "    -options_file) _stickslip_files ;;\n";
-  for (const auto& option : all_options()) {
+  for (const auto& option : options::all_options()) {
     text += fmt::format("    -{}) {};;\n", option.name, completer(option));
   }
   return text + kCompletionEnd;
 }
 
-}  // namespace stickslip::options
+}  // namespace stickslip::pages

@@ -3,15 +3,18 @@
 
 #include <cctype>
 
-#include "quantities.hpp"
-#include "stickslip/options/manual.hpp"
+#include "stickslip/catalogue/entry.hpp"
 #include "stickslip/options/table.hpp"
+#include "stickslip/pages/pages.hpp"
+#include "stickslip/support/errors.hpp"
 #include "stickslip/support/text.hpp"
 
-namespace stickslip::options {
+namespace stickslip::pages {
 namespace {
 
 using catalogue::SolutionMethod;
+using options::Group;
+using options::swept_by;
 
 constexpr std::size_t kWidth = 110;
 
@@ -44,8 +47,8 @@ std::string option_rows(const Group& group) {
   std::string text = head({"option", "form", "unit", "default", "allowed", "meaning"});
   for (const auto& o : group.options) {
     if (swept_by(o) != nullptr) continue;
-    text += row({code("-" + o.name), o.form, cell(o.unit), cell(o.initial), cell(allowed(o)),
-                 cell(o.sentence)});
+    text += row({code("-" + o.name), o.form, cell(o.unit), cell(o.initial),
+                 cell(options::allowed(o)), cell(o.sentence)});
   }
   return text;
 }
@@ -133,15 +136,16 @@ std::string reference_page() {
       "the\nquantities and the states s+ and s-.\n\n"
       "## Forms of values\n\n" +
       head({"form", "value"});
-  for (const auto& form : forms()) text += row({form.name, cell(form.meaning)});
-  for (const auto& group : table()) {
+  for (const auto& form : options::forms()) text += row({form.name, cell(form.meaning)});
+  for (const auto& group : options::table()) {
     text += fmt::format("\n## {}\n\n{}.\n\n{}{}", group.title, wrap(group.explanation, kWidth, 0),
                         swept_options(group), option_rows(group));
   }
   text += "\n## Other options\n\n" + head({"option", "meaning"});
-  for (const auto& other : other_options()) text += row({code(other.name), cell(other.sentence)});
+  for (const auto& other : options::other_options())
+    text += row({code(other.name), cell(other.sentence)});
   text += "\n## Exit status\n\n" + head({"status", "meaning"});
-  for (const auto& [status, meaning] : exit_meanings()) {
+  for (const auto& [status, meaning] : kExitMeanings) {
     text += row({std::to_string(status), meaning});
   }
   return text;
@@ -152,4 +156,4 @@ std::string quantity_tables() {
          result_rows();
 }
 
-}  // namespace stickslip::options
+}  // namespace stickslip::pages

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace stickslip::options {
+namespace stickslip::pages {
 
 /// The text of -help.
 [[nodiscard]] std::string help_text();
@@ -35,4 +35,4 @@ namespace stickslip::options {
 /// A script that lets bash complete names of options, their words, and files.
 [[nodiscard]] std::string completion();
 
-}  // namespace stickslip::options
+}  // namespace stickslip::pages
