@@ -9,7 +9,7 @@
 #include "reading.hpp"
 #include "stickslip/catalogue/entry.hpp"
 #include "stickslip/model/largest_force.hpp"
-#include "stickslip/options/reference.hpp"
+#include "stickslip/outputs/reference.hpp"
 #include "stickslip/support/text.hpp"
 #include "stickslip/velocity/tail.hpp"
 
@@ -17,7 +17,7 @@ namespace stickslip::options {
 namespace {
 
 // A misspelled name would be left out, and the rest agree.
-void check_keys(const Settings& settings, const std::vector<Reference>& references,
+void check_keys(const Settings& settings, const std::vector<cases::Reference>& references,
                 Problems& problems) {
   std::vector<std::string> keys;
   for (const auto* entry : catalogue::entries()) {
@@ -36,11 +36,11 @@ void check_keys(const Settings& settings, const std::vector<Reference>& referenc
   }
 }
 
-std::vector<Reference> read_compared(const Settings& settings, Problems& problems) {
+std::vector<cases::Reference> read_compared(const Settings& settings, Problems& problems) {
   if (!settings.given("compare")) return {};
-  std::vector<Reference> references;
+  std::vector<cases::Reference> references;
   try {
-    references = read_references(settings.text("compare"));
+    references = outputs::read_references(settings.text("compare"));
   } catch (const std::invalid_argument& error) {
     settings.report(problems, "compare", error.what(),
                     "name a file written by -output or -summary, or CSV with the columns "
@@ -59,7 +59,7 @@ void read_quantities(const Settings& settings, Request& request, Problems& probl
   const auto asked = [&](const catalogue::Entry& entry) {
     const auto& known = question.references;
     if (given || known.empty()) return std::count(words.begin(), words.end(), entry.word) > 0;
-    return std::any_of(known.begin(), known.end(), [&entry](const Reference& reference) {
+    return std::any_of(known.begin(), known.end(), [&entry](const cases::Reference& reference) {
       const auto* row = catalogue::find_row(reference.quantity);
       return row != nullptr && row->asks && catalogue::entry_of(reference.quantity) == &entry;
     });
@@ -81,7 +81,8 @@ void read_quantities(const Settings& settings, Request& request, Problems& probl
 }
 
 // The values given, or those of the file to compare with: of results over the abscissa `option`.
-std::vector<double> arguments(const Settings& settings, const std::vector<Reference>& references,
+std::vector<double> arguments(const Settings& settings,
+                              const std::vector<cases::Reference>& references,
                               const std::string& option) {
   std::vector<double> values = settings.numbers(option);
   if (settings.given(option)) return values;
