@@ -13,9 +13,11 @@ template <class Value>
 struct Word {
   const char* word;
   Value value;
+  const char* synonyms = "";  // words that mean it elsewhere, a comma list
 };
 
-inline constexpr Word<Scheme> kSchemes[] = {{"hp", Scheme::hp}, {"upwind", Scheme::upwind}};
+inline constexpr Word<Scheme> kSchemes[] = {{"hp", Scheme::hp, "dg, fem, galerkin"},
+                                            {"upwind", Scheme::upwind, "finite_difference, fd"}};
 inline constexpr Word<SpectrumSolver> kSpectrumSolvers[] = {{"krylov", SpectrumSolver::krylov},
                                                             {"direct", SpectrumSolver::direct}};
 inline constexpr Word<TransientSolver> kTransientSolvers[] = {

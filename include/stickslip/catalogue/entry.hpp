@@ -78,11 +78,12 @@ struct Row {
 /// A quantity that can be asked for.
 struct Entry {
   Quantity quantity;
-  std::string_view word;          ///< of -quantities
-  std::string_view title;         ///< what it is, in half a line
-  Routes routes;                  ///< that give it, for every scene
-  std::string_view options = {};  ///< that it depends on, a comma list
-  std::string_view others = {};   ///< keys of other quantities that come with it, a comma list
+  std::string_view word;           ///< of -quantities
+  std::string_view synonyms = {};  ///< words that mean it elsewhere, a comma list
+  std::string_view title;          ///< what it is, in half a line
+  Routes routes;                   ///< that give it, for every scene
+  std::string_view options = {};   ///< that it depends on, a comma list
+  std::string_view others = {};    ///< keys of other quantities that come with it, a comma list
   std::span<const Row* const> rows = {};
   /// The degree of elements at which error estimates meet an accuracy of 10^-n is expected to be
   /// degrees_per_digit n + degrees_besides.

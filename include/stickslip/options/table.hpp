@@ -30,6 +30,7 @@ struct Group {
 struct OtherOption {
   std::string name;  ///< with its dash; with dots, a family
   std::string sentence;
+  std::string synonyms = {};  ///< other names for it, a comma list
 };
 
 /// What a value must be, in a sentence: "a number in (0, inf)", "linear, none or cubic".

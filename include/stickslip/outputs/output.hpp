@@ -20,6 +20,7 @@ struct Output {
   std::string option = {};     ///< that names the file; none for standard output
   std::string ending = {};     ///< of such files, for messages
   std::string sentence = {};   ///< what it does, for the help of the option
+  const char* synonyms = "";   ///< other names of the option, a comma list
   std::set<Subject> subjects;  ///< what it is written of; of others it is left out
   /// The quantities that are no numbers of a table, and that it holds.
   std::set<catalogue::Quantity> fields = {};
