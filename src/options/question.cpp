@@ -5,11 +5,10 @@
 #include <set>
 #include <stdexcept>
 
-#include "quantities.hpp"
 #include "reading.hpp"
 #include "stickslip/catalogue/entry.hpp"
-#include "stickslip/model/largest_force.hpp"
 #include "stickslip/outputs/reference.hpp"
+#include "stickslip/support/number_text.hpp"
 #include "stickslip/support/text.hpp"
 #include "stickslip/velocity/tail.hpp"
 
@@ -121,52 +120,18 @@ read_observables(const Settings& settings, const model::Friction& friction, Prob
   return observables;
 }
 
-// Up to 17 levels evenly, and those next to the numbers of f.
-std::vector<double> probed_levels(const model::Scene& scene, const model::Observable& f) {
-  const auto noise = scene.meant().noise;
-  const double seen = std::min(noise.place(model::largest_force(scene) + scene.friction.mu_d), 1e9);
-  const int highest = std::min(noise.highest(), static_cast<int>(seen)),
-            lowest = std::max(noise.lowest(), static_cast<int>(-seen));
-  constexpr int count = 8;
-  std::set<int> levels;
-  for (int n = -count; n <= count; ++n) {
-    levels.insert(static_cast<int>((n > 0 ? highest : -lowest) * (n * 1.0 / count)));
-  }
-  for (double number : f.numbers) {
-    for (double x : {number, -number}) {
-      const double near = std::clamp<double>(noise.place(x), lowest, highest);
-      levels.insert({static_cast<int>(std::floor(near)), static_cast<int>(std::ceil(near))});
-    }
-  }
-  std::vector<double> x;
-  for (int level : levels) x.push_back(noise.level(level));
-  std::sort(x.begin(), x.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  return x;
-}
-
-// |v| beyond which nothing counts.
-double largest_speed(const model::Scene& scene) {
-  constexpr double rounding = 1e-16;
-  const double force = model::largest_force(scene);
-  double speed =
-      std::max(scene.drag.terminal_velocity(force), scene.drag.mirrored().terminal_velocity(force));
-  speed = std::min(speed, velocity::tail_velocity(scene.meant(), rounding));
-  return std::min(speed, scene.v_max.value_or(speed));
-}
-
 // Elements end where functions of the state jump or have kinks, on all levels of x alike. At v = 0
 // they end in any case, and x has a level on each of its values. Where there are no elements the
 // values seen tell the range of a function.
 void examine_observables(const Settings& settings, Request& request, Problems& problems) {
-  const bool used = depends_on(request.question, "observable");
-  if (!used) return;
+  if (!request.question.depends_on("observable")) return;
   const bool elements =
       request.method.scheme == Scheme::hp && request.method.row().discretises_velocity;
   const auto& scene = request.scene;
-  const double speed = largest_speed(scene);
+  const double speed = velocity::largest_speed(scene);
   for (auto& f : request.question.observables) {
     try {
-      model::examine(f, probed_levels(scene, f), scene.meant().noise.step(), speed);
+      model::examine(f, scene, speed);
     } catch (const std::invalid_argument& error) {
       if (!elements) continue;
       settings.report(problems, "observable", error.what(),
@@ -196,8 +161,7 @@ model::Start read_state(const Settings& settings, const model::Scene& scene, dou
     return {};
   }
   const auto branch = v < 0 ? process.mirrored() : process;
-  const double largest =
-      branch.drag.terminal_velocity(branch.net_force(branch.noise.highest())) * (v < 0 ? -1 : 1);
+  const double largest = branch.terminal_velocity() * (v < 0 ? -1 : 1);
   if (std::abs(v) > std::abs(largest)) {
     settings.report(
         problems, "start",
@@ -237,12 +201,7 @@ void read_start(const Settings& settings, Request& request, Problems& problems) 
 // Below the speed to which bodies tend on the highest level of the noise, on either side.
 void check_speeds(const Settings& settings, const Request& request, Problems& problems) {
   if (!request.question.wants(Quantity::peak)) return;
-  const auto process = request.scene.meant();
-  double reached = 0;
-  for (const auto& branch : {process, process.mirrored()}) {
-    reached =
-        std::max(reached, branch.drag.terminal_velocity(branch.net_force(branch.noise.highest())));
-  }
+  double reached = std::max(0.0, request.scene.meant().terminal_speed());
   const bool limited = request.scene.limits_speed && *request.scene.v_max < reached;
   if (limited) reached = *request.scene.v_max;
   for (double speed : request.question.velocity) {
@@ -289,7 +248,7 @@ void read_question(const Settings& settings, Request& request, Problems& problem
   check_horizon(settings, request, problems);
   check_speeds(settings, request, problems);
   if (!problems.empty()) return;  // the others look at states of the model
-  if (depends_on(question, "start")) read_start(settings, request, problems);
+  if (question.depends_on("start")) read_start(settings, request, problems);
   examine_observables(settings, request, problems);
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <set>
 
-#include "quantities.hpp"
 #include "reading.hpp"
 #include "stickslip/effects/effect.hpp"
 #include "stickslip/outputs/output.hpp"
@@ -189,7 +188,7 @@ class Rules {
     return "-route " + enumerate(words, "or");
   }
 
-  [[nodiscard]] bool asked(const char* option) const { return depends_on(q_, option); }
+  [[nodiscard]] bool asked(const char* option) const { return q_.depends_on(option); }
 
   void warn(Options options, bool when, const std::string& why = "on the quantities asked for") {
     for (const char* option : options) {

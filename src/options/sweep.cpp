@@ -9,7 +9,6 @@
 #include <memory>
 #include <sstream>
 
-#include "quantities.hpp"
 #include "reading.hpp"
 #include "stickslip/effects/read_scene.hpp"
 #include "stickslip/outputs/output.hpp"

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "quantities.hpp"
+#include "stickslip/catalogue/entry.hpp"
 #include "stickslip/effects/model_options.hpp"
 #include "stickslip/outputs/output.hpp"
 #include "stickslip/support/text.hpp"
@@ -62,9 +62,11 @@ Option arguments(const char* name, const char* unit, const char* sentence) {
 }
 
 std::vector<Option> quantity_options() {
+  Words words;
+  for (const auto* entry : catalogue::entries()) words.emplace_back(entry->word);
   return {
-      also_called("q, compute, observables", list("quantities", "sticking,moments,noise_law",
-                                                  quantity_words(), "quantities to compute")),
+      also_called("q, compute, observables",
+                  list("quantities", "sticking,moments,noise_law", words, "quantities to compute")),
       arguments("lambda", "1/time",
                 "arguments of the Laplace transforms and the resolvent (laplace, F_stick, "
                 "resolvent). With -route lambda one positive value, chosen from -accuracy unless "

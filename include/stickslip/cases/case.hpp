@@ -1,10 +1,12 @@
 #pragma once
 /// What computes a result: model parameters, question and method.
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "stickslip/catalogue/entry.hpp"
@@ -54,6 +56,13 @@ struct Question {
   std::vector<Reference> references = {};  ///< of -compare
 
   [[nodiscard]] bool wants(Quantity q) const { return quantities.contains(q); }
+  /// Whether anything asked for depends on the option (a name without dash).
+  [[nodiscard]] bool depends_on(std::string_view option) const {
+    const auto all = catalogue::entries();
+    return std::any_of(all.begin(), all.end(), [&](const catalogue::Entry* entry) {
+      return wants(entry->quantity) && entry->takes(option);
+    });
+  }
 };
 
 /// How it is computed; a degree, layers or points switch refinement off.

@@ -90,6 +90,9 @@ struct Entry {
   double degrees_per_digit = 1, degrees_besides = 1;
   bool of_phases = false;  ///< about sticking and sliding phases: nothing where a body never sticks
   bool of_one_run = false;  ///< a field or a path, which has no place in a sweep
+
+  /// Whether it depends on an option (a name without dash).
+  [[nodiscard]] bool takes(std::string_view option) const;
 };
 
 /// All quantities, in the order of the help text.

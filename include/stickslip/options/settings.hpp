@@ -53,7 +53,4 @@ class Settings {
   std::map<std::string, std::string> text_;
 };
 
-/// a,b,c as they are, first:last:count evenly spaced, first:last:count:log evenly in the logarithm.
-[[nodiscard]] std::optional<std::vector<double>> parse_numbers(const std::string& text);
-
 }  // namespace stickslip::options
