@@ -30,28 +30,8 @@ void check_rules(const Settings& settings, Request& request, Problems& problems)
 
 // command_line.cpp
 
-/// Whether a word of the command line names an option, and is no negative number.
-[[nodiscard]] bool is_option_name(const std::string& word);
-
 /// Words on the line that are neither an option nor the value of one; PETSc would ignore them.
 void check_stray_words(const std::vector<std::string>& argv, Problems& problems);
-
-// solver_options.cpp
-
-/// Whether the types of solvers given are among those that work from options alone.
-[[nodiscard]] bool check_solver_types(Problems& problems);
-
-/// What the solver of each role says to its options, tried on a tiny matrix.
-void check_solver_options(Problems& problems);
-
-/// Options that neither the table nor a solver knows.
-void check_unknown_options(Problems& problems);
-
-/// What factors the sliding operator, by the options of its solver.
-[[nodiscard]] Factors read_factors();
-
-/// Name and value of the options given to the solvers, by name.
-[[nodiscard]] std::vector<std::pair<std::string, std::string>> solver_options();
 
 // sweep.cpp
 

@@ -1,12 +1,16 @@
 #include "stickslip/options/request.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <filesystem>
 
 #include "reading.hpp"
 #include "stickslip/effects/read_scene.hpp"
+#include "stickslip/operators/solver_policy.hpp"
+#include "stickslip/options/synonyms.hpp"
 #include "stickslip/outputs/output.hpp"
+#include "stickslip/petsc/solver_options.hpp"
 #include "words.hpp"
 
 namespace stickslip::options {
@@ -20,7 +24,7 @@ Method read_method(const Settings& settings) {
           .points = settings.integer("p"),
           .noise_degree = settings.integer("noise_degree"),
           .noise_grading = settings.real("noise_grading"),
-          .factors = read_factors(),
+          .factors = operators::given_factors(),
           .spectrum_solver = meaning(kSpectrumSolvers, settings.text("spectrum_solver")),
           .transient_solver = meaning(kTransientSolvers, settings.text("transient_solver")),
           .excursions = settings.real("excursions"),
@@ -42,6 +46,21 @@ void check_writable(const Settings& settings, const Option& option, Problems& pr
     settings.report(problems, name, "is a folder", "name a file");
   } else if (std::filesystem::exists(file, error) && access(file.c_str(), W_OK) != 0) {
     settings.report(problems, name, "is a file that cannot be written", "name another file");
+  }
+}
+
+// Options of the solvers, and those that nobody knows.
+void check_solver_options(Problems& problems) {
+  const auto wrong_types = petsc::wrong_solver_types();
+  for (const auto& message : wrong_types) problems.add(message);
+  // Solvers of other types are not tried, so that no option of theirs would count as known.
+  if (!wrong_types.empty()) problems.raise();
+  for (const auto& message : petsc::wrong_solver_options()) problems.add(message);
+  for (const auto& name : petsc::unused_options()) {
+    const std::string message = petsc::unknown_solver_option(name);
+    problems.add(message.empty()
+                     ? fmt::format("-{}: unknown option; {}", name, suggestion_for_option(name))
+                     : message);
   }
 }
 
@@ -123,10 +142,7 @@ Request read_request(const std::vector<std::string>& argv) {
   Problems problems;
   const Settings settings = Settings::read(problems);
   check_stray_words(argv, problems);
-  // Solvers of other types are not tried, so that no option of theirs would count as known.
-  if (!check_solver_types(problems)) problems.raise();
   check_solver_options(problems);
-  check_unknown_options(problems);
   problems.raise();  // what follows relates values to one another
   if (sweeps(settings)) return read_sweep(settings);
   Request request = request_of(settings, problems);

@@ -2,30 +2,18 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <petscsys.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "stickslip/options/synonyms.hpp"
-#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/solver_options.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/number_text.hpp"
 #include "stickslip/support/text.hpp"
 
 namespace stickslip::options {
 namespace {
-
-std::optional<std::string> value_in_database(const std::string& name) {
-  PetscBool found = PETSC_FALSE;
-  petsc::check(PetscOptionsHasName(nullptr, nullptr, ("-" + name).c_str(), &found));
-  if (found == PETSC_FALSE) return std::nullopt;
-  std::string buffer(1 << 20, '\0');  // lists can be long, and PETSc cuts what does not fit
-  petsc::check(PetscOptionsGetString(nullptr, nullptr, ("-" + name).c_str(), buffer.data(),
-                                     buffer.size(), &found));
-  const std::string value = buffer.substr(0, buffer.find('\0'));
-  return value.substr(std::min(value.find_first_not_of(' '), value.size()));
-}
 
 void check_words(const Option& option, const std::string& value, Problems& problems) {
   const auto given = option.kind == Kind::list ? split(value, ',') : std::vector{value};
@@ -103,10 +91,11 @@ void Problems::raise() const {
 Settings Settings::read(Problems& problems) {
   Settings settings;
   for (const auto& option : all_options()) {
-    const auto given = value_in_database(option.name);
+    const auto given = petsc::option_value(option.name);
     if (!given) continue;
-    settings.text_[option.name] = *given;
-    check_value(option, *given, problems);
+    std::string& value = settings.text_[option.name];
+    value = given->substr(std::min(given->find_first_not_of(' '), given->size()));
+    check_value(option, value, problems);
   }
   return settings;
 }

@@ -13,6 +13,7 @@
 #include "stickslip/effects/read_scene.hpp"
 #include "stickslip/outputs/output.hpp"
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/petsc/solver_options.hpp"
 
 namespace stickslip::options {
 namespace {
@@ -150,7 +151,7 @@ std::vector<std::pair<std::string, std::string>> identity_of(const Settings& set
       identity.back().second = contents.str();
     }
   }
-  for (const auto& option : solver_options()) identity.push_back(option);
+  for (const auto& option : petsc::given_solver_options()) identity.push_back(option);
   return identity;
 }
 

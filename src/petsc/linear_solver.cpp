@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <sstream>
 #include <string>
 #include <utility>
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/memory.hpp"
+#include "stickslip/petsc/solver_options.hpp"
 #include "stickslip/support/errors.hpp"
 
 namespace stickslip::petsc {
@@ -141,15 +141,11 @@ Analysis own_analysis(KSP ksp) {
 }  // namespace
 
 std::string implied_pc_type(const std::string& prefix) {
-  char* text = nullptr;
-  check(PetscOptionsGetAll(nullptr, &text));
-  std::istringstream words(text);
-  check(PetscFree(text));
-  const std::string pc = "-" + prefix + "pc_", own = pc + kElementsPc, mat = "-" + prefix + "mat_";
+  const std::string pc = prefix + "pc_", own = pc + kElementsPc, mat = prefix + "mat_";
   bool others = false;
-  for (std::string word; words >> word;) {
-    if (word.starts_with(own)) return kElementsPc;
-    others = others || word.starts_with(pc) || word.starts_with(mat);
+  for (const auto& name : given_options()) {
+    if (name.starts_with(own)) return kElementsPc;
+    others = others || name.starts_with(pc) || name.starts_with(mat);
   }
   return others ? PCLU : "";
 }

@@ -1,25 +1,18 @@
+#include "stickslip/petsc/solver_options.hpp"
+
 #include <fmt/format.h>
 #include <petscsys.h>
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 
-#include "reading.hpp"
-#include "stickslip/options/synonyms.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/solver_choice.hpp"
+#include "stickslip/support/number_text.hpp"
 #include "stickslip/support/text.hpp"
 
-namespace stickslip::options {
+namespace stickslip::petsc {
 namespace {
-
-std::string solver_option(const std::string& name) {
-  std::array<char, 256> text{};
-  PetscBool given = PETSC_FALSE;
-  petsc::check(
-      PetscOptionsGetString(nullptr, nullptr, name.c_str(), text.data(), text.size(), &given));
-  return given == PETSC_TRUE ? text.data() : "";
-}
 
 // Options of PETSc itself that it reads later, or reads and does not count as used.
 bool belongs_to_petsc(const std::string& name) {
@@ -49,16 +42,16 @@ const std::vector<SolverRole>& solver_roles() {
             ' ');
   static const auto eps = split("eps_type eps_tol eps_nev eps_ncv eps_max_it eps_monitor", ' ');
   static const std::vector<SolverRole> roles{
-      {"slide_", petsc::probe_linear_solver,
+      {"slide_", probe_linear_solver,
        split("ksp_view ksp_view_pre ksp_converged_reason ksp_converged_rate "
              "ksp_view_final_residual",
              ' '),
        split("pc_type pc_elements_share pc_factor_mat_solver_type pc_factor_levels sub_pc_type "
              "sub_pc_factor_levels ksp_type ksp_rtol ksp_max_it ksp_monitor",
              ' ')},
-      {"null_", petsc::probe_eigensolver, later, eps},
-      {"relax_", petsc::probe_eigensolver, later, eps},
-      {"backward_", petsc::probe_time_stepper,
+      {"null_", probe_eigensolver, later, eps},
+      {"relax_", probe_eigensolver, later, eps},
+      {"backward_", probe_time_stepper,
        split("ts_view ts_view_pre ts_adapt_view snes_view ksp_view", ' '),
        split("ts_type ts_max_steps ts_monitor ts_rtol ts_atol", ' ')}};
   return roles;
@@ -86,28 +79,6 @@ std::string nearest_option(const SolverRole& role, const std::string& name) {
   return near.empty() ? "" : role.prefix + near;
 }
 
-std::string unknown_option(const std::string& name) {
-  if (const SolverRole* role = role_of(name)) {
-    const std::string near = nearest_option(*role, name);
-    return fmt::format("-{}: this solver has no such option; {}-{}{} shows its options", name,
-                       near.empty() ? "" : fmt::format("did you mean -{}? ", near), role->prefix,
-                       role->read_later.front());
-  }
-  return fmt::format("-{}: unknown option; {}", name, suggestion_for_option(name));
-}
-
-// Names of all options in the database, without the dash.
-std::vector<std::string> given_names() {
-  std::vector<std::string> names;
-  char* all = nullptr;
-  petsc::check(PetscOptionsGetAll(nullptr, &all));
-  for (const auto& word : split(all, ' ')) {
-    if (is_option_name(word)) names.push_back(word.substr(1));
-  }
-  petsc::check(PetscFree(all));
-  return names;
-}
-
 // Of the types that PETSc has, those that work from options alone and apply transposes. Others,
 // such as shell and mg, need a program that sets them up, and crash without.
 const std::vector<std::pair<std::string, std::vector<std::string>>>& solver_types() {
@@ -124,8 +95,8 @@ const std::vector<std::pair<std::string, std::vector<std::string>>>& solver_type
 
 // The option of a role whose value a message names; the prefix alone if there is none.
 std::string blamed_option(const SolverRole& role, const std::string& message) {
-  for (const auto& name : given_names()) {
-    const std::string value = solver_option("-" + name);
+  for (const auto& name : given_options()) {
+    const std::string value = option_value(name).value_or("");
     const bool named = !value.empty() && message.find(" " + value) != message.npos;
     if (named && name.starts_with(role.prefix)) return fmt::format("-{} = {}", name, value);
   }
@@ -134,21 +105,69 @@ std::string blamed_option(const SolverRole& role, const std::string& message) {
 
 }  // namespace
 
-bool check_solver_types(Problems& problems) {
-  bool known = true;
-  for (const auto& [name, types] : solver_types()) {
-    const std::string type = solver_option("-" + name);
-    if (type.empty() || std::count(types.begin(), types.end(), type) > 0) continue;
-    known = false;
-    const std::string near = nearest_word(type, types);
-    problems.add(fmt::format("-{} = {}: must be {}{}", name, type, enumerate(types, "or"),
-                             near.empty() ? "" : fmt::format("; did you mean {}?", near)));
-  }
-  return known;
+bool is_option_name(const std::string& word) {
+  return word.size() > 1 && word[0] == '-' && !parse_number(word);
 }
 
-void check_solver_options(Problems& problems) {
-  const auto names = given_names();
+std::optional<std::string> option_value(const std::string& name) {
+  const std::string option = "-" + name;
+  PetscBool found = PETSC_FALSE;
+  check(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &found));
+  if (found == PETSC_FALSE) return std::nullopt;
+  std::string value(1 << 20, '\0');  // lists can be long, and PETSc cuts what does not fit
+  check(
+      PetscOptionsGetString(nullptr, nullptr, option.c_str(), value.data(), value.size(), &found));
+  return value.substr(0, value.find('\0'));
+}
+
+std::vector<std::string> given_options() {
+  std::vector<std::string> names;
+  char* all = nullptr;
+  check(PetscOptionsGetAll(nullptr, &all));
+  for (const auto& word : split(all, ' ')) {
+    if (is_option_name(word)) names.push_back(word.substr(1));
+  }
+  check(PetscFree(all));
+  return names;
+}
+
+std::vector<std::string> unused_options() {
+  std::vector<std::string> unused;
+  PetscInt count = 0;
+  char** names = nullptr;
+  char** values = nullptr;
+  check(PetscOptionsLeftGet(nullptr, &count, &names, &values));
+  std::copy_if(names, names + count, std::back_inserter(unused), [](const std::string& name) {
+    return !belongs_to_petsc(name) && !is_read_later(name);
+  });
+  check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
+  return unused;
+}
+
+std::vector<std::pair<std::string, std::string>> given_solver_options() {
+  std::vector<std::pair<std::string, std::string>> found;
+  for (const auto& name : given_options()) {
+    if (role_of(name) != nullptr) found.emplace_back(name, option_value(name).value_or(""));
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<std::string> wrong_solver_types() {
+  std::vector<std::string> messages;
+  for (const auto& [name, types] : solver_types()) {
+    const std::string type = option_value(name).value_or("");
+    if (type.empty() || std::count(types.begin(), types.end(), type) > 0) continue;
+    const std::string near = nearest_word(type, types);
+    messages.push_back(fmt::format("-{} = {}: must be {}{}", name, type, enumerate(types, "or"),
+                                   near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  }
+  return messages;
+}
+
+std::vector<std::string> wrong_solver_options() {
+  std::vector<std::string> messages;
+  const auto names = given_options();
   for (const auto& role : solver_roles()) {
     const bool used = std::any_of(names.begin(), names.end(), [&role](const std::string& name) {
       return role_of(name) == &role;
@@ -156,43 +175,21 @@ void check_solver_options(Problems& problems) {
     if (!used) continue;
     try {
       role.probe_options(role.prefix);
-    } catch (const petsc::PetscFailure& failure) {
+    } catch (const PetscFailure& failure) {
       const std::string text = failure.what(), message = text.substr(0, text.find('\n'));
-      problems.add(fmt::format("{}: {}", blamed_option(role, message), message));
+      messages.push_back(fmt::format("{}: {}", blamed_option(role, message), message));
     }
   }
+  return messages;
 }
 
-void check_unknown_options(Problems& problems) {
-  PetscInt count = 0;
-  char** names = nullptr;
-  char** values = nullptr;
-  petsc::check(PetscOptionsLeftGet(nullptr, &count, &names, &values));
-  for (PetscInt n = 0; n < count; ++n) {
-    if (!belongs_to_petsc(names[n]) && !is_read_later(names[n]))
-      problems.add(unknown_option(names[n]));
-  }
-  petsc::check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
+std::string unknown_solver_option(const std::string& name) {
+  const SolverRole* role = role_of(name);
+  if (role == nullptr) return "";
+  const std::string near = nearest_option(*role, name);
+  return fmt::format("-{}: this solver has no such option; {}-{}{} shows its options", name,
+                     near.empty() ? "" : fmt::format("did you mean -{}? ", near), role->prefix,
+                     role->read_later.front());
 }
 
-Factors read_factors() {
-  const std::string implied = petsc::implied_pc_type("slide_");
-  if (implied.empty()) return Factors::own;
-  std::string pc = solver_option("-slide_pc_type");
-  if (pc.empty()) pc = implied;
-  if (pc == petsc::kElementsPc) return Factors::elements;
-  if (!pc.empty() && pc != "lu" && pc != "cholesky") return Factors::incomplete;
-  const bool on_disk = solver_option("-slide_mat_mumps_icntl_22") == "1";
-  return on_disk ? Factors::on_disk : Factors::in_memory;
-}
-
-std::vector<std::pair<std::string, std::string>> solver_options() {
-  std::vector<std::pair<std::string, std::string>> found;
-  for (const auto& name : given_names()) {
-    if (role_of(name) != nullptr) found.emplace_back(name, solver_option("-" + name));
-  }
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
-}  // namespace stickslip::options
+}  // namespace stickslip::petsc
