@@ -13,20 +13,20 @@ namespace stickslip::options {
 // question.cpp
 
 /// The quantities and their arguments, for the model and the method that the request holds already.
-void read_question(const Settings& settings, Request& request, Problems& problems);
+void read_question(Settings& settings, Request& request);
 
 // rules.cpp
 
 /// Options that exclude one another, lack one another, or have no effect, which is a warning.
-void check_rules(const Settings& settings, Request& request, Problems& problems);
+void check_rules(Settings& settings, Request& request);
 
 // request.cpp
 
 /// Names of the files, and whether progress is shown.
 [[nodiscard]] Files read_files(const Settings& settings);
 
-/// The run that the settings ask for; what is wrong with it goes to `problems`.
-[[nodiscard]] Request request_of(const Settings& settings, Problems& problems);
+/// The run that the settings ask for; what is wrong with it is added to their problems.
+[[nodiscard]] Request request_of(Settings& settings);
 
 // command_line.cpp
 
@@ -40,6 +40,6 @@ void check_stray_words(const std::vector<std::string>& argv, Problems& problems)
 
 /// The request of the first point, with the sweep in it, after all points have been validated.
 /// Throws BadInput.
-[[nodiscard]] Request read_sweep(const Settings& settings);
+[[nodiscard]] Request read_sweep(Settings settings);
 
 }  // namespace stickslip::options

@@ -17,8 +17,8 @@ using outputs::Subject;
 /// The rules that relate options to one another. Each is a row: options, when it counts, message.
 class Rules {
  public:
-  Rules(const Settings& settings, Request& request, Problems& problems)
-      : settings_(settings), r_(request), q_(request.question), problems_(problems) {}
+  Rules(Settings& settings, Request& request)
+      : settings_(settings), r_(request), q_(request.question) {}
 
   // Options of effects that none of those in use knows, each by the first effect that does.
   void of_other_effects() {
@@ -71,7 +71,7 @@ class Rules {
            fmt::format("needs a model without drag, b = 0, and Coulomb friction: {}",
                        method_.without_drag),
            "add -drag none, leave -friction out, or take -route excursion");
-    refuse({"speed_limit"}, settings_.given("v_max"), "does not go with -v_max", "leave one out");
+    refuse({"speed_limit"}, settings_.has("v_max"), "does not go with -v_max", "leave one out");
     refuse({"v_max", "speed_limit"}, !method_.bounds_speed, no_choice,
            "leave it out, or take " + routes_that(&SolutionMethod::bounds_speed, true));
     refuse({"scheme", "degree", "layers", "noise_degree", "noise_grading", "p"},
@@ -158,7 +158,7 @@ class Rules {
 
   // Where no level of the noise holds the body, there are no phases, and the rest exists.
   void require_sticking() {
-    if (!problems_.empty() || r_.scene.meant().sticks()) return;
+    if (!settings_.sound() || r_.scene.meant().sticks()) return;
     std::vector<std::string> without, missing;
     for (const auto* entry : catalogue::entries()) {
       if (!entry->of_phases) without.emplace_back(entry->word);
@@ -192,38 +192,37 @@ class Rules {
 
   void warn(Options options, bool when, const std::string& why = "on the quantities asked for") {
     for (const char* option : options) {
-      if (!when || !settings_.given(option)) continue;
+      if (!when || !settings_.has(option)) continue;
       r_.warnings.push_back(fmt::format("-{} = {} has no effect {}; leave it out", option,
                                         settings_.text(option), why));
     }
   }
 
   void refuse(Options options, bool when, const std::string& why, const std::string& fix) {
-    for (const char* option : options) report(option, when && settings_.given(option), why, fix);
+    for (const char* option : options) report(option, when && settings_.has(option), why, fix);
   }
 
   // The quantities are refused, unless the option is given: then it may have been misread.
   void require(const char* option, bool when, const std::string& why, const std::string& fix) {
-    report("quantities", when && !settings_.given(option), why, fix);
+    report("quantities", when && !settings_.has(option), why, fix);
   }
 
   // Given or not: values may come from the file to compare with.
   void report(const char* option, bool when, const std::string& why, const std::string& fix) {
-    if (when) settings_.report(problems_, option, why, fix);
+    if (when) settings_.refuse(option, why, fix);
   }
 
-  const Settings& settings_;
+  Settings& settings_;
   Request& r_;
   const Question& q_;
-  Problems& problems_;
   const SolutionMethod& method_ = r_.method.row();
   const bool study_ = r_.study.kind != StudyKind::none;
 };
 
 }  // namespace
 
-void check_rules(const Settings& settings, Request& request, Problems& problems) {
-  Rules rules(settings, request, problems);
+void check_rules(Settings& settings, Request& request) {
+  Rules rules(settings, request);
   rules.of_other_effects();
   rules.unused();
   rules.conflicts();

@@ -88,14 +88,14 @@ void Problems::raise() const {
   throw BadInput(fmt::format("{}", fmt::join(messages_, "\n")));
 }
 
-Settings Settings::read(Problems& problems) {
+Settings Settings::read() {
   Settings settings;
   for (const auto& option : all_options()) {
     const auto given = petsc::option_value(option.name);
     if (!given) continue;
     std::string& value = settings.text_[option.name];
     value = given->substr(std::min(given->find_first_not_of(' '), given->size()));
-    check_value(option, value, problems);
+    check_value(option, value, settings.problems_);
   }
   return settings;
 }
@@ -120,14 +120,13 @@ std::vector<double> Settings::numbers(const std::string& name) const {
   return parse_numbers(text(name)).value_or(std::vector<double>{});
 }
 
-void Settings::set(const std::string& name, double value, Problems& problems) {
+void Settings::set(const std::string& name, double value) {
   text_[name] = fmt::format("{}", value);  // reads back to the same bits
-  check_value(*find(name), text_[name], problems);
+  check_value(*find(name), text_[name], problems_);
 }
 
-void Settings::report(Problems& problems, const std::string& name, const std::string& why,
-                      const std::string& fix) const {
-  problems.add(*find(name), text(name), why, fix);
+void Settings::refuse(const std::string& name, const std::string& why, const std::string& fix) {
+  problems_.add(*find(name), text(name), why, fix);
 }
 
 }  // namespace stickslip::options

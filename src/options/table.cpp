@@ -14,23 +14,11 @@
 namespace stickslip::options {
 namespace {
 
-using effects::kChosen;
-
 constexpr std::string_view kSweeps = "sweep_";
 
 const Range kPositive = Range::positive(), kNotNegative = Range::not_negative();
 
 using Words = std::vector<std::string>;
-
-Option real(const char* name, const char* unit, const char* initial, Range range,
-            const char* sentence, const char* fix = kChosen) {
-  return Option::real(name, unit, initial, range, sentence, fix);
-}
-
-Option integer(const char* name, const char* initial, Range range, const char* sentence,
-               const char* fix = kChosen) {
-  return Option::integer(name, initial, range, sentence, fix);
-}
 
 Option choice(const char* name, std::string_view initial, const Words& words,
               const std::string& sentence) {
@@ -92,10 +80,11 @@ std::vector<Option> quantity_options() {
               "elements end at their jumps and kinks in v: at most 64, the same for all x")),
       also_called(
           "tol, tolerance, rtol, precision, eps, error, digits",
-          real("accuracy", "", "1e-6", {1e-15, 0.1, true, true},
-               "relative error wanted for every scalar, at the given -delta; the discretisation is "
-               "refined until the error estimates are below it",
-               "double precision allows down to about 1e-14, case by case")),
+          Option::real(
+              "accuracy", "", "1e-6", {1e-15, 0.1, true, true},
+              "relative error wanted for every scalar, at the given -delta; the discretisation is "
+              "refined until the error estimates are below it",
+              "double precision allows down to about 1e-14, case by case")),
   };
 }
 
@@ -104,20 +93,22 @@ std::vector<Option> discretisation_options() {
       choice("scheme", "hp", words_of(kSchemes),
              "discretisation of the velocity. hp: discontinuous Galerkin elements of high order. "
              "upwind: the first-order differences of the paper"),
-      integer("degree", "", Range::whole(1, 24),
-              "largest polynomial degree in v of the hp elements; switches refinement off"),
-      integer("layers", "", Range::whole(1, 200),
-              "number of elements graded towards v = 0; switches refinement off",
-              "leave it out to have it chosen from the model parameters"),
-      integer("noise_degree", "", Range::whole(0, 20),
-              "degree in x of the polynomials on groups of noise levels; 0: every level is a node. "
-              "Above 0 it switches refinement off"),
-      real("noise_grading", "", "2", {0, 100, false, true},
-           "grading of the groups of noise levels: a group has at most this many levels for each "
-           "level between it and mu_d or mu_s",
-           "2 suits most cases"),
-      integer("p", "", Range::whole(1, 1e7),
-              "velocities of the upwind scheme per noise step; switches refinement off"),
+      Option::integer("degree", "", Range::whole(1, 24),
+                      "largest polynomial degree in v of the hp elements; switches refinement off"),
+      Option::integer("layers", "", Range::whole(1, 200),
+                      "number of elements graded towards v = 0; switches refinement off",
+                      "leave it out to have it chosen from the model parameters"),
+      Option::integer(
+          "noise_degree", "", Range::whole(0, 20),
+          "degree in x of the polynomials on groups of noise levels; 0: every level is a node. "
+          "Above 0 it switches refinement off"),
+      Option::real(
+          "noise_grading", "", "2", {0, 100, false, true},
+          "grading of the groups of noise levels: a group has at most this many levels for each "
+          "level between it and mu_d or mu_s",
+          "2 suits most cases"),
+      Option::integer("p", "", Range::whole(1, 1e7),
+                      "velocities of the upwind scheme per noise step; switches refinement off"),
   };
 }
 
@@ -149,17 +140,19 @@ std::vector<Option> method_options() {
            "memory and time, and stop"),
       also_called(
           "samples, n_samples, trials, paths",
-          integer("excursions", "1000000", Range::whole(2, 1e15),
-                  "number of simulated excursions of -route monte_carlo; of pairs of them without "
-                  "symmetry, of paths for functions of time. If -accuracy is given, the simulation "
-                  "ends when all confidence intervals are small enough",
-                  "a million gives about three digits")),
-      integer("seed", "1", Range::whole(0, 9007199254740992),
-              "seed of the random numbers; a seed gives the same results on any number of ranks",
-              "any whole number will do"),
+          Option::integer(
+              "excursions", "1000000", Range::whole(2, 1e15),
+              "number of simulated excursions of -route monte_carlo; of pairs of them without "
+              "symmetry, of paths for functions of time. If -accuracy is given, the simulation "
+              "ends when all confidence intervals are small enough",
+              "a million gives about three digits")),
+      Option::integer(
+          "seed", "1", Range::whole(0, 9007199254740992),
+          "seed of the random numbers; a seed gives the same results on any number of ranks",
+          "any whole number will do"),
       also_called("duration, t_max, t_end, t_final",
-                  real("horizon", "time", "100", kPositive, "end of the trajectory",
-                       "take for example 100")),
+                  Option::real("horizon", "time", "100", kPositive, "end of the trajectory",
+                               "take for example 100")),
       Option::file(
           "checkpoint", Kind::path,
           "checkpoint of a simulation or a sweep, updated as it runs; a run resumes from the file "
@@ -177,11 +170,12 @@ std::vector<Option> study_options() {
              "delta: the same for decreasing noise steps, with mu_s on a level and between two. "
              "heuristic: the paper's extrapolation beside converged values. cost: error against "
              "time of all methods"),
-      integer("study_steps", "", Range::whole(4, 20), "number of values of p or delta (default 8)",
-              "three values give an order, a fourth its uncertainty"),
-      integer("study_repeats", "3", Range::whole(1, 99),
-              "runs of each case of -study cost, of which the median time counts",
-              "an odd number is best"),
+      Option::integer("study_steps", "", Range::whole(4, 20),
+                      "number of values of p or delta (default 8)",
+                      "three values give an order, a fourth its uncertainty"),
+      Option::integer("study_repeats", "3", Range::whole(1, 99),
+                      "runs of each case of -study cost, of which the median time counts",
+                      "an odd number is best"),
   };
 }
 
@@ -193,10 +187,11 @@ std::vector<Option> sweep_options() {
     options.push_back(numbers(std::string(kSweeps) + option.name, option.unit, option.range,
                               "values of -" + option.name, option.fix));
   }
-  options.push_back(integer("sweep_ranks", "1", Range::whole(1, 1e6),
-                            "MPI ranks that share a point; groups of this size take the points in "
-                            "turn",
-                            "one is best while a point fits into the memory of one"));
+  options.push_back(
+      Option::integer("sweep_ranks", "1", Range::whole(1, 1e6),
+                      "MPI ranks that share a point; groups of this size take the points in "
+                      "turn",
+                      "one is best while a point fits into the memory of one"));
   return options;
 }
 

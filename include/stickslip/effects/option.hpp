@@ -56,6 +56,9 @@ struct Shown {
   std::string page = {};                 ///< of the manual where to read more
 };
 
+/// What to do about a number that the program chooses unless it is given.
+inline constexpr const char* kChosen = "leave it out to have it chosen from -accuracy";
+
 struct Option {
   std::string name;                ///< without the dash
   Kind kind;                       ///< form of the value
@@ -69,11 +72,11 @@ struct Option {
   Shown shown = {};
 
   static Option real(const char* name, const char* unit, const char* initial, Range range,
-                     const char* sentence, const char* fix, const Shown& shown = {}) {
+                     const char* sentence, const char* fix = kChosen, const Shown& shown = {}) {
     return {name, Kind::real, "number", unit, initial, range, {}, sentence, fix, shown};
   }
   static Option integer(const char* name, const char* initial, Range range, const char* sentence,
-                        const char* fix, const std::vector<std::string>& words = {},
+                        const char* fix = kChosen, const std::vector<std::string>& words = {},
                         const Shown& shown = {}) {
     return {name, Kind::integer, "integer", "", initial, range, words, sentence, fix, shown};
   }
@@ -86,8 +89,5 @@ struct Option {
     return {name, kind, "file", "", "", {}, {}, sentence, "", shown};
   }
 };
-
-/// What to do about a number that the program chooses unless it is given.
-inline constexpr const char* kChosen = "leave it out to have it chosen from -accuracy";
 
 }  // namespace stickslip::effects
