@@ -202,8 +202,8 @@ int run_session(const std::vector<std::string>& words, double start_up) {
   int status = static_cast<int>(ExitStatus::other);
   try {
     const auto request = agreed_request(words);
-    if (request.plan_only) return report_plan(request);
     if (rank == 0) warn(request);
+    if (request.plan_only) return report_plan(request);
     if (request.study.kind != options::StudyKind::none) {
       return run_study(request, start, start_up);
     }

@@ -48,14 +48,10 @@ class Rules {
     warn({"checkpoint"}, !simulates && !swept, no_simulation + " or a sweep");
     warn({"sweep_ranks"}, !swept, "without a sweep");
     warn({"study_steps", "study_repeats"}, !study_, "without -study");
-    const auto subject = study_ ? Subject::study : swept ? Subject::sweep : Subject::run;
-    for (const auto* output : outputs::all()) {
-      const auto& of = output->subjects;
-      if (of.contains(subject) || of.contains(Subject::run)) continue;
-      const char* others = of.contains(Subject::study) ? "without -study" : "without -plan";
-      warn({output->option.c_str()}, true,
-           of.contains(Subject::sweep) ? "without a sweep" : others);
-    }
+    unused_outputs(r_.plan_only ? Subject::plan
+                   : study_     ? Subject::study
+                   : swept      ? Subject::sweep
+                                : Subject::run);
     for (const char* option :
          {"observable", "time", "start", "horizon", "transient_solver", "omega", "spectrum_solver",
           "distance", "inverse_distance", "velocity"}) {
@@ -136,6 +132,22 @@ class Rules {
 
  private:
   using Options = std::initializer_list<const char*>;
+
+  // Outputs that are not written of what the program does. The plan of a run that needs a file for
+  // a field takes the name of that file.
+  void unused_outputs(Subject subject) {
+    for (const auto* output : outputs::all()) {
+      const auto& of = output->subjects;
+      const bool needed = std::any_of(output->fields.begin(), output->fields.end(),
+                                      [this](Quantity field) { return q_.wants(field); });
+      if (of.contains(subject) || needed) continue;
+      const char* elsewhere = of.contains(Subject::sweep)   ? "without a sweep"
+                              : of.contains(Subject::study) ? "without -study"
+                                                            : "without -plan";
+      const char* here = subject == Subject::plan ? "with -plan" : "with -study";
+      warn({output->option.c_str()}, true, of.contains(Subject::run) ? here : elsewhere);
+    }
+  }
 
   // Whether an effect in use knows the option.
   [[nodiscard]] bool is_known(const std::string& option) const {
