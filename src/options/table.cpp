@@ -250,28 +250,6 @@ const Option* swept_by(const Option& option) {
   return option.name.starts_with(kSweeps) ? find(option.name.substr(kSweeps.size())) : nullptr;
 }
 
-std::span<const Form> forms() {
-  static const std::vector<Form> all{
-      {"number", "a decimal number such as 0.25 or 1e-3"},
-      {"integer", "a whole number"},
-      {"word", "one of the words allowed"},
-      {"list", "words separated by commas, without blanks, each at most once"},
-      {"numbers",
-       "a list a,b,c, or first:last:count for count >= 2 evenly spaced numbers from first to last, "
-       "both included, or first:last:count:log for numbers evenly spaced in the logarithm"},
-      {"flag", "yes or no; the option alone means yes"},
-      {"file", "the name of a file"},
-      {"formula", "a formula in v, mu_s, mu_d and tau; a value that begins with a minus sign needs "
-                  "a blank before it in an options file"},
-      {"functions",
-       "functions of the state, separated by semicolons: 1, x, v, v^2, |v|, stick, slide, "
-       "|x|<=mu_s, or formulas in x, y, v, mu_s and mu_d such as \"x*v; abs(v) > 0.5\", with y = "
-       "sign(v), 0 at rest"},
-      {"state", "s+ or s-, where a sliding phase starts; x,v with x a noise level; rest, V = 0 and "
-                "X in its stationary distribution; stationary, the stationary distribution"}};
-  return all;
-}
-
 std::span<const Group> table() {
   static const std::vector<Group> groups{
       {"Model",

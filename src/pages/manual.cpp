@@ -101,7 +101,7 @@ std::string option_items() {
 
 std::string form_items() {
   std::string text;
-  for (const auto& form : options::forms()) {
+  for (const auto& form : forms()) {
     text += entry(fmt::format("\\fI{}\\fR", form.name), form.meaning + ".");
   }
   return text;
@@ -241,7 +241,7 @@ std::string help_entry(const std::string& name, const std::string& meaning) {
 
 std::string form_help() {
   std::string text = "\nForms of values:\n";
-  for (const auto& form : options::forms()) {
+  for (const auto& form : forms()) {
     text += help_entry(form.name, form.meaning + ".");
   }
   return text;
@@ -282,6 +282,28 @@ std::string other_help() {
 }
 
 }  // namespace
+
+std::span<const Form> forms() {
+  static const std::vector<Form> all{
+      {"number", "a decimal number such as 0.25 or 1e-3"},
+      {"integer", "a whole number"},
+      {"word", "one of the words allowed"},
+      {"list", "words separated by commas, without blanks, each at most once"},
+      {"numbers",
+       "a list a,b,c, or first:last:count for count >= 2 evenly spaced numbers from first to last, "
+       "both included, or first:last:count:log for numbers evenly spaced in the logarithm"},
+      {"flag", "yes or no; the option alone means yes"},
+      {"file", "the name of a file"},
+      {"formula", "a formula in v, mu_s, mu_d and tau; a value that begins with a minus sign needs "
+                  "a blank before it in an options file"},
+      {"functions",
+       "functions of the state, separated by semicolons: 1, x, v, v^2, |v|, stick, slide, "
+       "|x|<=mu_s, or formulas in x, y, v, mu_s and mu_d such as \"x*v; abs(v) > 0.5\", with y = "
+       "sign(v), 0 at rest"},
+      {"state", "s+ or s-, where a sliding phase starts; x,v with x a noise level; rest, V = 0 and "
+                "X in its stationary distribution; stationary, the stationary distribution"}};
+  return all;
+}
 
 std::string help_text() {
   std::string text =

@@ -29,14 +29,6 @@ TEST_CASE("option table: names are unique, defaults obey their own rules") {
   }
 }
 
-TEST_CASE("option table: the form of every value is explained") {
-  std::set<std::string> explained;
-  for (const auto& form : forms()) CHECK(explained.insert(form.name).second);
-  std::set<std::string> used;
-  for (const auto& option : all_options()) used.insert(option.form);
-  CHECK(used == explained);
-}
-
 TEST_CASE("option table: what a value must be, and what its form leaves open") {
   const auto check = [](const char* name, const char* must, const char* open) {
     const Option* option = find(name);

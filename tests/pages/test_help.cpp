@@ -1,3 +1,4 @@
+#include <set>
 #include <sstream>
 
 #include "../common/catch.hpp"
@@ -38,4 +39,12 @@ TEST_CASE("help: it fits a terminal of 100 columns") {
     INFO(line);
     CHECK(line.size() <= 100);
   }
+}
+
+TEST_CASE("help: the form of every value is explained") {
+  std::set<std::string> explained;
+  for (const auto& form : forms()) CHECK(explained.insert(form.name).second);
+  std::set<std::string> used;
+  for (const auto& option : all_options()) used.insert(option.form);
+  CHECK(used == explained);
 }

@@ -62,7 +62,7 @@ inline constexpr const char* kChosen = "leave it out to have it chosen from -acc
 struct Option {
   std::string name;                ///< without the dash
   Kind kind;                       ///< form of the value
-  std::string form;                ///< of the value, by the name that options::forms() explains
+  std::string form;                ///< of the value, by the name that pages::forms() explains
   std::string unit;                ///< of a number; empty if it has none
   std::string initial;             ///< default as text; empty: see `sentence`
   Range range;                     ///< of a number

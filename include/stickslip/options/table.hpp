@@ -14,12 +14,6 @@ using effects::Kind;
 using effects::Option;
 using effects::Range;
 
-/// A form of values.
-struct Form {
-  std::string name;  ///< "number", "word", "file", ...: what stands after the name of an option
-  std::string meaning;
-};
-
 struct Group {
   std::string title;
   std::string explanation;
@@ -41,9 +35,6 @@ struct OtherOption {
 
 /// The option of the model that an option sweeps; nullptr for any other option.
 [[nodiscard]] const Option* swept_by(const Option& option);
-
-/// All forms of values.
-[[nodiscard]] std::span<const Form> forms();
 
 /// All options by group, in the order of the help text.
 [[nodiscard]] std::span<const Group> table();

@@ -2,10 +2,20 @@
 /// Help, pages and the completion of the command line, made from the tables of options,
 /// quantities and results.
 
+#include <span>
 #include <string>
 #include <string_view>
 
 namespace stickslip::pages {
+
+/// A form of values.
+struct Form {
+  std::string name;  ///< "number", "word", "file", ...: what stands after the name of an option
+  std::string meaning;
+};
+
+/// All forms of values.
+[[nodiscard]] std::span<const Form> forms();
 
 /// The text of -help.
 [[nodiscard]] std::string help_text();
