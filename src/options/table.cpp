@@ -29,12 +29,6 @@ Option list(const char* name, const char* initial, const Words& words, const cha
   return {name, Kind::list, "list", "", initial, {}, words, sentence, ""};
 }
 
-// An option that has other names in the literature and in other programs, a comma list.
-Option also_called(const char* others, Option option) {
-  option.shown.others = split(others, ',');
-  return option;
-}
-
 Option flag(const char* name, const char* sentence) {
   return {name, Kind::flag, "flag", "", "no", {}, {"yes", "no"}, sentence, ""};
 }
@@ -53,38 +47,35 @@ std::vector<Option> quantity_options() {
   Words words;
   for (const auto* entry : catalogue::entries()) words.emplace_back(entry->word);
   return {
-      also_called("q, compute, observables",
-                  list("quantities", "sticking,moments,noise_law", words, "quantities to compute")),
+      list("quantities", "sticking,moments,noise_law", words, "quantities to compute")
+          .called({"q", "compute", "observables"}),
       arguments("lambda", "1/time",
                 "arguments of the Laplace transforms and the resolvent (laplace, F_stick, "
                 "resolvent). With -route lambda one positive value, chosen from -accuracy unless "
                 "given"),
-      also_called("freq, frequency, frequencies",
-                  arguments("omega", "1/time", "angular frequencies of spectrum")),
-      also_called(
-          "t, times",
-          arguments("time", "time",
-                    "times of duration_density, autocorrelation, displacement and expectation")),
+      arguments("omega", "1/time", "angular frequencies of spectrum")
+          .called({"freq", "frequency", "frequencies"}),
+      arguments("time", "time",
+                "times of duration_density, autocorrelation, displacement and expectation")
+          .called({"t", "times"}),
       arguments("distance", "velocity*time", "path lengths > 0 of slip, for f_slip and cdf_slip"),
       arguments("inverse_distance", "1/(velocity*time)",
                 "arguments s of the Laplace transform F_slip of slip"),
-      also_called("speed, speeds", arguments("velocity", "velocity", "speeds w > 0 of peak")),
-      also_called("x0, v0, initial, initial_state",
-                  Option::text_of("start", "state", "s+",
-                                  "state at time 0 of expectation, displacement and trajectory")),
-      also_called(
-          "function, functions",
-          Option::text_of(
-              "observable", "functions", "",
-              "functions of the state for averages, resolvent and expectation. With -scheme hp "
-              "elements end at their jumps and kinks in v: at most 64, the same for all x")),
-      also_called(
-          "tol, tolerance, rtol, precision, eps, error, digits",
-          Option::real(
-              "accuracy", "", "1e-6", {1e-15, 0.1, true, true},
-              "relative error wanted for every scalar, at the given -delta; the discretisation is "
-              "refined until the error estimates are below it",
-              "double precision allows down to about 1e-14, case by case")),
+      arguments("velocity", "velocity", "speeds w > 0 of peak").called({"speed", "speeds"}),
+      Option::text_of("start", "state", "s+",
+                      "state at time 0 of expectation, displacement and trajectory")
+          .called({"x0", "v0", "initial", "initial_state"}),
+      Option::text_of(
+          "observable", "functions", "",
+          "functions of the state for averages, resolvent and expectation. With -scheme hp "
+          "elements end at their jumps and kinks in v: at most 64, the same for all x")
+          .called({"function", "functions"}),
+      Option::real(
+          "accuracy", "", "1e-6", {1e-15, 0.1, true, true},
+          "relative error wanted for every scalar, at the given -delta; the discretisation is "
+          "refined until the error estimates are below it",
+          "double precision allows down to about 1e-14, case by case")
+          .called({"tol", "tolerance", "rtol", "precision", "eps", "error", "digits"}),
   };
 }
 
@@ -117,9 +108,9 @@ Option route_option() {
   for (const auto& method : catalogue::solution_methods()) {
     sentence += fmt::format(". {}: {}", method.word, method.sentence);
   }
-  return also_called("method, solver, algorithm",
-                     choice("route", catalogue::solution_methods()[0].word,
-                            words_of(catalogue::solution_methods()), sentence));
+  return choice("route", catalogue::solution_methods()[0].word,
+                words_of(catalogue::solution_methods()), sentence)
+      .called({"method", "solver", "algorithm"});
 }
 
 std::vector<Option> method_options() {
@@ -138,21 +129,20 @@ std::vector<Option> method_options() {
       flag("plan",
            "print the systems to assemble, factor and solve, with predicted unknowns, non-zeros, "
            "memory and time, and stop"),
-      also_called(
-          "samples, n_samples, trials, paths",
-          Option::integer(
-              "excursions", "1000000", Range::whole(2, 1e15),
-              "number of simulated excursions of -route monte_carlo; of pairs of them without "
-              "symmetry, of paths for functions of time. If -accuracy is given, the simulation "
-              "ends when all confidence intervals are small enough",
-              "a million gives about three digits")),
+      Option::integer(
+          "excursions", "1000000", Range::whole(2, 1e15),
+          "number of simulated excursions of -route monte_carlo; of pairs of them without "
+          "symmetry, of paths for functions of time. If -accuracy is given, the simulation "
+          "ends when all confidence intervals are small enough",
+          "a million gives about three digits")
+          .called({"samples", "n_samples", "trials", "paths"}),
       Option::integer(
           "seed", "1", Range::whole(0, 9007199254740992),
           "seed of the random numbers; a seed gives the same results on any number of ranks",
           "any whole number will do"),
-      also_called("duration, t_max, t_end, t_final",
-                  Option::real("horizon", "time", "100", kPositive, "end of the trajectory",
-                               "take for example 100")),
+      Option::real("horizon", "time", "100", kPositive, "end of the trajectory",
+                   "take for example 100")
+          .called({"duration", "t_max", "t_end", "t_final"}),
       Option::file(
           "checkpoint", Kind::path,
           "checkpoint of a simulation or a sweep, updated as it runs; a run resumes from the file "
@@ -200,16 +190,15 @@ std::vector<Option> output_options() {
   for (const auto* output : outputs::all()) {
     if (output->option.empty()) continue;
     options.push_back(
-        also_called(output->synonyms, Option::file(output->option, Kind::path, output->sentence)));
+        Option::file(output->option, Kind::path, output->sentence).called(output->synonyms));
   }
-  options.push_back(also_called(
-      "reference, check",
+  options.push_back(
       Option::file(
           "compare", Kind::input,
           "compare the results with those of this file: HDF5 or JSON of this program, or CSV with "
-          "the "
-          "columns quantity,argument,value,low,high (95 % confidence intervals). What is to be "
-          "computed is taken from the file unless given. Exit status 3 if they disagree")));
+          "the columns quantity,argument,value,low,high (95 % confidence intervals). What is to be "
+          "computed is taken from the file unless given. Exit status 3 if they disagree")
+          .called({"reference", "check"}));
   options.push_back(choice("progress", "auto", words_of(kProgress),
                            "show progress on standard error; auto: if that is a terminal"));
   return options;

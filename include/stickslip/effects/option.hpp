@@ -71,6 +71,12 @@ struct Option {
   std::string fix;                 ///< what to do about a value out of range; may be empty
   Shown shown = {};
 
+  /// The same with other names.
+  [[nodiscard]] Option called(const std::vector<std::string>& others) const {
+    Option option = *this;
+    option.shown.others = others;
+    return option;
+  }
   static Option real(const char* name, const char* unit, const char* initial, Range range,
                      const char* sentence, const char* fix = kChosen, const Shown& shown = {}) {
     return {name, Kind::real, "number", unit, initial, range, {}, sentence, fix, shown};
