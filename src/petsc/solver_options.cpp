@@ -120,6 +120,16 @@ std::optional<std::string> option_value(const std::string& name) {
   return value.substr(0, value.find('\0'));
 }
 
+OptionFor::OptionFor(const std::string& name, const std::string& value)
+    : option_("-" + name), before_(option_value(name)) {
+  check(PetscOptionsSetValue(nullptr, option_.c_str(), value.c_str()));
+}
+
+OptionFor::~OptionFor() {
+  (void)(before_ ? PetscOptionsSetValue(nullptr, option_.c_str(), before_->c_str())
+                 : PetscOptionsClearValue(nullptr, option_.c_str()));
+}
+
 std::vector<std::string> given_options() {
   std::vector<std::string> names;
   char* all = nullptr;

@@ -15,6 +15,20 @@ namespace stickslip::petsc {
 /// nothing if it was not given.
 [[nodiscard]] std::optional<std::string> option_value(const std::string& name);
 
+/// A value of an option (a name without dash) for the life of the object; then the option has the
+/// value that it had before, or none.
+class OptionFor {
+ public:
+  OptionFor(const std::string& name, const std::string& value);
+  ~OptionFor();
+  OptionFor(const OptionFor&) = delete;
+  OptionFor& operator=(const OptionFor&) = delete;
+
+ private:
+  std::string option_;  // with its dash
+  std::optional<std::string> before_;
+};
+
 /// Names of all options given, without the dash.
 [[nodiscard]] std::vector<std::string> given_options();
 
