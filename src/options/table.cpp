@@ -79,8 +79,19 @@ std::vector<Option> quantity_options() {
   };
 }
 
-std::vector<Option> discretisation_options() {
+Option route_option() {
+  std::string sentence = "solution method";
+  for (const auto& method : catalogue::solution_methods()) {
+    sentence += fmt::format(". {}: {}", method.word, method.sentence);
+  }
+  return choice("route", catalogue::solution_methods()[0].word,
+                words_of(catalogue::solution_methods()), sentence)
+      .called({"method", "solver", "algorithm"});
+}
+
+std::vector<Option> route_and_discretisation() {
   return {
+      route_option(),
       choice("scheme", "hp", words_of(kSchemes),
              "discretisation of the velocity. hp: discontinuous Galerkin elements of high order. "
              "upwind: the first-order differences of the paper"),
@@ -103,20 +114,8 @@ std::vector<Option> discretisation_options() {
   };
 }
 
-Option route_option() {
-  std::string sentence = "solution method";
-  for (const auto& method : catalogue::solution_methods()) {
-    sentence += fmt::format(". {}: {}", method.word, method.sentence);
-  }
-  return choice("route", catalogue::solution_methods()[0].word,
-                words_of(catalogue::solution_methods()), sentence)
-      .called({"method", "solver", "algorithm"});
-}
-
 std::vector<Option> method_options() {
-  std::vector<Option> all{route_option()};
-  const auto discretisation = discretisation_options();
-  all.insert(all.end(), discretisation.begin(), discretisation.end());
+  auto all = route_and_discretisation();
   const std::vector<Option> others{
       choice(
           "spectrum_solver", "krylov", words_of(kSpectrumSolvers),

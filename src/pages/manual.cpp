@@ -39,6 +39,47 @@ std::string entry(const std::string& head, const std::string& body) {
 
 std::string bold(std::string_view text) { return fmt::format("\\fB{}\\fR", roff(text)); }
 
+std::string bold_entry(const std::string& name, const std::string& meaning) {
+  return entry(bold(name), meaning);
+}
+
+std::string italic_entry(const std::string& name, const std::string& meaning) {
+  return entry(fmt::format("\\fI{}\\fR", name), meaning);
+}
+
+// A list of names and their meanings, each as `write` has it.
+template <class Rows>
+std::string entries(const Rows& rows,
+                    std::string (*write)(const std::string& name, const std::string& meaning)) {
+  std::string text;
+  for (const auto& [name, meaning] : rows) {
+    text += write(fmt::format("{}", name), fmt::format("{}.", meaning));
+  }
+  return text;
+}
+
+using Rows = std::vector<std::pair<std::string, std::string>>;
+
+// Quantities with their titles and the keys that they write, those of other quantities that come
+// with them included.
+Rows quantity_rows() {
+  Rows rows;
+  for (const auto* quantity : catalogue::entries()) {
+    auto keys = split(quantity->others, ',');
+    std::transform(quantity->rows.begin(), quantity->rows.end(), std::inserter(keys, keys.begin()),
+                   [](const catalogue::Row* row) { return std::string(row->key); });
+    rows.emplace_back(quantity->word, fmt::format("{}{}{}", quantity->title,
+                                                  keys.empty() ? "" : ": ", fmt::join(keys, ", ")));
+  }
+  return rows;
+}
+
+Rows other_rows() {
+  Rows rows;
+  for (const auto& other : options::other_options()) rows.emplace_back(other.name, other.sentence);
+  return rows;
+}
+
 // The form, with the range or the words allowed; nothing for a file, of which the sentence speaks.
 std::string short_requirement(const Option& option) {
   std::string words = enumerate(option.words, "or");
@@ -93,44 +134,7 @@ std::string option_items() {
       if (swept_by(option) == nullptr) text += item(option);
     }
   }
-  text += ".SS Other\n";
-  for (const auto& other : options::other_options())
-    text += entry(bold(other.name), other.sentence + ".");
-  return text;
-}
-
-std::string form_items() {
-  std::string text;
-  for (const auto& form : forms()) {
-    text += entry(fmt::format("\\fI{}\\fR", form.name), form.meaning + ".");
-  }
-  return text;
-}
-
-// The title of a quantity and the keys that it writes, those of other quantities that come with it
-// included.
-std::string description(const catalogue::Entry& quantity) {
-  auto keys = split(quantity.others, ',');
-  std::transform(quantity.rows.begin(), quantity.rows.end(), std::inserter(keys, keys.begin()),
-                 [](const catalogue::Row* row) { return std::string(row->key); });
-  return keys.empty() ? fmt::format("{}.", quantity.title)
-                      : fmt::format("{}: {}.", quantity.title, fmt::join(keys, ", "));
-}
-
-std::string quantity_items() {
-  std::string text;
-  for (const auto* quantity : catalogue::entries()) {
-    text += entry(bold(std::string(quantity->word)), description(*quantity));
-  }
-  return text;
-}
-
-std::string exit_items() {
-  std::string text;
-  for (const auto& [status, meaning] : kExitMeanings) {
-    text += entry(bold(std::to_string(status)), fmt::format("{}.", meaning));
-  }
-  return text;
+  return text + ".SS Other\n" + entries(other_rows(), bold_entry);
 }
 
 constexpr const char* kSynopsis = R"(.B stickslip
@@ -239,52 +243,35 @@ std::string help_entry(const std::string& name, const std::string& meaning) {
   return fmt::format("  {}{}{}\n", name, gap, wrap(meaning, width, column));
 }
 
-std::string form_help() {
-  std::string text = "\nForms of values:\n";
-  for (const auto& form : forms()) {
-    text += help_entry(form.name, form.meaning + ".");
-  }
-  return text;
-}
-
-std::string quantity_help() {
-  std::string text;
-  for (const auto* quantity : catalogue::entries()) {
-    text += help_entry(fmt::format("  {}", quantity->word), description(*quantity));
-  }
-  return text;
-}
-
 std::string group_help(const Group& group) {
   std::string text = fmt::format("\n{}. {}.\n", group.title, wrap(group.explanation, 88, 2));
   const std::string swept = swept_names(group);
-  if (!swept.empty()) {
-    text += help_entry(wrap(swept, 94, 2), kSweptHelp);
-  }
+  if (!swept.empty()) text += help_entry(wrap(swept, 94, 2), kSweptHelp);
   for (const auto& option : group.options) {
     if (swept_by(option) != nullptr) continue;
     text += help_entry("-" + option.name, description(option));
-    if (option.name == "quantities") text += quantity_help();
+    if (option.name == "quantities") {
+      text += entries(quantity_rows(), [](const std::string& word, const std::string& meaning) {
+        return help_entry("  " + word, meaning);
+      });
+    }
   }
   return text;
 }
 
 std::string other_help() {
-  std::string text = "\nOther:\n";
-  for (const auto& other : options::other_options()) {
-    text += help_entry(other.name, other.sentence + ".");
-  }
   std::string meanings;
   for (const auto& [status, meaning] : kExitMeanings) {
     meanings += fmt::format("{}{} {}", meanings.empty() ? "" : "; ", status, meaning);
   }
-  return text + fmt::format("\n{}.\n", wrap("Exit status: " + meanings, 88, 0));
+  return fmt::format("\nOther:\n{}\n{}.\n", entries(other_rows(), help_entry),
+                     wrap("Exit status: " + meanings, 88, 0));
 }
 
 }  // namespace
 
-std::span<const Form> forms() {
-  static const std::vector<Form> all{
+std::span<const std::pair<const char*, const char*>> forms() {
+  static constexpr std::pair<const char*, const char*> all[] = {
       {"number", "a decimal number such as 0.25 or 1e-3"},
       {"integer", "a whole number"},
       {"word", "one of the words allowed"},
@@ -310,8 +297,9 @@ std::string help_text() {
       "stickslip: dry friction under random forcing, to the digits you ask for\n\n"
       "  stickslip -options_file scene.opts [-name value ...]\n\n"
       "Every choice is a PETSc option, on the line or in an options file; the last one given "
-      "counts.\n" +
-      form_help();
+      "counts.\n"
+      "\nForms of values:\n" +
+      entries(forms(), help_entry);
   for (const auto& group : options::table()) text += group_help(group);
   return text + other_help();
 }
@@ -330,8 +318,9 @@ std::string man_page(std::string_view version) {
          section("NAME", roff("stickslip, stickslip-complex") + " \\- " +
                              roff("dry friction under random forcing") + "\n") +
          section("SYNOPSIS", kSynopsis) + section("DESCRIPTION", introduction()) +
-         section("VALUES", form_items()) + section("OPTIONS", option_items()) +
-         section("QUANTITIES", quantity_items()) + section("EXIT STATUS", exit_items()) +
+         section("VALUES", entries(forms(), italic_entry)) + section("OPTIONS", option_items()) +
+         section("QUANTITIES", entries(quantity_rows(), bold_entry)) +
+         section("EXIT STATUS", entries(kExitMeanings, bold_entry)) +
          section("EXAMPLES", examples()) + section("FILES", files()) +
          section("SEE ALSO", "\\fBmpiexec\\fR(1)\n");
 }

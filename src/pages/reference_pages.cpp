@@ -136,7 +136,7 @@ std::string reference_page() {
       "the\nquantities and the states s+ and s-.\n\n"
       "## Forms of values\n\n" +
       head({"form", "value"});
-  for (const auto& form : forms()) text += row({form.name, cell(form.meaning)});
+  for (const auto& [form, meaning] : forms()) text += row({form, cell(meaning)});
   for (const auto& group : options::table()) {
     text += fmt::format("\n## {}\n\n{}.\n\n{}{}", group.title, wrap(group.explanation, kWidth, 0),
                         swept_options(group), option_rows(group));

@@ -43,7 +43,7 @@ TEST_CASE("help: it fits a terminal of 100 columns") {
 
 TEST_CASE("help: the form of every value is explained") {
   std::set<std::string> explained;
-  for (const auto& form : forms()) CHECK(explained.insert(form.name).second);
+  for (const auto& [form, meaning] : forms()) CHECK(explained.insert(form).second);
   std::set<std::string> used;
   for (const auto& option : all_options()) used.insert(option.form);
   CHECK(used == explained);

@@ -74,8 +74,8 @@ TEST_CASE("manual page: every option with its form, unit, range and default") {
 
 TEST_CASE("manual page: every form of values, every quantity with its keys") {
   const std::string page = man_page("1.2");
-  for (const auto& form : forms()) {
-    CHECK_THAT(page, Catch::Contains("\n\\fI" + form.name + "\\fR\n" + roff(form.meaning)));
+  for (const auto& [form, meaning] : forms()) {
+    CHECK_THAT(page, Catch::Contains(fmt::format("\n\\fI{}\\fR\n{}", form, roff(meaning))));
   }
   const auto* quantities = find("quantities");
   for (const auto& word : quantities->words) {

@@ -5,17 +5,12 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace stickslip::pages {
 
-/// A form of values.
-struct Form {
-  std::string name;  ///< "number", "word", "file", ...: what stands after the name of an option
-  std::string meaning;
-};
-
-/// All forms of values.
-[[nodiscard]] std::span<const Form> forms();
+/// The forms of values, such as "number": what stands after the name of an option, and its meaning.
+[[nodiscard]] std::span<const std::pair<const char*, const char*>> forms();
 
 /// The text of -help.
 [[nodiscard]] std::string help_text();

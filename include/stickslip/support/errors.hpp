@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace stickslip {
 
@@ -10,11 +11,7 @@ namespace stickslip {
 enum class ExitStatus { done = 0, other = 1, bad_input = 2, not_reached = 3, no_memory = 4 };
 
 /// What each status says, for the manual.
-struct ExitMeaning {
-  int status;
-  const char* meaning;
-};
-inline constexpr ExitMeaning kExitMeanings[] = {
+inline constexpr std::pair<int, const char*> kExitMeanings[] = {
     {0, "done"},
     {1, "other error"},
     {2, "bad input"},
