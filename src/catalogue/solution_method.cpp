@@ -1,11 +1,11 @@
 #include "stickslip/catalogue/solution_method.hpp"
 
-#include <algorithm>
-#include <iterator>
+#include <cstddef>
 
 namespace stickslip::catalogue {
 namespace {
 
+// In the order of Route.
 constexpr SolutionMethod kAll[] = {
     {.route = Route::excursion,
      .word = "excursion",
@@ -47,22 +47,17 @@ constexpr SolutionMethod kAll[] = {
      .discretises_velocity = false,
      .simulates = true}};
 
-template <class Fits>
-const SolutionMethod& first_that(Fits fits) {
-  const auto* const found = std::find_if(std::begin(kAll), std::end(kAll), fits);
-  return found == std::end(kAll) ? kAll[0] : *found;
-}
-
 }  // namespace
 
 std::span<const SolutionMethod> solution_methods() { return kAll; }
 
-const SolutionMethod& method_of(Route route) {
-  return first_that([route](const SolutionMethod& method) { return method.route == route; });
-}
+const SolutionMethod& method_of(Route route) { return kAll[static_cast<std::size_t>(route)]; }
 
 const SolutionMethod& method_of(std::string_view word) {
-  return first_that([word](const SolutionMethod& method) { return method.word == word; });
+  for (const auto& method : kAll) {
+    if (method.word == word) return method;
+  }
+  return kAll[0];
 }
 
 }  // namespace stickslip::catalogue

@@ -48,8 +48,8 @@ std::string italic_entry(const std::string& name, const std::string& meaning) {
 }
 
 // A list of names and their meanings, each as `write` has it.
-template <class Rows>
-std::string entries(const Rows& rows,
+template <class List>
+std::string entries(const List& rows,
                     std::string (*write)(const std::string& name, const std::string& meaning)) {
   std::string text;
   for (const auto& [name, meaning] : rows) {

@@ -29,37 +29,29 @@ bool belongs_to_petsc(const std::string& name) {
 struct SolverRole {
   std::string prefix;
   void (*probe_options)(const std::string& prefix);
-  // Options that are read when something is solved, not before, without the prefix; the first one
-  // shows what the solver uses.
-  std::vector<std::string> read_later;
-  std::vector<std::string> common;  // others that users give
+  // Options that are read when something is solved, not before, without the prefix and separated by
+  // blanks; the first one shows what the solver uses.
+  const char* read_later;
+  const char* common;  // others that users give
 };
 
-const std::vector<SolverRole>& solver_roles() {
-  static const auto later =
-      split("eps_view eps_view_pre eps_view_values eps_converged_reason eps_error_relative "
-            "eps_error_absolute eps_error_backward eps_view_vectors",
-            ' ');
-  static const auto eps = split("eps_type eps_tol eps_nev eps_ncv eps_max_it eps_monitor", ' ');
-  static const std::vector<SolverRole> roles{
-      {"slide_", probe_linear_solver,
-       split("ksp_view ksp_view_pre ksp_converged_reason ksp_converged_rate "
-             "ksp_view_final_residual",
-             ' '),
-       split("pc_type pc_elements_share pc_factor_mat_solver_type pc_factor_levels sub_pc_type "
-             "sub_pc_factor_levels ksp_type ksp_rtol ksp_max_it ksp_monitor",
-             ' ')},
-      {"null_", probe_eigensolver, later, eps},
-      {"relax_", probe_eigensolver, later, eps},
-      {"backward_", probe_time_stepper,
-       split("ts_view ts_view_pre ts_adapt_view snes_view ksp_view", ' '),
-       split("ts_type ts_max_steps ts_monitor ts_rtol ts_atol", ' ')}};
-  return roles;
-}
+constexpr const char* kEpsLater =
+    "eps_view eps_view_pre eps_view_values eps_converged_reason eps_error_relative "
+    "eps_error_absolute eps_error_backward eps_view_vectors";
+constexpr const char* kEpsCommon = "eps_type eps_tol eps_nev eps_ncv eps_max_it eps_monitor";
+const SolverRole kRoles[] = {
+    {"slide_", probe_linear_solver,
+     "ksp_view ksp_view_pre ksp_converged_reason ksp_converged_rate ksp_view_final_residual",
+     "pc_type pc_elements_share pc_factor_mat_solver_type pc_factor_levels sub_pc_type "
+     "sub_pc_factor_levels ksp_type ksp_rtol ksp_max_it ksp_monitor"},
+    {"null_", probe_eigensolver, kEpsLater, kEpsCommon},
+    {"relax_", probe_eigensolver, kEpsLater, kEpsCommon},
+    {"backward_", probe_time_stepper, "ts_view ts_view_pre ts_adapt_view snes_view ksp_view",
+     "ts_type ts_max_steps ts_monitor ts_rtol ts_atol"}};
 
 // The role that has options of that name; nullptr if none has.
 const SolverRole* role_of(const std::string& name) {
-  for (const auto& role : solver_roles()) {
+  for (const auto& role : kRoles) {
     if (name.starts_with(role.prefix)) return &role;
   }
   return nullptr;
@@ -67,31 +59,27 @@ const SolverRole* role_of(const std::string& name) {
 
 bool is_read_later(const std::string& name) {
   const SolverRole* role = role_of(name);
-  return role != nullptr && std::count(role->read_later.begin(), role->read_later.end(),
-                                       name.substr(role->prefix.size())) > 0;
+  const auto names = split(role == nullptr ? "" : role->read_later, ' ');
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string& later) { return name == role->prefix + later; });
 }
 
 // The option of a role that the user may have meant, without the dash; empty if there is none.
 std::string nearest_option(const SolverRole& role, const std::string& name) {
-  auto names = role.read_later;
-  names.insert(names.end(), role.common.begin(), role.common.end());
+  const auto names = split(fmt::format("{} {}", role.read_later, role.common), ' ');
   const std::string near = nearest_word(name.substr(role.prefix.size()), names);
   return near.empty() ? "" : role.prefix + near;
 }
 
 // Of the types that PETSc has, those that work from options alone and apply transposes. Others,
 // such as shell and mg, need a program that sets them up, and crash without.
-const std::vector<std::pair<std::string, std::vector<std::string>>>& solver_types() {
-  static const std::vector<std::pair<std::string, std::vector<std::string>>> types{
-      {"slide_pc_type", split("elements lu cholesky qr svd redundant ksp ilu icc asm gasm bjacobi "
-                              "jacobi pbjacobi gamg hypre none",
-                              ' ')},
-      {"slide_ksp_type",
-       split("preonly gmres fgmres lgmres dgmres pgmres pipefgmres gcr bcgs bcgsl "
-             "ibcgs fbcgs fbcgsr cgs qmrcgs tfqmr tcqmr pipebcgs",
-             ' ')}};
-  return types;
-}
+constexpr std::pair<const char*, const char*> kSolverTypes[] = {
+    {"slide_pc_type", "elements lu cholesky qr svd redundant ksp ilu icc asm gasm bjacobi jacobi "
+                      "pbjacobi gamg hypre "
+                      "none"},
+    {"slide_ksp_type",
+     "preonly gmres fgmres lgmres dgmres pgmres pipefgmres gcr bcgs bcgsl ibcgs fbcgs fbcgsr cgs "
+     "qmrcgs tfqmr tcqmr pipebcgs"}};
 
 // The option of a role whose value a message names; the prefix alone if there is none.
 std::string blamed_option(const SolverRole& role, const std::string& message) {
@@ -165,7 +153,8 @@ std::vector<std::pair<std::string, std::string>> given_solver_options() {
 
 std::vector<std::string> wrong_solver_types() {
   std::vector<std::string> messages;
-  for (const auto& [name, types] : solver_types()) {
+  for (const auto& [name, words] : kSolverTypes) {
+    const auto types = split(words, ' ');
     const std::string type = option_value(name).value_or("");
     if (type.empty() || std::count(types.begin(), types.end(), type) > 0) continue;
     const std::string near = nearest_word(type, types);
@@ -178,7 +167,7 @@ std::vector<std::string> wrong_solver_types() {
 std::vector<std::string> wrong_solver_options() {
   std::vector<std::string> messages;
   const auto names = given_options();
-  for (const auto& role : solver_roles()) {
+  for (const auto& role : kRoles) {
     const bool used = std::any_of(names.begin(), names.end(), [&role](const std::string& name) {
       return role_of(name) == &role;
     });
@@ -199,7 +188,7 @@ std::string unknown_solver_option(const std::string& name) {
   const std::string near = nearest_option(*role, name);
   return fmt::format("-{}: this solver has no such option; {}-{}{} shows its options", name,
                      near.empty() ? "" : fmt::format("did you mean -{}? ", near), role->prefix,
-                     role->read_later.front());
+                     split(role->read_later, ' ').front());
 }
 
 }  // namespace stickslip::petsc
