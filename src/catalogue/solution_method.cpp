@@ -6,7 +6,7 @@ namespace stickslip::catalogue {
 namespace {
 
 // In the order of Route.
-constexpr SolutionMethod kAll[] = {
+constexpr SolutionMethod kMethods[] = {
     {.route = Route::excursion,
      .word = "excursion",
      .sentence = "one transposed solve gives the stationary distribution. The others check it",
@@ -49,15 +49,15 @@ constexpr SolutionMethod kAll[] = {
 
 }  // namespace
 
-std::span<const SolutionMethod> solution_methods() { return kAll; }
+std::span<const SolutionMethod> solution_methods() { return kMethods; }
 
-const SolutionMethod& method_of(Route route) { return kAll[static_cast<std::size_t>(route)]; }
+const SolutionMethod& method_of(Route route) { return kMethods[static_cast<std::size_t>(route)]; }
 
 const SolutionMethod& method_of(std::string_view word) {
-  for (const auto& method : kAll) {
+  for (const auto& method : kMethods) {
     if (method.word == word) return method;
   }
-  return kAll[0];
+  return kMethods[0];
 }
 
 }  // namespace stickslip::catalogue

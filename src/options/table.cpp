@@ -16,8 +16,6 @@ namespace {
 
 constexpr std::string_view kSweeps = "sweep_";
 
-const Range kPositive = Range::positive(), kNotNegative = Range::not_negative();
-
 using Words = std::vector<std::string>;
 
 Option choice(const char* name, std::string_view initial, const Words& words,
@@ -39,7 +37,7 @@ Option numbers(const std::string& name, const std::string& unit, Range range,
 }
 
 Option arguments(const char* name, const char* unit, const char* sentence) {
-  return numbers(name, unit, kNotNegative, sentence,
+  return numbers(name, unit, Range::not_negative(), sentence,
                  "negative and missing values mean nothing here");
 }
 
@@ -139,7 +137,7 @@ std::vector<Option> method_options() {
           "seed", "1", Range::whole(0, 9007199254740992),
           "seed of the random numbers; a seed gives the same results on any number of ranks",
           "any whole number will do"),
-      Option::real("horizon", "time", "100", kPositive, "end of the trajectory",
+      Option::real("horizon", "time", "100", Range::positive(), "end of the trajectory",
                    "take for example 100")
           .called({"duration", "t_max", "t_end", "t_final"}),
       Option::file(

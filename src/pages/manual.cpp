@@ -62,7 +62,7 @@ using Rows = std::vector<std::pair<std::string, std::string>>;
 
 // Quantities with their titles and the keys that they write, those of other quantities that come
 // with them included.
-Rows quantity_rows() {
+Rows quantities_with_keys() {
   Rows rows;
   for (const auto* quantity : catalogue::entries()) {
     auto keys = split(quantity->others, ',');
@@ -119,11 +119,6 @@ std::string swept_names(const Group& group) {
 constexpr const char* kSweptHelp =
     "values of the option of the same name; numbers in its unit and range.";
 
-std::string item(const Option& option) {
-  return entry(fmt::format("{} \\fI{}\\fR", bold("-" + option.name), option.form),
-               description(option));
-}
-
 std::string option_items() {
   std::string text;
   for (const auto& group : options::table()) {
@@ -131,7 +126,9 @@ std::string option_items() {
     const std::string swept = swept_names(group);
     if (!swept.empty()) text += entry(bold(swept) + " \\fInumbers\\fR", kSweptHelp);
     for (const auto& option : group.options) {
-      if (swept_by(option) == nullptr) text += item(option);
+      if (swept_by(option) != nullptr) continue;
+      text += entry(fmt::format("{} \\fI{}\\fR", bold("-" + option.name), option.form),
+                    description(option));
     }
   }
   return text + ".SS Other\n" + entries(other_rows(), bold_entry);
@@ -158,37 +155,25 @@ std::string introduction() {
              "one given counts. stickslip-complex is the same program with complex scalars.");
 }
 
-// A command line and what it does.
-struct Example {
-  const char* line;
-  const char* purpose;
-};
-
-constexpr Example kExamples[] = {
-    {"stickslip -mu_d 0.25 -accuracy 1e-8", "Sticking and moments to eight digits."},
+// Command lines and what they do.
+constexpr std::pair<const char*, const char*> kExamples[] = {
+    {"stickslip -mu_d 0.25 -accuracy 1e-8", "Sticking and moments to eight digits"},
     {"stickslip -mu_d 0.5 -quantities density -output distribution.h5",
-     "The stationary distribution as a field, in HDF5."},
+     "The stationary distribution as a field, in HDF5"},
     {"stickslip -mu_d 0.25 -quantities spectrum -omega 0.01:50:200:log -summary spectrum.json",
-     "The power spectral density of the velocity, as JSON."},
+     "The power spectral density of the velocity, as JSON"},
     {"stickslip -options_file scene.opts -plan",
-     "What a file of options would compute, and what that would cost."},
+     "What a file of options would compute, and what that would cost"},
     {"mpiexec -n 4 stickslip -sweep_mu_d 0.1:1:10 -checkpoint sweep.record -sweep_csv sweep.csv",
-     "Ten coefficients of friction on four ranks; run again, it resumes."},
+     "Ten coefficients of friction on four ranks; run again, it resumes"},
 };
 
-std::string examples() {
-  std::string text;
-  for (const auto& [line, purpose] : kExamples) text += entry(bold(line), purpose);
-  return text;
-}
-
-std::string files() {
-  return entry("\\fIPREFIX/share/stickslip/options\\fR", "Options files to start from.") +
-         entry("\\fIPREFIX/share/doc/stickslip\\fR",
-               "Tutorial, method, format of the output, and other pages.") +
-         entry("\\fIPREFIX/lib/python3/dist\\-packages/stickslip\\fR",
-               "Python package that runs the program and draws what was computed.");
-}
+// Names in roff.
+constexpr std::pair<const char*, const char*> kFiles[] = {
+    {"PREFIX/share/stickslip/options", "Options files to start from"},
+    {"PREFIX/share/doc/stickslip", "Tutorial, method, format of the output, and other pages"},
+    {"PREFIX/lib/python3/dist\\-packages/stickslip",
+     "Python package that runs the program and draws what was computed"}};
 
 constexpr const char* kCompletionHead =
     R"(# shellcheck shell=bash
@@ -251,9 +236,10 @@ std::string group_help(const Group& group) {
     if (swept_by(option) != nullptr) continue;
     text += help_entry("-" + option.name, description(option));
     if (option.name == "quantities") {
-      text += entries(quantity_rows(), [](const std::string& word, const std::string& meaning) {
-        return help_entry("  " + word, meaning);
-      });
+      text +=
+          entries(quantities_with_keys(), [](const std::string& word, const std::string& meaning) {
+            return help_entry("  " + word, meaning);
+          });
     }
   }
   return text;
@@ -319,9 +305,10 @@ std::string man_page(std::string_view version) {
                              roff("dry friction under random forcing") + "\n") +
          section("SYNOPSIS", kSynopsis) + section("DESCRIPTION", introduction()) +
          section("VALUES", entries(forms(), italic_entry)) + section("OPTIONS", option_items()) +
-         section("QUANTITIES", entries(quantity_rows(), bold_entry)) +
+         section("QUANTITIES", entries(quantities_with_keys(), bold_entry)) +
          section("EXIT STATUS", entries(kExitMeanings, bold_entry)) +
-         section("EXAMPLES", examples()) + section("FILES", files()) +
+         section("EXAMPLES", entries(kExamples, bold_entry)) +
+         section("FILES", entries(kFiles, italic_entry)) +
          section("SEE ALSO", "\\fBmpiexec\\fR(1)\n");
 }
 

@@ -145,9 +145,8 @@ std::string reference_page() {
   for (const auto& other : options::other_options())
     text += row({code(other.name), cell(other.sentence)});
   text += "\n## Exit status\n\n" + head({"status", "meaning"});
-  for (const auto& [status, meaning] : kExitMeanings) {
+  for (const auto& [status, meaning] : kExitMeanings)
     text += row({std::to_string(status), meaning});
-  }
   return text;
 }
 

@@ -17,16 +17,16 @@ struct Computation {
 };
 
 // All methods that have a discretisation, each in a file of its own.
-constexpr Computation kAll[] = {{Route::excursion, by_excursion},
-                                {Route::lambda, by_lambda},
-                                {Route::hitting, by_hitting},
-                                {Route::null_vector, by_null_vector},
-                                {Route::fluid_queue, by_fluid_queue}};
+constexpr Computation kComputations[] = {{Route::excursion, by_excursion},
+                                         {Route::lambda, by_lambda},
+                                         {Route::hitting, by_hitting},
+                                         {Route::null_vector, by_null_vector},
+                                         {Route::fluid_queue, by_fluid_queue}};
 
 }  // namespace
 
 Evaluation evaluate(const Problem& problem) {
-  for (const auto& [route, evaluate_by] : kAll) {
+  for (const auto& [route, evaluate_by] : kComputations) {
     if (route == problem.given.method.route) return evaluate_by(problem);
   }
   throw std::logic_error(
