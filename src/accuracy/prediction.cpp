@@ -120,7 +120,7 @@ Prediction predict(MPI_Comm comm, const cases::Case& given) {
   Prediction prediction;
   if (!needs_system(given)) return prediction;
   prediction.plan = quantities::plan_of(given);
-  if (given.method.route == catalogue::Route::monte_carlo) return prediction;
+  if (given.method.row().simulates) return prediction;
   const RefinementSequence sequence(given);
   require_memory(comm, given.scene, sequence.refinement_level(1));
   for (int n = sequence.first(); n <= 1; ++n) {

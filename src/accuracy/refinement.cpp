@@ -213,12 +213,12 @@ class Refiner {
   }
 
   void give_up(const Step& step, double rounding) {
-    const bool by_lambda = given_.method.route == catalogue::Route::lambda;
     const double least = std::max(rounding, step.estimate);
-    const std::string looser = least < 0.05
-                                   ? fmt::format("take {}-accuracy {:.0e}",
-                                                 by_lambda ? "another -lambda or " : "", 2 * least)
-                                   : "no digit of it is certain: leave it out";
+    const std::string looser =
+        least < 0.05
+            ? fmt::format("take {}-accuracy {:.0e}",
+                          given_.method.row().small_lambda ? "another -lambda or " : "", 2 * least)
+            : "no digit of it is certain: leave it out";
     if (given_up_.empty()) {
       limit_ = fmt::format("{} the relative error of {} to {:.1e}; {}", what_limits(),
                            step.limiting_key, least, looser);
@@ -253,7 +253,7 @@ class Refiner {
   }
 
   [[nodiscard]] const char* what_limits() const {
-    if (given_.method.route == catalogue::Route::lambda) return "lambda > 0 or rounding limits";
+    if (given_.method.row().small_lambda) return "lambda > 0 or rounding limits";
     if (question_.observables.empty()) return "rounding limits";
     return "rounding, or an observable too steep for the elements, limits";
   }
@@ -334,11 +334,8 @@ class Refiner {
   std::optional<quantities::SpeedDistribution> speed_;
 };
 
-// The distribution of the noise has a closed form; solution methods that check the model compute it
-// all the same.
 bool closed_noise_distribution(const cases::Case& given) {
-  return given.question.wants(Quantity::noise_law) &&
-         given.method.route == catalogue::Route::excursion;
+  return given.question.wants(Quantity::noise_law) && given.method.row().closed_noise_law;
 }
 
 Outcome by_simulation(MPI_Comm comm, const cases::Case& given, const std::string& checkpoint,
@@ -387,7 +384,7 @@ Outcome carry_out(MPI_Comm comm, const cases::Case& given, const Progress& progr
   Outcome outcome;
   outcome.reached = true;
   if (needs_system(given)) {
-    outcome = given.method.route == catalogue::Route::monte_carlo
+    outcome = given.method.row().simulates
                   ? by_simulation(comm, given, checkpoint, simulation_progress)
                   : Refiner(comm, given, progress).run();
   }

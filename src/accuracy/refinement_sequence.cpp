@@ -78,7 +78,7 @@ velocity::Rates fastest_rates(const cases::Case& given) {
   const cases::Question& question = given.question;
   velocity::Rates rates;
   if (question.wants(Quantity::laplace) || question.wants(Quantity::resolvent) ||
-      given.method.route == catalogue::Route::lambda) {
+      given.method.row().small_lambda) {
     rates.lambda = largest(question.lambda);
   }
   rates.lambda = std::max(rates.lambda, fastest_inverted(given));
@@ -110,12 +110,12 @@ RefinementSequence::RefinementSequence(const cases::Case& given)
   if (given.question.wants(catalogue::Quantity::spectrum)) omega_ = given.question.omega;
   table_ = given.scene.meant().noise.table != nullptr;
   integrands_ = integrands_of(given.question);
-  branches_ = cases::on_full_grid(given.method.route) || !given.scene.symmetric() ? 2 : 1;
+  const bool full_grid = given.method.row().full_grid;
+  branches_ = full_grid || !given.scene.symmetric() ? 2 : 1;
   modes_ = given.question.wants(catalogue::Quantity::relaxation);
   // On nodes the residuals of eigenvectors, which stand for errors, stay about twice as large.
   const bool near_rounding = modes_ && accuracy_ < kModesOnNodes;
-  all_levels_ =
-      cases::on_full_grid(given.method.route) || method_.noise_degree == 0 || near_rounding;
+  all_levels_ = full_grid || method_.noise_degree == 0 || near_rounding;
   tail_counts_ = modes_ || !given.question.observables.empty() ||
                  given.question.wants(catalogue::Quantity::peak);
   last_ = method_.fixed() ? 1 : free_refinement_levels();

@@ -134,18 +134,11 @@ void set_levels(const model::Scene& scene, double tolerance, double speed, Resol
   if (scene.noise.table) r.table_levels = scene.process(r.levels).noise.count();
 }
 
-double terminal_velocity(const model::Process& process) {
-  const auto of_branch = [](const model::Process& branch) {
-    return branch.drag.terminal_velocity(branch.net_force(branch.noise.highest()));
-  };
-  return std::max(of_branch(process), of_branch(process.mirrored()));
-}
-
 }  // namespace
 
 double velocity_end(const model::Scene& scene, int levels, double tolerance) {
   const auto process = scene.process(levels);
-  const double terminal = terminal_velocity(process);
+  const double terminal = process.terminal_speed();
   if (scene.v_max) return std::min(*scene.v_max, terminal);
   const double tail = velocity::tail_velocity(process, tolerance);
   // Holding states cost a little: a truncation must save something.
@@ -159,7 +152,7 @@ namespace {
 double truncation(const model::Scene& scene, const Resolution& r, double tolerance) {
   constexpr double margin = 3;
   const bool cuts_levels = r.levels < scene.meant().noise.highest();
-  const bool cuts_velocities = !scene.v_max && r.v_max < terminal_velocity(scene.process(r.levels));
+  const bool cuts_velocities = !scene.v_max && r.v_max < scene.process(r.levels).terminal_speed();
   return cuts_levels || cuts_velocities ? margin * tolerance : 0;
 }
 

@@ -19,10 +19,9 @@
 #include "stickslip/io/provenance.hpp"
 #include "stickslip/io/reports.hpp"
 #include "stickslip/operators/element_pc.hpp"
-#include "stickslip/options/manual.hpp"
 #include "stickslip/options/request.hpp"
-#include "stickslip/options/table.hpp"
 #include "stickslip/outputs/report.hpp"
+#include "stickslip/pages/pages.hpp"
 #include "stickslip/petsc/blas.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
@@ -51,13 +50,13 @@ bool contains(const std::vector<std::string>& words, const char* word) {
 /// Texts that need neither PETSc nor model parameters; empty when none is asked for.
 std::string text_asked_for(const std::vector<std::string>& words) {
   const auto asked = [&](const char* word) { return contains(words, word); };
-  if (asked("-help") || asked("--help") || asked("-h")) return options::help_text();
+  if (asked("-help") || asked("--help") || asked("-h")) return pages::help_text();
   if (asked("-version") || asked("--version")) return io::version_text();
-  if (asked("-reference")) return options::reference_page();
-  if (asked("-reference_json")) return options::reference_json();
-  if (asked("-reference_quantities")) return options::quantity_tables();
-  if (asked("-man_page")) return options::man_page(io::version_number());
-  if (asked("-completion")) return options::completion();
+  if (asked("-reference")) return pages::reference_page();
+  if (asked("-reference_json")) return pages::reference_json();
+  if (asked("-reference_quantities")) return pages::quantity_tables();
+  if (asked("-man_page")) return pages::man_page(io::version_number());
+  if (asked("-completion")) return pages::completion();
   return "";
 }
 
@@ -203,8 +202,8 @@ int run_session(const std::vector<std::string>& words, double start_up) {
   int status = static_cast<int>(ExitStatus::other);
   try {
     const auto request = agreed_request(words);
-    if (request.plan_only) return report_plan(request);
     if (rank == 0) warn(request);
+    if (request.plan_only) return report_plan(request);
     if (request.study.kind != options::StudyKind::none) {
       return run_study(request, start, start_up);
     }

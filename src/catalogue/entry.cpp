@@ -24,6 +24,7 @@
 #include "stickslip/catalogue/stick_transform_keys.hpp"
 #include "stickslip/catalogue/sticking_keys.hpp"
 #include "stickslip/catalogue/trajectory_keys.hpp"
+#include "stickslip/support/text.hpp"
 
 namespace stickslip::catalogue {
 namespace {
@@ -77,6 +78,11 @@ std::pair<const Entry*, const Row*> find(std::string_view key) {
 std::string Row::key_of(std::string_view f) const {
   const auto open = key.find("(f") + 1;
   return fmt::format("{}{}{}", key.substr(0, open), f, key.substr(open + 1));
+}
+
+bool Entry::takes(std::string_view option) const {
+  const auto all = split(options, ',');
+  return std::find(all.begin(), all.end(), option) != all.end();
 }
 
 std::span<const Entry* const> entries() { return kAll; }

@@ -115,7 +115,7 @@ std::string text_of(const options::Request& request, const accuracy::Prediction&
   if (!accuracy::needs_system(request)) {
     return text + "closed-form results only: no linear system is assembled, factored or solved\n";
   }
-  if (request.method.route == catalogue::Route::monte_carlo) {
+  if (request.method.row().simulates) {
     return text + fmt::format("{:g} excursions are simulated; no linear system is assembled\n",
                               request.method.excursions);
   }

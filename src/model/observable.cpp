@@ -7,10 +7,13 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <stdexcept>
 
 #include "stickslip/model/expression.hpp"
 #include "stickslip/model/grid_index.hpp"
+#include "stickslip/model/largest_force.hpp"
+#include "stickslip/model/scene.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/infinity.hpp"
 
@@ -131,6 +134,29 @@ class Examination {
   double reach_;
 };
 
+// Up to 17 levels evenly, and those next to the numbers of f.
+std::vector<double> probed_levels(const Scene& scene, const Observable& f) {
+  const auto noise = scene.meant().noise;
+  const double seen = std::min(noise.place(largest_force(scene) + scene.friction.mu_d), 1e9);
+  const int highest = std::min(noise.highest(), static_cast<int>(seen)),
+            lowest = std::max(noise.lowest(), static_cast<int>(-seen));
+  constexpr int count = 8;
+  std::set<int> levels;
+  for (int n = -count; n <= count; ++n) {
+    levels.insert(static_cast<int>((n > 0 ? highest : -lowest) * (n * 1.0 / count)));
+  }
+  for (double number : f.numbers) {
+    for (double x : {number, -number}) {
+      const double near = std::clamp<double>(noise.place(x), lowest, highest);
+      levels.insert({static_cast<int>(std::floor(near)), static_cast<int>(std::ceil(near))});
+    }
+  }
+  std::vector<double> x;
+  for (int level : levels) x.push_back(noise.level(level));
+  std::sort(x.begin(), x.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  return x;
+}
+
 }  // namespace
 
 Observable friction_power(const Friction& friction) {
@@ -176,6 +202,10 @@ void examine(Observable& f, const std::vector<double>& x, double step, double re
     f.least = std::min(f.least, f(level, 0, 0));
     f.most = std::max(f.most, f(level, 0, 0));
   }
+}
+
+void examine(Observable& f, const Scene& scene, double reach) {
+  examine(f, probed_levels(scene, f), scene.meant().noise.step(), reach);
 }
 
 }  // namespace stickslip::model

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <map>
 
+#include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/solver_choice.hpp"
+#include "stickslip/petsc/solver_options.hpp"
 
 namespace stickslip::operators {
 namespace {
@@ -43,6 +45,18 @@ std::map<int, double> group_sizes(const model::Process& process, const noise::No
 }
 
 }  // namespace
+
+Factors given_factors() {
+  const std::string implied = petsc::implied_pc_type(kSlidePrefix);
+  if (implied.empty()) return Factors::own;
+  const auto value = [](const char* name) {
+    return petsc::option_value(kSlidePrefix + name).value_or("");
+  };
+  const std::string given = value("pc_type"), pc = given.empty() ? implied : given;
+  if (pc == petsc::kElementsPc) return Factors::elements;
+  if (pc != "lu" && pc != "cholesky") return Factors::incomplete;
+  return value("mat_mumps_icntl_22") == "1" ? Factors::on_disk : Factors::in_memory;
+}
 
 Factors chosen_factors(Factors asked, Scheme scheme, std::int64_t noise_nodes, bool all_levels) {
   if (asked != Factors::own) return asked;

@@ -6,11 +6,13 @@
 #include <fstream>
 
 #include "reading.hpp"
-#include "stickslip/support/number_text.hpp"
+#include "stickslip/petsc/solver_options.hpp"
 #include "stickslip/support/text.hpp"
 
 namespace stickslip::options {
 namespace {
+
+using petsc::is_option_name;
 
 // A formula such as -v*abs(v) where a value is due, which PETSc takes for an option.
 bool is_formula(const std::string& option, const std::string& value) {
@@ -89,10 +91,6 @@ void check_options_file(const std::string& name, std::vector<std::string> above,
 }
 
 }  // namespace
-
-bool is_option_name(const std::string& word) {
-  return word.size() > 1 && word[0] == '-' && !parse_number(word);
-}
 
 void check_stray_words(const std::vector<std::string>& argv, Problems& problems) {
   for (std::size_t n = 0; n < argv.size(); ++n) {

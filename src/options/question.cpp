@@ -5,11 +5,10 @@
 #include <set>
 #include <stdexcept>
 
-#include "quantities.hpp"
 #include "reading.hpp"
 #include "stickslip/catalogue/entry.hpp"
-#include "stickslip/model/largest_force.hpp"
-#include "stickslip/options/reference.hpp"
+#include "stickslip/outputs/reference.hpp"
+#include "stickslip/support/number_text.hpp"
 #include "stickslip/support/text.hpp"
 #include "stickslip/velocity/tail.hpp"
 
@@ -17,8 +16,7 @@ namespace stickslip::options {
 namespace {
 
 // A misspelled name would be left out, and the rest agree.
-void check_keys(const Settings& settings, const std::vector<Reference>& references,
-                Problems& problems) {
+void check_keys(Settings& settings, const std::vector<cases::Reference>& references) {
   std::vector<std::string> keys;
   for (const auto* entry : catalogue::entries()) {
     for (const auto* row : entry->rows) {
@@ -30,36 +28,36 @@ void check_keys(const Settings& settings, const std::vector<Reference>& referenc
     const std::string& key = reference.quantity;
     if (catalogue::find_row(key) != nullptr || !unknown.insert(key).second) continue;
     const std::string near = nearest_word(key, keys);
-    settings.report(problems, "compare", fmt::format("holds {}, which is no key of a result", key),
+    settings.refuse("compare", fmt::format("holds {}, which is no key of a result", key),
                     near.empty() ? "-help lists the keys of every quantity"
                                  : fmt::format("did you mean {}?", near));
   }
 }
 
-std::vector<Reference> read_compared(const Settings& settings, Problems& problems) {
-  if (!settings.given("compare")) return {};
-  std::vector<Reference> references;
+std::vector<cases::Reference> read_compared(Settings& settings) {
+  if (!settings.has("compare")) return {};
+  std::vector<cases::Reference> references;
   try {
-    references = read_references(settings.text("compare"));
+    references = outputs::read_references(settings.text("compare"));
   } catch (const std::invalid_argument& error) {
-    settings.report(problems, "compare", error.what(),
+    settings.refuse("compare", error.what(),
                     "name a file written by -output or -summary, or CSV with the columns "
                     "quantity,argument,value,low,high");
   }
-  check_keys(settings, references, problems);
+  check_keys(settings, references);
   return references;
 }
 
 // The quantities given; else those of the file to compare with; else the default ones. Of those
 // that are not given, the ones that the route gives.
-void read_quantities(const Settings& settings, Request& request, Problems& problems) {
+void read_quantities(Settings& settings, Request& request) {
   auto& question = request.question;
-  const bool given = settings.given("quantities");
+  const bool given = settings.has("quantities");
   const auto words = settings.list("quantities");
   const auto asked = [&](const catalogue::Entry& entry) {
     const auto& known = question.references;
     if (given || known.empty()) return std::count(words.begin(), words.end(), entry.word) > 0;
-    return std::any_of(known.begin(), known.end(), [&entry](const Reference& reference) {
+    return std::any_of(known.begin(), known.end(), [&entry](const cases::Reference& reference) {
       const auto* row = catalogue::find_row(reference.quantity);
       return row != nullptr && row->asks && catalogue::entry_of(reference.quantity) == &entry;
     });
@@ -73,18 +71,18 @@ void read_quantities(const Settings& settings, Request& request, Problems& probl
     if (!gives) refused.emplace_back(entry->word);
   }
   if (refused.empty() || (!given && !question.quantities.empty())) return;
-  settings.report(problems, "quantities",
+  settings.refuse("quantities",
                   fmt::format("-route {} does not give {} ({}); it gives {}",
                               settings.text("route"), enumerate(refused, "and"),
-                              limit_of(request.method.route), enumerate(given_by_route, "and")),
+                              request.method.row().limit, enumerate(given_by_route, "and")),
                   "take -route excursion, or other quantities");
 }
 
 // The values given, or those of the file to compare with: of results over the abscissa `option`.
-std::vector<double> arguments(const Settings& settings, const std::vector<Reference>& references,
+std::vector<double> arguments(Settings& settings, const std::vector<cases::Reference>& references,
                               const std::string& option) {
   std::vector<double> values = settings.numbers(option);
-  if (settings.given(option)) return values;
+  if (settings.has(option)) return values;
   for (const auto& reference : references) {
     const auto* row = catalogue::find_row(reference.quantity);
     const bool asks = reference.argument && row != nullptr && row->abscissa == option;
@@ -96,17 +94,17 @@ std::vector<double> arguments(const Settings& settings, const std::vector<Refere
   return values;
 }
 
-std::vector<model::Observable>
-read_observables(const Settings& settings, const model::Friction& friction, Problems& problems) {
+std::vector<model::Observable> read_observables(Settings& settings,
+                                                const model::Friction& friction) {
   constexpr const char* example = "write for example \"v^2; x*v; stick\"";
   std::vector<model::Observable> observables;
   const auto texts = split(settings.text("observable"), ';');
-  if (settings.given("observable") && texts.empty()) {
-    settings.report(problems, "observable", "must name a function of the state", example);
+  if (settings.has("observable") && texts.empty()) {
+    settings.refuse("observable", "must name a function of the state", example);
   }
   for (auto text = texts.begin(); text != texts.end(); ++text) {
     if (std::find(texts.begin(), text, *text) != text) {
-      settings.report(problems, "observable", "names " + *text + " twice", "name it once");
+      settings.refuse("observable", "names " + *text + " twice", "name it once");
       continue;
     }
     try {
@@ -114,61 +112,27 @@ read_observables(const Settings& settings, const model::Friction& friction, Prob
     } catch (const std::invalid_argument& error) {
       const std::string why = error.what();
       const bool named = texts.size() == 1 || why.starts_with(*text);
-      settings.report(problems, "observable", named ? why : *text + ": " + why, example);
+      settings.refuse("observable", named ? why : *text + ": " + why, example);
     }
   }
   return observables;
 }
 
-// Up to 17 levels evenly, and those next to the numbers of f.
-std::vector<double> probed_levels(const model::Scene& scene, const model::Observable& f) {
-  const auto noise = scene.meant().noise;
-  const double seen = std::min(noise.place(model::largest_force(scene) + scene.friction.mu_d), 1e9);
-  const int highest = std::min(noise.highest(), static_cast<int>(seen)),
-            lowest = std::max(noise.lowest(), static_cast<int>(-seen));
-  constexpr int count = 8;
-  std::set<int> levels;
-  for (int n = -count; n <= count; ++n) {
-    levels.insert(static_cast<int>((n > 0 ? highest : -lowest) * (n * 1.0 / count)));
-  }
-  for (double number : f.numbers) {
-    for (double x : {number, -number}) {
-      const double near = std::clamp<double>(noise.place(x), lowest, highest);
-      levels.insert({static_cast<int>(std::floor(near)), static_cast<int>(std::ceil(near))});
-    }
-  }
-  std::vector<double> x;
-  for (int level : levels) x.push_back(noise.level(level));
-  std::sort(x.begin(), x.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  return x;
-}
-
-// |v| beyond which nothing counts.
-double largest_speed(const model::Scene& scene) {
-  constexpr double rounding = 1e-16;
-  const double force = model::largest_force(scene);
-  double speed =
-      std::max(scene.drag.terminal_velocity(force), scene.drag.mirrored().terminal_velocity(force));
-  speed = std::min(speed, velocity::tail_velocity(scene.meant(), rounding));
-  return std::min(speed, scene.v_max.value_or(speed));
-}
-
 // Elements end where functions of the state jump or have kinks, on all levels of x alike. At v = 0
 // they end in any case, and x has a level on each of its values. Where there are no elements the
 // values seen tell the range of a function.
-void examine_observables(const Settings& settings, Request& request, Problems& problems) {
-  const bool used = depends_on(request.question, "observable");
-  if (!used) return;
+void examine_observables(Settings& settings, Request& request) {
+  if (!request.question.depends_on("observable")) return;
   const bool elements =
-      request.method.scheme == Scheme::hp && request.method.route != Route::monte_carlo;
+      request.method.scheme == Scheme::hp && request.method.row().discretises_velocity;
   const auto& scene = request.scene;
-  const double speed = largest_speed(scene);
+  const double speed = velocity::largest_speed(scene);
   for (auto& f : request.question.observables) {
     try {
-      model::examine(f, probed_levels(scene, f), scene.meant().noise.step(), speed);
+      model::examine(f, scene, speed);
     } catch (const std::invalid_argument& error) {
       if (!elements) continue;
-      settings.report(problems, "observable", error.what(),
+      settings.refuse("observable", error.what(),
                       "take -scheme upwind, or another formula: elements of -scheme hp end at up "
                       "to 64 jumps and kinks in v that are the same for all x");
     }
@@ -176,16 +140,15 @@ void examine_observables(const Settings& settings, Request& request, Problems& p
 }
 
 // A state that can occur: a noise level, and a velocity below the largest terminal one.
-model::Start read_state(const Settings& settings, const model::Scene& scene, double x, double v,
-                        Problems& problems) {
+model::Start read_state(Settings& settings, const model::Scene& scene, double x, double v) {
   const auto process = scene.meant();
   const auto& noise = process.noise;
   const auto level = noise.find(x);
   if (!level) {
     const double place = std::clamp<double>(noise.place(x), noise.lowest(), noise.highest());
     const double lowest = noise.level(noise.lowest()), highest = noise.level(noise.highest());
-    settings.report(
-        problems, "start",
+    settings.refuse(
+        "start",
         noise.table
             ? fmt::format("must start on a noise level; the levels lie in [{:g}, {:g}]", lowest,
                           highest)
@@ -195,11 +158,10 @@ model::Start read_state(const Settings& settings, const model::Scene& scene, dou
     return {};
   }
   const auto branch = v < 0 ? process.mirrored() : process;
-  const double largest =
-      branch.drag.terminal_velocity(branch.net_force(branch.noise.highest())) * (v < 0 ? -1 : 1);
+  const double largest = branch.terminal_velocity() * (v < 0 ? -1 : 1);
   if (std::abs(v) > std::abs(largest)) {
-    settings.report(
-        problems, "start",
+    settings.refuse(
+        "start",
         fmt::format("starts at a velocity that no body reaches: the terminal velocity on the "
                     "highest noise level is {:g}",
                     largest),
@@ -209,15 +171,14 @@ model::Start read_state(const Settings& settings, const model::Scene& scene, dou
 }
 
 // stationary, rest, s+, s- or x,v with x on a noise level.
-void read_start(const Settings& settings, Request& request, Problems& problems) {
+void read_start(Settings& settings, Request& request) {
   using enum model::Start::Kind;
   const std::string text = settings.text("start");
   model::Start& start = request.question.start;
   const auto process = request.scene.meant();
   const bool up = process.starts_upwards(), down = process.starts_downwards();
   if ((text == "s+" && !up) || (text == "s-" && !down)) {
-    settings.report(problems, "start",
-                    "does not occur: from rest bodies start on the other side alone",
+    settings.refuse("start", "does not occur: from rest bodies start on the other side alone",
                     up ? "take -start s+" : "take -start s-");
   } else if (text == "s+") {
     start = {process.highest_static() + 1};
@@ -226,28 +187,23 @@ void read_start(const Settings& settings, Request& request, Problems& problems) 
   } else if (text == "rest" || text == "stationary") {
     start.kind = text == "rest" ? rest : stationary;
   } else if (const auto state = parse_numbers(text); state && state->size() == 2) {
-    start = read_state(settings, request.scene, (*state)[0], (*state)[1], problems);
+    start = read_state(settings, request.scene, (*state)[0], (*state)[1]);
   } else {
-    settings.report(problems, "start", "must be s+, s-, stationary, rest or x,v",
+    settings.refuse("start", "must be s+, s-, stationary, rest or x,v",
                     "write for example -start 0.5,0");
   }
 }
 
 // Below the speed to which bodies tend on the highest level of the noise, on either side.
-void check_speeds(const Settings& settings, const Request& request, Problems& problems) {
+void check_speeds(Settings& settings, const Request& request) {
   if (!request.question.wants(Quantity::peak)) return;
-  const auto process = request.scene.meant();
-  double reached = 0;
-  for (const auto& branch : {process, process.mirrored()}) {
-    reached =
-        std::max(reached, branch.drag.terminal_velocity(branch.net_force(branch.noise.highest())));
-  }
+  double reached = std::max(0.0, request.scene.meant().terminal_speed());
   const bool limited = request.scene.limits_speed && *request.scene.v_max < reached;
   if (limited) reached = *request.scene.v_max;
   for (double speed : request.question.velocity) {
     if (speed < reached) continue;
-    settings.report(
-        problems, "velocity",
+    settings.refuse(
+        "velocity",
         fmt::format("holds {:g}, which no body reaches: {} is {:g}", speed,
                     limited ? "-speed_limit" : "the terminal velocity on the highest noise level",
                     reached),
@@ -257,23 +213,23 @@ void check_speeds(const Settings& settings, const Request& request, Problems& pr
 }
 
 // A path is kept in memory.
-void check_horizon(const Settings& settings, const Request& request, Problems& problems) {
+void check_horizon(Settings& settings, const Request& request) {
   const double horizon = request.question.horizon;
   const double jumps = horizon * request.scene.process(1).noise.rate();
   constexpr double most = 5e7;
   if (!request.question.wants(Quantity::trajectory) || jumps <= most) return;
-  settings.report(
-      problems, "horizon",
+  settings.refuse(
+      "horizon",
       fmt::format("means {:.1e} jumps of the noise, and at most {:.0e} are kept", jumps, most),
       fmt::format("take at most {:.3g}", horizon * most / jumps));
 }
 
 }  // namespace
 
-void read_question(const Settings& settings, Request& request, Problems& problems) {
+void read_question(Settings& settings, Request& request) {
   Question& question = request.question;
-  question.references = read_compared(settings, problems);
-  read_quantities(settings, request, problems);
+  question.references = read_compared(settings);
+  read_quantities(settings, request);
   const auto& known = question.references;
   question.lambda = arguments(settings, known, "lambda");
   question.omega = arguments(settings, known, "omega");
@@ -281,15 +237,15 @@ void read_question(const Settings& settings, Request& request, Problems& problem
   question.distance = arguments(settings, known, "distance");
   question.inverse_distance = arguments(settings, known, "inverse_distance");
   question.velocity = arguments(settings, known, "velocity");
-  question.observables = read_observables(settings, request.scene.friction, problems);
+  question.observables = read_observables(settings, request.scene.friction);
   question.accuracy = settings.real("accuracy");
-  question.accuracy_given = settings.given("accuracy");
+  question.accuracy_given = settings.has("accuracy");
   question.horizon = settings.real("horizon");
-  check_horizon(settings, request, problems);
-  check_speeds(settings, request, problems);
-  if (!problems.empty()) return;  // the others look at states of the model
-  if (depends_on(question, "start")) read_start(settings, request, problems);
-  examine_observables(settings, request, problems);
+  check_horizon(settings, request);
+  check_speeds(settings, request);
+  if (!settings.sound()) return;  // the others look at states of the model
+  if (question.depends_on("start")) read_start(settings, request);
+  examine_observables(settings, request);
 }
 
 }  // namespace stickslip::options

@@ -13,45 +13,25 @@ namespace stickslip::options {
 // question.cpp
 
 /// The quantities and their arguments, for the model and the method that the request holds already.
-void read_question(const Settings& settings, Request& request, Problems& problems);
+void read_question(Settings& settings, Request& request);
 
 // rules.cpp
 
 /// Options that exclude one another, lack one another, or have no effect, which is a warning.
-void check_rules(const Settings& settings, Request& request, Problems& problems);
+void check_rules(Settings& settings, Request& request);
 
 // request.cpp
 
 /// Names of the files, and whether progress is shown.
 [[nodiscard]] Files read_files(const Settings& settings);
 
-/// The run that the settings ask for; what is wrong with it goes to `problems`.
-[[nodiscard]] Request request_of(const Settings& settings, Problems& problems);
+/// The run that the settings ask for; what is wrong with it is added to their problems.
+[[nodiscard]] Request request_of(Settings& settings);
 
 // command_line.cpp
 
-/// Whether a word of the command line names an option, and is no negative number.
-[[nodiscard]] bool is_option_name(const std::string& word);
-
 /// Words on the line that are neither an option nor the value of one; PETSc would ignore them.
 void check_stray_words(const std::vector<std::string>& argv, Problems& problems);
-
-// solver_options.cpp
-
-/// Whether the types of solvers given are among those that work from options alone.
-[[nodiscard]] bool check_solver_types(Problems& problems);
-
-/// What the solver of each role says to its options, tried on a tiny matrix.
-void check_solver_options(Problems& problems);
-
-/// Options that neither the table nor a solver knows.
-void check_unknown_options(Problems& problems);
-
-/// What factors the sliding operator, by the options of its solver.
-[[nodiscard]] Factors read_factors();
-
-/// Name and value of the options given to the solvers, by name.
-[[nodiscard]] std::vector<std::pair<std::string, std::string>> solver_options();
 
 // sweep.cpp
 
@@ -60,6 +40,6 @@ void check_unknown_options(Problems& problems);
 
 /// The request of the first point, with the sweep in it, after all points have been validated.
 /// Throws BadInput.
-[[nodiscard]] Request read_sweep(const Settings& settings);
+[[nodiscard]] Request read_sweep(Settings settings);
 
 }  // namespace stickslip::options

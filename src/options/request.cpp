@@ -1,33 +1,37 @@
 #include "stickslip/options/request.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <filesystem>
 
 #include "reading.hpp"
 #include "stickslip/effects/read_scene.hpp"
+#include "stickslip/operators/solver_policy.hpp"
+#include "stickslip/options/synonyms.hpp"
 #include "stickslip/outputs/output.hpp"
+#include "stickslip/petsc/solver_options.hpp"
 #include "words.hpp"
 
 namespace stickslip::options {
 namespace {
 
 Method read_method(const Settings& settings) {
-  return {.route = meaning(kRoutes, settings.text("route")),
+  return {.route = catalogue::method_of(settings.text("route")).route,
           .scheme = meaning(kSchemes, settings.text("scheme")),
           .degree = settings.integer("degree"),
           .layers = settings.integer("layers"),
           .points = settings.integer("p"),
           .noise_degree = settings.integer("noise_degree"),
           .noise_grading = settings.real("noise_grading"),
-          .factors = read_factors(),
+          .factors = operators::given_factors(),
           .spectrum_solver = meaning(kSpectrumSolvers, settings.text("spectrum_solver")),
           .transient_solver = meaning(kTransientSolvers, settings.text("transient_solver")),
           .excursions = settings.real("excursions"),
           .seed = static_cast<std::uint64_t>(settings.real("seed"))};
 }
 
-void check_writable(const Settings& settings, const Option& option, Problems& problems) {
+void check_writable(Settings& settings, const Option& option) {
   const std::string& name = option.name;
   if (option.kind != Kind::path || settings.text(name).empty()) return;
   const std::filesystem::path file = settings.text(name);
@@ -35,42 +39,30 @@ void check_writable(const Settings& settings, const Option& option, Problems& pr
       file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   std::error_code error;
   if (!std::filesystem::is_directory(folder, error)) {
-    settings.report(problems, name, "is in a folder that does not exist", "make the folder first");
+    settings.refuse(name, "is in a folder that does not exist", "make the folder first");
   } else if (access(folder.c_str(), W_OK) != 0) {
-    settings.report(problems, name, "is in a folder that cannot be written", "name another place");
+    settings.refuse(name, "is in a folder that cannot be written", "name another place");
   } else if (std::filesystem::is_directory(file, error)) {
-    settings.report(problems, name, "is a folder", "name a file");
+    settings.refuse(name, "is a folder", "name a file");
   } else if (std::filesystem::exists(file, error) && access(file.c_str(), W_OK) != 0) {
-    settings.report(problems, name, "is a file that cannot be written", "name another file");
+    settings.refuse(name, "is a file that cannot be written", "name another file");
   }
 }
 
-/// The settings as effects see them.
-class GivenSettings : public effects::Given {
- public:
-  GivenSettings(const Settings& settings, Problems& problems)
-      : settings_(settings), problems_(problems) {}
-  [[nodiscard]] bool has(const std::string& option) const override {
-    return settings_.given(option);
+// Options of the solvers, and those that nobody knows.
+void check_solver_options(Problems& problems) {
+  const auto wrong_types = petsc::wrong_solver_types();
+  for (const auto& message : wrong_types) problems.add(message);
+  // Solvers of other types are not tried, so that no option of theirs would count as known.
+  if (!wrong_types.empty()) problems.raise();
+  for (const auto& message : petsc::wrong_solver_options()) problems.add(message);
+  for (const auto& name : petsc::unused_options()) {
+    const std::string message = petsc::unknown_solver_option(name);
+    problems.add(message.empty()
+                     ? fmt::format("-{}: unknown option; {}", name, suggestion_for_option(name))
+                     : message);
   }
-  [[nodiscard]] double real(const std::string& option) const override {
-    return settings_.real(option);
-  }
-  [[nodiscard]] std::string text(const std::string& option) const override {
-    return settings_.text(option);
-  }
-  [[nodiscard]] std::optional<int> integer(const std::string& option) const override {
-    return settings_.integer(option);
-  }
-  void refuse(const std::string& option, const std::string& why, const std::string& fix) override {
-    settings_.report(problems_, option, why, fix);
-  }
-  [[nodiscard]] bool sound() const override { return problems_.empty(); }
-
- private:
-  const Settings& settings_;
-  Problems& problems_;
-};
+}
 
 }  // namespace
 
@@ -82,7 +74,7 @@ Files read_files(const Settings& settings) {
               .progress = meaning(kProgress, settings.text("progress")).value_or(terminal)};
   for (const auto* output : outputs::all()) {
     const auto& name = output->option;
-    if (settings.given(name)) files.written[name] = settings.text(name);
+    if (settings.has(name)) files.written[name] = settings.text(name);
   }
   return files;
 }
@@ -96,22 +88,22 @@ std::vector<std::string> Files::holding(Quantity field) const {
   return names;
 }
 
-Request request_of(const Settings& settings, Problems& problems) {
+Request request_of(Settings& settings) {
   Request request;
-  GivenSettings given(settings, problems);
-  request.scene = effects::read_scene(given);
+  request.scene = effects::read_scene(settings);
   request.method = read_method(settings);
-  read_question(settings, request, problems);
+  read_question(settings, request);
   request.study = {meaning(kStudies, settings.text("study")), settings.integer("study_steps"),
                    settings.integer("study_repeats").value_or(3)};
   request.files = read_files(settings);
   request.sweep_ranks = settings.integer("sweep_ranks").value_or(1);
   request.plan_only = settings.flag("plan");
-  check_rules(settings, request, problems);
-  for (const auto& option : all_options()) check_writable(settings, option, problems);
-  if (request.method.route == Route::fluid_queue) request.method.scheme = Scheme::none;
+  check_rules(settings, request);
+  for (const auto& option : all_options()) check_writable(settings, option);
+  const auto& method = request.method.row();
+  if (!method.discretises_velocity && !method.simulates) request.method.scheme = Scheme::none;
   for (const auto& option : all_options()) {
-    const bool derived = option.name == "delta" && settings.given("delta_per_mu_s");
+    const bool derived = option.name == "delta" && settings.has("delta_per_mu_s");
     request.resolved.emplace_back(option.name,
                                   derived ? "mu_s/delta_per_mu_s" : settings.text(option.name));
   }
@@ -119,16 +111,13 @@ Request request_of(const Settings& settings, Problems& problems) {
 }
 
 Request read_request(const std::vector<std::string>& argv) {
-  Problems problems;
-  const Settings settings = Settings::read(problems);
+  Settings settings = Settings::read();
+  Problems& problems = settings.problems();
   check_stray_words(argv, problems);
-  // Solvers of other types are not tried, so that no option of theirs would count as known.
-  if (!check_solver_types(problems)) problems.raise();
   check_solver_options(problems);
-  check_unknown_options(problems);
   problems.raise();  // what follows relates values to one another
   if (sweeps(settings)) return read_sweep(settings);
-  Request request = request_of(settings, problems);
+  Request request = request_of(settings);
   problems.raise();
   const std::string steps = effects::step_warning(request.scene);
   if (!steps.empty() && request.study.kind == StudyKind::none) request.warnings.push_back(steps);

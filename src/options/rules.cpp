@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <set>
 
-#include "quantities.hpp"
 #include "reading.hpp"
 #include "stickslip/effects/effect.hpp"
 #include "stickslip/outputs/output.hpp"
@@ -12,13 +11,14 @@
 namespace stickslip::options {
 namespace {
 
+using catalogue::SolutionMethod;
 using outputs::Subject;
 
 /// The rules that relate options to one another. Each is a row: options, when it counts, message.
 class Rules {
  public:
-  Rules(const Settings& settings, Request& request, Problems& problems)
-      : settings_(settings), r_(request), q_(request.question), problems_(problems) {}
+  Rules(Settings& settings, Request& request)
+      : settings_(settings), r_(request), q_(request.question) {}
 
   // Options of effects that none of those in use knows, each by the first effect that does.
   void of_other_effects() {
@@ -40,21 +40,18 @@ class Rules {
 
   // Options without effect.
   void unused() {
-    const bool simulates = r_.method.route == Route::monte_carlo, swept = sweeps(settings_);
-    warn({"lambda"}, r_.method.route != Route::lambda && !asked("lambda"));
-    warn({"excursions"}, !simulates, "without -route monte_carlo");
+    const bool simulates = method_.simulates, swept = sweeps(settings_);
+    const std::string no_simulation = "without " + routes_that(&SolutionMethod::simulates, true);
+    warn({"lambda"}, !method_.small_lambda && !asked("lambda"));
+    warn({"excursions"}, !simulates, no_simulation);
     warn({"seed"}, !simulates && !asked("seed"));
-    warn({"checkpoint"}, !simulates && !swept, "without -route monte_carlo or a sweep");
+    warn({"checkpoint"}, !simulates && !swept, no_simulation + " or a sweep");
     warn({"sweep_ranks"}, !swept, "without a sweep");
     warn({"study_steps", "study_repeats"}, !study_, "without -study");
-    const auto subject = study_ ? Subject::study : swept ? Subject::sweep : Subject::run;
-    for (const auto* output : outputs::all()) {
-      const auto& of = output->subjects;
-      if (of.contains(subject) || of.contains(Subject::run)) continue;
-      const char* others = of.contains(Subject::study) ? "without -study" : "without -plan";
-      warn({output->option.c_str()}, true,
-           of.contains(Subject::sweep) ? "without a sweep" : others);
-    }
+    unused_outputs(r_.plan_only ? Subject::plan
+                   : study_     ? Subject::study
+                   : swept      ? Subject::sweep
+                                : Subject::run);
     for (const char* option :
          {"observable", "time", "start", "horizon", "transient_solver", "omega", "spectrum_solver",
           "distance", "inverse_distance", "velocity"}) {
@@ -64,18 +61,18 @@ class Rules {
 
   // Options that exclude one another.
   void conflicts() {
-    const Route route = r_.method.route;
-    const bool hp = r_.method.scheme == Scheme::hp, queue = route == Route::fluid_queue;
-    const std::string no_choice = "does not apply to -route " + settings_.text("route");
-    refuse({"route"}, queue && !r_.scene.process(1).drag.is_none(),
-           "needs a model without drag, b = 0, and Coulomb friction: only then is it a fluid queue",
+    const bool hp = r_.method.scheme == Scheme::hp;
+    const std::string no_choice = fmt::format("does not apply to -route {}", method_.word);
+    refuse({"route"}, !method_.without_drag.empty() && !r_.scene.process(1).drag.is_none(),
+           fmt::format("needs a model without drag, b = 0, and Coulomb friction: {}",
+                       method_.without_drag),
            "add -drag none, leave -friction out, or take -route excursion");
-    refuse({"speed_limit"}, settings_.given("v_max"), "does not go with -v_max", "leave one out");
-    refuse({"v_max", "speed_limit"}, route != Route::excursion, no_choice,
-           "leave it out, or take -route excursion");
+    refuse({"speed_limit"}, settings_.has("v_max"), "does not go with -v_max", "leave one out");
+    refuse({"v_max", "speed_limit"}, !method_.bounds_speed, no_choice,
+           "leave it out, or take " + routes_that(&SolutionMethod::bounds_speed, true));
     refuse({"scheme", "degree", "layers", "noise_degree", "noise_grading", "p"},
-           queue || route == Route::monte_carlo,
-           no_choice + ", which does not discretise the velocity", "leave it out");
+           !method_.discretises_velocity, no_choice + ", which does not discretise the velocity",
+           "leave it out");
     refuse({"degree", "layers", "noise_degree", "noise_grading"}, !hp, "belongs to -scheme hp",
            "leave it out, or take -scheme hp");
     refuse({"p"}, hp, "belongs to -scheme upwind", "leave it out, or take -scheme upwind");
@@ -93,7 +90,6 @@ class Rules {
   // What the quantities need, or exclude.
   void needs() {
     using enum Quantity;
-    const bool by_lambda = r_.method.route == Route::lambda;
     const bool derivable = q_.wants(sticking) || q_.wants(moments) || q_.wants(noise_law);
     const bool others = std::any_of(q_.quantities.begin(), q_.quantities.end(), [](Quantity q) {
       return q != sticking && q != moments && q != noise_law;
@@ -129,12 +125,29 @@ class Rules {
     report("quantities", study_ && others,
            "must be sticking, moments and noise_law, or some of these, in a study",
            "leave the others out");
-    report("lambda", by_lambda && !one_lambda, "must be one positive number with -route lambda",
+    report("lambda", method_.small_lambda && !one_lambda,
+           fmt::format("must be one positive number with -route {}", method_.word),
            "leave it out to have it chosen from -accuracy");
   }
 
  private:
   using Options = std::initializer_list<const char*>;
+
+  // Outputs that are not written of what the program does. The plan of a run that needs a file for
+  // a field takes the name of that file.
+  void unused_outputs(Subject subject) {
+    for (const auto* output : outputs::all()) {
+      const auto& of = output->subjects;
+      const bool needed = std::any_of(output->fields.begin(), output->fields.end(),
+                                      [this](Quantity field) { return q_.wants(field); });
+      if (of.contains(subject) || needed) continue;
+      const char* elsewhere = of.contains(Subject::sweep)   ? "without a sweep"
+                              : of.contains(Subject::study) ? "without -study"
+                                                            : "without -plan";
+      const char* here = subject == Subject::plan ? "with -plan" : "with -study";
+      warn({output->option.c_str()}, true, of.contains(Subject::run) ? here : elsewhere);
+    }
+  }
 
   // Whether an effect in use knows the option.
   [[nodiscard]] bool is_known(const std::string& option) const {
@@ -157,7 +170,7 @@ class Rules {
 
   // Where no level of the noise holds the body, there are no phases, and the rest exists.
   void require_sticking() {
-    if (!problems_.empty() || r_.scene.meant().sticks()) return;
+    if (!settings_.sound() || r_.scene.meant().sticks()) return;
     std::vector<std::string> without, missing;
     for (const auto* entry : catalogue::entries()) {
       if (!entry->of_phases) without.emplace_back(entry->word);
@@ -172,48 +185,56 @@ class Rules {
     report("mu_s", !missing.empty(), why + enumerate(missing, "and") + " are about sticking phases",
            fmt::format("take -quantities of {}, or a larger -mu_s{}", enumerate(without, "and"),
                        finer));
-    const Route route = r_.method.route;
-    report("route", missing.empty() && route != Route::excursion && route != Route::null_vector,
+    report("route", missing.empty() && method_.needs_sticking,
            "follows excursions, which end with a sticking phase; with this -mu_s the body never "
            "sticks",
-           "take -route excursion or null_vector");
+           "take " + routes_that(&SolutionMethod::needs_sticking, false));
   }
 
-  [[nodiscard]] bool asked(const char* option) const { return depends_on(q_, option); }
+  // "-route excursion or null_vector", of all methods that have a fact in their rows, or lack it.
+  [[nodiscard]] static std::string routes_that(bool SolutionMethod::*fact, bool value) {
+    std::vector<std::string> words;
+    for (const auto& method : catalogue::solution_methods()) {
+      if (method.*fact == value) words.emplace_back(method.word);
+    }
+    return "-route " + enumerate(words, "or");
+  }
+
+  [[nodiscard]] bool asked(const char* option) const { return q_.depends_on(option); }
 
   void warn(Options options, bool when, const std::string& why = "on the quantities asked for") {
     for (const char* option : options) {
-      if (!when || !settings_.given(option)) continue;
+      if (!when || !settings_.has(option)) continue;
       r_.warnings.push_back(fmt::format("-{} = {} has no effect {}; leave it out", option,
                                         settings_.text(option), why));
     }
   }
 
   void refuse(Options options, bool when, const std::string& why, const std::string& fix) {
-    for (const char* option : options) report(option, when && settings_.given(option), why, fix);
+    for (const char* option : options) report(option, when && settings_.has(option), why, fix);
   }
 
   // The quantities are refused, unless the option is given: then it may have been misread.
   void require(const char* option, bool when, const std::string& why, const std::string& fix) {
-    report("quantities", when && !settings_.given(option), why, fix);
+    report("quantities", when && !settings_.has(option), why, fix);
   }
 
   // Given or not: values may come from the file to compare with.
   void report(const char* option, bool when, const std::string& why, const std::string& fix) {
-    if (when) settings_.report(problems_, option, why, fix);
+    if (when) settings_.refuse(option, why, fix);
   }
 
-  const Settings& settings_;
+  Settings& settings_;
   Request& r_;
   const Question& q_;
-  Problems& problems_;
+  const SolutionMethod& method_ = r_.method.row();
   const bool study_ = r_.study.kind != StudyKind::none;
 };
 
 }  // namespace
 
-void check_rules(const Settings& settings, Request& request, Problems& problems) {
-  Rules rules(settings, request, problems);
+void check_rules(Settings& settings, Request& request) {
+  Rules rules(settings, request);
   rules.of_other_effects();
   rules.unused();
   rules.conflicts();

@@ -2,30 +2,18 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <petscsys.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "stickslip/options/synonyms.hpp"
-#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/solver_options.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/number_text.hpp"
 #include "stickslip/support/text.hpp"
 
 namespace stickslip::options {
 namespace {
-
-std::optional<std::string> value_in_database(const std::string& name) {
-  PetscBool found = PETSC_FALSE;
-  petsc::check(PetscOptionsHasName(nullptr, nullptr, ("-" + name).c_str(), &found));
-  if (found == PETSC_FALSE) return std::nullopt;
-  std::string buffer(1 << 20, '\0');  // lists can be long, and PETSc cuts what does not fit
-  petsc::check(PetscOptionsGetString(nullptr, nullptr, ("-" + name).c_str(), buffer.data(),
-                                     buffer.size(), &found));
-  const std::string value = buffer.substr(0, buffer.find('\0'));
-  return value.substr(std::min(value.find_first_not_of(' '), value.size()));
-}
 
 void check_words(const Option& option, const std::string& value, Problems& problems) {
   const auto given = option.kind == Kind::list ? split(value, ',') : std::vector{value};
@@ -86,38 +74,7 @@ void check_value(const Option& option, const std::string& value, Problems& probl
   }
 }
 
-// first:last:count[:log]; nothing if the parts make no sense.
-std::optional<std::vector<double>> parse_range(const std::vector<std::string>& parts) {
-  const bool log = parts.size() == 4 && parts[3] == "log";
-  if (parts.size() != 3 && !log) return std::nullopt;
-  const auto first = parse_number(parts[0]), last = parse_number(parts[1]),
-             count = parse_number(parts[2]);
-  constexpr double most = 1e6;
-  if (!first || !last || !count || *count != std::floor(*count)) return std::nullopt;
-  if (*count < 2 || *count > most || !(*first < *last) || (log && *first <= 0)) return std::nullopt;
-  std::vector<double> values;
-  for (int n = 0; n < *count; ++n) {
-    const double t = n / (*count - 1);
-    values.push_back(log ? *first * std::pow(*last / *first, t) : *first + t * (*last - *first));
-  }
-  values.back() = *last;
-  return values;
-}
-
 }  // namespace
-
-std::optional<std::vector<double>> parse_numbers(const std::string& text) {
-  const auto range = split(text, ':');
-  if (range.size() > 1) return parse_range(range);
-  std::vector<double> values;
-  for (const auto& word : split(text, ',')) {
-    const auto value = parse_number(word);
-    if (!value) return std::nullopt;
-    values.push_back(*value);
-  }
-  if (values.empty()) return std::nullopt;
-  return values;
-}
 
 void Problems::add(const Option& option, const std::string& value, const std::string& why,
                    const std::string& fix) {
@@ -131,13 +88,14 @@ void Problems::raise() const {
   throw BadInput(fmt::format("{}", fmt::join(messages_, "\n")));
 }
 
-Settings Settings::read(Problems& problems) {
+Settings Settings::read() {
   Settings settings;
   for (const auto& option : all_options()) {
-    const auto given = value_in_database(option.name);
+    const auto given = petsc::option_value(option.name);
     if (!given) continue;
-    settings.text_[option.name] = *given;
-    check_value(option, *given, problems);
+    std::string& value = settings.text_[option.name];
+    value = given->substr(std::min(given->find_first_not_of(' '), given->size()));
+    check_value(option, value, settings.problems_);
   }
   return settings;
 }
@@ -162,14 +120,13 @@ std::vector<double> Settings::numbers(const std::string& name) const {
   return parse_numbers(text(name)).value_or(std::vector<double>{});
 }
 
-void Settings::set(const std::string& name, double value, Problems& problems) {
+void Settings::set(const std::string& name, double value) {
   text_[name] = fmt::format("{}", value);  // reads back to the same bits
-  check_value(*find(name), text_[name], problems);
+  check_value(*find(name), text_[name], problems_);
 }
 
-void Settings::report(Problems& problems, const std::string& name, const std::string& why,
-                      const std::string& fix) const {
-  problems.add(*find(name), text(name), why, fix);
+void Settings::refuse(const std::string& name, const std::string& why, const std::string& fix) {
+  problems_.add(*find(name), text(name), why, fix);
 }
 
 }  // namespace stickslip::options

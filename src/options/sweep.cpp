@@ -9,11 +9,11 @@
 #include <memory>
 #include <sstream>
 
-#include "quantities.hpp"
 #include "reading.hpp"
 #include "stickslip/effects/read_scene.hpp"
 #include "stickslip/outputs/output.hpp"
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/petsc/solver_options.hpp"
 
 namespace stickslip::options {
 namespace {
@@ -24,18 +24,17 @@ constexpr double kMostPoints = 100000;
 constexpr const char* kSwept = "swept";   // in the place of a value, in the options as used
 constexpr std::size_t kMostMessages = 8;  // of the points
 
-std::vector<SweepAxis> read_axes(const Settings& settings, Problems& problems) {
+std::vector<SweepAxis> read_axes(Settings& settings) {
   std::vector<SweepAxis> axes;
   for (const auto& option : all_options()) {
     const Option* swept = swept_by(option);
-    if (swept == nullptr || !settings.given(option.name)) continue;
+    if (swept == nullptr || !settings.has(option.name)) continue;
     axes.push_back({swept->name, swept->unit, settings.numbers(option.name)});
     auto sorted = axes.back().values;
     std::sort(sorted.begin(), sorted.end());
     const auto repeated = std::adjacent_find(sorted.begin(), sorted.end());
     if (repeated == sorted.end()) continue;
-    settings.report(problems, option.name, fmt::format("names {:g} twice", *repeated),
-                    "name it once");
+    settings.refuse(option.name, fmt::format("names {:g} twice", *repeated), "name it once");
   }
   return axes;
 }
@@ -50,10 +49,10 @@ void check_size(const std::vector<SweepAxis>& axes, Problems& problems) {
 }
 
 // What is about one run alone, or makes a series of its own.
-void check_alone(const Settings& settings, Problems& problems) {
+void check_alone(Settings& settings) {
   const auto refuse = [&](const std::string& name, const char* why, const char* fix) {
-    const bool used = settings.given(name) && settings.text(name) != find(name)->initial;
-    if (used) settings.report(problems, name, why, fix);
+    const bool used = settings.has(name) && settings.text(name) != find(name)->initial;
+    if (used) settings.refuse(name, why, fix);
   };
   constexpr const char* leave = "leave it out, or the -sweep_ options";
   refuse("study", "makes a series of runs of its own", leave);
@@ -69,17 +68,17 @@ void check_alone(const Settings& settings, Problems& problems) {
   for (const auto& word : asked) {
     const auto* entry = catalogue::find_entry(word);
     if (entry == nullptr || !entry->of_one_run) continue;
-    settings.report(
-        problems, "quantities",
+    settings.refuse(
+        "quantities",
         fmt::format("asks for {}, a field or a path, which a sweep does not write", word),
         "run the points of interest one by one");
   }
 }
 
-void check_ranks(const Settings& settings, Problems& problems) {
+void check_ranks(Settings& settings) {
   const int ranks = petsc::ranks(PETSC_COMM_WORLD);
   if (settings.integer("sweep_ranks").value_or(1) <= ranks) return;
-  settings.report(problems, "sweep_ranks", fmt::format("is more than the {} of this run", ranks),
+  settings.refuse("sweep_ranks", fmt::format("is more than the {} of this run", ranks),
                   "take fewer, or start more with mpiexec -n");
 }
 
@@ -109,13 +108,13 @@ std::string check_points(const Sweep& sweep, Problems& problems) {
   std::string step;
   std::vector<std::string> messages;
   for (std::size_t point = 0; point < sweep.size(); ++point) {
-    Problems own;
-    const Request request = sweep.request(point, own);
+    Settings own = sweep.settings(point);
+    const Request request = own.sound() ? request_of(own) : Request();
     if (point == 0) check_effects(sweep, request, problems);
-    const std::string warning = own.empty() ? effects::step_warning(request.scene) : "";
+    const std::string warning = own.sound() ? effects::step_warning(request.scene) : "";
     if (!warning.empty()) between_levels.push_back(point);
     if (step.empty()) step = warning;
-    for (const auto& message : own.messages()) {
+    for (const auto& message : own.problems().messages()) {
       auto& points = points_of[message];
       if (points.empty()) messages.push_back(message);
       points.push_back(point);
@@ -145,13 +144,13 @@ std::vector<std::pair<std::string, std::string>> identity_of(const Settings& set
       if (option.name == "checkpoint" || option.name == "plan") continue;
       const bool swept = is_axis(axes, option.name);
       identity.emplace_back(option.name, swept ? kSwept : settings.text(option.name));
-      if (option.name != "noise_file" || !settings.given(option.name)) continue;
+      if (option.name != "noise_file" || !settings.has(option.name)) continue;
       std::ostringstream contents;
       contents << std::ifstream(identity.back().second).rdbuf();
       identity.back().second = contents.str();
     }
   }
-  for (const auto& option : solver_options()) identity.push_back(option);
+  for (const auto& option : petsc::given_solver_options()) identity.push_back(option);
   return identity;
 }
 
@@ -187,34 +186,33 @@ std::string Sweep::place(std::size_t point) const {
   return text;
 }
 
-Request Sweep::request(std::size_t point, Problems& problems) const {
+Settings Sweep::settings(std::size_t point) const {
   Settings settings = settings_;
   const auto at = values(point);
-  for (std::size_t a = 0; a < at.size(); ++a) settings.set(axes_[a].option, at[a], problems);
-  Request request;
-  if (problems.empty()) request = request_of(settings, problems);
-  request.files = {};
-  return request;
+  for (std::size_t a = 0; a < at.size(); ++a) settings.set(axes_[a].option, at[a]);
+  return settings;
 }
 
 Request Sweep::request(std::size_t point) const {
-  Problems known;
-  return request(point, known);
+  Settings of_point = settings(point);
+  Request request = request_of(of_point);
+  request.files = {};
+  return request;
 }
 
 bool sweeps(const Settings& settings) {
   const auto options = all_options();
   return std::any_of(options.begin(), options.end(), [&settings](const Option& option) {
-    return swept_by(option) != nullptr && settings.given(option.name);
+    return swept_by(option) != nullptr && settings.has(option.name);
   });
 }
 
-Request read_sweep(const Settings& settings) {
-  Problems problems;
-  auto axes = read_axes(settings, problems);
+Request read_sweep(Settings settings) {
+  Problems& problems = settings.problems();
+  auto axes = read_axes(settings);
   check_size(axes, problems);
-  check_alone(settings, problems);
-  check_ranks(settings, problems);
+  check_alone(settings);
+  check_ranks(settings);
   problems.raise();
   const auto sweep = std::make_shared<const Sweep>(settings, std::move(axes));
   const std::string step = check_points(*sweep, problems);

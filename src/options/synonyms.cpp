@@ -4,63 +4,20 @@
 
 #include <algorithm>
 
-#include "literal_table.hpp"
-#include "quantities.hpp"
 #include "stickslip/catalogue/entry.hpp"
 #include "stickslip/effects/effect.hpp"
-#include "stickslip/effects/model_options.hpp"
 #include "stickslip/support/text.hpp"
+#include "words.hpp"
 
 namespace stickslip::options {
 namespace {
 
-// Option, its word, other names for it; without the model, which declares its own.
-constexpr const char* kRows = R"(
-quantities | - | q, compute, observables
-omega | - | freq, frequency, frequencies
-time | - | t, times
-velocity | - | speed, speeds
-observable | - | function, functions
-accuracy | - | tol, tolerance, rtol, precision, eps, error, digits
-start | - | x0, v0, initial, initial_state
-route | - | method, solver, algorithm
-excursions | - | samples, n_samples, trials, paths
-horizon | - | duration, t_max, t_end, t_final
-summary | - | json
-output | - | o, out, h5, hdf5, save
-compare | - | reference, check
-options_file | - | config, input, file
-help | - | h
-quantities | sticking | stick, mean_durations
-quantities | moments | variance, mean_square, energy
-quantities | entry_law | hitting, entry, onset
-quantities | density | pdf, stationary, distribution, invariant_measure, histogram
-quantities | laplace | transform, transforms, laplace_transform
-quantities | relaxation | eigenvalues, spectral_gap, gap, modes, relaxation_time
-quantities | spectrum | psd, power, power_spectrum, power_spectral_density, spectral_density
-quantities | duration_density | durations, survival, duration_distribution
-quantities | autocorrelation | acf, vacf, correlation, autocovariance
-quantities | slip | avalanche, slide_length
-quantities | peak | first_passage, fpt, mfpt, passage, exit_time, largest_speed
-quantities | displacement | msd, mean_square_displacement, diffusion
-quantities | trajectory | path, sample_path, simulation
-quantities | sensitivity | derivatives, gradient, gradients
-route | monte_carlo | mc, simulation, simulate
-scheme | hp | dg, fem, galerkin
-scheme | upwind | finite_difference, fd
-)";
-
 // How options of PETSc's objects begin, and the prefixes of the solvers that have such an object.
-constexpr const char* kFamilies = R"(
-ksp_ | slide_
-pc_ | slide_
-sub_ | slide_
-mat_mumps_ | slide_
-eps_ | relax_, null_
-st_ | relax_, null_
-ts_ | backward_
-snes_ | backward_
-)";
+constexpr struct {
+  const char *beginning, *solvers;
+} kFamilies[] = {{"ksp_", "slide_"},       {"pc_", "slide_"},         {"sub_", "slide_"},
+                 {"mat_mumps_", "slide_"}, {"eps_", "relax_, null_"}, {"st_", "relax_, null_"},
+                 {"ts_", "backward_"},     {"snes_", "backward_"}};
 
 const Synonyms* synonyms_of(const std::string& other, const std::string& option) {
   for (const auto& row : all_synonyms()) {
@@ -72,9 +29,9 @@ const Synonyms* synonyms_of(const std::string& other, const std::string& option)
 
 // A name of PETSc with the prefixes that it lacks; empty if it is no such name.
 std::string with_prefixes(const std::string& name) {
-  for (const auto& row : rows_of(kFamilies, 2)) {
-    if (!name.starts_with(row[0])) continue;
-    auto prefixes = split(row[1], ',');
+  for (const auto& [beginning, solvers] : kFamilies) {
+    if (!name.starts_with(beginning)) continue;
+    auto prefixes = split(solvers, ',');
     for (auto& prefix : prefixes) prefix = fmt::format("-{}{}", prefix, name);
     return enumerate(prefixes, "or");
   }
@@ -102,18 +59,27 @@ std::string apart(const std::string& name, std::size_t sign) {
 std::span<const Synonyms> all_synonyms() {
   static const auto all = [] {
     std::vector<Synonyms> rows;
-    const auto add = [&rows](const Synonyms& row) {
-      if (!row.others.empty()) rows.push_back(row);
+    const auto add = [&rows](std::string_view option, std::string_view word,
+                             const std::vector<std::string>& others, const std::string& page = "") {
+      if (!others.empty()) rows.push_back({std::string(option), std::string(word), others, page});
     };
-    for (const auto& option : effects::model_options()) {
-      add({option.name, "", option.shown.others, option.shown.page});
+    const auto add_words = [&add](std::string_view option, const auto& words) {
+      for (const auto& each : words) add(option, each.word, split(each.synonyms, ','));
+    };
+    for (const auto& option : all_options()) {
+      add(option.name, "", option.shown.others, option.shown.page);
+    }
+    for (const auto& other : other_options()) {
+      add(other.name.substr(1), "", split(other.synonyms, ','));
     }
     for (const auto* choice : effects::choices()) {
-      for (const auto* effect : choice->effects) {
-        add({std::string(choice->option), std::string(effect->word), effect->others, ""});
-      }
+      for (const auto* effect : choice->effects) add(choice->option, effect->word, effect->others);
     }
-    for (const auto& cells : rows_of(kRows, 3)) add({cells[0], cells[1], split(cells[2], ','), ""});
+    for (const auto* entry : catalogue::entries()) {
+      add("quantities", entry->word, split(entry->synonyms, ','));
+    }
+    add_words("route", catalogue::solution_methods());
+    add_words("scheme", kSchemes);
     return rows;
   }();
   return all;

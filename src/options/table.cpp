@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "quantities.hpp"
+#include "stickslip/catalogue/entry.hpp"
 #include "stickslip/effects/model_options.hpp"
 #include "stickslip/outputs/output.hpp"
 #include "stickslip/support/text.hpp"
@@ -14,26 +14,13 @@
 namespace stickslip::options {
 namespace {
 
-using effects::kChosen;
-
 constexpr std::string_view kSweeps = "sweep_";
-
-const Range kPositive = Range::positive(), kNotNegative = Range::not_negative();
 
 using Words = std::vector<std::string>;
 
-Option real(const char* name, const char* unit, const char* initial, Range range,
-            const char* sentence, const char* fix = kChosen) {
-  return Option::real(name, unit, initial, range, sentence, fix);
-}
-
-Option integer(const char* name, const char* initial, Range range, const char* sentence,
-               const char* fix = kChosen) {
-  return Option::integer(name, initial, range, sentence, fix);
-}
-
-Option choice(const char* name, const char* initial, const Words& words, const char* sentence) {
-  return {name, Kind::choice, "word", "", initial, {}, words, sentence, ""};
+Option choice(const char* name, std::string_view initial, const Words& words,
+              const std::string& sentence) {
+  return {name, Kind::choice, "word", "", std::string(initial), {}, words, sentence, ""};
 }
 
 Option list(const char* name, const char* initial, const Words& words, const char* sentence) {
@@ -50,68 +37,83 @@ Option numbers(const std::string& name, const std::string& unit, Range range,
 }
 
 Option arguments(const char* name, const char* unit, const char* sentence) {
-  return numbers(name, unit, kNotNegative, sentence,
+  return numbers(name, unit, Range::not_negative(), sentence,
                  "negative and missing values mean nothing here");
 }
 
 std::vector<Option> quantity_options() {
+  Words words;
+  for (const auto* entry : catalogue::entries()) words.emplace_back(entry->word);
   return {
-      list("quantities", "sticking,moments,noise_law", quantity_words(), "quantities to compute"),
+      list("quantities", "sticking,moments,noise_law", words, "quantities to compute")
+          .called({"q", "compute", "observables"}),
       arguments("lambda", "1/time",
                 "arguments of the Laplace transforms and the resolvent (laplace, F_stick, "
                 "resolvent). With -route lambda one positive value, chosen from -accuracy unless "
                 "given"),
-      arguments("omega", "1/time", "angular frequencies of spectrum"),
+      arguments("omega", "1/time", "angular frequencies of spectrum")
+          .called({"freq", "frequency", "frequencies"}),
       arguments("time", "time",
-                "times of duration_density, autocorrelation, displacement and expectation"),
+                "times of duration_density, autocorrelation, displacement and expectation")
+          .called({"t", "times"}),
       arguments("distance", "velocity*time", "path lengths > 0 of slip, for f_slip and cdf_slip"),
       arguments("inverse_distance", "1/(velocity*time)",
                 "arguments s of the Laplace transform F_slip of slip"),
-      arguments("velocity", "velocity", "speeds w > 0 of peak"),
+      arguments("velocity", "velocity", "speeds w > 0 of peak").called({"speed", "speeds"}),
       Option::text_of("start", "state", "s+",
-                      "state at time 0 of expectation, displacement and trajectory"),
+                      "state at time 0 of expectation, displacement and trajectory")
+          .called({"x0", "v0", "initial", "initial_state"}),
       Option::text_of(
           "observable", "functions", "",
           "functions of the state for averages, resolvent and expectation. With -scheme hp "
-          "elements end at their jumps and kinks in v: at most 64, the same for all x"),
-      real("accuracy", "", "1e-6", {1e-15, 0.1, true, true},
-           "relative error wanted for every scalar, at the given -delta; the discretisation is "
-           "refined until the error estimates are below it",
-           "double precision allows down to about 1e-14, case by case"),
+          "elements end at their jumps and kinks in v: at most 64, the same for all x")
+          .called({"function", "functions"}),
+      Option::real(
+          "accuracy", "", "1e-6", {1e-15, 0.1, true, true},
+          "relative error wanted for every scalar, at the given -delta; the discretisation is "
+          "refined until the error estimates are below it",
+          "double precision allows down to about 1e-14, case by case")
+          .called({"tol", "tolerance", "rtol", "precision", "eps", "error", "digits"}),
   };
 }
 
-std::vector<Option> discretisation_options() {
+Option route_option() {
+  std::string sentence = "solution method";
+  for (const auto& method : catalogue::solution_methods()) {
+    sentence += fmt::format(". {}: {}", method.word, method.sentence);
+  }
+  return choice("route", catalogue::solution_methods()[0].word,
+                words_of(catalogue::solution_methods()), sentence)
+      .called({"method", "solver", "algorithm"});
+}
+
+std::vector<Option> route_and_discretisation() {
   return {
+      route_option(),
       choice("scheme", "hp", words_of(kSchemes),
              "discretisation of the velocity. hp: discontinuous Galerkin elements of high order. "
              "upwind: the first-order differences of the paper"),
-      integer("degree", "", Range::whole(1, 24),
-              "largest polynomial degree in v of the hp elements; switches refinement off"),
-      integer("layers", "", Range::whole(1, 200),
-              "number of elements graded towards v = 0; switches refinement off",
-              "leave it out to have it chosen from the model parameters"),
-      integer("noise_degree", "", Range::whole(0, 20),
-              "degree in x of the polynomials on groups of noise levels; 0: every level is a node. "
-              "Above 0 it switches refinement off"),
-      real("noise_grading", "", "2", {0, 100, false, true},
-           "grading of the groups of noise levels: a group has at most this many levels for each "
-           "level between it and mu_d or mu_s",
-           "2 suits most cases"),
-      integer("p", "", Range::whole(1, 1e7),
-              "velocities of the upwind scheme per noise step; switches refinement off"),
+      Option::integer("degree", "", Range::whole(1, 24),
+                      "largest polynomial degree in v of the hp elements; switches refinement off"),
+      Option::integer("layers", "", Range::whole(1, 200),
+                      "number of elements graded towards v = 0; switches refinement off",
+                      "leave it out to have it chosen from the model parameters"),
+      Option::integer(
+          "noise_degree", "", Range::whole(0, 20),
+          "degree in x of the polynomials on groups of noise levels; 0: every level is a node. "
+          "Above 0 it switches refinement off"),
+      Option::real(
+          "noise_grading", "", "2", {0, 100, false, true},
+          "grading of the groups of noise levels: a group has at most this many levels for each "
+          "level between it and mu_d or mu_s",
+          "2 suits most cases"),
+      Option::integer("p", "", Range::whole(1, 1e7),
+                      "velocities of the upwind scheme per noise step; switches refinement off"),
   };
 }
 
 std::vector<Option> method_options() {
-  std::vector<Option> all{
-      choice("route", "excursion", words_of(kRoutes),
-             "solution method. excursion: one transposed solve gives the stationary distribution. "
-             "The others check it. lambda: lambda u_lambda for small lambda. hitting: mean hitting "
-             "times. null_vector: left null vector of the generator. fluid_queue: b = 0. "
-             "monte_carlo: simulation")};
-  const auto discretisation = discretisation_options();
-  all.insert(all.end(), discretisation.begin(), discretisation.end());
+  auto all = route_and_discretisation();
   const std::vector<Option> others{
       choice(
           "spectrum_solver", "krylov", words_of(kSpectrumSolvers),
@@ -124,15 +126,20 @@ std::vector<Option> method_options() {
       flag("plan",
            "print the systems to assemble, factor and solve, with predicted unknowns, non-zeros, "
            "memory and time, and stop"),
-      integer("excursions", "1000000", Range::whole(2, 1e15),
-              "number of simulated excursions of -route monte_carlo; of pairs of them without "
-              "symmetry, of paths for functions of time. If -accuracy is given, the simulation "
-              "ends when all confidence intervals are small enough",
-              "a million gives about three digits"),
-      integer("seed", "1", Range::whole(0, 9007199254740992),
-              "seed of the random numbers; a seed gives the same results on any number of ranks",
-              "any whole number will do"),
-      real("horizon", "time", "100", kPositive, "end of the trajectory", "take for example 100"),
+      Option::integer(
+          "excursions", "1000000", Range::whole(2, 1e15),
+          "number of simulated excursions of -route monte_carlo; of pairs of them without "
+          "symmetry, of paths for functions of time. If -accuracy is given, the simulation "
+          "ends when all confidence intervals are small enough",
+          "a million gives about three digits")
+          .called({"samples", "n_samples", "trials", "paths"}),
+      Option::integer(
+          "seed", "1", Range::whole(0, 9007199254740992),
+          "seed of the random numbers; a seed gives the same results on any number of ranks",
+          "any whole number will do"),
+      Option::real("horizon", "time", "100", Range::positive(), "end of the trajectory",
+                   "take for example 100")
+          .called({"duration", "t_max", "t_end", "t_final"}),
       Option::file(
           "checkpoint", Kind::path,
           "checkpoint of a simulation or a sweep, updated as it runs; a run resumes from the file "
@@ -150,11 +157,12 @@ std::vector<Option> study_options() {
              "delta: the same for decreasing noise steps, with mu_s on a level and between two. "
              "heuristic: the paper's extrapolation beside converged values. cost: error against "
              "time of all methods"),
-      integer("study_steps", "", Range::whole(4, 20), "number of values of p or delta (default 8)",
-              "three values give an order, a fourth its uncertainty"),
-      integer("study_repeats", "3", Range::whole(1, 99),
-              "runs of each case of -study cost, of which the median time counts",
-              "an odd number is best"),
+      Option::integer("study_steps", "", Range::whole(4, 20),
+                      "number of values of p or delta (default 8)",
+                      "three values give an order, a fourth its uncertainty"),
+      Option::integer("study_repeats", "3", Range::whole(1, 99),
+                      "runs of each case of -study cost, of which the median time counts",
+                      "an odd number is best"),
   };
 }
 
@@ -166,10 +174,11 @@ std::vector<Option> sweep_options() {
     options.push_back(numbers(std::string(kSweeps) + option.name, option.unit, option.range,
                               "values of -" + option.name, option.fix));
   }
-  options.push_back(integer("sweep_ranks", "1", Range::whole(1, 1e6),
-                            "MPI ranks that share a point; groups of this size take the points in "
-                            "turn",
-                            "one is best while a point fits into the memory of one"));
+  options.push_back(
+      Option::integer("sweep_ranks", "1", Range::whole(1, 1e6),
+                      "MPI ranks that share a point; groups of this size take the points in "
+                      "turn",
+                      "one is best while a point fits into the memory of one"));
   return options;
 }
 
@@ -177,13 +186,16 @@ std::vector<Option> output_options() {
   std::vector<Option> options;
   for (const auto* output : outputs::all()) {
     if (output->option.empty()) continue;
-    options.push_back(Option::file(output->option, Kind::path, output->sentence));
+    options.push_back(
+        Option::file(output->option, Kind::path, output->sentence).called(output->synonyms));
   }
-  options.push_back(Option::file(
-      "compare", Kind::input,
-      "compare the results with those of this file: HDF5 or JSON of this program, or CSV with the "
-      "columns quantity,argument,value,low,high (95 % confidence intervals). What is to be "
-      "computed is taken from the file unless given. Exit status 3 if they disagree"));
+  options.push_back(
+      Option::file(
+          "compare", Kind::input,
+          "compare the results with those of this file: HDF5 or JSON of this program, or CSV with "
+          "the columns quantity,argument,value,low,high (95 % confidence intervals). What is to be "
+          "computed is taken from the file unless given. Exit status 3 if they disagree")
+          .called({"reference", "check"}));
   options.push_back(choice("progress", "auto", words_of(kProgress),
                            "show progress on standard error; auto: if that is a terminal"));
   return options;
@@ -224,28 +236,6 @@ const Option* swept_by(const Option& option) {
   return option.name.starts_with(kSweeps) ? find(option.name.substr(kSweeps.size())) : nullptr;
 }
 
-std::span<const Form> forms() {
-  static const std::vector<Form> all{
-      {"number", "a decimal number such as 0.25 or 1e-3"},
-      {"integer", "a whole number"},
-      {"word", "one of the words allowed"},
-      {"list", "words separated by commas, without blanks, each at most once"},
-      {"numbers",
-       "a list a,b,c, or first:last:count for count >= 2 evenly spaced numbers from first to last, "
-       "both included, or first:last:count:log for numbers evenly spaced in the logarithm"},
-      {"flag", "yes or no; the option alone means yes"},
-      {"file", "the name of a file"},
-      {"formula", "a formula in v, mu_s, mu_d and tau; a value that begins with a minus sign needs "
-                  "a blank before it in an options file"},
-      {"functions",
-       "functions of the state, separated by semicolons: 1, x, v, v^2, |v|, stick, slide, "
-       "|x|<=mu_s, or formulas in x, y, v, mu_s and mu_d such as \"x*v; abs(v) > 0.5\", with y = "
-       "sign(v), 0 at rest"},
-      {"state", "s+ or s-, where a sliding phase starts; x,v with x a noise level; rest, V = 0 and "
-                "X in its stationary distribution; stationary, the stationary distribution"}};
-  return all;
-}
-
 std::span<const Group> table() {
   static const std::vector<Group> groups{
       {"Model",
@@ -269,8 +259,9 @@ std::span<const Group> table() {
 
 std::span<const OtherOption> other_options() {
   static const std::vector<OtherOption> others{
-      {"-options_file", "read options from a file, one -name value a line, # for comments"},
-      {"-help", "print all options and stop"},
+      {"-options_file", "read options from a file, one -name value a line, # for comments",
+       "config, input, file"},
+      {"-help", "print all options and stop", "h"},
       {"-help_solvers",
        "print PETSc's options of the solver -slide_, as -slide_pc_type chooses it, and "
        "stop"},
@@ -287,16 +278,6 @@ std::span<const OtherOption> other_options() {
       {"-log_view, ...", "PETSc's own options"},
   };
   return others;
-}
-
-std::span<const ExitMeaning> exit_meanings() {
-  static const std::vector<ExitMeaning> meanings{
-      {0, "done"},
-      {1, "other error"},
-      {2, "bad input"},
-      {3, "accuracy not reached or a solver failed (what was reached is still written)"},
-      {4, "would not fit in memory"}};
-  return meanings;
 }
 
 std::span<const Option> all_options() {

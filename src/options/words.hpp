@@ -13,17 +13,15 @@ template <class Value>
 struct Word {
   const char* word;
   Value value;
+  const char* synonyms = "";  // words that mean it elsewhere, a comma list
 };
 
-inline constexpr Word<Scheme> kSchemes[] = {{"hp", Scheme::hp}, {"upwind", Scheme::upwind}};
+inline constexpr Word<Scheme> kSchemes[] = {{"hp", Scheme::hp, "dg, fem, galerkin"},
+                                            {"upwind", Scheme::upwind, "finite_difference, fd"}};
 inline constexpr Word<SpectrumSolver> kSpectrumSolvers[] = {{"krylov", SpectrumSolver::krylov},
                                                             {"direct", SpectrumSolver::direct}};
 inline constexpr Word<TransientSolver> kTransientSolvers[] = {
     {"krylov", TransientSolver::krylov}, {"stepping", TransientSolver::stepping}};
-inline constexpr Word<Route> kRoutes[] = {
-    {"excursion", Route::excursion},     {"lambda", Route::lambda},
-    {"hitting", Route::hitting},         {"null_vector", Route::null_vector},
-    {"fluid_queue", Route::fluid_queue}, {"monte_carlo", Route::monte_carlo}};
 inline constexpr Word<StudyKind> kStudies[] = {{"none", StudyKind::none},
                                                {"p", StudyKind::points},
                                                {"delta", StudyKind::steps},

@@ -207,6 +207,7 @@ extern const Output kHdf5{
     .ending = "h5",
     .sentence = "write results and fields as HDF5 to this file; with density also FILE.xdmf, which "
                 "ParaView opens",
+    .synonyms = {"o", "out", "h5", "hdf5", "save"},
     .subjects = {Subject::run, Subject::study, Subject::sweep},
     .fields = {catalogue::Quantity::density, catalogue::Quantity::trajectory},
     .collective = true,

@@ -20,6 +20,7 @@ extern const Output kSummary{
     .option = "summary",
     .ending = "json",
     .sentence = "write results, error estimates, cost and provenance as JSON to this file",
+    .synonyms = {"json"},
     .subjects = {Subject::run, Subject::study, Subject::sweep, Subject::plan},
     .write = write_summary};
 

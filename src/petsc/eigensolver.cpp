@@ -97,7 +97,7 @@ Eigensolver::Eigensolver(Mat matrix, const std::string& prefix, double target, i
     const EventTimer analysis("MatLUFactorSym");
     const double start = wall_seconds();
     eps_ = configured_eigensolver(matrix, prefix, target, wanted, shifted);
-    const DefaultOrdering amf(prefix + "st_");
+    const auto amf = default_ordering(prefix + "st_");
     check(EPSSetUp(eps_));
     require_factored(solver_of(eps_), prefix + "st_");
     set_up = wall_seconds() - start;

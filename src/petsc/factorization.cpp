@@ -129,7 +129,7 @@ void read_all_options(const std::string& prefix, PCType pc_type) {
   check(MatAssemblyBegin(unit, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(unit, MAT_FINAL_ASSEMBLY));
   const KspHandle ksp = linear_solver(unit, prefix, pc_type);
-  const DefaultOrdering amf(prefix);
+  const auto amf = default_ordering(prefix);
   if (!is_own(ksp)) check(KSPSetUp(ksp));
 }
 

@@ -4,9 +4,7 @@
 #include <petscsys.h>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -67,27 +65,6 @@ std::string describe_failure(KSP ksp) {
                      meaning_of(info1));
 }
 
-/// A PETSc option for the life of the object; it had a value before, or none.
-class OptionFor {
- public:
-  OptionFor(std::string name, const std::string& value) : name_(std::move(name)) {
-    check(PetscOptionsGetString(nullptr, nullptr, name_.c_str(), before_.data(), before_.size(),
-                                &given_));
-    check(PetscOptionsSetValue(nullptr, name_.c_str(), value.c_str()));
-  }
-  ~OptionFor() {
-    (void)(given_ == PETSC_TRUE ? PetscOptionsSetValue(nullptr, name_.c_str(), before_.data())
-                                : PetscOptionsClearValue(nullptr, name_.c_str()));
-  }
-  OptionFor(const OptionFor&) = delete;
-  OptionFor& operator=(const OptionFor&) = delete;
-
- private:
-  std::string name_;
-  std::array<char, 64> before_{};
-  PetscBool given_ = PETSC_FALSE;
-};
-
 bool lacks_workspace(KSP ksp) {
   if (failure_of(ksp) == PC_NOERROR || !uses_mumps(ksp)) return false;
   MatFactorType type = MAT_FACTOR_NONE;
@@ -102,8 +79,7 @@ KspHandle with_more_workspace(KSP ksp, Mat matrix, const std::string& prefix) {
   constexpr PetscInt least = 100;
   PetscInt percent = 0;
   check(MatMumpsGetIcntl(factor_of(ksp), 14, &percent));
-  const OptionFor more(fmt::format("-{}mat_mumps_icntl_14", prefix),
-                       std::to_string(std::max(least, 2 * percent)));
+  const OptionFor more(prefix + "mat_mumps_icntl_14", std::to_string(std::max(least, 2 * percent)));
   KspHandle again = linear_solver(matrix, prefix, PCLU);
   check(KSPSetUp(again));
   return again;
@@ -141,15 +117,11 @@ Analysis own_analysis(KSP ksp) {
 }  // namespace
 
 std::string implied_pc_type(const std::string& prefix) {
-  char* text = nullptr;
-  check(PetscOptionsGetAll(nullptr, &text));
-  std::istringstream words(text);
-  check(PetscFree(text));
-  const std::string pc = "-" + prefix + "pc_", own = pc + kElementsPc, mat = "-" + prefix + "mat_";
+  const std::string pc = prefix + "pc_", own = pc + kElementsPc, mat = prefix + "mat_";
   bool others = false;
-  for (std::string word; words >> word;) {
-    if (word.starts_with(own)) return kElementsPc;
-    others = others || word.starts_with(pc) || word.starts_with(mat);
+  for (const auto& name : given_options()) {
+    if (name.starts_with(own)) return kElementsPc;
+    others = others || name.starts_with(pc) || name.starts_with(mat);
   }
   return others ? PCLU : "";
 }
@@ -161,15 +133,10 @@ void set_direct_solver(KSP ksp) {
   check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
 }
 
-DefaultOrdering::DefaultOrdering(const std::string& prefix)
-    : option_(fmt::format("-{}mat_mumps_icntl_7", prefix)) {
+std::unique_ptr<OptionFor> default_ordering(const std::string& prefix) {
   constexpr const char* amf = "2";
-  check(PetscOptionsHasName(nullptr, nullptr, option_.c_str(), &given_));
-  if (given_ == PETSC_FALSE) check(PetscOptionsSetValue(nullptr, option_.c_str(), amf));
-}
-
-DefaultOrdering::~DefaultOrdering() {
-  if (given_ == PETSC_FALSE) (void)PetscOptionsClearValue(nullptr, option_.c_str());
+  const std::string name = prefix + "mat_mumps_icntl_7";
+  return option_value(name) ? nullptr : std::make_unique<OptionFor>(name, amf);
 }
 
 KspHandle linear_solver(Mat matrix, const std::string& prefix, PCType pc_type) {
@@ -187,7 +154,7 @@ KspHandle linear_solver(Mat matrix, const std::string& prefix, PCType pc_type) {
 bool is_own(KSP ksp) { return own_function(ksp) != nullptr; }
 
 void factor(KspHandle& ksp, Mat matrix, const std::string& prefix) {
-  const DefaultOrdering amf(prefix);
+  const auto amf = default_ordering(prefix);
   check(KSPSetUp(ksp));
   if (lacks_workspace(ksp)) ksp = with_more_workspace(ksp, matrix, prefix);
   require_factored(ksp, prefix);
@@ -215,7 +182,7 @@ void record_factors(KSP ksp, SolverStatistics& statistics) {
 
 Analysis analyse(KSP ksp, Mat matrix, const std::string& prefix) {
   if (!uses_mumps(ksp)) return own_analysis(ksp);
-  const DefaultOrdering amf(prefix);
+  const auto amf = default_ordering(prefix);
   check(PCFactorSetUpMatSolverType(preconditioner_of(ksp)));
   MatFactorInfo info{};
   check(MatFactorInfoInitialize(&info));

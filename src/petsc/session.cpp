@@ -12,6 +12,7 @@
 #include "stickslip/petsc/blas.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/memory.hpp"
+#include "stickslip/petsc/solver_options.hpp"
 #include "stickslip/support/errors.hpp"
 
 namespace stickslip::petsc {
@@ -62,9 +63,7 @@ class StartFolder {
 // PETSc after 3.18 ends with a list of the options that it has not read. This program refuses what
 // nobody reads, with the name that was meant.
 void list_no_options_at_the_end() {
-  PetscBool given = PETSC_FALSE;
-  check(PetscOptionsHasName(nullptr, nullptr, "-options_left", &given));
-  if (given == PETSC_FALSE) check(PetscOptionsSetValue(nullptr, "-options_left", "no"));
+  if (!option_value("options_left")) check(PetscOptionsSetValue(nullptr, "-options_left", "no"));
 }
 
 PetscErrorCode start(int& count, char**& values) {

@@ -75,7 +75,7 @@ TimeStepper::TimeStepper(Mat a, Vec u, const std::string& prefix, double toleran
 void TimeStepper::advance(double time) {
   if (time <= now_) return;
   const PhaseTimer timer("time stepping", statistics_.solve_seconds);
-  const DefaultOrdering amf(prefix_);
+  const auto amf = default_ordering(prefix_);
   check(TSSetMaxTime(ts_, time));
   check(TSSolve(ts_, u_));
   TSConvergedReason reason = TS_CONVERGED_ITERATING;

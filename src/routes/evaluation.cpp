@@ -1,19 +1,36 @@
 #include "stickslip/routes/evaluation.hpp"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
+
 #include "routes.hpp"
 
 namespace stickslip::routes {
+namespace {
+
+using catalogue::Route;
+
+struct Computation {
+  Route route;
+  Evaluation (*evaluate)(const Problem&);
+};
+
+// All methods that have a discretisation, each in a file of its own.
+constexpr Computation kComputations[] = {{Route::excursion, by_excursion},
+                                         {Route::lambda, by_lambda},
+                                         {Route::hitting, by_hitting},
+                                         {Route::null_vector, by_null_vector},
+                                         {Route::fluid_queue, by_fluid_queue}};
+
+}  // namespace
 
 Evaluation evaluate(const Problem& problem) {
-  switch (problem.given.method.route) {
-  case catalogue::Route::excursion: return by_excursion(problem);
-  case catalogue::Route::lambda: return by_lambda(problem);
-  case catalogue::Route::hitting: return by_hitting(problem);
-  case catalogue::Route::null_vector: return by_null_vector(problem);
-  case catalogue::Route::fluid_queue: return by_fluid_queue(problem);
-  case catalogue::Route::monte_carlo: break;  // has no discretisation
+  for (const auto& [route, evaluate_by] : kComputations) {
+    if (route == problem.given.method.route) return evaluate_by(problem);
   }
-  return {};
+  throw std::logic_error(
+      fmt::format("-route {} works on no discretisation", problem.given.method.row().word));
 }
 
 }  // namespace stickslip::routes

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <string>
 
+#include "stickslip/support/text.hpp"
+
 namespace stickslip {
 namespace {
 
@@ -14,6 +16,24 @@ namespace {
 int exponent(double x, int digits) {
   const std::string text = fmt::format("{:.{}e}", x, digits);
   return std::stoi(text.substr(text.find('e') + 1));
+}
+
+// first:last:count[:log]; nothing if the parts make no sense.
+std::optional<std::vector<double>> parse_range(const std::vector<std::string>& parts) {
+  const bool log = parts.size() == 4 && parts[3] == "log";
+  if (parts.size() != 3 && !log) return std::nullopt;
+  const auto first = parse_number(parts[0]), last = parse_number(parts[1]),
+             count = parse_number(parts[2]);
+  constexpr double most = 1e6;
+  if (!first || !last || !count || *count != std::floor(*count)) return std::nullopt;
+  if (*count < 2 || *count > most || !(*first < *last) || (log && *first <= 0)) return std::nullopt;
+  std::vector<double> values;
+  for (int n = 0; n < *count; ++n) {
+    const double t = n / (*count - 1);
+    values.push_back(log ? *first * std::pow(*last / *first, t) : *first + t * (*last - *first));
+  }
+  values.back() = *last;
+  return values;
 }
 
 }  // namespace
@@ -51,6 +71,19 @@ std::optional<double> parse_number(const std::string& text) {
     return std::nullopt;
   }
   return value;
+}
+
+std::optional<std::vector<double>> parse_numbers(const std::string& text) {
+  const auto range = split(text, ':');
+  if (range.size() > 1) return parse_range(range);
+  std::vector<double> values;
+  for (const auto& word : split(text, ',')) {
+    const auto value = parse_number(word);
+    if (!value) return std::nullopt;
+    values.push_back(*value);
+  }
+  if (values.empty()) return std::nullopt;
+  return values;
 }
 
 }  // namespace stickslip

@@ -7,6 +7,7 @@
 
 #include "log_density.hpp"
 
+#include "stickslip/model/largest_force.hpp"
 #include "stickslip/support/infinity.hpp"
 
 namespace stickslip::velocity {
@@ -49,6 +50,15 @@ double upper_tail(const model::Process& process, double tolerance) {
 double tail_velocity(const model::Process& process, double tolerance) {
   const double upper = upper_tail(process, tolerance);
   return process.symmetric() ? upper : std::max(upper, upper_tail(process.mirrored(), tolerance));
+}
+
+double largest_speed(const model::Scene& scene) {
+  constexpr double rounding = 1e-16;
+  const double force = model::largest_force(scene);
+  double speed =
+      std::max(scene.drag.terminal_velocity(force), scene.drag.mirrored().terminal_velocity(force));
+  speed = std::min(speed, tail_velocity(scene.meant(), rounding));
+  return std::min(speed, scene.v_max.value_or(speed));
 }
 
 }  // namespace stickslip::velocity

@@ -53,11 +53,3 @@ TEST_CASE("catalogue: the key of an observable is found again by its row") {
   CHECK(kU.is_pattern());
   CHECK_FALSE(kWOne.is_pattern());
 }
-
-TEST_CASE("catalogue: routes are a set") {
-  constexpr Routes some{Route::excursion, Route::monte_carlo};
-  CHECK(some.contains(Route::excursion));
-  CHECK(some.contains(Route::monte_carlo));
-  CHECK_FALSE(some.contains(Route::lambda));
-  CHECK_FALSE(Routes{}.contains(Route::excursion));
-}

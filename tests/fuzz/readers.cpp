@@ -25,9 +25,9 @@
 #include "stickslip/model/observable.hpp"
 #include "stickslip/monte_carlo/simulate.hpp"
 #include "stickslip/operators/element_pc.hpp"
-#include "stickslip/options/reference.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/outputs/hdf5_file.hpp"
+#include "stickslip/outputs/reference.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
@@ -318,7 +318,7 @@ void go_on_with(options::Request request, const std::string& file) {
 }
 
 std::vector<Target> targets(const Corpus& corpus) {
-  const auto references = [](const std::string& file) { (void)options::read_references(file); };
+  const auto references = [](const std::string& file) { (void)outputs::read_references(file); };
   const model::Friction friction{1, 0.5};
   return {
       {"options file", ".opts", 22, option_files(), by_text,

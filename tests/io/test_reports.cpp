@@ -10,7 +10,7 @@
 #include "../common/made_results.hpp"
 #include "../common/temporary.hpp"
 #include "../common/written.hpp"
-#include "stickslip/options/reference.hpp"
+#include "stickslip/outputs/reference.hpp"
 #include "stickslip/support/hdf5_id.hpp"
 
 using namespace stickslip;
@@ -443,7 +443,7 @@ TEST_CASE("reports: references read from a summary and from HDF5 are what was wr
                                               {"S_v", 0.5, 3, 2.5, 3.25},
                                               {"S_v", 2.0, 5, 4.75, 5.5}};
   for (const auto& file : {hdf5, json}) {
-    const auto read = options::read_references(file);
+    const auto read = outputs::read_references(file);
     REQUIRE(read.size() == written.size());
     for (std::size_t n = 0; n < read.size(); ++n) {
       CHECK(read[n].quantity == written[n].quantity);

@@ -17,7 +17,7 @@ import sys
 
 MODULES = ("support", "catalogue", "algebra", "model", "effects", "cases", "exact", "noise", "velocity", "simulation",
            "petsc", "checkpoint", "operators", "quantities", "routes", "monte_carlo", "accuracy", "outputs", "options",
-           "studies", "io", "sweeps", "app")
+           "pages", "studies", "io", "sweeps", "app")
 SCALAR_MODULES = ("petsc", "operators", "quantities", "routes")
 LONGEST, LONG, MEDIAN = 60, 30, 8
 LONGEST_FILE = 450

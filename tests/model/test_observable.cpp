@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -5,6 +6,7 @@
 
 #include "../common/catch.hpp"
 #include "stickslip/model/observable.hpp"
+#include "stickslip/model/scene.hpp"
 #include "stickslip/support/errors.hpp"
 
 using stickslip::model::Friction;
@@ -190,4 +192,22 @@ TEST_CASE("observables: a section goes along |v|, with the signs of y and v") {
   CHECK(stickslip::model::section(f, 2, -1)(5) == 7);
   CHECK(stickslip::model::section(f, 2, 1)(5) == 7);
   CHECK(std::isnan(stickslip::model::section(f, 2, 1)(3)));
+}
+
+TEST_CASE("observables: a scene shows them on its outermost levels and on those next to numbers") {
+  stickslip::model::Scene scene;
+  scene.delta = 0.25;
+  scene.friction = kFriction;
+  scene.noise_levels = 40;
+  auto f = parse_observable("abs(x) > 1.1", kFriction);
+  examine(f, scene, 20);
+  for (double x : {10.0, -10.0, 1.25, -1.25, 1.0, -1.0, 0.0}) {
+    INFO(x);
+    CHECK(std::count(f.levels.begin(), f.levels.end(), x) == 1);
+  }
+  for (double x : f.levels) {
+    CHECK(std::abs(x) <= 10);
+    CHECK(std::remainder(x, scene.delta) == 0);
+  }
+  CHECK(f.within_unit());
 }

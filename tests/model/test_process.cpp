@@ -76,3 +76,11 @@ TEST_CASE("process: a net force that vanishes but for rounding is 0, with a bias
   CHECK(process.net_force(3) == 0);  // 0.3 + 0.4 - 0.7
   CHECK(process.net_force(4) > 0.09);
 }
+
+TEST_CASE("process: bodies tend to the velocity at which drag balances the highest level") {
+  const Process process{{1, 0.25, 16}, {1, 0.5}, {2, 0}, 0.1};
+  CHECK(process.terminal_velocity() == Approx((4 + 0.1 - 0.5) / 2));
+  CHECK(process.mirrored().terminal_velocity() == Approx((4 - 0.1 - 0.5) / 2));
+  CHECK(process.terminal_speed() == process.terminal_velocity());
+  CHECK(process.mirrored().terminal_speed() == process.terminal_velocity());
+}

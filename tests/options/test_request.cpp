@@ -340,12 +340,18 @@ TEST_CASE("request: an option that serves one purpose is reported where it serve
       {"-sweep_ranks 2", "-sweep_ranks = 2 has no effect without a sweep"},
       {"-study_steps 4", "-study_steps = 4 has no effect without -study"},
       {"-study_repeats 3", "-study_repeats = 3 has no effect without -study"},
-      {"-study_csv c", "-study_csv = c has no effect without -study"}};
+      {"-study_csv c", "-study_csv = c has no effect without -study"},
+      {"-study p -trajectory t.csv", "-trajectory = t.csv has no effect with -study"},
+      {"-plan -trajectory t.csv", "-trajectory = t.csv has no effect with -plan"},
+      {"-plan -output o.h5", "-output = o.h5 has no effect with -plan"},
+      {"-plan -study_csv c", "-study_csv = c has no effect without -study"}};
   for (const auto& [line, warning] : useless) {
     CHECK(Given(line).read().warnings == std::vector<std::string>{warning + "; leave it out"});
   }
   for (const std::string line :
        {"-route monte_carlo -excursions 9 -seed 7 -checkpoint c", "-study p -study_steps 4",
+        "-study p -output o.h5 -summary s.json", "-plan -summary s.json",
+        "-plan -quantities density -output o.h5", "-plan -quantities trajectory -trajectory t.csv",
         "-drag cubic -drag_coefficient 2 -drag_cubic 2",
         "-quantities spectrum -omega 1 -spectrum_solver krylov",
         "-quantities duration_density,autocorrelation -time 1 -transient_solver stepping",

@@ -1,27 +1,12 @@
 #include <set>
-#include <sstream>
 
 #include "../common/catch.hpp"
-#include "../common/temporary.hpp"
-#include "stickslip/options/manual.hpp"
-#include "stickslip/options/settings.hpp"
 #include "stickslip/options/table.hpp"
 #include "stickslip/support/number_text.hpp"
 #include "stickslip/support/text.hpp"
 
 using namespace stickslip;
 using namespace stickslip::options;
-
-namespace {
-
-std::string on_one_line(const std::string& text) {
-  std::istringstream words(text);
-  std::string line, word;
-  while (words >> word) line += word + " ";
-  return line;
-}
-
-}  // namespace
 
 TEST_CASE("option table: names are unique, defaults obey their own rules") {
   std::set<std::string> names;
@@ -42,27 +27,6 @@ TEST_CASE("option table: names are unique, defaults obey their own rules") {
       }
     }
   }
-}
-
-TEST_CASE("option table: help and reference name every option and its default") {
-  const std::string help = help_text(), page = reference_page();
-  for (const auto& group : table()) {
-    for (const auto& option : group.options) {
-      CHECK_THAT(help, Catch::Contains("-" + option.name));
-      CHECK_THAT(page, Catch::Contains("`-" + option.name + "`"));
-      if (!option.initial.empty()) {
-        CHECK_THAT(on_one_line(help), Catch::Contains("default " + option.initial));
-      }
-    }
-  }
-}
-
-TEST_CASE("option table: the form of every value is explained") {
-  std::set<std::string> explained;
-  for (const auto& form : forms()) CHECK(explained.insert(form.name).second);
-  std::set<std::string> used;
-  for (const auto& option : all_options()) used.insert(option.form);
-  CHECK(used == explained);
 }
 
 TEST_CASE("option table: what a value must be, and what its form leaves open") {
@@ -87,19 +51,6 @@ TEST_CASE("option table: a sweep is of the option that its name ends with") {
   CHECK(swept_by(*find("mu_d")) == nullptr);
 }
 
-TEST_CASE("option table: the help text fits a terminal of 100 columns") {
-  std::istringstream lines(help_text());
-  std::string line;
-  while (std::getline(lines, line)) {
-    INFO(line);
-    CHECK(line.size() <= 100);
-  }
-}
-
-TEST_CASE("option table: the committed reference page is the generated one") {
-  CHECK(test::content(std::string(STICKSLIP_SOURCE) + "/docs/options.md") == reference_page());
-}
-
 TEST_CASE("ranges: ends belong or not as the text says") {
   const Range open{0, 1, false, false}, closed{0, 1, true, true};
   CHECK_FALSE(open.contains(0));
@@ -111,43 +62,4 @@ TEST_CASE("ranges: ends belong or not as the text says") {
   CHECK(open.text() == "(0, 1)");
   CHECK(closed.text() == "[0, 1]");
   CHECK(Range{}.text() == "(-inf, inf)");
-}
-
-TEST_CASE("numbers: decimal and finite, nothing before or after") {
-  CHECK(parse_number("0.25") == 0.25);
-  CHECK(parse_number("-1e-3") == -1e-3);
-  CHECK(parse_number("+2") == 2.0);
-  for (const char* bad : {"", "abc", "2.5xyz", "nan", "inf", "1e400", "1,5", " 1", "1 ", "0x10",
-                          "--1", "+-1", "1e", "+"}) {
-    INFO(bad);
-    CHECK_FALSE(parse_number(bad));
-  }
-}
-
-TEST_CASE("number lists: as they are, or evenly spaced") {
-  using Numbers = std::vector<double>;
-  CHECK(parse_numbers("0.1") == Numbers{0.1});
-  CHECK(parse_numbers("0.1,1,10") == Numbers{0.1, 1, 10});
-  CHECK(parse_numbers(" 3 , -1e-2 ") == Numbers{3, -0.01});
-  CHECK(parse_numbers("1:2:3") == Numbers{1, 1.5, 2});
-  CHECK(parse_numbers("-1:1:2") == Numbers{-1, 1});
-  CHECK(parse_numbers("1:16:5:log").value() == Numbers{1, 2, 4, 8, 16});
-  const auto many = parse_numbers("0.001:0.1:31:log");
-  REQUIRE(many);
-  CHECK(many->size() == 31);
-  CHECK(many->front() == 0.001);
-  CHECK((*many)[15] == Approx(0.01).epsilon(1e-14));
-  // Ends are as written, where 0.3 + (0.9 - 0.3) and 0.3 (0.9/0.3) are not 0.9.
-  CHECK(parse_numbers("0.3:0.9:4")->back() == 0.9);
-  CHECK(parse_numbers("0.3:0.9:4:log")->back() == 0.9);
-}
-
-TEST_CASE("number lists: anything else is refused") {
-  for (const char* bad :
-       {"",          "a",           "1,b",        "1;2",     "1,inf",  "1:2",     "1:2:3:4",
-        "1:2:3:lin", "1:2:3:log:5", "1:2:1",      "1:2:0",   "1:2:-3", "1:2:2.5", "2:1:3",
-        "1:1:3",     "0:1:3:log",   "-1:1:3:log", "1:2:1e7", "1:x:3",  "nan:1:2", "1:2:3,4"}) {
-    INFO(bad);
-    CHECK_FALSE(parse_numbers(bad));
-  }
 }

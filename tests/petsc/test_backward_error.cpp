@@ -60,16 +60,3 @@ TEST_CASE("backward error: components below 1e-13 of the largest need no digits"
   // The second row sees |x_2| = 0 and no b, but 4e-13 of the largest component, 5.
   CHECK(measured(measure, a, {0, 1e-12}, {5, 0}, {5, 0}).forward == Approx(0.5).epsilon(1e-9));
 }
-
-TEST_CASE("backward error: new entries count once the old ones are forgotten", "[parallel]") {
-  const MatHandle a = triangle();
-  BackwardError measure(a);
-  const auto before = measured(measure, a, {1, 0}, {0, 0}, {1, 1});
-  CHECK(before.forward == Approx(1.0 / 3).epsilon(1e-11));
-  CHECK(before.transposed == Approx(1.0 / 7).epsilon(1e-14));
-  check(MatScale(a, 10));
-  measure.forget();
-  const auto after = measured(measure, a, {1, 0}, {0, 0}, {1, 1});
-  CHECK(after.forward == Approx(1.0 / 30).epsilon(1e-11));
-  CHECK(after.transposed == Approx(1.0 / 70).epsilon(1e-14));
-}

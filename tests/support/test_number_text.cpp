@@ -7,6 +7,8 @@
 using stickslip::error_text;
 using stickslip::kInfinity;
 using stickslip::number_text;
+using stickslip::parse_number;
+using stickslip::parse_numbers;
 using stickslip::seconds_text;
 
 namespace {
@@ -78,4 +80,43 @@ TEST_CASE("seconds: milliseconds, of long times fewer decimals") {
   CHECK(seconds_text(98.7654) == "98.77");
   CHECK(seconds_text(987.654) == "987.7");
   CHECK(seconds_text(98765.4) == "98765");
+}
+
+TEST_CASE("numbers: decimal and finite, nothing before or after") {
+  CHECK(parse_number("0.25") == 0.25);
+  CHECK(parse_number("-1e-3") == -1e-3);
+  CHECK(parse_number("+2") == 2.0);
+  for (const char* bad : {"", "abc", "2.5xyz", "nan", "inf", "1e400", "1,5", " 1", "1 ", "0x10",
+                          "--1", "+-1", "1e", "+"}) {
+    INFO(bad);
+    CHECK_FALSE(parse_number(bad));
+  }
+}
+
+TEST_CASE("number lists: as they are, or evenly spaced") {
+  using Numbers = std::vector<double>;
+  CHECK(parse_numbers("0.1") == Numbers{0.1});
+  CHECK(parse_numbers("0.1,1,10") == Numbers{0.1, 1, 10});
+  CHECK(parse_numbers(" 3 , -1e-2 ") == Numbers{3, -0.01});
+  CHECK(parse_numbers("1:2:3") == Numbers{1, 1.5, 2});
+  CHECK(parse_numbers("-1:1:2") == Numbers{-1, 1});
+  CHECK(parse_numbers("1:16:5:log").value() == Numbers{1, 2, 4, 8, 16});
+  const auto many = parse_numbers("0.001:0.1:31:log");
+  REQUIRE(many);
+  CHECK(many->size() == 31);
+  CHECK(many->front() == 0.001);
+  CHECK((*many)[15] == Approx(0.01).epsilon(1e-14));
+  // Ends are as written, where 0.3 + (0.9 - 0.3) and 0.3 (0.9/0.3) are not 0.9.
+  CHECK(parse_numbers("0.3:0.9:4")->back() == 0.9);
+  CHECK(parse_numbers("0.3:0.9:4:log")->back() == 0.9);
+}
+
+TEST_CASE("number lists: anything else is refused") {
+  for (const char* bad :
+       {"",          "a",           "1,b",        "1;2",     "1,inf",  "1:2",     "1:2:3:4",
+        "1:2:3:lin", "1:2:3:log:5", "1:2:1",      "1:2:0",   "1:2:-3", "1:2:2.5", "2:1:3",
+        "1:1:3",     "0:1:3:log",   "-1:1:3:log", "1:2:1e7", "1:x:3",  "nan:1:2", "1:2:3,4"}) {
+    INFO(bad);
+    CHECK_FALSE(parse_numbers(bad));
+  }
 }

@@ -488,3 +488,16 @@ TEST_CASE("tail velocity: beyond the last maximum of a density that falls and ri
   CHECK(from_rest <= -drop);  // the density at rest is the largest
   CHECK(from_rest >= -drop - 0.1);
 }
+
+TEST_CASE("tail: the largest speed is the least of what force, density and user allow") {
+  model::Scene scene;
+  scene.delta = 0.5;
+  scene.noise_levels = 4;
+  scene.friction = {1, 0.5};
+  CHECK(velocity::largest_speed(scene) == Approx(4 * 0.5 - 0.5));  // drag -v
+  scene.v_max = 1;
+  CHECK(velocity::largest_speed(scene) == 1);
+  scene.v_max.reset();
+  scene.drag = {0, 0};
+  CHECK(velocity::largest_speed(scene) == velocity::tail_velocity(scene.meant(), 1e-16));
+}

@@ -1,10 +1,12 @@
 #pragma once
 /// What computes a result: model parameters, question and method.
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "stickslip/catalogue/entry.hpp"
@@ -30,11 +32,6 @@ enum class TransientSolver { krylov, stepping };
 /// How the spectrum is computed.
 enum class SpectrumSolver { krylov, direct };
 
-/// Whether a route works on both signs of v, with both branches.
-[[nodiscard]] inline bool on_full_grid(Route route) {
-  return route == Route::lambda || route == Route::hitting || route == Route::null_vector;
-}
-
 /// A value of other origin, with a 95 % confidence interval.
 struct Reference {
   std::string quantity;            ///< key of a result, such as P_stick or S_v
@@ -59,6 +56,13 @@ struct Question {
   std::vector<Reference> references = {};  ///< of -compare
 
   [[nodiscard]] bool wants(Quantity q) const { return quantities.contains(q); }
+  /// Whether anything asked for depends on the option (a name without dash).
+  [[nodiscard]] bool depends_on(std::string_view option) const {
+    const auto all = catalogue::entries();
+    return std::any_of(all.begin(), all.end(), [&](const catalogue::Entry* entry) {
+      return wants(entry->quantity) && entry->takes(option);
+    });
+  }
 };
 
 /// How it is computed; a degree, layers or points switch refinement off.
@@ -75,6 +79,8 @@ struct Method {
   double excursions = 1e6;  ///< of -route monte_carlo, at most
   std::uint64_t seed = 1;   ///< of whatever is simulated
 
+  /// What is known of the solution method.
+  [[nodiscard]] const catalogue::SolutionMethod& row() const { return catalogue::method_of(route); }
   /// Whether the discretisation is chosen by hand.
   [[nodiscard]] bool fixed() const {
     return degree || layers || points || noise_degree.value_or(0) > 0;

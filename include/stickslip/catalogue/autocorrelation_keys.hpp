@@ -18,6 +18,7 @@ inline constexpr const Row* kAutocorrelationRows[] = {&kAutocovariance};
 
 inline constexpr Entry kAutocorrelation{.quantity = Quantity::autocorrelation,
                                         .word = "autocorrelation",
+                                        .synonyms = "acf, vacf, correlation, autocovariance",
                                         .title = "autocovariance of the velocity",
                                         .routes = {Route::excursion, Route::monte_carlo},
                                         .options = "time, transient_solver",

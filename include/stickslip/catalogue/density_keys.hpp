@@ -5,11 +5,12 @@
 
 namespace stickslip::catalogue {
 
-inline constexpr Entry kDensity{.quantity = Quantity::density,
-                                .word = "density",
-                                .title =
-                                    "stationary distribution as a field in the file of -output",
-                                .routes = {Route::excursion},
-                                .of_one_run = true};
+inline constexpr Entry kDensity{
+    .quantity = Quantity::density,
+    .word = "density",
+    .synonyms = "pdf, stationary, distribution, invariant_measure, histogram",
+    .title = "stationary distribution as a field in the file of -output",
+    .routes = {Route::excursion},
+    .of_one_run = true};
 
 }  // namespace stickslip::catalogue

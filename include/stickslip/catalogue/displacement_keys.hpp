@@ -25,6 +25,7 @@ inline constexpr const Row* kDisplacementRows[] = {&kDisplacementMean, &kDisplac
 
 inline constexpr Entry kDisplacement{.quantity = Quantity::displacement,
                                      .word = "displacement",
+                                     .synonyms = "msd, mean_square_displacement, diffusion",
                                      .title = "mean and variance of the displacement from -start",
                                      .routes = {Route::excursion, Route::monte_carlo},
                                      .options = "time, start",

@@ -63,6 +63,7 @@ inline constexpr const Row* kDurationDensityRows[] = {
 inline constexpr Entry kDurationDensity{
     .quantity = Quantity::duration_density,
     .word = "duration_density",
+    .synonyms = "durations, survival, duration_distribution",
     .title = "probability densities and distribution functions of the durations",
     .routes = {Route::excursion, Route::monte_carlo},
     .options = "time, transient_solver",

@@ -4,10 +4,11 @@
 /// is said of it; help, reference pages, validation and files follow from these.
 
 #include <cstdint>
-#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "stickslip/catalogue/solution_method.hpp"
 
 namespace stickslip::catalogue {
 
@@ -40,24 +41,6 @@ enum class Quantity : std::uint64_t {
   for (char c : word) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
   return Quantity{hash};
 }
-
-/// By which system of equations.
-enum class Route { excursion, lambda, hitting, null_vector, fluid_queue, monte_carlo };
-
-/// A set of routes.
-class Routes {
- public:
-  constexpr Routes() = default;
-  constexpr Routes(std::initializer_list<Route> routes) {
-    for (Route route : routes) bits_ |= 1U << static_cast<unsigned>(route);
-  }
-  [[nodiscard]] constexpr bool contains(Route route) const {
-    return (bits_ >> static_cast<unsigned>(route) & 1U) != 0;
-  }
-
- private:
-  unsigned bits_ = 0;
-};
 
 /// What a result is, whatever it is called: its range and direction (accuracy/result_bounds.hpp),
 /// and with which others it shares errors (accuracy/estimates.hpp), follow from it.
@@ -103,17 +86,21 @@ struct Row {
 /// A quantity that can be asked for.
 struct Entry {
   Quantity quantity;
-  std::string_view word;          ///< of -quantities
-  std::string_view title;         ///< what it is, in half a line
-  Routes routes;                  ///< that give it, for every scene
-  std::string_view options = {};  ///< that it depends on, a comma list
-  std::string_view others = {};   ///< keys of other quantities that come with it, a comma list
+  std::string_view word;           ///< of -quantities
+  std::string_view synonyms = {};  ///< words that mean it elsewhere, a comma list
+  std::string_view title;          ///< what it is, in half a line
+  Routes routes;                   ///< that give it, for every scene
+  std::string_view options = {};   ///< that it depends on, a comma list
+  std::string_view others = {};    ///< keys of other quantities that come with it, a comma list
   std::span<const Row* const> rows = {};
   /// The degree of elements at which error estimates meet an accuracy of 10^-n is expected to be
   /// degrees_per_digit n + degrees_besides.
   double degrees_per_digit = 1, degrees_besides = 1;
   bool of_phases = false;  ///< about sticking and sliding phases: nothing where a body never sticks
   bool of_one_run = false;  ///< a field or a path, which has no place in a sweep
+
+  /// Whether it depends on an option (a name without dash).
+  [[nodiscard]] bool takes(std::string_view option) const;
 };
 
 /// All quantities, in the order of the help text.

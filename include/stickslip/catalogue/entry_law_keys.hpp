@@ -34,6 +34,7 @@ inline constexpr const Row* kEntryLawRows[] = {&kEntryLawPlus, &kEntryLawMinus, 
 inline constexpr Entry kEntryLaw{
     .quantity = Quantity::entry_law,
     .word = "entry_law",
+    .synonyms = "hitting, entry, onset",
     .title = "hitting distribution at the onset of sticking",
     .routes = {Route::excursion, Route::fluid_queue, Route::monte_carlo},
     .rows = kEntryLawRows,

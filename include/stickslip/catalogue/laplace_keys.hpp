@@ -67,6 +67,7 @@ inline constexpr const Row* kLaplaceRows[] = {
 inline constexpr Entry kLaplace{
     .quantity = Quantity::laplace,
     .word = "laplace",
+    .synonyms = "transform, transforms, laplace_transform",
     .title = "Laplace transforms and variances of the durations",
     .routes = {Route::excursion, Route::fluid_queue, Route::monte_carlo},
     .options = "lambda",

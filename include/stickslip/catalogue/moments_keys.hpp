@@ -39,6 +39,7 @@ inline constexpr const Row* kMomentsRows[] = {&kEV2, &kEAbsV, &kEXV, &kEV};
 
 inline constexpr Entry kMoments{.quantity = Quantity::moments,
                                 .word = "moments",
+                                .synonyms = "variance, mean_square, energy",
                                 .title = "moments of the velocity in the stationary distribution",
                                 .routes = {Route::excursion, Route::lambda, Route::null_vector,
                                            Route::fluid_queue, Route::monte_carlo},

@@ -50,6 +50,8 @@ inline constexpr const Row* kRelaxationRows[] = {&kRelaxationEven, &kRelaxationE
 
 inline constexpr Entry kRelaxation{.quantity = Quantity::relaxation,
                                    .word = "relaxation",
+                                   .synonyms =
+                                       "eigenvalues, spectral_gap, gap, modes, relaxation_time",
                                    .title = "leading eigenvalues of the generator, by SLEPc",
                                    .routes = {Route::excursion},
                                    .rows = kRelaxationRows};

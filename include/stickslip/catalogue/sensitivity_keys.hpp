@@ -23,6 +23,7 @@ inline constexpr const Row* kSensitivityRows[] = {&kDerivative};
 inline constexpr Entry kSensitivity{
     .quantity = Quantity::sensitivity,
     .word = "sensitivity",
+    .synonyms = "derivatives, gradient, gradients",
     .title = "derivatives of the scalars of sticking, moments and noise_law",
     .routes = {Route::excursion},
     .rows = kSensitivityRows,

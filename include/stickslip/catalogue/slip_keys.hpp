@@ -60,6 +60,7 @@ inline constexpr const Row* kSlipRows[] = {&kMeanSlip,    &kVarSlip, &kMeanSlipN
 
 inline constexpr Entry kSlip{.quantity = Quantity::slip,
                              .word = "slip",
+                             .synonyms = "avalanche, slide_length",
                              .title = "path length and net displacement of a sliding phase",
                              .routes = {Route::excursion, Route::monte_carlo},
                              .options = "distance, inverse_distance",

@@ -58,12 +58,14 @@ inline constexpr Row kVarianceFromSpectrum{.key = "variance_from_spectrum",
 inline constexpr const Row* kSpectrumRows[] = {
     &kSV, &kS0, &kDiffusivity, &kFullWidth, &kCorrelationTime, &kVarianceFromSpectrum};
 
-inline constexpr Entry kSpectrum{.quantity = Quantity::spectrum,
-                                 .word = "spectrum",
-                                 .title = "power spectral density of the velocity, diffusivity",
-                                 .routes = {Route::excursion, Route::monte_carlo},
-                                 .options = "omega, spectrum_solver",
-                                 .rows = kSpectrumRows,
-                                 .degrees_besides = 3};
+inline constexpr Entry kSpectrum{
+    .quantity = Quantity::spectrum,
+    .word = "spectrum",
+    .synonyms = "psd, power, power_spectrum, power_spectral_density, spectral_density",
+    .title = "power spectral density of the velocity, diffusivity",
+    .routes = {Route::excursion, Route::monte_carlo},
+    .options = "omega, spectrum_solver",
+    .rows = kSpectrumRows,
+    .degrees_besides = 3};
 
 }  // namespace stickslip::catalogue

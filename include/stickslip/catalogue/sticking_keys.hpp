@@ -53,6 +53,7 @@ inline constexpr const Row* kStickingRows[] = {&kPStick, &kPSlide, &kMeanStick, 
 
 inline constexpr Entry kSticking{.quantity = Quantity::sticking,
                                  .word = "sticking",
+                                 .synonyms = "stick, mean_durations",
                                  .title = "probability of sticking, mean durations of the phases",
                                  .routes = {Route::excursion, Route::lambda, Route::hitting,
                                             Route::null_vector, Route::fluid_queue,

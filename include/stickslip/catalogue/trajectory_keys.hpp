@@ -7,6 +7,7 @@ namespace stickslip::catalogue {
 
 inline constexpr Entry kTrajectory{.quantity = Quantity::trajectory,
                                    .word = "trajectory",
+                                   .synonyms = "path, sample_path, simulation",
                                    .title =
                                        "a simulated path in the file of -output or -trajectory",
                                    .routes = {Route::excursion, Route::monte_carlo},

@@ -17,9 +17,6 @@ namespace stickslip::effects {
 /// The values of options, and where to complain about them.
 class Given {
  public:
-  Given() = default;
-  Given(const Given&) = delete;
-  Given& operator=(const Given&) = delete;
   virtual ~Given() = default;
 
   /// Whether the user gave the option.
@@ -38,6 +35,11 @@ class Given {
 
   /// Whether the user gave an option that `choice` cannot do without, else refused.
   bool needs(const std::string& choice, const std::string& option, const std::string& example);
+
+ protected:
+  Given() = default;
+  Given(const Given&) = default;
+  Given& operator=(const Given&) = default;
 };
 
 /// An option of an effect, and what happens where no effect in use knows it.

@@ -56,10 +56,13 @@ struct Shown {
   std::string page = {};                 ///< of the manual where to read more
 };
 
+/// What to do about a number that the program chooses unless it is given.
+inline constexpr const char* kChosen = "leave it out to have it chosen from -accuracy";
+
 struct Option {
   std::string name;                ///< without the dash
   Kind kind;                       ///< form of the value
-  std::string form;                ///< of the value, by the name that options::forms() explains
+  std::string form;                ///< of the value, by the name that pages::forms() explains
   std::string unit;                ///< of a number; empty if it has none
   std::string initial;             ///< default as text; empty: see `sentence`
   Range range;                     ///< of a number
@@ -68,12 +71,18 @@ struct Option {
   std::string fix;                 ///< what to do about a value out of range; may be empty
   Shown shown = {};
 
+  /// The same with other names.
+  [[nodiscard]] Option called(const std::vector<std::string>& others) const {
+    Option option = *this;
+    option.shown.others = others;
+    return option;
+  }
   static Option real(const char* name, const char* unit, const char* initial, Range range,
-                     const char* sentence, const char* fix, const Shown& shown = {}) {
+                     const char* sentence, const char* fix = kChosen, const Shown& shown = {}) {
     return {name, Kind::real, "number", unit, initial, range, {}, sentence, fix, shown};
   }
   static Option integer(const char* name, const char* initial, Range range, const char* sentence,
-                        const char* fix, const std::vector<std::string>& words = {},
+                        const char* fix = kChosen, const std::vector<std::string>& words = {},
                         const Shown& shown = {}) {
     return {name, Kind::integer, "integer", "", initial, range, words, sentence, fix, shown};
   }
@@ -86,8 +95,5 @@ struct Option {
     return {name, kind, "file", "", "", {}, {}, sentence, "", shown};
   }
 };
-
-/// What to do about a number that the program chooses unless it is given.
-inline constexpr const char* kChosen = "leave it out to have it chosen from -accuracy";
 
 }  // namespace stickslip::effects

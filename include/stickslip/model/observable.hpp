@@ -12,6 +12,8 @@
 
 namespace stickslip::model {
 
+struct Scene;
+
 /// An observable of the process: x the noise, y = sign of the motion (0 at rest), v the velocity.
 struct Observable {
   using Function = std::function<double(double x, double y, double v)>;
@@ -60,5 +62,8 @@ struct Observable {
 /// these shows: it moves with x, and elements cannot end there on all levels. Jumps at v = 0 and in
 /// x do not count. About 14 000 values of f a level and sign.
 void examine(Observable& f, const std::vector<double>& x, double step, double reach);
+
+/// The same on up to 17 levels of the noise, evenly, and on those next to the numbers of f.
+void examine(Observable& f, const Scene& scene, double reach);
 
 }  // namespace stickslip::model

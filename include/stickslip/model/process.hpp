@@ -2,6 +2,7 @@
 /// The piecewise deterministic Markov process (X, Y, V) with everything that fixes its
 /// distribution.
 
+#include <algorithm>
 #include <string>
 
 #include "stickslip/model/drag.hpp"
@@ -53,7 +54,15 @@ struct Process {
   [[nodiscard]] double mean_force() const { return bias + noise.mean(); }
   /// x_i + g - F(0+): the speed of V at v = 0+ on level i.
   [[nodiscard]] double net_force(int i) const { return net_force_at(noise.level(i)); }
-  /// The same for any x.
+  /// The velocity to which upward motion tends on the highest level: no body is faster.
+  [[nodiscard]] double terminal_velocity() const {
+    return drag.terminal_velocity(net_force(noise.highest()));
+  }
+  /// That of the side on which it is larger.
+  [[nodiscard]] double terminal_speed() const {
+    return std::max(terminal_velocity(), mirrored().terminal_velocity());
+  }
+  /// x + g - F(0+) for any x.
   [[nodiscard]] double net_force_at(double x) const { return friction.net_force(x, bias); }
 };
 

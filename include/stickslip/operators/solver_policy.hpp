@@ -10,6 +10,9 @@
 
 namespace stickslip::operators {
 
+/// What the options of -slide_ say of it.
+[[nodiscard]] cases::Factors given_factors();
+
 /// By what a sliding operator is factored, where the options of -slide_ leave it `own`: on hp
 /// elements by the PC "elements" where few noise nodes stand for the levels, as groups couple all
 /// of their nodes and MUMPS takes ten times as long, and up to 700 levels that are nodes

@@ -13,7 +13,6 @@
 namespace stickslip::options {
 
 using cases::Case;
-using cases::Factors;
 using cases::Method;
 using cases::Question;
 using cases::Scheme;

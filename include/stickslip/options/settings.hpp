@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "stickslip/effects/effect.hpp"
 #include "stickslip/options/table.hpp"
 
 namespace stickslip::options {
@@ -26,34 +27,32 @@ class Problems {
   std::vector<std::string> messages_;
 };
 
-/// Typed access to the options of the table. Values that cannot be read are reported to the
-/// Problems given to read(); a number is not asked for before there are none.
-class Settings {
+/// Typed access to the options of the table, with what is wrong with them. A number is not asked
+/// for before its text is known to be one.
+class Settings : public effects::Given {
  public:
   /// Reads all options of the table from the PETSc options database, and marks them used. Local.
-  static Settings read(Problems& problems);
+  static Settings read();
 
-  [[nodiscard]] bool given(const std::string& name) const { return text_.contains(name); }
+  [[nodiscard]] bool has(const std::string& name) const override { return text_.contains(name); }
   /// The value as given or its default; empty if neither exists.
-  [[nodiscard]] std::string text(const std::string& name) const;
-  [[nodiscard]] double real(const std::string& name) const;
+  [[nodiscard]] std::string text(const std::string& name) const override;
+  [[nodiscard]] double real(const std::string& name) const override;
   /// The whole number given or the default; nothing if neither exists or a word was given.
-  [[nodiscard]] std::optional<int> integer(const std::string& name) const;
+  [[nodiscard]] std::optional<int> integer(const std::string& name) const override;
   [[nodiscard]] std::vector<std::string> list(const std::string& name) const;
   /// The numbers of a list option, empty if it was not given.
   [[nodiscard]] std::vector<double> numbers(const std::string& name) const;
   [[nodiscard]] bool flag(const std::string& name) const { return text(name) != "no"; }
   /// Gives the number option `name` another value, checked as if the user had given it.
-  void set(const std::string& name, double value, Problems& problems);
-  /// Reports a problem with the value of `name`.
-  void report(Problems& problems, const std::string& name, const std::string& why,
-              const std::string& fix) const;
+  void set(const std::string& name, double value);
+  void refuse(const std::string& name, const std::string& why, const std::string& fix) override;
+  [[nodiscard]] bool sound() const override { return problems_.empty(); }
+  [[nodiscard]] Problems& problems() { return problems_; }
 
  private:
   std::map<std::string, std::string> text_;
+  Problems problems_;
 };
-
-/// a,b,c as they are, first:last:count evenly spaced, first:last:count:log evenly in the logarithm.
-[[nodiscard]] std::optional<std::vector<double>> parse_numbers(const std::string& text);
 
 }  // namespace stickslip::options

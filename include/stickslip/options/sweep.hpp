@@ -32,10 +32,9 @@ class Sweep {
   /// "mu_d = 0.5, tau = 1".
   [[nodiscard]] std::string place(std::size_t point) const;
 
-  /// What a single run with the values of the point would be asked, read and validated by the same
-  /// functions; it writes no files. Problems are those of the command line. Local.
-  [[nodiscard]] Request request(std::size_t point, Problems& problems) const;
-  /// The same of a point that has been validated.
+  /// The settings of a single run with the values of the point.
+  [[nodiscard]] Settings settings(std::size_t point) const;
+  /// What such a run would be asked, of a point that has been validated; it writes no files. Local.
   [[nodiscard]] Request request(std::size_t point) const;
 
   /// Name and value of every option that may change a number, those of the solvers included.

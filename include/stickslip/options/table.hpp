@@ -14,12 +14,6 @@ using effects::Kind;
 using effects::Option;
 using effects::Range;
 
-/// A form of values.
-struct Form {
-  std::string name;  ///< "number", "word", "file", ...: what stands after the name of an option
-  std::string meaning;
-};
-
 struct Group {
   std::string title;
   std::string explanation;
@@ -30,11 +24,7 @@ struct Group {
 struct OtherOption {
   std::string name;  ///< with its dash; with dots, a family
   std::string sentence;
-};
-
-struct ExitMeaning {
-  int status;
-  std::string meaning;
+  std::string synonyms = {};  ///< other names for it, a comma list
 };
 
 /// What a value must be, in a sentence: "a number in (0, inf)", "linear, none or cubic".
@@ -46,9 +36,6 @@ struct ExitMeaning {
 /// The option of the model that an option sweeps; nullptr for any other option.
 [[nodiscard]] const Option* swept_by(const Option& option);
 
-/// All forms of values.
-[[nodiscard]] std::span<const Form> forms();
-
 /// All options by group, in the order of the help text.
 [[nodiscard]] std::span<const Group> table();
 
@@ -57,9 +44,6 @@ struct ExitMeaning {
 
 /// Options outside the table, in the order of the help text.
 [[nodiscard]] std::span<const OtherOption> other_options();
-
-/// Every exit status.
-[[nodiscard]] std::span<const ExitMeaning> exit_meanings();
 
 /// The option of that name (without dash), or nullptr.
 [[nodiscard]] const Option* find(std::string_view name);

@@ -6,6 +6,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "stickslip/catalogue/entry.hpp"
 
@@ -17,10 +18,11 @@ struct Report;
 enum class Subject { run, study, sweep, plan };
 
 struct Output {
-  std::string option = {};     ///< that names the file; none for standard output
-  std::string ending = {};     ///< of such files, for messages
-  std::string sentence = {};   ///< what it does, for the help of the option
-  std::set<Subject> subjects;  ///< what it is written of; of others it is left out
+  std::string option = {};                 ///< that names the file; none for standard output
+  std::string ending = {};                 ///< of such files, for messages
+  std::string sentence = {};               ///< what it does, for the help of the option
+  std::vector<std::string> synonyms = {};  ///< other names of the option
+  std::set<Subject> subjects;              ///< what it is written of; of others it is left out
   /// The quantities that are no numbers of a table, and that it holds.
   std::set<catalogue::Quantity> fields = {};
   /// Whether all ranks of a report write it together; otherwise the first one does.

@@ -15,7 +15,7 @@ namespace stickslip::petsc {
 /// visits, falls off by tens of orders of magnitude, and its sum is what functionals see.
 class BackwardError {
  public:
-  /// The matrix must outlive this object.
+  /// The matrix must outlive this object, and keep its values.
   explicit BackwardError(Mat matrix) : matrix_(matrix) {}
 
   /// max_i |r|_i / (|A| |x| + |b|)_i with r = b - A x, which is overwritten; to |x| is added 1e-13
@@ -23,12 +23,6 @@ class BackwardError {
   [[nodiscard]] double forward(Vec residual, Vec b, Vec x);
   /// sum_i |r|_i / sum_i (|A|^T |x| + |b|)_i with r = b - A^T x. Collective.
   [[nodiscard]] double transposed(Vec residual, Vec b, Vec x);
-
-  /// To be called when the values of the matrix have changed.
-  void forget() {
-    magnitude_ = {};
-    magnitude_sums_ = {};
-  }
 
  private:
   Mat matrix_;

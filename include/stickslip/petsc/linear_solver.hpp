@@ -3,10 +3,12 @@
 
 #include <petscksp.h>
 
+#include <memory>
 #include <string>
 
 #include "stickslip/petsc/handle.hpp"
 #include "stickslip/petsc/solver_choice.hpp"
+#include "stickslip/petsc/solver_options.hpp"
 #include "stickslip/petsc/solver_statistics.hpp"
 
 namespace stickslip::petsc {
@@ -19,20 +21,11 @@ inline constexpr const char* kAnalyse = "PCAnalyse_C";
 /// its options are read. Not collective.
 void set_direct_solver(KSP ksp);
 
-/// The ordering AMF in analyses by MUMPS with this prefix during the life of the object, unless
+/// The ordering AMF in analyses by MUMPS with this prefix during the life of what it returns,
+/// unless
 /// -<prefix>mat_mumps_icntl_7 says otherwise: MUMPS would choose PORD, as METIS is not in Debian's
 /// build, which costs 10 to 30 times more on these matrices. PETSc takes it from its options alone.
-class DefaultOrdering {
- public:
-  explicit DefaultOrdering(const std::string& prefix);
-  ~DefaultOrdering();
-  DefaultOrdering(const DefaultOrdering&) = delete;
-  DefaultOrdering& operator=(const DefaultOrdering&) = delete;
-
- private:
-  std::string option_;
-  PetscBool given_ = PETSC_FALSE;
-};
+[[nodiscard]] std::unique_ptr<OptionFor> default_ordering(const std::string& prefix);
 
 /// KSP of type preonly around a PC of type `pc_type`; with PCLU around MUMPS. Every choice is a
 /// PETSc option under the prefix, e.g. -slide_pc_type lu or -slide_pc_factor_mat_solver_type klu;

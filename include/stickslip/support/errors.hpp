@@ -3,11 +3,20 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace stickslip {
 
 /// Exit statuses of the command line; scripts rely on them.
 enum class ExitStatus { done = 0, other = 1, bad_input = 2, not_reached = 3, no_memory = 4 };
+
+/// What each status says, for the manual.
+inline constexpr std::pair<int, const char*> kExitMeanings[] = {
+    {0, "done"},
+    {1, "other error"},
+    {2, "bad input"},
+    {3, "accuracy not reached or a solver failed (what was reached is still written)"},
+    {4, "would not fit in memory"}};
 
 /// Base of every error that carries an exit status of its own.
 class Failure : public std::runtime_error {

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace stickslip {
 
@@ -20,5 +21,8 @@ namespace stickslip {
 
 /// A finite decimal number that fills the whole text.
 [[nodiscard]] std::optional<double> parse_number(const std::string& text);
+
+/// a,b,c as they are, first:last:count evenly spaced, first:last:count:log evenly in the logarithm.
+[[nodiscard]] std::optional<std::vector<double>> parse_numbers(const std::string& text);
 
 }  // namespace stickslip

@@ -1,7 +1,7 @@
 #pragma once
 /// How far the velocity discretisation must reach.
 
-#include "stickslip/model/process.hpp"
+#include "stickslip/model/scene.hpp"
 
 namespace stickslip::velocity {
 
@@ -9,5 +9,9 @@ namespace stickslip::velocity {
 /// exp(-(mu_d - |bias|) v + int_0^v b): coloured noise and discrete levels only shorten the tail.
 /// Without drag the bias must be smaller than mu_d.
 [[nodiscard]] double tail_velocity(const model::Process& process, double tolerance);
+
+/// |v| beyond which nothing counts in double precision, by the density, the largest force that
+/// occurs and a truncation velocity given by hand.
+[[nodiscard]] double largest_speed(const model::Scene& scene);
 
 }  // namespace stickslip::velocity

@@ -6,7 +6,7 @@
 
 #include "stickslip/cases/case.hpp"
 
-namespace stickslip::options {
+namespace stickslip::outputs {
 
 using cases::Reference;
 
@@ -17,4 +17,4 @@ using cases::Reference;
 /// std::invalid_argument with what is wrong and where. Local.
 [[nodiscard]] std::vector<Reference> read_references(const std::string& file);
 
-}  // namespace stickslip::options
+}  // namespace stickslip::outputs

@@ -2,10 +2,15 @@
 /// Help, pages and the completion of the command line, made from the tables of options,
 /// quantities and results.
 
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
-namespace stickslip::options {
+namespace stickslip::pages {
+
+/// The forms of values, such as "number": what stands after the name of an option, and its meaning.
+[[nodiscard]] std::span<const std::pair<const char*, const char*>> forms();
 
 /// The text of -help.
 [[nodiscard]] std::string help_text();
@@ -35,4 +40,4 @@ namespace stickslip::options {
 /// A script that lets bash complete names of options, their words, and files.
 [[nodiscard]] std::string completion();
 
-}  // namespace stickslip::options
+}  // namespace stickslip::pages

@@ -1,4 +1,4 @@
-#include "stickslip/options/reference.hpp"
+#include "stickslip/outputs/reference.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,6 @@
 // Fast C++ CSV Parser: header only, reports the file and line of an error.
 #include <libfccp/csv.h>
 
-#include "reading.hpp"
 #include "stickslip/catalogue/entry.hpp"
 #include "stickslip/outputs/results_json.hpp"
 #include "stickslip/support/hdf5_id.hpp"
@@ -24,10 +23,8 @@
 #include "stickslip/support/readable.hpp"
 #include "stickslip/support/statistics.hpp"
 
-namespace stickslip::options {
+namespace stickslip::outputs {
 namespace {
-
-using outputs::Json;
 
 void require_numbers(const quantities::Result& r) {
   if (r.value.empty()) throw std::invalid_argument(r.key + " lacks values");
@@ -64,7 +61,7 @@ void append(quantities::Result r, std::vector<Reference>& all) {
 std::vector<Reference> references_of(const std::string& text, const char* form) {
   std::vector<Reference> all;
   try {
-    auto results = outputs::results_of(Json::parse(text).at("results"));
+    auto results = results_of(Json::parse(text).at("results"));
     std::sort(results.begin(), results.end(),
               [](const auto& a, const auto& b) { return a.key < b.key; });
     for (auto& result : results) append(std::move(result), all);
@@ -224,4 +221,4 @@ std::vector<Reference> read_references(const std::string& file) {
   return all;
 }
 
-}  // namespace stickslip::options
+}  // namespace stickslip::outputs

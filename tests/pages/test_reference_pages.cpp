@@ -4,10 +4,10 @@
 #include <sstream>
 
 #include "../common/temporary.hpp"
-#include "stickslip/options/manual.hpp"
+#include "stickslip/pages/pages.hpp"
 
 using namespace stickslip;
-using namespace stickslip::options;
+using namespace stickslip::pages;
 
 namespace {
 
@@ -49,4 +49,8 @@ TEST_CASE("reference pages: every row of a table has a cell below each title") {
       columns = cells;
     }
   }
+}
+
+TEST_CASE("reference pages: the committed page of options is the generated one") {
+  CHECK(test::content(std::string(STICKSLIP_SOURCE) + "/docs/options.md") == reference_page());
 }

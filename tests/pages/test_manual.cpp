@@ -7,10 +7,12 @@
 
 #include "../common/catch.hpp"
 #include "stickslip/catalogue/entry.hpp"
-#include "stickslip/options/manual.hpp"
 #include "stickslip/options/table.hpp"
+#include "stickslip/pages/pages.hpp"
+#include "stickslip/support/errors.hpp"
 
 using namespace stickslip::options;
+using namespace stickslip::pages;
 
 namespace {
 
@@ -72,8 +74,8 @@ TEST_CASE("manual page: every option with its form, unit, range and default") {
 
 TEST_CASE("manual page: every form of values, every quantity with its keys") {
   const std::string page = man_page("1.2");
-  for (const auto& form : forms()) {
-    CHECK_THAT(page, Catch::Contains("\n\\fI" + form.name + "\\fR\n" + roff(form.meaning)));
+  for (const auto& [form, meaning] : forms()) {
+    CHECK_THAT(page, Catch::Contains(fmt::format("\n\\fI{}\\fR\n{}", form, roff(meaning))));
   }
   const auto* quantities = find("quantities");
   for (const auto& word : quantities->words) {
@@ -91,7 +93,7 @@ TEST_CASE("manual page: the options outside the table, every exit status, the ve
   for (const auto& other : other_options()) {
     CHECK_THAT(page, Catch::Contains("\n\\fB" + roff(other.name) + "\\fR\n"));
   }
-  for (const auto& [status, meaning] : exit_meanings()) {
+  for (const auto& [status, meaning] : stickslip::kExitMeanings) {
     CHECK_THAT(page, Catch::Contains("\\fB" + std::to_string(status) + "\\fR\n" + roff(meaning)));
   }
   CHECK(line_with(page, ".TH") == ".TH STICKSLIP 1 \"\" \"stickslip 1.2\" \"User Commands\"");

@@ -1,17 +1,20 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cctype>
 
-#include "quantities.hpp"
-#include "stickslip/options/manual.hpp"
+#include "stickslip/catalogue/entry.hpp"
 #include "stickslip/options/table.hpp"
+#include "stickslip/pages/pages.hpp"
+#include "stickslip/support/errors.hpp"
 #include "stickslip/support/text.hpp"
-#include "words.hpp"
 
-namespace stickslip::options {
+namespace stickslip::pages {
 namespace {
+
+using catalogue::SolutionMethod;
+using options::Group;
+using options::swept_by;
 
 constexpr std::size_t kWidth = 110;
 
@@ -44,8 +47,8 @@ std::string option_rows(const Group& group) {
   std::string text = head({"option", "form", "unit", "default", "allowed", "meaning"});
   for (const auto& o : group.options) {
     if (swept_by(o) != nullptr) continue;
-    text += row({code("-" + o.name), o.form, cell(o.unit), cell(o.initial), cell(allowed(o)),
-                 cell(o.sentence)});
+    text += row({code("-" + o.name), o.form, cell(o.unit), cell(o.initial),
+                 cell(options::allowed(o)), cell(o.sentence)});
   }
   return text;
 }
@@ -64,35 +67,34 @@ std::string swept_options(const Group& group) {
          "\n\n";
 }
 
-// A letter for a route.
-char letter(Route route) {
-  const auto* word = std::find_if(std::begin(kRoutes), std::end(kRoutes),
-                                  [route](const auto& each) { return each.value == route; });
-  return static_cast<char>(std::toupper(static_cast<unsigned char>(word->word[0])));
+// A letter for a solution method.
+char letter(const SolutionMethod& method) {
+  return static_cast<char>(std::toupper(static_cast<unsigned char>(method.word[0])));
 }
 
 // The letters of the routes that give a result, those of `without` left out.
 std::string letters(catalogue::Routes routes, catalogue::Routes without = {}) {
   std::string text;
-  for (const auto& route : kRoutes) {
-    if (!routes.contains(route.value) || without.contains(route.value)) continue;
-    text += fmt::format("{}{}", text.empty() ? "" : " ", letter(route.value));
+  for (const auto& method : catalogue::solution_methods()) {
+    if (!routes.contains(method.route) || without.contains(method.route)) continue;
+    text += fmt::format("{}{}", text.empty() ? "" : " ", letter(method));
   }
   return text;
 }
 
 std::string routes_explained() {
-  std::vector<std::string> names;
+  std::vector<std::string> names, without_drag;
   std::string limits;
-  for (const auto& route : kRoutes) {
-    names.push_back(fmt::format("{} `{}`", letter(route.value), route.word));
-    if (*limit_of(route.value) == 0) continue;  // gives all
-    limits += fmt::format("- `{}`: {}.\n", route.word, wrap(limit_of(route.value), 100, 2));
+  for (const auto& method : catalogue::solution_methods()) {
+    names.push_back(fmt::format("{} {}", letter(method), code(method.word)));
+    if (!method.without_drag.empty()) without_drag.push_back(code(method.word));
+    if (method.limit.empty()) continue;  // gives all
+    limits += fmt::format("- {}: {}.\n", code(method.word), wrap(method.limit, 100, 2));
   }
   return wrap(fmt::format("The column `-route` names the solution methods by letters: "
                           "{}. They hold with and without symmetry, for either `-scheme`; "
-                          "`fluid_queue` needs a model without drag.",
-                          enumerate(names, "and")),
+                          "{} needs a model without drag.",
+                          enumerate(names, "and"), enumerate(without_drag, "and")),
               kWidth, 0) +
          "\n\n" + limits;
 }
@@ -134,17 +136,17 @@ std::string reference_page() {
       "the\nquantities and the states s+ and s-.\n\n"
       "## Forms of values\n\n" +
       head({"form", "value"});
-  for (const auto& form : forms()) text += row({form.name, cell(form.meaning)});
-  for (const auto& group : table()) {
+  for (const auto& [form, meaning] : forms()) text += row({form, cell(meaning)});
+  for (const auto& group : options::table()) {
     text += fmt::format("\n## {}\n\n{}.\n\n{}{}", group.title, wrap(group.explanation, kWidth, 0),
                         swept_options(group), option_rows(group));
   }
   text += "\n## Other options\n\n" + head({"option", "meaning"});
-  for (const auto& other : other_options()) text += row({code(other.name), cell(other.sentence)});
+  for (const auto& other : options::other_options())
+    text += row({code(other.name), cell(other.sentence)});
   text += "\n## Exit status\n\n" + head({"status", "meaning"});
-  for (const auto& [status, meaning] : exit_meanings()) {
+  for (const auto& [status, meaning] : kExitMeanings)
     text += row({std::to_string(status), meaning});
-  }
   return text;
 }
 
@@ -153,4 +155,4 @@ std::string quantity_tables() {
          result_rows();
 }
 
-}  // namespace stickslip::options
+}  // namespace stickslip::pages

@@ -5,11 +5,11 @@
 
 #include "../common/catch.hpp"
 #include "../common/temporary.hpp"
-#include "stickslip/options/reference.hpp"
+#include "stickslip/outputs/reference.hpp"
 
 using namespace stickslip;
 using cases::Reference;
-using options::read_references;
+using outputs::read_references;
 
 namespace {
 

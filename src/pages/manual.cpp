@@ -1,17 +1,23 @@
-#include "stickslip/options/manual.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
-#include "quantities.hpp"
+#include "stickslip/catalogue/entry.hpp"
 #include "stickslip/options/table.hpp"
+#include "stickslip/pages/pages.hpp"
+#include "stickslip/support/errors.hpp"
 #include "stickslip/support/text.hpp"
 
-namespace stickslip::options {
+namespace stickslip::pages {
 namespace {
+
+using options::Group;
+using options::Kind;
+using options::Option;
+using options::swept_by;
 
 std::string escaped(char c) {
   static const std::map<char, std::string> escapes{{'\\', "\\e"},  {'-', "\\-"},   {'^', "\\(ha"},
@@ -32,6 +38,47 @@ std::string entry(const std::string& head, const std::string& body) {
 }
 
 std::string bold(std::string_view text) { return fmt::format("\\fB{}\\fR", roff(text)); }
+
+std::string bold_entry(const std::string& name, const std::string& meaning) {
+  return entry(bold(name), meaning);
+}
+
+std::string italic_entry(const std::string& name, const std::string& meaning) {
+  return entry(fmt::format("\\fI{}\\fR", name), meaning);
+}
+
+// A list of names and their meanings, each as `write` has it.
+template <class List>
+std::string entries(const List& rows,
+                    std::string (*write)(const std::string& name, const std::string& meaning)) {
+  std::string text;
+  for (const auto& [name, meaning] : rows) {
+    text += write(fmt::format("{}", name), fmt::format("{}.", meaning));
+  }
+  return text;
+}
+
+using Rows = std::vector<std::pair<std::string, std::string>>;
+
+// Quantities with their titles and the keys that they write, those of other quantities that come
+// with them included.
+Rows quantities_with_keys() {
+  Rows rows;
+  for (const auto* quantity : catalogue::entries()) {
+    auto keys = split(quantity->others, ',');
+    std::transform(quantity->rows.begin(), quantity->rows.end(), std::inserter(keys, keys.begin()),
+                   [](const catalogue::Row* row) { return std::string(row->key); });
+    rows.emplace_back(quantity->word, fmt::format("{}{}{}", quantity->title,
+                                                  keys.empty() ? "" : ": ", fmt::join(keys, ", ")));
+  }
+  return rows;
+}
+
+Rows other_rows() {
+  Rows rows;
+  for (const auto& other : options::other_options()) rows.emplace_back(other.name, other.sentence);
+  return rows;
+}
 
 // The form, with the range or the words allowed; nothing for a file, of which the sentence speaks.
 std::string short_requirement(const Option& option) {
@@ -72,55 +119,19 @@ std::string swept_names(const Group& group) {
 constexpr const char* kSweptHelp =
     "values of the option of the same name; numbers in its unit and range.";
 
-std::string item(const Option& option) {
-  return entry(fmt::format("{} \\fI{}\\fR", bold("-" + option.name), option.form),
-               description(option));
-}
-
 std::string option_items() {
   std::string text;
-  for (const auto& group : table()) {
+  for (const auto& group : options::table()) {
     text += fmt::format(".SS {}\n{}\n", roff(group.title), roff(group.explanation + "."));
     const std::string swept = swept_names(group);
     if (!swept.empty()) text += entry(bold(swept) + " \\fInumbers\\fR", kSweptHelp);
     for (const auto& option : group.options) {
-      if (swept_by(option) == nullptr) text += item(option);
+      if (swept_by(option) != nullptr) continue;
+      text += entry(fmt::format("{} \\fI{}\\fR", bold("-" + option.name), option.form),
+                    description(option));
     }
   }
-  text += ".SS Other\n";
-  for (const auto& other : other_options()) text += entry(bold(other.name), other.sentence + ".");
-  return text;
-}
-
-std::string form_items() {
-  std::string text;
-  for (const auto& form : forms()) {
-    text += entry(fmt::format("\\fI{}\\fR", form.name), form.meaning + ".");
-  }
-  return text;
-}
-
-// The title of a quantity and the keys that it writes.
-std::string description(const catalogue::Entry& quantity) {
-  const auto keys = keys_of(quantity);
-  return keys.empty() ? fmt::format("{}.", quantity.title)
-                      : fmt::format("{}: {}.", quantity.title, fmt::join(keys, ", "));
-}
-
-std::string quantity_items() {
-  std::string text;
-  for (const auto* quantity : catalogue::entries()) {
-    text += entry(bold(std::string(quantity->word)), description(*quantity));
-  }
-  return text;
-}
-
-std::string exit_items() {
-  std::string text;
-  for (const auto& [status, meaning] : exit_meanings()) {
-    text += entry(bold(std::to_string(status)), meaning + ".");
-  }
-  return text;
+  return text + ".SS Other\n" + entries(other_rows(), bold_entry);
 }
 
 constexpr const char* kSynopsis = R"(.B stickslip
@@ -144,37 +155,25 @@ std::string introduction() {
              "one given counts. stickslip-complex is the same program with complex scalars.");
 }
 
-// A command line and what it does.
-struct Example {
-  const char* line;
-  const char* purpose;
-};
-
-constexpr Example kExamples[] = {
-    {"stickslip -mu_d 0.25 -accuracy 1e-8", "Sticking and moments to eight digits."},
+// Command lines and what they do.
+constexpr std::pair<const char*, const char*> kExamples[] = {
+    {"stickslip -mu_d 0.25 -accuracy 1e-8", "Sticking and moments to eight digits"},
     {"stickslip -mu_d 0.5 -quantities density -output distribution.h5",
-     "The stationary distribution as a field, in HDF5."},
+     "The stationary distribution as a field, in HDF5"},
     {"stickslip -mu_d 0.25 -quantities spectrum -omega 0.01:50:200:log -summary spectrum.json",
-     "The power spectral density of the velocity, as JSON."},
+     "The power spectral density of the velocity, as JSON"},
     {"stickslip -options_file scene.opts -plan",
-     "What a file of options would compute, and what that would cost."},
+     "What a file of options would compute, and what that would cost"},
     {"mpiexec -n 4 stickslip -sweep_mu_d 0.1:1:10 -checkpoint sweep.record -sweep_csv sweep.csv",
-     "Ten coefficients of friction on four ranks; run again, it resumes."},
+     "Ten coefficients of friction on four ranks; run again, it resumes"},
 };
 
-std::string examples() {
-  std::string text;
-  for (const auto& [line, purpose] : kExamples) text += entry(bold(line), purpose);
-  return text;
-}
-
-std::string files() {
-  return entry("\\fIPREFIX/share/stickslip/options\\fR", "Options files to start from.") +
-         entry("\\fIPREFIX/share/doc/stickslip\\fR",
-               "Tutorial, method, format of the output, and other pages.") +
-         entry("\\fIPREFIX/lib/python3/dist\\-packages/stickslip\\fR",
-               "Python package that runs the program and draws what was computed.");
-}
+// Names in roff.
+constexpr std::pair<const char*, const char*> kFiles[] = {
+    {"PREFIX/share/stickslip/options", "Options files to start from"},
+    {"PREFIX/share/doc/stickslip", "Tutorial, method, format of the output, and other pages"},
+    {"PREFIX/lib/python3/dist\\-packages/stickslip",
+     "Python package that runs the program and draws what was computed"}};
 
 constexpr const char* kCompletionHead =
     R"(# shellcheck shell=bash
@@ -229,58 +228,65 @@ std::string help_entry(const std::string& name, const std::string& meaning) {
   return fmt::format("  {}{}{}\n", name, gap, wrap(meaning, width, column));
 }
 
-std::string form_help() {
-  std::string text = "\nForms of values:\n";
-  for (const auto& form : forms()) {
-    text += help_entry(form.name, form.meaning + ".");
-  }
-  return text;
-}
-
-std::string quantity_help() {
-  std::string text;
-  for (const auto* quantity : catalogue::entries()) {
-    text += help_entry(fmt::format("  {}", quantity->word), description(*quantity));
-  }
-  return text;
-}
-
 std::string group_help(const Group& group) {
   std::string text = fmt::format("\n{}. {}.\n", group.title, wrap(group.explanation, 88, 2));
   const std::string swept = swept_names(group);
-  if (!swept.empty()) {
-    text += help_entry(wrap(swept, 94, 2), kSweptHelp);
-  }
+  if (!swept.empty()) text += help_entry(wrap(swept, 94, 2), kSweptHelp);
   for (const auto& option : group.options) {
     if (swept_by(option) != nullptr) continue;
     text += help_entry("-" + option.name, description(option));
-    if (option.name == "quantities") text += quantity_help();
+    if (option.name == "quantities") {
+      text +=
+          entries(quantities_with_keys(), [](const std::string& word, const std::string& meaning) {
+            return help_entry("  " + word, meaning);
+          });
+    }
   }
   return text;
 }
 
 std::string other_help() {
-  std::string text = "\nOther:\n";
-  for (const auto& other : other_options()) {
-    text += help_entry(other.name, other.sentence + ".");
-  }
   std::string meanings;
-  for (const auto& [status, meaning] : exit_meanings()) {
+  for (const auto& [status, meaning] : kExitMeanings) {
     meanings += fmt::format("{}{} {}", meanings.empty() ? "" : "; ", status, meaning);
   }
-  return text + fmt::format("\n{}.\n", wrap("Exit status: " + meanings, 88, 0));
+  return fmt::format("\nOther:\n{}\n{}.\n", entries(other_rows(), help_entry),
+                     wrap("Exit status: " + meanings, 88, 0));
 }
 
 }  // namespace
+
+std::span<const std::pair<const char*, const char*>> forms() {
+  static constexpr std::pair<const char*, const char*> all[] = {
+      {"number", "a decimal number such as 0.25 or 1e-3"},
+      {"integer", "a whole number"},
+      {"word", "one of the words allowed"},
+      {"list", "words separated by commas, without blanks, each at most once"},
+      {"numbers",
+       "a list a,b,c, or first:last:count for count >= 2 evenly spaced numbers from first to last, "
+       "both included, or first:last:count:log for numbers evenly spaced in the logarithm"},
+      {"flag", "yes or no; the option alone means yes"},
+      {"file", "the name of a file"},
+      {"formula", "a formula in v, mu_s, mu_d and tau; a value that begins with a minus sign needs "
+                  "a blank before it in an options file"},
+      {"functions",
+       "functions of the state, separated by semicolons: 1, x, v, v^2, |v|, stick, slide, "
+       "|x|<=mu_s, or formulas in x, y, v, mu_s and mu_d such as \"x*v; abs(v) > 0.5\", with y = "
+       "sign(v), 0 at rest"},
+      {"state", "s+ or s-, where a sliding phase starts; x,v with x a noise level; rest, V = 0 and "
+                "X in its stationary distribution; stationary, the stationary distribution"}};
+  return all;
+}
 
 std::string help_text() {
   std::string text =
       "stickslip: dry friction under random forcing, to the digits you ask for\n\n"
       "  stickslip -options_file scene.opts [-name value ...]\n\n"
       "Every choice is a PETSc option, on the line or in an options file; the last one given "
-      "counts.\n" +
-      form_help();
-  for (const auto& group : table()) text += group_help(group);
+      "counts.\n"
+      "\nForms of values:\n" +
+      entries(forms(), help_entry);
+  for (const auto& group : options::table()) text += group_help(group);
   return text + other_help();
 }
 
@@ -298,21 +304,23 @@ std::string man_page(std::string_view version) {
          section("NAME", roff("stickslip, stickslip-complex") + " \\- " +
                              roff("dry friction under random forcing") + "\n") +
          section("SYNOPSIS", kSynopsis) + section("DESCRIPTION", introduction()) +
-         section("VALUES", form_items()) + section("OPTIONS", option_items()) +
-         section("QUANTITIES", quantity_items()) + section("EXIT STATUS", exit_items()) +
-         section("EXAMPLES", examples()) + section("FILES", files()) +
+         section("VALUES", entries(forms(), italic_entry)) + section("OPTIONS", option_items()) +
+         section("QUANTITIES", entries(quantities_with_keys(), bold_entry)) +
+         section("EXIT STATUS", entries(kExitMeanings, bold_entry)) +
+         section("EXAMPLES", entries(kExamples, bold_entry)) +
+         section("FILES", entries(kFiles, italic_entry)) +
          section("SEE ALSO", "\\fBmpiexec\\fR(1)\n");
 }
 
 std::string completion() {
   std::string text = kCompletionHead;
-  text += fmt::format("  local names='{}'\n", fmt::join(all_names(), " "));
+  text += fmt::format("  local names='{}'\n", fmt::join(options::all_names(), " "));
   text += "  COMPREPLY=()\n  case ${COMP_WORDS[COMP_CWORD - 1]} in\n";
   text += "    -options_file) _stickslip_files ;;\n";
-  for (const auto& option : all_options()) {
+  for (const auto& option : options::all_options()) {
     text += fmt::format("    -{}) {};;\n", option.name, completer(option));
   }
   return text + kCompletionEnd;
 }
 
-}  // namespace stickslip::options
+}  // namespace stickslip::pages

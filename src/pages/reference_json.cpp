@@ -1,12 +1,15 @@
 #include <nlohmann/json.hpp>
 
 #include "stickslip/effects/effect.hpp"
-#include "stickslip/options/manual.hpp"
 #include "stickslip/options/table.hpp"
+#include "stickslip/pages/pages.hpp"
 
-namespace stickslip::options {
+namespace stickslip::pages {
 namespace {
 
+using options::Group;
+using options::Kind;
+using options::Option;
 using OrderedJson = nlohmann::ordered_json;
 
 // What each word of a choice of effects means; {} for any other option.
@@ -61,10 +64,10 @@ OrderedJson json_of(const Option& option, const Group& group) {
 
 std::string reference_json() {
   OrderedJson options = OrderedJson::array();
-  for (const auto& group : table()) {
+  for (const auto& group : options::table()) {
     for (const auto& option : group.options) options.push_back(json_of(option, group));
   }
   return OrderedJson{{"options", options}}.dump(1) + "\n";
 }
 
-}  // namespace stickslip::options
+}  // namespace stickslip::pages

@@ -1,10 +1,11 @@
 #include <nlohmann/json.hpp>
 
 #include "../common/catch.hpp"
-#include "stickslip/options/manual.hpp"
 #include "stickslip/options/table.hpp"
+#include "stickslip/pages/pages.hpp"
 
 using namespace stickslip::options;
+using stickslip::pages::reference_json;
 
 namespace {
 

@@ -1,0 +1,53 @@
+#pragma once
+/// PETSc's options database, and what is known of the options of its solvers. All of it is local.
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace stickslip::petsc {
+
+/// Whether a word of a command line names an option, and is no negative number.
+[[nodiscard]] bool is_option_name(const std::string& word);
+
+/// The value of an option (a name without dash) as given, which counts as used from then on;
+/// nothing if it was not given.
+[[nodiscard]] std::optional<std::string> option_value(const std::string& name);
+
+/// A value of an option (a name without dash) for the life of the object; then the option has the
+/// value that it had before, or none.
+class OptionFor {
+ public:
+  OptionFor(const std::string& name, const std::string& value);
+  ~OptionFor();
+  OptionFor(const OptionFor&) = delete;
+  OptionFor& operator=(const OptionFor&) = delete;
+
+ private:
+  std::string option_;  // with its dash
+  std::optional<std::string> before_;
+};
+
+/// Names of all options given, without the dash.
+[[nodiscard]] std::vector<std::string> given_options();
+
+/// Those that nothing has asked for so far, but for PETSc's own and those that solvers ask for only
+/// when they solve.
+[[nodiscard]] std::vector<std::string> unused_options();
+
+/// Name and value of the options given to the solvers, by name.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> given_solver_options();
+
+/// Messages about types of solvers that do not work from options alone.
+[[nodiscard]] std::vector<std::string> wrong_solver_types();
+
+/// What the solver of each role says to its options, tried on a tiny matrix; to be called once the
+/// types are known to work.
+[[nodiscard]] std::vector<std::string> wrong_solver_options();
+
+/// What to say of an option with the prefix of a solver that no solver has asked for; empty for any
+/// other prefix.
+[[nodiscard]] std::string unknown_solver_option(const std::string& name);
+
+}  // namespace stickslip::petsc

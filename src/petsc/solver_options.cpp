@@ -1,0 +1,194 @@
+#include "stickslip/petsc/solver_options.hpp"
+
+#include <fmt/format.h>
+#include <petscsys.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/solver_choice.hpp"
+#include "stickslip/support/number_text.hpp"
+#include "stickslip/support/text.hpp"
+
+namespace stickslip::petsc {
+namespace {
+
+// Options of PETSc itself that it reads later, or reads and does not count as used.
+bool belongs_to_petsc(const std::string& name) {
+  static const auto exact =
+      split("options_left options_view citations skip_petscrc log_view log_view_memory malloc_dump "
+            "malloc_debug malloc malloc_view memory_view objects_dump info options_file "
+            "no_signal_handler nox log log_trace log_summary on_error_abort fp_trap debug "
+            "start_in_debugger on_error_attach_debugger viewfromoptions",
+            ' ');
+  return std::find(exact.begin(), exact.end(), name) != exact.end();
+}
+
+/// A role of a solver, whose PETSc options carry a prefix.
+struct SolverRole {
+  std::string prefix;
+  void (*probe_options)(const std::string& prefix);
+  // Options that are read when something is solved, not before, without the prefix and separated by
+  // blanks; the first one shows what the solver uses.
+  const char* read_later;
+  const char* common;  // others that users give
+};
+
+constexpr const char* kEpsLater =
+    "eps_view eps_view_pre eps_view_values eps_converged_reason eps_error_relative "
+    "eps_error_absolute eps_error_backward eps_view_vectors";
+constexpr const char* kEpsCommon = "eps_type eps_tol eps_nev eps_ncv eps_max_it eps_monitor";
+const SolverRole kRoles[] = {
+    {"slide_", probe_linear_solver,
+     "ksp_view ksp_view_pre ksp_converged_reason ksp_converged_rate ksp_view_final_residual",
+     "pc_type pc_elements_share pc_factor_mat_solver_type pc_factor_levels sub_pc_type "
+     "sub_pc_factor_levels ksp_type ksp_rtol ksp_max_it ksp_monitor"},
+    {"null_", probe_eigensolver, kEpsLater, kEpsCommon},
+    {"relax_", probe_eigensolver, kEpsLater, kEpsCommon},
+    {"backward_", probe_time_stepper, "ts_view ts_view_pre ts_adapt_view snes_view ksp_view",
+     "ts_type ts_max_steps ts_monitor ts_rtol ts_atol"}};
+
+// The role that has options of that name; nullptr if none has.
+const SolverRole* role_of(const std::string& name) {
+  for (const auto& role : kRoles) {
+    if (name.starts_with(role.prefix)) return &role;
+  }
+  return nullptr;
+}
+
+bool is_read_later(const std::string& name) {
+  const SolverRole* role = role_of(name);
+  const auto names = split(role == nullptr ? "" : role->read_later, ' ');
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string& later) { return name == role->prefix + later; });
+}
+
+// The option of a role that the user may have meant, without the dash; empty if there is none.
+std::string nearest_option(const SolverRole& role, const std::string& name) {
+  const auto names = split(fmt::format("{} {}", role.read_later, role.common), ' ');
+  const std::string near = nearest_word(name.substr(role.prefix.size()), names);
+  return near.empty() ? "" : role.prefix + near;
+}
+
+// Of the types that PETSc has, those that work from options alone and apply transposes. Others,
+// such as shell and mg, need a program that sets them up, and crash without.
+constexpr std::pair<const char*, const char*> kSolverTypes[] = {
+    {"slide_pc_type", "elements lu cholesky qr svd redundant ksp ilu icc asm gasm bjacobi jacobi "
+                      "pbjacobi gamg hypre "
+                      "none"},
+    {"slide_ksp_type",
+     "preonly gmres fgmres lgmres dgmres pgmres pipefgmres gcr bcgs bcgsl ibcgs fbcgs fbcgsr cgs "
+     "qmrcgs tfqmr tcqmr pipebcgs"}};
+
+// The option of a role whose value a message names; the prefix alone if there is none.
+std::string blamed_option(const SolverRole& role, const std::string& message) {
+  for (const auto& name : given_options()) {
+    const std::string value = option_value(name).value_or("");
+    const bool named = !value.empty() && message.find(" " + value) != message.npos;
+    if (named && name.starts_with(role.prefix)) return fmt::format("-{} = {}", name, value);
+  }
+  return fmt::format("-{}...", role.prefix);
+}
+
+}  // namespace
+
+bool is_option_name(const std::string& word) {
+  return word.size() > 1 && word[0] == '-' && !parse_number(word);
+}
+
+std::optional<std::string> option_value(const std::string& name) {
+  const std::string option = "-" + name;
+  PetscBool found = PETSC_FALSE;
+  check(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &found));
+  if (found == PETSC_FALSE) return std::nullopt;
+  std::string value(1 << 20, '\0');  // lists can be long, and PETSc cuts what does not fit
+  check(
+      PetscOptionsGetString(nullptr, nullptr, option.c_str(), value.data(), value.size(), &found));
+  return value.substr(0, value.find('\0'));
+}
+
+OptionFor::OptionFor(const std::string& name, const std::string& value)
+    : option_("-" + name), before_(option_value(name)) {
+  check(PetscOptionsSetValue(nullptr, option_.c_str(), value.c_str()));
+}
+
+OptionFor::~OptionFor() {
+  (void)(before_ ? PetscOptionsSetValue(nullptr, option_.c_str(), before_->c_str())
+                 : PetscOptionsClearValue(nullptr, option_.c_str()));
+}
+
+std::vector<std::string> given_options() {
+  std::vector<std::string> names;
+  char* all = nullptr;
+  check(PetscOptionsGetAll(nullptr, &all));
+  for (const auto& word : split(all, ' ')) {
+    if (is_option_name(word)) names.push_back(word.substr(1));
+  }
+  check(PetscFree(all));
+  return names;
+}
+
+std::vector<std::string> unused_options() {
+  std::vector<std::string> unused;
+  PetscInt count = 0;
+  char** names = nullptr;
+  char** values = nullptr;
+  check(PetscOptionsLeftGet(nullptr, &count, &names, &values));
+  std::copy_if(names, names + count, std::back_inserter(unused), [](const std::string& name) {
+    return !belongs_to_petsc(name) && !is_read_later(name);
+  });
+  check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
+  return unused;
+}
+
+std::vector<std::pair<std::string, std::string>> given_solver_options() {
+  std::vector<std::pair<std::string, std::string>> found;
+  for (const auto& name : given_options()) {
+    if (role_of(name) != nullptr) found.emplace_back(name, option_value(name).value_or(""));
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<std::string> wrong_solver_types() {
+  std::vector<std::string> messages;
+  for (const auto& [name, words] : kSolverTypes) {
+    const auto types = split(words, ' ');
+    const std::string type = option_value(name).value_or("");
+    if (type.empty() || std::count(types.begin(), types.end(), type) > 0) continue;
+    const std::string near = nearest_word(type, types);
+    messages.push_back(fmt::format("-{} = {}: must be {}{}", name, type, enumerate(types, "or"),
+                                   near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  }
+  return messages;
+}
+
+std::vector<std::string> wrong_solver_options() {
+  std::vector<std::string> messages;
+  const auto names = given_options();
+  for (const auto& role : kRoles) {
+    const bool used = std::any_of(names.begin(), names.end(), [&role](const std::string& name) {
+      return role_of(name) == &role;
+    });
+    if (!used) continue;
+    try {
+      role.probe_options(role.prefix);
+    } catch (const PetscFailure& failure) {
+      const std::string text = failure.what(), message = text.substr(0, text.find('\n'));
+      messages.push_back(fmt::format("{}: {}", blamed_option(role, message), message));
+    }
+  }
+  return messages;
+}
+
+std::string unknown_solver_option(const std::string& name) {
+  const SolverRole* role = role_of(name);
+  if (role == nullptr) return "";
+  const std::string near = nearest_option(*role, name);
+  return fmt::format("-{}: this solver has no such option; {}-{}{} shows its options", name,
+                     near.empty() ? "" : fmt::format("did you mean -{}? ", near), role->prefix,
+                     split(role->read_later, ' ').front());
+}
+
+}  // namespace stickslip::petsc
