@@ -25,9 +25,9 @@ using Complex = std::complex<double>;
 constexpr double kLargestCorrection = 1e-3;
 
 bool serves_elements(const KolmogorovOperator& a) {
-  const std::string implied = petsc::implied_pc_type(kSlidePrefix);
-  const char* type = implied.empty() ? default_pc_type(a.discretisation()) : implied.c_str();
-  return std::strcmp(type, petsc::kElementsPc) == 0;
+  const cases::Factors given = given_factors();
+  if (given != cases::Factors::own) return given == cases::Factors::elements;
+  return std::strcmp(default_pc_type(a.discretisation()), petsc::kElementsPc) == 0;
 }
 
 double norm(const ComplexVector& x) {
@@ -102,20 +102,25 @@ class ComplexSolver::InRealForm final : public Factors {
     factors_ = std::make_unique<petsc::Factorization>(matrix_, kSlidePrefix, statistics, PCLU);
   }
 
+  // The transposed real form is that of the transposed matrix for the conjugate of z.
   void solve(const ComplexVector& b, const ComplexVector& x, bool transposed) override {
+    const double sign = transposed ? -1 : 1;
     petsc::VecHandle all, solved;
     check(MatCreateVecs(matrix_, all.out(), solved.out()));
     {
       const petsc::ReadView real(b.real), imaginary(b.imaginary);
       petsc::WriteView to(all);
-      std::copy_n(imaginary.data(), imaginary.size(),
-                  std::copy_n(real.data(), real.size(), to.data()));
+      auto* const next = std::copy_n(real.data(), real.size(), to.data());
+      std::transform(imaginary.data(), imaginary.data() + imaginary.size(), next,
+                     [sign](PetscScalar value) { return sign * value; });
     }
     transposed ? factors_->solve_transposed_once(all, solved) : factors_->solve_once(all, solved);
     const petsc::ReadView from(solved);
     petsc::WriteView real(x.real), imaginary(x.imaginary);
     std::copy_n(from.data(), real.size(), real.data());
-    std::copy_n(from.data() + real.size(), imaginary.size(), imaginary.data());
+    const auto* const next = from.data() + real.size();
+    std::transform(next, next + imaginary.size(), imaginary.data(),
+                   [sign](PetscScalar value) { return sign * value; });
   }
 
  private:
