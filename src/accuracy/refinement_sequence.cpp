@@ -115,7 +115,8 @@ RefinementSequence::RefinementSequence(const cases::Case& given)
   modes_ = given.question.wants(catalogue::Quantity::relaxation);
   // On nodes the residuals of eigenvectors, which stand for errors, stay about twice as large.
   const bool near_rounding = modes_ && accuracy_ < kModesOnNodes;
-  all_levels_ = full_grid || method_.noise_degree == 0 || near_rounding;
+  all_levels_ = full_grid || method_.noise_degree == 0 || near_rounding ||
+                !given.scene.meant().noise.neighbours_only();
   tail_counts_ = modes_ || !given.question.observables.empty() ||
                  given.question.wants(catalogue::Quantity::peak);
   last_ = method_.fixed() ? 1 : free_refinement_levels();

@@ -102,6 +102,7 @@ int levels_for(const model::Scene& scene, double tolerance, double speed) {
   const double per_force = tilt(scene);
   const auto last = [&](const model::Process& side) {
     const auto& noise = side.noise;
+    if (!noise.neighbours_only()) return noise.highest();  // each counts
     const bool both = side.starts_downwards();
     // Where bodies do not start on this side, the other one decides.
     if (!side.starts_upwards()) return noise.table ? noise.highest() : 1;
@@ -235,8 +236,9 @@ operators::FactorCost factor_cost(const model::Scene& scene, const Resolution& r
   return {r.branches * cost.entries, r.branches * cost.bytes, r.branches * cost.operations};
 }
 
-cases::Factors factors_of(const Resolution& r) {
-  return operators::chosen_factors(r.factors, r.scheme, r.noise_nodes(), r.noise == nullptr);
+cases::Factors factors_of(const model::Scene& scene, const Resolution& r) {
+  return operators::chosen_factors(r.factors, r.scheme, r.noise_nodes(), r.noise == nullptr,
+                                   scene.process(r.levels).noise.neighbours_only());
 }
 
 }  // namespace
@@ -256,7 +258,7 @@ double predicted_bytes(const model::Scene& scene, const Resolution& resolution, 
   }
   const bool upwind = resolution.scheme == cases::Scheme::upwind;
   const double row = upwind ? 4 : resolution.degree + 2.0 * resolution.grouping.degree + 6;
-  const cases::Factors factors = factors_of(resolution);
+  const cases::Factors factors = factors_of(scene, resolution);
   double copies = 60;
   if (factors == cases::Factors::elements) copies = 40;
   if (factors == cases::Factors::incomplete) copies = 120;
@@ -267,7 +269,7 @@ double predicted_bytes(const model::Scene& scene, const Resolution& resolution, 
 double relative_work(const model::Scene& scene, const Resolution& resolution) {
   const auto n = static_cast<double>(unknowns(scene, resolution));
   if (resolution.scheme == cases::Scheme::none) return n * n * n;
-  double work = factor_cost(scene, resolution, factors_of(resolution), 1).operations;
+  double work = factor_cost(scene, resolution, factors_of(scene, resolution), 1).operations;
   constexpr double real_and_complex = 5;
   for (double omega : resolution.waves) {
     work += real_and_complex * relative_work(scene, following(resolution, omega));

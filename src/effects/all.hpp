@@ -6,7 +6,7 @@
 namespace stickslip::effects {
 
 extern const Effect kCoulomb, kStribeck;
-extern const Effect kOrnsteinUhlenbeck, kTelegraph, kNoiseFile;
+extern const Effect kOrnsteinUhlenbeck, kTelegraph, kNoiseFile, kNoiseChain;
 extern const Effect kLinearDrag, kNoDrag, kCubicDrag, kDragExpression;
 
 }  // namespace stickslip::effects

@@ -49,7 +49,8 @@ const Choice& frictions() {
 }
 
 const Choice& noises() {
-  static constexpr const Effect* effects[] = {&kOrnsteinUhlenbeck, &kTelegraph, &kNoiseFile};
+  static constexpr const Effect* effects[] = {&kOrnsteinUhlenbeck, &kTelegraph, &kNoiseFile,
+                                              &kNoiseChain};
   static const Choice choice{
       "noise", "noise X", effects,
       [](const model::Scene& s) -> const std::string& { return s.noise.name; }};

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "stickslip/support/infinity.hpp"
+#include "transitions.hpp"
 
 namespace stickslip::model {
 namespace {
@@ -55,41 +57,97 @@ std::vector<double> weights(const std::vector<Level>& levels) {
 
 }  // namespace
 
-// With S_i = sum_(j <= i) pi_j (x_j - m), the intensity is sum_i S_i^2/(pi_i up_i): an edge passes
-// on all that lies below it. Summed from the end where all terms have one sign.
-LevelTable::LevelTable(std::vector<Level> levels)
-    : levels_(std::move(levels)), lowest_(-places_below_zero(levels_)), step_(kInfinity) {
+LevelTable::LevelTable(std::vector<Level> levels) : levels_(std::move(levels)) {
   require_chain(levels_);
-  const auto w = weights(levels_);
-  const std::size_t count = w.size();
+  for (std::size_t n = 0; n < levels_.size(); ++n) {
+    const auto &here = levels_[n], &other = levels_[levels_.size() - 1 - n];
+    even_ = even_ && here.x == -other.x && here.up == other.down;
+  }
+  find_moments();
+  find_tails();
+}
+
+LevelTable::LevelTable(const std::vector<double>& given,
+                       const std::vector<Transition>& transitions) {
+  require_states(given, transitions);
+  const auto x = without_rounding(given);
+  order_ = mirrored_order(x, transitions);
+  std::vector<int> place(x.size());
+  bool near = true;
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    place[order_[n]] = static_cast<int>(n);
+    levels_.push_back({x[order_[n]], 0, 0});
+    near = near && (n == 0 || levels_[n - 1].x < levels_[n].x);
+    even_ = even_ && levels_[n].x == -x[order_[x.size() - 1 - n]];
+  }
+  jumps_.resize(x.size());
+  for (const auto& [from, to, rate] : transitions) {
+    const int here = place[from], there = place[to];
+    near = near && std::abs(there - here) == 1;
+    jumps_[here].push_back({there, rate});
+    (there > here ? levels_[here].up : levels_[here].down) += rate;
+  }
+  for (auto& row : jumps_) {
+    std::sort(row.begin(), row.end(), [](const Jump& a, const Jump& b) { return a.to < b.to; });
+  }
+  even_ = even_ && mirrors_itself(jumps_);
+  if (near) jumps_.clear();
+  find_moments();
+  find_tails();
+}
+
+void LevelTable::find_moments() {
+  lowest_ = -places_below_zero(levels_);
+  step_ = kInfinity;
+  if (!neighbours_only()) probability_ = stationary(jumps_);
+  const auto w = neighbours_only() ? weights(levels_) : probability_;
   mode_ = lowest_ + static_cast<int>(std::max_element(w.begin(), w.end()) - w.begin());
   double total = 0;
-  for (std::size_t n = 0; n < count; ++n) {
+  for (std::size_t n = 0; n < w.size(); ++n) {
     total += w[n];
     mean_ += w[n] * levels_[n].x;
   }
-  mean_ /= total;
-  const auto part = [&](std::size_t n) { return w[n] * (levels_[n].x - mean_) / total; };
+  mean_ = even_ && !neighbours_only() ? 0 : mean_ / total;
+  std::vector<double> part, f;
+  for (std::size_t n = 0; n < w.size(); ++n) {
+    f.push_back(levels_[n].x - mean_);
+    part.push_back(w[n] * f[n] / total);
+    rate_ = std::max(rate_, levels_[n].up + levels_[n].down);
+    variance_ += part[n] * f[n];
+    const double step = n > 0 ? levels_[n].x - levels_[n - 1].x : 0;
+    if (step > 0) step_ = std::min(step_, step);
+  }
+  if (neighbours_only()) {
+    add_edges(w, part, total);
+  } else {
+    intensity_ = model::intensity(jumps_, probability_, f);
+    peak_intensity_ = model::peak_intensity(jumps_, probability_, f);
+  }
+  if (!std::isnormal(std::max(intensity_, peak_intensity_)) || !std::isnormal(variance_)) {
+    throw UnfitTable(levels_.size(), "the rates lead to probabilities beyond double precision");
+  }
+}
+
+// With S_i = sum_(j <= i) pi_j (x_j - m), the intensity is sum_i S_i^2/(pi_i up_i): an edge passes
+// on all that lies below it. Summed from the end where all terms have one sign.
+void LevelTable::add_edges(const std::vector<double>& w, const std::vector<double>& part,
+                           double total) {
   const auto add_edge = [&](double sum, double flow) {
     if (flow > 0) intensity_ += sum * sum * total / flow;
   };
   double below = 0, above = 0;
-  for (std::size_t n = 0; n + 1 < count; ++n) {
-    step_ = std::min(step_, levels_[n + 1].x - levels_[n].x);
-    if (levels_[n].x < mean_) add_edge(below += part(n), w[n] * levels_[n].up);
+  for (std::size_t n = 0; n + 1 < w.size(); ++n) {
+    if (levels_[n].x < mean_) add_edge(below += part[n], w[n] * levels_[n].up);
   }
-  for (std::size_t n = count - 1; n > 0 && levels_[n - 1].x >= mean_; --n) {
-    add_edge(above += part(n), w[n] * levels_[n].down);
+  for (std::size_t n = w.size() - 1; n > 0 && levels_[n - 1].x >= mean_; --n) {
+    add_edge(above += part[n], w[n] * levels_[n].down);
   }
-  for (std::size_t n = 0; n < count; ++n) {
-    const auto& [x, up, down] = levels_[n];
-    const auto& other = levels_[count - 1 - n];
-    even_ = even_ && x == -other.x && up == other.down;
-    rate_ = std::max(rate_, up + down);
-    variance_ += part(n) * (x - mean_);
-  }
-  if (!std::isnormal(intensity_) || !std::isnormal(variance_)) {
-    throw UnfitTable(count, "the rates lead to probabilities beyond double precision");
+}
+
+void LevelTable::find_tails() {
+  if (!neighbours_only()) {
+    decays_ = find_decays();
+    lower_decays_ = even_ ? decays_ : mirrored().find_decays();
   }
   const auto all_forces = [](const LevelTable& table) {
     const double top = table.levels_.back().x - table.mean_;
@@ -97,6 +155,20 @@ LevelTable::LevelTable(std::vector<Level> levels)
   };
   upper_tail_ = all_forces(*this);
   lower_tail_ = even_ ? upper_tail_ : all_forces(mirrored());
+}
+
+std::vector<LevelTable::Decay> LevelTable::find_decays() const {
+  constexpr int forces = 12;
+  const double top = levels_.back().x - mean_;
+  std::vector<Decay> all;
+  for (int n = 0; n < forces; ++n) {
+    // In even ratios, as pulses are much larger than what they overcome.
+    const double force = 0.95 * top * std::pow(0.02, 1 - n / (forces - 1.0));
+    std::vector<double> f;
+    for (const auto& level : levels_) f.push_back(level.x - mean_ - force);
+    all.push_back({force, decay(jumps_, f, force / std::max(intensity_, peak_intensity_))});
+  }
+  return all;
 }
 
 // Whether theta (X - m - f) + Q has negative eigenvalues alone: the pivots of its negative are
@@ -114,7 +186,13 @@ bool LevelTable::decays(double theta, double force) const {
 double LevelTable::tail_intensity(double least, double most) const {
   const double top = levels_.back().x - mean_;
   constexpr int forces = 20, halvings = 12;
-  double largest = intensity_;
+  double largest = std::max(intensity_, peak_intensity_);
+  for (const auto& [force, theta] : decays_) {
+    // With those next to the range.
+    constexpr double next = 1.5;
+    if (next * force >= least && force <= next * most) largest = std::max(largest, force / theta);
+  }
+  if (!neighbours_only()) return largest;
   for (int n = 1; n < forces; ++n) {
     // In even ratios, as pulses are much larger than what they overcome.
     const double share = static_cast<double>(n - 1) / (forces - 2),
@@ -133,6 +211,7 @@ double LevelTable::tail_intensity(double least, double most) const {
 }
 
 LevelTable LevelTable::within(int low, int high) const {
+  if (!neighbours_only()) return *this;
   low = std::max(low, lowest());
   high = std::min(high, highest());
   LevelTable part = *this;
@@ -148,6 +227,15 @@ LevelTable LevelTable::mirrored() const {
     const auto& [x, up, down] = levels_[levels_.size() - 1 - n];
     other.levels_[n] = {-x, down, up};
   }
+  const int last = static_cast<int>(levels_.size()) - 1;
+  std::reverse(other.jumps_.begin(), other.jumps_.end());
+  for (auto& row : other.jumps_) {
+    std::reverse(row.begin(), row.end());
+    for (auto& jump : row) jump.to = last - jump.to;
+  }
+  std::reverse(other.probability_.begin(), other.probability_.end());
+  std::reverse(other.order_.begin(), other.order_.end());
+  std::swap(other.decays_, other.lower_decays_);
   other.lowest_ = -highest();
   other.mode_ = -mode_;
   other.mean_ = -mean_;

@@ -91,7 +91,7 @@ int full_range(double tau, double delta, std::optional<double> deviation) {
 }
 
 double weight_ratio(const NoiseChain& chain, int i) {
-  return chain.table ? chain.up_rate(i - 1) / chain.down_rate(i) : chain.up(i - 1) / chain.down(i);
+  return chain.table ? chain.table->weight_ratio(i) : chain.up(i - 1) / chain.down(i);
 }
 
 std::vector<double> stationary_distribution(const NoiseChain& chain) {

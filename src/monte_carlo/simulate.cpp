@@ -15,6 +15,7 @@
 
 #include "stickslip/checkpoint/checkpoint.hpp"
 #include "stickslip/effects/effect.hpp"
+#include "stickslip/effects/model_options.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/quantities/excursion.hpp"
@@ -63,6 +64,13 @@ void add_question(const cases::Question& question, checkpoint::Identity& found) 
   }
 }
 
+bool is_file(const std::string& parameter) {
+  const auto& all = effects::model_options();
+  return std::ranges::any_of(all, [&](const effects::Option& option) {
+    return option.name == parameter && option.kind == effects::Kind::input;
+  });
+}
+
 // What fixes the numbers of a simulation, but for how many excursions there are: as understood, not
 // as written, since questions may come from the file of -compare.
 checkpoint::Identity identity(const Case& given) {
@@ -70,16 +78,18 @@ checkpoint::Identity identity(const Case& given) {
   const auto& s = given.scene;
   checkpoint::Identity found;
   for (const auto& [name, value] : effects::parameters_of(s)) {
-    // Of a file its levels count, wherever it is; nothing truncates a simulated velocity.
-    if (name == "noise_file" || name == "speed_limit") continue;
+    // Of files the levels count, wherever they are; nothing truncates a simulated velocity.
+    if (is_file(name) || name == "speed_limit") continue;
     found.emplace_back("-" + name, std::visit(text, value));
   }
   found.emplace_back("-noise_levels", s.noise_levels ? text(*s.noise_levels) : "");
   if (const auto& table = s.noise.table) {
     std::string levels;
     for (int i = table->lowest(); i <= table->highest(); ++i) {
-      const auto& [x, up, down] = table->at(i);
-      levels += fmt::format("{},{},{};", x, up, down);
+      levels += fmt::format("{}", table->at(i).x);
+      table->for_each_jump(i,
+                           [&](int to, double rate) { levels += fmt::format(",{},{}", to, rate); });
+      levels += ";";
     }
     found.emplace_back("levels", std::move(levels));
   }

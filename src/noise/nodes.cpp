@@ -145,8 +145,18 @@ Nodes::Nodes(const model::Process& process, const Grouping& grouping)
 
 Nodes::Nodes(const model::Process& process, const Grouping& grouping, Mirror mirror)
     : noise_(process.noise), grouping_(grouping) {
+  if (grouping.degree > 0 && !process.noise.neighbours_only()) {
+    throw std::invalid_argument("noise groups need a noise that jumps to neighbouring levels");
+  }
   if (grouping.degree < 0 || !(grouping.grading > 0) || !(grouping.width > 0)) {
     throw std::invalid_argument("noise groups need a degree >= 0, a grading and a width > 0");
+  }
+  if (!noise_.neighbours_only()) {
+    take_all_levels();
+    if (mirror == Mirror::made) {
+      mirrored_.reset(new Nodes(process.mirrored(), grouping, Mirror::left_out));
+    }
+    return;
   }
   const Upper above(process, grouping);
   if (noise_.symmetric()) {
@@ -160,6 +170,60 @@ Nodes::Nodes(const model::Process& process, const Grouping& grouping, Mirror mir
     }
   }
   find_jumps();
+}
+
+// A group ends where the jumps from and to those before it do.
+void Nodes::take_all_levels() {
+  const int count = noise_.count();
+  first_ = noise_.lowest();
+  jumps_.resize(static_cast<std::size_t>(count));
+  std::vector<int> reach(static_cast<std::size_t>(count));  // the furthest place either way
+  for (int n = 0; n < count; ++n) {
+    x_.push_back(noise_.level(first_ + n));
+    noise_.for_each_jump(first_ + n, [&](int to, double rate) {
+      jumps_[n].push_back({to, rate});
+      const int low = std::min(n, to - first_), high = std::max(n, to - first_);
+      reach[low] = std::max(reach[low], high);
+    });
+  }
+  for (int begin = 0, furthest = 0; begin < count;) {
+    int end = std::max(begin, furthest) + 1;
+    const int size = end - begin;
+    Group g{first_ + begin, first_ + end - 1, first_ + begin, size, {}, {}, {}, {}};
+    g.value.assign(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), 0.0);
+    for (int l = 0; l < size; ++l) g.value[static_cast<std::size_t>(l) * (size + 1)] = 1;
+    g.weight = g.value;
+    group_of_.insert(group_of_.end(), static_cast<std::size_t>(size), groups_.size());
+    groups_.push_back(std::move(g));
+    for (int n = begin; n < end; ++n) furthest = std::max(furthest, reach[n]);
+    begin = end;
+  }
+  for (std::size_t g = 0; g + 1 < groups_.size(); ++g) {
+    couple(groups_[g], groups_[g + 1], groups_[g].to_above, groups_[g + 1].from_below);
+    couple(groups_[g + 1], groups_[g], groups_[g + 1].to_below, groups_[g].from_above);
+  }
+}
+
+// The rates from one group to the levels of another one to which it jumps, and these levels.
+void Nodes::couple(const Group& from, const Group& to, std::vector<double>& rates,
+                   std::vector<double>& levels) const {
+  std::vector<int> place(static_cast<std::size_t>(to.count), -1);
+  int reached = 0;
+  const auto for_each = [&](auto visit) {
+    for (int l = 0; l < from.count; ++l) {
+      for (const auto& [node, rate] : jumps(from.begin + l)) {
+        if (node >= to.begin && node < to.begin + to.count) visit(l, node - to.begin, rate);
+      }
+    }
+  };
+  for_each([&](int, int there, double) { place[there] = 0; });
+  for (int& p : place) p = p < 0 ? p : reached++;
+  rates.assign(static_cast<std::size_t>(from.count) * reached, 0.0);
+  levels.assign(static_cast<std::size_t>(reached) * place.size(), 0.0);
+  for_each([&](int l, int there, double rate) {
+    rates[static_cast<std::size_t>(l) * reached + place[there]] += rate;
+    levels[static_cast<std::size_t>(place[there]) * place.size() + there] = 1;
+  });
 }
 
 // Around level 0, those below as the mirror shows them.
@@ -219,6 +283,7 @@ const Nodes::Group& Nodes::group_at(int level) const {
 }
 
 int Nodes::last_up_to(int level) const {
+  if (all_levels()) return level;
   const Group& g = group_at(level);
   return g.begin + g.count - 1;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
+#include <optional>
 #include <type_traits>
 
 #include "stickslip/petsc/check.hpp"
@@ -36,43 +38,54 @@ void send(MPI_Comm comm, int owner, int rows, int columns, algebra::Matrix<Scala
 
 }  // namespace
 
-/// The rows of static states: a tridiagonal chain with its exits.
+/// The rows of static states, tridiagonal where the noise jumps to neighbours, with their exits.
 template <class Scalar>
 struct ElementElimination<Scalar>::StaticRows {
-  struct Exit {
-    std::size_t level;  // of the chain
-    PetscInt column;
-    Scalar rate;
-  };
   typename Steps::Tridiagonal chain;
-  std::vector<Exit> exits;
+  std::optional<DenseFactors> dense;          // in its place
+  std::map<std::size_t, Scalars> exits = {};  // rates by static state, by place of the exit in w
+
+  void solve(Scalar* x) const {
+    if (dense) {
+      dense->solve(x, false);
+    } else {
+      chain.solve(x, false);
+    }
+  }
 };
 
 template <class Scalar>
 auto ElementElimination<Scalar>::read_chain(Mat matrix) const -> StaticRows {
   const std::size_t size = static_rows_.size();
+  const bool near = data_->discretisation.process.noise.neighbours_only();
   StaticRows at_rest;
-  for (Scalars* band : {&at_rest.chain.diagonal, &at_rest.chain.below, &at_rest.chain.above}) {
-    band->assign(size, 0.0);
-  }
+  auto& [diagonal, below, above] = at_rest.chain;
+  for (Scalars* band : {&diagonal, &below, &above}) band->assign(near ? size : 0, 0.0);
+  DenseMatrix dense(near ? 0 : static_cast<int>(size), near ? 0 : static_cast<int>(size));
   // From the lambda of the matrix to that of the factors.
   const Scalar more = lambda_ * rate_of(clock_, 0) - data_->lambda * rate_of(data_->clock, 0);
   const petsc::RowsOnAllRanks all(matrix, static_rows_);
   for (std::size_t n = 0; n < size; ++n) {
-    at_rest.chain.diagonal[n] = more;
+    (near ? diagonal[n] : dense(static_cast<int>(n), static_cast<int>(n))) = more;
     all.row(n).for_each([&](PetscInt column, PetscScalar value) {
-      if (column == static_rows_[n]) {
-        at_rest.chain.diagonal[n] += value;
-      } else if (n > 0 && column == static_rows_[n - 1]) {
-        at_rest.chain.below[n] += value;
-      } else if (n + 1 < size && column == static_rows_[n + 1]) {
-        at_rest.chain.above[n] += value;
+      const std::size_t first = near && n > 0 ? n - 1 : 0,
+                        last = near ? std::min(n + 2, size) : size;
+      std::size_t to = first;
+      while (to < last && static_rows_[to] != column) ++to;
+      if (to == last) to = size;
+      if (to == size) {
+        auto& rates = at_rest.exits[exit_at(column)];
+        rates.resize(size);
+        rates[n] -= value;
+      } else if (!near) {
+        dense(static_cast<int>(n), static_cast<int>(to)) += value;
       } else {
-        at_rest.exits.push_back({n, column, -value});
+        (to == n ? diagonal[n] : to < n ? below[n] : above[n]) += value;
       }
     });
   }
-  at_rest.chain.factor();
+  if (near) at_rest.chain.factor();
+  if (!near) at_rest.dense.emplace(std::move(dense));
   return at_rest;
 }
 
@@ -273,6 +286,7 @@ void ElementElimination<Scalar>::add_shares(const Line& line, std::size_t fall,
       const int kept = states.symmetry_reduced() ? std::abs(i) : i;
       if (!states.has_static_state(kept)) continue;  // an odd function vanishes at x = 0
       const double share = group.row(group.weight, along)[node - group.begin];
+      if (share == 0) continue;
       shares.push_back({static_begin_ + static_cast<std::size_t>(kept - lowest_static_),
                         fall + static_cast<std::size_t>(l), kept == i ? share : sign() * share});
     }
@@ -294,12 +308,13 @@ void ElementElimination<Scalar>::add_crossings(const Line& line, std::size_t fal
 template <class Scalar>
 std::size_t ElementElimination<Scalar>::exit_at(PetscInt column) const {
   for (const Line& line : lines_) {
-    const int node = data_->states.last_static(line.branch) + 1 - line.noise->first();
-    if (node == line.count()) continue;
-    const auto& [first, stride] = line.nodes[node];
-    const PetscInt from = column - first, q = line.velocities->element(0).reference->size;
-    const PetscInt place = stride == 0 ? 0 : from / stride;
-    if (from == place * stride && place >= 0 && place < q) return line.begin + node;
+    const PetscInt q = line.velocities->element(0).reference->size;
+    for (int node = data_->states.last_static(line.branch) + 1 - line.noise->first();
+         node < line.count(); ++node) {
+      const auto& [first, stride] = line.nodes[node];
+      const PetscInt from = column - first, place = stride == 0 ? 0 : from / stride;
+      if (from == place * stride && place >= 0 && place < q) return line.begin + node;
+    }
   }
   throw NotReached("a static state is left for one that is no exit");
 }
@@ -318,14 +333,13 @@ void ElementElimination<Scalar>::meet(Mat matrix) {
   const std::size_t falling = length_ - fall;
   StaticRows at_rest = read_chain(matrix);
   Steps leaving;
-  for (const auto& [level, column, rate] : at_rest.exits) {
+  for (const auto& [exit, rates] : at_rest.exits) {
     DenseMatrix left(static_cast<int>(static_rows_.size()), 1);
-    left(static_cast<int>(level), 0) = rate;
-    at_rest.chain.solve(left.data(), false);
+    std::copy(rates.begin(), rates.end(), left.data());
+    at_rest.solve(left.data());
     Scalars passed(falling, 0.0);
     for (const auto& [from, to, share] : shares)
       passed[to - fall] += share * left.data()[from - static_begin_];
-    const std::size_t exit = exit_at(column);
     for (std::size_t n = 0; n < falling; ++n) {
       if (passed[n] != 0.0) found.push_back({exit, fall + n, passed[n]});
     }
@@ -343,7 +357,11 @@ void ElementElimination<Scalar>::meet(Mat matrix) {
     }
     first += line.rising[0];
   }
-  between_.solve(std::move(at_rest.chain), static_begin_);
+  if (at_rest.dense) {
+    between_.solve(*std::move(at_rest.dense), static_begin_);
+  } else {
+    between_.solve(std::move(at_rest.chain), static_begin_);
+  }
   between_.add(std::move(shares));
   between_.add(std::move(found));
   between_.solve(DenseFactors(std::move(closed)), fall);

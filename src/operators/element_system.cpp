@@ -12,27 +12,36 @@ using algebra::add_product;
 template <class Scalar>
 using DenseMatrix = algebra::Matrix<Scalar>;
 
-// (c x 1)^T X, c the coefficients of the noise nodes of X.
+// (c x 1) X, c by rows over the noise nodes of X.
 template <class Scalar>
 DenseMatrix<Scalar> contracted(std::span<const double> c, int nodes, const DenseMatrix<Scalar>& x) {
-  DenseMatrix<Scalar> y(nodes, x.columns());
+  const int count = x.rows() / nodes, rows = static_cast<int>(c.size()) / count;
+  DenseMatrix<Scalar> y(rows * nodes, x.columns());
   for (int column = 0; column < x.columns(); ++column) {
-    for (std::size_t l = 0; l < c.size(); ++l) {
-      const Scalar* from = x.column(column) + l * static_cast<std::size_t>(nodes);
-      for (int m = 0; m < nodes; ++m) y(m, column) += c[l] * from[m];
+    for (int r = 0; r < rows; ++r) {
+      Scalar* to = y.column(column) + r * nodes;
+      for (int l = 0; l < count; ++l) {
+        const double weight = c[r * count + l];
+        if (weight == 0) continue;
+        const Scalar* from = x.column(column) + l * nodes;
+        for (int m = 0; m < nodes; ++m) to[m] += weight * from[m];
+      }
     }
   }
   return y;
 }
 
-// rates x 1: the same at each of the nodes.
+// rates x 1, rates by rows, `count` of them: the same at each of the nodes.
 template <class Scalar>
-DenseMatrix<Scalar> at_each(std::span<const double> rates, int nodes) {
-  DenseMatrix<Scalar> columns(static_cast<int>(rates.size()) * nodes, nodes);
-  for (std::size_t l = 0; l < rates.size(); ++l) {
-    for (int m = 0; m < nodes; ++m) columns(static_cast<int>(l) * nodes + m, m) = rates[l];
+DenseMatrix<Scalar> at_each(std::span<const double> rates, int count, int nodes) {
+  const int columns = static_cast<int>(rates.size()) / count;
+  DenseMatrix<Scalar> a(count * nodes, columns * nodes);
+  for (int l = 0; l < count; ++l) {
+    for (int c = 0; c < columns; ++c) {
+      for (int m = 0; m < nodes; ++m) a(l * nodes + m, c * nodes + m) = rates[l * columns + c];
+    }
   }
-  return columns;
+  return a;
 }
 
 // Copies a block beside what is there.
@@ -84,9 +93,14 @@ class ElementSystem<Scalar>::Elimination {
       ports_.push_back({l < rising_inner, l >= rising_outer});
     }
     int begin = 0;
+    length_ = static_cast<std::size_t>(s_.size());
     for (const auto& group : noise.groups()) {
       groups_.push_back({&group, begin, group.count, {}, {}, {}});
       begin += group.count;
+      Group& added = groups_.back();
+      added.first = length_;
+      added.last = length_ + group.at_first().size() / group.count * q_;
+      length_ = added.last + group.at_last().size() / group.count * q_;
     }
     eliminate();
   }
@@ -99,28 +113,35 @@ class ElementSystem<Scalar>::Elimination {
             part(result_, outer_out_, inner_in_), part(result_, outer_out_, outer_in_)};
   }
 
-  /// The LU as steps; lists end with places for values on the first and on the last level of each
-  /// group. The factors are gone then.
+  /// The LU as steps; lists end with places for values on the levels of each group to which others
+  /// jump. The factors are gone then.
   [[nodiscard]] LinearSteps<Scalar> steps() {
     LinearSteps<Scalar> steps;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       Group& group = groups_[g];
       if (g > 0) {
         const Group& below = groups_[g - 1];
-        steps.contract(below.noise->at_last(), q_, at(below), last(g - 1));
-        steps.spread(group.noise->to_below, q_, last(g - 1), at(group));
+        contract(below, below.noise->at_last(), below.last, steps);
+        const int rank = rank_of(below.noise->at_last(), below);
+        for (int r = 0; r < rank; ++r) {
+          std::vector<double> rates;
+          for (int l = 0; l < group.count; ++l) {
+            rates.push_back(group.noise->to_below[static_cast<std::size_t>(l) * rank + r]);
+          }
+          steps.spread(rates, q_, below.last + static_cast<std::size_t>(r) * q_, at(group));
+        }
       }
       steps.solve(std::move(group.factors), at(group));
     }
     for (std::size_t g = groups_.size() - 1; g-- > 0;) {
       const Group& above = groups_[g + 1];
-      steps.contract(above.noise->at_first(), q_, at(above), first(g + 1));
-      steps.add(std::move(groups_[g].to_next), first(g + 1), at(groups_[g]));
+      contract(above, above.noise->at_first(), above.first, steps);
+      steps.add(std::move(groups_[g].to_next), above.first, at(groups_[g]));
     }
     return steps;
   }
 
-  [[nodiscard]] std::size_t length() const { return first(groups_.size()); }
+  [[nodiscard]] std::size_t length() const { return length_; }
 
  private:
   struct Group {
@@ -129,6 +150,8 @@ class ElementSystem<Scalar>::Elimination {
     algebra::LuFactors<Scalar> factors;
     Matrix to_next;    // D^-1 (a x 1): what values on the next group make here
     Matrix to_before;  // D^-1 (b x 1): the same for the group before
+    // Places in a list for values on the levels to which the groups below and above jump.
+    std::size_t first = 0, last = 0;
   };
   // Whether a noise node takes the value beyond an end; else it gives one there.
   struct Takes {
@@ -143,10 +166,17 @@ class ElementSystem<Scalar>::Elimination {
   [[nodiscard]] std::size_t at(const Group& group) const {
     return static_cast<std::size_t>(group.begin) * q_;
   }
-  [[nodiscard]] std::size_t first(std::size_t group) const {
-    return static_cast<std::size_t>(s_.size()) + 2 * group * q_;
+  // Of how many levels a border is.
+  [[nodiscard]] static int rank_of(std::span<const double> border, const Group& group) {
+    return static_cast<int>(border.size()) / group.count;
   }
-  [[nodiscard]] std::size_t last(std::size_t group) const { return first(group) + q_; }
+  void contract(const Group& group, std::span<const double> border, std::size_t to,
+                LinearSteps<Scalar>& steps) const {
+    const auto count = static_cast<std::size_t>(group.count);
+    for (std::size_t r = 0; r * count < border.size(); ++r) {
+      steps.contract(border.subspan(r * count, count), q_, at(group), to + r * q_);
+    }
+  }
 
   // The rows and columns of a group.
   [[nodiscard]] Matrix block(const Group& group) const {
@@ -175,28 +205,44 @@ class ElementSystem<Scalar>::Elimination {
     return a;
   }
 
+  // (to_below x 1) returns (at_first x 1) from the block of a group.
+  void subtract(const Group& group, const std::vector<double>& to_below, const Matrix& returns,
+                Matrix& a) const {
+    const auto first = group.noise->at_first();
+    const int below = returns.rows() / q_, here = returns.columns() / q_;
+    for (int l = 0; l < group.count; ++l) {
+      for (int s = 0; s < below; ++s) {
+        const double rate = to_below[l * below + s];
+        if (rate == 0) continue;
+        for (int r = 0; r < here; ++r) {
+          for (int k = 0; k < group.count; ++k) {
+            const double share = rate * first[r * group.count + k];
+            if (share == 0) continue;
+            for (int n = 0; n < q_; ++n) {
+              for (int m = 0; m < q_; ++m) {
+                a(l * q_ + m, k * q_ + n) -= share * returns(s * q_ + m, r * q_ + n);
+              }
+            }
+          }
+        }
+      }
+    }
+  }
+
   void eliminate() {
     Matrix returns;  // (d x 1)^T D^-1 (a x 1) of the group before
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       Group& group = groups_[g];
       Matrix a = block(group);
       const auto& to_below = group.noise->to_below;
-      const auto first = group.noise->at_first();
-      for (int l = 0; g > 0 && l < group.count; ++l) {
-        for (int k = 0; k < group.count; ++k) {
-          const double share = to_below[l] * first[k];
-          for (int n = 0; n < q_; ++n) {
-            for (int m = 0; m < q_; ++m) a(l * q_ + m, k * q_ + n) -= share * returns(m, n);
-          }
-        }
-      }
+      if (g > 0) subtract(group, to_below, returns, a);
       group.factors = algebra::LuFactors<Scalar>(std::move(a));
       if (g > 0) {
-        group.to_before = at_each<Scalar>(to_below, q_);
+        group.to_before = at_each<Scalar>(to_below, group.count, q_);
         group.factors.solve(group.to_before);
       }
       if (g + 1 < groups_.size()) {
-        group.to_next = at_each<Scalar>(group.noise->to_above, q_);
+        group.to_next = at_each<Scalar>(group.noise->to_above, group.count, q_);
         group.factors.solve(group.to_next);
         returns = contracted(group.noise->at_last(), q_, group.to_next);
       }
@@ -241,7 +287,7 @@ class ElementSystem<Scalar>::Elimination {
   }
 
   void forward() {
-    Matrix last;  // values on the last level of the group before
+    Matrix last;  // values on the levels of the group before to which this one jumps
     int column = 0, row = 0;
     for (const Group& group : groups_) {
       const Matrix alone = own(group);
@@ -272,10 +318,10 @@ class ElementSystem<Scalar>::Elimination {
   }
 
   void back() {
-    Matrix next(q_, inputs_);  // values on the first level of the group above
+    Matrix next;  // values on the levels of the group above to which this one jumps
     for (std::size_t g = groups_.size(); g-- > 0;) {
       const Group& group = groups_[g];
-      Matrix here(q_, inputs_);
+      Matrix here(on_first_[g].rows(), inputs_);
       place(on_first_[g], 0, 0, here);
       if (g + 1 < groups_.size()) {
         const Matrix given = outputs(group, group.to_next) * next;
@@ -299,8 +345,10 @@ class ElementSystem<Scalar>::Elimination {
   std::vector<int> inner_in_, outer_in_, inner_out_, outer_out_;
   std::vector<Group> groups_;
   Matrix result_;
-  std::vector<Matrix> on_first_;  // by group: values on its first level, before those above count
-  std::vector<int> rows_;         // by group: outputs up to it
+  // By group: values on its levels to which the one below jumps, before those above count.
+  std::vector<Matrix> on_first_;
+  std::vector<int> rows_;  // by group: outputs up to it
+  std::size_t length_ = 0;
 };
 
 template <class Scalar>

@@ -38,12 +38,9 @@ KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& disc
           clock})) {
   RowAssembler rows(discretisation, states(), lambda, clock, static_phase, derivative);
   rows.assemble();
-  // Where all excursions start on one side, so do those that are taken for the other's.
-  const auto& process = discretisation.process;
-  trace_upper_ = rows.trace_at_exit(process.starts_upwards() ? Branch::positive : Branch::negative);
-  if (!states().symmetry_reduced()) {
-    trace_lower_ =
-        rows.trace_at_exit(process.starts_downwards() ? Branch::negative : Branch::positive);
+  for (const auto& start : discretisation.process.starts()) {
+    if (states().symmetry_reduced() && start.level < 0) continue;
+    traces_[start.level] = rows.trace_at_start(start.level);
   }
   static_coupling_ = std::move(rows.static_coupling);
   top_coupling_ = std::move(rows.top_coupling);
@@ -125,9 +122,13 @@ petsc::VecHandle KolmogorovOperator::zeros() const {
 }
 
 petsc::VecHandle KolmogorovOperator::trace_at_exit(Branch branch) const {
+  return trace_at_start(discretisation().process.exit_level(branch == Branch::positive));
+}
+
+petsc::VecHandle KolmogorovOperator::trace_at_start(int level) const {
   petsc::VecHandle g = zeros();
   const PetscInt begin = states().local_begin(), end = begin + states().local_size();
-  for (const auto& [index, weight] : branch == Branch::positive ? trace_upper_ : trace_lower_) {
+  for (const auto& [index, weight] : traces_.at(level)) {
     if (index < begin || index >= end) continue;
     check(VecSetValue(g, index, weight, INSERT_VALUES));
   }

@@ -57,12 +57,12 @@ class RowAssembler {
     return trace;
   }
 
-  /// The same at s+ or s-: the level next to the static ones is a node. Where the noise has none,
-  /// the other one stands for it: excursions that never happen.
-  [[nodiscard]] Functional trace_at_exit(Branch branch) const {
-    const int next = states_.last_static(branch) + 1;
-    return next <= side(branch).noise.last() ? trace_at_zero(branch, next)
-                                             : trace_at_exit(opposite(branch));
+  /// The same on a level that does not stick and is a node, as those from which excursions start;
+  /// symmetry-reduced, of a level above the static ones.
+  [[nodiscard]] Functional trace_at_start(int level) const {
+    const bool up = level > upper_.process.highest_static();
+    const Branch branch = up ? Branch::positive : Branch::negative;
+    return trace_at_zero(branch, side(branch).noise.node_at(up ? level : -level));
   }
 
   std::vector<PetscInt> row_start{0};
@@ -154,11 +154,7 @@ class RowAssembler {
     rate_to(node(s.branch, s.noise, 0),
             here.velocities.origin_rate(derivative_ ? speed_change(s.branch)(0) : net_force));
     for_each_jump(s.branch, s.noise, [&](int to, double rate) {
-      if (states_.has_origin(s.branch, to)) {
-        rate_to(states_.index({StateKind::origin, s.branch, to, 0}), rate);
-      } else {
-        rate_to_rest(s.branch, to, rate);
-      }
+      rate_to_zero({StateKind::node, s.branch, to, 0}, rate);
     });
   }
 
@@ -175,10 +171,10 @@ class RowAssembler {
       killing_ = chain_.rate();  // value 0 there: killed at once
       return;
     }
-    if (i < highest) rate_to_rest(i + 1, chain_.up_rate(i));
-    if (i == highest) rate_to_exit(Branch::positive, chain_.up_rate(i));
-    if (i > lowest) rate_to_rest(i - 1, chain_.down_rate(i));
-    if (i == lowest) rate_to_exit(Branch::negative, chain_.down_rate(i));
+    chain_.for_each_jump(i, [&](int to, double rate) {
+      if (lowest <= to && to <= highest) return rate_to_rest(to, rate);
+      rate_to_exit(to, rate);
+    });
   }
 
   // Where a sliding body meets v = 0.
@@ -200,7 +196,7 @@ class RowAssembler {
     const noise::Nodes::Group& group = side(branch).noise.group_of(n);
     for (int i = group.first; i <= group.last; ++i) {
       const double share = group.row(group.weight, i)[n - group.begin];
-      rate_to_rest(branch == Branch::positive ? i : -i, rate * share);
+      if (share != 0) rate_to_rest(branch == Branch::positive ? i : -i, rate * share);
     }
   }
 
@@ -219,15 +215,13 @@ class RowAssembler {
             kept == i ? 1 : reflection());
   }
 
-  void rate_to_exit(Branch branch, double rate) {
-    if (rate == 0) return;
+  void rate_to_exit(int level, double rate) {
     if (static_phase_ == StaticPhase::killed_on_exit) {
       killing_ += rate;
     } else if (states_.symmetry_reduced()) {
-      rate_to_trace(trace_at_exit(Branch::positive), rate,
-                    branch == Branch::positive ? 1 : reflection());
+      rate_to_trace(trace_at_start(std::abs(level)), rate, level > 0 ? 1 : reflection());
     } else {
-      rate_to_trace(trace_at_exit(branch), rate, 1);
+      rate_to_trace(trace_at_start(level), rate, 1);
     }
   }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <utility>
 
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/session.hpp"
@@ -36,11 +38,20 @@ double falling_nodes(const model::Process& process, const noise::Nodes* noise, d
   return static_cast<double>(below) - lowest;
 }
 
-// How many groups have how many nodes.
-std::map<int, double> group_sizes(const model::Process& process, const noise::Nodes* noise) {
-  if (noise == nullptr) return {{1, process.noise.count()}};
-  std::map<int, double> sizes;
-  for (const auto& group : noise->groups()) sizes[group.count] += 1;
+// Nodes of a group, and levels through which others jump to it.
+using GroupSize = std::pair<int, int>;
+
+// How many groups have which size.
+std::map<GroupSize, double> group_sizes(const model::Process& process, const noise::Nodes* noise) {
+  if (noise == nullptr && process.noise.neighbours_only()) {
+    return {{{1, 1}, static_cast<double>(process.noise.count())}};
+  }
+  if (noise == nullptr) return group_sizes(process, std::make_unique<noise::Nodes>(process).get());
+  std::map<GroupSize, double> sizes;
+  for (const auto& group : noise->groups()) {
+    const std::size_t border = std::max(group.at_first().size(), group.at_last().size());
+    sizes[{group.count, static_cast<int>(border) / group.count}] += 1;
+  }
   return sizes;
 }
 
@@ -58,8 +69,10 @@ Factors given_factors() {
   return value("mat_mumps_icntl_22") == "1" ? Factors::on_disk : Factors::in_memory;
 }
 
-Factors chosen_factors(Factors asked, Scheme scheme, std::int64_t noise_nodes, bool all_levels) {
+Factors chosen_factors(Factors asked, Scheme scheme, std::int64_t noise_nodes, bool all_levels,
+                       bool neighbours_only) {
   if (asked != Factors::own) return asked;
+  if (!neighbours_only) return scheme == Scheme::hp ? Factors::elements : Factors::in_memory;
   constexpr std::int64_t most_levels = 700;
   const bool few = !all_levels || noise_nodes <= most_levels;
   return scheme == Scheme::hp && few ? Factors::elements : Factors::in_memory;
@@ -68,8 +81,9 @@ Factors chosen_factors(Factors asked, Scheme scheme, std::int64_t noise_nodes, b
 const char* default_pc_type(const Discretisation& discretisation) {
   const auto& [process, noise, velocities] = discretisation;
   const bool hp = dynamic_cast<const velocity::HpDiscretisation*>(velocities.get()) != nullptr;
-  const Factors factors = chosen_factors(Factors::own, hp ? Scheme::hp : Scheme::upwind,
-                                         noise->count(), noise->all_levels());
+  const Factors factors =
+      chosen_factors(Factors::own, hp ? Scheme::hp : Scheme::upwind, noise->count(),
+                     noise->all_levels(), process.noise.neighbours_only());
   return factors == Factors::elements ? petsc::kElementsPc : "lu";
 }
 
@@ -84,11 +98,12 @@ FactorCost elimination_cost(const model::Process& process,
   for (int e = 0; e < velocities.elements(); ++e) {
     const double q = velocities.element(e).reference->size;
     const double outer = falling_nodes(process, noise, velocities.drag_at_end(e + 1));
-    for (const auto& [nodes, groups] : sizes) {
-      const double n = nodes * q;
-      inside += groups * (n * n + n * q);
+    for (const auto& [size, groups] : sizes) {
+      const auto& [nodes, border] = size;
+      const double n = nodes * q, b = border * q;
+      inside += groups * (n * n + n * b);
       operations +=
-          groups * (n * n * (2 * n / 3 + 4 * q + 2 * nodes) + (nodes == 1 ? 4 : 8) * q * q * all);
+          groups * (n * n * (2 * n / 3 + 4 * b + 2 * nodes) + (nodes == 1 ? 4 : 8) * b * b * all);
     }
     const double up = all - outer, up_inner = all - inner;
     between += up_inner * up + 2 * outer * up + outer * outer + (outer + up) * inner;

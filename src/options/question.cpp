@@ -157,6 +157,14 @@ model::Start read_state(Settings& settings, const model::Scene& scene, double x,
         fmt::format("take x = {:g}", noise.level(static_cast<int>(std::round(place)))));
     return {};
   }
+  for (int other : {*level - 1, *level + 1}) {
+    if (other < noise.lowest() || other > noise.highest()) continue;
+    if (noise.level(other) != noise.level(*level)) continue;
+    settings.refuse("start",
+                    fmt::format("does not say in which of the states with x = {:g} to start", x),
+                    "take -start rest, stationary, s+ or s-");
+    return {};
+  }
   const auto branch = v < 0 ? process.mirrored() : process;
   const double largest = branch.terminal_velocity() * (v < 0 ? -1 : 1);
   if (std::abs(v) > std::abs(largest)) {
@@ -180,10 +188,8 @@ void read_start(Settings& settings, Request& request) {
   if ((text == "s+" && !up) || (text == "s-" && !down)) {
     settings.refuse("start", "does not occur: from rest bodies start on the other side alone",
                     up ? "take -start s+" : "take -start s-");
-  } else if (text == "s+") {
-    start = {process.highest_static() + 1};
-  } else if (text == "s-") {
-    start = {process.lowest_static() - 1};
+  } else if (text == "s+" || text == "s-") {
+    start = {process.exit_level(text == "s+")};
   } else if (text == "rest" || text == "stationary") {
     start.kind = text == "rest" ? rest : stationary;
   } else if (const auto state = parse_numbers(text); state && state->size() == 2) {

@@ -144,7 +144,7 @@ std::vector<std::pair<std::string, std::string>> identity_of(const Settings& set
       if (option.name == "checkpoint" || option.name == "plan") continue;
       const bool swept = is_axis(axes, option.name);
       identity.emplace_back(option.name, swept ? kSwept : settings.text(option.name));
-      if (option.name != "noise_file" || !settings.has(option.name)) continue;
+      if (option.kind != Kind::input || !settings.has(option.name)) continue;
       std::ostringstream contents;
       contents << std::ifstream(identity.back().second).rdbuf();
       identity.back().second = contents.str();

@@ -20,26 +20,35 @@ using operators::StaticPhase;
 using operators::Symmetry;
 using petsc::check;
 
-/// exp(Q t) for the static chain: at rate Lambda the noise jumps, up or down, or stays where it
-/// does so more slowly.
+/// exp(Q t) for the static chain: at rate Lambda the noise jumps, or stays where it does so more
+/// slowly.
 class StickingFlow {
  public:
   StickingFlow(const model::Process& process, std::vector<double> start)
-      : noise_(process.noise),
-        lowest_(process.lowest_static()),
-        highest_(process.highest_static()),
-        distribution_(std::move(start)) {}
+      : rate_(process.noise.rate()),
+        exit_(operators::StaticChain::of(process).exit_rates()),
+        distribution_(std::move(start)) {
+    const auto& noise = process.noise;
+    const int lowest = process.lowest_static(), highest = process.highest_static();
+    for (int i = lowest; i <= highest; ++i) {
+      const std::size_t at = static_cast<std::size_t>(i) - static_cast<std::size_t>(lowest);
+      keeps_.push_back(1 - noise.rate(i) / rate_);
+      noise.for_each_jump(i, [&](int to, double rate) {
+        if (lowest > to || to > highest) return;
+        jumps_.push_back({at, static_cast<std::size_t>(to - lowest), rate / rate_});
+      });
+    }
+  }
 
   void advance(double time) {
     // Steps of at most 64 expected jumps, whose weights do not underflow.
-    const double jumps = noise_.rate() * time;
+    const double jumps = rate_ * time;
     const int steps = std::max(1, static_cast<int>(std::ceil(jumps / 64)));
     for (int n = 0; n < steps; ++n) step(jumps / steps);
   }
 
   [[nodiscard]] double exit_rate() const {
-    return noise_.up_rate(highest_) * distribution_.back() +
-           noise_.down_rate(lowest_) * distribution_.front();
+    return std::inner_product(exit_.begin(), exit_.end(), distribution_.begin(), 0.0);
   }
   [[nodiscard]] double left() const { return left_; }
 
@@ -62,20 +71,20 @@ class StickingFlow {
   // One jump of the noise; returns what leaves.
   double jump(std::vector<double>& chain) const {
     std::vector<double> next(chain.size(), 0.0);
-    double leaving = 0;
-    for (int i = lowest_; i <= highest_; ++i) {
-      const int at = i - lowest_;
-      const double jumping = noise_.rate(i) / noise_.rate();
-      (i < highest_ ? next[at + 1] : leaving) += chain[at] * jumping * noise_.up(i);
-      (i > lowest_ ? next[at - 1] : leaving) += chain[at] * jumping * noise_.down(i);
-      next[at] += chain[at] * (1 - jumping);
-    }
+    const double leaving = std::inner_product(exit_.begin(), exit_.end(), chain.begin(), 0.0);
+    for (const auto& [from, to, probability] : jumps_) next[to] += chain[from] * probability;
+    for (std::size_t n = 0; n < chain.size(); ++n) next[n] += chain[n] * keeps_[n];
     chain = std::move(next);
-    return leaving;
+    return leaving / rate_;
   }
 
-  model::NoiseChain noise_;
-  int lowest_, highest_;
+  struct Jump {
+    std::size_t from, to;
+    double probability;
+  };
+  double rate_;  // Lambda
+  std::vector<double> exit_, keeps_;
+  std::vector<Jump> jumps_;
   std::vector<double> distribution_;
   double left_ = 0;
 };
@@ -129,7 +138,7 @@ DurationDistribution distribution_until_killed(const std::string& name, operator
     ProcessPencil pencil(systems, operators::symmetry_of(systems.process()), static_phase, clock);
     const auto& a = pencil.a();
     const petsc::VecHandle one = a.values([](double, double, double) { return 1.0; }),
-                           b = a.zeros(), c = stationary.starts(a), d = stationary.weight_on(a);
+                           b = a.zeros(), c = stationary.starts_on(a), d = stationary.weight_on(a);
     check(MatMult(a.matrix(), one, b));
     for (Vec end : {Vec(b), Vec(c)}) pencil.by_clock(-1, end);
     curve = time_curve(pencil, {b, c, d}, ReducedModel::Nature::rough, {{0, 1 / mean}, {1, 1}},
@@ -151,7 +160,7 @@ DurationDistribution slide_distribution(operators::Systems& systems,
   return distribution_until_killed(
       "slide", systems, StaticPhase::killing, operators::Clock::time, stationary, time,
       stationary.excursion().mean_slide(), time_scales(systems.process()),
-      slide_density_at_zero(systems.process(), stationary.sides()), tolerance);
+      slide_density_at_zero(systems.process(), stationary.starts()), tolerance);
 }
 
 // No excursion ends at once: a sliding phase would have to, and then a sticking phase.
@@ -164,16 +173,28 @@ DurationDistribution excursion_distribution(operators::Systems& systems,
       stationary.excursion().mean_excursion(), time_scales(systems.process()), 0, tolerance);
 }
 
-double slide_density_at_zero(const model::Process& process, const SideChain& sides) {
-  const auto from_plus = [](const model::Process& seen) {
-    const int k = seen.highest_static();
-    if (!seen.starts_upwards()) return 0.0;
-    const double up = seen.net_force(k + 1), down = -seen.net_force(k);
-    if (down <= 0) return 0.0;
-    return seen.noise.down_rate(k + 1) * down / (up + down);
+// A body that has just left turns round where the noise jumps at once to a level that sticks and
+// slows it.
+double slide_density_at_zero(const model::Process& process, const Starts& starts) {
+  const auto upwards_from = [](const model::Process& seen, int level) {
+    const double up = seen.net_force(level);
+    double density = 0;
+    seen.noise.for_each_jump(level, [&](int to, double rate) {
+      const double down = -seen.net_force(to);
+      const bool sticks = seen.lowest_static() <= to && to <= seen.highest_static();
+      if (sticks && down > 0) density += rate * down / (up + down);
+    });
+    return density;
   };
-  return sides.share_of_plus() * from_plus(process) +
-         sides.share_of_minus() * from_plus(process.mirrored());
+  const model::Process mirrored = process.mirrored();
+  double density = 0;
+  for (std::size_t t = 0; t < starts.size(); ++t) {
+    const int level = starts.levels[t];
+    density +=
+        starts.shares[t] * (level > process.highest_static() ? upwards_from(process, level)
+                                                             : upwards_from(mirrored, -level));
+  }
+  return density;
 }
 
 DurationMoments duration_moments(operators::Systems& systems,
@@ -189,7 +210,7 @@ DurationMoments duration_moments(operators::Systems& systems,
     stick_square = stick_square + 2 * twice[n] * entry[n];
   }
   auto& system = systems.at(0, operators::symmetry_of(process));
-  const petsc::VecHandle starts = distribution.starts(system.a());
+  const petsc::VecHandle starts = distribution.starts_on(system.a());
   const petsc::VecHandle ones = system.a().values([](double, double, double) { return 1.0; });
   const auto slide = system.factors().solve(ones);
   const auto square = system.factors().solve(slide.x);
@@ -206,7 +227,7 @@ DurationMoments duration_moments(operators::Systems& systems,
           s2 + 2.0 * st + stick_square - excursion * excursion};
 }
 
-void append_duration_moments(const model::Process& process, const SideChain& sides,
+void append_duration_moments(const model::Process& process, const Starts& starts,
                              const DurationMoments& moments, const std::vector<Uncertain>& entry,
                              Results& results) {
   const auto append = [&](const Row& row, Uncertain value) {
@@ -220,10 +241,14 @@ void append_duration_moments(const model::Process& process, const SideChain& sid
   append(catalogue::kVarSlide, moments.var_slide);
   append(catalogue::kVarStick, moments.var_stick);
   append(catalogue::kVarExcursion, moments.var_excursion);
-  append(catalogue::kFSlide0, {slide_density_at_zero(process, sides), 0});
+  std::vector<double> value, error;
+  for (const auto& p : entry) {
+    value.push_back(p.value);
+    error.push_back(p.error);
+  }
+  append(catalogue::kFSlide0, {slide_density_at_zero(process, starts), 0});
   append(catalogue::kFStick0,
-         {stick_density_at_zero(process, entry.front().value, entry.back().value),
-          stick_density_at_zero(process, entry.front().error, entry.back().error)});
+         {stick_density_at_zero(process, value), stick_density_at_zero(process, error)});
 }
 
 void append_distribution(const Row& density_row, const Row& distribution_row,

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "stickslip/algebra/rate_elimination.hpp"
 #include "stickslip/catalogue/entry_law_keys.hpp"
 #include "stickslip/catalogue/moments_keys.hpp"
 #include "stickslip/catalogue/noise_law_keys.hpp"
@@ -58,29 +59,82 @@ double Excursion::conservation_defect(const operators::Discretisation& discretis
          lost_probability * lost_probability;
 }
 
-SideChain side_chain(const model::Process& process, const std::vector<double>& entry_plus,
-                     const std::vector<double>& entry_minus) {
-  const auto chain = operators::StaticChain::of(process);
-  const auto mean = [](const std::vector<double>& entry, const std::vector<double>& h) {
-    return std::inner_product(entry.begin(), entry.end(), h.begin(), 0.0);
-  };
-  return {mean(entry_plus, chain.downward_exit_transform()),
-          mean(entry_minus, chain.upward_exit_transform())};
+Starts Starts::upwards(const model::Process& process) {
+  return {{process.exit_level(true)}, {1}, {1}};
 }
 
-Excursion joined(const SideChain& sides, const Excursion& plus, const Excursion& minus) {
-  Excursion all = plus;
-  for (auto member : {&Excursion::slide_time, &Excursion::slide_distance, &Excursion::slide_square,
-                      &Excursion::entry, &Excursion::stick_time}) {
-    for (std::size_t n = 0; n < (all.*member).size(); ++n) {
-      (all.*member)[n] =
-          sides.share_of_plus() * (plus.*member)[n] + sides.share_of_minus() * (minus.*member)[n];
+namespace {
+
+// From levels above the static ones to those below, or conversely.
+double crossing(const model::Process& process, const Starts& starts, bool from_above) {
+  const int highest = process.highest_static();
+  double all = 0, crossing = 0;
+  for (std::size_t t = 0; t < starts.size(); ++t) {
+    if ((starts.levels[t] > highest) != from_above) continue;
+    all += starts.shares[t];
+    for (std::size_t u = 0; u < starts.size(); ++u) {
+      const bool above = starts.levels[u] > highest;
+      if (above != from_above) crossing += starts.shares[t] * starts.next[t * starts.size() + u];
     }
   }
-  all.entry_plus = plus.entry;
-  all.entry_minus = minus.entry;
-  all.lost_probability = sides.share_of_plus() * std::abs(plus.lost_probability) +
-                         sides.share_of_minus() * std::abs(minus.lost_probability);
+  return all > 0 ? crossing / all : 1;
+}
+
+}  // namespace
+
+double Starts::falling(const model::Process& process) const {
+  return crossing(process, *this, true);
+}
+
+double Starts::rising(const model::Process& process) const {
+  return crossing(process, *this, false);
+}
+
+Starts chain_of_starts(const model::Process& process, std::vector<int> levels,
+                       const std::vector<Excursion>& from) {
+  const auto sticking = operators::StaticChain::of(process);
+  const auto count = static_cast<int>(levels.size());
+  Starts starts{std::move(levels), {}, std::vector<double>(from.size() * from.size())};
+  algebra::RateElimination chain(std::vector<double>(from.size(), 0.0), count);
+  for (int u = 0; u < count; ++u) {
+    const auto exit = sticking.exit_transform_to(starts.levels[u]);
+    for (int t = 0; t < count; ++t) {
+      const auto& entry = from[t].entry;
+      const double p = std::inner_product(entry.begin(), entry.end(), exit.begin(), 0.0);
+      starts.next[t * count + u] = p;
+      if (t != u) chain.add(t, u, p);
+    }
+  }
+  chain.factor();
+  starts.shares = chain.stationary();
+  return starts;
+}
+
+Excursion joined(const model::Process& process, const Starts& starts,
+                 const std::vector<Excursion>& from) {
+  const auto mean = [&](std::vector<double> Excursion::*member, const auto& counts) {
+    std::vector<double> all((from[0].*member).size(), 0.0);
+    double weight = 0;
+    for (std::size_t t = 0; t < from.size(); ++t) weight += counts(t) ? starts.shares[t] : 0;
+    for (std::size_t t = 0; t < from.size(); ++t) {
+      if (!counts(t)) continue;
+      for (std::size_t n = 0; n < all.size(); ++n) {
+        all[n] += starts.shares[t] / weight * (from[t].*member)[n];
+      }
+    }
+    return all;
+  };
+  const auto upwards = [&](std::size_t t) { return starts.levels[t] > process.highest_static(); };
+  Excursion all;
+  for (auto member : {&Excursion::slide_time, &Excursion::slide_distance, &Excursion::slide_square,
+                      &Excursion::entry, &Excursion::stick_time}) {
+    all.*member = mean(member, [](std::size_t) { return true; });
+  }
+  all.entry_plus = mean(&Excursion::entry, upwards);
+  all.entry_minus = mean(&Excursion::entry, [&](std::size_t t) { return !upwards(t); });
+  for (std::size_t t = 0; t < from.size(); ++t) {
+    all.lost_probability += starts.shares[t] * std::abs(from[t].lost_probability);
+  }
   return all;
 }
 
@@ -137,8 +191,7 @@ void append_hitting_distribution(const model::Process& process, const Excursion&
   append(catalogue::kEntryLawPlus, excursion.entry_plus);
   if (!excursion.entry_minus.empty()) append(catalogue::kEntryLawMinus, excursion.entry_minus);
   results.push_back(
-      scalar(catalogue::kFStick0,
-             stick_density_at_zero(process, excursion.entry.front(), excursion.entry.back()), 0));
+      scalar(catalogue::kFStick0, stick_density_at_zero(process, excursion.entry), 0));
 }
 
 void entry_law_tasks(Planner& planner) {
@@ -155,10 +208,9 @@ void entry_law_tasks(Planner& planner) {
   planner.add(std::move(task));
 }
 
-double stick_density_at_zero(const model::Process& process, double lowest, double highest) {
-  const auto& noise = process.noise;
-  return noise.up_rate(process.highest_static()) * highest +
-         noise.down_rate(process.lowest_static()) * lowest;
+double stick_density_at_zero(const model::Process& process, const std::vector<double>& entry) {
+  const auto rates = operators::StaticChain::of(process).exit_rates();
+  return std::inner_product(rates.begin(), rates.end(), entry.begin(), 0.0);
 }
 
 void append_noise_distribution(const model::Process& process, Results& results) {

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "stickslip/algebra/rate_elimination.hpp"
 #include "stickslip/catalogue/peak_keys.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
@@ -27,24 +28,27 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 
 /// The static phase of a process by level, from the lowest up.
 struct Sticking {
-  explicit Sticking(const model::Process& process) {
+  Sticking(const model::Process& process, const Starts& starts) {
     const auto chain = operators::StaticChain::of(process);
     time = chain.integral(std::vector<double>(static_cast<std::size_t>(chain.size()), 1.0));
-    up = chain.upward_exit_transform();
-    down = chain.downward_exit_transform();
+    // With symmetry all starts are alike.
+    for (int level : starts.levels) {
+      exits.push_back(process.symmetric() ? chain.exit_transform()
+                                          : chain.exit_transform_to(level));
+    }
     const auto all = model::stationary_distribution(process.noise);
     const auto first = all.begin() + (process.lowest_static() - process.noise.lowest());
     stationary.assign(first, first + chain.size());
   }
-  std::vector<double> time;        ///< mean, until it is left
-  std::vector<double> up, down;    ///< probabilities of leaving upwards, downwards
-  std::vector<double> stationary;  ///< probabilities of the levels
+  std::vector<double> time;                ///< mean, until it is left
+  std::vector<std::vector<double>> exits;  ///< by start: probabilities of leaving for it
+  std::vector<double> stationary;          ///< probabilities of the levels
 };
 
 /// What becomes of a sliding phase until it reaches the speed or the excursion ends.
 struct SlidingPhase {
-  double time = 0;          // sliding and sticking
-  double up = 0, down = 0;  // probabilities of the side from which the next one starts
+  double time = 0;           // sliding and sticking
+  std::vector<double> next;  // by start: probability that the next one begins there
   double reached = 0;
 };
 
@@ -53,46 +57,51 @@ SlidingPhase sliding_phase_of(const KolmogorovOperator& a, Vec nu, const Stickin
   petsc::check(VecSum(nu, &time));
   std::vector<double> entry;
   for (const auto& p : a.entry_rates(nu)) entry.push_back(PetscRealPart(p));
-  return {PetscRealPart(time) + dot(entry, sticking.time), dot(entry, sticking.up),
-          dot(entry, sticking.down), a.rate_at_top(nu)};
+  SlidingPhase phase{PetscRealPart(time) + dot(entry, sticking.time), {}, a.rate_at_top(nu)};
+  for (const auto& exit : sticking.exits) phase.next.push_back(dot(entry, exit));
+  return phase;
 }
 
-/// The numbers of a speed, by side.
+/// The numbers of a speed.
 struct Passage {
-  double exceeded, from_slide, from_rest;
+  double exceeded = 0, from_slide = 0, from_rest = 0;
 };
 
-Passage passage(const SideChain& sides, const Sticking& sticking, const SlidingPhase& plus,
-                const SlidingPhase& minus, SlidingPhase rest) {
-  const double across =
-      plus.down * minus.reached + plus.reached * minus.up + plus.reached * minus.reached;
-  const double from_plus =
-                   (plus.time * (minus.up + minus.reached) + plus.down * minus.time) / across,
-               from_minus =
-                   (minus.time * (plus.down + plus.reached) + minus.up * plus.time) / across;
-  const double up = sides.share_of_plus(), down = sides.share_of_minus();
-  rest.time += dot(sticking.stationary, sticking.time);
-  rest.up += dot(sticking.stationary, sticking.up);
-  rest.down += dot(sticking.stationary, sticking.down);
-  return {up * plus.reached + down * minus.reached, up * from_plus + down * from_minus,
-          rest.time + rest.up * from_plus + rest.down * from_minus};
-}
-
-// With symmetry where all sliding phases are alike, whichever side comes next.
-SlidingPhase mirrored(SlidingPhase slide) {
-  std::swap(slide.up, slide.down);
-  return slide;
+Passage passage(const Starts& starts, const Sticking& sticking,
+                const std::vector<SlidingPhase>& from, const SlidingPhase& rest) {
+  Passage p;
+  std::vector<double> killing, time;
+  for (std::size_t t = 0; t < from.size(); ++t) {
+    p.exceeded += starts.shares[t] * from[t].reached;
+    killing.push_back(from[t].reached);
+    time.push_back(from[t].time);
+  }
+  if (!(p.exceeded > 0)) return p;
+  algebra::RateElimination chain(killing, static_cast<int>(from.size()));
+  for (int t = 0; t < chain.size(); ++t) {
+    for (int u = 0; u < chain.size(); ++u) {
+      if (u != t) chain.add(t, u, from[t].next[u]);
+    }
+  }
+  chain.factor();
+  const auto until = chain.integral(time);
+  p.from_slide = dot(starts.shares, until);
+  p.from_rest = rest.time + dot(sticking.stationary, sticking.time);
+  for (std::size_t t = 0; t < from.size(); ++t) {
+    p.from_rest += (rest.next[t] + dot(sticking.stationary, sticking.exits[t])) * until[t];
+  }
+  return p;
 }
 
 }  // namespace
 
-FirstPassage first_passage(operators::Systems& systems, const SideChain& sides, double speed) {
+FirstPassage first_passage(operators::Systems& systems, const Starts& starts, double speed) {
   const auto& process = systems.process();
   operators::SystemKey key{0, operators::symmetry_of(process)};
   key.speed_limit = speed;
   auto& system = systems.at(key);
   const KolmogorovOperator& a = system.a();
-  const Sticking sticking(process);
+  const Sticking sticking(process, starts);
   // Also before iterative refinement, whose step shows rounding.
   const auto follow = [&](Vec start) {
     const petsc::Solution nu = system.factors().solve_transposed(start);
@@ -100,12 +109,15 @@ FirstPassage first_passage(operators::Systems& systems, const SideChain& sides, 
     return std::pair{sliding_phase_of(a, nu.x, sticking),
                      sliding_phase_of(a, nu.correction, sticking)};
   };
-  const auto plus = follow(a.trace_at_exit(Branch::positive));
-  const auto minus = process.symmetric() ? std::pair{mirrored(plus.first), mirrored(plus.second)}
-                                         : follow(a.trace_at_exit(Branch::negative));
+  std::vector<SlidingPhase> corrected, uncorrected;
+  for (int level : starts.levels) {
+    auto [after, before] = follow(a.trace_at_start(level));
+    corrected.push_back(std::move(after));
+    uncorrected.push_back(std::move(before));
+  }
   const auto rest = follow(a.mean_at_zero(model::stationary_distribution(process.noise)));
-  const Passage p = passage(sides, sticking, plus.first, minus.first, rest.first),
-                q = passage(sides, sticking, plus.second, minus.second, rest.second);
+  const Passage p = passage(starts, sticking, corrected, rest.first),
+                q = passage(starts, sticking, uncorrected, rest.second);
   // Reached so rarely that rounding is all there is.
   const double rounding = std::abs(p.exceeded - q.exceeded);
   if (!(p.exceeded > 2 * rounding)) {
@@ -135,20 +147,21 @@ void append_first_passages(const Computation& computation,
 
 }  // namespace
 
-// From each side, and from rest.
+// From each start, and from rest.
 void peak_tasks(Planner& planner) {
   const bool symmetric = planner.symmetric();
-  if (!symmetric) planner.need_distribution();  // which has the shares of both sides
+  if (!symmetric) planner.need_distribution();  // which has the shares of starts
   const auto found = planner.collect<FirstPassage>(append_first_passages);
   for (double speed : planner.question().velocity) {
     auto system = planner.system();
     system.speed_limit = speed;
     const auto find = [=](Computation& computation) {
-      const SideChain sides = symmetric ? SideChain{} : computation.distribution().sides();
-      found->push_back(first_passage(computation.systems, sides, speed));
+      const Starts starts =
+          symmetric ? Starts::upwards(computation.process()) : computation.distribution().starts();
+      found->push_back(first_passage(computation.systems, starts, speed));
     };
     planner.add({fmt::format("first passage to |v| = {:g}", speed),
-                 {{system, 0, symmetric ? 2 : 3}},
+                 {{system, 0, planner.starts() + 1}},
                  find});
   }
 }

@@ -18,7 +18,7 @@ void find_duration_moments(Computation& computation) {
   const auto& distribution = computation.distribution();
   const auto entry = distribution.entry();
   const auto moments = duration_moments(computation.systems, distribution, entry);
-  append_duration_moments(computation.process(), distribution.sides(), moments, entry,
+  append_duration_moments(computation.process(), distribution.starts(), moments, entry,
                           computation.results());
 }
 
@@ -52,7 +52,7 @@ SlidingTransforms sliding_transforms(operators::Systems& systems,
                                      const StationaryDistribution& distribution, double lambda) {
   const auto sticking = stick_duration_transforms(systems.process(), lambda);
   auto& system = systems.at(lambda, operators::symmetry_of(systems.process()));
-  const petsc::VecHandle starts = distribution.starts(system.a());
+  const petsc::VecHandle starts = distribution.starts_on(system.a());
   const auto transform = [&](const std::vector<double>& values) {
     const std::vector<PetscScalar> s(values.begin(), values.end());
     return value_of(starts, system.factors().solve(system.a().from_static(s)));

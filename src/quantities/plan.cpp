@@ -86,17 +86,21 @@ void Planner::add_at_each_lambda(const std::function<Task(double)>& task) {
   }
 }
 
+int Planner::starts() const {
+  if (symmetric()) return 1;
+  return std::max(1, static_cast<int>(given_.scene.meant().starts().size()));
+}
+
 Plan Planner::plan() && {
   plan_.afterwards.insert(plan_.afterwards.end(), last_.begin(), last_.end());
   if (!needs_distribution_) return std::move(plan_);
-  const int sides = symmetric() || !given_.scene.meant().sticks() ? 1 : 2;
   const auto find = [of_excursions = of_excursions_](Computation& computation) {
     const auto found = std::make_shared<StationaryDistribution>(computation.systems);
     for (const auto& append : of_excursions) found->append_from(append, computation.results());
     computation.found.distribution = found;
   };
   plan_.tasks.insert(plan_.tasks.begin(),
-                     Task{"stationary distribution", {{system(), 0, sides}}, find});
+                     Task{"stationary distribution", {{system(), 0, starts()}}, find});
   return std::move(plan_);
 }
 

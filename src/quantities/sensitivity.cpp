@@ -129,11 +129,12 @@ Sensitivity::Gradient Sensitivity::sticking_mean() const {
 // What the next excursion's side adds: h at s+ less h at s-, over the rates of changing sides.
 double Sensitivity::worth_of_upper_side(const petsc::Solution& h) const {
   if (distribution_.process().symmetric()) return 0;
-  const auto& sides = distribution_.sides();
+  const auto& starts = distribution_.starts();
+  const auto& process = distribution_.process();
   const auto& a = system_.a();
   return (petsc::dot(a.trace_at_exit(), h.x) -
           petsc::dot(a.trace_at_exit(operators::Branch::negative), h.x)) /
-         (sides.falling + sides.rising);
+         (starts.falling(process) + starts.rising(process));
 }
 
 Sensitivity::Gradient Sensitivity::through(petsc::Solution h, const std::vector<double>& s) const {

@@ -31,7 +31,7 @@ SlipMoments slip_moments(operators::Systems& systems, const StationaryDistributi
   auto& system = systems.at(0, symmetry);
   // Of the other symmetry, if there is one; its sliding states come in the same order.
   auto& other = symmetry == Symmetry::even ? systems.at(0, Symmetry::odd) : system;
-  const petsc::VecHandle starts = distribution.starts(system.a());
+  const petsc::VecHandle starts = distribution.starts_on(system.a());
   const auto mean_square = [&](auto& inner, const operators::KolmogorovOperator::Observable& f) {
     const petsc::VecHandle weight = inner.a().values(f);
     auto once = inner.factors().solve(weight);
@@ -54,7 +54,7 @@ Uncertain slip_transform(operators::Systems& systems, const StationaryDistributi
   const int levels = process.highest_static() - process.lowest_static() + 1;
   const auto ended =
       system.a().from_static(std::vector<PetscScalar>(static_cast<std::size_t>(levels), 1.0));
-  return value_of(distribution.starts(system.a()), system.factors().solve(ended));
+  return value_of(distribution.starts_on(system.a()), system.factors().solve(ended));
 }
 
 DurationDistribution slip_distribution(operators::Systems& systems,

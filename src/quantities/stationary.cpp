@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 #include "stickslip/operators/generator_checks.hpp"
@@ -100,8 +99,8 @@ StationaryDistribution::StationaryDistribution(Systems& systems)
       states_(systems.at(0, operators::symmetry_of(systems.process())).a().states()) {
   auto& system = systems.at(0, operators::symmetry_of(process()));
   const KolmogorovOperator& a = system.a();
-  const auto from = [&](Branch side) {
-    auto s = system.factors().solve_transposed(a.trace_at_exit(side));
+  const auto from = [&](int start) {
+    auto s = system.factors().solve_transposed(a.trace_at_start(start));
     const bool monotone = discretisation_.velocities->keeps_origin();
     if (monotone) operators::require_occupation(s.x, process());
     return normalised(a, std::move(s));
@@ -121,26 +120,37 @@ StationaryDistribution::StationaryDistribution(Systems& systems)
     uncorrected_occupation_ = std::move(s.correction);
     return;
   }
-  Occupation plus = from(Branch::positive);
   if (process().symmetric()) {
-    excursion_ = excursion_of(a, plus.nu, plus.lost);
-    uncorrected_ = excursion_of(a, plus.uncorrected, plus.uncorrected_lost);
-  } else {
-    const Occupation minus = from(Branch::negative);
-    const auto both = [&](Vec upper, Vec lower, double lost_upper, double lost_lower) {
-      const Excursion from_plus = excursion_of(a, upper, lost_upper),
-                      from_minus = excursion_of(a, lower, lost_lower);
-      const SideChain sides = side_chain(process(), from_plus.entry, from_minus.entry);
-      petsc::check(VecAXPBY(upper, sides.share_of_minus(), sides.share_of_plus(), lower));
-      return std::pair{joined(sides, from_plus, from_minus), sides};
-    };
-    std::tie(excursion_, sides_) = both(plus.nu, minus.nu, plus.lost, minus.lost);
-    uncorrected_ =
-        both(plus.uncorrected, minus.uncorrected, plus.uncorrected_lost, minus.uncorrected_lost)
-            .first;
+    starts_ = Starts::upwards(process());
+    Occupation all = from(starts_.levels[0]);
+    excursion_ = excursion_of(a, all.nu, all.lost);
+    uncorrected_ = excursion_of(a, all.uncorrected, all.uncorrected_lost);
+    occupation_ = std::move(all.nu);
+    uncorrected_occupation_ = std::move(all.uncorrected);
+    return;
   }
-  occupation_ = std::move(plus.nu);
-  uncorrected_occupation_ = std::move(plus.uncorrected);
+  std::vector<int> levels;
+  std::vector<Occupation> occupations;
+  std::vector<Excursion> corrected, uncorrected;
+  for (const auto& start : process().starts()) {
+    levels.push_back(start.level);
+    auto& o = occupations.emplace_back(from(start.level));
+    corrected.push_back(excursion_of(a, o.nu, o.lost));
+    uncorrected.push_back(excursion_of(a, o.uncorrected, o.uncorrected_lost));
+  }
+  const auto mean = [&](const Starts& starts, petsc::VecHandle Occupation::*nu) {
+    petsc::VecHandle sum = a.zeros();
+    for (std::size_t t = 0; t < starts.size(); ++t) {
+      petsc::check(VecAXPY(sum, starts.shares[t], occupations[t].*nu));
+    }
+    return sum;
+  };
+  starts_ = chain_of_starts(process(), levels, corrected);
+  excursion_ = joined(process(), starts_, corrected);
+  occupation_ = mean(starts_, &Occupation::nu);
+  const Starts before = chain_of_starts(process(), levels, uncorrected);
+  uncorrected_ = joined(process(), before, uncorrected);
+  uncorrected_occupation_ = mean(before, &Occupation::uncorrected);
 }
 
 // Sliding phases that end with V > 0 on level i, and with V < 0 on level -i in symmetry-reduced
@@ -186,11 +196,11 @@ std::vector<Uncertain> StationaryDistribution::entry() const {
   return entry;
 }
 
-petsc::VecHandle StationaryDistribution::starts(const KolmogorovOperator& a) const {
-  petsc::VecHandle g = a.trace_at_exit(Branch::positive);
-  if (a.states().symmetry_reduced()) return g;
-  petsc::check(VecAXPBY(g, sides_.share_of_minus(), sides_.share_of_plus(),
-                        a.trace_at_exit(Branch::negative)));
+petsc::VecHandle StationaryDistribution::starts_on(const KolmogorovOperator& a) const {
+  petsc::VecHandle g = a.zeros();
+  for (std::size_t t = 0; t < starts_.size(); ++t) {
+    petsc::check(VecAXPY(g, starts_.shares[t], a.trace_at_start(starts_.levels[t])));
+  }
   return g;
 }
 

@@ -73,16 +73,21 @@ void append_noise_distribution(const model::Process& process,
 /// What the queue gives of excursions as they follow one another.
 struct Excursions {
   Excursion mean;
-  quantities::SideChain sides;
+  quantities::Starts starts;
 };
 
 Excursions excursions_of(const model::Process& process, const FluidQueue& queue) {
-  Excursions e{excursion_of(process, queue.plus()), {}};
-  if (process.symmetric()) return e;
-  const Excursion minus = excursion_of(process, queue.minus());
-  e.sides = quantities::side_chain(process, e.mean.entry, minus.entry);
-  e.mean = quantities::joined(e.sides, e.mean, minus);
-  return e;
+  const Excursion plus = excursion_of(process, queue.plus());
+  if (process.symmetric()) return {plus, quantities::Starts::upwards(process)};
+  std::vector<int> levels;
+  std::vector<Excursion> from;
+  for (const auto& start : process.starts()) {
+    levels.push_back(start.level);
+    const bool up = start.level > process.highest_static();
+    from.push_back(up ? plus : excursion_of(process, queue.minus()));
+  }
+  const auto starts = quantities::chain_of_starts(process, levels, from);
+  return {quantities::joined(process, starts, from), starts};
 }
 
 std::vector<Uncertain> uncertain(const std::vector<double>& p, double rounding) {
@@ -100,7 +105,11 @@ void append_laplace(const Problem& problem, const Excursions& excursions, double
   std::vector<quantities::DurationTransforms> transforms;
   for (double lambda : problem.given.question.lambda) {
     const FluidQueue killed = solve(process, lambda);
-    const double plus = excursions.sides.share_of_plus(), minus = excursions.sides.share_of_minus();
+    double plus = 0, minus = 0;
+    for (std::size_t t = 0; t < excursions.starts.size(); ++t) {
+      (excursions.starts.levels[t] > process.highest_static() ? plus : minus) +=
+          excursions.starts.shares[t];
+    }
     const double slide = plus * sum(killed.plus().entry) + minus * sum(killed.minus().entry);
     transforms.push_back({{slide, rounding * slide},
                           transform(lambda, excursions.mean.entry),

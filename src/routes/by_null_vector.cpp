@@ -5,6 +5,7 @@
 #include "routes.hpp"
 #include "stickslip/catalogue/averages_keys.hpp"
 #include "stickslip/catalogue/sticking_keys.hpp"
+#include "stickslip/operators/static_chain.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/eigensolver.hpp"
@@ -55,19 +56,21 @@ double integral(const KolmogorovOperator& a, Vec pi, const KolmogorovOperator::O
   return petsc::dot(a.values(f), pi);
 }
 
-// By renewal, excursions end at the rates Lambda alpha pi of the highest static level upwards and
-// Lambda (1 - alpha) pi of the lowest one downwards.
+// By renewal, excursions end at the rates at which pi leaves the static levels.
 Uncertain mean_excursion(const Problem& problem, const KolmogorovOperator& a, Vec pi, Vec before) {
   const auto& process = problem.discretisation.process;
-  const auto& noise = process.noise;
-  const auto exits = [&](double x, double y, double) {
-    if (y != 0) return 0.0;
-    const int high = process.highest_static(), low = process.lowest_static();
-    return (x == noise.level(high) ? noise.up_rate(high) : 0) +
-           (x == noise.level(low) ? noise.down_rate(low) : 0);
-  };
-  const double value = 1 / integral(a, pi, exits);
-  return {value, std::abs(value - 1 / integral(a, before, exits))};
+  const auto rates = operators::StaticChain::of(process).exit_rates();
+  const petsc::VecHandle exits = a.zeros();
+  {
+    petsc::WriteView local(exits);
+    PetscInt at = 0;
+    a.states().for_each_local([&](const operators::State& state) {
+      const bool rests = state.kind == operators::StateKind::static_phase;
+      local[at++] = rests ? rates[state.noise - process.lowest_static()] : 0;
+    });
+  }
+  const double value = 1 / petsc::dot(exits, pi);
+  return {value, std::abs(value - 1 / petsc::dot(exits, before))};
 }
 
 void append_durations(Uncertain excursion, quantities::Results& results) {

@@ -2,11 +2,50 @@
 #include "stickslip/simulation/tally.hpp"
 
 namespace stickslip::simulation {
+namespace {
+
+// Of sliding phases upwards and downwards, as they occur in cycles, and of all.
+void entry_laws_of_cycles(Tally& tally, const std::vector<double>& levels) {
+  struct Hits {
+    double up, up_here, down, down_here;
+  };
+  struct Exits {
+    double rate;
+  };
+  std::vector<Sums<Hits>> hits;
+  for (double level : levels) {
+    hits.push_back(tally.sums([level](const Excursion& e) {
+      const double here = e.entry == level ? 1 : 0, up = e.upwards ? 1 : 0;
+      return Hits{up, up * here, 1 - up, (1 - up) * here};
+    }));
+  }
+  std::vector<double> rates(levels.size(), 0.0);
+  const auto first = static_cast<int>(levels.front()), last = static_cast<int>(levels.back());
+  for (int i = first; i <= last; ++i) {
+    tally.process().noise.for_each_jump(i, [&](int to, double rate) {
+      if (to < first || to > last) rates[i - first] += rate;
+    });
+  }
+  const auto exits = tally.sums([=](const Excursion& e) { return Exits{rates[e.entry - first]}; });
+  tally.report([=](const Tally&) -> Estimates {
+    const auto law = [&](const catalogue::Row& row, double Hits::*here, double Hits::*all) {
+      return array(row, levels, [&](std::size_t n) {
+        return hits[n].estimate(hits[n].overall(here) / hits[n].overall(all));
+      });
+    };
+    return {law(catalogue::kEntryLawPlus, &Hits::up_here, &Hits::up),
+            law(catalogue::kEntryLawMinus, &Hits::down_here, &Hits::down),
+            {&catalogue::kFStick0, {exits.estimate(exits.overall(&Exits::rate))}}};
+  });
+}
+
+}  // namespace
 
 void entry_law_tally(Tally& tally) {
   std::vector<double> levels;
   const int lowest = tally.process().lowest_static(), highest = tally.process().highest_static();
   for (int i = lowest; i <= highest; ++i) levels.push_back(i);
+  if (tally.sampled() == Sampled::cycles) return entry_laws_of_cycles(tally, levels);
   const Histogram& entries = tally.histogram({levels.begin() + 1, levels.end()}, &Excursion::entry);
   tally.report([=, &entries](const Tally& t) {
     const auto from = [&](const catalogue::Row& row, std::size_t side) {

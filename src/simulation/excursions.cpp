@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "stickslip/simulation/any_jumps.hpp"
 #include "stickslip/simulation/flow.hpp"
 
 namespace stickslip::simulation {
@@ -21,7 +22,6 @@ class Levels {
         highest_(process.highest_static()),
         least_within_(process.noise.first_from(-process.friction.mu_s)),
         most_within_(process.noise.last_up_to(process.friction.mu_s)),
-        exit_{process.exit_level(true), process.exit_level(false)},
         begin_(std::max(process.noise.lowest(), -reach(process))),
         end_(std::min(process.noise.highest(), reach(process))) {
     const auto mirrored = process.mirrored();
@@ -35,12 +35,12 @@ class Levels {
                          {process.net_force(i), mirrored.net_force(-i)},
                          {threshold(process.noise.up(i)), threshold(process.noise.down(i))}});
     }
+    if (!process.noise.neighbours_only()) any_.emplace(process.noise);
   }
 
   [[nodiscard]] bool rests(int i) const { return lowest_ <= i && i <= highest_; }
   [[nodiscard]] bool within(int i) const { return least_within_ <= i && i <= most_within_; }
-  /// The level from which excursions start from a side.
-  [[nodiscard]] int exit(std::size_t side) const { return exit_[side]; }
+  [[nodiscard]] bool is_below(int i) const { return i < lowest_; }
   [[nodiscard]] int direction(int exit) const { return exit > highest_ ? 1 : -1; }
   [[nodiscard]] double level(int i) const { return at(i).x; }
   /// Acceleration along the motion at v = 0 of a body that moves upwards or downwards.
@@ -50,6 +50,7 @@ class Levels {
   }
   /// The level after a jump. Drawn along the motion, so that mirror images take the same numbers.
   [[nodiscard]] int next(int i, int sign, RandomStream& random) const {
+    if (any_) return any_->next(i, random);
     const bool onwards = random.half_word() < at(i).onwards[sign > 0 ? 0 : 1];
     const int next = onwards ? i + sign : i - sign;
     if (next < begin_ || next > end_) throw std::runtime_error("the noise left 40 deviations");
@@ -77,9 +78,9 @@ class Levels {
   }
 
   int lowest_, highest_, least_within_, most_within_;
-  std::array<int, 2> exit_;
   int begin_, end_;  // of the tables, the end included
   std::vector<Level> levels_;
+  std::optional<AnyJumps> any_;
 };
 
 /// Speeds are |V| >= 0.
@@ -96,10 +97,10 @@ class Source : public ExcursionSource {
     phase_.resize(wanted.omega.size());
   }
 
-  void draw(RandomStream& random, std::size_t side, double place, Excursion& e) override {
+  void draw(RandomStream& random, int level, double place, Excursion& e) override {
     place_ = place;
-    draw_from(levels_.exit(side), random, e);
-    if (side == 1) e.turned = !e.turned;
+    draw_from(level, random, e);
+    e.turned = levels_.is_below(e.next) != levels_.is_below(level);
   }
 
   void draw_from(int level, RandomStream& random, Excursion& e) override {
@@ -111,6 +112,7 @@ class Source : public ExcursionSource {
     e.discounted.assign(wanted_.observables.size() * wanted_.discount.size(), {});
     std::fill(phase_.begin(), phase_.end(), 1.0);
     e.entry = level;
+    e.upwards = levels_.direction(level) > 0;
     double wait = levels_.wait(level, random);
     if (!levels_.rests(level)) slide(random, e, wait, level);
     sticking(random, e, wait);
@@ -223,7 +225,8 @@ class Source : public ExcursionSource {
       if (!levels_.rests(i)) break;
       wait = levels_.wait(i, random);
     }
-    e.turned = i < e.entry;
+    e.next = i;
+    e.turned = levels_.is_below(i);
   }
 
   Levels levels_;

@@ -34,7 +34,7 @@ Estimate Histogram::jeffreys(std::span<const Comoments> sides, const Weight& wei
   double largest = 0;
   for (std::size_t n = 0; n < bins_; ++n) largest = std::max(largest, weight(n));
   if (largest == 0) return {};
-  const Means means(sides);
+  const Means means(sides, sides.size() == 1 ? Sampled::one_side : Sampled::sides);
   const Smooth of_weight = means.overall(1);
   const double mean = of_weight.value.real(), count = sides[0].count();
   const double variance = count > 1 ? means.variance(of_weight) * (count - 1) / count : 0;

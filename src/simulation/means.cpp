@@ -45,6 +45,7 @@ Smooth Means::share(std::size_t side) const {
 }
 
 Smooth Means::overall(std::size_t n, double parity) const {
+  if (cycles()) return at(0, n) / at(0, 0);
   return share(0) * at(0, n) + share(1) * at(1, n, parity);
 }
 

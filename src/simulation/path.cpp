@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "stickslip/simulation/any_jumps.hpp"
 #include "stickslip/simulation/flow.hpp"
 #include "stickslip/support/infinity.hpp"
 
@@ -26,7 +27,9 @@ class Walker : public Walk {
         backward_flow_(mirrored_.drag),
         travel_(travel),
         lowest_(process.lowest_static()),
-        highest_(process.highest_static()) {}
+        highest_(process.highest_static()) {
+    if (!process.noise.neighbours_only()) any_.emplace(process.noise);
+  }
 
   void begin(const RandomStream& random, const model::Start& start) override {
     random_ = random;
@@ -52,7 +55,11 @@ class Walker : public Walk {
     }
     time_ = end;
     if (end < next_jump_) return;
-    i_ += random_.half_word() * 0x1p-32 < process_.noise.up(i_) ? 1 : -1;
+    if (any_) {
+      i_ = any_->next(i_, random_);
+    } else {
+      i_ += random_.half_word() * 0x1p-32 < process_.noise.up(i_) ? 1 : -1;
+    }
     ++jumps_;
     start_if_pushed();
     wait();
@@ -62,6 +69,7 @@ class Walker : public Walk {
     return {time_, process_.noise.level(i_), static_cast<double>(y_), y_ * speed_, displacement_};
   }
   [[nodiscard]] double jumps() const override { return jumps_; }
+  [[nodiscard]] int level() const override { return i_; }
 
  private:
   [[nodiscard]] int stationary_level() {
@@ -81,6 +89,7 @@ class Walker : public Walk {
   model::Process process_, mirrored_;
   Flow flow_, backward_flow_;
   std::optional<NoiseLevels> noise_;  // where it has been of use
+  std::optional<AnyJumps> any_;
   RandomStream random_{0, 0};
   bool travel_;
   int lowest_, highest_, i_ = 0, y_ = 0;

@@ -6,6 +6,14 @@
 namespace stickslip::simulation {
 namespace {
 
+// By side; of cycles, which are the shorter the more often their start occurs.
+std::vector<int> starts_of(const model::Process& process, Sampled sampled) {
+  if (!process.sticks()) return {};
+  if (sampled != Sampled::cycles) return {process.exit_level(true), process.exit_level(false)};
+  const auto starts = process.starts();
+  return {std::ranges::max_element(starts, {}, &model::Process::Start::flow)->level};
+}
+
 // Excursions take the streams from 0 on.
 std::uint64_t places_stream(std::uint64_t batch) { return std::uint64_t{1} << 62 | batch; }
 std::uint64_t rests_stream(std::uint64_t batch) { return std::uint64_t{1} << 61 | batch; }
@@ -18,6 +26,7 @@ std::uint64_t path_stream(std::uint64_t batch, int sample, std::uint64_t which) 
 Sampler::Sampler(const cases::Question& question, const model::Process& process)
     : tally_(question, process),
       process_(process),
+      starts_(starts_of(process, tally_.sampled())),
       wanted_(tally_.wanted()),
       source_(make_source(process, wanted_)),
       walk_(make_walk(process, wanted_.travel)),
@@ -36,16 +45,23 @@ const Tally& Sampler::batch(std::uint64_t seed, std::uint64_t batch, int count) 
       rests(seed, rests_stream(batch));
   tally_.clear();
   Excursion excursion, from_rest;
-  const std::size_t sides = process_.symmetric() ? 1 : 2;
+  const std::size_t sides = tally_.sampled() == Sampled::sides ? 2 : 1;
   for (int n = 0; n < count; ++n) {
     if (at_rest_) {
       from_rest_->draw_from(at_rest_->draw(rests.uniform()), rests, from_rest);
       tally_.add_jumps(from_rest.jumps);
     }
     for (std::size_t side = 0; side < sides; ++side) {
-      source_->draw(random, side, places.uniform(), excursion);
+      source_->draw(random, starts_[side], places.uniform(), excursion);
       excursion.from_rest = &from_rest;
-      tally_.add(side, excursion);
+      // Where all start on one side, those that stand for the other one always turn.
+      const bool below = excursion.next < process_.lowest_static();
+      excursion.turned = below == (side == 0);
+      if (tally_.sampled() == Sampled::cycles) {
+        add_cycle(random, places, excursion);
+      } else {
+        tally_.add(side, excursion);
+      }
       if (!wanted_.stationary_paths) continue;
       add_stationary({seed, path_stream(batch, n, side)}, side, places.uniform());
     }
@@ -56,6 +72,25 @@ const Tally& Sampler::batch(std::uint64_t seed, std::uint64_t batch, int count) 
     tally_.add_jumps(walk_->jumps());
   }
   return tally_;
+}
+
+// The rest of a cycle after its first excursion, and all of it as one.
+void Sampler::add_cycle(RandomStream& random, RandomStream& places, Excursion& e) {
+  Excursion cycle;
+  cycle.transform.assign(wanted_.omega.size(), 0.0);
+  for (;; source_->draw(random, e.next, places.uniform(), e)) {
+    e.ends_cycle = e.next == starts_[0];
+    tally_.add(0, e);
+    for (std::size_t n = 0; n < cycle.transform.size(); ++n) {
+      cycle.transform[n] +=
+          std::polar(1.0, -wanted_.omega[n] * (cycle.slide + cycle.stick)) * e.transform[n];
+    }
+    cycle.slide += e.slide;
+    cycle.stick += e.stick;
+    cycle.drift += e.drift;
+    if (e.ends_cycle) break;
+  }
+  tally_.add_cycle(cycle);
 }
 
 std::pair<State, std::span<const State>> Sampler::follow() {
@@ -70,9 +105,12 @@ std::pair<State, std::span<const State>> Sampler::follow() {
 // Twice by the same numbers: until the duration is known, and from a time within it on.
 void Sampler::add_stationary(const RandomStream& random, std::size_t side, double place) {
   const int sign = side == 0 ? 1 : -1;
-  const model::Start start{process_.exit_level(side == 0)};
+  const model::Start start{starts_[side]};
   walk_->begin(random, start);
-  const double duration = walk_->end_excursion();
+  double duration = walk_->end_excursion();
+  while (tally_.sampled() == Sampled::cycles && walk_->level() != start.level) {
+    duration = walk_->end_excursion();
+  }
   const bool turned = walk_->state().y != sign;
   const double jumps = walk_->jumps();
   walk_->begin(random, start);

@@ -32,6 +32,7 @@ Estimate at_zero(const Sums<Moves>& m) {
   };
   const Smooth spread = m.overall(&Moves::dd) - 2 * drift * m.overall(&Moves::dt, -1) +
                         drift * drift * m.overall(&Moves::tt);
+  if (m.cycles()) return m.estimate(spread / m.overall(&Moves::t));
   const Smooth all = sum(0, &Moves::d, &Moves::t);
   const Smooth up = m.share(0) * (all - sum(0, &Moves::d_turned, &Moves::t_turned)) +
                     m.share(1) * sum(1, &Moves::d_turned, &Moves::t_turned);
@@ -50,6 +51,11 @@ Estimate at_zero(const Sums<Moves>& m) {
 //
 // without any window. With symmetry G(s-) = -G(s+). A constant added to v counts at omega = 0 only.
 Estimate at_frequency(const Sums<Wave>& m) {
+  if (m.cycles()) {
+    const Smooth to_come = m.at(0, &Wave::c) / (1 - m.at(0, &Wave::same));
+    return m.estimate((m.overall(&Wave::power) + 2 * m.at(0, &Wave::c_same) * to_come) /
+                      m.overall(&Wave::time));
+  }
   const std::array side{m.at(0, &Wave::c), m.at(1, &Wave::c, -1)};
   const std::array diagonal{1 - m.at(0, &Wave::same), 1 - m.at(1, &Wave::same)};
   const std::array turns{m.at(0, &Wave::other), m.at(1, &Wave::other)};
@@ -72,13 +78,13 @@ Estimate at_frequency(const Sums<Wave>& m) {
 void spectrum_tally(Tally& tally) {
   const auto& omega = tally.wanted().omega = tally.question().omega;
   tally.wanted().integrals = true;
-  const auto moves = tally.sums([](const Excursion& e) -> Moves {
+  const auto moves = tally.sums_of_renewals([](const Excursion& e) -> Moves {
     const double d = e.drift, t = e.slide + e.stick, turned = e.turned ? 1 : 0;
     return {d, t, d * d, d * t, t * t, turned * d, turned * t};
   });
   std::vector<Sums<Wave>> waves;
   for (std::size_t n = 0; n < omega.size(); ++n) {
-    waves.push_back(tally.sums([n, w = omega[n]](const Excursion& e) -> Wave {
+    waves.push_back(tally.sums_of_renewals([n, w = omega[n]](const Excursion& e) -> Wave {
       const double t = e.slide + e.stick, turned = e.turned ? 1 : 0, kept = 1 - turned;
       const auto c = e.transform[n], turn = std::polar(1.0, -w * t), both = std::conj(c) * turn;
       return {std::norm(c), c, kept * turn, turned * turn, kept * both, turned * both, t};

@@ -110,6 +110,24 @@ void Tally::over_time(const catalogue::Row& row, const Number& of, double parity
 void Tally::distribution(const catalogue::Row& density, const catalogue::Row& distribution,
                          const std::vector<double>& at, const Number& of) {
   const auto cells = cells_around(at);
+  if (sampled() == Sampled::cycles) {
+    // Excursions of a cycle depend on one another, so that counts have no intervals of their own.
+    std::vector<Sums<Single>> within, below;
+    for (std::size_t n = 0; n < at.size(); ++n) {
+      within.push_back(sums([of, cell = cells[n]](const Excursion& e) {
+        const double x = of(e);
+        return Single{cell.low <= x && x < cell.high ? 1 / (cell.high - cell.low) : 0};
+      }));
+      below.push_back(
+          sums([of, t = at[n]](const Excursion& e) { return Single{of(e) <= t ? 1.0 : 0}; }));
+    }
+    report([=, &density, &distribution](const Tally&) -> Estimates {
+      const auto mean = [](const Sums<Single>& m) { return m.estimate(m.overall(&Single::x)); };
+      return {array(density, at, [&](std::size_t n) { return mean(within[n]); }),
+              array(distribution, at, [&](std::size_t n) { return mean(below[n]); })};
+    });
+    return;
+  }
   std::set<double> edges(at.begin(), at.end());
   for (const auto& [low, high] : cells) edges.insert({low, high});
   const Histogram& all = histogram({edges.begin(), edges.end()}, of);
@@ -124,14 +142,23 @@ void Tally::distribution(const catalogue::Row& density, const catalogue::Row& di
 }
 
 const Histogram& Tally::histogram(std::vector<double> edges, const Number& of) {
-  Histogram& all = histograms_.emplace_back(process_.symmetric(), std::move(edges));
+  Histogram& all = histograms_.emplace_back(sampled() != Sampled::sides, std::move(edges));
   of_excursions_.emplace_back(
       [&all, of](std::size_t side, const Excursion& e) { all.add(side, e.turned, of(e)); });
   return all;
 }
 
+Sampled Tally::sampled() const {
+  if (!process_.noise.neighbours_only()) return Sampled::cycles;
+  return process_.symmetric() ? Sampled::one_side : Sampled::sides;
+}
+
+void Tally::add_cycle(const Excursion& cycle) {
+  for (const auto& take : of_cycles_) take(cycle);
+}
+
 void Tally::add(std::size_t side, const Excursion& excursion) {
-  counts_[0] += side == 0 ? 1 : 0;
+  counts_[0] += side == 0 && excursion.ends_cycle ? 1 : 0;
   counts_[1] += excursion.jumps;
   for (const auto& take : of_excursions_) take(side, excursion);
 }

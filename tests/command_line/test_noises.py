@@ -1,5 +1,6 @@
 """Noises of the command line: what is refused, what has no effect, and what the summary holds."""
 
+import json
 import unittest
 
 from running import Case, run
@@ -56,6 +57,63 @@ class Noises(Case):
         self.refuse_file(HEADER + "-1,1,0\n0,1,-2\n1,0,1\n", "line 3: rate_down = -2 must be positive")
         self.refuse_file(HEADER + "-1,1,0\n1,0.5,1\n", "line 3: rate_up = 0.5", "must be 0 at the end")
         self.refuse_file("# two\n" + HEADER + "-1,1,0.5\n1,0,1\n", "line 3: rate_down = 0.5")
+
+    def refuse_chain(self, states, rates, *message):
+        (self.folder / "states.csv").write_text("x\n" + "".join(f"{x}\n" for x in states))
+        (self.folder / "rates.csv").write_text("from,to,rate\n" + "".join(f"{row}\n" for row in rates))
+        self.refuse("-noise", "chain", "-noise_states", "states.csv", "-noise_rates", "rates.csv",
+                    message=message)
+
+    def test_chains(self):
+        ring = ["0,1,1", "1,2,1", "2,0,1"]
+        rates, states = "-noise_rates = rates.csv: ", "-noise_states = states.csv: "
+        self.refuse("-noise", "chain", message=("-noise = chain: needs -noise_states",))
+        self.refuse_chain([-2, 0, 2], [*ring[:2], "2,0,-1"], rates, "line 4: rate = -1")
+        self.refuse_chain([-2, 0, 2], [*ring[:2], "2,0,inf"], rates, "line 4: rate = inf")
+        self.refuse_chain([-2, 0, 2], [*ring, "2,3,1"], rates, "line 5: there is no state 3", "from 0 to 2")
+        self.refuse_chain([-2, 0, 2], [*ring, "0.5,1,1"], rates, "line 5: there is no state 0.5")
+        self.refuse_chain([-2, 0, 2], [*ring, "1,1,1"], rates, "line 5: state 1 jumps to itself")
+        self.refuse_chain([-2, 0, 2], [*ring, "0,1,2"], rates, "line 5: line 2 has the rate from state 0")
+        self.refuse_chain([-2, 0, "two"], ring, states, "line 4: x = two")
+        self.refuse_chain([-2, 0, 2], ring[:2], states, "line 2: state 0 is never reached")
+        self.refuse_chain([-2, 0, 2, 3], [*ring, "3,0,1"], states, "line 5: state 3 is never reached")
+        self.refuse_chain([-2, 0, 2, 3], ["0,1,1", "1,0,1", "2,3,1", "3,2,1"], states, "line 4")
+        self.refuse_chain([-0.2, 0, 0.2], ring, "-mu_s = 1: holds the body on all")
+
+    def test_what_needs_neighbours(self):
+        chain = ("-mu_d", "0.5", "-noise", "chain", "-noise_states", "states.csv", "-noise_rates", "rates.csv")
+        (self.folder / "states.csv").write_text("x\n-2\n0.3\n2\n")
+        (self.folder / "rates.csv").write_text("from,to,rate\n0,2,1\n2,1,1\n1,0,2\n")
+        neighbours = "jumps to neighbouring levels alone"
+        for route in (("hitting",), ("fluid_queue", "-drag", "none")):
+            self.refuse(*chain, "-route", *route, message=(f"-route = {route[0]}: needs", neighbours))
+        self.refuse(*chain, "-quantities", "sticking,sensitivity", message=("sensitivity", neighbours))
+        self.refuse(*chain, "-quantities", "resolvent", "-lambda", "1", "-observable", "v",
+                    message=("resolvent", neighbours))
+        self.refuse(*chain, "-quantities", "peak", "-velocity", "0.1", "-route", "monte_carlo",
+                    message=("peak", neighbours))
+        self.refuse(*chain, "-noise_degree", "3", message=("-noise_degree = 3",))
+        self.assertEqual(run(*chain, folder=self.folder).returncode, 0)
+
+    def test_neighbours_as_a_chain_give_the_digits_of_levels(self):
+        (self.folder / "levels.csv").write_text(HEADER + "-2,1,0\n-0.6,0.7,0.5\n0.6,0.4,0.7\n2,0,1\n")
+        (self.folder / "states.csv").write_text("x\n2\n-2\n0.6\n-0.6\n")  # in another order
+        (self.folder / "rates.csv").write_text(
+            "from,to,rate\n1,3,1\n3,2,0.7\n3,1,0.5\n2,0,0.4\n2,3,0.7\n0,2,1\n")
+        quantities = ("-mu_d", "0.5", "-quantities",
+                      "sticking,moments,laplace,spectrum,slip,entry_law,displacement,resolvent,peak",
+                      "-lambda", "0.5", "-omega", "0,1", "-time", "1", "-observable", "x*v",
+                      "-velocity", "0.3", "-start", "stationary")
+        found = [self.values(*quantities, *noise) for noise in (
+            ("-noise", "file", "-noise_file", "levels.csv"),
+            ("-noise", "chain", "-noise_states", "states.csv", "-noise_rates", "rates.csv"))]
+        self.assertEqual(found[0], found[1])
+
+    def values(self, *options):
+        done = run(*options, "-summary", "summary.json", folder=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        results = json.loads((self.folder / "summary.json").read_text())["results"]
+        return {key: result["value"] for key, result in results.items()}
 
     def test_bodies_that_never_slide_or_never_stick(self):
         self.refuse(*TELEGRAPH, "-bias", "0", message=("-mu_s = 1", "never slides"))

@@ -131,3 +131,134 @@ TEST_CASE("process: a table that ends at the levels that stick is left on one si
   CHECK_FALSE(process.mirrored().starts_upwards());
   CHECK(process.mirrored().net_force(1) == Approx(1 - 0.3 - 0.5));
 }
+
+namespace {
+
+/// Levels of the sum of two independent telegraph signals.
+LevelTable two_telegraphs(double a, double b, double of_a, double of_b) {
+  return {{-a - b, a - b, b - a, a + b},
+          {{0, 1, of_a},
+           {1, 0, of_a},
+           {2, 3, of_a},
+           {3, 2, of_a},
+           {0, 2, of_b},
+           {2, 0, of_b},
+           {1, 3, of_b},
+           {3, 1, of_b}}};
+}
+
+}  // namespace
+
+TEST_CASE("level table: jumps of any length are known by level, in rising order of x") {
+  const LevelTable table({0.5, -1, 2}, {{0, 1, 3}, {1, 2, 5}, {2, 0, 7}, {1, 0, 11}});
+  REQUIRE_FALSE(table.neighbours_only());
+  CHECK(table.at(table.lowest()).x == -1);
+  CHECK(table.listed(table.highest()) == 2);
+  CHECK(table.at(table.lowest()).up == 16);
+  CHECK(table.at(table.highest()).down == 7);
+  std::vector<std::pair<int, double>> from_lowest;
+  table.for_each_jump(table.lowest(),
+                      [&](int to, double rate) { from_lowest.emplace_back(to, rate); });
+  CHECK(from_lowest ==
+        std::vector<std::pair<int, double>>{{table.lowest() + 1, 11}, {table.lowest() + 2, 5}});
+  // By hand: flows 3 p0 = 11 p1 + 7 p2, 16 p1 = 3 p0, 7 p2 = 5 p1.
+  const double p1 = 3 / (16 + 3 + 15.0 / 7);
+  CHECK(relative_difference(stationary_distribution(of(table))[0], p1) < 1e-15);
+}
+
+TEST_CASE("level table: neighbours given as transitions are the chain of neighbours, bit for bit") {
+  const NoiseChain chain{1, 0.5, 6};
+  const LevelTable known = tabulated(chain);
+  std::vector<double> x;
+  std::vector<Transition> transitions;
+  for (int i = 6; i >= -6; --i) x.push_back(chain.level(i));  // falling
+  for (int i = -6; i < 6; ++i) {
+    const auto place = [](int level) { return static_cast<std::size_t>(6 - level); };
+    transitions.push_back({place(i), place(i + 1), chain.up_rate(i)});
+    transitions.push_back({place(i + 1), place(i), chain.down_rate(i + 1)});
+  }
+  const LevelTable table(x, transitions);
+  REQUIRE(table.neighbours_only());
+  CHECK(table.symmetric());
+  CHECK(table.variance() == known.variance());
+  CHECK(table.intensity() == known.intensity());
+  CHECK(table.upper_tail() == known.upper_tail());
+}
+
+// Correlations fall like exp(-2 rate t).
+TEST_CASE("level table: a sum of telegraph signals has the sums of their moments") {
+  const LevelTable table = two_telegraphs(1, 0.25, 2, 0.1);
+  REQUIRE_FALSE(table.neighbours_only());
+  CHECK(table.even());
+  CHECK(table.mean() == 0);
+  CHECK(relative_difference(table.variance(), 1 + 1 / 16.0) < 1e-15);
+  CHECK(relative_difference(table.intensity(), 1 / 4.0 + 1 / 16.0 / 0.2) < 1e-13);
+  CHECK(table.upper_tail() >= table.intensity());
+  CHECK(table.upper_tail() == table.mirrored().upper_tail());
+}
+
+// A rotation through n phases at the rate r each has the eigenvalues r (1 - exp(2 pi i k/n)), and
+// its correlation by phases cos is Re exp(-r (1 - exp(2 pi i/n)) t)/2.
+TEST_CASE("level table: a narrow band counts by its largest strength, not by that at frequency 0") {
+  constexpr int n = 24;
+  constexpr double r = 24, pi = 3.141592653589793;
+  std::vector<double> x;
+  std::vector<Transition> transitions;
+  for (std::size_t k = 0; k < n; ++k) {
+    x.push_back(std::cos(2 * pi * static_cast<double>(k) / n));
+    transitions.push_back({k, (k + 1) % n, r});
+  }
+  const LevelTable table(x, transitions);
+  const double damping = r * (1 - std::cos(2 * pi / n)), omega = r * std::sin(2 * pi / n);
+  CHECK(table.even());
+  CHECK(relative_difference(table.variance(), 0.5) < 1e-13);
+  CHECK(relative_difference(table.intensity(),
+                            0.5 * damping / (damping * damping + omega * omega)) < 1e-11);
+  // At omega: (1/(damping) + damping/(damping^2 + 4 omega^2))/4.
+  const double peak = (1 / damping + damping / (damping * damping + 4 * omega * omega)) / 4;
+  CHECK(table.upper_tail() > 0.9 * peak);
+}
+
+TEST_CASE("level table: an image in the mirror is found among states of one x, however numbered") {
+  // Two states at each of -1 and 1, and two at 0; the mirror exchanges "fast" and "slow" ones.
+  const std::vector<double> x{1, 0, -1, 0, 1, -1};
+  const std::vector<Transition> transitions{{0, 1, 2}, {1, 0, 3}, {5, 3, 2}, {3, 5, 3},
+                                            {4, 3, 5}, {3, 4, 7}, {2, 1, 5}, {1, 2, 7}};
+  auto connected = transitions;
+  connected.push_back({1, 3, 0.5});
+  connected.push_back({3, 1, 0.5});
+  CHECK(LevelTable(x, connected).even());
+  connected.back().rate = 0.6;
+  CHECK_FALSE(LevelTable(x, connected).even());
+  // Numbers of other programs have rounding.
+  auto rounded = x;
+  rounded[1] = 1e-16;
+  rounded[0] = 1 + 2e-16;
+  connected.back().rate = 0.5 * (1 + 4e-16);
+  const LevelTable table(rounded, connected);
+  CHECK(table.even());
+  CHECK(table.step() == Approx(1));
+}
+
+TEST_CASE("level table: states that do not all reach one another are refused by their number") {
+  const auto unfit = [](const std::vector<double>& x, const std::vector<Transition>& transitions) {
+    try {
+      const LevelTable table(x, transitions);
+    } catch (const UnfitTable& problem) {
+      return std::pair{problem.row(), std::string(problem.what())};
+    }
+    return std::pair{std::size_t{99}, std::string()};
+  };
+  using Catch::Contains;
+  const std::vector<double> x{-1, 0, 1, 2};
+  CHECK_THAT(unfit(x, {{0, 1, 1}, {1, 0, 1}, {1, 2, 1}, {2, 1, 1}, {3, 1, 1}}).second,
+             Contains("state 3 is never reached"));
+  CHECK_THAT(unfit(x, {{0, 1, 1}, {1, 0, 1}, {1, 2, 1}, {2, 1, 1}, {1, 3, 1}}).second,
+             Contains("state 3 is never left"));
+  CHECK(unfit(x, {{0, 1, 1}, {1, 0, 1}, {2, 3, 1}, {3, 2, 1}}).first == 2);
+  CHECK_THAT(unfit(x, {{0, 1, 1}, {1, 0, 1}, {2, 3, 1}, {3, 2, 1}, {2, 0, 1}}).second,
+             Contains("state 2 is never reached from state 0"));
+  CHECK_THAT(unfit(x, {{0, 1, 1}, {1, 0, 1}, {2, 3, 1}, {3, 2, 1}, {0, 2, 1}}).second,
+             Contains("state 0 is never reached from state 2"));
+  CHECK(unfit({0, 1}, {{0, 1, -1}, {1, 0, 1}}).first == 0);
+}

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "../common/catch.hpp"
+#include "../common/chains.hpp"
 #include "stickslip/noise/nodes.hpp"
 
 using namespace stickslip;
@@ -214,4 +215,50 @@ TEST_CASE("noise nodes: what cannot be a grouping") {
   const auto p = process(0.25, 20, 0.25);
   CHECK_THROWS_AS(Nodes(p, {-1, 2}), std::invalid_argument);
   CHECK_THROWS_AS(Nodes(p, {3, 0}), std::invalid_argument);
+}
+
+// What elements eliminate along: the jumps between groups, by the levels to which they lead.
+TEST_CASE("noise nodes: of any chain every level is a node, and groups reach the next ones alone") {
+  for (const auto& table :
+       {test::five_states(), test::sine_and_levels(1.2, 4, 6, 0.5, 1, 0.7, 3)}) {
+    const auto p = test::with_table(model::Scene{}, table).meant();
+    const Nodes nodes(p);
+    REQUIRE(nodes.all_levels());
+    CHECK(nodes.last_up_to(1) == 1);
+    const auto& groups = nodes.groups();
+    double seen = 0, all = 0;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const auto& here = groups[g];
+      for (int l = 0; l < here.count; ++l) {
+        p.noise.for_each_jump(here.begin + l, [&](int to, double rate) {
+          all += rate;
+          if (to >= here.begin && to < here.begin + here.count) seen += rate;
+        });
+      }
+      const auto check = [&](const Nodes::Group& other, const std::vector<double>& rates,
+                             std::span<const double> levels) {
+        const auto rank = levels.size() / static_cast<std::size_t>(other.count);
+        REQUIRE(rates.size() == rank * static_cast<std::size_t>(here.count));
+        for (int l = 0; l < here.count; ++l) {
+          std::map<int, double> jumps;
+          p.noise.for_each_jump(here.begin + l, [&](int to, double rate) { jumps[to] = rate; });
+          for (std::size_t r = 0; r < rank; ++r) {
+            const double rate = rates[static_cast<std::size_t>(l) * rank + r];
+            for (int k = 0; k < other.count; ++k) {
+              if (levels[r * other.count + k] == 0 || rate == 0) continue;
+              CHECK(jumps[other.begin + k] == rate);
+              seen += rate;
+            }
+          }
+        }
+      };
+      if (g > 0) check(groups[g - 1], here.to_below, groups[g - 1].at_last());
+      if (g + 1 < groups.size()) check(groups[g + 1], here.to_above, groups[g + 1].at_first());
+    }
+    CHECK(std::abs(seen - all) < 1e-12 * all);
+  }
+  Grouping grouping;
+  grouping.degree = 2;
+  const auto p = test::with_table(model::Scene{}, test::five_states()).meant();
+  CHECK_THROWS_AS(Nodes(p, grouping), std::invalid_argument);
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "../common/catch.hpp"
+#include "../common/chains.hpp"
 #include "../common/scenes.hpp"
 #include "stickslip/model/drag_law.hpp"
 #include "stickslip/operators/element_elimination.hpp"
@@ -54,6 +55,12 @@ std::vector<Case> samples() {
   }
   all.push_back({"bias", test::on_nodes(biased, 4, 2), Symmetry::none});
   all.push_back({"nothing rests long", test::on_nodes(driven, 3, 2), Symmetry::none});
+  all.push_back({"five states",
+                 test::on_hp(test::with_table(plain(0.5, 1), test::five_states()), 4),
+                 Symmetry::none});
+  auto shaken = test::with_table(plain(0.6, 1), test::sine_and_levels(1.2, 4, 6, 0.5, 1, 0.7, 2));
+  shaken.bias = 0.1;
+  all.push_back({"sine and levels", test::on_hp(shaken, 3), Symmetry::none});
   all.push_back({"drag that is not odd", test::on_nodes(one_sided, 3, 2), Symmetry::none});
   return all;
 }

@@ -57,11 +57,16 @@ double distance(Vec a, Vec b) {
 }  // namespace
 
 TEST_CASE("solver policy: elements where few noise nodes stand for the levels", "[parallel]") {
-  CHECK(operators::chosen_factors(Factors::own, Scheme::hp, 100000, false) == Factors::elements);
-  CHECK(operators::chosen_factors(Factors::own, Scheme::hp, 700, true) == Factors::elements);
-  CHECK(operators::chosen_factors(Factors::own, Scheme::hp, 701, true) == Factors::in_memory);
-  CHECK(operators::chosen_factors(Factors::own, Scheme::upwind, 9, true) == Factors::in_memory);
-  CHECK(operators::chosen_factors(Factors::on_disk, Scheme::hp, 9, false) == Factors::on_disk);
+  CHECK(operators::chosen_factors(Factors::own, Scheme::hp, 100000, false, true) ==
+        Factors::elements);
+  CHECK(operators::chosen_factors(Factors::own, Scheme::hp, 700, true, true) == Factors::elements);
+  CHECK(operators::chosen_factors(Factors::own, Scheme::hp, 701, true, true) == Factors::in_memory);
+  CHECK(operators::chosen_factors(Factors::own, Scheme::upwind, 9, true, true) ==
+        Factors::in_memory);
+  CHECK(operators::chosen_factors(Factors::on_disk, Scheme::hp, 9, false, true) ==
+        Factors::on_disk);
+  CHECK(operators::chosen_factors(Factors::own, Scheme::hp, 1500, true, false) ==
+        Factors::elements);
   const std::string own = petsc::kElementsPc;
   CHECK(operators::default_pc_type(test::on_nodes(with_step(1.0 / 64), 3, 3)) == own);
   CHECK(operators::default_pc_type(test::on_hp(with_step(1.0 / 64), 2)) == std::string("lu"));

@@ -66,8 +66,9 @@ TEST_CASE("bias: without one both velocity branches give what one of them gives"
         if (key != "E_V") CHECK(relative_difference(both.at(key), value) < 1e-11);
       }
       CHECK(std::abs(both.at("E_V")) < 1e-12 * one.at("E_absV"));
-      CHECK(whole.distribution.sides().falling > 0);
-      CHECK(whole.distribution.sides().falling < 1);
+      const double falling = whole.distribution.starts().falling(whole.distribution.process());
+      CHECK(falling > 0);
+      CHECK(falling < 1);
       CHECK(whole.distribution.excursion().conservation_defect(
                 whole.distribution.discretisation()) < 1e-10);
     }

@@ -155,7 +155,7 @@ class DenseDurations {
 };
 
 double f_slide_at(const model::Process& process) {
-  return quantities::slide_density_at_zero(process, {});
+  return quantities::slide_density_at_zero(process, quantities::Starts::upwards(process));
 }
 
 model::Process process_with(double mu_s, double mu_d, int levels = 8) {
@@ -450,7 +450,8 @@ TEST_CASE("durations: named results, means only where there are none yet") {
   const quantities::DurationMoments m{{1, 0.1}, {2, 0.1}, {3, 0.1}, {4, 0.1}, {5, 0.1}, {6, 0.1}};
   const std::vector<Uncertain> entry(5, Uncertain{0.2, 0});
   quantities::Results results{test::scalar("mean_stick", "time", 7, 0)};
-  quantities::append_duration_moments(process, {}, m, entry, results);
+  quantities::append_duration_moments(process, quantities::Starts::upwards(process), m, entry,
+                                      results);
   const auto value = [&](const std::string& key) {
     const auto same = [&key](const auto& result) { return result.key == key; };
     CHECK(std::count_if(results.begin(), results.end(), same) == 1);

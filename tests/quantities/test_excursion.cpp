@@ -100,7 +100,8 @@ TEST_CASE("excursion: closed forms of the noise have the rounding of its sums") 
 
 // The levels -2 ... 1 stick; Lambda = 8, and the rate of the way out is 3.5 above and 3 below.
 TEST_CASE("excursion: sticking phases end at once from the level at either end, at its own rate") {
-  CHECK(quantities::stick_density_at_zero(process(0.2), 0.5, 0.25) == Approx(0.5 * 3 + 0.25 * 3.5));
+  CHECK(quantities::stick_density_at_zero(process(0.2), {0.5, 0.1, 0.15, 0.25}) ==
+        Approx(0.5 * 3 + 0.25 * 3.5));
 }
 
 TEST_CASE("excursion: what excursions from either side lose counts by its share") {
@@ -108,6 +109,7 @@ TEST_CASE("excursion: what excursions from either side lose counts by its share"
     Excursion up = by_hand(), down = by_hand();
     up.lost_probability = plus;
     down.lost_probability = minus;
-    CHECK(quantities::joined({0.5, 0.5}, up, down).lost_probability == Approx(2e-9));
+    CHECK(quantities::joined(process(), {{9, -9}, {0.5, 0.5}, {}}, {up, down}).lost_probability ==
+          Approx(2e-9));
   }
 }

@@ -61,7 +61,7 @@ TEST_CASE("slips: telegraph noise without drag") {
   CHECK(moments.net_variance.value == Approx(moments.variance.value).epsilon(1e-11));
   constexpr double p = 0.8, q = 1.2, r = 1 / p - 1 / q;
   for (double w : {0.1, 0.6, 2.0, 20.0}) {
-    const auto found = quantities::first_passage(solved.systems, solved.distribution.sides(), w);
+    const auto found = quantities::first_passage(solved.systems, solved.distribution.starts(), w);
     CHECK(found.exceeded.value == Approx((q - p) / (q * std::exp(r * w) - p)).epsilon(1e-11));
     // From the higher level at rest at once, else after the noise has switched.
     const double from_rest = found.from_rest.value, from_slide = found.from_slide.value;
@@ -124,14 +124,14 @@ TEST_CASE("first passage: the mean time solves its backward equation", "[paralle
       const auto& process = solved.systems.process();
       for (double w : {0.02, 0.3, 1.0}) {
         const FirstPassage found =
-            quantities::first_passage(solved.systems, solved.distribution.sides(), w);
+            quantities::first_passage(solved.systems, solved.distribution.starts(), w);
         operators::SystemKey key{0, operators::symmetry_of(process), StaticPhase::kept};
         key.speed_limit = w;
         auto& whole = solved.systems.at(key);
         const auto ones = whole.a().values([](double, double, double) { return 1.0; });
         const auto time = whole.factors().solve(ones);
         const auto rest = whole.a().mean_at_zero(model::stationary_distribution(process.noise));
-        CHECK(petsc::dot(solved.distribution.starts(whole.a()), time.x) ==
+        CHECK(petsc::dot(solved.distribution.starts_on(whole.a()), time.x) ==
               Approx(found.from_slide.value).epsilon(1e-9));
         CHECK(petsc::dot(rest, time.x) == Approx(found.from_rest.value).epsilon(1e-9));
         solved.systems.keep({});
@@ -145,7 +145,7 @@ TEST_CASE("first passage: converges with elements that shrink towards the speed"
     for (double w : {0.05, 0.5, 1.2}) {
       const auto at = [&](int degree) {
         Solved solved(test::on_hp(s, degree, 1e-14));
-        return quantities::first_passage(solved.systems, solved.distribution.sides(), w);
+        return quantities::first_passage(solved.systems, solved.distribution.starts(), w);
       };
       const auto coarse = at(6), fine = at(9), finest = at(12);
       const double change = std::abs(fine.exceeded.value / finest.exceeded.value - 1);

@@ -82,7 +82,7 @@ double share_upwards(const model::Process& p) {
   std::array<double, 2> turned{};
   for (int n = 0; n < 20000; ++n) {
     for (std::size_t side : {0, 1}) {
-      source->draw(random, side, 0, e);
+      source->draw(random, p.exit_level(side == 0), 0, e);
       turned[side] += e.turned ? 1 : 0;
     }
   }
@@ -176,10 +176,11 @@ TEST_CASE("passages: closed forms and the integrator cross at the same times, in
   const auto integrated = simulation::make_source(p, wanted);
   simulation::RandomStream one(1, 0), other(1, 0);
   simulation::Excursion a, b;
+  const int start = p.exit_level(true);
   int all = 0;
   for (int n = 0; n < 2000; ++n) {
-    exact->draw(one, 0, 0, a);
-    integrated->draw(other, 0, 0, b);
+    exact->draw(one, start, 0, a);
+    integrated->draw(other, start, 0, b);
     REQUIRE(a.passages.size() == b.passages.size());
     REQUIRE(a.passages.size() <= wanted.speeds.size());
     REQUIRE(std::is_sorted(a.passages.begin(), a.passages.end()));

@@ -45,6 +45,7 @@ inline constexpr Entry kPeak{
     .routes = {Route::excursion, Route::monte_carlo},
     .options = "velocity",
     .rows = kPeakRows,
-    .of_phases = true};
+    .of_phases = true,
+    .by_neighbours = {Route::monte_carlo}};
 
 }  // namespace stickslip::catalogue

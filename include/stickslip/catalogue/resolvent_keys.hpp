@@ -122,6 +122,7 @@ inline constexpr Entry kResolvent{
     .routes = {Route::excursion, Route::monte_carlo},
     .options = "lambda, observable",
     .rows = kResolventRows,
-    .of_phases = true};
+    .of_phases = true,
+    .by_neighbours = {Route::excursion, Route::monte_carlo}};
 
 }  // namespace stickslip::catalogue

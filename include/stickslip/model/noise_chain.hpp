@@ -1,5 +1,5 @@
 #pragma once
-/// The noise X: a birth-death chain.
+/// The noise X: a Markov chain.
 
 #include <memory>
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace stickslip::model {
 
-/// A chain on levels x_i, lowest() <= i <= highest(), that jumps to neighbouring levels. Its
-/// members are all that the discretisations and the simulation know of the noise. Two kinds:
+/// A chain on levels x_i, lowest() <= i <= highest(), x rising. Its members are all that the
+/// discretisations and the simulation know of the noise. Two kinds:
 ///
 /// A discrete Ornstein-Uhlenbeck process (eq. (2.2) of the paper, with the factor x restored in
 /// alpha), x_i = i delta, |i| <= N, of standard deviation sigma, without its own 1/sqrt(tau):
@@ -23,7 +23,7 @@ namespace stickslip::model {
 /// sigma^2/delta^2 it is the Ehrenfest urn of 2N balls: a binomial distribution of variance
 /// sigma^2.
 ///
-/// Or the chain of a table.
+/// Or the chain of a table, whose jumps may be of any length.
 struct NoiseChain {
   double tau = 1;                                ///< correlation time [time]
   double delta = 1;                              ///< step of the noise [force]
@@ -36,7 +36,16 @@ struct NoiseChain {
   [[nodiscard]] int count() const { return highest() - lowest() + 1; }
   /// x_i [force].
   [[nodiscard]] double level(int i) const { return table ? table->at(i).x : i * delta; }
-  /// Rates of jumps from level i [1/time].
+  /// Whether all jumps are to neighbouring levels.
+  [[nodiscard]] bool neighbours_only() const { return !table || table->neighbours_only(); }
+  /// Calls visit(level, rate) for the jumps from level i, from the lowest one up.
+  template <class Visit>
+  void for_each_jump(int i, Visit visit) const {
+    if (table) return table->for_each_jump(i, visit);
+    if (i > -levels) visit(i - 1, down_rate(i));
+    if (i < levels) visit(i + 1, up_rate(i));
+  }
+  /// Rates of all jumps from level i to higher and to lower ones [1/time].
   [[nodiscard]] double up_rate(int i) const { return table ? table->at(i).up : rate() * up(i); }
   [[nodiscard]] double down_rate(int i) const {
     return table ? table->at(i).down : rate() * down(i);
@@ -97,7 +106,7 @@ struct NoiseChain {
 /// Throws std::out_of_range when it does not fit an int.
 [[nodiscard]] int full_range(double tau, double delta, std::optional<double> deviation = {});
 
-/// pi(x_i)/pi(x_{i-1}), from detailed balance.
+/// pi(x_i)/pi(x_{i-1}); from detailed balance where jumps are to neighbours.
 [[nodiscard]] double weight_ratio(const NoiseChain& chain, int i);
 
 /// Stationary probabilities from the lowest level up. Positive products and sums only, so that

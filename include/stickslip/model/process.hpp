@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "stickslip/model/drag.hpp"
 #include "stickslip/model/friction.hpp"
@@ -43,11 +44,22 @@ struct Process {
   /// excursions start downwards. O(levels that stick).
   [[nodiscard]] bool starts_upwards() const;
   [[nodiscard]] bool starts_downwards() const { return mirrored().starts_upwards(); }
-  /// The level from which excursions to one side start; if they start on the other one alone, its.
+  /// The level from which excursions to one side start, of several the most frequent one; if they
+  /// start on the other side alone, its.
   [[nodiscard]] int exit_level(bool upwards) const {
     const bool there = upwards ? starts_upwards() : starts_downwards();
-    return upwards == there ? highest_static() + 1 : lowest_static() - 1;
+    const bool up = upwards == there;
+    if (!noise.neighbours_only()) return most_frequent_start(up);
+    return up ? highest_static() + 1 : lowest_static() - 1;
   }
+  /// A level that does not stick, to which the noise jumps from those that do.
+  struct Start {
+    int level;
+    double flow;  ///< rate of such jumps in the stationary process X [1/time]
+  };
+  /// All levels from which excursions start, rising, but for those to which fewer than one in 1e18
+  /// of the jumps lead; none where bodies never stick. O(levels).
+  [[nodiscard]] std::vector<Start> starts() const;
   /// Whether there are levels on which bodies stick. On none, v = 0 is passed and never held.
   [[nodiscard]] bool sticks() const { return lowest_static() <= highest_static(); }
   /// g + E[X]: what drives bodies over long times.
@@ -64,6 +76,9 @@ struct Process {
   }
   /// x + g - F(0+) for any x.
   [[nodiscard]] double net_force_at(double x) const { return friction.net_force(x, bias); }
+
+ private:
+  [[nodiscard]] int most_frequent_start(bool up) const;
 };
 
 /// "; this should not happen: please report it with the model parameters mu_s = ...".

@@ -36,6 +36,9 @@ struct Grouping {
 /// levels on which the speed at v = 0 vanishes, the ends of the static range, and those of the
 /// grouping. None contains one, and where -X is the same chain x -> -x maps groups to groups.
 ///
+/// Where the noise jumps further than to neighbours every level is a node, and a group is as many
+/// as jumps pass, so that J is block tridiagonal all the same.
+///
 /// Nodes are numbered first() ... last(), rising; node -n of mirrored() is that of -x_n. Immutable;
 /// members are local.
 class Nodes {
@@ -47,15 +50,22 @@ class Nodes {
 
   /// Consecutive levels with the nodes that stand for them.
   struct Group {
-    int first, last;                         ///< levels
-    int begin;                               ///< number of its first node
-    int count;                               ///< of nodes
-    std::vector<double> value, weight;       ///< P and T, levels x nodes by rows
-    std::vector<double> to_above, to_below;  ///< by node: rates into the next groups
+    int first, last;                    ///< levels
+    int begin;                          ///< number of its first node
+    int count;                          ///< of nodes
+    std::vector<double> value, weight;  ///< P and T, levels x nodes by rows
+    /// Rates into the next groups, nodes x levels reached there by rows.
+    std::vector<double> to_above, to_below;
+    /// P on the levels to which the group below jumps, and on those to which the group above does,
+    /// levels x nodes by rows: on the first and on the last one, where these are not given.
+    std::vector<double> from_below = {}, from_above = {};
     [[nodiscard]] int levels() const { return last - first + 1; }
-    /// P on the first and on the last level.
-    [[nodiscard]] std::span<const double> at_first() const { return row(value, first); }
-    [[nodiscard]] std::span<const double> at_last() const { return row(value, last); }
+    [[nodiscard]] std::span<const double> at_first() const {
+      return from_below.empty() ? row(value, first) : std::span<const double>(from_below);
+    }
+    [[nodiscard]] std::span<const double> at_last() const {
+      return from_above.empty() ? row(value, last) : std::span<const double>(from_above);
+    }
     /// The row of P or T for a level.
     [[nodiscard]] std::span<const double> row(const std::vector<double>& matrix, int level) const {
       const auto from = static_cast<std::size_t>(level - first) * static_cast<std::size_t>(count);
@@ -66,6 +76,10 @@ class Nodes {
   [[nodiscard]] const std::vector<Group>& groups() const { return groups_; }
   [[nodiscard]] const Group& group_of(int node) const { return groups_[group_of_[at(node)]]; }
   [[nodiscard]] const Group& group_at(int level) const;
+  /// Of a level that is a node, as those next to the static ones.
+  [[nodiscard]] int node_at(int level) const {
+    return all_levels() ? level : group_at(level).begin;
+  }
 
   [[nodiscard]] int first() const { return first_; }
   [[nodiscard]] int last() const { return first_ + count() - 1; }
@@ -115,6 +129,9 @@ class Nodes {
     const int place = node - first_;
     return static_cast<std::size_t>(place);
   }
+  void take_all_levels();
+  void couple(const Group& from, const Group& to, std::vector<double>& rates,
+              std::vector<double>& levels) const;
   void join(const Upper& above, const Upper& below);
   void find_jumps();
 

@@ -21,9 +21,9 @@ namespace stickslip::operators {
 /// of these sets is a range of nodes.
 ///
 /// Along the noise the system is block tridiagonal over groups, its couplings of the rank of the
-/// element's nodes: jumps reach the next group through its first or last level alone. LU factors by
-/// groups. Lists run by noise nodes 0 ... M-1, then by the q nodes of the element. For double and
-/// std::complex<double>. Local.
+/// element's nodes times the levels to which jumps from the next group lead: the first or the last
+/// one alone where the noise jumps to neighbours. LU factors by groups. Lists run by noise nodes 0
+/// ... M-1, then by the q nodes of the element. For double and std::complex<double>. Local.
 template <class Scalar>
 class ElementSystem {
  public:

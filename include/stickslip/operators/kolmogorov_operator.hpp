@@ -4,6 +4,7 @@
 #include <petscmat.h>
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -40,7 +41,8 @@ struct TopCoupling {
 ///   l below:     u(0+) on node -l of the other branch, or +- that on the same branch when
 ///   symmetry-reduced.
 /// Nodes that leave v = 0 need no condition. Static values live on all their levels and follow the
-/// noise until they leave to s+- = (x, +-1, 0), x the level next to them, x_{+-(k+1)} without bias.
+/// noise until it jumps to a level that does not stick: to s+- = (x, +-1, 0), x the level next to
+/// them, x_{+-(k+1)} without bias, where it jumps to neighbours.
 ///
 /// Diagonals are summed from the off-diagonals of their row in the order of columns, so that with
 /// StaticPhase::kept and lambda = 0 row sums are exactly zero. On an upwind velocity discretisation
@@ -83,8 +85,12 @@ class KolmogorovOperator {
   /// u -> u(s). Collective.
   [[nodiscard]] petsc::VecHandle value_in_that_state() const;
 
-  /// The functional u -> u(s+) (positive) or u(s-) (negative; with both branches only) as a vector.
+  /// The functional u -> u(x, +-1, 0) as a vector, x a level from which excursions start.
   /// Collective.
+  [[nodiscard]] petsc::VecHandle trace_at_start(int level) const;
+  /// The same on the most frequent of these levels, s+ (positive) or s- (negative; with both
+  /// branches only) where the noise jumps to neighbours; if all excursions start on the other side,
+  /// there. Collective.
   [[nodiscard]] petsc::VecHandle trace_at_exit(Branch branch = Branch::positive) const;
 
   /// The functional u -> u(x_i, v), v = 0 being s+- for |i| > k and rest for |i| <= k;
@@ -132,8 +138,8 @@ class KolmogorovOperator {
   void add_value_at(int i, double v, double weight, Vec functional) const;
 
   std::shared_ptr<MatrixData> data_;
-  std::vector<std::pair<PetscInt, double>> trace_upper_, trace_lower_;
-  std::vector<StaticCoupling> static_coupling_;  // -A_us
+  std::map<int, std::vector<std::pair<PetscInt, double>>> traces_;  // by level
+  std::vector<StaticCoupling> static_coupling_;                     // -A_us
   std::vector<TopCoupling> top_coupling_;
   // The matrix of a single rank lives in these.
   std::vector<PetscInt> row_start_, columns_;

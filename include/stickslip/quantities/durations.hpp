@@ -52,7 +52,7 @@ distribution_until_killed(const std::string& name, operators::Systems& systems,
 
 /// f_slide(0+): a sliding phase can only end at once if one jump back from the level of its start
 /// reverses it.
-[[nodiscard]] double slide_density_at_zero(const model::Process& process, const SideChain& sides);
+[[nodiscard]] double slide_density_at_zero(const model::Process& process, const Starts& starts);
 
 /// Means and variances of the durations: the limits of their transforms as lambda -> 0.
 struct DurationMoments {
@@ -68,7 +68,7 @@ struct DurationMoments {
 
 /// var_slide, var_stick, var_excursion, f_slide_0 and, unless they are there already, mean_slide,
 /// mean_stick, mean_excursion, f_stick_0.
-void append_duration_moments(const model::Process& process, const SideChain& sides,
+void append_duration_moments(const model::Process& process, const Starts& starts,
                              const DurationMoments& moments, const std::vector<Uncertain>& entry,
                              Results& results);
 

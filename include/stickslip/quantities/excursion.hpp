@@ -12,16 +12,17 @@ namespace stickslip::quantities {
 /// Means over one excursion, which starts at s+ = (x_{k+1}, +1, 0), slides, sticks and ends at
 /// the next exit. Positions are symmetry-reduced: (x, y, v) stands for (-x, -y, -v) as well, such
 /// that y >= 0. Arrays run over noise nodes and over static levels from the lowest one up. Without
-/// symmetry, the means are over excursions from s+ and from s- in the shares in which they occur,
-/// and what belongs to v < 0 follows what belongs to v > 0, counted along the nodes of -X.
+/// symmetry, the means are over excursions from s+, from s- and from all other starts in the shares
+/// in which they occur, and what belongs to v < 0 follows what belongs to v > 0, counted along the
+/// nodes of -X.
 struct Excursion {
   std::vector<double> slide_time;      ///< time spent sliding on node n [time]
   std::vector<double> slide_distance;  ///< int |V| dt on node n [velocity time]
   std::vector<double> slide_square;    ///< int V^2 dt on node n
   std::vector<double> entry;  ///< probability that sliding ends on symmetry-reduced level i
-  /// The same of sliding phases from s+ alone, by level of the noise; empty unless it is known.
+  /// The same of sliding phases upwards alone, by level of the noise; empty unless it is known.
   std::vector<double> entry_plus;
-  std::vector<double> entry_minus;  ///< of sliding phases from s-; empty if symmetry-reduced
+  std::vector<double> entry_minus;  ///< of those downwards; empty if symmetry-reduced
   std::vector<double> stick_time;   ///< time spent sticking on symmetry-reduced level i [time]
   double lost_probability = 0;      ///< sum of entry less 1, before it was scaled to 1
 
@@ -39,23 +40,31 @@ struct Excursion {
   [[nodiscard]] double conservation_defect(const operators::Discretisation& discretisation) const;
 };
 
-/// The sides from which excursions start, a Markov chain.
-struct SideChain {
-  double falling = 0;  ///< P(an excursion from s+ ends at s-)
-  double rising = 1;   ///< P(an excursion from s- ends at s+)
-  /// Share of excursions that start at s+ or s-.
-  [[nodiscard]] double share_of_plus() const { return rising / (rising + falling); }
-  [[nodiscard]] double share_of_minus() const { return falling / (rising + falling); }
+/// The levels from which excursions start, a Markov chain: s+ and s- where the noise jumps to
+/// neighbours.
+struct Starts {
+  std::vector<int> levels;
+  std::vector<double> shares;  ///< of excursions that start there
+  /// By rows: P(an excursion from this level is followed by one from that level).
+  std::vector<double> next;
+
+  /// Those above the static levels alone, which all are with symmetry.
+  [[nodiscard]] static Starts upwards(const model::Process& process);
+  [[nodiscard]] std::size_t size() const { return levels.size(); }
+  /// P(an excursion from any level above the static ones is followed by one from below), and
+  /// conversely.
+  [[nodiscard]] double falling(const model::Process& process) const;
+  [[nodiscard]] double rising(const model::Process& process) const;
 };
 
-/// That chain, given where sliding phases from s+ and s- end.
-[[nodiscard]] SideChain side_chain(const model::Process& process,
-                                   const std::vector<double>& entry_plus,
-                                   const std::vector<double>& entry_minus);
+/// That chain, given where sliding phases from each level end. Its shares are found without
+/// subtraction. O(starts^3).
+[[nodiscard]] Starts chain_of_starts(const model::Process& process, std::vector<int> levels,
+                                     const std::vector<Excursion>& from);
 
-/// Means over all excursions from those over excursions from s+ and from s-.
-[[nodiscard]] Excursion joined(const SideChain& sides, const Excursion& plus,
-                               const Excursion& minus);
+/// Means over all excursions from those over excursions from each start.
+[[nodiscard]] Excursion joined(const model::Process& process, const Starts& starts,
+                               const std::vector<Excursion>& from);
 
 /// What appends results that follow from means over an excursion.
 using FunctionOfExcursion =
@@ -74,9 +83,9 @@ void append_hitting_distribution(const model::Process& process, const Excursion&
                                  Results& results);
 
 /// The density of sticking times at 0+ [1/time]: the rate of leaving at once, where sliding phases
-/// end on the lowest and on the highest static level with these probabilities.
-[[nodiscard]] double stick_density_at_zero(const model::Process& process, double lowest,
-                                           double highest);
+/// end on the static levels with these probabilities.
+[[nodiscard]] double stick_density_at_zero(const model::Process& process,
+                                           const std::vector<double>& entry);
 
 /// P_X_le_mu_s and E_X2 of the noise alone, from its distribution in closed form.
 void append_noise_distribution(const model::Process& process, Results& results);

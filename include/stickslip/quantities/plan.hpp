@@ -65,6 +65,8 @@ class Planner {
   [[nodiscard]] const cases::Case& given() const { return given_; }
   [[nodiscard]] const cases::Question& question() const { return given_.question; }
   [[nodiscard]] bool symmetric() const { return given_.scene.symmetric(); }
+  /// From how many levels excursions start; with symmetry, on one side. At least 1.
+  [[nodiscard]] int starts() const;
   /// The system of the stationary distribution, and the same at another lambda.
   [[nodiscard]] operators::SystemKey system(double lambda = 0) const;
 

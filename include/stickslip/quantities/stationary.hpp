@@ -13,20 +13,18 @@ namespace stickslip::quantities {
 ///
 /// so that pi = (nu, stick_time)/E[tau_1], symmetrised, and pi(f) is a sum for every f.
 ///
-/// Without symmetry, on both velocity branches: nu+ A(0, none) = g+ and nu- A = g- for excursions
-/// from s+ and s-. The sides from which excursions start are a Markov chain; with its stationary
-/// shares,
-///
-///   p+/p- = P(s- to s+)/P(s+ to s-) = (entry- . h+)/(entry+ . h-),
-///
-/// h+-(i) the probability that a sticking phase that begins on level i ends upwards or downwards,
-/// all sums positive, nu = p+ nu+ + p- nu- takes the place of the nu above.
+/// Without symmetry, on both velocity branches: nu_t A(0, none) = g_t for excursions from each
+/// level t from which they start, s+ and s- where the noise jumps to neighbours. These levels are a
+/// Markov chain with the transition probabilities entry_t . h_u, h_u(i) the probability that a
+/// sticking phase that begins on level i ends by a jump to u. With its stationary shares p, found
+/// without subtraction, nu = sum_t p_t nu_t takes the place of the nu above.
 ///
 /// A body that never rests has no excursions: nu is the null vector of A, as
 /// KolmogorovOperator::kill_in_one_state() says, scaled to the time 1.
 class StationaryDistribution {
  public:
-  /// One transposed solve with systems.at(0, even), or two with systems.at(0, none). Collective.
+  /// One transposed solve with systems.at(0, even), or one a start with systems.at(0, none).
+  /// Collective.
   /// Throws NotReached or NoMemory.
   explicit StationaryDistribution(operators::Systems& systems);
 
@@ -48,10 +46,11 @@ class StationaryDistribution {
   /// Excursion::entry, with the effect of iterative refinement.
   [[nodiscard]] std::vector<Uncertain> entry() const;
 
-  /// How excursions follow one another; with symmetry all start at s+.
-  [[nodiscard]] const SideChain& sides() const { return sides_; }
+  /// How excursions follow one another; with symmetry all start at s+. None where bodies never
+  /// rest.
+  [[nodiscard]] const Starts& starts() const { return starts_; }
   /// u -> the mean of u over the states in which excursions start, on any operator. Collective.
-  [[nodiscard]] petsc::VecHandle starts(const operators::KolmogorovOperator& a) const;
+  [[nodiscard]] petsc::VecHandle starts_on(const operators::KolmogorovOperator& a) const;
 
   /// nu, distributed as states() says [time]: the time spent in each sliding state.
   [[nodiscard]] Vec occupation() const { return occupation_; }
@@ -80,7 +79,7 @@ class StationaryDistribution {
   operators::StateSpace states_;
   petsc::VecHandle occupation_, uncorrected_occupation_;
   Excursion excursion_, uncorrected_;
-  SideChain sides_;
+  Starts starts_;
 };
 
 }  // namespace stickslip::quantities

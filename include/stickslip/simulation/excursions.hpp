@@ -43,8 +43,8 @@ struct Discounted {
   double value = 0, mirrored = 0;
 };
 
-/// One excursion: a sliding phase from (x_{k+1}, v = 0) or its counterpart below to rest, and the
-/// sticking phase until the static levels are left again.
+/// One excursion: a sliding phase from v = 0 on a level beyond the static ones to rest, and the
+/// sticking phase until these are left again.
 struct Excursion {
   double slide = 0, stick = 0;  ///< durations [time]
   double square = 0;            ///< int v^2 dt
@@ -63,20 +63,22 @@ struct Excursion {
   double peak = 0;                          ///< largest |v|
   std::vector<double> passages = {};        ///< when |v| first reached the speeds that it reached
   const Excursion* from_rest = nullptr;     ///< another one from rest, where speeds are wanted
+  bool upwards = true;                      ///< direction of the sliding phase
+  int next = 0;                             ///< level i from which the next one starts
+  bool ends_cycle = true;                   ///< whether that is the one from which its cycle did
 };
 
-/// Draws independent excursions from s+ (side 0) or s- (side 1); with symmetry those from s- are
-/// mirror images of the others. Exact for linear and no drag, else to 1e-11. Integrals of
-/// observables are their values at one uniformly distributed time in each piece of the motion,
-/// times its duration: right in the mean whatever the function.
+/// Draws excursions from any of the levels from which they start. Exact for linear and no drag,
+/// else to 1e-11. Integrals of observables are their values at one uniformly distributed time in
+/// each piece of the motion, times its duration: right in the mean whatever the function.
 class ExcursionSource {
  public:
   virtual ~ExcursionSource() = default;
   /// The next one, with the numbers of `random`; `place` in [0, 1) moves the times at which
   /// observables are taken, and nothing else.
-  virtual void draw(RandomStream& random, std::size_t side, double place, Excursion& excursion) = 0;
+  virtual void draw(RandomStream& random, int level, double place, Excursion& excursion) = 0;
   /// From v = 0 on any level; on static ones the sliding phase lasts 0. `turned`: the next one is
-  /// from s-.
+  /// from below.
   virtual void draw_from(int level, RandomStream& random, Excursion& excursion) = 0;
 };
 

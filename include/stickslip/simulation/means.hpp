@@ -38,15 +38,24 @@ struct Smooth {
 [[nodiscard]] Smooth operator*(const Smooth& a, const Smooth& b);
 [[nodiscard]] Smooth operator/(const Smooth& a, const Smooth& b);
 
-/// Means of the same numbers over excursions from s+ and over those from s-, of which the first is
-/// 1 for an excursion that ends on the other side. With symmetry there are those from s+ alone, and
-/// the others are their mirror images.
+/// What samples are.
+enum class Sampled {
+  sides,     ///< excursions from s+ and from s-, which follow one another by a Markov chain
+  one_side,  ///< those from s+, where those from s- are their mirror images
+  cycles     ///< all excursions from one of a level to the next from the same: a cycle renews
+};
+
+/// Means of the same numbers over samples. The first number is 1 for an excursion that ends on the
+/// other side, and 0 for others; of a cycle it is the number of excursions, and the others are sums
+/// over them.
 class Means {
  public:
   /// One for each side; they must outlive this.
-  explicit Means(std::span<const Comoments> sides) : sides_(sides) {}
+  explicit Means(std::span<const Comoments> sides, Sampled sampled)
+      : sides_(sides), sampled_(sampled) {}
 
-  [[nodiscard]] bool symmetric() const { return sides_.size() == 1; }
+  [[nodiscard]] bool symmetric() const { return sampled_ == Sampled::one_side; }
+  [[nodiscard]] bool cycles() const { return sampled_ == Sampled::cycles; }
   /// Mean n from s+ (side 0) or s- (side 1), whose sign in the mirror is `parity`.
   [[nodiscard]] Smooth at(std::size_t side, std::size_t n, double parity = 1) const;
   /// Mean n + i (mean n + 1).
@@ -63,6 +72,7 @@ class Means {
 
  private:
   std::span<const Comoments> sides_;
+  Sampled sampled_;
 };
 
 /// Means and covariances over excursions from each side of the numbers in a struct of doubles and
@@ -81,12 +91,19 @@ class Sums : public Means {
   /// Size of the co-moments: whether an excursion turns, and the numbers.
   static constexpr std::size_t kSize = 1 + sizeof(Sample) / sizeof(double);
 
-  explicit Sums(std::span<Comoments> sides) : Means(sides), sides_(sides) {}
+  Sums(std::span<Comoments> sides, Sampled sampled) : Means(sides, sampled), sides_(sides) {}
 
-  /// A sample, and 1 where the next excursion starts from the other side.
+  /// A sample, and the number before it.
   struct Row {
-    double turned;
+    double first;
     Sample sample;
+
+    Row& operator+=(const Row& other) {
+      auto* const sums = reinterpret_cast<double*>(this);
+      const auto* const more = reinterpret_cast<const double*>(&other);
+      for (std::size_t n = 0; n < kSize; ++n) sums[n] += more[n];
+      return *this;
+    }
   };
   /// Of an excursion from a side. O(kSize^2).
   void add(std::size_t side, const Row& row) {

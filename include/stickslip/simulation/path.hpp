@@ -18,8 +18,8 @@ struct State {
 };
 
 /// A path and its states at some times. A stationary one begins at a uniformly distributed time of
-/// an excursion from one side, and weighs as much as that lasts. The others have side 0 and weight
-/// 1.
+/// an excursion from one side, or of a cycle, and weighs as much as that lasts. The others have
+/// side 0 and weight 1.
 struct FollowedPath {
   State first = {};
   std::span<const State> states = {};
@@ -42,6 +42,7 @@ class Walk {
   virtual void step(double limit) = 0;
   [[nodiscard]] virtual State state() const = 0;
   [[nodiscard]] virtual double jumps() const = 0;  ///< of the noise since the beginning
+  [[nodiscard]] virtual int level() const = 0;     ///< of the noise
 
   /// On to a time that is not past.
   State advance(double time);

@@ -22,11 +22,13 @@ class Sampler {
   [[nodiscard]] const Tally& batch(std::uint64_t seed, std::uint64_t batch, int count);
 
  private:
+  void add_cycle(RandomStream& random, RandomStream& places, Excursion& first);
   void add_stationary(const RandomStream& random, std::size_t side, double place);
   [[nodiscard]] std::pair<State, std::span<const State>> follow();
 
   Tally tally_;
   model::Process process_;
+  std::vector<int> starts_;  // by side, or of cycles
   Wanted wanted_;
   std::unique_ptr<ExcursionSource> source_, from_rest_;
   std::unique_ptr<NoiseLevels> at_rest_;  // where passages from rest are wanted

@@ -43,7 +43,9 @@ using Estimates = std::vector<Estimated>;
 ///
 /// Excursions of a long path start from s+ and s- in turn by a Markov chain. Quantities of an
 /// excursion are means over all, so that a stationary mean is E[G]/E[T], with G the integral over
-/// an excursion and T its duration. Intervals are those of the delta method. Tallies of parts,
+/// an excursion and T its duration. Where the noise jumps further than to neighbours excursions
+/// start from many levels, and the samples are cycles: those from one level until the next from the
+/// same. Intervals are those of the delta method. Tallies of parts,
 /// merged in a fixed order, give the same bits however the parts were distributed. Local.
 class Tally {
  public:
@@ -73,9 +75,27 @@ class Tally {
 
   /// Sums of the samples of(excursion).
   auto sums(const auto& of) {
-    auto all = new_sums<decltype(of(Excursion{}))>(sides());
-    of_excursions_.emplace_back([all, of](std::size_t side, const Excursion& e) mutable {
-      all.add(side, {e.turned ? 1.0 : 0.0, of(e)});
+    using Row = typename Sums<decltype(of(Excursion{}))>::Row;
+    auto all = new_sums<decltype(of(Excursion{}))>(sampled());
+    if (sampled() != Sampled::cycles) {
+      of_excursions_.emplace_back([all, of](std::size_t side, const Excursion& e) mutable {
+        all.add(side, {e.turned ? 1.0 : 0.0, of(e)});
+      });
+      return all;
+    }
+    of_excursions_.emplace_back([all, of, sum = Row{}](std::size_t, const Excursion& e) mutable {
+      sum += {1, of(e)};
+      if (e.ends_cycle) all.add(0, std::exchange(sum, Row{}));
+    });
+    return all;
+  }
+  /// The same of excursions or cycles as a whole, of which the excursion given has durations, int v
+  /// dt and its transforms.
+  auto sums_of_renewals(const auto& of) {
+    if (sampled() != Sampled::cycles) return sums(of);
+    auto all = new_sums<decltype(of(Excursion{}))>(sampled());
+    of_cycles_.emplace_back([all, of](const Excursion& cycle) mutable {
+      all.add(0, {1, of(cycle)});
     });
     return all;
   }
@@ -85,14 +105,16 @@ class Tally {
     wanted_.time = question_.time;
     if (stationary) wanted_.stationary_paths = true;
     if (!stationary) wanted_.start = start;
+    const bool cycles = sampled() == Sampled::cycles;
     std::vector<Sums<decltype(of(FollowedPath{}, State{}))>> all;
     for (std::size_t n = 0; n < question_.time.size(); ++n) {
-      all.push_back(new_sums<decltype(of(FollowedPath{}, State{}))>(stationary ? sides() : 1));
+      all.push_back(new_sums<decltype(of(FollowedPath{}, State{}))>(
+          stationary || cycles ? sampled() : Sampled::one_side));
     }
-    of_paths_.emplace_back([all, of, stationary](const FollowedPath& path) mutable {
+    of_paths_.emplace_back([all, of, stationary, cycles](const FollowedPath& path) mutable {
       if (path.stationary != stationary) return;
       for (std::size_t n = 0; n < all.size(); ++n) {
-        all[n].add(path.side, {path.turned ? 1.0 : 0.0, of(path, path.states[n])});
+        all[n].add(path.side, {path.turned || cycles ? 1.0 : 0.0, of(path, path.states[n])});
       }
     });
     return all;
@@ -104,14 +126,18 @@ class Tally {
     reports_.push_back(std::move(estimates));
   }
 
-  /// An excursion from s+ (side 0) or, without symmetry, from s- (side 1).
+  /// What the samples are.
+  [[nodiscard]] Sampled sampled() const;
+  /// An excursion from s+ (side 0) or, without symmetry, from s- (side 1); of a cycle side 0.
   void add(std::size_t side, const Excursion& excursion);
+  /// A cycle as a whole, after its excursions.
+  void add_cycle(const Excursion& cycle);
   void add(const FollowedPath& path);
   void add_jumps(double jumps) { counts_[1] += jumps; }
   /// In the order of quantities in tally.cpp. There have to be samples.
   [[nodiscard]] Estimates estimates() const;
 
-  /// Excursions, or pairs of one from each side.
+  /// Excursions, pairs of one from each side, or cycles.
   [[nodiscard]] double samples() const { return counts_[0]; }
   [[nodiscard]] double jumps() const { return counts_[1]; }  ///< of the noise
 
@@ -124,10 +150,10 @@ class Tally {
   void merge(std::span<const double> packed);
 
  private:
-  [[nodiscard]] std::size_t sides() const { return process_.symmetric() ? 1 : 2; }
   template <class Sample>
-  Sums<Sample> new_sums(std::size_t sides) {
-    return Sums<Sample>(comoments_.emplace_back(sides, Comoments(Sums<Sample>::kSize)));
+  Sums<Sample> new_sums(Sampled sampled) {
+    const std::size_t sides = sampled == Sampled::sides ? 2 : 1;
+    return {comoments_.emplace_back(sides, Comoments(Sums<Sample>::kSize)), sampled};
   }
   template <class Self, class Action>
   static void each_row(Self& tally, const Action& action);
@@ -139,6 +165,7 @@ class Tally {
   std::deque<std::vector<Comoments>> comoments_;  // by side; these and histograms stay in place
   std::deque<Histogram> histograms_;
   std::vector<std::function<void(std::size_t, const Excursion&)>> of_excursions_;
+  std::vector<std::function<void(const Excursion&)>> of_cycles_;
   std::vector<std::function<void(const FollowedPath&)>> of_paths_;
   std::vector<std::function<Estimates(const Tally&)>> reports_;
 };

@@ -1,0 +1,157 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#define CSV_IO_NO_THREAD  // small files
+#include <libfccp/csv.h>
+
+#include "all.hpp"
+#include "levels.hpp"
+#include "stickslip/support/number_text.hpp"
+#include "stickslip/support/readable.hpp"
+
+namespace stickslip::effects {
+namespace {
+
+constexpr const char *kStates = "noise_states", *kRates = "noise_rates";
+
+/// What is wrong with a file, as a problem of the option that names it.
+class Unfit : public std::invalid_argument {
+ public:
+  Unfit(const char* option, const std::string& why) : std::invalid_argument(why), option_(option) {}
+  [[nodiscard]] const char* option() const { return option_; }
+
+ private:
+  const char* option_;
+};
+
+/// The numbers of some columns, and the line of each row.
+template <std::size_t columns>
+struct Rows {
+  std::vector<std::array<double, columns>> values;
+  std::vector<unsigned> lines;
+};
+
+template <std::size_t columns>
+Rows<columns> read_rows(const char* option, const std::string& file,
+                        const std::array<const char*, columns>& names) {
+  Rows<columns> rows;
+  try {
+    require_readable(file);
+    ::io::CSVReader<columns, ::io::trim_chars<' ', '\t', '\r'>, ::io::double_quote_escape<',', '"'>,
+                    ::io::throw_on_overflow, ::io::single_and_empty_line_comment<'#'>>
+        reader(file);
+    std::array<std::string, columns> text;
+    const auto on_all = [&](const auto& action) {
+      return std::apply([&](auto&... each) { return action(each...); }, text);
+    };
+    std::apply([&](const auto&... each) { reader.read_header(::io::ignore_extra_column, each...); },
+               names);
+    while (on_all([&](auto&... each) { return reader.read_row(each...); })) {
+      rows.lines.push_back(reader.get_file_line());
+      auto& row = rows.values.emplace_back();
+      for (std::size_t c = 0; c < columns; ++c) {
+        const auto value = parse_number(text[c]);
+        if (!value) {
+          throw std::invalid_argument(fmt::format("line {}: {} = {} is no finite number",
+                                                  rows.lines.back(), names[c], text[c]));
+        }
+        row[c] = *value;
+      }
+    }
+  } catch (const std::exception& problem) {
+    throw Unfit(option, problem.what());
+  }
+  return rows;
+}
+
+std::vector<model::Transition> transitions_of(const Rows<3>& rows, std::size_t states) {
+  std::vector<model::Transition> all;
+  std::map<std::pair<std::size_t, std::size_t>, unsigned> seen;
+  for (std::size_t n = 0; n < rows.values.size(); ++n) {
+    const auto [from, to, rate] = rows.values[n];
+    const auto refuse = [&](const std::string& why) {
+      throw Unfit(kRates, fmt::format("line {}: {}", rows.lines[n], why));
+    };
+    for (double state : {from, to}) {
+      if (state >= 0 && state < static_cast<double>(states) && state == std::floor(state)) continue;
+      refuse(fmt::format("there is no state {:g}; those of -{} are numbered from 0 to {}", state,
+                         kStates, states - 1));
+    }
+    if (from == to) refuse(fmt::format("state {:g} jumps to itself", from));
+    if (rate < 0) refuse(fmt::format("rate = {:g} must not be negative", rate));
+    const auto a = static_cast<std::size_t>(from), b = static_cast<std::size_t>(to);
+    const auto [before, first] = seen.try_emplace({a, b}, rows.lines[n]);
+    if (!first) {
+      refuse(fmt::format("line {} has the rate from state {} to state {} already", before->second,
+                         a, b));
+    }
+    if (rate > 0) all.push_back({a, b, rate});
+  }
+  return all;
+}
+
+model::LevelTable read_chain(const std::string& states, const std::string& rates) {
+  const auto given = read_rows<1>(kStates, states, {"x"});
+  std::vector<double> x;
+  for (const auto& row : given.values) x.push_back(row[0]);
+  const auto transitions =
+      transitions_of(read_rows<3>(kRates, rates, {"from", "to", "rate"}), x.size());
+  try {
+    return {x, transitions};
+  } catch (const model::UnfitTable& unfit) {
+    const bool at_line = unfit.row() < given.lines.size();
+    throw Unfit(kStates,
+                (at_line ? fmt::format("line {}: ", given.lines[unfit.row()]) : "") + unfit.what());
+  }
+}
+
+void read_noise_chain(Given& given, model::Scene& scene) {
+  const bool both =
+      given.needs("noise", kStates, "states.csv") && given.needs("noise", kRates, "rates.csv");
+  if (!both || !given.sound()) return;
+  const std::string states = given.text(kStates), rates = given.text(kRates);
+  scene.own.insert(scene.own.end(), {{kStates, states}, {kRates, rates}});
+  try {
+    scene.noise.table = std::make_shared<const model::LevelTable>(read_chain(states, rates));
+  } catch (const Unfit& unfit) {
+    given.refuse(unfit.option(), unfit.what(),
+                 unfit.option() == kStates
+                     ? "write CSV with the column x, the force of one state a line, all of which "
+                       "the rates connect"
+                     : "write CSV with the columns from,to,rate, states by their lines from 0");
+  }
+}
+
+}  // namespace
+
+const Effect kNoiseChain{
+    .word = "chain",
+    .sentence = "any Markov chain",
+    .others = {"markov", "markov_chain", "ctmc"},
+    .parameters = {{Option::file(kStates, Kind::input,
+                                 "CSV with the column x: the force in each state of -noise chain, "
+                                 "one a line, numbered from 0; several may have the same",
+                                 {.label = "states of"}),
+                    true},
+                   {Option::file(
+                        kRates, Kind::input,
+                        "CSV with the columns from,to,rate: the rates of the jumps between "
+                        "the states of -noise_states, all others being 0",
+                        {.label = "rates of", .others = {"generator", "noise_generator"}}),
+                    true}},
+    .read = read_noise_chain,
+    .complete = has_levels,
+    .heading = [](const model::Scene& scene) {
+      return "noise chain of " + std::get<std::string>(own_value(scene, kStates));
+    }};
+
+}  // namespace stickslip::effects

@@ -1,0 +1,312 @@
+#include "transitions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <complex>
+#include <cstdint>
+#include <cstdlib>
+#include <numeric>
+#include <tuple>
+
+#include "stickslip/algebra/dense.hpp"
+#include "stickslip/algebra/rate_elimination.hpp"
+
+namespace stickslip::model {
+namespace {
+
+using algebra::RateElimination;
+
+// A state that cannot be reached from state 0, following transitions forwards or backwards.
+std::size_t not_reached(std::size_t count, const std::vector<Transition>& transitions,
+                        std::size_t Transition::*from, std::size_t Transition::*to) {
+  std::vector<std::vector<std::size_t>> next(count);
+  for (const auto& t : transitions) next[t.*from].push_back(t.*to);
+  std::vector<bool> seen(count, false);
+  std::vector<std::size_t> open{0};
+  seen[0] = true;
+  while (!open.empty()) {
+    const std::size_t here = open.back();
+    open.pop_back();
+    for (std::size_t there : next[here]) {
+      if (seen[there]) continue;
+      seen[there] = true;
+      open.push_back(there);
+    }
+  }
+  return static_cast<std::size_t>(std::find(seen.begin(), seen.end(), false) - seen.begin());
+}
+
+std::uint64_t mixed(std::uint64_t a, std::uint64_t b) {
+  a ^= b + 0x9e3779b97f4a7c15 + (a << 6) + (a >> 2);
+  a = (a ^ (a >> 30)) * 0xbf58476d1ce4e5b9;
+  return a ^ (a >> 27);
+}
+
+// Of what people write or compute.
+constexpr double kSameNumber = 1e-12;
+
+// The same for numbers that agree but for rounding, unless they lie at the end of a step.
+std::uint64_t bits(double x) {
+  int exponent = 0;
+  const double steps = std::round(std::frexp(x, &exponent) / kSameNumber);
+  return std::bit_cast<std::uint64_t>(std::ldexp(steps, exponent) + 0.0);
+}
+
+// A number of each state that says what can be seen around it: equal for states that look alike.
+std::vector<std::uint64_t> looks(const std::vector<double>& x,
+                                 const std::vector<Transition>& transitions, double sign) {
+  std::vector<std::uint64_t> look;
+  for (double force : x) look.push_back(mixed(1, bits(sign * force)));
+  std::size_t kinds = 0;
+  for (std::size_t round = 0; round < x.size(); ++round) {
+    std::vector<std::uint64_t> next;
+    for (std::uint64_t own : look) next.push_back(mixed(2, own));
+    // Sums do not depend on the order of transitions.
+    for (const auto& [from, to, rate] : transitions) {
+      next[from] += mixed(mixed(3, look[to]), bits(rate));
+      next[to] += mixed(mixed(4, look[from]), bits(rate));
+    }
+    look = std::move(next);
+    auto sorted = look;
+    std::sort(sorted.begin(), sorted.end());
+    const auto different =
+        static_cast<std::size_t>(std::unique(sorted.begin(), sorted.end()) - sorted.begin());
+    if (different == kinds) break;
+    kinds = different;
+  }
+  return look;
+}
+
+int band_of(const Jumps& jumps) {
+  int band = 0;
+  for (std::size_t n = 0; n < jumps.size(); ++n) {
+    for (const auto& jump : jumps[n]) {
+      band = std::max(band, std::abs(jump.to - static_cast<int>(n)));
+    }
+  }
+  return band;
+}
+
+double weighted(std::span<const double> p, const std::vector<double>& f,
+                const std::vector<double>& g) {
+  double sum = 0;
+  for (std::size_t n = 0; n < f.size(); ++n) sum += p[n] * f[n] * g[n];
+  return sum;
+}
+
+// -Q f.
+std::vector<double> applied(const Jumps& jumps, const std::vector<double>& f) {
+  std::vector<double> g(f.size(), 0.0);
+  for (std::size_t n = 0; n < f.size(); ++n) {
+    for (const auto& [to, rate] : jumps[n]) g[n] += rate * (f[n] - f[to]);
+  }
+  return g;
+}
+
+// Whether theta f + Q has eigenvalues of negative real part alone: the pivots of its negative, an
+// M-matrix, are positive.
+bool decays(const Jumps& jumps, const std::vector<double>& f, double theta, int band) {
+  const int count = static_cast<int>(f.size()), width = 2 * band + 1;
+  std::vector<double> a(f.size() * static_cast<std::size_t>(width), 0.0);
+  const auto entry = [&](int r, int c) -> double& {
+    return a[static_cast<std::size_t>(r) * width + static_cast<std::size_t>(c - r + band)];
+  };
+  for (int n = 0; n < count; ++n) {
+    double leaving = 0;
+    for (const auto& [to, rate] : jumps[n]) {
+      entry(n, to) -= rate;
+      leaving += rate;
+    }
+    entry(n, n) += leaving - theta * f[n];
+  }
+  for (int i = 0; i < count; ++i) {
+    if (!(entry(i, i) > 0)) return false;
+    const int last = std::min(i + band, count - 1);
+    for (int j = i + 1; j <= last; ++j) {
+      const double factor = entry(j, i) / entry(i, i);
+      if (factor == 0) continue;
+      for (int k = i + 1; k <= last; ++k) entry(j, k) -= factor * entry(i, k);
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+void require_states(const std::vector<double>& x, const std::vector<Transition>& transitions) {
+  if (x.size() < 2) throw UnfitTable(x.size(), "there must be at least two states");
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    if (!std::isfinite(x[n])) throw UnfitTable(n, fmt::format("x = {:g} must be a number", x[n]));
+  }
+  for (const auto& [from, to, rate] : transitions) {
+    if (rate > 0 && std::isfinite(rate)) continue;
+    throw UnfitTable(from, fmt::format("the rate {:g} to state {} must be positive", rate, to));
+  }
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    const auto meets = [n](std::size_t Transition::*end) {
+      return [n, end](const Transition& t) { return t.*end == n; };
+    };
+    if (std::none_of(transitions.begin(), transitions.end(), meets(&Transition::from))) {
+      throw UnfitTable(n, fmt::format("state {} is never left", n));
+    }
+    if (std::none_of(transitions.begin(), transitions.end(), meets(&Transition::to))) {
+      throw UnfitTable(n, fmt::format("state {} is never reached", n));
+    }
+  }
+  const std::size_t forwards =
+      not_reached(x.size(), transitions, &Transition::from, &Transition::to);
+  if (forwards < x.size()) {
+    throw UnfitTable(forwards, fmt::format("state {} is never reached from state 0", forwards));
+  }
+  const std::size_t backwards =
+      not_reached(x.size(), transitions, &Transition::to, &Transition::from);
+  if (backwards < x.size()) {
+    throw UnfitTable(backwards, fmt::format("state 0 is never reached from state {}", backwards));
+  }
+}
+
+std::vector<double> without_rounding(const std::vector<double>& x) {
+  std::vector<double> sizes;
+  for (double force : x) sizes.push_back(std::abs(force));
+  std::sort(sizes.begin(), sizes.end());
+  const double rounding = kSameNumber * sizes.back();
+  // Each by the smallest of those that follow one another that closely.
+  std::vector<double> all;
+  for (double force : x) {
+    auto size = std::lower_bound(sizes.begin(), sizes.end(), std::abs(force));
+    while (size != sizes.begin() && *size - *(size - 1) <= rounding) --size;
+    all.push_back(*size <= rounding ? 0 : std::copysign(*size, force));
+  }
+  return all;
+}
+
+std::vector<std::size_t> mirrored_order(const std::vector<double>& x,
+                                        const std::vector<Transition>& transitions) {
+  const auto look = looks(x, transitions, 1), mirrored = looks(x, transitions, -1);
+  // Below 0 the mirror decides; at 0 states come before their images, in the images' reverse order.
+  const auto key = [&](std::size_t n) {
+    const std::uint64_t most = ~std::uint64_t{0};
+    if (x[n] > 0) return std::tuple(0, look[n]);
+    if (x[n] < 0) return std::tuple(0, most - mirrored[n]);
+    if (look[n] < mirrored[n]) return std::tuple(0, look[n]);
+    if (look[n] == mirrored[n]) return std::tuple(1, look[n]);
+    return std::tuple(2, most - mirrored[n]);
+  };
+  std::vector<std::size_t> order(x.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::tuple(x[a], key(a)) < std::tuple(x[b], key(b));
+  });
+  return order;
+}
+
+bool mirrors_itself(const Jumps& jumps) {
+  const std::size_t last = jumps.size() - 1;
+  for (std::size_t n = 0; n <= last; ++n) {
+    const auto &here = jumps[n], &there = jumps[last - n];
+    const bool same = std::equal(here.begin(), here.end(), there.rbegin(), there.rend(),
+                                 [last](const auto& a, const auto& b) {
+                                   return a.to + b.to == static_cast<int>(last) &&
+                                          std::abs(a.rate - b.rate) <= kSameNumber * a.rate;
+                                 });
+    if (!same) return false;
+  }
+  return true;
+}
+
+std::vector<double> stationary(const Jumps& jumps) {
+  RateElimination chain(std::vector<double>(jumps.size(), 0.0), band_of(jumps));
+  for (std::size_t n = 0; n < jumps.size(); ++n) {
+    for (const auto& [to, rate] : jumps[n]) chain.add(static_cast<int>(n), to, rate);
+  }
+  chain.factor();
+  return chain.stationary();
+}
+
+// sum_n p_n f_n phi_n with -Q phi = f, and phi = 0 in the last state.
+double intensity(const Jumps& jumps, std::span<const double> p, const std::vector<double>& f) {
+  const int last = static_cast<int>(f.size()) - 1;
+  std::vector<double> killing(f.size() - 1, 0.0);
+  for (int n = 0; n < last; ++n) {
+    for (const auto& [to, rate] : jumps[n]) killing[n] += to == last ? rate : 0;
+  }
+  RateElimination chain(std::move(killing), band_of(jumps));
+  for (int n = 0; n < last; ++n) {
+    for (const auto& [to, rate] : jumps[n]) {
+      if (to != last) chain.add(n, to, rate);
+    }
+  }
+  chain.factor();
+  auto phi = chain.integral({f.begin(), f.end() - 1});
+  phi.push_back(0);
+  return weighted(p, f, phi);
+}
+
+// With v_1 ... v_k an orthonormal basis of the Krylov space of -Q and f, in the inner product of p,
+// and H the projection of -Q, the integral is about E[f^2] Re e_1^T (H + i omega)^-1 e_1.
+double peak_intensity(const Jumps& jumps, std::span<const double> p, const std::vector<double>& f) {
+  const int most = std::min<int>(60, static_cast<int>(f.size()) - 1);
+  const double square = weighted(p, f, f);
+  algebra::Matrix<double> h(most + 1, most);
+  std::vector<std::vector<double>> basis{f};
+  for (double& value : basis[0]) value /= std::sqrt(square);
+  int size = 0;
+  for (; size < most; ++size) {
+    auto next = applied(jumps, basis[size]);
+    const double before = std::sqrt(weighted(p, next, next));
+    for (int pass = 0; pass < 2; ++pass) {
+      for (int k = 0; k <= size; ++k) {
+        const double share = weighted(p, basis[k], next);
+        h(k, size) += share;
+        for (std::size_t n = 0; n < next.size(); ++n) next[n] -= share * basis[k][n];
+      }
+    }
+    const double norm = std::sqrt(weighted(p, next, next));
+    if (!(norm > 1e-12 * before)) {
+      ++size;
+      break;
+    }
+    h(size + 1, size) = norm;
+    for (double& value : next) value /= norm;
+    basis.push_back(std::move(next));
+  }
+  const auto at = [&](double omega) {
+    algebra::Matrix<std::complex<double>> shifted(size, size), first(size, 1);
+    for (int c = 0; c < size; ++c) {
+      for (int r = 0; r < size; ++r) shifted(r, c) = h(r, c);
+      shifted(c, c) += std::complex<double>(0, omega);
+    }
+    first(0, 0) = 1;
+    algebra::LuFactors<std::complex<double>>(std::move(shifted)).solve(first);
+    return square * first(0, 0).real();
+  };
+  double largest = at(0);
+  const double mean_rate = h(0, 0);
+  // In steps of 5 percent, which no band of a few tens of states falls between.
+  for (double omega = 1e-3 * mean_rate; omega < 10 * mean_rate; omega *= 1.05) {
+    largest = std::max(largest, at(omega));
+  }
+  return largest;
+}
+
+double decay(const Jumps& jumps, const std::vector<double>& f, double guess) {
+  const int band = band_of(jumps);
+  constexpr int most = 60, halvings = 10;
+  double low = guess, high = guess;
+  for (int n = 0; n < most && !decays(jumps, f, low, band); ++n) low /= 2;
+  high = low;
+  for (int n = 0; n < most && decays(jumps, f, high, band); ++n) {
+    low = high;
+    high *= 2;
+  }
+  for (int n = 0; n < halvings; ++n) {
+    const double middle = (low + high) / 2;
+    (decays(jumps, f, middle, band) ? low : high) = middle;
+  }
+  return low;
+}
+
+}  // namespace stickslip::model

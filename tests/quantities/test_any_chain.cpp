@@ -1,0 +1,180 @@
+#include <cmath>
+#include <map>
+
+#include "../common/catch.hpp"
+#include "../common/chains.hpp"
+#include "../common/near.hpp"
+#include "../common/scenes.hpp"
+#include "stickslip/accuracy/refinement.hpp"
+
+using namespace stickslip;
+using catalogue::Quantity;
+using catalogue::Route;
+using test::relative_difference;
+
+namespace {
+
+using Values = std::map<std::string, quantities::Result>;
+
+cases::Case asking(const model::Scene& s, const std::set<Quantity>& quantities, double accuracy) {
+  cases::Case c;
+  c.scene = s;
+  c.question.quantities = quantities;
+  c.question.accuracy = accuracy;
+  c.question.lambda = {0.5};
+  c.question.omega = {0, 1};
+  c.question.time = {0.2, 1};
+  c.question.velocity = {0.2, 0.5};
+  c.question.observables = {model::parse_observable("v^3", s.friction)};
+  return c;
+}
+
+Values values(const cases::Case& c) {
+  Values by_key;
+  for (const auto& r : accuracy::carry_out(PETSC_COMM_WORLD, c, {}).results) by_key[r.key] = r;
+  return by_key;
+}
+
+const model::Scene kPlain = test::scene(1, 0.5, 1, 1, {1, 0});
+const std::set<Quantity> kMeans{Quantity::sticking, Quantity::moments};
+
+struct Known {
+  std::string key;
+  double value;
+};
+
+void require_known(const Values& found, const std::vector<Known>& known, double tolerance) {
+  for (const auto& [key, value] : known) {
+    INFO(key);
+    REQUIRE(found.contains(key));
+    CHECK(relative_difference(found.at(key).value[0], value) < tolerance);
+  }
+}
+
+}  // namespace
+
+// Known from a discretisation of another kind, by another program, at degrees 8, 12 and 16.
+TEST_CASE("any chain: five states with jumps of any length, known to twelve digits", "[parallel]") {
+  auto s = test::with_table(kPlain, test::five_states());
+  auto quantities = kMeans;
+  quantities.insert({Quantity::spectrum, Quantity::laplace});
+  const auto found = values(asking(s, quantities, 1e-9));
+  require_known(found,
+                {{"P_stick", 0.655906541398},
+                 {"mean_slide", 1.52852376164},
+                 {"mean_stick", 2.91365240716},
+                 {"E_V2", 0.0492006321314},
+                 {"E_absV", 0.0996893782982},
+                 {"E_XV", 0.0990453212805},
+                 {"S_v", 0.0953941983442},
+                 {"F_slide", 0.536560984452}},
+                1e-11);
+  CHECK(relative_difference(found.at("S_v").value[1], 0.0609539138929) < 1e-11);
+  CHECK(found.at("E_V").value[0] == 0);
+  s.bias = 0.15;
+  require_known(values(asking(s, kMeans, 1e-10)),
+                {{"P_stick", 0.657128239846},
+                 {"mean_slide", 1.52311534816},
+                 {"E_V2", 0.052607244296},
+                 {"E_V", 0.0299054738533}},
+                1e-11);
+}
+
+// 144 states, of which slides start from 26: these follow one another as a Markov chain.
+TEST_CASE("any chain: a sine and noise, with many starts, known to eleven digits", "[real]") {
+  auto s = test::with_table(kPlain, test::sine_and_levels(1.2, 4, 16, 0.5, 1, 0.7, 4));
+  s.friction.mu_d = 0.6;
+  CHECK(s.meant().starts().size() == 26);
+  require_known(values(asking(s, kMeans, 1e-8)),
+                {{"P_stick", 0.26643150176},
+                 {"mean_slide", 1.9426508185},
+                 {"mean_stick", 0.7055692498},
+                 {"E_V2", 0.156807780853},
+                 {"E_absV", 0.262851173522},
+                 {"E_XV", 0.314518484966}},
+                1e-10);
+}
+
+// What nothing of excursions, of starts and of the static phase has a part in.
+TEST_CASE("any chain: the null vector of the generator agrees, with bias and thresholds",
+          "[real]") {
+  auto s = test::with_table(test::scene(0.8, 0.4, 1, 1, {1, 0.5}),
+                            test::sine_and_levels(1, 5, 5, 0.6, 1, 0.8, 2));
+  s.bias = 0.1;
+  s.friction.mu_s_minus = 0.9;
+  REQUIRE(s.meant().starts().size() > 4);
+  auto c = asking(s, {Quantity::sticking, Quantity::moments, Quantity::averages}, 1e-9);
+  const auto found = values(c);
+  for (Route route : {Route::null_vector, Route::lambda}) {
+    c.method.route = route;
+    c.question.accuracy = route == Route::lambda ? 1e-6 : 1e-8;
+    c.question.lambda = {};
+    for (const auto& [key, r] : values(c)) {
+      INFO(key);
+      REQUIRE(found.contains(key));
+      CHECK(found.at(key).value[0] == Approx(r.value[0]).epsilon(1e-5));
+    }
+  }
+}
+
+TEST_CASE("any chain: upwind and elements agree to the errors of upwind", "[real]") {
+  const auto s = test::with_table(kPlain, test::five_states());
+  auto c = asking(s, kMeans, 1e-8);
+  const auto found = values(c);
+  c.method.scheme = cases::Scheme::upwind;
+  c.question.accuracy = 3e-3;
+  for (const auto& [key, r] : values(c)) {
+    INFO(key);
+    CHECK(std::abs(found.at(key).value[0] - r.value[0]) <= r.error[0]);
+  }
+}
+
+// Mean times until a speed is reached are about the mean duration of as many excursions as it
+// takes.
+TEST_CASE("any chain: passages by many starts", "[real]") {
+  auto s = test::with_table(kPlain, test::sine_and_levels(1.2, 4, 6, 0.5, 1, 0.7, 2));
+  s.bias = 0.1;
+  const auto found = values(asking(s, {Quantity::peak, Quantity::sticking}, 1e-7));
+  const auto& peak = found.at("P_peak").value;
+  CHECK(peak[0] > peak[1]);
+  // Were passages independent of where excursions start, the time would be about this.
+  const double excursion = found.at("mean_excursion").value[0];
+  for (std::size_t n = 0; n < peak.size(); ++n) {
+    const double time = found.at("mean_first_passage").value[n];
+    CHECK(time < 1.5 * excursion / peak[n]);
+    CHECK(time > 0.3 * excursion * (1 - peak[n]) / peak[n]);
+    CHECK(found.at("mean_first_passage_rest").value[n] > time);
+  }
+}
+
+TEST_CASE("any chain: simulated cycles give the same, within 4.5 sigma", "[real]") {
+  auto s = test::with_table(test::scene(1, 0.5, 1, 1, {1, 0}),
+                            test::sine_and_levels(1.2, 4, 6, 0.5, 1, 0.7, 2));
+  s.bias = 0.1;
+  auto c = asking(s,
+                  {Quantity::sticking, Quantity::moments, Quantity::averages, Quantity::noise_law,
+                   Quantity::entry_law, Quantity::laplace, Quantity::spectrum, Quantity::slip,
+                   Quantity::autocorrelation, Quantity::displacement, Quantity::expectation,
+                   Quantity::duration_density},
+                  1e-4);
+  c.question.omega = {0, 1, 1.6};
+  c.question.start.kind = model::Start::Kind::stationary;
+  c.question.inverse_distance = {1};
+  const auto found = values(c);
+  c.method.route = Route::monte_carlo;
+  c.method.excursions = 20000;
+  int compared = 0;
+  for (const auto& [key, r] : values(c)) {
+    const bool by_cells = key.starts_with("f_s") || key.starts_with("f_e");
+    if (by_cells || !found.contains(key) || r.ci95.empty()) continue;
+    for (std::size_t n = 0; n < r.value.size(); ++n) {
+      const double sigma = (r.ci95[n].second - r.ci95[n].first) / 2 / 1.96;
+      INFO(key << " " << n << ": " << r.value[n] << " +- " << sigma << " for "
+               << found.at(key).value[n]);
+      CHECK(std::abs(r.value[n] - found.at(key).value[n]) <=
+            4.5 * sigma + 1e-4 * std::abs(r.value[n]) + 1e-12);
+      ++compared;
+    }
+  }
+  CHECK(compared > 50);
+}
