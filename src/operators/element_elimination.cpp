@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <map>
-#include <optional>
 #include <type_traits>
 
+#include "static_rows.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
@@ -38,54 +37,28 @@ void send(MPI_Comm comm, int owner, int rows, int columns, algebra::Matrix<Scala
 
 }  // namespace
 
-/// The rows of static states, tridiagonal where the noise jumps to neighbours, with their exits.
 template <class Scalar>
-struct ElementElimination<Scalar>::StaticRows {
-  typename Steps::Tridiagonal chain;
-  std::optional<DenseFactors> dense;          // in its place
-  std::map<std::size_t, Scalars> exits = {};  // rates by static state, by place of the exit in w
-
-  void solve(Scalar* x) const {
-    if (dense) {
-      dense->solve(x, false);
-    } else {
-      chain.solve(x, false);
-    }
-  }
-};
-
-template <class Scalar>
-auto ElementElimination<Scalar>::read_chain(Mat matrix) const -> StaticRows {
+auto ElementElimination<Scalar>::read_static_rows(Mat matrix) const -> StaticRows<Scalar> {
   const std::size_t size = static_rows_.size();
-  const bool near = data_->discretisation.process.noise.neighbours_only();
-  StaticRows at_rest;
-  auto& [diagonal, below, above] = at_rest.chain;
-  for (Scalars* band : {&diagonal, &below, &above}) band->assign(near ? size : 0, 0.0);
-  DenseMatrix dense(near ? 0 : static_cast<int>(size), near ? 0 : static_cast<int>(size));
+  StaticRows<Scalar> at_rest(size, data_->discretisation.process.noise.neighbours_only());
   // From the lambda of the matrix to that of the factors.
   const Scalar more = lambda_ * rate_of(clock_, 0) - data_->lambda * rate_of(data_->clock, 0);
   const petsc::RowsOnAllRanks all(matrix, static_rows_);
   for (std::size_t n = 0; n < size; ++n) {
-    (near ? diagonal[n] : dense(static_cast<int>(n), static_cast<int>(n))) = more;
-    all.row(n).for_each([&](PetscInt column, PetscScalar value) {
-      const std::size_t first = near && n > 0 ? n - 1 : 0,
-                        last = near ? std::min(n + 2, size) : size;
-      std::size_t to = first;
-      while (to < last && static_rows_[to] != column) ++to;
-      if (to == last) to = size;
-      if (to == size) {
-        auto& rates = at_rest.exits[exit_at(column)];
-        rates.resize(size);
-        rates[n] -= value;
-      } else if (!near) {
-        dense(static_cast<int>(n), static_cast<int>(to)) += value;
+    at_rest.add(n, n, more);
+    const auto [first, end] = at_rest.columns_of(n);
+    const auto begin = static_rows_.begin() + static_cast<std::ptrdiff_t>(first),
+               last = static_rows_.begin() + static_cast<std::ptrdiff_t>(end);
+    all.row(n).for_each([&, begin = begin, last = last](PetscInt column, PetscScalar value) {
+      const auto found = std::find(begin, last, column);
+      if (found == last) {
+        at_rest.add_exit(n, exit_at(column), -value);
       } else {
-        (to == n ? diagonal[n] : to < n ? below[n] : above[n]) += value;
+        at_rest.add(n, static_cast<std::size_t>(found - static_rows_.begin()), value);
       }
     });
   }
-  if (near) at_rest.chain.factor();
-  if (!near) at_rest.dense.emplace(std::move(dense));
+  at_rest.factor();
   return at_rest;
 }
 
@@ -331,9 +304,9 @@ void ElementElimination<Scalar>::meet(Mat matrix) {
     for (int l = 0; l < line.rising[0]; ++l) returned.push_back({length_++, line.begin + l, 1});
   }
   const std::size_t falling = length_ - fall;
-  StaticRows at_rest = read_chain(matrix);
+  StaticRows<Scalar> at_rest = read_static_rows(matrix);
   Steps leaving;
-  for (const auto& [exit, rates] : at_rest.exits) {
+  for (const auto& [exit, rates] : at_rest.exits()) {
     DenseMatrix left(static_cast<int>(static_rows_.size()), 1);
     std::copy(rates.begin(), rates.end(), left.data());
     at_rest.solve(left.data());
@@ -357,11 +330,7 @@ void ElementElimination<Scalar>::meet(Mat matrix) {
     }
     first += line.rising[0];
   }
-  if (at_rest.dense) {
-    between_.solve(*std::move(at_rest.dense), static_begin_);
-  } else {
-    between_.solve(std::move(at_rest.chain), static_begin_);
-  }
+  at_rest.move_to(between_, static_begin_);
   between_.add(std::move(shares));
   between_.add(std::move(found));
   between_.solve(DenseFactors(std::move(closed)), fall);

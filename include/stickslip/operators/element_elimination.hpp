@@ -15,6 +15,9 @@
 
 namespace stickslip::operators {
 
+template <class Scalar>
+class StaticRows;
+
 /// LU factors of the matrix A of a KolmogorovOperator on an hp velocity discretisation. With A_E
 /// its elements alone, decoupled from each other, G what they give at their ends and T what they
 /// take there,
@@ -66,7 +69,6 @@ class ElementElimination {
   using Steps = LinearSteps<Scalar>;
   using Couplings = std::vector<typename Steps::Coupling>;
   struct Line;
-  struct StaticRows;
 
   [[nodiscard]] Line line_of(Branch branch) const;
   [[nodiscard]] int owner(const Line& line, std::size_t e) const;
@@ -79,7 +81,7 @@ class ElementElimination {
   void add_shares(const Line& line, std::size_t fall, Couplings& shares) const;
   void add_crossings(const Line& line, std::size_t fall, Couplings& found) const;
   [[nodiscard]] std::size_t exit_at(PetscInt column) const;
-  [[nodiscard]] StaticRows read_chain(Mat matrix) const;
+  [[nodiscard]] StaticRows<Scalar> read_static_rows(Mat matrix) const;
   void meet(Mat matrix);
 
   template <class Visit>
