@@ -28,8 +28,8 @@ int band_of(const model::NoiseChain& chain, int low, int high) {
 algebra::RateElimination without_exits(const model::NoiseChain& chain, int low, int high,
                                        double lambda) {
   require_range(chain, low, high, lambda);
-  const auto count = static_cast<std::size_t>(high - low + 1);
-  std::vector<double> killing(count, lambda);
+  const int count = high - low + 1;
+  std::vector<double> killing(static_cast<std::size_t>(count), lambda);
   for (int i = low; i <= high; ++i) {
     chain.for_each_jump(i, [&](int to, double rate) {
       if (to < low || to > high) killing[i - low] += rate;

@@ -37,17 +37,23 @@ const std::set<std::string> kFree{"excursions",  // more of them extend a simula
 // Options that change only along with others: each command line below has its own.
 const std::set<std::string> kWithOthers{"friction", "noise"};
 
-std::string all_simulated() {
+std::string all_simulated(bool neighbours = true) {
   std::vector<std::string> words;
   for (const auto* entry : catalogue::entries()) {
     const bool simulated = entry->routes.contains(Route::monte_carlo);
-    if (simulated && !entry->of_one_run) words.emplace_back(entry->word);
+    const bool given = neighbours || !entry->by_neighbours.contains(Route::monte_carlo);
+    if (simulated && given && !entry->of_one_run) words.emplace_back(entry->word);
   }
   return fmt::format("{}", fmt::join(words, ","));
 }
 
+/// Files that noises take.
+struct NoiseFiles {
+  std::string levels, states, rates;
+};
+
 /// Command lines of which at least one takes each option of the table.
-std::vector<Options> command_lines(const std::string& levels) {
+std::vector<Options> command_lines(const NoiseFiles& files) {
   const Options all{{"route", "monte_carlo"},
                     {"excursions", "300"},
                     {"quantities", all_simulated()},
@@ -60,7 +66,7 @@ std::vector<Options> command_lines(const std::string& levels) {
                     {"distance", "0.5"},
                     {"inverse_distance", "0.5"},
                     {"velocity", "0.3"}};
-  std::vector<Options> lines(5, all);
+  std::vector<Options> lines(6, all);
   lines[0].insert({{"delta", "0.5"}});
   lines[1].insert({{"drag", "cubic"},
                    {"drag_cubic", "0.5"},
@@ -72,8 +78,11 @@ std::vector<Options> command_lines(const std::string& levels) {
                    {"telegraph_amplitude", "1"},
                    {"telegraph_rate", "1"},
                    {"bias", "0.3"}});
-  lines[4].insert({{"noise", "file"}, {"noise_file", levels}});
-  lines[3]["start"] = lines[4]["start"] = "s+";
+  lines[4].insert({{"noise", "file"}, {"noise_file", files.levels}});
+  lines[5].insert(
+      {{"noise", "chain"}, {"noise_states", files.states}, {"noise_rates", files.rates}});
+  lines[5]["quantities"] = all_simulated(false);
+  lines[3]["start"] = lines[4]["start"] = lines[5]["start"] = "s+";
   return lines;
 }
 
@@ -90,7 +99,7 @@ std::optional<Request> read(const Options& options) {
 
 /// Other values of an option; the first that a command line takes is tried.
 std::vector<std::string> others(const Option& option, const std::string& value,
-                                const std::string& levels) {
+                                const NoiseFiles& files) {
   const auto number = parse_number(value);
   switch (option.kind) {
   case Kind::real:
@@ -103,7 +112,7 @@ std::vector<std::string> others(const Option& option, const std::string& value,
   case Kind::flag: return {"yes"};
   case Kind::list: return {option.initial};
   case Kind::numbers: return {"0.7"};
-  case Kind::input: return {levels};
+  case Kind::input: return {files.levels, files.states, files.rates};
   case Kind::text: return {"v", "rest", "-2*v"};  // an observable, a start, a drag
   case Kind::path: return {"other"};
   }
@@ -129,9 +138,9 @@ std::string complaint(const Request& request, const std::string& file) {
 /// What a checkpoint of `line` says to the same with another value of the option; nothing if the
 /// line takes no other value.
 std::optional<std::string> complaint(const Options& line, const Option& option,
-                                     const std::string& levels, const std::string& file) {
+                                     const NoiseFiles& files, const std::string& file) {
   const std::string now = line.contains(option.name) ? line.at(option.name) : option.initial;
-  for (const auto& value : others(option, now, levels)) {
+  for (const auto& value : others(option, now, files)) {
     if (value == now) continue;
     auto changed = line;
     changed[option.name] = value;
@@ -142,8 +151,8 @@ std::optional<std::string> complaint(const Options& line, const Option& option,
   return std::nullopt;
 }
 
-std::string written(const std::string& file, const char* levels) {
-  std::ofstream(file) << "x,rate_up,rate_down\n" << levels;
+std::string written(const std::string& file, const char* text) {
+  std::ofstream(file) << text;
   return file;
 }
 
@@ -153,9 +162,15 @@ std::string written(const std::string& file, const char* levels) {
 // the list of those that may change.
 TEST_CASE("monte carlo: a checkpoint belongs to the value of every option of the table") {
   const test::TemporaryFolder folder;
-  const auto levels = written(folder / "levels.csv", "-1.5,1,0\n0,1,1\n1.5,0,1\n"),
-             other_levels = written(folder / "others.csv", "-1.5,1,0\n0,1,1\n1.5,0,2\n");
-  const auto lines = command_lines(levels);
+  const NoiseFiles given{
+      written(folder / "levels.csv", "x,rate_up,rate_down\n-1.5,1,0\n0,1,1\n1.5,0,1\n"),
+      written(folder / "states.csv", "x\n-1.5\n0\n1.5\n"),
+      written(folder / "rates.csv", "from,to,rate\n0,1,1\n1,0,1\n1,2,1\n2,0,1\n")};
+  const NoiseFiles changed{
+      written(folder / "other_levels.csv", "x,rate_up,rate_down\n-1.5,1,0\n0,1,1\n1.6,0,1\n"),
+      written(folder / "other_states.csv", "x\n-1.5\n0\n1.6\n"),
+      written(folder / "other_rates.csv", "from,to,rate\n0,1,1\n1,0,1\n1,2,1\n2,0,2\n")};
+  const auto lines = command_lines(given);
   std::vector<std::string> files;
   for (const auto& line : lines) {
     const auto request = read(line);
@@ -174,7 +189,7 @@ TEST_CASE("monte carlo: a checkpoint belongs to the value of every option of the
       INFO("-" << option.name);
       int tried = 0;
       for (std::size_t n = 0; n < lines.size(); ++n) {
-        const auto found = complaint(lines[n], option, other_levels, files[n]);
+        const auto found = complaint(lines[n], option, changed, files[n]);
         if (!found) continue;
         ++tried;
         INFO("command line " << n);
