@@ -87,7 +87,7 @@ class Planner {
   [[nodiscard]] std::shared_ptr<std::vector<Value>>
   collect(const std::function<void(const Computation&, const std::vector<Value>&)>& append,
           bool last = false) {
-    const auto values = std::make_shared<std::vector<Value>>();
+    auto values = std::make_shared<std::vector<Value>>();
     auto& actions = last ? last_ : plan_.afterwards;
     actions.emplace_back([=](const Computation& computation) {
       if (!values->empty()) append(computation, std::exchange(*values, {}));
