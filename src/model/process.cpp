@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace stickslip::model {
 namespace {
@@ -26,17 +25,19 @@ bool Process::starts_upwards() const {
   return log_ratio > std::log(kNegligibleShare);
 }
 
-std::vector<Process::Start> Process::starts() const {
-  const int high = highest_static(), low = lowest_static();
-  std::vector<Start> all;
-  if (!sticks()) return all;
-  if (noise.neighbours_only()) {
-    const auto p = stationary_distribution(noise);
-    const auto flow = [&](int from, double rate) { return p[from - noise.lowest()] * rate; };
-    if (starts_downwards()) all.push_back({low - 1, flow(low, noise.down_rate(low))});
-    if (starts_upwards()) all.push_back({high + 1, flow(high, noise.up_rate(high))});
-    return all;
+std::vector<int> Process::starts() const {
+  std::vector<int> all;
+  if (!noise.neighbours_only()) {
+    for (const auto& [level, flow] : flows_to_starts()) all.push_back(level);
+  } else if (sticks()) {
+    if (starts_downwards()) all.push_back(lowest_static() - 1);
+    if (starts_upwards()) all.push_back(highest_static() + 1);
   }
+  return all;
+}
+
+std::map<int, double> Process::flows_to_starts() const {
+  const int high = highest_static(), low = lowest_static();
   const auto p = stationary_distribution(noise);
   std::map<int, double> flows;
   double total = 0;
@@ -47,20 +48,30 @@ std::vector<Process::Start> Process::starts() const {
       total += p[i - noise.lowest()] * rate;
     });
   }
-  for (const auto& [level, flow] : flows) {
-    if (flow > kNegligibleShare * total) all.push_back({level, flow});
+  std::erase_if(flows,
+                [total](const auto& each) { return !(each.second > kNegligibleShare * total); });
+  return flows;
+}
+
+std::vector<double> Process::exit_rates() const {
+  const int high = highest_static(), low = lowest_static();
+  std::vector<double> rates(static_cast<std::size_t>(std::max(high - low + 1, 0)), 0.0);
+  for (int i = low; i <= high; ++i) {
+    noise.for_each_jump(i, [&](int to, double rate) {
+      if (to < low || to > high) rates[i - low] += rate;
+    });
   }
-  return all;
+  return rates;
 }
 
 int Process::most_frequent_start(bool up) const {
   const int high = highest_static();
-  const auto all = starts();
-  const auto most = std::max_element(all.begin(), all.end(), [&](const Start& a, const Start& b) {
-    const bool wanted_a = (a.level > high) == up, wanted_b = (b.level > high) == up;
-    return wanted_a != wanted_b ? wanted_b : a.flow < b.flow;
+  const auto all = flows_to_starts();
+  const auto most = std::max_element(all.begin(), all.end(), [&](const auto& a, const auto& b) {
+    const bool wanted_a = (a.first > high) == up, wanted_b = (b.first > high) == up;
+    return wanted_a != wanted_b ? wanted_b : a.second < b.second;
   });
-  return all.empty() ? (up ? noise.highest() : noise.lowest()) : most->level;
+  return all.empty() ? (up ? noise.highest() : noise.lowest()) : most->first;
 }
 
 std::string please_report(const Process& process) {

@@ -145,16 +145,11 @@ void require_states(const std::vector<double>& x, const std::vector<Transition>&
     if (rate > 0 && std::isfinite(rate)) continue;
     throw UnfitTable(from, fmt::format("the rate {:g} to state {} must be positive", rate, to));
   }
+  std::vector<bool> left(x.size(), false), reached(x.size(), false);
+  for (const auto& [from, to, rate] : transitions) left[from] = reached[to] = true;
   for (std::size_t n = 0; n < x.size(); ++n) {
-    const auto meets = [n](std::size_t Transition::*end) {
-      return [n, end](const Transition& t) { return t.*end == n; };
-    };
-    if (std::none_of(transitions.begin(), transitions.end(), meets(&Transition::from))) {
-      throw UnfitTable(n, fmt::format("state {} is never left", n));
-    }
-    if (std::none_of(transitions.begin(), transitions.end(), meets(&Transition::to))) {
-      throw UnfitTable(n, fmt::format("state {} is never reached", n));
-    }
+    if (!left[n]) throw UnfitTable(n, fmt::format("state {} is never left", n));
+    if (!reached[n]) throw UnfitTable(n, fmt::format("state {} is never reached", n));
   }
   const std::size_t forwards =
       not_reached(x.size(), transitions, &Transition::from, &Transition::to);

@@ -38,9 +38,9 @@ KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& disc
           clock})) {
   RowAssembler rows(discretisation, states(), lambda, clock, static_phase, derivative);
   rows.assemble();
-  for (const auto& start : discretisation.process.starts()) {
-    if (states().symmetry_reduced() && start.level < 0) continue;
-    traces_[start.level] = rows.trace_at_start(start.level);
+  for (int level : discretisation.process.starts()) {
+    if (states().symmetry_reduced() && level < 0) continue;
+    traces_[level] = rows.trace_at_start(level);
   }
   static_coupling_ = std::move(rows.static_coupling);
   top_coupling_ = std::move(rows.top_coupling);

@@ -78,12 +78,4 @@ std::vector<double> StaticChain::exit_transform_to(int level) const {
   return transform([level](int to) { return to == level; });
 }
 
-std::vector<double> StaticChain::exit_rates() const {
-  std::vector<double> all(static_cast<std::size_t>(size()), 0.0);
-  for (const auto& [to, rates] : exits_) {
-    for (std::size_t n = 0; n < rates.size(); ++n) all[n] += rates[n];
-  }
-  return all;
-}
-
 }  // namespace stickslip::operators

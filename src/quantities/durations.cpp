@@ -25,9 +25,7 @@ using petsc::check;
 class StickingFlow {
  public:
   StickingFlow(const model::Process& process, std::vector<double> start)
-      : rate_(process.noise.rate()),
-        exit_(operators::StaticChain::of(process).exit_rates()),
-        distribution_(std::move(start)) {
+      : rate_(process.noise.rate()), exit_(process.exit_rates()), distribution_(std::move(start)) {
     const auto& noise = process.noise;
     const int lowest = process.lowest_static(), highest = process.highest_static();
     for (int i = lowest; i <= highest; ++i) {

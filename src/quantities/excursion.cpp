@@ -209,7 +209,7 @@ void entry_law_tasks(Planner& planner) {
 }
 
 double stick_density_at_zero(const model::Process& process, const std::vector<double>& entry) {
-  const auto rates = operators::StaticChain::of(process).exit_rates();
+  const auto rates = process.exit_rates();
   return std::inner_product(rates.begin(), rates.end(), entry.begin(), 0.0);
 }
 

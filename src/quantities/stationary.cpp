@@ -129,12 +129,11 @@ StationaryDistribution::StationaryDistribution(Systems& systems)
     uncorrected_occupation_ = std::move(all.uncorrected);
     return;
   }
-  std::vector<int> levels;
+  const std::vector<int> levels = process().starts();
   std::vector<Occupation> occupations;
   std::vector<Excursion> corrected, uncorrected;
-  for (const auto& start : process().starts()) {
-    levels.push_back(start.level);
-    auto& o = occupations.emplace_back(from(start.level));
+  for (int level : levels) {
+    auto& o = occupations.emplace_back(from(level));
     corrected.push_back(excursion_of(a, o.nu, o.lost));
     uncorrected.push_back(excursion_of(a, o.uncorrected, o.uncorrected_lost));
   }

@@ -79,11 +79,10 @@ struct Excursions {
 Excursions excursions_of(const model::Process& process, const FluidQueue& queue) {
   const Excursion plus = excursion_of(process, queue.plus());
   if (process.symmetric()) return {plus, quantities::Starts::upwards(process)};
-  std::vector<int> levels;
+  const std::vector<int> levels = process.starts();
   std::vector<Excursion> from;
-  for (const auto& start : process.starts()) {
-    levels.push_back(start.level);
-    const bool up = start.level > process.highest_static();
+  for (int level : levels) {
+    const bool up = level > process.highest_static();
     from.push_back(up ? plus : excursion_of(process, queue.minus()));
   }
   const auto starts = quantities::chain_of_starts(process, levels, from);

@@ -5,7 +5,6 @@
 #include "routes.hpp"
 #include "stickslip/catalogue/averages_keys.hpp"
 #include "stickslip/catalogue/sticking_keys.hpp"
-#include "stickslip/operators/static_chain.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/eigensolver.hpp"
@@ -59,7 +58,7 @@ double integral(const KolmogorovOperator& a, Vec pi, const KolmogorovOperator::O
 // By renewal, excursions end at the rates at which pi leaves the static levels.
 Uncertain mean_excursion(const Problem& problem, const KolmogorovOperator& a, Vec pi, Vec before) {
   const auto& process = problem.discretisation.process;
-  const auto rates = operators::StaticChain::of(process).exit_rates();
+  const auto rates = process.exit_rates();
   const petsc::VecHandle exits = a.zeros();
   {
     petsc::WriteView local(exits);

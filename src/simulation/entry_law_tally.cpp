@@ -19,14 +19,9 @@ void entry_laws_of_cycles(Tally& tally, const std::vector<double>& levels) {
       return Hits{up, up * here, 1 - up, (1 - up) * here};
     }));
   }
-  std::vector<double> rates(levels.size(), 0.0);
-  const auto first = static_cast<int>(levels.front()), last = static_cast<int>(levels.back());
-  for (int i = first; i <= last; ++i) {
-    tally.process().noise.for_each_jump(i, [&](int to, double rate) {
-      if (to < first || to > last) rates[i - first] += rate;
-    });
-  }
-  const auto exits = tally.sums([=](const Excursion& e) { return Exits{rates[e.entry - first]}; });
+  const auto exits =
+      tally.sums([rates = tally.process().exit_rates(), first = tally.process().lowest_static()](
+                     const Excursion& e) { return Exits{rates[e.entry - first]}; });
   tally.report([=](const Tally&) -> Estimates {
     const auto law = [&](const catalogue::Row& row, double Hits::*here, double Hits::*all) {
       return array(row, levels, [&](std::size_t n) {
@@ -56,12 +51,8 @@ void entry_law_tally(Tally& tally) {
     Estimates all{from(catalogue::kEntryLawPlus, 0)};
     if (!t.process().symmetric()) all.push_back(from(catalogue::kEntryLawMinus, 1));
     // The rate at which a body leaves rest as it has come there.
-    const auto& noise = t.process().noise;
-    const double up = noise.up_rate(highest), down = noise.down_rate(lowest);
-    const auto rate = [&](std::size_t n) {
-      return (n == 0 ? down : 0) + (n + 1 == levels.size() ? up : 0);
-    };
-    all.push_back({&catalogue::kFStick0, {entries.mean(rate)}});
+    const auto rates = t.process().exit_rates();
+    all.push_back({&catalogue::kFStick0, {entries.mean([&](std::size_t n) { return rates[n]; })}});
     return all;
   });
 }

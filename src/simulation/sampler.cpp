@@ -10,8 +10,8 @@ namespace {
 std::vector<int> starts_of(const model::Process& process, Sampled sampled) {
   if (!process.sticks()) return {};
   if (sampled != Sampled::cycles) return {process.exit_level(true), process.exit_level(false)};
-  const auto starts = process.starts();
-  return {std::ranges::max_element(starts, {}, &model::Process::Start::flow)->level};
+  const auto flows = process.flows_to_starts();
+  return {std::ranges::max_element(flows, {}, [](const auto& each) { return each.second; })->first};
 }
 
 // Excursions take the streams from 0 on.
@@ -26,7 +26,8 @@ std::uint64_t path_stream(std::uint64_t batch, int sample, std::uint64_t which) 
 Sampler::Sampler(const cases::Question& question, const model::Process& process)
     : tally_(question, process),
       process_(process),
-      starts_(starts_of(process, tally_.sampled())),
+      sampled_(tally_.sampled()),
+      starts_(starts_of(process, sampled_)),
       wanted_(tally_.wanted()),
       source_(make_source(process, wanted_)),
       walk_(make_walk(process, wanted_.travel)),
@@ -45,7 +46,7 @@ const Tally& Sampler::batch(std::uint64_t seed, std::uint64_t batch, int count) 
       rests(seed, rests_stream(batch));
   tally_.clear();
   Excursion excursion, from_rest;
-  const std::size_t sides = tally_.sampled() == Sampled::sides ? 2 : 1;
+  const std::size_t sides = sampled_ == Sampled::sides ? 2 : 1;
   for (int n = 0; n < count; ++n) {
     if (at_rest_) {
       from_rest_->draw_from(at_rest_->draw(rests.uniform()), rests, from_rest);
@@ -57,7 +58,7 @@ const Tally& Sampler::batch(std::uint64_t seed, std::uint64_t batch, int count) 
       // Where all start on one side, those that stand for the other one always turn.
       const bool below = excursion.next < process_.lowest_static();
       excursion.turned = below == (side == 0);
-      if (tally_.sampled() == Sampled::cycles) {
+      if (sampled_ == Sampled::cycles) {
         add_cycle(random, places, excursion);
       } else {
         tally_.add(side, excursion);
@@ -108,7 +109,7 @@ void Sampler::add_stationary(const RandomStream& random, std::size_t side, doubl
   const model::Start start{starts_[side]};
   walk_->begin(random, start);
   double duration = walk_->end_excursion();
-  while (tally_.sampled() == Sampled::cycles && walk_->level() != start.level) {
+  while (sampled_ == Sampled::cycles && walk_->level() != start.level) {
     duration = walk_->end_excursion();
   }
   const bool turned = walk_->state().y != sign;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -112,20 +113,14 @@ void Tally::distribution(const catalogue::Row& density, const catalogue::Row& di
   const auto cells = cells_around(at);
   if (sampled() == Sampled::cycles) {
     // Excursions of a cycle depend on one another, so that counts have no intervals of their own.
-    std::vector<Sums<Single>> within, below;
-    for (std::size_t n = 0; n < at.size(); ++n) {
-      within.push_back(sums([of, cell = cells[n]](const Excursion& e) {
-        const double x = of(e);
-        return Single{cell.low <= x && x < cell.high ? 1 / (cell.high - cell.low) : 0};
-      }));
-      below.push_back(
-          sums([of, t = at[n]](const Excursion& e) { return Single{of(e) <= t ? 1.0 : 0}; }));
-    }
-    report([=, &density, &distribution](const Tally&) -> Estimates {
-      const auto mean = [](const Sums<Single>& m) { return m.estimate(m.overall(&Single::x)); };
-      return {array(density, at, [&](std::size_t n) { return mean(within[n]); }),
-              array(distribution, at, [&](std::size_t n) { return mean(below[n]); })};
+    std::map<double, Cell> around;
+    for (std::size_t n = 0; n < at.size(); ++n) around[at[n]] = cells[n];
+    mean(density, at, [of, around](const Excursion& e, double t) {
+      const auto& [low, high] = around.at(t);
+      const double x = of(e);
+      return low <= x && x < high ? 1 / (high - low) : 0;
     });
+    mean(distribution, at, [of](const Excursion& e, double t) { return of(e) <= t ? 1.0 : 0.0; });
     return;
   }
   std::set<double> edges(at.begin(), at.end());

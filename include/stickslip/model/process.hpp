@@ -3,6 +3,7 @@
 /// distribution.
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -52,14 +53,14 @@ struct Process {
     if (!noise.neighbours_only()) return most_frequent_start(up);
     return up ? highest_static() + 1 : lowest_static() - 1;
   }
-  /// A level that does not stick, to which the noise jumps from those that do.
-  struct Start {
-    int level;
-    double flow;  ///< rate of such jumps in the stationary process X [1/time]
-  };
-  /// All levels from which excursions start, rising, but for those to which fewer than one in 1e18
-  /// of the jumps lead; none where bodies never stick. O(levels).
-  [[nodiscard]] std::vector<Start> starts() const;
+  /// All levels from which excursions start, rising: those that do not stick and to which more than
+  /// one in 1e18 of the jumps from those that do lead; none where bodies never stick. O(levels that
+  /// stick) where the noise jumps to neighbours, else O(levels).
+  [[nodiscard]] std::vector<int> starts() const;
+  /// The rates of such jumps in the stationary process X, by level [1/time]. O(levels).
+  [[nodiscard]] std::map<int, double> flows_to_starts() const;
+  /// By level that sticks, from the lowest up: the rate of jumps to those that do not [1/time].
+  [[nodiscard]] std::vector<double> exit_rates() const;
   /// Whether there are levels on which bodies stick. On none, v = 0 is passed and never held.
   [[nodiscard]] bool sticks() const { return lowest_static() <= highest_static(); }
   /// g + E[X]: what drives bodies over long times.

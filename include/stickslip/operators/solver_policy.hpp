@@ -16,9 +16,9 @@ namespace stickslip::operators {
 /// By what a sliding operator is factored, where the options of -slide_ leave it `own`: on hp
 /// elements by the PC "elements" where few noise nodes stand for the levels, as groups couple all
 /// of their nodes and MUMPS takes ten times as long, and up to 700 levels that are nodes
-/// themselves, which have two neighbours alone: both are even at some 900. All else goes to MUMPS,
-/// in memory, and so does a noise that jumps further than to neighbours. A solver reports what it
-/// cannot do; the advice then is -slide_pc_type lu.
+/// themselves, which have two neighbours alone: both are even at some 900; and where the noise
+/// jumps further than to neighbours, however many they are. All else goes to MUMPS, in memory. A
+/// solver reports what it cannot do; the advice then is -slide_pc_type lu.
 [[nodiscard]] cases::Factors chosen_factors(cases::Factors asked, cases::Scheme scheme,
                                             std::int64_t noise_nodes, bool all_levels,
                                             bool neighbours_only);

@@ -49,9 +49,6 @@ class StaticChain {
   [[nodiscard]] std::vector<double> downward_exit_transform() const;
   [[nodiscard]] std::vector<double> exit_transform_to(int level) const;
 
-  /// Rate of leaving each level for one that does not belong to the chain.
-  [[nodiscard]] std::vector<double> exit_rates() const;
-
   [[nodiscard]] int size() const { return rates_.size(); }
 
  private:

@@ -22,9 +22,9 @@ inline constexpr const char* kAnalyse = "PCAnalyse_C";
 void set_direct_solver(KSP ksp);
 
 /// The ordering AMF in analyses by MUMPS with this prefix during the life of what it returns,
-/// unless
-/// -<prefix>mat_mumps_icntl_7 says otherwise: MUMPS would choose PORD, as METIS is not in Debian's
-/// build, which costs 10 to 30 times more on these matrices. PETSc takes it from its options alone.
+/// unless -<prefix>mat_mumps_icntl_7 says otherwise: MUMPS would choose PORD, as METIS is not in
+/// Debian's build, which costs 10 to 30 times more on these matrices. PETSc takes it from its
+/// options alone.
 [[nodiscard]] std::unique_ptr<OptionFor> default_ordering(const std::string& prefix);
 
 /// KSP of type preonly around a PC of type `pc_type`; with PCLU around MUMPS. Every choice is a

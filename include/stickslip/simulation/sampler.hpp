@@ -28,6 +28,7 @@ class Sampler {
 
   Tally tally_;
   model::Process process_;
+  Sampled sampled_;
   std::vector<int> starts_;  // by side, or of cycles
   Wanted wanted_;
   std::unique_ptr<ExcursionSource> source_, from_rest_;
