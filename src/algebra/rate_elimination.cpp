@@ -1,15 +1,19 @@
 #include "stickslip/algebra/rate_elimination.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <numeric>
 #include <stdexcept>
 
 namespace stickslip::algebra {
 
-RateElimination::RateElimination(std::vector<double> killing, int band)
-    : band_(std::min(band, std::max(static_cast<int>(killing.size()) - 1, 0))),
-      killing_(std::move(killing)),
-      rates_(killing_.size() * (2 * static_cast<std::size_t>(band_) + 1), 0.0) {}
+RateElimination::RateElimination(std::vector<double> killing, const std::vector<Rate>& rates)
+    : killing_(std::move(killing)) {
+  for (const auto& [from, to, value] : rates) band_ = std::max(band_, std::abs(to - from));
+  rates_.resize(killing_.size() * (2 * static_cast<std::size_t>(band_) + 1));
+  for (const auto& [from, to, value] : rates) entry(from, to) += value;
+  factor();
+}
 
 int RateElimination::last_of(int row) const { return std::min(row + band_, size() - 1); }
 

@@ -213,29 +213,28 @@ bool mirrors_itself(const Jumps& jumps) {
 }
 
 std::vector<double> stationary(const Jumps& jumps) {
-  RateElimination chain(std::vector<double>(jumps.size(), 0.0), band_of(jumps));
+  std::vector<RateElimination::Rate> rates;
   for (std::size_t n = 0; n < jumps.size(); ++n) {
-    for (const auto& [to, rate] : jumps[n]) chain.add(static_cast<int>(n), to, rate);
+    for (const auto& [to, rate] : jumps[n]) rates.push_back({static_cast<int>(n), to, rate});
   }
-  chain.factor();
-  return chain.stationary();
+  return RateElimination(std::vector<double>(jumps.size(), 0.0), rates).stationary();
 }
 
 // sum_n p_n f_n phi_n with -Q phi = f, and phi = 0 in the last state.
 double intensity(const Jumps& jumps, std::span<const double> p, const std::vector<double>& f) {
   const int last = static_cast<int>(f.size()) - 1;
   std::vector<double> killing(f.size() - 1, 0.0);
-  for (int n = 0; n < last; ++n) {
-    for (const auto& [to, rate] : jumps[n]) killing[n] += to == last ? rate : 0;
-  }
-  RateElimination chain(std::move(killing), band_of(jumps));
+  std::vector<RateElimination::Rate> rates;
   for (int n = 0; n < last; ++n) {
     for (const auto& [to, rate] : jumps[n]) {
-      if (to != last) chain.add(n, to, rate);
+      if (to == last) {
+        killing[n] += rate;
+      } else {
+        rates.push_back({n, to, rate});
+      }
     }
   }
-  chain.factor();
-  auto phi = chain.integral({f.begin(), f.end() - 1});
+  auto phi = RateElimination(std::move(killing), rates).integral({f.begin(), f.end() - 1});
   phi.push_back(0);
   return weighted(p, f, phi);
 }

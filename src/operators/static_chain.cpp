@@ -1,6 +1,5 @@
 #include "stickslip/operators/static_chain.hpp"
 
-#include <cstdlib>
 #include <stdexcept>
 
 namespace stickslip::operators {
@@ -14,28 +13,22 @@ void require_range(const model::NoiseChain& chain, int low, int high, double lam
   if (!(lambda >= 0)) throw std::invalid_argument("negative Laplace parameter");
 }
 
-// How far jumps from one of the levels to another one lead.
-int band_of(const model::NoiseChain& chain, int low, int high) {
-  int band = 0;
-  for (int i = low; i <= high; ++i) {
-    chain.for_each_jump(i, [&](int to, double) {
-      if (low <= to && to <= high) band = std::max(band, std::abs(to - i));
-    });
-  }
-  return band;
-}
-
 algebra::RateElimination without_exits(const model::NoiseChain& chain, int low, int high,
                                        double lambda) {
   require_range(chain, low, high, lambda);
   const int count = high - low + 1;
   std::vector<double> killing(static_cast<std::size_t>(count), lambda);
+  std::vector<algebra::RateElimination::Rate> rates;
   for (int i = low; i <= high; ++i) {
     chain.for_each_jump(i, [&](int to, double rate) {
-      if (to < low || to > high) killing[i - low] += rate;
+      if (low <= to && to <= high) {
+        rates.push_back({i - low, to - low, rate});
+      } else {
+        killing[i - low] += rate;
+      }
     });
   }
-  return {std::move(killing), band_of(chain, low, high)};
+  return {std::move(killing), rates};
 }
 
 }  // namespace
@@ -44,13 +37,12 @@ StaticChain::StaticChain(const model::NoiseChain& chain, int low, int high, doub
     : high_(high), rates_(without_exits(chain, low, high, lambda)) {
   for (int i = low; i <= high; ++i) {
     chain.for_each_jump(i, [&](int to, double rate) {
-      if (low <= to && to <= high) return rates_.add(i - low, to - low, rate);
+      if (low <= to && to <= high) return;
       auto& exit = exits_[to];
       exit.resize(static_cast<std::size_t>(size()));
       exit[i - low] = rate;
     });
   }
-  rates_.factor();
 }
 
 template <class Counts>

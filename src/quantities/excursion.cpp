@@ -95,18 +95,18 @@ Starts chain_of_starts(const model::Process& process, std::vector<int> levels,
   const auto sticking = operators::StaticChain::of(process);
   const auto count = static_cast<int>(levels.size());
   Starts starts{std::move(levels), {}, std::vector<double>(from.size() * from.size())};
-  algebra::RateElimination chain(std::vector<double>(from.size(), 0.0), count);
+  std::vector<algebra::RateElimination::Rate> steps;
   for (int u = 0; u < count; ++u) {
     const auto exit = sticking.exit_transform_to(starts.levels[u]);
     for (int t = 0; t < count; ++t) {
       const auto& entry = from[t].entry;
       const double p = std::inner_product(entry.begin(), entry.end(), exit.begin(), 0.0);
       starts.next[t * count + u] = p;
-      if (t != u) chain.add(t, u, p);
+      if (t != u) steps.push_back({t, u, p});
     }
   }
-  chain.factor();
-  starts.shares = chain.stationary();
+  const std::vector<double> none(from.size(), 0.0);
+  starts.shares = algebra::RateElimination(none, steps).stationary();
   return starts;
 }
 

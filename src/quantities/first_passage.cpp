@@ -77,14 +77,14 @@ Passage passage(const Starts& starts, const Sticking& sticking,
     time.push_back(from[t].time);
   }
   if (!(p.exceeded > 0)) return p;
-  algebra::RateElimination chain(killing, static_cast<int>(from.size()));
-  for (int t = 0; t < chain.size(); ++t) {
-    for (int u = 0; u < chain.size(); ++u) {
-      if (u != t) chain.add(t, u, from[t].next[u]);
+  std::vector<algebra::RateElimination::Rate> steps;
+  const int count = static_cast<int>(from.size());
+  for (int t = 0; t < count; ++t) {
+    for (int u = 0; u < count; ++u) {
+      if (u != t) steps.push_back({t, u, from[t].next[u]});
     }
   }
-  chain.factor();
-  const auto until = chain.integral(time);
+  const auto until = algebra::RateElimination(killing, steps).integral(time);
   p.from_slide = dot(starts.shares, until);
   p.from_rest = rest.time + dot(sticking.stationary, sticking.time);
   for (std::size_t t = 0; t < from.size(); ++t) {

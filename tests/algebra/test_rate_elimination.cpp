@@ -33,15 +33,14 @@ Chain random_chain(int count, int band, std::uint32_t seed) {
 }
 
 RateElimination factored(const Chain& chain, int band) {
-  RateElimination elimination(chain.killing, band);
+  std::vector<RateElimination::Rate> rates;
   const int count = static_cast<int>(chain.killing.size());
   for (int i = 0; i < count; ++i) {
     for (int j = std::max(0, i - band); j <= std::min(count - 1, i + band); ++j) {
-      if (i != j) elimination.add(i, j, chain.rate[i][j]);
+      if (i != j) rates.push_back({i, j, chain.rate[i][j]});
     }
   }
-  elimination.factor();
-  return elimination;
+  return {chain.killing, rates};
 }
 
 // K - Q, or its transposed.
@@ -85,10 +84,7 @@ TEST_CASE("rate elimination: solutions are those of Gaussian elimination, for ev
 // From state 0 the chain goes to 1 and back a hundred times for each time that it is killed there.
 TEST_CASE("rate elimination: rare killing keeps every digit") {
   constexpr double rare = 1e-25;
-  RateElimination chain({0, rare}, 1);
-  chain.add(0, 1, 2);
-  chain.add(1, 0, 3);
-  chain.factor();
+  const RateElimination chain({0, rare}, {{0, 1, 2}, {1, 0, 3}});
   // By hand: u1 = (1 + 3 u0)/(3 + rare), u0 = 1/2 + u1.
   const auto time = chain.integral({1, 1});
   CHECK(relative_difference(time[1], 2.5 / rare) < 1e-15);
@@ -98,23 +94,19 @@ TEST_CASE("rate elimination: rare killing keeps every digit") {
 
 TEST_CASE("rate elimination: a cycle spends its time by the inverse rates") {
   const std::vector<double> rate{1, 10, 1e-12, 1e12};
-  RateElimination chain(std::vector<double>(4, 0.0), 3);
+  std::vector<RateElimination::Rate> steps;
   double total = 0;
   for (int n = 0; n < 4; ++n) {
-    chain.add(n, (n + 1) % 4, rate[n]);
+    steps.push_back({n, (n + 1) % 4, rate[n]});
     total += 1 / rate[n];
   }
-  chain.factor();
-  const auto p = chain.stationary();
+  const auto p = RateElimination(std::vector<double>(4, 0.0), steps).stationary();
   for (int n = 0; n < 4; ++n) CHECK(relative_difference(p[n], 1 / rate[n] / total) < 1e-15);
 }
 
 TEST_CASE("rate elimination: what is never left is refused") {
-  RateElimination chain({0, 0, 1}, 2);
-  chain.add(1, 0, 1);
-  CHECK_THROWS_AS(chain.factor(), std::invalid_argument);
-  RateElimination short_list({1, 1}, 1);
-  short_list.factor();
+  CHECK_THROWS_AS(RateElimination({0, 0, 1}, {{1, 0, 1}}), std::invalid_argument);
+  const RateElimination short_list({1, 1}, {});
   CHECK_THROWS_AS(short_list.integral({1}), std::invalid_argument);
   CHECK_THROWS_AS(short_list.occupation(std::vector<double>{1}), std::invalid_argument);
 }

@@ -14,17 +14,17 @@ namespace stickslip::algebra {
 /// instead of (diagonal, off-diagonals): rates are only added, multiplied and divided, never
 /// subtracted. Results have full relative accuracy in every entry, whatever the time scale, if what
 /// they are asked about is >= 0. States are eliminated from the first one up: what is left on i,
-/// i+1, ... is the chain watched there. Jumps lead at most `band` states away, so that memory is
-/// O(n band) and time O(n band^2). Local.
+/// i+1, ... is the chain watched there. Where jumps lead over at most b states memory is O(n b) and
+/// time O(n b^2). Local.
 class RateElimination {
  public:
-  /// Without jumps yet.
-  RateElimination(std::vector<double> killing, int band);
-  /// Adds to a rate, of states at most `band` apart, before factor().
-  void add(int from, int to, double rate) { entry(from, to) += rate; }
-  /// Throws std::invalid_argument where a state is neither left nor killed; the last state may be
-  /// that if nothing at all is killed.
-  void factor();
+  struct Rate {
+    int from, to;
+    double value;
+  };
+  /// Rates of killing by state, and of jumps. Throws std::invalid_argument where a state is neither
+  /// left nor killed; the last state may be that if nothing at all is killed.
+  RateElimination(std::vector<double> killing, const std::vector<Rate>& rates);
 
   [[nodiscard]] int size() const { return static_cast<int>(killing_.size()); }
 
@@ -36,6 +36,7 @@ class RateElimination {
   [[nodiscard]] std::vector<double> stationary() const;
 
  private:
+  void factor();
   [[nodiscard]] double& entry(int row, int column) { return rates_[at(row, column)]; }
   [[nodiscard]] double entry(int row, int column) const { return rates_[at(row, column)]; }
   [[nodiscard]] std::size_t at(int row, int column) const {
@@ -45,7 +46,7 @@ class RateElimination {
   }
   [[nodiscard]] int last_of(int row) const;
 
-  int band_;
+  int band_ = 0;
   std::vector<double> killing_, rates_, pivot_;
 };
 
