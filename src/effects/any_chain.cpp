@@ -6,17 +6,12 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
-#define CSV_IO_NO_THREAD  // small files
-#include <libfccp/csv.h>
-
 #include "all.hpp"
+#include "csv_rows.hpp"
 #include "levels.hpp"
-#include "stickslip/support/number_text.hpp"
-#include "stickslip/support/readable.hpp"
 
 namespace stickslip::effects {
 namespace {
@@ -33,54 +28,22 @@ class Unfit : public std::invalid_argument {
   const char* option_;
 };
 
-/// The numbers of some columns, and the line of each row.
 template <std::size_t columns>
-struct Rows {
-  std::vector<std::array<double, columns>> values;
-  std::vector<unsigned> lines;
-};
-
-template <std::size_t columns>
-Rows<columns> read_rows(const char* option, const std::string& file,
-                        const std::array<const char*, columns>& names) {
-  Rows<columns> rows;
+CsvRows<columns> read_rows(const char* option, const std::string& file,
+                           const std::array<const char*, columns>& names) {
   try {
-    require_readable(file);
-    ::io::CSVReader<columns, ::io::trim_chars<' ', '\t', '\r'>, ::io::double_quote_escape<',', '"'>,
-                    ::io::throw_on_overflow, ::io::single_and_empty_line_comment<'#'>>
-        reader(file);
-    std::array<std::string, columns> text;
-    const auto on_all = [&](const auto& action) {
-      return std::apply([&](auto&... each) { return action(each...); }, text);
-    };
-    std::apply([&](const auto&... each) { reader.read_header(::io::ignore_extra_column, each...); },
-               names);
-    while (on_all([&](auto&... each) { return reader.read_row(each...); })) {
-      rows.lines.push_back(reader.get_file_line());
-      auto& row = rows.values.emplace_back();
-      for (std::size_t c = 0; c < columns; ++c) {
-        const auto value = parse_number(text[c]);
-        if (!value) {
-          throw std::invalid_argument(fmt::format("line {}: {} = {} is no finite number",
-                                                  rows.lines.back(), names[c], text[c]));
-        }
-        row[c] = *value;
-      }
-    }
+    return read_csv<columns>(file, names, ::io::ignore_extra_column);
   } catch (const std::exception& problem) {
     throw Unfit(option, problem.what());
   }
-  return rows;
 }
 
-std::vector<model::Transition> transitions_of(const Rows<3>& rows, std::size_t states) {
+std::vector<model::Transition> transitions_of(const CsvRows<3>& rows, std::size_t states) {
   std::vector<model::Transition> all;
   std::map<std::pair<std::size_t, std::size_t>, unsigned> seen;
   for (std::size_t n = 0; n < rows.values.size(); ++n) {
     const auto [from, to, rate] = rows.values[n];
-    const auto refuse = [&](const std::string& why) {
-      throw Unfit(kRates, fmt::format("line {}: {}", rows.lines[n], why));
-    };
+    const auto refuse = [&](const std::string& why) { throw Unfit(kRates, rows.place(n) + why); };
     for (double state : {from, to}) {
       if (state >= 0 && state < static_cast<double>(states) && state == std::floor(state)) continue;
       refuse(fmt::format("there is no state {:g}; those of -{} are numbered from 0 to {}", state,
@@ -108,9 +71,7 @@ model::LevelTable read_chain(const std::string& states, const std::string& rates
   try {
     return {x, transitions};
   } catch (const model::UnfitTable& unfit) {
-    const bool at_line = unfit.row() < given.lines.size();
-    throw Unfit(kStates,
-                (at_line ? fmt::format("line {}: ", given.lines[unfit.row()]) : "") + unfit.what());
+    throw Unfit(kStates, given.place(unfit.row()) + unfit.what());
   }
 }
 
