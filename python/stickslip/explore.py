@@ -67,10 +67,10 @@ def knobs() -> list[Knob]:
 
 
 def choices() -> dict[str, list[str]]:
-    """By choice the words that sliders can complete: those without options that are texts or files."""
+    """By choice the words that sliders can complete: those without needed options that are texts or files."""
     def complete(choice: str, word: str) -> bool:
-        return all(option["form"] in ("number", "integer") for option in declared().values()
-                   if word in option["belongs_to"].get(choice, ()))
+        return all(option["slider"] for option in declared().values()
+                   if option["needed"] and word in option["belongs_to"].get(choice, ()))
 
     return {choice: [word for word in option["meanings"] if complete(choice, word)]
             for choice, option in declared().items() if option["meanings"]}

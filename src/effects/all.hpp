@@ -6,7 +6,8 @@
 namespace stickslip::effects {
 
 extern const Effect kCoulomb, kStribeck;
-extern const Effect kOrnsteinUhlenbeck, kTelegraph, kNoiseFile, kNoiseChain;
+extern const Effect kOrnsteinUhlenbeck, kTelegraph, kNarrowBand, kFilteredNoise, kPeriodic, kPulses,
+    kNoiseFile, kNoiseChain, kNoiseSum;
 extern const Effect kLinearDrag, kNoDrag, kCubicDrag, kDragExpression;
 
 }  // namespace stickslip::effects

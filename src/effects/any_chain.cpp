@@ -75,20 +75,23 @@ model::LevelTable read_chain(const std::string& states, const std::string& rates
   }
 }
 
-void read_noise_chain(Given& given, model::Scene& scene) {
-  const bool both =
-      given.needs("noise", kStates, "states.csv") && given.needs("noise", kRates, "rates.csv");
-  if (!both || !given.sound()) return;
-  const std::string states = given.text(kStates), rates = given.text(kRates);
-  scene.own.insert(scene.own.end(), {{kStates, states}, {kRates, rates}});
+model::LevelTable levels_of_chain(const model::Scene& scene) {
+  return read_chain(std::get<std::string>(own_value(scene, kStates)),
+                    std::get<std::string>(own_value(scene, kRates)));
+}
+
+bool complete_noise_chain(Given& given, model::Scene& scene) {
+  if (!given.sound()) return false;
   try {
-    scene.noise.table = std::make_shared<const model::LevelTable>(read_chain(states, rates));
+    set_noise_step(scene, scene.delta);
+    return true;
   } catch (const Unfit& unfit) {
     given.refuse(unfit.option(), unfit.what(),
                  unfit.option() == kStates
                      ? "write CSV with the column x, the force of one state a line, all of which "
                        "the rates connect"
                      : "write CSV with the columns from,to,rate, states by their lines from 0");
+    return false;
   }
 }
 
@@ -102,15 +105,15 @@ const Effect kNoiseChain{
                                  "CSV with the column x: the force in each state of -noise chain, "
                                  "one a line, numbered from 0; several may have the same",
                                  {.label = "states of"}),
-                    true},
+                    true, "states.csv"},
                    {Option::file(
                         kRates, Kind::input,
                         "CSV with the columns from,to,rate: the rates of the jumps between "
                         "the states of -noise_states, all others being 0",
                         {.label = "rates of", .others = {"generator", "noise_generator"}}),
-                    true}},
-    .read = read_noise_chain,
-    .complete = has_levels,
+                    true, "rates.csv"}},
+    .complete = complete_noise_chain,
+    .levels = levels_of_chain,
     .heading = [](const model::Scene& scene) {
       return "noise chain of " + std::get<std::string>(own_value(scene, kStates));
     }};

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <stdexcept>
+#include <tuple>
 
 #include "all.hpp"
+#include "stickslip/support/text.hpp"
 
 namespace stickslip::effects {
 namespace {
@@ -21,23 +24,26 @@ model::Parameters values_in(const Effect& effect, const model::Scene& scene) {
 
 }  // namespace
 
-bool Given::needs(const std::string& choice, const std::string& option,
-                  const std::string& example) {
-  if (has(option)) return true;
-  refuse(choice, fmt::format("needs -{}", option),
-         fmt::format("add for example -{} {}", option, example));
-  return false;
-}
-
 bool Effect::knows(std::string_view option) const {
   return std::any_of(parameters.begin(), parameters.end(),
                      [option](const Parameter& p) { return p.option.name == option; });
 }
 
 const Effect& Choice::of(std::string_view word) const {
+  if (sum != nullptr && word.find('+') != std::string_view::npos) return *sum;
   const auto found = std::find_if(effects.begin(), effects.end(),
                                   [word](const Effect* effect) { return effect->word == word; });
   return found != effects.end() ? **found : *effects.front();
+}
+
+std::vector<std::string> Choice::parts(const std::string& word) const {
+  return sum != nullptr ? split(word, '+') : std::vector{word};
+}
+
+bool Choice::knows(const model::Scene& scene, std::string_view name) const {
+  const auto words = parts(word_in(scene));
+  return std::any_of(words.begin(), words.end(),
+                     [&](const std::string& word) { return of(word).knows(name); });
 }
 
 const Choice& frictions() {
@@ -49,11 +55,12 @@ const Choice& frictions() {
 }
 
 const Choice& noises() {
-  static constexpr const Effect* effects[] = {&kOrnsteinUhlenbeck, &kTelegraph, &kNoiseFile,
-                                              &kNoiseChain};
+  static constexpr const Effect* effects[] = {&kOrnsteinUhlenbeck, &kTelegraph, &kNarrowBand,
+                                              &kFilteredNoise,     &kPeriodic,  &kPulses,
+                                              &kNoiseFile,         &kNoiseChain};
   static const Choice choice{
       "noise", "noise X", effects,
-      [](const model::Scene& s) -> const std::string& { return s.noise.name; }};
+      [](const model::Scene& s) -> const std::string& { return s.noise.name; }, &kNoiseSum};
   return choice;
 }
 
@@ -71,12 +78,45 @@ std::span<const Choice* const> choices() {
   return all;
 }
 
+void read_effect(Given& given, const Choice& choice, const std::string& word, model::Scene& scene) {
+  const auto& effect = choice.of(word);
+  bool complete = true;
+  for (const auto& [option, refused, example] : effect.parameters) {
+    if (example.empty() || given.has(option.name)) continue;
+    given.refuse(std::string(choice.option), fmt::format("needs -{}", option.name),
+                 fmt::format("add for example -{} {}", option.name, example));
+    complete = false;
+  }
+  if (!complete) return;
+  if (effect.read != nullptr) return effect.read(given, scene);
+  for (const auto& parameter : effect.parameters) {
+    const auto& [name, kind] = std::tie(parameter.option.name, parameter.option.kind);
+    if (!given.has(name) && parameter.option.initial.empty()) continue;
+    if (kind == Kind::real || kind == Kind::integer) {
+      scene.own.emplace_back(name, given.real(name));
+    } else {
+      scene.own.emplace_back(name, given.text(name));
+    }
+  }
+}
+
 const std::variant<double, std::string>& own_value(const model::Scene& scene,
                                                    std::string_view name) {
   for (const auto& each : scene.own) {
     if (each.first == name) return each.second;
   }
   throw std::logic_error(fmt::format("the scene has no {}", name));
+}
+
+double own_number(const model::Scene& scene, std::string_view name) {
+  return std::get<double>(own_value(scene, name));
+}
+
+void set_noise_step(model::Scene& scene, double delta) {
+  scene.delta = delta;
+  if (const auto levels = noises().in(scene).levels; levels != nullptr) {
+    scene.noise.table = std::make_shared<const model::LevelTable>(levels(scene));
+  }
 }
 
 model::Parameters parameters_of(const model::Scene& s) {
@@ -88,10 +128,12 @@ model::Parameters parameters_of(const model::Scene& s) {
     if (!known) all.emplace_back(name, value);
   };
   const auto add_values = [&](const Choice& choice) {
-    for (const auto& [name, value] : values_in(choice.in(s), s)) add(name, value);
+    for (const auto& word : choice.parts(choice.word_in(s))) {
+      for (const auto& [name, value] : values_in(choice.of(word), s)) add(name, value);
+    }
   };
   const auto add_word = [&](const Choice& choice) {
-    if (&choice.in(s) != choice.effects.front()) {
+    if (choice.word_in(s) != choice.effects.front()->word) {
       add(std::string(choice.option), choice.word_in(s));
     }
   };
@@ -118,7 +160,7 @@ std::vector<model::Derivative> derivatives_of(const model::Scene& s) {
     const auto& own = choice.in(s).derivatives;
     all.insert(all.end(), own.begin(), own.end());
   };
-  append(noises());
+  if (!s.noise.table) append(noises());
   if (s.friction.mu_d_minus) {
     all.push_back({"mu_d_minus", [](const BranchFriction& here, double v) {
                      return here.own_mu_d ? -here.friction.share(v) : 0.0;

@@ -26,7 +26,9 @@ void append(const Choice& all, std::vector<Option>& options) {
                      {},
                      words,
                      fmt::format("{}. {}", all.title, fmt::join(meanings, ". ")),
-                     ""});
+                     "",
+                     {},
+                     all.sum != nullptr});
   for (const auto* effect : all.effects) {
     for (const auto& parameter : effect->parameters) {
       const auto& name = parameter.option.name;

@@ -34,12 +34,13 @@ namespace {
 
 constexpr const char* kFile = "noise_file";
 
-void read_noise_file(Given& given, model::Scene& scene) {
-  if (!given.needs("noise", kFile, "levels.csv")) return;
-  const std::string file = given.text(kFile);
-  scene.own.emplace_back(kFile, file);
-  set_levels(given, scene, kFile, "write CSV with the columns x,rate_up,rate_down, x rising",
-             [&file] { return read_levels(file); });
+bool complete_noise_file(Given& given, model::Scene& scene) {
+  return make_levels(given, scene, kFile,
+                     "write CSV with the columns x,rate_up,rate_down, x rising");
+}
+
+model::LevelTable levels_of_file(const model::Scene& scene) {
+  return read_levels(std::get<std::string>(own_value(scene, kFile)));
 }
 
 }  // namespace
@@ -55,9 +56,9 @@ const Effect kNoiseFile{
                                   .others = {"record", "recording", "force_file", "force_record",
                                              "forcing", "data"},
                                   .page = "docs/recorded_forces.md"}),
-                    true}},
-    .read = read_noise_file,
-    .complete = has_levels,
+                    true, "levels.csv"}},
+    .complete = complete_noise_file,
+    .levels = levels_of_file,
     .heading = [](const model::Scene& scene) {
       return "noise levels of " + std::get<std::string>(own_value(scene, kFile));
     }};

@@ -10,8 +10,7 @@
 namespace stickslip::effects {
 namespace {
 
-constexpr const char *kDelta = "delta", *kSteps = "delta_per_mu_s", *kLevels = "noise_levels",
-                     *kDeviation = "noise_deviation";
+constexpr const char* kSteps = "delta_per_mu_s";
 
 void read_ou(Given& given, model::Scene& scene) {
   scene.tau = given.real(kTau);
@@ -76,6 +75,9 @@ bool check_levels(Given& given, model::Scene& scene) {
 model::Parameters ou_values(const model::Scene& scene) {
   model::Parameters all{{kTau, scene.tau}, {kDelta, scene.delta}};
   if (scene.noise.deviation) all.emplace_back(kDeviation, *scene.noise.deviation);
+  for (const auto& each : scene.own) {
+    if (each.first == kLevels) all.push_back(each);
+  }
   return all;
 }
 
@@ -95,6 +97,27 @@ Option tau_option() {
                        .others = {"tau_c", "t_corr", "correlation_time"}});
 }
 
+Option delta_option() {
+  return Option::real(
+      kDelta, "force", "0.125", Range::positive(),
+      "step between neighbouring noise levels. Unless given, with -noise narrow_band and filtered "
+      "about half the deviation, so that mu_s lies halfway between two of them",
+      "the continuous noise is the limit of small steps such as 0.125",
+      {.symbol = "\\delta", .label = "noise step", .others = {"dx", "step", "noise_step"}});
+}
+
+Option deviation_option() {
+  return Option::real(
+      kDeviation, "force", "", Range::positive(),
+      "standard deviation of X. Unless given, it is 1/sqrt(tau) with -noise ou, "
+      "with which X tends to white noise of fixed intensity as tau -> 0, and 1 with "
+      "-noise narrow_band",
+      "take the standard deviation of the measured force",
+      {.symbol = "\\sigma",
+       .label = "standard deviation of the noise",
+       .others = {"sigma", "std", "stddev", "deviation", "intensity", "rms"}});
+}
+
 const Effect kOrnsteinUhlenbeck{
     .word = "ou",
     .sentence = "the chain of the paper, which tends to the Ornstein-Uhlenbeck process as -delta "
@@ -102,10 +125,7 @@ const Effect kOrnsteinUhlenbeck{
     .others = {"gaussian", "ornstein_uhlenbeck", "white"},
     .parameters =
         {{tau_option()},
-         {Option::real(
-             kDelta, "force", "0.125", Range::positive(), "step between neighbouring noise levels",
-             "the continuous noise is the limit of small steps such as 0.125",
-             {.symbol = "\\delta", .label = "noise step", .others = {"dx", "step", "noise_step"}})},
+         {delta_option()},
          {Option::integer(kSteps, "", Range::whole(1, 1e6),
                           "number n of noise steps up to mu_s, in the place of -delta: delta = "
                           "mu_s/n puts mu_s on a level, so that results are continuous in mu_s",
@@ -121,13 +141,7 @@ const Effect kOrnsteinUhlenbeck{
              "full, truncated where -accuracy allows it",
              kChosen, {"full"},
              {.symbol = "N", .label = "noise levels on each side", .others = {"levels"}})},
-         {Option::real(kDeviation, "force", "", Range::positive(),
-                       "standard deviation of X with -noise ou; 1/sqrt(tau) unless given, with "
-                       "which X tends to white noise of fixed intensity as tau -> 0",
-                       "take the standard deviation of the measured force",
-                       {.symbol = "\\sigma",
-                        .label = "standard deviation of the noise",
-                        .others = {"sigma", "std", "stddev", "deviation", "intensity", "rms"}})}},
+         {deviation_option()}},
     .read = read_ou,
     .complete = check_levels,
     .values = ou_values,

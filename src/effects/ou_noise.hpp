@@ -1,11 +1,14 @@
 #pragma once
-/// The correlation time, which formulas may hold whatever the noise.
+/// Options of Gaussian noise. Formulas may hold the correlation time whatever the noise.
 
 #include "stickslip/effects/option.hpp"
 
 namespace stickslip::effects {
 
-inline constexpr const char* kTau = "tau";
+inline constexpr const char *kTau = "tau", *kDelta = "delta", *kLevels = "noise_levels",
+                            *kDeviation = "noise_deviation";
 [[nodiscard]] Option tau_option();
+[[nodiscard]] Option delta_option();
+[[nodiscard]] Option deviation_option();
 
 }  // namespace stickslip::effects

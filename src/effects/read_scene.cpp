@@ -19,8 +19,8 @@ class SceneReader {
   model::Scene read() {
     read_numbers();
     for (const auto* choice : choices()) {
-      const auto& effect = choice->in(scene_);
-      if (effect.read != nullptr) effect.read(given_, scene_);
+      const std::string word = choice->word_in(scene_);
+      read_effect(given_, *choice, word, scene_);
     }
     check_friction();
     if (complete(noises())) check_starts();
@@ -145,6 +145,11 @@ class SceneReader {
 }  // namespace
 
 model::Scene read_scene(Given& given) { return SceneReader(given).read(); }
+
+std::string noise_note(const model::Scene& scene) {
+  const auto note = noises().in(scene).note;
+  return note != nullptr ? note(scene) : "";
+}
 
 std::string step_warning(const model::Scene& scene) {
   std::vector<std::string> acting;

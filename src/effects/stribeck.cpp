@@ -6,7 +6,6 @@ namespace {
 constexpr const char *kVelocity = "stribeck_velocity", *kExponent = "stribeck_exponent";
 
 void read_stribeck(Given& given, model::Scene& scene) {
-  if (!given.needs("friction", kVelocity, "0.1")) return;
   scene.friction.stribeck = {given.real(kVelocity), given.real(kExponent)};
 }
 
@@ -44,7 +43,7 @@ const Effect kStribeck{
                          .label = "Stribeck velocity",
                          .slider =
                              Slider{.low = 0.01, .high = 10, .start = 0.3, .logarithmic = true}}),
-                    true},
+                    true, "0.1"},
                    {Option::real(kExponent, "", "1", Range::positive(),
                                  "exponent gamma of -friction stribeck",
                                  "take 1, or 2 for friction that is flat at rest",

@@ -8,19 +8,19 @@ namespace {
 
 constexpr const char *kAmplitude = "telegraph_amplitude", *kRate = "telegraph_rate";
 
-void read_telegraph(Given& given, model::Scene& scene) {
-  if (!given.needs("noise", kAmplitude, "1") || !given.needs("noise", kRate, "1")) return;
-  const double a = given.real(kAmplitude), rate = given.real(kRate);
-  scene.own.insert(scene.own.end(), {{kAmplitude, a}, {kRate, rate}});
-  set_levels(given, scene, kRate, "take for example -telegraph_amplitude 1 -telegraph_rate 1", [=] {
-    return model::LevelTable({{-a, rate, 0}, {a, 0, rate}});
-  });
+model::LevelTable telegraph_levels(const model::Scene& scene) {
+  const double a = own_number(scene, kAmplitude), rate = own_number(scene, kRate);
+  return model::LevelTable({{-a, rate, 0}, {a, 0, rate}});
+}
+
+bool complete_telegraph(Given& given, model::Scene& scene) {
+  return make_levels(given, scene, kRate,
+                     "take for example -telegraph_amplitude 1 -telegraph_rate 1");
 }
 
 std::string telegraph_text(const model::Scene& scene) {
-  return fmt::format("telegraph noise a = {:g}, rate = {:g}",
-                     std::get<double>(own_value(scene, kAmplitude)),
-                     std::get<double>(own_value(scene, kRate)));
+  return fmt::format("telegraph noise a = {:g}, rate = {:g}", own_number(scene, kAmplitude),
+                     own_number(scene, kRate));
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ const Effect kTelegraph{
                        {.symbol = "a",
                         .label = "amplitude of the noise",
                         .slider = Slider{.low = 0.1, .high = 3, .start = 2}}),
-          true},
+          true, "1"},
          {Option::real(
               kRate, "1/time", "", Range::positive(),
               "rate of the jumps between a and -a; the correlation time is "
@@ -44,9 +44,9 @@ const Effect kTelegraph{
               {.symbol = "\\kappa",
                .label = "rate of the jumps",
                .slider = Slider{.low = 0.05, .high = 10, .start = 1, .logarithmic = true}}),
-          true}},
-    .read = read_telegraph,
-    .complete = has_levels,
+          true, "1"}},
+    .complete = complete_telegraph,
+    .levels = telegraph_levels,
     .heading = telegraph_text};
 
 }  // namespace stickslip::effects

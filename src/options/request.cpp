@@ -119,8 +119,12 @@ Request read_request(const std::vector<std::string>& argv) {
   if (sweeps(settings)) return read_sweep(settings);
   Request request = request_of(settings);
   problems.raise();
-  const std::string steps = effects::step_warning(request.scene);
-  if (!steps.empty() && request.study.kind == StudyKind::none) request.warnings.push_back(steps);
+  if (request.study.kind == StudyKind::none) {
+    for (const auto& said :
+         {effects::step_warning(request.scene), effects::noise_note(request.scene)}) {
+      if (!said.empty()) request.warnings.push_back(said);
+    }
+  }
   return request;
 }
 

@@ -26,7 +26,7 @@ class Rules {
     for (const auto* choice : effects::choices()) {
       const auto& word = choice->word_in(r_.scene);
       for (const auto* effect : choice->effects) {
-        for (const auto& [option, refused] : effect->parameters) {
+        for (const auto& [option, refused, example] : effect->parameters) {
           if (!seen.insert(option.name).second || is_known(option.name)) continue;
           warn({option.name.c_str()}, !refused, fmt::format("with -{} {}", choice->option, word));
           refuse({option.name.c_str()}, refused,
@@ -88,7 +88,7 @@ class Rules {
            study_, "is chosen by -study itself", "leave it out");
     const bool of_steps =
         r_.study.kind == StudyKind::steps || r_.study.kind == StudyKind::heuristic;
-    refuse({"study"}, of_steps && !effects::noises().in(r_.scene).knows("delta"),
+    refuse({"study"}, of_steps && !effects::noises().knows(r_.scene, "delta"),
            "decreases -delta, which -noise " + r_.scene.noise.name + " does not have",
            "leave it out, or take -noise ou");
     refuse({"plan"}, r_.plan_only && study_, "predicts one run, not a study", "leave -study out");
@@ -161,7 +161,7 @@ class Rules {
   [[nodiscard]] bool is_known(const std::string& option) const {
     const auto all = effects::choices();
     return std::any_of(all.begin(), all.end(), [&](const effects::Choice* choice) {
-      return choice->in(r_.scene).knows(option);
+      return choice->knows(r_.scene, option);
     });
   }
 

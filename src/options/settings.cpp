@@ -16,7 +16,9 @@ namespace stickslip::options {
 namespace {
 
 void check_words(const Option& option, const std::string& value, Problems& problems) {
-  const auto given = option.kind == Kind::list ? split(value, ',') : std::vector{value};
+  const auto given = option.kind == Kind::list ? split(value, ',')
+                     : option.adds             ? split(value, '+')
+                                               : std::vector{value};
   const std::string must = "must be " + requirement(option);
   if (given.empty()) problems.add(option, value, must, "");
   for (auto word = given.begin(); word != given.end(); ++word) {

@@ -34,6 +34,18 @@ OrderedJson owners_of(const Option& option) {
   return owners;
 }
 
+// Whether words cannot do without the option.
+bool is_needed(const Option& option) {
+  for (const auto* choice : effects::choices()) {
+    for (const auto* effect : choice->effects) {
+      for (const auto& parameter : effect->parameters) {
+        if (parameter.option.name == option.name && !parameter.example.empty()) return true;
+      }
+    }
+  }
+  return false;
+}
+
 OrderedJson json_of(const std::optional<effects::Slider>& slider) {
   if (!slider) return nullptr;
   return {{"low", slider->low},
@@ -57,7 +69,8 @@ OrderedJson json_of(const Option& option, const Group& group) {
           {"symbol", option.shown.symbol},
           {"label", option.shown.label},
           {"slider", json_of(option.shown.slider)},
-          {"belongs_to", owners_of(option)}};
+          {"belongs_to", owners_of(option)},
+          {"needed", is_needed(option)}};
 }
 
 }  // namespace

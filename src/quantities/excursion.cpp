@@ -90,6 +90,49 @@ double Starts::rising(const model::Process& process) const {
   return crossing(process, *this, false);
 }
 
+namespace {
+
+// The steps between places 0 ... count-1 that are taken for ever, and the places that they join:
+// those from which the fewest others can be reached.
+std::vector<int> places_for_ever(int count,
+                                 const std::vector<algebra::RateElimination::Rate>& steps) {
+  std::vector<int> fewest;
+  for (int first = 0; first < count; ++first) {
+    std::vector<int> reached{first};
+    for (std::size_t n = 0; n < reached.size(); ++n) {
+      for (const auto& [from, to, p] : steps) {
+        const bool known = std::find(reached.begin(), reached.end(), to) != reached.end();
+        if (from == reached[n] && p > 0 && !known) reached.push_back(to);
+      }
+    }
+    if (first == 0 || reached.size() < fewest.size()) fewest = std::move(reached);
+  }
+  std::sort(fewest.begin(), fewest.end());
+  return fewest;
+}
+
+// Probabilities of the places of a Markov chain. Where a body never rests on some static levels,
+// starts that are reached from these alone have none.
+std::vector<double> shares_of(int count, const std::vector<algebra::RateElimination::Rate>& steps) {
+  const auto places = places_for_ever(count, steps);
+  const auto place_of = [&places](int start) {
+    const auto found = std::lower_bound(places.begin(), places.end(), start);
+    return found != places.end() && *found == start ? static_cast<int>(found - places.begin()) : -1;
+  };
+  std::vector<algebra::RateElimination::Rate> among;
+  for (const auto& [from, to, p] : steps) {
+    if (place_of(from) >= 0 && place_of(to) >= 0)
+      among.push_back({place_of(from), place_of(to), p});
+  }
+  const std::vector<double> none(places.size(), 0.0);
+  const auto known = algebra::RateElimination(none, among).stationary();
+  std::vector<double> shares(static_cast<std::size_t>(count), 0.0);
+  for (std::size_t n = 0; n < places.size(); ++n) shares[places[n]] = known[n];
+  return shares;
+}
+
+}  // namespace
+
 Starts chain_of_starts(const model::Process& process, std::vector<int> levels,
                        const std::vector<Excursion>& from) {
   const auto sticking = operators::StaticChain::of(process);
@@ -105,8 +148,7 @@ Starts chain_of_starts(const model::Process& process, std::vector<int> levels,
       if (t != u) steps.push_back({t, u, p});
     }
   }
-  const std::vector<double> none(from.size(), 0.0);
-  starts.shares = algebra::RateElimination(none, steps).stationary();
+  starts.shares = shares_of(count, steps);
   return starts;
 }
 

@@ -19,8 +19,14 @@ class Family {
     grazing_ = friction.mu_d == friction.mu_s;
     const double mu_s = friction.mu_s;
     const double first = std::max(1.0, std::round(mu_s / context.given.scene.delta - offset));
-    const int steps = context.study.steps.value_or(8);
-    for (int n = 0; n < steps; ++n) deltas_.push_back(mu_s / (first * (1 << n) + offset));
+    // A lattice in the plane has states in proportion to the square of a step, and times to their
+    // square again.
+    const bool plane = !context.given.scene.meant().noise.neighbours_only();
+    accuracy_ = std::min(context.given.question.accuracy, plane ? 1e-6 : 1e-9);
+    const int steps = context.study.steps.value_or(plane ? 4 : 8);
+    for (int n = 0; n < steps; ++n) {
+      deltas_.push_back(mu_s / ((plane ? first + n : first * (1 << n)) + offset));
+    }
   }
 
   [[nodiscard]] const std::vector<double>& deltas() const { return deltas_; }
@@ -30,8 +36,7 @@ class Family {
   void run(int& number, int count) {
     for (double delta : deltas_) {
       context_.report(++number, count, fmt::format("{}, delta = {:.6g}", name_, delta));
-      runs_.push_back(converged_run(context_, with_delta(context_.given, delta),
-                                    std::min(context_.given.question.accuracy, 1e-9)));
+      runs_.push_back(converged_run(context_, with_delta(context_.given, delta), accuracy_));
     }
   }
 
@@ -70,6 +75,7 @@ class Family {
   const Context& context_;
   std::string name_;
   bool grazing_ = false;  // mu_d = mu_s
+  double accuracy_;
   std::vector<double> deltas_;
   std::vector<Run> runs_;
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "stickslip/effects/effect.hpp"
 #include "stickslip/support/errors.hpp"
 #include "studies.hpp"
 
@@ -44,7 +45,7 @@ void set_errors(const quantities::Results& known, quantities::Results& results) 
 
 cases::Case with_delta(const cases::Case& given, double delta) {
   cases::Case other = given;
-  other.scene.delta = delta;
+  effects::set_noise_step(other.scene, delta);
   other.scene.noise_levels.reset();
   other.method = {};
   return other;

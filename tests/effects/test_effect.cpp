@@ -1,60 +1,16 @@
 #include <fmt/format.h>
 
-#include <map>
 #include <set>
 
-#include "../common/catch.hpp"
+#include "../common/given.hpp"
 #include "stickslip/catalogue/entry.hpp"
-#include "stickslip/effects/model_options.hpp"
-#include "stickslip/effects/read_scene.hpp"
-#include "stickslip/support/number_text.hpp"
 
 using namespace stickslip;
 
 namespace {
 
-/// Values as a user would give them, and what is said about them.
-class Values : public effects::Given {
- public:
-  explicit Values(std::map<std::string, std::string> given) : given_(std::move(given)) {}
-
-  [[nodiscard]] bool has(const std::string& option) const override {
-    return given_.contains(option);
-  }
-  [[nodiscard]] std::string text(const std::string& option) const override {
-    return has(option) ? given_.at(option) : effects::model_option(option).initial;
-  }
-  [[nodiscard]] double real(const std::string& option) const override {
-    return parse_number(text(option)).value();
-  }
-  [[nodiscard]] std::optional<int> integer(const std::string& option) const override {
-    const auto number = parse_number(text(option));
-    return number ? std::optional(static_cast<int>(*number)) : std::nullopt;
-  }
-  void refuse(const std::string& option, const std::string& why, const std::string&) override {
-    said_ += "-" + option + " " + why + "\n";
-  }
-  [[nodiscard]] bool sound() const override { return said_.empty(); }
-  [[nodiscard]] const std::string& said() const { return said_; }
-
- private:
-  std::map<std::string, std::string> given_;
-  std::string said_;
-};
-
-std::string said_of(std::map<std::string, std::string> given) {
-  Values values(std::move(given));
-  (void)effects::read_scene(values);
-  return values.said();
-}
-
-model::Scene scene_of(std::map<std::string, std::string> given) {
-  Values values(std::move(given));
-  auto scene = effects::read_scene(values);
-  INFO(values.said());
-  REQUIRE(values.sound());
-  return scene;
-}
+using test::said_of;
+using test::scene_of;
 
 std::vector<std::string> heading_of(const effects::Choice& choice, const model::Scene& scene) {
   return effects::heading(choice.in(scene), scene);
@@ -73,7 +29,7 @@ TEST_CASE("effects: words are told apart, and what they declare are options of t
       CHECK(words.insert(effect->word).second);
       CHECK(&choice->of(effect->word) == effect);
       CHECK(!effect->sentence.empty());
-      for (const auto& [option, refused] : effect->parameters) {
+      for (const auto& [option, refused, example] : effect->parameters) {
         CHECK(effects::model_option(option.name).sentence == option.sentence);
         CHECK(effect->knows(option.name));
       }

@@ -24,7 +24,7 @@ PROGRAM = "stickslip-extended"
 MODEL = ("-mu_d", "0.5", "-accuracy", "1e-5")
 DRAG = ("-drag", "quadratic", "-drag_quadratic", "2")
 WAITING = (*MODEL, "-quantities", "waiting")
-NOISE = ("-noise", "three_levels", "-pulse_force", "2", "-pulse_rate", "0.5", "-pulse_end_rate", "3")
+NOISE = ("-noise", "three_levels", "-step_force", "2", "-step_rate", "0.5", "-step_end_rate", "3")
 QUADRATIC, PULSES = (*MODEL, *DRAG), (*MODEL, *NOISE)
 
 
@@ -34,14 +34,14 @@ class Extension(Case):
 
     def test_help_lists_what_they_declare(self):
         text = self.run_ok("-help", program=PROGRAM).stdout
-        for part in ("-drag_quadratic", "c2 of the quadratic drag law", "-sweep_drag_quadratic", "-pulse_force",
+        for part in ("-drag_quadratic", "c2 of the quadratic drag law", "-sweep_drag_quadratic", "-step_force",
                      "three_levels"):
             self.assertIn(part, text)
 
     def test_values_are_validated(self):
         for options, part in (((*QUADRATIC, "-drag_quadratic", "-1"), "-drag_quadratic = -1: must be a number in (0, inf)"),
-                              ((*MODEL, "-pulse_rate", "1"), "belongs to -noise three_levels, and -noise is ou"),
-                              ((*MODEL, "-noise", "three_levels"), "-noise = three_levels: needs -pulse_force"),
+                              ((*MODEL, "-step_rate", "1"), "belongs to -noise three_levels, and -noise is ou"),
+                              ((*MODEL, "-noise", "three_levels"), "-noise = three_levels: needs -step_force"),
                               ((*MODEL, "-drag", "quadratc"), "did you mean quadratic?")):
             done = run(*options, program=PROGRAM, folder=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)
@@ -58,7 +58,7 @@ class Extension(Case):
 
     def test_the_noise_is_that_of_its_levels(self):
         own = self.solved(*PULSES)
-        self.assertEqual(own["scene"]["pulse_end_rate"], 3)
+        self.assertEqual(own["scene"]["step_end_rate"], 3)
         (self.folder / "levels.csv").write_text("x,rate_up,rate_down\n-2,3,0\n0,0.5,0.5\n2,0,3\n")
         levels = self.solved(*MODEL, "-noise", "file", "-noise_file", "levels.csv")
         self.assertEqual(own["results"], levels["results"])
@@ -69,7 +69,7 @@ class Extension(Case):
         self.run_ok(*both, "-summary", computed, program=PROGRAM)
         simulation = (*both, "-route", "monte_carlo", "-excursions", "20000", "-checkpoint", "simulation.h5")
         self.run_ok(*simulation, "-compare", computed, program=PROGRAM)
-        for change in (("-drag_quadratic", "2.5"), ("-pulse_rate", "0.6")):
+        for change in (("-drag_quadratic", "2.5"), ("-step_rate", "0.6")):
             done = run(*simulation, *change, program=PROGRAM, folder=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(change[0], done.stderr)
@@ -156,10 +156,10 @@ class Extension(Case):
     def test_pictures_name_their_parameters(self):
         self.use_in_python()
         both = {"mu_d": 0.5, "accuracy": 1e-2, "drag": "quadratic", "drag_quadratic": 2, "noise": "three_levels",
-                "pulse_force": 2, "pulse_end_rate": 3}
+                "step_force": 2, "step_end_rate": 3}
         self.assertEqual(style.title(stickslip.run(**both)),
-                         r"$\mu_s$ = 1, $\mu_d$ = 0.5, $F$ = 2, $\nu$ = 1, pulse_end_rate = 3, $b(v) = -2 v |v|$")
-        axes = stickslip.sweep(**{**both, "pulse_rate": [0.5, 1]}).plot()["P_stick"].axes[0]
+                         r"$\mu_s$ = 1, $\mu_d$ = 0.5, $F$ = 2, $\nu$ = 1, step_end_rate = 3, $b(v) = -2 v |v|$")
+        axes = stickslip.sweep(**{**both, "step_rate": [0.5, 1]}).plot()["P_stick"].axes[0]
         self.assertEqual(axes.get_xlabel(), r"rate of the pulses $\nu$")
 
     def test_the_explorer_has_their_sliders(self):
@@ -171,14 +171,14 @@ class Extension(Case):
         def shown():
             return {option for option, slider in made.sliders.items() if slider.ax.get_visible()}
 
-        own = {"drag_quadratic", "pulse_force", "pulse_rate"}
+        own = {"drag_quadratic", "step_force", "step_rate"}
         self.assertFalse(own & shown())
         made.choose("drag", "quadratic")
         made.choose("noise", "three_levels")
         self.assertEqual(own | {"mu_s", "mu_d", "bias"}, shown())
         self.assertEqual(made.sliders["drag_quadratic"].label.get_text(), "$c_2$")
         self.assertEqual({option: made.scene()[option] for option in own},
-                         {"drag_quadratic": 2, "pulse_force": 2, "pulse_rate": 0.5})
+                         {"drag_quadratic": 2, "step_force": 2, "step_rate": 0.5})
 
 
 if __name__ == "__main__":

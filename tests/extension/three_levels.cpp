@@ -4,15 +4,16 @@
 namespace stickslip::effects {
 namespace {
 
-constexpr const char *kForce = "pulse_force", *kPulses = "pulse_rate", *kEnds = "pulse_end_rate";
+constexpr const char *kForce = "step_force", *kPulses = "step_rate", *kEnds = "step_end_rate";
 
-void read_three_levels(Given& given, model::Scene& scene) {
-  if (!given.needs("noise", kForce, "2")) return;
-  const double a = given.real(kForce), pulses = given.real(kPulses), ends = given.real(kEnds);
-  scene.own.insert(scene.own.end(), {{kForce, a}, {kPulses, pulses}, {kEnds, ends}});
-  set_levels(given, scene, kForce, "take for example -pulse_force 2", [=] {
-    return model::LevelTable({{-a, ends, 0}, {0, pulses, pulses}, {a, 0, ends}});
-  });
+model::LevelTable three_levels(const model::Scene& scene) {
+  const double a = own_number(scene, kForce), pulses = own_number(scene, kPulses),
+               ends = own_number(scene, kEnds);
+  return model::LevelTable({{-a, ends, 0}, {0, pulses, pulses}, {a, 0, ends}});
+}
+
+bool complete_three_levels(Given& given, model::Scene& scene) {
+  return make_levels(given, scene, kForce, "take for example -step_force 2");
 }
 
 }  // namespace
@@ -25,7 +26,7 @@ const Effect kThreeLevels{
                                  {.symbol = "F",
                                   .label = "force of a pulse",
                                   .slider = Slider{.low = 1, .high = 5, .start = 2}}),
-                    true},
+                    true, "2"},
                    {Option::real(
                         kPulses, "1/time", "1", Range::positive(), "rate of the pulses of one sign",
                         "take for example 1",
@@ -37,7 +38,7 @@ const Effect kThreeLevels{
                    {Option::real(kEnds, "1/time", "1", Range::positive(),
                                  "rate at which a pulse ends", "take for example 1"),
                     true}},
-    .read = read_three_levels,
-    .complete = has_levels};
+    .complete = complete_three_levels,
+    .levels = three_levels};
 
 }  // namespace stickslip::effects

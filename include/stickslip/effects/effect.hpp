@@ -33,19 +33,18 @@ class Given {
   /// Whether nothing has been refused so far.
   [[nodiscard]] virtual bool sound() const = 0;
 
-  /// Whether the user gave an option that `choice` cannot do without, else refused.
-  bool needs(const std::string& choice, const std::string& option, const std::string& example);
-
  protected:
   Given() = default;
   Given(const Given&) = default;
   Given& operator=(const Given&) = default;
 };
 
-/// An option of an effect, and what happens where no effect in use knows it.
+/// An option of an effect, what happens where no effect in use knows it, and where the effect
+/// cannot do without it, a value for it.
 struct Parameter {
   Option option;
   bool refused_elsewhere = false;  ///< otherwise a warning says that it has no effect
+  std::string example = {};
 };
 
 /// One of the words of a choice, such as -drag cubic.
@@ -55,11 +54,15 @@ struct Effect {
   std::string_view sentence;
   std::vector<std::string> others = {};  ///< words that mean it elsewhere
   std::vector<Parameter> parameters = {};
-  /// Puts the values of its options into a scene that holds friction coefficients and bias.
+  /// Puts the values of its options, with all that it cannot do without, into a scene that holds
+  /// friction coefficients and bias. Without this function they go into Scene::own.
   void (*read)(Given&, model::Scene&) = nullptr;
   /// Makes what depends on other options, once the scene holds all numbers. Returns whether the
   /// scene is as the effect needs it; where not, that is reported.
   bool (*complete)(Given&, model::Scene&) = nullptr;
+  /// Of a noise that is a table of levels: makes it of the values that `read` has put into the
+  /// scene. Throws std::invalid_argument.
+  model::LevelTable (*levels)(const model::Scene&) = nullptr;
   /// The values that files state. Without this function they are those of Scene::own that the
   /// effect knows.
   model::Parameters (*values)(const model::Scene&) = nullptr;
@@ -70,6 +73,8 @@ struct Effect {
   std::vector<model::Derivative> derivatives = {};
   /// Of a noise: how to make it stronger, where it never moves a body.
   std::string (*stronger)(const model::Scene&) = nullptr;
+  /// Of a noise: how its chain differs from the process that it stands for; may be empty.
+  std::string (*note)(const model::Scene&) = nullptr;
 
   [[nodiscard]] bool knows(std::string_view option) const;
 };
@@ -80,9 +85,14 @@ struct Choice {
   std::string_view title;  ///< what is chosen, for its help
   std::span<const Effect* const> effects;
   const std::string& (*word_in)(const model::Scene&);
+  const Effect* sum = nullptr;  ///< what words joined by + mean, where they may be
 
   /// The effect of that word; the default where there is none.
   [[nodiscard]] const Effect& of(std::string_view word) const;
+  /// The words of which a word is the sum, or that word alone.
+  [[nodiscard]] std::vector<std::string> parts(const std::string& word) const;
+  /// Whether the effect of the scene, or one of those of which it is the sum, knows the option.
+  [[nodiscard]] bool knows(const model::Scene& scene, std::string_view name) const;
   [[nodiscard]] const Effect& in(const model::Scene& scene) const { return of(word_in(scene)); }
 };
 
@@ -92,9 +102,17 @@ struct Choice {
 [[nodiscard]] const Choice& drags();
 [[nodiscard]] std::span<const Choice* const> choices();
 
+/// Puts the values of the options of an effect into a scene; what is missing is refused.
+void read_effect(Given& given, const Choice& choice, const std::string& word, model::Scene& scene);
+
 /// The value of that name in Scene::own, which has one.
 [[nodiscard]] const std::variant<double, std::string>& own_value(const model::Scene& scene,
                                                                  std::string_view name);
+/// The same for one that is a number.
+[[nodiscard]] double own_number(const model::Scene& scene, std::string_view name);
+
+/// Gives the noise of a scene another step.
+void set_noise_step(model::Scene& scene, double delta);
 
 /// All that fixes the process of a scene, each by the name of its option, in the order in which
 /// files hold them: friction, the word of the drag law, noise, what is beside the defaults, and the

@@ -70,6 +70,7 @@ struct Option {
   std::string sentence;            ///< what it does
   std::string fix;                 ///< what to do about a value out of range; may be empty
   Shown shown = {};
+  bool adds = false;  ///< whether words may be joined by +
 
   /// The same with other names.
   [[nodiscard]] Option called(const std::vector<std::string>& others) const {

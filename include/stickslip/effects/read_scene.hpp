@@ -11,6 +11,9 @@ namespace stickslip::effects {
 /// each by itself or together, is refused.
 [[nodiscard]] model::Scene read_scene(Given& given);
 
+/// How the chain of a scene's noise differs from the noise that is meant; may be empty.
+[[nodiscard]] std::string noise_note(const model::Scene& scene);
+
 /// What to say where static friction acts with another value than the one given, because it lies
 /// between two noise levels; empty where it does not.
 [[nodiscard]] std::string step_warning(const model::Scene& scene);

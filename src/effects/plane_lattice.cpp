@@ -1,0 +1,232 @@
+#include "plane_lattice.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <boost/math/tools/minima.hpp>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "ou_noise.hpp"
+#include "stickslip/model/noise_chain.hpp"
+
+namespace stickslip::effects {
+namespace {
+
+using Matrix = std::array<std::array<double, 2>, 2>;
+
+Matrix product(const Matrix& a, const Matrix& b) {
+  Matrix c{};
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) c[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j];
+  }
+  return c;
+}
+
+Matrix transposed(const Matrix& a) { return {{{a[0][0], a[1][0]}, {a[0][1], a[1][1]}}}; }
+
+/// dz = drift z dt + noise whose covariance is diag(diffusion) dt; z_1 is the force over its
+/// deviation, z_2 has the variance 1 as well.
+struct Plane {
+  Matrix drift, covariance;
+  std::array<double, 2> diffusion;
+};
+
+// With the rotation A = ((-decay, -frequency), (frequency, -decay)) and the stationary covariance
+// P, the noise has the covariance D = -(A P + P A^T). P_11 = 1 and P_12 = -sine give the covariance
+// of z_1; then a shear takes what D has off its diagonal away.
+Plane plane_of(const PlaneNoise& noise, double second_variance) {
+  const Matrix a{{{-noise.decay, -noise.frequency}, {noise.frequency, -noise.decay}}},
+      p{{{1, -noise.sine}, {-noise.sine, second_variance}}};
+  const Matrix ap = product(a, p);
+  const double d11 = -2 * ap[0][0], d12 = -ap[0][1] - ap[1][0], d22 = -2 * ap[1][1],
+               shear = d12 / d11, variance = p[1][1] - shear * (2 * p[0][1] - shear),
+               scale = 1 / std::sqrt(variance);
+  const Matrix to{{{1, 0}, {-shear * scale, scale}}}, back{{{1, 0}, {shear, 1 / scale}}};
+  return {product(product(to, a), back),
+          product(product(to, p), transposed(to)),
+          {d11, (d22 - shear * d12) * scale * scale}};
+}
+
+// The second step over the first, both in deviations.
+double ratio_of(const Plane& plane) { return std::sqrt(plane.diffusion[1] / plane.diffusion[0]); }
+
+// Jumps are of second order where |drift| step <= diffusion in both coordinates: the smaller of
+// both diffusions over the root mean squares of the drifts, for a first step of 1.
+double reach(const Plane& plane) {
+  const Matrix drifts = product(product(plane.drift, plane.covariance), transposed(plane.drift));
+  return std::min(plane.diffusion[0] / std::sqrt(drifts[0][0]),
+                  plane.diffusion[1] / (std::sqrt(drifts[1][1]) * ratio_of(plane)));
+}
+
+// The second variances for which the noise can be: its determinant is a parabola in them.
+Plane best_plane(const PlaneNoise& noise) {
+  const double decay = noise.decay, frequency = noise.frequency, p12 = -noise.sine,
+               d11 = 2 * (decay - frequency * noise.sine),
+               middle = 1 + (decay * d11 / frequency - 2 * decay * p12) / frequency,
+               d12 = 2 * decay * p12 + frequency * (middle - 1),
+               most = d11 * (2 * decay * middle - 2 * frequency * p12) - d12 * d12,
+               width = std::sqrt(most) / frequency;
+  constexpr int bits = 30;
+  const auto found = boost::math::tools::brent_find_minima(
+      [&noise](double variance) { return -reach(plane_of(noise, variance)); },
+      middle - width * (1 - 1e-9), middle + width * (1 - 1e-9), bits);
+  // To few digits, so that the chain does not depend on rounding.
+  constexpr double digits = 1e6;
+  return plane_of(noise, std::round(found.first * digits) / digits);
+}
+
+// The rate of the jump along a coordinate in a direction, for a drift and a diffusion.
+double rate(double drift, double diffusion, double step, int direction) {
+  const double along = direction * drift / (2 * step), spread = diffusion / (2 * step * step);
+  if (spread >= std::abs(along)) return spread + along;
+  return along > 0 ? 2 * along : 0;
+}
+
+// Those of the states that are reached from one of them. At the rim, where jumps go along the drift
+// alone, some are only left.
+std::vector<bool> reached_from(std::size_t first, const States& states) {
+  std::vector<std::vector<std::size_t>> next(states.x.size());
+  for (const auto& [from, to, rate] : states.transitions) next[from].push_back(to);
+  std::vector<bool> reached(states.x.size(), false);
+  std::vector<std::size_t> open{first};
+  reached[first] = true;
+  while (!open.empty()) {
+    const std::size_t here = open.back();
+    open.pop_back();
+    for (std::size_t to : next[here]) {
+      if (!reached[to]) open.push_back(to);
+      reached[to] = true;
+    }
+  }
+  return reached;
+}
+
+/// A lattice with the diffusion that each of its states has beyond the one that is meant, summed
+/// over the coordinates and over the sum of their diffusions.
+struct Lattice {
+  States states;
+  std::vector<double> added;
+};
+
+// Without the states that are never reached.
+Lattice pruned(const Lattice& all, std::size_t middle) {
+  const auto reached = reached_from(middle, all.states);
+  Lattice lattice;
+  std::vector<std::size_t> number;
+  for (std::size_t n = 0; n < reached.size(); ++n) {
+    number.push_back(lattice.added.size());
+    if (!reached[n]) continue;
+    lattice.states.x.push_back(all.states.x[n]);
+    lattice.added.push_back(all.added[n]);
+  }
+  for (const auto& [from, to, rate] : all.states.transitions) {
+    if (reached[from]) lattice.states.transitions.push_back({number[from], number[to], rate});
+  }
+  return lattice;
+}
+
+Lattice made(const PlaneNoise& noise, double step, double radius) {
+  const Plane plane = best_plane(noise);
+  const auto& p = plane.covariance;
+  const double determinant = p[0][0] * p[1][1] - p[0][1] * p[1][0];
+  const std::array<double, 2> steps{step / noise.deviation,
+                                    step / noise.deviation * ratio_of(plane)};
+  require_number_of_states(std::numbers::pi * radius * radius * std::sqrt(determinant) /
+                           (steps[0] * steps[1]));
+  const auto most = [&](int along) { return static_cast<int>(radius / steps[along] * (1 + 1e-9)); };
+  Lattice lattice;
+  std::vector<std::pair<int, int>> points;
+  std::map<std::pair<int, int>, std::size_t> number;
+  for (int i = -most(0); i <= most(0); ++i) {
+    for (int j = -most(1); j <= most(1); ++j) {
+      const double x = i * steps[0], y = j * steps[1];
+      const double square = (p[1][1] * x * x - 2 * p[0][1] * x * y + p[0][0] * y * y) / determinant;
+      if (square > radius * radius * (1 + 1e-9)) continue;
+      number.emplace(std::pair(i, j), points.size());
+      points.emplace_back(i, j);
+      lattice.states.x.push_back(i * step);
+    }
+  }
+  const double diffusion = plane.diffusion[0] + plane.diffusion[1];
+  for (std::size_t from = 0; from < points.size(); ++from) {
+    const auto [i, j] = points[from];
+    double added = 0;
+    for (int along : {0, 1}) {
+      const auto& row = plane.drift[along];
+      const double drift = row[0] * i * steps[0] + row[1] * j * steps[1],
+                   beyond = std::abs(drift) * steps[along] - plane.diffusion[along];
+      added += std::max(beyond, 0.0) / diffusion;
+      for (int direction : {-1, 1}) {
+        const auto to =
+            number.find(along == 0 ? std::pair(i + direction, j) : std::pair(i, j + direction));
+        const double r = rate(drift, plane.diffusion[along], steps[along], direction);
+        if (to != number.end() && r > 0)
+          lattice.states.transitions.push_back({from, to->second, r});
+      }
+    }
+    lattice.added.push_back(added);
+  }
+  return pruned(lattice, number.at({0, 0}));
+}
+
+}  // namespace
+
+Option radius_option() {
+  return Option::real(kRadius, "", "4", {1, 10, true, true},
+                      "radius of the lattices of -noise narrow_band and filtered, in standard "
+                      "deviations",
+                      "take for example 4",
+                      {.symbol = "R", .label = "radius of the noise lattice"});
+}
+
+void read_lattice(Given& given, model::Scene& scene, double deviation) {
+  scene.noise.deviation = given.has(kDeviation) ? given.real(kDeviation) : deviation;
+  const double mu_s = scene.friction.mu_s, half = *scene.noise.deviation / 2,
+               between = std::max(1.0, std::round(mu_s / half - 0.5)) + 0.5;
+  scene.delta = given.has(kDelta) ? given.real(kDelta) : std::min(half, mu_s / between);
+  scene.own.emplace_back(kRadius, given.real(kRadius));
+}
+
+model::Parameters lattice_values(const model::Scene& scene) {
+  model::Parameters all;
+  const auto& effect = noises().in(scene);
+  for (const auto& each : scene.own) {
+    if (effect.knows(each.first)) all.push_back(each);
+  }
+  all.emplace_back(kDeviation, *scene.noise.deviation);
+  all.emplace_back(kDelta, scene.delta);
+  return all;
+}
+
+States lattice_of(const PlaneNoise& noise, double step, double radius) {
+  return made(noise, step, radius).states;
+}
+
+std::string lattice_note(const model::Scene& scene, const PlaneNoise& noise) {
+  const auto lattice = made(noise, scene.delta, own_number(scene, kRadius));
+  const auto& table = *scene.noise.table;
+  const auto probability = model::stationary_distribution(scene.meant().noise);
+  double added = 0, one_sided = 0;
+  for (int level = table.lowest(); level <= table.highest(); ++level) {
+    const double here = probability[static_cast<std::size_t>(level - table.lowest())],
+                 more = lattice.added[table.listed(level)];
+    added += here * more;
+    if (more > 0) one_sided += here;
+  }
+  const double deviation = std::sqrt(table.variance());
+  constexpr double percent = 0.01;
+  if (added < percent && std::abs(deviation / noise.deviation - 1) < percent) return "";
+  return fmt::format(
+      "the chain of -noise {} has {} states and the standard deviation {:.4g} in the place of "
+      "{:g}: "
+      "jumps along the drift alone, on states that hold {:.2g} % of the probability, add {:.2g} % "
+      "to "
+      "its diffusion; that falls with -delta, now {:g}, and -study delta finds the limit",
+      scene.noise.name, lattice.added.size(), deviation, noise.deviation, 100 * one_sided,
+      100 * added, scene.delta);
+}
+
+}  // namespace stickslip::effects

@@ -1,0 +1,219 @@
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+
+#include "../common/given.hpp"
+#include "../common/temporary.hpp"
+
+using namespace stickslip;
+using test::said_of;
+using test::scene_of;
+
+namespace {
+
+using Given = std::map<std::string, std::string>;
+
+Given with(Given all, const Given& more) {
+  for (const auto& [name, value] : more) all[name] = value;
+  return all;
+}
+
+const model::LevelTable& table_of(const model::Scene& scene) { return *scene.noise.table; }
+
+bool near(double a, double b, double tolerance) { return std::abs(a - b) <= tolerance; }
+
+// The largest difference between two chains of the same forces, in forces and rates.
+double difference(const model::LevelTable& a, const model::LevelTable& b) {
+  REQUIRE(a.lowest() == b.lowest());
+  REQUIRE(a.highest() == b.highest());
+  double largest = 0;
+  for (int i = a.lowest(); i <= a.highest(); ++i) {
+    std::map<int, double> rates;
+    a.for_each_jump(i, [&](int to, double rate) { rates[to] += rate; });
+    b.for_each_jump(i, [&](int to, double rate) { rates[to] -= rate; });
+    largest = std::max(largest, std::abs(a.at(i).x - b.at(i).x));
+    for (const auto& [to, rate] : rates) largest = std::max(largest, std::abs(rate));
+  }
+  return largest;
+}
+
+const Given kBand{
+    {"noise", "narrow_band"}, {"band_frequency", "2"}, {"band_width", "0.5"}, {"mu_d", "0.5"}};
+const Given kGround{
+    {"noise", "filtered"}, {"ground_frequency", "3"}, {"ground_damping", "0.5"}, {"mu_d", "0.5"}};
+const Given kSine{
+    {"noise", "periodic"}, {"periodic_amplitude", "1.2"}, {"period", "4"}, {"mu_d", "0.5"}};
+const Given kPulses{
+    {"noise", "pulses"}, {"pulse_height", "2"}, {"pulse_rate", "0.8"}, {"mu_d", "0.5"}};
+
+}  // namespace
+
+TEST_CASE("narrow band: a lattice in the plane, central differences where rates are positive") {
+  const auto scene = scene_of(with(kBand, {{"delta", "0.5"}, {"noise_radius", "3.5"}}));
+  std::vector<double> x;
+  std::map<std::pair<int, int>, std::size_t> number;
+  for (int i = -7; i <= 7; ++i) {
+    for (int j = -7; j <= 7; ++j) {
+      if (i * i + j * j > 49) continue;
+      number[{i, j}] = x.size();
+      x.push_back(i / 2.0);
+    }
+  }
+  std::vector<model::Transition> jumps;
+  for (const auto& [point, from] : number) {
+    const auto [i, j] = point;
+    const double a = i / 2.0, b = j / 2.0;
+    for (int along : {0, 1}) {
+      const double drift = along == 0 ? -0.5 * a - 2 * b : 2 * a - 0.5 * b;
+      for (int sign : {1, -1}) {
+        const auto to = number.find(along == 0 ? std::pair(i + sign, j) : std::pair(i, j + sign));
+        const double rate = 2 + sign * drift, other = 2 - sign * drift;
+        if (to == number.end() || rate <= 0) continue;
+        jumps.push_back({from, to->second, other >= 0 ? rate : 2 * std::abs(drift)});
+      }
+    }
+  }
+  REQUIRE(x.size() == 149);
+  CHECK(difference(table_of(scene), {x, jumps}) < 1e-12);
+  CHECK(table_of(scene).even());
+}
+
+TEST_CASE("noises of the plane: variance and intensity tend to those of the process") {
+  for (const auto& [given, intensity] :
+       {std::pair(kBand, 0.5 / (0.25 + 4)), std::pair(kGround, 2 * 0.5 / (3 * 2.0))}) {
+    double before = 0;
+    for (const char* step : {"0.3", "0.15"}) {
+      const auto scene =
+          scene_of(with(given, {{"delta", step}, {"noise_radius", "5"}, {"noise_deviation", "1"}}));
+      const auto& table = table_of(scene);
+      const double error =
+          std::max(std::abs(table.variance() - 1), std::abs(table.intensity() / intensity - 1));
+      INFO(given.at("noise") << " " << step << ": " << error);
+      CHECK(error < 0.1);
+      // Of second order but where jumps go along the drift alone; 4e-5 are beyond the radius.
+      if (before > 0) CHECK(error < std::max(0.6 * before, 1e-4));
+      before = error;
+    }
+  }
+}
+
+TEST_CASE("filtered noise: the intensity of what is filtered gives the deviation") {
+  const auto given = with(kGround, {{"ground_intensity", "0.3"}, {"delta", "1"}});
+  const auto scene = scene_of(given);
+  CHECK(near(*scene.noise.deviation, std::sqrt(0.3 * 3 * 2), 1e-12));
+  CHECK_THAT(said_of(with(given, {{"noise_deviation", "1"}})),
+             Catch::Contains("fixes the deviation, and so does -noise_deviation"));
+  CHECK_THAT(effects::noise_note(scene), Catch::Contains("in the place of 1.34"));
+}
+
+TEST_CASE("noises of the plane: unless given, steps keep mu_s halfway between two levels") {
+  for (const char* mu_s : {"0.55", "1", "3"}) {
+    const auto scene = scene_of(with(kBand, {{"mu_s", mu_s}}));
+    const double places = scene.friction.mu_s / scene.delta;
+    CHECK(near(places - std::floor(places), 0.5, 1e-12));
+    CHECK(scene.delta <= 0.5);
+  }
+  CHECK(scene_of(with(kBand, {{"mu_s", "0.1"}, {"mu_d", "0.1"}})).delta <= 0.5);
+}
+
+TEST_CASE("noises of the plane: another step makes another lattice") {
+  auto scene = scene_of(with(kBand, {{"delta", "0.5"}}));
+  effects::set_noise_step(scene, 0.4);
+  CHECK(difference(table_of(scene), table_of(scene_of(with(kBand, {{"delta", "0.4"}})))) == 0);
+  CHECK_THAT(said_of(with(kBand, {{"delta", "0.001"}})), Catch::Contains("at most 20000"));
+}
+
+TEST_CASE("periodic noise: phases follow one another, with the force of each") {
+  const auto scene = scene_of(with(kSine, {{"period_phases", "8"}}));
+  const auto& table = table_of(scene);
+  CHECK(table.highest() - table.lowest() == 7);
+  CHECK(table.even());
+  CHECK(near(table.at(table.highest()).x, 1.2, 1e-12));
+  CHECK(near(table.variance(), 0.72, 1e-12));
+  CHECK(near(table.rate(), 2, 1e-12));
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "shape.csv";
+  std::ofstream(file) << "x\n-1\n0\n2\n0\n";
+  const auto shaped = scene_of(with(kSine, {{"period_shape", file}}));
+  CHECK(near(table_of(shaped).mean(), 0.3, 1e-12));
+  CHECK(near(table_of(shaped).rate(), 1, 1e-12));
+  CHECK_THAT(said_of(with(kSine, {{"period_shape", file}, {"period_phases", "4"}})),
+             Catch::Contains("is the number of lines"));
+  std::ofstream(file) << "x\n-1\n1\n";
+  CHECK_THAT(said_of(with(kSine, {{"period_shape", file}})), Catch::Contains("three phases"));
+}
+
+TEST_CASE("pulses: mean and variance are those of shot noise") {
+  const double height = 2, rate = 0.8, time = 0.5;
+  struct {
+    Given more;
+    double mean, variance;
+  } cases[] = {
+      {{{"pulse_duration", "0.5"}, {"pulse_sign", "up"}}, 1, 1},
+      {{{"pulse_duration", "0.5"}, {"pulse_sign", "down"}}, -1, 1},
+      {{{"pulse_duration", "0.5"}}, 0, 1},
+      {{{"pulse_decay", "0.5"}, {"pulse_sign", "up"}, {"pulse_steps", "1"}}, 1, 1},
+      {{{"pulse_decay", "0.5"}, {"pulse_sign", "up"}, {"pulse_steps", "4"}}, 1, 0.5 * 1.25},
+      {{{"pulse_decay", "0.5"}, {"pulse_sign", "down"}, {"pulse_steps", "4"}}, -1, 0.5 * 1.25}};
+  for (const auto& [more, mean, variance] : cases) {
+    const auto scene = scene_of(with(kPulses, more));
+    CHECK(near(table_of(scene).mean(), mean * height * rate * time, 1e-12));
+    CHECK(near(table_of(scene).variance(), variance * height * height * rate * time, 1e-12));
+  }
+  // Where forces of both signs decay on one lattice, steps add no noise of their own for long.
+  const auto both = scene_of(with(kPulses, {{"pulse_decay", "0.5"}, {"pulse_steps", "16"}}));
+  CHECK(table_of(both).even());
+  CHECK(near(table_of(both).variance(), height * height * rate * time / 2, 0.05));
+  CHECK_THAT(said_of(kPulses), Catch::Contains("needs either -pulse_duration or -pulse_decay"));
+  CHECK_THAT(said_of(with(kPulses, {{"pulse_duration", "1"}, {"pulse_steps", "4"}})),
+             Catch::Contains("belongs to -pulse_decay"));
+  CHECK_THAT(said_of(with(kPulses, {{"pulse_duration", "1e6"}})), Catch::Contains("at most 20000"));
+}
+
+TEST_CASE("sums of noises: states are pairs, moments add up, options go to their noise") {
+  const auto both = with(kSine, {{"noise", "periodic+ou"},
+                                 {"period_phases", "16"},
+                                 {"delta", "0.5"},
+                                 {"noise_deviation", "0.7"},
+                                 {"noise_levels", "3"}});
+  const auto scene = scene_of(both);
+  CHECK(table_of(scene).highest() - table_of(scene).lowest() + 1 == 7 * 16);
+  CHECK(near(table_of(scene).rate(), 16 / 4.0 + 2 * 0.49 / 0.25, 1e-12));
+  auto other = both;
+  other["noise"] = "ou+periodic";
+  CHECK(near(table_of(scene_of(other)).intensity(), table_of(scene).intensity(), 1e-12));
+  const auto alone = scene_of(with(kSine, {{"period_phases", "16"}}));
+  CHECK(effects::noises().knows(scene, "delta"));
+  CHECK(effects::noises().knows(scene, "period"));
+  CHECK(!effects::noises().knows(scene, "pulse_rate"));
+  const auto parameters = effects::parameters_of(scene);
+  const auto value = [&parameters](const std::string& name) {
+    const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                    [&name](const auto& each) { return each.first == name; });
+    return found == parameters.end() ? -1 : std::get<double>(found->second);
+  };
+  CHECK(value("noise_levels") == 3);
+  CHECK(value("noise_deviation") == 0.7);
+  CHECK(value("period_phases") == 16);
+  CHECK(effects::heading(effects::noises().in(scene), scene)[0] ==
+        "periodic_amplitude = 1.2, period = 4, period_phases = 16, tau = 1, delta = 0.5, "
+        "noise_deviation = 0.7, noise_levels = 3");
+  const auto three = scene_of(with(kPulses, {{"noise", "telegraph+pulses+periodic"},
+                                             {"telegraph_amplitude", "0.3"},
+                                             {"telegraph_rate", "2"},
+                                             {"pulse_duration", "0.5"},
+                                             {"pulse_sign", "up"},
+                                             {"periodic_amplitude", "1.2"},
+                                             {"period", "4"}}));
+  CHECK(near(table_of(three).mean(), 0.8, 1e-12));
+  CHECK(near(table_of(three).variance(), 0.09 + 1.6 + 0.72, 1e-12));
+  CHECK(
+      near(table_of(three).intensity(), 0.09 / 4 + 1.6 * 0.5 + table_of(alone).intensity(), 1e-10));
+  CHECK_THAT(said_of(with(kBand, {{"noise", "narrow_band+ou"}})),
+             Catch::Contains("joins two noises that take -noise_deviation"));
+  CHECK_THAT(said_of({{"noise", "telegraph+periodic"}, {"telegraph_amplitude", "1"}}),
+             Catch::Contains("needs -telegraph_rate") && Catch::Contains("needs -period"));
+  CHECK_THAT(said_of(with(both, {{"delta", "0.001"}, {"noise_levels", "2000"}})),
+             Catch::Contains("at most 20000"));
+}
