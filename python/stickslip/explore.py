@@ -314,7 +314,7 @@ class Explorer:
         return news
 
     def _draw_distribution(self, found: Results) -> None:
-        density = found.density
+        density = found.density.by_force()
         v, x = density.window(LEAST), density.x
         edges = cells_around(x)
         steps = numpy.diff(edges)

@@ -75,6 +75,9 @@ class Density:
         Ends of the elements in v: between two of them densities are the polynomials through the values there.
     error
         Error estimate of the distribution function of the speed.
+    states
+        Number of the state of each row, as the noise numbers them: of `-noise chain`, or the phase of `-noise
+        periodic`. Several states may have the same x.
     """
 
     x: "Array"
@@ -86,6 +89,18 @@ class Density:
     weights: "Array"
     cells: "Array"
     error: float
+    states: "Array"
+
+    def by_force(self) -> "Density":
+        """The same with one row for each force, the sum of those of all states that have it."""
+        x, place = numpy.unique(self.x, return_inverse=True)
+        if len(x) == len(self.x):
+            return self
+        rows = {name: numpy.zeros((len(x), *numpy.shape(getattr(self, name))[1:]))
+                for name in ("values", "at_rest", "marginal_x")}
+        for name, sums in rows.items():
+            numpy.add.at(sums, place, getattr(self, name))
+        return dataclasses.replace(self, x=x, states=numpy.arange(len(x)), **rows)
 
     @property
     def mass_at_rest(self) -> float:
@@ -309,7 +324,8 @@ def fields(file: "h5py.File") -> dict[str, Any]:
         data = _datasets(file["density"])
         found["density"] = Density(
             *(data[part] for part in ("x", "v", "pdf", "atom", "marginal_x", "marginal_v", "weights", "cells")),
-            float(file["density"].attrs.get("error_of_distribution_function_of_speed", math.nan)))
+            float(file["density"].attrs.get("error_of_distribution_function_of_speed", math.nan)),
+            data.get("state", numpy.arange(len(data["x"]))).astype(int))
     if "trajectory" in file:
         found["trajectory"] = _datasets(file["trajectory"])
     return found

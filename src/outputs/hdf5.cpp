@@ -36,6 +36,9 @@ void write_density(Hdf5File& file, const quantities::DensityField& field, double
   write("atom", field.atom, "P(X = x_i, V = 0 and sticking)");
   write("marginal_x", field.noise_marginal, "P(X = x_i), summed over the grid");
   write("marginal_v", field.velocity_marginal, "density of V without its atom P_stick at 0");
+  if (!field.states.empty()) {
+    write("state", field.states, "number of the state of each row, as the noise numbers them");
+  }
   write_field(file, "/density/pdf", field.pdf);
   file.attribute("/density/pdf", "meaning",
                  "P(X = x_i, V in dv)/dv by rows of x and columns of v, without the atom at v = 0");

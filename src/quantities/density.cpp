@@ -79,7 +79,12 @@ DensityField density_field(const StationaryDistribution& distribution) {
       atoms(distribution),
       {},
       std::vector<double>(2 * static_cast<std::size_t>(nodes), 0.0),
+      {},
       speed_distribution(distribution).at_top};
+  const auto& chain = process.noise;
+  for (int i = chain.lowest(); i <= chain.highest() && !chain.neighbours_only(); ++i) {
+    field.states.push_back(static_cast<double>(chain.table->listed(i)));
+  }
   for_each_place(distribution, [&](Branch side, const State& state, double probability) {
     const bool upper = side == Branch::positive;
     noise_marginal[(upper ? state.noise : -state.noise) - first] += probability;

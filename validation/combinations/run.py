@@ -3,7 +3,8 @@
 usage: python3 validation/combinations/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
 Each is compared with its mirror image, with itself under a bias of 10^-300 where it has symmetry, and with
-simulation. --quick draws as many as pairs need, else twenty more, computes less accurately and simulates less.
+simulation. --quick draws as many as pairs need, else twenty more, computes less accurately, simulates less, and looks into the
+mirror of every other combination.
 """
 
 import collections
@@ -247,7 +248,7 @@ def mirror_images(entry, cases):
 
 def simulations(entry, cases):
     """z of everything that can be simulated, by question."""
-    excursions = 10000 if entry.quick else 400000
+    excursions = 5000 if entry.quick else 400000
     beside, by_question = [], collections.defaultdict(list)
     for case, here in cases:
         if case["question"] in NOT_SIMULATED or case["scheme"] == "upwind":
@@ -309,7 +310,7 @@ def main():
         print(f"  {name}: {reason}")
     entry.claim("combinations that are refused", len(refused), 0)
     directions(entry)
-    mirror_images(entry, cases)
+    mirror_images(entry, cases[::2] if entry.quick else cases)
     simulations(entry, cases)
     entry.end()
 

@@ -22,7 +22,8 @@ struct DensityField {
   std::vector<double> atom;               ///< P(X = x_i, sticking), index i + N
   std::vector<double> noise_marginal;     ///< P(X = x_i) summed over the grid, index i + N
   std::vector<double> velocity_marginal;  ///< density of V without its atom P_stick [1/velocity]
-  double truncated_mass = 0;              ///< probability kept in holding states at |V| = v_max
+  std::vector<double> states;  ///< where several may have one x: numbers of the states, index i + N
+  double truncated_mass = 0;   ///< probability kept in holding states at |V| = v_max
 };
 
 /// Collective. The state at v = 0 of a grid scheme is counted with the first node.

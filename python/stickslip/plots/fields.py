@@ -28,7 +28,7 @@ def cells_around(levels: "numpy.ndarray") -> "numpy.ndarray":
 def density(items: Sequence[Results]) -> "Figure":
     """The stationary distribution of (X, V), its marginals, and the static states."""
     (results,) = items
-    field = results.density
+    field = results.density.by_force()
     x, v, ends = field.x, field.window(1e-4), cells_around(field.x)
     width = numpy.diff(ends)
     figure = Figure(figsize=(7.2, 5.2))
