@@ -60,14 +60,17 @@ model::LevelTable levels_of_sum(const model::Scene& scene) {
   States all{{0}, {}};
   for (const auto& word : words_of(scene)) {
     const auto chain = made_part(scene, word).meant().noise;
+    // By the numbers that the noise gives its states, so that those of the sum can be told apart.
+    const auto number = [&chain](int level) {
+      return chain.table ? chain.table->listed(level)
+                         : static_cast<std::size_t>(level - chain.lowest());
+    };
     States part;
+    part.x.resize(static_cast<std::size_t>(chain.count()));
     for (int i = chain.lowest(); i <= chain.highest(); ++i) {
-      part.x.push_back(chain.level(i));
-      const auto place = [&chain](int level) {
-        return static_cast<std::size_t>(level - chain.lowest());
-      };
+      part.x[number(i)] = chain.level(i);
       chain.for_each_jump(i, [&](int to, double rate) {
-        part.transitions.push_back({place(i), place(to), rate});
+        part.transitions.push_back({number(i), number(to), rate});
       });
     }
     all = sum(all, part);

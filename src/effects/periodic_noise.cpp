@@ -45,6 +45,9 @@ bool complete_periodic(Given& given, model::Scene& scene) {
   if (given.has(kShape) && given.has(kPhases)) {
     given.refuse(kPhases, "is the number of lines of -period_shape", "leave one of them out");
   }
+  if (given.has(kShape)) {
+    std::erase_if(scene.own, [](const auto& each) { return each.first == kPhases; });
+  }
   return make_levels(given, scene, given.has(kShape) ? kShape : kPhases,
                      "write CSV with the column x, the force at three or more phases");
 }

@@ -84,6 +84,9 @@ bool complete_pulses(Given& given, model::Scene& scene) {
   } else if (given.has(kPulseDuration) && given.has(kPulseSteps)) {
     given.refuse(kPulseSteps, "belongs to -pulse_decay", "leave it out, or take -pulse_decay");
   }
+  if (given.has(kPulseDuration)) {
+    std::erase_if(scene.own, [](const auto& each) { return each.first == kPulseSteps; });
+  }
   return make_levels(given, scene, kPulseRate, "take a smaller -pulse_rate or shorter pulses");
 }
 

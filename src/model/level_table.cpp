@@ -71,7 +71,8 @@ LevelTable::LevelTable(const std::vector<double>& given,
                        const std::vector<Transition>& transitions) {
   require_states(given, transitions);
   const auto x = without_rounding(given);
-  order_ = mirrored_order(x, transitions);
+  const auto order = mirrored_order(x, transitions);
+  order_ = order.states;
   std::vector<int> place(x.size());
   bool near = true;
   for (std::size_t n = 0; n < x.size(); ++n) {
@@ -90,7 +91,8 @@ LevelTable::LevelTable(const std::vector<double>& given,
   for (auto& row : jumps_) {
     std::sort(row.begin(), row.end(), [](const Jump& a, const Jump& b) { return a.to < b.to; });
   }
-  even_ = even_ && mirrors_itself(jumps_);
+  even_ = even_ && mirrors_itself(jumps_, order.image);
+  reversed_ = order.reversed();
   if (near) jumps_.clear();
   find_moments();
   find_tails();

@@ -178,10 +178,18 @@ std::vector<double> without_rounding(const std::vector<double>& x) {
   return all;
 }
 
-std::vector<std::size_t> mirrored_order(const std::vector<double>& x,
-                                        const std::vector<Transition>& transitions) {
+bool MirroredOrder::reversed() const {
+  for (std::size_t n = 0; n < image.size(); ++n) {
+    if (image[n] != image.size() - 1 - n) return false;
+  }
+  return true;
+}
+
+MirroredOrder mirrored_order(const std::vector<double>& x,
+                             const std::vector<Transition>& transitions) {
   const auto look = looks(x, transitions, 1), mirrored = looks(x, transitions, -1);
-  // Below 0 the mirror decides; at 0 states come before their images, in the images' reverse order.
+  // Below 0 the mirror decides; at 0 states come before their images, in the images' reverse order,
+  // with those between them that are their own images.
   const auto key = [&](std::size_t n) {
     const std::uint64_t most = ~std::uint64_t{0};
     if (x[n] > 0) return std::tuple(0, look[n]);
@@ -190,23 +198,37 @@ std::vector<std::size_t> mirrored_order(const std::vector<double>& x,
     if (look[n] == mirrored[n]) return std::tuple(1, look[n]);
     return std::tuple(2, most - mirrored[n]);
   };
-  std::vector<std::size_t> order(x.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+  MirroredOrder order;
+  auto& states = order.states;
+  states.resize(x.size());
+  std::iota(states.begin(), states.end(), std::size_t{0});
+  std::stable_sort(states.begin(), states.end(), [&](std::size_t a, std::size_t b) {
     return std::tuple(x[a], key(a)) < std::tuple(x[b], key(b));
   });
+  const std::size_t last = x.size() - 1;
+  for (std::size_t n = 0; n <= last; ++n) order.image.push_back(last - n);
+  const auto alone = [&](std::size_t place) {
+    const std::size_t n = states[place];
+    const auto same = [&](std::size_t other) { return x[other] == 0 && look[other] == look[n]; };
+    return x[n] == 0 && look[n] == mirrored[n] && !(place > 0 && same(states[place - 1])) &&
+           !(place < last && same(states[place + 1]));
+  };
+  for (std::size_t n = 0; n <= last; ++n) {
+    if (alone(n)) order.image[n] = n;
+  }
   return order;
 }
 
-bool mirrors_itself(const Jumps& jumps) {
-  const std::size_t last = jumps.size() - 1;
-  for (std::size_t n = 0; n <= last; ++n) {
-    const auto &here = jumps[n], &there = jumps[last - n];
-    const bool same = std::equal(here.begin(), here.end(), there.rbegin(), there.rend(),
-                                 [last](const auto& a, const auto& b) {
-                                   return a.to + b.to == static_cast<int>(last) &&
-                                          std::abs(a.rate - b.rate) <= kSameNumber * a.rate;
-                                 });
+bool mirrors_itself(const Jumps& jumps, const std::vector<std::size_t>& image) {
+  for (std::size_t n = 0; n < jumps.size(); ++n) {
+    auto seen = jumps[n];
+    for (auto& jump : seen) jump.to = static_cast<int>(image[static_cast<std::size_t>(jump.to)]);
+    std::sort(seen.begin(), seen.end(), [](const auto& a, const auto& b) { return a.to < b.to; });
+    const auto& there = jumps[image[n]];
+    const bool same = std::equal(
+        seen.begin(), seen.end(), there.begin(), there.end(), [](const auto& a, const auto& b) {
+          return a.to == b.to && std::abs(a.rate - b.rate) <= kSameNumber * a.rate;
+        });
     if (!same) return false;
   }
   return true;

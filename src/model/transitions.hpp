@@ -19,13 +19,21 @@ void require_states(const std::vector<double>& x, const std::vector<Transition>&
 /// The numbers x where those that agree but for rounding, up to their signs, are the same.
 [[nodiscard]] std::vector<double> without_rounding(const std::vector<double>& x);
 
-/// The states in rising order of x. Where -X is the same chain, its mirror image has the reverse
-/// order, which among states of one x is found from what surrounds them.
-[[nodiscard]] std::vector<std::size_t> mirrored_order(const std::vector<double>& x,
-                                                      const std::vector<Transition>& transitions);
+/// States in rising order of x, and the place of the mirror image of each place where -X is the
+/// same chain. Images have the reverse order, but that several states may be their own images.
+struct MirroredOrder {
+  std::vector<std::size_t> states;
+  std::vector<std::size_t> image;
 
-/// Whether the jumps are the same in the reverse order of states, but for rounding.
-[[nodiscard]] bool mirrors_itself(const Jumps& jumps);
+  [[nodiscard]] bool reversed() const;
+};
+
+/// Such an order; among states of one x it is found from what surrounds them.
+[[nodiscard]] MirroredOrder mirrored_order(const std::vector<double>& x,
+                                           const std::vector<Transition>& transitions);
+
+/// Whether images of states jump to images, at the same rates but for rounding.
+[[nodiscard]] bool mirrors_itself(const Jumps& jumps, const std::vector<std::size_t>& image);
 
 /// Stationary probabilities. O(states band^2), as all that follows, with jumps over at most `band`
 /// places.

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <numbers>
 
 #include "../common/given.hpp"
 #include "../common/temporary.hpp"
@@ -161,6 +162,10 @@ TEST_CASE("pulses: mean and variance are those of shot noise") {
     CHECK(near(table_of(scene).mean(), mean * height * rate * time, 1e-12));
     CHECK(near(table_of(scene).variance(), variance * height * height * rate * time, 1e-12));
   }
+  // Levels at 0, with as many pulses up as down, are their own images.
+  const auto two = scene_of(with(kPulses, {{"pulse_duration", "0.5"}}));
+  CHECK(table_of(two).even());
+  CHECK(!table_of(two).reversible_order());
   // Where forces of both signs decay on one lattice, steps add no noise of their own for long.
   const auto both = scene_of(with(kPulses, {{"pulse_decay", "0.5"}, {"pulse_steps", "16"}}));
   CHECK(table_of(both).even());
@@ -180,6 +185,13 @@ TEST_CASE("sums of noises: states are pairs, moments add up, options go to their
   const auto scene = scene_of(both);
   CHECK(table_of(scene).highest() - table_of(scene).lowest() + 1 == 7 * 16);
   CHECK(near(table_of(scene).rate(), 16 / 4.0 + 2 * 0.49 / 0.25, 1e-12));
+  // State (phase k, level i) has the number 7 k + i + 3.
+  for (int level : {table_of(scene).lowest(), 0, table_of(scene).highest()}) {
+    const auto number = table_of(scene).listed(level);
+    const double phase = 2 * std::numbers::pi * static_cast<double>(number / 7) / 16,
+                 force = 0.5 * (static_cast<double>(number % 7) - 3);
+    CHECK(near(table_of(scene).at(level).x, 1.2 * std::sin(phase) + force, 1e-12));
+  }
   auto other = both;
   other["noise"] = "ou+periodic";
   CHECK(near(table_of(scene_of(other)).intensity(), table_of(scene).intensity(), 1e-12));

@@ -92,6 +92,9 @@ class LevelTable {
   /// Whether -X is the same chain; and whether level -i then mirrors level i, which needs one at 0
   /// and is of use where jumps are to neighbours.
   [[nodiscard]] bool even() const { return even_; }
+  /// Whether -X is this chain with its levels in the reverse order. Several levels at x = 0 may be
+  /// their own mirror images; then it is not.
+  [[nodiscard]] bool reversible_order() const { return even_ && reversed_; }
   [[nodiscard]] bool symmetric() const {
     return even_ && neighbours_only() && levels_.size() % 2 == 1;
   }
@@ -121,7 +124,7 @@ class LevelTable {
   int lowest_ = 0, mode_ = 0;
   double upper_tail_ = 0, lower_tail_ = 0;
   double mean_ = 0, variance_ = 0, intensity_ = 0, rate_ = 0, step_ = 0;
-  bool even_ = true;
+  bool even_ = true, reversed_ = true;
 };
 
 /// Levels that are no such chain: what() says why, row() in which of them, from 0; in none
