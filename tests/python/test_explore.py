@@ -119,6 +119,14 @@ class Knobs(Case):
         made.choose("drag", "none")
         self.assertNotIn("drag_coefficient", made.scene())
 
+    def test_sliders_complete_every_noise_that_is_offered(self):
+        made = self.explorer()
+        noises = made.offered["noise"]
+        self.assertLessEqual({"ou", "telegraph", "narrow_band", "filtered", "periodic", "pulses"}, set(noises))
+        for noise in set(noises) - {"telegraph"}:  # with which bodies rest and slide only where there is a bias
+            made.choose("noise", noise)
+            self.assertGreater(stickslip.run(**made.scene(), plan=True).plan["seconds"], 0)
+
     def test_logarithmic_sliders_give_rounded_values(self):
         made = self.explorer(scene={"tau": 2.0})
         self.assertEqual(made.scene()["tau"], 2.0)
