@@ -23,9 +23,15 @@ MPI_Datatype type() {
 
 // Sums over all ranks, in place.
 template <class Scalar>
-void sum_over_ranks(MPI_Comm comm, std::vector<Scalar>& x) {
-  const auto size = static_cast<int>(x.size());
-  MPI_Allreduce(MPI_IN_PLACE, x.data(), size, type<Scalar>(), MPI_SUM, comm);
+void sum_over_ranks(MPI_Comm comm, algebra::Matrix<Scalar>& x) {
+  for (int c = 0; c < x.columns() && petsc::ranks(comm) > 1; ++c) {
+    MPI_Allreduce(MPI_IN_PLACE, x.column(c), x.rows(), type<Scalar>(), MPI_SUM, comm);
+  }
+}
+
+template <class Scalar>
+bool is_zero(const algebra::Matrix<Scalar>& a) {
+  return std::all_of(a.data(), a.column(a.columns()), [](Scalar entry) { return entry == 0.0; });
 }
 
 // Sends a matrix from its owner to all ranks.
@@ -373,34 +379,52 @@ void ElementElimination<Scalar>::for_each_unknown_between(Visit visit) const {
   for (std::size_t n = 0; n < static_rows_.size(); ++n) visit(static_begin_ + n, static_rows_[n]);
 }
 
+// The part of vectors on an element.
 template <class Scalar>
-void ElementElimination<Scalar>::solve(Scalars& x, bool transposed) const {
-  Scalars w(length_, 0.0);
-  std::vector<Scalars> f;  // by element of this rank
+auto ElementElimination<Scalar>::given_on(const Line& line, const Element& element,
+                                          const DenseMatrix& x) const -> DenseMatrix {
+  DenseMatrix part(element.length(), x.columns());
+  for (int c = 0; c < x.columns(); ++c) {
+    const Scalar* from = x.column(c);
+    Scalar* to = part.column(c);
+    for_each_unknown(line, element, [=](std::size_t n, PetscInt row) { to[n] = from[row]; });
+  }
+  return part;
+}
+
+template <class Scalar>
+void ElementElimination<Scalar>::solve(DenseMatrix& x, bool transposed) const {
+  DenseMatrix w(static_cast<int>(length_), x.columns()), solved(x.rows(), x.columns());
+  const auto at = algebra::columns_of(w);
   for_each_own_element([&](const Line& line, int e, const Element& element) {
-    Scalars alone(static_cast<std::size_t>(element.size()));
-    for_each_unknown(line, element, [&](std::size_t n, PetscInt row) { alone[n] = x[row]; });
-    f.push_back(alone);
-    element.solve(alone, transposed);
-    element.collect(transposed ? element.taken() : element.given(), alone, &w[line.falling_at(e)],
-                    &w[line.falling_at(e + 1)]);
+    DenseMatrix alone = given_on(line, element, x);
+    if (is_zero(alone)) return;  // most, where bodies start in one state
+    element.solve(algebra::columns_of(alone), transposed);
+    element.collect(transposed ? element.taken() : element.given(), algebra::columns_of(alone),
+                    at.from(line.falling_at(e)), at.from(line.falling_at(e + 1)));
   });
   sum_over_ranks(comm_, w);
-  for_each_unknown_between([&](std::size_t n, PetscInt row) { w[n] += x[row]; });
-  between_.run(w, transposed);
-  std::fill(x.begin(), x.end(), 0.0);
-  auto own = f.begin();
-  for_each_own_element([&](const Line& line, int e, const Element& element) {
-    element.distribute(transposed ? element.given() : element.taken(), &w[line.falling_at(e)],
-                       &w[line.falling_at(e + 1)], *own);
-    element.solve(*own, transposed);
-    for_each_unknown(line, element, [&](std::size_t n, PetscInt row) { x[row] = (*own)[n]; });
-    ++own;
-  });
-  if (petsc::rank(comm_) == 0) {
-    for_each_unknown_between([&](std::size_t n, PetscInt row) { x[row] = w[n]; });
+  for (int c = 0; c < x.columns(); ++c) {
+    for_each_unknown_between([&](std::size_t n, PetscInt row) { at.column(c)[n] += x(row, c); });
   }
-  sum_over_ranks(comm_, x);
+  between_.run(at, transposed);
+  for_each_own_element([&](const Line& line, int e, const Element& element) {
+    DenseMatrix part = given_on(line, element, x);
+    element.distribute(transposed ? element.given() : element.taken(), at.from(line.falling_at(e)),
+                       at.from(line.falling_at(e + 1)), algebra::columns_of(part));
+    element.solve(algebra::columns_of(part), transposed);
+    for (int c = 0; c < x.columns(); ++c) {
+      const Scalar* from = part.column(c);
+      Scalar* to = solved.column(c);
+      for_each_unknown(line, element, [=](std::size_t n, PetscInt row) { to[row] = from[n]; });
+    }
+  });
+  for (int c = 0; c < x.columns() && petsc::rank(comm_) == 0; ++c) {
+    for_each_unknown_between(
+        [&](std::size_t n, PetscInt row) { solved(row, c) = at.column(c)[n]; });
+  }
+  sum_over_ranks(comm_, solved);
+  x = std::move(solved);
 }
 
 template <class Scalar>

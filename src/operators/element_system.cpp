@@ -393,35 +393,42 @@ ElementSystem<Scalar>::ElementSystem(const noise::Nodes& noise,
                           rising_outer);
   response = elimination.response();
   steps_ = elimination.steps();
-  length_ = elimination.length();
+  length_ = static_cast<int>(elimination.length());
 }
 
 template <class Scalar>
-void ElementSystem<Scalar>::solve(Scalars& x, bool transposed) const {
-  x.resize(static_cast<std::size_t>(size()));
-  x.resize(length_, 0.0);
+void ElementSystem<Scalar>::solve(Lists x, bool transposed) const {
+  for (int c = 0; c < x.count; ++c) std::fill(x.column(c) + size(), x.column(c) + length_, 0.0);
   steps_.run(x, transposed);
 }
 
 template <class Scalar>
-void ElementSystem<Scalar>::collect(const Ports& ports, const Scalars& x, Scalar* at_inner,
-                                    Scalar* at_outer) const {
-  std::size_t place = 0;
-  for (int l = 0; l < count_; ++l) {
-    for (int m = 0; m < nodes_; ++m, ++place) {
-      at_inner[l] += ports.inner[place] * x[place];
-      at_outer[l] += ports.outer[place] * x[place];
+void ElementSystem<Scalar>::collect(const Ports& ports, Lists x, Lists at_inner,
+                                    Lists at_outer) const {
+  for (int c = 0; c < x.count; ++c) {
+    const Scalar* from = x.column(c);
+    Scalar *inner = at_inner.column(c), *outer = at_outer.column(c);
+    std::size_t place = 0;
+    for (int l = 0; l < count_; ++l) {
+      for (int m = 0; m < nodes_; ++m, ++place) {
+        inner[l] += ports.inner[place] * from[place];
+        outer[l] += ports.outer[place] * from[place];
+      }
     }
   }
 }
 
 template <class Scalar>
-void ElementSystem<Scalar>::distribute(const Ports& ports, const Scalar* at_inner,
-                                       const Scalar* at_outer, Scalars& x) const {
-  std::size_t place = 0;
-  for (int l = 0; l < count_; ++l) {
-    for (int m = 0; m < nodes_; ++m, ++place) {
-      x[place] += ports.inner[place] * at_inner[l] + ports.outer[place] * at_outer[l];
+void ElementSystem<Scalar>::distribute(const Ports& ports, Lists at_inner, Lists at_outer,
+                                       Lists x) const {
+  for (int c = 0; c < x.count; ++c) {
+    const Scalar *inner = at_inner.column(c), *outer = at_outer.column(c);
+    Scalar* to = x.column(c);
+    std::size_t place = 0;
+    for (int l = 0; l < count_; ++l) {
+      for (int m = 0; m < nodes_; ++m, ++place) {
+        to[place] += ports.inner[place] * inner[l] + ports.outer[place] * outer[l];
+      }
     }
   }
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -12,6 +13,7 @@
 #include "stickslip/operators/solver_policy.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/scalars.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/support/errors.hpp"
@@ -92,17 +94,35 @@ double residual(Mat a, Vec x, Vec b, bool transposed) {
   return left / (size + matrix * solution);
 }
 
+// A rough vector, a zero one, and one that is not zero in the first of its rows alone.
 void check_solves(const KolmogorovOperator& a, Mat matrix, bool share = true) {
   const ElementElimination elimination(matrix, operators::data_of(matrix), share);
-  const auto b = rough(a);
+  std::vector<petsc::VecHandle> given;
+  for (int c = 0; c < 3; ++c) given.push_back(c == 0 ? rough(a) : a.zeros());
+  check(VecSetValue(given[2], 0, 1, INSERT_VALUES));
+  check(VecAssemblyBegin(given[2]));
+  check(VecAssemblyEnd(given[2]));
   const auto x = a.zeros();
   const petsc::WholeVectors vectors(matrix);
   for (bool transposed : {false, true}) {
     INFO((transposed ? "transposed" : "forward"));
-    auto all = vectors.gathered(b);
+    petsc::DenseMatrix all(a.states().global_size(), 3);
+    for (int c = 0; c < 3; ++c) {
+      const auto column = vectors.gathered(given[c]);
+      std::copy(column.begin(), column.end(), all.column(c));
+    }
     elimination.solve(all, transposed);
-    vectors.scatter(all, x, [](PetscScalar entry) { return entry; });
-    CHECK(residual(matrix, x, b, transposed) < 1e-13);
+    for (int c = 0; c < 3; ++c) {
+      INFO("column " << c);
+      vectors.scatter(all.column(c), x, [](PetscScalar entry) { return entry; });
+      if (c == 1) {
+        PetscReal size = 1;
+        check(VecNorm(x, NORM_INFINITY, &size));
+        CHECK(size == 0);
+      } else {
+        CHECK(residual(matrix, x, given[c], transposed) < 1e-13);
+      }
+    }
   }
 }
 
@@ -149,6 +169,31 @@ TEST_CASE("element elimination: follows a shift of the operator", "[parallel]") 
     INFO(c.name);
     const KolmogorovOperator a(PETSC_COMM_WORLD, c.on, 0.1, c.symmetry, StaticPhase::kept);
     check_solves(a, a.shifted(shift));
+  }
+}
+
+TEST_CASE("element elimination: solutions found together are those found alone", "[parallel]") {
+  for (const auto& c : samples()) {
+    INFO(c.name << ", symmetry " << static_cast<int>(c.symmetry));
+    petsc::SolverStatistics statistics;
+    operators::System system({PETSC_COMM_WORLD, c.on, 0.3, c.symmetry, StaticPhase::kept},
+                             statistics);
+    const auto& a = system.a();
+    std::vector<petsc::VecHandle> b;
+    b.push_back(rough(a));
+    b.push_back(a.zeros());
+    b.push_back(a.values([](double, double y, double v) { return y + v; }));
+    const auto together = system.factors().solve_transposed(b);
+    CHECK(statistics.solves == 3);
+    for (std::size_t n = 0; n < b.size(); ++n) {
+      const auto alone = system.factors().solve_transposed(b[n]);
+      PetscReal size = 0, difference = 0;
+      check(VecNorm(alone.x, NORM_1, &size));
+      check(VecAXPY(alone.x, -1, together[n].x));
+      check(VecNorm(alone.x, NORM_1, &difference));
+      CHECK(difference <= 1e-12 * size);
+      CHECK(together[n].backward_error < 1e-14);
+    }
   }
 }
 

@@ -43,7 +43,7 @@ class StaticRows;
 template <class Scalar>
 class ElementElimination {
  public:
-  using Scalars = std::vector<Scalar>;
+  using DenseMatrix = algebra::Matrix<Scalar>;
 
   /// Factors `matrix`, which carries `data`; of its entries the rows of static states are read, the
   /// others follow from the discretisation. Without `share` each rank factors all elements.
@@ -55,14 +55,15 @@ class ElementElimination {
                      bool share = true);
   ~ElementElimination();
 
-  /// x <- A^-1 x, or A^-T x without conjugation, x the whole vector on every rank. Collective.
-  void solve(Scalars& x, bool transposed) const;
+  /// X <- A^-1 X, or A^-T X without conjugation, whole vectors on every rank, by columns: factors
+  /// are read once for all of them. Collective.
+  void solve(DenseMatrix& x, bool transposed) const;
 
   /// Numbers kept by this rank.
   [[nodiscard]] double entries() const;
 
  private:
-  using DenseMatrix = algebra::Matrix<Scalar>;
+  using Scalars = std::vector<Scalar>;
   using DenseFactors = algebra::LuFactors<Scalar>;
   using Element = ElementSystem<Scalar>;
   using Response = typename Element::Response;
@@ -84,6 +85,8 @@ class ElementElimination {
   [[nodiscard]] StaticRows<Scalar> read_static_rows(Mat matrix) const;
   void meet(Mat matrix);
 
+  [[nodiscard]] DenseMatrix given_on(const Line& line, const Element& element,
+                                     const DenseMatrix& x) const;
   template <class Visit>
   void for_each_own_element(Visit visit) const;
   template <class Visit>
