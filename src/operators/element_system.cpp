@@ -17,13 +17,13 @@ template <class Scalar>
 DenseMatrix<Scalar> contracted(std::span<const double> c, int nodes, const DenseMatrix<Scalar>& x) {
   const int count = x.rows() / nodes, rows = static_cast<int>(c.size()) / count;
   DenseMatrix<Scalar> y(rows * nodes, x.columns());
-  for (int column = 0; column < x.columns(); ++column) {
-    for (int r = 0; r < rows; ++r) {
-      Scalar* to = y.column(column) + r * nodes;
-      for (int l = 0; l < count; ++l) {
-        const double weight = c[r * count + l];
-        if (weight == 0) continue;
+  for (int r = 0; r < rows; ++r) {
+    for (int l = 0; l < count; ++l) {
+      const double weight = c[r * count + l];
+      if (weight == 0) continue;
+      for (int column = 0; column < x.columns(); ++column) {
         const Scalar* from = x.column(column) + l * nodes;
+        Scalar* to = y.column(column) + r * nodes;
         for (int m = 0; m < nodes; ++m) to[m] += weight * from[m];
       }
     }
@@ -299,7 +299,13 @@ class ElementSystem<Scalar>::Elimination {
         return all;
       };
       const bool begins = group.begin == 0;
+      // With wide borders it takes less to find the values on all nodes first.
+      const auto first = group.noise->at_first(), to_last = group.noise->at_last();
+      const bool wide =
+          group.count > 1 && rank_of(first, group) + rank_of(to_last, group) > group.count;
+      const Matrix everywhere = wide ? extended(group.to_before, alone) : Matrix();
       const auto map = [&](const auto& functional) {
+        if (wide) return functional(everywhere);
         const Matrix through = begins ? Matrix() : functional(group.to_before);
         return extended(through, functional(alone));
       };
@@ -308,8 +314,8 @@ class ElementSystem<Scalar>::Elimination {
       };
       const Matrix given = map([&](const Matrix& x) { return outputs(group, x); });
       place(given, row, 0, result_);
-      Matrix next = on(group.noise->at_last());
-      on_first_.push_back(group.count == 1 ? next : on(group.noise->at_first()));
+      Matrix next = on(to_last);
+      on_first_.push_back(group.count == 1 ? next : on(first));
       last = std::move(next);
       column += inputs;
       row += given.rows();

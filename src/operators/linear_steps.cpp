@@ -69,16 +69,15 @@ void LinearSteps<Scalar>::spread(std::span<const double> c, int block, std::size
 
 template <class Scalar>
 void LinearSteps<Scalar>::Contraction::run(Lists w, bool transposed) const {
-  for (int n = 0; n < w.count; ++n) {
-    Scalar *const single = w.column(n) + one, *row = w.column(n) + many;
-    for (const double weight : c) {
-      if (weight == 0) {  // of levels that are nodes, all but one
-      } else if (spreads != transposed) {
-        for (int m = 0; m < block; ++m) row[m] += weight * single[m];
-      } else {
-        for (int m = 0; m < block; ++m) single[m] += weight * row[m];
-      }
-      row += block;
+  const bool outwards = spreads != transposed;
+  for (std::size_t l = 0; l < c.size(); ++l) {
+    const double weight = c[l];
+    if (weight == 0) continue;  // of levels that are nodes, all but one
+    const std::size_t row = many + l * static_cast<std::size_t>(block);
+    for (int n = 0; n < w.count; ++n) {
+      const Scalar* from = w.column(n) + (outwards ? one : row);
+      Scalar* to = w.column(n) + (outwards ? row : one);
+      for (int m = 0; m < block; ++m) to[m] += weight * from[m];
     }
   }
 }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kBackwardErrorLimit = 1e-12;
 constexpr int kMostRefinementSteps = 2;  // the second only where the first leaves too much
-constexpr std::size_t kTogether = 64;    // right-hand sides, in memory at once
+constexpr std::size_t kTogether = 32;    // right-hand sides, in memory at once
 
 }  // namespace
 

@@ -160,6 +160,7 @@ bool solve_together(KSP ksp, std::span<const Vec> b, std::span<const Vec> x, boo
   auto* const apply = own_function<ApplyToColumns>(ksp, kApplyToColumns);
   if (alone == PETSC_FALSE || apply == nullptr) return false;
   check(apply(preconditioner_of(ksp), b, x, transposed));
+  check(KSPViewFromOptions(ksp, nullptr, "-ksp_view"));  // as KSPSolve does
   return true;
 }
 
