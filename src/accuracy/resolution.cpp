@@ -230,10 +230,12 @@ operators::FactorCost factor_cost(const model::Scene& scene, const Resolution& r
     return operators::sparse_cost(factors, r.scheme, n, noise);
   }
   const auto velocities = velocities_of(scene, r);
+  const auto process = scene.process(r.levels);
   const auto cost = operators::elimination_cost(
-      scene.process(r.levels), dynamic_cast<const velocity::HpDiscretisation&>(*velocities),
-      r.noise.get(), ranks);
-  return {r.branches * cost.entries, r.branches * cost.bytes, r.branches * cost.operations};
+      process, dynamic_cast<const velocity::HpDiscretisation&>(*velocities), r.noise.get(), ranks);
+  const bool alike = operators::branches_share_factors(process, r.noise == nullptr, *velocities);
+  const int branches = alike ? 1 : r.branches;
+  return {branches * cost.entries, branches * cost.bytes, branches * cost.operations};
 }
 
 cases::Factors factors_of(const model::Scene& scene, const Resolution& r) {

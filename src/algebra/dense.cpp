@@ -163,6 +163,16 @@ void add_product(const Matrix<Scalar>& a, const std::type_identity_t<Scalar>* x,
 }
 
 template <class Scalar>
+void add_product(const Matrix<Scalar>& a, Columns<Scalar> x, Columns<Scalar> y, bool transposed) {
+  if (x.count == 1) return add_product(a, x.first, y.first, transposed);
+  const int lda = a.rows(), m = transposed ? a.columns() : lda, k = transposed ? lda : a.columns();
+  if (m == 0 || x.count == 0 || k == 0) return;
+  const Scalar one = 1;
+  Routines<Scalar>::gemm(transposed ? "T" : "N", "N", &m, &x.count, &k, &one, a.data(), &lda,
+                         x.first, &x.stride, &one, y.first, &y.stride);
+}
+
+template <class Scalar>
 LuFactors<Scalar>::LuFactors(Matrix<Scalar> a)
     : lu_(std::move(a)), pivots_(static_cast<std::size_t>(lu_.rows())) {
   const int n = size();
@@ -172,20 +182,18 @@ LuFactors<Scalar>::LuFactors(Matrix<Scalar> a)
 }
 
 template <class Scalar>
-void LuFactors<Scalar>::solve(Matrix<Scalar>& b) const {
-  solve(b.data(), b.columns(), false);
-}
-
-template <class Scalar>
-void LuFactors<Scalar>::solve(Scalar* b, int columns, bool transposed) const {
+void LuFactors<Scalar>::solve(Columns<Scalar> b, bool transposed) const {
   const int n = size();
-  if (n == 0 || columns == 0) return;
+  if (n == 0 || b.count == 0) return;
   if constexpr (std::is_same_v<Scalar, double>) {
-    if (!transposed && columns == 1 && n <= kSmallSystem) return solve_small(lu_, pivots_, b);
+    if (!transposed && b.count == 1 && n <= kSmallSystem) {
+      return solve_small(lu_, pivots_, b.first);
+    }
   }
+  const int stride = b.count == 1 ? n : b.stride;
   int info = 0;  // nothing but wrong arguments
-  Routines<Scalar>::getrs(transposed ? "T" : "N", &n, &columns, lu_.data(), &n, pivots_.data(), b,
-                          &n, &info);
+  Routines<Scalar>::getrs(transposed ? "T" : "N", &n, &b.count, lu_.data(), &n, pivots_.data(),
+                          b.first, &stride, &info);
 }
 
 template class LuFactors<double>;
@@ -196,6 +204,8 @@ template void add_product(Complex, const Matrix<Complex>&, const Matrix<Complex>
                           Matrix<Complex>&);
 template void add_product(const Matrix<double>&, const double*, double*, bool);
 template void add_product(const Matrix<Complex>&, const Complex*, Complex*, bool);
+template void add_product(const Matrix<double>&, Columns<double>, Columns<double>, bool);
+template void add_product(const Matrix<Complex>&, Columns<Complex>, Columns<Complex>, bool);
 
 SingularValues::SingularValues(Matrix<double> a)
     : left(a.rows(), a.rows()),

@@ -61,13 +61,13 @@ class ComplexSolver::ByElements final : public Factors {
 
   void solve(const ComplexVector& b, const ComplexVector& x, bool transposed) override {
     const auto real = vectors_.gathered(b.real), imaginary = vectors_.gathered(b.imaginary);
-    std::vector<Complex> all(real.size());
-    for (std::size_t n = 0; n < all.size(); ++n) {
-      all[n] = {PetscRealPart(real[n]), PetscRealPart(imaginary[n])};
+    algebra::Matrix<Complex> all(static_cast<int>(real.size()), 1);
+    for (std::size_t n = 0; n < real.size(); ++n) {
+      all.data()[n] = {PetscRealPart(real[n]), PetscRealPart(imaginary[n])};
     }
     factors_.solve(all, transposed);
-    vectors_.scatter(all, x.real, [](Complex entry) { return entry.real(); });
-    vectors_.scatter(all, x.imaginary, [](Complex entry) { return entry.imag(); });
+    vectors_.scatter(all.data(), x.real, [](Complex entry) { return entry.real(); });
+    vectors_.scatter(all.data(), x.imaginary, [](Complex entry) { return entry.imag(); });
   }
 
  private:

@@ -4,7 +4,9 @@
 #include <cstdlib>
 #include <type_traits>
 
+#include "branch_factors.hpp"
 #include "static_rows.hpp"
+#include "stickslip/operators/solver_policy.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
@@ -13,26 +15,19 @@
 namespace stickslip::operators {
 namespace {
 
-using algebra::add_product;
 using petsc::check;
-
-template <class Scalar>
-MPI_Datatype type() {
-  return std::is_same_v<Scalar, double> ? MPI_DOUBLE : MPI_C_DOUBLE_COMPLEX;
-}
 
 // Sums over all ranks, in place.
 template <class Scalar>
-void sum_over_ranks(MPI_Comm comm, std::vector<Scalar>& x) {
-  const auto size = static_cast<int>(x.size());
-  MPI_Allreduce(MPI_IN_PLACE, x.data(), size, type<Scalar>(), MPI_SUM, comm);
+void sum_over_ranks(MPI_Comm comm, algebra::Matrix<Scalar>& x) {
+  for (int c = 0; c < x.columns() && petsc::ranks(comm) > 1; ++c) {
+    MPI_Allreduce(MPI_IN_PLACE, x.column(c), x.rows(), mpi_type<Scalar>(), MPI_SUM, comm);
+  }
 }
 
-// Sends a matrix from its owner to all ranks.
 template <class Scalar>
-void send(MPI_Comm comm, int owner, int rows, int columns, algebra::Matrix<Scalar>& a) {
-  if (petsc::rank(comm) != owner) a = algebra::Matrix<Scalar>(rows, columns);
-  MPI_Bcast(a.data(), rows * columns, type<Scalar>(), owner, comm);
+bool is_zero(const algebra::Matrix<Scalar>& a) {
+  return std::all_of(a.data(), a.column(a.columns()), [](Scalar entry) { return entry == 0.0; });
 }
 
 }  // namespace
@@ -62,28 +57,18 @@ auto ElementElimination<Scalar>::read_static_rows(Mat matrix) const -> StaticRow
   return at_rest;
 }
 
-/// A velocity branch; lists by noise node count along it.
+/// A velocity branch, its rows and its place in w.
 template <class Scalar>
 struct ElementElimination<Scalar>::Line {
-  Branch branch = Branch::positive;
-  const velocity::HpDiscretisation* velocities = nullptr;
+  Branch branch;
+  const Factors* factors;
   const noise::Nodes* noise;
-  std::vector<double> net_force;
   std::vector<StateSpace::NodeLine> nodes;  // of a noise node
   std::vector<PetscInt> holding;            // rows of holding states, of the highest nodes
-  std::vector<int> rising;                  // by end of elements: first node that rises there
-  std::size_t first_element = 0;            // counted over all branches
-  std::size_t begin = 0;                    // in w: of the values at v = 0, those at v_1 ...
-  std::vector<std::unique_ptr<Element>> elements;  // those of this rank
-  std::vector<Response> responses;                 // of shared ones, until they are used
-  DenseMatrix reflection;                          // R at v = 0
-  Steps outwards;                                  // from the values that fall at v = 0
+  std::size_t begin;                        // in w
 
-  [[nodiscard]] int count() const { return static_cast<int>(net_force.size()); }
-  [[nodiscard]] std::size_t falling_at(int end) const {
-    return begin + static_cast<std::size_t>(end) * net_force.size();
-  }
-  [[nodiscard]] std::size_t rising_at(int end) const { return falling_at(end) + rising[end]; }
+  [[nodiscard]] std::size_t falling_at(int end) const { return begin + factors->falling_at(end); }
+  [[nodiscard]] std::size_t rising_at(int end) const { return begin + factors->rising_at(end); }
 };
 
 template <class Scalar>
@@ -95,9 +80,12 @@ ElementElimination<Scalar>::ElementElimination(Mat matrix, std::shared_ptr<const
       comm_(share ? data_->states.comm() : PETSC_COMM_SELF) {
   const StateSpace& states = data_->states;
   const auto& process = data_->discretisation.process;
+  const bool alike = branches_share_factors(process, data_->discretisation.noise->all_levels(),
+                                            *data_->discretisation.velocities);
   for (Branch branch : states.branches()) {
-    lines_.push_back(line_of(branch));
-    length_ = lines_.back().falling_at(lines_.back().velocities->elements() + 1);
+    if (!alike || factors_.empty()) factors_.push_back(unfactored(branch));
+    lines_.push_back(line_of(branch, *factors_.back()));
+    length_ = lines_.back().falling_at(factors_.back()->velocities().elements() + 1);
   }
   for (int i = process.lowest_static(); i <= process.highest_static(); ++i) {
     if (!states.has_static_state(i)) continue;
@@ -106,8 +94,15 @@ ElementElimination<Scalar>::ElementElimination(Mat matrix, std::shared_ptr<const
   }
   static_begin_ = length_;
   length_ += static_rows_.size();
-  if (petsc::ranks(comm_) > 1) make_shared_elements();
-  for (Line& line : lines_) reflect(line);
+  if (petsc::ranks(comm_) > 1) {
+    // All before the first is sent: one that fails ends all ranks alike.
+    std::string failure;
+    for (auto& factors : factors_) {
+      if (failure.empty()) failure = factors->make_shared_elements();
+    }
+    petsc::require_everywhere(comm_, failure);
+  }
+  for (auto& factors : factors_) factors->reflect();
   meet(matrix);
 }
 
@@ -115,132 +110,34 @@ template <class Scalar>
 ElementElimination<Scalar>::~ElementElimination() = default;
 
 template <class Scalar>
-auto ElementElimination<Scalar>::line_of(Branch branch) const -> Line {
+auto ElementElimination<Scalar>::unfactored(Branch branch) const -> std::unique_ptr<Factors> {
   const auto& [process, noise, velocities] = data_->discretisation;
-  const StateSpace& states = data_->states;
   const bool upper = branch == Branch::positive;
   const model::Process along = upper ? process : process.mirrored();
-  Line line;
-  line.branch = branch;
-  line.velocities = dynamic_cast<const velocity::HpDiscretisation*>(
-      upper ? velocities.get() : &velocities->mirrored());
-  if (!lines_.empty()) line.first_element = lines_.back().elements.size();
-  line.begin = length_;
-  line.noise = upper ? noise.get() : &noise->mirrored();
+  const noise::Nodes& nodes = upper ? *noise : noise->mirrored();
+  std::vector<double> net_force;
+  for (int n = nodes.first(); n <= nodes.last(); ++n) {
+    net_force.push_back(along.net_force_at(nodes.x(n)));
+  }
+  const auto& on =
+      dynamic_cast<const velocity::HpDiscretisation&>(upper ? *velocities : velocities->mirrored());
+  const std::size_t before = factors_.empty() ? 0 : factors_.back()->elements().size();
+  return std::make_unique<Factors>(nodes, on, std::move(net_force), lambda_, clock_, comm_, before);
+}
+
+template <class Scalar>
+auto ElementElimination<Scalar>::line_of(Branch branch, const Factors& factors) const -> Line {
+  const StateSpace& states = data_->states;
+  const noise::Nodes& noise = *data_->discretisation.noise;
+  Line line{branch, &factors, branch == Branch::positive ? &noise : &noise.mirrored(),
+            {},     {},       length_};
   for (int n = line.noise->first(); n <= line.noise->last(); ++n) {
-    line.net_force.push_back(along.net_force_at(line.noise->x(n)));
     line.nodes.push_back(states.nodes_of(branch, n));
     if (states.has_holding(branch, n)) {
       line.holding.push_back(states.index({StateKind::holding, branch, n, 0}));
     }
   }
-  const int elements = line.velocities->elements();
-  line.elements.resize(static_cast<std::size_t>(elements));
-  for (int e = 0; e <= elements; ++e) {
-    line.rising.push_back(first_rising(line.net_force, line.velocities->drag_at_end(e)));
-  }
   return line;
-}
-
-// The rank that has an element.
-template <class Scalar>
-int ElementElimination<Scalar>::owner(const Line& line, std::size_t e) const {
-  return static_cast<int>((line.first_element + e) % static_cast<std::size_t>(petsc::ranks(comm_)));
-}
-
-template <class Scalar>
-auto ElementElimination<Scalar>::make_element(Line& line, std::size_t e) const -> Response {
-  Response response;
-  line.elements[e] = std::make_unique<Element>(*line.noise, *line.velocities, static_cast<int>(e),
-                                               line.net_force, lambda_, clock_, response);
-  return response;
-}
-
-// All before the first is sent: one that fails ends all ranks alike.
-template <class Scalar>
-void ElementElimination<Scalar>::make_shared_elements() {
-  std::string failure;
-  for (Line& line : lines_) {
-    line.responses.resize(line.elements.size());
-    for (std::size_t e = 0; e < line.elements.size() && failure.empty(); ++e) {
-      if (owner(line, e) != petsc::rank(comm_)) continue;
-      try {
-        line.responses[e] = make_element(line, e);
-      } catch (const NotReached& singular) {
-        failure = singular.what();
-      }
-    }
-  }
-  petsc::require_everywhere(comm_, failure);
-}
-
-// What an element makes of the values beyond its ends, on all ranks.
-template <class Scalar>
-auto ElementElimination<Scalar>::response(Line& line, std::size_t e) const -> Response {
-  if (petsc::ranks(comm_) == 1) return make_element(line, e);
-  Response s = std::move(line.responses[e]);
-  const int all = line.count(), inner = line.rising[e], outer = line.rising[e + 1];
-  send(comm_, owner(line, e), all - inner, inner, s.inner_inner);
-  send(comm_, owner(line, e), all - inner, all - outer, s.inner_outer);
-  send(comm_, owner(line, e), outer, inner, s.outer_inner);
-  send(comm_, owner(line, e), outer, all - outer, s.outer_outer);
-  return s;
-}
-
-// What holding states make of the values that fall at v_max; where bodies are killed, nothing.
-template <class Scalar>
-auto ElementElimination<Scalar>::hold(const Line& line) -> DenseMatrix {
-  const noise::Nodes& noise = *line.noise;
-  const int below = line.rising[line.velocities->elements()], held = line.count() - below;
-  if (line.velocities->kills_at_top()) return {held, below};
-  DenseMatrix own(held, held), jumps(held, below);
-  for (int l = 0; l < held; ++l) {
-    own(l, l) = lambda_ * rate_of(clock_, line.velocities->v_max());
-    for (const auto& [to, rate] : noise.jumps(noise.first() + below + l)) {
-      const int place = to - noise.first();
-      own(l, l) += rate;
-      if (place < below) {
-        jumps(l, place) = rate;
-      } else {
-        own(l, place - below) -= rate;
-      }
-    }
-  }
-  DenseFactors factors(std::move(own));
-  factors.solve(jumps);
-  between_.solve(std::move(factors), line.rising_at(line.velocities->elements()));
-  return jumps;
-}
-
-// From v_max down to v = 0: w takes up what each element gives, as it comes back from above.
-template <class Scalar>
-void ElementElimination<Scalar>::reflect(Line& line) {
-  DenseMatrix reflection = hold(line);
-  std::vector<std::pair<DenseMatrix, DenseMatrix>> outwards;
-  for (int e = line.velocities->elements(); e-- > 0;) {
-    auto s = response(line, static_cast<std::size_t>(e));
-    const int falling = line.rising[e + 1];
-    DenseMatrix turns = DenseMatrix::identity(falling);
-    add_product(-1, s.outer_outer, reflection, falling, turns);
-    DenseFactors factors(std::move(turns));
-    DenseMatrix through = std::move(s.outer_inner);
-    factors.solve(through);
-    DenseMatrix returned = reflection * through;
-    add_product(1, s.inner_outer, returned, returned.columns(), s.inner_inner);
-    const std::size_t fall = line.falling_at(e + 1), rise = line.rising_at(e + 1);
-    between_.add(std::move(s.outer_outer), rise, fall);
-    between_.solve(std::move(factors), fall);
-    between_.add(std::exchange(reflection, std::move(s.inner_inner)), fall, rise);
-    between_.add(std::move(s.inner_outer), rise, line.rising_at(e));
-    outwards.emplace_back(std::move(through), std::move(returned));
-  }
-  line.reflection = reflection;
-  line.outwards.add(std::move(reflection), line.falling_at(0), line.rising_at(0));
-  for (int e = 0; e < line.velocities->elements(); ++e) {
-    auto& [through, returned] = outwards[outwards.size() - 1 - static_cast<std::size_t>(e)];
-    line.outwards.add(std::move(through), line.falling_at(e), line.falling_at(e + 1));
-    line.outwards.add(std::move(returned), line.falling_at(e), line.rising_at(e + 1));
-  }
 }
 
 // What a branch finds in the static states, of its nodes that fall to v = 0 from `fall` on.
@@ -250,7 +147,7 @@ void ElementElimination<Scalar>::add_shares(const Line& line, std::size_t fall,
   const StateSpace& states = data_->states;
   const noise::Nodes& noise = *line.noise;
   const Branch other = states.symmetry_reduced() ? line.branch : opposite(line.branch);
-  for (int l = 0; l < line.rising[0]; ++l) {
+  for (int l = 0; l < line.factors->falling(); ++l) {
     const int node = l + noise.first();
     if (node < -states.last_static(other)) continue;
     const auto& group = noise.group_of(node);
@@ -281,9 +178,9 @@ void ElementElimination<Scalar>::add_crossings(const Line& line, std::size_t fal
 template <class Scalar>
 std::size_t ElementElimination<Scalar>::exit_at(PetscInt column) const {
   for (const Line& line : lines_) {
-    const PetscInt q = line.velocities->element(0).reference->size;
+    const PetscInt q = line.factors->velocities().element(0).reference->size;
     for (int node = data_->states.last_static(line.branch) + 1 - line.noise->first();
-         node < line.count(); ++node) {
+         node < line.noise->count(); ++node) {
       const auto& [first, stride] = line.nodes[node];
       const PetscInt from = column - first, place = stride == 0 ? 0 : from / stride;
       if (from == place * stride && place >= 0 && place < q) return line.begin + node;
@@ -301,11 +198,11 @@ void ElementElimination<Scalar>::meet(Mat matrix) {
   for (const Line& line : lines_) {
     add_shares(line, length_, shares);
     add_crossings(line, length_, found);
-    for (int l = 0; l < line.rising[0]; ++l) returned.push_back({length_++, line.begin + l, 1});
+    for (int l = 0; l < line.factors->falling(); ++l)
+      returned.push_back({length_++, line.begin + l, 1});
   }
   const std::size_t falling = length_ - fall;
   StaticRows<Scalar> at_rest = read_static_rows(matrix);
-  Steps leaving;
   for (const auto& [exit, rates] : at_rest.exits()) {
     DenseMatrix left(static_cast<int>(static_rows_.size()), 1);
     std::copy(rates.begin(), rates.end(), left.data());
@@ -316,7 +213,7 @@ void ElementElimination<Scalar>::meet(Mat matrix) {
     for (std::size_t n = 0; n < falling; ++n) {
       if (passed[n] != 0.0) found.push_back({exit, fall + n, passed[n]});
     }
-    leaving.add(std::move(left), exit, static_begin_);
+    leaving_.add(std::move(left), exit, static_begin_);
   }
   DenseMatrix closed = DenseMatrix::identity(static_cast<int>(falling));
   int first = 0;
@@ -324,27 +221,45 @@ void ElementElimination<Scalar>::meet(Mat matrix) {
     for (const auto& [from, to, weight] : found) {
       if (from < line.rising_at(0) || from >= line.falling_at(1)) continue;
       const int n = static_cast<int>(from - line.rising_at(0)), row = static_cast<int>(to - fall);
-      for (int c = 0; c < line.rising[0]; ++c) {
-        closed(row, first + c) -= weight * line.reflection(n, c);
+      for (int c = 0; c < line.factors->falling(); ++c) {
+        closed(row, first + c) -= weight * line.factors->reflection()(n, c);
       }
     }
-    first += line.rising[0];
+    first += line.factors->falling();
   }
-  at_rest.move_to(between_, static_begin_);
-  between_.add(std::move(shares));
-  between_.add(std::move(found));
-  between_.solve(DenseFactors(std::move(closed)), fall);
-  between_.add(std::move(returned));
-  for (Line& line : lines_) between_.append(std::move(line.outwards));
-  between_.append(std::move(leaving));
+  at_rest.move_to(meeting_, static_begin_);
+  meeting_.add(std::move(shares));
+  meeting_.add(std::move(found));
+  meeting_.solve(DenseFactors(std::move(closed)), fall);
+  meeting_.add(std::move(returned));
+}
+
+// What static states find at the exits comes last, as what rises there does.
+template <class Scalar>
+void ElementElimination<Scalar>::solve_between(algebra::Columns<Scalar> w, bool transposed) const {
+  const auto on_branches = [&](const Steps& (Factors::*steps)() const) {
+    for (const Line& line : lines_) (line.factors->*steps)().run(w.from(line.begin), transposed);
+  };
+  if (transposed) {
+    leaving_.run(w, true);
+    on_branches(&Factors::outwards);
+    meeting_.run(w, true);
+    on_branches(&Factors::inwards);
+  } else {
+    on_branches(&Factors::inwards);
+    meeting_.run(w, false);
+    on_branches(&Factors::outwards);
+    leaving_.run(w, false);
+  }
 }
 
 template <class Scalar>
 template <class Visit>
 void ElementElimination<Scalar>::for_each_own_element(Visit visit) const {
   for (const Line& line : lines_) {
-    for (int e = 0; e < static_cast<int>(line.elements.size()); ++e) {
-      if (line.elements[e]) visit(line, e, *line.elements[e]);
+    const auto& elements = line.factors->elements();
+    for (int e = 0; e < static_cast<int>(elements.size()); ++e) {
+      if (elements[e]) visit(line, e, *elements[e]);
     }
   }
 }
@@ -367,46 +282,64 @@ template <class Scalar>
 template <class Visit>
 void ElementElimination<Scalar>::for_each_unknown_between(Visit visit) const {
   for (const Line& line : lines_) {
-    std::size_t place = line.rising_at(line.velocities->elements());
+    std::size_t place = line.rising_at(line.factors->velocities().elements());
     for (PetscInt row : line.holding) visit(place++, row);
   }
   for (std::size_t n = 0; n < static_rows_.size(); ++n) visit(static_begin_ + n, static_rows_[n]);
 }
 
+// The part of vectors on an element.
 template <class Scalar>
-void ElementElimination<Scalar>::solve(Scalars& x, bool transposed) const {
-  Scalars w(length_, 0.0);
-  std::vector<Scalars> f;  // by element of this rank
+auto ElementElimination<Scalar>::given_on(const Line& line, const Element& element,
+                                          const DenseMatrix& x) const -> DenseMatrix {
+  DenseMatrix part(element.length(), x.columns());
+  for (int c = 0; c < x.columns(); ++c) {
+    const Scalar* from = x.column(c);
+    Scalar* to = part.column(c);
+    for_each_unknown(line, element, [=](std::size_t n, PetscInt row) { to[n] = from[row]; });
+  }
+  return part;
+}
+
+template <class Scalar>
+void ElementElimination<Scalar>::solve(DenseMatrix& x, bool transposed) const {
+  DenseMatrix w(static_cast<int>(length_), x.columns()), solved(x.rows(), x.columns());
+  const auto at = algebra::columns_of(w);
   for_each_own_element([&](const Line& line, int e, const Element& element) {
-    Scalars alone(static_cast<std::size_t>(element.size()));
-    for_each_unknown(line, element, [&](std::size_t n, PetscInt row) { alone[n] = x[row]; });
-    f.push_back(alone);
-    element.solve(alone, transposed);
-    element.collect(transposed ? element.taken() : element.given(), alone, &w[line.falling_at(e)],
-                    &w[line.falling_at(e + 1)]);
+    DenseMatrix alone = given_on(line, element, x);
+    if (is_zero(alone)) return;  // most, where bodies start in one state
+    element.solve(algebra::columns_of(alone), transposed);
+    element.collect(transposed ? element.taken() : element.given(), algebra::columns_of(alone),
+                    at.from(line.falling_at(e)), at.from(line.falling_at(e + 1)));
   });
   sum_over_ranks(comm_, w);
-  for_each_unknown_between([&](std::size_t n, PetscInt row) { w[n] += x[row]; });
-  between_.run(w, transposed);
-  std::fill(x.begin(), x.end(), 0.0);
-  auto own = f.begin();
-  for_each_own_element([&](const Line& line, int e, const Element& element) {
-    element.distribute(transposed ? element.given() : element.taken(), &w[line.falling_at(e)],
-                       &w[line.falling_at(e + 1)], *own);
-    element.solve(*own, transposed);
-    for_each_unknown(line, element, [&](std::size_t n, PetscInt row) { x[row] = (*own)[n]; });
-    ++own;
-  });
-  if (petsc::rank(comm_) == 0) {
-    for_each_unknown_between([&](std::size_t n, PetscInt row) { x[row] = w[n]; });
+  for (int c = 0; c < x.columns(); ++c) {
+    for_each_unknown_between([&](std::size_t n, PetscInt row) { at.column(c)[n] += x(row, c); });
   }
-  sum_over_ranks(comm_, x);
+  solve_between(at, transposed);
+  for_each_own_element([&](const Line& line, int e, const Element& element) {
+    DenseMatrix part = given_on(line, element, x);
+    element.distribute(transposed ? element.given() : element.taken(), at.from(line.falling_at(e)),
+                       at.from(line.falling_at(e + 1)), algebra::columns_of(part));
+    element.solve(algebra::columns_of(part), transposed);
+    for (int c = 0; c < x.columns(); ++c) {
+      const Scalar* from = part.column(c);
+      Scalar* to = solved.column(c);
+      for_each_unknown(line, element, [=](std::size_t n, PetscInt row) { to[row] = from[n]; });
+    }
+  });
+  for (int c = 0; c < x.columns() && petsc::rank(comm_) == 0; ++c) {
+    for_each_unknown_between(
+        [&](std::size_t n, PetscInt row) { solved(row, c) = at.column(c)[n]; });
+  }
+  sum_over_ranks(comm_, solved);
+  x = std::move(solved);
 }
 
 template <class Scalar>
 double ElementElimination<Scalar>::entries() const {
-  double sum = between_.entries();
-  for_each_own_element([&](const Line&, int, const Element& element) { sum += element.entries(); });
+  double sum = meeting_.entries() + leaving_.entries();
+  for (const auto& factors : factors_) sum += factors->entries();
   return sum;
 }
 

@@ -6,12 +6,15 @@
 // PCSHELL alone, which is no type of its own in options and views, and is not told of a reset.
 #include <petsc/private/pcimpl.h>
 
+#include <algorithm>
 #include <memory>
+#include <span>
 
 #include "stickslip/operators/element_elimination.hpp"
 #include "stickslip/operators/solver_policy.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/linear_solver.hpp"
+#include "stickslip/petsc/scalars.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/petsc/versions.hpp"
@@ -95,16 +98,29 @@ PetscErrorCode set_up(PC pc) {
   });
 }
 
-template <bool transposed>
-PetscErrorCode apply(PC pc, Vec b, Vec x) {
+PetscErrorCode apply_to_columns(PC pc, std::span<const Vec> b, std::span<const Vec> x,
+                                bool transposed) {
   return guarded([=] {
     const LoggedEvent logged(events().solve, pc);
     const Elements& own = elements_of(pc);
-    auto all = own.vectors->gathered(b);
+    PetscInt size = 0;
+    check(VecGetSize(b[0], &size));
+    petsc::DenseMatrix all(size, static_cast<int>(b.size()));
+    for (int c = 0; c < all.columns(); ++c) {
+      const auto column = own.vectors->gathered(b[c]);
+      std::copy(column.begin(), column.end(), all.column(c));
+    }
     own.factors->solve(all, transposed);
-    own.vectors->scatter(all, x, [](PetscScalar entry) { return entry; });
-    check(PetscLogFlops(2 * own.entries));
+    for (int c = 0; c < all.columns(); ++c) {
+      own.vectors->scatter(all.column(c), x[c], [](PetscScalar entry) { return entry; });
+    }
+    check(PetscLogFlops(2 * own.entries * all.columns()));
   });
+}
+
+template <bool transposed>
+PetscErrorCode apply(PC pc, Vec b, Vec x) {
+  return apply_to_columns(pc, {&b, 1}, {&x, 1}, transposed);
 }
 
 // NOLINTNEXTLINE(readability-identifier-naming): the name that PETSc's macros expect
@@ -113,6 +129,14 @@ PetscErrorCode set_from_options(PC pc, petsc::OptionItems PetscOptionsObject) {
   PetscOptionsHeadBegin(PetscOptionsObject, "Elimination of velocity elements");
   return PetscOptionsBool("-pc_elements_share", "Ranks share the elements, or each factors all",
                           nullptr, share, &share, nullptr);
+}
+
+PetscErrorCode compose(PC pc, petsc::Analyse* analyse, petsc::ApplyToColumns* apply) {
+  return guarded([=] {
+    const auto object = reinterpret_cast<PetscObject>(pc);
+    check(PetscObjectComposeFunction(object, petsc::kAnalyse, analyse));
+    check(PetscObjectComposeFunction(object, petsc::kApplyToColumns, apply));
+  });
 }
 
 PetscErrorCode reset(PC pc) {
@@ -124,7 +148,7 @@ PetscErrorCode reset(PC pc) {
 PetscErrorCode destroy(PC pc) {
   delete &elements_of(pc);
   pc->data = nullptr;
-  return PetscObjectComposeFunction(reinterpret_cast<PetscObject>(pc), petsc::kAnalyse, nullptr);
+  return compose(pc, nullptr, nullptr);
 }
 
 PetscErrorCode view(PC pc, PetscViewer viewer) {
@@ -167,7 +191,7 @@ PetscErrorCode create(PC pc) {
   pc->ops->reset = reset;
   pc->ops->destroy = destroy;
   pc->ops->view = view;
-  return PetscObjectComposeFunction(reinterpret_cast<PetscObject>(pc), petsc::kAnalyse, analyse);
+  return compose(pc, analyse, apply_to_columns);
 }
 
 }  // namespace

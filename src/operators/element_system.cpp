@@ -17,13 +17,13 @@ template <class Scalar>
 DenseMatrix<Scalar> contracted(std::span<const double> c, int nodes, const DenseMatrix<Scalar>& x) {
   const int count = x.rows() / nodes, rows = static_cast<int>(c.size()) / count;
   DenseMatrix<Scalar> y(rows * nodes, x.columns());
-  for (int column = 0; column < x.columns(); ++column) {
-    for (int r = 0; r < rows; ++r) {
-      Scalar* to = y.column(column) + r * nodes;
-      for (int l = 0; l < count; ++l) {
-        const double weight = c[r * count + l];
-        if (weight == 0) continue;
+  for (int r = 0; r < rows; ++r) {
+    for (int l = 0; l < count; ++l) {
+      const double weight = c[r * count + l];
+      if (weight == 0) continue;
+      for (int column = 0; column < x.columns(); ++column) {
         const Scalar* from = x.column(column) + l * nodes;
+        Scalar* to = y.column(column) + r * nodes;
         for (int m = 0; m < nodes; ++m) to[m] += weight * from[m];
       }
     }
@@ -299,7 +299,13 @@ class ElementSystem<Scalar>::Elimination {
         return all;
       };
       const bool begins = group.begin == 0;
+      // With wide borders it takes less to find the values on all nodes first.
+      const auto first = group.noise->at_first(), to_last = group.noise->at_last();
+      const bool wide =
+          group.count > 1 && rank_of(first, group) + rank_of(to_last, group) > group.count;
+      const Matrix everywhere = wide ? extended(group.to_before, alone) : Matrix();
       const auto map = [&](const auto& functional) {
+        if (wide) return functional(everywhere);
         const Matrix through = begins ? Matrix() : functional(group.to_before);
         return extended(through, functional(alone));
       };
@@ -308,8 +314,8 @@ class ElementSystem<Scalar>::Elimination {
       };
       const Matrix given = map([&](const Matrix& x) { return outputs(group, x); });
       place(given, row, 0, result_);
-      Matrix next = on(group.noise->at_last());
-      on_first_.push_back(group.count == 1 ? next : on(group.noise->at_first()));
+      Matrix next = on(to_last);
+      on_first_.push_back(group.count == 1 ? next : on(first));
       last = std::move(next);
       column += inputs;
       row += given.rows();
@@ -393,35 +399,42 @@ ElementSystem<Scalar>::ElementSystem(const noise::Nodes& noise,
                           rising_outer);
   response = elimination.response();
   steps_ = elimination.steps();
-  length_ = elimination.length();
+  length_ = static_cast<int>(elimination.length());
 }
 
 template <class Scalar>
-void ElementSystem<Scalar>::solve(Scalars& x, bool transposed) const {
-  x.resize(static_cast<std::size_t>(size()));
-  x.resize(length_, 0.0);
+void ElementSystem<Scalar>::solve(Lists x, bool transposed) const {
+  for (int c = 0; c < x.count; ++c) std::fill(x.column(c) + size(), x.column(c) + length_, 0.0);
   steps_.run(x, transposed);
 }
 
 template <class Scalar>
-void ElementSystem<Scalar>::collect(const Ports& ports, const Scalars& x, Scalar* at_inner,
-                                    Scalar* at_outer) const {
-  std::size_t place = 0;
-  for (int l = 0; l < count_; ++l) {
-    for (int m = 0; m < nodes_; ++m, ++place) {
-      at_inner[l] += ports.inner[place] * x[place];
-      at_outer[l] += ports.outer[place] * x[place];
+void ElementSystem<Scalar>::collect(const Ports& ports, Lists x, Lists at_inner,
+                                    Lists at_outer) const {
+  for (int c = 0; c < x.count; ++c) {
+    const Scalar* from = x.column(c);
+    Scalar *inner = at_inner.column(c), *outer = at_outer.column(c);
+    std::size_t place = 0;
+    for (int l = 0; l < count_; ++l) {
+      for (int m = 0; m < nodes_; ++m, ++place) {
+        inner[l] += ports.inner[place] * from[place];
+        outer[l] += ports.outer[place] * from[place];
+      }
     }
   }
 }
 
 template <class Scalar>
-void ElementSystem<Scalar>::distribute(const Ports& ports, const Scalar* at_inner,
-                                       const Scalar* at_outer, Scalars& x) const {
-  std::size_t place = 0;
-  for (int l = 0; l < count_; ++l) {
-    for (int m = 0; m < nodes_; ++m, ++place) {
-      x[place] += ports.inner[place] * at_inner[l] + ports.outer[place] * at_outer[l];
+void ElementSystem<Scalar>::distribute(const Ports& ports, Lists at_inner, Lists at_outer,
+                                       Lists x) const {
+  for (int c = 0; c < x.count; ++c) {
+    const Scalar *inner = at_inner.column(c), *outer = at_outer.column(c);
+    Scalar* to = x.column(c);
+    std::size_t place = 0;
+    for (int l = 0; l < count_; ++l) {
+      for (int m = 0; m < nodes_; ++m, ++place) {
+        to[place] += ports.inner[place] * inner[l] + ports.outer[place] * outer[l];
+      }
     }
   }
 }

@@ -26,7 +26,12 @@ void LinearSteps<Scalar>::Tridiagonal::factor() {
 }
 
 template <class Scalar>
-void LinearSteps<Scalar>::Tridiagonal::solve(Scalar* x, bool transposed) const {
+void LinearSteps<Scalar>::Tridiagonal::solve(Lists x, bool transposed) const {
+  for (int c = 0; c < x.count; ++c) solve_one(x.column(c), transposed);
+}
+
+template <class Scalar>
+void LinearSteps<Scalar>::Tridiagonal::solve_one(Scalar* x, bool transposed) const {
   const std::size_t size = diagonal.size();
   if (size == 0) return;
   if (!transposed) {
@@ -63,15 +68,17 @@ void LinearSteps<Scalar>::spread(std::span<const double> c, int block, std::size
 }
 
 template <class Scalar>
-void LinearSteps<Scalar>::Contraction::run(Scalar* w, bool transposed) const {
-  Scalar *const single = w + one, *row = w + many;
-  for (const double weight : c) {
-    if (spreads != transposed) {
-      for (int m = 0; m < block; ++m) row[m] += weight * single[m];
-    } else {
-      for (int m = 0; m < block; ++m) single[m] += weight * row[m];
+void LinearSteps<Scalar>::Contraction::run(Lists w, bool transposed) const {
+  const bool outwards = spreads != transposed;
+  for (std::size_t l = 0; l < c.size(); ++l) {
+    const double weight = c[l];
+    if (weight == 0) continue;  // of levels that are nodes, all but one
+    const std::size_t row = many + l * static_cast<std::size_t>(block);
+    for (int n = 0; n < w.count; ++n) {
+      const Scalar* from = w.column(n) + (outwards ? one : row);
+      Scalar* to = w.column(n) + (outwards ? row : one);
+      for (int m = 0; m < block; ++m) to[m] += weight * from[m];
     }
-    row += block;
   }
 }
 
@@ -91,23 +98,26 @@ void LinearSteps<Scalar>::append(LinearSteps other) {
 }
 
 template <class Scalar>
-void LinearSteps<Scalar>::run(Scalars& w, bool transposed) const {
+void LinearSteps<Scalar>::add(const std::vector<Coupling>& couplings, Scalar* w, bool transposed) {
+  if (!transposed) {
+    for (const auto& [from, to, weight] : couplings) w[to] += weight * w[from];
+    return;
+  }
+  for (auto c = couplings.rbegin(); c != couplings.rend(); ++c) w[c->from] += c->weight * w[c->to];
+}
+
+template <class Scalar>
+void LinearSteps<Scalar>::run(Lists w, bool transposed) const {
   const Overloaded carry_out{
       [&](const Product& p) {
         const std::size_t from = transposed ? p.to : p.from, to = transposed ? p.from : p.to;
-        algebra::add_product(p.a, w.data() + from, w.data() + to, transposed);
+        algebra::add_product(p.a, w.from(from), w.from(to), transposed);
       },
       [&](const std::vector<Coupling>& couplings) {
-        if (!transposed) {
-          for (const auto& [from, to, weight] : couplings) w[to] += weight * w[from];
-          return;
-        }
-        for (auto c = couplings.rbegin(); c != couplings.rend(); ++c) {
-          w[c->from] += c->weight * w[c->to];
-        }
+        for (int n = 0; n < w.count; ++n) add(couplings, w.column(n), transposed);
       },
-      [&](const Contraction& contraction) { contraction.run(w.data(), transposed); },
-      [&](const auto& solve) { solve.a.solve(w.data() + solve.at, transposed); }};
+      [&](const Contraction& contraction) { contraction.run(w, transposed); },
+      [&](const auto& solve) { solve.a.solve(w.from(solve.at), transposed); }};
   if (transposed) {
     for (auto step = steps_.rbegin(); step != steps_.rend(); ++step) std::visit(carry_out, *step);
   } else {

@@ -87,6 +87,13 @@ const char* default_pc_type(const Discretisation& discretisation) {
   return factors == Factors::elements ? petsc::kElementsPc : "lu";
 }
 
+// Groups of levels begin at level 0, which need not be its own mirror.
+bool branches_share_factors(const model::Process& process, bool all_levels,
+                            const velocity::VelocityDiscretisation& velocities) {
+  return !process.drifts() && (all_levels || process.noise.symmetric()) &&
+         &velocities.mirrored() == &velocities;
+}
+
 // The blocks and couplings of groups inside of the elements, and those between elements.
 FactorCost elimination_cost(const model::Process& process,
                             const velocity::HpDiscretisation& velocities, const noise::Nodes* noise,
@@ -124,7 +131,8 @@ FactorCost elimination_cost(const Discretisation& discretisation, bool symmetry_
   };
   const auto& [process, noise, velocities] = discretisation;
   FactorCost cost = of(process, *noise, *velocities);
-  if (symmetry_reduced) return cost;
+  const bool alike = branches_share_factors(process, noise->all_levels(), *velocities);
+  if (symmetry_reduced || alike) return cost;
   const FactorCost other = of(process.mirrored(), noise->mirrored(), velocities->mirrored());
   return {cost.entries + other.entries, cost.bytes + other.bytes,
           cost.operations + other.operations};

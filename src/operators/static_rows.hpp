@@ -53,8 +53,9 @@ class StaticRows {
   }
   /// x <- A^-1 x.
   void solve(Scalar* x) const {
-    if (near_) chain_.solve(x, false);
-    if (!near_) factors_->solve(x, false);
+    const algebra::Columns<Scalar> one{x};
+    if (near_) chain_.solve(one, false);
+    if (!near_) factors_->solve(one, false);
   }
   /// Rates by state, by place outside.
   [[nodiscard]] const std::map<std::size_t, std::vector<Scalar>>& exits() const { return exits_; }

@@ -86,7 +86,7 @@ double BackwardError::transposed(Vec residual, Vec b, Vec x) {
   check(VecTDot(magnitude_sums_, size, &visits));
   check(VecNorm(b, NORM_1, &b_size));
   check(VecNorm(residual, NORM_1, &error));
-  return error / (PetscRealPart(visits) + b_size);
+  return error == 0 ? 0 : error / (PetscRealPart(visits) + b_size);
 }
 
 }  // namespace stickslip::petsc

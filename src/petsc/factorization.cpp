@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kBackwardErrorLimit = 1e-12;
 constexpr int kMostRefinementSteps = 2;  // the second only where the first leaves too much
+constexpr std::size_t kTogether = 32;    // right-hand sides, in memory at once
 
 }  // namespace
 
@@ -69,40 +70,75 @@ void Factorization::apply(Vec b, Vec x, bool transposed) {
   }
 }
 
-Solution Factorization::solve(Vec b, bool transposed) {
+void Factorization::apply(std::span<const Vec> b, std::span<const Vec> x, bool transposed) {
+  if (b.size() > 1 && solve_together(ksp_, b, x, transposed)) return;
+  for (std::size_t n = 0; n < b.size(); ++n) apply(b[n], x[n], transposed);
+}
+
+std::vector<Solution> Factorization::solve(std::span<const Vec> b, bool transposed) {
   const PhaseTimer timer("solve", statistics_.solve_seconds);
-  Solution s;
-  VecHandle residual, step;
-  for (VecHandle* vector : {&s.x, &s.correction, &residual, &step}) {
-    check(VecDuplicate(b, vector->out()));
+  std::vector<Solution> all(b.size());
+  for (std::size_t n = 0; n < b.size(); n += kTogether) {
+    const std::size_t count = std::min(kTogether, b.size() - n);
+    solve_some(b.subspan(n, count), std::span(all).subspan(n, count), transposed);
   }
-  check(VecSet(s.correction, 0));
-  const auto compute_residual = [&] {
-    check(transposed ? MatMultTranspose(matrix_, s.x, residual) : MatMult(matrix_, s.x, residual));
-    check(VecAYPX(residual, -1, b));
+  return all;
+}
+
+void Factorization::solve_some(std::span<const Vec> b, std::span<Solution> solutions,
+                               bool transposed) {
+  // One right-hand side, and its solution when it is sound.
+  struct Column {
+    Vec b;
+    Solution* s;
+    VecHandle residual, step;
   };
-  apply(b, s.x, transposed);
-  ++statistics_.solves;
-  bool sound = false;
-  for (int n = 0; n < kMostRefinementSteps && !sound; ++n) {
-    compute_residual();  // again, as backward_error may overwrite it
-    apply(residual, step, transposed);
-    check(VecAXPY(s.x, 1, step));
-    check(VecAXPY(s.correction, 1, step));
-    compute_residual();
-    s.backward_error =
-        transposed ? measure_.transposed(residual, b, s.x) : measure_.forward(residual, b, s.x);
-    sound = s.backward_error <= kBackwardErrorLimit;
-    ++statistics_.corrections;
+  std::vector<Column> open(b.size());
+  std::vector<Vec> from(b.begin(), b.end()), to;
+  for (std::size_t n = 0; n < b.size(); ++n) {
+    Column& c = open[n];
+    c.b = b[n];
+    c.s = &solutions[n];
+    for (VecHandle* vector : {&c.s->x, &c.s->correction, &c.residual, &c.step}) {
+      check(VecDuplicate(c.b, vector->out()));
+    }
+    check(VecSet(c.s->correction, 0));
+    to.push_back(c.s->x);
   }
-  if (!sound) {
+  const auto compute_residual = [&](const Column& c) {
+    check(transposed ? MatMultTranspose(matrix_, c.s->x, c.residual)
+                     : MatMult(matrix_, c.s->x, c.residual));
+    check(VecAYPX(c.residual, -1, c.b));
+  };
+  apply(from, to, transposed);
+  statistics_.solves += static_cast<int>(b.size());
+  for (int n = 0; n < kMostRefinementSteps && !open.empty(); ++n) {
+    from.clear();
+    to.clear();
+    for (const Column& c : open) {
+      compute_residual(c);  // again, as backward_error may overwrite it
+      from.push_back(c.residual);
+      to.push_back(c.step);
+    }
+    apply(from, to, transposed);
+    for (Column& c : open) {
+      check(VecAXPY(c.s->x, 1, c.step));
+      check(VecAXPY(c.s->correction, 1, c.step));
+      compute_residual(c);
+      c.s->backward_error = transposed ? measure_.transposed(c.residual, c.b, c.s->x)
+                                       : measure_.forward(c.residual, c.b, c.s->x);
+      ++statistics_.corrections;
+    }
+    std::erase_if(open, [](const Column& c) { return c.s->backward_error <= kBackwardErrorLimit; });
+  }
+  if (!open.empty()) {
     throw NotReached(fmt::format("the solver -{} left a backward error of {:.1e} (limit {:.0e}){}",
-                                 prefix_, s.backward_error, kBackwardErrorLimit, advice()));
+                                 prefix_, open[0].s->backward_error, kBackwardErrorLimit,
+                                 advice()));
   }
-  SolverStatistics seen;
-  seen.backward_error = s.backward_error;
-  statistics_ += seen;
-  return s;
+  for (const Solution& s : solutions) {
+    statistics_.backward_error = std::max(statistics_.backward_error, s.backward_error);
+  }
 }
 
 std::string Factorization::advice() const {

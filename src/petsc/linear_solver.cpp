@@ -98,19 +98,20 @@ Analysis counted_by_mumps(KSP ksp, PetscInt entries, PetscInt megabytes) {
           operations};
 }
 
-using Analyse = PetscErrorCode (*)(PC, Analysis*);
-
-Analyse own_function(KSP ksp) {
-  Analyse analyse = nullptr;
+template <class Function>
+Function* own_function(KSP ksp, const char* name) {
+  Function* function = nullptr;
   const auto pc = reinterpret_cast<PetscObject>(preconditioner_of(ksp));
-  check(PetscObjectQueryFunction(pc, kAnalyse, &analyse));
-  return analyse;
+  check(PetscObjectQueryFunction(pc, name, &function));
+  return function;
 }
+
+Analyse* analysis_of(KSP ksp) { return own_function<Analyse>(ksp, kAnalyse); }
 
 // Of PCs of this program; no sizes of others.
 Analysis own_analysis(KSP ksp) {
   Analysis analysis;
-  if (const Analyse analyse = own_function(ksp)) check(analyse(preconditioner_of(ksp), &analysis));
+  if (Analyse* const analyse = analysis_of(ksp)) check(analyse(preconditioner_of(ksp), &analysis));
   return analysis;
 }
 
@@ -151,7 +152,17 @@ KspHandle linear_solver(Mat matrix, const std::string& prefix, PCType pc_type) {
   return ksp;
 }
 
-bool is_own(KSP ksp) { return own_function(ksp) != nullptr; }
+bool is_own(KSP ksp) { return analysis_of(ksp) != nullptr; }
+
+bool solve_together(KSP ksp, std::span<const Vec> b, std::span<const Vec> x, bool transposed) {
+  PetscBool alone = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPPREONLY, &alone));
+  auto* const apply = own_function<ApplyToColumns>(ksp, kApplyToColumns);
+  if (alone == PETSC_FALSE || apply == nullptr) return false;
+  check(apply(preconditioner_of(ksp), b, x, transposed));
+  check(KSPViewFromOptions(ksp, nullptr, "-ksp_view"));  // as KSPSolve does
+  return true;
+}
 
 void factor(KspHandle& ksp, Mat matrix, const std::string& prefix) {
   const auto amf = default_ordering(prefix);

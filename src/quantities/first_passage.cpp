@@ -103,21 +103,21 @@ FirstPassage first_passage(operators::Systems& systems, const Starts& starts, do
   const KolmogorovOperator& a = system.a();
   const Sticking sticking(process, starts);
   // Also before iterative refinement, whose step shows rounding.
-  const auto follow = [&](Vec start) {
-    const petsc::Solution nu = system.factors().solve_transposed(start);
-    petsc::check(VecAYPX(nu.correction, -1, nu.x));
-    return std::pair{sliding_phase_of(a, nu.x, sticking),
-                     sliding_phase_of(a, nu.correction, sticking)};
-  };
+  std::vector<petsc::VecHandle> from;
+  for (int level : starts.levels) from.push_back(a.trace_at_start(level));
+  from.push_back(a.mean_at_zero(model::stationary_distribution(process.noise)));
   std::vector<SlidingPhase> corrected, uncorrected;
-  for (int level : starts.levels) {
-    auto [after, before] = follow(a.trace_at_start(level));
-    corrected.push_back(std::move(after));
-    uncorrected.push_back(std::move(before));
+  for (const petsc::Solution& nu : system.factors().solve_transposed(from)) {
+    petsc::check(VecAYPX(nu.correction, -1, nu.x));
+    corrected.push_back(sliding_phase_of(a, nu.x, sticking));
+    uncorrected.push_back(sliding_phase_of(a, nu.correction, sticking));
   }
-  const auto rest = follow(a.mean_at_zero(model::stationary_distribution(process.noise)));
-  const Passage p = passage(starts, sticking, corrected, rest.first),
-                q = passage(starts, sticking, uncorrected, rest.second);
+  const auto passage_of = [&](std::vector<SlidingPhase>& phases) {
+    const SlidingPhase rest = std::move(phases.back());
+    phases.pop_back();
+    return passage(starts, sticking, phases, rest);
+  };
+  const Passage p = passage_of(corrected), q = passage_of(uncorrected);
   // Reached so rarely that rounding is all there is.
   const double rounding = std::abs(p.exceeded - q.exceeded);
   if (!(p.exceeded > 2 * rounding)) {

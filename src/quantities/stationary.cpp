@@ -99,11 +99,16 @@ StationaryDistribution::StationaryDistribution(Systems& systems)
       states_(systems.at(0, operators::symmetry_of(systems.process())).a().states()) {
   auto& system = systems.at(0, operators::symmetry_of(process()));
   const KolmogorovOperator& a = system.a();
-  const auto from = [&](int start) {
-    auto s = system.factors().solve_transposed(a.trace_at_start(start));
-    const bool monotone = discretisation_.velocities->keeps_origin();
-    if (monotone) operators::require_occupation(s.x, process());
-    return normalised(a, std::move(s));
+  const auto from = [&](const std::vector<int>& starts) {
+    std::vector<petsc::VecHandle> traces;
+    for (int start : starts) traces.push_back(a.trace_at_start(start));
+    std::vector<Occupation> all;
+    for (auto& s : system.factors().solve_transposed(traces)) {
+      const bool monotone = discretisation_.velocities->keeps_origin();
+      if (monotone) operators::require_occupation(s.x, process());
+      all.push_back(normalised(a, std::move(s)));
+    }
+    return all;
   };
   if (!process().sticks()) {
     // The null vector of L, over a time that is as good as any other.
@@ -122,7 +127,7 @@ StationaryDistribution::StationaryDistribution(Systems& systems)
   }
   if (process().symmetric()) {
     starts_ = Starts::upwards(process());
-    Occupation all = from(starts_.levels[0]);
+    Occupation all = std::move(from(starts_.levels)[0]);
     excursion_ = excursion_of(a, all.nu, all.lost);
     uncorrected_ = excursion_of(a, all.uncorrected, all.uncorrected_lost);
     occupation_ = std::move(all.nu);
@@ -130,10 +135,9 @@ StationaryDistribution::StationaryDistribution(Systems& systems)
     return;
   }
   const std::vector<int> levels = process().starts();
-  std::vector<Occupation> occupations;
+  const std::vector<Occupation> occupations = from(levels);
   std::vector<Excursion> corrected, uncorrected;
-  for (int level : levels) {
-    auto& o = occupations.emplace_back(from(level));
+  for (const Occupation& o : occupations) {
     corrected.push_back(excursion_of(a, o.nu, o.lost));
     uncorrected.push_back(excursion_of(a, o.uncorrected, o.uncorrected_lost));
   }

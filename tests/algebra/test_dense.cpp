@@ -61,6 +61,31 @@ TEMPLATE_TEST_CASE("dense: factors solve from both sides", "", double, Complex) 
   }
 }
 
+// Rows 1 to 3 of columns of five, by the products and factors of one column.
+TEMPLATE_TEST_CASE("dense: some rows of several columns", "", double, Complex) {
+  using Columns = stickslip::algebra::Columns<TestType>;
+  for (const bool transposed : {false, true}) {
+    for (const int count : {0, 1, 2, 20}) {
+      INFO((transposed ? "transposed, " : "") << count << " columns");
+      stickslip::algebra::Matrix<TestType> a(3, 3), x(5, count), solved(5, count), image(5, count);
+      for (int c = 0; c < 3; ++c) {
+        for (int r = 0; r < 3; ++r) a(r, c) = sample(3, 3)(r, c) * (r > c ? 2.0 : -1.0);
+      }
+      for (int c = 0; c < count; ++c) {
+        for (int r = 0; r < 5; ++r) x(r, c) = solved(r, c) = 1.0 / (2 + r + 5 * c) - r;
+      }
+      LuFactors(a).solve(columns_of(solved).from(1), transposed);
+      stickslip::algebra::add_product(a, columns_of(solved).from(1), columns_of(image).from(1),
+                                      transposed);
+      for (int c = 0; c < count; ++c) {
+        for (int r : {0, 4}) CHECK((solved(r, c) == x(r, c) && image(r, c) == TestType(0)));
+        for (int r : {1, 2, 3}) CHECK(std::abs(image(r, c) - x(r, c)) < 1e-13);
+        CHECK(Columns(columns_of(x)).column(c) == x.column(c));
+      }
+    }
+  }
+}
+
 // On both sides of the sizes up to which loops take the place of BLAS, and of its blocks.
 TEST_CASE("dense: products and solutions of all sizes") {
   for (int n : {1, 2, 3, 4, 5, 6, 7, 8, 9, 15, 16, 17, 94, 95, 96, 97, 98}) {

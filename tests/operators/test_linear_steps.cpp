@@ -47,12 +47,33 @@ TEST_CASE("linear steps: the transposed map runs them backwards") {
   const LinearSteps steps = every_kind();
   for (std::size_t c = 0; c < kSize; ++c) {
     Scalars image = column(c);
-    steps.run(image, false);
+    steps.run({image.data()}, false);
     for (std::size_t r = 0; r < kSize; ++r) {
       Scalars row = column(r);
-      steps.run(row, true);
+      steps.run({row.data()}, true);
       INFO("entry " << r << ", " << c);
       CHECK(std::abs(row[c] - image[r]) < 1e-14);
+    }
+  }
+}
+
+TEST_CASE("linear steps: several lists at once, each as if it were alone") {
+  const LinearSteps steps = every_kind();
+  for (bool transposed : {false, true}) {
+    DenseMatrix all(static_cast<int>(kSize) + 1, static_cast<int>(kSize));  // a row that stays
+    for (int c = 0; c < all.columns(); ++c) {
+      if (c != 2) all(c, c) = 1;
+      all(static_cast<int>(kSize), c) = 7;
+    }
+    steps.run(columns_of(all), transposed);
+    for (int c = 0; c < all.columns(); ++c) {
+      Scalars alone = c == 2 ? Scalars(kSize, 0.0) : column(static_cast<std::size_t>(c));
+      steps.run({alone.data()}, transposed);
+      for (std::size_t r = 0; r < kSize; ++r) {
+        INFO((transposed ? "transposed" : "forward") << ", entry " << r << ", " << c);
+        CHECK(std::abs(all(static_cast<int>(r), c) - alone[r]) < 1e-14);
+      }
+      CHECK(all(static_cast<int>(kSize), c) == PetscScalar(7));
     }
   }
 }
@@ -65,7 +86,7 @@ TEST_CASE("linear steps: each does its own, in its order") {
   steps.solve(petsc::DenseFactors(twice), 0);
   steps.add(std::move(twice), 0, 3);
   Scalars w(4, 1.0);
-  steps.run(w, false);
+  steps.run({w.data()}, false);
   CHECK(w == Scalars{0.5, 3.0, 10.0, 2.0});
   CHECK(steps.entries() == 2 * 2 + 1 + 1);
 }
@@ -74,11 +95,11 @@ TEST_CASE("linear steps: contractions and their opposite, block by block") {
   LinearSteps steps;
   steps.contract(std::vector{2.0, 3.0}, 2, 2, 0);
   Scalars w{1, 1, 1, 2, 3, 4};
-  steps.run(w, false);
+  steps.run({w.data()}, false);
   CHECK(w == Scalars{12, 17, 1, 2, 3, 4});
   LinearSteps back;
   back.spread(std::vector{2.0, 3.0}, 2, 0, 2);
-  back.run(w, false);
+  back.run({w.data()}, false);
   CHECK(w == Scalars{12, 17, 25, 36, 39, 55});
 }
 
@@ -88,8 +109,8 @@ TEST_CASE("linear steps: a tridiagonal system, both ways") {
   Scalars plain{4 * 1.0 - 1 * -2.0, 1 * 1.0 + 5 * -2.0 + 0.5 * 3.0, 2 * -2.0 + 6 * 3.0};
   Scalars transposed{4 * 1.0 + 1 * -2.0, -1 * 1.0 + 5 * -2.0 + 2 * 3.0, 0.5 * -2.0 + 6 * 3.0};
   chain.factor();
-  chain.solve(plain.data(), false);
-  chain.solve(transposed.data(), true);
+  chain.solve({plain.data()}, false);
+  chain.solve({transposed.data()}, true);
   for (std::size_t n = 0; n < 3; ++n) {
     CHECK(std::abs(plain[n] - x[n]) < 1e-15);
     CHECK(std::abs(transposed[n] - x[n]) < 1e-15);

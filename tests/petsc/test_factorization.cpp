@@ -1,6 +1,7 @@
 #include <petscsys.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -111,6 +112,34 @@ TEST_CASE("factorization: a second step of refinement where one is not enough", 
   SolverStatistics statistics;
   Factorization solver(a, "rough_", statistics);
   CHECK_THROWS_WITH(solver.solve(b), Catch::Contains("-rough_ left a backward error"));
+}
+
+TEST_CASE("factorization: of several right-hand sides each is refined and measured by itself",
+          "[parallel]") {
+  const MatHandle a = bidiagonal(50);
+  const test::Given fair(
+      {{"-rough_ksp_type", "gmres"}, {"-rough_pc_type", "jacobi"}, {"-rough_ksp_rtol", "1e-5"}});
+  SolverStatistics statistics;
+  Factorization solver(a, "rough_", statistics);
+  // One that takes two steps, nothing, and one that a single iteration solves.
+  std::vector<VecHandle> b;
+  for (int n = 0; n < 3; ++n) b.push_back(image_of_one(a, Side::left));
+  check(VecSet(b[1], 0));
+  check(VecSet(b[2], 0));
+  check(VecSetValue(b[2], 49, 51, INSERT_VALUES));
+  check(VecAssemblyBegin(b[2]));
+  check(VecAssemblyEnd(b[2]));
+  const auto all = solver.solve_transposed(b);
+  CHECK(statistics.solves == 3);
+  CHECK(statistics.corrections == 2 + 1 + 1);
+  CHECK(distance_from_one(all[0].x) < 1e-11);
+  PetscReal size = 1;
+  check(VecNorm(all[1].x, NORM_INFINITY, &size));
+  CHECK(size == 0);
+  CHECK(all[1].backward_error == 0);
+  check(VecNorm(all[2].x, NORM_1, &size));
+  CHECK(size == Approx(1));
+  CHECK(statistics.backward_error == std::max(all[0].backward_error, all[2].backward_error));
 }
 
 TEST_CASE("factorization: an iteration that stops early ends every kind of solve", "[parallel]") {

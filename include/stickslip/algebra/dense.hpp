@@ -64,6 +64,24 @@ class Matrix {
   std::vector<Scalar> data_;
 };
 
+/// Columns of a matrix, or some rows of them from the first one of these on.
+template <class Scalar>
+struct Columns {
+  Scalar* first;
+  int count = 1;
+  int stride = 0;  ///< from one to the next
+
+  [[nodiscard]] Scalar* column(int c) const {
+    return first + static_cast<std::ptrdiff_t>(c) * stride;
+  }
+  /// The rows from one on.
+  [[nodiscard]] Columns from(std::size_t row) const { return {first + row, count, stride}; }
+};
+template <class Scalar>
+[[nodiscard]] Columns<Scalar> columns_of(Matrix<Scalar>& a) {
+  return {a.data(), a.columns(), a.rows()};
+}
+
 /// C += factor A B for the first `columns` columns of B and C. O(rows(A) columns(A) columns).
 template <class Scalar>
 void add_product(std::type_identity_t<Scalar> factor, const Matrix<Scalar>& a,
@@ -72,6 +90,9 @@ void add_product(std::type_identity_t<Scalar> factor, const Matrix<Scalar>& a,
 template <class Scalar>
 void add_product(const Matrix<Scalar>& a, const std::type_identity_t<Scalar>* x,
                  std::type_identity_t<Scalar>* y, bool transposed = false);
+/// Y += A X, or A^T X. O(rows(A) columns(A) columns(X)).
+template <class Scalar>
+void add_product(const Matrix<Scalar>& a, Columns<Scalar> x, Columns<Scalar> y, bool transposed);
 
 template <class Scalar>
 [[nodiscard]] Matrix<Scalar> operator*(const Matrix<Scalar>& a, const Matrix<Scalar>& b) {
@@ -102,19 +123,19 @@ class LuFactors {
   explicit LuFactors(Matrix<Scalar> a);
 
   [[nodiscard]] int size() const { return lu_.rows(); }
-  /// B <- A^-1 B. O(size^2 columns).
-  void solve(Matrix<Scalar>& b) const;
+  /// B <- A^-1 B, or A^-T B. O(size^2 columns).
+  void solve(Columns<Scalar> b, bool transposed) const;
+  void solve(Matrix<Scalar>& b) const { solve(columns_of(b), false); }
   [[nodiscard]] Matrix<Scalar> solved(Matrix<Scalar> b) const {
     solve(b);
     return b;
   }
   /// x <- A^-1 x, or A^-T x. O(size^2).
-  void solve(Scalar* x, bool transposed) const { solve(x, 1, transposed); }
-  void solve(std::vector<Scalar>& x, bool transposed) const { solve(x.data(), 1, transposed); }
+  void solve(std::vector<Scalar>& x, bool transposed) const {
+    solve(Columns<Scalar>{x.data()}, transposed);
+  }
 
  private:
-  void solve(Scalar* b, int columns, bool transposed) const;
-
   Matrix<Scalar> lu_;
   std::vector<int> pivots_;
 };

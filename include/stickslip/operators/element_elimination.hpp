@@ -16,6 +16,8 @@
 namespace stickslip::operators {
 
 template <class Scalar>
+class BranchFactors;
+template <class Scalar>
 class StaticRows;
 
 /// LU factors of the matrix A of a KolmogorovOperator on an hp velocity discretisation. With A_E
@@ -35,6 +37,9 @@ class StaticRows;
 /// eliminated before. With M noise nodes and E elements of q velocity nodes, factors take some 1.5
 /// E M^2 entries and 1.1 E M^3 operations, besides those of the elements.
 ///
+/// Where the velocity branches mirror each other, the factors of one serve both; see
+/// branches_share_factors().
+///
 /// Ranks share the elements; what is between them each rank eliminates alike, so that results do
 /// not depend on the number of ranks.
 ///
@@ -43,7 +48,7 @@ class StaticRows;
 template <class Scalar>
 class ElementElimination {
  public:
-  using Scalars = std::vector<Scalar>;
+  using DenseMatrix = algebra::Matrix<Scalar>;
 
   /// Factors `matrix`, which carries `data`; of its entries the rows of static states are read, the
   /// others follow from the discretisation. Without `share` each rank factors all elements.
@@ -55,35 +60,34 @@ class ElementElimination {
                      bool share = true);
   ~ElementElimination();
 
-  /// x <- A^-1 x, or A^-T x without conjugation, x the whole vector on every rank. Collective.
-  void solve(Scalars& x, bool transposed) const;
+  /// X <- A^-1 X, or A^-T X without conjugation, whole vectors on every rank, by columns: factors
+  /// are read once for all of them. Collective.
+  void solve(DenseMatrix& x, bool transposed) const;
 
   /// Numbers kept by this rank.
   [[nodiscard]] double entries() const;
 
  private:
-  using DenseMatrix = algebra::Matrix<Scalar>;
+  using Scalars = std::vector<Scalar>;
   using DenseFactors = algebra::LuFactors<Scalar>;
   using Element = ElementSystem<Scalar>;
-  using Response = typename Element::Response;
   using Steps = LinearSteps<Scalar>;
   using Couplings = std::vector<typename Steps::Coupling>;
+  using Factors = BranchFactors<Scalar>;
   struct Line;
 
-  [[nodiscard]] Line line_of(Branch branch) const;
-  [[nodiscard]] int owner(const Line& line, std::size_t e) const;
-  [[nodiscard]] Response make_element(Line& line, std::size_t e) const;
-  void make_shared_elements();
-  [[nodiscard]] Response response(Line& line, std::size_t e) const;
-  [[nodiscard]] DenseMatrix hold(const Line& line);
-  void reflect(Line& line);
+  [[nodiscard]] std::unique_ptr<Factors> unfactored(Branch branch) const;
+  [[nodiscard]] Line line_of(Branch branch, const Factors& factors) const;
   [[nodiscard]] double sign() const { return data_->states.symmetry() == Symmetry::odd ? -1 : 1; }
   void add_shares(const Line& line, std::size_t fall, Couplings& shares) const;
   void add_crossings(const Line& line, std::size_t fall, Couplings& found) const;
   [[nodiscard]] std::size_t exit_at(PetscInt column) const;
   [[nodiscard]] StaticRows<Scalar> read_static_rows(Mat matrix) const;
   void meet(Mat matrix);
+  void solve_between(algebra::Columns<Scalar> w, bool transposed) const;
 
+  [[nodiscard]] DenseMatrix given_on(const Line& line, const Element& element,
+                                     const DenseMatrix& x) const;
   template <class Visit>
   void for_each_own_element(Visit visit) const;
   template <class Visit>
@@ -94,14 +98,16 @@ class ElementElimination {
   std::shared_ptr<const MatrixData> data_;
   Scalar lambda_;
   Clock clock_;
-  MPI_Comm comm_;  // of the ranks that share elements
+  MPI_Comm comm_;                                  // of the ranks that share elements
+  std::vector<std::unique_ptr<Factors>> factors_;  // of each branch, or of both
   std::vector<Line> lines_;
   std::vector<PetscInt> static_rows_;  // of static states, from the lowest level up
   int lowest_static_ = 0;
   // The list w: values between elements, holding states among them; static states; what falling
   // nodes find at v = 0.
   std::size_t static_begin_ = 0, length_ = 0;
-  Steps between_;  // (1 - S)^-1
+  // (1 - S)^-1: those at v = 0 come between the steps of the branches inwards and outwards.
+  Steps meeting_, leaving_;
 };
 
 }  // namespace stickslip::operators

@@ -23,12 +23,14 @@ namespace stickslip::operators {
 /// Along the noise the system is block tridiagonal over groups, its couplings of the rank of the
 /// element's nodes times the levels to which jumps from the next group lead: the first or the last
 /// one alone where the noise jumps to neighbours. LU factors by groups. Lists run by noise nodes 0
-/// ... M-1, then by the q nodes of the element. For double and std::complex<double>. Local.
+/// ... M-1, then by the q nodes of the element; functions take several at once. For double and
+/// std::complex<double>. Local.
 template <class Scalar>
 class ElementSystem {
  public:
   using Scalars = std::vector<Scalar>;
   using Matrix = algebra::Matrix<Scalar>;
+  using Lists = algebra::Columns<Scalar>;
 
   /// What the values beyond the ends make of those given, by sides:
   ///
@@ -49,8 +51,10 @@ class ElementSystem {
   [[nodiscard]] int nodes() const { return nodes_; }       ///< q
   [[nodiscard]] int first_node() const { return first_; }  ///< on the velocity discretisation
 
-  /// x <- A^-1 x, or A^-T x.
-  void solve(Scalars& x, bool transposed) const;
+  /// Places of a list for solve(): the unknowns, and room for the steps.
+  [[nodiscard]] int length() const { return length_; }
+  /// X <- A^-1 X, or A^-T X, lists of length() places.
+  void solve(Lists x, bool transposed) const;
 
   /// What passes the ends, by place in a list; 0 where nothing does.
   struct Ports {
@@ -60,10 +64,9 @@ class ElementSystem {
   [[nodiscard]] const Ports& taken() const { return taken_; }
   [[nodiscard]] const Ports& given() const { return given_; }
   /// Adds to the values of all noise nodes at both ends what a list sends there.
-  void collect(const Ports& ports, const Scalars& x, Scalar* at_inner, Scalar* at_outer) const;
+  void collect(const Ports& ports, Lists x, Lists at_inner, Lists at_outer) const;
   /// Adds to a list what those values send.
-  void distribute(const Ports& ports, const Scalar* at_inner, const Scalar* at_outer,
-                  Scalars& x) const;
+  void distribute(const Ports& ports, Lists at_inner, Lists at_outer, Lists x) const;
 
   /// Of the factors.
   [[nodiscard]] double entries() const { return steps_.entries(); }
@@ -71,8 +74,7 @@ class ElementSystem {
  private:
   class Elimination;
 
-  int count_, nodes_, first_;
-  std::size_t length_ = 0;  // of a list with the places that the steps need besides
+  int count_, nodes_, first_, length_ = 0;
   Ports taken_, given_;
   LinearSteps<Scalar> steps_;
 };

@@ -11,15 +11,17 @@
 
 namespace stickslip::operators {
 
-/// A linear map of a list in place. Each step adds a multiple of one part of the list to another,
-/// or solves a small system on one; the transposed map runs the transposed steps from the last to
-/// the first, so that one description serves both. For double and std::complex<double>. Local.
+/// A linear map of lists in place, of several at once, by columns. Each step adds a multiple of one
+/// part of the list to another, or solves a small system on one; the transposed map runs the
+/// transposed steps from the last to the first, so that one description serves both. For double and
+/// std::complex<double>. Local.
 template <class Scalar>
 class LinearSteps {
  public:
   using Scalars = std::vector<Scalar>;
   using Matrix = algebra::Matrix<Scalar>;
   using Factors = algebra::LuFactors<Scalar>;
+  using Lists = algebra::Columns<Scalar>;
 
   /// w[to] += weight w[from].
   struct Coupling {
@@ -32,7 +34,10 @@ class LinearSteps {
     Scalars diagonal, below, above;
     /// Factors in place, without exchanges.
     void factor();
-    void solve(Scalar* x, bool transposed) const;
+    void solve(Lists x, bool transposed) const;
+
+   private:
+    void solve_one(Scalar* x, bool transposed) const;
   };
 
   /// w[to ...] += A w[from ...].
@@ -49,8 +54,8 @@ class LinearSteps {
   /// The steps of another map after those of this one.
   void append(LinearSteps other);
 
-  /// w <- M w, or M^T w. O(entries).
-  void run(Scalars& w, bool transposed) const;
+  /// w <- M w, or M^T w. Factors are read once for all lists. O(entries lists).
+  void run(Lists w, bool transposed) const;
 
   /// Numbers kept.
   [[nodiscard]] double entries() const;
@@ -65,7 +70,7 @@ class LinearSteps {
     int block;
     std::size_t one, many;  // places of the block and of its multiples
     bool spreads;
-    void run(Scalar* w, bool transposed) const;
+    void run(Lists w, bool transposed) const;
   };
   template <class Kind>
   struct Solve {
@@ -74,6 +79,8 @@ class LinearSteps {
   };
   using Step =
       std::variant<Product, std::vector<Coupling>, Contraction, Solve<Factors>, Solve<Tridiagonal>>;
+  static void add(const std::vector<Coupling>& couplings, Scalar* w, bool transposed);
+
   std::vector<Step> steps_;
 };
 

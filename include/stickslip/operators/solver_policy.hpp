@@ -26,6 +26,11 @@ namespace stickslip::operators {
 /// The default of -slide_pc_type by the same rule.
 [[nodiscard]] const char* default_pc_type(const Discretisation& discretisation);
 
+/// Whether ElementElimination factors one velocity branch for both: (-X, -Y, -V) is the same
+/// process, and the nodes of the noise, all levels or not, mirror each other.
+[[nodiscard]] bool branches_share_factors(const model::Process& process, bool all_levels,
+                                          const velocity::VelocityDiscretisation& velocities);
+
 /// What the factors of a matrix take, all ranks together.
 struct FactorCost {
   double entries = 0;
@@ -40,7 +45,7 @@ struct FactorCost {
                                           const velocity::HpDiscretisation& velocities,
                                           const noise::Nodes* noise, int ranks);
 
-/// Of both velocity branches, or of the positive one if symmetry-reduced.
+/// Of both velocity branches, or of the positive one if symmetry-reduced or as good as both.
 [[nodiscard]] FactorCost elimination_cost(const Discretisation& discretisation,
                                           bool symmetry_reduced, int ranks);
 

@@ -3,7 +3,10 @@
 
 #include <petscmat.h>
 
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "stickslip/petsc/backward_error.hpp"
 #include "stickslip/petsc/handle.hpp"
@@ -35,9 +38,14 @@ class Factorization {
                 PCType pc_type = PCLU);
 
   /// A x = b. Throws NotReached when the backward error stays above 1e-12.
-  [[nodiscard]] Solution solve(Vec b) { return solve(b, false); }
+  [[nodiscard]] Solution solve(Vec b) { return std::move(solve({&b, 1}, false)[0]); }
   /// A^T x = b (no conjugation).
-  [[nodiscard]] Solution solve_transposed(Vec b) { return solve(b, true); }
+  [[nodiscard]] Solution solve_transposed(Vec b) { return std::move(solve({&b, 1}, true)[0]); }
+  /// The same for several right-hand sides, each refined and measured by itself; PCs of this
+  /// program read their factors once for many.
+  [[nodiscard]] std::vector<Solution> solve_transposed(const std::vector<VecHandle>& b) {
+    return solve(std::vector<Vec>(b.begin(), b.end()), true);
+  }
 
   /// A x = b and A^T x = b without residual and iterative refinement, for directions that need not
   /// be exact.
@@ -50,9 +58,11 @@ class Factorization {
 
  private:
   void factor();
-  [[nodiscard]] Solution solve(Vec b, bool transposed);
+  [[nodiscard]] std::vector<Solution> solve(std::span<const Vec> b, bool transposed);
+  void solve_some(std::span<const Vec> b, std::span<Solution> solutions, bool transposed);
   [[nodiscard]] std::string advice() const;
   void apply(Vec b, Vec x, bool transposed);
+  void apply(std::span<const Vec> b, std::span<const Vec> x, bool transposed);
 
   MatHandle matrix_;
   BackwardError measure_;

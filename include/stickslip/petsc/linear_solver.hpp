@@ -4,6 +4,7 @@
 #include <petscksp.h>
 
 #include <memory>
+#include <span>
 #include <string>
 
 #include "stickslip/petsc/handle.hpp"
@@ -13,9 +14,13 @@
 
 namespace stickslip::petsc {
 
-/// Name of the function by which a PC of this program predicts its cost for the matrix that it has,
-/// composed on it: PetscErrorCode (PC, Analysis*).
+/// Functions composed on a PC of this program: it predicts its cost for the matrix that it has, and
+/// is applied to several vectors at once.
+using Analyse = PetscErrorCode(PC, Analysis*);
+using ApplyToColumns = PetscErrorCode(PC, std::span<const Vec> b, std::span<const Vec> x,
+                                      bool transposed);
 inline constexpr const char* kAnalyse = "PCAnalyse_C";
+inline constexpr const char* kApplyToColumns = "PCApplyToColumns_C";
 
 /// Makes a KSP a direct solver, preonly around an LU factorisation by MUMPS; to be called before
 /// its options are read. Not collective.
@@ -34,6 +39,11 @@ void set_direct_solver(KSP ksp);
 
 /// Whether the PC of a KSP is of a type of this program: it needs the matrix of an operator.
 [[nodiscard]] bool is_own(KSP ksp);
+
+/// Solves for all of `b` at once, or with the transposed matrix, where a KSP is nothing but a PC of
+/// this program: others return false. Collective.
+[[nodiscard]] bool solve_together(KSP ksp, std::span<const Vec> b, std::span<const Vec> x,
+                                  bool transposed);
 
 /// Factors; MUMPS gets more workspace once if it runs out of what it set aside (INFOG(1) = -8, -9),
 /// as pivots against the order that the analysis foresaw can need more, for which `ksp` is made

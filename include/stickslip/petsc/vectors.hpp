@@ -116,7 +116,7 @@ class WholeVectors {
   }
   /// Sets the entries of this rank to part(entry), for all of them on every rank. Local.
   template <class Scalar, class Part>
-  void scatter(const std::vector<Scalar>& all, Vec vec, Part part) const {
+  void scatter(const Scalar* all, Vec vec, Part part) const {
     WriteView local(vec);
     for (PetscInt n = 0; n < local.size(); ++n) local[n] = part(all[begin_ + n]);
   }

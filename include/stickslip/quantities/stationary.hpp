@@ -23,9 +23,8 @@ namespace stickslip::quantities {
 /// KolmogorovOperator::kill_in_one_state() says, scaled to the time 1.
 class StationaryDistribution {
  public:
-  /// One transposed solve with systems.at(0, even), or one a start with systems.at(0, none).
-  /// Collective.
-  /// Throws NotReached or NoMemory.
+  /// One transposed solve with systems.at(0, even), or one a start with systems.at(0, none), all
+  /// together. Collective. Throws NotReached or NoMemory.
   explicit StationaryDistribution(operators::Systems& systems);
 
   /// Adds Excursion::entry_plus, where it is not there. It is no even functional: one more
