@@ -90,8 +90,8 @@ const char* default_pc_type(const Discretisation& discretisation) {
 // Groups of levels begin at level 0, which need not be its own mirror.
 bool branches_share_factors(const model::Process& process, bool all_levels,
                             const velocity::VelocityDiscretisation& velocities) {
-  return !process.drifts() && (all_levels || process.noise.symmetric()) &&
-         &velocities.mirrored() == &velocities;
+  return !process.drifts() && process.noise.even_in_order() &&
+         (all_levels || process.noise.symmetric()) && &velocities.mirrored() == &velocities;
 }
 
 // The blocks and couplings of groups inside of the elements, and those between elements.

@@ -165,7 +165,7 @@ TEST_CASE("pulses: mean and variance are those of shot noise") {
   // Levels at 0, with as many pulses up as down, are their own images.
   const auto two = scene_of(with(kPulses, {{"pulse_duration", "0.5"}}));
   CHECK(table_of(two).even());
-  CHECK(!table_of(two).reversible_order());
+  CHECK(!table_of(two).even_in_order());
   // Where forces of both signs decay on one lattice, steps add no noise of their own for long.
   const auto both = scene_of(with(kPulses, {{"pulse_decay", "0.5"}, {"pulse_steps", "16"}}));
   CHECK(table_of(both).even());

@@ -94,7 +94,7 @@ class LevelTable {
   [[nodiscard]] bool even() const { return even_; }
   /// Whether -X is this chain with its levels in the reverse order. Several levels at x = 0 may be
   /// their own mirror images; then it is not.
-  [[nodiscard]] bool reversible_order() const { return even_ && reversed_; }
+  [[nodiscard]] bool even_in_order() const { return even_ && reversed_; }
   [[nodiscard]] bool symmetric() const {
     return even_ && neighbours_only() && levels_.size() % 2 == 1;
   }

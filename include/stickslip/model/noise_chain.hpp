@@ -88,6 +88,8 @@ struct NoiseChain {
 
   /// Whether -X is the same chain; and level -i the mirror image of level i, with 0 a level.
   [[nodiscard]] bool even() const { return !table || table->even(); }
+  /// Whether -X is this chain with its levels in the reverse order.
+  [[nodiscard]] bool even_in_order() const { return !table || table->even_in_order(); }
   [[nodiscard]] bool symmetric() const { return !table || table->symmetric(); }
   /// The chain of -X, level -i for level i.
   [[nodiscard]] NoiseChain mirrored() const;
