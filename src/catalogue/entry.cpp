@@ -15,6 +15,7 @@
 #include "stickslip/catalogue/laplace_keys.hpp"
 #include "stickslip/catalogue/moments_keys.hpp"
 #include "stickslip/catalogue/noise_law_keys.hpp"
+#include "stickslip/catalogue/noise_spectrum_keys.hpp"
 #include "stickslip/catalogue/peak_keys.hpp"
 #include "stickslip/catalogue/relaxation_keys.hpp"
 #include "stickslip/catalogue/resolvent_keys.hpp"
@@ -29,11 +30,11 @@
 namespace stickslip::catalogue {
 namespace {
 
-constexpr const Entry* kAll[] = {&kSticking,        &kMoments,    &kAverages,   &kNoiseLaw,
-                                 &kEntryLaw,        &kDensity,    &kLaplace,    &kStickTransform,
-                                 &kResolvent,       &kRelaxation, &kSpectrum,   &kDurationDensity,
-                                 &kAutocorrelation, &kSlip,       &kPeak,       &kDisplacement,
-                                 &kExpectation,     &kTrajectory, &kSensitivity};
+constexpr const Entry* kAll[] = {&kSticking,        &kMoments,         &kAverages,   &kNoiseLaw,
+                                 &kNoiseSpectrum,   &kEntryLaw,        &kDensity,    &kLaplace,
+                                 &kStickTransform,  &kResolvent,       &kRelaxation, &kSpectrum,
+                                 &kDurationDensity, &kAutocorrelation, &kSlip,       &kPeak,
+                                 &kDisplacement,    &kExpectation,     &kTrajectory, &kSensitivity};
 
 // Whether `key` is the derivative of a scalar by a parameter, such as dP_stick_dtau.
 bool is_derivative(std::string_view key) {

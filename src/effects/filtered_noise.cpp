@@ -40,6 +40,7 @@ void read_ground(Given& given, model::Scene& scene) {
     deviation = std::sqrt(intensity * w * (1 + 4 * zeta * zeta) / (2 * zeta));
   }
   read_lattice(given, scene, deviation);
+  scene.noise.target = spectrum_of(ground_of(scene));
 }
 
 model::LevelTable ground_levels(const model::Scene& scene) {

@@ -15,6 +15,7 @@ void read_band(Given& given, model::Scene& scene) {
   for (const char* name : {kBandFrequency, kBandWidth})
     scene.own.emplace_back(name, given.real(name));
   read_lattice(given, scene, 1);
+  scene.noise.target = spectrum_of(band_of(scene));
 }
 
 model::LevelTable band_levels(const model::Scene& scene) {

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -46,11 +47,23 @@ void read_sum(Given& given, model::Scene& scene) {
                         "write the sum as -noise chain, as docs/any_noise.md shows");
   }
   const std::string all = scene.noise.name;
+  std::vector<std::function<double(double)>> targets;
   for (const auto& word : words) {
     scene.noise.name = word;
+    scene.noise.target = {};
     read_effect(given, noises(), word, scene);
+    targets.push_back(scene.noise.target);
   }
   scene.noise.name = all;
+  const bool known = std::all_of(targets.begin(), targets.end(), [](const auto& f) { return !!f; });
+  scene.noise.target = {};
+  if (known) {
+    scene.noise.target = [targets](double omega) {
+      double sum = 0;
+      for (const auto& target : targets) sum += target(omega);
+      return sum;
+    };
+  }
   // The levels of one part are no range of the sum.
   if (scene.noise_levels) scene.own.emplace_back(kLevels, static_cast<double>(*scene.noise_levels));
   scene.noise_levels.reset();

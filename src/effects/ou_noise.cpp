@@ -22,6 +22,10 @@ void read_ou(Given& given, model::Scene& scene) {
   scene.delta = steps ? scene.friction.mu_s / *steps : given.real(kDelta);
   scene.noise_levels = given.integer(kLevels);
   if (given.has(kDeviation)) scene.noise.deviation = given.real(kDeviation);
+  const double tau = scene.tau, sigma = scene.noise.deviation.value_or(1 / std::sqrt(tau));
+  scene.noise.target = [=](double omega) {
+    return 2 * sigma * sigma * tau / (1 + omega * omega * tau * tau);
+  };
 }
 
 // Reports a noise step, as -delta or by how many of them go up to mu_s.

@@ -5,6 +5,7 @@
 #include <array>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
+#include <complex>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -182,11 +183,22 @@ Option radius_option() {
                       {.symbol = "R", .label = "radius of the noise lattice"});
 }
 
+// The covariance is the real part of deviation^2 (1 - i sine) exp(-(decay - i frequency) t).
+std::function<double(double)> spectrum_of(const PlaneNoise& noise) {
+  return [noise](double omega) {
+    using Complex = std::complex<double>;
+    const Complex amplitude(1, -noise.sine), rate(noise.decay, -noise.frequency), i(0, 1);
+    const Complex sum = amplitude / (rate + i * omega) + amplitude / (rate - i * omega);
+    return noise.deviation * noise.deviation * sum.real();
+  };
+}
+
 void read_lattice(Given& given, model::Scene& scene, double deviation) {
   scene.noise.deviation = given.has(kDeviation) ? given.real(kDeviation) : deviation;
   const double mu_s = scene.friction.mu_s, half = *scene.noise.deviation / 2,
-               between = std::max(1.0, std::round(mu_s / half - 0.5)) + 0.5;
-  scene.delta = given.has(kDelta) ? given.real(kDelta) : std::min(half, mu_s / between);
+               places = std::round(mu_s / half - 0.5);
+  const double between = places >= 1 ? mu_s / (places + 0.5) : half;
+  scene.delta = given.has(kDelta) ? given.real(kDelta) : between;
   scene.own.emplace_back(kRadius, given.real(kRadius));
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// Gaussian noises of two states, the force and a second one, as chains on a lattice.
 
+#include <functional>
 #include <string>
 
 #include "levels.hpp"
@@ -17,6 +18,9 @@ struct PlaneNoise {
   double decay, frequency;  ///< [1/time]
   double sine = 0;
 };
+
+/// The power spectral density of such a noise.
+[[nodiscard]] std::function<double(double)> spectrum_of(const PlaneNoise& noise);
 
 /// Reads -noise_deviation, if it is given, -delta and -noise_radius of a lattice. Unless given, the
 /// step is about half the deviation, with mu_s halfway between two levels.

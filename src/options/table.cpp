@@ -51,7 +51,7 @@ std::vector<Option> quantity_options() {
                 "arguments of the Laplace transforms and the resolvent (laplace, F_stick, "
                 "resolvent). With -route lambda one positive value, chosen from -accuracy unless "
                 "given"),
-      arguments("omega", "1/time", "angular frequencies of spectrum")
+      arguments("omega", "1/time", "angular frequencies of spectrum and noise_spectrum")
           .called({"freq", "frequency", "frequencies"}),
       arguments("time", "time",
                 "times of duration_density, autocorrelation, displacement and expectation")

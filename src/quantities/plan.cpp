@@ -13,7 +13,7 @@ using Tasks = void(Planner&);
 Tasks sticking_tasks, mean_slip_tasks, moments_tasks, density_tasks, averages_tasks,
     entry_law_tasks, sensitivity_tasks, stick_transform_tasks, laplace_tasks, resolvent_tasks,
     spectrum_tasks, duration_density_tasks, slip_tasks, peak_tasks, displacement_tasks,
-    autocorrelation_tasks, expectation_tasks, relaxation_tasks;
+    autocorrelation_tasks, expectation_tasks, relaxation_tasks, noise_spectrum_tasks;
 
 namespace {
 
@@ -36,7 +36,8 @@ constexpr std::pair<Quantity, Tasks*> kAll[] = {
     {Quantity::displacement, displacement_tasks},
     {Quantity::autocorrelation, autocorrelation_tasks},
     {Quantity::expectation, expectation_tasks},
-    {Quantity::relaxation, relaxation_tasks}};
+    {Quantity::relaxation, relaxation_tasks},
+    {catalogue::own_quantity("noise_spectrum"), noise_spectrum_tasks}};
 
 }  // namespace
 

@@ -3,6 +3,7 @@
 /// velocity may stay open.
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,6 +23,9 @@ struct NoiseChoice {
   std::string name = "ou";
   std::optional<double> deviation = {};          ///< of "ou", if it has its own [force]
   std::shared_ptr<const LevelTable> table = {};  ///< the levels of all but "ou"
+  /// The power spectral density of the process that the chain stands for, over omega, if it is
+  /// known.
+  std::function<double(double)> target = {};
 };
 
 struct Scene {
