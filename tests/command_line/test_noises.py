@@ -90,8 +90,6 @@ class Noises(Case):
         self.refuse(*chain, "-quantities", "sticking,sensitivity", message=("sensitivity", neighbours))
         self.refuse(*chain, "-quantities", "resolvent", "-lambda", "1", "-observable", "v",
                     message=("resolvent", neighbours))
-        self.refuse(*chain, "-quantities", "peak", "-velocity", "0.1", "-route", "monte_carlo",
-                    message=("peak", neighbours))
         self.refuse(*chain, "-noise_degree", "3", message=("-noise_degree = 3",))
         self.assertEqual(run(*chain, folder=self.folder).returncode, 0)
 
