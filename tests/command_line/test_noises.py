@@ -88,8 +88,6 @@ class Noises(Case):
         for route in (("hitting",), ("fluid_queue", "-drag", "none")):
             self.refuse(*chain, "-route", *route, message=(f"-route = {route[0]}: needs", neighbours))
         self.refuse(*chain, "-quantities", "sticking,sensitivity", message=("sensitivity", neighbours))
-        self.refuse(*chain, "-quantities", "resolvent", "-lambda", "1", "-observable", "v",
-                    message=("resolvent", neighbours))
         self.refuse(*chain, "-noise_degree", "3", message=("-noise_degree = 3",))
         self.assertEqual(run(*chain, folder=self.folder).returncode, 0)
 

@@ -155,7 +155,7 @@ TEST_CASE("any chain: simulated cycles give the same, within 4.5 sigma", "[real]
                   {Quantity::sticking, Quantity::moments, Quantity::averages, Quantity::noise_law,
                    Quantity::entry_law, Quantity::laplace, Quantity::spectrum, Quantity::slip,
                    Quantity::autocorrelation, Quantity::displacement, Quantity::expectation,
-                   Quantity::duration_density, Quantity::peak},
+                   Quantity::duration_density, Quantity::peak, Quantity::resolvent},
                   1e-4);
   c.question.omega = {0, 1, 1.6};
   c.question.start.kind = model::Start::Kind::stationary;
