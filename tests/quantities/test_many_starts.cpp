@@ -1,5 +1,6 @@
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include "../common/catch.hpp"
 #include "../common/chains.hpp"
@@ -9,8 +10,11 @@
 #include "stickslip/algebra/rate_elimination.hpp"
 #include "stickslip/quantities/discounted_starts.hpp"
 #include "stickslip/quantities/resolvent.hpp"
+#include "stickslip/routes/evaluation.hpp"
 
 using namespace stickslip;
+using catalogue::Quantity;
+using catalogue::Route;
 using quantities::Results;
 using quantities::Uncertain;
 using test::relative_difference;
@@ -217,5 +221,44 @@ TEST_CASE("many starts: discounted starts satisfy their equations, with errors t
   CHECK(std::abs(other.mean(values).value - mean.value) <= mean.error);
   for (std::size_t t = 0; t < 3; ++t) {
     CHECK(std::abs(other.apart(values)[t].value - mu[t].value) <= mu[t].error);
+  }
+}
+
+namespace {
+
+std::map<std::string, quantities::Result> by_route(const model::Scene& s, Route route,
+                                                   const std::set<Quantity>& quantities,
+                                                   const std::vector<double>& lambda = {}) {
+  cases::Case c;
+  c.scene = s;
+  c.method.route = route;
+  c.question.quantities = quantities;
+  c.question.accuracy = 1e-8;
+  c.question.lambda = lambda;
+  if (route == Route::fluid_queue) c.method.scheme = cases::Scheme::none;
+  petsc::SolverStatistics statistics;
+  const auto d = route == Route::fluid_queue ? test::Discrete{s.meant(), nullptr}
+                                             : test::on_hp(s, kDegree, 1e-13);
+  std::map<std::string, quantities::Result> all;
+  for (auto& r : routes::evaluate({PETSC_COMM_WORLD, c, d, statistics}).results) {
+    all[r.key] = std::move(r);
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("many starts: hitting times give what excursions give", "[real]") {
+  auto all = samples();
+  all.push_back(test::with_table(kPlain, test::sine_and_levels(1.2, 4, 16, 0.5, 1, 0.7, 4)));
+  for (const auto& s : all) {
+    const auto known = by_route(s, Route::excursion, {Quantity::sticking}),
+               found = by_route(s, Route::hitting, {Quantity::sticking});
+    CHECK(found.size() == 5);
+    for (const auto& [key, r] : found) {
+      INFO(key);
+      CHECK(relative_difference(r.value[0], known.at(key).value[0]) < 1e-10);
+      CHECK(r.error[0] < 1e-10 * r.value[0]);
+    }
   }
 }
