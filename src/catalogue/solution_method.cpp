@@ -37,8 +37,7 @@ constexpr SolutionMethod kMethods[] = {
      .limit = "the fluid queue gives the hitting distribution, durations and the moments of V up "
               "to the second",
      .without_drag = "only then is it a fluid queue",
-     .discretises_velocity = false,
-     .needs_neighbours = true},
+     .discretises_velocity = false},
     {.route = Route::monte_carlo,
      .word = "monte_carlo",
      .synonyms = "mc, simulation, simulate",

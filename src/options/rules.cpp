@@ -79,9 +79,6 @@ class Rules {
     refuse({"noise_degree", "noise_grading"}, far,
            "gathers levels of a noise that jumps to neighbours alone, and this one jumps further",
            "leave it out");
-    refuse({"route"}, far && method_.needs_neighbours,
-           "needs a noise that jumps to neighbouring levels alone, and this one jumps further",
-           "take " + routes_that(&SolutionMethod::needs_neighbours, false));
     refuse({"p"}, hp, "belongs to -scheme upwind", "leave it out, or take -scheme upwind");
     refuse({"route", "scheme", "degree", "layers", "noise_degree", "noise_grading", "p", "v_max",
             "compare", "checkpoint", "noise_levels"},

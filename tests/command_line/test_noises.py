@@ -85,8 +85,6 @@ class Noises(Case):
         (self.folder / "states.csv").write_text("x\n-2\n0.3\n2\n")
         (self.folder / "rates.csv").write_text("from,to,rate\n0,2,1\n2,1,1\n1,0,2\n")
         neighbours = "jumps to neighbouring levels alone"
-        for route in (("fluid_queue", "-drag", "none"),):
-            self.refuse(*chain, "-route", *route, message=(f"-route = {route[0]}: needs", neighbours))
         self.refuse(*chain, "-quantities", "sticking,sensitivity", message=("sensitivity", neighbours))
         self.refuse(*chain, "-noise_degree", "3", message=("-noise_degree = 3",))
         self.assertEqual(run(*chain, folder=self.folder).returncode, 0)

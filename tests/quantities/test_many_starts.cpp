@@ -262,3 +262,49 @@ TEST_CASE("many starts: hitting times give what excursions give", "[real]") {
     }
   }
 }
+
+// Psi of the queue has nothing in common with elements in v, which see no speeds beyond theirs.
+TEST_CASE("many starts: without drag excursions agree with the fluid queue", "[real]") {
+  const auto without_drag = test::scene(1, 0.6, 1, 1, {0, 0});
+  auto weak = test::scene(1, 0.5, 1, 0.5, {0, 0});  // with states at the force mu_d
+  weak.noise_levels = 6;
+  const auto five = test::with_table(without_drag, test::five_states());
+  // Two states at that force which are not alike, and jump to one another.
+  const model::LevelTable still({-2, -0.7, 0, 0.6, 0.6, 2}, {{0, 1, 2},
+                                                             {1, 0, 0.3},
+                                                             {1, 2, 1},
+                                                             {2, 3, 0.7},
+                                                             {3, 4, 0.5},
+                                                             {3, 1, 0.2},
+                                                             {4, 3, 1.2},
+                                                             {4, 5, 0.3},
+                                                             {5, 4, 2},
+                                                             {5, 0, 0.1}});
+  const std::set<Quantity> quantities{Quantity::sticking, Quantity::moments, Quantity::entry_law,
+                                      Quantity::laplace, Quantity::noise_law};
+  for (const auto& s : {five, biased(five), sine({0, 0}),
+                        test::with_table(weak, test::twice(weak.meant().noise, 0.3)),
+                        test::with_table(without_drag, still)}) {
+    auto found = by_route(s, Route::excursion, quantities, {0, 0.1, 3});
+    const auto known = by_route(s, Route::fluid_queue, quantities, {0, 0.1, 3});
+    const auto process = s.meant();
+    const auto& noise = process.noise;
+    const auto moments = model::noise_moments(noise, noise.first_from(-s.friction.mu_s),
+                                              noise.last_up_to(s.friction.mu_s));
+    found["E_X2"].value = {moments.square};
+    found["P_X_le_mu_s"].value = {moments.within};
+    CHECK(known.size() > 12);
+    for (const auto& [key, exact] : known) {
+      if (key.starts_with("var_")) continue;
+      INFO(key);
+      REQUIRE(found.contains(key));
+      const auto& values = found.at(key).value;
+      REQUIRE(values.size() == exact.value.size());
+      for (std::size_t n = 0; n < values.size(); ++n) {
+        INFO(key << " number " << n << " bias " << s.bias);
+        CHECK(std::abs(values[n] - exact.value[n]) < 1e-8 * (std::abs(exact.value[n]) + 1e-3));
+        CHECK(exact.error[n] <= 1e-10 * (std::abs(exact.value[n]) + 1));
+      }
+    }
+  }
+}
