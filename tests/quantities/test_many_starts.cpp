@@ -8,8 +8,10 @@
 #include "../common/scenes.hpp"
 #include "../common/solved.hpp"
 #include "stickslip/algebra/rate_elimination.hpp"
+#include "stickslip/effects/effect.hpp"
 #include "stickslip/quantities/discounted_starts.hpp"
 #include "stickslip/quantities/resolvent.hpp"
+#include "stickslip/quantities/sensitivity.hpp"
 #include "stickslip/routes/evaluation.hpp"
 
 using namespace stickslip;
@@ -305,6 +307,74 @@ TEST_CASE("many starts: without drag excursions agree with the fluid queue", "[r
         CHECK(std::abs(values[n] - exact.value[n]) < 1e-8 * (std::abs(exact.value[n]) + 1e-3));
         CHECK(exact.error[n] <= 1e-10 * (std::abs(exact.value[n]) + 1));
       }
+    }
+  }
+}
+
+namespace {
+
+std::map<std::string, double> scalars(const model::Scene& s) {
+  const test::Solved solved(test::on_hp(s, kDegree));
+  Results results;
+  quantities::append_sticking(solved.distribution.excursion(), results);
+  quantities::append_moments(solved.distribution.discretisation(), solved.distribution.excursion(),
+                             results);
+  std::map<std::string, double> all;
+  for (const auto& r : results) all[r.key] = r.value[0];
+  return all;
+}
+
+std::map<std::string, Uncertain> derivatives(const model::Scene& s) {
+  test::Solved solved(test::on_hp(s, kDegree));
+  const quantities::Sensitivity sensitivity(solved.systems, solved.distribution,
+                                            effects::derivatives_of(s));
+  Results results;
+  sensitivity.append_sticking(results);
+  sensitivity.append_moments(results);
+  std::map<std::string, Uncertain> all;
+  for (const auto& r : results) all[r.key] = {r.value[0], r.error[0]};
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("many starts: derivatives agree with extrapolated differences", "[real]") {
+  for (const auto& s : samples()) {
+    const auto found = derivatives(s);
+    const auto changed = [&](bool friction, double by) {
+      auto other = s;
+      (friction ? other.friction.mu_d : other.drag.linear) += by;
+      return scalars(other);
+    };
+    for (bool friction : {true, false}) {
+      const double h = 0.004;
+      const auto up = changed(friction, h), down = changed(friction, -h),
+                 upper = changed(friction, h / 2), lower = changed(friction, -h / 2);
+      for (const auto& [key, value] : up) {
+        const double coarse = (value - down.at(key)) / (2 * h),
+                     fine = (upper.at(key) - lower.at(key)) / h;
+        const std::string name = "d" + key + (friction ? "_dmu_d" : "_ddrag_coefficient");
+        const auto by_adjoints = found.find(name);
+        const double exact = by_adjoints == found.end() ? 0 : by_adjoints->second.value;
+        INFO(name << " with bias " << s.bias);
+        CHECK(std::abs(exact - (4 * fine - coarse) / 3) < 1e-6 * (std::abs(exact) + 0.01));
+      }
+    }
+  }
+}
+
+TEST_CASE("many starts: derivatives with two states a level are those with one", "[real]") {
+  auto weak = test::scene(1, 0.3, 1, 0.5, {1, 0});
+  weak.noise_levels = 5;
+  for (double bias : {0.0, 0.2}) {
+    weak.bias = bias;
+    const auto known = derivatives(weak),
+               found = derivatives(test::with_table(weak, test::twice(weak.meant().noise, 0.3)));
+    for (const auto& [key, d] : found) {
+      if (bias == 0 && key.starts_with("dE_V_")) continue;  // that is 0 by symmetry there
+      INFO(key << " bias " << bias);
+      CHECK(std::abs(d.value - known.at(key).value) < 1e-10 * (std::abs(d.value) + 0.01));
+      CHECK(d.error < 1e-10);
     }
   }
 }

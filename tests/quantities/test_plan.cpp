@@ -92,7 +92,7 @@ const std::vector<Example>& samples() {
        {},
        {"v^2", "abs(v)"}},
       {"a bias and transforms", {laplace, resolvent}, {2, 2, 10}, inclined(), {1}, {"v", "x*v"}},
-      {"a bias and derivatives", {sticking, moments, sensitivity}, {4, 1, 9}, inclined()}};
+      {"a bias and derivatives", {sticking, moments, sensitivity}, {4, 1, 14}, inclined()}};
   return all;
 }
 
