@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "stickslip/algebra/dense.hpp"
+#include "stickslip/algebra/rate_elimination.hpp"
 
 namespace stickslip::exact {
 namespace {
@@ -22,47 +23,69 @@ struct Phases {
       (rate > 0 ? rising : rate < 0 ? falling : still).push_back(i);
     }
   }
-  std::vector<int> rising, falling, still;  // `still`: mu_d - g on the grid
+  std::vector<int> rising, falling, still;  // `still`: at the force mu_d - g
 };
 
-/// T - lambda between groups of phases, the still one censored: what passes through it counts as a
-/// direct jump, discounted for the time in it.
+/// T - lambda between groups of phases, the still ones censored: what passes through them counts as
+/// a direct jump, discounted for the time in them.
 class Jumps {
  public:
   Jumps(const model::Process& process, const Phases& phases, double lambda)
-      : process_(process), phases_(phases), lambda_(lambda) {}
+      : process_(process), phases_(phases), lambda_(lambda), still_(still_phases()) {}
 
-  [[nodiscard]] double rate(int from, int to) const {
-    const auto& noise = process_.noise;
-    if (to == from + 1) return noise.up_rate(from);
-    if (to == from - 1) return noise.down_rate(from);
-    return to == from ? -(noise.rate(from) + lambda_) : 0;
-  }
-  [[nodiscard]] double censored(int from, int to) const {
-    double total = rate(from, to);
-    for (int s : phases_.still) total += rate(from, s) * sojourn(s) * rate(s, to);
-    return total;
-  }
-  /// Mean discounted time in the still phase.
-  [[nodiscard]] double sojourn(int still) const {
-    return 1 / (process_.noise.rate(still) + lambda_);
+  /// Mean discounted times in the still phases by the jumps from another one in a unit of time.
+  [[nodiscard]] std::vector<double> in_still(int from) const {
+    return still_.occupation(rates(from, phases_.still));
   }
 
   /// diag(|x_i + g - mu_d|)^-1 T between two groups.
   [[nodiscard]] Matrix per_length(const std::vector<int>& from, const std::vector<int>& to) const {
     Matrix m(static_cast<int>(from.size()), static_cast<int>(to.size()));
+    std::vector<std::vector<double>> from_still;
+    for (int s : phases_.still) from_still.push_back(rates(s, to));
     for (int r = 0; r < m.rows(); ++r) {
-      for (int c = 0; c < m.columns(); ++c) {
-        m(r, c) = censored(from[r], to[c]) / std::abs(process_.net_force(from[r]));
+      auto row = rates(from[r], to);
+      const auto time = in_still(from[r]);
+      for (std::size_t c = 0; c < row.size(); ++c) {
+        for (std::size_t s = 0; s < time.size(); ++s) row[c] += time[s] * from_still[s][c];
+        m(r, static_cast<int>(c)) = row[c] / std::abs(process_.net_force(from[r]));
       }
     }
     return m;
   }
 
  private:
+  // To phases of a group, in their rising order; to itself less all rates of leaving.
+  [[nodiscard]] std::vector<double> rates(int from, const std::vector<int>& group) const {
+    std::vector<double> all(group.size(), 0.0);
+    const auto add = [&](int to, double rate) {
+      const auto place = std::ranges::lower_bound(group, to);
+      if (place != group.end() && *place == to) all[place - group.begin()] += rate;
+    };
+    process_.noise.for_each_jump(from, add);
+    add(from, -(process_.noise.rate(from) + lambda_));
+    return all;
+  }
+  [[nodiscard]] algebra::RateElimination still_phases() const {
+    std::vector<double> killing;
+    std::vector<algebra::RateElimination::Rate> among;
+    for (int from : phases_.still) {
+      const int row = static_cast<int>(killing.size());
+      killing.push_back(lambda_);
+      process_.noise.for_each_jump(from, [&](int to, double rate) {
+        const auto place = std::ranges::lower_bound(phases_.still, to);
+        const bool still = place != phases_.still.end() && *place == to;
+        if (still) among.push_back({row, static_cast<int>(place - phases_.still.begin()), rate});
+        if (!still) killing.back() += rate;
+      });
+    }
+    return {std::move(killing), among};
+  }
+
   const model::Process& process_;
   const Phases& phases_;
   double lambda_;
+  algebra::RateElimination still_;
 };
 
 double largest_diagonal(const Matrix& m) {
@@ -189,7 +212,8 @@ class Queue {
     for (std::size_t p = 0; p < group.size(); ++p) {
       const double spent = factorial * crossings[p] / std::abs(process_.net_force(group[p]));
       add(group[p], spent);
-      for (int s : phases_.still) add(s, spent * jumps_.rate(group[p], s) * jumps_.sojourn(s));
+      const auto still = jumps_.in_still(group[p]);
+      for (std::size_t s = 0; s < still.size(); ++s) add(phases_.still[s], spent * still[s]);
     }
   }
 
@@ -211,14 +235,17 @@ class Boundary {
         to_static_(restart_.rows(), upper.count_static()) {
     fill(upper, 0, upper.starts(), 1);
     fill(lower, upper.starts(), 0, -1);
+    factors_ = LuFactors(Matrix::identity(restart_.rows()) - restart_);
   }
 
-  /// The sliding phase that begins with start number `first`: those of the positive branch come
-  /// first. The negative branch is counted in `sums` from `below` on.
-  [[nodiscard]] SlidingMeans slide(int first, std::size_t sums_of_both, std::size_t below) const {
+  /// The sliding phase that begins on a level that does not stick. The negative branch is counted
+  /// in `sums` from `below` on.
+  [[nodiscard]] SlidingMeans slide(int level, std::size_t sums_of_both, std::size_t below) const {
     std::vector<double> number(static_cast<std::size_t>(restart_.rows()), 0.0);
-    number[first] = 1;
-    LuFactors(Matrix::identity(restart_.rows()) - restart_).solve(number, true);
+    // Those of the positive branch come first.
+    const int lowest = upper_.lowest_static(), first = lowest + upper_.count_static();
+    number[level >= first ? level - first : upper_.starts() + lowest - 1 - level] = 1;
+    factors_.solve(number, true);
     SlidingMeans slide;
     for (auto* sums : {&slide.time, &slide.distance, &slide.square}) {
       sums->assign(sums_of_both, 0.0);
@@ -247,6 +274,7 @@ class Boundary {
 
   const Queue &upper_, &lower_;
   Matrix restart_, to_static_;
+  LuFactors<double> factors_;
 };
 
 }  // namespace
@@ -261,10 +289,10 @@ FluidQueue::FluidQueue(const model::Process& process, double lambda) {
   const Boundary boundary(upper, other);
   const auto levels = static_cast<std::size_t>(process.noise.count());
   const std::size_t below = lower ? levels : 0;
-  plus_ = boundary.slide(0, levels + below, below);
-  // Of one side alone both are the same.
-  minus_ =
-      boundary.slide(upper.starts() % (upper.starts() + other.starts()), levels + below, below);
+  plus_ = process.exit_level(true);
+  for (int level : lower ? process.starts() : std::vector{plus_}) {
+    from_.emplace(level, boundary.slide(level, levels + below, below));
+  }
 }
 
 }  // namespace stickslip::exact

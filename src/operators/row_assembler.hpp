@@ -31,6 +31,7 @@ class RowAssembler {
         lambda_(lambda),
         clock_(clock),
         static_phase_(static_phase),
+        exit_rates_(upper_.process.exit_rates()),
         zero_trace_(discretisation.velocities->trace_at_zero()),
         top_trace_(discretisation.velocities->trace_at_top()),
         lines_(2 * static_cast<std::size_t>(noise_.count())) {
@@ -167,7 +168,7 @@ class RowAssembler {
 
   void rates_at_rest(int i) {
     const int highest = upper_.process.highest_static(), lowest = upper_.process.lowest_static();
-    if (static_phase_ == StaticPhase::killing_edges && (i == highest || i == lowest)) {
+    if (static_phase_ == StaticPhase::killing_edges && exit_rates_[i - lowest] > 0) {
       killing_ = chain_.rate();  // value 0 there: killed at once
       return;
     }
@@ -295,6 +296,7 @@ class RowAssembler {
   PetscScalar lambda_;
   Clock clock_;
   StaticPhase static_phase_;
+  std::vector<double> exit_rates_;
   std::vector<velocity::Entry> zero_trace_, top_trace_;
   std::vector<StateSpace::NodeLine> lines_;  // by noise node and branch
   // Derivatives of the jumps from the noise node that was asked for last.

@@ -79,9 +79,6 @@ class Rules {
     refuse({"noise_degree", "noise_grading"}, far,
            "gathers levels of a noise that jumps to neighbours alone, and this one jumps further",
            "leave it out");
-    refuse({"route"}, far && method_.needs_neighbours,
-           "needs a noise that jumps to neighbouring levels alone, and this one jumps further",
-           "take " + routes_that(&SolutionMethod::needs_neighbours, false));
     refuse({"p"}, hp, "belongs to -scheme upwind", "leave it out, or take -scheme upwind");
     refuse({"route", "scheme", "degree", "layers", "noise_degree", "noise_grading", "p", "v_max",
             "compare", "checkpoint", "noise_levels"},
@@ -124,7 +121,6 @@ class Rules {
            "asks for derivatives (sensitivity), but for no scalars to differentiate",
            "add sticking, moments or noise_law");
     require_sticking();
-    require_neighbours();
     const bool unbounded = !r_.scene.v_max && !r_.scene.process(1).drag.bounds_velocity();
     report("quantities", q_.wants(relaxation) && unbounded,
            "asks for relaxation, but where drag does not bound the velocity the spectrum of the "
@@ -206,21 +202,6 @@ class Rules {
       if (method.*fact == value) words.emplace_back(method.word);
     }
     return "-route " + enumerate(words, "or");
-  }
-
-  // What speaks of one start upwards and one downwards.
-  void require_neighbours() {
-    if (!settings_.sound() || r_.scene.process(1).noise.neighbours_only()) return;
-    std::vector<std::string> words;
-    for (const auto* entry : catalogue::entries()) {
-      const bool speaks = entry->by_neighbours.contains(r_.method.route);
-      if (speaks && q_.wants(entry->quantity)) words.emplace_back(entry->word);
-    }
-    report("quantities", !words.empty(),
-           fmt::format("asks for {}, which needs a noise that jumps to neighbouring levels alone: "
-                       "with this one excursions start from many levels",
-                       enumerate(words, "and")),
-           "leave it out");
   }
 
   [[nodiscard]] bool asked(const char* option) const { return q_.depends_on(option); }

@@ -65,33 +65,6 @@ Starts Starts::upwards(const model::Process& process) {
 
 namespace {
 
-// From levels above the static ones to those below, or conversely.
-double crossing(const model::Process& process, const Starts& starts, bool from_above) {
-  const int highest = process.highest_static();
-  double all = 0, crossing = 0;
-  for (std::size_t t = 0; t < starts.size(); ++t) {
-    if ((starts.levels[t] > highest) != from_above) continue;
-    all += starts.shares[t];
-    for (std::size_t u = 0; u < starts.size(); ++u) {
-      const bool above = starts.levels[u] > highest;
-      if (above != from_above) crossing += starts.shares[t] * starts.next[t * starts.size() + u];
-    }
-  }
-  return all > 0 ? crossing / all : 1;
-}
-
-}  // namespace
-
-double Starts::falling(const model::Process& process) const {
-  return crossing(process, *this, true);
-}
-
-double Starts::rising(const model::Process& process) const {
-  return crossing(process, *this, false);
-}
-
-namespace {
-
 // The steps between places 0 ... count-1 that are taken for ever, and the places that they join:
 // those from which the fewest others can be reached.
 std::vector<int> places_for_ever(int count,

@@ -3,18 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
 
 #include "stickslip/catalogue/averages_keys.hpp"
 #include "stickslip/catalogue/resolvent_keys.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
+#include "stickslip/quantities/discounted_starts.hpp"
 #include "stickslip/quantities/plan.hpp"
+#include "stickslip/quantities/stationary.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
-using operators::Branch;
 using operators::StaticChain;
 using operators::Symmetry;
 using Function = operators::KolmogorovOperator::Observable;
@@ -30,201 +33,178 @@ std::vector<double> spread_odd(const std::vector<double>& upper) {
   return all;
 }
 
+double largest(const std::vector<double>& values) {
+  return std::abs(std::ranges::max(values, {}, [](double v) { return std::abs(v); }));
+}
+
 PetscReal largest(Vec values) {
   PetscReal size = 0;
   petsc::check(VecNorm(values, NORM_INFINITY, &size));
   return size;
 }
 
-/// The problems of one symmetry.
+Function one() {
+  return [](double, double, double) { return 1.0; };
+}
+
+/// Excursions from each of some levels by one symmetry: how long, discounted, their sliding phases
+/// are in each state, and where these end.
 class Sector {
  public:
-  Sector(operators::Systems& systems, double lambda, Symmetry symmetry)
-      : systems_(systems), lambda_(lambda), symmetry_(symmetry) {}
-
-  /// At s+ and, where both branches are kept, at s-.
-  struct Values {
-    Uncertain plus, minus;
-  };
-
-  /// h^+ or h^- by the exits of the static chain; with symmetry h^+ + h^- of even functions and
-  /// h^+ - h^- of odd ones.
-  [[nodiscard]] Values exit_transform(Branch side) {
-    const auto& process = systems_.process();
-    const auto chain = StaticChain::of(process, lambda_);
-    switch (symmetry_) {
-    case Symmetry::even: return solve(chain.exit_transform());
-    case Symmetry::odd: {
-      const int k = process.highest_static();
-      return solve(spread_odd(StaticChain::odd(process.noise, k, lambda_).upward_exit_transform()));
+  Sector(operators::Systems& systems, double lambda, Symmetry symmetry,
+         const std::vector<int>& levels)
+      : process_(systems.process()),
+        lambda_(lambda),
+        symmetry_(symmetry),
+        system_(systems.at(lambda, symmetry)) {
+    for (int level : levels) {
+      auto& nu = occupations_.emplace_back(
+          system_.factors().solve_transposed(system_.a().trace_at_start(level)));
+      if (symmetry != Symmetry::odd) {
+        petsc::check(VecAYPX(nu.correction, -1, nu.x));
+        for (Vec each : std::array<Vec, 2>{nu.x, nu.correction})
+          normalise(system_.a(), each, lambda);
+        petsc::check(VecAYPX(nu.correction, -1, nu.x));
+      }
+      const auto p = system_.a().entry_rates(nu.x), step = system_.a().entry_rates(nu.correction);
+      auto& entry = entries_.emplace_back();
+      for (std::size_t k = 0; k < p.size(); ++k) {
+        entry.push_back({PetscRealPart(p[k]), std::abs(PetscRealPart(step[k]))});
+      }
     }
-    case Symmetry::none: break;
-    }
-    return solve(side == Branch::positive ? chain.upward_exit_transform()
-                                          : chain.downward_exit_transform());
   }
 
-  /// w(s+-; f) for an f of this symmetry.
-  [[nodiscard]] Values integral(const Function& f, bool quadratic) {
-    const auto values = static_integral(f);
-    const auto& a = systems_.at(lambda_, symmetry_).a();
-    const petsc::VecHandle source = a.values(f);
-    PetscReal size = largest(source);
-    for (double v : values) size = std::max<PetscReal>(size, std::abs(v));
-    if (size == 0) return {};
-    Values found = solve(values, source);
-    if (quadratic) return found;
+  /// E[exp(-lambda T); the excursion ends in a way] from start t, given that by the first level of
+  /// its sticking phase.
+  [[nodiscard]] Uncertain exit_transform(std::size_t t, const std::vector<double>& exit) const {
+    Uncertain sum;
+    for (std::size_t k = 0; k < exit.size(); ++k) sum = sum + exit[k] * entries_[t][k];
+    return sum;
+  }
+
+  /// w(f), for an f of this symmetry, by start.
+  [[nodiscard]] std::vector<Uncertain> integral(const Function& f, bool quadratic) const {
+    const auto rest = static_integral(f);
+    const auto& a = system_.a();
+    const petsc::VecHandle sliding = a.values(f);
+    petsc::VecHandle overlooked = quadratic ? a.zeros() : a.overlooked(f);
     constexpr double rounding = 1e-12;
-    const petsc::VecHandle overlooked = a.overlooked(f);
-    if (largest(overlooked) <= rounding * size) return found;
-    const Values more = solve(std::vector<double>(values.size(), 0.0), overlooked);
-    found.plus.error += std::abs(more.plus.value);
-    found.minus.error += std::abs(more.minus.value);
-    return found;
+    const double size = std::max<double>(largest(sliding), largest(rest));
+    if (largest(overlooked) <= rounding * size) overlooked = a.zeros();
+    std::vector<Uncertain> w;
+    for (std::size_t t = 0; t < occupations_.size(); ++t) {
+      const auto& nu = occupations_[t];
+      w.push_back(value_of(sliding, nu) + exit_transform(t, rest));
+      w.back().error += std::abs(value_of(overlooked, nu).value);
+    }
+    return w;
   }
 
  private:
   // int exp(-lambda s) f(X_s, 0, 0) ds over a sticking phase, by its first level from the lowest
   // up.
   [[nodiscard]] std::vector<double> static_integral(const Function& f) const {
-    const auto& process = systems_.process();
-    const int highest = process.highest_static();
+    const int highest = process_.highest_static();
     const bool odd = symmetry_ == Symmetry::odd;
     std::vector<double> values;
-    for (int i = odd ? 1 : process.lowest_static(); i <= highest; ++i) {
-      values.push_back(f(process.noise.level(i), 0, 0));
+    for (int i = odd ? 1 : process_.lowest_static(); i <= highest; ++i) {
+      values.push_back(f(process_.noise.level(i), 0, 0));
     }
-    if (!odd) return StaticChain::of(process, lambda_).integral(std::move(values));
+    if (!odd) return StaticChain::of(process_, lambda_).integral(std::move(values));
     return spread_odd(
-        StaticChain::odd(process.noise, highest, lambda_).integral(std::move(values)));
+        StaticChain::odd(process_.noise, highest, lambda_).integral(std::move(values)));
   }
 
-  // u(s+-) where (lambda - L) u = source on the sliding states, with the static values given.
-  [[nodiscard]] Values solve(const std::vector<double>& values, Vec source = nullptr) {
-    auto& system = systems_.at(lambda_, symmetry_);
-    const std::vector<PetscScalar> s(values.begin(), values.end());
-    const petsc::VecHandle rhs = system.a().from_static(s);
-    if (source != nullptr) petsc::check(VecAXPY(rhs, 1, source));
-    const auto u = system.factors().solve(rhs);
-    Values at{value_of(system.a().trace_at_exit(), u), {}};
-    if (symmetry_ != Symmetry::none) return at;
-    at.minus = value_of(system.a().trace_at_exit(Branch::negative), u);
-    return at;
-  }
-
-  operators::Systems& systems_;
+  const model::Process& process_;
   double lambda_;
   Symmetry symmetry_;
+  operators::System& system_;
+  std::vector<petsc::Solution> occupations_;
+  std::vector<std::vector<Uncertain>> entries_;
 };
 
-Function one() {
-  return [](double, double, double) { return 1.0; };
-}
-
-// From s- everything is the same for even functions, and the opposite for odd ones.
-struct Mirrored {
-  Uncertain same, other, w_one;
-  double lambda;
-
-  [[nodiscard]] Resolvent empty() const { return {{same, other, w_one}, {other, same, w_one}, {}}; }
-  // 1 - h_o = (1 - h_e) + 2 h^- and 1 - h_e = lambda w(s+; 1): a positive sum.
-  [[nodiscard]] ObservableTransforms of(Uncertain w_even, Uncertain w_odd) const {
-    const Uncertain mu = w_odd / (lambda * w_one + 2.0 * other);
-    return {w_even + w_odd, w_even - w_odd, w_even / w_one, mu, -1.0 * mu, {}, {}};
-  }
-};
-
+// With symmetry all that s- gives is the same for even functions, and the opposite for odd ones.
 Resolvent by_parity(operators::Systems& systems, double lambda,
                     const std::vector<model::Observable>& observables) {
-  Sector even(systems, lambda, Symmetry::even), odd(systems, lambda, Symmetry::odd);
-  const Uncertain h_even = even.exit_transform(Branch::positive).plus;
-  const Uncertain w_one = even.integral(one(), true).plus;
-  std::vector<Uncertain> w_even;
-  for (const auto& f : observables) {
-    w_even.push_back(even.integral(operators::part_of(f, Symmetry::even), f.quadratic).plus);
-  }
-  systems.release({lambda, Symmetry::even});
-  const Uncertain h_odd = odd.exit_transform(Branch::positive).plus;
-  const Mirrored sides{0.5 * (h_even + h_odd), 0.5 * (h_even - h_odd), w_one, lambda};
-  Resolvent r = sides.empty();
-  for (std::size_t n = 0; n < observables.size(); ++n) {
-    const auto& f = observables[n];
-    r.of.push_back(
-        sides.of(w_even[n], odd.integral(operators::part_of(f, Symmetry::odd), f.quadratic).plus));
-  }
-  systems.release({lambda, Symmetry::odd});
-  return r;
-}
-
-// The same where no level lies at 0, and both branches are kept.
-Resolvent by_mirror(operators::Systems& systems, double lambda,
-                    const std::vector<model::Observable>& observables) {
-  Sector all(systems, lambda, Symmetry::none);
-  const Mirrored sides{all.exit_transform(Branch::positive).plus,
-                       all.exit_transform(Branch::negative).plus, all.integral(one(), true).plus,
-                       lambda};
-  Resolvent r = sides.empty();
-  for (const auto& f : observables) {
-    const auto w = [&](Symmetry parity) {
-      return all.integral(operators::part_of(f, parity), f.quadratic).plus;
-    };
-    r.of.push_back(sides.of(w(Symmetry::even), w(Symmetry::odd)));
-  }
-  systems.release({lambda, Symmetry::none});
-  return r;
-}
-
-// The sides from which excursions start by the chain with discounted steps h.
-Resolvent by_side(operators::Systems& systems, double lambda,
-                  const std::vector<model::Observable>& observables) {
-  Sector all(systems, lambda, Symmetry::none);
-  const auto up = all.exit_transform(Branch::positive), down = all.exit_transform(Branch::negative);
-  const auto w_one = all.integral(one(), true);
-  Resolvent r{{up.plus, down.plus, w_one.plus}, {up.minus, down.minus, w_one.minus}, {}};
-  const Uncertain a = down.plus, b = up.minus;
-  // The determinant of 1 - h is lambda times this sum; both are positive.
-  const Uncertain cycle = b * w_one.plus + a * w_one.minus;
-  const Uncertain discounted = cycle + lambda * (w_one.plus * w_one.minus);
-  for (const auto& f : observables) {
-    const auto w = all.integral(f.value, f.quadratic);
-    const Uncertain difference = w_one.minus * w.plus - w_one.plus * w.minus;
-    r.of.push_back({w.plus,
-                    w.minus,
-                    (b * w.plus + a * w.minus) / cycle,
-                    (a * w_one.minus / cycle) * (difference / discounted),
-                    -1.0 * ((b * w_one.plus / cycle) * (difference / discounted)),
-                    {},
-                    {}});
-  }
-  systems.release({lambda, Symmetry::none});
-  return r;
-}
-
-// How many observables have a part of that symmetry, as far as a sample of states shows; the others
-// are not solved for.
-int count_with(double (model::Observable::*part)(double, double, double) const,
-               const std::vector<model::Observable>& observables, const model::Scene& scene) {
-  const auto process = scene.meant();
-  const int last = std::min(3 * process.highest_static() + 3, process.noise.highest());
-  return static_cast<int>(std::ranges::count_if(observables, [&](const model::Observable& f) {
-    for (int i = 0; i <= last; ++i) {
-      const double x = process.noise.level(i);
-      if (i <= process.highest_static() && (f.*part)(x, 0, 0) != 0) return true;
-      for (double v : {0.01, 0.3, 2.0}) {
-        if ((f.*part)(x, 1, v) != 0 || (f.*part)(-x, 1, v) != 0) return true;
-      }
+  const auto& process = systems.process();
+  const std::vector<int> start{process.exit_level(true)};
+  const auto solve = [&](Symmetry parity, const std::vector<double>& exit, Uncertain& h,
+                         Uncertain& w_one) {
+    const Sector sector(systems, lambda, parity, start);
+    h = sector.exit_transform(0, exit);
+    if (parity == Symmetry::even) w_one = sector.integral(one(), true)[0];
+    std::vector<Uncertain> w;
+    for (const auto& f : observables) {
+      w.push_back(sector.integral(operators::part_of(f, parity), f.quadratic)[0]);
     }
-    return false;
-  }));
+    systems.release({lambda, parity});
+    return w;
+  };
+  const auto both = StaticChain::of(process, lambda).exit_transform(),
+             apart = spread_odd(StaticChain::odd(process.noise, process.highest_static(), lambda)
+                                    .upward_exit_transform());
+  Uncertain h_even, h_odd, w_one;
+  const auto w_even = solve(Symmetry::even, both, h_even, w_one);
+  const auto w_odd = solve(Symmetry::odd, apart, h_odd, w_one);
+  const Uncertain same = 0.5 * (h_even + h_odd), other = 0.5 * (h_even - h_odd);
+  Resolvent r{{same, other, w_one}, {other, same, w_one}, {}};
+  for (std::size_t n = 0; n < observables.size(); ++n) {
+    // 1 - h_o = (1 - h_e) + 2 h^- and 1 - h_e = lambda w(s+; 1): a positive sum.
+    const Uncertain mu = w_odd[n] / (lambda * w_one + 2.0 * other);
+    r.of.push_back(
+        {w_even[n] + w_odd[n], w_even[n] - w_odd[n], w_even[n] / w_one, mu, -1.0 * mu, {}, {}});
+  }
+  return r;
+}
+
+// From all starts, one after the other.
+Resolvent by_start(operators::Systems& systems, double lambda,
+                   const std::vector<model::Observable>& observables) {
+  const auto& process = systems.process();
+  const auto levels = process.starts();
+  const auto place_of = [&](int level) {
+    return static_cast<std::size_t>(std::ranges::find(levels, level) - levels.begin());
+  };
+  const Sector all(systems, lambda, Symmetry::none, levels);
+  const auto chain = StaticChain::of(process, lambda);
+  const std::size_t count = levels.size(), plus = place_of(process.exit_level(true)),
+                    minus = place_of(process.exit_level(false));
+  std::vector<std::vector<Uncertain>> h(count);
+  for (int level : levels) {
+    const auto exit = chain.exit_transform_to(level);
+    for (std::size_t t = 0; t < count; ++t) h[t].push_back(all.exit_transform(t, exit));
+  }
+  const auto w_one = all.integral(one(), true);
+  const auto up = chain.upward_exit_transform(), down = chain.downward_exit_transform();
+  const auto from = [&](std::size_t t) {
+    return ExitTransforms{all.exit_transform(t, up), all.exit_transform(t, down), w_one[t]};
+  };
+  Resolvent r{from(plus), from(minus), {}};
+  const DiscountedStarts starts(lambda, w_one, h);
+  for (const auto& f : observables) {
+    const auto part = [&](Symmetry parity) {
+      return all.integral(operators::part_of(f, parity), f.quadratic);
+    };
+    const auto w = part(Symmetry::none);
+    Uncertain pi = starts.mean(w);
+    auto mu = starts.apart(w);
+    if (!process.drifts()) {
+      // What mirror images make zero is exactly zero.
+      pi = starts.mean(part(Symmetry::even));
+      if (count == 2) mu = starts.apart(part(Symmetry::odd));
+    }
+    r.of.push_back({w[plus], w[minus], pi, mu[plus], mu[minus], {}, {}});
+  }
+  systems.release({lambda, Symmetry::none});
+  return r;
 }
 
 }  // namespace
 
 Resolvent resolvent(operators::Systems& systems, double lambda,
                     const std::vector<model::Observable>& observables) {
-  const auto& process = systems.process();
-  const auto by = process.symmetric() ? by_parity : process.drifts() ? by_side : by_mirror;
-  Resolvent r = by(systems, lambda, observables);
+  Resolvent r =
+      (systems.process().symmetric() ? by_parity : by_start)(systems, lambda, observables);
   for (auto& t : r.of) {
     if (lambda == 0) continue;
     t.u = (1 / lambda) * t.pi_lambda + t.mu_lambda;
@@ -273,7 +253,6 @@ void append_resolvent(const std::vector<double>& lambda,
   }
 }
 
-// Both sectors for the exits, the even one for their discounted time.
 void resolvent_tasks(Planner& planner) {
   const auto found = planner.collect<Resolvent>(
       [](const Computation& computation, const auto& all) {
@@ -282,16 +261,10 @@ void resolvent_tasks(Planner& planner) {
                          !computation.process().drifts(), computation.results());
       },
       true);
-  const auto& scene = planner.given().scene;
-  const auto& f = planner.question().observables;
-  const int even = planner.symmetric() ? count_with(&model::Observable::even, f, scene) : 0,
-            odd = planner.symmetric() ? count_with(&model::Observable::odd, f, scene) : 0;
   planner.add_at_each_lambda([&](double lambda) {
     Task task{fmt::format("resolvent at lambda = {:g}", lambda)};
-    task.uses = {{{lambda, Symmetry::even}, 2 + even, 0}, {{lambda, Symmetry::odd}, 1 + odd, 0}};
-    if (!planner.symmetric()) {
-      task.uses = {{{lambda, Symmetry::none}, 3 + static_cast<int>(f.size()), 0}};
-    }
+    task.uses = {{{lambda, Symmetry::even}, 0, 1}, {{lambda, Symmetry::odd}, 0, 1}};
+    if (!planner.symmetric()) task.uses = {{{lambda, Symmetry::none}, 0, planner.starts()}};
     task.carry_out = [=](Computation& computation) {
       found->push_back(resolvent(computation.systems, lambda, computation.question().observables));
     };

@@ -16,6 +16,7 @@
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
+#include "stickslip/quantities/discounted_starts.hpp"
 #include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
@@ -85,22 +86,20 @@ Sensitivity::Sensitivity(operators::Systems& systems, const StationaryDistributi
                          std::vector<model::Derivative> parameters)
     : system_(systems.at(0, operators::symmetry_of(systems.process()))),
       distribution_(distribution),
-      parameters_(std::move(parameters)),
-      upwards_(operators::StaticChain::of(systems.process()).upward_exit_transform()) {
+      parameters_(std::move(parameters)) {
+  const auto chain = operators::StaticChain::of(systems.process());
+  for (int start : distribution.starts().levels) exits_.push_back(chain.exit_transform_to(start));
   const Symmetry symmetry = operators::symmetry_of(systems.process());
   for (const auto& theta : parameters_) {
     changes_.push_back(operators::assemble_derivative(systems.comm(), systems.discretisation(),
                                                       symmetry, theta, systems.statistics()));
-  }
-  if (symmetry == Symmetry::none) {
-    rising_ = system_.factors().solve(system_.a().from_static({upwards_.begin(), upwards_.end()}));
   }
   slide_ = sliding_mean([](double, double, double) { return 1.0; });
   stick_ = sticking_mean();
 }
 
 Sensitivity::Gradient Sensitivity::sliding_mean(const KolmogorovOperator::Observable& f) const {
-  const std::vector<double> none(upwards_.size(), 0.0);
+  const std::vector<double> none(exits_[0].size(), 0.0);
   return through(system_.factors().solve(system_.a().values(f)), none);
 }
 
@@ -126,24 +125,36 @@ Sensitivity::Gradient Sensitivity::sticking_mean() const {
   return gradient;
 }
 
-// What the next excursion's side adds: h at s+ less h at s-, over the rates of changing sides.
-double Sensitivity::worth_of_upper_side(const petsc::Solution& h) const {
-  if (distribution_.process().symmetric()) return 0;
+// What the level from which the next excursion starts adds, by start, of a mean h.
+std::vector<double> Sensitivity::worth_of_starts(const petsc::Solution& h) const {
   const auto& starts = distribution_.starts();
-  const auto& process = distribution_.process();
-  const auto& a = system_.a();
-  return (petsc::dot(a.trace_at_exit(), h.x) -
-          petsc::dot(a.trace_at_exit(operators::Branch::negative), h.x)) /
-         (starts.falling(process) + starts.rising(process));
+  const std::size_t count = starts.size();
+  std::vector<Uncertain> means;
+  std::vector<std::vector<Uncertain>> next(count);
+  for (std::size_t t = 0; t < count; ++t) {
+    means.push_back({petsc::dot(system_.a().trace_at_start(starts.levels[t]), h.x), 0});
+    for (std::size_t u = 0; u < count; ++u) next[t].push_back({starts.next[t * count + u], 0});
+  }
+  const std::vector<Uncertain> ones(count, {1, 0});
+  std::vector<double> worth;
+  for (const auto& z : DiscountedStarts(0, ones, next).apart(means)) worth.push_back(z.value);
+  return worth;
 }
 
 Sensitivity::Gradient Sensitivity::through(petsc::Solution h, const std::vector<double>& s) const {
-  const double worth = worth_of_upper_side(h);
-  std::vector<PetscScalar> values;
-  for (std::size_t n = 0; n < s.size(); ++n) values.emplace_back(s[n] + worth * upwards_[n]);
-  if (worth != 0) {
-    petsc::check(VecAXPY(h.x, worth, rising_.x));
-    petsc::check(VecAXPY(h.correction, worth, rising_.correction));
+  std::vector<PetscScalar> values(s.begin(), s.end());
+  double upper_side = 0;
+  if (exits_.size() > 1) {
+    const auto worth = worth_of_starts(h);
+    upper_side = worth.back() - worth.front();
+    std::vector<PetscScalar> next(s.size(), 0.0);
+    for (std::size_t t = 0; t < worth.size(); ++t) {
+      for (std::size_t n = 0; n < next.size(); ++n) next[n] += worth[t] * exits_[t][n];
+    }
+    const auto more = system_.factors().solve(system_.a().from_static(next));
+    petsc::check(VecAXPY(h.x, 1, more.x));
+    petsc::check(VecAXPY(h.correction, 1, more.correction));
+    for (std::size_t n = 0; n < next.size(); ++n) values[n] += next[n];
   }
   Gradient gradient;
   for (std::size_t n = 0; n < changes_.size(); ++n) {
@@ -154,11 +165,12 @@ Sensitivity::Gradient Sensitivity::through(petsc::Solution h, const std::vector<
       return -petsc::dot(distribution_.occupation(), image);
     };
     const double moved = petsc::dot(distribution_.occupation(), change.from_static(values));
-    const double chain = !parameters_[n].is_of_jumps()
-                             ? 0
-                             : worth * static_phase_by_tau(distribution_.process(),
-                                                           distribution_.excursion().stick_time)
-                                           .upwards;
+    const double chain =
+        !parameters_[n].is_of_jumps()
+            ? 0
+            : upper_side *
+                  static_phase_by_tau(distribution_.process(), distribution_.excursion().stick_time)
+                      .upwards;
     gradient.push_back({flux(h.x) + moved + chain, std::abs(flux(h.correction))});
   }
   return gradient;
@@ -240,18 +252,21 @@ void append_noise_sensitivity(const model::Process& process, Results& results) {
   results.push_back(derivative(catalogue::kEX2, "tau", {by_square, rounding * size}));
 }
 
-// Adjoints of mean_slide and mean_stick, which every derivative needs, and of three moments. With a
-// single static level mean_stick needs none. Without symmetry there are the side of the next
-// excursion, and E_V.
+// Adjoints of mean_slide and mean_stick, which every derivative needs, of three moments and of E_V.
+// With a single static level mean_stick needs none. Where excursions start from several levels each
+// has a second one, by that of the next excursion.
 void sensitivity_tasks(Planner& planner) {
   using catalogue::Quantity;
   const bool sticking = planner.question().wants(Quantity::sticking),
              moments = planner.question().wants(Quantity::moments);
   if (!moments && !sticking) return;
   const auto& scene = planner.given().scene;
-  const int durations = scene.meant().highest_static() > 0 ? 2 : 1;
-  const int sides = planner.symmetric() ? 0 : 1;
-  const int adjoints = durations + sides + (moments ? 3 + sides : 0);
+  const auto process = scene.meant();
+  const int durations = process.highest_static() > process.lowest_static() ? 2 : 1,
+            means = durations + (!moments           ? 0
+                                 : process.drifts() ? 4
+                                                    : 3),
+            adjoints = means * (planner.starts() > 1 ? 2 : 1);
   const auto parameters = effects::derivatives_of(scene);
   const auto find = [=](Computation& computation) {
     const Sensitivity sensitivity(computation.systems, computation.distribution(), parameters);

@@ -30,12 +30,14 @@ std::vector<double> real_parts(const std::vector<PetscScalar>& values) {
   return parts;
 }
 
-// Scales nu such that sliding ends somewhere: sum_i P_i = 1 holds on every discretisation. Where
-// sliding phases last long against the time steps of the noise, nu is nearly a null vector of A,
-// and rounding (of the entries of A too) changes little but its length; this sets it right.
-double normalise(const KolmogorovOperator& a, Vec nu) {
+}  // namespace
+
+double normalise(const KolmogorovOperator& a, Vec nu, double lambda) {
   const auto entry = real_parts(a.entry_rates(nu));
-  const double total = std::accumulate(entry.begin(), entry.end(), 0.0);
+  PetscScalar time = 0;
+  petsc::check(VecSum(nu, &time));
+  const double total =
+      std::accumulate(entry.begin(), entry.end(), 0.0) + lambda * PetscRealPart(time);
   if (!(std::abs(total - 1) < 0.1)) {
     throw NotReached(
         fmt::format("rounding leaves {:.2g} for the probability that a sliding phase ends; sliding "
@@ -45,6 +47,8 @@ double normalise(const KolmogorovOperator& a, Vec nu) {
   petsc::check(VecScale(nu, 1 / total));
   return total - 1;
 }
+
+namespace {
 
 // Means over excursions of which nu is the occupation, normalised.
 Excursion excursion_of(const KolmogorovOperator& a, Vec nu, double lost) {

@@ -77,14 +77,12 @@ struct Excursions {
 };
 
 Excursions excursions_of(const model::Process& process, const FluidQueue& queue) {
-  const Excursion plus = excursion_of(process, queue.plus());
-  if (process.symmetric()) return {plus, quantities::Starts::upwards(process)};
+  if (process.symmetric()) {
+    return {excursion_of(process, queue.plus()), quantities::Starts::upwards(process)};
+  }
   const std::vector<int> levels = process.starts();
   std::vector<Excursion> from;
-  for (int level : levels) {
-    const bool up = level > process.highest_static();
-    from.push_back(up ? plus : excursion_of(process, queue.minus()));
-  }
+  for (int level : levels) from.push_back(excursion_of(process, queue.from(level)));
   const auto starts = quantities::chain_of_starts(process, levels, from);
   return {quantities::joined(process, starts, from), starts};
 }
@@ -104,16 +102,16 @@ void append_laplace(const Problem& problem, const Excursions& excursions, double
   std::vector<quantities::DurationTransforms> transforms;
   for (double lambda : problem.given.question.lambda) {
     const FluidQueue killed = solve(process, lambda);
-    double plus = 0, minus = 0;
-    for (std::size_t t = 0; t < excursions.starts.size(); ++t) {
-      (excursions.starts.levels[t] > process.highest_static() ? plus : minus) +=
-          excursions.starts.shares[t];
+    double slide = 0;
+    Uncertain excursion;
+    const auto& [levels, shares, next] = excursions.starts;
+    for (std::size_t t = 0; t < levels.size(); ++t) {
+      const auto& entry = killed.from(levels[t]).entry;
+      slide += shares[t] * sum(entry);
+      excursion = excursion + shares[t] * transform(lambda, entry);
     }
-    const double slide = plus * sum(killed.plus().entry) + minus * sum(killed.minus().entry);
-    transforms.push_back({{slide, rounding * slide},
-                          transform(lambda, excursions.mean.entry),
-                          plus * transform(lambda, killed.plus().entry) +
-                              minus * transform(lambda, killed.minus().entry)});
+    transforms.push_back(
+        {{slide, rounding * slide}, transform(lambda, excursions.mean.entry), excursion});
   }
   quantities::append_laplace(problem.given.question.lambda, transforms, results);
 }

@@ -25,7 +25,8 @@ void entry_laws_of_cycles(Tally& tally, const std::vector<double>& levels) {
   tally.report([=](const Tally&) -> Estimates {
     const auto law = [&](const catalogue::Row& row, double Hits::*here, double Hits::*all) {
       return array(row, levels, [&](std::size_t n) {
-        return hits[n].estimate(hits[n].overall(here) / hits[n].overall(all));
+        const Smooth share = hits[n].overall(here) / hits[n].overall(all);
+        return jeffreys(hits[n], share, 1, hits[n].count());
       });
     };
     return {law(catalogue::kEntryLawPlus, &Hits::up_here, &Hits::up),

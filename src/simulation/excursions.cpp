@@ -111,7 +111,7 @@ class Source : public ExcursionSource {
     e.integrals.assign(wanted_.observables.size(), {});
     e.discounted.assign(wanted_.observables.size() * wanted_.discount.size(), {});
     std::fill(phase_.begin(), phase_.end(), 1.0);
-    e.entry = level;
+    e.start = e.entry = level;
     e.upwards = levels_.direction(level) > 0;
     double wait = levels_.wait(level, random);
     if (!levels_.rests(level)) slide(random, e, wait, level);

@@ -30,19 +30,22 @@ Comoments Histogram::moments(std::size_t side, const Weight& weight) const {
   return moments;
 }
 
-Estimate Histogram::jeffreys(std::span<const Comoments> sides, const Weight& weight) const {
-  double largest = 0;
-  for (std::size_t n = 0; n < bins_; ++n) largest = std::max(largest, weight(n));
-  if (largest == 0) return {};
-  const Means means(sides, sides.size() == 1 ? Sampled::one_side : Sampled::sides);
-  const Smooth of_weight = means.overall(1);
-  const double mean = of_weight.value.real(), count = sides[0].count();
+Estimate jeffreys(const Means& means, const Smooth& of_weight, double largest, double count) {
+  const double mean = of_weight.value.real();
   const double variance = count > 1 ? means.variance(of_weight) * (count - 1) / count : 0;
   const double p = std::min(1.0, mean / largest), v = variance / (largest * largest);
   const double certain = 1e-14 / count;  // where all weights are alike
   const double trials = v > certain ? p * (1 - p) / v : count;
   const Estimate e = proportion(p * trials, trials);
   return {mean, std::min(mean, largest * e.low), std::max(mean, largest * e.high)};
+}
+
+Estimate Histogram::jeffreys(std::span<const Comoments> sides, const Weight& weight) const {
+  double largest = 0;
+  for (std::size_t n = 0; n < bins_; ++n) largest = std::max(largest, weight(n));
+  if (largest == 0) return {};
+  const Means means(sides, sides.size() == 1 ? Sampled::one_side : Sampled::sides);
+  return simulation::jeffreys(means, means.overall(1), largest, sides[0].count());
 }
 
 Estimate Histogram::mean(std::size_t side, const Weight& weight) const {

@@ -9,6 +9,10 @@
 namespace stickslip::simulation {
 namespace {
 
+double discounted_time(double lambda, double time) {
+  return lambda > 0 ? -std::expm1(-lambda * time) / lambda : time;
+}
+
 // exp(-lambda T) of excursions that end on the same and on the other side, and integrals of
 // exp(-lambda t) times 1, f and the mirror image of f.
 struct Discounts {
@@ -77,10 +81,116 @@ Estimates ends_of(const Tally& tally, const std::vector<Sums<Discounts>>& sums) 
   return all;
 }
 
+// Of the excursions of a cycle from one level: their number, exp(-lambda T) of those followed by
+// one upwards or downwards, and integrals of exp(-lambda t) times 1 and f. From the starts of all
+// of them to the end of the cycle, integrals of f and what is left of the discount; from the start
+// of the cycle to its end, integrals of f and 1.
+struct Visits {
+  double count, up, down, one, f, rest, left, cycle, cycle_one;
+};
+
+/// Follows the excursions of one cycle after the other.
+class CyclesFrom {
+ public:
+  /// From s+ or s-; the n-th lambda, and an observable.
+  CyclesFrom(const model::Process& process, bool up, double lambda, std::size_t n,
+             std::size_t observable)
+      : level_(process.exit_level(up)),
+        highest_static_(process.highest_static()),
+        lambda_(lambda),
+        n_(n),
+        observable_(observable) {}
+
+  Visits operator()(const Excursion& e) {
+    const double whole = e.slide + e.stick, h = std::exp(-lambda_ * whole),
+                 one = discounted_time(lambda_, whole),
+                 f = e.discounted[n_ * e.integrals.size() + observable_].value;
+    const bool up = e.next > highest_static_;
+    Visits v{};
+    if (e.start == level_) {
+      v = {1, up ? h : 0, up ? 0 : h, one, f, 0, 0, 0, 0};
+      discount_ += 1;
+    }
+    v.rest = discount_ * f;
+    v.cycle = since_begun_ * f;
+    v.cycle_one = since_begun_ * one;
+    discount_ *= h;
+    since_begun_ *= h;
+    if (!e.ends_cycle) return v;
+    v.left = discount_;
+    discount_ = 0;
+    since_begun_ = 1;
+    return v;
+  }
+
+ private:
+  int level_, highest_static_;
+  double lambda_;
+  std::size_t n_, observable_;
+  double discount_ = 0, since_begun_ = 1;  // from the visits and from the start of the cycle on
+};
+
+// What excursions from many starts give: nothing that takes all of them together. At the start of
+// cycles u = w + E[exp(-lambda T)] u, over a cycle.
+void from_cycles(Tally& tally, std::size_t number) {
+  using Side = std::vector<Sums<Visits>>;
+  const auto side = [&](bool up) {
+    const auto& lambda = tally.question().lambda;
+    const std::size_t place = tally.wanted().observe(tally.question().observables[number]);
+    Side all;
+    for (std::size_t n = 0; n < lambda.size(); ++n) {
+      all.push_back(tally.sums(CyclesFrom(tally.process(), up, lambda[n], n, place)));
+    }
+    return all;
+  };
+  tally.report([=, plus = side(true), minus = side(false)](const Tally& t) {
+    const auto& lambda = t.question().lambda;
+    const auto& f = t.question().observables[number];
+    Estimates all;
+    const auto mean = [&](const catalogue::Row& row, const Side& from, double Visits::*which,
+                          const model::Observable* of = nullptr) {
+      const auto value = [&](std::size_t n) {
+        return from[n].estimate(from[n].at(0, which) / from[n].at(0, &Visits::count));
+      };
+      all.push_back(array(row, lambda, value, of));
+    };
+    const auto u = [&](const catalogue::Row& row, const Side& from) {
+      const auto value = [&](std::size_t n) {
+        const auto at = [&](double Visits::*which) { return from[n].at(0, which); };
+        const Smooth begun = at(&Visits::cycle) / (lambda[n] * at(&Visits::cycle_one));
+        return from[n].estimate((at(&Visits::rest) + at(&Visits::left) * begun) /
+                                at(&Visits::count));
+      };
+      all.push_back(array(row, lambda, value, &f));
+    };
+    const bool drifts = t.process().drifts();
+    if (number == 0) {
+      mean(catalogue::kHPlus, plus, &Visits::up);
+      mean(catalogue::kHMinus, plus, &Visits::down);
+      mean(catalogue::kWOne, plus, &Visits::one);
+      if (drifts) {
+        mean(catalogue::kHPlusFromMinus, minus, &Visits::up);
+        mean(catalogue::kHMinusFromMinus, minus, &Visits::down);
+        mean(catalogue::kWOneFromMinus, minus, &Visits::one);
+      }
+    }
+    mean(catalogue::kWPlus, plus, &Visits::f, &f);
+    mean(catalogue::kWMinus, minus, &Visits::f, &f);
+    if (std::ranges::min(lambda) == 0) return all;
+    u(catalogue::kU, plus);
+    if (drifts) u(catalogue::kUMinus, minus);
+    return all;
+  });
+}
+
 }  // namespace
 
 void resolvent_tally(Tally& tally) {
   const auto& lambda = tally.wanted().discount = tally.question().lambda;
+  if (tally.sampled() == Sampled::cycles) {
+    for (std::size_t f = 0; f < tally.question().observables.size(); ++f) from_cycles(tally, f);
+    return;
+  }
   for (std::size_t f = 0; f < tally.question().observables.size(); ++f) {
     const std::size_t place = tally.wanted().observe(tally.question().observables[f]);
     std::vector<Sums<Discounts>> sums;
@@ -88,8 +198,7 @@ void resolvent_tally(Tally& tally) {
       sums.push_back(tally.sums([n, place, s = lambda[n]](const Excursion& e) -> Discounts {
         const double whole = e.slide + e.stick, turned = e.turned ? 1 : 0, h = std::exp(-s * whole);
         const auto& w = e.discounted[n * e.integrals.size() + place];
-        const double one = s > 0 ? -std::expm1(-s * whole) / s : whole;
-        return {(1 - turned) * h, turned * h, one, w.value, w.mirrored};
+        return {(1 - turned) * h, turned * h, discounted_time(s, whole), w.value, w.mirrored};
       }));
     }
     if (f == 0) tally.report([=](const Tally& t) { return ends_of(t, sums); });

@@ -48,10 +48,7 @@ const Tally& Sampler::batch(std::uint64_t seed, std::uint64_t batch, int count) 
   Excursion excursion, from_rest;
   const std::size_t sides = sampled_ == Sampled::sides ? 2 : 1;
   for (int n = 0; n < count; ++n) {
-    if (at_rest_) {
-      from_rest_->draw_from(at_rest_->draw(rests.uniform()), rests, from_rest);
-      tally_.add_jumps(from_rest.jumps);
-    }
+    if (at_rest_) draw_from_rest(rests, from_rest);
     for (std::size_t side = 0; side < sides; ++side) {
       source_->draw(random, starts_[side], places.uniform(), excursion);
       excursion.from_rest = &from_rest;
@@ -73,6 +70,24 @@ const Tally& Sampler::batch(std::uint64_t seed, std::uint64_t batch, int count) 
     tally_.add_jumps(walk_->jumps());
   }
   return tally_;
+}
+
+// One excursion; before a cycle as many as it takes to its start, or to all speeds.
+void Sampler::draw_from_rest(RandomStream& random, Excursion& all) {
+  from_rest_->draw_from(at_rest_->draw(random.uniform()), random, all);
+  tally_.add_jumps(all.jumps);
+  Excursion e;
+  while (sampled_ == Sampled::cycles && all.next != starts_[0] &&
+         all.passages.size() < wanted_.speeds.size()) {
+    from_rest_->draw_from(all.next, random, e);
+    tally_.add_jumps(e.jumps);
+    for (std::size_t n = all.passages.size(); n < e.passages.size(); ++n) {
+      all.passages.push_back(all.slide + all.stick + e.passages[n]);
+    }
+    all.slide += e.slide;
+    all.stick += e.stick;
+    all.next = e.next;
+  }
 }
 
 // The rest of a cycle after its first excursion, and all of it as one.

@@ -1,8 +1,8 @@
 #include "stickslip/simulation/tally.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
-#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -35,11 +35,9 @@ constexpr std::pair<Quantity, Follow*> kAll[] = {
     {Quantity::displacement, displacement_tally},
     {Quantity::expectation, expectation_tally}};
 
-/// Cell of a histogram around a value.
-struct Cell {
-  double low, high;
-};
+using Cell = Tally::Range;
 
+// Around values.
 std::vector<Cell> cells_around(const std::vector<double>& at) {
   const std::set<double> sorted(at.begin(), at.end());
   std::vector<Cell> cells;
@@ -111,29 +109,36 @@ void Tally::over_time(const catalogue::Row& row, const Number& of, double parity
 void Tally::distribution(const catalogue::Row& density, const catalogue::Row& distribution,
                          const std::vector<double>& at, const Number& of) {
   const auto cells = cells_around(at);
-  if (sampled() == Sampled::cycles) {
-    // Excursions of a cycle depend on one another, so that counts have no intervals of their own.
-    std::map<double, Cell> around;
-    for (std::size_t n = 0; n < at.size(); ++n) around[at[n]] = cells[n];
-    mean(density, at, [of, around](const Excursion& e, double t) {
-      const auto& [low, high] = around.at(t);
-      const double x = of(e);
-      return low <= x && x < high ? 1 / (high - low) : 0;
-    });
-    mean(distribution, at, [of](const Excursion& e, double t) { return of(e) <= t ? 1.0 : 0.0; });
-    return;
-  }
-  std::set<double> edges(at.begin(), at.end());
-  for (const auto& [low, high] : cells) edges.insert({low, high});
-  const Histogram& all = histogram({edges.begin(), edges.end()}, of);
-  report([=, &density, &distribution, &all](const Tally&) -> Estimates {
-    const auto average = [&](std::size_t n) {
-      const auto [low, high] = cells[n];
-      return all.probability(low, high) / (high - low);
-    };
-    const auto below = [&](std::size_t n) { return all.probability(0, at[n]); };
+  auto ranges = cells;
+  for (double t : at) ranges.push_back({0, t});
+  report([=, &density, &distribution, of = shares(ranges, of)](const Tally&) -> Estimates {
+    const auto average = [&](std::size_t n) { return of(n) / (cells[n].high - cells[n].low); };
+    const auto below = [&](std::size_t n) { return of(cells.size() + n); };
     return {array(density, at, average), array(distribution, at, below)};
   });
+}
+
+Tally::Shares Tally::shares(const std::vector<Range>& ranges, const Number& of) {
+  if (sampled() == Sampled::cycles) {
+    // Excursions of a cycle depend on one another, so that counts alone have no intervals.
+    std::vector<Sums<Single>> all;
+    for (const auto& [low, high] : ranges) {
+      all.push_back(sums([of, low = low, high = high](const Excursion& e) {
+        const double x = of(e);
+        return Single{low <= x && x < high ? 1.0 : 0.0};
+      }));
+    }
+    return [all](std::size_t n) {
+      return jeffreys(all[n], all[n].overall(&Single::x), 1, all[n].count());
+    };
+  }
+  std::set<double> edges;
+  for (const auto& [low, high] : ranges) {
+    if (low > 0) edges.insert(low);
+    if (std::isfinite(high)) edges.insert(high);
+  }
+  const Histogram& all = histogram({edges.begin(), edges.end()}, of);
+  return [&all, ranges](std::size_t n) { return all.probability(ranges[n].low, ranges[n].high); };
 }
 
 const Histogram& Tally::histogram(std::vector<double> edges, const Number& of) {

@@ -80,20 +80,16 @@ class Noises(Case):
         self.refuse_chain([-2, 0, 2, 3], ["0,1,1", "1,0,1", "2,3,1", "3,2,1"], states, "line 4")
         self.refuse_chain([-0.2, 0, 0.2], ring, "-mu_s = 1: holds the body on all")
 
-    def test_what_needs_neighbours(self):
+    def test_groups_of_levels_need_neighbours(self):
         chain = ("-mu_d", "0.5", "-noise", "chain", "-noise_states", "states.csv", "-noise_rates", "rates.csv")
         (self.folder / "states.csv").write_text("x\n-2\n0.3\n2\n")
         (self.folder / "rates.csv").write_text("from,to,rate\n0,2,1\n2,1,1\n1,0,2\n")
-        neighbours = "jumps to neighbouring levels alone"
-        for route in (("hitting",), ("fluid_queue", "-drag", "none")):
-            self.refuse(*chain, "-route", *route, message=(f"-route = {route[0]}: needs", neighbours))
-        self.refuse(*chain, "-quantities", "sticking,sensitivity", message=("sensitivity", neighbours))
-        self.refuse(*chain, "-quantities", "resolvent", "-lambda", "1", "-observable", "v",
-                    message=("resolvent", neighbours))
-        self.refuse(*chain, "-quantities", "peak", "-velocity", "0.1", "-route", "monte_carlo",
-                    message=("peak", neighbours))
-        self.refuse(*chain, "-noise_degree", "3", message=("-noise_degree = 3",))
-        self.assertEqual(run(*chain, folder=self.folder).returncode, 0)
+        self.refuse(*chain, "-noise_degree", "3",
+                    message=("-noise_degree = 3", "a noise that jumps to neighbours alone"))
+        for options in ((), ("-route", "hitting"), ("-route", "fluid_queue", "-drag", "none"),
+                        ("-quantities", "sticking,sensitivity"),
+                        ("-route", "monte_carlo", "-excursions", "1000", "-quantities", "peak", "-velocity", "0.1")):
+            self.assertEqual(run(*chain, *options, folder=self.folder).returncode, 0, options)
 
     def test_neighbours_as_a_chain_give_the_digits_of_levels(self):
         (self.folder / "levels.csv").write_text(HEADER + "-2,1,0\n-0.6,0.7,0.5\n0.6,0.4,0.7\n2,0,1\n")
@@ -101,7 +97,7 @@ class Noises(Case):
         (self.folder / "rates.csv").write_text(
             "from,to,rate\n1,3,1\n3,2,0.7\n3,1,0.5\n2,0,0.4\n2,3,0.7\n0,2,1\n")
         quantities = ("-mu_d", "0.5", "-quantities",
-                      "sticking,moments,laplace,spectrum,slip,entry_law,displacement,resolvent,peak",
+                      "sticking,moments,laplace,spectrum,slip,entry_law,displacement,resolvent,peak,sensitivity",
                       "-lambda", "0.5", "-omega", "0,1", "-time", "1", "-observable", "x*v",
                       "-velocity", "0.3", "-start", "stationary")
         found = [self.values(*quantities, *noise) for noise in (

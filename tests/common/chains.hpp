@@ -56,6 +56,29 @@ inline model::LevelTable sine_and_levels(double amplitude, double period, int ph
   return {x, transitions};
 }
 
+/// A chain of levels with each of them twice: jumps arrive at the first copy with probability
+/// `share`, and the copies of a level jump to one another. The force has the distribution that it
+/// had.
+inline model::LevelTable twice(const model::NoiseChain& chain, double share) {
+  std::vector<double> x;
+  std::vector<model::Transition> transitions;
+  const int lowest = chain.lowest();
+  for (int i = lowest; i <= chain.highest(); ++i) {
+    const std::size_t first = x.size();
+    x.insert(x.end(), {chain.level(i), chain.level(i)});
+    transitions.push_back({first, first + 1, 0.3});
+    transitions.push_back({first + 1, first, 1.1});
+    chain.for_each_jump(i, [&](int level, double rate) {
+      const auto to = static_cast<std::size_t>(2 * (level - lowest));
+      for (std::size_t from : {first, first + 1}) {
+        transitions.push_back({from, to, rate * share});
+        transitions.push_back({from, to + 1, rate * (1 - share)});
+      }
+    });
+  }
+  return {x, transitions};
+}
+
 inline model::Scene with_table(model::Scene s, model::LevelTable table) {
   s.noise.name = "chain";
   s.noise.table = std::make_shared<const model::LevelTable>(std::move(table));

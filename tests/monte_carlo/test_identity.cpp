@@ -37,12 +37,11 @@ const std::set<std::string> kFree{"excursions",  // more of them extend a simula
 // Options that change only along with others: each command line below has its own.
 const std::set<std::string> kWithOthers{"friction", "noise"};
 
-std::string all_simulated(bool neighbours = true) {
+std::string all_simulated() {
   std::vector<std::string> words;
   for (const auto* entry : catalogue::entries()) {
     const bool simulated = entry->routes.contains(Route::monte_carlo);
-    const bool given = neighbours || !entry->by_neighbours.contains(Route::monte_carlo);
-    if (simulated && given && !entry->of_one_run) words.emplace_back(entry->word);
+    if (simulated && !entry->of_one_run) words.emplace_back(entry->word);
   }
   return fmt::format("{}", fmt::join(words, ","));
 }
@@ -81,7 +80,6 @@ std::vector<Options> command_lines(const NoiseFiles& files) {
   lines[4].insert({{"noise", "file"}, {"noise_file", files.levels}});
   lines[5].insert(
       {{"noise", "chain"}, {"noise_states", files.states}, {"noise_rates", files.rates}});
-  lines[5]["quantities"] = all_simulated(false);
   lines[3]["start"] = lines[4]["start"] = lines[5]["start"] = "s+";
   return lines;
 }

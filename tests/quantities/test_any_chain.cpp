@@ -155,7 +155,7 @@ TEST_CASE("any chain: simulated cycles give the same, within 4.5 sigma", "[real]
                   {Quantity::sticking, Quantity::moments, Quantity::averages, Quantity::noise_law,
                    Quantity::entry_law, Quantity::laplace, Quantity::spectrum, Quantity::slip,
                    Quantity::autocorrelation, Quantity::displacement, Quantity::expectation,
-                   Quantity::duration_density},
+                   Quantity::duration_density, Quantity::peak, Quantity::resolvent},
                   1e-4);
   c.question.omega = {0, 1, 1.6};
   c.question.start.kind = model::Start::Kind::stationary;
@@ -176,5 +176,29 @@ TEST_CASE("any chain: simulated cycles give the same, within 4.5 sigma", "[real]
       ++compared;
     }
   }
-  CHECK(compared > 50);
+  CHECK(compared > 60);
+}
+
+// By no sample, as by ten thousands of them without doubt.
+TEST_CASE("any chain: simulated cycles that reach no speed leave its intervals open", "[real]") {
+  auto c = asking(test::with_table(kPlain, test::five_states()),
+                  {Quantity::peak, Quantity::duration_density}, 1e-4);
+  c.method.route = Route::monte_carlo;
+  c.method.excursions = 100;
+  c.question.velocity = {0.1, 1.4999};
+  c.question.time = {1e-3, 200};
+  const auto found = values(c);
+  const auto& peak = found.at("P_peak");
+  CHECK(peak.value[1] == 0);
+  CHECK(peak.ci95[1].first == 0);
+  CHECK(peak.ci95[1].second > 0.005);
+  CHECK(peak.ci95[1].second < 0.1);
+  for (const char* key : {"mean_first_passage", "mean_first_passage_rest"}) {
+    INFO(key);
+    CHECK(std::isfinite(found.at(key).ci95[0].second));
+    CHECK(found.at(key).value[1] > 5 * found.at(key).value[0]);
+    CHECK(std::isinf(found.at(key).ci95[1].second));
+  }
+  CHECK(found.at("cdf_slide").value[1] == 1);
+  CHECK(found.at("cdf_slide").ci95[1].first < 0.999);
 }

@@ -66,7 +66,7 @@ TEST_CASE("bias: without one both velocity branches give what one of them gives"
         if (key != "E_V") CHECK(relative_difference(both.at(key), value) < 1e-11);
       }
       CHECK(std::abs(both.at("E_V")) < 1e-12 * one.at("E_absV"));
-      const double falling = whole.distribution.starts().falling(whole.distribution.process());
+      const double falling = whole.distribution.starts().next[2];  // of s-, s+
       CHECK(falling > 0);
       CHECK(falling < 1);
       CHECK(whole.distribution.excursion().conservation_defect(

@@ -69,10 +69,10 @@ const std::vector<Example>& samples() {
        {2, 2, 9},
        truncated(),
        {0, 2}},
-      {"a resolvent", {resolvent}, {2, 2, 6}, without_drag(), {0.5}, {"v^2", "x*v", "stick"}},
+      {"a resolvent", {resolvent}, {2, 2, 2}, without_drag(), {0.5}, {"v^2", "x*v", "stick"}},
       {"transforms and resolvent share systems",
        {laplace, resolvent},
-       {4, 4, 15},
+       {4, 4, 13},
        without_drag(),
        {0, 0.5},
        {}},
@@ -91,8 +91,8 @@ const std::vector<Example>& samples() {
        truncated(),
        {},
        {"v^2", "abs(v)"}},
-      {"a bias and transforms", {laplace, resolvent}, {2, 2, 13}, inclined(), {1}, {"v", "x*v"}},
-      {"a bias and derivatives", {sticking, moments, sensitivity}, {4, 1, 9}, inclined()}};
+      {"a bias and transforms", {laplace, resolvent}, {2, 2, 10}, inclined(), {1}, {"v", "x*v"}},
+      {"a bias and derivatives", {sticking, moments, sensitivity}, {4, 1, 14}, inclined()}};
   return all;
 }
 

@@ -97,9 +97,6 @@ struct Entry {
   /// degrees_per_digit n + degrees_besides.
   double degrees_per_digit = 1, degrees_besides = 1;
   bool of_phases = false;  ///< about sticking and sliding phases: nothing where a body never sticks
-  /// Solution methods that give it only where the noise jumps to neighbouring levels, so that
-  /// excursions start from one level on each side.
-  Routes by_neighbours = {};
   bool of_one_run = false;  ///< a field or a path, which has no place in a sweep
 
   /// Whether it depends on an option (a name without dash).

@@ -45,7 +45,6 @@ inline constexpr Entry kPeak{
     .routes = {Route::excursion, Route::monte_carlo},
     .options = "velocity",
     .rows = kPeakRows,
-    .of_phases = true,
-    .by_neighbours = {Route::monte_carlo}};
+    .of_phases = true};
 
 }  // namespace stickslip::catalogue

@@ -5,21 +5,21 @@
 
 namespace stickslip::catalogue {
 
-inline constexpr Row kHPlus{.key = "h_plus",
-                            .symbol = "h+_lambda(s+)",
-                            .definition =
-                                "E_s+[exp(-lambda T) 1{end at s+}]: transform of the duration of "
-                                "the excursion from s+, on the event that it ends at s+",
-                            .abscissa = "lambda",
-                            .convention = "probability of that event at lambda = 0",
-                            .paper = "(3.5), (3.10)",
-                            .each_by_its_size = true};
+inline constexpr Row kHPlus{
+    .key = "h_plus",
+    .symbol = "h+_lambda(s+)",
+    .definition = "E_s+[exp(-lambda T) 1{end at s+}]: transform of the duration of "
+                  "the excursion from s+, on the event that it ends at s+",
+    .abscissa = "lambda",
+    .convention = "probability of that event at lambda = 0; of many starts, any one upwards",
+    .paper = "(3.5), (3.10)",
+    .each_by_its_size = true};
 inline constexpr Row kHMinus{
     .key = "h_minus",
     .symbol = "h-_lambda(s+)",
     .definition = "E_s+[exp(-lambda T) 1{end at s-}]: the same on the event that it ends at s-",
     .abscissa = "lambda",
-    .convention = "probability of that event at lambda = 0",
+    .convention = "probability of that event at lambda = 0; of many starts, any one downwards",
     .paper = "(3.5), (3.11)",
     .each_by_its_size = true};
 inline constexpr Row kWOne{
@@ -77,22 +77,23 @@ inline constexpr Row kWMinus{.key = "w_minus(f)",
                              .abscissa = "lambda",
                              .convention = "finite at lambda = 0",
                              .paper = "(3.6), (3.12)"};
-inline constexpr Row kPiLambda{.key = "pi_lambda(f)",
-                               .symbol = "pi_lambda(f)",
-                               .definition =
-                                   "discounted average, which tends to pi(f) as lambda -> 0",
-                               .unit = "[f]",
-                               .abscissa = "lambda",
-                               .convention = "its key is pi(f) where averages is not asked for",
-                               .paper = "(3.16)",
-                               .is_mean_of_f = true,
-                               .each_by_its_size = true};
+inline constexpr Row kPiLambda{
+    .key = "pi_lambda(f)",
+    .symbol = "pi_lambda(f)",
+    .definition = "discounted average, which tends to pi(f) as lambda -> 0",
+    .unit = "[f]",
+    .abscissa = "lambda",
+    .convention =
+        "its key is pi(f) where averages is not asked for; from many starts not by simulation",
+    .paper = "(3.16)",
+    .is_mean_of_f = true,
+    .each_by_its_size = true};
 inline constexpr Row kMu{.key = "mu(f)",
                          .symbol = "mu_lambda(f)",
                          .definition = "u_lambda(s+; f) - pi_lambda(f)/lambda",
                          .unit = "[f]*time",
                          .abscissa = "lambda",
-                         .convention = "finite at lambda = 0",
+                         .convention = "finite at lambda = 0; from many starts not by simulation",
                          .paper = "(3.16)"};
 inline constexpr Row kUMinus{.key = "u_minus(f)",
                              .symbol = "u_lambda(s-; f)",
@@ -122,7 +123,6 @@ inline constexpr Entry kResolvent{
     .routes = {Route::excursion, Route::monte_carlo},
     .options = "lambda, observable",
     .rows = kResolventRows,
-    .of_phases = true,
-    .by_neighbours = {Route::excursion, Route::monte_carlo}};
+    .of_phases = true};
 
 }  // namespace stickslip::catalogue

@@ -27,7 +27,6 @@ inline constexpr Entry kSensitivity{
     .title = "derivatives of the scalars of sticking, moments and noise_law",
     .routes = {Route::excursion},
     .rows = kSensitivityRows,
-    .of_phases = true,
-    .by_neighbours = {Route::excursion}};
+    .of_phases = true};
 
 }  // namespace stickslip::catalogue

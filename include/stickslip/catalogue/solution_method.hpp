@@ -45,8 +45,6 @@ struct SolutionMethod {
   bool full_grid = false;
   /// Whether it follows excursions to the sticking phases at their ends, which need not exist.
   bool needs_sticking = true;
-  /// Whether the noise has to jump to neighbouring levels alone.
-  bool needs_neighbours = false;
   /// Whether -v_max and -speed_limit apply.
   bool bounds_speed = false;
   /// Whether results are limits for lambda -> 0: -lambda is one positive value, which biases them.

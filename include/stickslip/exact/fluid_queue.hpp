@@ -1,6 +1,7 @@
 #pragma once
 /// b = 0: the process as a Markov-modulated fluid queue, solved without any grid in v.
 
+#include <map>
 #include <vector>
 
 #include "stickslip/model/process.hpp"
@@ -36,15 +37,17 @@ class FluidQueue {
   /// std::runtime_error when the doubling does not converge.
   explicit FluidQueue(const model::Process& process, double lambda = 0);
 
-  /// Sliding phases from s+ and from s-; where the noise has one of them alone, the same.
-  [[nodiscard]] const SlidingMeans& plus() const { return plus_; }
-  [[nodiscard]] const SlidingMeans& minus() const { return minus_; }
+  /// Sliding phases from a level from which excursions start; with symmetry from one above the
+  /// static ones.
+  [[nodiscard]] const SlidingMeans& from(int level) const { return from_.at(level); }
+  [[nodiscard]] const SlidingMeans& plus() const { return from(plus_); }  ///< from s+
 
   /// Largest residual of the Riccati equations against their terms.
   [[nodiscard]] double residual() const { return residual_; }
 
  private:
-  SlidingMeans plus_, minus_;
+  int plus_ = 0;
+  std::map<int, SlidingMeans> from_;
   double residual_ = 0;
 };
 

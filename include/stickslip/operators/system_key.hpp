@@ -35,7 +35,9 @@ enum class StaticPhase {
   killing,         ///< no unknowns: the process is killed on reaching them, A_us is kept apart
   kept,            ///< unknowns like all others: the whole process
   killed_on_exit,  ///< unknowns; the process is killed on leaving them (L' of Prop. 3.1)
-  killing_edges    ///< unknowns, but killed on reaching (x_+-k, 0, 0) (R-check of Prop. 4.1)
+  /// Unknowns, but killed on reaching one from which the noise can leave them: (x_+-k, 0, 0) where
+  /// it jumps to neighbours (R-check of Prop. 4.1).
+  killing_edges
 };
 
 /// What lambda is per unit of: with the path length for a clock the process runs at the speed |v|,

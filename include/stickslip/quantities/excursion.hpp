@@ -51,10 +51,6 @@ struct Starts {
   /// Those above the static levels alone, which all are with symmetry.
   [[nodiscard]] static Starts upwards(const model::Process& process);
   [[nodiscard]] std::size_t size() const { return levels.size(); }
-  /// P(an excursion from any level above the static ones is followed by one from below), and
-  /// conversely.
-  [[nodiscard]] double falling(const model::Process& process) const;
-  [[nodiscard]] double rising(const model::Process& process) const;
 };
 
 /// That chain, given where sliding phases from each level end. Its shares are found without

@@ -11,7 +11,7 @@ namespace stickslip::quantities {
 
 /// What excursions give whatever the observable (Prop. 3.1 of the paper).
 struct ExitTransforms {
-  Uncertain h_plus;   ///< h^+ = E[exp(-lambda tau_1); the excursion ends at s+]
+  Uncertain h_plus;   ///< h^+ = E[exp(-lambda tau_1); the next excursion starts upwards]
   Uncertain h_minus;  ///< h^-
   Uncertain w_one;    ///< w(1) = E int_0^tau_1 exp(-lambda s) ds [time]
 };
@@ -26,26 +26,28 @@ struct ObservableTransforms {
 };
 
 struct Resolvent {
-  ExitTransforms from_plus, from_minus;  ///< of excursions from s+ and from s-
+  ExitTransforms from_plus, from_minus;  ///< of excursions from s+ and s-, the most frequent ones
   std::vector<ObservableTransforms> of;  ///< one for each observable
 };
 
-/// Solves (lambda - L') w = f and (lambda - L') h = 0 of Prop. 3.1: the static values come first,
-/// from the static chain alone, then the sliding ones. With symmetry by parity, from
-/// systems.at(lambda, even) and, when these are done with and released, systems.at(lambda, odd);
-/// otherwise from systems.at(lambda, none).
+/// w and h of Prop. 3.1 by discounted occupations: nu_t (lambda - L') = the value at start t, one
+/// transposed solve for each of the levels t from which excursions start, whatever the observables.
+/// With symmetry by parity, from systems.at(lambda, even) and, when that is done with and released,
+/// systems.at(lambda, odd); otherwise from systems.at(lambda, none).
 ///
 /// With f = f_e + f_o, w_e = w(s+; f_e), w_o = w(s+; f_o) and h_o = h^+(s+) - h^-(s+):
-/// w(s+-; f) = w_e +- w_o, pi_lambda = w_e / w(s+; 1), mu_lambda = w_o/(1 - h_o). Without symmetry,
-/// with a = h^-(s+), b = h^+(s-), w^+- = w(s+-; f), w_1^+- = w(s+-; 1), S = b w_1^+ + a w_1^-,
+/// w(s+-; f) = w_e +- w_o, pi_lambda = w_e / w(s+; 1), mu_lambda = w_o/(1 - h_o). Without symmetry
+/// u = w + h u on all starts, h_tu = E_t[exp(-lambda tau_1); the next excursion starts at u], and
+/// 1 - h has the row sums lambda w(1). With the shares p of the chain that goes from t to u at the
+/// rate h_tu,
 ///
-///   pi_lambda = (b w^+ + a w^-)/S,
-///   mu_lambda = a w_1^- (w_1^- w^+ - w_1^+ w^-)/(S (S + lambda w_1^+ w_1^-)),
+///   pi_lambda = p w(f)/p w(1),
+///   lambda w(t; 1) mu_t + sum_u h_tu (mu_t - mu_u) = w(t; f) - pi_lambda w(t; 1),
 ///
-/// from u = w + h u at both sides, whose determinant is lambda (S + lambda w_1^+ w_1^-).
-///
-/// Three solves, and one for each part of an observable that does not vanish. Collective.
-/// lambda >= 0 [1/time].
+/// where p w(1) mu = 0 takes the place of the equation at one of the starts, so that lambda = 0 is
+/// no special case. Differences of w and of mu are taken pair by pair, with positive weights; all
+/// else is without subtraction. h_plus and h_minus are sums over the starts on their side.
+/// O(starts^3). Collective. lambda >= 0 [1/time].
 [[nodiscard]] Resolvent resolvent(operators::Systems& systems, double lambda,
                                   const std::vector<model::Observable>& observables);
 

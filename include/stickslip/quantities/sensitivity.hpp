@@ -22,11 +22,11 @@ namespace stickslip::quantities {
 /// M, whatever the number of parameters; one assembly for each parameter. Elements and upwind
 /// directions are kept: what that leaves out is an error of the discretisation, and falls with it.
 ///
-/// Without symmetry the shares of excursions from s+ and s- change as well. The side on which an
-/// excursion ends then counts like a static value: h and s get z times those of the probability of
-/// leaving upwards, z = (h(s+) - h(s-))/(P(s+ to s-) + P(s- to s+)), which solves (1 - P) z = h - M
-/// for the chain P of the sides. One more forward solve in all. With a single static level
-/// mean_stick takes no solve, and has no derivative but that by tau.
+/// Without symmetry the shares of excursions by the level from which they start change as well. The
+/// level from which the next one starts then counts like a static value: h and s get the mean of z
+/// there, where (1 - P) z = h - M for the chain P of the starts (DiscountedStarts::apart). One more
+/// forward solve for each M. With a single static level mean_stick takes no solve, and has no
+/// derivative but that by tau.
 class Sensitivity {
  public:
   /// Solves for the durations; effects::derivatives_of has the parameters of a scene. Collective.
@@ -44,8 +44,8 @@ class Sensitivity {
 
   [[nodiscard]] Gradient sliding_mean(const operators::KolmogorovOperator::Observable& f) const;
   [[nodiscard]] Gradient sticking_mean() const;
-  [[nodiscard]] double worth_of_upper_side(const petsc::Solution& h) const;
-  // nu dL (h, s) by parameter, and what the sides change.
+  [[nodiscard]] std::vector<double> worth_of_starts(const petsc::Solution& h) const;
+  // nu dL (h, s) by parameter, and what the starts change.
   [[nodiscard]] Gradient through(petsc::Solution h, const std::vector<double>& s) const;
   // value and mean of an integral over an excursion: the derivative of its ratio to mean_excursion.
   [[nodiscard]] Gradient ratio(double mean, const Gradient& of_mean) const;
@@ -54,8 +54,7 @@ class Sensitivity {
   operators::System& system_;
   const StationaryDistribution& distribution_;
   std::vector<model::Derivative> parameters_;
-  std::vector<double> upwards_;                         // h of leaving upwards, by static level
-  petsc::Solution rising_;                              // the same of the sliding states, if needed
+  std::vector<std::vector<double>> exits_;  // of leaving for each start, by static level
   std::vector<operators::KolmogorovOperator> changes_;  // dA, by parameter
   Gradient slide_, stick_;
 };

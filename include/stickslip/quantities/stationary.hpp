@@ -7,6 +7,13 @@
 
 namespace stickslip::quantities {
 
+/// Scales nu with nu A = the value at a start, A of lambda and even or of no symmetry, such that
+/// sliding ends somewhere: sum_i P_i + lambda nu 1 = 1 holds on every discretisation. Where sliding
+/// phases last long against the time steps of the noise, nu is nearly a null vector of A, and
+/// rounding (of the entries of A too) changes little but its length; this sets it right. The sum
+/// less 1. Throws NotReached where rounding leaves little of it. Collective.
+double normalise(const operators::KolmogorovOperator& a, Vec nu, double lambda = 0);
+
 /// Occupation of the sliding states over one excursion and what follows from it:
 ///
 ///   nu A(0, even) = g,   entry = -nu A_us,   stick_time (-Q) = entry,

@@ -62,9 +62,9 @@ struct Excursion {
   std::vector<Discounted> discounted = {};  ///< by lambda and observable
   double peak = 0;                          ///< largest |v|
   std::vector<double> passages = {};        ///< when |v| first reached the speeds that it reached
-  const Excursion* from_rest = nullptr;     ///< another one from rest, where speeds are wanted
+  const Excursion* from_rest = nullptr;     ///< from rest, where speeds are wanted
   bool upwards = true;                      ///< direction of the sliding phase
-  int next = 0;                             ///< level i from which the next one starts
+  int start = 0, next = 0;                  ///< levels from which it and the next one start
   bool ends_cycle = true;                   ///< whether that is the one from which its cycle did
 };
 

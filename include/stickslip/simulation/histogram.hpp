@@ -13,6 +13,11 @@
 
 namespace stickslip::simulation {
 
+/// The mean of numbers from 0 to `largest`, from `count` samples: Jeffreys' interval for as many
+/// trials as give the variance of the delta method.
+[[nodiscard]] Estimate jeffreys(const Means& means, const Smooth& mean, double largest,
+                                double count);
+
 /// Counts by the side from which an excursion starts, by whether it ends on the other one, and by
 /// bin, of which the n-th is below the n-th of the rising edges. With symmetry all start at s+.
 class Histogram {
@@ -27,7 +32,6 @@ class Histogram {
   [[nodiscard]] std::span<const double> counts() const { return counts_; }
 
   /// Mean of weight(bin) >= 0 over all excursions of a long path, or over those from one side.
-  /// Jeffreys' interval for as many trials as give the variance of the delta method.
   using Weight = std::function<double(std::size_t bin)>;
   [[nodiscard]] Estimate mean(const Weight& weight) const;
   [[nodiscard]] Estimate mean(std::size_t side, const Weight& weight) const;

@@ -55,6 +55,7 @@ class Means {
       : sides_(sides), sampled_(sampled) {}
 
   [[nodiscard]] bool symmetric() const { return sampled_ == Sampled::one_side; }
+  [[nodiscard]] double count() const { return sides_[0].count(); }  ///< of samples
   [[nodiscard]] bool cycles() const { return sampled_ == Sampled::cycles; }
   /// Mean n from s+ (side 0) or s- (side 1), whose sign in the mirror is `parity`.
   [[nodiscard]] Smooth at(std::size_t side, std::size_t n, double parity = 1) const;

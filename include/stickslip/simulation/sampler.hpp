@@ -22,6 +22,7 @@ class Sampler {
   [[nodiscard]] const Tally& batch(std::uint64_t seed, std::uint64_t batch, int count);
 
  private:
+  void draw_from_rest(RandomStream& random, Excursion& all);
   void add_cycle(RandomStream& random, RandomStream& places, Excursion& first);
   void add_stationary(const RandomStream& random, std::size_t side, double place);
   [[nodiscard]] std::pair<State, std::span<const State>> follow();

@@ -73,8 +73,8 @@ class Tally {
   void distribution(const catalogue::Row& density, const catalogue::Row& distribution,
                     const std::vector<double>& at, const Number& of);
 
-  /// Sums of the samples of(excursion).
-  auto sums(const auto& of) {
+  /// Sums of the samples of(excursion), which sees the excursions of a cycle one after the other.
+  auto sums(auto of) {
     using Row = typename Sums<decltype(of(Excursion{}))>::Row;
     auto all = new_sums<decltype(of(Excursion{}))>(sampled());
     if (sampled() != Sampled::cycles) {
@@ -119,6 +119,13 @@ class Tally {
     });
     return all;
   }
+  /// Probabilities that a number lies in [low, high), by the place of the range. An interval has
+  /// some width also where all samples agree.
+  struct Range {
+    double low, high;
+  };
+  using Shares = std::function<Estimate(std::size_t)>;
+  [[nodiscard]] Shares shares(const std::vector<Range>& ranges, const Number& of);
   /// Of a number; it lasts as long as the tally.
   [[nodiscard]] const Histogram& histogram(std::vector<double> edges, const Number& of);
   /// What is made of the sums; the tally is this one, wherever it has been moved.
