@@ -41,8 +41,8 @@ template <class Scalar>
 auto ElementElimination<Scalar>::read_static_rows(Mat matrix) const -> StaticRows<Scalar> {
   const std::size_t size = static_rows_.size();
   StaticRows<Scalar> at_rest(size, data_->discretisation.process.noise.neighbours_only());
-  // From the lambda of the matrix to that of the factors.
-  const Scalar more = lambda_ * rate_of(clock_, 0) - data_->lambda * rate_of(data_->clock, 0);
+  // From what the matrix has at rest to what the factors have.
+  const Scalar more = shift_.at(0) - data_->shift.at(0);
   const petsc::RowsOnAllRanks all(matrix, static_rows_);
   for (std::size_t n = 0; n < size; ++n) {
     at_rest.add(n, n, more);
@@ -88,11 +88,8 @@ struct ElementElimination<Scalar>::Line {
 
 template <class Scalar>
 ElementElimination<Scalar>::ElementElimination(Mat matrix, std::shared_ptr<const MatrixData> data,
-                                               Scalar lambda, Clock clock, bool share)
-    : data_(std::move(data)),
-      lambda_(lambda),
-      clock_(clock),
-      comm_(share ? data_->states.comm() : PETSC_COMM_SELF) {
+                                               Shift<Scalar> shift, bool share)
+    : data_(std::move(data)), shift_(shift), comm_(share ? data_->states.comm() : PETSC_COMM_SELF) {
   const StateSpace& states = data_->states;
   const auto& process = data_->discretisation.process;
   for (Branch branch : states.branches()) {
@@ -152,7 +149,7 @@ template <class Scalar>
 auto ElementElimination<Scalar>::make_element(Line& line, std::size_t e) const -> Response {
   Response response;
   line.elements[e] = std::make_unique<Element>(*line.noise, *line.velocities, static_cast<int>(e),
-                                               line.net_force, lambda_, clock_, response);
+                                               line.net_force, shift_.along(line.branch), response);
   return response;
 }
 
@@ -195,7 +192,7 @@ auto ElementElimination<Scalar>::hold(const Line& line) -> DenseMatrix {
   if (line.velocities->kills_at_top()) return {held, below};
   DenseMatrix own(held, held), jumps(held, below);
   for (int l = 0; l < held; ++l) {
-    own(l, l) = lambda_ * rate_of(clock_, line.velocities->v_max());
+    own(l, l) = shift_.along(line.branch).at(line.velocities->v_max());
     for (const auto& [to, rate] : noise.jumps(noise.first() + below + l)) {
       const int place = to - noise.first();
       own(l, l) += rate;
