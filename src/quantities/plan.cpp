@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "stickslip/catalogue/large_deviation_keys.hpp"
 #include "stickslip/quantities/stationary.hpp"
 
 namespace stickslip::quantities {
@@ -13,7 +14,7 @@ using Tasks = void(Planner&);
 Tasks sticking_tasks, mean_slip_tasks, moments_tasks, density_tasks, averages_tasks,
     entry_law_tasks, sensitivity_tasks, stick_transform_tasks, laplace_tasks, resolvent_tasks,
     spectrum_tasks, duration_density_tasks, slip_tasks, peak_tasks, displacement_tasks,
-    autocorrelation_tasks, expectation_tasks, relaxation_tasks;
+    autocorrelation_tasks, expectation_tasks, relaxation_tasks, large_deviation_tasks;
 
 namespace {
 
@@ -36,7 +37,8 @@ constexpr std::pair<Quantity, Tasks*> kAll[] = {
     {Quantity::displacement, displacement_tasks},
     {Quantity::autocorrelation, autocorrelation_tasks},
     {Quantity::expectation, expectation_tasks},
-    {Quantity::relaxation, relaxation_tasks}};
+    {Quantity::relaxation, relaxation_tasks},
+    {catalogue::kLargeDeviation.quantity, large_deviation_tasks}};
 
 }  // namespace
 

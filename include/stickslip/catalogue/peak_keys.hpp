@@ -46,6 +46,7 @@ inline constexpr Entry kPeak{
     .options = "velocity",
     .rows = kPeakRows,
     .of_phases = true,
-    .by_neighbours = {Route::monte_carlo}};
+    .by_neighbours = {Route::monte_carlo},
+    .weighs_tail = true};
 
 }  // namespace stickslip::catalogue
