@@ -14,11 +14,11 @@ from . import results, sweeps
 from .needed import needed
 from .program import (DONE, NO_MEMORY, SHORT, AccuracyWarning, Finished, OutOfMemory, ProgramError, Unsolved, execute,
                       find_program, words_of)
-from .reference import with_options
+from .reference import declared, with_options
 from .results import Results
 from .sweeps import Sweep
 
-# A sequence for another option is swept.
+# A sequence for another option is swept, unless the program declares it as a list of numbers.
 LISTS = ("quantities", "lambda", "omega", "time", "distance", "inverse_distance", "velocity", "observable", "start")
 FIELDS = ("density", "trajectory", "relaxation")  # what only HDF5 holds
 Path = str | os.PathLike[str]
@@ -135,7 +135,10 @@ def sweep(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = N
     ((2, 3), ('mu_d', 'tau'))
     """
     def many(name: str, value: Any) -> bool:
-        return not isinstance(value, (str, bytes, Mapping)) and hasattr(value, "__len__") and name not in LISTS
+        return not isinstance(value, (str, bytes, Mapping)) and hasattr(value, "__len__") and not is_list(name)
+
+    def is_list(name: str) -> bool:
+        return name in LISTS or declared().get(name, {}).get("form") == "numbers"
 
     options = {name.rstrip("_"): value for name, value in options.items()}
     named = {f"sweep_{name}" if many(name, value) and not name.startswith("sweep_") else name: value

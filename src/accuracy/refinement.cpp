@@ -253,6 +253,7 @@ class Refiner {
   }
 
   [[nodiscard]] const char* what_limits() const {
+    if (given_.scene.v_max && !given_.scene.limits_speed) return "-v_max, or rounding, limits";
     if (given_.method.row().small_lambda) return "lambda > 0 or rounding limits";
     if (question_.observables.empty()) return "rounding limits";
     return "rounding, or an observable too steep for the elements, limits";

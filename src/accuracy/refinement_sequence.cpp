@@ -5,6 +5,7 @@
 #include <iterator>
 #include <memory>
 
+#include "stickslip/catalogue/large_deviation_keys.hpp"
 #include "stickslip/support/infinity.hpp"
 
 namespace stickslip::accuracy {
@@ -83,6 +84,9 @@ velocity::Rates fastest_rates(const cases::Case& given) {
   }
   rates.lambda = std::max(rates.lambda, fastest_inverted(given));
   if (question.wants(Quantity::peak)) rates.speed = largest(question.velocity);
+  for (double s : question.values(catalogue::kTilt.option)) {
+    rates.tilt = std::max(rates.tilt, std::abs(s));
+  }
   return rates;
 }
 
@@ -111,14 +115,15 @@ RefinementSequence::RefinementSequence(const cases::Case& given)
   table_ = given.scene.meant().noise.table != nullptr;
   integrands_ = integrands_of(given.question);
   const bool full_grid = given.method.row().full_grid;
-  branches_ = full_grid || !given.scene.symmetric() ? 2 : 1;
+  const bool both = given.question.any(&catalogue::Entry::both_branches);
+  branches_ = full_grid || both || !given.scene.symmetric() ? 2 : 1;
   modes_ = given.question.wants(catalogue::Quantity::relaxation);
   // On nodes the residuals of eigenvectors, which stand for errors, stay about twice as large.
   const bool near_rounding = modes_ && accuracy_ < kModesOnNodes;
   all_levels_ = full_grid || method_.noise_degree == 0 || near_rounding ||
                 !given.scene.meant().noise.neighbours_only();
-  tail_counts_ = modes_ || !given.question.observables.empty() ||
-                 given.question.wants(catalogue::Quantity::peak);
+  tail_counts_ =
+      !given.question.observables.empty() || given.question.any(&catalogue::Entry::weighs_tail);
   last_ = method_.fixed() ? 1 : free_refinement_levels();
 }
 

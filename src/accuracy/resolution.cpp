@@ -11,6 +11,7 @@
 #include "stickslip/petsc/memory.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
+#include "stickslip/support/infinity.hpp"
 #include "stickslip/velocity/hp_discretisation.hpp"
 #include "stickslip/velocity/mesh.hpp"
 #include "stickslip/velocity/tail.hpp"
@@ -97,26 +98,45 @@ std::shared_ptr<const noise::Nodes> grouped(const model::Process& process,
 
 }  // namespace
 
-int levels_for(const model::Scene& scene, double tolerance, double speed) {
+namespace {
+
+// By how much log of the probability of level i falls from the one before, where paths are weighted
+// with exp(s x(t)): as in tail_velocity(), of bodies as fast as the level makes them.
+double weighted_fall(const model::Process& process, int i, double step, double tilt) {
+  const auto& noise = process.noise;
+  const double rate = -std::log(model::weight_ratio(noise, i)) / step;
+  const double deviation = noise.standard_deviation(),
+               diffusivity = deviation * deviation / noise.correlation_time();
+  const double v = process.drag.terminal_velocity(process.net_force(i));
+  const double square = rate * rate - 4 * tilt * v / diffusivity;
+  return square > 0 ? -step * std::sqrt(square) : kInfinity;
+}
+
+}  // namespace
+
+int levels_for(const model::Scene& scene, double tolerance, const velocity::Rates& rates) {
   const auto process = scene.meant();
   const double per_force = tilt(scene);
   const auto last = [&](const model::Process& side) {
     const auto& noise = side.noise;
-    if (!noise.neighbours_only()) return noise.highest();  // each counts
+    // Each counts.
+    if (!noise.neighbours_only() || (noise.table && rates.tilt > 0)) return noise.highest();
     const bool both = side.starts_downwards();
     // Where bodies do not start on this side, the other one decides.
     if (!side.starts_upwards()) return noise.table ? noise.highest() : 1;
     const double needed =
-        speed > 0 ? side.friction.at_rest() - side.bias - side.drag(speed) : -HUGE_VAL;
+        rates.speed > 0 ? side.friction.at_rest() - side.bias - side.drag(rates.speed) : -HUGE_VAL;
     double log_weight = 0;  // of level i against the first that does not stick and has the force
     int end = side.highest_static() + 1;
     if (noise.symmetric() && both) end = std::max(end, 1 - side.lowest_static());
     end = std::min(end, noise.highest());
     for (int i = end + 1; i <= noise.highest(); ++i) {
       const double below = noise.level(i - 1), step = noise.level(i) - below;
-      log_weight += std::log(model::weight_ratio(noise, i)) + per_force * step +
+      log_weight += (rates.tilt > 0 ? weighted_fall(side, i, step, rates.tilt)
+                                    : std::log(model::weight_ratio(noise, i))) +
+                    per_force * step +
                     2 * std::log1p(step / std::max(std::abs(below), noise.step()));
-      if (noise.level(i) <= needed) log_weight = 0;
+      if (noise.level(i) <= needed || std::isinf(log_weight)) log_weight = 0;
       if (log_weight > std::log(tolerance)) {
         end = i;
       } else if (!noise.table) {
@@ -130,18 +150,19 @@ int levels_for(const model::Scene& scene, double tolerance, double speed) {
 
 namespace {
 
-void set_levels(const model::Scene& scene, double tolerance, double speed, Resolution& r) {
-  r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance, speed));
+void set_levels(const model::Scene& scene, double tolerance, const velocity::Rates& rates,
+                Resolution& r) {
+  r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance, rates));
   if (scene.noise.table) r.table_levels = scene.process(r.levels).noise.count();
 }
 
 }  // namespace
 
-double velocity_end(const model::Scene& scene, int levels, double tolerance) {
+double velocity_end(const model::Scene& scene, int levels, double tolerance, double tilt) {
   const auto process = scene.process(levels);
   const double terminal = process.terminal_speed();
   if (scene.v_max) return std::min(*scene.v_max, terminal);
-  const double tail = velocity::tail_velocity(process, tolerance);
+  const double tail = velocity::tail_velocity(process, tolerance, tilt);
   // Holding states cost a little: a truncation must save something.
   return tail < 0.8 * terminal ? tail : terminal;
 }
@@ -165,9 +186,9 @@ Resolution hp_resolution(const model::Scene& scene, int degree, int layers, doub
   r.scheme = cases::Scheme::hp;
   r.degree = degree;
   r.rates = rates;
-  set_levels(scene, tolerance, rates.speed, r);
+  set_levels(scene, tolerance, rates, r);
   constexpr double of_velocities = 1e-2;
-  r.v_max = velocity_end(scene, r.levels, of_velocities * tolerance);
+  r.v_max = velocity_end(scene, r.levels, of_velocities * tolerance, rates.tilt);
   r.truncation = truncation(scene, r, tolerance);
   r.layers = layers > 0 ? layers : velocity::natural_layers(scene.process(r.levels), mesh_rule(r));
   r.grouping = grouping;
@@ -180,15 +201,15 @@ Resolution upwind_resolution(const model::Scene& scene, int points, double toler
   Resolution r;
   r.scheme = cases::Scheme::upwind;
   r.points = points;
-  set_levels(scene, tolerance, rates.speed, r);
-  r.v_max = velocity_end(scene, r.levels, tolerance);
+  set_levels(scene, tolerance, rates, r);
+  r.v_max = velocity_end(scene, r.levels, tolerance, rates.tilt);
   return r;
 }
 
 Resolution exact_resolution(const model::Scene& scene, double tolerance) {
   Resolution r;
   r.scheme = cases::Scheme::none;
-  set_levels(scene, tolerance, 0, r);
+  set_levels(scene, tolerance, {}, r);
   return r;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "stickslip/catalogue/autocorrelation_keys.hpp"
 #include "stickslip/catalogue/averages_keys.hpp"
@@ -13,6 +14,7 @@
 #include "stickslip/catalogue/entry_law_keys.hpp"
 #include "stickslip/catalogue/expectation_keys.hpp"
 #include "stickslip/catalogue/laplace_keys.hpp"
+#include "stickslip/catalogue/large_deviation_keys.hpp"
 #include "stickslip/catalogue/moments_keys.hpp"
 #include "stickslip/catalogue/noise_law_keys.hpp"
 #include "stickslip/catalogue/noise_spectrum_keys.hpp"
@@ -34,7 +36,8 @@ constexpr const Entry* kAll[] = {&kSticking,        &kMoments,         &kAverage
                                  &kNoiseSpectrum,   &kEntryLaw,        &kDensity,    &kLaplace,
                                  &kStickTransform,  &kResolvent,       &kRelaxation, &kSpectrum,
                                  &kDurationDensity, &kAutocorrelation, &kSlip,       &kPeak,
-                                 &kDisplacement,    &kExpectation,     &kTrajectory, &kSensitivity};
+                                 &kDisplacement,    &kExpectation,     &kTrajectory, &kSensitivity,
+                                 &kLargeDeviation};
 
 // Whether `key` is the derivative of a scalar by a parameter, such as dP_stick_dtau.
 bool is_derivative(std::string_view key) {
@@ -81,12 +84,32 @@ std::string Row::key_of(std::string_view f) const {
   return fmt::format("{}{}{}", key.substr(0, open), f, key.substr(open + 1));
 }
 
+std::vector<std::string> Entry::all_options() const {
+  auto all = split(options, ',');
+  for (const Argument* argument : arguments) all.emplace_back(argument->option);
+  return all;
+}
+
 bool Entry::takes(std::string_view option) const {
-  const auto all = split(options, ',');
+  const auto all = all_options();
   return std::find(all.begin(), all.end(), option) != all.end();
 }
 
 std::span<const Entry* const> entries() { return kAll; }
+
+std::span<const Argument* const> arguments() {
+  static const auto all = [] {
+    std::vector<const Argument*> found;
+    for (const Entry* entry : kAll) {
+      for (const Argument* argument : entry->arguments) {
+        if (std::find(found.begin(), found.end(), argument) == found.end())
+          found.push_back(argument);
+      }
+    }
+    return found;
+  }();
+  return all;
+}
 
 const Entry* find_entry(std::string_view word) {
   const auto* const found = std::find_if(std::begin(kAll), std::end(kAll),

@@ -45,7 +45,7 @@ void add_question(const cases::Question& question, checkpoint::Identity& found) 
   for (const auto* entry : catalogue::entries()) {
     if (!question.wants(entry->quantity) || entry->of_one_run) continue;
     words.push_back(entry->word);
-    for (auto& option : split(entry->options, ',')) options.insert(std::move(option));
+    for (auto& option : entry->all_options()) options.insert(std::move(option));
   }
   for (const auto& f : question.observables) observables.emplace_back(f.name);
   const auto& start = question.start;
@@ -61,6 +61,10 @@ void add_question(const cases::Question& question, checkpoint::Identity& found) 
         {"distance", text(question.distance)},
         {"start", fmt::format("{} {} {}", static_cast<int>(start.kind), start.level, start.v)}}) {
     if (options.contains(option)) found.emplace_back(fmt::format("-{}", option), value);
+  }
+  for (const auto* argument : catalogue::arguments()) {
+    const std::string option(argument->option);
+    if (options.contains(option)) found.emplace_back("-" + option, text(question.values(option)));
   }
 }
 

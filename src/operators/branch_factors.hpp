@@ -33,13 +33,12 @@ class BranchFactors {
 
   /// Of `before` elements of other branches ranks have their shares. Local.
   BranchFactors(const noise::Nodes& noise, const velocity::HpDiscretisation& velocities,
-                std::vector<double> net_force, Scalar lambda, Clock clock, MPI_Comm comm,
+                std::vector<double> net_force, Shift<Scalar> shift, MPI_Comm comm,
                 std::size_t before)
       : noise_(noise),
         velocities_(velocities),
         net_force_(std::move(net_force)),
-        lambda_(lambda),
-        clock_(clock),
+        shift_(shift),
         comm_(comm),
         before_(before),
         elements_(static_cast<std::size_t>(velocities.elements())) {
@@ -126,7 +125,7 @@ class BranchFactors {
   Response make_element(std::size_t e) {
     Response response;
     elements_[e] = std::make_unique<Element>(noise_, velocities_, static_cast<int>(e), net_force_,
-                                             lambda_, clock_, response);
+                                             shift_, response);
     return response;
   }
 
@@ -154,7 +153,7 @@ class BranchFactors {
     if (velocities_.kills_at_top()) return {held, below};
     Matrix own(held, held), jumps(held, below);
     for (int l = 0; l < held; ++l) {
-      own(l, l) = lambda_ * rate_of(clock_, velocities_.v_max());
+      own(l, l) = shift_.at(velocities_.v_max());
       for (const auto& [to, rate] : noise_.jumps(noise_.first() + below + l)) {
         const int place = to - noise_.first();
         own(l, l) += rate;
@@ -174,8 +173,7 @@ class BranchFactors {
   const noise::Nodes& noise_;
   const velocity::HpDiscretisation& velocities_;
   std::vector<double> net_force_;
-  Scalar lambda_;
-  Clock clock_;
+  Shift<Scalar> shift_;
   MPI_Comm comm_;
   std::size_t before_;
   std::vector<int> rising_;  // by end of elements: the first node that rises there

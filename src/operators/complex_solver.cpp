@@ -56,8 +56,8 @@ class ComplexSolver::Factors {
 
 class ComplexSolver::ByElements final : public Factors {
  public:
-  ByElements(const KolmogorovOperator& a, Complex z, Clock clock)
-      : factors_(a.matrix(), data_of(a.matrix()), z, clock), vectors_(a.matrix()) {}
+  ByElements(const KolmogorovOperator& a, const Shift<Complex>& shift)
+      : factors_(a.matrix(), data_of(a.matrix()), shift), vectors_(a.matrix()) {}
 
   void solve(const ComplexVector& b, const ComplexVector& x, bool transposed) override {
     const auto real = vectors_.gathered(b.real), imaginary = vectors_.gathered(b.imaginary);
@@ -78,7 +78,7 @@ class ComplexSolver::ByElements final : public Factors {
 /// The real and then the imaginary parts of each rank.
 class ComplexSolver::InRealForm final : public Factors {
  public:
-  InRealForm(const KolmogorovOperator& a, Complex z, Vec rates,
+  InRealForm(const KolmogorovOperator& a, const ComplexVector& diagonal,
              petsc::SolverStatistics& statistics) {
     check(MatGetOwnershipRange(a.matrix(), &begin_, &end_));
     check(MatGetOwnershipRanges(a.matrix(), &ranges_));
@@ -96,13 +96,17 @@ class ComplexSolver::InRealForm final : public Factors {
     }
     check(MatSeqAIJSetPreallocation(matrix_, most, nullptr));
     check(MatMPIAIJSetPreallocation(matrix_, most, nullptr, most, nullptr));
-    for (PetscInt row = begin_; row < end_; ++row) add_row(a.matrix(), row, z, rates);
+    const petsc::ReadView real(diagonal.real), imaginary(diagonal.imaginary);
+    for (PetscInt row = begin_; row < end_; ++row) {
+      const PetscInt n = row - begin_;
+      add_row(a.matrix(), row, {PetscRealPart(real[n]), PetscRealPart(imaginary[n])});
+    }
     check(MatAssemblyBegin(matrix_, MAT_FINAL_ASSEMBLY));
     check(MatAssemblyEnd(matrix_, MAT_FINAL_ASSEMBLY));
     factors_ = std::make_unique<petsc::Factorization>(matrix_, kSlidePrefix, statistics, PCLU);
   }
 
-  // The transposed real form is that of the transposed matrix for the conjugate of z.
+  // The transposed real form is that of the transposed matrix for the conjugate of d.
   void solve(const ComplexVector& b, const ComplexVector& x, bool transposed) override {
     const double sign = transposed ? -1 : 1;
     petsc::VecHandle all, solved;
@@ -131,9 +135,7 @@ class ComplexSolver::InRealForm final : public Factors {
     return ranges_[rank] + index + (imaginary ? ranges_[rank + 1] - ranges_[rank] : 0);
   }
 
-  void add_row(Mat a, PetscInt row, Complex z, Vec rates) const {
-    double rate = 1;
-    if (rates != nullptr) rate = PetscRealPart(petsc::ReadView(rates)[row - begin_]);
+  void add_row(Mat a, PetscInt row, Complex d) const {
     const petsc::RowView view(a, row);
     for (bool imaginary : {false, true}) {
       const PetscInt at = place(row, imaginary);
@@ -142,8 +144,8 @@ class ComplexSolver::InRealForm final : public Factors {
       };
       view.for_each(
           [&](PetscInt column, PetscScalar value) { add(place(column, imaginary), value); });
-      add(at, rate * z.real());
-      add(place(row, !imaginary), (imaginary ? 1 : -1) * rate * z.imag());
+      add(at, d.real());
+      add(place(row, !imaginary), (imaginary ? 1 : -1) * d.imag());
     }
   }
 
@@ -153,23 +155,24 @@ class ComplexSolver::InRealForm final : public Factors {
   std::unique_ptr<petsc::Factorization> factors_;
 };
 
-ComplexSolver::ComplexSolver(const KolmogorovOperator& a, Complex z, Clock clock,
+ComplexSolver::ComplexSolver(const KolmogorovOperator& a, Shift<Complex> shift,
                              petsc::SolverStatistics& statistics)
-    : a_(a), z_(z), statistics_(statistics) {
-  if (clock != Clock::time) {
-    rates_ = a.zeros();
-    petsc::WriteView rates(rates_);
+    : a_(a), diagonal_{a.zeros(), a.zeros()}, statistics_(statistics) {
+  {
+    petsc::WriteView real(diagonal_.real), imaginary(diagonal_.imaginary);
     PetscInt at = 0;
     a.states().for_each_local([&](const State& state) {
-      rates[at++] = rate_of(clock, state, *a.discretisation().velocities);
+      const Complex d = shift.at(velocity_of(state, *a.discretisation().velocities));
+      real[at] = d.real();
+      imaginary[at++] = d.imag();
     });
   }
   if (!serves_elements(a)) {
-    factors_ = std::make_unique<InRealForm>(a, z, rates_, statistics);
+    factors_ = std::make_unique<InRealForm>(a, diagonal_, statistics);
     return;
   }
   const petsc::PhaseTimer timer("factorisation", statistics_.factorization_seconds);
-  factors_ = std::make_unique<ByElements>(a, z, clock);
+  factors_ = std::make_unique<ByElements>(a, shift);
   ++statistics_.factorizations_complex;
 }
 
@@ -179,10 +182,9 @@ ComplexVector ComplexSolver::residual(const ComplexVector& b, const ComplexVecto
                                       bool transposed) const {
   ComplexVector r{petsc::copy_of(b.real), petsc::copy_of(b.imaginary)};
   const petsc::VecHandle image = a_.zeros();
-  const auto subtract = [&](Vec part, Vec from, double factor) {
-    check(VecCopy(part, image));
-    if (rates_ != nullptr) check(VecPointwiseMult(image, image, rates_));
-    check(VecAXPY(from, -factor, image));
+  const auto subtract = [&](Vec part, Vec d, Vec from, double sign) {
+    check(VecPointwiseMult(image, part, d));
+    check(VecAXPY(from, -sign, image));
   };
   for (const auto& [part, from] :
        {std::pair{Vec(x.real), Vec(r.real)}, std::pair{Vec(x.imaginary), Vec(r.imaginary)}}) {
@@ -190,10 +192,10 @@ ComplexVector ComplexSolver::residual(const ComplexVector& b, const ComplexVecto
                      : MatMult(a_.matrix(), part, image));
     check(VecAXPY(from, -1, image));
   }
-  subtract(x.real, r.real, z_.real());
-  subtract(x.imaginary, r.real, -z_.imag());
-  subtract(x.imaginary, r.imaginary, z_.real());
-  subtract(x.real, r.imaginary, z_.imag());
+  subtract(x.real, diagonal_.real, r.real, 1);
+  subtract(x.imaginary, diagonal_.imaginary, r.real, -1);
+  subtract(x.imaginary, diagonal_.real, r.imaginary, 1);
+  subtract(x.real, diagonal_.imaginary, r.imaginary, 1);
   return r;
 }
 

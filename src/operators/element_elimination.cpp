@@ -36,8 +36,8 @@ template <class Scalar>
 auto ElementElimination<Scalar>::read_static_rows(Mat matrix) const -> StaticRows<Scalar> {
   const std::size_t size = static_rows_.size();
   StaticRows<Scalar> at_rest(size, data_->discretisation.process.noise.neighbours_only());
-  // From the lambda of the matrix to that of the factors.
-  const Scalar more = lambda_ * rate_of(clock_, 0) - data_->lambda * rate_of(data_->clock, 0);
+  // From what the matrix has at rest to what the factors have.
+  const Scalar more = shift_.at(0) - data_->shift.at(0);
   const petsc::RowsOnAllRanks all(matrix, static_rows_);
   for (std::size_t n = 0; n < size; ++n) {
     at_rest.add(n, n, more);
@@ -73,14 +73,12 @@ struct ElementElimination<Scalar>::Line {
 
 template <class Scalar>
 ElementElimination<Scalar>::ElementElimination(Mat matrix, std::shared_ptr<const MatrixData> data,
-                                               Scalar lambda, Clock clock, bool share)
-    : data_(std::move(data)),
-      lambda_(lambda),
-      clock_(clock),
-      comm_(share ? data_->states.comm() : PETSC_COMM_SELF) {
+                                               Shift<Scalar> shift, bool share)
+    : data_(std::move(data)), shift_(shift), comm_(share ? data_->states.comm() : PETSC_COMM_SELF) {
   const StateSpace& states = data_->states;
   const auto& process = data_->discretisation.process;
-  const bool alike = branches_share_factors(process, data_->discretisation.noise->all_levels(),
+  const bool alike = shift_.tilt == Scalar(0) &&
+                     branches_share_factors(process, data_->discretisation.noise->all_levels(),
                                             *data_->discretisation.velocities);
   for (Branch branch : states.branches()) {
     if (!alike || factors_.empty()) factors_.push_back(unfactored(branch));
@@ -122,7 +120,8 @@ auto ElementElimination<Scalar>::unfactored(Branch branch) const -> std::unique_
   const auto& on =
       dynamic_cast<const velocity::HpDiscretisation&>(upper ? *velocities : velocities->mirrored());
   const std::size_t before = factors_.empty() ? 0 : factors_.back()->elements().size();
-  return std::make_unique<Factors>(nodes, on, std::move(net_force), lambda_, clock_, comm_, before);
+  return std::make_unique<Factors>(nodes, on, std::move(net_force), shift_.along(branch), comm_,
+                                   before);
 }
 
 template <class Scalar>

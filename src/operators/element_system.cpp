@@ -360,7 +360,7 @@ class ElementSystem<Scalar>::Elimination {
 template <class Scalar>
 ElementSystem<Scalar>::ElementSystem(const noise::Nodes& noise,
                                      const velocity::HpDiscretisation& velocities, int element,
-                                     std::span<const double> net_force, Scalar lambda, Clock clock,
+                                     std::span<const double> net_force, const Shift<Scalar>& shift,
                                      Response& response)
     : count_(noise.count()),
       nodes_(velocities.element(element).reference->size),
@@ -393,7 +393,7 @@ ElementSystem<Scalar>::ElementSystem(const noise::Nodes& noise,
   }
   Scalars by_node;
   for (double v : velocities.nodes().subspan(static_cast<std::size_t>(first_), q)) {
-    by_node.push_back(lambda * rate_of(clock, v));
+    by_node.push_back(shift.at(v));
   }
   Elimination elimination(*this, noise, std::move(rates), std::move(by_node), rising_inner,
                           rising_outer);

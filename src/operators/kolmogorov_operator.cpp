@@ -16,27 +16,26 @@ namespace stickslip::operators {
 using petsc::check;
 
 KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation,
-                                       PetscScalar lambda, Symmetry symmetry,
-                                       StaticPhase static_phase, Clock clock)
-    : KolmogorovOperator(comm, discretisation, lambda, symmetry, static_phase, clock,
-                         std::nullopt) {}
+                                       Shift<PetscScalar> shift, Symmetry symmetry,
+                                       StaticPhase static_phase)
+    : KolmogorovOperator(comm, discretisation, shift, symmetry, static_phase, std::nullopt) {}
 
 KolmogorovOperator KolmogorovOperator::derivative(MPI_Comm comm,
                                                   const Discretisation& discretisation,
                                                   Symmetry symmetry,
                                                   const model::Derivative& theta) {
-  return {comm, discretisation, 0, symmetry, StaticPhase::killing, Clock::time, theta};
+  return {comm, discretisation, {}, symmetry, StaticPhase::killing, theta};
 }
 
 KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation,
-                                       PetscScalar lambda, Symmetry symmetry,
-                                       StaticPhase static_phase, Clock clock,
+                                       Shift<PetscScalar> shift, Symmetry symmetry,
+                                       StaticPhase static_phase,
                                        std::optional<model::Derivative> derivative)
     : data_(std::make_shared<MatrixData>(MatrixData{
           discretisation,
-          StateSpace(comm, discretisation, symmetry, static_phase != StaticPhase::killing), lambda,
-          clock})) {
-  RowAssembler rows(discretisation, states(), lambda, clock, static_phase, derivative);
+          StateSpace(comm, discretisation, symmetry, static_phase != StaticPhase::killing),
+          shift})) {
+  RowAssembler rows(discretisation, states(), shift, static_phase, derivative);
   rows.assemble();
   for (int level : discretisation.process.starts()) {
     if (states().symmetry_reduced() && level < 0) continue;
@@ -44,7 +43,9 @@ KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& disc
   }
   static_coupling_ = std::move(rows.static_coupling);
   top_coupling_ = std::move(rows.top_coupling);
-  if (!derivative && symmetry != Symmetry::odd && PetscRealPart(lambda) >= 0) {
+  const PetscScalar lambda = shift.lambda;
+  const bool generates = symmetry != Symmetry::odd && shift.tilt == 0.0;
+  if (!derivative && generates && PetscRealPart(lambda) >= 0) {
     const bool nothing_killed = static_phase == StaticPhase::kept && PetscAbsScalar(lambda) == 0 &&
                                 !discretisation.velocities->kills_at_top();
     require_generator(comm, {states().local_begin(), rows.row_start, rows.columns, rows.values},
@@ -72,7 +73,7 @@ petsc::MatHandle KolmogorovOperator::shifted(PetscScalar by) const {
   check(MatDuplicate(matrix_, MAT_COPY_VALUES, copy.out()));
   check(MatShift(copy, by));
   auto data = std::make_shared<MatrixData>(*data_);
-  data->lambda += by;
+  data->shift.lambda += by;
   attach(copy, std::move(data));
   return copy;
 }

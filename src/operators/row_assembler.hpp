@@ -19,8 +19,9 @@ class RowAssembler {
   /// Values by global index.
   using Functional = std::vector<std::pair<PetscInt, double>>;
 
-  RowAssembler(const Discretisation& discretisation, const StateSpace& states, PetscScalar lambda,
-               Clock clock, StaticPhase static_phase, std::optional<model::Derivative> derivative)
+  RowAssembler(const Discretisation& discretisation, const StateSpace& states,
+               Shift<PetscScalar> shift, StaticPhase static_phase,
+               std::optional<model::Derivative> derivative)
       : derivative_(derivative),
         noise_(*discretisation.noise),
         chain_(discretisation.process.noise),
@@ -28,8 +29,7 @@ class RowAssembler {
         lower_{discretisation.process.mirrored(), noise_.mirrored(),
                discretisation.velocities->mirrored()},
         states_(states),
-        lambda_(lambda),
-        clock_(clock),
+        shift_(shift),
         static_phase_(static_phase),
         exit_rates_(upper_.process.exit_rates()),
         zero_trace_(discretisation.velocities->trace_at_zero()),
@@ -107,7 +107,7 @@ class RowAssembler {
     case StateKind::holding: rates_of_holding(state); break;
     case StateKind::static_phase: rates_at_rest(state.noise); break;
     }
-    finish_row(states_.index(state), lambda_ * rate_of(clock_, state, upper_.velocities));
+    finish_row(states_.index(state), shift_.at(velocity_of(state, upper_.velocities)));
   }
 
   // Calls visit(node, rate) for the jumps from a noise node. By tau they are alike on both
@@ -237,7 +237,7 @@ class RowAssembler {
   }
 
   // The couplings of the row to the arrays, in the order of columns, each once.
-  void finish_row(PetscInt diagonal, PetscScalar lambda) {
+  void finish_row(PetscInt diagonal, PetscScalar shift) {
     row_.emplace_back(diagonal, 0.0);  // keeps its place in the order
     std::sort(row_.begin(), row_.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -261,7 +261,7 @@ class RowAssembler {
         sum += values[n];
       }
     }
-    values[place] = lambda - sum + std::exchange(killing_, 0.0);
+    values[place] = shift - sum + std::exchange(killing_, 0.0);
   }
 
   [[nodiscard]] PetscInt local_row() const { return static_cast<PetscInt>(row_start.size()) - 1; }
@@ -293,8 +293,7 @@ class RowAssembler {
   const model::NoiseChain& chain_;
   Side upper_, lower_;
   const StateSpace& states_;
-  PetscScalar lambda_;
-  Clock clock_;
+  Shift<PetscScalar> shift_;
   StaticPhase static_phase_;
   std::vector<double> exit_rates_;
   std::vector<velocity::Entry> zero_trace_, top_trace_;
@@ -304,7 +303,7 @@ class RowAssembler {
   mutable std::optional<int> changes_of_;
   velocity::TransportRow transport_;
   std::vector<std::pair<PetscInt, PetscScalar>> row_;
-  double killing_ = 0;  // row sum of A - lambda
+  double killing_ = 0;  // row sum of A less what is added to -L
 };
 
 }  // namespace stickslip::operators

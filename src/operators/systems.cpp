@@ -23,11 +23,11 @@ KolmogorovOperator entered(petsc::SolverStatistics& statistics, Make make) {
 
 }  // namespace
 
-KolmogorovOperator assemble(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda,
-                            Symmetry symmetry, StaticPhase static_phase,
-                            petsc::SolverStatistics& statistics, Clock clock) {
+KolmogorovOperator assemble(MPI_Comm comm, const Discretisation& discretisation,
+                            Shift<PetscScalar> shift, Symmetry symmetry, StaticPhase static_phase,
+                            petsc::SolverStatistics& statistics) {
   return entered(statistics, [&] {
-    return KolmogorovOperator(comm, discretisation, lambda, symmetry, static_phase, clock);
+    return KolmogorovOperator(comm, discretisation, shift, symmetry, static_phase);
   });
 }
 
@@ -56,8 +56,8 @@ std::unique_ptr<petsc::Factorization> factorization(const KolmogorovOperator& a,
 
 KolmogorovOperator Systems::assembled(const SystemKey& key) {
   const auto of = [&](const Discretisation& discretisation) {
-    return assemble(comm_, discretisation, key.lambda, key.symmetry, key.static_phase, statistics_,
-                    key.clock);
+    return assemble(comm_, discretisation, key.shift(), key.symmetry, key.static_phase,
+                    statistics_);
   };
   if (!std::isinf(key.speed_limit)) return of(discretisation_.killing_at(key.speed_limit));
   KolmogorovOperator a = of(discretisation_);

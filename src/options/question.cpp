@@ -80,14 +80,14 @@ void read_quantities(Settings& settings, Request& request) {
 
 // The values given, or those of the file to compare with: of results over the abscissa `option`.
 std::vector<double> arguments(Settings& settings, const std::vector<cases::Reference>& references,
-                              const std::string& option) {
+                              const std::string& option, bool negative = false) {
   std::vector<double> values = settings.numbers(option);
   if (settings.has(option)) return values;
   for (const auto& reference : references) {
     const auto* row = catalogue::find_row(reference.quantity);
     const bool asks = reference.argument && row != nullptr && row->abscissa == option;
     const double value = reference.argument.value_or(0);
-    if (asks && value >= 0 && std::count(values.begin(), values.end(), value) == 0) {
+    if (asks && (negative || value >= 0) && std::count(values.begin(), values.end(), value) == 0) {
       values.push_back(value);
     }
   }
@@ -243,6 +243,10 @@ void read_question(Settings& settings, Request& request) {
   question.distance = arguments(settings, known, "distance");
   question.inverse_distance = arguments(settings, known, "inverse_distance");
   question.velocity = arguments(settings, known, "velocity");
+  for (const auto* argument : catalogue::arguments()) {
+    const std::string option(argument->option);
+    question.arguments[option] = arguments(settings, known, option, argument->low < 0);
+  }
   question.observables = read_observables(settings, request.scene.friction);
   question.accuracy = settings.real("accuracy");
   question.accuracy_given = settings.has("accuracy");

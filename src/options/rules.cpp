@@ -57,6 +57,10 @@ class Rules {
           "distance", "inverse_distance", "velocity"}) {
       warn({option}, !asked(option));
     }
+    for (const auto* argument : catalogue::arguments()) {
+      const std::string option(argument->option);
+      warn({option.c_str()}, !asked(option.c_str()));
+    }
   }
 
   // Options that exclude one another.
@@ -121,11 +125,7 @@ class Rules {
            "asks for derivatives (sensitivity), but for no scalars to differentiate",
            "add sticking, moments or noise_law");
     require_sticking();
-    const bool unbounded = !r_.scene.v_max && !r_.scene.process(1).drag.bounds_velocity();
-    report("quantities", q_.wants(relaxation) && unbounded,
-           "asks for relaxation, but where drag does not bound the velocity the spectrum of the "
-           "generator is continuous: its leading eigenvalues would be those of a truncation",
-           "take autocorrelation or spectrum, or a drag that grows");
+    require_own();
     report("quantities", study_ && others,
            "must be sticking, moments and noise_law, or some of these, in a study",
            "leave the others out");
@@ -170,6 +170,24 @@ class Rules {
     }
     report("quantities", q_.wants(field) && r_.files.holding(field).empty(),
            fmt::format("asks for {} which needs a file", what), "add " + enumerate(fixes, "or"));
+  }
+
+  // What quantities say of themselves.
+  void require_own() {
+    const bool unbounded = !r_.scene.v_max && !r_.scene.process(1).drag.bounds_velocity();
+    for (const auto* entry : catalogue::entries()) {
+      if (!q_.wants(entry->quantity)) continue;
+      report("quantities", unbounded && !entry->unbounded.empty(),
+             fmt::format("asks for {}, but where drag does not bound the velocity {}", entry->word,
+                         entry->unbounded),
+             std::string(entry->instead));
+      for (const auto* argument : entry->arguments) {
+        const std::string option(argument->option);
+        require(option.c_str(), q_.values(option).empty(),
+                fmt::format("asks for {}, but no values of -{} are given", entry->word, option),
+                fmt::format("add for example -{} {}", option, argument->example));
+      }
+    }
   }
 
   // Where no level of the noise holds the body, there are no phases, and the rest exists.

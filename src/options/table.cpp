@@ -41,10 +41,23 @@ Option arguments(const char* name, const char* unit, const char* sentence) {
                  "negative and missing values mean nothing here");
 }
 
+std::vector<Option> own_options_of_quantities() {
+  std::vector<Option> options;
+  for (const auto* argument : catalogue::arguments()) {
+    std::vector<std::string> synonyms;
+    for (auto& word : split(argument->synonyms, ',')) synonyms.push_back(std::move(word));
+    options.push_back(numbers(std::string(argument->option), std::string(argument->unit),
+                              {argument->low, argument->high}, std::string(argument->sentence),
+                              fmt::format("take for example {}", argument->example))
+                          .called(synonyms));
+  }
+  return options;
+}
+
 std::vector<Option> quantity_options() {
   Words words;
   for (const auto* entry : catalogue::entries()) words.emplace_back(entry->word);
-  return {
+  std::vector<Option> options{
       list("quantities", "sticking,moments,noise_law", words, "quantities to compute")
           .called({"q", "compute", "observables"}),
       arguments("lambda", "1/time",
@@ -75,6 +88,9 @@ std::vector<Option> quantity_options() {
           "double precision allows down to about 1e-14, case by case")
           .called({"tol", "tolerance", "rtol", "precision", "eps", "error", "digits"}),
   };
+  const auto own = own_options_of_quantities();
+  options.insert(options.end() - 1, own.begin(), own.end());
+  return options;
 }
 
 Option route_option() {

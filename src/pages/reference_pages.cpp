@@ -103,7 +103,7 @@ std::string quantity_rows() {
   std::string text = head({"quantity", "what it gives", "its options", "-route"});
   for (const auto* q : catalogue::entries()) {
     std::vector<std::string> options;
-    for (const auto& option : split(q->options, ',')) options.push_back(code("-" + option));
+    for (const auto& option : q->all_options()) options.push_back(code("-" + option));
     text += row({code(q->word), cell(q->title), fmt::format("{}", fmt::join(options, ", ")),
                  letters(q->routes)});
   }

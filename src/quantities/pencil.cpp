@@ -62,7 +62,7 @@ void ProcessPencil::solve(double z, Vec b, Vec x, bool transposed, bool refined)
 class ProcessPencil::Shifted final : public ShiftedPencil {
  public:
   Shifted(const ProcessPencil& pencil, std::complex<double> z)
-      : pencil_(pencil), solver_(pencil.a_, z, pencil.key_.clock, pencil.systems_.statistics()) {}
+      : pencil_(pencil), solver_(pencil.a_, {z, pencil.key_.clock}, pencil.systems_.statistics()) {}
 
   [[nodiscard]] operators::ComplexVector solve(const operators::ComplexVector& b,
                                                bool transposed) override {

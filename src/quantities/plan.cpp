@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "stickslip/catalogue/large_deviation_keys.hpp"
 #include "stickslip/quantities/stationary.hpp"
 
 namespace stickslip::quantities {
@@ -13,7 +14,8 @@ using Tasks = void(Planner&);
 Tasks sticking_tasks, mean_slip_tasks, moments_tasks, density_tasks, averages_tasks,
     entry_law_tasks, sensitivity_tasks, stick_transform_tasks, laplace_tasks, resolvent_tasks,
     spectrum_tasks, duration_density_tasks, slip_tasks, peak_tasks, displacement_tasks,
-    autocorrelation_tasks, expectation_tasks, relaxation_tasks, noise_spectrum_tasks;
+    autocorrelation_tasks, expectation_tasks, relaxation_tasks, noise_spectrum_tasks,
+    large_deviation_tasks;
 
 namespace {
 
@@ -37,7 +39,9 @@ constexpr std::pair<Quantity, Tasks*> kAll[] = {
     {Quantity::autocorrelation, autocorrelation_tasks},
     {Quantity::expectation, expectation_tasks},
     {Quantity::relaxation, relaxation_tasks},
-    {catalogue::own_quantity("noise_spectrum"), noise_spectrum_tasks}};
+    {catalogue::own_quantity("noise_spectrum"), noise_spectrum_tasks},
+
+    {catalogue::kLargeDeviation.quantity, large_deviation_tasks}};
 
 }  // namespace
 

@@ -151,8 +151,7 @@ class DirectSpectrum {
   }
 
   [[nodiscard]] Uncertain operator()(double omega) {
-    operators::ComplexSolver solver(a_, {0, std::max(omega, least_)}, operators::Clock::time,
-                                    statistics_);
+    operators::ComplexSolver solver(a_, std::complex(0.0, std::max(omega, least_)), statistics_);
     const bool far = omega > turn_;
     const auto solution =
         solver.solve({petsc::copy_of(far ? ab_ : velocity_.b), a_.zeros()}, false);

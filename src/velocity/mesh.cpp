@@ -182,13 +182,14 @@ class DecayRate {
   DecayRate(const model::Process& process, const MeshRule& rule)
       : process_(process),
         ratio_(rule.ratio),
+        weighted_(rule.rates.tilt > 0),
         upper_(process, rule.v_max),
         lower_(process.mirrored(), rule.v_max) {}
 
   [[nodiscard]] double operator()(double v) const {
     constexpr double nothing = -45;  // below all rounding
     const double both = decay_rate(process_, v), up = upper_(v), down = lower_(v);
-    if (std::max(up, down) < nothing || std::min(up, down) > nothing) return both;
+    if (weighted_ || std::max(up, down) < nothing || std::min(up, down) > nothing) return both;
     const LogDensity& counts = up > down ? upper_ : lower_;
     const double own = std::abs(counts.slope - counts.drag(v / ratio_));
     return std::min(both, own / process_.noise.intensity());
@@ -197,6 +198,7 @@ class DecayRate {
  private:
   const model::Process& process_;
   double ratio_;
+  bool weighted_;  // with exp(s x(t)), which may make of a rare branch the one that counts
   LogDensity upper_, lower_;
 };
 

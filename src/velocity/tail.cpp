@@ -45,11 +45,32 @@ double upper_tail(const model::Process& process, double tolerance) {
   return end;
 }
 
+// Of the positive branch, weighted. White noise and the weight make of the density a sum of two
+// exponentials in each small range of v, of which the falling one counts.
+double weighted_tail(const model::Process& process, double tolerance, double tilt) {
+  constexpr double step = 0.02;
+  const double drop = -std::log(tolerance) + 5, reach = process.drag.reach;
+  const LogDensity log_density(process, kInfinity);
+  const double most = std::isfinite(reach) ? reach : 1e12, d = log_density.intensity;
+  double v = 1e-3 * std::sqrt(d), fallen = 0;
+  while (fallen < drop && v < most) {
+    const double force = log_density.slope - process.drag(v), rate = force / d;
+    const double square = rate * rate - 4 * tilt * v / d;
+    fallen = force > 0 && square > 0 ? fallen + step * v * std::sqrt(square) : 0;
+    v *= 1 + step;
+  }
+  return fallen < drop ? std::max(reach, most) : v;
+}
+
 }  // namespace
 
-double tail_velocity(const model::Process& process, double tolerance) {
-  const double upper = upper_tail(process, tolerance);
-  return process.symmetric() ? upper : std::max(upper, upper_tail(process.mirrored(), tolerance));
+double tail_velocity(const model::Process& process, double tolerance, double tilt) {
+  const auto of = [&](const model::Process& branch) {
+    const double tail = upper_tail(branch, tolerance);
+    return tilt > 0 ? std::max(tail, weighted_tail(branch, tolerance, tilt)) : tail;
+  };
+  const double upper = of(process);
+  return process.symmetric() ? upper : std::max(upper, of(process.mirrored()));
 }
 
 double largest_speed(const model::Scene& scene) {

@@ -103,8 +103,8 @@ class Refusals(Case):
 
     def test_every_result_can_be_compared(self):
         every = ("sticking,moments,averages,noise_law,entry_law,laplace,resolvent,relaxation,"
-                 "spectrum,duration_density,autocorrelation,expectation,sensitivity")
-        every = (*SMALL, "-quantities", every, "-lambda", "1", "-omega", "1", "-time", "1",
+                 "spectrum,duration_density,autocorrelation,expectation,sensitivity,large_deviation")
+        every = (*SMALL, "-quantities", every, "-lambda", "1", "-omega", "1", "-time", "1", "-tilt", "-0.5",
                  "-observable", "v^2; x*v", "-accuracy", "1e-3")
         asymmetric = (*every, "-mu_d_minus", "0.3", "-bias", "0.1")
         for asks in (every, asymmetric):

@@ -8,7 +8,7 @@ from running import SOURCES, Case
 
 SMALL = ("-mu_d", "0.25", "-delta", "0.5")
 GRIDS = ("-lambda", "0.5,2", "-omega", "0.1,1", "-time", "0.5,1", "-distance", "0.1,1", "-inverse_distance", "1",
-         "-velocity", "0.3", "-observable", "v^2;stick")
+         "-velocity", "0.3", "-tilt", "0.5", "-observable", "v^2;stick")
 FACTOR = r"(force|velocity|time)(\^\d)?"
 PRODUCT = rf"{FACTOR}(\*{FACTOR})*"
 UNIT = re.compile(rf"(1|{PRODUCT})(/{FACTOR}|/\({PRODUCT}\))?")
@@ -38,7 +38,7 @@ class Width(Case):
 
     def test_plans_studies_sweeps_and_comparisons(self):
         self.assert_narrow(*SMALL, *GRIDS, "-plan", "-quantities", "sticking,entry_law,laplace,resolvent,spectrum,slip,"
-                           "peak,displacement,duration_density,expectation,relaxation,sensitivity")
+                           "peak,displacement,duration_density,expectation,relaxation,large_deviation,sensitivity")
         for kind in ("p", "delta"):
             self.assert_narrow(*SMALL, "-study", kind, "-study_steps", "4")
         self.assert_narrow(*SMALL, "-study", "cost", "-study_steps", "4", "-study_repeats", "1",

@@ -159,14 +159,25 @@ TEST_CASE("element elimination: solves every kind of system, forward and transpo
 TEST_CASE("element elimination: by the clock of path length, and killed at a speed", "[parallel]") {
   for (const auto& c : samples()) {
     INFO(c.name << ", symmetry " << static_cast<int>(c.symmetry));
-    const KolmogorovOperator slow(PETSC_COMM_WORLD, c.on, 3, c.symmetry, StaticPhase::killing,
-                                  Clock::path_length);
+    const KolmogorovOperator slow(PETSC_COMM_WORLD, c.on, {3, Clock::path_length}, c.symmetry,
+                                  StaticPhase::killing);
     check_solves(slow);
     for (double speed : {0.01, 0.4}) {
       for (StaticPhase static_phase : {StaticPhase::killing, StaticPhase::kept}) {
         const auto below = c.on.killing_at(speed);
         check_solves({PETSC_COMM_WORLD, below, 0, c.symmetry, static_phase});
       }
+    }
+  }
+}
+
+TEST_CASE("element elimination: with a weight of path and displacement", "[parallel]") {
+  for (const auto& c : samples()) {
+    if (c.symmetry != Symmetry::none) continue;
+    INFO(c.name);
+    for (StaticPhase static_phase : {StaticPhase::killing, StaticPhase::kept}) {
+      check_solves({PETSC_COMM_WORLD, c.on, {2.0, 0.5, -0.3}, c.symmetry, static_phase});
+      check_solves({PETSC_COMM_WORLD, c.on, {9.0, 0.0, 0.7}, c.symmetry, static_phase});
     }
   }
 }

@@ -385,6 +385,12 @@ TEST_CASE("request: quantities that need a file or times, or derive nothing, are
       {"-quantities relaxation -drag none", {"the generator is continuous", "a drag that grows"}},
       {"-quantities relaxation -drag expression -drag_expression 0-v/(1+abs(v))",
        {"the generator is continuous"}},
+      {"-quantities large_deviation -tilt 1 -drag none",
+       {"theta is infinite", "take displacement and diffusivity"}},
+      {"-quantities large_deviation",
+       {"no values of -tilt are given", "add for example -tilt -0.5"}},
+      {"-quantities large_deviation -tilt 1,x", {"-tilt = 1,x: must be numbers in (-inf, inf)"}},
+      {"-quantities large_deviation -tilt 1 -route monte_carlo", {"a sample has no eigenvalues"}},
       {"-quantities expectation -observable v", {"no times are given", "add for example -time"}}};
   for (const auto& refusal : refusals) check_refusal(refusal);
 }

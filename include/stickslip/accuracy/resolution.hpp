@@ -43,12 +43,14 @@ struct Resolution {
 /// from which sliding phases start, second moments included; never more than the full range, and
 /// always more than k. Where drag does not hold it back, a body is fast because the noise stayed
 /// high: there the distribution of X is shifted upwards, and the range with it.
-[[nodiscard]] int levels_for(const model::Scene& scene, double tolerance, double speed = 0);
+[[nodiscard]] int levels_for(const model::Scene& scene, double tolerance,
+                             const velocity::Rates& rates = {});
 
 /// End of the velocity discretisation: the terminal velocity of the highest level, or
 /// where the density has fallen below `tolerance` if that comes first. What the user fixed goes
 /// before.
-[[nodiscard]] double velocity_end(const model::Scene& scene, int levels, double tolerance);
+[[nodiscard]] double velocity_end(const model::Scene& scene, int levels, double tolerance,
+                                  double tilt = 0);
 
 /// hp of polynomial degree `degree` in v, the noise levels grouped so, all that is open chosen for
 /// truncation errors of `tolerance`, a hundredth of it in v, of which moments are asked for;

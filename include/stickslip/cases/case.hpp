@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -49,13 +51,25 @@ struct Question {
   std::vector<double> distance = {};                ///< of the densities of slip [velocity*time]
   std::vector<double> inverse_distance = {};        ///< of the transform of slip
   std::vector<double> velocity = {};                ///< of peak [velocity]
-  model::Start start = {};                          ///< of expectation, displacement and trajectory
-  double horizon = 100;                             ///< end of the trajectory [time]
+  std::map<std::string, std::vector<double>, std::less<>> arguments = {};  ///< others, by option
+  model::Start start = {};  ///< of expectation, displacement and trajectory
+  double horizon = 100;     ///< end of the trajectory [time]
   double accuracy = 1e-6;
   bool accuracy_given = false;             ///< by the user
   std::vector<Reference> references = {};  ///< of -compare
 
   [[nodiscard]] bool wants(Quantity q) const { return quantities.contains(q); }
+  /// The values given for an option of a quantity of its own.
+  [[nodiscard]] std::vector<double> values(std::string_view option) const {
+    const auto given = arguments.find(option);
+    return given == arguments.end() ? std::vector<double>() : given->second;
+  }
+  /// Whether a fact holds of anything asked for.
+  [[nodiscard]] bool any(bool catalogue::Entry::*fact) const {
+    return std::ranges::any_of(catalogue::entries(), [&](const catalogue::Entry* entry) {
+      return wants(entry->quantity) && entry->*fact;
+    });
+  }
   /// Whether anything asked for depends on the option (a name without dash).
   [[nodiscard]] bool depends_on(std::string_view option) const {
     const auto all = catalogue::entries();

@@ -4,9 +4,11 @@
 /// is said of it; help, reference pages, validation and files follow from these.
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "stickslip/catalogue/solution_method.hpp"
 
@@ -83,28 +85,51 @@ struct Row {
   [[nodiscard]] std::string key_of(std::string_view f) const;
 };
 
+/// Values for which a quantity is wanted, an option of its own: a list of numbers.
+struct Argument {
+  std::string_view option;         ///< name, the abscissa of the rows
+  std::string_view unit = {};      ///< of the numbers
+  std::string_view sentence;       ///< for the help
+  std::string_view example;        ///< numbers that make sense
+  std::string_view synonyms = {};  ///< names that mean it elsewhere, a comma list
+  /// Open range of the numbers.
+  double low = -std::numeric_limits<double>::infinity(),
+         high = std::numeric_limits<double>::infinity();
+};
+
 /// A quantity that can be asked for.
 struct Entry {
   Quantity quantity;
-  std::string_view word;           ///< of -quantities
-  std::string_view synonyms = {};  ///< words that mean it elsewhere, a comma list
-  std::string_view title;          ///< what it is, in half a line
-  Routes routes;                   ///< that give it, for every scene
-  std::string_view options = {};   ///< that it depends on, a comma list
-  std::string_view others = {};    ///< keys of other quantities that come with it, a comma list
+  std::string_view word;                            ///< of -quantities
+  std::string_view synonyms = {};                   ///< words that mean it elsewhere, a comma list
+  std::string_view title;                           ///< what it is, in half a line
+  Routes routes;                                    ///< that give it, for every scene
+  std::string_view options = {};                    ///< that it depends on besides, a comma list
+  std::span<const Argument* const> arguments = {};  ///< that it has to have
+  std::string_view others = {};  ///< keys of other quantities that come with it, a comma list
   std::span<const Row* const> rows = {};
   /// The degree of elements at which error estimates meet an accuracy of 10^-n is expected to be
   /// degrees_per_digit n + degrees_besides.
   double degrees_per_digit = 1, degrees_besides = 1;
   bool of_phases = false;  ///< about sticking and sliding phases: nothing where a body never sticks
   bool of_one_run = false;  ///< a field or a path, which has no place in a sweep
+  /// What is wrong with it where drag does not bound the velocity, and what to take; empty where
+  /// nothing is.
+  std::string_view unbounded = {}, instead = {};
+  bool weighs_tail = false;    ///< and may weigh large speeds anyhow
+  bool both_branches = false;  ///< its systems hold both signs of v, symmetry or not
 
-  /// Whether it depends on an option (a name without dash).
+  /// All options that it depends on (names without dashes).
+  [[nodiscard]] std::vector<std::string> all_options() const;
+  /// Whether it depends on an option.
   [[nodiscard]] bool takes(std::string_view option) const;
 };
 
 /// All quantities, in the order of the help text.
 [[nodiscard]] std::span<const Entry* const> entries();
+
+/// The options of their own of all quantities, each once.
+[[nodiscard]] std::span<const Argument* const> arguments();
 
 /// The quantity of a word; nullptr if there is none of that name.
 [[nodiscard]] const Entry* find_entry(std::string_view word);

@@ -45,6 +45,7 @@ inline constexpr Entry kPeak{
     .routes = {Route::excursion, Route::monte_carlo},
     .options = "velocity",
     .rows = kPeakRows,
-    .of_phases = true};
+    .of_phases = true,
+    .weighs_tail = true};
 
 }  // namespace stickslip::catalogue

@@ -48,12 +48,16 @@ inline constexpr const Row* kRelaxationRows[] = {&kRelaxationEven, &kRelaxationE
                                                  &kRelaxationOdd,  &kRelaxationOddFrequency,
                                                  &kRelaxationAll,  &kRelaxationAllFrequency};
 
-inline constexpr Entry kRelaxation{.quantity = Quantity::relaxation,
-                                   .word = "relaxation",
-                                   .synonyms =
-                                       "eigenvalues, spectral_gap, gap, modes, relaxation_time",
-                                   .title = "leading eigenvalues of the generator, by SLEPc",
-                                   .routes = {Route::excursion},
-                                   .rows = kRelaxationRows};
+inline constexpr Entry kRelaxation{
+    .quantity = Quantity::relaxation,
+    .word = "relaxation",
+    .synonyms = "eigenvalues, spectral_gap, gap, modes, relaxation_time",
+    .title = "leading eigenvalues of the generator, by SLEPc",
+    .routes = {Route::excursion},
+    .rows = kRelaxationRows,
+    .unbounded = "the spectrum of the generator is continuous: its leading "
+                 "eigenvalues would be those of a truncation",
+    .instead = "take autocorrelation or spectrum, or a drag that grows",
+    .weighs_tail = true};
 
 }  // namespace stickslip::catalogue

@@ -19,18 +19,18 @@ struct ComplexVector {
 /// sum_n c_n x_n for a real c. Collective.
 [[nodiscard]] std::complex<double> dot(Vec c, const ComplexVector& x);
 
-/// Factors of z e + A, A = -L an operator with lambda = 0 and e the rates of a clock. On hp
+/// Factors of A + d, A = -L an operator without shift and d a complex one, by state. On hp
 /// elements that the PC `elements` serves, in complex arithmetic by ElementElimination, at three to
 /// four times the cost of real factors; else as the real system
 ///
-///   ( A + e Re z   -e Im z  ) (Re x)   (Re b)
-///   ( e Im z      A + e Re z) (Im x) = (Im b)
+///   ( A + Re d     -Im d  ) (Re x)   (Re b)
+///   (  Im d       A + Re d) (Im x) = (Im b)
 ///
 /// by the solver of -slide_, LU unless the options say otherwise.
 class ComplexSolver {
  public:
   /// `a` must live as long. Collective. Throws NoMemory or NotReached.
-  ComplexSolver(const KolmogorovOperator& a, std::complex<double> z, Clock clock,
+  ComplexSolver(const KolmogorovOperator& a, Shift<std::complex<double>> shift,
                 petsc::SolverStatistics& statistics);
   ~ComplexSolver();
   ComplexSolver(const ComplexSolver&) = delete;
@@ -40,7 +40,7 @@ class ComplexSolver {
     ComplexVector x;
     ComplexVector correction;  ///< of iterative refinement: a measure of rounding
   };
-  /// (z e + A) x = b, or with the transpose (no conjugation), with a step of iterative refinement.
+  /// (A + d) x = b, or with the transpose (no conjugation), with a step of iterative refinement.
   /// Collective. Throws NotReached if it does not converge.
   [[nodiscard]] Solution solve(const ComplexVector& b, bool transposed);
 
@@ -49,13 +49,12 @@ class ComplexSolver {
   class ByElements;
   class InRealForm;
 
-  // r = b - (z e + A) x.
+  // r = b - (A + d) x.
   [[nodiscard]] ComplexVector residual(const ComplexVector& b, const ComplexVector& x,
                                        bool transposed) const;
 
   const KolmogorovOperator& a_;
-  std::complex<double> z_;
-  petsc::VecHandle rates_;  // e; null where all are 1
+  ComplexVector diagonal_;  // d
   petsc::SolverStatistics& statistics_;
   std::unique_ptr<Factors> factors_;
 };

@@ -43,8 +43,8 @@ class StaticRows;
 /// Ranks share the elements; what is between them each rank eliminates alike, so that results do
 /// not depend on the number of ranks.
 ///
-/// `Scalar` is PetscScalar, or std::complex<double> with either: lambda may be complex where the
-/// matrix, of which only the static states are read, is real.
+/// `Scalar` is PetscScalar, or std::complex<double> with either: what is added may be complex where
+/// the matrix, of which only the static states are read, is real.
 template <class Scalar>
 class ElementElimination {
  public:
@@ -54,9 +54,9 @@ class ElementElimination {
   /// others follow from the discretisation. Without `share` each rank factors all elements.
   /// Collective. Throws NotReached where the matrix is singular.
   ElementElimination(Mat matrix, std::shared_ptr<const MatrixData> data, bool share = true)
-      : ElementElimination(matrix, data, data->lambda, data->clock, share) {}
-  /// The same with another lambda, by another clock.
-  ElementElimination(Mat matrix, std::shared_ptr<const MatrixData> data, Scalar lambda, Clock clock,
+      : ElementElimination(matrix, data, data->shift, share) {}
+  /// The same with something else added to -L.
+  ElementElimination(Mat matrix, std::shared_ptr<const MatrixData> data, Shift<Scalar> shift,
                      bool share = true);
   ~ElementElimination();
 
@@ -96,8 +96,7 @@ class ElementElimination {
   void for_each_unknown_between(Visit visit) const;
 
   std::shared_ptr<const MatrixData> data_;
-  Scalar lambda_;
-  Clock clock_;
+  Shift<Scalar> shift_;
   MPI_Comm comm_;                                  // of the ranks that share elements
   std::vector<std::unique_ptr<Factors>> factors_;  // of each branch, or of both
   std::vector<Line> lines_;

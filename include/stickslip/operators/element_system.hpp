@@ -40,11 +40,11 @@ class ElementSystem {
     Matrix inner_inner, inner_outer, outer_inner, outer_outer;
   };
 
-  /// For the speeds x_l + g - mu_d + b(v), `net_force` being x_l + g - mu_d by node; the response
-  /// goes to `response`. O(M q^3 groups' sizes^2 + M^2 q). Throws NotReached if a block is
-  /// singular.
+  /// For the speeds x_l + g - mu_d + b(v), `net_force` being x_l + g - mu_d by node, `shift` along
+  /// the branch; the response goes to `response`. O(M q^3 groups' sizes^2 + M^2 q). Throws
+  /// NotReached if a block is singular.
   ElementSystem(const noise::Nodes& noise, const velocity::HpDiscretisation& velocities,
-                int element, std::span<const double> net_force, Scalar lambda, Clock clock,
+                int element, std::span<const double> net_force, const Shift<Scalar>& shift,
                 Response& response);
 
   [[nodiscard]] int size() const { return count_ * nodes_; }

@@ -49,14 +49,14 @@ struct TopCoupling {
 /// the off-diagonals of -A are >= 0 and a row has at most five entries if every level is a node:
 /// with both branches and kept, -A then is the generator M of the paper's section 5.
 ///
-/// By the clock of path length lambda is multiplied by |v|; where the velocity discretisation kills
-/// at its top, u = 0 there.
+/// By the clock of path length lambda is multiplied by |v|, and a tilt times v is subtracted; where
+/// the velocity discretisation kills at its top, u = 0 there.
 class KolmogorovOperator {
  public:
   /// Assembles the local rows. The matrix lives as long as the operator. Collective.
   /// O(local nonzeros).
-  KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda,
-                     Symmetry symmetry, StaticPhase static_phase, Clock clock = Clock::time);
+  KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, Shift<PetscScalar> shift,
+                     Symmetry symmetry, StaticPhase static_phase);
 
   /// dA/dtheta with all members, for StaticPhase::killing: entry_rates and from_static are those of
   /// -dA_us/dtheta. Elements, nodes and upwind directions stay as they are: what is projected is
@@ -124,8 +124,8 @@ class KolmogorovOperator {
   [[nodiscard]] petsc::VecHandle zeros() const;
 
  private:
-  KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda,
-                     Symmetry symmetry, StaticPhase static_phase, Clock clock,
+  KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, Shift<PetscScalar> shift,
+                     Symmetry symmetry, StaticPhase static_phase,
                      std::optional<model::Derivative> derivative);
 
   // The nodes by which states of a branch are counted.

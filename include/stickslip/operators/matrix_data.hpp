@@ -10,12 +10,11 @@
 
 namespace stickslip::operators {
 
-/// Of which lambda - L a matrix is.
+/// What a matrix is of: -L and what is added to it.
 struct MatrixData {
   Discretisation discretisation;
   StateSpace states;
-  PetscScalar lambda;
-  Clock clock;
+  Shift<PetscScalar> shift;
 };
 
 /// Composes the data on a matrix. Not collective.

@@ -36,11 +36,18 @@ struct State {
   return state.kind == StateKind::holding ? velocities.v_max() : 0;
 }
 
-/// The rate of a clock in a state; a grid scheme's state at v = 0 stands for [0, v_1].
+/// The velocity for which a state stands, a grid scheme's at v = 0 for [0, v_1].
+[[nodiscard]] inline double velocity_of(const State& state,
+                                        const velocity::VelocityDiscretisation& velocities) {
+  const bool origin = state.kind == StateKind::origin;
+  const double speed = origin ? velocities.nodes()[0] / 2 : speed_of(state, velocities);
+  return state.branch == Branch::positive ? speed : -speed;
+}
+
+/// The rate of a clock in a state.
 [[nodiscard]] inline double rate_of(Clock clock, const State& state,
                                     const velocity::VelocityDiscretisation& velocities) {
-  const bool origin = state.kind == StateKind::origin;
-  return rate_of(clock, origin ? velocities.nodes()[0] / 2 : speed_of(state, velocities));
+  return rate_of(clock, std::abs(velocity_of(state, velocities)));
 }
 
 /// All states of a discretisation: for each velocity branch and noise node its velocity nodes and,

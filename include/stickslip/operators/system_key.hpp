@@ -1,6 +1,7 @@
 #pragma once
 /// What an operator is of: the part that plans and reports need, independent of the scalar type.
 
+#include <concepts>
 #include <tuple>
 #include <vector>
 
@@ -49,16 +50,52 @@ enum class Clock { time, path_length };
   return clock == Clock::time ? 1 : speed;
 }
 
-/// lambda - L on functions of one symmetry, killed where |v| reaches a limit.
+/// What is added to -L at a velocity v: lambda + path |v| - tilt v. The largest eigenvalue of
+/// L + tilt v is the rate at which E[exp(tilt x(t))] grows, x the displacement.
+template <class Scalar>
+struct Shift {
+  Scalar lambda = 0;  ///< [1/time]
+  Scalar path = 0;    ///< [1/(velocity time)], as tilt
+  Scalar tilt = 0;
+  Shift() = default;
+  Shift(Scalar by_time, Scalar by_path, Scalar by_tilt)
+      : lambda(by_time), path(by_path), tilt(by_tilt) {}
+  // NOLINTNEXTLINE(google-explicit-constructor): a number is a lambda
+  Shift(std::convertible_to<Scalar> auto by, Clock clock = Clock::time)
+      : lambda(clock == Clock::time ? Scalar(by) : Scalar(0)),
+        path(clock == Clock::time ? Scalar(0) : Scalar(by)) {}
+  template <std::convertible_to<Scalar> Other>
+  // NOLINTNEXTLINE(google-explicit-constructor): a real one is a complex one
+  Shift(const Shift<Other>& other) : lambda(other.lambda), path(other.path), tilt(other.tilt) {}
+
+  [[nodiscard]] Scalar at(double v) const {
+    return lambda + (v < 0 ? -path - tilt : path - tilt) * v;
+  }
+  /// By the speeds of a branch.
+  [[nodiscard]] Shift along(Branch branch) const {
+    return {lambda, path, branch == Branch::positive ? tilt : -tilt};
+  }
+};
+
+/// lambda - L on functions of one symmetry, killed where |v| reaches a limit; with a tilt, of none.
+/// By the clock of time there may be more on the path.
 struct SystemKey {
   double lambda = 0;
   Symmetry symmetry = Symmetry::even;
   StaticPhase static_phase = StaticPhase::killing;
   Clock clock = Clock::time;
   double speed_limit = kInfinity;
+  double path = 0, tilt = 0;  ///< [1/(velocity time)]
+
+  [[nodiscard]] Shift<double> shift() const {
+    Shift<double> all(lambda, clock);
+    all.path += path;
+    all.tilt = tilt;
+    return all;
+  }
   friend bool operator<(const SystemKey& a, const SystemKey& b) {
-    return std::tie(a.lambda, a.symmetry, a.static_phase, a.clock, a.speed_limit) <
-           std::tie(b.lambda, b.symmetry, b.static_phase, b.clock, b.speed_limit);
+    return std::tie(a.lambda, a.symmetry, a.static_phase, a.clock, a.speed_limit, a.path, a.tilt) <
+           std::tie(b.lambda, b.symmetry, b.static_phase, b.clock, b.speed_limit, b.path, b.tilt);
   }
   friend bool operator==(const SystemKey&, const SystemKey&) = default;
 };

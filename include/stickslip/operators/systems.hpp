@@ -19,9 +19,10 @@ namespace stickslip::operators {
 inline const std::string kSlidePrefix = "slide_";
 
 /// Assembles an operator and enters it in the statistics. Collective.
-[[nodiscard]] KolmogorovOperator
-assemble(MPI_Comm comm, const Discretisation& discretisation, PetscScalar lambda, Symmetry symmetry,
-         StaticPhase static_phase, petsc::SolverStatistics& statistics, Clock clock = Clock::time);
+[[nodiscard]] KolmogorovOperator assemble(MPI_Comm comm, const Discretisation& discretisation,
+                                          Shift<PetscScalar> shift, Symmetry symmetry,
+                                          StaticPhase static_phase,
+                                          petsc::SolverStatistics& statistics);
 
 /// The same for its derivative. Collective.
 [[nodiscard]] KolmogorovOperator

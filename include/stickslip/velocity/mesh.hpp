@@ -13,6 +13,7 @@ struct Rates {
   double lambda = 0;  ///< largest real z [1/time]
   double omega = 0;   ///< largest |Im z| [1/time]
   double speed = 0;   ///< largest |v| of which first passages are asked for
+  double tilt = 0;    ///< largest |s| of equations for exp(s x(t)) [1/(velocity time)]
 };
 
 /// Functions of |v| that are seen on the nodes of the elements, as the drag is.

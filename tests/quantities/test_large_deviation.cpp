@@ -1,0 +1,133 @@
+#include <cmath>
+#include <map>
+
+#include "../common/catch.hpp"
+#include "../common/chains.hpp"
+#include "../common/near.hpp"
+#include "../common/scenes.hpp"
+#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/catalogue/large_deviation_keys.hpp"
+
+using namespace stickslip;
+using catalogue::Quantity;
+using Values = std::map<std::string, quantities::Result>;
+
+namespace {
+
+cases::Case asking(const model::Scene& s, const std::vector<double>& tilts, double accuracy) {
+  cases::Case c;
+  c.scene = s;
+  c.question.quantities = {catalogue::kLargeDeviation.quantity};
+  c.question.arguments["tilt"] = tilts;
+  c.question.accuracy = accuracy;
+  return c;
+}
+
+Values values(const cases::Case& c) {
+  Values by_key;
+  for (const auto& r : accuracy::carry_out(PETSC_COMM_WORLD, c, {}).results) by_key[r.key] = r;
+  return by_key;
+}
+
+void require_near(const quantities::Result& found, const std::vector<double>& known,
+                  double tolerance, double rounding = 1e-13) {
+  REQUIRE(found.value.size() == known.size());
+  for (std::size_t n = 0; n < known.size(); ++n) {
+    INFO(found.key << " " << n << ": " << found.value[n] << " for " << known[n]);
+    CHECK(std::abs(found.value[n] - known[n]) <= found.error[n] + rounding);
+    CHECK(found.error[n] < tolerance * std::max(1e-2, std::abs(known[n])));
+  }
+}
+
+// 2 N + 1 levels of an Ornstein-Uhlenbeck process that only lack the jumps beyond the outermost.
+model::LevelTable cut_levels(double delta, int n) {
+  std::vector<double> x;
+  std::vector<model::Transition> transitions;
+  const double rate = 2 / (delta * delta);
+  for (int i = -n; i <= n; ++i) {
+    const auto here = static_cast<std::size_t>(i + n);
+    x.push_back(i * delta);
+    const double tilt = delta * x.back() / 2;
+    if (i < n) transitions.push_back({here, here + 1, rate * (1 - tilt) / 2});
+    if (i > -n) transitions.push_back({here, here - 1, rate * (1 + tilt) / 2});
+  }
+  return {x, transitions};
+}
+
+}  // namespace
+
+// Without friction x(t) is a linear functional of the noise, which is a sum of 2 N independent
+// switches of +-delta/2 that turn at the rate 1/(2 tau).
+TEST_CASE("large deviations: without friction that of the noise", "[parallel]") {
+  auto s = test::scene(1e-3, 0, 1, 0.5, {1, 0});
+  s.bias = 0.1;
+  const std::vector<double> tilts{-1, 0.3, 1};
+  std::vector<double> theta, velocity, rate;
+  for (double a : tilts) {
+    const double half = a * 0.25, root = std::sqrt(0.25 + half * half);
+    theta.push_back(16 * half * half / (root + 0.5) + 0.1 * a);
+    velocity.push_back(16 * 0.25 * half / root + 0.1);
+    rate.push_back(a * velocity.back() - theta.back());
+  }
+  const auto found = values(asking(s, tilts, 1e-7));
+  require_near(found.at("theta"), theta, 1e-6);
+  require_near(found.at("tilted_velocity"), velocity, 1e-6);
+  require_near(found.at("rate_function"), rate, 1e-6);
+}
+
+// By inverse iteration with a sparse matrix of another discretisation, in another program.
+TEST_CASE("large deviations: known to ten digits", "[real]") {
+  auto s = test::with_table(test::scene(1, 0.25, 1, 0.25, {1, 0}), cut_levels(0.25, 24));
+  require_near(values(asking(s, {0.2, 0.5, 1}, 1e-8)).at("theta"),
+               {0.02211727946855, 0.1524575775802, 0.7372996400406}, 1e-8);
+  s.friction.mu_d = 0.5;
+  s.bias = 0.3;
+  require_near(values(asking(s, {-0.5, -0.2, 0.2, 0.5}, 1e-8)).at("theta"),
+               {-0.0065763195, -0.0203817764, 0.0465924983, 0.1915162390}, 1e-8, 6e-11);
+}
+
+// theta = s E_V + s^2 S_0/2 + ..., convex, and the same in the mirror.
+TEST_CASE("large deviations: near s = 0 mean and variance of the displacement", "[real]") {
+  auto s = test::scene(1, 0.5, 1, 0.5, {1, 0.5});
+  s.bias = 0.2;
+  constexpr double h = 0.02;
+  auto c = asking(s, {-2 * h, -h, 0, h, 2 * h}, 1e-9);
+  c.question.quantities.insert({Quantity::moments, Quantity::spectrum});
+  const auto found = values(c);
+  const auto& theta = found.at("theta").value;
+  const auto& velocity = found.at("tilted_velocity").value;
+  CHECK(std::abs(theta[2]) < 1e-13);
+  CHECK(velocity[2] == Approx(found.at("E_V").value[0]).epsilon(1e-9));
+  const double slope = (8 * (velocity[3] - velocity[1]) - velocity[4] + velocity[0]) / (12 * h);
+  CHECK(slope == Approx(found.at("S_0").value[0]).epsilon(1e-5));
+  const double mean = (8 * (theta[3] - theta[1]) - theta[4] + theta[0]) / (12 * h);
+  CHECK(mean == Approx(velocity[2]).epsilon(1e-5));
+  for (double rate : found.at("rate_function").value) CHECK(rate >= -1e-13);
+  s.bias = -0.2;
+  const auto mirrored = values(asking(s, {2 * h, h}, 1e-9)).at("theta").value;
+  CHECK(mirrored[0] == Approx(theta[0]).epsilon(1e-9));
+  CHECK(mirrored[1] == Approx(theta[1]).epsilon(1e-9));
+}
+
+TEST_CASE("large deviations: what a truncation velocity leaves out is in the error", "[real]") {
+  auto s = test::scene(1, 0.5, 1, 0.5, {1, 0});
+  const double whole = values(asking(s, {0.8}, 1e-8)).at("theta").value[0];
+  for (double v_max : {1.5, 2.0, 2.5}) {
+    s.v_max = v_max;
+    const auto theta = values(asking(s, {0.8}, 1e-6)).at("theta");
+    INFO(v_max << ": " << theta.value[0] << " +- " << theta.error[0] << " for " << whole);
+    CHECK(std::abs(theta.value[0] - whole) <= theta.error[0]);
+    CHECK(theta.error[0] < 0.5 * whole);
+  }
+}
+
+TEST_CASE("large deviations: chosen ends reach as far as the weight does", "[real]") {
+  const auto s = test::scene(1, 0.5, 1, 0.125, {1, 0});
+  auto full = s;
+  full.noise_levels = s.full_levels();
+  const auto chosen = values(asking(s, {1.2}, 1e-6)), known = values(asking(full, {1.2}, 1e-8));
+  for (const char* key : {"theta", "tilted_velocity", "rate_function"}) {
+    INFO(key);
+    CHECK(std::abs(chosen.at(key).value[0] - known.at(key).value[0]) <= chosen.at(key).error[0]);
+  }
+}
