@@ -1,4 +1,4 @@
-#include "stickslip/model/noise_spectrum.hpp"
+#include "stickslip/model/noise_power.hpp"
 #include "stickslip/catalogue/noise_spectrum_keys.hpp"
 #include "stickslip/quantities/plan.hpp"
 

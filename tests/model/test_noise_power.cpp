@@ -3,13 +3,13 @@
 #include "../common/chains.hpp"
 #include "../common/given.hpp"
 #include "../common/near.hpp"
-#include "stickslip/model/noise_spectrum.hpp"
+#include "stickslip/model/noise_power.hpp"
 
 using namespace stickslip;
 using test::relative_difference;
 using test::scene_of;
 
-TEST_CASE("noise spectrum: that of a telegraph signal and of an Ornstein-Uhlenbeck chain") {
+TEST_CASE("noise power: that of a telegraph signal and of an Ornstein-Uhlenbeck chain") {
   const model::NoiseChain telegraph{1,
                                     1,
                                     1,
@@ -27,7 +27,7 @@ TEST_CASE("noise spectrum: that of a telegraph signal and of an Ornstein-Uhlenbe
   }
 }
 
-TEST_CASE("noise spectrum: chains with jumps of any length") {
+TEST_CASE("noise power: chains with jumps of any length") {
   const auto table = std::make_shared<const model::LevelTable>(test::five_states());
   const model::NoiseChain chain{1, 1, 1, {}, table};
   CHECK(relative_difference(model::power_spectral_density(chain, 1e-6), 2 * table->intensity()) <
@@ -42,7 +42,7 @@ TEST_CASE("noise spectrum: chains with jumps of any length") {
   CHECK(relative_difference(sum / 2, table->variance()) < 1e-5);
 }
 
-TEST_CASE("noise spectrum: lattices in the plane come close to what they stand for") {
+TEST_CASE("noise power: lattices in the plane come close to what they stand for") {
   for (const auto& [noise, first, second] :
        {std::tuple("narrow_band", "band_frequency", "band_width"),
         std::tuple("filtered", "ground_frequency", "ground_damping")}) {
@@ -60,7 +60,7 @@ TEST_CASE("noise spectrum: lattices in the plane come close to what they stand f
   }
 }
 
-TEST_CASE("noise spectrum: that of a sum is the sum, where all of it is known") {
+TEST_CASE("noise power: that of a sum is the sum, where all of it is known") {
   const auto scene_with = [](const char* noise) {
     return scene_of({{"noise", noise},
                      {"pulse_height", "1"},

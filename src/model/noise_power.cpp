@@ -1,4 +1,4 @@
-#include "stickslip/model/noise_spectrum.hpp"
+#include "stickslip/model/noise_power.hpp"
 
 #include <algorithm>
 #include <complex>
