@@ -75,8 +75,12 @@ std::optional<int> NoiseChain::find(double x) const {
 
 double NoiseChain::place(double x) const {
   if (!table) return x / delta;
-  const int below = std::clamp(last_up_to(x), lowest(), highest() - 1);
-  return below + (x - level(below)) / (level(below + 1) - level(below));
+  // Several levels at an end may have its force.
+  int below = std::clamp(last_up_to(x), lowest(), highest() - 1), above = below + 1;
+  while (level(below) == level(above) && below > lowest()) --below;
+  while (level(below) == level(above) && above < highest()) ++above;
+  const double rise = level(above) - level(below);
+  return rise > 0 ? below + (x - level(below)) / rise * (above - below) : below;
 }
 
 NoiseChain NoiseChain::mirrored() const {

@@ -115,6 +115,17 @@ TEST_CASE("level table: beyond its ends there is nothing") {
   CHECK(table.mirrored().mirrored().level(1) == 4);
 }
 
+// Where observables are looked at is found by places.
+TEST_CASE("level table: places go on beyond ends that several states share") {
+  const NoiseChain table = of(LevelTable(
+      {-1, -1, 0, 2, 2, 2}, {{0, 1, 1}, {1, 2, 1}, {2, 3, 1}, {3, 4, 1}, {4, 5, 1}, {5, 0, 1}}));
+  const int low = table.lowest(), high = table.highest();
+  CHECK(table.place(2) == Approx(high));
+  CHECK(table.place(4) == Approx(high + 3));
+  CHECK(table.place(1) == Approx(high - 2.5));
+  CHECK(table.place(-1.5) == Approx(low - 1));
+}
+
 TEST_CASE("level table: far tails count in the intensity as they should") {
   // An urn whose tails are 1e-300: sums from the wrong end would be rounding over next to nothing.
   const NoiseChain urn{1, 1.0 / 16, 512};

@@ -79,7 +79,8 @@ double at_level(const model::NoiseChain& noise, const std::vector<double>& value
 
 }  // namespace
 
-TEST_CASE("many starts: the resolvent of functions of the noise is that of its chain") {
+TEST_CASE("many starts: the resolvent of functions of the noise is that of its chain",
+          "[parallel]") {
   for (const auto& s : samples()) {
     Discretised made(s);
     const auto& process = made.systems.process();
