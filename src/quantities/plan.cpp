@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "stickslip/catalogue/displacement_transform_keys.hpp"
 #include "stickslip/catalogue/large_deviation_keys.hpp"
 #include "stickslip/quantities/stationary.hpp"
 
@@ -14,7 +15,8 @@ using Tasks = void(Planner&);
 Tasks sticking_tasks, mean_slip_tasks, moments_tasks, density_tasks, averages_tasks,
     entry_law_tasks, sensitivity_tasks, stick_transform_tasks, laplace_tasks, resolvent_tasks,
     spectrum_tasks, duration_density_tasks, slip_tasks, peak_tasks, displacement_tasks,
-    autocorrelation_tasks, expectation_tasks, relaxation_tasks, large_deviation_tasks;
+    autocorrelation_tasks, expectation_tasks, relaxation_tasks, large_deviation_tasks,
+    displacement_transform_tasks;
 
 namespace {
 
@@ -38,7 +40,8 @@ constexpr std::pair<Quantity, Tasks*> kAll[] = {
     {Quantity::autocorrelation, autocorrelation_tasks},
     {Quantity::expectation, expectation_tasks},
     {Quantity::relaxation, relaxation_tasks},
-    {catalogue::kLargeDeviation.quantity, large_deviation_tasks}};
+    {catalogue::kLargeDeviation.quantity, large_deviation_tasks},
+    {catalogue::kDisplacementTransform.quantity, displacement_transform_tasks}};
 
 }  // namespace
 
