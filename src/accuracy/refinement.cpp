@@ -52,7 +52,10 @@ Solved evaluated(MPI_Comm comm, const cases::Case& given, const Resolution& reso
 // but extrapolation.
 void require_start_within(const cases::Case& given, const Resolution& first) {
   const cases::Question& question = given.question;
-  if (!question.wants(Quantity::expectation) && !question.wants(Quantity::displacement)) return;
+  const auto starts = [&](const catalogue::Entry* entry) {
+    return question.wants(entry->quantity) && entry->takes("start") && !entry->of_one_run;
+  };
+  if (std::ranges::none_of(catalogue::entries(), starts)) return;
   const auto noise = given.scene.process(first.levels).noise;
   const int level = question.start.level;
   const double x = given.scene.meant().noise.level(level), v = question.start.v;

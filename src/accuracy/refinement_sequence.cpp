@@ -5,6 +5,7 @@
 #include <iterator>
 #include <memory>
 
+#include "stickslip/catalogue/displacement_transform_keys.hpp"
 #include "stickslip/catalogue/large_deviation_keys.hpp"
 #include "stickslip/support/infinity.hpp"
 
@@ -63,7 +64,8 @@ double fastest_inverted(const cases::Case& given) {
   const auto process = given.scene.meant();
   if (!process.noise.table) return 0;
   double rate = 0;
-  if (question.wants(Quantity::duration_density)) {
+  const bool transform = question.wants(catalogue::kDisplacementTransform.quantity);
+  if (question.wants(Quantity::duration_density) || transform) {
     rate = of_contour / least_positive(question.time);
   }
   if (question.wants(Quantity::slip)) {

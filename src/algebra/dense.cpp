@@ -42,6 +42,9 @@ void dgesvd_(const char* left, const char* right, const int* m, const int* n, do
 void zgees_(const char* vectors, const char* sort, int (*select)(const Complex*), const int* n,
             Complex* a, const int* lda, int* selected, Complex* w, Complex* q, const int* ldq,
             Complex* work, const int* work_size, double* real_work, int* flags, int* info);
+void zgeev_(const char* left, const char* right, const int* n, Complex* a, const int* lda,
+            Complex* w, Complex* vl, const int* ldvl, Complex* vr, const int* ldvr, Complex* work,
+            const int* work_size, double* real_work, int* info);
 void dstev_(const char* vectors, const int* n, double* diagonal, double* beside, double* z,
             const int* ldz, double* work, int* info);
 }
@@ -232,6 +235,20 @@ SchurForm::SchurForm(const Matrix<double>& a) : q(a.rows(), a.rows()), t(a.rows(
            &work_size, real_work.data(), nullptr, &info);
   }
   expect_success(info, "the Schur form of a matrix does not converge");
+}
+
+Eigenvectors::Eigenvectors(Matrix<Complex> a)
+    : value(static_cast<std::size_t>(a.rows())), right(a.rows(), a.rows()) {
+  const int n = a.rows(), work_size = 4 * n, one = 1;
+  std::vector<Complex> work(4 * value.size());
+  std::vector<double> real_work(2 * value.size());
+  Complex none;
+  int info = 0;
+  if (n > 0) {
+    zgeev_("N", "V", &n, a.data(), &n, value.data(), &none, &one, right.data(), &n, work.data(),
+           &work_size, real_work.data(), &info);
+  }
+  expect_success(info, "the eigenvalues of a matrix do not converge");
 }
 
 TridiagonalEigen::TridiagonalEigen(std::vector<double> diagonal, std::vector<double> beside)

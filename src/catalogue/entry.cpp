@@ -10,6 +10,7 @@
 #include "stickslip/catalogue/averages_keys.hpp"
 #include "stickslip/catalogue/density_keys.hpp"
 #include "stickslip/catalogue/displacement_keys.hpp"
+#include "stickslip/catalogue/displacement_transform_keys.hpp"
 #include "stickslip/catalogue/duration_density_keys.hpp"
 #include "stickslip/catalogue/entry_law_keys.hpp"
 #include "stickslip/catalogue/expectation_keys.hpp"
@@ -32,12 +33,28 @@
 namespace stickslip::catalogue {
 namespace {
 
-constexpr const Entry* kAll[] = {&kSticking,        &kMoments,         &kAverages,   &kNoiseLaw,
-                                 &kNoiseSpectrum,   &kEntryLaw,        &kDensity,    &kLaplace,
-                                 &kStickTransform,  &kResolvent,       &kRelaxation, &kSpectrum,
-                                 &kDurationDensity, &kAutocorrelation, &kSlip,       &kPeak,
-                                 &kDisplacement,    &kExpectation,     &kTrajectory, &kSensitivity,
-                                 &kLargeDeviation};
+constexpr const Entry* kAll[] = {&kSticking,
+                                 &kMoments,
+                                 &kAverages,
+                                 &kNoiseLaw,
+                                 &kNoiseSpectrum,
+                                 &kEntryLaw,
+                                 &kDensity,
+                                 &kLaplace,
+                                 &kStickTransform,
+                                 &kResolvent,
+                                 &kRelaxation,
+                                 &kSpectrum,
+                                 &kDurationDensity,
+                                 &kAutocorrelation,
+                                 &kSlip,
+                                 &kPeak,
+                                 &kDisplacement,
+                                 &kExpectation,
+                                 &kTrajectory,
+                                 &kSensitivity,
+                                 &kLargeDeviation,
+                                 &kDisplacementTransform};
 
 // Whether `key` is the derivative of a scalar by a parameter, such as dP_stick_dtau.
 bool is_derivative(std::string_view key) {
@@ -71,7 +88,10 @@ std::pair<const Entry*, const Row*> find(std::string_view key) {
   const std::string pattern = pattern_of(key);
   for (const Entry* entry : kAll) {
     for (const Row* row : entry->rows) {
-      if (row->key == pattern) return {entry, row};
+      const bool of_time =
+          row->key.ends_with("(t)") && pattern.ends_with("(f)") &&
+          row->key.substr(0, row->key.size() - 2) == pattern.substr(0, pattern.size() - 2);
+      if (row->key == pattern || of_time) return {entry, row};
     }
   }
   return {nullptr, nullptr};
@@ -80,7 +100,7 @@ std::pair<const Entry*, const Row*> find(std::string_view key) {
 }  // namespace
 
 std::string Row::key_of(std::string_view f) const {
-  const auto open = key.find("(f") + 1;
+  const auto open = key.find('(') + 1;
   return fmt::format("{}{}{}", key.substr(0, open), f, key.substr(open + 1));
 }
 

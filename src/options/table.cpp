@@ -66,15 +66,18 @@ std::vector<Option> quantity_options() {
                 "given"),
       arguments("omega", "1/time", "angular frequencies of spectrum and noise_spectrum")
           .called({"freq", "frequency", "frequencies"}),
-      arguments("time", "time",
-                "times of duration_density, autocorrelation, displacement and expectation")
+      arguments(
+          "time", "time",
+          "times of duration_density, autocorrelation, displacement, displacement_transform and "
+          "expectation")
           .called({"t", "times"}),
       arguments("distance", "velocity*time", "path lengths > 0 of slip, for f_slip and cdf_slip"),
       arguments("inverse_distance", "1/(velocity*time)",
                 "arguments s of the Laplace transform F_slip of slip"),
       arguments("velocity", "velocity", "speeds w > 0 of peak").called({"speed", "speeds"}),
-      Option::text_of("start", "state", "s+",
-                      "state at time 0 of expectation, displacement and trajectory")
+      Option::text_of(
+          "start", "state", "s+",
+          "state at time 0 of expectation, displacement, displacement_transform and trajectory")
           .called({"x0", "v0", "initial", "initial_state"}),
       Option::text_of(
           "observable", "functions", "",

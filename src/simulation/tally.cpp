@@ -6,6 +6,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "stickslip/catalogue/displacement_transform_keys.hpp"
+
 namespace stickslip::simulation {
 
 using catalogue::Quantity;
@@ -13,7 +15,8 @@ using Follow = void(Tally&);
 
 Follow sticking_tally, moments_tally, averages_tally, noise_law_tally, entry_law_tally,
     laplace_tally, stick_transform_tally, duration_density_tally, slip_tally, peak_tally,
-    spectrum_tally, resolvent_tally, autocorrelation_tally, displacement_tally, expectation_tally;
+    spectrum_tally, resolvent_tally, autocorrelation_tally, displacement_tally, expectation_tally,
+    displacement_transform_tally;
 
 namespace {
 
@@ -33,7 +36,8 @@ constexpr std::pair<Quantity, Follow*> kAll[] = {
     {Quantity::resolvent, resolvent_tally},
     {Quantity::autocorrelation, autocorrelation_tally},
     {Quantity::displacement, displacement_tally},
-    {Quantity::expectation, expectation_tally}};
+    {Quantity::expectation, expectation_tally},
+    {catalogue::kDisplacementTransform.quantity, displacement_transform_tally}};
 
 using Cell = Tally::Range;
 

@@ -12,7 +12,7 @@ SMALL = ("-delta", "0.5", "-mu_d", "0.5", "-accuracy", "1e-3", "-excursions", "2
 MODELS = {"symmetric": (), "biased": ("-bias", "0.2", "-mu_d_minus", "0.4"),
           "stribeck": ("-bias", "0.2", "-friction", "stribeck", "-stribeck_velocity", "0.1")}
 ARGUMENTS = {"-lambda": "0.5,1", "-omega": "0.5,1", "-time": "0.5,1", "-distance": "0.5,1",
-             "-inverse_distance": "0.5,1", "-tilt": "-0.2,0.4", "-velocity": "0.2,0.4", "-observable": "v^2"}
+             "-inverse_distance": "0.5,1", "-tilt": "-0.2,0.4", "-wavenumber": "0.5,2", "-velocity": "0.2,0.4", "-observable": "v^2"}
 FIELDS = ("density", "trajectory")
 DERIVATIVE = re.compile(r"d\w+_d(mu_d|mu_d_minus|mu_s|stribeck_velocity|tau|drag_coefficient)$")
 
@@ -27,8 +27,8 @@ def table(page, heading):
 
 
 def pattern(key):
-    """pi(f) for pi(v^2), dA_dp for derivatives."""
-    return "dA_dp" if DERIVATIVE.match(key) else key.replace("(v^2", "(f")
+    """pi(f) for pi(v^2), dA_dp for derivatives, (t) for times."""
+    return "dA_dp" if DERIVATIVE.match(key) else re.sub(r"\([\d.]+\)$", "(t)", key.replace("(v^2", "(f"))
 
 
 class Keys(Case):
@@ -78,7 +78,7 @@ class Keys(Case):
 
     def test_help_names_the_keys_of_every_quantity(self):
         text = self.run_ok("-help").stdout
-        entries = re.findall(r"^    (\w+) +((?:.*)(?:\n {21}.*)*)", text, re.MULTILINE)
+        entries = re.findall(r"^    (\w+)(?: +|\n {21})((?:.*)(?:\n {21}.*)*)", text, re.MULTILINE)
         named = {name: set(re.sub(r"\s+", " ", entry).partition(": ")[2].rstrip(".").split(", "))
                  for name, entry in entries}
         for quantity in self.quantities:

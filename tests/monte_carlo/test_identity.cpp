@@ -64,6 +64,7 @@ std::vector<Options> command_lines(const NoiseFiles& files) {
                     {"start", "0,0.3"},
                     {"distance", "0.5"},
                     {"inverse_distance", "0.5"},
+                    {"wavenumber", "0.5"},
                     {"velocity", "0.3"}};
   std::vector<Options> lines(6, all);
   lines[0].insert({{"delta", "0.5"}});

@@ -157,6 +157,15 @@ struct SchurForm {
   explicit SchurForm(const Matrix<double>& a);
 };
 
+/// Eigenvalues and right eigenvectors of norm 1, by columns, of a square matrix (geev). O(n^3).
+struct Eigenvectors {
+  std::vector<std::complex<double>> value;
+  Matrix<std::complex<double>> right;
+
+  /// Throws NotReached when the iteration does not converge.
+  explicit Eigenvectors(Matrix<std::complex<double>> a);
+};
+
 /// Eigenvalues in rising order and orthonormal eigenvectors, by columns, of the symmetric matrix
 /// with a diagonal of n entries and n - 1 entries beside it (stev). O(n^3).
 struct TridiagonalEigen {

@@ -59,7 +59,8 @@ enum class Kind {
 };
 
 /// A result of a quantity. A key may stand for many: f is an observable, as in pi(f), A a scalar
-/// and p a parameter, as in dA_dp.
+/// and p a parameter, as in dA_dp;
+/// t is a time.
 struct Row {
   std::string_view key;
   std::string_view symbol;           ///< in the formulas of the model, in ASCII
@@ -80,8 +81,10 @@ struct Row {
   bool asks = false;
 
   /// Whether the key stands for the results of many observables or parameters.
-  [[nodiscard]] constexpr bool is_pattern() const { return unit.find('[') != unit.npos; }
-  /// The key of the observable `f`, such as pi(v^2|stick).
+  [[nodiscard]] constexpr bool is_pattern() const {
+    return unit.find('[') != unit.npos || key.find('(') != key.npos;
+  }
+  /// The key of the observable or the time `f`, such as pi(v^2|stick).
   [[nodiscard]] std::string key_of(std::string_view f) const;
 };
 
