@@ -1,5 +1,5 @@
-#include "stickslip/model/noise_power.hpp"
 #include "stickslip/catalogue/noise_spectrum_keys.hpp"
+#include "stickslip/model/noise_power.hpp"
 #include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {

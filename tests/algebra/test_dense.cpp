@@ -143,15 +143,14 @@ TEST_CASE("dense: the largest entry counts by its size") {
 
 // [1, a; b, 1] has the eigenvalues 1 +- (a b)^1/2 with vectors (a^1/2, +-b^1/2).
 TEST_CASE("dense: eigenvectors of a complex matrix") {
-  using Scalar = std::complex<double>;
-  stickslip::algebra::Matrix<Scalar> a(2, 2);
+  stickslip::algebra::Matrix<Complex> a(2, 2);
   a(0, 0) = a(1, 1) = 1;
-  a(0, 1) = Scalar(0, 4);
+  a(0, 1) = Complex(0, 4);
   a(1, 0) = 1;
   const stickslip::algebra::Eigenvectors modes(a);
   for (int n = 0; n < 2; ++n) {
-    const Scalar root = modes.value[n] - 1.0;
-    CHECK(std::abs(root * root - Scalar(0, 4)) < 1e-14);
+    const Complex root = modes.value[n] - 1.0;
+    CHECK(std::abs(root * root - Complex(0, 4)) < 1e-14);
     CHECK(std::abs(modes.right(0, n) - root * modes.right(1, n)) < 1e-14);
     CHECK(std::norm(modes.right(0, n)) + std::norm(modes.right(1, n)) == Approx(1));
   }

@@ -4,10 +4,10 @@
 namespace stickslip::effects {
 namespace {
 
-constexpr const char *kForce = "step_force", *kPulses = "step_rate", *kEnds = "step_end_rate";
+constexpr const char *kForce = "step_force", *kStepRate = "step_rate", *kEnds = "step_end_rate";
 
 model::LevelTable three_levels(const model::Scene& scene) {
-  const double a = own_number(scene, kForce), pulses = own_number(scene, kPulses),
+  const double a = own_number(scene, kForce), pulses = own_number(scene, kStepRate),
                ends = own_number(scene, kEnds);
   return model::LevelTable({{-a, ends, 0}, {0, pulses, pulses}, {a, 0, ends}});
 }
@@ -28,8 +28,8 @@ const Effect kThreeLevels{
                                   .slider = Slider{.low = 1, .high = 5, .start = 2}}),
                     true, "2"},
                    {Option::real(
-                        kPulses, "1/time", "1", Range::positive(), "rate of the pulses of one sign",
-                        "take for example 1",
+                        kStepRate, "1/time", "1", Range::positive(),
+                        "rate of the pulses of one sign", "take for example 1",
                         {.symbol = "\\nu",
                          .label = "rate of the pulses",
                          .slider =
