@@ -75,9 +75,15 @@ Found find(operators::Systems& systems, double s) {
   for (auto next = pairs.begin(); next != pairs.end(); ++next) {
     if (next != first) gap = std::min(gap, next->value.real() - first->value.real());
   }
-  // What coarse elements make of steep weights may be anything.
-  if (first->value.imag() != 0 || !(gap > 0)) return {};
-  return {-first->value.real(), gap, petsc::copy_of(first->real)};
+  // What coarse elements make of steep weights may be anything. With complex scalars what is real
+  // comes with rounding and a phase of its own.
+  constexpr double rounding = 1e-6;
+  if (!(gap > 0) || std::abs(first->value.imag()) > rounding * gap) return {};
+  auto right = petsc::copy_of(first->real);
+  PetscScalar sum = 0;
+  check(VecSum(right, &sum));
+  if (sum != PetscScalar(0)) check(VecScale(right, PetscAbsScalar(sum) / sum));
+  return {-first->value.real(), gap, std::move(right)};
 }
 
 // Share of the weighted paths that a truncation velocity holds back.
