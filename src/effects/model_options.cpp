@@ -78,7 +78,7 @@ std::vector<Option> made() {
           {.symbol = "g",
            .label = "bias",
            .slider = Slider{.low = -0.9, .high = 0.9, .start = 0},
-           .others = {"g", "force", "gravity", "tilt", "slope"}}),
+           .others = {"g", "force", "gravity", "slope"}}),
       Option::real(
           "v_max", "velocity", "", Range::positive(),
           "truncation velocity: bodies that reach it wait there until the noise falls. Unless "

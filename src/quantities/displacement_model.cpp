@@ -118,7 +118,90 @@ Entries times(const Entries& x, const Entries& y) {
   return product;
 }
 
+// The weight of the inner product, and its inverse.
+struct Weights {
+  Entries root, inverse;
+};
+Weights weights_of(MPI_Comm comm, const Entries& pi) {
+  double most = 0;
+  for (double p : pi) most = std::max(most, std::abs(p));
+  MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, comm);
+  Weights all;
+  for (double p : pi) {
+    all.root.push_back(std::sqrt(std::abs(p) + 1e-14 * most));
+    all.inverse.push_back(1 / all.root.back());
+  }
+  return all;
+}
+
+/// Vectors that one system makes of 1 and of c, each of the last.
+struct Chain {
+  operators::SystemKey key;
+  int vectors, first;  // in all, and in the coarse model
+  Entries x, w;
+  int found = 0;
+};
+
+std::vector<Chain> chains_at(double t, double largest, double speed, const Entries& one,
+                             const Entries& c) {
+  std::vector<Chain> chains;
+  for (double z : {0.3, 1.0, 3.0, 9.0, 27.0, 81.0}) {
+    chains.push_back({{z / t, Symmetry::none, StaticPhase::kept}, 16, 11, one, c});
+  }
+  for (double s : {largest, largest / 4, largest / 16}) {
+    constexpr double counts = 2;
+    if (s * speed * t < counts) continue;
+    for (double z : {1.0, 4.0, 16.0}) {
+      chains.push_back({{z / t, Symmetry::none, StaticPhase::kept}, 8, 5, one, c});
+      chains.back().key.path = s;
+    }
+  }
+  return chains;
+}
+
+// The next vectors of a chain, with two vectors to work with.
+void extend(operators::Systems& systems, const Entries& v, Vec b, Vec solved, Chain& chain) {
+  auto& factors = systems.at(chain.key).factors();
+  const auto next = [&](Entries& x, bool transposed) {
+    put(chain.found == 0 ? x : times(x, v), b);
+    transposed ? factors.solve_transposed_once(b, solved) : factors.solve_once(b, solved);
+    x = entries_of(solved);
+    PetscReal size = 0;
+    petsc::check(VecNorm(solved, NORM_2, &size));
+    for (double& entry : x) entry /= size;
+  };
+  next(chain.x, false);
+  next(chain.w, true);
+  ++chain.found;
+}
+
 }  // namespace
+
+struct DisplacementModel::Products {
+  Matrix<double> overlap, m, n, to_one;
+  Entries of_c;
+};
+
+DisplacementModel::Projected DisplacementModel::projected(const Products& all, int size) {
+  constexpr double rounding = 1e-13;
+  const algebra::SingularValues g(first(all.overlap, size, size));
+  const int seen = static_cast<int>(std::count_if(
+      g.value.begin(), g.value.end(), [&](double s) { return s > rounding * g.value.front(); }));
+  Matrix<double> to_left(seen, size), to_right(size, seen);
+  for (int r = 0; r < seen; ++r) {
+    const double scale = 1 / std::sqrt(g.value[r]);
+    for (int l = 0; l < size; ++l) {
+      to_left(r, l) = scale * g.left(l, r);
+      to_right(l, r) = scale * g.right_transposed(r, l);
+    }
+  }
+  Projected p;
+  p.m = -1.0 * (to_left * first(all.m, size, size) * to_right);
+  p.n = to_left * first(all.n, size, size) * to_right;
+  p.b = to_left * Entries(all.to_one.data(), all.to_one.data() + size);
+  p.g = Entries(all.of_c.begin(), all.of_c.begin() + size) * to_right;
+  return p;
+}
 
 DisplacementModel::DisplacementModel(operators::Systems& systems,
                                      const StationaryDistribution& distribution,
@@ -127,104 +210,48 @@ DisplacementModel::DisplacementModel(operators::Systems& systems,
       a_(operators::assemble(systems.comm(), systems.discretisation(), 0, Symmetry::none,
                              StaticPhase::kept, systems.statistics())),
       t_(t) {
-  const auto& a = a_;
-  const Entries pi = stationary_on(systems, distribution, a), one(pi.size(), 1.0),
-                v = entries_of(a.values([](double, double, double u) { return u; }));
+  const Entries pi = stationary_on(systems, distribution, a_), one(pi.size(), 1.0),
+                v = entries_of(a_.values([](double, double, double u) { return u; }));
   const bool stationary = start.kind == model::Start::Kind::stationary;
-  const Entries c = start_ = stationary ? pi : entries_of(start_on(a, start));
-  double most = 0;
-  for (double p : pi) most = std::max(most, std::abs(p));
-  MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, systems.comm());
-  Entries root, inverse;  // of the weight
-  for (double p : pi) {
-    root.push_back(std::sqrt(std::abs(p) + 1e-14 * most));
-    inverse.push_back(1 / root.back());
-  }
+  const Entries c = start_ = stationary ? pi : entries_of(start_on(a_, start));
+  const auto [root, inverse] = weights_of(systems.comm(), pi);
   Basis right(systems.comm()), left(systems.comm());
-  const auto append = [&](const Entries& x, const Entries& w) {
+  const auto append = [&, &root = root, &inverse = inverse](const Entries& x, const Entries& w) {
     if (!right.add(times(x, root))) return;
     if (!left.add(times(w, inverse))) right.remove_last();
   };
   append(one, c);
   speed_ = std::sqrt(std::max(right.dot(times(pi, v), v), 0.0));
-  struct Chain {
-    operators::SystemKey key;
-    int vectors, first;  // in all, and in the coarse model
-    Entries x, w;
-    int found = 0;
-  };
-  std::vector<Chain> chains;
-  for (double z : {0.3, 1.0, 3.0, 9.0, 27.0, 81.0}) {
-    chains.push_back({{z / t, Symmetry::none, StaticPhase::kept}, 16, 11, one, c});
-  }
-  for (double s : {largest, largest / 4, largest / 16}) {
-    constexpr double counts = 2;
-    if (s * speed_ * t < counts) continue;
-    for (double z : {1.0, 4.0, 16.0}) {
-      chains.push_back({{z / t, Symmetry::none, StaticPhase::kept}, 8, 5, one, c});
-      chains.back().key.path = s;
+  auto chains = chains_at(t, largest, speed_, one, c);
+  const petsc::VecHandle b = a_.zeros(), solved = a_.zeros();
+  const auto extend_to = [&](Chain& chain, int count) {
+    while (chain.found < count) {
+      extend(systems, v, b, solved, chain);
+      append(chain.x, chain.w);
     }
-  }
-  const petsc::VecHandle b = a.zeros(), solved = a.zeros();
-  const auto extend = [&](Chain& chain) {
-    auto& factors = systems.at(chain.key).factors();
-    const auto next = [&](Entries& x, bool transposed) {
-      put(chain.found == 0 ? x : times(x, v), b);
-      transposed ? factors.solve_transposed_once(b, solved) : factors.solve_once(b, solved);
-      x = entries_of(solved);
-      PetscReal size = 0;
-      petsc::check(VecNorm(solved, NORM_2, &size));
-      for (double& entry : x) entry /= size;
-    };
-    next(chain.x, false);
-    next(chain.w, true);
-    append(chain.x, chain.w);
-    ++chain.found;
   };
-  for (Chain& chain : chains) {
-    while (chain.found < chain.first) extend(chain);
-  }
+  for (Chain& chain : chains) extend_to(chain, chain.first);
   const int coarse = static_cast<int>(right.columns().size());
-  for (Chain& chain : chains) {
-    while (chain.found < chain.vectors) extend(chain);
-  }
+  for (Chain& chain : chains) extend_to(chain, chain.vectors);
   for (const Chain& chain : chains) systems.release(chain.key);
 
   std::vector<Entries> images, moving;
   for (const auto& column : right.columns()) {
     put(times(column, inverse), b);
-    petsc::check(MatMult(a.matrix(), b, solved));
+    petsc::check(MatMult(a_.matrix(), b, solved));
     images.push_back(times(entries_of(solved), root));
     moving.push_back(times(column, v));
   }
-  const auto overlap = products(left, right.columns()), m = products(left, images),
-             n = products(left, moving), to_one = products(left, {times(one, root)});
-  Entries of_c;
-  for (const auto& column : right.columns()) of_c.push_back(left.dot(times(c, inverse), column));
-  const auto projected = [&](int size) {
-    constexpr double rounding = 1e-13;
-    const algebra::SingularValues g(first(overlap, size, size));
-    const int seen = static_cast<int>(std::count_if(
-        g.value.begin(), g.value.end(), [&](double s) { return s > rounding * g.value.front(); }));
-    Matrix<double> to_left(seen, size), to_right(size, seen);
-    for (int r = 0; r < seen; ++r) {
-      const double scale = 1 / std::sqrt(g.value[r]);
-      for (int l = 0; l < size; ++l) {
-        to_left(r, l) = scale * g.left(l, r);
-        to_right(l, r) = scale * g.right_transposed(r, l);
-      }
-    }
-    Projected p;
-    p.m = -1.0 * (to_left * first(m, size, size) * to_right);
-    p.n = to_left * first(n, size, size) * to_right;
-    p.b = to_left * Entries(to_one.data(), to_one.data() + size);
-    p.g = Entries(of_c.begin(), of_c.begin() + size) * to_right;
-    return p;
-  };
-  fine_ = projected(static_cast<int>(right.columns().size()));
-  coarse_ = projected(coarse);
-
-  speed_ = std::sqrt(std::max(right.dot(times(pi, v), v), 0.0));
+  Products all{products(left, right.columns()),
+               products(left, images),
+               products(left, moving),
+               products(left, {times(one, root)}),
+               {}};
+  for (const auto& column : right.columns()) {
+    all.of_c.push_back(left.dot(times(c, inverse), column));
+  }
+  fine_ = projected(all, static_cast<int>(right.columns().size()));
+  coarse_ = projected(all, coarse);
 }
 
 // An error dH of the Laplace transform in time is one of about e/pi |dH|/t at t.

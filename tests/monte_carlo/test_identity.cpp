@@ -66,7 +66,7 @@ std::vector<Options> command_lines(const NoiseFiles& files) {
                     {"inverse_distance", "0.5"},
                     {"wavenumber", "0.5"},
                     {"velocity", "0.3"}};
-  std::vector<Options> lines(6, all);
+  std::vector<Options> lines(10, all);
   lines[0].insert({{"delta", "0.5"}});
   lines[1].insert({{"drag", "cubic"},
                    {"drag_cubic", "0.5"},
@@ -81,7 +81,28 @@ std::vector<Options> command_lines(const NoiseFiles& files) {
   lines[4].insert({{"noise", "file"}, {"noise_file", files.levels}});
   lines[5].insert(
       {{"noise", "chain"}, {"noise_states", files.states}, {"noise_rates", files.rates}});
-  lines[3]["start"] = lines[4]["start"] = lines[5]["start"] = "s+";
+  lines[6].insert({{"noise", "narrow_band"},
+                   {"band_frequency", "2"},
+                   {"band_width", "0.6"},
+                   {"noise_radius", "3"},
+                   {"delta", "1"}});
+  lines[7].insert({{"noise", "filtered"},
+                   {"ground_frequency", "2"},
+                   {"ground_damping", "0.5"},
+                   {"ground_intensity", "1"},
+                   {"noise_radius", "3"},
+                   {"delta", "1"}});
+  lines[8].insert({{"noise", "periodic"}, {"periodic_amplitude", "2"}, {"period", "4"}});
+  lines[9].insert({{"noise", "pulses"},
+                   {"pulse_height", "2"},
+                   {"pulse_rate", "0.5"},
+                   {"pulse_decay", "0.5"},
+                   {"pulse_steps", "2"}});
+  lines.push_back(lines[9]);
+  lines[10].erase("pulse_decay");
+  lines[10].erase("pulse_steps");
+  lines[10]["pulse_duration"] = "0.5";
+  for (std::size_t n = 3; n < lines.size(); ++n) lines[n]["start"] = "s+";
   return lines;
 }
 

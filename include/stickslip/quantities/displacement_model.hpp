@@ -47,6 +47,9 @@ class DisplacementModel {
     [[nodiscard]] std::complex<double> transform(double k, double t, double& grown) const;
     [[nodiscard]] std::complex<double> resolvent(std::complex<double> z, double k) const;
   };
+  struct Products;
+  [[nodiscard]] static Projected projected(const Products& all, int size);
+
   operators::Systems& systems_;
   operators::KolmogorovOperator a_;
   double t_, speed_ = 0;
