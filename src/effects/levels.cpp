@@ -38,7 +38,7 @@ States sum(const States& a, const States& b) {
 }
 
 void require_number_of_states(double count) {
-  constexpr double most = 6000;  // of which factors take some tens of gigabytes
+  constexpr double most = 4000;  // of which factors take more than ten gigabytes
   if (count <= most) return;
   throw std::invalid_argument(
       fmt::format("gives a chain of {:.0f} states, and at most {:g} are taken", count, most));

@@ -84,7 +84,7 @@ TEST_CASE("noises of the plane: variance and intensity tend to those of the proc
   for (const auto& [given, intensity] :
        {std::pair(kBand, 0.5 / (0.25 + 4)), std::pair(kGround, 2 * 0.5 / (3 * 2.0))}) {
     double before = 0;
-    for (const char* step : {"0.3", "0.15"}) {
+    for (const char* step : {"0.4", "0.2"}) {
       const auto scene =
           scene_of(with(given, {{"delta", step}, {"noise_radius", "5"}, {"noise_deviation", "1"}}));
       const auto& table = table_of(scene);
@@ -122,7 +122,7 @@ TEST_CASE("noises of the plane: another step makes another lattice") {
   auto scene = scene_of(with(kBand, {{"delta", "0.5"}}));
   effects::set_noise_step(scene, 0.4);
   CHECK(difference(table_of(scene), table_of(scene_of(with(kBand, {{"delta", "0.4"}})))) == 0);
-  CHECK_THAT(said_of(with(kBand, {{"delta", "0.001"}})), Catch::Contains("at most 6000"));
+  CHECK_THAT(said_of(with(kBand, {{"delta", "0.001"}})), Catch::Contains("at most 4000"));
 }
 
 TEST_CASE("periodic noise: phases follow one another, with the force of each") {
@@ -173,7 +173,7 @@ TEST_CASE("pulses: mean and variance are those of shot noise") {
   CHECK_THAT(said_of(kPulses), Catch::Contains("needs either -pulse_duration or -pulse_decay"));
   CHECK_THAT(said_of(with(kPulses, {{"pulse_duration", "1"}, {"pulse_steps", "4"}})),
              Catch::Contains("belongs to -pulse_decay"));
-  CHECK_THAT(said_of(with(kPulses, {{"pulse_duration", "1e6"}})), Catch::Contains("at most 6000"));
+  CHECK_THAT(said_of(with(kPulses, {{"pulse_duration", "1e6"}})), Catch::Contains("at most 4000"));
 }
 
 TEST_CASE("sums of noises: states are pairs, moments add up, options go to their noise") {
@@ -227,5 +227,5 @@ TEST_CASE("sums of noises: states are pairs, moments add up, options go to their
   CHECK_THAT(said_of({{"noise", "telegraph+periodic"}, {"telegraph_amplitude", "1"}}),
              Catch::Contains("needs -telegraph_rate") && Catch::Contains("needs -period"));
   CHECK_THAT(said_of(with(both, {{"delta", "0.001"}, {"noise_levels", "2000"}})),
-             Catch::Contains("at most 6000"));
+             Catch::Contains("at most 4000"));
 }
