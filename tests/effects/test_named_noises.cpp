@@ -84,7 +84,7 @@ TEST_CASE("noises of the plane: variance and intensity tend to those of the proc
   for (const auto& [given, intensity] :
        {std::pair(kBand, 0.5 / (0.25 + 4)), std::pair(kGround, 2 * 0.5 / (3 * 2.0))}) {
     double before = 0;
-    for (const char* step : {"0.4", "0.2"}) {
+    for (const char* step : {"0.35", "0.2"}) {
       const auto scene =
           scene_of(with(given, {{"delta", step}, {"noise_radius", "5"}, {"noise_deviation", "1"}}));
       const auto& table = table_of(scene);
