@@ -83,7 +83,7 @@ model::LevelTable levels_of_chain(const model::Scene& scene) {
 bool complete_noise_chain(Given& given, model::Scene& scene) {
   if (!given.sound()) return false;
   try {
-    set_noise_step(scene, scene.delta);
+    make_noise_levels(scene);
     return true;
   } catch (const Unfit& unfit) {
     given.refuse(unfit.option(), unfit.what(),

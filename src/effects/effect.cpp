@@ -14,12 +14,11 @@ namespace stickslip::effects {
 namespace {
 
 model::Parameters values_in(const Effect& effect, const model::Scene& scene) {
-  if (effect.values != nullptr) return effect.values(scene);
-  model::Parameters own;
+  auto all = effect.values != nullptr ? effect.values(scene) : model::Parameters{};
   for (const auto& each : scene.own) {
-    if (effect.knows(each.first)) own.push_back(each);
+    if (effect.knows(each.first)) all.push_back(each);
   }
-  return own;
+  return all;
 }
 
 }  // namespace
@@ -112,8 +111,7 @@ double own_number(const model::Scene& scene, std::string_view name) {
   return std::get<double>(own_value(scene, name));
 }
 
-void set_noise_step(model::Scene& scene, double delta) {
-  scene.delta = delta;
+void make_noise_levels(model::Scene& scene) {
   if (const auto levels = noises().in(scene).levels; levels != nullptr) {
     scene.noise.table = std::make_shared<const model::LevelTable>(levels(scene));
   }

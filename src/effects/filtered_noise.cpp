@@ -31,25 +31,18 @@ void read_ground(Given& given, model::Scene& scene) {
                         "leave one of them out");
   }
   const double w = given.real(kGroundFrequency), zeta = given.real(kGroundDamping);
-  for (const char* name : {kGroundFrequency, kGroundDamping})
-    scene.own.emplace_back(name, given.real(name));
   double deviation = 1;
   if (given.has(kGroundIntensity)) {
     const double intensity = given.real(kGroundIntensity);
     scene.own.emplace_back(kGroundIntensity, intensity);
     deviation = std::sqrt(intensity * w * (1 + 4 * zeta * zeta) / (2 * zeta));
   }
-  read_lattice(given, scene, deviation);
+  read_lattice(given, scene, {kGroundFrequency, kGroundDamping}, deviation);
   scene.noise.target = spectrum_of(ground_of(scene));
 }
 
 model::LevelTable ground_levels(const model::Scene& scene) {
-  return lattice_of(ground_of(scene), scene.delta, own_number(scene, kRadius)).table();
-}
-
-bool complete_ground(Given& given, model::Scene& scene) {
-  return make_levels(given, scene, given.has(kDelta) ? kDelta : kRadius,
-                     "take a larger -delta, or a smaller -noise_radius");
+  return lattice_of(ground_of(scene), scene);
 }
 
 }  // namespace
@@ -85,10 +78,10 @@ const Effect kFilteredNoise{
          {delta_option()},
          {radius_option(), true}},
     .read = read_ground,
-    .complete = complete_ground,
+    .complete = complete_lattice,
     .levels = ground_levels,
     .values = lattice_values,
-    .stronger = [](const model::Scene&) -> std::string { return "a larger -noise_deviation"; },
+    .stronger = stronger_lattice,
     .note = [](const model::Scene& scene) { return lattice_note(scene, ground_of(scene)); }};
 
 }  // namespace stickslip::effects

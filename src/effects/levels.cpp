@@ -10,7 +10,7 @@ namespace stickslip::effects {
 bool make_levels(Given& given, model::Scene& scene, const char* option, const char* fix) {
   if (!given.sound()) return false;
   try {
-    set_noise_step(scene, scene.delta);
+    make_noise_levels(scene);
   } catch (const std::invalid_argument& unfit) {
     given.refuse(option, unfit.what(), fix);
   }

@@ -12,19 +12,12 @@ PlaneNoise band_of(const model::Scene& scene) {
 }
 
 void read_band(Given& given, model::Scene& scene) {
-  for (const char* name : {kBandFrequency, kBandWidth})
-    scene.own.emplace_back(name, given.real(name));
-  read_lattice(given, scene, 1);
+  read_lattice(given, scene, {kBandFrequency, kBandWidth}, 1);
   scene.noise.target = spectrum_of(band_of(scene));
 }
 
 model::LevelTable band_levels(const model::Scene& scene) {
-  return lattice_of(band_of(scene), scene.delta, own_number(scene, kRadius)).table();
-}
-
-bool complete_band(Given& given, model::Scene& scene) {
-  return make_levels(given, scene, given.has(kDelta) ? kDelta : kRadius,
-                     "take a larger -delta, or a smaller -noise_radius");
+  return lattice_of(band_of(scene), scene);
 }
 
 }  // namespace
@@ -54,10 +47,10 @@ const Effect kNarrowBand{
          {delta_option()},
          {radius_option(), true}},
     .read = read_band,
-    .complete = complete_band,
+    .complete = complete_lattice,
     .levels = band_levels,
     .values = lattice_values,
-    .stronger = [](const model::Scene&) -> std::string { return "a larger -noise_deviation"; },
+    .stronger = stronger_lattice,
     .note = [](const model::Scene& scene) { return lattice_note(scene, band_of(scene)); }};
 
 }  // namespace stickslip::effects

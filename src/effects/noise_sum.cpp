@@ -31,7 +31,7 @@ model::Scene part_of(const model::Scene& scene, const std::string& word) {
 
 model::Scene made_part(const model::Scene& scene, const std::string& word) {
   auto part = part_of(scene, word);
-  set_noise_step(part, part.delta);
+  make_noise_levels(part);
   return part;
 }
 

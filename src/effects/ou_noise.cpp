@@ -79,9 +79,6 @@ bool check_levels(Given& given, model::Scene& scene) {
 model::Parameters ou_values(const model::Scene& scene) {
   model::Parameters all{{kTau, scene.tau}, {kDelta, scene.delta}};
   if (scene.noise.deviation) all.emplace_back(kDeviation, *scene.noise.deviation);
-  for (const auto& each : scene.own) {
-    if (each.first == kLevels) all.push_back(each);
-  }
   return all;
 }
 

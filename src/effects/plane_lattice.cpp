@@ -86,25 +86,6 @@ double rate(double drift, double diffusion, double step, int direction) {
   return along > 0 ? 2 * along : 0;
 }
 
-// Those of the states that are reached from one of them. At the rim, where jumps go along the drift
-// alone, some are only left.
-std::vector<bool> reached_from(std::size_t first, const States& states) {
-  std::vector<std::vector<std::size_t>> next(states.x.size());
-  for (const auto& [from, to, rate] : states.transitions) next[from].push_back(to);
-  std::vector<bool> reached(states.x.size(), false);
-  std::vector<std::size_t> open{first};
-  reached[first] = true;
-  while (!open.empty()) {
-    const std::size_t here = open.back();
-    open.pop_back();
-    for (std::size_t to : next[here]) {
-      if (!reached[to]) open.push_back(to);
-      reached[to] = true;
-    }
-  }
-  return reached;
-}
-
 /// A lattice with the diffusion that each of its states has beyond the one that is meant, summed
 /// over the coordinates and over the sum of their diffusions.
 struct Lattice {
@@ -112,9 +93,10 @@ struct Lattice {
   std::vector<double> added;
 };
 
-// Without the states that are never reached.
+// Without the states that are never reached: at the rim, where jumps go along the drift alone, some
+// are only left.
 Lattice pruned(const Lattice& all, std::size_t middle) {
-  const auto reached = reached_from(middle, all.states);
+  const auto reached = model::reached_from(middle, all.states.x.size(), all.states.transitions);
   Lattice lattice;
   std::vector<std::size_t> number;
   for (std::size_t n = 0; n < reached.size(); ++n) {
@@ -193,29 +175,31 @@ std::function<double(double)> spectrum_of(const PlaneNoise& noise) {
   };
 }
 
-void read_lattice(Given& given, model::Scene& scene, double deviation) {
+void read_lattice(Given& given, model::Scene& scene, std::initializer_list<const char*> own,
+                  double deviation) {
   scene.noise.deviation = given.has(kDeviation) ? given.real(kDeviation) : deviation;
   const double mu_s = scene.friction.mu_s, half = *scene.noise.deviation / 2,
                places = std::round(mu_s / half - 0.5);
   const double between = places >= 1 ? mu_s / (places + 0.5) : half;
   scene.delta = given.has(kDelta) ? given.real(kDelta) : between;
+  for (const char* name : own) scene.own.emplace_back(name, given.real(name));
   scene.own.emplace_back(kRadius, given.real(kRadius));
 }
 
 model::Parameters lattice_values(const model::Scene& scene) {
-  model::Parameters all;
-  const auto& effect = noises().in(scene);
-  for (const auto& each : scene.own) {
-    if (effect.knows(each.first)) all.push_back(each);
-  }
-  all.emplace_back(kDeviation, *scene.noise.deviation);
-  all.emplace_back(kDelta, scene.delta);
-  return all;
+  return {{kDeviation, *scene.noise.deviation}, {kDelta, scene.delta}};
 }
 
-States lattice_of(const PlaneNoise& noise, double step, double radius) {
-  return made(noise, step, radius).states;
+model::LevelTable lattice_of(const PlaneNoise& noise, const model::Scene& scene) {
+  return made(noise, scene.delta, own_number(scene, kRadius)).states.table();
 }
+
+bool complete_lattice(Given& given, model::Scene& scene) {
+  return make_levels(given, scene, given.has(kDelta) ? kDelta : kRadius,
+                     "take a larger -delta, or a smaller -noise_radius");
+}
+
+std::string stronger_lattice(const model::Scene&) { return "a larger -noise_deviation"; }
 
 std::string lattice_note(const model::Scene& scene, const PlaneNoise& noise) {
   const auto lattice = made(noise, scene.delta, own_number(scene, kRadius));

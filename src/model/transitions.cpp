@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "stickslip/algebra/dense.hpp"
 #include "stickslip/algebra/rate_elimination.hpp"
@@ -19,23 +20,9 @@ namespace {
 
 using algebra::RateElimination;
 
-// A state that cannot be reached from state 0, following transitions forwards or backwards.
-std::size_t not_reached(std::size_t count, const std::vector<Transition>& transitions,
-                        std::size_t Transition::*from, std::size_t Transition::*to) {
-  std::vector<std::vector<std::size_t>> next(count);
-  for (const auto& t : transitions) next[t.*from].push_back(t.*to);
-  std::vector<bool> seen(count, false);
-  std::vector<std::size_t> open{0};
-  seen[0] = true;
-  while (!open.empty()) {
-    const std::size_t here = open.back();
-    open.pop_back();
-    for (std::size_t there : next[here]) {
-      if (seen[there]) continue;
-      seen[there] = true;
-      open.push_back(there);
-    }
-  }
+// A state that cannot be reached from state 0; their number if there is none.
+std::size_t not_reached(std::size_t count, const std::vector<Transition>& transitions) {
+  const auto seen = reached_from(0, count, transitions);
   return static_cast<std::size_t>(std::find(seen.begin(), seen.end(), false) - seen.begin());
 }
 
@@ -136,6 +123,24 @@ bool decays(const Jumps& jumps, const std::vector<double>& f, double theta, int 
 
 }  // namespace
 
+std::vector<bool> reached_from(std::size_t first, std::size_t states,
+                               const std::vector<Transition>& transitions) {
+  std::vector<std::vector<std::size_t>> next(states);
+  for (const auto& [from, to, rate] : transitions) next[from].push_back(to);
+  std::vector<bool> reached(states, false);
+  std::vector<std::size_t> open{first};
+  reached[first] = true;
+  while (!open.empty()) {
+    const std::size_t here = open.back();
+    open.pop_back();
+    for (std::size_t to : next[here]) {
+      if (!reached[to]) open.push_back(to);
+      reached[to] = true;
+    }
+  }
+  return reached;
+}
+
 void require_states(const std::vector<double>& x, const std::vector<Transition>& transitions) {
   if (x.size() < 2) throw UnfitTable(x.size(), "there must be at least two states");
   for (std::size_t n = 0; n < x.size(); ++n) {
@@ -151,13 +156,13 @@ void require_states(const std::vector<double>& x, const std::vector<Transition>&
     if (!left[n]) throw UnfitTable(n, fmt::format("state {} is never left", n));
     if (!reached[n]) throw UnfitTable(n, fmt::format("state {} is never reached", n));
   }
-  const std::size_t forwards =
-      not_reached(x.size(), transitions, &Transition::from, &Transition::to);
+  const std::size_t forwards = not_reached(x.size(), transitions);
   if (forwards < x.size()) {
     throw UnfitTable(forwards, fmt::format("state {} is never reached from state 0", forwards));
   }
-  const std::size_t backwards =
-      not_reached(x.size(), transitions, &Transition::to, &Transition::from);
+  auto reversed = transitions;
+  for (auto& transition : reversed) std::swap(transition.from, transition.to);
+  const std::size_t backwards = not_reached(x.size(), reversed);
   if (backwards < x.size()) {
     throw UnfitTable(backwards, fmt::format("state 0 is never reached from state {}", backwards));
   }

@@ -65,42 +65,32 @@ Starts Starts::upwards(const model::Process& process) {
 
 namespace {
 
-// The steps between places 0 ... count-1 that are taken for ever, and the places that they join:
-// those from which the fewest others can be reached.
-std::vector<int> places_for_ever(int count,
-                                 const std::vector<algebra::RateElimination::Rate>& steps) {
-  std::vector<int> fewest;
-  for (int first = 0; first < count; ++first) {
-    std::vector<int> reached{first};
-    for (std::size_t n = 0; n < reached.size(); ++n) {
-      for (const auto& [from, to, p] : steps) {
-        const bool known = std::find(reached.begin(), reached.end(), to) != reached.end();
-        if (from == reached[n] && p > 0 && !known) reached.push_back(to);
-      }
-    }
-    if (first == 0 || reached.size() < fewest.size()) fewest = std::move(reached);
-  }
-  std::sort(fewest.begin(), fewest.end());
-  return fewest;
-}
-
 // Probabilities of the places of a Markov chain. Where a body never rests on some static levels,
-// starts that are reached from these alone have none.
+// starts that are reached from these alone have none; those from which the fewest places are
+// reached are taken for ever.
 std::vector<double> shares_of(int count, const std::vector<algebra::RateElimination::Rate>& steps) {
-  const auto places = places_for_ever(count, steps);
-  const auto place_of = [&places](int start) {
-    const auto found = std::lower_bound(places.begin(), places.end(), start);
-    return found != places.end() && *found == start ? static_cast<int>(found - places.begin()) : -1;
-  };
+  std::vector<model::Transition> taken;
+  for (const auto& [from, to, p] : steps) {
+    if (p > 0) taken.push_back({static_cast<std::size_t>(from), static_cast<std::size_t>(to), p});
+  }
+  const auto size = static_cast<std::size_t>(count);
+  std::vector<bool> recurs;
+  for (std::size_t first = 0; first < size; ++first) {
+    auto reached = model::reached_from(first, size, taken);
+    const bool fewer = std::ranges::count(reached, true) < std::ranges::count(recurs, true);
+    if (first == 0 || fewer) recurs = std::move(reached);
+  }
+  std::vector<int> place(size, -1);
+  int places = 0;
+  for (std::size_t n = 0; n < size; ++n) place[n] = recurs[n] ? places++ : -1;
   std::vector<algebra::RateElimination::Rate> among;
   for (const auto& [from, to, p] : steps) {
-    if (place_of(from) >= 0 && place_of(to) >= 0)
-      among.push_back({place_of(from), place_of(to), p});
+    if (recurs[from] && recurs[to]) among.push_back({place[from], place[to], p});
   }
-  const std::vector<double> none(places.size(), 0.0);
+  const std::vector<double> none(static_cast<std::size_t>(places), 0.0);
   const auto known = algebra::RateElimination(none, among).stationary();
-  std::vector<double> shares(static_cast<std::size_t>(count), 0.0);
-  for (std::size_t n = 0; n < places.size(); ++n) shares[places[n]] = known[n];
+  std::vector<double> shares(size, 0.0);
+  for (std::size_t n = 0; n < size; ++n) shares[n] = recurs[n] ? known[place[n]] : 0;
   return shares;
 }
 

@@ -45,7 +45,8 @@ void set_errors(const quantities::Results& known, quantities::Results& results) 
 
 cases::Case with_delta(const cases::Case& given, double delta) {
   cases::Case other = given;
-  effects::set_noise_step(other.scene, delta);
+  other.scene.delta = delta;
+  effects::make_noise_levels(other.scene);
   other.scene.noise_levels.reset();
   other.method = {};
   return other;

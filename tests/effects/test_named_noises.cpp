@@ -120,7 +120,8 @@ TEST_CASE("noises of the plane: unless given, steps keep mu_s halfway between tw
 
 TEST_CASE("noises of the plane: another step makes another lattice") {
   auto scene = scene_of(with(kBand, {{"delta", "0.5"}}));
-  effects::set_noise_step(scene, 0.4);
+  scene.delta = 0.4;
+  effects::make_noise_levels(scene);
   CHECK(difference(table_of(scene), table_of(scene_of(with(kBand, {{"delta", "0.4"}})))) == 0);
   CHECK_THAT(said_of(with(kBand, {{"delta", "0.001"}})), Catch::Contains("at most 4000"));
 }
@@ -199,6 +200,17 @@ TEST_CASE("sums of noises: states are pairs, moments add up, options go to their
   CHECK(effects::noises().knows(scene, "delta"));
   CHECK(effects::noises().knows(scene, "period"));
   CHECK(!effects::noises().knows(scene, "pulse_rate"));
+  const auto band = scene_of(with(kBand, {{"noise", "narrow_band+telegraph"},
+                                          {"telegraph_amplitude", "0.5"},
+                                          {"telegraph_rate", "1"},
+                                          {"delta", "0.5"}}));
+  std::map<std::string, int> stated;
+  for (const auto& each : effects::parameters_of(band)) ++stated[each.first];
+  for (const char* name : {"band_frequency", "band_width", "noise_radius", "noise_deviation",
+                           "delta", "telegraph_amplitude", "telegraph_rate"}) {
+    INFO(name);
+    CHECK(stated[name] == 1);
+  }
   const auto parameters = effects::parameters_of(scene);
   const auto value = [&parameters](const std::string& name) {
     const auto found = std::find_if(parameters.begin(), parameters.end(),

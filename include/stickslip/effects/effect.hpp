@@ -63,8 +63,7 @@ struct Effect {
   /// Of a noise that is a table of levels: makes it of the values that `read` has put into the
   /// scene. Throws std::invalid_argument.
   model::LevelTable (*levels)(const model::Scene&) = nullptr;
-  /// The values that files state. Without this function they are those of Scene::own that the
-  /// effect knows.
+  /// The values that files state before those of Scene::own that the effect knows.
   model::Parameters (*values)(const model::Scene&) = nullptr;
   /// The same for the headings of tables. Without this function they say "name = value" of each.
   std::string (*heading)(const model::Scene&) = nullptr;
@@ -111,8 +110,9 @@ void read_effect(Given& given, const Choice& choice, const std::string& word, mo
 /// The same for one that is a number.
 [[nodiscard]] double own_number(const model::Scene& scene, std::string_view name);
 
-/// Gives the noise of a scene another step.
-void set_noise_step(model::Scene& scene, double delta);
+/// Makes the levels of a noise that is a table of the values in the scene. Throws
+/// std::invalid_argument.
+void make_noise_levels(model::Scene& scene);
 
 /// All that fixes the process of a scene, each by the name of its option, in the order in which
 /// files hold them: friction, the word of the drag law, noise, what is beside the defaults, and the

@@ -20,6 +20,10 @@ struct Transition {
   double rate;  ///< [1/time]
 };
 
+/// Which of so many states are reached from one of them, itself included. O(states + transitions).
+[[nodiscard]] std::vector<bool> reached_from(std::size_t first, std::size_t states,
+                                             const std::vector<Transition>& transitions);
+
 /// A chain that reaches each of its levels from each other one, by jumps to the neighbours or,
 /// where it is made of transitions, by jumps of any length. Levels are numbered by rising x, which
 /// several may share; level 0 is the one nearest to x = 0, the upper one of two. Immutable.
