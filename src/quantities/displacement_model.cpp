@@ -303,11 +303,6 @@ Complex DisplacementModel::Projected::transform(double k, double t, double& grow
   return sum;
 }
 
-Complex DisplacementModel::value(double k) const {
-  double grown = 0;
-  return fine_.transform(k, t_, grown);
-}
-
 DisplacementModel::Transform DisplacementModel::transform(double k) const {
   double grown = 0, before = 0;
   const Complex value = fine_.transform(k, t_, grown), other = coarse_.transform(k, t_, before);

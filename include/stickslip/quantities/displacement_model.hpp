@@ -35,9 +35,6 @@ class DisplacementModel {
   };
   /// Local. O(pairs^3).
   [[nodiscard]] Transform transform(double k) const;
-  /// The same without error, for half the time.
-  [[nodiscard]] std::complex<double> value(double k) const;
-  [[nodiscard]] double root_mean_square_velocity() const { return speed_; }
 
  private:
   /// Projections on the first vectors.
