@@ -180,7 +180,7 @@ std::string written(const std::string& file, const char* text) {
 
 // The table of options is the program's own, so that a new option has to be in the identity, or in
 // the list of those that may change.
-TEST_CASE("monte carlo: a checkpoint belongs to the value of every option of the table") {
+TEST_CASE("monte carlo: a checkpoint belongs to the value of every option of the table", "[long]") {
   const test::TemporaryFolder folder;
   const NoiseFiles given{
       written(folder / "levels.csv", "x,rate_up,rate_down\n-1.5,1,0\n0,1,1\n1.5,0,1\n"),
