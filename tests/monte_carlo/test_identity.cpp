@@ -32,7 +32,8 @@ const std::set<std::string> kFree{"excursions",  // more of them extend a simula
                                   // What -route monte_carlo does not know, or takes no notice of:
                                   "route", "scheme", "degree", "layers", "noise_degree",
                                   "noise_grading", "p", "v_max", "speed_limit", "spectrum_solver",
-                                  "tilt", "transient_solver"};
+                                  "tilt", "transient_solver", "force_file", "force_interpolation",
+                                  "force_scale"};
 
 // Options that change only along with others: each command line below has its own.
 const std::set<std::string> kWithOthers{"friction", "noise"};
