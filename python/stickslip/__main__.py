@@ -47,6 +47,7 @@ def main(words: Sequence[str] | None = None) -> int:
     levels.add_argument("--unit", help="of the values, such as g, gal or m/s^2, where the file does not say")
     levels.add_argument("--scale", type=float, default=1, help="what values are multiplied by (default 1)")
     levels.add_argument("--levels", type=int, help="how many (default: the most of 15 to 5 that can be counted)")
+    levels.add_argument("--mu-s", type=float, help="static friction, which then lies halfway between two levels")
     levels.add_argument("--jumps", choices=("neighbours", "any"), default="neighbours", help="where jumps lead")
     levels.add_argument("--match-time", action="store_true", help="multiply all rates to match the correlation time")
     levels.add_argument("--narrow-band", action="store_true", help="a narrow band in the place of levels")
@@ -59,6 +60,11 @@ def main(words: Sequence[str] | None = None) -> int:
 def explore_command() -> int:
     """The console script stickslip-explore."""
     return main(["explore", *sys.argv[1:]])
+
+
+def levels_command() -> int:
+    """The console script stickslip-levels."""
+    return main(["levels", *sys.argv[1:]])
 
 
 def plot_command() -> int:
@@ -97,7 +103,7 @@ def write_levels(arguments: argparse.Namespace) -> int:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # the chain prints them
             chain = noise.narrow_band_of(record) if arguments.narrow_band else noise.record(
-                record, arguments.levels, jumps=arguments.jumps, match_time=arguments.match_time)
+                record, arguments.levels, mu_s=arguments.mu_s, jumps=arguments.jumps, match_time=arguments.match_time)
         print(chain)
         states, rates, levels = (f"{arguments.file.stem}_{what}.csv" for what in ("states", "rates", "levels"))
         if chain.neighbours_only:

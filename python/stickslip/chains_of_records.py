@@ -6,23 +6,22 @@ import warnings
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from .chains import Chain, Meant
-from .chains_by_name import narrow_band, positive
+from .chains import Chain
 from .needed import needed
-from .record_statistics import BLOCKS, Memory, memory_of, spectrum_of, unsteady
+from .record_statistics import MATCH, SWING, Memory, measured, memory_of, spectrum_of, unsteady
 from .records import Record
 
 if TYPE_CHECKING:
     import numpy
     Array = numpy.ndarray
-numpy, stats, optimize = needed("numpy"), needed("scipy.stats"), needed("scipy.optimize")
+numpy, stats = needed("numpy"), needed("scipy.stats")
 
 TRIED = (15, 13, 11, 9, 7, 5)  # numbers of levels
 FEWEST = 10       # counts of each jump
 FAR = 0.05        # share of jumps over several levels, above which levels that jump to neighbours do not fit
-SWING = 0.1       # of the autocorrelation below zero, beside three standard errors
 FLAT = 0.1        # share of the integral of the autocorrelation in that of its size, below which it is about zero
-MATCH, WRONG = 1.1, 2.0  # factors to the record: if significant, a note beyond the first, refused beyond the second
+WRONG = 2.0       # factor to the record beyond which a chain is refused, if that is significant
+MOST = 5.0        # factor by which rates are multiplied at most
 POWER = 0.8       # share of the variance at low frequencies, within which spectra are compared
 BANDS = 4
 
@@ -72,20 +71,25 @@ class Fit:
         return "\n".join(lines + [f"all rates were multiplied by {self.factor:.4g}"] * (self.factor != 1))
 
 
-def record(record: Record, levels: int | Sequence[float] | None = None, *, jumps: str = "neighbours",
-           match_time: bool = False, longest: float | None = None, confidence: float = 0.95) -> Chain:
+def record(record: Record, levels: int | Sequence[float] | None = None, *, mu_s: float | None = None,
+           jumps: str = "neighbours", match_time: bool = False, longest: float | None = None,
+           confidence: float = 0.95) -> Chain:
     """The chain of levels of a record: rate = jumps counted/time spent on the level.
 
     A jump is counted when the record reaches another level, not when it leaves a bin around its own: a rough record
-    crosses the edge of a bin many times in a row. Nothing is changed to make the chain fit, unless asked for.
+    crosses the edge of a bin many times in a row. Between samples it reaches levels unseen, and a smooth record keeps its
+    way where a chain turns round: such chains remember too long, which `fit` shows and `match_time` corrects.
 
     Parameters
     ----------
     record
         With even steps; gaps are skipped.
     levels
-        Their forces [unit of the record], or their number: quantiles at the shares of evenly spaced points of a normal
+        Their forces [unit of the record], or about their number: quantiles at the shares of evenly spaced points of a normal
         distribution. A record of few values keeps these. By default the most of 15 to 5 of which each rate has 10 counts.
+    mu_s
+        Static friction [unit of the record]. Levels are then placed so that -mu_s and mu_s lie halfway between two of them;
+        elsewhere they act as if they did, and results jump from one number of levels to the next.
     jumps
         "neighbours": a jump over several levels is one over each of them, and at most 5 % of jumps may be such.
         "any": jumps lead where the record is at its next sample, as in one of pulses or switches.
@@ -118,7 +122,7 @@ def record(record: Record, levels: int | Sequence[float] | None = None, *, jumps
     time, error = _correlation_time(memory)
     problem = None
     for asked in TRIED if levels is None else (levels,):
-        x = _levels(record, asked)
+        x = _levels(record, asked, mu_s)
         try:
             spent, counts, far = _counted(record, x, jumps, levels is None)
             break
@@ -129,10 +133,11 @@ def record(record: Record, levels: int | Sequence[float] | None = None, *, jumps
     rates = counts / spent[:, None]
     rough = Chain(x, rates, f"levels of {record.source or 'a record'}")
     factor = rough.correlation_time / time if match_time else 1.0
-    if match_time and not 1 / WRONG <= factor <= WRONG:
-        raise ValueError(f"match_time: would multiply all rates by {factor:.3g}, beyond [1/2, 2]; the levels do not fit")
+    if not 1 / MOST <= factor <= MOST:
+        raise ValueError(f"match_time: would multiply all rates by {factor:.3g}, beyond [1/{MOST:g}, {MOST:g}]; take other "
+                         "levels, or a record that is sampled more finely")
     frequencies, power = spectrum_of(record, memory)
-    chain = dataclasses.replace(rough, rates=rates * factor, meant=_measured(memory, frequencies, power))
+    chain = dataclasses.replace(rough, rates=rates * factor, meant=measured(memory, frequencies, power))
     neighbours = numpy.eye(len(x), k=1) + numpy.eye(len(x), k=-1)
     possible = (counts if jumps == "any" else neighbours) > 0
     low, high = (numpy.where(possible, stats.chi2.ppf(share, 2 * counts + more) / 2 / spent[:, None], 0) * factor
@@ -164,19 +169,28 @@ def _correlation_time(memory: Memory) -> tuple[float, float]:
     return integral, integral * math.sqrt(4 * memory.time[-1] / memory.duration)
 
 
-def _levels(record: Record, levels: int | Sequence[float]) -> "Array":
-    if numpy.ndim(levels) == 0:
-        if levels < 2:
-            raise ValueError(f"levels = {levels}: must be at least 2")
-        distinct = numpy.unique(record.value)
-        if len(distinct) <= levels:
-            return distinct
-        widest = math.sqrt((levels + 1) / 2)
-        return numpy.unique(numpy.quantile(record.value, stats.norm.cdf(numpy.linspace(-widest, widest, int(levels)))))
-    x = numpy.asarray(levels, float)
-    if len(x) < 2 or not (numpy.diff(x) > 0).all():
-        raise ValueError(f"levels = {x}: must be at least two, rising")
-    return x
+def _levels(record: Record, levels: int | Sequence[float], mu_s: float | None) -> "Array":
+    """Levels at normal scores that are evenly spaced, with the thresholds -mu_s and mu_s halfway between two of them."""
+    if numpy.ndim(levels):
+        x = numpy.asarray(levels, float)
+        if len(x) < 2 or not (numpy.diff(x) > 0).all():
+            raise ValueError(f"levels = {x}: must be at least two, rising")
+        return x
+    if levels < 2:
+        raise ValueError(f"levels = {levels}: must be at least 2")
+    distinct = numpy.unique(record.value)
+    if len(distinct) <= levels:
+        return distinct
+    widest = math.sqrt((levels + 1) / 2)
+    step, first = 2 * widest / (levels - 1), -widest
+    below = [(record.value <= sign * mu_s).mean() for sign in (-1, 1)] if mu_s else []
+    thresholds = [score for score in stats.norm.ppf(below) if abs(score) < widest]
+    if thresholds:
+        length = thresholds[-1] - thresholds[0]
+        step = length / max(round(length / step), 1) if length else step
+        first = thresholds[0] + step * (0.5 - math.floor((thresholds[0] + widest) / step + 0.5))
+    scores = first + step * numpy.arange(math.floor((widest - first) / step + 1e-9) + 1)
+    return numpy.unique(numpy.quantile(record.value, stats.norm.cdf(scores)))
 
 
 def _counted(record: Record, x: "Array", jumps: str, chosen: bool) -> "tuple[Array, Array, float]":
@@ -210,11 +224,6 @@ def _counted(record: Record, x: "Array", jumps: str, chosen: bool) -> "tuple[Arr
     return spent, counts, far
 
 
-def _measured(memory: Memory, frequencies: "Array", power: "Array") -> Meant:
-    return Meant(lambda t: memory.variance * numpy.interp(t, memory.time, memory.rho, right=numpy.nan),
-                 lambda w: numpy.interp(w, frequencies, power, left=numpy.nan, right=numpy.nan), "record")
-
-
 def _bands(chain: Chain, frequencies: "Array", power: "Array", memory: Memory) -> "Array":
     """Spectra of chain over record in bands that hold as much of the variance each."""
     share = numpy.cumsum(power) / power.sum()
@@ -238,69 +247,10 @@ def _misfits(fit: Fit) -> list[str]:
     for what, ratio, error in compared:
         off = abs(math.log(ratio))
         said = f"the {what} of the chain is {ratio:.3g} times that of the record"
+        fix = ("compare other levels" if fit.factor != 1 else
+               f"match_time=True multiplies all rates by {fit.correlation_time[0] / fit.correlation_time[1]:.3g}")
         if off > max(math.log(WRONG), 3 * error):
-            raise ValueError(f"record: {said}; take other levels, a record that is sampled more finely, or jumps=\"any\"")
+            raise ValueError(f"record: {said}; {fix}")
         if off > max(math.log(MATCH), 2 * error):
-            found.append(f"{said}: compare other levels, and match_time=True")
+            found.append(f"{said}; {fix}")
     return found
-
-
-def narrow_band_of(record: Record, delta: float | None = None, *, longest: float | None = None) -> Chain:
-    """The narrow band whose covariance s^2 exp(-gamma t) cos(omega t) is closest to that of a record, by least squares.
-
-    Parameters
-    ----------
-    record
-        With even steps; gaps are skipped. Its mean becomes a shift of the force.
-    delta
-        Step of the lattice [unit of the record]; by default half the deviation.
-    longest
-        Time up to which the autocorrelation is fitted; by default 12 times the integral of its square.
-
-    Returns
-    -------
-    chain
-        `noise.narrow_band` with a note on s, gamma and omega and their standard errors, found by leaving out each of 8
-        blocks of the record (jackknife), and on a deviation that changes along the record.
-
-    Raises
-    ------
-    ValueError
-        If the autocorrelation does not swing, or leaves that of a narrow band by more than 0.1 and three of its standard
-        errors.
-
-    Warns
-    -----
-    UserWarning
-        Where the deviation changes by more than 2 from quarter to quarter of the record, or the lattice adds 10 % to it.
-    """
-    whole = memory_of(record, longest)
-
-    def fitted(memory: Memory) -> "Array":
-        first = memory.time[max(int(memory.rho.argmin()), 1)]
-        try:
-            found, _ = optimize.curve_fit(lambda t, gamma, omega: numpy.exp(-gamma * t) * numpy.cos(omega * t), memory.time,
-                                          memory.rho, (3 / memory.time[-1], math.pi / first))
-        except RuntimeError:
-            raise ValueError("record: no narrow band comes close to its autocorrelation; take a longer record") from None
-        return numpy.array([math.sqrt(memory.variance), *abs(found)])
-
-    if -whole.rho.min() < 3 * whole.error:
-        raise ValueError("record: its autocorrelation does not swing; noise.record(record) makes a chain of levels")
-    deviation, gamma, omega = best = fitted(whole)
-    off = abs(whole.rho - numpy.exp(-gamma * whole.time) * numpy.cos(omega * whole.time)).max()
-    if off > SWING + 3 * whole.error:
-        raise ValueError(f"record: its autocorrelation leaves that of a narrow band by {off:.2f}; several bands, or a "
-                         "shaking that begins and ends, are no single narrow band: filter it, or take record.between()")
-    parts = numpy.array([fitted(memory_of(record, whole.time[-1], n)) for n in range(BLOCKS)])
-    errors = numpy.sqrt((BLOCKS - 1) / BLOCKS * ((parts - parts.mean(axis=0)) ** 2).sum(axis=0))
-    step = deviation / 2 if delta is None else delta
-    positive(delta=step)
-    chain = narrow_band(*best, step) + float(record.value.mean())
-    notes = (*unsteady(record), *(chain.notes if chain.deviation > MATCH * deviation else ()))
-    for note in notes:
-        warnings.warn(note, UserWarning, stacklevel=2)
-    said = ", ".join(f"{name} {value:.4g} +- {error:.1g}" for name, value, error in zip(
-        ("deviation", "gamma", "omega"), best, errors))
-    return dataclasses.replace(chain, name=f"narrow band of {record.source or 'a record'}", notes=(
-        said, *unsteady(record), *chain.notes), meant=_measured(whole, *spectrum_of(record, whole)))

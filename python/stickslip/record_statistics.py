@@ -4,6 +4,7 @@ import dataclasses
 import math
 from typing import TYPE_CHECKING
 
+from .chains import Meant
 from .needed import needed
 from .records import Record
 
@@ -13,6 +14,8 @@ if TYPE_CHECKING:
 numpy, signal = needed("numpy"), needed("scipy.signal")
 
 MEMORIES = 12     # integrals of the squared autocorrelation after which a record is taken for uncorrelated
+SWING = 0.1       # of the autocorrelation below zero, beside three standard errors
+MATCH = 1.1       # factor to the record beyond which there is a note, if that is significant
 UNSTEADY = 2.0    # factor between deviations of quarters of a record
 BLOCKS = 8        # of a record, of which errors are estimated by leaving out one
 
@@ -78,6 +81,12 @@ def spectrum_of(record: Record, memory: Memory) -> "tuple[Array, Array]":
             frequencies, power = signal.welch(piece - record.value.mean(), 1 / record.step, nperseg=window)
             total, weight = total + len(piece) * power, weight + len(piece)
     return 2 * math.pi * frequencies[1:], total[1:] / weight / 2
+
+
+def measured(memory: Memory, frequencies: "Array", power: "Array") -> Meant:
+    """What a record shows of the covariance, until `longest`, and of the spectrum."""
+    return Meant(lambda t: memory.variance * numpy.interp(t, memory.time, memory.rho, right=numpy.nan),
+                 lambda w: numpy.interp(w, frequencies, power, left=numpy.nan, right=numpy.nan), "record")
 
 
 def unsteady(record: Record) -> list[str]:

@@ -216,6 +216,24 @@ class OfRecords(unittest.TestCase):
         for low, high, ratio, error in matched.fit.bands:
             self.assertLess(abs(ratio - 1), 0.1 + 3 * error, (low, high))
 
+    def test_the_chain_of_ou_noise_does_what_the_program_has_for_it(self):
+        chain = noise.record(record_of(filtered(400000, 1, 5)), 0.4 * numpy.arange(-7, 8), match_time=True)
+        ours, theirs = (stickslip.run(mu_d=0.5, accuracy=1e-4, **options)["P_stick"].value
+                        for options in ({"noise": chain}, {"delta": 0.4}))
+        self.assertLess(abs(ours - theirs), 0.02)  # about 0.01 by the length of the record
+
+    def test_thresholds_lie_halfway_between_levels(self):
+        skewed = record_of(numpy.exp(0.5 * filtered(400000, 1, 5)))
+        for record, mu_s, sides in ((record_of(filtered(400000, 1, 5)), 0.9, (-1, 1)), (skewed, 1.7, (1,))):
+            for levels in (9, 12, 15):
+                x = noise.record(record, levels, mu_s=mu_s).x
+                self.assertLessEqual(abs(len(x) - levels), 3)
+                for side in sides:
+                    above = numpy.searchsorted(x, side * mu_s)
+                    shares = [scipy.stats.norm.ppf((record.value <= level).mean()) for level in
+                              (x[above - 1], side * mu_s, x[above])]
+                    self.assertAlmostEqual(shares[1], (shares[0] + shares[2]) / 2, delta=0.01)
+
     def test_gaps_are_skipped(self):
         one, other = (path_of([0, 1.0], [[0, 1], [2, 0]], 300, seed).value for seed in (1, 2))
         time = numpy.concatenate([STEP * numpy.arange(len(one)), 1000 + STEP * numpy.arange(len(other))])
