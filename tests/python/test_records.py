@@ -61,7 +61,10 @@ class Text(Case):
         head = "time [s];Beschleunigung [m/s²]"
         for text in (codecs.BOM_UTF8 + columns(";", ",", head).encode(), columns(";", ",", head).encode("utf-16"),
                      columns(";", ",", head, "\r\n").encode()):
-            self.same(self.read(text), "m/s^2")
+            record = self.read(text)
+            self.same(record, "m/s^2")
+            self.assertIn("column Beschleunigung", record.source)
+        self.same(self.read("\ufeffa;x\n" + columns(";"), time="a"))
 
     def test_units_are_converted_and_said(self):
         for unit, factor in (("g", G), ("mg", G / 1000), ("gal", 0.01), ("cm/s^2", 0.01), ("CM/SEC/SEC", 0.01),
@@ -126,6 +129,7 @@ class Text(Case):
         drift, error = record.drift
         self.assertLess(abs(drift - 19.99), 4 * error)
         self.assertLess(error, 0.5)
+        self.assertIn("drifts by", str(self.read("t,a\n" + "".join(f"{t:.2f},{v}\n" for t, v in zip(time, noise + time / 20)))))
         self.assertNotIn("drift", str(self.read("t,a\n" + "".join(f"{t:.2f},{v}\n" for t, v in zip(time, noise)))))
 
     def test_uneven_steps(self):
