@@ -211,9 +211,12 @@ def _from_csv(path: pathlib.Path) -> Results:
         head = next(csv.reader(file), [])
     if head[-1:] == ["status"]:
         return sweeps.from_csv(path)
-    if head != ["time", "x", "y", "v"]:
+    if head not in (["time", "x", "y", "v"], ["time", "force", "velocity", "displacement"]):
         raise ValueError("neither a sweep nor a path")
     columns = needed("numpy").loadtxt(path, delimiter=",", skiprows=1, ndmin=2).T
+    if head[1] == "force":
+        parts = {f"path_{name}": {"value": values, "time": columns[0]} for name, values in zip(head[1:], columns[1:])}
+        return Results({key: results.result_of(key, part) for key, part in parts.items()}, name=path.stem)
     return Results({}, trajectory=dict(zip(head, columns)), name=path.stem)
 
 

@@ -13,9 +13,11 @@
 #include "stickslip/accuracy/estimates.hpp"
 #include "stickslip/accuracy/refinement_sequence.hpp"
 #include "stickslip/accuracy/result_bounds.hpp"
+#include "stickslip/catalogue/given_force_keys.hpp"
 #include "stickslip/petsc/memory.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/quantities/excursion.hpp"
+#include "stickslip/quantities/given_force.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/infinity.hpp"
 
@@ -369,8 +371,9 @@ void require_memory(MPI_Comm comm, const model::Scene& scene, const Resolution& 
 bool needs_system(const cases::Case& given) {
   const cases::Question& question = given.question;
   std::size_t others = question.quantities.size();
-  for (bool closed : {closed_noise_distribution(given), question.wants(Quantity::trajectory),
-                      question.wants(Quantity::sensitivity)}) {
+  for (bool closed :
+       {closed_noise_distribution(given), question.wants(Quantity::trajectory),
+        question.wants(catalogue::kGivenForce.quantity), question.wants(Quantity::sensitivity)}) {
     others -= closed ? 1 : 0;
   }
   return others > 0;
@@ -401,6 +404,12 @@ Outcome carry_out(MPI_Comm comm, const cases::Case& given, const Progress& progr
   if (question.wants(Quantity::trajectory)) {
     outcome.path = simulation::simulate_path(given.scene.meant(), question.start, question.horizon,
                                              given.method.seed);
+  }
+  if (question.wants(catalogue::kGivenForce.quantity)) {
+    const auto missed =
+        quantities::append_given_force(given.scene, question.accuracy, outcome.results);
+    if (!missed.empty()) outcome.shortfall = missed;
+    outcome.reached = outcome.reached && missed.empty();
   }
   if (!question.references.empty()) {
     outcome.comparison = compare(question.references, outcome.results);

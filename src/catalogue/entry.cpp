@@ -14,6 +14,7 @@
 #include "stickslip/catalogue/duration_density_keys.hpp"
 #include "stickslip/catalogue/entry_law_keys.hpp"
 #include "stickslip/catalogue/expectation_keys.hpp"
+#include "stickslip/catalogue/given_force_keys.hpp"
 #include "stickslip/catalogue/laplace_keys.hpp"
 #include "stickslip/catalogue/large_deviation_keys.hpp"
 #include "stickslip/catalogue/moments_keys.hpp"
@@ -52,6 +53,7 @@ constexpr const Entry* kAll[] = {&kSticking,
                                  &kDisplacement,
                                  &kExpectation,
                                  &kTrajectory,
+                                 &kGivenForce,
                                  &kSensitivity,
                                  &kLargeDeviation,
                                  &kDisplacementTransform};

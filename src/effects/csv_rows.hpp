@@ -1,5 +1,5 @@
 #pragma once
-/// Numbers from the CSV files that noises take.
+/// Numbers from the CSV files that noises and given forces take.
 
 #include <fmt/format.h>
 

@@ -29,6 +29,8 @@ bool Effect::knows(std::string_view option) const {
 }
 
 const Effect& Choice::of(std::string_view word) const {
+  static const Effect nothing{};
+  if (word.empty()) return nothing;
   if (sum != nullptr && word.find('+') != std::string_view::npos) return *sum;
   const auto found = std::find_if(effects.begin(), effects.end(),
                                   [word](const Effect* effect) { return effect->word == word; });
@@ -131,7 +133,8 @@ model::Parameters parameters_of(const model::Scene& s) {
     }
   };
   const auto add_word = [&](const Choice& choice) {
-    if (choice.word_in(s) != choice.effects.front()->word) {
+    const auto& word = choice.word_in(s);
+    if (!word.empty() && word != choice.effects.front()->word) {
       add(std::string(choice.option), choice.word_in(s));
     }
   };
@@ -145,6 +148,11 @@ model::Parameters parameters_of(const model::Scene& s) {
   add_values(frictions());
   add_values(drags());
   add("bias", s.bias);
+  if (s.force) {
+    add("force_file", s.force->file);
+    if (s.force->scale != 1) add("force_scale", s.force->scale);
+    if (s.force->constant) add("force_interpolation", std::string("constant"));
+  }
   if (s.limits_speed) add("speed_limit", *s.v_max);
   return all;
 }

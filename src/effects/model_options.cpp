@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "read_force.hpp"
 #include "stickslip/effects/effect.hpp"
 
 namespace stickslip::effects {
@@ -69,6 +70,8 @@ std::vector<Option> made() {
           "friction must not drive the body",
           {.symbol = "\\mu_d^-", .label = "dynamic friction towards negative velocities"})};
   for (const auto* each : choices()) append(*each, all);
+  const auto force = force_options();
+  all.insert(all.end(), force.begin(), force.end());
   const std::vector<Option> others{
       Option::real(
           "bias", "force", "0", {},

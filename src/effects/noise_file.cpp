@@ -48,14 +48,14 @@ model::LevelTable levels_of_file(const model::Scene& scene) {
 const Effect kNoiseFile{
     .word = "file",
     .sentence = "any birth-death chain",
-    .parameters = {{Option::file(kFile, Kind::input,
-                                 "CSV with the columns x,rate_up,rate_down: the levels of -noise "
-                                 "file in rising order, and the rates of jumps to the next level "
-                                 "up and down, 0 at the ends",
-                                 {.label = "levels of",
-                                  .others = {"record", "recording", "force_file", "force_record",
-                                             "forcing", "data"},
-                                  .page = "docs/recorded_forces.md"}),
+    .parameters = {{Option::file(
+                        kFile, Kind::input,
+                        "CSV with the columns x,rate_up,rate_down: the levels of -noise "
+                        "file in rising order, and the rates of jumps to the next level "
+                        "up and down, 0 at the ends",
+                        {.label = "levels of",
+                         .others = {"record", "recording", "force_record", "forcing", "data"},
+                         .page = "docs/recorded_forces.md"}),
                     true, "levels.csv"}},
     .complete = complete_noise_file,
     .levels = levels_of_file,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "read_force.hpp"
 #include "stickslip/model/effective_friction.hpp"
 #include "stickslip/support/text.hpp"
 
@@ -14,22 +15,26 @@ namespace {
 /// Reads the parameters of the model one after the other, as far as they make sense.
 class SceneReader {
  public:
-  explicit SceneReader(Given& given) : given_(given) {}
+  SceneReader(Given& given, Drive drive) : given_(given), drive_(drive) {}
 
   model::Scene read() {
     read_numbers();
+    if (drive_ != Drive::noise) read_force(given_, scene_);
+    if (!noisy()) scene_.noise.name.clear();
     for (const auto* choice : choices()) {
       const std::string word = choice->word_in(scene_);
       read_effect(given_, *choice, word, scene_);
     }
     check_friction();
-    if (complete(noises())) check_starts();
+    if (noisy() && complete(noises())) check_starts();
     if (given_.sound()) (void)complete(drags());  // which looks at the noise
     if (scene_.noise.table && given_.sound()) check_returns();
     return scene_;
   }
 
  private:
+  [[nodiscard]] bool noisy() const { return drive_ != Drive::given_force; }
+
   void report(const char* option, const std::string& why, const std::string& fix) {
     given_.refuse(option, why, fix);
   }
@@ -72,7 +77,7 @@ class SceneReader {
     const double mean = scene_.noise.table ? scene_.noise.table->mean() : 0;
     const double force = scene_.bias + mean, mu_d = force > 0 ? forwards.mu_d : backwards.mu_d;
     const bool made_later = drags().in(scene_).complete != nullptr;
-    if (made_later || !scene_.drag.is_none() || std::abs(force) < mu_d) return;
+    if (made_later || !noisy() || !scene_.drag.is_none() || std::abs(force) < mu_d) return;
     if (force == 0) {
       return report("mu_d", "leaves nothing that slows a body: there is no drag either",
                     "take a positive -mu_d, or add drag");
@@ -139,12 +144,13 @@ class SceneReader {
   }
 
   Given& given_;
+  Drive drive_;
   model::Scene scene_;
 };
 
 }  // namespace
 
-model::Scene read_scene(Given& given) { return SceneReader(given).read(); }
+model::Scene read_scene(Given& given, Drive drive) { return SceneReader(given, drive).read(); }
 
 std::string noise_note(const model::Scene& scene) {
   const auto note = noises().in(scene).note;

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "stickslip/catalogue/given_force_keys.hpp"
 #include "stickslip/effects/effect.hpp"
 #include "stickslip/io/parts.hpp"
 #include "stickslip/io/provenance.hpp"
@@ -137,6 +139,21 @@ Json plan_of(const petsc::SolverStatistics& total) {
           {"unknowns", total.unknowns}};
 }
 
+// The motion under a given force at the samples.
+std::vector<std::vector<std::string>> path_rows(const quantities::Results& results) {
+  std::vector<const quantities::Result*> columns;
+  for (const auto* row :
+       {&catalogue::kPathForce, &catalogue::kPathVelocity, &catalogue::kPathDisplacement}) {
+    columns.push_back(&*std::ranges::find(results, row->key, &quantities::Result::key));
+  }
+  std::vector<std::vector<std::string>> rows{{"time", "force", "velocity", "displacement"}};
+  for (std::size_t n = 0; n < columns[0]->value.size(); ++n) {
+    auto& row = rows.emplace_back(1, cell(columns[0]->abscissa[n], 17));
+    for (const auto* column : columns) row.push_back(cell(column->value[n], 17));
+  }
+  return rows;
+}
+
 }  // namespace
 
 Json run_json(const cases::Case& given, const accuracy::Outcome& outcome, const RunTimes& times,
@@ -159,6 +176,9 @@ outputs::Report report_of(MPI_Comm comm, const options::Request& request,
   report.tree = [&request, &outcome, times] {
     return run_json(request, outcome, times, request.files.compared);
   };
+  if (request.question.wants(catalogue::kGivenForce.quantity)) {
+    report.rows = [&outcome] { return path_rows(outcome.results); };
+  }
   report.density = outcome.density ? &*outcome.density : nullptr;
   report.speed_error = outcome.speed_error;
   report.modes = outcome.modes;

@@ -32,6 +32,7 @@ std::string scene_text(const model::Scene& s) {
     for (auto& part : effects::heading(choice->in(s), s)) parts.push_back(std::move(part));
   }
   if (s.bias != 0) add("bias", s.bias);
+  if (s.force) parts.push_back("force of " + s.force->file);
   return spaced(parts);
 }
 
@@ -60,7 +61,9 @@ void add_array(const quantities::Result& r, TextTable& table) {
     return size <= most || n < most / 2 || n >= size - most / 2;
   };
   std::size_t width = 0;
-  for (double at : r.abscissa) width = std::max(width, fmt::format("{:g}", at).size());
+  for (std::size_t n = 0; n < size; ++n) {
+    if (shown(n)) width = std::max(width, fmt::format("{:g}", r.abscissa[n]).size());
+  }
   for (std::size_t n = 0; n < size; ++n) {
     if (!shown(n) && shown(n - 1)) table.add({fmt::format("  {:>{}}", "...", width)});
     if (!shown(n)) continue;

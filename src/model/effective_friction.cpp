@@ -5,7 +5,7 @@
 namespace stickslip::model {
 
 std::optional<double> effective_mu_s(const Scene& scene, bool backwards) {
-  if (scene.noise.table) return std::nullopt;
+  if (scene.noise.table || scene.noise.name.empty()) return std::nullopt;
   const Process forwards = scene.meant(), process = backwards ? forwards.mirrored() : forwards;
   if (process.highest_static() == process.noise.highest())
     return std::nullopt;  // never slides there

@@ -12,7 +12,8 @@ double largest_force(const Scene& scene) {
   const auto &along = scene.friction, against = along.mirrored();
   const double seen =
       std::max(along.mu_s, against.mu_s) + noise.step() + 12 * noise.standard_deviation();
-  return std::min(highest, noise.table ? highest : seen) + std::abs(scene.bias) -
+  const double drawn = std::min(highest, noise.table ? highest : seen);
+  return std::max(drawn, scene.force ? scene.force->largest() : 0) + std::abs(scene.bias) -
          std::min(along.mu_d, against.mu_d);
 }
 

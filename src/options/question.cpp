@@ -6,7 +6,8 @@
 #include <stdexcept>
 
 #include "reading.hpp"
-#include "stickslip/catalogue/entry.hpp"
+#include "stickslip/catalogue/given_force_keys.hpp"
+#include "stickslip/catalogue/trajectory_keys.hpp"
 #include "stickslip/outputs/reference.hpp"
 #include "stickslip/support/number_text.hpp"
 #include "stickslip/support/text.hpp"
@@ -53,7 +54,7 @@ std::vector<cases::Reference> read_compared(Settings& settings) {
 void read_quantities(Settings& settings, Request& request) {
   auto& question = request.question;
   const bool given = settings.has("quantities");
-  const auto words = settings.list("quantities");
+  const auto words = asked_quantities(settings);
   const auto asked = [&](const catalogue::Entry& entry) {
     const auto& known = question.references;
     if (given || known.empty()) return std::count(words.begin(), words.end(), entry.word) > 0;
@@ -231,6 +232,15 @@ void check_horizon(Settings& settings, const Request& request) {
 }
 
 }  // namespace
+
+std::vector<std::string> asked_quantities(const Settings& settings) {
+  auto words = settings.list("quantities");
+  if (settings.has("force_file")) {
+    std::ranges::replace(words, std::string(catalogue::kTrajectory.word),
+                         std::string(catalogue::kGivenForce.word));
+  }
+  return words;
+}
 
 void read_question(Settings& settings, Request& request) {
   Question& question = request.question;

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 #include <vector>
+#include <vector>
 
 #include "stickslip/options/request.hpp"
 #include "stickslip/options/settings.hpp"
@@ -14,6 +15,9 @@ namespace stickslip::options {
 
 /// The quantities and their arguments, for the model and the method that the request holds already.
 void read_question(Settings& settings, Request& request);
+
+/// The words of -quantities. With a given force, trajectory is its motion.
+[[nodiscard]] std::vector<std::string> asked_quantities(const Settings& settings);
 
 // rules.cpp
 

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "reading.hpp"
+#include "stickslip/catalogue/given_force_keys.hpp"
 #include "stickslip/effects/read_scene.hpp"
 #include "stickslip/operators/solver_policy.hpp"
 #include "stickslip/options/synonyms.hpp"
@@ -29,6 +31,13 @@ Method read_method(const Settings& settings) {
           .transient_solver = meaning(kTransientSolvers, settings.text("transient_solver")),
           .excursions = settings.real("excursions"),
           .seed = static_cast<std::uint64_t>(settings.real("seed"))};
+}
+
+effects::Drive drive_of(const Settings& settings) {
+  const auto asked = asked_quantities(settings);
+  const auto count = std::ranges::count(asked, catalogue::kGivenForce.word);
+  if (count == 0) return effects::Drive::noise;
+  return asked.size() == 1 ? effects::Drive::given_force : effects::Drive::both;
 }
 
 void check_writable(Settings& settings, const Option& option) {
@@ -90,7 +99,7 @@ std::vector<std::string> Files::holding(Quantity field) const {
 
 Request request_of(Settings& settings) {
   Request request;
-  request.scene = effects::read_scene(settings);
+  request.scene = effects::read_scene(settings, drive_of(settings));
   request.method = read_method(settings);
   read_question(settings, request);
   request.study = {meaning(kStudies, settings.text("study")), settings.integer("study_steps"),

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "reading.hpp"
+#include "stickslip/catalogue/given_force_keys.hpp"
 #include "stickslip/effects/effect.hpp"
 #include "stickslip/outputs/output.hpp"
 #include "stickslip/support/text.hpp"
@@ -23,11 +24,17 @@ class Rules {
   // Options of effects that none of those in use knows, each by the first effect that does.
   void of_other_effects() {
     std::set<std::string> seen;
+    const bool noisy = !r_.scene.noise.name.empty();
+    warn({"noise"}, !noisy);
     for (const auto* choice : effects::choices()) {
       const auto& word = choice->word_in(r_.scene);
       for (const auto* effect : choice->effects) {
         for (const auto& [option, refused, example] : effect->parameters) {
           if (!seen.insert(option.name).second || is_known(option.name)) continue;
+          if (word.empty()) {
+            warn({option.name.c_str()}, true);
+            continue;
+          }
           warn({option.name.c_str()}, !refused, fmt::format("with -{} {}", choice->option, word));
           refuse({option.name.c_str()}, refused,
                  fmt::format("belongs to -{0} {1}, and -{0} is {2}", choice->option, effect->word,
@@ -52,9 +59,9 @@ class Rules {
                    : study_     ? Subject::study
                    : swept      ? Subject::sweep
                                 : Subject::run);
-    for (const char* option :
-         {"observable", "time", "start", "horizon", "transient_solver", "omega", "spectrum_solver",
-          "distance", "inverse_distance", "velocity"}) {
+    for (const char* option : {"observable", "time", "start", "horizon", "transient_solver",
+                               "omega", "spectrum_solver", "distance", "inverse_distance",
+                               "velocity", "force_file", "force_interpolation", "force_scale"}) {
       warn({option}, !asked(option));
     }
     for (const auto* argument : catalogue::arguments()) {
@@ -72,6 +79,8 @@ class Rules {
                        method_.without_drag),
            "add -drag none, leave -friction out, or take -route excursion");
     refuse({"speed_limit"}, settings_.has("v_max"), "does not go with -v_max", "leave one out");
+    refuse({"speed_limit"}, q_.wants(catalogue::kGivenForce.quantity),
+           "does not bound the motion under a given force", "leave it out");
     refuse({"v_max", "speed_limit"}, !method_.bounds_speed, no_choice,
            "leave it out, or take " + routes_that(&SolutionMethod::bounds_speed, true));
     refuse({"scheme", "degree", "layers", "noise_degree", "noise_grading", "p"},
@@ -112,6 +121,9 @@ class Rules {
     require("time", asked("time") && q_.time.empty(),
             "asks for functions of time, but no times are given",
             "add for example -time 0.01:10:31:log");
+    require("force_file", q_.wants(catalogue::kGivenForce.quantity) && !r_.scene.force,
+            "asks for the motion under a given force, but none is given",
+            "add for example -force_file record.csv");
     require("velocity", q_.wants(peak) && q_.velocity.empty(),
             "asks for functions of a speed, but no speeds are given",
             "add for example -velocity 0.1:2:20");

@@ -64,7 +64,7 @@ void check_alone(Settings& settings) {
     const bool of_runs = of.contains(Subject::run) && !of.contains(Subject::sweep);
     if (of_runs) refuse(output->option, of_one_run, leave);
   }
-  const auto asked = settings.list("quantities");
+  const auto asked = asked_quantities(settings);
   for (const auto& word : asked) {
     const auto* entry = catalogue::find_entry(word);
     if (entry == nullptr || !entry->of_one_run) continue;

@@ -26,7 +26,10 @@ void write_rows(const Report& report, const std::string& file) {
 }
 
 void write_path(const Report& report, const std::string& file) {
-  if (report.path == nullptr) return;
+  if (report.path == nullptr) {
+    if (report.rows) write_rows(report, file);  // of a given force
+    return;
+  }
   const auto& path = *report.path;
   std::string text = "time,x,y,v\n";
   for (std::size_t n = 0; n < path.time.size(); ++n) {
@@ -57,7 +60,8 @@ extern const Output kSweepCsv{
 extern const Output kTrajectory{
     .option = "trajectory",
     .ending = "csv",
-    .sentence = "write the trajectory as CSV with the columns time,x,y,v to this file",
+    .sentence = "write the trajectory as CSV with the columns time,x,y,v to this file; that of "
+                "-force_file with time,force,velocity,displacement at the samples",
     .subjects = {Subject::run},
     .fields = {catalogue::Quantity::trajectory},
     .write = write_path};

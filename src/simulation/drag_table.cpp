@@ -88,7 +88,7 @@ double DragTable::relative_error(const DragPanel& panel) const {
     size = std::max(size, std::abs(b));
     error = std::max(error, std::abs(b - horner(panel.coefficient, u - panel.centre)));
   }
-  return error / size;
+  return error > 0 ? error / size : 0;  // 0 where the law is 0 throughout
 }
 
 bool DragTable::holds(const DragPanel& panel) const { return relative_error(panel) <= kError; }

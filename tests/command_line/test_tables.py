@@ -21,8 +21,8 @@ class Width(Case):
             self.assertEqual(line, line.rstrip())
 
     def test_options_files(self):
-        for name in ("directions", "inclined_plane", "measured_noise", "quickstart", "ratchet", "relaxation",
-                     "sensitivity", "slope", "spectrum", "stribeck", "sweep", "telegraph", "white_noise"):
+        for name in ("directions", "given_force", "inclined_plane", "measured_noise", "quickstart", "ratchet",
+                     "relaxation", "sensitivity", "slope", "spectrum", "stribeck", "sweep", "telegraph", "white_noise"):
             with self.subTest(file=name):
                 self.assert_narrow("-options_file", SOURCES / "options" / f"{name}.opts", folder=SOURCES)
 

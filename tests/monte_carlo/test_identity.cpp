@@ -32,7 +32,8 @@ const std::set<std::string> kFree{"excursions",  // more of them extend a simula
                                   // What -route monte_carlo does not know, or takes no notice of:
                                   "route", "scheme", "degree", "layers", "noise_degree",
                                   "noise_grading", "p", "v_max", "speed_limit", "spectrum_solver",
-                                  "tilt", "transient_solver"};
+                                  "tilt", "transient_solver", "force_file", "force_interpolation",
+                                  "force_scale"};
 
 // Options that change only along with others: each command line below has its own.
 const std::set<std::string> kWithOthers{"friction", "noise"};
@@ -180,7 +181,7 @@ std::string written(const std::string& file, const char* text) {
 
 // The table of options is the program's own, so that a new option has to be in the identity, or in
 // the list of those that may change.
-TEST_CASE("monte carlo: a checkpoint belongs to the value of every option of the table") {
+TEST_CASE("monte carlo: a checkpoint belongs to the value of every option of the table", "[long]") {
   const test::TemporaryFolder folder;
   const NoiseFiles given{
       written(folder / "levels.csv", "x,rate_up,rate_down\n-1.5,1,0\n0,1,1\n1.5,0,1\n"),

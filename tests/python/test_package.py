@@ -495,6 +495,7 @@ class Pictures(Case):
         for kind, axes, options in (
                 ("density", 5, {"quantities": "density"}),
                 ("trajectory", 4, {"quantities": "trajectory", "horizon": 5}),
+                ("given_force", 3, {"quantities": "trajectory", "force_file": SOURCES / "options" / "given_force.csv"}),
                 ("spectra", 1, {"quantities": "spectrum", "omega": [0.1, 1]}),
                 ("durations", 2, {"quantities": "duration_density", "time": "0:1:5", "accuracy": 1e-2}),
                 ("slips", 4, {"quantities": "slip,peak", "distance": [1, 2], "velocity": [0.1, 0.2], "accuracy": 1e-2}),

@@ -85,7 +85,7 @@ TEST_CASE("bias: the spectrum at 0 is that of odd functions where there is symme
   }
 }
 
-TEST_CASE("bias: mirror images mirror") {
+TEST_CASE("bias: mirror images mirror", "[long]") {
   for (double bias : {0.1, 0.7, 1.6}) {
     const auto s = scene(1, 0.7, 1, 0.25, {1, 0});
     Solved up(test::on_hp(biased(s, bias), 7)), down(test::on_hp(biased(s, -bias), 7));

@@ -74,7 +74,8 @@ TEST_CASE("displacement transform: known to ten digits", "[real]") {
 }
 
 // phi = 1 + i k E[x] - k^2 E[x^2]/2 + ...
-TEST_CASE("displacement transform: mean and variance are those of the displacement", "[parallel]") {
+TEST_CASE("displacement transform: mean and variance are those of the displacement",
+          "[parallel][long]") {
   auto s = test::scene(1, 0.5, 1, 0.5, {1, 0});
   s.bias = 0.2;
   for (const model::Start& start : {model::Start{0, 0, Kind::stationary},
@@ -91,7 +92,8 @@ TEST_CASE("displacement transform: mean and variance are those of the displaceme
   }
 }
 
-TEST_CASE("displacement transform: conjugate in the mirror, and even with symmetry", "[real]") {
+TEST_CASE("displacement transform: conjugate in the mirror, and even with symmetry",
+          "[real][long]") {
   auto s = test::scene(1, 0.5, 1, 0.5, {1, 0.3});
   const auto even = values(asking(s, {-1, 0, 1}, 2, 1e-6));
   CHECK(even.at("displacement_sine").value == std::vector<double>{0, 0, 0});
@@ -105,7 +107,7 @@ TEST_CASE("displacement transform: conjugate in the mirror, and even with symmet
   CHECK(std::abs(up.value - std::conj(down.value)) < up.error + down.error);
 }
 
-TEST_CASE("displacement transform: normal in the end", "[real]") {
+TEST_CASE("displacement transform: normal in the end", "[real][long]") {
   auto s = test::scene(1, 0.5, 1, 0.5, {1, 0});
   s.bias = 0.2;
   constexpr double k = 0.1, time = 400;

@@ -76,7 +76,7 @@ TEST_CASE("large deviations: without friction that of the noise", "[parallel]") 
 }
 
 // By inverse iteration with a sparse matrix of another discretisation, in another program.
-TEST_CASE("large deviations: known to ten digits", "[real]") {
+TEST_CASE("large deviations: known to ten digits", "[real][long]") {
   auto s = test::with_table(test::scene(1, 0.25, 1, 0.25, {1, 0}), cut_levels(0.25, 24));
   require_near(values(asking(s, {0.2, 0.5, 1}, 1e-8)).at("theta"),
                {0.02211727946855, 0.1524575775802, 0.7372996400406}, 1e-8);

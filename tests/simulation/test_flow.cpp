@@ -313,9 +313,12 @@ TEST_CASE("flow: panels of a drag law end at the rounding of the law") {
 
 TEST_CASE("flow: the table of a drag law holds it everywhere, to rounding") {
   const std::vector<std::function<double(double)>> laws{
-      [](double v) { return -std::tanh(v); }, [](double v) { return -std::pow(v, 1.5); },
+      [](double v) { return -std::tanh(v); },
+      [](double v) { return -std::pow(v, 1.5); },
       [](double v) { return -v - std::max(0.0, v - 0.7) * 5; },
-      [](double v) { return 0.3 * (1 - std::exp(-10 * v)) - v; }};
+      [](double v) { return 0.3 * (1 - std::exp(-10 * v)) - v; },
+      [](double) { return 0.0; },
+      [](double v) { return -std::max(0.0, v - 2.7); }};
   for (const auto& law : laws) {
     simulation::DragTable table({0, 0, law});
     for (double u = 0; u < 20; u += 0.00737) {

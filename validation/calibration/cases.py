@@ -174,5 +174,5 @@ GROUPS = {
                          {"quantities": "spectrum", "omega": "1e-4,1e-2,1,1e2,1e3"}, truth="complex", cases=20),
 }
 # What --quick takes: transforms at coarse steps of the noise, which take a fraction of the time.
-QUICK = {"scalars": dataclasses.replace(GROUPS["scalars"], cases=30),
+QUICK = {"scalars": dataclasses.replace(GROUPS["scalars"], cases=16),
          "transforms": dataclasses.replace(GROUPS["transforms"], scene=quick, cases=10)}

@@ -7,7 +7,7 @@ usage: python3 validation/calibration/run.py [--quick] [--groups NAMES] [--cases
 Cases (cases.py) follow from the seed and their number. Each is run at several accuracies. What stands for the truth
 is, by group, a run at a much higher accuracy, or dense complex solves of another discretisation (direct.py), or the
 direct solves of stickslip-complex. A value counts where the truth is known three times as well as the
-estimate to be judged claims. Runs that take over 20 times what -plan predicts are listed. --quick takes 30 cases of
+estimate to be judged claims. Runs that take over 20 times what -plan predicts are listed. --quick takes 16 cases of
 scalars and 10 of transforms; without it up to 300 of every group.
 --page puts table and picture into the manual.
 """

@@ -2,7 +2,7 @@
 
 usage: python3 validation/slips/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
---quick simulates a fifth of the excursions, takes white noise from fewer correlation times, and counts costs at
+--quick simulates a tenth of the excursions, takes white noise from fewer correlation times, and counts costs at
 a larger delta.
 """
 
@@ -126,21 +126,9 @@ def other_formulas(entry, name, scene):
                 difference((late - early) / 200, value["S_0"]), 1e-5)
 
 
-def symmetry(entry):
-    """A bias of 1e-300 is no force, but is treated as one."""
-    scene, far = SCENES["symmetric"], []
-    one, other = (entry.run(**scene, **ASKED, bias=bias, accuracy=1e-5 if entry.quick else 1e-7)["results"]
-                  for bias in (0, 1e-300))
-    for key, result in one.items():
-        error, value = (numpy.atleast_1d(result[part]) for part in ("error", "value"))
-        gap = numpy.abs(value - other[key]["value"])
-        far.append((gap / (error + numpy.atleast_1d(other[key]["error"]) + 1e-12)).max())
-    entry.claim("with and without symmetry, relative to the errors stated", worse(*far), 1)
-
-
 def simulation(entry, name, scene):
     found = entry.results(**scene, **ASKED, accuracy=1e-4)
-    count = 10**4 if entry.quick else 5 * 10**4
+    count = 5 * 10**3 if entry.quick else 5 * 10**4
     result = entry.results(**scene, **ASKED, route="monte_carlo", excursions=count)
     found.name, result.name = name, f"{name}, simulated"
     beside = []
@@ -180,7 +168,6 @@ def main():
     white_noise(entry)
     for name, scene in SCENES.items():
         other_formulas(entry, name, scene)
-    symmetry(entry)
     for name, scene in SCENES.items():
         simulation(entry, name, scene)
     costs(entry)

@@ -74,8 +74,10 @@ struct Columns {
   [[nodiscard]] Scalar* column(int c) const {
     return first + static_cast<std::ptrdiff_t>(c) * stride;
   }
-  /// The rows from one on.
-  [[nodiscard]] Columns from(std::size_t row) const { return {first + row, count, stride}; }
+  /// The rows from one on. Without columns there may be no storage to point into.
+  [[nodiscard]] Columns from(std::size_t row) const {
+    return {count == 0 ? first : first + row, count, stride};
+  }
 };
 template <class Scalar>
 [[nodiscard]] Columns<Scalar> columns_of(Matrix<Scalar>& a) {

@@ -86,7 +86,7 @@ struct Choice {
   const std::string& (*word_in)(const model::Scene&);
   const Effect* sum = nullptr;  ///< what words joined by + mean, where they may be
 
-  /// The effect of that word; the default where there is none.
+  /// The effect of that word; the default where there is none. That of an empty word does nothing.
   [[nodiscard]] const Effect& of(std::string_view word) const;
   /// The words of which a word is the sum, or that word alone.
   [[nodiscard]] std::vector<std::string> parts(const std::string& word) const;

@@ -7,9 +7,12 @@
 
 namespace stickslip::effects {
 
+/// What drives bodies, as far as anything is asked of it.
+enum class Drive { noise, given_force, both };
+
 /// The parameters of the model; v_max and the noise levels may stay open. What is wrong with them,
-/// each by itself or together, is refused.
-[[nodiscard]] model::Scene read_scene(Given& given);
+/// each by itself or together, is refused. What does not drive is not read.
+[[nodiscard]] model::Scene read_scene(Given& given, Drive drive = Drive::noise);
 
 /// How the chain of a scene's noise differs from the noise that is meant; may be empty.
 [[nodiscard]] std::string noise_note(const model::Scene& scene);

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "stickslip/model/force_record.hpp"
 #include "stickslip/model/process.hpp"
 
 namespace stickslip::model {
@@ -20,7 +21,7 @@ using Parameters = std::vector<std::pair<std::string, std::variant<double, std::
 
 /// The noise as the user gave it: word of -noise, and what belongs to it.
 struct NoiseChoice {
-  std::string name = "ou";
+  std::string name = "ou";                       ///< empty where nothing asks for noise
   std::optional<double> deviation = {};          ///< of "ou", if it has its own [force]
   std::shared_ptr<const LevelTable> table = {};  ///< the levels of all but "ou"
   /// The power spectral density of the process that the chain stands for, over omega, if it is
@@ -37,11 +38,12 @@ struct Scene {
   std::string drag_name = "linear";
   std::string drag_expression;  ///< b(v) as text, of the drag law "expression"
   Drag drag;
-  Parameters own = {};              ///< values of its noise or laws that have no place above
-  double bias = 0;                  ///< constant force g
-  std::optional<int> noise_levels;  ///< N, if fixed by the user
-  std::optional<double> v_max;      ///< truncation velocity, if fixed by the user
-  bool limits_speed = false;        ///< v_max is part of the model: no body is faster
+  Parameters own = {};  ///< values of its noise or laws that have no place above
+  double bias = 0;      ///< constant force g
+  std::shared_ptr<const ForceRecord> force = {};  ///< a given one, beside the noise or without it
+  std::optional<int> noise_levels;                ///< N, if fixed by the user
+  std::optional<double> v_max;                    ///< truncation velocity, if fixed by the user
+  bool limits_speed = false;                      ///< v_max is part of the model: no body is faster
 
   [[nodiscard]] bool symmetric() const { return process(1).symmetric(); }
   /// The range that is meant when noise_levels is open: full_range(), or that of the table.

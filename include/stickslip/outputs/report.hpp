@@ -45,7 +45,7 @@ struct Report {
   /// Everything but provenance, fields and paths, by the keys of docs/output.md. It is made when
   /// called, as are rows and grid: those of a long sweep take memory.
   std::function<Json()> tree;
-  /// Of studies and sweeps: titles of columns, then their cells.
+  /// Of studies, sweeps and paths under a given force: titles of columns, then their cells.
   std::function<std::vector<std::vector<std::string>>()> rows = {};
   /// Of sweeps: every result over the axes.
   std::function<Grid()> grid = {};

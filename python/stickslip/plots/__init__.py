@@ -18,6 +18,7 @@ FORMATS = (".png", ".pdf", ".svg")
 KINDS: "dict[str, tuple[Callable[[Results], bool], Callable[[Sequence[Results]], Figure]]]" = {
     "density": (lambda r: r.density is not None, fields.density),
     "trajectory": (lambda r: r.trajectory is not None, fields.trajectory),
+    "given_force": (lambda r: "path_velocity" in r, fields.given_force),
     "comparison": (lambda r: r.comparison is not None, studies.comparison),
     "spectra": (lambda r: "S_v" in r, curves.spectra),
     "durations": (lambda r: "f_slide" in r, curves.durations),
@@ -28,7 +29,7 @@ KINDS: "dict[str, tuple[Callable[[Results], bool], Callable[[Sequence[Results]],
     "drift": (lambda r: isinstance(r, Sweep) and r.dims == ("bias",), sweeping.drift)}
 ON_REQUEST = ("correlation_time", "drift")
 TOGETHER = ("spectra", "durations", "slips", "arrays", "correlation_time")  # kinds that show several files at once
-ASK = ("ask the program for density, trajectory, spectrum with -omega, duration_density, slip with "
+ASK = ("ask the program for density, trajectory, given_force, spectrum with -omega, duration_density, slip with "
        "-distance, peak or displacement with -quantities; or for -compare, -study cost or a sweep")
 
 

@@ -23,6 +23,8 @@ SLIPS: tuple[Panel, ...] = (
 SPELT = {"mean_first_passage": "from the start of sliding", "mean_first_passage_rest": "from rest"}
 DURATIONS = {"f_stick": ("sticking", COLOURS[1]), "f_slide": ("sliding", COLOURS[0]),
              "f_excursion": ("excursion", COLOURS[4])}
+OF_A_FORCE = ("slip_begin", "slip_end", "slip_displacement", "slip_peak", "path_force", "path_velocity",
+              "path_displacement")
 LINES = ("-", (0, (1, 1)), (0, (4, 1.5)))
 WHITE_NOISE = {("0", 1): 1.35446038, ("-v", 1): 0.247854704305}  # t_corr for tau -> 0 at mu_d = mu_s = 1
 
@@ -110,7 +112,7 @@ def slips(items: Sequence[Results]) -> "Figure":
 def other_arrays(items: Sequence[Results]) -> list[str]:
     """Keys of the arrays that no other picture shows."""
     shown = {"S_v", *DURATIONS, *(key.replace("f_", "cdf_") for key in DURATIONS),
-             *(key for panel in SLIPS for key in panel[0])}
+             *(key for panel in SLIPS for key in panel[0]), *OF_A_FORCE}
     return list(dict.fromkeys(key for item in items for key, result in item.items()
                               if result.dims and key not in shown))
 

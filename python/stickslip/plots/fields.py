@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 
 from ..needed import needed
 from ..results import Results
-from .style import COLOURS, Figure, Line2D, Patch, matplotlib, number, numpy, styled, title
+from .style import (ABSCISSAE, COLOURS, Figure, Line2D, Patch, drag, matplotlib, number, numpy, parameters, stated,
+                    styled, title)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -90,6 +91,35 @@ def trajectory(items: Sequence[Results]) -> "Figure":
     legend.legend(handles=handles, loc="center", ncol=len(handles), columnspacing=1.4)
     legend.axis("off")
     figure.suptitle(title(results), fontsize=10)
+    return figure
+
+
+@styled
+def given_force(items: Sequence[Results]) -> "Figure":
+    """Force, velocity and displacement of the motion under a given force over time; slips are shaded."""
+    (results,) = items
+    figure = Figure(figsize=(7.2, 5.2))
+    rows = figure.subplots(3, 1, sharex=True)
+    for axes, (key, label, colour) in zip(rows, (("path_force", "force $x$\n[force]", FORCING),
+                                                 ("path_velocity", "velocity $v$\n[velocity]", SLIDE),
+                                                 ("path_displacement", "displacement\n[length]", SLIDE))):
+        if "slip_begin" in results:
+            for begin, end in zip(results["slip_begin"].value, results["slip_end"].value):
+                axes.axvspan(begin, end, color=STICK, alpha=0.18, linewidth=0)
+        axes.plot(results[key].abscissa, results[key].value, color=colour, linewidth=1.1)
+        axes.set_ylabel(label)
+    if results.options:
+        for sign, mu in ((1, "mu_s"), (-1, "mu_s_minus")):
+            mu = number(results, mu if results.options.get(mu) else "mu_s")
+            level = sign * mu - number(results, "bias")
+            if abs(level) < 2 * abs(results["path_force"].value).max():
+                rows[0].axhline(level, color="#777777", linewidth=1, linestyle="--")
+        names = ("mu_s", "mu_d", "bias", "force_file", "force_scale")
+        used = {name: text for name, text in parameters(results).items() if name in names}
+        figure.suptitle(", ".join([*(stated(name, text) for name, text in used.items()),
+                                   f"$b(v) = {drag(results)}$"]), fontsize=10)
+    rows[0].margins(x=0)
+    rows[2].set_xlabel(ABSCISSAE["time"])
     return figure
 
 

@@ -1,0 +1,160 @@
+#include "stickslip/quantities/given_force.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "stickslip/catalogue/given_force_keys.hpp"
+#include "stickslip/simulation/response.hpp"
+#include "stickslip/support/infinity.hpp"
+
+namespace stickslip::quantities {
+namespace {
+
+using simulation::Response;
+using simulation::Slip;
+
+constexpr double kUnit = std::numeric_limits<double>::epsilon();
+
+// Forces and drag by some units of rounding larger or smaller.
+Response varied(model::Process process, model::ForceRecord record, double sign) {
+  const double of_drag = 1 + sign * (process.drag.is_linear() ? 4 * kUnit : 2e-14);
+  process.drag.linear *= of_drag;
+  process.drag.cubic *= of_drag;
+  if (const auto law = process.drag.law) {
+    process.drag.law = [law, of_drag](double v) { return of_drag * law(v); };
+  }
+  for (double& force : record.force) force *= 1 + sign * 4 * kUnit;
+  return simulation::respond(process, record, 0.5);
+}
+
+// The same force with a sample more in each interval.
+model::ForceRecord refined(const model::ForceRecord& given) {
+  model::ForceRecord fine{.constant = given.constant};
+  fine.time.reserve(2 * given.time.size());
+  fine.force.reserve(2 * given.time.size());
+  for (std::size_t n = 0; n < given.time.size(); ++n) {
+    if (n > 0) {
+      const double before = given.force[n - 1];
+      fine.time.push_back(std::midpoint(given.time[n - 1], given.time[n]));
+      fine.force.push_back(given.constant ? before : std::midpoint(before, given.force[n]));
+    }
+    fine.time.push_back(given.time[n]);
+    fine.force.push_back(given.force[n]);
+  }
+  return fine;
+}
+
+Response on_refined(const model::Process& process, const model::ForceRecord& given) {
+  Response found = varied(process, refined(given), 1);
+  for (auto* path : {&found.v, &found.x}) {
+    for (std::size_t n = 0; n < given.time.size(); ++n) (*path)[n] = (*path)[2 * n];
+    path->resize(given.time.size());
+  }
+  return found;
+}
+
+/// A response, and two that differ from it by rounding.
+class Compared {
+ public:
+  explicit Compared(const model::Scene& scene)
+      : found_(simulation::respond(scene.process(1), *scene.force)),
+        others_{on_refined(scene.process(1), *scene.force),
+                varied(scene.process(1), *scene.force, -1)},
+        alike_(std::ranges::all_of(others_, [&](const Response& other) {
+          return other.slips.size() == found_.slips.size();
+        })) {}
+
+  [[nodiscard]] bool alike() const { return alike_; }
+  [[nodiscard]] const Response& found() const { return found_; }
+
+  /// A number that a function takes from each.
+  template <class Part>
+  void append(Result& result, const Part& part) const {
+    const double value = part(found_);
+    double error = 0;
+    for (const auto& other : others_) error = std::max(error, std::abs(part(other) - value));
+    result.value.push_back(value);
+    result.error.push_back(2 * error + kUnit * std::abs(value));
+  }
+  /// A member of each slip.
+  [[nodiscard]] Result of_slips(const Row& row, double Slip::*member) const {
+    std::vector<double> numbers(found_.slips.size());
+    std::iota(numbers.begin(), numbers.end(), 1.0);
+    Result result = array(row, numbers);
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      append(result, [&](const Response& r) {
+        return alike_ ? r.slips[n].*member : &r == &found_ ? found_.slips[n].*member : kInfinity;
+      });
+    }
+    return result;
+  }
+  /// Values at the samples.
+  [[nodiscard]] Result of_path(const Row& row, const std::vector<double>& time,
+                               std::vector<double> Response::*path) const {
+    Result result = array(row, time);
+    for (std::size_t n = 0; n < time.size(); ++n) {
+      append(result, [&](const Response& r) { return (r.*path)[n]; });
+    }
+    return result;
+  }
+
+ private:
+  Response found_;
+  std::array<Response, 2> others_;
+  bool alike_;
+};
+
+// The displacement of the last sample may cancel; that of the path shows how well it is known.
+std::string shortfall(const Results& results, bool alike, double accuracy) {
+  if (!alike) {
+    return "the force comes so close to friction that rounding decides how often the body slips; "
+           "change -force_scale or -mu_s by little to see what either does";
+  }
+  for (const auto& result : results) {
+    if (result.key == catalogue::kFinalDisplacement.key) continue;
+    if (relative_error(result) <= accuracy) continue;
+    return fmt::format("rounding limits the relative error of {} to {:.1e}; take -accuracy {:.0e}",
+                       result.key, relative_error(result), 2 * relative_error(result));
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string append_given_force(const model::Scene& scene, double accuracy, Results& results) {
+  const Compared compared(scene);
+  const auto& time = scene.force->time;
+  const double duration = time.back() - time.front();
+  Results own;
+  const auto add = [&](const Row& row, const auto& part) {
+    Result result = blank(row);
+    compared.append(result, part);
+    own.push_back(std::move(result));
+  };
+  add(catalogue::kFinalDisplacement, [](const Response& r) { return r.x.back(); });
+  add(catalogue::kLargestDisplacement, [](const Response& r) { return r.farthest; });
+  add(catalogue::kLargestSpeed, [](const Response& r) { return r.fastest; });
+  add(catalogue::kSlidingShare, [&](const Response& r) { return r.sliding / duration; });
+  add(catalogue::kSlipCount, [](const Response& r) { return static_cast<double>(r.slips.size()); });
+  if (compared.alike()) own.back().error = {0};
+  if (!compared.found().slips.empty()) {
+    own.push_back(compared.of_slips(catalogue::kSlipBegin, &Slip::begin));
+    own.push_back(compared.of_slips(catalogue::kSlipEnd, &Slip::end));
+    own.push_back(compared.of_slips(catalogue::kSlipDisplacement, &Slip::displacement));
+    own.push_back(compared.of_slips(catalogue::kSlipPeak, &Slip::peak));
+  }
+  own.push_back(array(catalogue::kPathForce, time));
+  own.back().value = scene.force->force;
+  own.back().error.assign(time.size(), 0.0);
+  own.push_back(compared.of_path(catalogue::kPathVelocity, time, &Response::v));
+  own.push_back(compared.of_path(catalogue::kPathDisplacement, time, &Response::x));
+  std::string missed = shortfall(own, compared.alike(), accuracy);
+  std::ranges::move(own, std::back_inserter(results));
+  return missed;
+}
+
+}  // namespace stickslip::quantities

@@ -1,0 +1,129 @@
+"""The motion under a given force: what is refused and what has no effect, and what files hold."""
+
+import csv
+import json
+import unittest
+
+from running import SOURCES, Case, run
+
+RECORD = SOURCES / "options" / "given_force.csv"
+ASKED = ("-quantities", "trajectory", "-force_file")
+HEADER = "time,force\n"
+
+
+class GivenForce(Case):
+    def refuse(self, *options, message):
+        done = run(*options, folder=self.folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(done.stdout, "")
+        for part in message:
+            self.assertIn(part, done.stderr)
+
+    def refuse_file(self, text, *message):
+        (self.folder / "record.csv").write_text(text)
+        self.refuse(*ASKED, "record.csv", message=("-force_file = record.csv: ", *message, "; write CSV with the"))
+
+    def test_files_that_are_no_record(self):
+        self.refuse(*ASKED, "none.csv", message=("-force_file = none.csv: cannot be read", "write CSV"))
+        self.refuse_file("", "Header missing")
+        self.refuse_file(HEADER + "0,1\n", "has 1 samples")
+        self.refuse_file(HEADER + "0,1\n1,2\n1,3\n", "line 4: time = 1 must be above 1")
+        self.refuse_file(HEADER + "0,1\n# note\n1,2\n0.5,3\n", "line 5: time = 0.5 must be above 1")
+        self.refuse_file(HEADER + "0,1\n1,nan\n2,0\n", "line 3: force = nan")
+        self.refuse_file(HEADER + "0,1\n1,\n2,0\n", "line 3: force =  is no")
+        self.refuse_file(HEADER + "0,1\n1\n2,0\n", "line 3")
+        self.refuse_file("time;force\n0;1\n1;2\n", "time", "commas between numbers")
+        self.refuse_file(HEADER + "0,0,1\n1,0,2\n", "line 2")  # decimal commas
+        self.refuse_file("t,f\n0,1\n1,2\n", "time")
+        even = "".join(f"{n / 10},1\n" for n in (*range(20), *range(25, 40)))
+        self.refuse_file(HEADER + even, "line 22: time = 2.5 follows 1.9, where steps are 0.1: samples are missing")
+
+    def test_uneven_records_have_no_gaps(self):
+        (self.folder / "record.csv").write_text(HEADER + "0,0\n1,2\n1.001,0\n9,0\n")
+        self.run_ok(*ASKED, "record.csv")
+
+    def test_what_it_needs_and_excludes(self):
+        self.refuse("-quantities", "given_force", message=("but none is given", "add for example -force_file"))
+        for method in ("monte_carlo", "null_vector"):
+            self.refuse(*ASKED, RECORD, "-route", method, message=("does not give given_force",))
+        self.refuse(*ASKED, RECORD, "-study", "p", message=("must be sticking, moments and noise_law",))
+        self.refuse(*ASKED, RECORD, "-speed_limit", "1", message=("-speed_limit = 1: does not bound",))
+        self.refuse(*ASKED, RECORD, "-sweep_tau", "1,2", message=("-sweep_tau: -tau = ", "has no effect"))
+        self.refuse(*ASKED, RECORD, "-force_interpolation", "cubic", message=("linear or constant",))
+        self.refuse(*ASKED, RECORD, "-mu_d", "2", message=("must be in [0, mu_s]",))
+
+    def test_options_without_effect_are_named(self):
+        for option, value in (("-tau", "2"), ("-delta", "0.5"), ("-noise", "telegraph"), ("-telegraph_rate", "3"),
+                              ("-seed", "3"), ("-start", "0,0"), ("-horizon", "3")):
+            done = self.run_ok(*ASKED, RECORD, option, value)
+            self.assertIn(f"{option} = {value} has no effect on the quantities asked for", done.stderr)
+        done = self.run_ok("-quantities", "noise_law", "-force_file", RECORD, "-force_scale", "2")
+        for option in ("-force_file", "-force_scale"):
+            self.assertIn(f"{option} = ", done.stderr)
+
+    def test_no_noise_is_looked_at(self):
+        # No noise would move this body, and with ground accelerations in other units -delta would be fine.
+        done = self.run_ok(*ASKED, RECORD, "-mu_s", "500", "-mu_d", "400", "-force_scale", "981")
+        self.assertNotIn("tau", done.stdout)
+        self.assertNotIn("noise", done.stdout)
+        # Without drag and with a bias above mu_d, a record ends even where the noise would not.
+        self.run_ok(*ASKED, RECORD, "-mu_d", "0.2", "-bias", "0.4", "-drag", "none")
+
+    def test_files(self):
+        text = self.run_ok(*ASKED, RECORD, "-drag", "none", "-mu_d", "1", "-summary", "s.json", "-output", "h.h5",
+                           "-trajectory", "p.csv", folder=self.folder).stdout
+        self.assertIn("accuracy 1e-06 reached", text)
+        summary = json.loads((self.folder / "s.json").read_text())
+        results = summary["results"]
+        rows = list(csv.DictReader((self.folder / "p.csv").read_text().splitlines()))
+        given = [line.split(",") for line in RECORD.read_text().splitlines()[2:]]
+        self.assertEqual([[float(row["time"]), float(row["force"])] for row in rows],
+                         [[float(time), float(force)] for time, force in given])
+        for key, name in (("path_velocity", "velocity"), ("path_displacement", "displacement")):
+            self.assertEqual([float(row[name]) for row in rows], results[key]["value"])
+            self.assertEqual(len(results[key]["error"]), len(rows))
+        self.assertEqual(results["final_displacement"]["value"], results["path_displacement"]["value"][-1])
+        self.assertEqual(len(results["slip_end"]["value"]), results["slip_count"]["value"])
+        self.assertAlmostEqual(sum(results["slip_displacement"]["value"]), results["final_displacement"]["value"], 13)
+        self.assertAlmostEqual(max(results["slip_peak"]["value"]), results["largest_speed"]["value"], 14)
+        slid = sum(e - b for b, e in zip(results["slip_begin"]["value"], results["slip_end"]["value"]))
+        self.assertAlmostEqual(slid / 20, results["sliding_share"]["value"], 13)
+        self.assertEqual(summary["scene"]["force_file"], str(RECORD))
+        self.assertNotIn("tau", summary["scene"])
+
+    def test_scale_and_sign(self):
+        one = self.summary(*ASKED, RECORD, "-force_scale", "2", "-mu_s", "2", "-mu_d", "2")["results"]
+        other = self.summary(*ASKED, RECORD, "-force_scale", "-1")["results"]
+        self.assert_close(one["final_displacement"]["value"], -2 * other["final_displacement"]["value"], 1e-13)
+        constant = self.summary(*ASKED, RECORD, "-force_interpolation", "constant")["results"]
+        self.assertNotAlmostEqual(constant["final_displacement"]["value"], -other["final_displacement"]["value"], 3)
+
+    def test_beside_the_noise(self):
+        text = self.run_ok("-quantities", "sticking,trajectory", "-force_file", RECORD, "-accuracy", "1e-3").stdout
+        for key in ("P_stick", "final_displacement", "tau = 1"):
+            self.assertIn(key, text)
+
+    def test_sweep_plan_and_comparison(self):
+        options = (*ASKED, RECORD, "-drag", "none", "-mu_d", "0.8")
+        self.run_ok(*options, "-sweep_mu_s", "0.8,1,3", "-sweep_force_scale", "1,1.5", "-summary", "sweep.json",
+                    "-output", "sweep.h5", folder=self.folder)
+        runs = json.loads((self.folder / "sweep.json").read_text())["runs"]
+        self.assertEqual(len(runs), 6)
+        alone = self.summary(*options, "-mu_s", "1", "-force_scale", "1.5")["results"]
+        self.assertEqual(runs[3]["results"]["final_displacement"]["value"], alone["final_displacement"]["value"])
+        self.assertEqual(runs[4]["results"]["slip_count"]["value"], 0)  # the force stays below 3
+        self.assertIn("no linear system", self.run_ok(*options, "-plan").stdout)
+        self.run_ok(*options, "-output", "a.h5", folder=self.folder)
+        done = self.run_ok(*options, "-compare", "a.h5", folder=self.folder)
+        self.assertIn("no significant disagreement", done.stdout)
+        self.run_ok(*options, "-force_scale", "1.01", "-compare", "a.h5", folder=self.folder, status=3)
+
+    def test_errors_hold(self):
+        # Where the force hardly exceeds static friction, its rounding decides on a slip.
+        (self.folder / "record.csv").write_text(HEADER + "0,0\n1,1.000000000000002\n2,0\n3,2\n4,0\n")
+        done = self.run_ok(*ASKED, "record.csv", "-mu_d", "0.5", folder=self.folder, status=3)
+        self.assertIn("rounding decides how often the body slips", done.stdout.replace("\n  ", " "))
+
+
+if __name__ == "__main__":
+    unittest.main()
