@@ -5,11 +5,14 @@
 >>> r["P_stick"].value, r["P_stick"].error
 """
 
+import importlib
 import sys
+from types import ModuleType
 
 try:
     from .calls import load, run, sweep
     from .program import AccuracyWarning, BadInput, Cancelled, OutOfMemory, ProgramError, TimedOut, Unsolved, find_program
+    from .records import Record, read_record
     from .results import Density, Result, Results
     from .sweeps import Sweep
     from .version import __version__
@@ -18,8 +21,15 @@ except ImportError as problem:
         sys.exit(str(problem))
     raise
 
-__all__ = ["AccuracyWarning", "BadInput", "Cancelled", "Density", "OutOfMemory", "ProgramError", "Result", "Results",
-           "Sweep", "TimedOut", "Unsolved", "__version__", "find_program", "load", "run", "sweep"]
+__all__ = ["AccuracyWarning", "BadInput", "Cancelled", "Density", "OutOfMemory", "ProgramError", "Record", "Result",
+           "Results", "Sweep", "TimedOut", "Unsolved", "__version__", "find_program", "load", "noise", "read_record", "run",
+           "sweep"]
+
+
+def __getattr__(name: str) -> ModuleType:
+    if name == "noise":  # needs SciPy, which other parts do without
+        return importlib.import_module(".noise", __name__)
+    raise AttributeError(f"module {__name__} has no attribute {name}")
 
 
 def __dir__() -> list[str]:

@@ -1,9 +1,11 @@
 """python3 -m stickslip plot FILE... [PICTURE.png]: draws what files of the program hold.
-python3 -m stickslip explore [SCENE.opts]: sliders over the model parameters, pictures that follow."""
+python3 -m stickslip explore [SCENE.opts]: sliders over the model parameters, pictures that follow.
+python3 -m stickslip levels FILE: the levels of a measured force, for -noise file."""
 
 import argparse
 import pathlib
 import sys
+import warnings
 from collections.abc import Sequence
 
 TEXT = """Draws what the program wrote to FILE: HDF5, the JSON of -summary, or CSV. Without PICTURE the picture goes
@@ -17,10 +19,15 @@ densities of durations follow. Buttons save the parameters as an options file, a
 (python3-tk), or in a browser on this machine (python3-tornado)."""
 
 
+LEVELS = """Makes the levels and jump rates, or the chain, of a measured force or acceleration: text with columns (any
+separator, decimal comma), AT2, COSMOS V2, SAC, .npy or .mat. Prints how the chain compares with the record, and the options
+of the program that use it. Exit status 2 where such a chain cannot stand for the record."""
+
+
 def main(words: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status."""
     parser = argparse.ArgumentParser(prog="python3 -m stickslip", description=__doc__)
-    commands = parser.add_subparsers(required=True, metavar="plot | explore")
+    commands = parser.add_subparsers(required=True, metavar="plot | explore | levels")
     plot = commands.add_parser(
         "plot", usage="%(prog)s [--kind KIND] FILE... [PICTURE.png]", description=TEXT)
     plot.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE")
@@ -32,6 +39,20 @@ def main(words: Sequence[str] | None = None) -> int:
     explore.add_argument("--browser", action="store_true", help="a page in the browser instead of a window")
     explore.add_argument("--port", type=int, default=8988, help="of that page (default 8988)")
     explore.set_defaults(act=explore_scene)
+    levels = commands.add_parser("levels", description=LEVELS)
+    levels.add_argument("file", type=pathlib.Path, metavar="FILE")
+    levels.add_argument("--column", help="name of the values, or its number from 0")
+    levels.add_argument("--time", help="name of the times, or its number from 0")
+    levels.add_argument("--step", type=float, help="sampling interval in seconds, where the file has no times")
+    levels.add_argument("--unit", help="of the values, such as g, gal or m/s^2, where the file does not say")
+    levels.add_argument("--scale", type=float, default=1, help="what values are multiplied by (default 1)")
+    levels.add_argument("--levels", type=int, help="how many (default: the most of 15 to 5 that can be counted)")
+    levels.add_argument("--mu-s", type=float, help="static friction, which then lies halfway between two levels")
+    levels.add_argument("--jumps", choices=("neighbours", "any"), default="neighbours", help="where jumps lead")
+    levels.add_argument("--match-time", action="store_true", help="multiply all rates to match the correlation time")
+    levels.add_argument("--narrow-band", action="store_true", help="a narrow band in the place of levels")
+    levels.add_argument("--picture", type=pathlib.Path, help="autocovariance and spectrum of chain and record")
+    levels.set_defaults(act=write_levels)
     arguments = parser.parse_args(words)
     return arguments.act(arguments)
 
@@ -39,6 +60,11 @@ def main(words: Sequence[str] | None = None) -> int:
 def explore_command() -> int:
     """The console script stickslip-explore."""
     return main(["explore", *sys.argv[1:]])
+
+
+def levels_command() -> int:
+    """The console script stickslip-levels."""
+    return main(["levels", *sys.argv[1:]])
 
 
 def plot_command() -> int:
@@ -56,6 +82,42 @@ def explore_scene(arguments: argparse.Namespace) -> int:
         except (BadInput, ProgramError, OSError) as problem:
             print(f"stickslip: {problem}", file=sys.stderr)
             return 2 if isinstance(problem, BadInput) else 1
+    except ImportError as problem:
+        print(problem, file=sys.stderr)
+        return 1
+    return 0
+
+
+def write_levels(arguments: argparse.Namespace) -> int:
+    """Reads a record and writes its levels, or its chain; returns the exit status."""
+    try:
+        from . import noise, read_record
+    except ImportError as problem:
+        print(problem, file=sys.stderr)
+        return 1
+    try:
+        record = read_record(arguments.file, column=arguments.column, time=arguments.time, step=arguments.step,
+                             unit=arguments.unit)
+        record = record if arguments.scale == 1 else record.scaled(arguments.scale)
+        print(record)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # the chain prints them
+            chain = noise.narrow_band_of(record) if arguments.narrow_band else noise.record(
+                record, arguments.levels, mu_s=arguments.mu_s, jumps=arguments.jumps, match_time=arguments.match_time)
+        print(chain)
+        states, rates, levels = (f"{arguments.file.stem}_{what}.csv" for what in ("states", "rates", "levels"))
+        if chain.neighbours_only:
+            chain.save(levels)
+            print(f"-noise file -noise_file {levels}")
+        else:
+            chain.save(states, rates)
+            print(f"-noise chain -noise_states {states} -noise_rates {rates}")
+        if arguments.picture:
+            chain.plot().savefig(arguments.picture)
+            print(arguments.picture)
+    except (ValueError, OSError) as problem:
+        print(f"stickslip: {problem}", file=sys.stderr)
+        return 2
     except ImportError as problem:
         print(problem, file=sys.stderr)
         return 1

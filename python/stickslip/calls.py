@@ -43,8 +43,8 @@ def run(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = Non
         Ends the run when another thread sets it.
     **options
         Parameters of the model and options of the program by name: numbers, text, sequences of them, or True for
-        an option without a value. Write `lambda_` for lambda. The program checks them. help() lists all of them at
-        the end.
+        an option without a value. Write `lambda_` for lambda. The program checks them. `noise` may be a chain of
+        `stickslip.noise`. help() lists all of them at the end.
 
     Returns
     -------
@@ -81,6 +81,8 @@ def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | N
             output = pathlib.Path(folder) / "results.h5"
         if output is not None:
             options["output"] = os.fspath(output)
+        if hasattr(options.get("noise"), "save"):
+            options |= _files_of(options, pathlib.Path(folder))
         launcher = ["mpiexec", "-n", str(ranks)] if ranks else []
         before = _stamp(summary)
         finished = execute([*launcher, os.fspath(program or find_program()), *words_of(options), "-summary",
@@ -181,6 +183,16 @@ def load(path: Path) -> Results:
             return (sweeps if "sweep" in file else results).from_hdf5(file, path.stem)
 
     return results.reading(path, "HDF5", "-output", from_hdf5)
+
+
+def _files_of(options: Mapping[str, Any], folder: pathlib.Path) -> dict[str, Any]:
+    """Options for a chain of `stickslip.noise`, whose files go to a folder."""
+    files = {name: folder / f"{name}.csv" for name in ("noise_states", "noise_rates")}
+    for name in files:
+        if name in options:
+            raise ValueError(f"{name} = {options[name]}: the chain {options['noise'].name} has its own; leave one out")
+    options["noise"].save(*files.values())
+    return {"noise": "chain", **files}
 
 
 def _stamp(path: pathlib.Path) -> tuple[int, int] | None:

@@ -4,7 +4,7 @@ import importlib
 from types import ModuleType
 
 COMMANDS = {name: f"pip install {name}, or on Debian apt-get install python3-{name}"
-            for name in ("numpy", "h5py", "matplotlib", "tornado")}
+            for name in ("numpy", "h5py", "matplotlib", "tornado", "scipy", "pandas", "xarray")}
 COMMANDS["tkinter"] = "on Debian apt-get install python3-tk"  # a part of Python, which pip does not have
 
 
@@ -29,6 +29,6 @@ def needed(name: str) -> ModuleType:
         return importlib.import_module(name)
     except ImportError as problem:
         top = name.partition(".")[0]
-        if isinstance(problem, ModuleNotFoundError) and problem.name == top:
+        if isinstance(problem, ModuleNotFoundError) and (problem.name or "").partition(".")[0] == top:
             raise ImportError(f"stickslip needs {top} for this: {COMMANDS[top]}") from None
         raise

@@ -1,7 +1,10 @@
 """What a run computed, as data: results with their errors, fields, and where they come from."""
 
 import dataclasses
+import difflib
+import json
 import math
+import os
 import pathlib
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
@@ -11,6 +14,8 @@ from .needed import needed
 if TYPE_CHECKING:
     import h5py
     import numpy
+    import pandas
+    import xarray
     from matplotlib.figure import Figure
     Array = numpy.ndarray
 numpy = needed("numpy")
@@ -53,6 +58,16 @@ class Result:
 
     def __float__(self) -> float:
         return float(self.value)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> "Array":
+        """The value, for `numpy.asarray`."""
+        found = numpy.asarray(self.value, dtype)
+        return found.copy() if copy else found
+
+    def __repr__(self) -> str:
+        shown = (f"{self.value:.17g} +- {self.error:.1e}" if numpy.ndim(self.value) == 0 else
+                 f"{' x '.join(map(str, numpy.shape(self.value)))} values by {', '.join(self.dims)}")
+        return f"{self.key} = {shown} {self.unit}".rstrip()
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -186,7 +201,14 @@ class Results(Mapping):
         self.runs: list[Results] = parts.get("runs", [])
 
     def __getitem__(self, key: str) -> Result:
-        return self._results[key]
+        if key in self._results:
+            return self._results[key]
+        near = difflib.get_close_matches(str(key), self._results, 1, 0.6)
+        advice = f"did you mean {near[0]}?" if near else f"there are {', '.join(self._results) or 'no results'}"
+        raise KeyError(f"{key}: {advice}")
+
+    def __contains__(self, key: object) -> bool:
+        return key in self._results
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._results)
@@ -197,11 +219,7 @@ class Results(Mapping):
     __eq__, __hash__ = object.__eq__, object.__hash__  # arrays have no truth value
 
     def __repr__(self) -> str:
-        lines = []
-        for key, result in self.items():
-            shown = (f"{result.value:.17g} +- {result.error:.1e}" if numpy.ndim(result.value) == 0 else
-                     f"{' x '.join(map(str, numpy.shape(result.value)))} values by {', '.join(result.dims)}")
-            lines.append(f"{key} = {shown} {result.unit}".rstrip())
+        lines = map(repr, self.values())
         return "\n".join(lines) or f"<{type(self).__name__} without scalars and arrays>"
 
     @property
@@ -226,6 +244,64 @@ class Results(Mapping):
         """
         from . import plots
         return plots.draw([self], picture, kind)
+
+
+    def to_pandas(self) -> "pandas.DataFrame":
+        """A table with a row for each number.
+
+        Returns
+        -------
+        table
+            Columns `key`, the swept options and what arrays depend on (NaN where a result does not depend on it), `value`
+            and `error` [unit], for simulated results the ends `low` and `high` of 95 % confidence intervals, and `unit`.
+
+        Raises
+        ------
+        ImportError
+            Without pandas.
+        """
+        from . import frames
+        return frames.to_pandas(self)
+
+    def to_xarray(self) -> "xarray.Dataset":
+        """A data set with a variable for each key.
+
+        Returns
+        -------
+        dataset
+            Dimensions are the swept options, then what an array depends on; both are coordinates. Beside KEY stands
+            KEY_error, for simulated results KEY_low and KEY_high, the ends of 95 % confidence intervals. Attributes
+            `units` are those of the program, attributes of the data set its options. Where results depend on different
+            values of the same, such as lags, the later ones have dimensions KEY_NAME of their own; where points of a
+            sweep do, the dimension is KEY_number and the coordinate KEY_NAME.
+
+        Raises
+        ------
+        ImportError
+            Without xarray.
+        """
+        from . import frames
+        return frames.to_xarray(self)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the summary as JSON, which `stickslip.load` reads.
+
+        Parameters
+        ----------
+        path
+            Ends with .json. Fields (density, path, modes) are in HDF5 files alone, which `run(keep=...)` leaves.
+
+        Raises
+        ------
+        ValueError
+            If the path ends otherwise, or these results come from HDF5 or CSV and have no summary.
+        """
+        path = pathlib.Path(path)
+        if path.suffix != ".json":
+            raise ValueError(f"path = {path}: must end with .json; run(keep=...) leaves HDF5, to_pandas() writes tables")
+        if not self.summary:
+            raise ValueError(f"results of {self.name or 'a file'} have no summary; copy the file that they come from")
+        path.write_text(json.dumps(self.summary, indent=1) + "\n")
 
 
 def array(values: Any, missing: float = math.nan) -> "Array":

@@ -201,6 +201,9 @@ class Pages(unittest.TestCase):
     def test_output(self):
         self.assertEqual(self.complaints("docs/output.md"), [])
 
+    def test_recorded_forces(self):
+        self.assertEqual(self.complaints("docs/recorded_forces.md"), [])
+
     def test_every_picture_of_the_gallery_is_shown(self):
         page = (pages.SOURCES / "docs/gallery.md").read_text()
         self.assertEqual({place.name for place, _ in pages.pictures_of("docs/gallery.md", page)},

@@ -1,9 +1,11 @@
 """The Python package, as a script meets it."""
 
 import inspect
+import itertools
 import json
 import os
 import pathlib
+import pickle
 import subprocess
 import sys
 import tempfile
@@ -328,7 +330,96 @@ class Sweeps(Case):
         self.assertTrue((s["P_stick"].ci95[..., 0] < s["P_stick"].value).all())
 
 
+class Tables(Case):
+    def test_scalars_and_arrays_of_a_run(self):
+        r = stickslip.run(**SMALL, quantities="sticking,spectrum", omega=[0.1, 1, 10])
+        numpy.testing.assert_array_equal(numpy.asarray(r["S_v"]), r["S_v"].value)
+        self.assertEqual(numpy.array(r["P_stick"]) + 0, r["P_stick"].value)
+        table = r.to_pandas()
+        rows = table[table.key == "S_v"]
+        for column, expected in (("omega", [0.1, 1, 10]), ("value", r["S_v"].value), ("error", r["S_v"].error)):
+            numpy.testing.assert_array_equal(rows[column], expected)
+        self.assertEqual((len(table), rows.unit.iloc[0]), (len(r) - 1 + 3, "velocity^2*time"))
+        self.assertTrue(table[table.key == "P_stick"].omega.isna().all())
+        data = r.to_xarray()
+        self.assertEqual(float(data.S_v.sel(omega=1)), r["S_v"].value[1])
+        self.assertEqual(float(data.S_v_error.sel(omega=1)), r["S_v"].error[1])
+        self.assertEqual((data.S_v.units, data.omega.units, data.mu_d), ("velocity^2*time", "1/time", "0.25"))
+
+    def test_sweeps(self):
+        s = stickslip.sweep(mu_d=[0.25, 0.5], tau=[0.5, 1, 2], delta=0.5, quantities="sticking,spectrum", omega=[1, 2],
+                            accuracy=1e-2)
+        table, data = s.to_pandas(), s.to_xarray()
+        for (i, mu_d), (j, tau) in itertools.product(enumerate([0.25, 0.5]), enumerate([0.5, 1, 2])):
+            here = table[(table.mu_d == mu_d) & (table.tau == tau)]
+            self.assertEqual(here[here.key == "P_stick"].value.item(), s["P_stick"].value[i, j])
+            self.assertEqual(here[(here.key == "S_v") & (here.omega == 2)].error.item(), s["S_v"].error[i, j, 1])
+            self.assertEqual(float(data.P_stick.sel(mu_d=mu_d, tau=tau)), s["P_stick"].value[i, j])
+            self.assertEqual(float(data.S_v_error.sel(mu_d=mu_d, tau=tau, omega=2)), s["S_v"].error[i, j, 1])
+        self.assertEqual((data.S_v.dims, data.tau.units), (("mu_d", "tau", "omega"), "time"))
+
+    def test_points_with_abscissae_of_their_own(self):
+        s = stickslip.sweep(mu_s=[1, 2], delta=0.5, quantities="entry_law", accuracy=1e-3)
+        data, table = s.to_xarray(), s.to_pandas()
+        name = s["entry_law"].abscissa_name
+        self.assertEqual(data.entry_law.dims, ("mu_s", "entry_law_number"))
+        numpy.testing.assert_array_equal(data[f"entry_law_{name}"], s["entry_law"].abscissa)
+        rows = table[(table.key == "entry_law") & (table.mu_s == 2)]
+        numpy.testing.assert_array_equal(rows[name], s["entry_law"].abscissa[1])
+        numpy.testing.assert_array_equal(rows.value, s["entry_law"].value[1])
+
+    def test_results_that_depend_on_other_values_of_the_same(self):
+        one, two = (stickslip.Result(key, numpy.ones(n), numpy.zeros(n), "", ("level",), "level", numpy.arange(n))
+                    for key, n in (("a", 2), ("b", 3)))
+        data = stickslip.Results({"a": one, "b": two}).to_xarray()
+        self.assertEqual((data.a.dims, data.b.dims), (("level",), ("b_level",)))
+
+    def test_simulated_results_have_the_ends_of_intervals(self):
+        r = stickslip.run(**SMALL, quantities="sticking,laplace", lambda_=[1, 2], route="monte_carlo", excursions=500)
+        table, data = r.to_pandas(), r.to_xarray()
+        numpy.testing.assert_array_equal(table[table.key == "F_slide"][["low", "high"]], r["F_slide"].ci95)
+        numpy.testing.assert_array_equal(data.F_slide_high, r["F_slide"].ci95[:, 1])
+        self.assertEqual(float(data.P_stick_low), r["P_stick"].ci95[0])
+
+    def test_units_without_a_program(self):
+        r = stickslip.run(**SMALL, quantities="spectrum", omega=[1, 2])
+        with self.fake("exit 1"):
+            self.assertEqual(r.to_xarray().omega.units, "")
+
+    def test_missing_modules_are_one_sentence(self):
+        for name in ("pandas", "xarray"):
+            done = self.python("-c", f"import sys; sys.modules['{name}'] = None; import stickslip; "
+                               f"stickslip.Results({{}}).to_{name}()")
+            self.assertEqual(done.stderr.splitlines()[-1], "ImportError: stickslip needs "
+                             f"{name} for this: {Failures.advice(name)}")
+
+    def test_names_that_are_not_there(self):
+        r = stickslip.run(**SMALL, quantities="sticking")
+        self.assertRaisesRegex(KeyError, r"P_stik: did you mean P_stick\?", lambda: r["P_stik"])
+        self.assertRaisesRegex(KeyError, "S_v: there are P_stick, P_slide", lambda: r["S_v"])
+        self.assertEqual((r.get("P_stik"), "P_stik" in r, "P_stick" in r), (None, False, True))
+
+    def test_short_texts(self):
+        r = stickslip.run(**SMALL, quantities="sticking,spectrum", omega=[1, 2])
+        self.assertRegex(repr(r["P_stick"]), r"^P_stick = 0\.\d+ \+- \de-\d\d$".replace(r"\de", r"\d\.\de"))
+        self.assertEqual(repr(r["S_v"]), "S_v = 2 values by omega velocity^2*time")
+        self.assertEqual(repr(r).splitlines(), [repr(one) for one in r.values()])
+
+    def test_pickled_results(self):
+        s = stickslip.sweep(mu_d=[0.25, 0.5], delta=0.5, quantities="sticking", accuracy=1e-2)
+        numpy.testing.assert_array_equal(pickle.loads(pickle.dumps(s))["P_stick"].value, s["P_stick"].value)
+
+
 class Files(Case):
+    def test_saved_results(self):
+        for found in (stickslip.run(**SMALL, quantities="sticking,spectrum", omega=[1, 2]),
+                      stickslip.sweep(mu_d=[0.25, 0.5], delta=0.5, quantities="sticking", accuracy=1e-2)):
+            found.save(self.folder / "µ.json")
+            self.same(found, stickslip.load(self.folder / "µ.json"))
+        self.assertRaisesRegex(ValueError, "path = .*a.h5: must end with .json", found.save, self.folder / "a.h5")
+        stickslip.run(**SMALL, quantities="sticking", keep=self.folder / "r.h5")
+        self.assertRaisesRegex(ValueError, "results of r have no summary", stickslip.load(self.folder / "r.h5").save, "a.json")
+
     def same(self, a, b):
         self.assertEqual(set(a), set(b))
         for key in a:

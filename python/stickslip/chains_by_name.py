@@ -1,0 +1,116 @@
+"""Chains of noises with a name."""
+
+import dataclasses
+import math
+
+from .chains import Chain, Meant
+from .needed import needed
+
+numpy, sparse, csgraph = needed("numpy"), needed("scipy.sparse"), needed("scipy.sparse.csgraph")
+
+FULL = 6      # deviations, beyond which levels of ou are left out
+RADIUS = 3.5  # deviations, within which the lattice of narrow_band lies
+
+
+def positive(**values: float) -> None:
+    """Refuse what is not in (0, inf), by its name."""
+    for name, value in values.items():
+        if not 0 < value < math.inf:
+            raise ValueError(f"{name} = {value}: must be in (0, inf)")
+
+
+def ou(deviation: float, tau: float, delta: float, levels: int | None = None) -> Chain:
+    """The Ornstein-Uhlenbeck chain of the program: forces i delta, |i| <= levels, rates (s^2/(tau delta^2)) (1 -+ i
+    delta^2/(2 s^2)) up and down, covariance s^2 exp(-t/tau).
+
+    Parameters
+    ----------
+    deviation, tau, delta
+        Standard deviation s [force], correlation time [time] and step [force].
+    levels
+        On each side of 0; by default as many as within 6 deviations, or as have positive rates.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not positive, or the rates would be negative.
+    """
+    positive(deviation=deviation, tau=tau, delta=delta)
+    full = 2 * (deviation / delta) ** 2  # the level from which the chain can only return
+    if levels is None:
+        levels = max(min(math.floor(full * (1 + 1e-12)), math.ceil(FULL * deviation / delta)), 1)
+    if not 1 <= levels <= math.ceil(full * (1 - 1e-12)) or full < 1:
+        raise ValueError(f"levels = {levels}: rates are positive in [1, {math.ceil(full * (1 - 1e-12))}] with delta = {delta}; "
+                         f"take fewer levels, or a delta of at most {math.sqrt(2) * deviation:g}")
+    tilt = delta**2 / (2 * deviation**2) * numpy.arange(-levels, levels + 1)
+    scale = deviation**2 / (tau * delta**2)
+    rates = sparse.diags([scale * (1 - tilt[:-1]), scale * (1 + tilt[1:])], [1, -1])
+    return Chain(delta * numpy.arange(-levels, levels + 1), rates, "ou", Meant(
+        lambda t: deviation**2 * numpy.exp(-t / tau), lambda w: 2 * deviation**2 * tau / (1 + (w * tau) ** 2)))
+
+
+def telegraph(amplitude: float, rate: float) -> Chain:
+    """Forces -amplitude and amplitude [force], switched at a rate [1/time]: covariance amplitude^2 exp(-2 rate t)."""
+    positive(amplitude=amplitude, rate=rate)
+    return Chain([-amplitude, amplitude], [[0, rate], [rate, 0]], "telegraph")
+
+
+def periodic(amplitude: float, period: float, phases: int = 16) -> Chain:
+    """Forces amplitude sin(2 pi k/phases) [force] in phases k that follow one another at the rate phases/period [1/time]:
+    the period has the relative deviation phases^(-1/2)."""
+    positive(amplitude=amplitude, period=period)
+    if phases < 2:
+        raise ValueError(f"phases = {phases}: must be at least 2; take for example 16")
+    k = numpy.arange(phases)
+    rates = sparse.csr_matrix((numpy.full(phases, phases / period), (k, (k + 1) % phases)), (phases, phases))
+    return Chain(amplitude * numpy.sin(2 * numpy.pi * k / phases), rates, "periodic")
+
+
+def narrow_band(deviation: float, gamma: float, omega: float, delta: float, radius: float = RADIUS) -> Chain:
+    """The first coordinate of a planar process dz = -(gamma + i omega) z dt + noise on a square lattice: covariance
+    s^2 exp(-gamma t) cos(omega t).
+
+    Rates are central differences where both directions keep them positive, of second order in delta; elsewhere jumps go
+    along the drift alone, which adds diffusion: a note says how much.
+
+    Parameters
+    ----------
+    deviation, gamma, omega
+        Standard deviation s [force], half width and angular frequency of the band [1/time].
+    delta
+        Step of the lattice [force].
+    radius
+        In deviations, within which states are kept.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not positive, or the lattice has a state alone.
+    """
+    positive(deviation=deviation, gamma=gamma, omega=omega, delta=delta, radius=radius)
+    most = math.floor(radius * deviation / delta * (1 + 1e-9))
+    i, j = (part.ravel() for part in numpy.mgrid[-most:most + 1, -most:most + 1])
+    kept = (i**2 + j**2) * delta**2 <= (radius * deviation) ** 2 * (1 + 1e-9)
+    i, j = i[kept], j[kept]
+    number = {place: n for n, place in enumerate(zip(i.tolist(), j.tolist()))}
+    spread = gamma * (deviation / delta) ** 2
+    rates, added = sparse.lil_matrix((len(i), len(i))), numpy.zeros(len(i))
+    for along, drift in ((0, -gamma * i - omega * j), (1, omega * i - gamma * j)):  # in steps
+        added += numpy.maximum(abs(drift) / (2 * spread) - 1, 0) / 2
+        for n, (a, b) in enumerate(number):
+            for way in (-1, 1):
+                to = number.get((a + way, b) if along == 0 else (a, b + way))
+                one_sided = abs(drift[n]) / 2 > spread
+                rate = max(way * drift[n], 0) if one_sided else spread + way * drift[n] / 2
+                if to is not None and rate > 0:
+                    rates[n, to] = rate
+    rates = rates.tocsr()
+    reached = csgraph.connected_components(rates, connection="strong")[1]
+    inside = reached == reached[number[0, 0]]
+    chain = Chain(delta * i[inside], rates[inside][:, inside], "narrow band", Meant(
+        lambda t: deviation**2 * numpy.exp(-gamma * t) * numpy.cos(omega * t),
+        lambda w: deviation**2 * gamma * (1 / (gamma**2 + (w - omega) ** 2) + 1 / (gamma**2 + (w + omega) ** 2))))
+    more = chain.stationary @ added[inside]
+    return dataclasses.replace(chain, notes=(
+        f"one-sided differences add {100 * more:.2g} % to the diffusion and the deviation is {chain.deviation:.4g} in the "
+        f"place of {deviation:.4g}; a delta below {delta:.3g} adds less",))

@@ -1,0 +1,259 @@
+"""Measured forces and accelerations: samples with their unit, gaps and drift, read from many kinds of files."""
+
+import dataclasses
+import os
+import pathlib
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from . import record_formats
+from .needed import needed
+from .record_formats import Column
+
+if TYPE_CHECKING:
+    import numpy
+    Array = numpy.ndarray
+numpy = needed("numpy")
+
+STANDARD_GRAVITY = 9.80665  # m/s^2, by the General Conference on Weights and Measures of 1901
+ACCELERATIONS = {"g": STANDARD_GRAVITY, "mg": STANDARD_GRAVITY / 1000, "gal": 0.01, "mgal": 1e-5, "m/s^2": 1,
+                 "cm/s^2": 0.01, "mm/s^2": 1e-3}
+TIMES = {"s": 1, "ms": 1e-3, "us": 1e-6, "min": 60, "h": 3600}
+NAMES_OF_TIME = ("t", "time", "times", "timestamp", "datetime", "date", "seconds", "sec", "zeit", "temps")
+GAP = 1.5      # steps between two samples, from which on samples are missing
+EVEN = 0.01    # of the step, to which all steps of an even record agree
+PARTS = 16     # of a record, whose means show its drift
+SMALLEST = 64  # samples of which a drift can be found
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Record:
+    """Samples of a force, or of an acceleration, over time.
+
+    Attributes
+    ----------
+    time, value
+        Rising times [s, where the source has a unit of time] and samples [unit], both of the shape (samples,).
+    unit
+        Such as "m/s^2"; empty where the source has none.
+    source
+        File, format and column.
+    notes
+        What was converted or left out, and what looks wrong, in sentences.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two samples, a value is no number, or a time does not rise.
+    """
+
+    time: "Array"
+    value: "Array"
+    unit: str = ""
+    source: str = ""
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name in ("time", "value"):
+            object.__setattr__(self, name, numpy.asarray(getattr(self, name), float))
+        if self.time.ndim != 1 or self.time.shape != self.value.shape or len(self.time) < 2:
+            raise ValueError(f"time, value: shapes {self.time.shape} and {self.value.shape}; give two arrays of one "
+                             "length of at least 2")
+        for name in ("time", "value"):
+            if not numpy.isfinite(getattr(self, name)).all():
+                n = int(numpy.flatnonzero(~numpy.isfinite(getattr(self, name)))[0])
+                raise ValueError(f"{name}[{n}] = {getattr(self, name)[n]}: must be finite; leave the sample out")
+        if (numpy.diff(self.time) <= 0).any():
+            n = int(numpy.flatnonzero(numpy.diff(self.time) <= 0)[0]) + 1
+            raise ValueError(f"time[{n}] = {self.time[n]:g}: must be above time[{n - 1}] = {self.time[n - 1]:g}; sort "
+                             "the samples, leave repeated ones out, or name another column of times")
+
+    def __repr__(self) -> str:
+        lines = [f"{len(self.time)} samples in {self.time[-1] - self.time[0]:g} s, step {self.step:g} s"
+                 + ("" if self.even else " (uneven)"),
+                 f"mean {self.value.mean():.4g}, standard deviation {self.value.std():.4g} {self.unit}".rstrip()]
+        return "\n".join(filter(None, [self.source, *lines, *self.notes]))
+
+    @property
+    def step(self) -> float:
+        """Median of the steps between samples [s]."""
+        return float(numpy.median(numpy.diff(self.time)))
+
+    @property
+    def gaps(self) -> "Array":
+        """Ends of the intervals where samples are missing, by [gap, 2] [s]: steps above 1.5 of the median one."""
+        at = numpy.flatnonzero(numpy.diff(self.time) > GAP * self.step)
+        return numpy.column_stack([self.time[at], self.time[at + 1]])
+
+    @property
+    def even(self) -> bool:
+        """Whether all steps but the gaps agree with `step` to 1 %, or to the digits of the times."""
+        steps = numpy.diff(self.time)
+        steps = steps[steps <= GAP * self.step]
+        return bool((abs(steps - self.step) <= EVEN * self.step + 8 * numpy.spacing(abs(self.time).max())).all())
+
+    @property
+    def drift(self) -> tuple[float, float]:
+        """Change of the value over the record along a straight line through the means of its 16 parts, and the standard
+        error of that change, from how far these means lie off the line [unit]; NaN below 64 samples."""
+        if len(self.value) < SMALLEST:
+            return numpy.nan, numpy.nan
+        middle, means = (numpy.array([part.mean() for part in numpy.array_split(values, PARTS)])
+                         for values in (self.time, self.value))
+        away = middle - middle.mean()
+        slope = away @ means / (away @ away)
+        off = means - means.mean() - slope * away
+        length = self.time[-1] - self.time[0]
+        return float(slope * length), float(length * numpy.sqrt(off @ off / (PARTS - 2) / (away @ away)))
+
+    def stretches(self) -> "list[Array]":
+        """The samples between gaps, an array each."""
+        at = numpy.flatnonzero(numpy.diff(self.time) > GAP * self.step) + 1
+        return numpy.split(self.value, at)
+
+    def between(self, begin: float, end: float) -> "Record":
+        """The samples of these times [s], both ends included."""
+        inside = (self.time >= begin) & (self.time <= end)
+        return dataclasses.replace(self, time=self.time[inside], value=self.value[inside])
+
+    def scaled(self, factor: float, unit: str = "") -> "Record":
+        """All values times a factor, in another unit: `record.scaled(1/9.81, "weight")`."""
+        return dataclasses.replace(self, value=self.value * factor, unit=unit or self.unit,
+                                   notes=(*self.notes, f"values were multiplied by {factor:g}"))
+
+    def resampled(self, step: float) -> "Record":
+        """Values at even steps [s], linear between samples; in gaps there are none."""
+        time = numpy.arange(self.time[0], self.time[-1] + step * 1e-9, step)
+        for low, high in self.gaps:
+            time = time[(time <= low) | (time >= high)]
+        return dataclasses.replace(self, time=time, value=numpy.interp(time, self.time, self.value), notes=(
+            *self.notes, f"interpolated to steps of {step:g} s"))
+
+
+def read_record(path: str | os.PathLike[str], *, column: int | str | None = None, time: int | str | None = None,
+                step: float | None = None, unit: str | None = None, delimiter: str | None = None,
+                decimal: str | None = None) -> Record:
+    """Read a measured force or acceleration.
+
+    Text with columns (any separator, decimal comma, header, byte-order mark, times as dates), AT2 of PEER, V2 of COSMOS
+    and of CSMIP, SAC in its alphanumeric form, .npy, and .mat of MATLAB 5 to 7 (needs SciPy). Accelerations in g, mg,
+    gal, mgal, cm/s^2 and mm/s^2 become m/s^2, with g = 9.80665 m/s^2; times in ms, us, min and h become s; `notes` say so.
+
+    Parameters
+    ----------
+    path
+        The file.
+    column, time
+        Names, or numbers from 0, of the columns (variables, channels) of the values and of the times. Without them times
+        are the column that is called so, else the first one if it rises; values are the only other one.
+    step
+        Sampling interval [s] where the file has no times.
+    unit
+        Of the values, in the place of what the file says.
+    delimiter, decimal
+        Separator of columns, and decimal sign, of a text that can be read in two ways.
+
+    Returns
+    -------
+    record
+        Samples that are no numbers are left out and counted in `notes`, as gaps and a significant drift are.
+
+    Raises
+    ------
+    ValueError
+        With the file, the line or the column, and a fix.
+    FileNotFoundError, ImportError
+        If there is no such file; if a .mat file meets no SciPy.
+
+    Source
+    ------
+    PEER ground motion database; COSMOS strong motion data format 1.20; SAC manual, "SAC data file format".
+    """
+    path = pathlib.Path(path)
+    if not path.is_file():
+        raise FileNotFoundError(f"{path}: no such file")
+    if step is not None and not step > 0:
+        raise ValueError(f"step = {step}: must be in (0, inf); give the sampling interval in seconds")
+    try:
+        form, columns = record_formats.columns_of(path, delimiter, decimal)
+        times = None if step is not None else _time_column(columns, time)
+        chosen = _value_column(columns, times, column)
+        record = _record(chosen, times, step or chosen.step, unit, f"{path.name}: {form}, column {chosen.name}")
+    except ValueError as problem:
+        raise ValueError(f"{path}: {problem}") from None
+    return dataclasses.replace(record, notes=(*record.notes, *_findings(record)))
+
+
+def _named(columns: Sequence[Column], wanted: int | str, option: str) -> Column:
+    """The column of a name or a number."""
+    for n, column in enumerate(columns):
+        if str(wanted) in (str(n), column.name) or str(wanted).lower() == column.name.lower():
+            return column
+    raise ValueError(f"{option} = {wanted}: there is no such column; take one of {_listed(columns)}")
+
+
+def _listed(columns: Sequence[Column]) -> str:
+    return ", ".join(f"{n} ({column.name})" for n, column in enumerate(columns))
+
+
+def _time_column(columns: Sequence[Column], wanted: int | str | None) -> Column | None:
+    if wanted is not None:
+        return _named(columns, wanted, "time")
+    for column in columns:
+        if column.name.lower() in NAMES_OF_TIME:
+            return column
+    rising = len(columns) > 1 and columns[0].step is None and (numpy.diff(columns[0].values) > 0).all()
+    return columns[0] if rising else None
+
+
+def _value_column(columns: Sequence[Column], times: Column | None, wanted: int | str | None) -> Column:
+    if wanted is not None:
+        return _named(columns, wanted, "column")
+    others = [column for column in columns if column is not times]
+    if len(others) == 1:
+        return others[0]
+    raise ValueError(f"column: there are {len(others)} columns of values; take one of {_listed(columns)}")
+
+
+def _record(chosen: Column, times: Column | None, step: float | None, unit: str | None, source: str) -> Record:
+    """The record of a column, in SI units where it has units."""
+    notes: list[str] = []
+
+    def converted(values: "Array", given: str, table: dict[str, float], standard: str) -> "tuple[Array, str]":
+        plain = record_formats.plain_unit(given)
+        if plain not in table:
+            return values, given
+        if table[plain] != 1:
+            notes.append(f"{given} became {standard}: times {table[plain]:g}")
+        return values * table[plain], standard
+
+    values, unit = converted(chosen.values, chosen.unit if unit is None else unit, ACCELERATIONS, "m/s^2")
+    if times is None and step is None:
+        raise ValueError("step: the file has no times; give the sampling interval in seconds, as step=0.01")
+    if times is None:
+        time = chosen.start + step * numpy.arange(len(values))
+    elif len(times.values) == len(values):
+        time, _ = converted(times.values, times.unit, TIMES, "s")
+    else:
+        raise ValueError(f"time = {times.name}: has {len(times.values)} entries, {chosen.name} has {len(values)}; name "
+                         "columns of one length")
+    known = numpy.isfinite(values) & numpy.isfinite(time)
+    if not known.all():
+        notes.append(f"{(~known).sum()} samples are no numbers and were left out")
+    return Record(time[known], values[known], unit, source, tuple(notes))
+
+
+def _findings(record: Record) -> list[str]:
+    """What looks wrong with a record, in sentences."""
+    found = []
+    if len(record.gaps):
+        lengths = numpy.diff(record.gaps)[:, 0]
+        longest = record.gaps[lengths.argmax()]
+        found.append(f"{len(lengths)} gaps of {lengths.sum():g} s in all, the longest from {longest[0]:g} to {longest[1]:g} s")
+    if not record.even:
+        steps = numpy.diff(record.time)
+        found.append(f"steps are uneven, from {steps.min():g} to {steps.max():g} s: resampled() makes them even")
+    drift, error = record.drift
+    if abs(drift) > 4 * error:
+        found.append(f"the value drifts by {drift:.3g} +- {error:.1g} {record.unit}".rstrip() + " from begin to end")
+    return found

@@ -1,0 +1,333 @@
+"""Chains of stickslip.noise: what is said of them, their files and runs, and chains of records."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+import warnings
+
+import numpy
+import scipy.integrate
+import scipy.linalg
+import scipy.signal
+import scipy.stats
+
+SOURCES = pathlib.Path(__file__).resolve().parents[2]
+BINARIES = pathlib.Path(os.environ.get("STICKSLIP_BINARIES", SOURCES / "build"))
+os.environ["STICKSLIP"] = str(BINARIES / "stickslip")
+sys.path.insert(0, str(SOURCES / "python"))
+import stickslip
+from stickslip import Record, chains_of_records, noise
+
+STEP = 0.01
+
+
+def filtered(count, rate, seed):
+    """Real part of dz = -rate z dt + noise at steps of 0.01, with the variance 1."""
+    shocks = numpy.random.default_rng(seed).standard_normal((2, count)) * numpy.sqrt(1 - abs(numpy.exp(-rate * STEP)) ** 2)
+    return scipy.signal.lfilter([1], [1, -numpy.exp(-rate * STEP)], shocks[0] + 1j * shocks[1]).real
+
+
+def record_of(values, step=STEP):
+    return Record(step * numpy.arange(len(values)), values)
+
+
+def path_of(x, rates, duration, seed, step=STEP):
+    """A record of a chain, which is simulated event by event."""
+    generator, rates = numpy.random.default_rng(seed), numpy.asarray(rates, float)
+    leaving, below = rates.sum(1), numpy.cumsum(rates, 1) / rates.sum(1)[:, None]
+    times, states = [0.0], [0]
+    while times[-1] < duration:
+        times.append(times[-1] + generator.exponential(1 / leaving[states[-1]]))
+        states.append(int(numpy.searchsorted(below[states[-1]], generator.random())))
+    samples = step * numpy.arange(round(duration / step))
+    return record_of(numpy.asarray(x)[numpy.array(states)[numpy.searchsorted(times, samples, "right") - 1]], step)
+
+
+ANY = numpy.array([[0, 1.5, 0.2], [0.3, 0, 1.1], [0.9, 0.1, 0]])
+
+
+class Chains(unittest.TestCase):
+    def test_against_dense_algebra(self):
+        x, chain = numpy.array([-1.0, 0.5, 2.0]), noise.Chain([-1, 0.5, 2], ANY)
+        q = ANY - numpy.diag(ANY.sum(axis=1))
+        p = numpy.linalg.solve(numpy.vstack([q.T[:2], [1, 1, 1]]), [0, 0, 1])
+        f = x - p @ x
+        numpy.testing.assert_allclose(chain.stationary, p, rtol=1e-14)
+        self.assertAlmostEqual(chain.mean, p @ x, delta=1e-14)
+        self.assertAlmostEqual(chain.deviation**2, p @ f**2, delta=1e-14)
+        times = numpy.array([[2.0, 0], [0.3, 1]])
+        expected = [[p @ (f * (scipy.linalg.expm(q * t) @ f)) for t in row] for row in times]
+        numpy.testing.assert_allclose(chain.covariance(times), expected, rtol=1e-10)
+        for w in (0.7, 3):
+            self.assertAlmostEqual(float(chain.spectrum(w)), 2 * (p * f @ numpy.linalg.solve(1j * w * numpy.eye(3) - q, f)).real,
+                                   delta=1e-13)
+        self.assertAlmostEqual(float(chain.spectrum(0)), float(chain.spectrum(1e-6)), delta=1e-10)
+        fine = numpy.linspace(0, 25, 201)
+        self.assertAlmostEqual(chain.correlation_time, scipy.integrate.simpson(chain.covariance(fine), fine) / chain.deviation**2,
+                               delta=1e-5)
+
+    def test_closed_forms(self):
+        t, w = numpy.array([0, 0.4, 2]), numpy.array([0, 0.5, 3])
+        for chain, deviation, rate in ((noise.ou(0.7, 2, 0.1), 0.7, 0.5), (noise.telegraph(1.5, 0.3), 1.5, 0.6)):
+            numpy.testing.assert_allclose(chain.covariance(t), deviation**2 * numpy.exp(-rate * t), rtol=1e-7)
+            numpy.testing.assert_allclose(chain.spectrum(w), 2 * deviation**2 * rate / (rate**2 + w**2), rtol=1e-7)
+        self.assertAlmostEqual(noise.periodic(2, 3, 16).deviation, 2**0.5, delta=1e-12)
+
+    def test_sums_scales_and_shifts(self):
+        a, b = noise.telegraph(1, 0.5), noise.Chain([-1, 0.5, 2], ANY)
+        t = numpy.array([0, 0.7])
+        both = a + 2 * b + 0.3
+        self.assertAlmostEqual(both.mean, 2 * b.mean + 0.3, delta=1e-13)
+        numpy.testing.assert_allclose(both.covariance(t), a.covariance(t) + 4 * b.covariance(t), rtol=1e-10)
+        numpy.testing.assert_array_equal(both.x[:3], -1 + 2 * b.x + 0.3)  # that of b runs first
+        self.assertAlmostEqual((1 + a).mean, 1, delta=1e-14)
+        meant = noise.ou(1, 1, 0.5) + 2 * noise.ou(1, 3, 0.5)
+        numpy.testing.assert_allclose(meant.meant.covariance(t), numpy.exp(-t) + 4 * numpy.exp(-t / 3))
+
+    def test_what_is_no_chain(self):
+        for x, rates, message in (([0, 1], [[0, -1], [1, 0]], r"rates\[0, 1\] = -1: must be in \[0, inf\)"),
+                                  ([0, numpy.nan], [[0, 1], [1, 0]], "x = nan"), ([0], [[0]], "at least 2"),
+                                  ([0, 1, 2], [[0, 1, 0], [1, 0, 1], [0, 0, 0]], "state 2 and state 0 do not reach"),
+                                  ([0, 1], [[0, numpy.inf], [1, 0]], "= inf: must be")):
+            self.assertRaisesRegex(ValueError, message, noise.Chain, x, rates)
+        for function, values, message in ((noise.ou, (1, -1, 0.5), r"tau = -1: must be in \(0, inf\)"),
+                                          (noise.ou, (1, 1, 0.5, 99), r"levels = 99.*\[1, 8\]"),
+                                          (noise.ou, (1, 1, 1.5), "a delta of at most 1.41421"),
+                                          (noise.periodic, (1, 1, 1), "phases = 1"),
+                                          (noise.narrow_band, (1, 0, 1, 0.5), "gamma = 0")):
+            self.assertRaisesRegex(ValueError, message, function, *values)
+
+    def test_pictures(self):
+        figure = noise.narrow_band(1, 1, 1, 0.5).plot()
+        self.assertEqual([len(axes.lines) for axes in figure.axes], [2, 2])
+        self.assertEqual([len(axes.lines) for axes in noise.periodic(1, 2, 4).plot(figure.axes).axes], [3, 3])
+
+
+class Runs(unittest.TestCase):
+    """The program with these chains. Expected values are those of another program (dense elements, any chain)."""
+
+    def check(self, chain, expected, **options):
+        r = stickslip.run(noise=chain, **options)
+        for key, value in expected.items():
+            self.assertAlmostEqual(r[key].value, value, delta=2e-9 + r[key].error, msg=key)
+        return r
+
+    def test_a_periodic_force_with_noise(self):
+        chain = noise.periodic(1.2, 4, 16) + noise.ou(0.7, 1, 0.5, levels=4)
+        self.check(chain, {"P_stick": 0.26643150176, "mean_slide": 1.9426508185}, mu_d=0.6, accuracy=1e-8)
+
+    def test_a_narrow_band(self):
+        self.check(noise.narrow_band(1, 0.5, 2, 0.5), {"P_stick": 0.460412722, "mean_slide": 1.9094991454}, mu_d=0.5,
+                   accuracy=1e-8)
+
+    def test_spectra_are_those_of_the_program(self):
+        omega = [0, 0.5, 2]
+        for chain in (noise.ou(1, 1, 0.25), noise.narrow_band(1, 0.5, 2, 0.5), noise.periodic(1, 2) + noise.ou(1, 1, 1)):
+            r = stickslip.run(noise=chain, quantities="noise_spectrum,noise_law", omega=omega, mu_s=0.9, mu_d=0.5)
+            numpy.testing.assert_allclose(chain.spectrum(omega), r["S_x"].value, rtol=1e-10)
+            self.assertAlmostEqual(chain.deviation**2, r["E_X2"].value, delta=1e-12)
+
+    def test_files(self):
+        chain = noise.ou(1, 1, 0.5)
+        with tempfile.TemporaryDirectory() as folder:
+            states, rates, levels = (os.path.join(folder, name) for name in ("s.csv", "r.csv", "l.csv"))
+            chain.save(states, rates)
+            chain.save(levels)
+            found = [stickslip.run(mu_d=0.5, **options)["P_stick"].value for options in (
+                {"noise": chain}, {"noise": "chain", "noise_states": states, "noise_rates": rates},
+                {"noise": "file", "noise_file": levels}, {"noise": "ou", "delta": 0.5})]
+            numpy.testing.assert_allclose(found, found[0], rtol=1e-9)
+            self.assertRaisesRegex(ValueError, "jumps beyond its neighbours", noise.periodic(1, 2).save, levels)
+            with self.assertRaisesRegex(ValueError, "noise_states = .*leave one out"):
+                stickslip.run(noise=chain, noise_states=states)
+        sweep = stickslip.sweep(noise=chain, mu_d=[0.25, 0.5])
+        self.assertAlmostEqual(sweep["P_stick"].value[1], found[0], delta=1e-12)
+
+
+class OfRecords(unittest.TestCase):
+    def setUp(self):
+        filters = warnings.catch_warnings()
+        filters.__enter__()
+        self.addCleanup(filters.__exit__)
+        warnings.simplefilter("ignore", UserWarning)
+
+    def refused(self, message, *words, function=noise.record, **options):
+        self.assertRaisesRegex(ValueError, message, function, *words, **options)
+
+    def test_counts_by_hand(self):
+        # Level 0 for 2 samples, up to level 2 over one that is not seen, 2 samples there, 1 on level 1, and back.
+        record, x = record_of(numpy.tile([0.0, 0, 2, 2, 1], 40), 0.5), numpy.array([0.0, 1, 2])
+        self.refused("34 % of the jumps lead over more than one level", record, x, "neighbours", False,
+                     function=chains_of_records._counted)
+        spent, jumps, far = chains_of_records._counted(record, x, "any", False)
+        numpy.testing.assert_array_equal(jumps, [[0, 0, 40], [39, 0, 0], [0, 40, 0]])
+        numpy.testing.assert_array_equal(spent, [40, 19.5, 40])  # 39 intervals lead from level 1 to 0
+        self.assertAlmostEqual(far, 40 / 119)
+        # Within its bin a record counts nothing, however it moves; over a level in between it counts both jumps.
+        rough = record_of(numpy.tile([0, 0.9, -0.4, 0.9, 1.1, 0.1, 1.9, 2.2, 1.1, 0.9, -0.1] + 30 * [0, 0.1], 20), 1)
+        spent, jumps, far = chains_of_records._counted(rough, x, "neighbours", False)
+        numpy.testing.assert_array_equal(jumps, [[0, 20, 0], [20, 0, 20], [0, 20, 0]])
+        self.assertEqual((far, spent.sum()), (0, 71 * 20 - 1))
+
+    def test_rates_of_a_chain_lie_in_their_intervals(self):
+        x, rates = numpy.array([-1, 0.0, 2]), numpy.array([[0, 2.0, 0], [0.7, 0, 0.5], [0, 1.5, 0]])
+        inside = total = 0
+        for seed in range(12):
+            fit = noise.record(path_of(x, rates, 400, seed)).fit
+            where = rates > 0
+            inside += ((fit.low < rates) & (rates < fit.high))[where].sum()
+            total += where.sum()
+            self.assertTrue((fit.low[~where] == 0).all() and (fit.high[~where] == 0).all())
+        self.assertGreaterEqual(inside, 0.85 * total)  # 95 % are expected; seeds are fixed
+        self.assertLess(((1.3 * rates > fit.low) & (1.3 * rates < fit.high))[where].sum(), where.sum())
+        self.assertTrue((noise.record(path_of(x, rates, 400, 0), confidence=0.5).fit.high <= fit.high * 2).all())
+
+    def test_garwood_intervals(self):
+        fit = noise.record(path_of([0, 1.0], numpy.array([[0, 1.0], [1, 0]]), 100, 3)).fit
+        n, t = fit.jumps[0, 1], fit.spent[0]
+        poisson = scipy.stats.poisson
+        self.assertAlmostEqual(poisson.sf(n - 1, fit.low[0, 1] * t), 0.025, delta=1e-9)
+        self.assertAlmostEqual(poisson.cdf(n, fit.high[0, 1] * t), 0.025, delta=1e-9)
+
+    def test_jumps_of_any_length(self):
+        record = path_of(numpy.array([-1, 0.5, 2]), ANY, 2000, 4)
+        self.refused("of the jumps lead over more than one level.*jumps=\"any\"", record)
+        chain = noise.record(record, jumps="any")
+        where = ANY > 0
+        numpy.testing.assert_allclose(chain.rates.toarray()[where], ANY[where], atol=0.15)
+        self.assertFalse(chain.neighbours_only)
+
+    def test_rates_are_multiplied_on_request_alone(self):
+        record = record_of(filtered(200000, 1, 1))
+        with self.assertWarnsRegex(UserWarning, "correlation time of the chain is 1.4.* times that of the record"):
+            plain = noise.record(record)
+        self.assertEqual(plain.fit.factor, 1)
+        self.assertTrue(any("match_time=True" in note for note in plain.notes))
+        numpy.testing.assert_allclose(plain.rates.toarray(), plain.fit.jumps / plain.fit.spent[:, None])
+        matched = noise.record(record, match_time=True)
+        self.assertAlmostEqual(matched.correlation_time, matched.fit.correlation_time[1], delta=1e-9)
+        self.assertIn(f"all rates were multiplied by {matched.fit.factor:.4g}", str(matched))
+        self.assertGreater(matched.fit.factor, 1.2)
+        self.assertTrue((matched.fit.low < matched.rates.toarray() + (matched.fit.low == 0)).all())
+        self.assertLess(abs(matched.fit.correlation_time[1] - 1), 3 * matched.fit.error)
+        for low, high, ratio, error in matched.fit.bands:
+            self.assertLess(abs(ratio - 1), 0.1 + 3 * error, (low, high))
+
+    def test_the_chain_of_ou_noise_does_what_the_program_has_for_it(self):
+        chain = noise.record(record_of(filtered(400000, 1, 5)), 0.4 * numpy.arange(-7, 8), match_time=True)
+        ours, theirs = (stickslip.run(mu_d=0.5, accuracy=1e-4, **options)["P_stick"].value
+                        for options in ({"noise": chain}, {"delta": 0.4}))
+        self.assertLess(abs(ours - theirs), 0.02)  # about 0.01 by the length of the record
+
+    def test_thresholds_lie_halfway_between_levels(self):
+        skewed = record_of(numpy.exp(0.5 * filtered(400000, 1, 5)))
+        for record, mu_s, sides in ((record_of(filtered(400000, 1, 5)), 0.9, (-1, 1)), (skewed, 1.7, (1,))):
+            for levels in (9, 12, 15):
+                x = noise.record(record, levels, mu_s=mu_s).x
+                self.assertLessEqual(abs(len(x) - levels), 3)
+                for side in sides:
+                    above = numpy.searchsorted(x, side * mu_s)
+                    shares = [scipy.stats.norm.ppf((record.value <= level).mean()) for level in
+                              (x[above - 1], side * mu_s, x[above])]
+                    self.assertAlmostEqual(shares[1], (shares[0] + shares[2]) / 2, delta=0.01)
+
+    def test_gaps_are_skipped(self):
+        one, other = (path_of([0, 1.0], [[0, 1], [2, 0]], 300, seed).value for seed in (1, 2))
+        time = numpy.concatenate([STEP * numpy.arange(len(one)), 1000 + STEP * numpy.arange(len(other))])
+        fit = noise.record(Record(time, numpy.concatenate([one, other]))).fit
+        self.assertAlmostEqual(fit.spent.sum(), STEP * (len(one) + len(other) - 2), delta=1e-9)
+        crossings = sum((numpy.diff(part) != 0).sum() for part in (one, other))
+        self.assertEqual(fit.jumps.sum(), crossings)
+
+    def test_what_levels_cannot_follow(self):
+        swing = filtered(100000, 0.3 + 2j, 7)
+        self.refused(r"autocorrelation swings to -0\.6.*narrow_band_of", record_of(swing))
+        time = STEP * numpy.arange(4000)
+        shaking = filtered(4000, 3 + 12j, 9) * time * numpy.exp(-time / 4)
+        self.refused("autocorrelation swings to", record_of(shaking))
+        differences = numpy.diff(filtered(50001, 50, 3))  # a force whose integral is bounded
+        self.refused("autocorrelation|lead over more", record_of(differences))
+        self.refused("levels: 2 jumps from level .* are too few to count, 10 are needed", record_of(filtered(2000, 1, 1)))
+        self.refused("too few to count, 10 are needed; take fewer levels", record_of(filtered(20000, 1, 2)), [-1, 0, 1, 3.4])
+        self.refused("do not change", record_of(numpy.ones(100)))
+        self.refused(r"uneven; take record.resampled", Record(numpy.cumsum(1 + 0.3 * numpy.sin(numpy.arange(99.0))),
+                                                              numpy.arange(99.0)))
+        self.refused("levels = 1: must be at least 2", record_of(filtered(20000, 1, 2)), 1)
+        self.refused("two, rising", record_of(filtered(20000, 1, 2)), [1, 0])
+        self.refused("neighbours or any", record_of(swing), jumps="all")
+        self.refused("less than twice its memory", record_of(numpy.arange(50.0)))
+
+    def test_a_narrow_band(self):
+        record = record_of(0.2 + 1.5 * filtered(100000, 0.3 + 2j, 7))
+        with self.assertWarnsRegex(UserWarning, "add .* % to the diffusion"):
+            noise.narrow_band_of(record)
+        chain = noise.narrow_band_of(record, delta=0.5)
+        said = dict(zip(("deviation", "gamma", "omega"), ([float(word) for word in part.split()[1::2]] for part in
+                                                          chain.notes[0].replace("+-", "x").split(", "))))
+        for (name, (value, error)), true in zip(said.items(), (1.5, 0.3, 2)):
+            self.assertLess(abs(value - true), 4 * error, name)
+            self.assertLess(error, 0.2 * true, name)
+        self.assertAlmostEqual(chain.mean, record.value.mean(), delta=1e-9)
+        self.refused("does not swing", record_of(filtered(100000, 1, 1)), function=noise.narrow_band_of)
+        two = record_of(filtered(100000, 0.1 + 2j, 1) + filtered(100000, 0.1 + 5j, 2))
+        self.refused("leaves that of a narrow band by", two, function=noise.narrow_band_of)
+
+    def test_a_shaking_that_ends_is_said_to_be_none(self):
+        time = STEP * numpy.arange(4000)
+        shaking = record_of(filtered(4000, 3 + 12j, 9) * time * numpy.exp(-time / 4))
+        with self.assertWarnsRegex(UserWarning, "the deviation goes from .* begin and end of a shaking are not represented"):
+            noise.narrow_band_of(shaking)
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory(prefix="levels µ ")
+        self.addCleanup(holder.cleanup)
+        self.folder = pathlib.Path(holder.name)
+
+    def levels(self, *words, status=0):
+        done = subprocess.run([sys.executable, "-m", "stickslip", "levels", *map(str, words)], cwd=self.folder,
+                              capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(SOURCES / "python")})
+        self.assertEqual(done.returncode, status, done.stderr)
+        return done.stdout if status == 0 else done.stderr
+
+    def test_from_a_file_to_numbers(self):
+        values = filtered(60000, 1, 1)
+        rows = "".join(f"{STEP * n:.2f};{v:.6f}\n".replace(".", ",") for n, v in enumerate(values))
+        (self.folder / "wind.csv").write_text("t;north;east\n" + rows.replace("\n", ";0\n"))
+        said = self.levels("wind.csv", "--column", "north", "--scale", "2", "--match-time", "--picture", "wind.png")
+        for part in ("60000 samples", "values were multiplied by 2", "correlation time: chain", "all rates were multiplied",
+                     "-noise file -noise_file wind_levels.csv", "wind.png"):
+            self.assertIn(part, said)
+        self.assertTrue((self.folder / "wind.png").read_bytes().startswith(b"\x89PNG"))
+        r = stickslip.run(noise="file", noise_file=self.folder / "wind_levels.csv", quantities="noise_law", mu_d=0.5)
+        self.assertAlmostEqual(r["E_X2"].value, 4, delta=1)
+        self.assertIn("2 columns of values", self.levels("wind.csv", status=2))
+        self.assertIn("no such file", self.levels("none.csv", status=2))
+
+    def test_chains_take_two_files(self):
+        numpy.save(self.folder / "a.npy", path_of(numpy.array([-1, 0.5, 2]), ANY, 500, 4).value)
+        said = self.levels("a.npy", "--step", STEP, "--jumps", "any")
+        self.assertIn("-noise chain -noise_states a_states.csv -noise_rates a_rates.csv", said)
+        r = stickslip.run(noise="chain", noise_states=self.folder / "a_states.csv", noise_rates=self.folder / "a_rates.csv",
+                          quantities="sticking", mu_d=0.5)
+        self.assertTrue(0 < r["P_stick"].value < 1)
+        numpy.save(self.folder / "b.npy", filtered(50000, 1 + 2j, 4))
+        self.assertIn("swings to", self.levels("b.npy", "--step", STEP, status=2))
+        self.assertIn("gamma", self.levels("b.npy", "--step", STEP, "--narrow-band"))
+
+
+class WithoutSciPy(unittest.TestCase):
+    def test_one_sentence(self):
+        done = subprocess.run([sys.executable, "-c", "import sys; sys.modules['scipy'] = None; import stickslip; "
+                               "stickslip.noise"], capture_output=True, text=True,
+                              env={**os.environ, "PYTHONPATH": str(SOURCES / "python")})
+        self.assertEqual(done.stderr.splitlines()[-1], "ImportError: stickslip needs scipy for this: pip install scipy, or "
+                         "on Debian apt-get install python3-scipy")
+
+
+if __name__ == "__main__":
+    unittest.main()
