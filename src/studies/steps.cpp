@@ -55,7 +55,7 @@ Series of_tau(const Context& context) {
   const double opposed =
       std::max(scene.friction.mu_s, scene.friction.mu_s_minus.value_or(0)) + std::abs(scene.bias);
   const double first = std::min(scene.tau, std::pow(share / (2 * opposed), 2));
-  Series series{"tau", "", ", tau -> 0", std::min(context.given.question.accuracy, 1e-9)};
+  Series series{"tau", "", ", tau -> 0", std::min(context.given.question.accuracy, 1e-8)};
   for (int n = 0; n < context.study.steps.value_or(7); ++n) {
     cases::Case at = context.given;
     at.scene.tau = first * std::ldexp(1, -2 * n);
