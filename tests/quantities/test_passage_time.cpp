@@ -1,10 +1,14 @@
 #include <cmath>
 
 #include "../common/catch.hpp"
+#include "../common/chains.hpp"
 #include "../common/solved.hpp"
+#include "../common/tallies.hpp"
+#include "stickslip/catalogue/first_passage_keys.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/quantities/first_passage.hpp"
 #include "stickslip/quantities/passage_time.hpp"
+#include "stickslip/simulation/sampler.hpp"
 
 using namespace stickslip;
 using model::Passage;
@@ -39,6 +43,16 @@ operators::SystemKey passage_key(const model::Process& process, Passage passage,
 quantities::PassageTime time_of(Solved& solved, Passage passage, double w, const Start& start) {
   return quantities::passage_time(solved.systems, passage_key(solved.systems.process(), passage, w),
                                   start);
+}
+
+simulation::Tally simulated(const model::Process& process, const cases::Question& question,
+                            int count) {
+  simulation::Sampler sampler(question, process);
+  simulation::Tally all(question, process);
+  for (int batch = 0; batch * 1000 < count; ++batch) {
+    all.merge(sampler.batch(1, static_cast<std::uint64_t>(batch), 1000).pack());
+  }
+  return all;
 }
 
 constexpr Passage kPassages[] = {Passage::both, Passage::up, Passage::down};
@@ -160,6 +174,36 @@ TEST_CASE("passage time: hardly any from just below the speed") {
     const auto time = time_of(solved, Passage::up, w, {level, w - below});
     CHECK(time.mean.value == Approx(below / force).epsilon(0.02 + 20 * below));
     CHECK(time.variance.value < below);
+  }
+}
+
+TEST_CASE("passage time: as simulated from every start", "[real]") {
+  auto any = passing(0.25);
+  any.noise.name = "chain";
+  any.noise.table = std::make_shared<const model::LevelTable>(test::five_states());
+  for (const auto& s : {test::on_full_noise(passing()), test::on_full_noise(passing(0.3)), any}) {
+    Solved solved(test::on_hp(s, 10));
+    const auto& process = solved.systems.process();
+    for (const Passage passage : kPassages) {
+      for (const auto& start : {kRest, kStationary, Start{process.lowest_static() - 1, -0.1}}) {
+        const cases::Question question{.quantities = {catalogue::kFirstPassageTime.quantity},
+                                       .velocity = {0.4, 0.2},
+                                       .start = start,
+                                       .passage = passage};
+        const auto tally = simulated(process, question, 20000);
+        for (std::size_t n : {0, 1}) {
+          const auto found = time_of(solved, passage, question.velocity[n], start);
+          const auto holds = [&](const char* key, double value) {
+            const auto e = test::estimate(tally, key, n);
+            return std::abs(e.value - value) < 4.5 / 1.96 * (e.high - e.value);
+          };
+          INFO("bias " << s.bias << ", passage " << static_cast<int>(passage) << ", start "
+                       << static_cast<int>(start.kind) << ", w " << question.velocity[n]);
+          CHECK(holds("first_passage_mean", found.mean.value));
+          CHECK(holds("first_passage_variance", found.variance.value));
+        }
+      }
+    }
   }
 }
 

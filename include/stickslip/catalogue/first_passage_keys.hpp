@@ -33,7 +33,7 @@ inline constexpr Entry kFirstPassageTime{
     .word = "first_passage",
     .synonyms = "fpt, mfpt, passage, exit_time, hitting_time",
     .title = "mean and variance of the time until V first reaches a speed from -start",
-    .routes = {Route::excursion},
+    .routes = {Route::excursion, Route::monte_carlo},
     .options = "velocity, start, passage",
     .rows = kFirstPassageRows,
     .weighs_tail = true,
