@@ -564,7 +564,7 @@ TEST_CASE("request: first passages are of speeds that are reached, and not at on
   check_refusal({passage + "99", {"-velocity", "no body reaches"}});
   check_refusal({passage + "0.5 -start 0.5,0.75", {"-start", "passed at once"}});
   check_refusal({passage + "0.5 -passage down -start 0.5,-2", {"-start", "passed at once"}});
-  check_refusal({passage + "0.5 -passage sideways", {"-passage = sideways", "both, up, down"}});
+  check_refusal({passage + "0.5 -passage sideways", {"-passage = sideways", "both, up or down"}});
   CHECK(Given("-quantities peak -velocity 0.5 -passage up").read().warnings.size() == 1);
 }
 
