@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "all.hpp"
@@ -5,6 +7,7 @@
 #include "ou_noise.hpp"
 #include "stickslip/model/drag_law.hpp"
 #include "stickslip/model/largest_force.hpp"
+#include "stickslip/support/errors.hpp"
 
 namespace stickslip::effects {
 namespace {
@@ -31,14 +34,28 @@ model::Parameters expression_values(const model::Scene& scene) {
   return {{kExpression, scene.drag_expression}, {kTau, scene.tau}};
 }
 
+model::Drag drag_of(const std::string& formula, const model::Scene& scene) {
+  const auto process = scene.meant();
+  return model::parse_drag(
+      formula, scene.friction, scene.tau, model::largest_force(scene), process.mean_force(),
+      std::max(process.noise.tail_intensity(), process.mirrored().noise.tail_intensity()));
+}
+
 }  // namespace
 
-bool set_drag(Given& given, model::Scene& scene, const char* option, const std::string& formula) {
-  const auto process = scene.meant();
+void renew_drag(model::Scene& scene) {
+  if (scene.drag_expression.empty()) return;
   try {
-    scene.drag = model::parse_drag(
-        formula, scene.friction, scene.tau, model::largest_force(scene), process.mean_force(),
-        std::max(process.noise.tail_intensity(), process.mirrored().noise.tail_intensity()));
+    scene.drag = drag_of(scene.drag_expression, scene);
+  } catch (const model::UnfitLaw& unfit) {
+    throw BadInput(fmt::format("-{} = {}: with -tau {:g}, {}; {}", kExpression,
+                               scene.drag_expression, scene.tau, unfit.what(), unfit.fix()));
+  }
+}
+
+bool set_drag(Given& given, model::Scene& scene, const char* option, const std::string& formula) {
+  try {
+    scene.drag = drag_of(formula, scene);
   } catch (const model::UnfitLaw& unfit) {
     given.refuse(option, unfit.what(), unfit.fix());
     return false;

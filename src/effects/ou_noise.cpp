@@ -91,7 +91,7 @@ std::string stronger_ou(const model::Scene& scene) {
 
 Option tau_option() {
   return Option::real(kTau, "time", "1", Range::positive(), "correlation time of -noise ou",
-                      "for white noise take a small value such as 0.01",
+                      "the limit of white noise is that of -study tau",
                       {.symbol = "\\tau",
                        .label = "correlation time of the noise",
                        .slider = Slider{.low = 0.05, .high = 10, .start = 1, .logarithmic = true},

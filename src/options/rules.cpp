@@ -5,6 +5,7 @@
 
 #include "reading.hpp"
 #include "stickslip/catalogue/given_force_keys.hpp"
+#include "stickslip/catalogue/noise_spectrum_keys.hpp"
 #include "stickslip/effects/effect.hpp"
 #include "stickslip/outputs/output.hpp"
 #include "stickslip/support/text.hpp"
@@ -102,6 +103,7 @@ class Rules {
     refuse({"study"}, of_steps && !effects::noises().knows(r_.scene, "delta"),
            "decreases -delta, which -noise " + r_.scene.noise.name + " does not have",
            "leave it out, or take -noise ou");
+    white_noise();
     refuse({"plan"}, r_.plan_only && study_, "predicts one run, not a study", "leave -study out");
   }
 
@@ -139,7 +141,7 @@ class Rules {
            "add sticking, moments or noise_law");
     require_sticking();
     require_own();
-    report("quantities", study_ && others,
+    report("quantities", study_ && !to_white_noise_ && others,
            "must be sticking, moments and noise_law, or some of these, in a study",
            "leave the others out");
     report("lambda", method_.small_lambda && !one_lambda,
@@ -185,6 +187,53 @@ class Rules {
            fmt::format("asks for {} which needs a file", what), "add " + enumerate(fixes, "or"));
   }
 
+  // What -study tau takes from options that fix what it changes.
+  void white_noise() {
+    refuse({"study"}, to_white_noise_ && r_.scene.noise.name != "ou",
+           "takes the -tau of -noise ou to 0, and -noise is " + r_.scene.noise.name,
+           "leave it out, or take -noise ou");
+    refuse({"noise_deviation"}, to_white_noise_,
+           "with -study tau: noise of a fixed deviation has the intensity 2 deviation^2 tau, which "
+           "vanishes with tau. White noise of intensity 2 is the limit where the deviation is "
+           "1/sqrt(tau)",
+           "leave it out; units of time and force give other intensities");
+    const auto unfit = wanted([](const auto& entry) { return !has_limit(entry); });
+    report("quantities", to_white_noise_ && !unfit.empty(),
+           "asks for " + enumerate(unfit, "and") +
+               ", and -study tau follows numbers at arguments that do not depend on the noise",
+           "leave that out");
+    const auto& friction = r_.scene.friction;
+    const double bias = r_.scene.bias;
+    const bool held = bias <= friction.mu_s && -bias <= friction.mu_s_minus.value_or(friction.mu_s);
+    const auto of_phases = wanted([](const auto& entry) { return entry.of_phases; });
+    report("quantities", to_white_noise_ && !held && !of_phases.empty(),
+           fmt::format("asks for {}, about sticking phases: for small tau none begin where the "
+                       "bias {:g} exceeds static friction",
+                       enumerate(of_phases, "and"), bias),
+           "leave that out, or take a larger -mu_s");
+  }
+
+  // The words of those asked for that are so.
+  template <class Fact>
+  [[nodiscard]] std::vector<std::string> wanted(const Fact& fact) const {
+    std::vector<std::string> words;
+    for (const auto* entry : catalogue::entries()) {
+      if (q_.wants(entry->quantity) && fact(*entry)) words.emplace_back(entry->word);
+    }
+    return words;
+  }
+
+  [[nodiscard]] static bool has_limit(const catalogue::Entry& entry) {
+    using enum Quantity;
+    const auto without = {density,
+                          entry_law,
+                          trajectory,
+                          sensitivity,
+                          catalogue::kGivenForce.quantity,
+                          catalogue::kNoiseSpectrum.quantity};
+    return std::find(without.begin(), without.end(), entry.quantity) == without.end();
+  }
+
   // What quantities say of themselves.
   void require_own() {
     const bool unbounded = !r_.scene.v_max && !r_.scene.process(1).drag.bounds_velocity();
@@ -206,10 +255,10 @@ class Rules {
   // Where no level of the noise holds the body, there are no phases, and the rest exists.
   void require_sticking() {
     if (!settings_.sound() || r_.scene.meant().sticks()) return;
-    std::vector<std::string> without, missing;
+    const auto missing = wanted([](const auto& entry) { return entry.of_phases; });
+    std::vector<std::string> without;
     for (const auto* entry : catalogue::entries()) {
       if (!entry->of_phases) without.emplace_back(entry->word);
-      if (entry->of_phases && q_.wants(entry->quantity)) missing.emplace_back(entry->word);
     }
     const auto noise = r_.scene.meant().noise;
     const auto why =
@@ -264,6 +313,7 @@ class Rules {
   const Question& q_;
   const SolutionMethod& method_ = r_.method.row();
   const bool study_ = r_.study.kind != StudyKind::none;
+  const bool to_white_noise_ = r_.study.kind == StudyKind::white_noise;
 };
 
 }  // namespace

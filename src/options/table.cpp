@@ -179,10 +179,11 @@ std::vector<Option> study_options() {
       choice("study", "none", words_of(kStudies),
              "p: upwind scheme with p = 2, 4, ..., observed order, Richardson extrapolation. "
              "delta: the same for decreasing noise steps, with mu_s on a level and between two. "
+             "tau: the limit of white noise, tau -> 0 with delta a fixed share of the deviation. "
              "heuristic: the paper's extrapolation beside converged values. cost: error against "
              "time of all methods"),
       Option::integer("study_steps", "", Range::whole(4, 20),
-                      "number of values of p or delta (default 8)",
+                      "number of values of p or delta (default 8), or of tau (default 7)",
                       "three values give an order, a fourth its uncertainty"),
       Option::integer("study_repeats", "3", Range::whole(1, 99),
                       "runs of each case of -study cost, of which the median time counts",

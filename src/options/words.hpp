@@ -24,11 +24,10 @@ inline constexpr Word<model::Passage> kPassages[] = {
     {"both", model::Passage::both}, {"up", model::Passage::up}, {"down", model::Passage::down}};
 inline constexpr Word<TransientSolver> kTransientSolvers[] = {
     {"krylov", TransientSolver::krylov}, {"stepping", TransientSolver::stepping}};
-inline constexpr Word<StudyKind> kStudies[] = {{"none", StudyKind::none},
-                                               {"p", StudyKind::points},
-                                               {"delta", StudyKind::steps},
-                                               {"heuristic", StudyKind::heuristic},
-                                               {"cost", StudyKind::cost}};
+inline constexpr Word<StudyKind> kStudies[] = {
+    {"none", StudyKind::none},           {"p", StudyKind::points},
+    {"delta", StudyKind::steps},         {"tau", StudyKind::white_noise},
+    {"heuristic", StudyKind::heuristic}, {"cost", StudyKind::cost}};
 /// Whether progress is shown; where that is open, the terminal decides.
 inline constexpr Word<std::optional<bool>> kProgress[] = {
     {"auto", std::nullopt}, {"on", true}, {"off", false}};

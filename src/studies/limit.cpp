@@ -1,5 +1,6 @@
 #include "stickslip/studies/limit.hpp"
 
+#include <algorithm>
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <cstdint>
@@ -24,7 +25,7 @@ Limit through(Samples samples, double first_power, double step) {
   weights[0] = 1;
   for (int s = 0; s < n; ++s) {
     conditions(0, s) = 1;
-    const double d = samples[s].delta / samples.back().delta;
+    const double d = samples[s].at / samples.back().at;
     for (int m = 1; m < n; ++m) conditions(m, s) = std::pow(d, first_power + (m - 1) * step);
   }
   algebra::LuFactors(std::move(conditions)).solve(weights, false);
@@ -36,9 +37,25 @@ Limit through(Samples samples, double first_power, double step) {
   return limit;
 }
 
+// Through as many of the last samples as make the error smallest. It compares with the limit
+// without the last sample and, if `shorter`, with the one of a power less.
+Limit best_through(Samples samples, double first_power, double step, bool shorter) {
+  Limit best{kNone, kNone};
+  for (std::size_t n = 2; n < samples.size(); ++n) {
+    const Limit now = through(samples.last(n), first_power, step);
+    const auto distance = [&](Samples others) {
+      return std::abs(now.value - through(others, first_power, step).value);
+    };
+    double change = distance(samples.last(n + 1).first(n));
+    if (shorter) change = std::max(change, distance(samples.last(n - 1)));
+    if (!(change + now.error >= best.error)) best = {now.value, change + now.error};
+  }
+  return best;
+}
+
 Limit by_observed_order(Samples samples, double order) {
   const auto from_two = [](const Sample& b, const Sample& c, double q) {
-    return c.value - (b.value - c.value) * std::pow(c.delta, q) / gap(b.delta, c.delta, q);
+    return c.value - (b.value - c.value) * std::pow(c.at, q) / gap(b.at, c.at, q);
   };
   const std::size_t n = samples.size();
   const double before = observed_order(samples.first(n - 1));
@@ -55,10 +72,11 @@ double observed_order(Samples samples) {
   const Sample &a = last[0], &b = last[1], &c = last[2];
   const double ratio = (a.value - b.value) / (b.value - c.value);
   const auto defect = [&](double q) {
-    return std::log(gap(a.delta, b.delta, q) / gap(b.delta, c.delta, q)) - std::log(ratio);
+    return std::log(gap(a.at, b.at, q) / gap(b.at, c.at, q)) - std::log(ratio);
   };
   constexpr double low = 0.05, high = 8;
-  if (!(ratio > 0) || defect(low) * defect(high) > 0) return kNone;
+  const bool changes = std::abs(b.value - c.value) > b.error + c.error;
+  if (!changes || !(ratio > 0) || defect(low) * defect(high) > 0) return kNone;
   std::uintmax_t iterations = 100;
   const auto root = boost::math::tools::toms748_solve(
       defect, low, high, boost::math::tools::eps_tolerance<double>(40), iterations);
@@ -70,15 +88,17 @@ Limit limit_of(Samples samples, double order, bool grazing) {
   double first_power = 1;
   if (grazing) first_power = order < 1.75 ? 1.5 : 2;
   if (std::abs(order - first_power) > 0.25) return by_observed_order(samples, order);
-  const double step = grazing ? 0.5 : 1;
-  Limit best{kNone, kNone};
-  for (std::size_t n = 2; n < samples.size(); ++n) {
-    const Limit now = through(samples.last(n), first_power, step);
-    const Limit before = through(samples.last(n + 1).first(n), first_power, step);
-    const double error = std::abs(now.value - before.value) + now.error;
-    if (!(error >= best.error)) best = {now.value, error};
-  }
-  return best;
+  return best_through(samples, first_power, grazing ? 0.5 : 1, false);
+}
+
+Limit limit_in_half_powers(Samples samples) {
+  const Limit none{kNone, kNone};
+  if (samples.size() < 3) return none;
+  const Samples last = samples.last(3);
+  const double before = std::abs(last[1].value - last[0].value),
+               change = std::abs(last[2].value - last[1].value);
+  if (change > before + last[0].error + 2 * last[1].error + last[2].error) return none;
+  return best_through(samples, 0.5, 0.5, true);
 }
 
 }  // namespace stickslip::studies

@@ -23,12 +23,14 @@ struct Context {
 
 [[nodiscard]] Study study_points(const Context& context);
 [[nodiscard]] Study study_steps(const Context& context);
+[[nodiscard]] Study study_white_noise(const Context& context);
 [[nodiscard]] Study study_heuristic(const Context& context);
 [[nodiscard]] Study study_cost(const Context& context);
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// The scalar results whose size is not 0, in their order.
+/// The numbers that are not 0, in their order; those of arrays are named after their arguments,
+/// such as "S_v omega=1".
 [[nodiscard]] quantities::Results scalars(const quantities::Results& results);
 /// Value of the scalar `key`; NaN if there is none.
 [[nodiscard]] double value_of(const quantities::Results& results, const std::string& key);

@@ -14,6 +14,7 @@ Study run_study(MPI_Comm comm, const cases::Case& given, const options::StudyOpt
   switch (study.kind) {
   case options::StudyKind::points: return study_points(context);
   case options::StudyKind::steps: return study_steps(context);
+  case options::StudyKind::white_noise: return study_white_noise(context);
   case options::StudyKind::heuristic: return study_heuristic(context);
   case options::StudyKind::cost: return study_cost(context);
   case options::StudyKind::none: break;
@@ -24,7 +25,18 @@ Study run_study(MPI_Comm comm, const cases::Case& given, const options::StudyOpt
 quantities::Results scalars(const quantities::Results& results) {
   quantities::Results found;
   for (const auto& result : results) {
-    if (result.is_scalar() && result.value[0] != 0) found.push_back(result);
+    for (std::size_t n = 0; n < result.value.size(); ++n) {
+      if (result.value[n] == 0) continue;
+      auto& one = found.emplace_back(result);
+      if (!result.is_scalar()) {
+        one.key += fmt::format(" {}={:g}", result.abscissa_name, result.abscissa[n]);
+      }
+      one.abscissa_name.clear();
+      one.abscissa.clear();
+      one.value = {result.value[n]};
+      one.error = {result.error[n]};
+      if (!result.ci95.empty()) one.ci95 = {result.ci95[n]};
+    }
   }
   return found;
 }

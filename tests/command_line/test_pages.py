@@ -189,20 +189,10 @@ class Pages(unittest.TestCase):
         self.assertIn("ZeroDivisionError", self.of_text("```python\nimport stickslip\n1 / 0\n```")[0])
         self.assertIn("is not there", self.of_text("![A picture](none.png)")[0])
 
-    def test_readme(self):
-        self.assertEqual(self.complaints("README.md"), [])
-
-    def test_tutorial(self):
-        self.assertEqual(self.complaints("docs/tutorial.md"), [])
-
-    def test_gallery(self):
-        self.assertEqual(self.complaints("docs/gallery.md"), [])
-
-    def test_output(self):
-        self.assertEqual(self.complaints("docs/output.md"), [])
-
-    def test_recorded_forces(self):
-        self.assertEqual(self.complaints("docs/recorded_forces.md"), [])
+    def test_pages_of_the_manual(self):
+        for name in pages.PAGES:
+            with self.subTest(page=name):
+                self.assertEqual(self.complaints(name), [])
 
     def test_every_picture_of_the_gallery_is_shown(self):
         page = (pages.SOURCES / "docs/gallery.md").read_text()

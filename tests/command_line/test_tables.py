@@ -39,7 +39,7 @@ class Width(Case):
     def test_plans_studies_sweeps_and_comparisons(self):
         self.assert_narrow(*SMALL, *GRIDS, "-plan", "-quantities", "sticking,entry_law,laplace,resolvent,spectrum,slip,"
                            "peak,displacement,duration_density,expectation,relaxation,large_deviation,sensitivity")
-        for kind in ("p", "delta"):
+        for kind in ("p", "delta", "tau"):
             self.assert_narrow(*SMALL, "-study", kind, "-study_steps", "4")
         self.assert_narrow(*SMALL, "-study", "cost", "-study_steps", "4", "-study_repeats", "1",
                            "-quantities", "sticking")

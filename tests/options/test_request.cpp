@@ -362,6 +362,19 @@ TEST_CASE("request: an option that serves one purpose is reported where it serve
   }
 }
 
+TEST_CASE("request: the limit of white noise refuses what fixes the noise or the chain") {
+  CHECK(Given("-study tau -quantities spectrum,moments -omega 1").read().warnings.empty());
+  CHECK_THAT(complaint("-tau 0"), Catch::Contains("-study tau"));
+  CHECK_THAT(complaint("-study tau -noise_deviation 1"),
+             Catch::Contains("-noise_deviation = 1") && Catch::Contains("vanishes with tau"));
+  CHECK_THAT(complaint("-study tau -noise narrow_band"),
+             Catch::Contains("-study = tau") && Catch::Contains("take -noise ou"));
+  CHECK_THAT(complaint("-study tau -quantities moments,entry_law"),
+             Catch::Contains("asks for entry_law"));
+  CHECK_THAT(complaint("-study tau -bias 1.5 -quantities sticking"),
+             Catch::Contains("bias 1.5 exceeds static friction"));
+}
+
 TEST_CASE("request: a study chooses route, discretisation and noise levels itself") {
   const std::string compared = std::string("-compare ") + STICKSLIP_SOURCE + "/no.csv";
   for (const std::string chosen : {"-route excursion", "-scheme hp", "-degree 4", "-layers 4",

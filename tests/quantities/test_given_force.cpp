@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string_view>
 
 #include "../common/catch.hpp"
 #include "../common/rigid_block.hpp"
@@ -21,7 +22,7 @@ model::Scene scene_with(model::ForceRecord record, double mu_s, double mu_d, dou
   return scene;
 }
 
-const quantities::Result& named(const Results& results, const std::string& key) {
+const quantities::Result& named(const Results& results, std::string_view key) {
   const auto found = std::ranges::find(results, key, &quantities::Result::key);
   REQUIRE(found != results.end());
   return *found;

@@ -96,3 +96,34 @@ TEST_CASE("limit: errors of the samples remain") {
   for (auto& sample : noisy) sample.error = 1e-3;
   CHECK(limit_of(noisy, observed_order(noisy), false).error > 1e-3);
 }
+
+TEST_CASE("limit: half powers of tau, whichever of them are there") {
+  for (auto value : {+[](double t) { return std::exp(std::sqrt(t)); },
+                     +[](double t) { return 1 + t * std::exp(std::sqrt(t)); },
+                     +[](double t) { return 1 / (1 + t); }}) {
+    std::vector<Sample> falling;
+    for (int n = 0; n < 6; ++n) {
+      const double tau = std::pow(4.0, -n - 1);
+      falling.push_back({tau, value(tau), 1e-14});
+    }
+    const Limit limit = limit_in_half_powers(falling);
+    CHECK(std::abs(limit.value - 1) <= limit.error);
+    CHECK(limit.error < 1e-4);
+  }
+}
+
+// Through 1/4, 1/16 and their values, u + C tau^(1/2) is 2 v(1/16) - v(1/4).
+TEST_CASE("limit: in half powers, the error holds the change that the last power makes") {
+  const std::vector<Sample> curve{{1, 4, 0}, {0.25, 2, 0}, {0.0625, 1.25, 0}};
+  const Limit limit = limit_in_half_powers(curve);
+  CHECK(limit.value == Approx(2 * 1.25 - 2).epsilon(1e-12));
+  // Without the last sample it is 0, without the last power 1.25.
+  CHECK(limit.error == Approx(0.75).epsilon(1e-12));
+}
+
+TEST_CASE("limit: what grows as tau falls has none, nor an order within its errors") {
+  const std::vector<Sample> growing{{1, 1, 0}, {0.25, 4, 0}, {0.0625, 16, 0}};
+  CHECK(std::isnan(limit_in_half_powers(growing).value));
+  const std::vector<Sample> uncertain{{1, 4, 1}, {0.25, 2, 1}, {0.0625, 1, 1}};
+  CHECK(std::isnan(observed_order(uncertain)));
+}

@@ -114,6 +114,9 @@ void read_effect(Given& given, const Choice& choice, const std::string& word, mo
 /// std::invalid_argument.
 void make_noise_levels(model::Scene& scene);
 
+/// Makes the drag of a formula for the forces and the tau in the scene. Throws BadInput.
+void renew_drag(model::Scene& scene);
+
 /// All that fixes the process of a scene, each by the name of its option, in the order in which
 /// files hold them: friction, the word of the drag law, noise, what is beside the defaults, and the
 /// coefficients of the drag. Left out are the range of the noise, the levels of a table, and a

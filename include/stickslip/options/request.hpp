@@ -22,7 +22,7 @@ using catalogue::Quantity;
 using catalogue::Route;
 
 /// -study: series of runs.
-enum class StudyKind { none, points, steps, heuristic, cost };
+enum class StudyKind { none, points, steps, white_noise, heuristic, cost };
 
 /// Choices of a study.
 struct StudyOptions {

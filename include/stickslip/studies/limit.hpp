@@ -1,16 +1,17 @@
 #pragma once
-/// The limit delta -> 0 of values at falling noise steps.
+/// Limits of values at falling noise steps or correlation times.
 
 #include <span>
 
 namespace stickslip::studies {
 
-/// A value and the noise step it belongs to.
+/// A value and the delta or tau it belongs to.
 struct Sample {
-  double delta, value, error;
+  double at, value, error;
 };
 
-/// q for which the last three samples fit u + C delta^q; NaN if there is none.
+/// q for which the last three samples fit u + C delta^q; NaN if there is none, or their changes are
+/// within their errors.
 [[nodiscard]] double observed_order(std::span<const Sample> samples);
 
 /// NaN where the samples fit no order.
@@ -27,5 +28,11 @@ struct Limit {
 /// extrapolated with it, and the error is the change from one such limit to the next. O(n^4) for n
 /// samples.
 [[nodiscard]] Limit limit_of(std::span<const Sample> samples, double order, bool grazing);
+
+/// u of u + C_1 tau^(1/2) + C_2 tau + C_3 tau^(3/2) + ..., whichever of them are 0. The error is
+/// the larger of the changes that the last sample and the last power make, and the errors of the
+/// samples as they are weighted; as many powers are taken as make it smallest. None where the
+/// changes of the samples grow.
+[[nodiscard]] Limit limit_in_half_powers(std::span<const Sample> samples);
 
 }  // namespace stickslip::studies

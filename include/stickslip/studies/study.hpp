@@ -59,7 +59,8 @@ using StudyProgress = std::function<void(int, int, const std::string&)>;
 ///   kappa(p) = log2(|u^p - u^(p/2)|/|u^2p - u^p|), Richardson's extrapolation 2 u^2p - u^p, and
 ///   the distances of both from the converged hp value.
 /// delta: the converged values for falling noise steps, in two families: mu_s on a noise level, and
-/// halfway between two; observed order and limit. heuristic: the extrapolation in (p, delta) of the
+/// halfway between two; observed order and limit. tau: the same for falling correlation times, with
+/// delta a fixed share of the deviation. heuristic: the extrapolation in (p, delta) of the
 /// paper, with its index sets, beside converged
 ///   values.
 /// cost: error against time for upwind, Richardson, hp and Monte Carlo.
