@@ -85,7 +85,7 @@ velocity::Rates fastest_rates(const cases::Case& given) {
     rates.lambda = largest(question.lambda);
   }
   rates.lambda = std::max(rates.lambda, fastest_inverted(given));
-  if (question.wants(Quantity::peak)) rates.speed = largest(question.velocity);
+  if (question.depends_on("velocity")) rates.speed = largest(question.velocity);
   for (double s : question.values(catalogue::kTilt.option)) {
     rates.tilt = std::max(rates.tilt, std::abs(s));
   }

@@ -14,6 +14,7 @@
 #include "stickslip/catalogue/duration_density_keys.hpp"
 #include "stickslip/catalogue/entry_law_keys.hpp"
 #include "stickslip/catalogue/expectation_keys.hpp"
+#include "stickslip/catalogue/first_passage_keys.hpp"
 #include "stickslip/catalogue/given_force_keys.hpp"
 #include "stickslip/catalogue/laplace_keys.hpp"
 #include "stickslip/catalogue/large_deviation_keys.hpp"
@@ -34,29 +35,13 @@
 namespace stickslip::catalogue {
 namespace {
 
-constexpr const Entry* kAll[] = {&kSticking,
-                                 &kMoments,
-                                 &kAverages,
-                                 &kNoiseLaw,
-                                 &kNoiseSpectrum,
-                                 &kEntryLaw,
-                                 &kDensity,
-                                 &kLaplace,
-                                 &kStickTransform,
-                                 &kResolvent,
-                                 &kRelaxation,
-                                 &kSpectrum,
-                                 &kDurationDensity,
-                                 &kAutocorrelation,
-                                 &kSlip,
-                                 &kPeak,
-                                 &kDisplacement,
-                                 &kExpectation,
-                                 &kTrajectory,
-                                 &kGivenForce,
-                                 &kSensitivity,
-                                 &kLargeDeviation,
-                                 &kDisplacementTransform};
+constexpr const Entry* kAll[] = {
+    &kSticking,         &kMoments,         &kAverages,       &kNoiseLaw,
+    &kNoiseSpectrum,    &kEntryLaw,        &kDensity,        &kLaplace,
+    &kStickTransform,   &kResolvent,       &kRelaxation,     &kSpectrum,
+    &kDurationDensity,  &kAutocorrelation, &kSlip,           &kPeak,
+    &kFirstPassageTime, &kDisplacement,    &kExpectation,    &kTrajectory,
+    &kGivenForce,       &kSensitivity,     &kLargeDeviation, &kDisplacementTransform};
 
 // Whether `key` is the derivative of a scalar by a parameter, such as dP_stick_dtau.
 bool is_derivative(std::string_view key) {

@@ -22,8 +22,11 @@ const char* symmetry_name(operators::Symmetry symmetry) {
 std::string system_name(const operators::SystemKey& key) {
   const bool reduced = key.symmetry != operators::Symmetry::none;
   const bool by_time = key.clock == operators::Clock::time;
+  const char* const side = key.passage == model::Passage::up     ? "v"
+                           : key.passage == model::Passage::down ? "-v"
+                                                                 : "|v|";
   const std::string limit =
-      std::isinf(key.speed_limit) ? "" : fmt::format(", |v| <= {:g}", key.speed_limit);
+      std::isinf(key.speed_limit) ? "" : fmt::format(", {} <= {:g}", side, key.speed_limit);
   return fmt::format("{} = {:g}, {}{}", by_time ? "lambda" : "s", key.lambda,
                      reduced ? fmt::format("{} functions", symmetry_name(key.symmetry))
                              : "v of both signs",

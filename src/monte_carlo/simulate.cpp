@@ -59,6 +59,7 @@ void add_question(const cases::Question& question, checkpoint::Identity& found) 
         {"velocity", text(question.velocity)},
         {"inverse_distance", text(question.inverse_distance)},
         {"distance", text(question.distance)},
+        {"passage", fmt::format("{}", static_cast<int>(question.passage))},
         {"start", fmt::format("{} {} {}", static_cast<int>(start.kind), start.level, start.v)}}) {
     if (options.contains(option)) found.emplace_back(fmt::format("-{}", option), value);
   }
@@ -170,7 +171,7 @@ class Campaign {
                  stationary = wanted.stationary_paths ? sides : 0,
                  sticking_phases = sides + stationary + (wanted.speeds.empty() ? 0 : 1),
                  walks = (wanted.start ? 1 : 0) + stationary,
-                 longest = walks > 0 ? std::ranges::max(wanted.time) : 0;
+                 longest = wanted.time.empty() ? 0 : std::ranges::max(wanted.time);
     constexpr double jump = 15e-9, month = 30 * 86400.0;
     const double jumps =
         process_.noise.rate() *

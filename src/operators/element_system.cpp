@@ -193,7 +193,7 @@ class ElementSystem<Scalar>::Elimination {
       for (int m = 0; m < q_; ++m) {
         const int row = l * q_ + m;
         const std::size_t place = at(group) + row;
-        double sum = s_.taken_.inner[place] + s_.taken_.outer[place];
+        double sum = s_.taken_.inner[place] + s_.taken_.outer[place] + s_.killed_[place];
         for (int n = 0; n < q_; ++n) {
           const double rate = rates_[place * q_ + n];
           sum += rate;
@@ -373,12 +373,14 @@ ElementSystem<Scalar>::ElementSystem(const noise::Nodes& noise,
   for (auto* port : {&taken_.inner, &taken_.outer, &given_.inner, &given_.outer}) {
     port->assign(all, 0.0);
   }
+  killed_.resize(all);
   velocity::TransportRow row;
   for (std::size_t place = 0; place < all; ++place) {
     const int l = static_cast<int>(place / q), m = static_cast<int>(place % q);
     velocities.transport(net_force[l], first_ + m, row);
     double& inner = taken_.inner[place] = row.inflow;
     double& outer = taken_.outer[place] = row.outflow;
+    killed_[place] = row.killed;
     for (const auto& [node, value] : row.entries) {
       if (node < first_) {
         inner += value;

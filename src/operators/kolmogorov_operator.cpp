@@ -47,7 +47,7 @@ KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& disc
   const bool generates = symmetry != Symmetry::odd && shift.tilt == 0.0;
   if (!derivative && generates && PetscRealPart(lambda) >= 0) {
     const bool nothing_killed = static_phase == StaticPhase::kept && PetscAbsScalar(lambda) == 0 &&
-                                !discretisation.velocities->kills_at_top();
+                                !discretisation.velocities->kills();
     require_generator(comm, {states().local_begin(), rows.row_start, rows.columns, rows.values},
                       {discretisation.velocities->keeps_origin(), nothing_killed},
                       discretisation.process);
@@ -215,6 +215,26 @@ petsc::VecHandle KolmogorovOperator::from_static(const std::vector<PetscScalar>&
   petsc::VecHandle f = zeros();
   petsc::WriteView local(f);
   for (const auto& c : static_coupling_) local[c.row] += c.rate * s[c.level - lowest];
+  return f;
+}
+
+petsc::VecHandle KolmogorovOperator::square_field(Vec u, const std::vector<double>& s) const {
+  const int lowest = discretisation().process.lowest_static();
+  const auto all = petsc::WholeVectors(matrix_).gathered(u);
+  petsc::VecHandle f = zeros();
+  petsc::WriteView local(f);
+  const PetscInt begin = states().local_begin();
+  const auto add = [&](PetscInt row, PetscScalar rate, PetscScalar to) {
+    const PetscScalar change = to - all[begin + row];
+    local[row] += rate * change * change;
+  };
+  for (PetscInt row = 0; row < local.size(); ++row) {
+    petsc::RowView(matrix_, begin + row).for_each([&](PetscInt column, PetscScalar value) {
+      add(row, -value, all[column]);
+    });
+  }
+  for (const auto& c : static_coupling_) add(c.row, c.rate, s[c.level - lowest]);
+  for (const auto& c : top_coupling_) add(c.row, c.rate, 0.0);
   return f;
 }
 

@@ -141,12 +141,10 @@ class RowAssembler {
     }
     for (const auto& e : transport_.entries) rate_to(node(s.branch, s.noise, e.node), e.value);
     if (transport_.inflow != 0) rate_to_zero(s, transport_.inflow);
-    if (transport_.outflow == 0) return;
-    if (!here.velocities.kills_at_top()) {
-      return rate_to(holding(s.branch, s.noise), transport_.outflow);
-    }
-    killing_ += transport_.outflow;
-    top_coupling.push_back({local_row(), transport_.outflow});
+    if (transport_.outflow != 0) rate_to(holding(s.branch, s.noise), transport_.outflow);
+    if (transport_.killed == 0) return;
+    killing_ += transport_.killed;
+    top_coupling.push_back({local_row(), transport_.killed});
   }
 
   void rates_of_origin(const State& s) {

@@ -59,6 +59,7 @@ KolmogorovOperator Systems::assembled(const SystemKey& key) {
     return assemble(comm_, discretisation, key.shift(), key.symmetry, key.static_phase,
                     statistics_);
   };
+  if (key.passage) return of(discretisation_.passing(key.speed_limit, key.passage));
   if (!std::isinf(key.speed_limit)) return of(discretisation_.killing_at(key.speed_limit));
   KolmogorovOperator a = of(discretisation_);
   const bool singular = key.lambda == 0 && key.static_phase == StaticPhase::killing;

@@ -6,12 +6,14 @@
 #include <stdexcept>
 
 #include "reading.hpp"
+#include "stickslip/catalogue/first_passage_keys.hpp"
 #include "stickslip/catalogue/given_force_keys.hpp"
 #include "stickslip/catalogue/trajectory_keys.hpp"
 #include "stickslip/outputs/reference.hpp"
 #include "stickslip/support/number_text.hpp"
 #include "stickslip/support/text.hpp"
 #include "stickslip/velocity/tail.hpp"
+#include "words.hpp"
 
 namespace stickslip::options {
 namespace {
@@ -201,13 +203,21 @@ void read_start(Settings& settings, Request& request) {
   }
 }
 
-// Below the speed to which bodies tend on the highest level of the noise, on either side.
+// Below the speed to which bodies tend on the highest level of the noise, on either side or on that
+// of the passage.
 void check_speeds(Settings& settings, const Request& request) {
-  if (!request.question.wants(Quantity::peak)) return;
-  double reached = std::max(0.0, request.scene.meant().terminal_speed());
+  const auto& question = request.question;
+  if (!question.depends_on("velocity")) return;
+  const auto process = request.scene.meant();
+  const double up = process.terminal_velocity(), down = process.mirrored().terminal_velocity();
+  double reached = std::max({0.0, up, down});
+  if (question.wants(catalogue::kFirstPassageTime.quantity)) {
+    if (question.passage == model::Passage::up) reached = std::max(0.0, up);
+    if (question.passage == model::Passage::down) reached = std::max(0.0, down);
+  }
   const bool limited = request.scene.limits_speed && *request.scene.v_max < reached;
   if (limited) reached = *request.scene.v_max;
-  for (double speed : request.question.velocity) {
+  for (double speed : question.velocity) {
     if (speed < reached) continue;
     settings.refuse(
         "velocity",
@@ -215,6 +225,22 @@ void check_speeds(Settings& settings, const Request& request) {
                     limited ? "-speed_limit" : "the terminal velocity on the highest noise level",
                     reached),
         fmt::format("take speeds below {:g}", reached));
+    return;
+  }
+}
+
+// A state beyond a speed has passed it.
+void check_passages(Settings& settings, const Question& question) {
+  const auto& start = question.start;
+  const bool asked = question.wants(catalogue::kFirstPassageTime.quantity);
+  if (!asked || start.kind != model::Start::Kind::state) return;
+  for (double speed : question.velocity) {
+    if (!model::has_passed(question.passage, start.v, speed)) continue;
+    settings.refuse("start",
+                    fmt::format("starts at the velocity {:g}, where the speed {:g} of -velocity is "
+                                "passed at once",
+                                start.v, speed),
+                    fmt::format("take speeds above {:g}, or a slower start", std::abs(start.v)));
     return;
   }
 }
@@ -262,9 +288,11 @@ void read_question(Settings& settings, Request& request) {
   question.accuracy_given = settings.has("accuracy");
   question.horizon = settings.real("horizon");
   check_horizon(settings, request);
+  question.passage = meaning(kPassages, settings.text("passage"));
   check_speeds(settings, request);
   if (!settings.sound()) return;  // the others look at states of the model
   if (question.depends_on("start")) read_start(settings, request);
+  check_passages(settings, question);
   examine_observables(settings, request);
 }
 

@@ -60,9 +60,10 @@ class Rules {
                    : study_     ? Subject::study
                    : swept      ? Subject::sweep
                                 : Subject::run);
-    for (const char* option : {"observable", "time", "start", "horizon", "transient_solver",
-                               "omega", "spectrum_solver", "distance", "inverse_distance",
-                               "velocity", "force_file", "force_interpolation", "force_scale"}) {
+    for (const char* option :
+         {"observable", "time", "start", "horizon", "transient_solver", "omega", "spectrum_solver",
+          "distance", "inverse_distance", "velocity", "passage", "force_file",
+          "force_interpolation", "force_scale"}) {
       warn({option}, !asked(option));
     }
     for (const auto* argument : catalogue::arguments()) {
@@ -126,7 +127,7 @@ class Rules {
     require("force_file", q_.wants(catalogue::kGivenForce.quantity) && !r_.scene.force,
             "asks for the motion under a given force, but none is given",
             "add for example -force_file record.csv");
-    require("velocity", q_.wants(peak) && q_.velocity.empty(),
+    require("velocity", asked("velocity") && q_.velocity.empty(),
             "asks for functions of a speed, but no speeds are given",
             "add for example -velocity 0.1:2:20");
     report("velocity", std::count(q_.velocity.begin(), q_.velocity.end(), 0) > 0,

@@ -74,11 +74,16 @@ std::vector<Option> quantity_options() {
       arguments("distance", "velocity*time", "path lengths > 0 of slip, for f_slip and cdf_slip"),
       arguments("inverse_distance", "1/(velocity*time)",
                 "arguments s of the Laplace transform F_slip of slip"),
-      arguments("velocity", "velocity", "speeds w > 0 of peak").called({"speed", "speeds"}),
+      arguments("velocity", "velocity", "speeds w > 0 of peak and first_passage")
+          .called({"speed", "speeds"}),
       Option::text_of(
           "start", "state", "s+",
-          "state at time 0 of expectation, displacement, displacement_transform and trajectory")
+          "state at time 0 of expectation, displacement, displacement_transform, first_passage and "
+          "trajectory")
           .called({"x0", "v0", "initial", "initial_state"}),
+      choice("passage", "both", words_of(kPassages),
+             "what first_passage waits for: both: |V| reaches the speed w. up: V does. down: V "
+             "reaches -w"),
       Option::text_of(
           "observable", "functions", "",
           "functions of the state for averages, resolvent and expectation. With -scheme hp "

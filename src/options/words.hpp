@@ -20,6 +20,8 @@ inline constexpr Word<Scheme> kSchemes[] = {{"hp", Scheme::hp, "dg, fem, galerki
                                             {"upwind", Scheme::upwind, "finite_difference, fd"}};
 inline constexpr Word<SpectrumSolver> kSpectrumSolvers[] = {{"krylov", SpectrumSolver::krylov},
                                                             {"direct", SpectrumSolver::direct}};
+inline constexpr Word<model::Passage> kPassages[] = {
+    {"both", model::Passage::both}, {"up", model::Passage::up}, {"down", model::Passage::down}};
 inline constexpr Word<TransientSolver> kTransientSolvers[] = {
     {"krylov", TransientSolver::krylov}, {"stepping", TransientSolver::stepping}};
 inline constexpr Word<StudyKind> kStudies[] = {

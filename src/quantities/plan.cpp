@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "stickslip/catalogue/displacement_transform_keys.hpp"
+#include "stickslip/catalogue/first_passage_keys.hpp"
 #include "stickslip/catalogue/large_deviation_keys.hpp"
 #include "stickslip/quantities/stationary.hpp"
 
@@ -14,9 +15,9 @@ using Tasks = void(Planner&);
 
 Tasks sticking_tasks, mean_slip_tasks, moments_tasks, density_tasks, averages_tasks,
     entry_law_tasks, sensitivity_tasks, stick_transform_tasks, laplace_tasks, resolvent_tasks,
-    spectrum_tasks, duration_density_tasks, slip_tasks, peak_tasks, displacement_tasks,
-    autocorrelation_tasks, expectation_tasks, relaxation_tasks, noise_spectrum_tasks,
-    large_deviation_tasks, displacement_transform_tasks;
+    spectrum_tasks, duration_density_tasks, slip_tasks, peak_tasks, first_passage_tasks,
+    displacement_tasks, autocorrelation_tasks, expectation_tasks, relaxation_tasks,
+    noise_spectrum_tasks, large_deviation_tasks, displacement_transform_tasks;
 
 namespace {
 
@@ -36,6 +37,7 @@ constexpr std::pair<Quantity, Tasks*> kAll[] = {
     {Quantity::duration_density, duration_density_tasks},
     {Quantity::slip, slip_tasks},
     {Quantity::peak, peak_tasks},
+    {catalogue::kFirstPassageTime.quantity, first_passage_tasks},
     {Quantity::displacement, displacement_tasks},
     {Quantity::autocorrelation, autocorrelation_tasks},
     {Quantity::expectation, expectation_tasks},

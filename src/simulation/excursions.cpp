@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <stdexcept>
 
+#include "rise_time.hpp"
 #include "stickslip/simulation/any_jumps.hpp"
 #include "stickslip/simulation/flow.hpp"
 
@@ -160,13 +160,8 @@ class Source : public ExcursionSource {
   void follow_passages(Excursion& e, const Piece& piece, double speed, int i, int sign) const {
     const auto& speeds = wanted_.speeds;
     for (std::size_t n = e.passages.size(); n < speeds.size() && speeds[n] <= piece.end; ++n) {
-      const auto above = [&](double t) {
-        return flow(sign).move(speed, levels_.force(sign, i), t, false).end - speeds[n];
-      };
-      std::uintmax_t most = 60;
-      const auto time = boost::math::tools::toms748_solve(
-          above, 0.0, piece.time, boost::math::tools::eps_tolerance<double>(40), most);
-      e.passages.push_back(e.slide + time.second);
+      e.passages.push_back(
+          e.slide + rise_time(flow(sign), speed, levels_.force(sign, i), piece.time, speeds[n]));
     }
   }
 

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "rise_time.hpp"
 #include "stickslip/simulation/any_jumps.hpp"
 #include "stickslip/simulation/flow.hpp"
 #include "stickslip/support/infinity.hpp"
@@ -63,6 +64,14 @@ class Walker : public Walk {
     ++jumps_;
     start_if_pushed();
     wait();
+  }
+
+  [[nodiscard]] double passes(model::Passage passage, double speed) const override {
+    if (!model::has_passed(passage, y_ * speed, speed)) return kInfinity;  // the other side, rest
+    if (speed_ >= speed) return time_;
+    const double wait = next_jump_ - time_;
+    if (y_ > 0) return time_ + rise_time(flow_, speed_, process_.net_force(i_), wait, speed);
+    return time_ + rise_time(backward_flow_, speed_, mirrored_.net_force(-i_), wait, speed);
   }
 
   [[nodiscard]] State state() const override {

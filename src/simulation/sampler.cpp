@@ -1,7 +1,13 @@
 #include "stickslip/simulation/sampler.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+
+#include "stickslip/support/errors.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::simulation {
 namespace {
@@ -61,13 +67,22 @@ const Tally& Sampler::batch(std::uint64_t seed, std::uint64_t batch, int count) 
         tally_.add(side, excursion);
       }
       if (!wanted_.stationary_paths) continue;
-      add_stationary({seed, path_stream(batch, n, side)}, side, places.uniform());
+      // With symmetry every other one stands for its mirror image.
+      const bool mirrored = process_.symmetric() && n % 2 == 1;
+      add_stationary({seed, path_stream(batch, n, side)}, side, places.uniform(), mirrored);
     }
     if (!wanted_.start) continue;
-    walk_->begin({seed, path_stream(batch, n, 2)}, *wanted_.start);
-    const auto [first, states] = follow();
-    tally_.add({first, states});
+    const RandomStream of_path(seed, path_stream(batch, n, 2));
+    walk_->begin(of_path, *wanted_.start);
+    FollowedPath path;
+    std::tie(path.first, path.states) = follow();
     tally_.add_jumps(walk_->jumps());
+    if (!wanted_.passages.empty()) {
+      walk_->begin(of_path, *wanted_.start);
+      path.passages = pass(false);
+      tally_.add_jumps(walk_->jumps());
+    }
+    tally_.add(path);
   }
   return tally_;
 }
@@ -118,8 +133,32 @@ std::pair<State, std::span<const State>> Sampler::follow() {
   return {first, states_};
 }
 
+// When the speeds are passed, from the state of the walk on.
+std::span<const double> Sampler::pass(bool mirrored) {
+  using enum model::Passage;
+  constexpr double most = 1e9;
+  const auto& speeds = wanted_.passages;
+  auto passage = wanted_.passage;
+  if (mirrored && passage != both) passage = passage == up ? down : up;
+  const double begun = walk_->state().time;
+  for (passages_.clear(); passages_.size() < speeds.size();) {
+    const double speed = speeds[passages_.size()], time = walk_->passes(passage, speed);
+    if (std::isfinite(time)) {
+      passages_.push_back(time - begun);
+    } else if (walk_->jumps() < most) {
+      walk_->step(kInfinity);
+    } else {
+      throw BadInput(fmt::format("-velocity = {:g}: not reached by a path of {:.0e} jumps of the "
+                                 "noise; take smaller speeds, or -route excursion",
+                                 speed, most));
+    }
+  }
+  return passages_;
+}
+
 // Twice by the same numbers: until the duration is known, and from a time within it on.
-void Sampler::add_stationary(const RandomStream& random, std::size_t side, double place) {
+void Sampler::add_stationary(const RandomStream& random, std::size_t side, double place,
+                             bool mirrored) {
   const int sign = side == 0 ? 1 : -1;
   const model::Start start{starts_[side]};
   walk_->begin(random, start);
@@ -132,8 +171,15 @@ void Sampler::add_stationary(const RandomStream& random, std::size_t side, doubl
   walk_->begin(random, start);
   walk_->advance(place * duration);
   const auto [first, states] = follow();
-  tally_.add({first, states, true, side, turned, duration});
+  FollowedPath path{first, states, true, side, turned, duration};
   tally_.add_jumps(jumps + walk_->jumps());
+  if (!wanted_.passages.empty()) {
+    walk_->begin(random, start);
+    walk_->advance(place * duration);
+    path.passages = pass(mirrored);
+    tally_.add_jumps(walk_->jumps());
+  }
+  tally_.add(path);
 }
 
 }  // namespace stickslip::simulation

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "stickslip/catalogue/displacement_transform_keys.hpp"
+#include "stickslip/catalogue/first_passage_keys.hpp"
 
 namespace stickslip::simulation {
 
@@ -16,7 +17,7 @@ using Follow = void(Tally&);
 Follow sticking_tally, moments_tally, averages_tally, noise_law_tally, entry_law_tally,
     laplace_tally, stick_transform_tally, duration_density_tally, slip_tally, peak_tally,
     spectrum_tally, resolvent_tally, autocorrelation_tally, displacement_tally, expectation_tally,
-    displacement_transform_tally;
+    displacement_transform_tally, first_passage_tally;
 
 namespace {
 
@@ -32,6 +33,7 @@ constexpr std::pair<Quantity, Follow*> kAll[] = {
     {Quantity::duration_density, duration_density_tally},
     {Quantity::slip, slip_tally},
     {Quantity::peak, peak_tally},
+    {catalogue::kFirstPassageTime.quantity, first_passage_tally},
     {Quantity::spectrum, spectrum_tally},
     {Quantity::resolvent, resolvent_tally},
     {Quantity::autocorrelation, autocorrelation_tally},

@@ -99,7 +99,7 @@ HpDiscretisation::HpDiscretisation(std::vector<double> ends, const std::vector<i
 
 // Levels on which bodies hardly move at the last end reach it or turn round there, in layers as
 // thin as those at v = 0: elements shrink towards it as they do towards rest.
-std::unique_ptr<VelocityDiscretisation> HpDiscretisation::up_to(double speed) const {
+std::pair<std::vector<double>, std::vector<int>> HpDiscretisation::below(double speed) const {
   constexpr double sliver = 0.2, ratio = 0.3;
   std::vector<double> ends;
   std::vector<int> degrees;
@@ -117,7 +117,29 @@ std::unique_ptr<VelocityDiscretisation> HpDiscretisation::up_to(double speed) co
     left *= ratio;
   }
   ends.push_back(speed);
+  return {std::move(ends), std::move(degrees)};
+}
+
+std::unique_ptr<VelocityDiscretisation> HpDiscretisation::up_to(double speed) const {
+  auto [ends, degrees] = below(speed);
   return std::make_unique<HpDiscretisation>(std::move(ends), degrees, drag_);
+}
+
+// Beyond the speed the elements are those there were, but for a sliver.
+std::unique_ptr<VelocityDiscretisation> HpDiscretisation::split_at(double speed) const {
+  constexpr double sliver = 0.2;
+  auto [ends, degrees] = below(speed);
+  const int below_speed = static_cast<int>(degrees.size()) - 1;
+  for (int e = 0; e < elements(); ++e) {
+    const bool last = e + 1 == elements();
+    if (ends_[e + 1] <= speed) continue;
+    if (!last && ends_[e + 1] - speed < sliver * (ends_[e + 2] - ends_[e + 1])) continue;
+    ends.push_back(ends_[e + 1]);
+    degrees.push_back(elements_[e].reference->size - 1);
+  }
+  auto split = std::make_unique<HpDiscretisation>(std::move(ends), degrees, drag_);
+  split->end_at_speed(below_speed);
+  return split;
 }
 
 void HpDiscretisation::transport(double net_force, int j, TransportRow& row) const {
@@ -153,9 +175,11 @@ void HpDiscretisation::fill(int j, double down_speed, double speed_here, double 
     const double value = speed * r.derivative[m * q + n] - down * r.at_left[n] - up * r.at_right[n];
     row.entries.push_back({first + n, value});
   }
-  if (up != 0 && !highest) append(element + 1, up, &ReferenceElement::at_left, row);
+  const bool kills = kills_above(element);
+  if (up != 0 && !highest && !kills) append(element + 1, up, &ReferenceElement::at_left, row);
   row.inflow = lowest ? down : 0;
-  row.outflow = highest ? up : 0;
+  row.outflow = highest && !kills ? up : 0;
+  row.killed = kills ? up : 0;
 }
 
 void HpDiscretisation::append(int element, double factor, Trace trace, TransportRow& row) const {

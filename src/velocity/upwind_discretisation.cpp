@@ -24,6 +24,15 @@ std::unique_ptr<VelocityDiscretisation> UpwindDiscretisation::up_to(double speed
   return std::make_unique<UpwindDiscretisation>(speed / steps, steps - 1, drag_);
 }
 
+std::unique_ptr<VelocityDiscretisation> UpwindDiscretisation::split_at(double speed) const {
+  const int steps = std::max(2, static_cast<int>(std::lround(speed / spacing_)));
+  const double spacing = speed / steps;
+  const int all = static_cast<int>(std::lround(v_max() / spacing));
+  auto split = std::make_unique<UpwindDiscretisation>(spacing, std::max(steps - 1, all), drag_);
+  split->end_at_speed(steps - 2);
+  return split;
+}
+
 void UpwindDiscretisation::transport(double net_force, int j, TransportRow& row) const {
   const double speed = net_force + drag_at_nodes_[j];
   fill(j, speed, speed / spacing_, row);
@@ -36,11 +45,11 @@ void UpwindDiscretisation::transport_change(double net_force, const SpeedChange&
 
 void UpwindDiscretisation::fill(int j, double direction, double rate, TransportRow& row) const {
   row.entries.clear();
-  row.inflow = row.outflow = 0;
+  row.inflow = row.outflow = row.killed = 0;
   if (direction < 0 && j > 0) row.entries.push_back({j - 1, -rate});
   if (direction < 0 && j == 0) row.inflow = -rate;
-  if (direction > 0 && j < size() - 1) row.entries.push_back({j + 1, rate});
-  if (direction > 0 && j == size() - 1 && kills_at_top()) row.outflow = rate;
+  if (direction > 0 && j < size() - 1 && !kills_above(j)) row.entries.push_back({j + 1, rate});
+  if (direction > 0 && kills_above(j)) row.killed = rate;
 }
 
 // Between two nodes; below the first one, where a cell of its own begins, its value.

@@ -52,7 +52,7 @@ class Refusals(Case):
                                ("-quantities psd", "did you mean spectrum?"),
                                ("-quantities sticking,msd", "-quantities = msd: must be"),
                                ("-quantities msd", "did you mean displacement?"),
-                               ("-quantities first_passage", "did you mean peak?"),
+                               ("-quantities mfpt", "did you mean first_passage?"),
                                ("-quantities P_stick", "did you mean sticking?"), ("-route mc", "did you mean monte_carlo?")):
             self.refuse(*words.split(), message=(message,))
 

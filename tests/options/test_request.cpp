@@ -565,6 +565,22 @@ TEST_CASE("request: starts are states that occur, or distributions") {
   check_refusal({path + "nowhere", {"-start = nowhere", "stationary, rest or x,v"}});
 }
 
+TEST_CASE("request: first passages are of speeds that are reached, and not at once") {
+  const std::string passage = "-quantities first_passage -velocity ";
+  const Request r = Given(passage + "0.5 -start rest -passage down").read();
+  CHECK(r.question.passage == model::Passage::down);
+  CHECK(r.warnings.empty());
+  CHECK_NOTHROW(Given(passage + "0.5 -passage up -start 0.5,-2").read());
+  check_refusal({"-quantities first_passage", {"-quantities", "add for example -velocity"}});
+  check_refusal({passage + "0", {"-velocity", "must be positive"}});
+  check_refusal({passage + "-1", {"-velocity"}});
+  check_refusal({passage + "99", {"-velocity", "no body reaches"}});
+  check_refusal({passage + "0.5 -start 0.5,0.75", {"-start", "passed at once"}});
+  check_refusal({passage + "0.5 -passage down -start 0.5,-2", {"-start", "passed at once"}});
+  check_refusal({passage + "0.5 -passage sideways", {"-passage = sideways", "both, up or down"}});
+  CHECK(Given("-quantities peak -velocity 0.5 -passage up").read().warnings.size() == 1);
+}
+
 // Lambda = 128 at delta = 1/8.
 TEST_CASE("request: a path that memory cannot keep is refused with the longest that it can") {
   const std::string path = "-quantities trajectory -trajectory t.csv -horizon ";

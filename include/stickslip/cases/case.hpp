@@ -13,6 +13,7 @@
 
 #include "stickslip/catalogue/entry.hpp"
 #include "stickslip/model/observable.hpp"
+#include "stickslip/model/passage.hpp"
 #include "stickslip/model/scene.hpp"
 #include "stickslip/model/start.hpp"
 
@@ -50,10 +51,11 @@ struct Question {
   std::vector<double> time = {};                    ///< of functions of time [time]
   std::vector<double> distance = {};                ///< of the densities of slip [velocity*time]
   std::vector<double> inverse_distance = {};        ///< of the transform of slip
-  std::vector<double> velocity = {};                ///< of peak [velocity]
+  std::vector<double> velocity = {};                ///< of peak and first_passage [velocity]
   std::map<std::string, std::vector<double>, std::less<>> arguments = {};  ///< others, by option
-  model::Start start = {};  ///< of expectation, displacement and trajectory
-  double horizon = 100;     ///< end of the trajectory [time]
+  model::Start start = {};  ///< of expectation, displacement, first_passage and trajectory
+  model::Passage passage = model::Passage::both;  ///< of first_passage
+  double horizon = 100;                           ///< end of the trajectory [time]
   double accuracy = 1e-6;
   bool accuracy_given = false;             ///< by the user
   std::vector<Reference> references = {};  ///< of -compare

@@ -40,7 +40,7 @@ inline constexpr const Row* kPeakRows[] = {&kPPeak, &kFirstPassage, &kFirstPassa
 inline constexpr Entry kPeak{
     .quantity = Quantity::peak,
     .word = "peak",
-    .synonyms = "first_passage, fpt, mfpt, passage, exit_time, largest_speed",
+    .synonyms = "largest_speed",
     .title = "largest speed of a sliding phase, mean first-passage times of |V|",
     .routes = {Route::excursion, Route::monte_carlo},
     .options = "velocity",

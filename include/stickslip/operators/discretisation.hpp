@@ -2,8 +2,10 @@
 /// A process made discrete.
 
 #include <memory>
+#include <optional>
 #include <utility>
 
+#include "stickslip/model/passage.hpp"
 #include "stickslip/model/process.hpp"
 #include "stickslip/noise/nodes.hpp"
 #include "stickslip/velocity/velocity_discretisation.hpp"
@@ -22,10 +24,17 @@ struct Discretisation {
 
   /// The same up to |v| = speed, where the process is killed.
   [[nodiscard]] Discretisation killing_at(double speed) const;
+  /// The same with elements that end at |v| = speed, where bodies that rise to it are killed: those
+  /// of a passage, or none.
+  [[nodiscard]] Discretisation passing(double speed, std::optional<model::Passage> killed) const;
 
   model::Process process;
   std::shared_ptr<const noise::Nodes> noise;
   std::shared_ptr<const velocity::VelocityDiscretisation> velocities;  ///< none for the fluid queue
+
+ private:
+  // With groups that end where bodies do not move at that speed.
+  [[nodiscard]] std::shared_ptr<const noise::Nodes> nodes_for(double speed) const;
 };
 
 }  // namespace stickslip::operators

@@ -76,6 +76,7 @@ class ElementSystem {
 
   int count_, nodes_, first_, length_ = 0;
   Ports taken_, given_;
+  std::vector<double> killed_;  // rates, by place in a list
   LinearSteps<Scalar> steps_;
 };
 

@@ -111,6 +111,12 @@ class KolmogorovOperator {
   /// StaticPhase::killing only. Collective.
   [[nodiscard]] petsc::VecHandle from_static(const std::vector<PetscScalar>& s) const;
 
+  /// L u^2 - 2 u L u, the squares of what u changes by at jumps times their rates, u having the
+  /// values s at rest and 0 where bodies are killed at a speed: where -L u = 1, the rate at which
+  /// the variance of the time until then grows. Of lambda = 0; StaticPhase::killing only.
+  /// Collective.
+  [[nodiscard]] petsc::VecHandle square_field(Vec u, const std::vector<double>& s) const;
+
   /// f(x, y, v) on all states, projected on noise nodes: products with occupations are those of
   /// the measures that they stand for, whatever f is. Collective. O(levels velocity nodes).
   using Observable = std::function<double(double x, double y, double v)>;

@@ -2,9 +2,11 @@
 /// What an operator is of: the part that plans and reports need, independent of the scalar type.
 
 #include <concepts>
+#include <optional>
 #include <tuple>
 #include <vector>
 
+#include "stickslip/model/passage.hpp"
 #include "stickslip/model/process.hpp"
 #include "stickslip/support/infinity.hpp"
 
@@ -78,7 +80,8 @@ struct Shift {
 };
 
 /// lambda - L on functions of one symmetry, killed where |v| reaches a limit; with a tilt, of none.
-/// By the clock of time there may be more on the path.
+/// By the clock of time there may be more on the path. With a passage those alone are killed, and
+/// elements go on beyond the limit.
 struct SystemKey {
   double lambda = 0;
   Symmetry symmetry = Symmetry::even;
@@ -86,6 +89,7 @@ struct SystemKey {
   Clock clock = Clock::time;
   double speed_limit = kInfinity;
   double path = 0, tilt = 0;  ///< [1/(velocity time)]
+  std::optional<model::Passage> passage = {};
 
   [[nodiscard]] Shift<double> shift() const {
     Shift<double> all(lambda, clock);
@@ -94,8 +98,9 @@ struct SystemKey {
     return all;
   }
   friend bool operator<(const SystemKey& a, const SystemKey& b) {
-    return std::tie(a.lambda, a.symmetry, a.static_phase, a.clock, a.speed_limit, a.path, a.tilt) <
-           std::tie(b.lambda, b.symmetry, b.static_phase, b.clock, b.speed_limit, b.path, b.tilt);
+    return std::tie(a.lambda, a.symmetry, a.static_phase, a.clock, a.speed_limit, a.path, a.tilt,
+                    a.passage) < std::tie(b.lambda, b.symmetry, b.static_phase, b.clock,
+                                          b.speed_limit, b.path, b.tilt, b.passage);
   }
   friend bool operator==(const SystemKey&, const SystemKey&) = default;
 };

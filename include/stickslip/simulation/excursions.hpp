@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "stickslip/model/observable.hpp"
+#include "stickslip/model/passage.hpp"
 #include "stickslip/model/process.hpp"
 #include "stickslip/model/start.hpp"
 #include "stickslip/simulation/random_stream.hpp"
@@ -26,7 +27,9 @@ struct Wanted {
   std::vector<double> time = {};           ///< along paths [time]
   std::optional<model::Start> start = {};  ///< of paths from a state or from rest
   bool stationary_paths = false;
-  bool travel = false;  ///< int v dt along paths
+  bool travel = false;                ///< int v dt along paths
+  std::vector<double> passages = {};  ///< of paths; rising [velocity]
+  model::Passage passage = model::Passage::both;
 
   /// The place among the observables of one that is to be followed; each has a name of its own.
   std::size_t observe(const model::Observable& f);

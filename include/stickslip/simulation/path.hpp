@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "stickslip/model/passage.hpp"
 #include "stickslip/model/process.hpp"
 #include "stickslip/model/start.hpp"
 #include "stickslip/simulation/random_stream.hpp"
@@ -27,6 +28,7 @@ struct FollowedPath {
   std::size_t side = 0;
   bool turned = false;  ///< whether that excursion is followed by one from the other side
   double weight = 1;
+  std::span<const double> passages = {};  ///< when the wanted ones happen
 };
 
 /// A path of the process, followed event by event. Between events X and Y stay and V follows the
@@ -40,6 +42,8 @@ class Walk {
   /// On to the next event, a jump of the noise or a body that comes to rest or is turned round, at
   /// most to the time `limit`.
   virtual void step(double limit) = 0;
+  /// When the speed is passed before the next event: now if it has been, never if it is not.
+  [[nodiscard]] virtual double passes(model::Passage passage, double speed) const = 0;
   [[nodiscard]] virtual State state() const = 0;
   [[nodiscard]] virtual double jumps() const = 0;  ///< of the noise since the beginning
   [[nodiscard]] virtual int level() const = 0;     ///< of the noise

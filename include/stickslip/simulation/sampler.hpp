@@ -24,8 +24,9 @@ class Sampler {
  private:
   void draw_from_rest(RandomStream& random, Excursion& all);
   void add_cycle(RandomStream& random, RandomStream& places, Excursion& first);
-  void add_stationary(const RandomStream& random, std::size_t side, double place);
+  void add_stationary(const RandomStream& random, std::size_t side, double place, bool mirrored);
   [[nodiscard]] std::pair<State, std::span<const State>> follow();
+  [[nodiscard]] std::span<const double> pass(bool mirrored);
 
   Tally tally_;
   model::Process process_;
@@ -37,6 +38,7 @@ class Sampler {
   std::unique_ptr<Walk> walk_;
   std::vector<std::size_t> order_;  // of times
   std::vector<State> states_;
+  std::vector<double> passages_;
 };
 
 }  // namespace stickslip::simulation

@@ -99,24 +99,28 @@ class Tally {
     });
     return all;
   }
-  /// For each time of the question sums of of(path, state at that time).
-  auto sums_along(const model::Start& start, const auto& of) {
+  /// Sums of of(path), of paths from a start.
+  auto sums_of_paths(const model::Start& start, const auto& of) {
     const bool stationary = start.kind == model::Start::Kind::stationary;
-    wanted_.time = question_.time;
     if (stationary) wanted_.stationary_paths = true;
     if (!stationary) wanted_.start = start;
     const bool cycles = sampled() == Sampled::cycles;
-    std::vector<Sums<decltype(of(FollowedPath{}, State{}))>> all;
-    for (std::size_t n = 0; n < question_.time.size(); ++n) {
-      all.push_back(new_sums<decltype(of(FollowedPath{}, State{}))>(
-          stationary || cycles ? sampled() : Sampled::one_side));
-    }
+    auto all = new_sums<decltype(of(FollowedPath{}))>(stationary || cycles ? sampled()
+                                                                           : Sampled::one_side);
     of_paths_.emplace_back([all, of, stationary, cycles](const FollowedPath& path) mutable {
       if (path.stationary != stationary) return;
-      for (std::size_t n = 0; n < all.size(); ++n) {
-        all[n].add(path.side, {path.turned || cycles ? 1.0 : 0.0, of(path, path.states[n])});
-      }
+      all.add(path.side, {path.turned || cycles ? 1.0 : 0.0, of(path)});
     });
+    return all;
+  }
+  /// For each time of the question sums of of(path, state at that time).
+  auto sums_along(const model::Start& start, const auto& of) {
+    wanted_.time = question_.time;
+    std::vector<Sums<decltype(of(FollowedPath{}, State{}))>> all;
+    for (std::size_t n = 0; n < question_.time.size(); ++n) {
+      all.push_back(sums_of_paths(
+          start, [of, n](const FollowedPath& path) { return of(path, path.states[n]); }));
+    }
     return all;
   }
   /// Probabilities that a number lies in [low, high), by the place of the range. An interval has

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "stickslip/model/drag.hpp"
@@ -79,6 +80,10 @@ class HpDiscretisation final : public VelocityDiscretisation {
 
  private:
   [[nodiscard]] std::unique_ptr<VelocityDiscretisation> up_to(double speed) const override;
+  [[nodiscard]] std::unique_ptr<VelocityDiscretisation> split_at(double speed) const override;
+
+  // Ends from 0 to a speed, and the degrees between them.
+  [[nodiscard]] std::pair<std::vector<double>, std::vector<int>> below(double speed) const;
 
   using Trace = std::vector<double> ReferenceElement::*;
 

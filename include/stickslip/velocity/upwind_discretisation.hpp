@@ -39,6 +39,7 @@ class UpwindDiscretisation final : public VelocityDiscretisation {
 
  private:
   [[nodiscard]] std::unique_ptr<VelocityDiscretisation> up_to(double speed) const override;
+  [[nodiscard]] std::unique_ptr<VelocityDiscretisation> split_at(double speed) const override;
 
   // The row of a node where the body moves on at `rate`, upwards or downwards by the sign of
   // `direction`.

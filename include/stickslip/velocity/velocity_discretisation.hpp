@@ -18,11 +18,13 @@ struct Entry {
 /// A row of the transport operator T with (T u)_j ~ B(v_j) u'(v_j), upwinded for the backward
 /// equation (information comes from where the flow goes). Besides the nodes it may refer to the
 /// inflow, the value of u where a body comes to rest at v = 0, and to the outflow, the value of u
-/// on the holding state at v_max. With both and the diagonal that is left out, a row sums to zero.
+/// on the holding state at v_max. With both, the diagonal that is left out and, of opposite sign,
+/// what is killed, a row sums to zero.
 struct TransportRow {
   std::vector<Entry> entries;  ///< sorted by node, without the diagonal
   double inflow = 0;           ///< coefficient of u(0)
-  double outflow = 0;          ///< coefficient of the holding state, or of what lies beyond
+  double outflow = 0;          ///< coefficient of the holding state
+  double killed = 0;           ///< rate of reaching a speed at which bodies are killed
 };
 
 /// The derivative of the speed B(v) with respect to a parameter.
@@ -79,13 +81,31 @@ class VelocityDiscretisation {
   [[nodiscard]] virtual bool needs_holding() const = 0;
 
   /// Whether bodies that reach v_max are killed there, instead of waiting.
-  [[nodiscard]] bool kills_at_top() const { return kills_at_top_; }
+  [[nodiscard]] bool kills_at_top() const {
+    return kills_above(static_cast<int>(cells().size()) - 2);
+  }
+  /// Whether bodies of either branch are killed somewhere.
+  [[nodiscard]] bool kills() const { return kills_ || (mirrored_ && mirrored_->kills_); }
   /// The same on [0, speed], where bodies are killed that reach `speed` > 0, as fine there as at
   /// v = 0; of both branches.
   [[nodiscard]] std::shared_ptr<const VelocityDiscretisation> killing_at(double speed) const {
     auto own = up_to(speed);
-    own->kills_at_top_ = true;
+    own->last_below_ = static_cast<int>(own->cells().size()) - 2;
+    own->kills_ = true;
     if (mirrored_) own->set_mirrored(mirrored_->killing_at(speed));
+    return own;
+  }
+  /// The same with a cell that ends at `speed`, as fine below it as at v = 0, and what is beyond:
+  /// bodies that rise to it are killed on this branch, on the other one, on both or on none.
+  [[nodiscard]] std::shared_ptr<const VelocityDiscretisation> passing(double speed, bool here,
+                                                                      bool there) const {
+    auto own = split_at(speed);
+    own->kills_ = here;
+    if (mirrored_ || here != there) {
+      auto lower = mirrored().split_at(speed);
+      lower->kills_ = there;
+      own->set_mirrored(std::move(lower));
+    }
     return own;
   }
 
@@ -105,10 +125,17 @@ class VelocityDiscretisation {
   VelocityDiscretisation(const VelocityDiscretisation&) = default;
   VelocityDiscretisation& operator=(const VelocityDiscretisation&) = default;
 
+  /// Whether bodies are killed that rise out of a cell.
+  [[nodiscard]] bool kills_above(int cell) const { return kills_ && cell == last_below_; }
+  void end_at_speed(int cell) { last_below_ = cell; }
+
  private:
   [[nodiscard]] virtual std::unique_ptr<VelocityDiscretisation> up_to(double speed) const = 0;
+  /// With end_at_speed() of the cell below the speed.
+  [[nodiscard]] virtual std::unique_ptr<VelocityDiscretisation> split_at(double speed) const = 0;
 
-  bool kills_at_top_ = false;
+  bool kills_ = false;
+  int last_below_ = -1;
   std::shared_ptr<const VelocityDiscretisation> mirrored_;
 };
 

@@ -18,6 +18,7 @@ SLIPS: tuple[Panel, ...] = (
     (("F_slip",), r"$E[e^{-s S}]$", "log", "linear"),
     (("P_peak",), "P(largest speed $> w$)", "linear", "log"),
     (("mean_first_passage", "mean_first_passage_rest"), "mean time to $|V| = w$  [time]", "linear", "log"),
+    (("first_passage_mean",), "mean time to the speed $w$  [time]", "linear", "log"),
     (("displacement_variance",), "Var $x(t)$  [length$^2$]", "log", "log"),
     (("displacement_mean",), "$E[x(t)]$  [length]", "linear", "linear"))
 SPELT = {"mean_first_passage": "from the start of sliding", "mean_first_passage_rest": "from rest"}
