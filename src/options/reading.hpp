@@ -4,7 +4,6 @@
 #include <string>
 #include <utility>
 #include <vector>
-#include <vector>
 
 #include "stickslip/options/request.hpp"
 #include "stickslip/options/settings.hpp"
