@@ -15,6 +15,19 @@ inline model::Scene scene(double mu_s, double mu_d, double tau, double delta, mo
   return s;
 }
 
+/// The same under a constant force.
+inline model::Scene biased(model::Scene s, double bias) {
+  s.bias = bias;
+  return s;
+}
+
+/// The same with lower thresholds of friction downwards.
+inline model::Scene by_direction(model::Scene s) {
+  s.friction.mu_s_minus = 0.8 * s.friction.mu_s;
+  s.friction.mu_d_minus = 0.8 * s.friction.mu_d;
+  return s;
+}
+
 /// The same with the whole noise range.
 inline model::Scene on_full_noise(model::Scene s) {
   s.noise_levels = s.full_levels();

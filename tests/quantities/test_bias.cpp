@@ -11,6 +11,7 @@
 
 using namespace stickslip;
 using quantities::Results;
+using test::biased;
 using test::relative_difference;
 using test::scene;
 using test::Solved;
@@ -19,11 +20,6 @@ namespace {
 
 // So small that it moves nothing, and yet no symmetry is made use of.
 constexpr double kNothing = 1e-300;
-
-model::Scene biased(model::Scene s, double bias) {
-  s.bias = bias;
-  return s;
-}
 
 const std::vector<model::Scene>& sample_scenes() {
   static const std::vector<model::Scene> scenes{

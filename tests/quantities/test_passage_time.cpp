@@ -20,17 +20,10 @@ using test::Solved;
 namespace {
 
 model::Scene passing(double bias = 0) {
-  auto s = test::scene(1, 0.5, 1, 0.5, {1, 0});
-  s.bias = bias;
-  return s;
+  return test::biased(test::scene(1, 0.5, 1, 0.5, {1, 0}), bias);
 }
 
-model::Scene passing_by_direction() {
-  auto s = passing(0.2);
-  s.friction.mu_s_minus = 0.8;
-  s.friction.mu_d_minus = 0.4;
-  return s;
-}
+model::Scene passing_by_direction() { return test::by_direction(passing(0.2)); }
 
 operators::SystemKey passage_key(const model::Process& process, Passage passage, double w) {
   operators::SystemKey key{0, operators::symmetry_of(process)};

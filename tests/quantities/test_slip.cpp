@@ -30,17 +30,10 @@ model::Scene telegraph(double bias) {
 }
 
 model::Scene linear(double bias = 0) {
-  auto s = test::scene(1, 0.5, 1, 0.5, {1, 0});
-  s.bias = bias;
-  return s;
+  return test::biased(test::scene(1, 0.5, 1, 0.5, {1, 0}), bias);
 }
 
-model::Scene by_direction() {
-  auto s = linear(0.2);
-  s.friction.mu_s_minus = 0.8;
-  s.friction.mu_d_minus = 0.4;
-  return s;
-}
+model::Scene by_direction() { return test::by_direction(linear(0.2)); }
 
 // Without any symmetry being made use of.
 constexpr double kNothing = 1e-300;

@@ -20,7 +20,7 @@ struct PassageTime {
 /// nu A = g the occupation of the sliding phase in which it begins, `entry` where that ends, `rest`
 /// the static levels of the start, t_i the mean sticking time and h_iu the probability that the
 /// next sliding phase begins at u; and so for each u, the m_u by renewal without subtraction, as in
-/// first_passage.hpp. With m on all states, m(Z_t) + t is a martingale: Var T is in the same way
+/// UntilPassage. With m on all states, m(Z_t) + t is a martingale: Var T is in the same way
 /// the sum of its squared jumps, sums in which nothing cancels, and of (m(z) - m)^2 over starts z.
 /// A transposed solve for each start and a forward one for m; a stationary start is found on the
 /// same elements without killing. NaN where w is reached so rarely that rounding is all there is.
