@@ -197,7 +197,8 @@ class Rules {
            "vanishes with tau. White noise of intensity 2 is the limit where the deviation is "
            "1/sqrt(tau)",
            "leave it out; units of time and force give other intensities");
-    const auto unfit = wanted([](const auto& entry) { return !has_limit(entry); });
+    const auto unfit =
+        wanted([](const auto& entry) { return entry.of_one_run || entry.without_limit; });
     report("quantities", to_white_noise_ && !unfit.empty(),
            "asks for " + enumerate(unfit, "and") +
                ", and -study tau follows numbers at arguments that do not depend on the noise",
@@ -221,17 +222,6 @@ class Rules {
       if (q_.wants(entry->quantity) && fact(*entry)) words.emplace_back(entry->word);
     }
     return words;
-  }
-
-  [[nodiscard]] static bool has_limit(const catalogue::Entry& entry) {
-    using enum Quantity;
-    const auto without = {density,
-                          entry_law,
-                          trajectory,
-                          sensitivity,
-                          catalogue::kGivenForce.quantity,
-                          catalogue::kNoiseSpectrum.quantity};
-    return std::find(without.begin(), without.end(), entry.quantity) == without.end();
   }
 
   // What quantities say of themselves.

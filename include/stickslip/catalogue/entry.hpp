@@ -114,7 +114,8 @@ struct Entry {
   /// degrees_per_digit n + degrees_besides.
   double degrees_per_digit = 1, degrees_besides = 1;
   bool of_phases = false;  ///< about sticking and sliding phases: nothing where a body never sticks
-  bool of_one_run = false;  ///< a field or a path, which has no place in a sweep
+  bool of_one_run = false;     ///< a field or a path, which has no place in a sweep
+  bool without_limit = false;  ///< not a number that white noise has, which -study tau follows
   /// What is wrong with it where drag does not bound the velocity, and what to take; empty where
   /// nothing is.
   std::string_view unbounded = {}, instead = {};

@@ -39,6 +39,7 @@ inline constexpr Entry kEntryLaw{
     .routes = {Route::excursion, Route::fluid_queue, Route::monte_carlo},
     .rows = kEntryLawRows,
     .degrees_besides = 2,
-    .of_phases = true};
+    .of_phases = true,
+    .without_limit = true};
 
 }  // namespace stickslip::catalogue

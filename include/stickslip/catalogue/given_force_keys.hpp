@@ -87,6 +87,7 @@ inline constexpr Entry kGivenForce{
     .title = "motion from rest under the force of -force_file, as trajectory with that option",
     .routes = {Route::excursion},
     .options = "force_file, force_interpolation, force_scale",
-    .rows = kGivenForceRows};
+    .rows = kGivenForceRows,
+    .without_limit = true};
 
 }  // namespace stickslip::catalogue

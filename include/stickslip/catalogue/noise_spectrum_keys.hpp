@@ -33,6 +33,7 @@ inline constexpr Entry kNoiseSpectrum{
     .title = "power spectral density of the noise, beside that of what it stands for",
     .routes = {Route::excursion},
     .options = "omega",
-    .rows = kNoiseSpectrumRows};
+    .rows = kNoiseSpectrumRows,
+    .without_limit = true};
 
 }  // namespace stickslip::catalogue

@@ -27,6 +27,7 @@ inline constexpr Entry kSensitivity{
     .title = "derivatives of the scalars of sticking, moments and noise_law",
     .routes = {Route::excursion},
     .rows = kSensitivityRows,
-    .of_phases = true};
+    .of_phases = true,
+    .without_limit = true};
 
 }  // namespace stickslip::catalogue
