@@ -66,15 +66,6 @@ class Entry(Report):
     def file(self, name):
         return self.folder / name
 
-    def chain(self, name, generator, forces):
-        """Options for the noise with these forces and this generator, in files that it writes."""
-        states, jumps = self.file(f"{name}_states.csv"), self.file(f"{name}_rates.csv")
-        states.write_text("x\n" + "".join(f"{float(force)!r}\n" for force in forces))
-        jumps.write_text("from,to,rate\n" + "".join(
-            f"{i},{j},{float(rate)!r}\n" for i, row in enumerate(generator) for j, rate in enumerate(row)
-            if i != j and rate))
-        return {"noise": "chain", "noise_states": states, "noise_rates": jumps}
-
     def picture(self, name, caption):
         """`name` is a file in the folder by now."""
         self.parts.append({"picture": name, "caption": caption})

@@ -80,6 +80,19 @@ def worse(*values):
     return next((v for v in values if v != v), max(values))
 
 
+def entries(result):
+    """Value, error and confidence interval of each number of a result; None where a method gives none of these."""
+    values, errors, ends = (result.get(part) for part in ("value", "error", "ci95"))
+    if not isinstance(values, list):
+        return [(values, errors, ends)]
+    return list(zip(values, errors or [None] * len(values), ends or [None] * len(values)))
+
+
+def by_place(results):
+    """The entries of all results by key and place."""
+    return {(key, n): one for key, r in results.items() for n, one in enumerate(entries(r))}
+
+
 def significant(count):
     """|z| that one of `count` independent values passes by chance with probability 1e-3."""
     return statistics.NormalDist().inv_cdf(1 - 1e-3 / (2 * count))

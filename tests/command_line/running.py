@@ -40,6 +40,14 @@ class Case(unittest.TestCase):
         self.assertEqual(done.returncode, status, done.stderr)
         return done
 
+    def refuse(self, *options, message):
+        """Bad input: status 2, all parts of the message on standard error, nothing else."""
+        done = run(*options, folder=self.folder)
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertEqual(done.stdout, "")
+        for part in message:
+            self.assertIn(part, done.stderr)
+
     def summary(self, *options, **how):
         """Runs to the end and returns what -summary wrote; `printed` is what went to standard output."""
         file = self.folder / "summary.json"

@@ -12,13 +12,6 @@ HEADER = "time,force\n"
 
 
 class GivenForce(Case):
-    def refuse(self, *options, message):
-        done = run(*options, folder=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertEqual(done.stdout, "")
-        for part in message:
-            self.assertIn(part, done.stderr)
-
     def refuse_file(self, text, *message):
         (self.folder / "record.csv").write_text(text)
         self.refuse(*ASKED, "record.csv", message=("-force_file = record.csv: ", *message, "; write CSV with the"))

@@ -11,13 +11,6 @@ HEADER = "x,rate_up,rate_down\n"
 
 
 class Noises(Case):
-    def refuse(self, *options, message):
-        done = run(*options, folder=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertEqual(done.stdout, "")
-        for part in message:
-            self.assertIn(part, done.stderr)
-
     def refuse_file(self, text, *message):
         (self.folder / "levels.csv").write_text(text)
         self.refuse("-noise", "file", "-noise_file", "levels.csv",

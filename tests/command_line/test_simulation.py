@@ -122,12 +122,6 @@ class Expressions(Case):
 
 
 class Refusals(Case):
-    def refuse(self, *options, message):
-        done = run(*options, folder=self.folder)
-        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
-        for part in message:
-            self.assertIn(part, done.stderr)
-
     def test_months(self):
         self.refuse("-mu_s", "6", "-mu_d", "0.25", *SIMULATE[2:], message=("-excursions", "days"))
         self.refuse(*SIMULATE, "-excursions", "1e15", message=("-excursions", "days"))

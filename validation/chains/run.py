@@ -13,7 +13,8 @@ import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from entry import Entry, deviation
-from harness import worse
+from harness import by_place, worse
+from stickslip.noise import Chain
 
 DRAGS = ({"drag": "none"}, {"drag_coefficient": 0.7}, {"drag": "cubic", "drag_coefficient": 0.4, "drag_cubic": 0.3},
          {"drag": "expression", "drag_expression": "v>0?0-2*v:0-0.5*v"},
@@ -50,31 +51,16 @@ def drawn(rng):
         options |= {"friction": "stribeck", "stribeck_velocity": rng.uniform(0.2, 2)}
     if rng.random() < 0.5:
         options["bias"] = rng.uniform(-0.3, 0.3)
-    return generator, numpy.concatenate([forces, more_forces]), options
+    return Chain(numpy.concatenate([forces, more_forces]), generator), options
 
 
-def law(generator):
-    q = generator - numpy.diag(generator.sum(1))
-    return numpy.linalg.lstsq(numpy.vstack([q.T, numpy.ones(len(q))]), [*numpy.zeros(len(q)), 1], rcond=None)[0]
-
-
-def moves_and_rests(generator, forces, options):
+def moves_and_rests(chain, options):
     """Whether bodies start and stop, and no mean force carries them off without drag."""
     up, down = options["mu_s"], options.get("mu_s_minus", options["mu_s"])
-    force = forces + options.get("bias", 0)
+    force = chain.x + options.get("bias", 0)
     held = min(options["mu_d"], options.get("mu_d_minus", options["mu_d"]))
     starts, rests = (force > up) | (force < -down), (force <= up) & (force >= -down)
-    return starts.any() and rests.any() and (options.get("drag") != "none" or abs(law(generator) @ force) < 0.6 * held)
-
-
-def flat(results):
-    """Value, error and confidence interval of each entry by its place."""
-    found = {}
-    for key, r in results.items():
-        values, errors = numpy.atleast_1d(r["value"]), numpy.atleast_1d(r.get("error", numpy.nan))
-        ends = numpy.atleast_2d(r["ci95"]) if "ci95" in r else [None] * len(values)
-        found |= {(key, n): one for n, one in enumerate(zip(values, errors, ends))}
-    return found
+    return starts.any() and rests.any() and (options.get("drag") != "none" or abs(chain.stationary @ force) < 0.6 * held)
 
 
 def main():
@@ -82,25 +68,24 @@ def main():
     rng, known, far, rows = numpy.random.default_rng(39), [], [], []
     count, excursions = (6, 3000) if entry.quick else (60, 30000)
     while len(rows) < count:
-        case = drawn(rng)
-        if not moves_and_rests(*case):
+        chain, options = drawn(rng)
+        if not moves_and_rests(chain, options):
             continue
-        generator, forces, options = case
-        scene = {**entry.chain(f"chain_{len(rows)}", generator, forces), **options}
-        exact = flat(entry.run(**scene, **ASKED, accuracy=1e-6)["results"])
+        scene = {"noise": chain, **options}
+        exact = by_place(entry.run(**scene, **ASKED, accuracy=1e-6)["results"])
         if exact["mean_excursion", 0][0] > LONG:
             continue
-        simulated = flat(entry.run(**scene, **ASKED, route="monte_carlo", excursions=excursions)["results"])
+        simulated = by_place(entry.run(**scene, **ASKED, route="monte_carlo", excursions=excursions)["results"])
         beside = [(*exact[place][:2], {"value": value, "ci95": ends}) for place, (value, _, ends) in simulated.items()
                   if place in exact and ends is not None and ends[0] < ends[1]]
-        other = flat(entry.run(**scene, quantities="sticking,moments", route="null_vector", accuracy=1e-6)["results"])
+        other = by_place(entry.run(**scene, quantities="sticking,moments", route="null_vector", accuracy=1e-6)["results"])
         gaps = [abs(value - exact[place][0]) / (error + exact[place][1] + 1e-13 * abs(value))
                 for place, (value, error, _) in other.items() if place in exact and value]
         known += beside
         far += gaps
         what = ", ".join(f"{name} {value}" if isinstance(value, str) else f"{name} {value:.3g}"
                          for name, value in options.items())
-        rows.append((str(len(forces)), what, max(abs(deviation(*one)) for one in beside), max(gaps)))
+        rows.append((str(len(chain.x)), what, max(abs(deviation(*one)) for one in beside), max(gaps)))
     entry.table("random chains", ("states", "scene", "largest |z|", "null vector, by both errors"), rows)
     z = numpy.array([deviation(*one) for one in known])
     entry.at_least(f"share of {len(z)} confidence intervals at 95 % that hold the value", (abs(z) < 1.96).mean(), 0.9)

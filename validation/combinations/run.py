@@ -16,7 +16,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from entry import Entry, deviation
-from harness import difference, worse
+from harness import by_place, difference, entries, worse
 from stickslip import BadInput
 
 NOTHING = 1e-300
@@ -169,18 +169,13 @@ def seen_in_mirror(results, f, image):
     return seen
 
 
-def entries(result):
-    value, error = result["value"], result["error"]
-    return list(zip(value, error)) if isinstance(value, list) else [(value, error)]
-
-
 def beyond_errors(one, other):
     """By how many times their errors the values of two runs differ, at most, and where."""
     most, where = 0.0, ""
     for key in one.keys() & other.keys():
         pairs = list(zip(entries(one[key]), entries(other[key])))
-        size = max(abs(a) for (a, _), _ in pairs)
-        for (a, error_a), (b, error_b) in pairs:
+        size = max(abs(a) for (a, *_), _ in pairs)
+        for (a, error_a, _), (b, error_b, _) in pairs:
             times = abs(a - b) / (error_a + error_b + 1e-9 * size + 1e-14)
             if not times <= most:
                 most, where = times, key
@@ -191,7 +186,7 @@ def far_apart(one, other):
     """The largest difference relative to the largest value of a result, and where."""
     most, where = 0.0, ""
     for key in one.keys() & other.keys():
-        pairs = [(a, b) for (a, _), (b, _) in zip(entries(one[key]), entries(other[key]))]
+        pairs = [(a, b) for (a, *_), (b, *_) in zip(entries(one[key]), entries(other[key]))]
         size = max(max(abs(a) for a, _ in pairs), 1e-3)
         for a, b in pairs:
             if not abs(a - b) / size <= most:
@@ -200,18 +195,8 @@ def far_apart(one, other):
 
 
 def flat(results):
-    """Value, error and interval by key and place, but for cells and modes."""
-    found = {}
-    for key, r in results.items():
-        if key in CELLS or key.startswith("relaxation"):
-            continue
-        ends = r.get("ci95")
-        if not isinstance(r["value"], list):
-            found[key, 0] = (r["value"], r["error"], ends)
-            continue
-        for n, (value, error) in enumerate(entries(r)):
-            found[key, n] = (value, error, ends[n] if ends else None)
-    return found
+    """Entries by place, but for cells and modes."""
+    return by_place({key: r for key, r in results.items() if key not in CELLS and not key.startswith("relaxation")})
 
 
 def name_of(case):

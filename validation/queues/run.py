@@ -18,6 +18,7 @@ import scipy.linalg
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from entry import Entry
 from harness import difference, worse
+from stickslip.noise import Chain
 
 MU, FAR = 1.0, 1e3  # what holds a body at rest, and what lets none slide backwards
 BUTOOLS = (numpy.array([[-6, 1, 3, 2, 0, 0], [6, -10, 2, 0, 2, 0], [3, 7, -12, 0, 0, 2],
@@ -61,7 +62,7 @@ def by_formula(count, on, capacity):
 
 def queue(entry, name, generator, rates):
     """Runs it both ways; the weights at rest by state, and rows of the table."""
-    scene = {**entry.chain(name, generator, rates + MU), "drag": "none", "mu_s": MU, "mu_d": MU, "mu_s_minus": FAR,
+    scene = {"noise": Chain(rates + MU, generator), "drag": "none", "mu_s": MU, "mu_d": MU, "mu_s_minus": FAR,
              "mu_d_minus": FAR}
     found = entry.results(**scene, quantities="sticking,moments,density", accuracy=1e-11)
     density = found.density
