@@ -187,6 +187,7 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
                    scales, tolerance.value, tolerance.recipe("variance of displacement"))
             .value[0];
   }
+  const bool still = model::mirrors_itself(systems.process(), start);
   if (!stationary) {
     // In units of the standard deviation of the velocity and of tau.
     const double unit = 1 / std::sqrt(variance);
@@ -195,7 +196,7 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
     CoupledPencil both(outer, inner, scaled(b, 2));
     const petsc::VecHandle first = start_on(inner.a(), start), second = start_on(outer.a(), start),
                            none = inner.a().zeros(), nothing = outer.a().zeros();
-    if (counts(first)) {
+    if (!still && counts(first)) {
       x.mean = time_curve(inner, {b, first, weight}, Nature::rough, {{1, std::sqrt(spread)}}, time,
                           scales, tolerance.value, tolerance.recipe("mean of displacement"))
                    .value[0];
@@ -215,6 +216,7 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
       x.mean[n] = tau / unit * x.mean[n];
     }
   }
+  if (still) return x;
   const auto& excursion = distribution.excursion();
   const double drift =
       excursion.mean_drift(*systems.discretisation().noise) / excursion.mean_excursion();

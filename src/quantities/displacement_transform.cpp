@@ -19,13 +19,12 @@ void append_transform(const Computation& computation, double t, const Displaceme
     return result;
   };
   Result cosine = of(catalogue::kDisplacementCosine), sine = of(catalogue::kDisplacementSine);
-  const bool symmetric = computation.process().symmetric() &&
-                         computation.question().start.kind != model::Start::Kind::state;
+  const bool even = model::mirrors_itself(computation.process(), computation.question().start);
   for (double k : wavenumbers) {
     DisplacementModel::Transform found{1, 0};
     if (t != 0 && k != 0) found = model->transform(k);
     append_value(cosine, {found.value.real(), found.error});
-    append_value(sine, symmetric ? Uncertain{} : Uncertain{found.value.imag(), found.error});
+    append_value(sine, even ? Uncertain{} : Uncertain{found.value.imag(), found.error});
   }
   for (auto* result : {&cosine, &sine}) computation.results().push_back(std::move(*result));
 }

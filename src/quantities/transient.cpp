@@ -100,7 +100,9 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
   for (Symmetry symmetry : operators::sectors_of(systems.process())) {
     ProcessPencil whole(systems, symmetry, StaticPhase::kept);
     const KolmogorovOperator& a = whole.a();
-    const auto part = operators::part_of(f, symmetry);
+    // Without its odd part, where states of both signs are kept although that has no mean.
+    const bool even = symmetry == Symmetry::none && model::mirrors_itself(systems.process(), start);
+    const auto part = operators::part_of(f, even ? Symmetry::even : symmetry);
     const petsc::VecHandle b = a.values(part);
     const petsc::VecHandle pi = distribution.occupation_on(a), square = a.zeros();
     check(VecScale(pi, 1 / distribution.excursion().mean_excursion()));

@@ -14,10 +14,9 @@ void displacement_tally(Tally& tally) {
     return Travel{path.weight, path.weight * x, path.weight * x * x};
   });
   // With symmetry paths from rest and stationary ones are as likely as their mirror images.
-  tally.report([=,
-                from_state = start.kind == model::Start::Kind::state](const Tally& t) -> Estimates {
-    const bool still = !t.process().drifts() && !from_state,
-               even = t.process().symmetric() && !from_state;
+  tally.report([=](const Tally& t) -> Estimates {
+    const bool still = model::mirrors_itself(t.process(), start),
+               even = still && t.process().symmetric();
     const auto mean = [&](std::size_t n) {
       return sums[n].overall(&Travel::x, even ? -1 : 1) / sums[n].overall(&Travel::weight);
     };

@@ -17,7 +17,6 @@ struct TransformWave {
 void displacement_transform_tally(Tally& tally) {
   const auto wavenumbers = tally.question().values(catalogue::kWavenumber.option);
   const auto& start = tally.question().start;
-  const bool from_state = start.kind == model::Start::Kind::state;
   tally.wanted().travel = true;
   std::vector<std::vector<Sums<TransformWave>>> all;
   for (double k : wavenumbers) {
@@ -29,8 +28,8 @@ void displacement_transform_tally(Tally& tally) {
   }
   // With symmetry paths from rest and stationary ones are as likely as their mirror images.
   tally.report([=](const Tally& t) -> Estimates {
-    const bool even = t.process().symmetric() && !from_state;
-    const bool still = !t.process().drifts() && !from_state;
+    const bool still = model::mirrors_itself(t.process(), start);
+    const bool even = still && t.process().symmetric();
     const auto& time = t.question().time;
     Estimates found;
     for (std::size_t at = 0; at < time.size(); ++at) {

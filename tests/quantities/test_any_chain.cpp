@@ -147,6 +147,24 @@ TEST_CASE("any chain: passages by many starts", "[real]") {
   }
 }
 
+// The chain keeps states of both signs, which are known to balance.
+TEST_CASE("any chain: what its mirror image makes vanish is exactly zero") {
+  const auto s = test::with_table(test::scene(0.8, 0.4, 1, 1, {1, 0}),
+                                  test::sine_and_levels(1.1, 4, 4, 0.6, 1, 0.7, 2));
+  REQUIRE_FALSE(s.process(1).symmetric());
+  for (const auto kind : {model::Start::Kind::rest, model::Start::Kind::stationary}) {
+    auto c = asking(s, {Quantity::displacement, Quantity::expectation}, 1e-3);
+    c.question.start.kind = kind;
+    const auto found = values(c);
+    for (const auto* key : {"displacement_mean", "E(v^3)"}) {
+      INFO(key);
+      CHECK(found.at(key).value == std::vector<double>{0, 0});
+      CHECK(found.at(key).error == std::vector<double>{0, 0});
+    }
+    CHECK(found.at("displacement_variance").value[1] > 0);
+  }
+}
+
 TEST_CASE("any chain: simulated cycles give the same, within 4.5 sigma", "[real]") {
   auto s = test::with_table(test::scene(1, 0.5, 1, 1, {1, 0}),
                             test::sine_and_levels(1.2, 4, 6, 0.5, 1, 0.7, 2));
