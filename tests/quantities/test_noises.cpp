@@ -113,7 +113,7 @@ TEST_CASE("telegraph noise: the mirror image starts downwards") {
   CHECK_FALSE(down.contains("h_plus"));
 }
 
-TEST_CASE("noise levels moved by a constant force are the same process", "[real]") {
+TEST_CASE("noise levels moved by a constant force are the same process", "[real][long]") {
   const std::set<Quantity> asked{
       Quantity::sticking, Quantity::moments,         Quantity::entry_law,       Quantity::laplace,
       Quantity::spectrum, Quantity::autocorrelation, Quantity::duration_density};

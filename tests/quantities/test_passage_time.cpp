@@ -170,7 +170,7 @@ TEST_CASE("passage time: hardly any from just below the speed") {
   }
 }
 
-TEST_CASE("passage time: as simulated from every start", "[real]") {
+TEST_CASE("passage time: as simulated from every start", "[real][long]") {
   auto any = passing(0.25);
   any.noise.name = "chain";
   any.noise.table = std::make_shared<const model::LevelTable>(test::five_states());

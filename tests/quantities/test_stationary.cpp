@@ -157,7 +157,7 @@ TEST_CASE("stationary distribution: P(|X| <= mu_s) summed over the grid at every
   }
 }
 
-TEST_CASE("density: integrates to the distribution it came from", "[parallel]") {
+TEST_CASE("density: integrates to the distribution it came from", "[parallel][long]") {
   const auto s = scene(1, 0.25, 1, 0.25, {1, 0});
   for (const auto& resolution : sample_resolutions(s)) {
     const auto distribution = solve(s, resolution);
