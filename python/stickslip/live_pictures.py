@@ -42,9 +42,8 @@ class LivePictures:
         self.by_x = figure.add_subplot(grid[1, 0], sharex=self.density)
         self.image = self.density.imshow(numpy.ones((2, 2)), aspect="auto", origin="lower", cmap="Blues",
                                          norm=colors.LogNorm(DEPTH, 1), interpolation="nearest")
-        bar = figure.colorbar(self.image, cax=figure.add_subplot(grid[0, 2]),
-                              label="density of sliding  [1/(force velocity)]")
-        bar.minorticks_off()  # each takes its time to draw
+        self.scale = figure.colorbar(self.image, cax=figure.add_subplot(grid[0, 2]), label="density of sliding")
+        self.scale.minorticks_off()  # each takes its time to draw
         self.at_rest = self.density.scatter([], [], color=STICK, zorder=3)
         self.density.set_title("", fontsize=9, color=STICK)
         self.density.set_ylabel("velocity $v$  [velocity]")
@@ -107,9 +106,9 @@ class LivePictures:
         columns = numpy.searchsorted(edges, numpy.linspace(low, high, COLUMNS)) - 1  # of the level at each force
         picture = (density.at(v) / steps[:, None])[numpy.clip(columns, 0, len(x) - 1)].T
         largest = picture.max()
-        self.image.set_data(numpy.maximum(picture, DEPTH * largest))
+        self.image.set_data(numpy.maximum(picture / largest, DEPTH))  # a scale that changes takes its time to draw
+        self.scale.ax.yaxis.label.set_text(f"density of sliding  [{largest:.3g}/(force velocity)]")
         self.image.set_extent((low, high, v[0], v[-1]))
-        self.image.set_clim(DEPTH * largest, largest)
         held = density.at_rest > 0
         self.at_rest.set_offsets(numpy.column_stack([x[held], numpy.zeros(held.sum())]))
         self.at_rest.set_sizes(AREA * density.at_rest[held])
