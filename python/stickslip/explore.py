@@ -275,16 +275,17 @@ class Explorer:
 
     def refuse(self, text: str) -> None:
         """Say why there is no result: beside the slider of the option that the program names, and in the bottom line."""
-        named = {"delta": "delta_per_mu_s"}
-        for option in (named.get(word, word) for word in re.findall(r"^-(\w+) = ", text, re.MULTILINE)):
+        for line in text.splitlines():
+            word = re.match(r"-(\w+) = ", line)
+            option = {"delta": "delta_per_mu_s"}.get(word[1], word[1]) if word else ""
             if option in self.knobs and self.knobs[option].in_use(self.choices):
                 box = self.sliders[option].ax.get_position()
                 above = box.y0 < 0.2
                 self.complaint.set(position=(min(box.x0 - 0.1, 0.62), box.y1 + 0.01 if above else box.y0 - 0.01),
-                                   text=textwrap.fill(text.splitlines()[0], 70), visible=True,
+                                   text=textwrap.fill(line, 70), visible=True,
                                    verticalalignment="bottom" if above else "top")
-                self.sliders[option].valtext.set_color(REFUSED)
-                self.sliders[option].label.set_color(REFUSED)
+                for part in (self.sliders[option].valtext, self.sliders[option].label):
+                    part.set_color(REFUSED)
                 break
         self.problem = text.splitlines()[0]
         self.show(self.problem, REFUSED)

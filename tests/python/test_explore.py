@@ -106,6 +106,16 @@ class Pictures(Case):
         self.assertFalse(made.complaint.get_visible())
         self.assertFalse(any(veil.get_visible() for veil in made.pictures.veils))
 
+    def test_of_several_problems_the_one_with_a_slider_is_said_beside_it(self):
+        def refused(cancel, **options):
+            raise BadInput("-omega = 1: is not\n-bias = 0: cannot be\n-tau = 1: neither")
+
+        made = self.explorer(compute=refused)
+        self.until(lambda: made.complaint.get_visible(), made.poll)
+        self.assertEqual(made.complaint.get_text(), "-bias = 0: cannot be")
+        self.assertEqual(made.sliders["bias"].label.get_color(), explore.REFUSED)
+        self.assertIn("-omega", made.status.get_text())
+
     def test_refused_parts_alone_are_greyed(self):
         def no_spectrum(cancel, **options):
             if options["quantities"] == "spectrum":
