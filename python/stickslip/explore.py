@@ -139,14 +139,14 @@ class Explorer:
             slider.label.set_x(-0.06)  # clear of the handle
             slider.on_changed(lambda _, option=option: self.turn(option))
             self.sliders[option] = slider
-        top = 0.375
+        top = 0.38
         for option, values in self.offered.items():
             value = str(scene.get(option, values[0]))
             values = values if value in values else [*values, value]
             self.choices[option] = self._begun[option] = value
-            height = 0.02 + 0.0245 * len(values)
+            height = 0.018 + 0.0225 * len(values)
             place = self.figure.add_axes((0.225, top - height, 0.1, height))
-            top -= height + 0.008
+            top -= height + 0.006
             place.text(0.97, 0.95, option, ha="right", va="top", fontsize=8, color="gray", transform=place.transAxes)
             self.radios[option] = radio = widgets.RadioButtons(place, values, values.index(value), activecolor=SLIDE)
             for text in radio.labels:
