@@ -20,7 +20,7 @@ from stickslip.plots.fields import FORCING, SLIDE, STICK
 from stickslip.plots.style import ABSCISSAE, COLOURS, MARKERS, STYLES, Figure, Line2D, Patch, numpy, saved, styled
 
 warnings.simplefilter("ignore", stickslip.AccuracyWarning)  # a discretisation fixed by hand is not refined
-WIDTH, LARGEST = 7.0, 90_000  # inches of every figure, so that all have letters of one size; bytes of a file
+WIDTH, LARGEST = 7.0, 160_000  # inches of every figure, so that all have letters of one size; bytes of a file
 GREY, SINGLE, GROUP = "#777777", COLOURS[4], COLOURS[2]
 
 
@@ -49,8 +49,10 @@ def phases(run):
     for n in crossings:
         by_v.annotate(r"$V$ crosses 0 without sticking: $|X| > \mu_s$", (time[n], 0), (12, 20), va="center",
                       textcoords="offset points", arrowprops={"arrowstyle": "-", "color": GREY, "shrinkB": 4})
-    by_x.set(ylabel="force $X$", yticks=(-2, -1, 0, 1, 2), yticklabels=("$-2$", r"$-\mu_s$", "0", r"$\mu_s$", "2"))
-    by_v.set(ylabel="velocity $V$", xlabel="time $t$", xlim=borders[[0, -1]], ylim=(1.12 * v.min(), v.max() + 0.25))
+    by_x.set(ylabel="force $X$\n[force]", yticks=(-2, -1, 0, 1, 2),
+             yticklabels=("$-2$", r"$-\mu_s$", "0", r"$\mu_s$", "2"))
+    by_v.set(ylabel="velocity $V$\n[velocity]", xlabel="time $t$  [time]", xlim=borders[[0, -1]],
+             ylim=(1.12 * v.min(), v.max() + 0.25))
     figure.align_ylabels((by_x, by_v))
     return figure
 
@@ -83,13 +85,15 @@ def balance(_, mu_d=0.5, force=0.92):
         if v_s != 0.05:
             motion.plot(v, friction + v, **look)
             equilibria(motion, v, force - friction - v, force, look["color"], 0.018 * (n - 1))
-    law.set(xlim=(-1, 1), xticks=(-1, 0, 1), xlabel="velocity $v$", ylabel=r"friction  $F(|v|)\,\mathrm{sign}\,v$",
+    law.set(xlim=(-1, 1), xticks=(-1, 0, 1), xlabel="velocity $v$  [velocity]",
+            ylabel=r"friction $F(|v|)\,\mathrm{sign}\,v$  [force]",
             yticks=(-MU_S, -mu_d, 0, mu_d, MU_S), yticklabels=(r"$-\mu_s$", r"$-\mu_d$", "0", r"$\mu_d$", r"$\mu_s$"))
     law.legend(loc="upper left", fontsize=8, handlelength=1.7, borderaxespad=0.2)
     motion.axhline(force, color=FORCING, linewidth=1, zorder=1)
     motion.plot(0, force, "o", color=STICK, markersize=7, zorder=4)
     motion.text(0.69, force - 0.035, "force $X$", ha="right", va="top")
-    motion.set(xlim=(-0.015, 0.7), ylim=(0.4, 1.25), xlabel="velocity $v$", ylabel="friction and drag  $F(v) - b(v)$")
+    motion.set(xlim=(-0.015, 0.7), ylim=(0.4, 1.25), xlabel="velocity $v$  [velocity]",
+               ylabel="friction and drag $F(v) - b(v)$  [force]")
     return figure
 
 
@@ -132,9 +136,9 @@ def mesh(run, delta=1 / 32):
     beside.barh(ends[:-1], numpy.histogram(grid.v, grid.ends)[0] - 1, numpy.diff(ends), align="edge", color=SLIDE,
                 alpha=0.35, edgecolor="white")
     above.set(ylabel="levels of\na group", yscale="log", yticks=(1, 10, 100))
-    plane.set(ylabel="velocity $v$", yscale="log", ylim=ends[[0, -1]])
+    plane.set(ylabel="velocity $v$  [velocity]", yscale="log", ylim=ends[[0, -1]])
     plane.set_xscale("function", functions=(lambda x: numpy.sign(x) * abs(x)**0.5, lambda root: root * abs(root)))
-    plane.set(xlabel=r"force $x$  (axis: $\sqrt{x}$)", xlim=(-delta / 2, (grid.groups[-1][1] + 0.5) * delta),
+    plane.set(xlabel=r"force $x$  [force], axis: $\sqrt{x}$", xlim=(-delta / 2, (grid.groups[-1][1] + 0.5) * delta),
               xticks=(0, 0.25, 0.5, 1, 2, 4, 6), xticklabels=("0", "1/4", "1/2", "1", "2", "4", "6"))
     beside.set(xlabel="degree", xticks=range(6))
     plane.legend(loc="lower right", markerscale=4, frameon=True, framealpha=1, edgecolor="white")

@@ -11,11 +11,11 @@ from collections.abc import Sequence
 TEXT = """Draws what the program wrote to FILE: HDF5, the JSON of -summary, or CSV. Without PICTURE the picture goes
 next to the file, under its name. A file that holds several kinds of results makes a picture of each, with the kind in
 its name. A sweep makes a picture of each result, in the folder PICTURE/. Several files share a picture. Prints where
-the pictures are. Exit status 2 if there is nothing to draw."""
+the pictures are. PICTURE ends in .png, .svg or .pdf. Exit status 2 if there is nothing to draw."""
 
 EXPLORE = """Sliders over the model parameters, choices of friction law, noise and drag. The stationary distribution with its
 marginals, probabilities and mean durations with their errors, the power spectral density of the velocity and the
-densities of durations follow. Buttons save the parameters as an options file, and the picture. In a window
+densities of durations follow. What the program refuses greys them, and is said beside the slider. Buttons save the parameters as an options file, and the picture. In a window
 (python3-tk), or in a browser on this machine (python3-tornado)."""
 
 
@@ -29,8 +29,9 @@ def main(words: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python3 -m stickslip", description=__doc__)
     commands = parser.add_subparsers(required=True, metavar="plot | explore | levels")
     plot = commands.add_parser(
-        "plot", usage="%(prog)s [--kind KIND] FILE... [PICTURE.png]", description=TEXT)
+        "plot", usage="%(prog)s [--kind KIND] FILE... [PICTURE | -o PICTURE]", description=TEXT)
     plot.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE")
+    plot.add_argument("-o", "--output", type=pathlib.Path, metavar="PICTURE", help="PICTURE, in any place")
     plot.add_argument("--kind", help="one picture, such as correlation_time; of a sweep a key, such as P_stick, or drift")
     plot.set_defaults(act=plot_files)
     explore = commands.add_parser("explore", description=EXPLORE)
@@ -129,8 +130,11 @@ def plot_files(arguments: argparse.Namespace) -> int:
     try:
         from . import load, plots
         *files, last = arguments.files
-        picture = last if files and last.suffix not in (".h5", ".hdf5", ".csv", ".json") else None
-        files = files if picture else [*files, last]
+        picture = arguments.output
+        if picture or not files or last.suffix in (".h5", ".hdf5", ".csv", ".json"):
+            files = [*files, last]
+        else:
+            picture = last
         try:
             drawn = plots.drawn([load(file) for file in files], picture or files[0].with_suffix(".png"), arguments.kind)
         except (ValueError, OSError) as problem:

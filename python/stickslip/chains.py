@@ -201,8 +201,9 @@ class Chain:
             if self.meant:
                 axes.plot(points, getattr(self.meant, part)(points), color="0.6", lw=3, label=self.meant.label)
             axes.plot(points, getattr(self, part)(points), color="#0072b2", label="chain")
-        ax[0].set(xlabel="time $t$", ylabel="autocovariance  [force$^2$]")
-        ax[1].set(xlabel=r"angular frequency $\omega$", ylabel="spectrum  [force$^2$ time]", xscale="log", yscale="log")
+        ax[0].set(xlabel="time $t$  [time]", ylabel="autocovariance  [force$^2$]")
+        ax[1].set(xlabel=r"angular frequency $\omega$  [1/time]", ylabel="spectrum  [force$^2$ time]", xscale="log",
+                  yscale="log")
         ax[0].legend()
         return ax[0].figure
 

@@ -22,12 +22,7 @@ void read_expression(Given& given, model::Scene& scene) {
 }
 
 bool make_law(Given& given, model::Scene& scene) {
-  if (!scene.drag_expression.empty()) {
-    return set_drag(given, scene, kExpression, scene.drag_expression);
-  }
-  given.refuse("drag", "needs a formula in -drag_expression",
-               "add for example -drag_expression \"-v - 0.1*v*abs(v)\"");
-  return false;
+  return set_drag(given, scene, kExpression, scene.drag_expression);
 }
 
 model::Parameters expression_values(const model::Scene& scene) {
@@ -73,7 +68,7 @@ const Effect kDragExpression{
                         "slopes are bounded: kinks are allowed, jumps are not. b may rise where "
                         "friction and drag together still slow a fast body. Unless b is odd, both "
                         "velocity branches are computed"),
-                    true},
+                    true, "\"-v - 0.1*v*abs(v)\""},
                    {tau_option()}},
     .read = read_expression,
     .complete = make_law,

@@ -63,12 +63,16 @@ std::vector<Option> made() {
           "static friction coefficient against motion towards negative v; mu_s unless given. "
           "Where the directions differ, both velocity branches are computed",
           "friction must be able to hold the body",
-          {.symbol = "\\mu_s^-", .label = "static friction towards negative velocities"}),
+          {.symbol = "\\mu_s^-",
+           .label = "static friction towards negative velocities",
+           .slider = Slider{.low = 0.1, .high = 3}}),
       Option::real(
           "mu_d_minus", "force", "", Range::not_negative(),
           "dynamic friction coefficient while v < 0, at most mu_s_minus; mu_d unless given",
           "friction must not drive the body",
-          {.symbol = "\\mu_d^-", .label = "dynamic friction towards negative velocities"})};
+          {.symbol = "\\mu_d^-",
+           .label = "dynamic friction towards negative velocities",
+           .slider = Slider{.low = 0.05, .high = 3}})};
   for (const auto* each : choices()) append(*each, all);
   const auto force = force_options();
   all.insert(all.end(), force.begin(), force.end());

@@ -116,6 +116,7 @@ Option deviation_option() {
       "take the standard deviation of the measured force",
       {.symbol = "\\sigma",
        .label = "standard deviation of the noise",
+       .slider = Slider{.low = 0.1, .high = 5, .logarithmic = true},
        .others = {"sigma", "std", "stddev", "deviation", "intensity", "rms"}});
 }
 

@@ -34,7 +34,7 @@ const Effect kTelegraph{
                        "amplitude a of -noise telegraph, X = a or -a", "take for example 1",
                        {.symbol = "a",
                         .label = "amplitude of the noise",
-                        .slider = Slider{.low = 0.1, .high = 3, .start = 2}}),
+                        .slider = Slider{.low = 0.1, .high = 3, .start = 1}}),
           true, "1"},
          {Option::real(
               kRate, "1/time", "", Range::positive(),

@@ -50,7 +50,7 @@ OrderedJson json_of(const std::optional<effects::Slider>& slider) {
   if (!slider) return nullptr;
   return {{"low", slider->low},
           {"high", slider->high},
-          {"start", slider->start},
+          {"start", slider->start ? OrderedJson(*slider->start) : OrderedJson()},
           {"logarithmic", slider->logarithmic}};
 }
 

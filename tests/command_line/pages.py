@@ -29,7 +29,7 @@ PAGES = ("README.md", "docs/tutorial.md", "docs/gallery.md", "docs/output.md", "
 MARK = re.compile(r"<!-- not run: \S.* -->")
 FENCE = re.compile(r"(```+)\s*(.*)")
 PICTURE = re.compile(r"!\[[^\]]*\]\(([^)#:]+\.png)\)")
-LARGEST_PICTURE = 100_000  # bytes
+LARGEST_PICTURE = 200_000  # bytes
 ALIKE = 0.03               # mean difference of two pictures of the same, whose times differ
 NOTHING_IS_BUILT = """
 ensure_packages() { :; }

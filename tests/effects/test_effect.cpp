@@ -79,7 +79,7 @@ TEST_CASE("effects: what they lack or cannot be is refused") {
   CHECK_THAT(said_of({{"noise", "file"}, {"noise_file", "none.csv"}}),
              Contains("-noise_file cannot be read"));
   CHECK_THAT(said_of({{"friction", "stribeck"}}), Contains("-friction needs -stribeck_velocity"));
-  CHECK_THAT(said_of({{"drag", "expression"}}), Contains("-drag needs a formula"));
+  CHECK_THAT(said_of({{"drag", "expression"}}), Contains("-drag needs -drag_expression"));
   CHECK_THAT(said_of({{"delta_per_mu_s", "8"}, {"delta", "0.1"}}),
              Contains("so does -delta = 0.1"));
   CHECK_THAT(said_of({{"delta", "2"}}), Contains("-delta leaves no noise level besides 0"));

@@ -1,5 +1,6 @@
 """The explorer, without a window: its knobs, the newest request, its pictures and files."""
 
+import itertools
 import os
 import pathlib
 import sys
@@ -18,7 +19,7 @@ sys.path.insert(0, str(SOURCES / "python"))
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import stickslip
-from stickslip import explore
+from stickslip import explore, knobs, live_pictures
 from stickslip.program import BadInput, Cancelled
 
 SECONDS = 60  # until what never comes is given up
@@ -32,7 +33,8 @@ class Case(unittest.TestCase):
         self.folder = pathlib.Path(holder.name)
 
     def explorer(self, options=COARSE, scene=None, compute=stickslip.run):
-        figure = plt.figure(figsize=(13, 8))
+        figure = plt.figure(figsize=explore.FIGURE)
+        figure.canvas.draw_idle = lambda: None  # which draws at once where there is no window
         self.addCleanup(plt.close, figure)
         made = explore.Explorer(figure, options, {"delta": 0.5, "mu_d": 0.5, **(scene or {})}, self.folder, compute)
         self.addCleanup(made.solver.close)
@@ -53,23 +55,91 @@ class Pictures(Case):
     def test_all_pictures_follow_a_slider(self):
         made = self.explorer()
         self.settled(made)
-        before = [made.curve_v.get_ydata(), made.curves["S_v"].get_ydata(), made.curves["f_slide"].get_ydata()]
-        words = made.words.get_text()
+        shown = made.pictures
+
+        def drawn():
+            return [shown.curve_v.get_xdata(),
+                    *(shown.curves[key].get_ydata() for key in ("S_v", "f_stick", "f_slide"))]
+
+        before, words = drawn(), shown.words.get_text()
         made.sliders["mu_d"].set_val(0.9)
         self.settled(made)
-        after = [made.curve_v.get_ydata(), made.curves["S_v"].get_ydata(), made.curves["f_slide"].get_ydata()]
-        for old, new in zip(before, after):
+        for old, new in zip(before, drawn()):
             self.assertFalse(numpy.array_equal(old, new))
         found = stickslip.run(**COARSE, delta=0.5, mu_d=0.9, quantities="sticking")
-        self.assertNotEqual(made.words.get_text(), words)
-        self.assertIn(f"{found['P_stick'].value:.6g}", made.words.get_text())
-        self.assertGreater(made.image.get_array().max(), 0)
+        self.assertNotEqual(shown.words.get_text(), words)
+        self.assertIn(f"{found['P_stick'].value:.6g}", shown.words.get_text())
 
-    def test_what_the_program_says_is_shown(self):
+    def test_force_is_across_and_velocity_upwards_as_in_every_picture(self):
+        made = self.explorer(scene={"bias": 0.6})  # a body that a constant force pulls moves upwards only
+        self.settled(made)
+        axes, image = made.pictures.density, made.pictures.image
+        self.assertIn("force", made.pictures.by_x.get_xlabel())
+        self.assertIn("velocity", axes.get_ylabel())
+        low, high, slowest, fastest = image.get_extent()
+        self.assertLess(abs(low + high), 1e-9)  # levels of the force are even
+        self.assertGreater(fastest, -2 * slowest)
+        at = numpy.unravel_index(image.get_array().argmax(), image.get_array().shape)
+        found = stickslip.run(**COARSE, delta=0.5, mu_d=0.5, bias=0.6, quantities="density").density
+        x, v = numpy.linspace(low, high, image.get_array().shape[1]), found.window(1e-3)
+        field = found.at(v)
+        level, speed = numpy.unravel_index(field.argmax(), field.shape)
+        self.assertLess(abs(x[at[1]] - found.x[level]), 0.5)
+        self.assertLess(abs(v[at[0]] - v[speed]), 0.02 * numpy.ptp(v))
+        self.assertEqual(type(image.norm).__name__, "LogNorm")
+
+    def test_what_is_refused_is_said_beside_its_slider_and_greys_the_pictures(self):
         made = self.explorer()
         self.settled(made)
-        made.sliders["mu_d"].set_val(2.5)
-        self.until(lambda: "mu_d" in made.status.get_text() and "computing" not in made.status.get_text(), made.poll)
+        made.choose("noise", "periodic")
+        self.settled(made)
+        self.assertFalse(any(veil.get_visible() for veil in made.pictures.veils))
+        made.sliders["periodic_amplitude"].set_val(0.4)
+        self.until(lambda: made.complaint.get_visible(), made.poll)
+        self.assertTrue(all(veil.get_visible() for veil in made.pictures.veils))
+        self.assertIn("never slides", made.complaint.get_text().replace("\n", " "))
+        self.assertIn("-mu_s = 1", made.status.get_text())
+        slider, at = made.sliders["mu_s"].ax.get_position(), made.complaint.get_position()
+        self.assertLess(abs(at[1] - slider.y0), 0.05)
+        made.sliders["periodic_amplitude"].set_val(1.5)
+        self.settled(made)
+        self.assertFalse(made.complaint.get_visible())
+        self.assertFalse(any(veil.get_visible() for veil in made.pictures.veils))
+
+    def test_of_several_problems_the_one_with_a_slider_is_said_beside_it(self):
+        def refused(cancel, **options):
+            raise BadInput("-omega = 1: is not\n-bias = 0: cannot be\n-tau = 1: neither")
+
+        made = self.explorer(compute=refused)
+        self.until(lambda: made.complaint.get_visible(), made.poll)
+        self.assertEqual(made.complaint.get_text(), "-bias = 0: cannot be")
+        self.assertEqual(made.sliders["bias"].label.get_color(), explore.REFUSED)
+        self.assertIn("-omega", made.status.get_text())
+
+    def test_refused_parts_alone_are_greyed(self):
+        def no_spectrum(cancel, **options):
+            if options["quantities"] == "spectrum":
+                raise BadInput("-omega = 1: cannot be had")
+            return stickslip.run(cancel=cancel, **options)
+
+        made = self.explorer(compute=no_spectrum)
+        self.until(lambda: made.pictures.quantiles.get_text(), made.poll)
+        self.assertEqual([veil.get_visible() for veil in made.pictures.veils], [False, True, False])
+        self.assertIn("cannot be had", made.status.get_text())
+
+    def test_quantiles_invert_the_distribution_function(self):
+        t = numpy.geomspace(0.02, 20, 60)
+        result = stickslip.results.Result("cdf_stick", 1 - numpy.exp(-t), 0 * t, "", ("time",), "time", t)
+        for share in (0.5, 0.9, 0.99):
+            self.assertAlmostEqual(float(live_pictures.quantile(result, share)), -numpy.log(1 - share),
+                                   delta=0.06 * -numpy.log(1 - share))
+        self.assertEqual(live_pictures.quantile(result, 0.001), "< 0.02")
+        self.assertEqual(live_pictures.quantile(result, 1 - 1e-12), "> 20")
+
+
+def refusing(cancel, **options):
+    """What computes nothing: for tests of what the knobs stand for."""
+    raise BadInput("not computed")
 
 
 class Newest(Case):
@@ -119,13 +189,54 @@ class Knobs(Case):
         made.choose("drag", "none")
         self.assertNotIn("drag_coefficient", made.scene())
 
-    def test_sliders_complete_every_noise_that_is_offered(self):
-        made = self.explorer()
-        noises = made.offered["noise"]
-        self.assertLessEqual({"ou", "telegraph", "narrow_band", "filtered", "periodic", "pulses"}, set(noises))
-        for noise in set(noises) - {"telegraph"}:  # with which bodies rest and slide only where there is a bias
-            made.choose("noise", noise)
-            self.assertGreater(stickslip.run(**made.scene(), plan=True).plan["seconds"], 0)
+    def test_no_choice_is_refused_at_first(self):
+        made = self.explorer(scene={"delta": 0.125}, compute=refusing)
+        self.assertLessEqual({"ou", "telegraph", "narrow_band", "filtered", "periodic", "pulses"},
+                             set(made.offered["noise"]))
+        self.assertEqual(made.offered["drag"], ["linear", "none", "cubic"])  # a formula is no slider
+        frictions, noises, drags = (made.offered[name] for name in ("friction", "noise", "drag"))
+        for mu_s, friction, noise, drag in (*itertools.product((1,), frictions, noises, drags),
+                                            *itertools.product((2,), ("coulomb",), noises, ("none",))):
+            with self.subTest(mu_s=mu_s, friction=friction, noise=noise, drag=drag):
+                made.restart()
+                made.sliders["mu_s"].set_val(mu_s)
+                for choice, word in (("friction", friction), ("noise", noise), ("drag", drag)):
+                    made.choose(choice, word)
+                asked = {**made.scene(), "quantities": "sticking,moments", "plan": True}
+                self.assertGreater(stickslip.run(**asked).plan["seconds"], 0)
+
+    def test_start_again_takes_back_all_choices_and_moves(self):
+        made = self.explorer(compute=refusing)
+        begun = made.scene()
+        made.choose("noise", "telegraph")
+        self.assertEqual(made.scene()["bias"], 0.3)
+        made.radios["friction"].set_active(1)
+        made.sliders["mu_s_minus"].set_val(0.7)
+        made.restart()
+        self.assertEqual(made.scene(), begun)
+        self.assertEqual(made.sliders["mu_s_minus"].valtext.get_text(), "not given")
+
+    def test_what_is_not_given_is_left_out_until_it_is_moved(self):
+        made = self.explorer(compute=refusing)
+        self.assertFalse({"noise_deviation", "mu_s_minus", "mu_d_minus"} & made.scene().keys())
+        made.sliders["noise_deviation"].set_val(numpy.log10(0.5))
+        self.assertEqual(made.scene()["noise_deviation"], 0.5)
+        made.choose("noise", "telegraph")
+        self.assertNotIn("noise_deviation", made.scene())
+
+    def test_dynamic_friction_stays_below_static_friction(self):
+        made = self.explorer(compute=refusing)
+        made.sliders["mu_s"].set_val(0.3)
+        self.assertEqual((made.value("mu_s"), made.value("mu_d")), (0.3, 0.3))
+        made.sliders["mu_d"].set_val(0.8)
+        self.assertEqual((made.value("mu_s"), made.value("mu_d")), (0.8, 0.8))
+        for moved, values, along in (
+                ("mu_s", {"mu_s": 0.4, "mu_d": 0.5, "mu_d_minus": 0.6}, {"mu_d": 0.4, "mu_d_minus": 0.4}),
+                ("mu_d", {"mu_s": 1, "mu_d": 0.5, "mu_s_minus": 0.4}, {"mu_s_minus": 0.5}),
+                ("mu_s_minus", {"mu_s": 1, "mu_d": 0.5, "mu_s_minus": 0.4}, {"mu_d_minus": 0.4}),
+                ("mu_d_minus", {"mu_s": 1, "mu_d": 0.5, "mu_d_minus": 1.5}, {"mu_s_minus": 1.5}),
+                ("mu_d", {"mu_s": 1, "mu_d": 1, "mu_s_minus": 2, "mu_d_minus": 2}, {})):
+            self.assertEqual(knobs.carried(moved, values), along, (moved, values))
 
     def test_logarithmic_sliders_give_rounded_values(self):
         made = self.explorer(scene={"tau": 2.0})

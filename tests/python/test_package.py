@@ -484,7 +484,8 @@ class Pictures(Case):
         self.assertEqual(done.returncode, 0, done.stderr)
         for name in done.stdout.splitlines():
             data = (self.folder / name).read_bytes()
-            self.assertTrue(data.startswith(PNG), name)
+            begin = {".svg": b"<?xml", ".pdf": b"%PDF"}.get(pathlib.Path(name).suffix, PNG)
+            self.assertTrue(data.startswith(begin), name)
             self.assertGreater(len(data), 5000, name)
         return sorted(done.stdout.splitlines())
 
@@ -580,6 +581,10 @@ class Pictures(Case):
         stickslip.sweep(tau=[1, 2], delta=0.5, quantities="noise_law", sweep_csv=self.folder / "s.csv")
         self.assertEqual(self.plot("s.csv"), ["s/E_X2.png", "s/P_X_le_mu_s.png"])
         self.assertEqual(self.plot("--kind", "E_X2", "s.csv"), ["s.png"])
+        for name in ("e.svg", "e.pdf", "e.png"):
+            self.assertEqual(self.plot("-o", name, "--kind", "E_X2", "s.csv"), [name])
+        width = int.from_bytes((self.folder / "e.png").read_bytes()[16:20], "big")
+        self.assertEqual(width, 6.4 * 200)  # inches of the figure, points of an inch in print
         for words, message in ((["none.h5"], "no such file"), ([file.name, "a.foo"], ".svg"),
                             ([file.name, "x/a.png"], "folder")):
             done = self.python("-m", "stickslip", "plot", *words)

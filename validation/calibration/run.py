@@ -205,22 +205,27 @@ def write_page(page, table, words, picture):
 
 
 def draw(rows):
-    """Error estimates against true errors, relative to the size of the value."""
-    accuracy, value, error, truth = (numpy.array([row[COLUMNS.index(key)] for row in rows], float)
-                                     for key in ("accuracy", "value", "error", "truth"))
+    """Error estimates against true errors, relative to the size of the value: how many values are where, and each of
+    those whose estimate is too small."""
+    value, error, truth = (numpy.array([row[COLUMNS.index(key)] for row in rows], float)
+                           for key in ("value", "error", "truth"))
     size = numpy.maximum(numpy.abs(truth), 1e-300)
-    true, estimate = numpy.abs(value - truth) / size, error / size
-    figure, axes = subplots(figsize=(6, 5.5))
-    for n, one in enumerate(sorted(set(accuracy), reverse=True)):
-        of = (accuracy == one) & (estimate > 0)
-        axes.loglog(numpy.maximum(true[of], LEAST), estimate[of], ".", color=COLOURS[n % len(COLOURS)], markersize=3,
-                    alpha=0.5, label=f"accuracy {one:g}")
-    line = numpy.array([LEAST, 1])
+    true, estimate = numpy.maximum(numpy.abs(value - truth) / size, LEAST), error / size
+    known = estimate > 0
+    true, estimate = true[known], estimate[known]
+    figure, axes = subplots(figsize=(6, 5.2))
+    cells = axes.hexbin(true, estimate, xscale="log", yscale="log", bins="log", gridsize=70, mincnt=1, cmap="cividis_r",
+                        linewidths=0.1)
+    figure.colorbar(cells, label="values")
+    missed = estimate < true
+    axes.plot(true[missed], estimate[missed], "o", color=COLOURS[1], markersize=3, markeredgewidth=0,
+              label="estimate too small")
+    line = numpy.array([LEAST, true.max()])
     for factor, style in ((1, "-"), (10, "--"), (100, ":")):
-        axes.loglog(line, factor * line, color="black", linestyle=style, linewidth=1,
-                    label="equal" if factor == 1 else f"{factor} times the error")
+        axes.plot(line, factor * line, color="black", linestyle=style, linewidth=1,
+                  label="equal" if factor == 1 else f"{factor} times the error")
     axes.set(xlabel="true error, relative", ylabel="estimate, relative", ylim=(LEAST, None))
-    axes.legend(fontsize=8)
+    axes.legend(fontsize=8, loc="lower right")
     return figure
 
 
@@ -253,8 +258,8 @@ def main():
     entry.text(f"In all, {100 * misses.missed.mean():.2f} % of the values and {misses.bad:.1f} % of the cases have an "
                f"estimate too small, the worst by {misses.excess.max():.3g}; {len(slow)} runs took over {SLOW} times "
                "their prediction.")
-    entry.figure(draw(rows), "calibration.png", "Each dot is a value. Below the first line the estimate is too "
-                 "small; above the others it is 10 and 100 times too wide.")
+    entry.figure(draw(rows), "calibration.png", "How many values have which error and estimate. Below the first "
+                 "line the estimate is too small; above the others it is 10 and 100 times too wide.")
     if arguments.page:
         write_page(arguments.page, table, words, entry.file("calibration.png"))
     entry.end()

@@ -39,11 +39,12 @@ struct Range {
   static Range whole(double low, double high) { return {low, high, true, true}; }
 };
 
-/// Ends of a slider over a number, and where it stands at first.
+/// Ends of a slider over a number, and where it stands at first. Without a start the option is left
+/// out until the slider is moved.
 struct Slider {
   double low;
   double high;
-  double start;
+  std::optional<double> start = {};
   bool logarithmic = false;
 };
 

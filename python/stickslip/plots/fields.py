@@ -42,12 +42,10 @@ def density(items: Sequence[Results]) -> "Figure":
     image = plane.pcolormesh(ends, _edges(v), pdf, norm=matplotlib.colors.LogNorm(1e-5 * pdf.max(), pdf.max()),
                              cmap="Blues", rasterized=True)
     stuck = field.at_rest > 0
-    plane.scatter(x[stuck], 0 * x[stuck], s=900 * field.at_rest[stuck], color=STICK, zorder=3,
-                  label="at rest (area: probability of $X = x$)")
+    plane.scatter(x[stuck], 0 * x[stuck], s=900 * field.at_rest[stuck], color=STICK, zorder=3)
     margin = 0.03 * numpy.ptp(v)  # rest is seen whole where no body moves to one of the sides
     plane.set(xlim=(ends[seen[0]], ends[seen[-1] + 1]), ylim=(min(v[0], -margin), max(v[-1], margin)),
               ylabel="velocity $v$  [velocity]")
-    plane.legend(loc="upper left")
     figure.colorbar(image, ax=by_v, label="density of sliding  [1/(force velocity)]")
 
     marginal = field.marginal(v)
@@ -56,20 +54,23 @@ def density(items: Sequence[Results]) -> "Figure":
     by_v.xaxis.tick_top()
     by_v.xaxis.set_label_position("top")  # below, it would part the plane from the levels
     by_v.tick_params(labeltop=True, labelbottom=False)
-    by_v.annotate("", (1.05 * marginal.max(), 0), (0, 0), arrowprops={"arrowstyle": "-|>", "color": STICK})
-    by_v.annotate(r"$P_\mathrm{stick}\,\delta(v)$", (0.2, 0), xycoords=by_v.get_yaxis_transform(), xytext=(0, 3),
-                  textcoords="offset points", color=STICK)
-    by_x.bar(x, field.marginal_x - field.at_rest, width * 0.9, field.at_rest, color=SLIDE, label="sliding")
-    by_x.bar(x, field.at_rest, width * 0.9, color=STICK, label="sticking")
-    by_x.set(xlabel="forcing $x$  [force]", ylabel="$P(X = x)$")
-    by_x.legend(loc="upper left")
-    figure.suptitle(rf"{title(results)}: $P_\mathrm{{stick}}$ = {field.mass_at_rest:.4f}", fontsize=10)
+    by_v.axhline(0, color=STICK, linewidth=1, zorder=1)  # behind the curve, which has its shape here
+    by_v.plot(1, 0, ">", color=STICK, markersize=5, clip_on=False, transform=by_v.get_yaxis_transform())
+    by_x.bar(x, field.marginal_x - field.at_rest, width * 0.9, field.at_rest, color=SLIDE)
+    by_x.bar(x, field.at_rest, width * 0.9, color=STICK)
+    by_x.set(xlabel="force $x$  [force]", ylabel="$P(X = x)$")
+    corner.legend(handles=[  # here, as the panels are full
+        Patch(color=SLIDE, label="sliding"), Patch(color=STICK, label="sticking"),
+        Line2D([], [], color=STICK, marker="o", linestyle="", label="at rest, by area"),
+        Line2D([], [], color=STICK, marker=">", linewidth=1, label=r"$P_\mathrm{stick}\,\delta(v)$")],
+        loc="upper left", borderaxespad=0, labelspacing=0.8)
+    figure.suptitle(rf"{title(results)}: $P_\mathrm{{stick}}$ = {field.mass_at_rest:.4g}", fontsize=10)
     return figure
 
 
 @styled
 def trajectory(items: Sequence[Results]) -> "Figure":
-    """A path: in the plane of forcing and velocity, and both against time. A CSV file has no marks at mu_s, mu_d."""
+    """A path: in the plane of force and velocity, and both against time. A CSV file has no marks at mu_s, mu_d."""
     (results,) = items
     figure = Figure(figsize=(8.6, 4.3))
     grid = figure.add_gridspec(3, 2, width_ratios=(1, 1.5), height_ratios=(1, 1, 0.14))
@@ -141,7 +142,7 @@ def _plane(axes: "Axes", results: Results) -> None:
                              ("mu_d", {"marker": "o", "markerfacecolor": "white", "markersize": 5})):
             mu = number(results, option)
             axes.plot([-mu, mu], [0, 0], linestyle="", color="black", zorder=4, **form)
-    axes.set(xlabel="forcing $x$  [force]", ylabel="velocity $v$  [velocity]")
+    axes.set(xlabel="force $x$  [force]", ylabel="velocity $v$  [velocity]")
     axes.margins(0.05)
     axes.autoscale_view()
 
@@ -157,5 +158,5 @@ def _times(by_v: "Axes", by_x: "Axes", results: Results) -> None:
     by_x.step(time, x, where="post", color=FORCING, linewidth=0.8)
     for sign in (-1, 1) if results.options else ():
         by_x.axhline(sign * number(results, "mu_s"), color="#777777", linewidth=1, linestyle="--")
-    by_x.set(xlabel="time $t$  [time]", ylabel="forcing $x$\n[force]")
+    by_x.set(xlabel="time $t$  [time]", ylabel="force $x$\n[force]")
     by_v.margins(x=0)

@@ -116,14 +116,16 @@ def cost(items: Sequence[Results]) -> "Figure":
             continue
         axes.plot(table["seconds"], table["error"], color=COLOURS[n], linestyle=STYLES[n], marker="os^D"[n],
                   markersize=4, label=name)
-        for end, shift in ((0, (5, -14 if method == "monte_carlo" else 5)), (-1, (6, -3))):
+        ends = (((-7, -3), "right"), ((0, -13), "center")) if method == "monte_carlo" else (
+            ((0, 7), "left"), ((7, -3), "left"))
+        for end, (shift, side) in zip((0, -1), ends):
             value = table[parameter][end]
             label = (rf"$10^{{{math.log10(value):.0f}}}$ excursions" if parameter == "excursions" else
                     f"{parameter}{' ' if parameter == 'degree' else ' = '}{value:g}")
             axes.annotate(label, (table["seconds"][end], table["error"][end]), textcoords="offset points",
-                          xytext=shift, fontsize=7, color=COLOURS[n])
+                          xytext=shift, ha=side, fontsize=8, color=COLOURS[n])
     axes.set(xscale="log", yscale="log", xlabel="time  [s]", ylabel="largest relative error")
-    axes.margins(x=0.2)
+    axes.margins(x=0.2, y=0.1)
     axes.legend(loc="lower right")
     axes.set_title(title(results), fontsize=9)
     return figure

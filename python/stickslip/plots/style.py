@@ -25,7 +25,7 @@ COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#222222")
 STYLES = ("-", "--", "-.", (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5, 1, 1.5)))
 MARKERS = "os^Dv"
 LOOK = {"figure.facecolor": "white", "axes.grid": True, "grid.color": "#e4e4e4", "axes.axisbelow": True,
-        "legend.frameon": False, "font.size": 9, "savefig.dpi": 120, "figure.constrained_layout.use": True}
+        "legend.frameon": False, "font.size": 9, "savefig.dpi": 200, "pdf.fonttype": 42, "figure.constrained_layout.use": True}
 ABSCISSAE = {"omega": r"angular frequency $\omega$  [1/time]", "time": "time $t$  [time]",
              "lambda": r"$\lambda$  [1/time]", "k": "level $i$", "distance": "path length $d$  [length]",
              "inverse_distance": "$s$  [1/length]", "velocity": "speed $w$  [velocity]", "mode": "mode"}
@@ -34,6 +34,7 @@ WORDS = {"P_stick": r"probability of sticking $P_\mathrm{stick}$", "P_slide": r"
          "mean_excursion": "mean duration of an excursion",
          "E_V": "mean velocity $E[V]$", "E_V2": "$E[V^2]$", "E_absV": "mean speed $E[|V|]$", "E_XV": "$E[XV]$",
          "S_v": "power spectral density $S_v$", "diffusivity": "diffusivity $S_0/2$"}
+FEW_POINTS = 20  # of a curve, each of which is marked, as the line between them is straight
 LEVELS = ("delta", "delta_per_mu_s", "noise_levels")  # of the noise: distance, stated apart, and range, which is not
 
 
@@ -75,7 +76,8 @@ def curve(axes: "Axes", result: Result, n: int = 0, *, colour: str | None = None
     if result.abscissa_name in ("k", "mode") or x.size == 1:  # nothing lies between
         axes.errorbar(x, value, error, fmt=MARKERS[n % 5], color=colour, markersize=3, capsize=2, label=label)
         return
-    axes.plot(x, value, color=colour, linestyle=style, linewidth=1.6, label=label)
+    axes.plot(x, value, color=colour, linestyle=style, linewidth=1.6, label=label,
+              marker="." if x.size <= FEW_POINTS else None, markersize=5)
     axes.fill_between(x, value - error, value + error, color=colour, alpha=0.25, linewidth=0)
 
 
