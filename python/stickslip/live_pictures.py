@@ -107,7 +107,7 @@ class LivePictures:
         picture = (density.at(v) / steps[:, None])[numpy.clip(columns, 0, len(x) - 1)].T
         largest = picture.max()
         self.image.set_data(numpy.maximum(picture / largest, DEPTH))  # a scale that changes takes its time to draw
-        self.scale.ax.yaxis.label.set_text(f"density of sliding  [{largest:.3g}/(force velocity)]")
+        self.scale.ax.yaxis.label.set_text(f"density of sliding over its largest, {largest:.3g}/(force velocity)")
         self.image.set_extent((low, high, v[0], v[-1]))
         held = density.at_rest > 0
         self.at_rest.set_offsets(numpy.column_stack([x[held], numpy.zeros(held.sum())]))
