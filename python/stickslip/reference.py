@@ -39,7 +39,22 @@ def declared() -> Mapping[str, Mapping[str, Any]]:
     ProgramError
         If there is no program that can be asked.
     """
-    found = _declared(find_program())
+    return _asked(find_program())["options"]
+
+
+def keys() -> Mapping[str, tuple[str, str]]:
+    """Keys of results, each with its quantity and the option that it is an array over, empty for a scalar.
+
+    Raises
+    ------
+    ProgramError
+        If there is no program that can be asked.
+    """
+    return _asked(find_program())["keys"]
+
+
+def _asked(program: pathlib.Path) -> Mapping[str, Mapping[str, Any]]:
+    found = _declared(program)
     if isinstance(found, ProgramError):
         raise found
     return found
@@ -49,7 +64,10 @@ def declared() -> Mapping[str, Mapping[str, Any]]:
 def _declared(program: pathlib.Path) -> Mapping[str, Mapping[str, Any]] | ProgramError:
     """A failure is kept as well: pictures ask for every symbol, and each answer would take a process."""
     try:
-        return {option["name"]: option for option in json.loads(_printed(program, "-reference_json"))["options"]}
+        tree = json.loads(_printed(program, "-reference_json"))
+        return {"options": {option["name"]: option for option in tree["options"]},
+                "keys": {key: (quantity["word"], over) for quantity in tree.get("quantities", [])
+                         for key, over in quantity["keys"].items()}}
     except ProgramError as problem:
         return problem
     except ValueError:
