@@ -23,13 +23,15 @@ except ImportError as problem:
     raise
 
 __all__ = ["AccuracyWarning", "BadInput", "Cancelled", "Density", "OutOfMemory", "ProgramError", "Record", "Result",
-           "Results", "Sweep", "TimedOut", "Unsolved", "__version__", "find_program", "load", "map", "noise", "read_record",
+           "Results", "Sweep", "TimedOut", "Unsolved", "__version__", "find_program", "fit", "load", "map", "noise", "read_record",
            "run", "sweep"]
 
 
 def __getattr__(name: str) -> Any:
     if name == "noise":  # needs SciPy, which other parts do without
         return importlib.import_module(".noise", __name__)
+    if name == "fit":
+        return importlib.import_module(".fitting", __name__).fit
     raise AttributeError(f"module {__name__} has no attribute {name}")
 
 

@@ -48,6 +48,7 @@ TEST_CASE("nearest word: as many slips as a third of the letters, no more") {
 }
 
 TEST_CASE("quoted words: blanks separate, quotes of either kind keep them") {
+  using stickslip::quoted_words;
   using Words = std::vector<std::string>;
   CHECK(quoted_words("") == Words{});
   CHECK(quoted_words("  -mu_d 0.5\t-tau 2\r") == Words{"-mu_d", "0.5", "-tau", "2"});
