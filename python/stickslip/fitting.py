@@ -106,6 +106,8 @@ class Fit:
         """
         n = self.names.index(name)
         axis, search = self._search.axes[n], self._search
+        if not math.isfinite(self.errors[name]):
+            raise ValueError(f"{name} has no standard error, which sets the width of the profile: {self.message}")
         reach = width * self.errors[name] / abs(axis.slope(self._u[n]))
         rises: dict[float, float] = {}
         with Pool(*self._pool) as search.pool:

@@ -175,7 +175,8 @@ class Search:
 
         def look(part: "Array") -> None:
             visited.append(whole(part))
-            if self.distance(visited[-1], held) <= FAR / 5 or all((one == visited[-1]).all() for one in visited[-STUCK:]):
+            stuck = len(visited) > STUCK and all((one == visited[-1]).all() for one in visited[-STUCK:])
+            if stuck or self.distance(visited[-1], held) <= FAR / 5:
                 raise _Enough
 
         try:

@@ -4,6 +4,7 @@ import math
 import pickle
 import unittest
 import warnings
+from unittest import mock
 
 import numpy
 import scipy.stats
@@ -77,6 +78,25 @@ class LeastSquares(Fits):
         self.within(fit, {"mu_s": 1.1, "mu_d": 0.5}, most=0.05)
         self.assertEqual(stickslip.fit(data, "mu_s", mu_d=0.5).results[0].options["delta_per_mu_s"], "8")
 
+    def test_steps_that_go_too_far_are_taken_back(self):
+        data = {"P_stick": (0.409, 0.0048), "mean_stick": (2.318, 0.0366), "E_V2": (0.1802, 0.0041)}
+        fit = stickslip.fit(data, ["mu_s", "mu_d", "tau"], {"mu_s": 0.8, "mu_d": 0.24, "tau": 1.2}, delta_per_mu_s=4)
+        self.assertTrue(fit.converged)
+        self.assertLess(fit.chi2, 1e-3)  # as many parameters as values
+        for key, (value, error) in data.items():
+            self.assertAlmostEqual(fit.results[0][key].value, value, delta=0.05 * error)
+
+    def test_a_discretisation_that_moves_the_estimates_is_refined(self):
+        r = stickslip.run(**COARSE, **TRUE, quantities="sticking", accuracy=1e-9)
+        data = {key: (r[key].value, 1e-6) for key in ("P_stick", "mean_stick")}
+        fit = stickslip.fit(data, ["mu_d", "tau"], {"mu_d": 0.5, "tau": 1}, accuracy=0.1, **COARSE)
+        self.within(fit, most=0.5)
+        self.assertLess(fit.shift, 0.1)
+        with mock.patch("stickslip.likelihood.ROUNDS", 1), self.assertWarnsRegex(UserWarning, "finer discretisation"):
+            coarse = stickslip.fit(data, ["mu_d", "tau"], {"mu_d": 0.5, "tau": 1}, accuracy=0.1, **COARSE)
+        far = [coarse.estimates[name] - value for name, value in TRUE.items()]
+        self.assertAlmostEqual(math.sqrt(far @ numpy.linalg.solve(coarse.covariance, far)) / coarse.shift, 1, delta=0.1)
+
     def test_a_best_fit_at_a_bound_is_reported(self):
         r = stickslip.run(**COARSE, **TRUE, quantities="sticking")
         with warnings.catch_warnings(record=True) as caught:
@@ -86,6 +106,8 @@ class LeastSquares(Fits):
         self.assertIn("mu_d went to its bound", str(caught[0].message))
         self.assertAlmostEqual(fit.estimates["mu_d"], 0.4, delta=1e-3)
         self.assertTrue(math.isnan(fit.errors["mu_d"]))
+        with self.assertRaisesRegex(ValueError, "no standard error"):
+            fit.profile("mu_d")
 
     def test_a_combination_that_the_data_do_not_determine_is_reported(self):
         r = stickslip.run(**COARSE, quantities="moments", mu_d=0.5)
@@ -133,11 +155,16 @@ class Likelihood(Fits):
         with Pool(2) as search.pool:
             search.fix_discretisation(search.models([u])[0].results)
             scores, information = search.slopes(u)[1], search.information(u)
-            gradient, step = search.gradient(u), 0.02
+            gradient, step = search.gradient(u), 0.01
             rise = [search.at(u + sign * numpy.array([0, step])).misfit for sign in (-1, 0, 1)]
+            few = Search(data_sets({"sticks": [0.4, 1, 2], "smallest": {"sticks": 0.2}}, COARSE), search.axes, 1e-3)
+            few.pool = search.pool
+            weights = few.models([u])[0].grids[0][2]
+        self.assertAlmostEqual(weights.sum(), 1, delta=1e-3)  # what few observations leave out below and above included
+        self.assertGreater(weights[0] + weights[-1], 0.1)
         numpy.testing.assert_allclose(scores @ scores.T, information, rtol=0.05)
         self.assertAlmostEqual((rise[0] - 2 * rise[1] + rise[2]) / step**2, information[1, 1], delta=0.05 * information[1, 1])
-        self.assertAlmostEqual((rise[2] - rise[0]) / 2 / step, gradient[1], delta=0.05 * math.sqrt(information[1, 1]))
+        self.assertAlmostEqual((rise[2] - rise[0]) / 2 / step, gradient[1], delta=0.01 * math.sqrt(information[1, 1]))
         self.assertLess(gradient @ numpy.linalg.solve(information, gradient), scipy.stats.chi2.isf(1e-4, 2))
 
     def test_a_profile_has_the_interval_of_the_standard_error_where_data_are_many(self):

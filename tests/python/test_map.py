@@ -121,7 +121,11 @@ class Maps(Case):
             self.assertRegex(str(killed), "SIGSEGV|exit status")
             self.assertEqual(type(killed), stickslip.ProgramError)
             self.assertEqual(after["P_stick"].value, before["P_stick"].value)
-            self.assertNotEqual(pool._workers[0]._process.pid, worker.pid)
+            idle = pool._workers[0]._process
+            self.assertNotEqual(idle.pid, worker.pid)
+            idle.kill()
+            idle.wait()
+            self.assertEqual(pool.results([SMALL])[0]["P_stick"].value, before["P_stick"].value)
         self.assertIsNotNone(worker.poll())
 
     def test_a_case_that_takes_too_long(self):
