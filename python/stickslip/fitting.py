@@ -122,7 +122,7 @@ class Fit:
                     rises[axis.value(u[n])] = 2 * (search.at(u).misfit - search.at(self._u).misfit)
         search.pool = None
         return Profile(name, numpy.array(sorted(rises)), numpy.array([rises[value] for value in sorted(rises)]),
-                       declared()[name]["unit"])
+                       declared(self._pool[1])[name]["unit"])
 
     def plot(self, picture: Path | None = None) -> "Figure":
         """Draw the data beside the model: values with their errors, and shares of longer durations."""
@@ -206,8 +206,9 @@ def fit(data: Mapping[str, Any] | Sequence[Mapping[str, Any]], free: Sequence[st
     >>> f = stickslip.fit({"sticks": durations, "smallest": {"sticks": 0.05}}, ["tau"])
     >>> f.estimates, f.errors, f.interval("tau"), f.profile("tau").plot("tau.png")
     """
-    axes = _axes(free, start or {}, bounds or {})
-    sets = [_continuous(one, [axis.name for axis in axes]) for one in data_sets(data, fixed)]
+    known = declared(program)
+    axes = _axes(free, start or {}, bounds or {}, known)
+    sets = [_continuous(one, [axis.name for axis in axes], known) for one in data_sets(data, fixed, program)]
     values = sum(part.value.size for one in sets for part in one.values)
     drawn = sum(sample.values.size for one in sets for sample in one.samples)
     if values + drawn < len(axes):
@@ -259,10 +260,10 @@ def _notes(axes: Sequence[Axis], inside: Sequence[int], distance: float, shift: 
     return notes
 
 
-def _axes(free: Sequence[str], start: Mapping[str, float], bounds: Mapping[str, tuple[float, float]]) -> list[Axis]:
+def _axes(free: Sequence[str], start: Mapping[str, float], bounds: Mapping[str, tuple[float, float]],
+          known: Mapping[str, Mapping[str, Any]]) -> list[Axis]:
     names = [free] if isinstance(free, str) else list(free)
-    parameters = {name: option for name, option in declared().items()
-                  if option["group"] == "Model" and option["form"] == "number"}
+    parameters = {name: option for name, option in known.items() if option["group"] == "Model" and option["form"] == "number"}
     if not names or len(set(names)) < len(names):
         raise ValueError(f"free = {names}: must name parameters, each once")
     for what, given in (("free", names), ("start", start), ("bounds", bounds)):
@@ -288,7 +289,7 @@ def _axes(free: Sequence[str], start: Mapping[str, float], bounds: Mapping[str, 
     return axes
 
 
-def _continuous(one: DataSet, free: Sequence[str]) -> DataSet:
+def _continuous(one: DataSet, free: Sequence[str], known: Mapping[str, Mapping[str, Any]]) -> DataSet:
     """The set with options that make results continuous in the free parameters."""
     options = dict(one.options)
     for name in options:
@@ -302,7 +303,7 @@ def _continuous(one: DataSet, free: Sequence[str]) -> DataSet:
     if not acting:
         return one
     mirrored = any(options.get(name) not in (None, 0) for name in ("bias", "mu_s_minus"))
-    noises = declared()["delta_per_mu_s"]["belongs_to"]["noise"]
+    noises = known["delta_per_mu_s"]["belongs_to"]["noise"]
     if acting != ["mu_s"] or mirrored or "delta" in options or options.get("noise", "ou") not in noises:
         raise ValueError(f"free: {', '.join(acting)} acts through levels of the noise, and results would jump where one is "
                          "passed; fit mu_s without bias, mu_s_minus and delta, with noise=\"ou\" (docs/model.md)")

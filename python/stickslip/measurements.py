@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from .calls import Path
 from .needed import needed
 from .reference import keys
 from .results import Results
@@ -26,9 +27,12 @@ SMALLEST = 1e-14  # share of the largest density that counts as 0
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Values:
-    """A key of results, what it is over (None for a scalar), values and their standard errors, of one shape (n,)."""
+    """A key of results, the quantity that has it and the option that it is over (empty where there are none), what it is
+    over (None for a scalar), values and their standard errors, of one shape (n,)."""
 
     key: str
+    quantity: str
+    option: str
     over: "Array | None"
     value: "Array"
     error: "Array"
@@ -40,9 +44,10 @@ class Values:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Sample:
-    """Durations or path lengths in rising order, all at least `smallest`, which could be observed."""
+    """Durations or path lengths of a quantity in rising order, all at least `smallest`, which could be observed."""
 
     name: str
+    quantity: str
     values: "Array"
     smallest: float
 
@@ -77,24 +82,22 @@ class DataSet:
 
     def asked(self, refined: int) -> dict[str, Any]:
         """Options that ask the program for all of it, densities on grids that were so often refined."""
-        known = keys()
-        words = set(_words(self.options.get("quantities", ())))
+        words = {one.quantity for one in (*self.values, *self.samples)} - {""}
+        words.update(_words(self.options.get("quantities", ())))
         over: dict[str, list[Array]] = {}
         for one in self.values:
-            word, option = known.get(one.key, ("", ""))
-            words |= {word} - {""}
             if one.over is not None:
-                over.setdefault(option, []).append(one.over)
+                over.setdefault(one.option, []).append(one.over)
         for sample in self.samples:
-            phase, option = PHASES[sample.name]
-            words.add(known[f"f_{phase}"][0])
+            option = PHASES[sample.name][1]
             over.setdefault(option, []).append(sample.grid(refined))
             over[option] += [numpy.array([sample.smallest])] * (sample.smallest > 0)
         return {**self.options, "quantities": sorted(words),
                 **{option: numpy.unique(numpy.concatenate(parts)) for option, parts in over.items()}}
 
 
-def data_sets(data: Mapping[str, Any] | Sequence[Mapping[str, Any]], fixed: Mapping[str, Any]) -> list[DataSet]:
+def data_sets(data: Mapping[str, Any] | Sequence[Mapping[str, Any]], fixed: Mapping[str, Any],
+              program: Path | None = None) -> list[DataSet]:
     """The data as given to `fit`, checked.
 
     Raises
@@ -106,26 +109,26 @@ def data_sets(data: Mapping[str, Any] | Sequence[Mapping[str, Any]], fixed: Mapp
     if not sets or not all(isinstance(one, Mapping) and set(one) - set(PARTS) for one in sets):
         raise ValueError('data: holds no measurement; give values with their errors by key, as in {"P_stick": (0.27, 0.01)}, '
                          'or samples, as in {"sticks": durations}; a list of such for several sets')
-    found = []
+    known, found = keys(program), []
     for one in sets:
         options = {name.rstrip("_"): value for name, value in {**fixed, **one.get("options", {})}.items()}
         smallest = one.get("smallest", {})
         if not isinstance(smallest, Mapping) or set(smallest) - set(one) or set(smallest) - set(PHASES):
             raise ValueError(f'smallest = {smallest}: must name samples of the set, as in {{"sticks": 0.05}}')
         measured = {name: part for name, part in one.items() if name not in PARTS}
-        found.append(DataSet(tuple(_values(key, part, options) for key, part in measured.items() if key not in PHASES),
-                             tuple(_sample(name, part, smallest.get(name, 0.0)) for name, part in measured.items()
+        found.append(DataSet(tuple(_values(key, part, options, known) for key, part in measured.items()
+                                   if key not in PHASES),
+                             tuple(_sample(name, part, smallest.get(name, 0.0), known) for name, part in measured.items()
                                    if name in PHASES), options))
     return found
 
 
-def _values(key: str, given: Any, options: Mapping[str, Any]) -> Values:
-    known = keys()
+def _values(key: str, given: Any, options: Mapping[str, Any], known: Mapping[str, tuple[str, str]]) -> Values:
     if key not in known and not (options.get("quantities") and "(" in key):
         near = difflib.get_close_matches(key, [*known, *PHASES], 1)
         raise ValueError(f"data: {key} is no key of results" + (f"; did you mean {near[0]}?" if near else
                          " (docs/quantities.md) and no sample; samples are " + ", ".join(PHASES)))
-    over = known.get(key, ("", ""))[1]
+    quantity, over = known.get(key, ("", ""))
     form = f"({over} values, values, errors)" if over else "(value, error)"
     try:
         parts = [numpy.atleast_1d(numpy.asarray(part, float)) for part in given]
@@ -135,17 +138,17 @@ def _values(key: str, given: Any, options: Mapping[str, Any]) -> Values:
         raise ValueError(f"data: {key} must be {form}, errors being standard errors, arrays of one length")
     if not all(numpy.isfinite(part).all() for part in parts) or not (parts[-1] > 0).all():
         raise ValueError(f"data: {key} has values that are not finite, or errors that are not positive; leave them out")
-    return Values(key, parts[0] if over else None, *parts[-2:])
+    return Values(key, quantity, over, parts[0] if over else None, *parts[-2:])
 
 
-def _sample(name: str, given: Any, smallest: float) -> Sample:
+def _sample(name: str, given: Any, smallest: float, known: Mapping[str, tuple[str, str]]) -> Sample:
     values = numpy.sort(numpy.asarray(given, float).ravel())
     if not (values.size and numpy.isfinite(values).all() and values[0] > 0 and 0 <= smallest < math.inf):
         raise ValueError(f"data: {name} must be positive numbers, at least one of them, and the smallest observable one >= 0")
     if values[0] < smallest:
         raise ValueError(f"data: {name} has {(values < smallest).sum()} of {values.size} values below the smallest observable "
                          f"one, {smallest:g}; the least is {values[0]:g}: leave them out, or state a smaller one")
-    return Sample(name, values, float(smallest))
+    return Sample(name, known[f"f_{PHASES[name][0]}"][0], values, float(smallest))
 
 
 def at(results: Results, key: str, over: "Array | float | None") -> "Array":

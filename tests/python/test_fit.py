@@ -15,6 +15,7 @@ from stickslip.cases import Pool
 from stickslip.fitting import _axes
 from stickslip.likelihood import Axis, Search
 from stickslip.measurements import data_sets
+from stickslip.reference import declared
 
 COARSE = {"delta": 0.25}
 TRUE = {"mu_d": 0.3, "tau": 1.5}
@@ -150,7 +151,7 @@ class Likelihood(Fits):
 
     def test_information_is_that_of_scores_and_of_second_differences(self):
         sticks = drawn("stick", 20000)
-        search = Search(data_sets({"sticks": sticks}, COARSE), _axes(["mu_d", "tau"], TRUE, {}), 1e-3)
+        search = Search(data_sets({"sticks": sticks}, COARSE), _axes(["mu_d", "tau"], TRUE, {}, declared()), 1e-3)
         u = numpy.array([axis.start for axis in search.axes])
         with Pool(2) as search.pool:
             search.fix_discretisation(search.models([u])[0].results)
