@@ -23,7 +23,7 @@ import time
 from harness import ROOT, parser
 
 CASES = ("paths", "averages", "points", "spectra", "correlation_time", "laplace", "durations",
-         "extrapolation", "limit", "cost", "scan", "effects", "weakening", "noises", "queues", "chains", "slips",
+         "extrapolation", "limit", "cost", "scan", "effects", "weakening", "noises", "queues", "chains", "slips", "fits",
          "calibration", "combinations", "hard", "faults")  # in the order of the paper
 STYLE = """
 body { font: 15px/1.5 sans-serif; max-width: 62em; margin: 2em auto; padding: 0 1em; color: #222 }

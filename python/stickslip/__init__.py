@@ -7,10 +7,11 @@
 
 import importlib
 import sys
-from types import ModuleType
+from typing import Any
 
 try:
     from .calls import load, run, sweep
+    from .cases import map
     from .program import AccuracyWarning, BadInput, Cancelled, OutOfMemory, ProgramError, TimedOut, Unsolved, find_program
     from .records import Record, read_record
     from .results import Density, Result, Results
@@ -22,13 +23,15 @@ except ImportError as problem:
     raise
 
 __all__ = ["AccuracyWarning", "BadInput", "Cancelled", "Density", "OutOfMemory", "ProgramError", "Record", "Result",
-           "Results", "Sweep", "TimedOut", "Unsolved", "__version__", "find_program", "load", "noise", "read_record", "run",
-           "sweep"]
+           "Results", "Sweep", "TimedOut", "Unsolved", "__version__", "find_program", "fit", "load", "map", "noise", "read_record",
+           "run", "sweep"]
 
 
-def __getattr__(name: str) -> ModuleType:
+def __getattr__(name: str) -> Any:
     if name == "noise":  # needs SciPy, which other parts do without
         return importlib.import_module(".noise", __name__)
+    if name == "fit":
+        return importlib.import_module(".fitting", __name__).fit
     raise AttributeError(f"module {__name__} has no attribute {name}")
 
 

@@ -12,8 +12,8 @@ from typing import Any
 
 from . import results, sweeps
 from .needed import needed
-from .program import (DONE, NO_MEMORY, SHORT, AccuracyWarning, Finished, OutOfMemory, ProgramError, Unsolved, execute,
-                      find_program, words_of)
+from .program import (DONE, NO_MEMORY, SHORT, AccuracyWarning, OutOfMemory, ProgramError, Unsolved, execute, find_program,
+                      words_of)
 from .reference import declared, with_options
 from .results import Results
 from .sweeps import Sweep
@@ -72,17 +72,9 @@ def run(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = Non
 
 def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | None,
          options: Mapping[str, Any], cancel: threading.Event | None = None) -> Results:
-    options = {name.rstrip("_"): value for name, value in options.items()}
     with tempfile.TemporaryDirectory(prefix="stickslip-") as folder:
+        options = prepared(options, pathlib.Path(folder), keep)
         summary = pathlib.Path(options.pop("summary", None) or pathlib.Path(folder) / "summary.json")
-        output = keep or options.pop("output", None)
-        asked = str(options.get("quantities", ""))
-        if output is None and ("options_file" in options or any(word in asked for word in FIELDS)):
-            output = pathlib.Path(folder) / "results.h5"
-        if output is not None:
-            options["output"] = os.fspath(output)
-        if hasattr(options.get("noise"), "save"):
-            options |= _files_of(options, pathlib.Path(folder))
         launcher = ["mpiexec", "-n", str(ranks)] if ranks else []
         before = _stamp(summary)
         finished = execute([*launcher, os.fspath(program or find_program()), *words_of(options), "-summary",
@@ -91,14 +83,34 @@ def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | N
             kind = {NO_MEMORY: OutOfMemory, SHORT: Unsolved}.get(finished.status, ProgramError)
             prefix = "the program wrote no results: " if kind is ProgramError else ""
             raise kind(prefix + finished.message())
-        found = _from_tree(json.loads(summary.read_text()))
-        if output is not None and "results" in found.summary and any(
-                word in found.options.get("quantities", "") for word in FIELDS):
-            with needed("h5py").File(output) as file:
-                for name, value in results.fields(file).items():
-                    setattr(found, name, value)
+        found = found_in(json.loads(summary.read_text()), options.get("output"))
     if finished.status != DONE:
-        warnings.warn(_shortfall(found, finished), AccuracyWarning, stacklevel=3)
+        warnings.warn(shortfall(found) or finished.message(), AccuracyWarning, stacklevel=3)
+    return found
+
+
+def prepared(options: Mapping[str, Any], folder: pathlib.Path, keep: Path | None = None) -> dict[str, Any]:
+    """Options as the program takes them; files that they need are written to a folder, and fields go there."""
+    options = {name.rstrip("_"): value for name, value in options.items()}
+    output = keep or options.pop("output", None)
+    asked = str(options.get("quantities", ""))
+    if output is None and ("options_file" in options or any(word in asked for word in FIELDS)):
+        output = folder / "results.h5"
+    if output is not None:
+        options["output"] = os.fspath(output)
+    if hasattr(options.get("noise"), "save"):
+        options |= _files_of(options, folder)
+    return options
+
+
+def found_in(tree: Mapping[str, Any], output: Path | None) -> Results:
+    """Results of a summary, with the fields of the HDF5 file if there is one."""
+    found = _from_tree(tree)
+    if output is not None and "results" in found.summary and any(
+            word in found.options.get("quantities", "") for word in FIELDS):
+        with needed("h5py").File(output) as file:
+            for name, value in results.fields(file).items():
+                setattr(found, name, value)
     return found
 
 
@@ -220,10 +232,11 @@ def _from_csv(path: pathlib.Path) -> Results:
     return Results({}, trajectory=dict(zip(head, columns)), name=path.stem)
 
 
-def _shortfall(found: Results, finished: Finished) -> str:
+def shortfall(found: Results) -> str:
+    """What fell short; empty where nothing says so."""
     if isinstance(found, Sweep):
         messages = {**found.failures, **found.shortfalls}
         return f"{len(messages)} of {found.status.size} points fell short: " + "; ".join(
             ", ".join(f"{name} = {found.coords[name][n]:g}" for name, n in zip(found.dims, index)) + f": {text}"
             for index, text in list(messages.items())[:3]) + ("; ..." if len(messages) > 3 else "")
-    return found.accuracy.get("shortfall") or finished.message()
+    return found.accuracy.get("shortfall", "")

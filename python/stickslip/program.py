@@ -191,7 +191,7 @@ def execute(words: Sequence[str], timeout: float | None = None, cancel: threadin
     if finished.status == BAD_INPUT:
         raise BadInput(finished.message())
     if finished.status not in (DONE, SHORT, NO_MEMORY):
-        raise ProgramError(_end_of(finished))
+        raise ProgramError(end_of(finished))
     return finished
 
 
@@ -220,7 +220,7 @@ def _end(process: subprocess.Popen) -> None:
             continue
 
 
-def _end_of(finished: Finished) -> str:
+def end_of(finished: Finished) -> str:
     """Of a program that failed: the signal or the exit status, and the last lines."""
     for words, what, environment in REFUSALS:
         if words in finished.err:

@@ -3,6 +3,7 @@
 import functools
 import inspect
 import json
+import os
 import pathlib
 import subprocess
 from collections.abc import Callable, Mapping
@@ -31,15 +32,30 @@ def with_options(function: Function) -> Function:
     return function
 
 
-def declared() -> Mapping[str, Mapping[str, Any]]:
-    """Options of the program by name, each as -reference_json prints it.
+def declared(program: str | os.PathLike[str] | None = None) -> Mapping[str, Mapping[str, Any]]:
+    """Options of the program, by default that of `find_program`, by name, each as -reference_json prints it.
 
     Raises
     ------
     ProgramError
         If there is no program that can be asked.
     """
-    found = _declared(find_program())
+    return _asked(program)["options"]
+
+
+def keys(program: str | os.PathLike[str] | None = None) -> Mapping[str, tuple[str, str]]:
+    """Keys of results of the program, by default that of `find_program`, each with its quantity and the option that it is an array over, empty for a scalar.
+
+    Raises
+    ------
+    ProgramError
+        If there is no program that can be asked.
+    """
+    return _asked(program)["keys"]
+
+
+def _asked(program: str | os.PathLike[str] | None) -> Mapping[str, Mapping[str, Any]]:
+    found = _declared(pathlib.Path(program) if program else find_program())
     if isinstance(found, ProgramError):
         raise found
     return found
@@ -49,7 +65,10 @@ def declared() -> Mapping[str, Mapping[str, Any]]:
 def _declared(program: pathlib.Path) -> Mapping[str, Mapping[str, Any]] | ProgramError:
     """A failure is kept as well: pictures ask for every symbol, and each answer would take a process."""
     try:
-        return {option["name"]: option for option in json.loads(_printed(program, "-reference_json"))["options"]}
+        tree = json.loads(_printed(program, "-reference_json"))
+        return {"options": {option["name"]: option for option in tree["options"]},
+                "keys": {key: (quantity["word"], over) for quantity in tree.get("quantities", [])
+                         for key, over in quantity["keys"].items()}}
     except ProgramError as problem:
         return problem
     except ValueError:

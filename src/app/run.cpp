@@ -10,11 +10,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <functional>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "cases.hpp"
 #include "stickslip/accuracy/refinement.hpp"
 #include "stickslip/io/provenance.hpp"
 #include "stickslip/io/reports.hpp"
@@ -26,6 +28,7 @@
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/solver_choice.hpp"
+#include "stickslip/petsc/solver_options.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/sweeps/sweep_report.hpp"
 
@@ -108,19 +111,28 @@ studies::StudyProgress study_progress_of(const options::Request& request, bool f
   };
 }
 
-int run_study(const options::Request& request, Clock::time_point start, double start_up) {
+// When a run began, and what the program took before [s].
+struct Beginning {
+  Clock::time_point start = Clock::now();
+  double start_up = 0;
+
+  [[nodiscard]] io::RunTimes until_now() const {
+    return {start_up, start_up + seconds_since(start)};
+  }
+};
+
+int run_study(const options::Request& request, const Beginning& beginning, const Emit& emit) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const auto study = studies::run_study(comm, request, request.study,
                                         study_progress_of(request, petsc::rank(comm) == 0));
-  const io::RunTimes times{start_up, start_up + seconds_since(start)};
-  outputs::write_all(io::report_of(comm, request, study, times), request.files.written);
+  emit(io::report_of(comm, request, study, beginning.until_now()), request);
   return 0;
 }
 
-int report_plan(const options::Request& request) {
+int report_plan(const options::Request& request, const Emit& emit) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const auto prediction = accuracy::predict(comm, request);
-  outputs::write_all(io::report_of(comm, request, prediction), request.files.written);
+  emit(io::report_of(comm, request, prediction), request);
   return 0;
 }
 
@@ -135,13 +147,12 @@ sweeps::SweepProgress sweep_progress_of(const options::Request& request) {
   };
 }
 
-int run_sweep(const options::Request& request, Clock::time_point start, double start_up) {
+int run_sweep(const options::Request& request, const Beginning& beginning, const Emit& emit) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const auto sweep = sweeps::run_sweep(comm, request, sweep_progress_of(request));
   int status = sweeps::exit_status(sweep.runs);
   if (petsc::rank(comm) == 0) {
-    const io::RunTimes times{start_up, start_up + seconds_since(start)};
-    outputs::write_all(sweeps::report_of(comm, request, sweep, times), request.files.written);
+    emit(sweeps::report_of(comm, request, sweep, beginning.until_now()), request);
     if (status != 0)
       print_error("stickslip: some points failed or missed the accuracy; the table lists them");
   }
@@ -149,20 +160,14 @@ int run_sweep(const options::Request& request, Clock::time_point start, double s
   return status;
 }
 
-int compute(const options::Request& request, Clock::time_point start, double start_up) {
+int compute(const options::Request& request, const Beginning& beginning, const Emit& emit) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const bool first_rank = petsc::rank(comm) == 0;
   const auto outcome =
       accuracy::carry_out(comm, request, progress_of(request, first_rank),
                           simulation_progress_of(request), request.files.checkpoint);
-  const io::RunTimes times{start_up, start_up + seconds_since(start)};
-  outputs::write_all(io::report_of(comm, request, outcome, times), request.files.written);
+  emit(io::report_of(comm, request, outcome, beginning.until_now()), request);
   return status_of(outcome);
-}
-
-int report_failure(const Failure& failure, bool first_rank) {
-  if (first_rank) print_error(fmt::format("stickslip: {}", failure.what()));
-  return static_cast<int>(failure.status());
 }
 
 /// The request, or BadInput on all ranks with the message of the first that found any: files may
@@ -180,10 +185,28 @@ options::Request agreed_request(const std::vector<std::string>& words) {
   return request;
 }
 
-NoMemory out_of_memory() {
-  return NoMemory(
-      "memory ran out; take a larger -delta, a looser -accuracy or more ranks, or raise the limit "
-      "(ulimit -v)");
+constexpr const char* kOutOfMemory =
+    "memory ran out; take a larger -delta, a looser -accuracy or more ranks, or raise the limit "
+    "(ulimit -v)";
+
+/// The status that the work returns, or what its error says. Bad input is found on all ranks alike;
+/// any other error may be known to one rank alone.
+Ending ending_of(const std::function<int()>& work) {
+  const auto status = [](ExitStatus s) { return static_cast<int>(s); };
+  try {
+    return {work()};
+  } catch (const BadInput& failure) {
+    return {status(failure.status()), failure.what()};
+  } catch (const Failure& failure) {
+    return {status(failure.status()), failure.what(), false};
+  } catch (const std::bad_alloc&) {
+    return {status(ExitStatus::no_memory), kOutOfMemory, false};
+  } catch (const petsc::PetscFailure& failure) {
+    if (failure.code() != PETSC_ERR_MEM) return {status(ExitStatus::other), failure.what(), false};
+    return {status(ExitStatus::no_memory), kOutOfMemory, false};
+  } catch (const std::exception& failure) {
+    return {status(ExitStatus::other), failure.what(), false};
+  }
 }
 
 // Without the ends of MPI and HDF5, which would wait for other ranks, or write once more to a disk
@@ -194,37 +217,37 @@ NoMemory out_of_memory() {
   std::_Exit(status);
 }
 
-/// Runs under a started PETSc. Bad input is found on all ranks alike and ends quietly; any other
-/// error may be known to one rank alone, and ends all of them.
-int run_session(const std::vector<std::string>& words, double start_up) {
-  const auto start = Clock::now();
-  const int rank = petsc::rank(MPI_COMM_WORLD);
-  int status = static_cast<int>(ExitStatus::other);
-  try {
+Ending carry_out(const std::vector<std::string>& words, const Beginning& beginning,
+                 const Emit& emit) {
+  return ending_of([&] {
     const auto request = agreed_request(words);
-    if (rank == 0) warn(request);
-    if (request.plan_only) return report_plan(request);
-    if (request.study.kind != options::StudyKind::none) {
-      return run_study(request, start, start_up);
-    }
-    if (request.sweep) return run_sweep(request, start, start_up);
-    return compute(request, start, start_up);
-  } catch (const BadInput& failure) {
-    return report_failure(failure, rank == 0);
-  } catch (const Failure& failure) {
-    status = report_failure(failure, true);
-  } catch (const std::bad_alloc&) {
-    status = report_failure(out_of_memory(), true);
-  } catch (const petsc::PetscFailure& failure) {
-    if (failure.code() == PETSC_ERR_MEM) {
-      status = report_failure(out_of_memory(), true);
-    } else {
-      print_error(fmt::format("stickslip: {}", failure.what()));
-    }
-  } catch (const std::exception& failure) {
-    print_error(fmt::format("stickslip: {}", failure.what()));
+    if (petsc::rank(MPI_COMM_WORLD) == 0) warn(request);
+    if (request.plan_only) return report_plan(request, emit);
+    const bool study = request.study.kind != options::StudyKind::none;
+    if (study) return run_study(request, beginning, emit);
+    if (request.sweep) return run_sweep(request, beginning, emit);
+    return compute(request, beginning, emit);
+  });
+}
+
+/// Runs under a started PETSc. An error that may be known to one rank alone ends all of them.
+int run_session(const std::vector<std::string>& words, double start_up) {
+  Ending ending;
+  if (const auto file = petsc::option_value("cases")) {
+    const auto run = [](const std::vector<std::string>& own, const Emit& emit) {
+      return carry_out(own, Beginning{}, emit);
+    };
+    ending = ending_of([&] { return run_cases(words, *file, run); });
+  } else {
+    const auto write = [](const outputs::Report& report, const options::Request& request) {
+      outputs::write_all(report, request.files.written);
+    };
+    ending = carry_out(words, Beginning{.start_up = start_up}, write);
   }
-  end_at_once(status);
+  const bool reports = !ending.alike || petsc::rank(MPI_COMM_WORLD) == 0;
+  if (reports && !ending.message.empty()) print_error("stickslip: " + ending.message);
+  if (ending.alike) return ending.status;
+  end_at_once(ending.status);
 }
 
 }  // namespace
@@ -252,7 +275,8 @@ int run(int argc, char** argv) {
     }
     return run_session(words, seconds_since(start));
   } catch (const Failure& failure) {
-    return report_failure(failure, true);
+    print_error(fmt::format("stickslip: {}", failure.what()));
+    return static_cast<int>(failure.status());
   } catch (const std::exception& failure) {
     print_error(fmt::format("stickslip: {}", failure.what()));
     return static_cast<int>(ExitStatus::bad_input);

@@ -286,6 +286,12 @@ std::span<const OtherOption> other_options() {
   static const std::vector<OtherOption> others{
       {"-options_file", "read options from a file, one -name value a line, # for comments",
        "config, input, file"},
+      {"-cases",
+       "run a case for each line of this file, or of standard input for -. A line has the options "
+       "of "
+       "a case, besides those of the command line, values with blanks in quotes. Each is answered "
+       "by a line of JSON: status, then what -summary writes, or message",
+       "batch, serve"},
       {"-help", "print all options and stop", "h"},
       {"-help_solvers",
        "print PETSc's options of the solver -slide_, as -slide_pc_type chooses it, and "

@@ -4,14 +4,19 @@
 #include "stickslip/support/atomic_file.hpp"
 
 namespace stickslip::outputs {
-namespace {
 
-void write_summary(const Report& report, const std::string& file) {
+Json summary_of(const Report& report) {
   Json tree = report.tree();
   Json& provenance = tree["provenance"];
   for (const auto& [name, value] : report.provenance) provenance[name] = value;
   for (const auto& [name, value] : report.options) provenance["options"][name] = value;
-  write_text(file, tree.dump(2) + "\n");
+  return tree;
+}
+
+namespace {
+
+void write_summary(const Report& report, const std::string& file) {
+  write_text(file, summary_of(report).dump(2) + "\n");
 }
 
 }  // namespace

@@ -316,7 +316,7 @@ std::string completion() {
   std::string text = kCompletionHead;
   text += fmt::format("  local names='{}'\n", fmt::join(options::all_names(), " "));
   text += "  COMPREPLY=()\n  case ${COMP_WORDS[COMP_CWORD - 1]} in\n";
-  text += "    -options_file) _stickslip_files ;;\n";
+  text += "    -options_file | -cases) _stickslip_files ;;\n";
   for (const auto& option : options::all_options()) {
     text += fmt::format("    -{}) {};;\n", option.name, completer(option));
   }

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "stickslip/catalogue/entry.hpp"
 #include "stickslip/effects/effect.hpp"
 #include "stickslip/options/table.hpp"
 #include "stickslip/pages/pages.hpp"
@@ -73,6 +74,13 @@ OrderedJson json_of(const Option& option, const Group& group) {
           {"needed", is_needed(option)}};
 }
 
+// The keys of its results, each with the option that it is an array over; "" for a scalar.
+OrderedJson json_of(const catalogue::Entry& quantity) {
+  OrderedJson keys = OrderedJson::object();
+  for (const auto* row : quantity.rows) keys[std::string(row->key)] = row->abscissa;
+  return {{"word", quantity.word}, {"keys", keys}};
+}
+
 }  // namespace
 
 std::string reference_json() {
@@ -80,7 +88,9 @@ std::string reference_json() {
   for (const auto& group : options::table()) {
     for (const auto& option : group.options) options.push_back(json_of(option, group));
   }
-  return OrderedJson{{"options", options}}.dump(1) + "\n";
+  OrderedJson quantities = OrderedJson::array();
+  for (const auto* quantity : catalogue::entries()) quantities.push_back(json_of(*quantity));
+  return OrderedJson{{"options", options}, {"quantities", quantities}}.dump(1) + "\n";
 }
 
 }  // namespace stickslip::pages

@@ -118,6 +118,26 @@ OptionFor::~OptionFor() {
                  : PetscOptionsClearValue(nullptr, option_.c_str()));
 }
 
+OptionsOf::OptionsOf(std::vector<std::string> words) {
+  words.emplace(words.begin(), "stickslip");
+  words.emplace_back("-skip_petscrc");
+  std::vector<char*> arguments;
+  for (auto& word : words) arguments.push_back(word.data());
+  auto count = static_cast<int>(arguments.size());
+  arguments.push_back(nullptr);
+  char** values = arguments.data();
+  check(PetscOptionsCreate(&options_));
+  const PetscErrorCode code = PetscOptionsInsert(options_, &count, &values, nullptr);
+  if (code != 0) (void)PetscOptionsDestroy(&options_);
+  check(code);
+  check(PetscOptionsPush(options_));
+}
+
+OptionsOf::~OptionsOf() {
+  (void)PetscOptionsPop();
+  (void)PetscOptionsDestroy(&options_);
+}
+
 std::vector<std::string> given_options() {
   std::vector<std::string> names;
   char* all = nullptr;

@@ -49,6 +49,28 @@ std::vector<std::string> split(std::string_view text, char separator) {
   return parts;
 }
 
+std::optional<std::vector<std::string>> quoted_words(std::string_view line) {
+  constexpr char none = '\0';
+  std::vector<std::string> words;
+  bool within = false;
+  char quote = none;
+  for (char c : line) {
+    const bool opens = quote == none && (c == '"' || c == '\'');
+    const bool separates = quote == none && (c == ' ' || c == '\t' || c == '\r');
+    if (!separates && !within) words.emplace_back();
+    within = !separates;
+    if (opens) {
+      quote = c;
+    } else if (c == quote) {
+      quote = none;
+    } else if (!separates) {
+      words.back() += c;
+    }
+  }
+  if (quote != none) return std::nullopt;
+  return words;
+}
+
 std::string enumerate(std::span<const std::string> words, std::string_view conjunction) {
   std::string text;
   for (std::size_t n = 0; n < words.size(); ++n) {

@@ -56,7 +56,7 @@ class Completion(Case):
     def test_files(self):
         for name in ("scene.opts", "scene two.opts"):
             (self.folder / name).touch()
-        for option in ("-options_file", "-summary", "-compare", "-checkpoint"):
+        for option in ("-options_file", "-cases", "-summary", "-compare", "-checkpoint"):
             found = self.offered(option, "scene")
             self.assertEqual(sorted(found), sorted(["scene.opts", "scene", "two.opts"]))
 

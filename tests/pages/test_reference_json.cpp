@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "../common/catch.hpp"
+#include "stickslip/catalogue/entry.hpp"
 #include "stickslip/options/table.hpp"
 #include "stickslip/pages/pages.hpp"
 
@@ -68,4 +69,16 @@ TEST_CASE("reference as JSON: sliders stay where the program takes their values"
     CHECK_FALSE(option.shown.symbol.empty());
   }
   CHECK(sliders >= 10);
+}
+
+TEST_CASE("reference as JSON: keys of quantities, and what their values are over") {
+  const Json quantities = Json::parse(reference_json()).at("quantities");
+  REQUIRE(quantities.size() == stickslip::catalogue::entries().size());
+  for (const auto& quantity : quantities) {
+    const auto* entry = stickslip::catalogue::find_entry(quantity.at("word").get<std::string>());
+    REQUIRE(entry != nullptr);
+    CHECK(quantity.at("keys").size() == entry->rows.size());
+    if (entry->word == "spectrum") CHECK(quantity.at("keys").at("S_v") == "omega");
+    if (entry->word == "sticking") CHECK(quantity.at("keys").at("P_stick") == "");
+  }
 }

@@ -46,3 +46,15 @@ TEST_CASE("nearest word: as many slips as a third of the letters, no more") {
   CHECK(nearest_word("-horixyn", names) == "-horizon");
   CHECK(nearest_word("-hoxxyn", names).empty());
 }
+
+TEST_CASE("quoted words: blanks separate, quotes of either kind keep them") {
+  using stickslip::quoted_words;
+  using Words = std::vector<std::string>;
+  CHECK(quoted_words("") == Words{});
+  CHECK(quoted_words("  -mu_d 0.5\t-tau 2\r") == Words{"-mu_d", "0.5", "-tau", "2"});
+  CHECK(quoted_words("-a 'v^2; stick' -b \"it's\"") == Words{"-a", "v^2; stick", "-b", "it's"});
+  CHECK(quoted_words("a'b'\"c d\"e ''") == Words{"abc de", ""});
+  CHECK(quoted_words("a \\n") == Words{"a", "\\n"});
+  CHECK_FALSE(quoted_words("-a 'b"));
+  CHECK_FALSE(quoted_words("-a \"b'"));
+}

@@ -56,4 +56,7 @@ struct Report {
   const simulation::Path* path = nullptr;                 ///< if asked for
 };
 
+/// The tree with its provenance: what -summary writes.
+[[nodiscard]] Json summary_of(const Report& report);
+
 }  // namespace stickslip::outputs

@@ -22,7 +22,8 @@ namespace stickslip::pages {
 /// group, form, unit, default, range and sentence as the page has them, empty where there is none;
 /// words; for a choice of effects what each word means; symbol in TeX and label of pictures; slider
 /// {low, high, start, logarithmic} or null; and belongs_to, by choice the words of the effects that
-/// know the option, {} where all do.
+/// know the option, {} where all do. Then the quantities, each with its word and its keys, and of a
+/// key the option that its values are over.
 [[nodiscard]] std::string reference_json();
 
 /// The tables of quantities and of the keys of a summary in Markdown, which stand between two marks

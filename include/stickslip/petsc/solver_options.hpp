@@ -6,6 +6,9 @@
 #include <utility>
 #include <vector>
 
+struct _n_PetscOptions;  // PETSc's;
+                         // NOLINT(bugprone-reserved-identifier,readability-identifier-naming)
+
 namespace stickslip::petsc {
 
 /// Whether a word of a command line names an option, and is no negative number.
@@ -27,6 +30,20 @@ class OptionFor {
  private:
   std::string option_;  // with its dash
   std::optional<std::string> before_;
+};
+
+/// The options of another command line in the place of those given, for the life of the object. The
+/// environment variable PETSC_OPTIONS counts as at the start. Throws PetscFailure when PETSc
+/// refuses the words.
+class OptionsOf {
+ public:
+  explicit OptionsOf(std::vector<std::string> words);
+  ~OptionsOf();
+  OptionsOf(const OptionsOf&) = delete;
+  OptionsOf& operator=(const OptionsOf&) = delete;
+
+ private:
+  _n_PetscOptions* options_ = nullptr;
 };
 
 /// Names of all options given, without the dash.

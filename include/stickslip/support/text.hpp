@@ -1,6 +1,7 @@
 #pragma once
 /// Small text helpers for messages and tables.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,6 +16,10 @@ namespace stickslip {
 
 /// Parts between separators, without surrounding blanks; "" gives no parts.
 [[nodiscard]] std::vector<std::string> split(std::string_view text, char separator);
+
+/// Words of a line as a shell takes them: blanks separate, and what stands in quotes of either kind
+/// is taken as it is. Nothing if a quote is not closed.
+[[nodiscard]] std::optional<std::vector<std::string>> quoted_words(std::string_view line);
 
 /// "a, b or c".
 [[nodiscard]] std::string enumerate(std::span<const std::string> words,
