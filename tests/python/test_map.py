@@ -64,6 +64,9 @@ class Cases(Case):
             done = subprocess.run([PROGRAM, "-cases", name], capture_output=True, text=True)
             self.assertEqual((done.returncode, done.stdout), (2, ""))
             self.assertIn("cannot be read", done.stderr)
+        done = subprocess.run(["mpiexec", "-n", "2", PROGRAM, "-cases", "-"], input="-mu_d 0.25\n", capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertEqual(done.stderr.count("runs on one rank"), 1)
 
 
 class Maps(Case):
