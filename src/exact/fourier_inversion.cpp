@@ -119,6 +119,10 @@ FourierInversion::FourierInversion(const Transform& phi, double mass, double mea
     // The last octave has to be foreseen by the terms found below it.
     const bool falls = left < tolerance;
     open = !falls && unforeseen > tolerance && high < limits.highest;
+    // What falls by itself has no singularity that shows, and no sum needs terms for one.
+    for (Sum& sum : sums_) {
+      if (falls) sum.singular.clear();
+    }
     sums_.push_back(falls ? Sum{panels_.size(), {}} : sum_up_to(panels_.size(), high));
     low = high;
   }

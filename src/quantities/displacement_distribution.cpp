@@ -69,28 +69,41 @@ Atom without_jumps(const model::Process& process, const Start& start, double tim
   return atom;
 }
 
-Atom atom_at(const Computation& computation, double time) {
+// The one that counts most first: of bodies at rest, if there are any.
+std::vector<Atom> atoms_at(const Computation& computation, double time) {
   const auto& process = computation.process();
   const auto& start = computation.question().start;
-  if (time == 0) return {0, {1, 0}};
-  if (start.kind == Start::Kind::state) return without_jumps(process, start, time);
-  if (!process.sticks()) return {};
+  if (time == 0) return {{0, {1, 0}}};
+  if (start.kind == Start::Kind::state) return {without_jumps(process, start, time)};
+  const int lowest = process.lowest_static(), highest = process.highest_static();
   std::vector<double> rests;
   if (start.kind == Start::Kind::stationary) {
     const auto& excursion = computation.distribution().excursion();
     for (double t : excursion.stick_time) rests.push_back(t / excursion.mean_excursion());
-  } else {
-    const auto levels = model::stationary_distribution(process.noise);
-    const auto first = levels.begin() + (process.lowest_static() - process.noise.lowest());
-    rests.assign(first, first + (process.highest_static() - process.lowest_static() + 1));
+    return {{0, still_at_rest(process, rests, time)}};
   }
-  return {0, still_at_rest(process, rests, time)};
+  // From rest on a level that does not stick, bodies slide at once.
+  constexpr double rounding = 1e-14;
+  const auto levels = model::stationary_distribution(process.noise);
+  std::vector<Atom> all(1);
+  for (int i = process.noise.lowest(); i <= process.noise.highest(); ++i) {
+    const double p = levels[static_cast<std::size_t>(i - process.noise.lowest())];
+    if (lowest <= i && i <= highest) {
+      rests.push_back(p);
+    } else if (p * std::exp(-process.noise.rate(i) * time) > rounding) {
+      all.push_back(without_jumps(process, {i, 0}, time));
+      all.back().probability = p * all.back().probability;
+    }
+  }
+  all[0].probability = still_at_rest(process, rests, time);
+  return all;
 }
 
-/// The distribution at one time: an atom, and a density about it.
+/// The distribution at one time: atoms, and a density about the first of them.
 class Distribution {
  public:
-  Distribution(const Computation& computation, double time, const Atom& atom) : atom_(atom) {
+  Distribution(const Computation& computation, double time, std::vector<Atom> atoms)
+      : atoms_(std::move(atoms)) {
     const auto& question = computation.question();
     even_ = computation.process().symmetric() && question.start.kind != Start::Kind::state;
     if (time > 0) invert(computation, time);
@@ -98,70 +111,74 @@ class Distribution {
 
   [[nodiscard]] Uncertain density(double d) const {
     if (!inversion_) return {};
-    const auto found = inversion_->density(d - atom_.at);
+    const auto found = inversion_->density(d - centre());
     return {found.value, found.error};
   }
-  [[nodiscard]] Uncertain cdf(double d) const {
-    if (even_ && d > 0) return Uncertain{1, 0} - cdf(-d);
-    Uncertain below = continuous_below(d);
-    if (d >= atom_.at) below = below + atom_.probability;
-    return below;
+  // P(x <= d), or P(x < d).
+  [[nodiscard]] Uncertain below(double d, bool or_at) const {
+    if (even_ && d > 0) return Uncertain{1, 0} - below(-d, !or_at);
+    Uncertain sum;
+    if (inversion_) {
+      const auto found = inversion_->below(d - centre());
+      sum = {found.value, found.error};
+    }
+    for (const Atom& atom : atoms_) {
+      if (d > atom.at || (or_at && d == atom.at)) sum = sum + atom.probability;
+    }
+    return sum;
   }
+  [[nodiscard]] Uncertain cdf(double d) const { return below(d, true); }
   // As far off as the quantiles of the probabilities that may be meant.
   [[nodiscard]] Uncertain quantile(double p) const {
-    const auto [value, found] = inverse(p);
-    const bool exact = even_ && p == 0.5;
-    if (!found || exact) return {value, 0};
-    const double doubt = cdf(value).error;
-    return {value, std::max(std::abs(inverse(p + doubt).first - value),
-                            std::abs(inverse(p - doubt).first - value))};
+    if (even_ && p == 0.5) return {0, 0};
+    const double value = inverse(p), doubt = cdf(value).error;
+    return {value,
+            std::max(std::abs(inverse(p + doubt) - value), std::abs(inverse(p - doubt) - value))};
   }
   [[nodiscard]] int evaluations() const { return inversion_ ? inversion_->evaluations() : 0; }
 
  private:
   void invert(const Computation& computation, double time);
 
-  [[nodiscard]] Uncertain continuous_below(double d) const {
-    if (!inversion_) return {};
-    const auto found = inversion_->below(d - atom_.at);
-    return {found.value, found.error};
-  }
-  // And whether it had to be found.
-  [[nodiscard]] std::pair<double, bool> inverse(double p) const {
-    if (!inversion_ || (even_ && p == 0.5)) return {atom_.at, false};
-    const double before = continuous_below(atom_.at).value;
-    if (before < p && p <= before + atom_.probability.value) return {atom_.at, false};
-    const bool above = p > before;
-    const auto off = [&](double d) {
-      return continuous_below(d).value + (above ? atom_.probability.value : 0) - p;
-    };
-    double low = above ? atom_.at : lowest_, high = above ? highest_ : atom_.at;
-    if (off(low) >= 0) return {low, true};
-    if (off(high) <= 0) return {high, true};
+  [[nodiscard]] double centre() const { return atoms_[0].at; }
+  [[nodiscard]] double inverse(double p) const {
+    for (const Atom& atom : atoms_) {
+      if (below(atom.at, false).value < p && p <= cdf(atom.at).value) return atom.at;
+    }
+    if (!inversion_) return centre();
+    const auto off = [&](double d) { return cdf(d).value - p; };
+    if (off(lowest_) >= 0) return lowest_;
+    if (off(highest_) <= 0) return highest_;
     constexpr double relative = 1e-12;
     const auto near = [&](double a, double b) { return std::abs(b - a) < relative * spread_; };
     std::uintmax_t steps = 200;
-    const auto [a, b] = boost::math::tools::toms748_solve(off, low, high, near, steps);
-    return {(a + b) / 2, true};
+    const auto [a, b] = boost::math::tools::toms748_solve(off, lowest_, highest_, near, steps);
+    return (a + b) / 2;
   }
 
-  Atom atom_;
+  std::vector<Atom> atoms_;
   bool even_ = false;
   std::optional<Inversion> inversion_;
   double spread_ = 0, lowest_ = 0, highest_ = 0;  // beyond which nothing is looked for
 };
 
-// phi without the atom, about it.
+// phi without the atoms, about the first.
 void Distribution::invert(const Computation& computation, double time) {
   const auto& question = computation.question();
-  const double mass = 1 - atom_.probability.value;
+  double mass = 1;
+  for (const Atom& atom : atoms_) mass -= atom.probability.value;
   if (mass < 1e-14) return;
   DisplacementModel model(computation.systems, computation.distribution(), question.start, time,
                           0.1 * question.accuracy);
   const auto phi = [&](double k) -> Inversion::Transformed {
     const auto found = model.at(k);
-    const auto rest = found.value * std::polar(1.0, -k * atom_.at) - atom_.probability.value;
-    return {even_ ? rest.real() : rest, found.error + atom_.probability.error};
+    auto rest = found.value * std::polar(1.0, -k * centre());
+    double error = found.error;
+    for (const Atom& atom : atoms_) {
+      rest -= std::polar(atom.probability.value, k * (atom.at - centre()));
+      error += atom.probability.error;
+    }
+    return {even_ ? rest.real() : rest, error};
   };
   // Mean and deviation from small k.
   const double h = 0.1 / (model.speed() * time);
@@ -171,8 +188,8 @@ void Distribution::invert(const Computation& computation, double time) {
   constexpr double furthest = 60;
   // An octave more for each digit.
   const double units = std::exp2(std::ceil(-std::log10(question.accuracy)));
-  lowest_ = atom_.at + mean - furthest * spread_;
-  highest_ = atom_.at + mean + furthest * spread_;
+  lowest_ = centre() + mean - furthest * spread_;
+  highest_ = centre() + mean + furthest * spread_;
   inversion_.emplace(phi, mass, mean, spread_, even_,
                      Inversion::Limits{question.accuracy, units * 2 / spread_, 400});
 }
@@ -184,10 +201,10 @@ void find_displacements(Computation& computation) {
   Result probability = array(catalogue::kDisplacementAtom, question.time),
          position = array(catalogue::kDisplacementAtomAt, question.time);
   for (double t : question.time) {
-    const Atom atom = atom_at(computation, t);
-    const Distribution distribution(computation, t, atom);
-    append_value(probability, atom.probability);
-    append_value(position, {atom.at, 1e-11 * std::abs(atom.at)});
+    const auto atoms = atoms_at(computation, t);
+    const Distribution distribution(computation, t, atoms);
+    append_value(probability, atoms[0].probability);
+    append_value(position, {atoms[0].at, 1e-11 * std::abs(atoms[0].at)});
     const auto append = [&](const Row& row, const std::vector<double>& abscissa, auto of) {
       if (abscissa.empty()) return;
       Result result = array(row, abscissa);

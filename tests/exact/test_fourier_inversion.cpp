@@ -88,3 +88,16 @@ TEST_CASE("fourier inversion: a transform that is cut off has errors that say so
     CHECK(std::abs(below.value - Mixture::below(x)) <= below.error);
   }
 }
+
+// Far from 0 in units of its width: nothing is singular.
+TEST_CASE("fourier inversion: a bell alone") {
+  const auto phi = [](double k) {
+    return Inversion::Transformed{std::exp(Complex(-k * k / 2, 10 * k)), 1e-12};
+  };
+  const Inversion f(phi, 1, 10, 1, false, {1e-6, 1e6, 400});
+  for (const double x : {0.1, 8.0, 10.0, 11.0}) {
+    const auto below = f.below(x);
+    CHECK(std::abs(below.value - std::erfc((10 - x) / std::sqrt(2.0)) / 2) <= below.error);
+    CHECK(below.error < 2e-6);
+  }
+}

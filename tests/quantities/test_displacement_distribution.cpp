@@ -71,22 +71,34 @@ TEST_CASE("displacement distribution: known for telegraph noise", "[real]") {
 TEST_CASE("displacement distribution: the atom in closed form", "[real]") {
   constexpr double time = 1.5;
   const double left = std::exp(-0.8 * time);
-  const auto rest = values(asking(telegraph(), {1}, time, 1e-2, kRest));
+  const auto values_from = [](const std::vector<double>& distance, double t,
+                              const model::Start& start) {
+    auto c = asking(telegraph(), distance, t, 0.05, start);
+    c.method.degree = 3;
+    return values(c);
+  };
+  const auto rest = values_from({1}, time, kRest);
   CHECK(rest.at("displacement_atom").value[0] == Approx(left / 2).epsilon(1e-12));
   CHECK(rest.at("displacement_atom_at").value[0] == 0);
   const auto s = telegraph();
   const int upper = s.noise.table->highest(), lower = s.noise.table->lowest();
-  const auto up = values(asking(s, {1}, time, 1e-2, {upper, 0}));
+  const auto up = values_from({1}, time, {upper, 0});
   CHECK(up.at("displacement_atom").value[0] == Approx(left).epsilon(1e-12));
   CHECK(up.at("displacement_atom_at").value[0] ==
         Approx(1.8 * (time - 2 * (1 - std::exp(-time / 2)))).epsilon(1e-9));
   // From v = 0.6 with the force -1.5 - v/2 to rest, at the time 2 log(1.2).
-  const auto down = values(asking(s, {1}, time, 1e-2, {lower, 0.6}));
+  const auto down = values_from({1}, time, {lower, 0.6});
   CHECK(down.at("displacement_atom").value[0] == Approx(left).epsilon(1e-12));
   CHECK(down.at("displacement_atom_at").value[0] ==
         Approx(2 * (0.6 - 3 * std::log(1.2))).epsilon(1e-9));
+  // From rest both levels leave an atom: x = 0 with 0.22, 0.38 with as much.
+  const auto both = values_from({0.38, 0.39}, 1, kRest);
+  const auto& cdf = both.at("displacement_cdf");
+  CHECK(cdf.value[1] - cdf.value[0] == Approx(std::exp(-0.8) / 2).margin(0.03));
+  CHECK(both.at("displacement_quantile").value[1] ==
+        Approx(1.8 * (1 - 2 * (1 - std::exp(-0.5)))).epsilon(1e-9));
   // Fewer than 0.9 are above it, more than 0.5.
-  CHECK(values(asking(s, {1}, 0.1, 1e-2, {lower, 0})).at("displacement_quantile").value[0] == 0);
+  CHECK(values_from({1}, 0.1, {lower, 0}).at("displacement_quantile").value[0] == 0);
 }
 
 // E[x] = int P(x > d) dd and E[x^2] = 2 int d P(x > d) dd, as no body moves downwards.

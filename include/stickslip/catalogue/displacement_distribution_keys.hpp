@@ -18,7 +18,7 @@ inline constexpr Argument kProbability{.option = "probability",
 inline constexpr Row kDisplacementDensity{
     .key = "displacement_density(t)",
     .symbol = "f(d, t)",
-    .definition = "probability density of the displacement from -start, without the atom",
+    .definition = "probability density of the displacement from -start, without atoms",
     .unit = "1/(velocity*time)",
     .abscissa = "distance",
     .convention = "for each -time; monte_carlo: average over a cell",
