@@ -5,6 +5,7 @@
 #include <iterator>
 #include <memory>
 
+#include "stickslip/catalogue/displacement_distribution_keys.hpp"
 #include "stickslip/catalogue/displacement_transform_keys.hpp"
 #include "stickslip/catalogue/large_deviation_keys.hpp"
 #include "stickslip/support/infinity.hpp"
@@ -64,9 +65,17 @@ double fastest_inverted(const cases::Case& given) {
   const auto process = given.scene.meant();
   if (!process.noise.table) return 0;
   double rate = 0;
-  const bool transform = question.wants(catalogue::kDisplacementTransform.quantity);
+  const bool distribution = question.wants(catalogue::kDisplacementDistribution.quantity);
+  const bool transform = distribution || question.wants(catalogue::kDisplacementTransform.quantity);
   if (question.wants(Quantity::duration_density) || transform) {
     rate = of_contour / least_positive(question.time);
+  }
+  // Displacements down to a part of those that bodies reach, a t min(t, tau)/2.
+  if (distribution) {
+    constexpr double parts = 32;
+    const double t = least_positive(question.time);
+    const double square = t * std::min(t, process.noise.correlation_time());
+    rate = std::max(rate, std::sqrt(2 * of_contour * parts / square));
   }
   if (question.wants(Quantity::slip)) {
     const double force = std::max(process.net_force(process.noise.highest()),
@@ -92,9 +101,38 @@ velocity::Rates fastest_rates(const cases::Case& given) {
   return rates;
 }
 
+// Solutions for exp(i k x(t)) are waves exp(i k v t) in v, which jumps of the noise damp. Of the
+// distribution, k up to an octave more for each digit, in units of 1/deviation of x(t).
+double phase_of_displacements(const cases::Case& given) {
+  const cases::Question& question = given.question;
+  const bool distribution = question.wants(catalogue::kDisplacementDistribution.quantity);
+  const bool transform = question.wants(catalogue::kDisplacementTransform.quantity);
+  const double t = distribution || transform ? largest(question.time) : 0;
+  if (t == 0) return 0;
+  constexpr double damped = 4;  // correlation times
+  const auto process = given.scene.meant();
+  const double tau = process.noise.correlation_time(), lasting = std::min(t, damped * tau);
+  double highest = 0;
+  for (double k : question.values(catalogue::kWavenumber.option)) {
+    highest = std::max(highest, std::abs(k));
+  }
+  if (distribution) {
+    const double force = process.noise.standard_deviation();
+    const double speed = std::min(process.terminal_speed(), force * std::min(t, tau)) / 2;
+    const double spread = speed * std::sqrt(t * std::min(t, 2 * tau));
+    highest = std::max(highest, 2 * std::exp2(-std::log10(question.accuracy)) / spread);
+  }
+  return highest * lasting;
+}
+
 // Observables on the levels on which they were looked at, once each whatever is done with them.
-velocity::Integrands integrands_of(const cases::Question& question) {
+velocity::Integrands integrands_of(const cases::Case& given) {
+  const cases::Question& question = given.question;
   velocity::Integrands integrands;
+  const double phase = phase_of_displacements(given);
+  if (phase > 0) {
+    integrands.functions.emplace_back([phase](double v) { return std::cos(phase * v); });
+  }
   for (const auto& observable : question.observables) {
     const auto f = std::make_shared<const model::Observable>(observable);
     integrands.breaks.insert(integrands.breaks.end(), f->breaks.begin(), f->breaks.end());
@@ -115,7 +153,7 @@ RefinementSequence::RefinementSequence(const cases::Case& given)
   rates_ = fastest_rates(given);
   if (given.question.wants(catalogue::Quantity::spectrum)) omega_ = given.question.omega;
   table_ = given.scene.meant().noise.table != nullptr;
-  integrands_ = integrands_of(given.question);
+  integrands_ = integrands_of(given);
   const bool full_grid = given.method.row().full_grid;
   const bool both = given.question.any(&catalogue::Entry::both_branches);
   branches_ = full_grid || both || !given.scene.symmetric() ? 2 : 1;

@@ -9,6 +9,7 @@
 #include "stickslip/catalogue/autocorrelation_keys.hpp"
 #include "stickslip/catalogue/averages_keys.hpp"
 #include "stickslip/catalogue/density_keys.hpp"
+#include "stickslip/catalogue/displacement_distribution_keys.hpp"
 #include "stickslip/catalogue/displacement_keys.hpp"
 #include "stickslip/catalogue/displacement_transform_keys.hpp"
 #include "stickslip/catalogue/duration_density_keys.hpp"
@@ -35,13 +36,31 @@
 namespace stickslip::catalogue {
 namespace {
 
-constexpr const Entry* kAll[] = {
-    &kSticking,         &kMoments,         &kAverages,       &kNoiseLaw,
-    &kNoiseSpectrum,    &kEntryLaw,        &kDensity,        &kLaplace,
-    &kStickTransform,   &kResolvent,       &kRelaxation,     &kSpectrum,
-    &kDurationDensity,  &kAutocorrelation, &kSlip,           &kPeak,
-    &kFirstPassageTime, &kDisplacement,    &kExpectation,    &kTrajectory,
-    &kGivenForce,       &kSensitivity,     &kLargeDeviation, &kDisplacementTransform};
+constexpr const Entry* kAll[] = {&kSticking,
+                                 &kMoments,
+                                 &kAverages,
+                                 &kNoiseLaw,
+                                 &kNoiseSpectrum,
+                                 &kEntryLaw,
+                                 &kDensity,
+                                 &kLaplace,
+                                 &kStickTransform,
+                                 &kResolvent,
+                                 &kRelaxation,
+                                 &kSpectrum,
+                                 &kDurationDensity,
+                                 &kAutocorrelation,
+                                 &kSlip,
+                                 &kPeak,
+                                 &kFirstPassageTime,
+                                 &kDisplacement,
+                                 &kExpectation,
+                                 &kTrajectory,
+                                 &kGivenForce,
+                                 &kSensitivity,
+                                 &kLargeDeviation,
+                                 &kDisplacementTransform,
+                                 &kDisplacementDistribution};
 
 // Whether `key` is the derivative of a scalar by a parameter, such as dP_stick_dtau.
 bool is_derivative(std::string_view key) {

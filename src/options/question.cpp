@@ -276,7 +276,7 @@ void read_question(Settings& settings, Request& request) {
   question.lambda = arguments(settings, known, "lambda");
   question.omega = arguments(settings, known, "omega");
   question.time = arguments(settings, known, "time");
-  question.distance = arguments(settings, known, "distance");
+  question.distance = arguments(settings, known, "distance", true);
   question.inverse_distance = arguments(settings, known, "inverse_distance");
   question.velocity = arguments(settings, known, "velocity");
   for (const auto* argument : catalogue::arguments()) {

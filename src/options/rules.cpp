@@ -4,6 +4,7 @@
 #include <set>
 
 #include "reading.hpp"
+#include "stickslip/catalogue/displacement_distribution_keys.hpp"
 #include "stickslip/catalogue/given_force_keys.hpp"
 #include "stickslip/catalogue/noise_spectrum_keys.hpp"
 #include "stickslip/effects/effect.hpp"
@@ -132,8 +133,7 @@ class Rules {
             "add for example -velocity 0.1:2:20");
     report("velocity", std::count(q_.velocity.begin(), q_.velocity.end(), 0) > 0,
            "must be positive: every sliding phase exceeds the speed 0", "leave 0 out");
-    report("distance", std::count(q_.distance.begin(), q_.distance.end(), 0) > 0,
-           "must be positive: f_slip is not defined at 0", "leave 0 out");
+    distances();
     require_file(density, "density, a field,");
     require_file(trajectory, "a trajectory,");
     report("quantities", q_.wants(sensitivity) && !derivable,
@@ -235,11 +235,25 @@ class Rules {
              std::string(entry->instead));
       for (const auto* argument : entry->arguments) {
         const std::string option(argument->option);
-        require(option.c_str(), q_.values(option).empty(),
+        require(option.c_str(), !argument->optional && q_.values(option).empty(),
                 fmt::format("asks for {}, but no values of -{} are given", entry->word, option),
                 fmt::format("add for example -{} {}", option, argument->example));
       }
     }
+  }
+
+  void distances() {
+    const bool slips = q_.wants(Quantity::slip);
+    const bool moves = q_.wants(catalogue::kDisplacementDistribution.quantity);
+    const auto any = [this](const auto& is) { return std::ranges::any_of(q_.distance, is); };
+    report("distance", slips && any([](double d) { return d < 0; }),
+           "must be positive with slip: paths have no negative lengths",
+           "leave negative ones out, or slip");
+    report("distance", any([](double d) { return d == 0; }),
+           "must not be 0: densities are not defined there", "leave 0 out");
+    require("distance", moves && q_.distance.empty() && q_.values("probability").empty(),
+            "asks for displacement_distribution, but neither distances nor probabilities are given",
+            "add for example -distance -2:2:40 or -probability 0.05,0.5,0.95");
   }
 
   // Where no level of the noise holds the body, there are no phases, and the rest exists.

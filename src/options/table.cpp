@@ -66,20 +66,21 @@ std::vector<Option> quantity_options() {
                 "given"),
       arguments("omega", "1/time", "angular frequencies of spectrum and noise_spectrum")
           .called({"freq", "frequency", "frequencies"}),
-      arguments(
-          "time", "time",
-          "times of duration_density, autocorrelation, displacement, displacement_transform and "
-          "expectation")
+      arguments("time", "time",
+                "times of duration_density, autocorrelation, displacement, displacement_transform, "
+                "displacement_distribution and expectation")
           .called({"t", "times"}),
-      arguments("distance", "velocity*time", "path lengths > 0 of slip, for f_slip and cdf_slip"),
+      numbers("distance", "velocity*time", {},
+              "path lengths > 0 of slip, for f_slip and cdf_slip; displacements of either sign of "
+              "displacement_distribution",
+              "take for example 0.01:10:31:log"),
       arguments("inverse_distance", "1/(velocity*time)",
                 "arguments s of the Laplace transform F_slip of slip"),
       arguments("velocity", "velocity", "speeds w > 0 of peak and first_passage")
           .called({"speed", "speeds"}),
-      Option::text_of(
-          "start", "state", "s+",
-          "state at time 0 of expectation, displacement, displacement_transform, first_passage and "
-          "trajectory")
+      Option::text_of("start", "state", "s+",
+                      "state at time 0 of expectation, displacement, displacement_transform, "
+                      "displacement_distribution, first_passage and trajectory")
           .called({"x0", "v0", "initial", "initial_state"}),
       choice("passage", "both", words_of(kPassages),
              "what first_passage waits for: both: |V| reaches the speed w. up: V does. down: V "

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
+#include "stickslip/algebra/dense.hpp"
 #include "stickslip/operators/complex_solver.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
@@ -22,6 +24,7 @@ using operators::StateKind;
 using operators::StaticPhase;
 using operators::Symmetry;
 using Entries = std::vector<double>;  // of this rank
+using Vector = std::vector<Complex>;
 
 Entries entries_of(Vec x) {
   const petsc::ReadView local(x);
@@ -62,254 +65,193 @@ Entries stationary_on(operators::Systems& systems, const StationaryDistribution&
   return all;
 }
 
-/// Orthonormal columns.
+// The sum over all ranks.
+void add_up(MPI_Comm comm, std::vector<Complex>& x) {
+  MPI_Allreduce(MPI_IN_PLACE, x.data(), static_cast<int>(x.size()), MPI_C_DOUBLE_COMPLEX, MPI_SUM,
+                comm);
+}
+
+std::vector<Complex> conjugate(std::vector<Complex> x) {
+  for (Complex& entry : x) entry = std::conj(entry);
+  return x;
+}
+
+// g exp(t a) b by eigenvectors.
+Complex exponential(const Matrix<Complex>& a, const std::vector<Complex>& b,
+                    const std::vector<Complex>& g, double t) {
+  const algebra::Eigenvectors modes(a);
+  auto shares = b;
+  algebra::LuFactors<Complex>(modes.right).solve(shares, false);
+  const auto seen = g * modes.right;
+  Complex sum = 0;
+  for (std::size_t n = 0; n < b.size(); ++n) {
+    const Complex rate(std::min(modes.value[n].real(), 0.0), modes.value[n].imag());
+    sum += seen[n] * shares[n] * std::exp(t * rate);
+  }
+  return sum;
+}
+
+// The leading block.
+Matrix<Complex> first(const Matrix<Complex>& a, int size) {
+  Matrix<Complex> block(size, size);
+  for (int c = 0; c < size; ++c) std::copy_n(a.column(c), size, block.column(c));
+  return block;
+}
+
+/// Orthonormal columns, by Gram and Schmidt twice.
 class Basis {
  public:
-  explicit Basis(MPI_Comm comm) : comm_(comm) {}
+  Basis(MPI_Comm comm, std::size_t rows) : comm_(comm), columns_(static_cast<int>(rows), 16) {}
 
-  // What is left of x outside the columns, unless it is rounding.
-  bool add(Entries x) {
-    constexpr double smallest = 1e-12;
-    const double size = std::sqrt(dot(x, x));
-    for (int pass = 0; pass < 2; ++pass) {
-      for (const auto& column : columns_) {
-        const double share = dot(column, x);
-        for (std::size_t n = 0; n < x.size(); ++n) x[n] -= share * column[n];
-      }
-    }
-    const double left = std::sqrt(dot(x, x));
-    if (!(left > smallest * size)) return false;
-    for (double& entry : x) entry /= left;
-    columns_.push_back(std::move(x));
-    return true;
+  [[nodiscard]] int size() const { return size_; }
+  // V^H x.
+  [[nodiscard]] Vector products(const Vector& x) const {
+    Vector all = conjugate(conjugate(x) * columns_);
+    all.resize(static_cast<std::size_t>(size_));
+    add_up(comm_, all);
+    return all;
   }
-  void remove_last() { columns_.pop_back(); }
-  [[nodiscard]] const std::vector<Entries>& columns() const { return columns_; }
-  [[nodiscard]] double dot(const Entries& x, const Entries& y) const {
-    double sum = 0;
-    for (std::size_t n = 0; n < x.size(); ++n) sum += x[n] * y[n];
-    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, comm_);
-    return sum;
+  // The products of x with the columns, the new one last; this is 0 where x is in their span.
+  Vector add(Vector x) {
+    constexpr double rounding = 1e-12;
+    Vector shares(static_cast<std::size_t>(size_), 0.0);
+    const double size = norm(x);
+    for (int pass = 0; pass < 2; ++pass) {
+      Vector part = products(x);
+      for (std::size_t n = 0; n < part.size(); ++n) {
+        shares[n] += part[n];
+        part[n] = -part[n];
+      }
+      part.resize(static_cast<std::size_t>(columns_.columns()));
+      algebra::add_product(columns_, part.data(), x.data());
+    }
+    const double left = norm(x);
+    shares.emplace_back(left > rounding * size ? left : 0);
+    if (shares.back() == 0.0) return shares;
+    if (size_ == columns_.columns()) {
+      Matrix<Complex> more(columns_.rows(), 2 * size_);
+      std::copy_n(columns_.data(), x.size() * static_cast<std::size_t>(size_), more.data());
+      columns_ = std::move(more);
+    }
+    Complex* const column = columns_.column(size_++);
+    for (std::size_t n = 0; n < x.size(); ++n) column[n] = x[n] / left;
+    return shares;
+  }
+  [[nodiscard]] Vector column(int n) const {
+    return {columns_.column(n), columns_.column(n) + columns_.rows()};
   }
 
  private:
+  [[nodiscard]] double norm(const Vector& x) const {
+    Vector square{0};
+    for (const Complex entry : x) square[0] += std::norm(entry);
+    add_up(comm_, square);
+    return std::sqrt(square[0].real());
+  }
   MPI_Comm comm_;
-  std::vector<Entries> columns_;
+  Matrix<Complex> columns_;
+  int size_ = 0;
 };
 
-// W^T X.
-Matrix<double> products(const Basis& w, const std::vector<Entries>& x) {
-  Matrix<double> all(static_cast<int>(w.columns().size()), static_cast<int>(x.size()));
-  for (int c = 0; c < all.columns(); ++c) {
-    for (int r = 0; r < all.rows(); ++r) all(r, c) = w.dot(w.columns()[r], x[c]);
+// c exp(t A) 1 on the space of a resolvent at z from 1, which grows until that is the same as with
+// a few vectors less: A = z - 1/(its resolvent) there.
+template <class Resolvent>
+DisplacementModel::Transform exponential_of(MPI_Comm comm, const Vector& one, const Vector& c,
+                                            double z, double t, double enough,
+                                            const Resolvent& resolvent) {
+  constexpr int most = 120;
+  Basis basis(comm, one.size());
+  const Vector start{basis.add(one).back()};
+  Matrix<Complex> h(most, most);
+  DisplacementModel::Transform found;
+  Complex before = 0;
+  Vector seen;
+  for (int count = 1, next = 4; count < most; ++count) {
+    const Vector newest = basis.column(count - 1);
+    Vector product{std::inner_product(c.begin(), c.end(), newest.begin(), Complex(0))};
+    add_up(comm, product);
+    seen.push_back(product[0]);
+    const Vector shares = basis.add(resolvent(newest));
+    std::copy(shares.begin(), shares.end(), h.column(count - 1));
+    const bool exhausted = shares.back() == 0.0;
+    if (!exhausted && count < next) continue;
+    next = count + std::max(2, count / 6);
+    Matrix<Complex> a = Matrix<Complex>::identity(count);
+    algebra::LuFactors<Complex>(first(h, count)).solve(a);
+    a *= -1.0;
+    for (int r = 0; r < count; ++r) a(r, r) += z;
+    Vector b = start;
+    b.resize(static_cast<std::size_t>(count));
+    const Complex last = std::exchange(found.value, exponential(a, b, seen, t));
+    found.error = std::max(std::abs(found.value - last), std::abs(found.value - before));
+    before = last;
+    if (exhausted) found.error = 1e-14;
+    if (found.error < enough || exhausted) break;
   }
-  return all;
-}
-
-Matrix<double> first(const Matrix<double>& a, int rows, int columns) {
-  Matrix<double> part(rows, columns);
-  for (int c = 0; c < columns; ++c) std::copy_n(a.column(c), rows, part.column(c));
-  return part;
-}
-
-Entries times(const Entries& x, const Entries& y) {
-  Entries product = x;
-  for (std::size_t n = 0; n < x.size(); ++n) product[n] *= y[n];
-  return product;
-}
-
-// The weight of the inner product, and its inverse.
-struct Weights {
-  Entries root, inverse;
-};
-Weights weights_of(MPI_Comm comm, const Entries& pi) {
-  double most = 0;
-  for (double p : pi) most = std::max(most, std::abs(p));
-  MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, comm);
-  Weights all;
-  for (double p : pi) {
-    all.root.push_back(std::sqrt(std::abs(p) + 1e-14 * most));
-    all.inverse.push_back(1 / all.root.back());
-  }
-  return all;
-}
-
-/// Vectors that one system makes of 1 and of c, each of the last.
-struct Chain {
-  operators::SystemKey key;
-  int vectors, first;  // in all, and in the coarse model
-  Entries x, w;
-  int found = 0;
-};
-
-std::vector<Chain> chains_at(double t, double largest, double speed, const Entries& one,
-                             const Entries& c) {
-  std::vector<Chain> chains;
-  for (double z : {0.3, 1.0, 3.0, 9.0, 27.0, 81.0}) {
-    chains.push_back({{z / t, Symmetry::none, StaticPhase::kept}, 16, 11, one, c});
-  }
-  for (double s : {largest, largest / 4, largest / 16}) {
-    constexpr double counts = 2;
-    if (s * speed * t < counts) continue;
-    for (double z : {1.0, 4.0, 16.0}) {
-      chains.push_back({{z / t, Symmetry::none, StaticPhase::kept}, 8, 5, one, c});
-      chains.back().key.path = s;
-    }
-  }
-  return chains;
-}
-
-// The next vectors of a chain, with two vectors to work with.
-void extend(operators::Systems& systems, const Entries& v, Vec b, Vec solved, Chain& chain) {
-  auto& factors = systems.at(chain.key).factors();
-  const auto next = [&](Entries& x, bool transposed) {
-    put(chain.found == 0 ? x : times(x, v), b);
-    transposed ? factors.solve_transposed_once(b, solved) : factors.solve_once(b, solved);
-    x = entries_of(solved);
-    PetscReal size = 0;
-    petsc::check(VecNorm(solved, NORM_2, &size));
-    for (double& entry : x) entry /= size;
-  };
-  next(chain.x, false);
-  next(chain.w, true);
-  ++chain.found;
+  return found;
 }
 
 }  // namespace
 
-struct DisplacementModel::Products {
-  Matrix<double> overlap, m, n, to_one;
-  Entries of_c;
-};
-
-DisplacementModel::Projected DisplacementModel::projected(const Products& all, int size) {
-  constexpr double rounding = 1e-13;
-  const algebra::SingularValues g(first(all.overlap, size, size));
-  const int seen = static_cast<int>(std::count_if(
-      g.value.begin(), g.value.end(), [&](double s) { return s > rounding * g.value.front(); }));
-  Matrix<double> to_left(seen, size), to_right(size, seen);
-  for (int r = 0; r < seen; ++r) {
-    const double scale = 1 / std::sqrt(g.value[r]);
-    for (int l = 0; l < size; ++l) {
-      to_left(r, l) = scale * g.left(l, r);
-      to_right(l, r) = scale * g.right_transposed(r, l);
-    }
-  }
-  Projected p;
-  p.m = -1.0 * (to_left * first(all.m, size, size) * to_right);
-  p.n = to_left * first(all.n, size, size) * to_right;
-  p.b = to_left * Entries(all.to_one.data(), all.to_one.data() + size);
-  p.g = Entries(all.of_c.begin(), all.of_c.begin() + size) * to_right;
-  return p;
-}
-
 DisplacementModel::DisplacementModel(operators::Systems& systems,
                                      const StationaryDistribution& distribution,
-                                     const model::Start& start, double t, double largest)
+                                     const model::Start& start, double t, double accuracy)
     : systems_(systems),
       a_(operators::assemble(systems.comm(), systems.discretisation(), 0, Symmetry::none,
                              StaticPhase::kept, systems.statistics())),
-      t_(t) {
-  const Entries pi = stationary_on(systems, distribution, a_), one(pi.size(), 1.0),
-                v = entries_of(a_.values([](double, double, double u) { return u; }));
+      t_(t),
+      accuracy_(accuracy),
+      v_(entries_of(a_.values([](double, double, double u) { return u; }))) {
+  const Entries pi = stationary_on(systems, distribution, a_);
   const bool stationary = start.kind == model::Start::Kind::stationary;
-  const Entries c = start_ = stationary ? pi : entries_of(start_on(a_, start));
-  const auto [root, inverse] = weights_of(systems.comm(), pi);
-  Basis right(systems.comm()), left(systems.comm());
-  const auto append = [&, &root = root, &inverse = inverse](const Entries& x, const Entries& w) {
-    if (!right.add(times(x, root))) return;
-    if (!left.add(times(w, inverse))) right.remove_last();
-  };
-  append(one, c);
-  speed_ = std::sqrt(std::max(right.dot(times(pi, v), v), 0.0));
-  auto chains = chains_at(t, largest, speed_, one, c);
-  const petsc::VecHandle b = a_.zeros(), solved = a_.zeros();
-  const auto extend_to = [&](Chain& chain, int count) {
-    while (chain.found < count) {
-      extend(systems, v, b, solved, chain);
-      append(chain.x, chain.w);
+  const Entries c = stationary ? pi : entries_of(start_on(a_, start));
+  double most = 0, square = 0;
+  for (double p : pi) most = std::max(most, p);
+  MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, systems.comm());
+  for (std::size_t n = 0; n < pi.size(); ++n) {
+    root_.push_back(std::sqrt(std::abs(pi[n]) + 1e-14 * most));
+    one_.emplace_back(root_[n]);
+    c_.emplace_back(c[n] / root_[n]);
+    square += pi[n] * v_[n] * v_[n];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &square, 1, MPI_DOUBLE, MPI_SUM, systems.comm());
+  speed_ = std::sqrt(square);
+}
+
+DisplacementModel::Transform DisplacementModel::projected(double k, double z) {
+  operators::ComplexSolver solver(a_, {Complex(z, 0), 0.0, Complex(0, k)}, systems_.statistics());
+  return exponential_of(systems_.comm(), one_, c_, z, t_, 0.1 * accuracy_, [&](const Vector& y) {
+    operators::ComplexVector b{a_.zeros(), a_.zeros()};
+    Entries real, imaginary;
+    for (std::size_t m = 0; m < y.size(); ++m) {
+      real.push_back(y[m].real() / root_[m]);
+      imaginary.push_back(y[m].imag() / root_[m]);
     }
-  };
-  for (Chain& chain : chains) extend_to(chain, chain.first);
-  const int coarse = static_cast<int>(right.columns().size());
-  for (Chain& chain : chains) extend_to(chain, chain.vectors);
-  for (const Chain& chain : chains) systems.release(chain.key);
-
-  std::vector<Entries> images, moving;
-  for (const auto& column : right.columns()) {
-    put(times(column, inverse), b);
-    petsc::check(MatMult(a_.matrix(), b, solved));
-    images.push_back(times(entries_of(solved), root));
-    moving.push_back(times(column, v));
-  }
-  Products all{products(left, right.columns()),
-               products(left, images),
-               products(left, moving),
-               products(left, {times(one, root)}),
-               {}};
-  for (const auto& column : right.columns()) {
-    all.of_c.push_back(left.dot(times(c, inverse), column));
-  }
-  fine_ = projected(all, static_cast<int>(right.columns().size()));
-  coarse_ = projected(all, coarse);
+    put(real, b.real);
+    put(imaginary, b.imaginary);
+    const auto x = solver.solve(b, false).x;
+    real = entries_of(x.real);
+    imaginary = entries_of(x.imaginary);
+    Vector next;
+    for (std::size_t m = 0; m < y.size(); ++m) {
+      next.push_back(root_[m] * Complex(real[m], imaginary[m]));
+    }
+    return next;
+  });
 }
 
-// An error dH of the Laplace transform in time is one of about e/pi |dH|/t at t.
-void DisplacementModel::judge(double k) {
-  double& caution = caution_.emplace(std::abs(k), 1).first->second;
-  const Basis products(systems_.comm());
-  for (const Complex z : {Complex(1 / t_, 0), Complex(1 / t_, k * speed_)}) {
-    operators::ComplexSolver solver(a_, {z, 0.0, Complex(0, k)}, systems_.statistics());
-    operators::ComplexVector f{a_.zeros(), a_.zeros()};
-    put(Entries(start_.size(), 1.0), f.real);
-    const auto x = solver.solve(f, false).x;
-    const Complex truth(products.dot(start_, entries_of(x.real)),
-                        products.dot(start_, entries_of(x.imaginary)));
-    const Complex here = fine_.resolvent(z, k);
-    const double off = std::abs(truth - here), seen = std::abs(here - coarse_.resolvent(z, k));
-    caution = std::max(caution, off / std::max(seen, 1e-13 * std::abs(truth)));
+DisplacementModel::Transform DisplacementModel::at(double k) {
+  const double turns = std::abs(k);
+  const double z = 6 / t_ + turns * speed_;  // further away where the weight turns fast
+  Transform found = projected(turns, z);
+  if (turns > 2 * checked_) {
+    checked_ = turns;
+    const Transform other = projected(turns, 1.7 * z);
+    other_pole_ = std::max(other_pole_, std::abs(other.value - found.value));
   }
-}
-
-Complex DisplacementModel::Projected::resolvent(Complex z, double k) const {
-  Matrix<Complex> a(m.rows(), m.rows());
-  for (int c = 0; c < m.rows(); ++c) {
-    for (int r = 0; r < m.rows(); ++r) a(r, c) = -Complex(m(r, c), k * n(r, c));
-    a(c, c) += z;
-  }
-  std::vector<Complex> x(b.begin(), b.end());
-  algebra::LuFactors<Complex>(std::move(a)).solve(x, false);
-  Complex sum = 0;
-  for (std::size_t r = 0; r < x.size(); ++r) sum += g[r] * x[r];
-  return sum;
-}
-
-Complex DisplacementModel::Projected::transform(double k, double t, double& grown) const {
-  Matrix<Complex> a(m.rows(), m.rows());
-  for (int c = 0; c < m.rows(); ++c) {
-    for (int r = 0; r < m.rows(); ++r) a(r, c) = Complex(m(r, c), k * n(r, c));
-  }
-  const algebra::Eigenvectors modes(std::move(a));
-  std::vector<Complex> shares(b.begin(), b.end());
-  algebra::LuFactors<Complex>(modes.right).solve(shares, false);
-  Complex sum = 0;
-  for (int l = 0; l < m.rows(); ++l) {
-    Complex seen = 0;
-    for (int r = 0; r < m.rows(); ++r) seen += g[r] * modes.right(r, l);
-    const Complex rate = modes.value[l], share = seen * shares[l];
-    if (rate.real() * t > 1e-8) grown += std::abs(share);
-    sum += share * std::exp(t * Complex(std::min(rate.real(), 0.0), rate.imag()));
-  }
-  return sum;
-}
-
-DisplacementModel::Transform DisplacementModel::transform(double k) const {
-  double grown = 0, before = 0;
-  const Complex value = fine_.transform(k, t_, grown), other = coarse_.transform(k, t_, before);
-  auto judged = caution_.lower_bound(std::abs(k));
-  if (judged == caution_.end() && !caution_.empty()) --judged;
-  const double caution = judged == caution_.end() ? 1 : judged->second;
-  return {value, caution * (std::abs(value - other) + grown) + 1e-14};
+  found.error += other_pole_;
+  if (k < 0) found.value = std::conj(found.value);
+  return found;
 }
 
 }  // namespace stickslip::quantities

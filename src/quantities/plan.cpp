@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "stickslip/catalogue/displacement_distribution_keys.hpp"
 #include "stickslip/catalogue/displacement_transform_keys.hpp"
 #include "stickslip/catalogue/first_passage_keys.hpp"
 #include "stickslip/catalogue/large_deviation_keys.hpp"
@@ -17,7 +18,8 @@ Tasks sticking_tasks, mean_slip_tasks, moments_tasks, density_tasks, averages_ta
     entry_law_tasks, sensitivity_tasks, stick_transform_tasks, laplace_tasks, resolvent_tasks,
     spectrum_tasks, duration_density_tasks, slip_tasks, peak_tasks, first_passage_tasks,
     displacement_tasks, autocorrelation_tasks, expectation_tasks, relaxation_tasks,
-    noise_spectrum_tasks, large_deviation_tasks, displacement_transform_tasks;
+    noise_spectrum_tasks, large_deviation_tasks, displacement_transform_tasks,
+    displacement_distribution_tasks;
 
 namespace {
 
@@ -44,7 +46,8 @@ constexpr std::pair<Quantity, Tasks*> kAll[] = {
     {Quantity::relaxation, relaxation_tasks},
     {catalogue::own_quantity("noise_spectrum"), noise_spectrum_tasks},
     {catalogue::kLargeDeviation.quantity, large_deviation_tasks},
-    {catalogue::kDisplacementTransform.quantity, displacement_transform_tasks}};
+    {catalogue::kDisplacementTransform.quantity, displacement_transform_tasks},
+    {catalogue::kDisplacementDistribution.quantity, displacement_distribution_tasks}};
 
 }  // namespace
 

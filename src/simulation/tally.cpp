@@ -6,6 +6,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "stickslip/catalogue/displacement_distribution_keys.hpp"
 #include "stickslip/catalogue/displacement_transform_keys.hpp"
 #include "stickslip/catalogue/first_passage_keys.hpp"
 
@@ -17,7 +18,7 @@ using Follow = void(Tally&);
 Follow sticking_tally, moments_tally, averages_tally, noise_law_tally, entry_law_tally,
     laplace_tally, stick_transform_tally, duration_density_tally, slip_tally, peak_tally,
     spectrum_tally, resolvent_tally, autocorrelation_tally, displacement_tally, expectation_tally,
-    displacement_transform_tally, first_passage_tally;
+    displacement_transform_tally, displacement_distribution_tally, first_passage_tally;
 
 namespace {
 
@@ -39,26 +40,8 @@ constexpr std::pair<Quantity, Follow*> kAll[] = {
     {Quantity::autocorrelation, autocorrelation_tally},
     {Quantity::displacement, displacement_tally},
     {Quantity::expectation, expectation_tally},
-    {catalogue::kDisplacementTransform.quantity, displacement_transform_tally}};
-
-using Cell = Tally::Range;
-
-// Around values.
-std::vector<Cell> cells_around(const std::vector<double>& at) {
-  const std::set<double> sorted(at.begin(), at.end());
-  std::vector<Cell> cells;
-  for (double t : at) {
-    const auto place = sorted.find(t);
-    const bool first = place == sorted.begin(), last = std::next(place) == sorted.end();
-    const double alone = t > 0 ? 0.05 * t : 1;
-    double below = first ? alone : (t - *std::prev(place)) / 2;
-    double above = last ? alone : (*std::next(place) - t) / 2;
-    if (first && !last) below = above;
-    if (last && !first) above = below;
-    cells.push_back({std::max(0.0, t - below), t + above});
-  }
-  return cells;
-}
+    {catalogue::kDisplacementTransform.quantity, displacement_transform_tally},
+    {catalogue::kDisplacementDistribution.quantity, displacement_distribution_tally}};
 
 struct Single {
   double x;
@@ -71,6 +54,24 @@ struct OverTime {
 };
 
 }  // namespace
+
+std::vector<Tally::Range> cells_around(const std::vector<double>& at) {
+  const std::set<double> sorted(at.begin(), at.end());
+  std::vector<Tally::Range> cells;
+  for (double t : at) {
+    const auto place = sorted.find(t);
+    const bool first = place == sorted.begin(), last = std::next(place) == sorted.end();
+    const double alone = t != 0 ? 0.05 * std::abs(t) : 1;
+    double below = first ? alone : (t - *std::prev(place)) / 2;
+    double above = last ? alone : (*std::next(place) - t) / 2;
+    if (first && !last) below = above;
+    if (last && !first) above = below;
+    cells.push_back({t - below, t + above});
+    double& beyond = t < 0 ? cells.back().high : cells.back().low;
+    beyond = t < 0 ? std::min(0.0, beyond) : std::max(0.0, beyond);
+  }
+  return cells;
+}
 
 Tally::Tally(const cases::Question& question, const model::Process& process)
     : question_(question), process_(process) {

@@ -12,7 +12,8 @@ SMALL = ("-delta", "0.5", "-mu_d", "0.5", "-accuracy", "1e-3", "-excursions", "2
 MODELS = {"symmetric": (), "biased": ("-bias", "0.2", "-mu_d_minus", "0.4"),
           "stribeck": ("-bias", "0.2", "-friction", "stribeck", "-stribeck_velocity", "0.1")}
 ARGUMENTS = {"-lambda": "0.5,1", "-omega": "0.5,1", "-time": "0.5,1", "-distance": "0.5,1",
-             "-inverse_distance": "0.5,1", "-tilt": "-0.2,0.4", "-wavenumber": "0.5,2", "-velocity": "0.2,0.4", "-observable": "v^2",
+             "-inverse_distance": "0.5,1", "-tilt": "-0.2,0.4", "-wavenumber": "0.5,2", "-probability": "0.5,0.9",
+             "-velocity": "0.2,0.4", "-observable": "v^2",
              "-force_file": str(SOURCES / "options" / "given_force.csv")}
 FIELDS = ("density", "trajectory")
 DERIVATIVE = re.compile(r"d\w+_d(mu_d|mu_d_minus|mu_s|stribeck_velocity|tau|drag_coefficient)$")

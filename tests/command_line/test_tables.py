@@ -8,7 +8,7 @@ from running import SOURCES, Case
 
 SMALL = ("-mu_d", "0.25", "-delta", "0.5")
 GRIDS = ("-lambda", "0.5,2", "-omega", "0.1,1", "-time", "0.5,1", "-distance", "0.1,1", "-inverse_distance", "1",
-         "-velocity", "0.3", "-tilt", "0.5", "-wavenumber", "1", "-observable", "v^2;stick")
+         "-velocity", "0.3", "-tilt", "0.5", "-wavenumber", "1", "-probability", "0.9", "-observable", "v^2;stick")
 FACTOR = r"(force|velocity|time)(\^\d)?"
 PRODUCT = rf"{FACTOR}(\*{FACTOR})*"
 UNIT = re.compile(rf"(1|{PRODUCT})(/{FACTOR}|/\({PRODUCT}\))?")

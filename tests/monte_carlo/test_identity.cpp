@@ -66,6 +66,7 @@ std::vector<Options> command_lines(const NoiseFiles& files) {
                     {"distance", "0.5"},
                     {"inverse_distance", "0.5"},
                     {"wavenumber", "0.5"},
+                    {"probability", "0.5"},
                     {"velocity", "0.5"}};
   std::vector<Options> lines(10, all);
   lines[0].insert({{"delta", "0.5"}});

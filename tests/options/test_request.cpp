@@ -404,6 +404,13 @@ TEST_CASE("request: quantities that need a file or times, or derive nothing, are
        {"no values of -tilt are given", "add for example -tilt -0.5"}},
       {"-quantities large_deviation -tilt 1,x", {"-tilt = 1,x: must be numbers in (-inf, inf)"}},
       {"-quantities large_deviation -tilt 1 -route monte_carlo", {"a sample has no eigenvalues"}},
+      {"-quantities displacement_distribution -time 1",
+       {"neither distances nor probabilities", "-probability 0.05"}},
+      {"-quantities displacement_distribution -time 1 -distance 0,1",
+       {"densities are not defined there", "leave 0 out"}},
+      {"-quantities displacement_distribution -time 1 -probability 1.5",
+       {"-probability = 1.5: must be numbers in (0, 1)"}},
+      {"-quantities slip -distance -1,1", {"paths have no negative lengths"}},
       {"-quantities expectation -observable v", {"no times are given", "add for example -time"}}};
   for (const auto& refusal : refusals) check_refusal(refusal);
 }

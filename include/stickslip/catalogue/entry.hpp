@@ -97,6 +97,7 @@ struct Argument {
   /// Open range of the numbers.
   double low = -std::numeric_limits<double>::infinity(),
          high = std::numeric_limits<double>::infinity();
+  bool optional = false;  ///< whether the quantity gives something without it
 };
 
 /// A quantity that can be asked for.
@@ -107,7 +108,7 @@ struct Entry {
   std::string_view title;                           ///< what it is, in half a line
   Routes routes;                                    ///< that give it, for every scene
   std::string_view options = {};                    ///< that it depends on besides, a comma list
-  std::span<const Argument* const> arguments = {};  ///< that it has to have
+  std::span<const Argument* const> arguments = {};  ///< that it has of its own
   std::string_view others = {};  ///< keys of other quantities that come with it, a comma list
   std::span<const Row* const> rows = {};
   /// The degree of elements at which error estimates meet an accuracy of 10^-n is expected to be

@@ -181,4 +181,8 @@ class Tally {
   std::vector<std::function<Estimates(const Tally&)>> reports_;
 };
 
+/// Cells around values, up to halfway between neighbours and as far on the other side at the ends;
+/// none reaches beyond 0.
+[[nodiscard]] std::vector<Tally::Range> cells_around(const std::vector<double>& at);
+
 }  // namespace stickslip::simulation

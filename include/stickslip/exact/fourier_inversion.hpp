@@ -1,0 +1,89 @@
+#pragma once
+/// A density and its distribution function from a characteristic function.
+
+#include <complex>
+#include <functional>
+#include <map>
+#include <vector>
+
+namespace stickslip::exact {
+
+/// f with phi(k) = int f(x) exp(i k x) dx, of a mass that need not be 1 and with a singularity at
+/// x = 0 where f is a series in |x|^(1/2) from |x|^(-1/2) on, another one on either side.
+///
+/// phi is sampled on panels in k, halved until Chebyshev polynomials of degree 8 hold it, with the
+/// phase of the mean drift taken out where that is smoother. What does not fall fast comes from the
+/// singularity,
+///
+///   phi(k) ~ sum_n c_n+ (b - i k)^(-n/2) + c_n- (b + i k)^(-n/2),   n = 1 ... 6,
+///
+/// transforms of x^(n/2 - 1) exp(-b x)/Gamma(n/2), with c_n+ = +-c_n- for even n: the coefficients
+/// are those of least squares over the upper two octaves of k. Only what is left of phi is
+/// integrated numerically.
+///
+/// Errors have three parts: those of phi; the last Chebyshev coefficients of each panel; and how
+/// far off the sum is that ends an octave of k below, with coefficients of its own. Local.
+class FourierInversion {
+ public:
+  struct Value {
+    double value = 0, error = 0;
+  };
+  struct Transformed {
+    std::complex<double> value;
+    double error = 0;  ///< of the modulus
+  };
+  using Transform = std::function<Transformed(double k)>;
+
+  struct Limits {
+    double accuracy = 1e-6;  ///< absolute, of the distribution function
+    double highest = 0;      ///< of k
+    int evaluations = 200;   ///< of phi, about
+  };
+  /// `even`: whether f is. Takes `mass` = phi(0), and mean and standard deviation of f/mass for the
+  /// scales.
+  FourierInversion(const Transform& phi, double mass, double mean, double deviation, bool even,
+                   const Limits& limits);
+
+  /// f(x), x not 0. O(highest |x|).
+  [[nodiscard]] Value density(double x) const { return between(x, &Integrals::density); }
+  /// int f from -infinity to x. O(highest |x|).
+  [[nodiscard]] Value below(double x) const;
+  /// How often phi has been asked for.
+  [[nodiscard]] int evaluations() const { return evaluations_; }
+
+ private:
+  using Complex = std::complex<double>;
+  struct Panel {
+    double low, high;
+    double shift;                // the phase exp(i k shift) that has been taken out
+    std::vector<Complex> terms;  // Chebyshev coefficients of the rest
+    double rough;                // of the polynomial
+    double doubt;                // of phi
+  };
+  /// Panels up to some k, and the coefficients of what is singular.
+  struct Sum {
+    std::size_t panels = 0;
+    std::vector<double> singular;
+  };
+  struct Integrals {
+    double density = 0, below = 0;
+  };
+  void sample(const Transform& phi, double low, double high, double tolerance, int most);
+  [[nodiscard]] Complex sampled(double k) const;
+  // phi less what is singular.
+  [[nodiscard]] Complex rest(const Sum& sum, double k) const;
+  [[nodiscard]] std::vector<Complex> basis(double k) const;
+  [[nodiscard]] Sum sum_up_to(std::size_t panels, double highest) const;
+  [[nodiscard]] Integrals integrals(const Sum& sum, double x) const;
+  [[nodiscard]] Integrals singular(const Sum& sum, double x) const;
+  [[nodiscard]] Value between(double x, double Integrals::*which) const;
+
+  bool even_;
+  double mass_, mean_, scale_, accuracy_;
+  int evaluations_ = 0;
+  std::vector<Panel> panels_;
+  std::vector<Sum> sums_;  // by octave
+  std::map<double, Transformed> known_;
+};
+
+}  // namespace stickslip::exact

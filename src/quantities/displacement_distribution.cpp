@@ -1,0 +1,234 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/tools/roots.hpp>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "stickslip/catalogue/displacement_distribution_keys.hpp"
+#include "stickslip/exact/fourier_inversion.hpp"
+#include "stickslip/quantities/displacement_model.hpp"
+#include "stickslip/quantities/durations.hpp"
+#include "stickslip/quantities/plan.hpp"
+#include "stickslip/simulation/flow.hpp"
+
+namespace stickslip::quantities {
+namespace {
+
+using Inversion = exact::FourierInversion;
+using model::Start;
+
+/// A displacement that has a probability.
+struct Atom {
+  double at = 0;
+  Uncertain probability = {};
+};
+
+// Of bodies at rest, by level that sticks: that the noise does not push them up to a time.
+Uncertain still_at_rest(const model::Process& process, const std::vector<double>& rests,
+                        double time) {
+  double all = 0;
+  std::vector<Uncertain> start;
+  for (double p : rests) {
+    start.push_back({p, 0});
+    all += p;
+  }
+  if (all == 0) return {};
+  const Uncertain left = stick_distribution(process, start, {time}).distribution[0];
+  return {std::max(all - left.value, 0.0), left.error + 1e-15};
+}
+
+// Of a body on one level, which moves as long as the noise does not jump, and may come to rest.
+Atom without_jumps(const model::Process& process, const Start& start, double time) {
+  const int level = start.level, lowest = process.lowest_static();
+  const bool holds = lowest <= level && level <= process.highest_static();
+  const auto mirrored = process.mirrored();
+  Atom atom;
+  double speed = std::abs(start.v), now = 0;
+  bool upwards = start.v != 0 ? start.v > 0 : process.net_force(level) > 0;
+  for (bool slides = speed > 0 || !holds; slides && now < time;) {
+    const model::Process& there = upwards ? process : mirrored;
+    const double force = there.net_force(upwards ? level : -level);
+    const auto piece = simulation::GeneralFlow(there.drag).move(speed, force, time - now, true);
+    if (piece.time <= 0) break;
+    atom.at += (upwards ? 1 : -1) * piece.path;
+    now += piece.time;
+    speed = piece.end;
+    slides = !piece.stopped || !holds;
+    if (piece.stopped) upwards = !upwards;
+  }
+  const double unmoved = std::exp(-process.noise.rate(level) * std::min(now, time));
+  Uncertain rests{1, 0};
+  if (holds && now < time) {
+    std::vector<double> begins(static_cast<std::size_t>(process.highest_static() - lowest) + 1);
+    begins[static_cast<std::size_t>(level - lowest)] = 1;
+    rests = still_at_rest(process, begins, time - now);
+  }
+  atom.probability = unmoved * rests;
+  return atom;
+}
+
+// The one that counts most first: of bodies at rest, if there are any.
+std::vector<Atom> atoms_at(const Computation& computation, double time) {
+  const auto& process = computation.process();
+  const auto& start = computation.question().start;
+  if (time == 0) return {{0, {1, 0}}};
+  if (start.kind == Start::Kind::state) return {without_jumps(process, start, time)};
+  const int lowest = process.lowest_static(), highest = process.highest_static();
+  std::vector<double> rests;
+  if (start.kind == Start::Kind::stationary) {
+    const auto& excursion = computation.distribution().excursion();
+    for (double t : excursion.stick_time) rests.push_back(t / excursion.mean_excursion());
+    return {{0, still_at_rest(process, rests, time)}};
+  }
+  // From rest on a level that does not stick, bodies slide at once.
+  constexpr double rounding = 1e-14;
+  const auto levels = model::stationary_distribution(process.noise);
+  std::vector<Atom> all(1);
+  for (int i = process.noise.lowest(); i <= process.noise.highest(); ++i) {
+    const double p = levels[static_cast<std::size_t>(i - process.noise.lowest())];
+    if (lowest <= i && i <= highest) {
+      rests.push_back(p);
+    } else if (p * std::exp(-process.noise.rate(i) * time) > rounding) {
+      all.push_back(without_jumps(process, {i, 0}, time));
+      all.back().probability = p * all.back().probability;
+    }
+  }
+  all[0].probability = still_at_rest(process, rests, time);
+  return all;
+}
+
+/// The distribution at one time: atoms, and a density about the first of them.
+class Distribution {
+ public:
+  Distribution(const Computation& computation, double time, std::vector<Atom> atoms)
+      : atoms_(std::move(atoms)) {
+    const auto& question = computation.question();
+    even_ = model::mirrors_itself(computation.process(), question.start);
+    if (time > 0) invert(computation, time);
+  }
+
+  [[nodiscard]] Uncertain density(double d) const {
+    if (!inversion_) return {};
+    const auto found = inversion_->density(d - centre());
+    return {found.value, found.error};
+  }
+  // P(x <= d), or P(x < d).
+  [[nodiscard]] Uncertain below(double d, bool or_at) const {
+    if (even_ && d > 0) return Uncertain{1, 0} - below(-d, !or_at);
+    Uncertain sum;
+    if (inversion_) {
+      const auto found = inversion_->below(d - centre());
+      sum = {found.value, found.error};
+    }
+    for (const Atom& atom : atoms_) {
+      if (d > atom.at || (or_at && d == atom.at)) sum = sum + atom.probability;
+    }
+    sum.value = std::clamp(sum.value, 0.0, 1.0);  // nearer to the truth than what lies outside
+    return sum;
+  }
+  [[nodiscard]] Uncertain cdf(double d) const { return below(d, true); }
+  // As far off as the quantiles of the probabilities that may be meant.
+  [[nodiscard]] Uncertain quantile(double p) const {
+    if (even_ && p == 0.5) return {0, 0};
+    const double value = inverse(p), doubt = cdf(value).error;
+    return {value,
+            std::max(std::abs(inverse(p + doubt) - value), std::abs(inverse(p - doubt) - value))};
+  }
+  [[nodiscard]] int evaluations() const { return inversion_ ? inversion_->evaluations() : 0; }
+
+ private:
+  void invert(const Computation& computation, double time);
+
+  [[nodiscard]] double centre() const { return atoms_[0].at; }
+  [[nodiscard]] double inverse(double p) const {
+    for (const Atom& atom : atoms_) {
+      if (below(atom.at, false).value < p && p <= cdf(atom.at).value) return atom.at;
+    }
+    if (!inversion_) return centre();
+    const auto off = [&](double d) { return cdf(d).value - p; };
+    if (off(lowest_) >= 0) return lowest_;
+    if (off(highest_) <= 0) return highest_;
+    constexpr double relative = 1e-12;
+    const auto near = [&](double a, double b) { return std::abs(b - a) < relative * spread_; };
+    std::uintmax_t steps = 200;
+    const auto [a, b] = boost::math::tools::toms748_solve(off, lowest_, highest_, near, steps);
+    return (a + b) / 2;
+  }
+
+  std::vector<Atom> atoms_;
+  bool even_ = false;
+  std::optional<Inversion> inversion_;
+  double spread_ = 0, lowest_ = 0, highest_ = 0;  // beyond which nothing is looked for
+};
+
+// phi without the atoms, about the first.
+void Distribution::invert(const Computation& computation, double time) {
+  const auto& question = computation.question();
+  double mass = 1;
+  for (const Atom& atom : atoms_) mass -= atom.probability.value;
+  if (mass < 1e-14) return;
+  DisplacementModel model(computation.systems, computation.distribution(), question.start, time,
+                          0.1 * question.accuracy);
+  const auto phi = [&](double k) -> Inversion::Transformed {
+    const auto found = model.at(k);
+    auto rest = found.value * std::polar(1.0, -k * centre());
+    double error = found.error;
+    for (const Atom& atom : atoms_) {
+      rest -= std::polar(atom.probability.value, k * (atom.at - centre()));
+      error += atom.probability.error;
+    }
+    return {even_ ? rest.real() : rest, error};
+  };
+  // Mean and deviation from small k.
+  const double h = 0.1 / (model.speed() * time);
+  const auto small = phi(h).value / mass;
+  const double mean = even_ ? 0 : std::arg(small) / h;
+  spread_ = std::sqrt(std::max(-2 * std::log(std::abs(small)), 1e-12)) / h;
+  constexpr double furthest = 60;
+  // An octave more for each digit.
+  const double units = std::exp2(std::ceil(-std::log10(question.accuracy)));
+  lowest_ = centre() + mean - furthest * spread_;
+  highest_ = centre() + mean + furthest * spread_;
+  inversion_.emplace(phi, mass, mean, spread_, even_,
+                     Inversion::Limits{question.accuracy, units * 2 / spread_, 400});
+}
+
+void find_displacements(Computation& computation) {
+  const auto& question = computation.question();
+  const auto probabilities = question.values(catalogue::kProbability.option);
+  auto& results = computation.results();
+  Result probability = array(catalogue::kDisplacementAtom, question.time),
+         position = array(catalogue::kDisplacementAtomAt, question.time);
+  for (double t : question.time) {
+    const auto atoms = atoms_at(computation, t);
+    const Distribution distribution(computation, t, atoms);
+    append_value(probability, atoms[0].probability);
+    append_value(position, {atoms[0].at, 1e-11 * std::abs(atoms[0].at)});
+    const auto append = [&](const Row& row, const std::vector<double>& abscissa, auto of) {
+      if (abscissa.empty()) return;
+      Result result = array(row, abscissa);
+      result.key = row.key_of(fmt::format("{}", t));
+      for (double x : abscissa) append_value(result, (distribution.*of)(x));
+      results.push_back(std::move(result));
+    };
+    append(catalogue::kDisplacementDensity, question.distance, &Distribution::density);
+    append(catalogue::kDisplacementCdf, question.distance, &Distribution::cdf);
+    append(catalogue::kDisplacementQuantile, probabilities, &Distribution::quantile);
+    computation.report("displacement_wavenumbers", distribution.evaluations(),
+                       "wavenumbers at which the characteristic function was found");
+  }
+  for (auto* result : {&probability, &position}) results.push_back(std::move(*result));
+}
+
+}  // namespace
+
+void displacement_distribution_tasks(Planner& planner) {
+  planner.need_distribution();
+  const auto times = static_cast<int>(planner.question().time.size());
+  planner.add_adaptive("distribution of displacements", 15 * times, 350 * times,
+                       find_displacements);
+}
+
+}  // namespace stickslip::quantities

@@ -1,0 +1,170 @@
+#include <cmath>
+#include <map>
+
+#include "../common/catch.hpp"
+#include "../common/scenes.hpp"
+#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/catalogue/displacement_distribution_keys.hpp"
+
+using namespace stickslip;
+using catalogue::Quantity;
+using Kind = model::Start::Kind;
+using Values = std::map<std::string, quantities::Result>;
+
+namespace {
+
+const model::Start kStationary{0, 0, Kind::stationary}, kRest{0, 0, Kind::rest};
+
+cases::Case asking(const model::Scene& s, const std::vector<double>& distance, double time,
+                   double accuracy, const model::Start& start = kStationary) {
+  cases::Case c;
+  c.scene = s;
+  c.question.quantities = {catalogue::kDisplacementDistribution.quantity};
+  c.question.distance = distance;
+  c.question.arguments["probability"] = {0.5, 0.9};
+  c.question.time = {time};
+  c.question.start = start;
+  c.question.accuracy = accuracy;
+  // Enough for what is compared, without a search for more digits.
+  c.method.degree = 6;
+  return c;
+}
+
+Values values(const cases::Case& c) {
+  Values by_key;
+  // Without the time.
+  for (const auto& r : accuracy::carry_out(PETSC_COMM_WORLD, c, {}).results) {
+    by_key[r.key.substr(0, r.key.find('('))] = r;
+  }
+  return by_key;
+}
+
+model::Scene telegraph() {
+  auto s = test::scene(1, 0.55, 1, 1, {0.5, 0});
+  s.noise.name = "telegraph";
+  s.noise.table = std::make_shared<const model::LevelTable>(
+      std::vector<model::Level>{{-1.2, 0.8, 0}, {1.2, 0, 0.8}});
+  s.bias = 0.25;
+  return s;
+}
+
+}  // namespace
+
+// By a dense exponential on Chebyshev points and panels up to k = 80, in another program.
+TEST_CASE("displacement distribution: known for telegraph noise", "[real]") {
+  const std::vector<double> distance{0.1, 0.3, 1, 2, 4, 6},
+      known{0.0311527, 0.0742079, 0.2518320, 0.5053344, 0.8325951, 0.9567325},
+      density{0.20597, 0.22692, 0.26692, 0.22929, 0.10310, 0.03398};
+  const auto found = values(asking(telegraph(), distance, 5, 1e-3));
+  const auto &cdf = found.at("displacement_cdf"), &f = found.at("displacement_density");
+  for (std::size_t n = 0; n < distance.size(); ++n) {
+    INFO(distance[n] << ": " << cdf.value[n] << " +- " << cdf.error[n] << ", density " << f.value[n]
+                     << " +- " << f.error[n]);
+    CHECK(std::abs(cdf.value[n] - known[n]) <= cdf.error[n] + 1e-6);
+    CHECK(cdf.error[n] < 5e-3);
+    CHECK(std::abs(f.value[n] - density[n]) <= f.error[n] + 1e-5);
+  }
+}
+
+// Bodies on the lower level rest until the noise jumps; on the upper one they move at once, with
+// the velocity 1.8 (1 - exp(-t/2)).
+TEST_CASE("displacement distribution: the atom in closed form", "[real]") {
+  constexpr double time = 1.5;
+  const double left = std::exp(-0.8 * time);
+  const auto values_from = [](const std::vector<double>& distance, double t,
+                              const model::Start& start) {
+    auto c = asking(telegraph(), distance, t, 0.05, start);
+    c.method.degree = 3;
+    return values(c);
+  };
+  const auto rest = values_from({1}, time, kRest);
+  CHECK(rest.at("displacement_atom").value[0] == Approx(left / 2).epsilon(1e-12));
+  CHECK(rest.at("displacement_atom_at").value[0] == 0);
+  const auto s = telegraph();
+  const int upper = s.noise.table->highest(), lower = s.noise.table->lowest();
+  const auto up = values_from({1}, time, {upper, 0});
+  CHECK(up.at("displacement_atom").value[0] == Approx(left).epsilon(1e-12));
+  CHECK(up.at("displacement_atom_at").value[0] ==
+        Approx(1.8 * (time - 2 * (1 - std::exp(-time / 2)))).epsilon(1e-9));
+  // From v = 0.6 with the force -1.5 - v/2 to rest, at the time 2 log(1.2).
+  const auto down = values_from({1}, time, {lower, 0.6});
+  CHECK(down.at("displacement_atom").value[0] == Approx(left).epsilon(1e-12));
+  CHECK(down.at("displacement_atom_at").value[0] ==
+        Approx(2 * (0.6 - 3 * std::log(1.2))).epsilon(1e-9));
+  // From rest both levels leave an atom: x = 0 with 0.22, 0.38 with as much.
+  const auto both = values_from({0.38, 0.39}, 1, kRest);
+  const auto& cdf = both.at("displacement_cdf");
+  CHECK(cdf.value[1] - cdf.value[0] == Approx(std::exp(-0.8) / 2).margin(0.03));
+  CHECK(both.at("displacement_quantile").value[1] ==
+        Approx(1.8 * (1 - 2 * (1 - std::exp(-0.5)))).epsilon(1e-9));
+  // Fewer than 0.9 are above it, more than 0.5.
+  CHECK(values_from({1}, 0.1, {lower, 0}).at("displacement_quantile").value[0] == 0);
+}
+
+// E[x] = int P(x > d) dd and E[x^2] = 2 int d P(x > d) dd, as no body moves downwards.
+TEST_CASE("displacement distribution: mean and variance are those of the displacement",
+          "[real][long]") {
+  constexpr double step = 0.002, most = 2.8, time = 1.5;
+  std::vector<double> distance;
+  for (int n = 1; step * n * n < most; ++n) distance.push_back(step * n * n);
+  auto c = asking(telegraph(), distance, time, 1e-3);
+  c.question.quantities.insert(Quantity::displacement);
+  const auto found = values(c);
+  const auto& cdf = found.at("displacement_cdf").value;
+  double mean = 0, square = 0, before = 0;
+  double beyond = 1 - found.at("displacement_atom").value[0];
+  for (std::size_t n = 0; n < distance.size(); ++n) {
+    const double d = distance[n], now = 1 - cdf[n];
+    mean += (d - before) * (now + beyond) / 2;
+    square += (d - before) * (now * d + beyond * before);
+    before = d;
+    beyond = now;
+  }
+  CHECK(mean == Approx(found.at("displacement_mean").value[0]).epsilon(3e-3));
+  CHECK(square - mean * mean == Approx(found.at("displacement_variance").value[0]).epsilon(1e-2));
+}
+
+TEST_CASE("displacement distribution: its own mirror image with symmetry", "[real]") {
+  const auto found =
+      values(asking(test::scene(1, 0.5, 1, 0.5, {1, 0}), {-1, -0.2, 0.2, 1}, 2, 1e-2));
+  const auto &cdf = found.at("displacement_cdf").value, &f = found.at("displacement_density").value;
+  CHECK(cdf[3] == 1 - cdf[0]);
+  CHECK(cdf[2] == 1 - cdf[1]);
+  CHECK(f[2] == f[1]);
+  CHECK(found.at("displacement_quantile").value[0] == 0);
+  CHECK(found.at("displacement_quantile").value[1] > 0);
+}
+
+TEST_CASE("displacement distribution: normal in the end", "[real][long]") {
+  auto s = telegraph();
+  constexpr double time = 400;
+  auto c = asking(s, {1}, time, 1e-3);
+  c.question.quantities.insert(Quantity::displacement);
+  const auto found = values(c);
+  const double mean = found.at("displacement_mean").value[0],
+               deviation = std::sqrt(found.at("displacement_variance").value[0]);
+  const auto& quantile = found.at("displacement_quantile");
+  // Skewness falls like t^(-1/2).
+  CHECK(quantile.value[0] == Approx(mean).margin(0.05 * deviation));
+  CHECK(quantile.value[1] == Approx(mean + 1.2816 * deviation).margin(0.05 * deviation));
+}
+
+TEST_CASE("displacement distribution: simulated, within 4.5 sigma", "[real]") {
+  for (const model::Start& start : {kStationary, kRest}) {
+    const bool rest = start.kind == Kind::rest;
+    const auto scene = rest ? test::scene(1, 0.5, 1, 0.5, {1, 0}) : telegraph();
+    auto c = asking(scene, {-0.4, 0.2, 0.6, 1.5}, 2, 1e-2, start);
+    const auto found = values(c);
+    c.method.degree.reset();
+    c.method.route = catalogue::Route::monte_carlo;
+    c.method.excursions = 20000;
+    const auto sampled = values(c);
+    const auto &cdf = found.at("displacement_cdf"), &r = sampled.at("displacement_cdf");
+    for (std::size_t n = 0; n < r.value.size(); ++n) {
+      const double sigma = (r.ci95[n].second - r.ci95[n].first) / 2 / 1.96;
+      INFO(n << ": " << r.value[n] << " +- " << sigma << ", " << cdf.value[n]);
+      CHECK(std::abs(r.value[n] - cdf.value[n]) <= 4.5 * sigma + cdf.error[n]);
+      CHECK(sigma < 0.01);
+    }
+  }
+}
