@@ -210,6 +210,9 @@ void find_displacements(Computation& computation) {
       if (abscissa.empty()) return;
       Result result = array(row, abscissa);
       result.key = row.key_of(fmt::format("{}", t));
+      // Near 0, where it is singular, no discretisation gives the digits of the distribution
+      // function.
+      result.diagnostic = &row == &catalogue::kDisplacementDensity;
       for (double x : abscissa) append_value(result, (distribution.*of)(x));
       results.push_back(std::move(result));
     };

@@ -25,7 +25,8 @@ struct Result {
   Kind kind = Kind::other;
   /// Whether accuracy is meant relative to each value of an array, not to the largest one.
   bool each_by_its_size = false;
-  /// Whether it shows how good others are, and was not asked for: its error decides nothing.
+  /// Whether its error decides nothing: it shows how good others are and was not asked for, or it
+  /// is the derivative of another one that decides.
   bool diagnostic = false;
   /// Whether values that are not numbers lie beyond double precision; the others do not.
   bool partial = false;
