@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -197,23 +198,28 @@ class Refiner {
     Step& step = outcome_.steps.back();
     const Step& before = outcome_.steps[outcome_.steps.size() - 2];
     // One that only now resolves waves has nothing to be compared with.
-    if (step.resolution.waves.size() > before.resolution.waves.size()) {
-      last_rounding_ = kInfinity;
-    }
+    count_refinements_in_vain(step.resolution.waves.size() > before.resolution.waves.size());
+    // What reduced models miss on coarse grids, and what sums over nodes overlook of an
+    // observable, falls unevenly.
+    const int patience = question_.observables.empty() ? 2 : 3;
     for (;;) {
       const double rounding = judge(step);
       if (step.estimate <= question_.accuracy) {
         conclude(step);
         return true;
       }
-      // What a finer discretisation still improves is no limit yet.
-      const bool falls = rounding < 0.5 * std::exchange(last_rounding_, rounding);
-      if (rounding <= question_.accuracy || falls) return false;
-      // What reduced models miss on coarse grids, and what sums over nodes overlook of an
-      // observable, falls unevenly.
-      const int patience = question_.observables.empty() ? 2 : 3;
-      if (++refinements_in_vain_ < patience) return false;
+      if (limits_[step.limiting_key].in_vain < patience) return false;
       give_up(step, rounding);
+    }
+  }
+
+  // What a finer discretisation still improves is no limit yet.
+  void count_refinements_in_vain(bool anew) {
+    for (std::size_t r = 0; r < outcome_.results.size(); ++r) {
+      Limit& limit = limits_[outcome_.results[r].key];
+      if (anew) limit.last = kInfinity;
+      const bool falls = rounding_[r] < 0.5 * std::exchange(limit.last, rounding_[r]);
+      if (!(rounding_[r] <= question_.accuracy || falls)) ++limit.in_vain;
     }
   }
 
@@ -229,8 +235,6 @@ class Refiner {
                            step.limiting_key, least, looser);
     }
     given_up_.insert(step.limiting_key);
-    refinements_in_vain_ = 0;
-    last_rounding_ = kInfinity;
   }
 
   void conclude(Step& step) {
@@ -329,12 +333,15 @@ class Refiner {
   const Progress& progress_;
   RefinementSequence sequence_;
   Outcome outcome_;
-  std::vector<double> rounding_;      // relative, of each result
-  double last_rounding_ = kInfinity;  // of the limiting result
-  int refinements_in_vain_ = 0;
-  std::set<std::string> given_up_;  // keys of results that rounding limits
-  std::string limit_;               // what limits the first of them
-  Changes changes_;                 // of the last step
+  std::vector<double> rounding_;  // relative, of each result
+  struct Limit {
+    double last = kInfinity;  // rounding of the refinement level before
+    int in_vain = 0;          // refinements
+  };
+  std::map<std::string, Limit> limits_;  // by key of results
+  std::set<std::string> given_up_;       // keys of results that rounding limits
+  std::string limit_;                    // what limits the first of them
+  Changes changes_;                      // of the last step
   std::shared_ptr<quantities::Recipes> recipes_ = std::make_shared<quantities::Recipes>();
   std::shared_ptr<const StationaryDistribution> distribution_;  // of the last step, if needed
   std::optional<quantities::SpeedDistribution> speed_;

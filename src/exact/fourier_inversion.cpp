@@ -10,9 +10,11 @@
 #include <numeric>
 
 namespace stickslip::exact {
-namespace {
 
 using Complex = std::complex<double>;
+
+namespace {
+
 constexpr double pi = std::numbers::pi;
 
 constexpr int kDegree = 8;  // of the polynomials

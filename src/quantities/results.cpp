@@ -18,9 +18,9 @@ double largest(const std::vector<double>& values) {
 }  // namespace
 
 Result blank(const Row& row) {
+  const bool known = row.unit.find('[') == row.unit.npos;  // that of an observable is not
   return {.key = std::string(row.key),
-          .unit =
-              row.is_pattern() ? "" : std::string(row.unit),  // that of an observable is not known
+          .unit = known ? std::string(row.unit) : "",
           .abscissa_name = std::string(row.abscissa),
           .abscissa = {},
           .value = {},

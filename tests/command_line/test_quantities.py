@@ -7,7 +7,7 @@ import unittest
 
 from running import SOURCES, Case, run
 
-SMALL = ("-delta", "0.5", "-mu_d", "0.5", "-accuracy", "1e-2", "-excursions", "2000")  # of monte_carlo
+SMALL = ("-delta", "0.5", "-mu_d", "0.5", "-accuracy", "1e-1", "-excursions", "2000")  # of monte_carlo
 # With symmetry, without it, and with every parameter of sensitivity.
 MODELS = {"symmetric": (), "biased": ("-bias", "0.2", "-mu_d_minus", "0.4"),
           "stribeck": ("-bias", "0.2", "-friction", "stribeck", "-stribeck_velocity", "0.1")}
