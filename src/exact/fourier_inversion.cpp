@@ -15,7 +15,7 @@ using Complex = std::complex<double>;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+constexpr double kPi = std::numbers::pi;
 
 constexpr int kDegree = 8;  // of the polynomials
 
@@ -34,7 +34,7 @@ using Nodes = std::array<double, kDegree + 1>;
 // Extrema of the Chebyshev polynomial, from 1 down to -1.
 Nodes nodes() {
   Nodes x{};
-  for (int n = 0; n <= kDegree; ++n) x[n] = std::cos(pi * n / kDegree);
+  for (int n = 0; n <= kDegree; ++n) x[n] = std::cos(kPi * n / kDegree);
   return x;
 }
 
@@ -44,7 +44,7 @@ std::vector<Complex> chebyshev_terms(const std::array<Complex, kDegree + 1>& val
     Complex sum = 0;
     for (int n = 0; n <= kDegree; ++n) {
       const double end = n == 0 || n == kDegree ? 0.5 : 1;
-      sum += end * std::cos(pi * j * n / kDegree) * values[n];
+      sum += end * std::cos(kPi * j * n / kDegree) * values[n];
     }
     terms.push_back((j == 0 || j == kDegree ? 1.0 : 2.0) / kDegree * sum);
   }
@@ -256,7 +256,7 @@ FourierInversion::Integrals FourierInversion::integrals(const Sum& sum, double x
     const double width = p.high - p.low;
     const int parts = 1 + static_cast<int>(width * (std::abs(x) + std::abs(p.shift)) / phase);
     const auto add = [&](double k, double weight) {
-      const Complex left = rest(sum, k) * std::polar(weight / pi, -k * x);
+      const Complex left = rest(sum, k) * std::polar(weight / kPi, -k * x);
       found.density += left.real();
       found.below -= left.imag() / k;
     };
@@ -281,7 +281,7 @@ FourierInversion::Value FourierInversion::between(double x, double Integrals::*w
     const double width = which == &Integrals::density ? p.high - p.low
                          : p.low > 0                  ? std::log(p.high / p.low)
                                                       : 1;
-    error += width / pi * (p.rough + p.doubt);
+    error += width / kPi * (p.rough + p.doubt);
   }
   return {value, error};
 }
