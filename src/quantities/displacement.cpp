@@ -159,6 +159,16 @@ petsc::VecHandle scaled(Vec x, double factor) {
   return copy;
 }
 
+// The mean velocity, by which all bodies move alike.
+void add_drift(const operators::Discretisation& discretisation, const Excursion& excursion,
+               const std::vector<double>& time, std::vector<Uncertain>& mean) {
+  const double drift = excursion.mean_drift(*discretisation.noise) / excursion.mean_excursion();
+  const double defect = excursion.conservation_defect(discretisation);
+  for (std::size_t n = 0; n < time.size(); ++n) {
+    mean[n] = mean[n] + Uncertain{drift * time[n], defect * std::abs(drift) * time[n]};
+  }
+}
+
 }  // namespace
 
 Displacement displacement(operators::Systems& systems, const StationaryDistribution& distribution,
@@ -216,14 +226,7 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
       x.mean[n] = tau / unit * x.mean[n];
     }
   }
-  if (still) return x;
-  const auto& excursion = distribution.excursion();
-  const double drift =
-      excursion.mean_drift(*systems.discretisation().noise) / excursion.mean_excursion();
-  const double defect = excursion.conservation_defect(systems.discretisation());
-  for (std::size_t n = 0; n < time.size(); ++n) {
-    x.mean[n] = x.mean[n] + Uncertain{drift * time[n], defect * std::abs(drift) * time[n]};
-  }
+  if (!still) add_drift(systems.discretisation(), distribution.excursion(), time, x.mean);
   return x;
 }
 
