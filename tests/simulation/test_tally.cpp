@@ -293,6 +293,7 @@ TEST_CASE("tally: there are estimates for each quantity that is said to be simul
                    .observables = {model::parse_observable("v", p.friction)},
                    .omega = {1},
                    .time = {1},
+                   .distance = {1},
                    .velocity = {1}},
                   p);
     CHECK(t.estimates().empty() == (!simulated || entry->of_one_run));
