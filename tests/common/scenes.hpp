@@ -1,6 +1,9 @@
 #pragma once
 /// Model parameters by hand, and discretisations of them.
 
+#include <memory>
+#include <vector>
+
 #include "stickslip/accuracy/resolution.hpp"
 #include "stickslip/model/scene.hpp"
 
@@ -26,6 +29,15 @@ inline model::Scene by_direction(model::Scene s) {
   s.friction.mu_s_minus = 0.8 * s.friction.mu_s;
   s.friction.mu_d_minus = 0.8 * s.friction.mu_d;
   return s;
+}
+
+/// Telegraph noise beside a constant force: bodies rest on the lower level, and move on the upper.
+inline model::Scene pushed_by_telegraph() {
+  auto s = scene(1, 0.55, 1, 1, {0.5, 0});
+  s.noise.name = "telegraph";
+  s.noise.table = std::make_shared<const model::LevelTable>(
+      std::vector<model::Level>{{-1.2, 0.8, 0}, {1.2, 0, 0.8}});
+  return biased(s, 0.25);
 }
 
 /// The same with the whole noise range.

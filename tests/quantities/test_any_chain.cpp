@@ -5,16 +5,17 @@
 #include "../common/chains.hpp"
 #include "../common/near.hpp"
 #include "../common/scenes.hpp"
+#include "../common/values.hpp"
 #include "stickslip/accuracy/refinement.hpp"
 
 using namespace stickslip;
 using catalogue::Quantity;
 using catalogue::Route;
 using test::relative_difference;
+using test::Values;
+using test::values;
 
 namespace {
-
-using Values = std::map<std::string, quantities::Result>;
 
 cases::Case asking(const model::Scene& s, const std::set<Quantity>& quantities, double accuracy) {
   cases::Case c;
@@ -27,12 +28,6 @@ cases::Case asking(const model::Scene& s, const std::set<Quantity>& quantities, 
   c.question.velocity = {0.2, 0.5};
   c.question.observables = {model::parse_observable("v^3", s.friction)};
   return c;
-}
-
-Values values(const cases::Case& c) {
-  Values by_key;
-  for (const auto& r : accuracy::carry_out(PETSC_COMM_WORLD, c, {}).results) by_key[r.key] = r;
-  return by_key;
 }
 
 const model::Scene kPlain = test::scene(1, 0.5, 1, 1, {1, 0});

@@ -3,13 +3,15 @@
 
 #include "../common/catch.hpp"
 #include "../common/scenes.hpp"
+#include "../common/values.hpp"
 #include "stickslip/accuracy/refinement.hpp"
 #include "stickslip/catalogue/displacement_distribution_keys.hpp"
 
 using namespace stickslip;
 using catalogue::Quantity;
+using test::Values;
+using test::values_at_the_time;
 using Kind = model::Start::Kind;
-using Values = std::map<std::string, quantities::Result>;
 
 namespace {
 
@@ -30,24 +32,6 @@ cases::Case asking(const model::Scene& s, const std::vector<double>& distance, d
   return c;
 }
 
-Values values(const cases::Case& c) {
-  Values by_key;
-  // Without the time.
-  for (const auto& r : accuracy::carry_out(PETSC_COMM_WORLD, c, {}).results) {
-    by_key[r.key.substr(0, r.key.find('('))] = r;
-  }
-  return by_key;
-}
-
-model::Scene telegraph() {
-  auto s = test::scene(1, 0.55, 1, 1, {0.5, 0});
-  s.noise.name = "telegraph";
-  s.noise.table = std::make_shared<const model::LevelTable>(
-      std::vector<model::Level>{{-1.2, 0.8, 0}, {1.2, 0, 0.8}});
-  s.bias = 0.25;
-  return s;
-}
-
 }  // namespace
 
 // By a dense exponential on Chebyshev points and panels up to k = 80, in another program.
@@ -55,7 +39,7 @@ TEST_CASE("displacement distribution: known for telegraph noise", "[real]") {
   const std::vector<double> distance{0.1, 0.3, 1, 2, 4, 6},
       known{0.0311527, 0.0742079, 0.2518320, 0.5053344, 0.8325951, 0.9567325},
       density{0.20597, 0.22692, 0.26692, 0.22929, 0.10310, 0.03398};
-  const auto found = values(asking(telegraph(), distance, 5, 1e-3));
+  const auto found = values_at_the_time(asking(test::pushed_by_telegraph(), distance, 5, 1e-3));
   const auto &cdf = found.at("displacement_cdf"), &f = found.at("displacement_density");
   for (std::size_t n = 0; n < distance.size(); ++n) {
     INFO(distance[n] << ": " << cdf.value[n] << " +- " << cdf.error[n] << ", density " << f.value[n]
@@ -73,14 +57,14 @@ TEST_CASE("displacement distribution: the atom in closed form", "[real]") {
   const double left = std::exp(-0.8 * time);
   const auto values_from = [](const std::vector<double>& distance, double t,
                               const model::Start& start) {
-    auto c = asking(telegraph(), distance, t, 0.05, start);
+    auto c = asking(test::pushed_by_telegraph(), distance, t, 0.05, start);
     c.method.degree = 3;
-    return values(c);
+    return values_at_the_time(c);
   };
   const auto rest = values_from({1}, time, kRest);
   CHECK(rest.at("displacement_atom").value[0] == Approx(left / 2).epsilon(1e-12));
   CHECK(rest.at("displacement_atom_at").value[0] == 0);
-  const auto s = telegraph();
+  const auto s = test::pushed_by_telegraph();
   const int upper = s.noise.table->highest(), lower = s.noise.table->lowest();
   const auto up = values_from({1}, time, {upper, 0});
   CHECK(up.at("displacement_atom").value[0] == Approx(left).epsilon(1e-12));
@@ -107,9 +91,9 @@ TEST_CASE("displacement distribution: mean and variance are those of the displac
   constexpr double step = 0.002, most = 2.8, time = 1.5;
   std::vector<double> distance;
   for (int n = 1; step * n * n < most; ++n) distance.push_back(step * n * n);
-  auto c = asking(telegraph(), distance, time, 1e-3);
+  auto c = asking(test::pushed_by_telegraph(), distance, time, 1e-3);
   c.question.quantities.insert(Quantity::displacement);
-  const auto found = values(c);
+  const auto found = values_at_the_time(c);
   const auto& cdf = found.at("displacement_cdf").value;
   double mean = 0, square = 0, before = 0;
   double beyond = 1 - found.at("displacement_atom").value[0];
@@ -126,7 +110,7 @@ TEST_CASE("displacement distribution: mean and variance are those of the displac
 
 TEST_CASE("displacement distribution: its own mirror image with symmetry", "[real]") {
   const auto found =
-      values(asking(test::scene(1, 0.5, 1, 0.5, {1, 0}), {-1, -0.2, 0.2, 1}, 2, 1e-2));
+      values_at_the_time(asking(test::scene(1, 0.5, 1, 0.5, {1, 0}), {-1, -0.2, 0.2, 1}, 2, 1e-2));
   const auto &cdf = found.at("displacement_cdf").value, &f = found.at("displacement_density").value;
   CHECK(cdf[3] == 1 - cdf[0]);
   CHECK(cdf[2] == 1 - cdf[1]);
@@ -136,11 +120,11 @@ TEST_CASE("displacement distribution: its own mirror image with symmetry", "[rea
 }
 
 TEST_CASE("displacement distribution: normal in the end", "[real][long]") {
-  auto s = telegraph();
+  auto s = test::pushed_by_telegraph();
   constexpr double time = 400;
   auto c = asking(s, {1}, time, 1e-3);
   c.question.quantities.insert(Quantity::displacement);
-  const auto found = values(c);
+  const auto found = values_at_the_time(c);
   const double mean = found.at("displacement_mean").value[0],
                deviation = std::sqrt(found.at("displacement_variance").value[0]);
   const auto& quantile = found.at("displacement_quantile");
@@ -152,13 +136,13 @@ TEST_CASE("displacement distribution: normal in the end", "[real][long]") {
 TEST_CASE("displacement distribution: simulated, within 4.5 sigma", "[real]") {
   for (const model::Start& start : {kStationary, kRest}) {
     const bool rest = start.kind == Kind::rest;
-    const auto scene = rest ? test::scene(1, 0.5, 1, 0.5, {1, 0}) : telegraph();
+    const auto scene = rest ? test::scene(1, 0.5, 1, 0.5, {1, 0}) : test::pushed_by_telegraph();
     auto c = asking(scene, {-0.4, 0.2, 0.6, 1.5}, 2, 1e-2, start);
-    const auto found = values(c);
+    const auto found = values_at_the_time(c);
     c.method.degree.reset();
     c.method.route = catalogue::Route::monte_carlo;
     c.method.excursions = 20000;
-    const auto sampled = values(c);
+    const auto sampled = values_at_the_time(c);
     const auto &cdf = found.at("displacement_cdf"), &r = sampled.at("displacement_cdf");
     for (std::size_t n = 0; n < r.value.size(); ++n) {
       const double sigma = (r.ci95[n].second - r.ci95[n].first) / 2 / 1.96;

@@ -4,14 +4,16 @@
 
 #include "../common/catch.hpp"
 #include "../common/scenes.hpp"
+#include "../common/values.hpp"
 #include "stickslip/accuracy/refinement.hpp"
 #include "stickslip/catalogue/displacement_transform_keys.hpp"
 
 using namespace stickslip;
 using catalogue::Quantity;
+using test::Values;
+using test::values_at_the_time;
 using Complex = std::complex<double>;
 using Kind = model::Start::Kind;
-using Values = std::map<std::string, quantities::Result>;
 
 namespace {
 
@@ -27,15 +29,6 @@ cases::Case asking(const model::Scene& s, const std::vector<double>& wavenumbers
   return c;
 }
 
-Values values(const cases::Case& c) {
-  Values by_key;
-  // Without the time.
-  for (const auto& r : accuracy::carry_out(PETSC_COMM_WORLD, c, {}).results) {
-    by_key[r.key.substr(0, r.key.find('('))] = r;
-  }
-  return by_key;
-}
-
 struct Transform {
   Complex value;
   double error;
@@ -46,15 +39,6 @@ Transform transform(const Values& found, std::size_t n) {
   return {{cosine.value[n], sine.value[n]}, std::hypot(cosine.error[n], sine.error[n])};
 }
 
-model::Scene telegraph() {
-  auto s = test::scene(1, 0.55, 1, 1, {0.5, 0});
-  s.noise.name = "telegraph";
-  s.noise.table = std::make_shared<const model::LevelTable>(
-      std::vector<model::Level>{{-1.2, 0.8, 0}, {1.2, 0, 0.8}});
-  s.bias = 0.25;
-  return s;
-}
-
 }  // namespace
 
 // By a dense exponential, in another program, of another discretisation.
@@ -63,7 +47,8 @@ TEST_CASE("displacement transform: known to ten digits", "[real]") {
       {1, {{0.9451321283, 0.2233078967}, {0.4430876961, 0.4358273658}}},
       {5, {{0.3417255365, 0.6107381189}, {-0.0235127963, 0.1270820303}}}};
   for (const auto& [time, phi] : known) {
-    const auto found = values(asking(telegraph(), {0.5, 2}, time, 1e-8));
+    const auto found =
+        values_at_the_time(asking(test::pushed_by_telegraph(), {0.5, 2}, time, 1e-8));
     for (std::size_t n = 0; n < phi.size(); ++n) {
       const auto [value, error] = transform(found, n);
       INFO(time << " " << n << ": " << value << " +- " << error << " for " << phi[n]);
@@ -82,7 +67,7 @@ TEST_CASE("displacement transform: mean and variance are those of the displaceme
                                     model::Start{0, 0, Kind::rest}, model::Start{2, 0.3}}) {
     auto c = asking(s, {0.02, 0.04}, 2, 1e-8, start);
     c.question.quantities.insert(Quantity::displacement);
-    const auto found = values(c);
+    const auto found = values_at_the_time(c);
     const auto [one, error_one] = transform(found, 0);
     const auto [two, error_two] = transform(found, 1);
     CHECK(std::max(error_one, error_two) < 1e-5);
@@ -101,15 +86,15 @@ TEST_CASE("displacement transform: mean and variance are those of the displaceme
 TEST_CASE("displacement transform: conjugate in the mirror, and even with symmetry",
           "[real][long]") {
   auto s = test::scene(1, 0.5, 1, 0.5, {1, 0.3});
-  const auto even = values(asking(s, {-1, 0, 1}, 2, 1e-6));
+  const auto even = values_at_the_time(asking(s, {-1, 0, 1}, 2, 1e-6));
   CHECK(even.at("displacement_sine").value == std::vector<double>{0, 0, 0});
   CHECK(even.at("displacement_cosine").value[1] == 1);
   CHECK(std::abs(transform(even, 0).value - transform(even, 2).value) <
         transform(even, 0).error + transform(even, 2).error);
   s.bias = 0.3;
-  const auto up = transform(values(asking(s, {1}, 2, 1e-6)), 0);
+  const auto up = transform(values_at_the_time(asking(s, {1}, 2, 1e-6)), 0);
   s.bias = -0.3;
-  const auto down = transform(values(asking(s, {1}, 2, 1e-6)), 0);
+  const auto down = transform(values_at_the_time(asking(s, {1}, 2, 1e-6)), 0);
   CHECK(std::abs(up.value - std::conj(down.value)) < up.error + down.error);
 }
 
@@ -119,7 +104,7 @@ TEST_CASE("displacement transform: normal in the end", "[real][long]") {
   constexpr double k = 0.1, time = 400;
   auto c = asking(s, {k}, time, 1e-6);
   c.question.quantities.insert({Quantity::moments, Quantity::spectrum});
-  const auto found = values(c);
+  const auto found = values_at_the_time(c);
   const double mean = found.at("E_V").value[0], s0 = found.at("S_0").value[0];
   const Complex normal = std::exp(Complex(-k * k * s0 * time / 2, k * mean * time));
   // The next cumulant is about k^3 S_0 tau^2 t.
@@ -129,12 +114,12 @@ TEST_CASE("displacement transform: normal in the end", "[real][long]") {
 TEST_CASE("displacement transform: simulated, within 4.5 sigma", "[real]") {
   for (const model::Start& start :
        {model::Start{0, 0, Kind::stationary}, model::Start{0, 0, Kind::rest}}) {
-    auto c = asking(telegraph(), {0.5, 2, 6}, 1.5, 1e-6, start);
+    auto c = asking(test::pushed_by_telegraph(), {0.5, 2, 6}, 1.5, 1e-6, start);
     if (start.kind == Kind::rest) c.scene = test::scene(1, 0.5, 1, 0.5, {1, 0});
-    const auto found = values(c);
+    const auto found = values_at_the_time(c);
     c.method.route = catalogue::Route::monte_carlo;
     c.method.excursions = 20000;
-    const auto sampled = values(c);
+    const auto sampled = values_at_the_time(c);
     for (const char* key : {"displacement_cosine", "displacement_sine"}) {
       const auto& r = sampled.at(key);
       for (std::size_t n = 0; n < r.value.size(); ++n) {

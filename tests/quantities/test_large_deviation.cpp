@@ -5,12 +5,14 @@
 #include "../common/chains.hpp"
 #include "../common/near.hpp"
 #include "../common/scenes.hpp"
+#include "../common/values.hpp"
 #include "stickslip/accuracy/refinement.hpp"
 #include "stickslip/catalogue/large_deviation_keys.hpp"
 
 using namespace stickslip;
 using catalogue::Quantity;
-using Values = std::map<std::string, quantities::Result>;
+using test::Values;
+using test::values;
 
 namespace {
 
@@ -21,12 +23,6 @@ cases::Case asking(const model::Scene& s, const std::vector<double>& tilts, doub
   c.question.arguments["tilt"] = tilts;
   c.question.accuracy = accuracy;
   return c;
-}
-
-Values values(const cases::Case& c) {
-  Values by_key;
-  for (const auto& r : accuracy::carry_out(PETSC_COMM_WORLD, c, {}).results) by_key[r.key] = r;
-  return by_key;
 }
 
 void require_near(const quantities::Result& found, const std::vector<double>& known,

@@ -4,6 +4,7 @@
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "../common/scenes.hpp"
+#include "../common/values.hpp"
 #include "stickslip/accuracy/refinement.hpp"
 
 using namespace stickslip;
@@ -11,10 +12,9 @@ using catalogue::Quantity;
 using catalogue::Route;
 using test::relative_difference;
 using test::scene;
+using test::Values;
 
 namespace {
-
-using Values = std::map<std::string, quantities::Result>;
 
 Values values(const model::Scene& s, Route route = Route::excursion, double accuracy = 1e-10,
               const std::set<Quantity>& asked = {Quantity::sticking, Quantity::moments}) {
@@ -26,9 +26,7 @@ Values values(const model::Scene& s, Route route = Route::excursion, double accu
   if (asked.contains(Quantity::laplace)) c.question.lambda = {0.5};
   c.question.omega = {1};
   c.question.time = {0.7};
-  Values by_key;
-  for (const auto& r : accuracy::carry_out(PETSC_COMM_WORLD, c, {}).results) by_key[r.key] = r;
-  return by_key;
+  return test::values(c);
 }
 
 void require_close(const Values& found, const Values& expected, double tolerance) {
