@@ -44,7 +44,9 @@ def declared(program: str | os.PathLike[str] | None = None) -> Mapping[str, Mapp
 
 
 def keys(program: str | os.PathLike[str] | None = None) -> Mapping[str, tuple[str, str]]:
-    """Keys of results of the program, by default that of `find_program`, each with its quantity and the option that it is an array over, empty for a scalar.
+    """Keys of results of the program, by default that of `find_program`.
+
+    Each has its quantity and the option that it is an array over, empty for a scalar.
 
     Raises
     ------

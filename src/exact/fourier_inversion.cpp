@@ -137,7 +137,7 @@ void FourierInversion::sample(const Transform& phi, double low, double high, dou
   std::array<Complex, kDegree + 1> values;
   Panel panel{low, high, 0, {}, 0, 0};
   for (int n = 0; n <= kDegree; ++n) {
-    const double k = (low + high) / 2 + (high - low) / 2 * x[n];
+    const double k = panel.at(x[n]);
     if (k == 0) {
       values[n] = mass_;
       continue;
@@ -154,7 +154,7 @@ void FourierInversion::sample(const Transform& phi, double low, double high, dou
   for (const double shift : {0.0, mean_}) {
     auto moved = values;
     for (int n = 0; n <= kDegree; ++n) {
-      moved[n] *= std::polar(1.0, -shift * ((low + high) / 2 + (high - low) / 2 * x[n]));
+      moved[n] *= std::polar(1.0, -shift * panel.at(x[n]));
     }
     auto terms = chebyshev_terms(moved);
     const double last = std::abs(terms[kDegree]) + std::abs(terms[kDegree - 1]);
@@ -207,7 +207,7 @@ FourierInversion::Sum FourierInversion::sum_up_to(std::size_t panels, double hig
     const Panel& p = panels_[n];
     if (p.low < 0.24 * highest) continue;
     for (const double at : x) {
-      const double k = (p.low + p.high) / 2 + (p.high - p.low) / 2 * at;
+      const double k = p.at(at);
       const double weight = std::sqrt(k * scale_);
       const Complex value = weight * sampled(k);
       const auto terms = basis(k);

@@ -289,9 +289,8 @@ std::span<const OtherOption> other_options() {
        "config, input, file"},
       {"-cases",
        "run a case for each line of this file, or of standard input for -. A line has the options "
-       "of "
-       "a case, besides those of the command line, values with blanks in quotes. Each is answered "
-       "by a line of JSON: status, then what -summary writes, or message",
+       "of a case, besides those of the command line, values with blanks in quotes. Each is "
+       "answered by a line of JSON: status, then what -summary writes, or message",
        "batch, serve"},
       {"-help", "print all options and stop", "h"},
       {"-help_solvers",

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
-#include <limits>
+#include <cstdint>
 #include <optional>
 
 #include "stickslip/catalogue/displacement_distribution_keys.hpp"

@@ -200,8 +200,8 @@ DisplacementModel::DisplacementModel(operators::Systems& systems,
       a_(operators::assemble(systems.comm(), systems.discretisation(), 0, Symmetry::none,
                              StaticPhase::kept, systems.statistics())),
       t_(t),
-      accuracy_(accuracy),
-      v_(entries_of(a_.values([](double, double, double u) { return u; }))) {
+      accuracy_(accuracy) {
+  const Entries v = entries_of(a_.values([](double, double, double u) { return u; }));
   const Entries pi = stationary_on(systems, distribution, a_);
   const bool stationary = start.kind == model::Start::Kind::stationary;
   const Entries c = stationary ? pi : entries_of(start_on(a_, start));
@@ -212,7 +212,7 @@ DisplacementModel::DisplacementModel(operators::Systems& systems,
     root_.push_back(std::sqrt(std::abs(pi[n]) + 1e-14 * most));
     one_.emplace_back(root_[n]);
     c_.emplace_back(c[n] / root_[n]);
-    square += pi[n] * v_[n] * v_[n];
+    square += pi[n] * v[n] * v[n];
   }
   MPI_Allreduce(MPI_IN_PLACE, &square, 1, MPI_DOUBLE, MPI_SUM, systems.comm());
   speed_ = std::sqrt(square);

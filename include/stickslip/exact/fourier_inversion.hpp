@@ -15,7 +15,7 @@ namespace stickslip::exact {
 /// phase of the mean drift taken out where that is smoother. What does not fall fast comes from the
 /// singularity,
 ///
-///   phi(k) ~ sum_n c_n+ (b - i k)^(-n/2) + c_n- (b + i k)^(-n/2),   n = 1 ... 6,
+///   phi(k) ~ sum_n c_n+ (b - i k)^(-n/2) + c_n- (b + i k)^(-n/2),   n = 1 ... 4,
 ///
 /// transforms of x^(n/2 - 1) exp(-b x)/Gamma(n/2), with c_n+ = +-c_n- for even n: the coefficients
 /// are those of least squares over the upper two octaves of k. Only what is left of phi is
@@ -59,6 +59,11 @@ class FourierInversion {
     std::vector<Complex> terms;  // Chebyshev coefficients of the rest
     double rough;                // of the polynomial
     double doubt;                // of phi
+
+    /// k of a place from -1 to 1.
+    [[nodiscard]] double at(double place) const {
+      return (low + high) / 2 + (high - low) / 2 * place;
+    }
   };
   /// Panels up to some k, and the coefficients of what is singular.
   struct Sum {

@@ -38,8 +38,7 @@ class DisplacementModel {
   operators::Systems& systems_;
   operators::KolmogorovOperator a_;
   double t_, accuracy_, speed_ = 0;
-  // Of this rank: velocities, and the root of the weight of the inner product.
-  std::vector<double> v_, root_;
+  std::vector<double> root_;  // of the weight of the inner product, on this rank
   std::vector<std::complex<double>> one_, c_;
   double other_pole_ = 0, checked_ = 0;
 };
