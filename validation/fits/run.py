@@ -82,7 +82,7 @@ def outcomes(entry, data, free, **fixed):
 
 def main():
     entry = Entry(__doc__, "-")
-    trials = 20 if entry.quick else 100
+    trials = 8 if entry.quick else 100
     free = ("mu_d", "tau")
     averages = {"P_stick": "sticking", "mean_stick": "sticking", "E_V2": "moments"}
     cases = {
