@@ -1,8 +1,8 @@
-"""Other noises: closed forms of telegraph noise, units of force, and levels from a file.
+"""Other noises: closed forms of telegraph noise, filtered noise in small steps, units of force, levels from a file.
 
 usage: python3 validation/noises/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
---quick simulates a third of the excursions, and draws fewer points.
+--quick simulates a third of the excursions and a quarter of the small steps, and draws fewer points.
 """
 
 import itertools
@@ -10,6 +10,7 @@ import pathlib
 import sys
 
 import numpy
+import scipy.linalg
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from entry import Entry, deviation, subplots
@@ -25,6 +26,7 @@ DRAGS = {  # options, b on v > 0
         lambda v: 0.3 * (1 - numpy.exp(-10 * v)) - v)}
 OU = {"mu_s": 1, "mu_d": 0.45, "delta": 0.5, "tau": 1, "quantities": "sticking,moments,spectrum"}
 WITHOUT_X = ("P_stick", "P_slide", "mean_stick", "mean_slide", "E_V2", "E_absV", "S_0", "fwhm")
+GROUND = {"ground_frequency": 15.6, "ground_damping": 0.6, "noise_deviation": 2, "mu_s": 1.5, "mu_d": 1.5}
 POWERS = {"P_stick": 0, "mean_stick": 0, "mean_slide": 0, "E_absV": 1, "E_V2": 2, "E_XV": 2, "E_X2": 2}
 
 
@@ -111,6 +113,46 @@ def draw(entry, shown, biased):
                  "and the bias 0.3, and the probability of sticking without drag. Lines are closed forms, marks computed.")
 
 
+def in_small_steps(step, time, paths, rng):
+    """E[|V|] and E[V^2] without drag under the continuous force of -noise filtered, X = w^2 q + 2 zeta w q' with
+    q'' + 2 zeta w q' + w^2 q white noise, and their standard errors from independent paths. Steps of (q, q') are exact
+    in law; V takes an implicit step of friction."""
+    w, zeta = GROUND["ground_frequency"], GROUND["ground_damping"]
+    row = numpy.array([w**2, 2 * zeta * w])
+    stationary = numpy.diag([1, w**2]) * GROUND["noise_deviation"]**2 / (w**4 * (1 + 4 * zeta**2))
+    move = scipy.linalg.expm(numpy.array([[0, 1], [-w**2, -2 * zeta * w]]) * step)
+    kick = numpy.linalg.cholesky(stationary - move @ stationary @ move.T)
+    state = numpy.sqrt(stationary) @ rng.standard_normal((2, paths))
+    v, sums, before, begin = numpy.zeros(paths), numpy.zeros((2, paths)), row @ state, round(2 / step)
+    for n in range(begin + round(time / step)):
+        state = move @ state + kick @ rng.standard_normal((2, paths))
+        after = row @ state
+        v += step * (before + after) / 2
+        v = numpy.sign(v) * numpy.maximum(abs(v) - step * GROUND["mu_d"], 0)
+        before = after
+        if n >= begin:
+            sums += (abs(v), v * v)
+    means = sums * step / time
+    return means.mean(axis=1), means.std(axis=1, ddof=1) / paths**0.5
+
+
+def filtered_noise(entry):
+    """Lattices with mu_s halfway between two levels, extrapolated in delta^2, beside the noise that they stand for."""
+    deltas, keys = (1, 0.6), ("E_absV", "E_V2")
+    runs = [entry.run(**GROUND, noise="filtered", drag="none", delta=delta, noise_radius=5, quantities="moments",
+                      accuracy=1e-4)["results"] for delta in deltas]
+    coarse, fine = numpy.array([[run[key]["value"] for key in keys] for run in runs])
+    share = deltas[1]**2 / (deltas[0]**2 - deltas[1]**2)
+    limits = fine + share * (fine - coarse)
+    simulated, errors = in_small_steps(1e-3, 10, 1000 if entry.quick else 4000, numpy.random.default_rng(1))
+    entry.table("filtered noise, w = 15.6, zeta = 0.6, deviation 2, mu_s = mu_d = 1.5, no drag",
+                ("quantity", *(f"delta = {delta}" for delta in deltas), "extrapolated", "small steps", "standard error"),
+                [(key, f"{a:.5g}", f"{b:.5g}", f"{c:.5g}", f"{d:.5g}", f"{e:.1g}")
+                 for key, a, b, c, d, e in zip(keys, coarse, fine, limits, simulated, errors)])
+    entry.claim("filtered noise against small steps, beyond four standard errors, relative",
+                worse(*((abs(limits - simulated) - 4 * errors) / simulated)), 5e-3)
+
+
 def units_of_force(entry):
     """Thresholds, step and deviation times c multiply velocities by c where b = -v."""
     far = []
@@ -144,6 +186,7 @@ def main():
     entry = Entry(__doc__, "beyond the paper")
     telegraph_values(entry)
     draw(entry, telegraph_densities(entry), against_bias(entry))
+    filtered_noise(entry)
     units_of_force(entry)
     shifted_levels(entry)
     entry.end()
