@@ -116,6 +116,14 @@ class Predictor {
 
 }  // namespace
 
+PredictedStep predicted_step(MPI_Comm comm, const cases::Case& given, const quantities::Plan& plan,
+                             const Resolution& resolution) {
+  if (!plan.tasks.empty()) return Predictor(comm, given, resolution).follow(plan);
+  PredictedStep step{resolution, unknowns(given.scene, resolution)};
+  step.megabytes = predicted_bytes(given.scene, resolution, petsc::ranks(comm)) / 1e6;
+  return step;
+}
+
 Prediction predict(MPI_Comm comm, const cases::Case& given) {
   Prediction prediction;
   if (!needs_system(given)) return prediction;
@@ -124,14 +132,8 @@ Prediction predict(MPI_Comm comm, const cases::Case& given) {
   const RefinementSequence sequence(given);
   require_memory(comm, given.scene, sequence.refinement_level(1));
   for (int n = sequence.first(); n <= 1; ++n) {
-    const Resolution& resolution = sequence.refinement_level(n);
-    if (prediction.plan.tasks.empty()) {
-      PredictedStep step{resolution, unknowns(given.scene, resolution)};
-      step.megabytes = predicted_bytes(given.scene, resolution, petsc::ranks(comm)) / 1e6;
-      prediction.steps.push_back(step);
-    } else {
-      prediction.steps.push_back(Predictor(comm, given, resolution).follow(prediction.plan));
-    }
+    prediction.steps.push_back(
+        predicted_step(comm, given, prediction.plan, sequence.refinement_level(n)));
     prediction.seconds += prediction.steps.back().seconds;
   }
   return prediction;

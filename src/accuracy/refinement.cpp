@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "stickslip/accuracy/estimates.hpp"
+#include "stickslip/accuracy/prediction.hpp"
 #include "stickslip/accuracy/refinement_sequence.hpp"
 #include "stickslip/accuracy/result_bounds.hpp"
 #include "stickslip/catalogue/given_force_keys.hpp"
@@ -73,6 +74,9 @@ void require_start_within(const cases::Case& given, const Resolution& first) {
   }
   if (std::abs(v) > first.v_max) refuse("v", first.v_max, simulated);
 }
+
+// Below as many unknowns a step takes hardly longer than to predict how long.
+constexpr std::int64_t kWorthPrediction = 30'000;
 
 class Refiner {
  public:
@@ -150,7 +154,10 @@ class Refiner {
   }
 
   [[nodiscard]] double expected_seconds(const Resolution& next) const {
-    if (outcome_.steps.empty()) return 0;
+    if (outcome_.steps.empty()) {
+      if (unknowns(given_.scene, next) < kWorthPrediction) return 0;
+      return predicted_step(comm_, given_, quantities::plan_of(given_), next).seconds;
+    }
     const Step& last = outcome_.steps.back();
     return last.seconds * relative_work(given_.scene, next) /
            relative_work(given_.scene, last.resolution);

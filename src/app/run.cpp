@@ -73,9 +73,14 @@ void warn(const options::Request& request) {
   }
 }
 
-accuracy::Progress progress_of(const options::Request& request, bool first_rank) {
-  if (!request.files.progress || !first_rank) return {};
-  return [&request](int step, const accuracy::Resolution& r, double seconds) {
+// Standard error may be a terminal on some ranks alone, so that the first one decides for all.
+accuracy::Progress progress_of(MPI_Comm comm, const options::Request& request) {
+  int shown = request.files.progress ? 1 : 0;
+  MPI_Bcast(&shown, 1, MPI_INT, 0, comm);
+  if (shown == 0) return {};
+  return [&request, first = petsc::rank(comm) == 0](int step, const accuracy::Resolution& r,
+                                                    double seconds) {
+    if (!first) return;
     std::string velocity = "no grid in v";
     if (r.scheme == cases::Scheme::hp) velocity = fmt::format("degree {}", r.degree);
     if (r.scheme == cases::Scheme::upwind) velocity = fmt::format("p = {}", r.points);
@@ -162,9 +167,8 @@ int run_sweep(const options::Request& request, const Beginning& beginning, const
 
 int compute(const options::Request& request, const Beginning& beginning, const Emit& emit) {
   const MPI_Comm comm = MPI_COMM_WORLD;
-  const bool first_rank = petsc::rank(comm) == 0;
   const auto outcome =
-      accuracy::carry_out(comm, request, progress_of(request, first_rank),
+      accuracy::carry_out(comm, request, progress_of(comm, request),
                           simulation_progress_of(request), request.files.checkpoint);
   emit(io::report_of(comm, request, outcome, beginning.until_now()), request);
   return status_of(outcome);

@@ -2,12 +2,13 @@
 
 import json
 import os
+import subprocess
 import unittest
 
 import h5py
 import numpy
 
-from running import Case, PROGRAMS, SOURCES, run
+from running import BINARIES, Case, PROGRAMS, SOURCES, run
 
 SMALL = ("-mu_d", "0.25", "-delta", "0.5")
 
@@ -224,6 +225,16 @@ class Texts(Case):
     def test_progress_on_request(self):
         self.assertNotIn("refinement level 1:", run(*SMALL).stderr)
         self.assertIn("refinement level 1:", run(*SMALL, "-progress", "on").stderr)
+
+    def test_long_levels_say_how_long(self):
+        """The first refinement level, too, before it begins."""
+        command = [BINARIES / "stickslip", "-delta", "0.01", "-degree", "16", "-quantities", "spectrum", "-progress", "on"]
+        with subprocess.Popen([*map(str, command)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+            for line in process.stderr:
+                if "refinement level 1:" in line:
+                    break
+            process.kill()
+        self.assertRegex(line, r"refinement level 1:.* unknowns, about \d+ s$")
 
 
 class Summary(Case):

@@ -37,4 +37,9 @@ struct Prediction {
 /// 0. Collective. Throws NoMemory as the run would.
 [[nodiscard]] Prediction predict(MPI_Comm comm, const cases::Case& given);
 
+/// The same for one step of a deterministic solution method at a given resolution. Collective.
+[[nodiscard]] PredictedStep predicted_step(MPI_Comm comm, const cases::Case& given,
+                                           const quantities::Plan& plan,
+                                           const Resolution& resolution);
+
 }  // namespace stickslip::accuracy

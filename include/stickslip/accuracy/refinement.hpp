@@ -65,7 +65,7 @@ struct Outcome {
 };
 
 /// Called before each step with its number, its resolution and the seconds it is expected to take
-/// (0 for the first, of which nothing is known).
+/// (0 for a small first one). Given on all ranks or on none.
 using Progress = std::function<void(int, const Resolution&, double)>;
 
 /// All that is asked for. Deterministic solution methods follow the refinement sequence of the
