@@ -5,10 +5,7 @@
 #include <iterator>
 #include <memory>
 
-#include "stickslip/catalogue/displacement_distribution_keys.hpp"
-#include "stickslip/catalogue/displacement_transform_keys.hpp"
-#include "stickslip/catalogue/large_deviation_keys.hpp"
-#include "stickslip/support/infinity.hpp"
+#include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::accuracy {
 namespace {
@@ -45,91 +42,9 @@ int starting_degree(const cases::Question& question) {
   return std::clamp(static_cast<int>(std::ceil(highest)), kLowestDegree, kHighestDegree);
 }
 
-double largest(const std::vector<double>& values) {
-  return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
-}
-
-double least_positive(const std::vector<double>& values) {
-  double least = kInfinity;
-  for (double value : values) least = value > 0 ? std::min(least, value) : least;
-  return least;
-}
-
-// Functions of the time t are inverse Laplace transforms at rates up to 12/t. For those of the path
-// length d, of bodies with the acceleration a, layers at v = 0 are resolved five times finer than
-// sqrt(a d/12). Levels of -delta smooth what the layers would resolve; a table has few.
-double fastest_inverted(const cases::Case& given) {
-  using catalogue::Quantity;
-  constexpr double of_contour = 12;
-  const cases::Question& question = given.question;
-  const auto process = given.scene.meant();
-  if (!process.noise.table) return 0;
-  double rate = 0;
-  const bool distribution = question.wants(catalogue::kDisplacementDistribution.quantity);
-  const bool transform = distribution || question.wants(catalogue::kDisplacementTransform.quantity);
-  if (question.wants(Quantity::duration_density) || transform) {
-    rate = of_contour / least_positive(question.time);
-  }
-  // Displacements down to a part of those that bodies reach, a t min(t, tau)/2.
-  if (distribution) {
-    constexpr double parts = 32;
-    const double t = least_positive(question.time);
-    const double square = t * std::min(t, process.noise.correlation_time());
-    rate = std::max(rate, std::sqrt(2 * of_contour * parts / square));
-  }
-  if (question.wants(Quantity::slip)) {
-    const double force = std::max(process.net_force(process.noise.highest()),
-                                  process.mirrored().net_force(process.mirrored().noise.highest()));
-    rate = std::max(rate, 5 * std::sqrt(of_contour * force / least_positive(question.distance)));
-  }
-  return rate;
-}
-
-velocity::Rates fastest_rates(const cases::Case& given) {
-  using catalogue::Quantity;
-  const cases::Question& question = given.question;
-  velocity::Rates rates;
-  if (question.wants(Quantity::laplace) || question.wants(Quantity::resolvent) ||
-      given.method.row().small_lambda) {
-    rates.lambda = largest(question.lambda);
-  }
-  rates.lambda = std::max(rates.lambda, fastest_inverted(given));
-  if (question.depends_on("velocity")) rates.speed = largest(question.velocity);
-  for (double s : question.values(catalogue::kTilt.option)) {
-    rates.tilt = std::max(rates.tilt, std::abs(s));
-  }
-  return rates;
-}
-
-// Solutions for exp(i k x(t)) are waves exp(i k v t) in v, which jumps of the noise damp. Of the
-// distribution, k up to an octave more for each digit, in units of 1/deviation of x(t).
-double phase_of_displacements(const cases::Case& given) {
-  const cases::Question& question = given.question;
-  const bool distribution = question.wants(catalogue::kDisplacementDistribution.quantity);
-  const bool transform = question.wants(catalogue::kDisplacementTransform.quantity);
-  const double t = distribution || transform ? largest(question.time) : 0;
-  if (t == 0) return 0;
-  constexpr double damped = 4;  // correlation times
-  const auto process = given.scene.meant();
-  const double tau = process.noise.correlation_time(), lasting = std::min(t, damped * tau);
-  double highest = 0;
-  for (double k : question.values(catalogue::kWavenumber.option)) {
-    highest = std::max(highest, std::abs(k));
-  }
-  if (distribution) {
-    const double force = process.noise.standard_deviation();
-    const double speed = std::min(process.terminal_speed(), force * std::min(t, tau)) / 2;
-    const double spread = speed * std::sqrt(t * std::min(t, 2 * tau));
-    highest = std::max(highest, 2 * std::exp2(-std::log10(question.accuracy)) / spread);
-  }
-  return highest * lasting;
-}
-
 // Observables on the levels on which they were looked at, once each whatever is done with them.
-velocity::Integrands integrands_of(const cases::Case& given) {
-  const cases::Question& question = given.question;
+velocity::Integrands integrands_of(const cases::Question& question, double phase) {
   velocity::Integrands integrands;
-  const double phase = phase_of_displacements(given);
   if (phase > 0) {
     integrands.functions.emplace_back([phase](double v) { return std::cos(phase * v); });
   }
@@ -148,18 +63,22 @@ velocity::Integrands integrands_of(const cases::Case& given) {
 }  // namespace
 
 RefinementSequence::RefinementSequence(const cases::Case& given)
-    : scene_(given.scene), method_(given.method), accuracy_(given.question.accuracy) {
+    : scene_(given.scene),
+      method_(given.method),
+      accuracy_(given.question.accuracy),
+      needs_(quantities::plan_of(given).needs) {
   first_degree_ = method_.degree.value_or(starting_degree(given.question));
-  rates_ = fastest_rates(given);
-  if (given.question.wants(catalogue::Quantity::spectrum)) omega_ = given.question.omega;
+  if (given.method.row().small_lambda) {
+    needs_.rates.lambda =
+        std::max(needs_.rates.lambda, quantities::largest_size(given.question.lambda));
+  }
   table_ = given.scene.meant().noise.table != nullptr;
-  integrands_ = integrands_of(given);
+  integrands_ = integrands_of(given.question, needs_.phase);
   const bool full_grid = given.method.row().full_grid;
   const bool both = given.question.any(&catalogue::Entry::both_branches);
   branches_ = full_grid || both || !given.scene.symmetric() ? 2 : 1;
-  modes_ = given.question.wants(catalogue::Quantity::relaxation);
   // On nodes the residuals of eigenvectors, which stand for errors, stay about twice as large.
-  const bool near_rounding = modes_ && accuracy_ < kModesOnNodes;
+  const bool near_rounding = needs_.modes && accuracy_ < kModesOnNodes;
   all_levels_ = full_grid || method_.noise_degree == 0 || near_rounding ||
                 !given.scene.meant().noise.neighbours_only();
   tail_counts_ =
@@ -195,7 +114,7 @@ double RefinementSequence::tail_tolerance(int n) const {
   // start does not depend on what is only compared with.
   const double tolerance = std::pow(10.0, -(degree(tail_counts_ ? std::max(n, 0) : 1) + 4));
   // Modes have a mean square under the density: what its root is at the end is an error.
-  return modes_ ? std::max(tolerance * tolerance, 1e-36) : std::max(tolerance, 1e-18);
+  return needs_.modes ? std::max(tolerance * tolerance, 1e-36) : std::max(tolerance, 1e-18);
 }
 
 noise::Grouping RefinementSequence::grouping(int n) const {
@@ -216,7 +135,7 @@ std::vector<double> RefinementSequence::waves(int n) const {
   if (n < first_with_waves && !method_.fixed() && !table_) return {};
   std::vector<double> waves;
   const auto process = scene_.meant();
-  std::copy_if(omega_.begin(), omega_.end(), std::back_inserter(waves),
+  std::copy_if(needs_.omega.begin(), needs_.omega.end(), std::back_inserter(waves),
                [&](double omega) { return velocity::has_waves(process, omega); });
   return waves;
 }
@@ -231,15 +150,15 @@ Resolution RefinementSequence::made(int n) const {
   Resolution r;
   switch (method_.scheme) {
   case cases::Scheme::hp:
-    r = hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n), rates_,
-                      grouping(n));
+    r = hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n),
+                      needs_.rates, grouping(n));
     r.waves = waves(n);
     r.integrands = integrands_;
     r.whole_tail = tail_counts_;
     r.least_degree = n + 1;  // so that all degrees rise from one refinement level to the next
     break;
   case cases::Scheme::upwind:
-    r = upwind_resolution(scene_, points(n), tail_tolerance(n), rates_);
+    r = upwind_resolution(scene_, points(n), tail_tolerance(n), needs_.rates);
     break;
   case cases::Scheme::none: r = exact_resolution(scene_, tail_tolerance(n)); break;
   }

@@ -225,10 +225,26 @@ void find_displacements(Computation& computation) {
   for (auto* result : {&probability, &position}) results.push_back(std::move(*result));
 }
 
+// Displacements down to a part of those that bodies reach, a t min(t, tau)/2. Wavenumbers up to an
+// octave more for each digit, in units of 1/deviation of x(t).
+void resolve_distribution(Planner& planner) {
+  constexpr double parts = 32;
+  const auto& question = planner.question();
+  const auto process = planner.given().scene.meant();
+  const double tau = process.noise.correlation_time(), first = least_positive(question.time),
+               last = largest_size(question.time);
+  planner.resolve_rate(std::sqrt(2 * kFastestOnContour * parts / (first * std::min(first, tau))));
+  const double force = process.noise.standard_deviation(),
+               speed = std::min(process.terminal_speed(), force * std::min(last, tau)) / 2,
+               spread = speed * std::sqrt(last * std::min(last, 2 * tau));
+  resolve_displacements(planner, 2 * std::exp2(-std::log10(question.accuracy)) / spread);
+}
+
 }  // namespace
 
 void displacement_distribution_tasks(Planner& planner) {
   planner.need_distribution();
+  resolve_distribution(planner);
   const auto times = static_cast<int>(planner.question().time.size());
   planner.add_adaptive("distribution of displacements", 15 * times, 350 * times,
                        find_displacements);

@@ -254,4 +254,14 @@ DisplacementModel::Transform DisplacementModel::at(double k) {
   return found;
 }
 
+// They are waves exp(i k v t) in v, which jumps of the noise damp within some correlation times.
+void resolve_displacements(Planner& planner, double wavenumber) {
+  constexpr double damped = 4;  // correlation times
+  const double tau = planner.given().scene.meant().noise.correlation_time(),
+               last = largest_size(planner.question().time);
+  planner.resolve_times();
+  double& phase = planner.needs().phase;
+  phase = std::max(phase, wavenumber * std::min(last, damped * tau));
+}
+
 }  // namespace stickslip::quantities

@@ -37,8 +37,9 @@ void find_transform(Computation& computation) {
 void displacement_transform_tasks(Planner& planner) {
   planner.need_distribution();
   const auto& question = planner.question();
-  const auto count = static_cast<int>(question.time.size() *
-                                      question.values(catalogue::kWavenumber.option).size());
+  const auto& wavenumbers = question.values(catalogue::kWavenumber.option);
+  resolve_displacements(planner, largest_size(wavenumbers));
+  const auto count = static_cast<int>(question.time.size() * wavenumbers.size());
   planner.add_adaptive("displacement transform", 2 * count, 50 * count, find_transform);
 }
 

@@ -281,6 +281,7 @@ void find_distributions(Computation& computation) {
 
 void duration_density_tasks(Planner& planner) {
   planner.need_distribution();
+  planner.resolve_times();
   planner.add_adaptive("distributions of durations", 14, 160, find_distributions);
 }
 

@@ -157,7 +157,9 @@ void find_growth(Computation& computation) {
 }  // namespace
 
 void large_deviation_tasks(Planner& planner) {
-  const int count = static_cast<int>(planner.question().values(catalogue::kTilt.option).size());
+  const auto& tilts = planner.question().values(catalogue::kTilt.option);
+  planner.needs().rates.tilt = largest_size(tilts);
+  const auto count = static_cast<int>(tilts.size());
   planner.add_adaptive("large deviations", 2 * count, 56 * count, find_growth);
 }
 

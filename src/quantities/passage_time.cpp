@@ -141,6 +141,7 @@ void first_passage_tasks(Planner& planner) {
   const bool stationary = start.kind == model::Start::Kind::stationary;
   const auto found = planner.collect<PassageTime>(append_passage_times);
   for (double speed : planner.question().velocity) {
+    planner.needs().rates.speed = std::max(planner.needs().rates.speed, speed);
     auto key = planner.system();
     key.speed_limit = speed;
     key.passage = passage;

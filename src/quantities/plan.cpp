@@ -8,6 +8,8 @@
 #include "stickslip/catalogue/first_passage_keys.hpp"
 #include "stickslip/catalogue/large_deviation_keys.hpp"
 #include "stickslip/quantities/stationary.hpp"
+#include "stickslip/quantities/time_functions.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::quantities {
 
@@ -92,9 +94,17 @@ void Planner::add_at_each_lambda(const std::function<Task(double)>& task) {
   if (at_each_lambda_++ == 0) at_lambda_ = tasks.size();
   std::size_t end = at_lambda_;
   for (double lambda : question().lambda) {
+    needs().rates.lambda = std::max(needs().rates.lambda, lambda);
     end += at_each_lambda_;
     tasks.insert(tasks.begin() + static_cast<std::ptrdiff_t>(end - 1), task(lambda));
   }
+}
+
+void Planner::resolve_times() { resolve_rate(kFastestOnContour / least_positive(question().time)); }
+
+void Planner::resolve_rate(double rate) {
+  double& fastest = needs().rates.lambda;
+  if (given_.scene.meant().noise.table) fastest = std::max(fastest, rate);
 }
 
 int Planner::starts() const {
@@ -115,14 +125,21 @@ Plan Planner::plan() && {
   return std::move(plan_);
 }
 
+double least_positive(const std::vector<double>& values) {
+  double least = kInfinity;
+  for (double value : values) least = value > 0 ? std::min(least, value) : least;
+  return least;
+}
+
 Plan plan_of(const cases::Case& given) {
-  if (given.method.route != catalogue::Route::excursion) return {};
   Planner planner(given);
   if (given.scene.v_max) planner.need_distribution();  // it has the mass beyond v_max
   for (const auto& [quantity, add_tasks] : kAll) {
     if (given.question.wants(quantity)) add_tasks(planner);
   }
-  return std::move(planner).plan();
+  Plan plan = std::move(planner).plan();
+  if (given.method.route != catalogue::Route::excursion) return {.needs = std::move(plan.needs)};
+  return plan;
 }
 
 }  // namespace stickslip::quantities

@@ -165,6 +165,7 @@ void append_relaxation(const RelaxationSector& sector, Results& results) {
 }
 
 void relaxation_tasks(Planner& planner) {
+  planner.needs().modes = true;
   const int sectors = planner.symmetric() ? 2 : 1;
   planner.add_adaptive("relaxation modes", sectors, 28 * sectors, [](Computation& computation) {
     for (Symmetry symmetry : operators::sectors_of(computation.process())) {

@@ -33,11 +33,7 @@ std::vector<double> spread_odd(const std::vector<double>& upper) {
   return all;
 }
 
-double largest_size(const std::vector<double>& values) {
-  return std::abs(std::ranges::max(values, {}, [](double v) { return std::abs(v); }));
-}
-
-PetscReal largest_size(Vec values) {
+PetscReal infinity_norm(Vec values) {
   PetscReal size = 0;
   petsc::check(VecNorm(values, NORM_INFINITY, &size));
   return size;
@@ -89,8 +85,8 @@ class Sector {
     const petsc::VecHandle sliding = a.values(f);
     petsc::VecHandle overlooked = quadratic ? a.zeros() : a.overlooked(f);
     constexpr double rounding = 1e-12;
-    const double size = std::max<double>(largest_size(sliding), largest_size(rest));
-    if (largest_size(overlooked) <= rounding * size) overlooked = a.zeros();
+    const double size = std::max<double>(infinity_norm(sliding), largest_size(rest));
+    if (infinity_norm(overlooked) <= rounding * size) overlooked = a.zeros();
     std::vector<Uncertain> w;
     for (std::size_t t = 0; t < occupations_.size(); ++t) {
       const auto& nu = occupations_[t];

@@ -7,15 +7,12 @@
 #include "stickslip/support/infinity.hpp"
 
 namespace stickslip::quantities {
-namespace {
 
-double largest(const std::vector<double>& values) {
+double largest_size(const std::vector<double>& values) {
   double size = 0;
   for (double v : values) size = std::fmax(size, std::abs(v));
   return size;
 }
-
-}  // namespace
 
 Result blank(const Row& row) {
   const bool known = row.unit.find('[') == row.unit.npos;  // that of an observable is not
@@ -48,7 +45,7 @@ Result array(Result blank, std::vector<double> abscissa) {
 }
 
 double relative_error(const Result& result) {
-  const double size = largest(result.value);
+  const double size = largest_size(result.value);
   double relative = 0;
   for (std::size_t n = 0; n < result.value.size(); ++n) {
     if (result.partial && std::isnan(result.value[n])) continue;

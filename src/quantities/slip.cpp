@@ -94,6 +94,16 @@ void find_distribution(Computation& computation) {
                      "pairs of Krylov vectors in the reduced model of slips");
 }
 
+// Slips of the length d begin and end in layers at v = 0. Of bodies with the acceleration a these
+// are resolved five times finer than sqrt(a d/12).
+void resolve_lengths(Planner& planner) {
+  const auto process = planner.given().scene.meant(), mirrored = process.mirrored();
+  const double force = std::max(process.net_force(process.noise.highest()),
+                                mirrored.net_force(mirrored.noise.highest()));
+  planner.resolve_rate(
+      5 * std::sqrt(kFastestOnContour * force / least_positive(planner.question().distance)));
+}
+
 }  // namespace
 
 void mean_slip_tasks(Planner& planner) {
@@ -123,6 +133,7 @@ void slip_tasks(Planner& planner) {
                  }});
   }
   if (planner.question().distance.empty()) return;
+  resolve_lengths(planner);
   planner.add_adaptive("distribution of slips", 6, 80, find_distribution);
 }
 

@@ -310,6 +310,7 @@ void find_spectrum(Computation& computation, bool direct) {
 void spectrum_tasks(Planner& planner) {
   planner.need_distribution();
   const bool direct = planner.given().method.spectrum_solver == cases::SpectrumSolver::direct;
+  planner.needs().omega = planner.question().omega;
   // 0 as well, and the stationary distribution alone.
   const int frequencies = static_cast<int>(planner.question().omega.size()) + 2;
   planner.add_adaptive("spectrum", direct ? frequencies : 2, direct ? frequencies : 18,

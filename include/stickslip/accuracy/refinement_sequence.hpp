@@ -7,6 +7,7 @@
 #include "stickslip/accuracy/estimates.hpp"
 #include "stickslip/accuracy/resolution.hpp"
 #include "stickslip/cases/case.hpp"
+#include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::accuracy {
 
@@ -46,14 +47,12 @@ class RefinementSequence {
   model::Scene scene_;
   cases::Method method_;
   double accuracy_;
-  int first_degree_ = 0;       // of refinement level 1
-  velocity::Rates rates_;      // of the equations to be solved
-  std::vector<double> omega_;  // of a spectrum
+  quantities::Needs needs_;
+  int first_degree_ = 0;  // of refinement level 1
   velocity::Integrands integrands_;
   int branches_ = 1;
   bool all_levels_ = false;   // every noise level is a node
   bool tail_counts_ = false;  // what is asked for may weigh the tail anyhow
-  bool modes_ = false;        // relaxation modes are asked for
   bool table_ = false;        // the noise has levels of its own
   int last_;
   mutable std::map<int, Resolution> refinement_levels_;  // those asked for so far

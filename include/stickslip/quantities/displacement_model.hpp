@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "stickslip/model/start.hpp"
+#include "stickslip/quantities/plan.hpp"
 #include "stickslip/quantities/stationary.hpp"
 #include "stickslip/quantities/uncertain.hpp"
 
@@ -42,5 +43,9 @@ class DisplacementModel {
   std::vector<std::complex<double>> one_, c_;
   double other_pole_ = 0, checked_ = 0;
 };
+
+/// Has solutions for exp(i k x(t)) resolved for all times of the question, up to |k| =
+/// `wavenumber`.
+void resolve_displacements(Planner& planner, double wavenumber);
 
 }  // namespace stickslip::quantities

@@ -12,6 +12,7 @@
 #include "stickslip/operators/system_key.hpp"
 #include "stickslip/quantities/computation.hpp"
 #include "stickslip/quantities/excursion.hpp"
+#include "stickslip/velocity/mesh.hpp"
 
 namespace stickslip::quantities {
 
@@ -34,11 +35,20 @@ struct Task {
   int usual_factorizations = 0, usual_solves = 0;  ///< of an adaptive task, for predictions
 };
 
+/// What tasks need resolved by the discretisation.
+struct Needs {
+  velocity::Rates rates = {};      ///< of the equations to be solved
+  double phase = 0;                ///< largest p of solutions exp(i p v) [1/velocity]
+  std::vector<double> omega = {};  ///< of solutions that may oscillate in v [1/time]
+  bool modes = false;              ///< eigenvectors, which reach further than the density
+};
+
 /// Tasks in the order of execution. Each system is assembled and factored when the first task asks
 /// for it, and freed after the last one has used it.
 struct Plan {
   std::vector<Task> tasks;
   std::vector<Action> afterwards = {};  ///< what appends results that several tasks have found
+  Needs needs = {};
 
   /// Each system once.
   [[nodiscard]] std::set<operators::SystemKey> systems() const { return used_from(0); }
@@ -53,8 +63,11 @@ struct Plan {
 };
 
 /// The least set of work for the quantities asked for. Solution methods other than excursion do one
-/// thing each, and their plan is empty. Local.
+/// thing each, and their plan has no tasks. Local.
 [[nodiscard]] Plan plan_of(const cases::Case& given);
+
+/// The least of the values above 0; infinity where there is none.
+[[nodiscard]] double least_positive(const std::vector<double>& values);
 
 /// Collects the tasks of quantities. Each quantity is a function in a file of its own that adds
 /// what it takes; plan.cpp lists them.
@@ -75,11 +88,18 @@ class Planner {
   /// What follows from means over excursions is appended with the stationary distribution.
   void append_from(const FunctionOfExcursion& append);
   void add(Task task) { plan_.tasks.push_back(std::move(task)); }
+  /// What the discretisation has to resolve; each quantity raises it to what it needs.
+  [[nodiscard]] Needs& needs() { return plan_.needs; }
+  /// Has a function of time resolved from the first of -time on, by its inverse Laplace transform.
+  void resolve_times();
+  /// Has rates of such transforms resolved where the noise is a table: levels of -delta smooth what
+  /// finer elements would resolve, those of a table are few.
+  void resolve_rate(double rate);
   /// One with operators of its own, which carry the static states or are projected. The numbers are
   /// those seen in most of thirty cases, in solves with iterative refinement.
   void add_adaptive(std::string name, int factorizations, int solves, Action carry_out);
   /// One for each lambda of the question. What all quantities do at one lambda is done in turn, as
-  /// they share its systems.
+  /// they share its systems, which the discretisation resolves.
   void add_at_each_lambda(const std::function<Task(double lambda)>& task);
   /// Values that tasks find one at a time. They are appended together after all tasks, if there are
   /// any; `last`: behind those of other quantities.

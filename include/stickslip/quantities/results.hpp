@@ -61,6 +61,9 @@ struct Check {
   return array(blank(row), std::move(abscissa));
 }
 
+/// The largest absolute value; 0 where there is none.
+[[nodiscard]] double largest_size(const std::vector<double>& values);
+
 /// Largest error relative to the size of the values; infinite where one is not a number, unless the
 /// result is partial.
 [[nodiscard]] double relative_error(const Result& result);

@@ -8,6 +8,9 @@
 
 namespace stickslip::quantities {
 
+/// Inverse Laplace transforms at the time t take rates up to this over t.
+constexpr double kFastestOnContour = 12;
+
 /// n-fold integrals from 0 to t of gamma exp(m t) beta, for each n of `folds` one for each time >
 /// 0, by quadrature of the inverse Laplace transform on Talbot's contour with the parameters of
 /// Weideman (SIAM J. Numer. Anal. 44, 2006); the error is what another contour makes of it. Growing
