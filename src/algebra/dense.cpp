@@ -36,6 +36,9 @@ Getrf<double> dgetrf_;
 Getrf<Complex> zgetrf_;
 Getrs<double> dgetrs_;
 Getrs<Complex> zgetrs_;
+void dgels_(const char* transpose, const int* m, const int* n, const int* columns, double* a,
+            const int* lda, double* b, const int* ldb, double* work, const int* work_size,
+            int* info);
 void dgesvd_(const char* left, const char* right, const int* m, const int* n, double* a,
              const int* lda, double* values, double* u, const int* ldu, double* vt, const int* ldvt,
              double* work, const int* work_size, int* info);
@@ -209,6 +212,16 @@ template void add_product(const Matrix<double>&, const double*, double*, bool);
 template void add_product(const Matrix<Complex>&, const Complex*, Complex*, bool);
 template void add_product(const Matrix<double>&, Columns<double>, Columns<double>, bool);
 template void add_product(const Matrix<Complex>&, Columns<Complex>, Columns<Complex>, bool);
+
+std::vector<double> least_squares(Matrix<double> a, std::vector<double> y) {
+  const int rows = a.rows(), n = a.columns(), one = 1, work_size = 64 * (n + 1);
+  std::vector<double> work(static_cast<std::size_t>(work_size));
+  int info = 0;
+  dgels_("N", &rows, &n, &one, a.data(), &rows, y.data(), &rows, work.data(), &work_size, &info);
+  expect_success(info, "the columns of a least squares problem depend on each other");
+  y.resize(static_cast<std::size_t>(n));
+  return y;
+}
 
 SingularValues::SingularValues(Matrix<double> a)
     : left(a.rows(), a.rows()),

@@ -1,13 +1,15 @@
 #include "stickslip/exact/fourier_inversion.hpp"
 
 #include <algorithm>
-#include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <functional>
 #include <numbers>
 #include <numeric>
+
+#include "stickslip/algebra/dense.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::exact {
 
@@ -17,7 +19,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-constexpr int kDegree = 8;  // of the polynomials
+// Degrees of the polynomials on a panel: doubled, so that points serve again, before it is halved.
+constexpr int kLeastDegree = 4, kMostDegree = 16;
 
 /// |x|^(n/2 - 1) on either side. Jumps of what is smooth on both sides are all that shows at large
 /// k.
@@ -25,28 +28,30 @@ struct Singularity {
   int n;
   double right, left;
 };
-const std::vector<Singularity> kAny{{1, 1, 0}, {1, 0, 1}, {2, 1, -1},
-                                    {3, 1, 0}, {3, 0, 1}, {4, 1, 1}};
-const std::vector<Singularity> kEven{{1, 1, 1}, {3, 1, 1}, {4, 1, 1}};
-
-using Nodes = std::array<double, kDegree + 1>;
+const std::vector<Singularity>& kinds(bool even) {
+  static const std::vector<Singularity> of_even{{1, 1, 1}, {3, 1, 1}, {4, 1, 1}},
+      of_any{{1, 1, 0}, {1, 0, 1}, {2, 1, -1}, {3, 1, 0}, {3, 0, 1}, {4, 1, 1}};
+  return even ? of_even : of_any;
+}
 
 // Extrema of the Chebyshev polynomial, from 1 down to -1.
-Nodes nodes() {
-  Nodes x{};
-  for (int n = 0; n <= kDegree; ++n) x[n] = std::cos(kPi * n / kDegree);
+std::vector<double> nodes(int degree) {
+  std::vector<double> x;
+  for (int n = 0; n <= degree; ++n) x.push_back(std::cos(kPi * n / degree));
   return x;
 }
 
-std::vector<Complex> chebyshev_terms(const std::array<Complex, kDegree + 1>& values) {
+// Of the polynomial with these values at the extrema.
+std::vector<Complex> chebyshev_terms(const std::vector<Complex>& values) {
+  const int degree = static_cast<int>(values.size()) - 1;
   std::vector<Complex> terms;
-  for (int j = 0; j <= kDegree; ++j) {
+  for (int j = 0; j <= degree; ++j) {
     Complex sum = 0;
-    for (int n = 0; n <= kDegree; ++n) {
-      const double end = n == 0 || n == kDegree ? 0.5 : 1;
-      sum += end * std::cos(kPi * j * n / kDegree) * values[n];
+    for (int n = 0; n <= degree; ++n) {
+      const double end = n == 0 || n == degree ? 0.5 : 1;
+      sum += end * std::cos(kPi * j * n / degree) * values[n];
     }
-    terms.push_back((j == 0 || j == kDegree ? 1.0 : 2.0) / kDegree * sum);
+    terms.push_back((j == 0 || j == degree ? 1.0 : 2.0) / degree * sum);
   }
   return terms;
 }
@@ -62,46 +67,12 @@ Complex polynomial(const std::vector<Complex>& terms, double x) {
   return terms[0] + x * one - two;
 }
 
-// The coefficients c for which |A c - y| is least; columns that others make up count for nothing.
-std::vector<double> least_squares(std::vector<std::vector<double>> a, std::vector<double> y) {
-  constexpr double dependent = 1e-9;
-  const auto dot = [](const auto& p, const auto& q) {
-    double sum = 0;
-    for (std::size_t n = 0; n < p.size(); ++n) sum += p[n] * q[n];
-    return sum;
-  };
-  const std::size_t count = a.size();
-  std::vector<std::vector<double>> r(count, std::vector<double>(count, 0.0));
-  std::vector<double> z(count, 0.0), c(count, 0.0);
-  for (std::size_t j = 0; j < count; ++j) {
-    const double size = std::sqrt(dot(a[j], a[j]));
-    for (int pass = 0; pass < 2; ++pass) {
-      for (std::size_t i = 0; i < j; ++i) {
-        const double share = dot(a[i], a[j]);
-        r[i][j] += share;
-        for (std::size_t n = 0; n < y.size(); ++n) a[j][n] -= share * a[i][n];
-      }
-    }
-    const double left = std::sqrt(dot(a[j], a[j]));
-    r[j][j] = left > dependent * size ? left : 0;
-    for (double& entry : a[j]) entry = r[j][j] > 0 ? entry / left : 0;
-    z[j] = dot(a[j], y);
-    for (std::size_t n = 0; n < y.size(); ++n) y[n] -= z[j] * a[j][n];
-  }
-  for (std::size_t j = count; j-- > 0;) {
-    if (r[j][j] == 0) continue;
-    for (std::size_t i = j + 1; i < count; ++i) z[j] -= r[j][i] * c[i];
-    c[j] = z[j] / r[j][j];
-  }
-  return c;
-}
-
 }  // namespace
 
 FourierInversion::FourierInversion(const Transform& phi, double mass, double mean, double deviation,
                                    bool even, const Limits& limits)
     : even_(even), mass_(mass), mean_(mean), scale_(deviation), accuracy_(limits.accuracy) {
-  const double tolerance = 0.3 * limits.accuracy;
+  const double tolerance = 0.6 * limits.accuracy;
   double low = 0, high = std::min(2 / scale_, limits.highest);
   for (bool open = true; open; high = std::min(2 * high, limits.highest)) {
     const std::size_t first = panels_.size();
@@ -130,16 +101,30 @@ FourierInversion::FourierInversion(const Transform& phi, double mass, double mea
   }
 }
 
-// Halves panels until the polynomials hold.
+// Doubles degrees and halves panels until the polynomials hold.
 void FourierInversion::sample(const Transform& phi, double low, double high, double tolerance,
                               int most) {
-  static const Nodes x = nodes();
-  std::array<Complex, kDegree + 1> values;
-  Panel panel{low, high, 0, {}, 0, 0};
-  for (int n = 0; n <= kDegree; ++n) {
-    const double k = panel.at(x[n]);
+  Panel panel{low, high};
+  for (int degree = kLeastDegree; degree <= kMostDegree; degree *= 2) {
+    panel = interpolated(phi, low, high, degree);
+    if (panel.rough <= tolerance || evaluations_ >= most) {
+      panels_.push_back(std::move(panel));
+      return;
+    }
+  }
+  sample(phi, low, (low + high) / 2, tolerance, most);
+  sample(phi, (low + high) / 2, high, tolerance, most);
+}
+
+FourierInversion::Panel FourierInversion::interpolated(const Transform& phi, double low,
+                                                       double high, int degree) {
+  Panel panel{low, high};
+  const auto x = nodes(degree);
+  std::vector<Complex> values;
+  for (const double place : x) {
+    const double k = panel.at(place);
     if (k == 0) {
-      values[n] = mass_;
+      values.emplace_back(mass_);
       continue;
     }
     auto& found = known_[k];
@@ -147,18 +132,19 @@ void FourierInversion::sample(const Transform& phi, double low, double high, dou
       found = phi(k);
       ++evaluations_;
     }
-    values[n] = found.value;
+    values.push_back(found.value);
     panel.doubt = std::max(panel.doubt, found.error);
   }
-  panel.rough = 1e300;
+  panel.rough = kInfinity;
   for (const double shift : {0.0, mean_}) {
     auto moved = values;
-    for (int n = 0; n <= kDegree; ++n) {
+    for (std::size_t n = 0; n < x.size(); ++n) {
       moved[n] *= std::polar(1.0, -shift * panel.at(x[n]));
     }
     auto terms = chebyshev_terms(moved);
-    const double last = std::abs(terms[kDegree]) + std::abs(terms[kDegree - 1]);
-    const double before = std::abs(terms[kDegree - 2]) + std::abs(terms[kDegree - 3]);
+    const auto end = terms.rbegin();
+    const double last = std::abs(end[0]) + std::abs(end[1]);
+    const double before = std::abs(end[2]) + std::abs(end[3]);
     const double rough = last * std::min(1.0, 3 * last / before);
     if (rough < panel.rough) {
       panel.shift = shift;
@@ -166,12 +152,7 @@ void FourierInversion::sample(const Transform& phi, double low, double high, dou
       panel.rough = rough;
     }
   }
-  if (panel.rough <= tolerance || evaluations_ >= most) {
-    panels_.push_back(std::move(panel));
-    return;
-  }
-  sample(phi, low, (low + high) / 2, tolerance, most);
-  sample(phi, (low + high) / 2, high, tolerance, most);
+  return panel;
 }
 
 Complex FourierInversion::sampled(double k) const {
@@ -191,7 +172,7 @@ Complex FourierInversion::rest(const Sum& sum, double k) const {
 std::vector<Complex> FourierInversion::basis(double k) const {
   std::vector<Complex> terms;
   const Complex root = 1.0 / std::sqrt(Complex(1, -k * scale_));
-  for (const auto& [n, right, left] : even_ ? kEven : kAny) {
+  for (const auto& [n, right, left] : kinds(even_)) {
     const Complex power = std::pow(root, n);
     terms.push_back(right * power + left * std::conj(power));
   }
@@ -199,31 +180,31 @@ std::vector<Complex> FourierInversion::basis(double k) const {
 }
 
 FourierInversion::Sum FourierInversion::sum_up_to(std::size_t panels, double highest) const {
-  static const Nodes x = nodes();
-  Sum sum{panels, {}};
-  std::vector<std::vector<double>> columns((even_ ? kEven : kAny).size());
-  std::vector<double> y;
+  static const auto x = nodes(kMostDegree / 2);
+  std::vector<double> k;
   for (std::size_t n = 0; n < panels; ++n) {
-    const Panel& p = panels_[n];
-    if (p.low < 0.24 * highest) continue;
-    for (const double at : x) {
-      const double k = p.at(at);
-      const double weight = std::sqrt(k * scale_);
-      const Complex value = weight * sampled(k);
-      const auto terms = basis(k);
-      y.insert(y.end(), {value.real(), value.imag()});
-      for (std::size_t j = 0; j < terms.size(); ++j) {
-        columns[j].insert(columns[j].end(), {weight * terms[j].real(), weight * terms[j].imag()});
-      }
+    if (panels_[n].low < 0.24 * highest) continue;
+    for (const double place : x) k.push_back(panels_[n].at(place));
+  }
+  const int points = static_cast<int>(k.size()), count = static_cast<int>(kinds(even_).size());
+  if (points <= count) return {panels, {}};
+  // Real and imaginary parts. The last rows keep small what errors of phi leave open: coefficients
+  // are about as large as the mass.
+  algebra::Matrix<double> a(2 * points + count, count);
+  std::vector<double> y(static_cast<std::size_t>(a.rows()));
+  for (int n = 0; n < points; ++n) {
+    const double weight = std::sqrt(k[n] * scale_);
+    const Complex value = weight * sampled(k[n]);
+    const auto terms = basis(k[n]);
+    y[2 * n] = value.real();
+    y[2 * n + 1] = value.imag();
+    for (int j = 0; j < count; ++j) {
+      a(2 * n, j) = weight * terms[j].real();
+      a(2 * n + 1, j) = weight * terms[j].imag();
     }
   }
-  // What errors of phi leave open is small: coefficients are about as large as the mass.
-  for (std::size_t j = 0; j < columns.size(); ++j) {
-    for (std::size_t i = 0; i < columns.size(); ++i) columns[i].push_back(i == j ? accuracy_ : 0);
-    y.push_back(0);
-  }
-  if (y.size() > 3 * columns.size()) sum.singular = least_squares(std::move(columns), std::move(y));
-  return sum;
+  for (int j = 0; j < count; ++j) a(2 * points + j, j) = accuracy_;
+  return {panels, algebra::least_squares(std::move(a), std::move(y))};
 }
 
 // In units of the scale, x^(n/2 - 1) exp(-x)/Gamma(n/2).
@@ -231,7 +212,7 @@ FourierInversion::Integrals FourierInversion::singular(const Sum& sum, double x)
   Integrals found;
   const double u = std::abs(x) / scale_;
   for (std::size_t j = 0; j < sum.singular.size(); ++j) {
-    const auto& [n, right, left] = (even_ ? kEven : kAny)[j];
+    const auto& [n, right, left] = kinds(even_)[j];
     const double c = sum.singular[j], here = c * (x > 0 ? right : left), a = n / 2.0;
     if (u > 0) found.density += here * boost::math::gamma_p_derivative(a, u) / scale_;
     const double within = u > 0 ? here * boost::math::gamma_p(a, u) : 0;
@@ -248,7 +229,7 @@ FourierInversion::Integrals FourierInversion::integrals(const Sum& sum, double x
   Integrals found;
   double mass = mass_;
   for (std::size_t j = 0; j < sum.singular.size(); ++j) {
-    const auto& [n, right, left] = (even_ ? kEven : kAny)[j];
+    const auto& [n, right, left] = kinds(even_)[j];
     mass -= sum.singular[j] * (right + left);
   }
   for (std::size_t n = 0; n < sum.panels; ++n) {

@@ -220,7 +220,7 @@ DisplacementModel::DisplacementModel(operators::Systems& systems,
 
 DisplacementModel::Transform DisplacementModel::projected(double k, double z) {
   operators::ComplexSolver solver(a_, {Complex(z, 0), 0.0, Complex(0, k)}, systems_.statistics());
-  return exponential_of(systems_.comm(), one_, c_, z, t_, 0.1 * accuracy_, [&](const Vector& y) {
+  return exponential_of(systems_.comm(), one_, c_, z, t_, accuracy_, [&](const Vector& y) {
     operators::ComplexVector b{a_.zeros(), a_.zeros()};
     Entries real, imaginary;
     for (std::size_t m = 0; m < y.size(); ++m) {

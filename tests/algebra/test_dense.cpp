@@ -6,6 +6,7 @@
 
 using stickslip::NotReached;
 using stickslip::algebra::LuFactors;
+using stickslip::algebra::least_squares;
 using stickslip::algebra::SingularValues;
 using Complex = std::complex<double>;
 using Matrix = stickslip::algebra::Matrix<double>;
@@ -132,6 +133,21 @@ TEST_CASE("dense: singular values of singular and of empty matrices") {
   CHECK(s.value[1] == Approx(0.6180339887498949).epsilon(1e-14));
   CHECK(s.value[2] < 1e-15);
   CHECK(SingularValues(Matrix(0, 0)).value.empty());
+}
+
+TEST_CASE("dense: least squares leave what is orthogonal to the columns") {
+  // A line through (0, 1), (1, 3), (2, 4), (3, 4): 1.5 + x.
+  Matrix a(4, 2);
+  std::vector<double> y{1, 3, 4, 4};
+  for (int n = 0; n < 4; ++n) {
+    a(n, 0) = 1;
+    a(n, 1) = n;
+  }
+  const auto x = least_squares(a, y);
+  REQUIRE(x.size() == 2);
+  CHECK(x[0] == Approx(1.5).epsilon(1e-14));
+  CHECK(x[1] == Approx(1).epsilon(1e-14));
+  CHECK_THROWS_AS(least_squares(Matrix(4, 2), y), NotReached);
 }
 
 TEST_CASE("dense: the largest entry counts by its size") {

@@ -142,6 +142,10 @@ class LuFactors {
   std::vector<int> pivots_;
 };
 
+/// The x for which |A x - y| is least, A of full column rank with at least as many rows (gels).
+/// O(rows columns^2). Throws NotReached when the rank is not full.
+[[nodiscard]] std::vector<double> least_squares(Matrix<double> a, std::vector<double> y);
+
 /// A = left diag(value) right^T for a square matrix, the largest values first (gesvd). O(n^3).
 struct SingularValues {
   Matrix<double> left, right_transposed;

@@ -11,7 +11,7 @@ namespace stickslip::exact {
 /// f with phi(k) = int f(x) exp(i k x) dx, of a mass that need not be 1 and with a singularity at
 /// x = 0 where f is a series in |x|^(1/2) from |x|^(-1/2) on, another one on either side.
 ///
-/// phi is sampled on panels in k, halved until Chebyshev polynomials of degree 8 hold it, with the
+/// phi is sampled on panels in k until Chebyshev polynomials of degree 4, 8 or 16 hold it, with the
 /// phase of the mean drift taken out where that is smoother. What does not fall fast comes from the
 /// singularity,
 ///
@@ -55,10 +55,10 @@ class FourierInversion {
   using Complex = std::complex<double>;
   struct Panel {
     double low, high;
-    double shift;                // the phase exp(i k shift) that has been taken out
-    std::vector<Complex> terms;  // Chebyshev coefficients of the rest
-    double rough;                // of the polynomial
-    double doubt;                // of phi
+    double shift = 0;                 // the phase exp(i k shift) that has been taken out
+    std::vector<Complex> terms = {};  // Chebyshev coefficients of the rest
+    double rough = 0;                 // of the polynomial
+    double doubt = 0;                 // of phi
 
     /// k of a place from -1 to 1.
     [[nodiscard]] double at(double place) const {
@@ -74,6 +74,7 @@ class FourierInversion {
     double density = 0, below = 0;
   };
   void sample(const Transform& phi, double low, double high, double tolerance, int most);
+  [[nodiscard]] Panel interpolated(const Transform& phi, double low, double high, int degree);
   [[nodiscard]] Complex sampled(double k) const;
   // phi less what is singular.
   [[nodiscard]] Complex rest(const Sum& sum, double k) const;
