@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import pickle
+import re
 import subprocess
 import sys
 import tempfile
@@ -215,7 +216,7 @@ class Failures(Case):
 
     def test_the_program_of_the_sources_that_pip_installed_from(self):
         packages = self.folder / "venv" / "lib" / "python3.11" / "site-packages"
-        record = packages / "stickslip-0.1.0.dist-info" / "direct_url.json"
+        record = packages / "stickslip-1.0.0.dist-info" / "direct_url.json"
         file = self.folder / "my sources" / "build" / "stickslip"
         for place in (record, file):
             place.parent.mkdir(parents=True)
@@ -291,6 +292,11 @@ class Reference(Case):
     def test_one_version(self):
         self.assertRegex((SOURCES / "CMakeLists.txt").read_text(), rf"project\(stickslip VERSION {stickslip.__version__} ")
         self.assertRegex((SOURCES / "CITATION.cff").read_text(), rf"\nversion: {stickslip.__version__}\n")
+
+    def test_the_latest_change_is_that_version_and_its_date_is_that_of_the_citation(self):
+        date = re.search(r"\ndate-released: (\S+)\n", (SOURCES / "CITATION.cff").read_text())[1]
+        released = re.findall(r"^## \[(\d.*)\] - (.*)$", (SOURCES / "CHANGELOG.md").read_text(), re.MULTILINE)
+        self.assertEqual(released[0], (stickslip.__version__, date))
 
 
 class Sweeps(Case):
