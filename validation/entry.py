@@ -27,9 +27,15 @@ def subplots(*shape, **keywords):
     return figure, figure.subplots(*shape, sharey=sharey)
 
 
+def about(doc):
+    """The paragraphs of a docstring between title and usage."""
+    return [" ".join(paragraph.split()) for paragraph in doc.partition("\nusage:")[0].split("\n\n")[1:] if paragraph.strip()]
+
+
 class Entry(Report):
-    """What `doc` says in its first line is the title; `paper` names the figure or table; options of its own
-    are (name, arguments of add_argument)."""
+    """What `doc` says in its first line is the title; its paragraphs up to the usage say what is compared with what, and
+    why that may be believed; `paper` names the figure or table; options of its own are (name, arguments of add_argument).
+    """
 
     def __init__(self, doc, paper, *more):
         super().__init__()
@@ -45,7 +51,7 @@ class Entry(Report):
         self.folder = (self.arguments.report or pathlib.Path(self.scratch.name)).resolve()
         self.folder.mkdir(parents=True, exist_ok=True)
         self.parts = []
-        self.head = {"title": doc.splitlines()[0].rstrip("."), "paper": paper}
+        self.head = {"title": doc.splitlines()[0].rstrip("."), "about": about(doc), "paper": paper}
         self.start = time.monotonic()
 
     def text(self, words):

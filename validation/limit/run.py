@@ -1,5 +1,13 @@
 """The limit delta -> 0: orders over three decades, and limits with their errors.
 
+As the step delta of the noise vanishes the process tends to one with Ornstein-Uhlenbeck noise. The order of this
+convergence should be 1 in general, 3/2 for P_stick and 2 for E[V^2] where mu_d = mu_s and sliding phases graze the
+static one. Values over three decades of delta must show these orders, whether mu_s is on a level of the noise or
+between two.
+
+The limits are compared with values of the same limits that were obtained from larger steps, by removing powers of
+delta one by one.
+
 usage: python3 validation/limit/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
 --quick ends at delta = 2^-9 instead of 2^-13.

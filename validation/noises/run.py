@@ -1,5 +1,12 @@
 """Other noises: closed forms of telegraph noise, filtered noise in small steps, units of force, levels from a file.
 
+Telegraph noise has two values, +-a, and jumps at the rate kappa. Its equations can be solved by hand: closed forms of
+probabilities, durations, moments and densities are compared with computed values, and both with simulation.
+
+Filtered noise is compared with a simulation in Python that takes small steps of the continuous noise, on which the
+program puts a lattice. Two identities need no other value: in another unit of force all results are multiplied by
+known powers of the unit, and levels that are all moved by a constant under the opposite bias are the same model.
+
 usage: python3 validation/noises/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
 --quick simulates a third of the excursions and a quarter of the small steps, and draws fewer points.
@@ -53,7 +60,7 @@ def telegraph_values(entry):
             beside.append((value, 0, simulated[key]))
             rows.append((name, f"{kappa:g}", key, f"{value:.10g}", f"{found[key]['value']:.12g}",
                          far[-1], simulated[key]["value"], deviation(*beside[-1])))
-    entry.table("telegraph noise, a = 1, mu_s = 1, mu_d = 1/2, bias 0.3", (
+    entry.table("Telegraph noise by closed form, program and simulation: a = 1, mu_s = 1, mu_d = 1/2, bias 0.3", (
         "drag", "kappa", "quantity", "closed form", "found", "relative difference", "simulated", "z"), rows)
     entry.claim("telegraph noise against closed forms, relative", worse(*far), 1e-10)
     entry.simulated("simulated telegraph noise", beside)
@@ -145,7 +152,7 @@ def filtered_noise(entry):
     share = deltas[1]**2 / (deltas[0]**2 - deltas[1]**2)
     limits = fine + share * (fine - coarse)
     simulated, errors = in_small_steps(1e-3, 10, 1000 if entry.quick else 4000, numpy.random.default_rng(1))
-    entry.table("filtered noise, w = 15.6, zeta = 0.6, deviation 2, mu_s = mu_d = 1.5, no drag",
+    entry.table("Filtered noise on lattices and in small steps: w = 15.6, zeta = 0.6, deviation 2, mu_s = mu_d = 1.5, no drag",
                 ("quantity", *(f"delta = {delta}" for delta in deltas), "extrapolated", "small steps", "standard error"),
                 [(key, f"{a:.5g}", f"{b:.5g}", f"{c:.5g}", f"{d:.5g}", f"{e:.1g}")
                  for key, a, b, c, d, e in zip(keys, coarse, fine, limits, simulated, errors)])
