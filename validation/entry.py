@@ -2,6 +2,7 @@
 and leaves both in a folder for the report."""
 
 import json
+import os
 import pathlib
 import sys
 import tempfile
@@ -29,13 +30,14 @@ def subplots(*shape, **keywords):
 
 def about(doc):
     """The paragraphs of a docstring between title and usage."""
-    return [" ".join(paragraph.split()) for paragraph in doc.partition("\nusage:")[0].split("\n\n")[1:] if paragraph.strip()]
+    paragraphs = doc.partition("\nusage:")[0].split("\n\n")[1:]
+    return [" ".join(paragraph.split()) for paragraph in paragraphs if paragraph.strip()]
 
 
 class Entry(Report):
-    """What `doc` says in its first line is the title; its paragraphs up to the usage say what is compared with what, and
-    why that may be believed; `paper` names the figure or table; options of its own are (name, arguments of add_argument).
-    """
+    """What `doc` says in its first line is the title; its paragraphs up to the usage say what is compared with what,
+    and why that may be believed; `paper` names the figure or table; options of its own are (name, arguments of
+    add_argument)."""
 
     def __init__(self, doc, paper, *more):
         super().__init__()
@@ -47,6 +49,7 @@ class Entry(Report):
         self.arguments = options.parse_args()
         self.quick = self.arguments.quick
         self.program = Program(self.arguments.program)
+        os.environ["STICKSLIP"] = str(self.arguments.program.resolve())  # pictures ask it for symbols and words
         self.scratch = tempfile.TemporaryDirectory()
         self.folder = (self.arguments.report or pathlib.Path(self.scratch.name)).resolve()
         self.folder.mkdir(parents=True, exist_ok=True)

@@ -33,9 +33,12 @@ def symbol(name):
         return f"<mi>{FUNCTIONS[name]}</mi>"
     if name in GREEK or len(name) == 1:
         return f"<mi>{GREEK.get(name, name)}</mi>"
-    if derivative := re.fullmatch(r"d([A-Za-z]\w*_\w+)_d(\w+)", name):
+    if derivative := re.fullmatch(r"d([A-Za-z]\w*?_\w+?)_d(\w+)", name):
         above, below = (symbol(part) or f"<mtext>{part}</mtext>" for part in derivative.groups())
         return f"<mrow><mi>∂</mi>{above}</mrow><mo>/</mo><mrow><mi>∂</mi>{below}</mrow>"
+    if name.endswith("_minus"):
+        above = symbol(name.removesuffix("_minus"))
+        return above and f"<msup><mrow>{above}</mrow><mo>−</mo></msup>"
     base, _, index = name.partition("_")
     if not index or "_" in index or len(base) > 1 and not (base in GREEK and len(index) == 1):
         return None
@@ -166,7 +169,8 @@ def formula_at(text, at):
         return None
     words = text[at:formula.at]
     if len(words) == 1:  # the article, and the unit of time
-        formula.certain = words.isalpha() and words not in "aAI" and not (words == "s" and re.search(r"\d $", text[:at]))
+        seconds = words == "s" and re.search(r"\d $", text[:at])
+        formula.certain = words.isalpha() and words not in "aAI" and not seconds
     return (found, formula.at) if formula.certain else None
 
 
@@ -185,7 +189,8 @@ def html_of(text):
         if found := formula_at(text, begin):
             formula, at = found
             hyphen = "-" * text.startswith("-", at)  # lambda-problem: what follows is no option
-            parts += [plain_html(text[done:begin]), f"<math>{formula}</math>", hyphen]
+            joined = "\u2060" * bool(re.match(r"[^\s(\[]", text[at:]))  # no line begins with a comma
+            parts += [plain_html(text[done:begin]), f"<math>{formula}</math>{joined}{hyphen}"]
             done = at = at + len(hyphen)
         else:
             at = begin + 1

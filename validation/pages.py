@@ -19,8 +19,8 @@ DOTS_PER_PIXEL = 1.6  # pictures have 200 dots an inch: at this size their lette
 MODEL = """<p>A body on a rough floor is pushed by a random force <math><mi>X</mi></math> with the correlation time
 <math><mi>τ</mi></math>. Its velocity <math><mi>V</mi></math> obeys</p>
 <p class="equation"><math displaystyle="true"><mfrac><mrow><mi>d</mi><mi>V</mi></mrow><mrow><mi>d</mi><mi>t</mi></mrow>
-</mfrac><mo>=</mo><mi>X</mi><mo>+</mo><mi>b</mi><mo>(</mo><mi>V</mi><mo>)</mo><mo>−</mo><msub><mi>μ</mi><mi>d</mi></msub>
-<mspace width="0.2em"/><mi>sign</mi><mo>(</mo><mi>V</mi><mo>)</mo></math> while it slides,</p>
+</mfrac><mo>=</mo><mi>X</mi><mo>+</mo><mi>b</mi><mo>(</mo><mi>V</mi><mo>)</mo><mo>−</mo><msub><mi>μ</mi><mi>d</mi>
+</msub><mspace width="0.2em"/><mi>sign</mi><mo>(</mo><mi>V</mi><mo>)</mo></math> while it slides,</p>
 <p class="equation"><math><mi>V</mi><mo>=</mo><mn>0</mn></math> while it sticks, as long as <math><mo>|</mo><mi>X</mi>
 <mo>|</mo><mo>≤</mo><msub><mi>μ</mi><mi>s</mi></msub></math>.</p>
 """
@@ -28,10 +28,11 @@ INTRODUCTION = (
     "The force X jumps between levels that lie delta apart, so (X, V) is a piecewise deterministic Markov process: the "
     "model of Garnier, Lu and Mertz, called the paper on these pages. The program solves the Kolmogorov and "
     "Fokker-Planck equations of the process, without simulation, and states an error with every result.",
-    "No method vouches for itself here. Each entry compares results with something that they were not made from: closed "
-    "forms, other equations for the same quantity, simulation, digits that others have printed, solutions in extended "
-    "precision. It says what is compared with what, states claims with their verdicts, and shows the numbers. A claim holds if the largest "
-    "deviation found is within a tolerance that stands in the script of the entry, and both are shown.")
+    "No method vouches for itself here. Each entry compares results with something that they were not made from: "
+    "closed forms, other equations for the same quantity, simulation, digits that others have printed, solutions in "
+    "extended precision. It says what is compared with what, states claims with their verdicts, and shows the numbers. A claim "
+    "holds if the largest deviation found is within a tolerance that stands in the script of the entry. Both are "
+    "shown.")
 TERMS = (
     ("deterministic, computed", "Results of the program by the equations above."),
     ("simulated", "Results of the program by drawing paths at random, with 95 % confidence intervals. Simulation takes "
@@ -57,7 +58,8 @@ def page(title, depth, *body):
     """A whole page; `depth` folders below that of the report."""
     head = ('<meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'
             f'<link rel="stylesheet" href="{"../" * depth}{STYLE.name}">' + element("title", html.escape(title)))
-    return '<!DOCTYPE html>\n<html lang="en">' + element("head", head) + "\n<body>\n" + "\n".join(body) + "\n</body></html>\n"
+    body = "\n".join(body)
+    return f'<!DOCTYPE html>\n<html lang="en">{element("head", head)}\n<body>\n{body}\n</body></html>\n'
 
 
 def table(columns, rows, caption=None, classes=None):
@@ -68,10 +70,9 @@ def table(columns, rows, caption=None, classes=None):
         return element("tr", *(element(name, cell, **({"class_": kind} if kind else {}), **more)
                                for cell, kind in zip(row, kinds)))
 
-    return element("div", element(
-        "table", element("caption", element("span", caption)) if caption else "",
-        element("thead", cells("th", columns, scope="col")), element("tbody", *(cells("td", row) for row in rows))),
-        class_="wide")
+    whole = element("div", element("table", element("thead", cells("th", columns, scope="col")),
+                                   element("tbody", *(cells("td", row) for row in rows))), class_="wide")
+    return element("figure", element("figcaption", caption), whole) if caption else whole
 
 
 def verdict(good):
@@ -146,15 +147,16 @@ def entry_page(case, entry, titles, folder, quick):
                        if path.suffix in (".json", ".csv"))
     facts = [f"In the paper: {html_of(entry['paper'])}."] if entry["paper"] and "beyond" not in entry["paper"] else []
     command = element("code", f"python3 validation/{case}/run.py{' --quick' * quick}")
-    facts += [f"{count(entry, 'holds')} claims hold, {failures(entry)} fail.", f"Made in {entry['seconds']:.0f} s by {command}",
-              f"Numbers: {files or 'none'}"]
+    facts += [f"Claims: {count(entry, 'holds')} hold, {failures(entry)} fail.",
+              f"Made in {entry['seconds']:.0f} s by {command}", f"Numbers: {files or 'none'}"]
     way = links(titles, case)
     return page(
         f"{entry['title']} - stickslip", 1, way, element(
             "main", element("h1", html_of(entry["title"])),
             element("p", *(element("span", fact) for fact in facts), class_="facts"),
             element("h2", "What is compared, and why it may be believed"),
-            *(element("p", html_of(text)) for text in entry.get("about", ())), claims(entry), shown(entry, folder)), way)
+            *(element("p", html_of(text)) for text in entry.get("about", ())), claims(entry),
+            shown(entry, folder)), way)
 
 
 def contents(entries):

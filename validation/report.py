@@ -84,8 +84,9 @@ def main():
     cases = [case for case in CASES if case in cases and case not in without]
     arguments.program = arguments.program.resolve()
     arguments.folder.mkdir(parents=True, exist_ok=True)
-    print(f"report: {len(cases)} entries; all {len(CASES)} take {'four minutes' if arguments.quick else 'about an hour'} "
-          "on two idle cores", file=sys.stderr, flush=True)
+    duration = "four minutes" if arguments.quick else "about an hour"
+    print(f"report: {len(cases)} entries; all {len(CASES)} take {duration} on two idle cores",
+          file=sys.stderr, flush=True)
     progress = Progress(len(cases))
     # The longest first, so that no core waits for one of them at the end; timings last and alone.
     order = sorted(cases, key=lambda case: LONGEST.index(case) if case in LONGEST else len(LONGEST))

@@ -11,8 +11,8 @@ usage: python3 validation/calibration/run.py [--quick] [--groups NAMES] [--cases
                                              [--complex-program build/stickslip-complex] [--report FOLDER]
 
 Cases (cases.py) follow from the seed and their number. Each is run at several accuracies. Truths are found in run.py
-and direct.py, or by stickslip-complex. Runs that take over 20 times what -plan predicts are listed. --quick takes 16 cases of
-scalars and 10 of transforms; without it up to 300 of every group.
+and direct.py, or by stickslip-complex. Runs that take over 20 times what -plan predicts are listed. --quick
+takes 16 cases of scalars and 10 of transforms; without it up to 300 of every group.
 --page puts table and picture into the manual.
 """
 

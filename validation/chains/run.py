@@ -91,7 +91,8 @@ def main():
         what = ", ".join(f"{name} {value}" if isinstance(value, str) else f"{name} {value:.3g}"
                          for name, value in options.items())
         rows.append((str(len(chain.x)), what, max(abs(deviation(*one)) for one in beside), max(gaps)))
-    entry.table("Random chains, the farthest result of each by simulation and by the null vector", ("states", "scene", "largest |z|", "null vector, by both errors"), rows)
+    entry.table("Random chains, the farthest result of each by simulation and by the null vector",
+                ("states", "scene", "largest |z|", "null vector, by both errors"), rows)
     z = numpy.array([deviation(*one) for one in known])
     entry.at_least(f"share of {len(z)} confidence intervals at 95 % that hold the value", (abs(z) < 1.96).mean(), 0.9)
     entry.claim("largest |z|", abs(z).max(), 4.5)

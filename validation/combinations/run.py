@@ -255,7 +255,8 @@ def simulations(entry, cases):
             by_question[case["question"]].append(deviation(*known))
     rows = [(question, len(z), sum(abs(one) < 1.96 for one in z) / len(z), max(map(abs, z)))
             for question, z in sorted(by_question.items())]
-    entry.table("Computed values compared with simulation, by question", ("question", "values", "within 1.96", "largest |z|"), rows)
+    entry.table("Computed values compared with simulation, by question",
+                ("question", "values", "within 1.96", "largest |z|"), rows)
     z = [deviation(*known) for known in beside]
     inside = sum(abs(one) < 1.96 for one in z) / len(z)
     entry.at_least(f"share of {len(z)} confidence intervals at 95 % that hold the value", inside, 0.9)

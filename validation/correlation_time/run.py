@@ -32,7 +32,8 @@ def main():
                                        accuracy=1e-4))
             times[drag, mu_d, n] = items[-1]["t_corr"].value
     entry.drawn("correlation_time", "correlation_time.png",
-                f"t_corr, one over the full width of S_v at half maximum, against tau; mu_s = 1, delta = {delta:g}", *items)
+                "t_corr, one over the full width of S_v at half maximum, against tau; "
+                f"mu_s = 1, delta = {delta:g}", *items)
     entry.table("t_corr by drag law, mu_d and tau", ("drag", "mu_d", *(f"tau = 2^-{n}" for n in range(last + 1))),
                 [(drag, f"{mu_d:g}", *(times[drag, mu_d, n] for n in range(last + 1)))
                  for drag, mu_d in CURVES])

@@ -54,7 +54,8 @@ def simulations(entry):
             beside.append((exact[key]["value"], exact[key]["error"], s))
             z = deviation(*beside[-1])
             rows.append((name, key, f"{exact[key]['value']:.10g}", s["value"], *s["ci95"], z))
-    entry.table(f"Deterministic and simulated values without symmetry ({excursions} excursions from each side; a quarter for the ratchet)",
+    entry.table(f"Deterministic and simulated values without symmetry ({excursions} excursions from each side; a "
+                "quarter for the ratchet)",
                 ("scene", "quantity", "value", "simulated", "low", "high", "z"), rows)
     inside = sum(abs(deviation(*one)) < 1.96 for one in beside) / len(beside)
     entry.at_least("share of 95 % confidence intervals that hold the deterministic value", inside, 0.85)
@@ -72,8 +73,8 @@ def drift_in_white_noise(entry):
         limit, expected = (4 * first[1] - first[0]) / 3, 2 * g / (1 - g * g)
         found.append(difference(limit, expected))
         rows.append((f"{g}", *values, limit, expected))
-    entry.table("E[V] without drag under a bias g, and its limit in white noise; mu_d = mu_s = 1", ("bias", "tau = 1/16", "1/32", "1/64",
-                                                      "extrapolated", "2 g/(mu^2 - g^2)"), rows)
+    entry.table("E[V] without drag under a bias g, and its limit in white noise; mu_d = mu_s = 1",
+                ("bias", "tau = 1/16", "1/32", "1/64", "extrapolated", "2 g/(mu^2 - g^2)"), rows)
     entry.claim("the drift tends to that in white noise, relative", worse(*found), 1e-3)
 
 

@@ -61,7 +61,8 @@ def faults(entry):
     result = Timed()
     names = QUICK if entry.quick else QUICK + LONG
     unittest.defaultTestLoader.loadTestsFromNames(names).run(result)
-    entry.table("Faults that are provoked, and what must be seen", ("fault", "what must be seen", "seen", "seconds"), result.rows)
+    entry.table("Faults that are provoked, and what must be seen",
+                ("fault", "what must be seen", "seen", "seconds"), result.rows)
     lost = sum(how == "FAILS" for _, _, how, _ in result.rows)
     entry.claim(f"faults of {len(result.rows)} that lose, hang or leave something half", lost, 0.5)
 

@@ -114,7 +114,8 @@ def main():
     axes.hist(together, numpy.linspace(-4, 4, 25), density=True, color=COLOURS[0], alpha=0.5)
     axes.plot(x, scipy.stats.norm.pdf(x), color=COLOURS[1])
     axes.set(xlabel="(estimate - truth)/standard error", ylabel="density")
-    entry.figure(figure, "fits.png", "Distances of estimates from the truth, all parameters together. Line: the normal density")
+    entry.figure(figure, "fits.png", "Distances of estimates from the truth, all parameters together. Line: the normal "
+                 "density")
     entry.at_least("held of so many trials, chance of a count that is further from 95 % by chance", min(shares),
                    CHANCE / len(shares))
     entry.claim("mean of all distances, in its standard errors for independent ones",

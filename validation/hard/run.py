@@ -102,9 +102,11 @@ def main():
         missed += [] if reached else [scene.name]
     entry.text(f"{count} cases. Allowed is {FACTOR} times the error that the program states for what is "
                "compared; both are relative. Of each group the comparison that comes nearest to it is shown.")
-    entry.table("What must hold, case by case", ("scene", "why hard", "property", "achieved", "allowed", "seconds"), table)
+    entry.table("What must hold, case by case",
+                ("scene", "why hard", "property", "achieved", "allowed", "seconds"), table)
     for kind, values in kinds.items():
-        entry.claim(f"{CLAIMS.get(kind, kind)}: deviation over what is allowed, {len(values)} case{'s' * (len(values) > 1)}",
+        cases = f"{len(values)} case{'s' * (len(values) > 1)}"
+        entry.claim(f"{CLAIMS.get(kind, kind)}: deviation over what is allowed, {cases}",
                     worse(*sorted(values, reverse=True)), 1)
     entry.claim(f"cases that missed -accuracy ({'; '.join(missed) or 'none'})", len(missed), 0.5)
     if not only:

@@ -53,7 +53,8 @@ def main():
             value = values[key]["value"][0]
             rows.append((f"{mu_d:g}", key, f"{value:.14f}", digit))
             away.append(difference(value, float(digit)))
-    entry.table("Transforms at lambda = 1, by the program and by collocation", ("mu_d", "quantity", "value", "collocation"), rows)
+    entry.table("Transforms at lambda = 1, by the program and by collocation",
+                ("mu_d", "quantity", "value", "collocation"), rows)
     entry.claim("F_slide(1), F_stick(1) against collocation, relative", worse(*away), 1e-11)
     for known, simulated in found.values():
         for key in ("F_slide", "F_stick"):

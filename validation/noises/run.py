@@ -1,7 +1,7 @@
 """Other noises: closed forms of telegraph noise, filtered noise in small steps, units of force, levels from a file.
 
-Telegraph noise has two values, +-a, and jumps at the rate kappa. Its equations can be solved by hand: closed forms of
-probabilities, durations, moments and densities are compared with computed values, and both with simulation.
+Telegraph noise has two values, X = +-a, and jumps at the rate kappa. Its equations can be solved by hand: closed
+forms of probabilities, durations, moments and densities are compared with computed values, and both with simulation.
 
 Filtered noise is compared with a simulation in Python that takes small steps of the continuous noise, on which the
 program puts a lattice. Two identities need no other value: in another unit of force all results are multiplied by
@@ -152,7 +152,8 @@ def filtered_noise(entry):
     share = deltas[1]**2 / (deltas[0]**2 - deltas[1]**2)
     limits = fine + share * (fine - coarse)
     simulated, errors = in_small_steps(1e-3, 10, 1000 if entry.quick else 4000, numpy.random.default_rng(1))
-    entry.table("Filtered noise on lattices and in small steps: w = 15.6, zeta = 0.6, deviation 2, mu_s = mu_d = 1.5, no drag",
+    entry.table("Filtered noise on lattices and in small steps: w = 15.6, zeta = 0.6, deviation 2, mu_s = mu_d = 1.5, "
+                "no drag",
                 ("quantity", *(f"delta = {delta}" for delta in deltas), "extrapolated", "small steps", "standard error"),
                 [(key, f"{a:.5g}", f"{b:.5g}", f"{c:.5g}", f"{d:.5g}", f"{e:.1g}")
                  for key, a, b, c, d, e in zip(keys, coarse, fine, limits, simulated, errors)])

@@ -95,7 +95,8 @@ def main():
     exact = {"P_stick": 1 - p / c, "E_V": p / c / (1 / (1 - c) - 0.4 / c)}
     entry.claim("one on-off source by its closed form, relative", worse(*(
         difference(float(value), exact[key]) for name, key, value, *_ in rows if name == "1_sources" and key in exact)), 1e-10)
-    entry.table("Fluid queues by the program and by eigenvalues", ("queue", "quantity", "found", "by eigenvalues", "relative difference"), rows)
+    entry.table("Fluid queues by the program and by eigenvalues",
+                ("queue", "quantity", "found", "by eigenvalues", "relative difference"), rows)
     entry.claim("fluid queues by eigenvalues, relative", worse(*(row[-1] for row in rows)), 1e-9)
     entry.end()
 

@@ -36,7 +36,8 @@ def main():
         worst = worse(worst, *(abs(v - float(d)) / last_place(d) for v, d in zip(found, digits)))
         rows += [(f"1/{1 / delta:.0f}", omega, f"{v:.12g}", d)
                  for omega, v, d in zip(("0", "0.1", "1", "10"), found, digits)]
-    entry.table("S_v by the program and by another code: mu_d = 1/4, tau = 1", ("delta", "omega", "S_v", "other code"), rows)
+    entry.table("S_v by the program and by another code: mu_d = 1/4, tau = 1",
+                ("delta", "omega", "S_v", "other code"), rows)
     entry.claim("S_v against known digits, in units of the last one", worst, 0.6)
 
     beside = []

@@ -1,8 +1,9 @@
 """Friction that weakens with the speed, and drag that rises.
 
-Stribeck friction falls from mu_s to mu_d as the speed passes v_s. The values known for it come from elements of one
-degree in Python, which share no code with the program. Friction that weakens and drag that rises may be the same
-force: as tau -> 0 both must give the same numbers, those of white noise, which are integrals over a known density.
+Stribeck friction falls from mu_s to mu_d as the speed passes v_s, with an exponent gamma. The values known for it
+come from elements of one degree in Python, which share no code with the program. Friction that weakens and drag that
+rises may be the same force: as tau -> 0 both must give the same numbers, those of white noise, which are integrals
+over a known density.
 
 The other solution methods solve other equations for the same numbers, the upwind scheme must halve its error on a
 grid twice as fine, and simulation solves nothing. For v_s -> 0 and for large v_s the values must tend to those of
@@ -48,7 +49,8 @@ def known(entry):
         for key, value in values.items():
             found.append(abs(results[key]["value"] - value))
             rows.append((f"{velocity}", key, f"{results[key]['value']:.14g}", f"{value:.12g}"))
-    entry.table("Stribeck friction and values known for it: mu_d = 1/2, delta = 1/4, linear drag", ("v_s", "quantity", "found", "known"), rows)
+    entry.table("Stribeck friction and values known for it: mu_d = 1/2, delta = 1/4, linear drag",
+                ("v_s", "quantity", "found", "known"), rows)
     entry.claim("from known values", worse(*found), 1e-9)
 
 
@@ -65,8 +67,8 @@ def white_noise(entry):
                 limits = [(power * b - a) / (power - 1) for a, b in zip(limits, limits[1:])]
             found.append(difference(limits[-1], expected))
             rows.append((name, key, *values, limits[-1], expected))
-    entry.table("The same force as drag and as friction, tau -> 0", ("scene", "quantity", "tau = 4^-3", "4^-4", "4^-5", "4^-6",
-                             "extrapolated", "in white noise"), rows)
+    entry.table("The same force as drag and as friction, tau -> 0",
+                ("scene", "quantity", "tau = 4^-3", "4^-4", "4^-5", "4^-6", "extrapolated", "in white noise"), rows)
     entry.claim("limits from those in white noise, relative", worse(*found), 1e-3)
 
 
