@@ -52,8 +52,8 @@ class Formula:
 
     def __init__(self, text, at=0):
         self.text, self.at = text, at
-        self.letters = 0    # names seen
-        self.certain = False  # it holds more than numbers and words of one letter
+        self.letters = 0  # names seen
+        self.certain = False  # whether it holds more than numbers and words of one letter
 
     def taken(self, pattern):
         found = re.compile(pattern).match(self.text, self.at)
@@ -62,11 +62,11 @@ class Formula:
 
     def after(self, pattern, rule):
         """Operator and what follows it; None where either is missing."""
-        start = self.at
+        before = self.at, self.letters, self.certain
         operator = self.taken(pattern)
         right = operator and rule()
         if not right:
-            self.at = start
+            self.at, self.letters, self.certain = before
             return None
         return operator[1], right
 

@@ -265,7 +265,7 @@ class Formulas(unittest.TestCase):
             self.assertEqual(formulas.html_of(text), there)
 
     def test_words_numbers_and_commands_stay(self):
-        for text in ("a body", "0.03 s", "-1.5e-3", "2.5e-7", "[0.1, 0.2]", "v>0?0-2*v:0-0.5*v", "0-v*abs(v)",
+        for text in ("a body", "0.03 s", "-1.5e-3", "2.5e-7", "[0.1, 0.2]", "v>0?0-2*v:0-0.5*v", "0-v*abs(v)", "50 E(y==0)",
                      "Garnier's (9, 5) of 0.1302"):
             self.assertEqual(formulas.html_of(text), text.replace(">", "&gt;"))
         self.assertEqual(formulas.html_of("-mu_d, mean_slide[0]"), "<code>-mu_d</code>, <code>mean_slide[0]</code>")
