@@ -10,7 +10,7 @@ import html
 import re
 
 GREEK = {"gamma": "γ", "delta": "δ", "kappa": "κ", "lambda": "λ", "mu": "μ", "nu": "ν", "pi": "π", "sigma": "σ",
-         "tau": "τ", "omega": "ω"}
+         "tau": "τ", "omega": "ω", "zeta": "ζ"}
 FUNCTIONS = {"exp": "exp", "Var": "Var", "int": "∫", "ds": "ds"}
 KEYS = {"E_V": "E[V]", "E_V2": "E[V^2]", "E_absV": "E[|V|]", "E_XV": "E[X V]", "E_X2": "E[X^2]",
         "P_X_le_mu_s": "P(|X| <= mu_s)", "f_stick_0": "f_stick(0+)"}  # results whose name is a formula

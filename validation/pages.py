@@ -110,7 +110,7 @@ def claims(entry):
     """The claims of an entry in a table."""
     rows = [(verdict(part["verdict"] == "holds"), html_of(part["claim"]), html_of(part["numbers"]))
             for part in entry["parts"] if "claim" in part]
-    return element("h2", "Claims") + table(("verdict", "claim", "found"), rows) if rows else ""
+    return element("h2", "Claims") + table(("verdict", "claim", "found"), rows, classes=(None, None, "found")) if rows else ""
 
 
 def shown(entry, folder):

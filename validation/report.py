@@ -24,7 +24,7 @@ from harness import ROOT, parser
 CASES = ("paths", "averages", "points", "spectra", "correlation_time", "laplace", "durations",
          "extrapolation", "limit", "cost", "scan", "effects", "weakening", "noises", "queues", "chains", "slips", "fits",
          "calibration", "combinations", "hard", "faults")  # in the order of the paper
-LONGEST = ("calibration", "combinations", "slips", "hard", "extrapolation")  # they begin first
+LONGEST = ("fits", "noises", "calibration", "combinations", "slips", "hard", "extrapolation")  # they begin first
 
 
 class Progress:

@@ -76,7 +76,7 @@ def telegraph_densities(entry):
         known = [atom.sum() * f for f in densities(kappa, b, v[v > 0])]
         far += [abs(f - g).max() / g.max() for f, g in zip((rising, falling), known)]
         far.append(abs(pdf[:, v < 0]).max())
-        shown[rf"{name}, $\kappa$ = {kappa}"] = (v[v > 0], rising, falling, atom.sum(), kappa, b)
+        shown[rf"${name}$, $\kappa$ = {kappa}".replace("exp", r"\exp")] = (v[v > 0], rising, falling, atom.sum(), kappa, b)
     entry.claim("densities of X = +-a from the closed form, relative to the largest", worse(*far), 1e-6)
     return shown
 
@@ -112,7 +112,7 @@ def draw(entry, shown, biased):
                        label=rf"$a$ = {a:g}, $\kappa$ = {3.0**(n - 1):.2g}")
         panels[2].plot(biases, values, "o^s"[n], color=COLOURS[n], markersize=3)
     panels[2].set(xlabel="bias $g$  [force]", ylabel=r"$P_\mathrm{stick}$")
-    panels[2].set_title("b = 0", fontsize=9)
+    panels[2].set_title("$b = 0$", fontsize=9)
     for axes in panels:
         axes.set_ylim(0)
         axes.legend()
