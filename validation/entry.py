@@ -2,6 +2,7 @@
 and leaves both in a folder for the report."""
 
 import json
+import os
 import pathlib
 import sys
 import tempfile
@@ -27,9 +28,16 @@ def subplots(*shape, **keywords):
     return figure, figure.subplots(*shape, sharey=sharey)
 
 
+def about(doc):
+    """The paragraphs of a docstring between title and usage."""
+    paragraphs = doc.partition("\nusage:")[0].split("\n\n")[1:]
+    return [" ".join(paragraph.split()) for paragraph in paragraphs if paragraph.strip()]
+
+
 class Entry(Report):
-    """What `doc` says in its first line is the title; `paper` names the figure or table; options of its own
-    are (name, arguments of add_argument)."""
+    """What `doc` says in its first line is the title; its paragraphs up to the usage say what is compared with what,
+    and why that may be believed; `paper` names the figure or table; options of its own are (name, arguments of
+    add_argument)."""
 
     def __init__(self, doc, paper, *more):
         super().__init__()
@@ -41,11 +49,12 @@ class Entry(Report):
         self.arguments = options.parse_args()
         self.quick = self.arguments.quick
         self.program = Program(self.arguments.program)
+        os.environ["STICKSLIP"] = str(self.arguments.program.resolve())  # pictures ask it for symbols and words
         self.scratch = tempfile.TemporaryDirectory()
         self.folder = (self.arguments.report or pathlib.Path(self.scratch.name)).resolve()
         self.folder.mkdir(parents=True, exist_ok=True)
         self.parts = []
-        self.head = {"title": doc.splitlines()[0].rstrip("."), "paper": paper}
+        self.head = {"title": doc.splitlines()[0].rstrip("."), "about": about(doc), "paper": paper}
         self.start = time.monotonic()
 
     def text(self, words):

@@ -60,7 +60,7 @@ class Report:
 
     def claim(self, text, worst, tolerance):
         """Holds if the largest deviation found is within the tolerance; a NaN is not."""
-        self.verdict(worst <= tolerance, text, f"largest {worst:.1e}, allowed {tolerance:.3g}")
+        self.verdict(worst <= tolerance, text, f"largest {worst:.2g}, allowed {tolerance:.3g}")
 
     def at_least(self, text, smallest, bound):
         self.verdict(smallest >= bound, text, f"smallest {smallest:.3g}, wanted {bound:g}")

@@ -3,14 +3,12 @@
 usage: python3 validation/report.py [--quick] [--program build/stickslip] [--cases A,B] [--without A,B]
                                     FOLDER
 
-Runs the cases of validation/, two at a time, and writes FOLDER/index.html with all pictures inside.
---without leaves cases out, as ctest does with those that it runs by themselves; the page names them. Exit
+Runs the cases of validation/, two at a time, and writes FOLDER/index.html, from which pages of all entries are
+reached. --without leaves cases out, as ctest does with those that it runs by themselves; the page names them. Exit
 status 1 if a claim failed; the report is written all the same.
 """
 
-import base64
 import concurrent.futures
-import html
 import json
 import os
 import pathlib
@@ -20,24 +18,13 @@ import sys
 import threading
 import time
 
+import pages
 from harness import ROOT, parser
 
 CASES = ("paths", "averages", "points", "spectra", "correlation_time", "laplace", "durations",
          "extrapolation", "limit", "cost", "scan", "effects", "weakening", "noises", "queues", "chains", "slips", "fits",
          "calibration", "combinations", "hard", "faults")  # in the order of the paper
-STYLE = """
-body { font: 15px/1.5 sans-serif; max-width: 62em; margin: 2em auto; padding: 0 1em; color: #222 }
-h2 { margin-top: 2.2em; border-top: 1px solid #ccc; padding-top: 0.8em }
-img { max-width: 100% } figcaption, .source { color: #555; font-size: 13px }
-table { border-collapse: collapse; font-size: 13px; margin: 0.8em 0 }
-th, td { padding: 2px 10px; text-align: right; border-bottom: 1px solid #e4e4e4 }
-caption { text-align: left; font-weight: bold; padding-bottom: 4px }
-.holds::before { content: "\\2713 "; color: #009e73 } .FAILS { font-weight: bold }
-.FAILS::before { content: "\\2717 fails: "; color: #d55e00 } .claims { font-size: 13px }
-summary { cursor: pointer }
-"""
-LONGEST = ("calibration", "combinations", "slips", "hard", "extrapolation")  # they begin first
-LONG = 14  # rows of a table that is shown collapsed
+LONGEST = ("fits", "noises", "calibration", "combinations", "slips", "hard", "extrapolation")  # they begin first
 
 
 class Progress:
@@ -66,56 +53,9 @@ def made(case, arguments, progress):
         entry = json.loads((folder / "entry.json").read_text())
     else:
         entry = {"title": case, "paper": "", "failed": True, "seconds": 0,
-                 "parts": [{"text": f"stopped: {(done.stderr or done.stdout)[-2000:]}"}]}
+                 "parts": [{"text": "The case stopped:"}, {"printed": (done.stderr or done.stdout)[-2000:]}]}
     progress.tell(f"{case} {'FAILS' if entry['failed'] else 'holds'}", ended=True)
     return entry
-
-
-def escaped(words):
-    return html.escape(words, quote=False)
-
-
-def table_html(part):
-    cells = "".join(f"<th>{escaped(c)}</th>" for c in part["columns"])
-    rows = "".join("<tr>" + "".join(f"<td>{escaped(c)}</td>" for c in row) + "</tr>"
-                   for row in part["rows"])
-    table = f"<table><caption>{escaped(part['caption'])}</caption><tr>{cells}</tr>{rows}</table>"
-    if len(part["rows"]) <= LONG:
-        return table
-    return f"<details><summary>{escaped(part['caption'])}</summary>{table}</details>"
-
-
-def part_html(part, folder):
-    if "picture" in part:
-        data = base64.b64encode((folder / part["picture"]).read_bytes()).decode()
-        return (f'<figure><img alt="{escaped(part["caption"])}" src="data:image/png;base64,{data}">'
-                f"<figcaption>{escaped(part['caption'])}</figcaption></figure>")
-    if "columns" in part:
-        return table_html(part)
-    if "claim" in part:
-        return (f'<div class="claims {part["verdict"]}">{escaped(part["claim"])}: '
-                f"{escaped(part['numbers'])}</div>")
-    return f"<p>{escaped(part['text'])}</p>"
-
-
-def entry_html(case, entry, folder):
-    parts = "\n".join(part_html(part, folder) for part in entry["parts"])
-    return (f'<h2 id="{case}">{escaped(entry["title"])}</h2>\n<p class="source">{escaped(entry["paper"])}; '
-            f"{entry['seconds']:.0f} s; python3 validation/{case}/run.py</p>\n{parts}\n")
-
-
-def count(entry, verdict):
-    return sum(part.get("verdict") == verdict for part in entry["parts"])
-
-
-def contents_html(entries):
-    rows = "".join(
-        f'<tr><td style="text-align:left"><a href="#{case}">{escaped(entry["title"])}</a></td>'
-        f"<td>{count(entry, 'holds')}</td>"
-        # A case that stopped has no verdicts.
-        f"<td>{max(count(entry, 'FAILS'), int(entry['failed']))}</td></tr>"
-        for case, entry in entries.items())
-    return f"<table><tr><th>case</th><th>claims that hold</th><th>that fail</th></tr>{rows}</table>"
 
 
 def machine(program):
@@ -124,19 +64,11 @@ def machine(program):
             f"{platform.release()}; {time.strftime('%Y-%m-%d %H:%M UTC', time.gmtime())}\n{version}")
 
 
-def page(entries, arguments):
-    body = "".join(entry_html(case, entry, arguments.folder / case)
-                   for case, entry in entries.items())
-    form = "The quick form: fewer cases and simulations. " if arguments.quick else ""
-    left_out = [case for case in CASES if case not in entries]
-    if left_out:
-        form += f"Left out: {', '.join(left_out)}. "
-    return ("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-            f"<title>stickslip: validation</title><style>{STYLE}</style></head><body>\n"
-            "<h1>stickslip: validation</h1>\n<p>The figures and tables of the paper of Garnier, Lu and "
-            "Mertz in their order, with the numbers that it prints beside ours, and what goes beyond. "
-            f"{form}Each case runs alone too.</p>\n{contents_html(entries)}"
-            f"<pre>{escaped(machine(arguments.program))}</pre>\n{body}</body></html>\n")
+def note(cases, quick):
+    """What the first page says of the form of the report."""
+    left_out = [case for case in CASES if case not in cases]
+    return (("The quick form: fewer cases and simulations. " if quick else "")
+            + (f"Left out: {', '.join(left_out)}. " if left_out else "") + "Each entry runs alone too.")
 
 
 def main():
@@ -152,6 +84,9 @@ def main():
     cases = [case for case in CASES if case in cases and case not in without]
     arguments.program = arguments.program.resolve()
     arguments.folder.mkdir(parents=True, exist_ok=True)
+    duration = "four minutes" if arguments.quick else "about an hour"
+    print(f"report: {len(cases)} entries; all {len(CASES)} take {duration} on two idle cores",
+          file=sys.stderr, flush=True)
     progress = Progress(len(cases))
     # The longest first, so that no core waits for one of them at the end; timings last and alone.
     order = sorted(cases, key=lambda case: LONGEST.index(case) if case in LONGEST else len(LONGEST))
@@ -162,11 +97,10 @@ def main():
     if "cost" in cases:
         entries["cost"] = made("cost", arguments, progress)
     entries = {case: entries[case] for case in cases}
-    part = arguments.folder / "index.html.part"
-    part.write_text(page(entries, arguments))
-    part.replace(arguments.folder / "index.html")
+    pages.write(entries, arguments.folder, note(cases, arguments.quick), machine(arguments.program), arguments.quick)
     print(arguments.folder / "index.html")
     sys.exit(any(entry["failed"] for entry in entries.values()))
 
 
-main()
+if __name__ == "__main__":
+    main()

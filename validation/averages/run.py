@@ -1,5 +1,12 @@
 """P_stick, E[V^2] and P(|X| <= mu_s) against the noise step.
 
+The averages that the paper simulates are computed, and simulated anew, at the same parameters, for smaller and
+smaller steps of the noise.
+
+Three things stand beside the computed values. Simulation draws paths and solves no equation; the table shows its 95 %
+confidence intervals. The digits that the paper prints come from its own simulations. P(|X| <= mu_s) depends on the
+noise alone, and the paper has it from the kernel of the noise's generator, to fifteen digits.
+
 usage: python3 validation/averages/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 """
 

@@ -1,14 +1,18 @@
 """How well error estimates hold: random cases against direct solves and much finer runs.
 
+An error estimate is worth something if it is hardly ever too small and not much too large. Parameters are drawn at
+random, and every value that the program gives is compared with the truth: by kind of result, a run at a much higher
+accuracy, dense complex solves of another discretisation, or direct solves without reduced models. A value counts
+where the truth is known three times as well as the estimate claims. So the true error stands beside the estimate,
+value by value.
+
 usage: python3 validation/calibration/run.py [--quick] [--groups NAMES] [--cases N] [--seed N] [--jobs N]
                                              [--csv FILE] [--page docs/accuracy.md] [--program build/stickslip]
                                              [--complex-program build/stickslip-complex] [--report FOLDER]
 
-Cases (cases.py) follow from the seed and their number. Each is run at several accuracies. What stands for the truth
-is, by group, a run at a much higher accuracy, or dense complex solves of another discretisation (direct.py), or the
-direct solves of stickslip-complex. A value counts where the truth is known three times as well as the
-estimate to be judged claims. Runs that take over 20 times what -plan predicts are listed. --quick takes 16 cases of
-scalars and 10 of transforms; without it up to 300 of every group.
+Cases (cases.py) follow from the seed and their number. Each is run at several accuracies. Truths are found in run.py
+and direct.py, or by stickslip-complex. Runs that take over 20 times what -plan predicts are listed. --quick
+takes 16 cases of scalars and 10 of transforms; without it up to 300 of every group.
 --page puts table and picture into the manual.
 """
 
@@ -189,7 +193,7 @@ def judge(entry, name, rows):
     excess = Judgement(rows).excess
     entry.claim(f"error by estimate, {group.what}", excess.max(), group.worst)
     worst = numpy.argsort(-excess, kind="stable")[:5]
-    entry.table(f"{group.what}, largest errors by their estimates", ("by estimate", "value", "command"),
+    entry.table(f"Largest errors by their estimates, {group.what}", ("by estimate", "value", "command"),
                 [(f"{excess[n]:.2f}", f"{rows[n][3]}[{rows[n][4]}]", rows[n][-1]) for n in worst])
     return table
 
@@ -250,9 +254,9 @@ def main():
     words = f"Cases of seed {arguments.seed}: {counts}; {left_out} of them refused or too long."
     entry.text(words)
     table = [line for name in names for line in judge(entry, name, [row for row in rows if row[0] == name])]
-    entry.table("estimates against errors", COLUMNS_OF_TABLE, table)
+    entry.table("Estimates compared with errors, by kind of result and accuracy", COLUMNS_OF_TABLE, table)
     if slow:
-        entry.table(f"runs over {SLOW} times their prediction", ("times", "command"),
+        entry.table(f"Runs over {SLOW} times their prediction", ("times", "command"),
                     [(f"{ratio:.0f}", command) for ratio, command in sorted(slow, reverse=True)])
     misses = Judgement(rows)
     entry.text(f"In all, {100 * misses.missed.mean():.2f} % of the values and {misses.bad:.1f} % of the cases have an "

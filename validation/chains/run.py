@@ -1,9 +1,14 @@
 """Random chains of forces against simulation and the null vector of the whole generator.
 
+Chains of 2 to 40 states have rates between few or all of these, with and without a mirror image, under all drag laws,
+a bias, thresholds by direction, and friction that weakens. Nobody chose them because they are easy.
+
+Each is compared with its simulation, and with the null vector of the whole generator, which gives the stationary
+distribution without excursions, in units of the errors that both methods state.
+
 usage: python3 validation/chains/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
-Chains of 2 to 40 states have rates between few or all of these, with and without a mirror image, under all drag laws,
-a bias, thresholds by direction, and friction that weakens. --quick takes 6 instead of 60, and simulates a tenth.
+--quick takes 6 instead of 60, and simulates a tenth.
 """
 
 import pathlib
@@ -86,7 +91,8 @@ def main():
         what = ", ".join(f"{name} {value}" if isinstance(value, str) else f"{name} {value:.3g}"
                          for name, value in options.items())
         rows.append((str(len(chain.x)), what, max(abs(deviation(*one)) for one in beside), max(gaps)))
-    entry.table("random chains", ("states", "scene", "largest |z|", "null vector, by both errors"), rows)
+    entry.table("Random chains, the farthest result of each by simulation and by the null vector",
+                ("states", "scene", "largest |z|", "null vector, by both errors"), rows)
     z = numpy.array([deviation(*one) for one in known])
     entry.at_least(f"share of {len(z)} confidence intervals at 95 % that hold the value", (abs(z) < 1.96).mean(), 0.9)
     entry.claim("largest |z|", abs(z).max(), 4.5)

@@ -1,9 +1,15 @@
 """Combinations of effects and quantities, drawn at random so that every pair of choices occurs.
 
+Effects that work alone may fail together. Combinations are drawn so that any two choices (of friction, drag, bias,
+noise, discretisation, question) meet in one of them.
+
+Three comparisons need no known value. Reversing all forces and velocities gives the mirror image of a case, solved by
+other equations, with the same numbers. A bias of 10^-300 changes nothing, but makes the program take the path without
+symmetry. Simulation draws paths under the same effects.
+
 usage: python3 validation/combinations/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
-Each is compared with its mirror image, with itself under a bias of 10^-300 where it has symmetry, and with
-simulation. --quick draws as many as pairs need, else twenty more, computes less accurately, simulates less, and looks into the
+--quick draws as many as pairs need, else twenty more, computes less accurately, simulates less, and looks into the
 mirror of every fourth combination.
 """
 
@@ -222,13 +228,13 @@ def mirror_images(entry, cases):
             continue
         off, where = beyond_errors(here, computed(entry, case, bias=NOTHING))
         vanishing.append((off, name_of(case), where))
-    for found, what in ((mirrored, "of its mirror image, in units of what rounding allows"),
-                        (vanishing, "of itself with a bias of 1e-300, in units of both errors")):
+    for found, what in ((mirrored, "its mirror image, in units of what rounding allows"),
+                        (vanishing, "itself with a bias of 1e-300, in units of both errors")):
         found.sort(key=lambda one: -one[0])
-        entry.table(f"{len(found)} combinations beside their numbers {what}; the farthest",
+        entry.table(f"Each of {len(found)} combinations compared with {what}; the farthest",
                     ("combination", "quantity", "distance"),
                     [(name, where, off) for off, name, where in found[:4]])
-        entry.claim(f"a combination gives the numbers {what}", found[0][0], 1)
+        entry.claim(f"distance of a combination from {what}", found[0][0], 1)
 
 
 def simulations(entry, cases):
@@ -249,7 +255,8 @@ def simulations(entry, cases):
             by_question[case["question"]].append(deviation(*known))
     rows = [(question, len(z), sum(abs(one) < 1.96 for one in z) / len(z), max(map(abs, z)))
             for question, z in sorted(by_question.items())]
-    entry.table("against simulation", ("question", "values", "within 1.96", "largest |z|"), rows)
+    entry.table("Computed values compared with simulation, by question",
+                ("question", "values", "within 1.96", "largest |z|"), rows)
     z = [deviation(*known) for known in beside]
     inside = sum(abs(one) < 1.96 for one in z) / len(z)
     entry.at_least(f"share of {len(z)} confidence intervals at 95 % that hold the value", inside, 0.9)
@@ -275,7 +282,7 @@ def directions(entry):
             values = [(power * b - a) / (power - 1) for a, b in itertools.pairwise(values)]
         found.append(difference(values[0], 1 / plus - 1 / minus))
         rows.append((plus, minus, values[0], 1 / plus - 1 / minus))
-    entry.table("E[V] without drag as tau -> 0", ("mu_d+", "mu_d-", "extrapolated",
+    entry.table("E[V] without drag as tau -> 0, thresholds by direction", ("mu_d+", "mu_d-", "extrapolated",
                                                   "1/mu_d+ - 1/mu_d-"), rows)
     entry.claim("the drift of thresholds by direction tends to that in white noise, relative",
                 worse(*found), 1e-3)

@@ -1,5 +1,11 @@
 """Correlation time of the velocity against that of the noise.
 
+The correlation time t_corr is the inverse of the full width of the spectrum at half its maximum. The figure of the
+paper shows how it depends on the correlation time tau of the noise, for several values of mu_d and without drag.
+
+As tau -> 0 the noise becomes white. For mu_d = mu_s the velocity is then a diffusion, whose correlation time is known
+without any noise levels: the curves must tend to it.
+
 usage: python3 validation/correlation_time/run.py [--quick] [--program build/stickslip]
                                                   [--report FOLDER]
 """
@@ -26,8 +32,9 @@ def main():
                                        accuracy=1e-4))
             times[drag, mu_d, n] = items[-1]["t_corr"].value
     entry.drawn("correlation_time", "correlation_time.png",
-                f"t_corr = 1/(full width of S_v at half maximum), mu_s = 1, delta = {delta:g}", *items)
-    entry.table("t_corr", ("drag", "mu_d", *(f"tau = 2^-{n}" for n in range(last + 1))),
+                "t_corr, one over the full width of S_v at half maximum, against tau; "
+                f"mu_s = 1, delta = {delta:g}", *items)
+    entry.table("t_corr by drag law, mu_d and tau", ("drag", "mu_d", *(f"tau = 2^-{n}" for n in range(last + 1))),
                 [(drag, f"{mu_d:g}", *(times[drag, mu_d, n] for n in range(last + 1)))
                  for drag, mu_d in CURVES])
     if not entry.quick:

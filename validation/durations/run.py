@@ -1,5 +1,11 @@
 """Durations of sliding phases, sticking phases and excursions.
 
+The densities of the durations of sliding phases, sticking phases and excursions are computed at the parameters of the
+paper's figure. Its Table 1 prints f_stick(0+), the density of sticking times at zero.
+
+The values are compared with the digits of another code, with both columns of the table (Kolmogorov equations and
+Monte Carlo), and with simulations of our own. Where the paper disagrees with all of them, the reason is given.
+
 usage: python3 validation/durations/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 """
 
@@ -45,8 +51,8 @@ def table_of_the_paper(entry):
             digits = worse(digits, abs(ours["value"] - float(known)) / last_place(known))
             if mu_d < 1:
                 column = worse(column, difference(float(printed.partition("/")[0]), ours["value"]))
-    entry.table("f_stick(0+)", ("mu_d", "delta", "deterministic", "simulated, 95 %",
-                                "paper, Kolmogorov/Monte Carlo"), rows)
+    entry.table("f_stick(0+), the density of sticking times at zero",
+                ("mu_d", "delta", "deterministic", "simulated, 95 %", "paper, Kolmogorov/Monte Carlo"), rows)
     entry.text(REASON)
     entry.claim("f_stick(0+) against known digits, in units of the last one", digits, 0.6)
     entry.claim("the paper's Kolmogorov column, mu_d < mu_s, relative", column, 5e-3)

@@ -1,5 +1,12 @@
 """Effects one by one: bias, unequal drag, derivatives, sweeps, and predictions of their cost.
 
+Each effect that breaks the symmetry of the paper's model is compared with what it was not computed from. A bias and
+unequal drag: with simulation, for all results that both methods have. The drift E[V] under a bias g without drag:
+with its limit in white noise, 2 g/(mu^2 - g^2), which is known in closed form. Derivatives by parameters, which the
+program solves adjoint equations for: with differences of results at neighbouring parameters, extrapolated twice.
+
+In the long form, predicted memory is compared with measured memory, and a sweep with separate runs.
+
 usage: python3 validation/effects/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
 --quick simulates 3*10^4 excursions instead of 10^6, and times nothing.
@@ -47,7 +54,8 @@ def simulations(entry):
             beside.append((exact[key]["value"], exact[key]["error"], s))
             z = deviation(*beside[-1])
             rows.append((name, key, f"{exact[key]['value']:.10g}", s["value"], *s["ci95"], z))
-    entry.table(f"deterministic and simulated ({excursions} excursions from each side; a quarter for the ratchet)",
+    entry.table(f"Deterministic and simulated values without symmetry ({excursions} excursions from each side; a "
+                "quarter for the ratchet)",
                 ("scene", "quantity", "value", "simulated", "low", "high", "z"), rows)
     inside = sum(abs(deviation(*one)) < 1.96 for one in beside) / len(beside)
     entry.at_least("share of 95 % confidence intervals that hold the deterministic value", inside, 0.85)
@@ -65,8 +73,8 @@ def drift_in_white_noise(entry):
         limit, expected = (4 * first[1] - first[0]) / 3, 2 * g / (1 - g * g)
         found.append(difference(limit, expected))
         rows.append((f"{g}", *values, limit, expected))
-    entry.table("E[V] without drag, mu_d = mu_s = 1", ("bias", "tau = 1/16", "1/32", "1/64",
-                                                      "extrapolated", "2 g/(mu^2 - g^2)"), rows)
+    entry.table("E[V] without drag under a bias g, and its limit in white noise; mu_d = mu_s = 1",
+                ("bias", "tau = 1/16", "1/32", "1/64", "extrapolated", "2 g/(mu^2 - g^2)"), rows)
     entry.claim("the drift tends to that in white noise, relative", worse(*found), 1e-3)
 
 
@@ -103,7 +111,7 @@ def derivatives(entry):
             if name in exact:
                 far.append(difference(exact[name]["value"], value))
                 rows.append((name, f"{exact[name]['value']:.12g}", f"{value:.12g}", far[-1]))
-    entry.table("derivatives by adjoints and by extrapolated differences",
+    entry.table("Derivatives by adjoints and by extrapolated differences",
                 ("derivative", "adjoint", "differences", "relative difference"), rows)
     entry.claim("adjoints from extrapolated differences, relative", worse(*far), 1e-7)
 
@@ -121,7 +129,7 @@ def costs(entry):
         off += [max(memory, 1 / memory)]
         rows.append((" ".join(f"{k} {v}" for k, v in scene.items()), predicted, real, predicted / real,
                      entries, memory))
-    entry.table("predicted cost over real cost, two steps", ("scene", "predicted s", "real s",
+    entry.table("Predicted cost over real cost, two steps", ("scene", "predicted s", "real s",
                                                             "seconds", "entries", "memory"), rows)
     entry.claim("memory of the factors, ratio of predicted to measured or its inverse", worse(*off), 1.5)
 
@@ -142,7 +150,7 @@ def sweep_cost(entry):
             subprocess.run([program, "-delta", "0.25", "-mu_d", d, "-tau", t], check=True,
                            capture_output=True)
         apart = time.monotonic() - start
-    entry.table("100 points (mu_d x tau) at delta = 1/4", ("one sweep s", "100 runs s", "ratio"),
+    entry.table("100 points (10 of mu_d, 10 of tau) at delta = 1/4", ("one sweep s", "100 runs s", "ratio"),
                 [(together, apart, together / apart)])
     entry.claim("cost of the sweep relative to separate runs", together / apart, 0.6)
 

@@ -1,5 +1,9 @@
 """Extrapolation in p and delta beyond the memory limit of the paper.
 
+The paper extrapolates P_stick from coarse grids to grids that do not fit into memory. The same extrapolation of the
+same upwind values is repeated here (in the long form of the report), and both stand beside the value that it aims at,
+which hp elements give to nine digits.
+
 usage: python3 validation/extrapolation/run.py [--quick] [--program build/stickslip]
                                                [--report FOLDER]
 

@@ -1,9 +1,16 @@
-"""Faults and damaged input.
+"""Faults of the machine and damaged input: nothing is lost, hangs or is half written.
+
+Faults are provoked: processes are killed, disks are full, folders are read-only, memory runs out, one of several
+ranks has bad input. Each must be reported with its exit status, and files must be whole or absent.
+
+Input is damaged at random, bit by bit and line by line, and given to whole runs and to each reader alone. A refusal
+with a message is right, and so is a result where the damage leaves valid input. A crash, a hang or a message from
+within is a fault.
 
 usage: python3 validation/faults/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
-Provokes faults of the machine (tests/command_line), and gives damaged input to whole runs and, where
-fuzz_readers stands beside the program, to the readers alone (tests/fuzz).
+The faults are tests of tests/command_line, damaged input comes from tests/fuzz. The readers alone are tried where
+fuzz_readers stands beside the program.
 """
 
 import os
@@ -54,7 +61,8 @@ def faults(entry):
     result = Timed()
     names = QUICK if entry.quick else QUICK + LONG
     unittest.defaultTestLoader.loadTestsFromNames(names).run(result)
-    entry.table("Faults", ("fault", "what must be seen", "seen", "seconds"), result.rows)
+    entry.table("Faults that are provoked, and what must be seen",
+                ("fault", "what must be seen", "seen", "seconds"), result.rows)
     lost = sum(how == "FAILS" for _, _, how, _ in result.rows)
     entry.claim(f"faults of {len(result.rows)} that lose, hang or leave something half", lost, 0.5)
 

@@ -1,5 +1,10 @@
 """How often intervals of fitted parameters hold the values that the data were simulated with.
 
+Data sets are simulated with known parameters, the parameters are fitted to each of them, and it is counted how often
+the 95 % confidence intervals of the fits hold the known values: 95 of 100 should. Distances of the estimates from the
+truth, in units of the standard errors, should be normal with mean 0 and deviation 1. The data are durations, path
+lengths of slips, and averages with their errors.
+
 usage: python3 validation/fits/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 """
 
@@ -81,7 +86,7 @@ def outcomes(entry, data, free, **fixed):
 
 
 def main():
-    entry = Entry(__doc__, "-")
+    entry = Entry(__doc__, "beyond the paper")
     trials = 8 if entry.quick else 100
     free = ("mu_d", "tau")
     averages = {"P_stick": "sticking", "mean_stick": "sticking", "E_V2": "moments"}
@@ -109,7 +114,8 @@ def main():
     axes.hist(together, numpy.linspace(-4, 4, 25), density=True, color=COLOURS[0], alpha=0.5)
     axes.plot(x, scipy.stats.norm.pdf(x), color=COLOURS[1])
     axes.set(xlabel="(estimate - truth)/standard error", ylabel="density")
-    entry.figure(figure, "fits.png", "All parameters together. Line: the normal density")
+    entry.figure(figure, "fits.png", "Distances of estimates from the truth, all parameters together. Line: the normal "
+                 "density")
     entry.at_least("held of so many trials, chance of a count that is further from 95 % by chance", min(shares),
                    CHANCE / len(shares))
     entry.claim("mean of all distances, in its standard errors for independent ones",

@@ -1,10 +1,15 @@
-"""Hard cases.
+"""Hard cases: what breaks naive code, and properties that must hold.
+
+Thresholds meet noise levels, sliding is rarer than 10^-300, time scales lie 24 decades apart, or nothing damps the
+velocity. In each case several properties must hold to the digits that the program claims: identities such as the
+balance of power, values in extended precision (a program of its own, by Taylor series instead of elements, with 40
+digits), other solution methods, and results of neighbouring or rescaled cases. What makes no sense must be refused,
+with a reason.
 
 usage: python3 validation/hard/run.py [--quick] [--only WORDS] [--program build/stickslip]
                                       [--report FOLDER]
 
-Cases that break naive code (scenes.py), each with what must hold (properties.py) to the digits that
-the program claims. --only takes cases whose name contains the words.
+Cases are in scenes.py, what must hold in properties.py. --only takes cases whose name contains the words.
 """
 
 import pathlib
@@ -58,12 +63,27 @@ def refused(entry):
         done = subprocess.run(words, capture_output=True, text=True)
         wrong += done.returncode != status or word not in done.stderr
         rows.append((name, str(done.returncode), done.stderr.strip().replace("stickslip: ", "")))
-    entry.table("Refused", ("scene", "exit status", "message"), rows)
+    entry.table("Cases that must be refused, and how they are", ("scene", "exit status", "message"), rows)
     entry.claim("cases that should be refused and are not, or without a reason", wrong, 0.5)
 
 
-CLAIMS = {"balances": "power, probability, noise, hitting distribution, sticking times",
-          "reference": "values against references in extended precision"}
+CLAIMS = {"balances": "identities of power, probability, noise, hitting distribution, sticking times",
+          "reference": "values in extended precision",
+          "by_hand": "sticking times on three levels, by hand",
+          "null_vector": "the null vector of the whole generator",
+          "lambda_route": "the lambda-problem of the paper",
+          "hitting": "hitting times of the paper",
+          "fluid_queue": "the fluid queue, which has no grid in v",
+          "monte_carlo": "simulation, four standard deviations",
+          "scaled": "the same case in units in which tau is 1",
+          "neighbour": "mu_d next to a level and on it",
+          "near_no_drag": "weak drag and none",
+          "finer": "a run to two more digits",
+          "transforms": "values, bounds and limits of Laplace transforms",
+          "resolvent": "identities of resolvents",
+          "spectrum": "sign, area and decay of spectra",
+          "direct": "a complex factorisation for each frequency",
+          "same": "the case without the small number"}
 
 
 def main():
@@ -82,9 +102,11 @@ def main():
         missed += [] if reached else [scene.name]
     entry.text(f"{count} cases. Allowed is {FACTOR} times the error that the program states for what is "
                "compared; both are relative. Of each group the comparison that comes nearest to it is shown.")
-    entry.table("Scenes", ("scene", "why hard", "property", "achieved", "allowed", "seconds"), table)
+    entry.table("What must hold, case by case",
+                ("scene", "why hard", "property", "achieved", "allowed", "seconds"), table)
     for kind, values in kinds.items():
-        entry.claim(f"{CLAIMS.get(kind, kind)}: deviation over what is allowed, {len(values)} cases",
+        cases = f"{len(values)} case{'s' * (len(values) > 1)}"
+        entry.claim(f"{CLAIMS.get(kind, kind)}: deviation over what is allowed, {cases}",
                     worse(*sorted(values, reverse=True)), 1)
     entry.claim(f"cases that missed -accuracy ({'; '.join(missed) or 'none'})", len(missed), 0.5)
     if not only:

@@ -1,5 +1,13 @@
 """The limit delta -> 0: orders over three decades, and limits with their errors.
 
+As the step delta of the noise vanishes the process tends to one with Ornstein-Uhlenbeck noise. The order of this
+convergence should be 1 in general, 3/2 for P_stick and 2 for E[V^2] where mu_d = mu_s and sliding phases graze the
+static one. Values over three decades of delta must show these orders, whether mu_s is on a level of the noise or
+between two.
+
+The limits are compared with values of the same limits that were obtained from larger steps, by removing powers of
+delta one by one.
+
 usage: python3 validation/limit/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
 --quick ends at delta = 2^-9 instead of 2^-13.
@@ -17,6 +25,7 @@ from stickslip.plots.style import COLOURS
 KNOWN = {0.25: {"P_stick": 0.1205970417, "E_V2": 0.3097150920},
          1: {"P_stick": 0.516134807, "E_V2": 0.0496223037}}
 ORDERS = {0.25: {"P_stick": 1, "E_V2": 1}, 1: {"P_stick": 1.5, "E_V2": 2}}
+LABELS = {"P_stick": r"$P_\mathrm{stick}$", "E_V2": "$E[V^2]$"}
 FAMILIES = ("on a level", "between levels")
 
 
@@ -30,13 +39,13 @@ def draw(entry, studies):
                 limit = table["limit"][-1]
                 apart = [abs(value / limit - 1) for value in table["value"]]
                 axis.loglog(table["delta"], apart, marker, color=colour, markersize=4,
-                            fillstyle="none", label=f"{key}, mu_s {family}")
+                            fillstyle="none", label=rf"{LABELS[key]}, $\mu_s$ {family}")
             order = ORDERS[mu_d][key]
             first, last = table["delta"][0], table["delta"][-1]
             axis.loglog([first, last], [apart[-1] * (d / last) ** order for d in (first, last)],
                         color=colour, linewidth=0.8, label=f"order {order:g}")
-        axis.set_title(f"mu_d = {mu_d:g}")
-        axis.set_xlabel("noise step delta [force]")
+        axis.set_title(rf"$\mu_d$ = {mu_d:g}")
+        axis.set_xlabel(r"noise step $\delta$  [force]")
         axis.legend(fontsize=8)
     axes[0].set_ylabel("relative distance from the limit")
     entry.figure(figure, "limit.png", "Distance of stationary values from their limits against the noise step; "

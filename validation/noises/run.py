@@ -1,5 +1,12 @@
 """Other noises: closed forms of telegraph noise, filtered noise in small steps, units of force, levels from a file.
 
+Telegraph noise has two values, X = +-a, and jumps at the rate kappa. Its equations can be solved by hand: closed
+forms of probabilities, durations, moments and densities are compared with computed values, and both with simulation.
+
+Filtered noise is compared with a simulation in Python that takes small steps of the continuous noise, on which the
+program puts a lattice. Two identities need no other value: in another unit of force all results are multiplied by
+known powers of the unit, and levels that are all moved by a constant under the opposite bias are the same model.
+
 usage: python3 validation/noises/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
 --quick simulates a third of the excursions and a quarter of the small steps, and draws fewer points.
@@ -53,7 +60,7 @@ def telegraph_values(entry):
             beside.append((value, 0, simulated[key]))
             rows.append((name, f"{kappa:g}", key, f"{value:.10g}", f"{found[key]['value']:.12g}",
                          far[-1], simulated[key]["value"], deviation(*beside[-1])))
-    entry.table("telegraph noise, a = 1, mu_s = 1, mu_d = 1/2, bias 0.3", (
+    entry.table("Telegraph noise by closed form, program and simulation: a = 1, mu_s = 1, mu_d = 1/2, bias 0.3", (
         "drag", "kappa", "quantity", "closed form", "found", "relative difference", "simulated", "z"), rows)
     entry.claim("telegraph noise against closed forms, relative", worse(*far), 1e-10)
     entry.simulated("simulated telegraph noise", beside)
@@ -69,7 +76,7 @@ def telegraph_densities(entry):
         known = [atom.sum() * f for f in densities(kappa, b, v[v > 0])]
         far += [abs(f - g).max() / g.max() for f, g in zip((rising, falling), known)]
         far.append(abs(pdf[:, v < 0]).max())
-        shown[rf"{name}, $\kappa$ = {kappa}"] = (v[v > 0], rising, falling, atom.sum(), kappa, b)
+        shown[rf"${name}$, $\kappa$ = {kappa}".replace("exp", r"\exp")] = (v[v > 0], rising, falling, atom.sum(), kappa, b)
     entry.claim("densities of X = +-a from the closed form, relative to the largest", worse(*far), 1e-6)
     return shown
 
@@ -105,7 +112,7 @@ def draw(entry, shown, biased):
                        label=rf"$a$ = {a:g}, $\kappa$ = {3.0**(n - 1):.2g}")
         panels[2].plot(biases, values, "o^s"[n], color=COLOURS[n], markersize=3)
     panels[2].set(xlabel="bias $g$  [force]", ylabel=r"$P_\mathrm{stick}$")
-    panels[2].set_title("b = 0", fontsize=9)
+    panels[2].set_title("$b = 0$", fontsize=9)
     for axes in panels:
         axes.set_ylim(0)
         axes.legend()
@@ -145,7 +152,8 @@ def filtered_noise(entry):
     share = deltas[1]**2 / (deltas[0]**2 - deltas[1]**2)
     limits = fine + share * (fine - coarse)
     simulated, errors = in_small_steps(1e-3, 10, 1000 if entry.quick else 4000, numpy.random.default_rng(1))
-    entry.table("filtered noise, w = 15.6, zeta = 0.6, deviation 2, mu_s = mu_d = 1.5, no drag",
+    entry.table("Filtered noise on lattices and in small steps: w = 15.6, zeta = 0.6, deviation 2, mu_s = mu_d = 1.5, "
+                "no drag",
                 ("quantity", *(f"delta = {delta}" for delta in deltas), "extrapolated", "small steps", "standard error"),
                 [(key, f"{a:.5g}", f"{b:.5g}", f"{c:.5g}", f"{d:.5g}", f"{e:.1g}")
                  for key, a, b, c, d, e in zip(keys, coarse, fine, limits, simulated, errors)])

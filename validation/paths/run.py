@@ -1,4 +1,11 @@
-"""Paths of the process.
+"""Paths of the process, and how long they rest.
+
+The pictures show what the process does: the force jumps from level to level, the velocity follows it, and the body
+sticks while the force is small.
+
+A path is drawn at random and knows nothing of the equations that give the probability of sticking. So the share of
+time that a long path spends at rest is compared with P_stick. Excursions from rest are independent, which gives the
+standard deviation of that share; four of them are allowed.
 
 usage: python3 validation/paths/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 """

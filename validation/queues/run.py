@@ -1,12 +1,14 @@
 """Fluid queues: documented examples of other programs, and on-off sources.
 
-usage: python3 validation/queues/run.py [--quick] [--program build/stickslip] [--report FOLDER]
-
 A queue that fills at the rates r of the states of a chain, and is empty for a while where they are negative, is a
 body without drag that cannot slide backwards: the states have the forces r + mu, mu_d = mu_s = mu, and no force
-reaches the other threshold. Means and weights follow besides from eigenvalues, and printed digits from the manuals
-of BuTools (GeneralFluidSolve) and DiscretisedFluidQueues.jl, whose example is given another rate so that it is
-stable.
+reaches the other threshold. So results of queueing theory must come out.
+
+Means and weights follow besides from eigenvalues, and printed digits from the manuals of BuTools (GeneralFluidSolve)
+and DiscretisedFluidQueues.jl, whose example is given another rate so that it is stable. The exponents of on-off
+sources are those of Anick, Mitra and Sondhi, roots of quadratic equations.
+
+usage: python3 validation/queues/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 """
 
 import pathlib
@@ -93,7 +95,8 @@ def main():
     exact = {"P_stick": 1 - p / c, "E_V": p / c / (1 / (1 - c) - 0.4 / c)}
     entry.claim("one on-off source by its closed form, relative", worse(*(
         difference(float(value), exact[key]) for name, key, value, *_ in rows if name == "1_sources" and key in exact)), 1e-10)
-    entry.table("Fluid queues", ("queue", "quantity", "found", "by eigenvalues", "relative difference"), rows)
+    entry.table("Fluid queues by the program and by eigenvalues",
+                ("queue", "quantity", "found", "by eigenvalues", "relative difference"), rows)
     entry.claim("fluid queues by eigenvalues, relative", worse(*(row[-1] for row in rows)), 1e-9)
     entry.end()
 

@@ -1,11 +1,13 @@
 """What a run costs over the whole range of an option.
 
+One option at a time goes from end to end, everything else as in mu_s = tau = 1, mu_d = 1/2, delta = 1/4. The largest
+jump from one value to the next shows where a user who moves an option a little waits much longer.
+
+Nothing is claimed, as seconds depend on the machine and on what else it does.
+
 usage: python3 validation/scan/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
-One option at a time goes from end to end, everything else as in mu_s = tau = 1, mu_d = 1/2, delta = 1/4. The
-largest jump from one value to the next shows where a user who moves an option a little waits much longer.
-Nothing is claimed, as seconds depend on the machine and on what else it does. --quick takes every third
-value.
+--quick takes every third value.
 """
 
 import pathlib

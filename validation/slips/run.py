@@ -1,5 +1,14 @@
 """Slips, first passages and displacement: closed forms, white noise, other formulas, simulation.
 
+Path lengths of sliding phases, times to reach a velocity, and the displacement in a given time are compared with what
+they were not made from. In telegraph noise without drag they have closed forms. In white noise without drag (compared
+in the long form of the report) the mean first passage to |V| = w is (e^(mu w) - 1 - mu w)/mu^2 and the diffusivity
+5/mu^4.
+
+Other formulas lead to the same numbers: mean_slip = E_absV mean_excursion, the variance of the displacement grows at
+the rate S_0, its mean is E_V t, and it is twice the integral of (t - s) C(s) over s, where C is the autocorrelation
+of the velocity, computed by itself. Simulation follows paths.
+
 usage: python3 validation/slips/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
 --quick simulates a tenth of the excursions, leaves white noise out, and counts costs at a larger
@@ -78,7 +87,7 @@ def telegraph(entry):
         for key, value in (("P_peak", telegraph_peak(w)), ("mean_first_passage", passage),
                            ("mean_first_passage_rest", passage + 0.5 / KAPPA)):
             rows.append((key, f"{w:g}", found[key]["value"][n], value, difference(found[key]["value"][n], value)))
-    entry.table("telegraph noise without drag, a = 1, kappa = 1.7, mu_s = 1, mu_d = 1/2, bias 0.3",
+    entry.table("Telegraph noise without drag by closed forms: a = 1, kappa = 1.7, mu_s = 1, mu_d = 1/2, bias 0.3",
                 ("quantity", "w", "found", "closed form", "relative difference"), rows)
     entry.claim("telegraph noise against closed forms, relative", worse(*(row[-1] for row in rows)), 1e-9)
 
@@ -95,7 +104,7 @@ def white_noise(entry):
     known = [math.exp(w) - 1 - w for w in speeds] + [5, 5]
     powers = numpy.vander(numpy.sqrt(taus), increasing=True)
     limit = numpy.linalg.solve(powers, numpy.array(rows))[0]
-    entry.table("white noise, b = 0, mu = 1", (
+    entry.table("Limits in white noise: b = 0, mu = 1", (
         "tau", "time to |V| = 1", "time to |V| = 2", "S_0/2", "(Var x(2 t) - Var x(t))/(2 t), t = 1000"), [
             *([tau, *row] for tau, row in zip(taus, rows)), ["0", *limit], ["known", *known]])
     entry.claim("(e^(mu w) - 1 - mu w)/mu^2 and 5/mu^4 as tau -> 0, relative",
@@ -130,7 +139,7 @@ def simulation(entry, name, scene):
     found = entry.results(**scene, **ASKED, accuracy=1e-4)
     count = 5 * 10**3 if entry.quick else 5 * 10**4
     result = entry.results(**scene, **ASKED, route="monte_carlo", excursions=count)
-    found.name, result.name = name, f"{name}, simulated"
+    found.name, result.name = "computed", "simulated"
     beside = []
     for key, simulated in result.items():
         if key == "f_slip":  # a histogram: its cells are no points
@@ -158,7 +167,7 @@ def costs(entry):
         seconds = sum(step["seconds"] for step in run["cost"]["steps"])
         rows.append((name, seconds, seconds / (rows[0][1] if rows else seconds), f"{run['plan']['factorizations_real']}",
                      f"{run['plan']['solves']}"))
-    entry.table(f"costs at delta = 1/{2**halvings}, degree 9", (
+    entry.table(f"Costs at delta = 1/{2**halvings}, degree 9", (
         "quantities besides sticking", "seconds", "times sticking alone", "factorisations", "solves planned"), rows)
 
 

@@ -1,5 +1,11 @@
 """Power spectral density of the velocity.
 
+S_v, the power spectral density of the velocity, is computed at many frequencies. The picture has the panels of the
+paper's figure.
+
+Digits that another code has printed are compared in units of their last place. Simulation sums Fourier integrals over
+the excursions of random paths instead, and has 95 % confidence intervals.
+
 usage: python3 validation/spectra/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 """
 
@@ -21,7 +27,7 @@ def main():
         scenes = [(mu_d, 1, tau) for mu_d in (0.25, 1) for tau in values]
     items = [entry.results(quantities="spectrum", mu_d=mu_d, delta=delta, tau=tau, omega="1e-3:50:120:log",
                            accuracy=1e-5) for mu_d, delta, tau in scenes]
-    entry.drawn("spectra", "spectra.png", "S_v against omega; mu_s = 1, b(v) = -v", *items)
+    entry.drawn("spectra", "spectra.png", "S_v against omega by mu_d, delta and tau; mu_s = 1, b(v) = -v", *items)
 
     worst, rows = 0.0, []
     for delta, digits in S_V.items():
@@ -30,7 +36,8 @@ def main():
         worst = worse(worst, *(abs(v - float(d)) / last_place(d) for v, d in zip(found, digits)))
         rows += [(f"1/{1 / delta:.0f}", omega, f"{v:.12g}", d)
                  for omega, v, d in zip(("0", "0.1", "1", "10"), found, digits)]
-    entry.table("S_v at mu_d = 1/4, tau = 1", ("delta", "omega", "S_v", "other code"), rows)
+    entry.table("S_v by the program and by another code: mu_d = 1/4, tau = 1",
+                ("delta", "omega", "S_v", "other code"), rows)
     entry.claim("S_v against known digits, in units of the last one", worst, 0.6)
 
     beside = []

@@ -1,5 +1,14 @@
 """Friction that weakens with the speed, and drag that rises.
 
+Stribeck friction falls from mu_s to mu_d as the speed passes v_s, with an exponent gamma. The values known for it
+come from elements of one degree in Python, which share no code with the program. Friction that weakens and drag that
+rises may be the same force: as tau -> 0 both must give the same numbers, those of white noise, which are integrals
+over a known density.
+
+The other solution methods solve other equations for the same numbers, the upwind scheme must halve its error on a
+grid twice as fine, and simulation solves nothing. For v_s -> 0 and for large v_s the values must tend to those of
+Coulomb friction with mu_d and with mu_s.
+
 usage: python3 validation/weakening/run.py [--quick] [--program build/stickslip] [--report FOLDER]
 
 --quick simulates 10^4 excursions instead of 3*10^5, and takes fewer speeds.
@@ -40,7 +49,8 @@ def known(entry):
         for key, value in values.items():
             found.append(abs(results[key]["value"] - value))
             rows.append((f"{velocity}", key, f"{results[key]['value']:.14g}", f"{value:.12g}"))
-    entry.table("mu_d = 1/2, delta = 1/4, linear drag", ("v_s", "quantity", "found", "known"), rows)
+    entry.table("Stribeck friction and values known for it: mu_d = 1/2, delta = 1/4, linear drag",
+                ("v_s", "quantity", "found", "known"), rows)
     entry.claim("from known values", worse(*found), 1e-9)
 
 
@@ -57,8 +67,8 @@ def white_noise(entry):
                 limits = [(power * b - a) / (power - 1) for a, b in zip(limits, limits[1:])]
             found.append(difference(limits[-1], expected))
             rows.append((name, key, *values, limits[-1], expected))
-    entry.table("tau -> 0", ("scene", "quantity", "tau = 4^-3", "4^-4", "4^-5", "4^-6",
-                             "extrapolated", "in white noise"), rows)
+    entry.table("The same force as drag and as friction, tau -> 0",
+                ("scene", "quantity", "tau = 4^-3", "4^-4", "4^-5", "4^-6", "extrapolated", "in white noise"), rows)
     entry.claim("limits from those in white noise, relative", worse(*found), 1e-3)
 
 
@@ -74,7 +84,7 @@ def methods(entry):
         rows.append((route, other["P_stick"]["value"], exact["P_stick"]["value"]))
     upwind = [entry.run(**scene, scheme="upwind", p=p)["results"]["P_stick"]["value"]
               - exact["P_stick"]["value"] for p in (128, 256)]
-    entry.table("P_stick by other methods", ("method", "found", "by excursions"), rows)
+    entry.table("P_stick by other solution methods", ("method", "found", "by excursions"), rows)
     entry.claim("other equations, relative", worse(*far), 1e-6)
     entry.claim("upwind differences: error at p = 256 over that at 128, from 1/2",
                 abs(upwind[1] / upwind[0] - 0.5), 0.05)
