@@ -72,7 +72,7 @@ Complex polynomial(const std::vector<Complex>& terms, double x) {
 FourierInversion::FourierInversion(const Transform& phi, double mass, double mean, double deviation,
                                    bool even, const Limits& limits)
     : even_(even), mass_(mass), mean_(mean), scale_(deviation), accuracy_(limits.accuracy) {
-  const double tolerance = 0.6 * limits.accuracy;
+  const double tolerance = 0.4 * limits.accuracy;
   double low = 0, high = std::min(2 / scale_, limits.highest);
   for (bool open = true; open; high = std::min(2 * high, limits.highest)) {
     const std::size_t first = panels_.size();

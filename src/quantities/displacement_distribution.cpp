@@ -99,19 +99,22 @@ std::vector<Atom> atoms_at(const Computation& computation, double time) {
   return all;
 }
 
-/// The distribution at one time: atoms, and a density about the first of them.
+/// The distribution at one time: atoms, and a density that is singular where bodies rest: at 0, as
+/// many slips are short; where none rests, at the first atom.
 class Distribution {
  public:
   Distribution(const Computation& computation, double time, std::vector<Atom> atoms)
       : atoms_(std::move(atoms)) {
     const auto& question = computation.question();
-    even_ = model::mirrors_itself(computation.process(), question.start);
+    const auto& process = computation.process();
+    even_ = model::mirrors_itself(process, question.start);
+    if (process.lowest_static() > process.highest_static()) centre_ = atoms_[0].at;
     if (time > 0) invert(computation, time);
   }
 
   [[nodiscard]] Uncertain density(double d) const {
     if (!inversion_) return {};
-    const auto found = inversion_->density(d - centre());
+    const auto found = inversion_->density(d - centre_);
     return {found.value, found.error};
   }
   // P(x <= d), or P(x < d).
@@ -119,7 +122,7 @@ class Distribution {
     if (even_ && d > 0) return Uncertain{1, 0} - below(-d, !or_at);
     Uncertain sum;
     if (inversion_) {
-      const auto found = inversion_->below(d - centre());
+      const auto found = inversion_->below(d - centre_);
       sum = {found.value, found.error};
     }
     for (const Atom& atom : atoms_) {
@@ -141,12 +144,11 @@ class Distribution {
  private:
   void invert(const Computation& computation, double time);
 
-  [[nodiscard]] double centre() const { return atoms_[0].at; }
   [[nodiscard]] double inverse(double p) const {
     for (const Atom& atom : atoms_) {
       if (below(atom.at, false).value < p && p <= cdf(atom.at).value) return atom.at;
     }
-    if (!inversion_) return centre();
+    if (!inversion_) return atoms_[0].at;
     const auto off = [&](double d) { return cdf(d).value - p; };
     if (off(lowest_) >= 0) return lowest_;
     if (off(highest_) <= 0) return highest_;
@@ -159,29 +161,30 @@ class Distribution {
 
   std::vector<Atom> atoms_;
   bool even_ = false;
+  double centre_ = 0;  // the place of the singularity
   std::optional<Inversion> inversion_;
   double spread_ = 0, lowest_ = 0, highest_ = 0;  // beyond which nothing is looked for
 };
 
-// phi without the atoms, about the first.
+// phi without the atoms, about the singularity.
 void Distribution::invert(const Computation& computation, double time) {
   const auto& question = computation.question();
   double mass = 1;
   for (const Atom& atom : atoms_) mass -= atom.probability.value;
   if (mass < 1e-14) return;
   DisplacementModel model(computation.systems, computation.distribution(), question.start, time,
-                          0.1 * question.accuracy);
+                          0.03 * question.accuracy);
   const auto phi = [&](double k) -> Inversion::Transformed {
     const auto found = model.at(k);
-    auto rest = found.value * std::polar(1.0, -k * centre());
+    auto rest = found.value * std::polar(1.0, -k * centre_);
     double error = found.error;
     for (const Atom& atom : atoms_) {
-      rest -= std::polar(atom.probability.value, k * (atom.at - centre()));
+      rest -= std::polar(atom.probability.value, k * (atom.at - centre_));
       error += atom.probability.error;
     }
     return {even_ ? rest.real() : rest, error};
   };
-  // Mean and deviation from small k.
+  // Mean and deviation from small k. The mean is that of what is inverted, from the singularity on.
   const double h = 0.1 / (model.speed() * time);
   const auto small = phi(h).value / mass;
   const double mean = even_ ? 0 : std::arg(small) / h;
@@ -189,10 +192,10 @@ void Distribution::invert(const Computation& computation, double time) {
   constexpr double furthest = 60;
   // An octave more for each digit.
   const double units = std::exp2(std::ceil(-std::log10(question.accuracy)));
-  lowest_ = centre() + mean - furthest * spread_;
-  highest_ = centre() + mean + furthest * spread_;
+  lowest_ = centre_ + mean - furthest * spread_;
+  highest_ = centre_ + mean + furthest * spread_;
   inversion_.emplace(phi, mass, mean, spread_, even_,
-                     Inversion::Limits{question.accuracy, units * 2 / spread_, 400});
+                     Inversion::Limits{0.3 * question.accuracy, units * 2 / spread_, 400});
 }
 
 void find_displacements(Computation& computation) {

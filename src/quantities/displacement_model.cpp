@@ -166,7 +166,10 @@ DisplacementModel::Transform exponential_of(MPI_Comm comm, const Vector& one, co
   DisplacementModel::Transform found;
   Complex before = 0;
   Vector seen;
-  for (int count = 1, next = 4; count < most; ++count) {
+  // n vectors follow times up to about n/z. With fewer than for t, waves have died out in the space
+  // that they span, and more vectors change nothing of that for a while.
+  const int least = std::min(most / 2, std::max(4, static_cast<int>(z * t / 2)));
+  for (int count = 1, next = least; count < most; ++count) {
     const Vector newest = basis.column(count - 1);
     Vector product{std::inner_product(c.begin(), c.end(), newest.begin(), Complex(0))};
     add_up(comm, product);
