@@ -70,6 +70,26 @@ class Pictures(Case):
         self.assertNotEqual(shown.words.get_text(), words)
         self.assertIn(f"{found['P_stick'].value:.6g}", shown.words.get_text())
 
+    def test_parts_are_drawn_as_the_whole_is(self):
+        """Every point of the picture, after results, after what is refused, and after it is no longer."""
+        made = self.explorer(scene={"mu_s": 1})
+        canvas, shown = made.figure.canvas, []
+        canvas.blit = shown.append
+        self.settled(made)
+        canvas.draw()
+        self.assertEqual(shown, [])  # there was no whole picture yet
+        for option, value in (("mu_d", 0.9), ("bias", 1.5), ("bias", 0.3)):
+            made.sliders[option].set_val(value)
+            self.until(lambda: made.status.get_text().endswith(" s") or made.problem, made.poll)
+            parts = numpy.array(canvas.buffer_rgba())
+            canvas.draw()
+            self.assertLess((abs(parts.astype(int) - numpy.array(canvas.buffer_rgba())).max(axis=-1) > 8).sum(), 1, option)
+        self.assertGreater(len(shown), 9)
+        made.save_picture("png")
+        before = len(shown)
+        made.show("after another resolution the whole is drawn")
+        self.assertEqual(len(shown), before)
+
     def test_force_is_across_and_velocity_upwards_as_in_every_picture(self):
         made = self.explorer(scene={"bias": 0.6})  # a body that a constant force pulls moves upwards only
         self.settled(made)
