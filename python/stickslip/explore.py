@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from .calls import run
+from .cases import Worker
 from .knobs import Knob, carried, choices, knobs, starts
 from .live_pictures import PICTURES, PLACES, LivePictures
 from .needed import needed
@@ -408,7 +409,8 @@ def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = F
     use_backend(browser, port)
     pyplot = needed("matplotlib.pyplot")
     figure = pyplot.figure(TITLE, figsize=FIGURE)
-    explorer = Explorer(figure, options, scene)
+    worker = Worker()  # which starts the program once
+    explorer = Explorer(figure, options, scene, compute=worker.run)
     timer = figure.canvas.new_timer(POLL)
     timer.add_callback(lambda: explorer.poll() or True)  # Matplotlib drops what returns False
     timer.start()
@@ -416,3 +418,4 @@ def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = F
         pyplot.show()
     finally:
         explorer.solver.close()
+        worker.end()

@@ -3,12 +3,12 @@
 usage: python3 tests/python/explorer_delays.py [docs/explorer.png]
 
 Drawn by Agg, as windows and browsers have it: parts at once, the whole figure where that was asked for. Processor time
-is that of Python until the first picture, and until the last one, and that of the program for all of them. With a file,
-the explorer is then saved there as the manual shows it.
+is that of Python and of the program (in Linux) until the first picture, and until the last one. With a file, the
+explorer is then saved there as the manual shows it.
 """
 
+import os
 import pathlib
-import resource
 import statistics
 import sys
 import time
@@ -18,29 +18,31 @@ import matplotlib
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from stickslip.cases import Worker
 from stickslip.explore import FIGURE, Explorer
 
 MOVES = 20
 
 
-def spent():
-    """Seconds, own processor seconds, and those of programs that have ended."""
-    ended = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return time.monotonic(), time.process_time(), ended.ru_utime + ended.ru_stime
+def spent(worker):
+    """Seconds, own processor seconds, and those of the program."""
+    process = worker._process
+    ticks = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()[11:13] if process else ()
+    return time.monotonic(), time.process_time(), sum(map(int, ticks)) / os.sysconf("SC_CLK_TCK")
 
 
-def moved(explorer, act):
+def moved(explorer, worker, act):
     """What was spent from an act to the first picture, and to the last one."""
-    begin, first = spent(), None
+    begin, first = spent(worker), None
     act()
     while not explorer.status.get_text().endswith(" s"):
         news = explorer.poll()
         if explorer.figure.stale_whole:
             explorer.figure.stale_whole = False
             explorer.figure.canvas.draw()
-        first = first or news and spent()
+        first = first or news and spent(worker)
         time.sleep(0.002)
-    return [[now - before for now, before in zip(part, begin)] for part in (first, spent())]
+    return [[now - before for now, before in zip(part, begin)] for part in (first, spent(worker))]
 
 
 def main():
@@ -48,19 +50,22 @@ def main():
     figure.stale_whole = True
     figure.canvas.draw_idle = lambda: setattr(figure, "stale_whole", True)
     figure.canvas.blit = lambda box: None  # which windows and browsers have
-    explorer = Explorer(figure, {"accuracy": 1e-4}, {"delta": 0.125})
-    moves = [moved(explorer, lambda: explorer.sliders["mu_d"].set_val(0.2 + 0.03 * move)) for move in range(MOVES + 1)]
-    (first, last), slowest = ([[statistics.median(column) for column in zip(*part)] for part in zip(*moves[1:])],
-                              max(move[0][0] for move in moves[1:]))  # the first one makes fonts
-    print(f"first picture: median {first[0]:.3f} s, largest {slowest:.3f} s of {MOVES} moves, {first[1]:.3f} s of processor "
-          f"time in Python\nall: {last[0]:.3f} s, {last[1]:.3f} s of processor time in Python, {last[2]:.3f} s of the program")
+    worker = Worker()
+    explorer = Explorer(figure, {"accuracy": 1e-4}, {"delta": 0.125}, compute=worker.run)
+    moves = [moved(explorer, worker, lambda: explorer.sliders["mu_d"].set_val(0.2 + 0.03 * move))
+             for move in range(MOVES + 1)]
+    for name, part in zip(("first picture", "all pictures"), zip(*moves[1:])):  # the first move makes fonts
+        seconds, python, program = zip(*part)
+        print(f"{name}: median {statistics.median(seconds):.3f} s, largest {max(seconds):.3f} s of {MOVES} moves; processor "
+              f"time {statistics.median(python):.3f} s in Python, {statistics.median(program):.2f} s in the program")
     for picture in sys.argv[1:]:
         explorer.radios["friction"].set_active(1)
         explorer.sliders["mu_d"].set_val(0.3)
-        moved(explorer, lambda: explorer.sliders["bias"].set_val(0.2))
+        moved(explorer, worker, lambda: explorer.sliders["bias"].set_val(0.2))
         explorer.status.set_text("")  # how long it took here
         figure.savefig(picture, dpi=100)
     explorer.solver.close()
+    worker.end()
 
 
 main()

@@ -19,7 +19,7 @@ sys.path.insert(0, str(SOURCES / "python"))
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import stickslip
-from stickslip import explore, knobs, live_pictures
+from stickslip import cases, explore, knobs, live_pictures
 from stickslip.program import BadInput, Cancelled
 
 SECONDS = 60  # until what never comes is given up
@@ -185,14 +185,34 @@ class Newest(Case):
         self.assertEqual(asked[-1], 0.8)
 
     def test_a_run_that_is_cancelled_ends_the_program(self):
-        cancel = threading.Event()
-        timer = threading.Timer(0.3, cancel.set)
-        timer.start()
-        self.addCleanup(timer.cancel)
-        start = time.monotonic()
+        worker = cases.Worker()
+        self.addCleanup(worker.end)
+        for run in (stickslip.run, worker.run):
+            cancel = threading.Event()
+            timer = threading.Timer(0.3, cancel.set)
+            timer.start()
+            self.addCleanup(timer.cancel)
+            start = time.monotonic()
+            with self.assertRaises(Cancelled):
+                run(cancel=cancel, route="monte_carlo", excursions=10**12, quantities="sticking")
+            self.assertLess(time.monotonic() - start, SECONDS / 2)
+
+    def test_one_process_answers_until_a_run_is_cancelled(self):
+        worker, cancel = cases.Worker(), threading.Event()
+        self.addCleanup(worker.end)
+        asked = {**COARSE, "delta": 0.5, "quantities": "sticking,density"}
+        first = worker.run(cancel=threading.Event(), **asked)
+        process = worker._process
+        with self.assertRaises(BadInput):
+            worker.run(cancel=threading.Event(), mu_d=-1)
+        again = worker.run(cancel=threading.Event(), **asked)
+        self.assertIs(worker._process, process)
+        self.assertEqual(again["P_stick"].value, stickslip.run(**asked)["P_stick"].value)
+        numpy.testing.assert_array_equal(again.density.values, first.density.values)
+        cancel.set()
         with self.assertRaises(Cancelled):
-            stickslip.run(cancel=cancel, route="monte_carlo", excursions=10**12, quantities="sticking")
-        self.assertLess(time.monotonic() - start, SECONDS / 2)
+            worker.run(cancel=cancel, route="monte_carlo", excursions=10**12, quantities="sticking")
+        self.assertEqual(worker.run(**asked)["P_stick"].value, first["P_stick"].value)
 
 
 class Knobs(Case):
