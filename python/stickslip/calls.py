@@ -44,7 +44,7 @@ def run(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = Non
     **options
         Parameters of the model and options of the program by name: numbers, text, sequences of them, or True for
         an option without a value. Write `lambda_` for lambda. The program checks them. `noise` may be a chain of
-        `stickslip.noise`. help() lists all of them at the end.
+        `stickslip.noise`, and `force_file` a `Record`. help() lists all of them at the end.
 
     Returns
     -------
@@ -100,6 +100,9 @@ def prepared(options: Mapping[str, Any], folder: pathlib.Path, keep: Path | None
         options["output"] = os.fspath(output)
     if hasattr(options.get("noise"), "save"):
         options |= _files_of(options, folder)
+    if hasattr(options.get("force_file"), "save"):
+        record, options["force_file"] = options["force_file"], folder / "force.csv"
+        record.save(options["force_file"])
     return options
 
 

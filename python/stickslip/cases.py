@@ -2,6 +2,7 @@
 
 import concurrent.futures
 import json
+import math
 import os
 import pathlib
 import queue
@@ -9,6 +10,7 @@ import shlex
 import subprocess
 import tempfile
 import threading
+import time
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from types import TracebackType
@@ -16,7 +18,7 @@ from typing import Any, BinaryIO
 
 from . import program as programs
 from .calls import Path, found_in, prepared, shortfall
-from .program import DONE, AccuracyWarning, BadInput, Finished, OutOfMemory, ProgramError, TimedOut, Unsolved
+from .program import DONE, AccuracyWarning, BadInput, Cancelled, Finished, OutOfMemory, ProgramError, TimedOut, Unsolved
 from .reference import with_options
 from .results import Results
 
@@ -34,7 +36,15 @@ class Worker:
         self._process: subprocess.Popen | None = None
         self._errors: BinaryIO | None = None
 
-    def answer(self, words: Sequence[str], timeout: float | None = None) -> dict[str, Any]:
+    def run(self, *, cancel: threading.Event | None = None, timeout: float | None = None, **options: Any) -> Results:
+        """As `stickslip.run` by this process; what is missed is in the results, and no warning."""
+        with tempfile.TemporaryDirectory(prefix="stickslip-") as folder:
+            options = prepared(options, pathlib.Path(folder))
+            tree = self.answer(programs.words_of(options), timeout, cancel)
+            return found_in(tree, options.get("output"))
+
+    def answer(self, words: Sequence[str], timeout: float | None = None, cancel: threading.Event | None = None
+               ) -> dict[str, Any]:
         """The summary of a case.
 
         Parameters
@@ -43,26 +53,32 @@ class Worker:
             Of its command line.
         timeout
             Seconds after which the process is killed.
+        cancel
+            Has the process killed when another thread sets it.
 
         Raises
         ------
         BadInput, OutOfMemory, Unsolved
             With the message of the program, which stays for the next case.
-        TimedOut, ProgramError
+        TimedOut, Cancelled, ProgramError
             Where the process ended instead.
         """
         line = shlex.join(words)
         if "\n" in line:
             raise BadInput(f"{line}: options are on one line; leave line ends out")
-        process, late = self._started(), threading.Event()
+        process, late, done = self._started(), threading.Event(), threading.Event()
 
-        def kill() -> None:
-            late.set()
-            process.kill()
+        def watch() -> None:
+            end = time.monotonic() + (math.inf if timeout is None else timeout)
+            while not done.wait(programs.LOOK):
+                if cancel is not None and cancel.is_set() or time.monotonic() > end:
+                    late.set()
+                    process.kill()
+                    return
 
-        timer = threading.Timer(timeout or 0, kill)
-        if timeout is not None:
-            timer.start()
+        watcher = threading.Thread(target=watch, daemon=True)
+        if timeout is not None or cancel is not None:
+            watcher.start()
         try:
             process.stdin.write(os.fsencode(line) + b"\n")
             process.stdin.flush()
@@ -70,13 +86,17 @@ class Worker:
         except BrokenPipeError:
             answered = b""
         finally:
-            timer.cancel()
-        if not answered.endswith(b"\n"):
+            done.set()
+            if watcher.is_alive():
+                watcher.join()  # what it kills later would be the next case
+        if late.is_set() or not answered.endswith(b"\n"):
             status = process.wait()
             said = self._said()
             self.end()
-            raise TimedOut(f"the case took longer than {timeout:g} s") if late.is_set() else ProgramError(
-                programs.end_of(Finished(status, "", said)))
+            if late.is_set():
+                raise Cancelled("the case was cancelled") if cancel is not None and cancel.is_set() else TimedOut(
+                    f"the case took longer than {timeout:g} s")
+            raise ProgramError(programs.end_of(Finished(status, "", said)))
         tree = json.loads(answered)
         if "message" in tree:
             if tree["status"] not in KINDS:
@@ -154,10 +174,7 @@ class Pool:
     def _one(self, case: Mapping[str, Any]) -> Results | Exception:
         worker = self._idle.get()
         try:
-            with tempfile.TemporaryDirectory(prefix="stickslip-") as folder:
-                options = prepared(case, pathlib.Path(folder))
-                tree = worker.answer(programs.words_of(options), self._timeout)
-                return found_in(tree, options.get("output"))
+            return worker.run(timeout=self._timeout, **case)
         except FAILURES as problem:
             return problem
         finally:

@@ -44,7 +44,7 @@ class Chain:
     meant
         What the chain stands for, or None.
     fit
-        The comparison with a record, of chains that were made of one.
+        Of chains that were made of a record: the comparison with it (`Fit`), or the `Band` that was fitted.
     notes
         What is approximate, in sentences.
 

@@ -129,7 +129,9 @@ def record(record: Record, levels: int | Sequence[float] | None = None, *, mu_s:
         except _TooFew as few:
             problem = few
     else:
-        raise problem
+        swings = -memory.rho.min() > SWING
+        raise ValueError(f"{problem}; its autocorrelation swings to {memory.rho.min():.2f}: narrow_band_of(record) may "
+                         "fit" if swings else str(problem)) from None
     rates = counts / spent[:, None]
     rough = Chain(x, rates, f"levels of {record.source or 'a record'}")
     factor = rough.correlation_time / time if match_time else 1.0

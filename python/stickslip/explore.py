@@ -12,9 +12,11 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from .calls import run
+from .cases import Worker
 from .knobs import Knob, carried, choices, knobs, starts
-from .live_pictures import LivePictures
+from .live_pictures import PICTURES, PLACES, LivePictures
 from .needed import needed
+from .partial_drawing import Regions
 from .plots.fields import SLIDE
 from .program import BadInput, Cancelled, OutOfMemory, ProgramError
 from .results import Results
@@ -27,6 +29,7 @@ REFUSED = "#b00000"
 OUT_OF_USE = "#aaaaaa"
 KNOBS_BELOW = 6  # one another
 FIGURE = (13, 8)  # inches
+REGIONS = {**PLACES, "knobs": (0.33, 0.05, 1, PLACES["distribution"][1]), "status": (0, 0, 0.59, 0.05)}
 TIMES, FREQUENCIES = "0.02:20:60:log", "0.02:50:60:log"
 PARTS = (("the stationary distribution", {"quantities": "sticking,moments,density"}),
          ("the spectrum", {"quantities": "spectrum", "omega": FREQUENCIES}),
@@ -111,6 +114,7 @@ class Explorer:
         self.figure, self.options, self.folder = figure, dict(options), folder
         self.solver = Solver(compute)
         self.pictures = LivePictures(figure)
+        self.regions = Regions(figure, REGIONS)
         self.knobs, self.offered = {knob.option: knob for knob in knobs()}, choices()
         self.sliders: dict[str, Any] = {}
         self.radios: dict[str, Any] = {}
@@ -134,12 +138,13 @@ class Explorer:
             label = textwrap.fill(knob.label.replace(" $", "\N{NO-BREAK SPACE}$"), 38)  # the symbol not alone
             slider = widgets.Slider(axes, label, knob.place(knob.low), knob.place(knob.high), color=SLIDE,
                                     valinit=knob.place(self._start(knob, scene)), initcolor="none")
+            slider.drawon = False  # all of them are drawn at once
             for text in (slider.label, slider.valtext):
                 text.set_fontsize(8.5)
             slider.label.set_x(-0.06)  # clear of the handle
             slider.on_changed(lambda _, option=option: self.turn(option))
             self.sliders[option] = slider
-        top = 0.38
+        top = 0.374
         for option, values in self.offered.items():
             value = str(scene.get(option, values[0]))
             values = values if value in values else [*values, value]
@@ -193,8 +198,9 @@ class Explorer:
             slider.valtext.set_color("black" if counts else OUT_OF_USE)
             slider.label.set_color("black" if counts else OUT_OF_USE)
             column, row = divmod(shown, KNOBS_BELOW)
-            slider.ax.set_position((0.5 + 0.335 * column, 0.345 - 0.052 * row, 0.11, 0.03))
+            slider.ax.set_position((0.5 + 0.335 * column, 0.339 - 0.052 * row, 0.11, 0.03))
             shown += used
+        self.regions.draw("knobs")
 
     # From knobs to the program
 
@@ -221,9 +227,9 @@ class Explorer:
     def _place(self, option: str, value: float) -> None:
         """Move a slider as if the user did not."""
         slider = self.sliders[option]
-        slider.eventson = slider.drawon = False
+        slider.eventson = False
         slider.set_val(self.knobs[option].place(value))
-        slider.eventson = slider.drawon = True
+        slider.eventson = True
 
     def turn(self, option: str) -> None:
         """A slider was moved; what cannot stay beside it moves along."""
@@ -271,7 +277,7 @@ class Explorer:
         """The line at the bottom."""
         self.status.set_color(color)
         self.status.set_text(text if len(text) < 120 else text[:117] + "...")
-        self.figure.canvas.draw_idle()
+        self.regions.draw("status")
 
     def refuse(self, text: str) -> None:
         """Say why there is no result: beside the slider of the option that the program names, and in the bottom line."""
@@ -286,6 +292,7 @@ class Explorer:
                                    verticalalignment="bottom" if above else "top")
                 for part in (self.sliders[option].valtext, self.sliders[option].label):
                     part.set_color(REFUSED)
+                self.regions.draw("knobs")
                 break
         self.problem = text.splitlines()[0]
         self.show(self.problem, REFUSED)
@@ -301,13 +308,18 @@ class Explorer:
                 continue
             news = True
             if isinstance(found, Exception):
-                self.pictures.veil(range(len(PARTS)) if part == 0 else (part,), True)
+                veiled = range(len(PARTS)) if part == 0 else (part,)
+                self.pictures.veil(veiled, True)
+                self.regions.draw("numbers", *[PICTURES[n] for n in veiled])
                 self.refuse(str(found))
                 continue
             if part == 0:
                 self.problem = ""
-                self.complaint.set_visible(False)
+                if self.complaint.get_visible():
+                    self.complaint.set_visible(False)
+                    self.regions.draw("knobs")
             self.pictures.draw(part, found)
+            self.regions.draw("numbers", PICTURES[part])
             if part + 1 < len(PARTS):
                 self.show(f"computing {PARTS[part + 1][0]}")
             elif not self.problem:
@@ -397,7 +409,8 @@ def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = F
     use_backend(browser, port)
     pyplot = needed("matplotlib.pyplot")
     figure = pyplot.figure(TITLE, figsize=FIGURE)
-    explorer = Explorer(figure, options, scene)
+    worker = Worker()  # which starts the program once
+    explorer = Explorer(figure, options, scene, compute=worker.run)
     timer = figure.canvas.new_timer(POLL)
     timer.add_callback(lambda: explorer.poll() or True)  # Matplotlib drops what returns False
     timer.start()
@@ -405,3 +418,4 @@ def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = F
         pyplot.show()
     finally:
         explorer.solver.close()
+        worker.end()

@@ -22,6 +22,10 @@ AREA = 900  # of the disc of a state at rest with probability 1, in points^2
 NUMBERS = ("P_stick", "mean_stick", "mean_slide", "E_V2", "E_absV", "E_V")
 SHARES = (0.5, 0.9)  # quantiles of durations
 BOTTOM = 0.45  # of the pictures in the figure
+LOWEST, MIDDLE = BOTTOM - 0.075, (BOTTOM + 1) / 2 - 0.04  # with their labels; between spectrum and durations
+PLACES = {"distribution": (0, LOWEST, 0.557, 1), "spectrum": (0.557, MIDDLE, 1, 1),
+          "durations": (0.557, LOWEST, 1, MIDDLE), "numbers": (0, 0.05, 0.22, LOWEST)}
+PICTURES = tuple(PLACES)[:3]
 
 
 class LivePictures:
@@ -44,6 +48,7 @@ class LivePictures:
                                          norm=colors.LogNorm(DEPTH, 1), interpolation="nearest")
         self.scale = figure.colorbar(self.image, cax=figure.add_subplot(grid[0, 2]), label="density of sliding")
         self.scale.minorticks_off()  # each takes its time to draw
+        self.scale.ax.yaxis.label.set_size(9)  # all of it fits beside the scale
         self.at_rest = self.density.scatter([], [], color=STICK, zorder=3)
         self.density.set_title("", fontsize=9, color=STICK)
         self.density.set_ylabel("velocity $v$  [velocity]")
@@ -69,16 +74,15 @@ class LivePictures:
         self.words = figure.text(0.012, 0.365, "", va="top", family="monospace", fontsize=8)
         self.quantiles = figure.text(0.012, 0.235, "", va="top", family="monospace", fontsize=8)
         # What is not of the parameters shown is veiled: distribution, spectrum, durations.
-        middle, low = (BOTTOM + 1) / 2 - 0.035, BOTTOM - 0.07
         self.veils = [figure.add_artist(patches.Rectangle(
-            corner, *size, transform=figure.transFigure, color="#eeeeee", alpha=0.75, linewidth=0, zorder=5,
-            visible=False)) for corner, size in (((0, low), (0.57, 1 - low)), ((0.57, middle), (0.43, 1 - middle)),
-                                                 ((0.57, low), (0.43, middle - low)))]
+            (left, low), right - left, high - low, transform=figure.transFigure, color="#eeeeee", alpha=0.75, linewidth=0,
+            zorder=5, visible=False)) for left, low, right, high in map(PLACES.get, PICTURES)]
 
     def _curves(self, axes: Any, abscissa: str, ordinate: str, curves: "dict[str, tuple[str, str]]") -> None:
         for key, (label, color) in curves.items():
             self.curves[key], = axes.loglog([], [], color=color, label=label)
         axes.set(xlabel=abscissa, ylabel=ordinate)
+        axes.yaxis.set_label_coords(-0.12, 0.5)  # within the region, however long its numbers are
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_minor_locator(needed("matplotlib.ticker").NullLocator())
         axes.grid(alpha=0.3)

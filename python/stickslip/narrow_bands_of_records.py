@@ -17,6 +17,34 @@ if TYPE_CHECKING:
 numpy, optimize = needed("numpy"), needed("scipy.optimize")
 
 
+@dataclasses.dataclass(frozen=True)
+class Band:
+    """The covariance s^2 exp(-gamma t) cos(omega t) of a record, as `-noise narrow_band` takes it.
+
+    Attributes
+    ----------
+    deviation, gamma, omega
+        Standard deviation s [force], half width and angular frequency of the band [1/time].
+    errors
+        Their standard errors, in this order, found by leaving out each of 8 blocks of the record (jackknife).
+    """
+
+    deviation: float
+    gamma: float
+    omega: float
+    errors: tuple[float, float, float]
+
+    def __str__(self) -> str:
+        return ", ".join(f"{name} {getattr(self, name):.4g} +- {error:.1g}" for name, error in zip(
+            ("deviation", "gamma", "omega"), self.errors))
+
+    @property
+    def swing(self) -> float:
+        """How far the autocorrelation falls below 0: -exp(-gamma t) cos(omega t) where that is largest."""
+        late = math.atan2(self.gamma, self.omega)
+        return math.exp(-self.gamma * (math.pi - late) / self.omega) * math.cos(late) if self.omega else 0.0
+
+
 def narrow_band_of(record: Record, delta: float | None = None, *, longest: float | None = None) -> Chain:
     """The narrow band whose covariance s^2 exp(-gamma t) cos(omega t) is closest to that of a record, by least squares.
 
@@ -32,23 +60,46 @@ def narrow_band_of(record: Record, delta: float | None = None, *, longest: float
     Returns
     -------
     chain
-        `noise.narrow_band` with a note on s, gamma and omega and their standard errors, found by leaving out each of 8
-        blocks of the record (jackknife), and on a deviation that changes along the record.
+        `noise.narrow_band`; `fit` is the `Band`, which the first note says, and another one names a deviation that
+        changes along the record.
 
     Raises
     ------
     ValueError
-        If the autocorrelation does not swing, or leaves that of a narrow band by more than 0.1 and three of its standard
-        errors.
+        If the autocorrelation leaves that of a narrow band by more than 0.1 and three of its standard errors. If it does
+        not swing: neither does it fall below 0 by three standard errors, nor does that of the band by 0.1, with an omega
+        of three standard errors.
 
     Warns
     -----
     UserWarning
-        Where the deviation changes by more than 2 from quarter to quarter of the record, or the lattice adds 10 % to it.
+        Where the deviation changes by more than 2 from quarter to quarter of the record, or the lattice adds 10 % to it;
+        where a record is so short that the swing of its autocorrelation is less than three standard errors.
     """
     whole = memory_of(record, longest)
+    band = _fitted(record, whole)
+    off = abs(whole.rho - numpy.exp(-band.gamma * whole.time) * numpy.cos(band.omega * whole.time)).max()
+    if off > SWING + 3 * whole.error:
+        raise ValueError(f"record: its autocorrelation leaves that of a narrow band by {off:.2f}; several bands, or a "
+                         "shaking that begins and ends, are no single narrow band: filter it, or take record.between()")
+    unsure = -whole.rho.min() < 3 * whole.error
+    if unsure and (band.swing < SWING or band.omega < 3 * band.errors[2]):
+        raise ValueError("record: its autocorrelation does not swing, or the record is too short to show it; "
+                         "noise.record(record) makes a chain of levels")
+    step = band.deviation / 2 if delta is None else delta
+    positive(delta=step)
+    chain = narrow_band(band.deviation, band.gamma, band.omega, step) + float(record.value.mean())
+    doubts = (*unsteady(record), *[f"its autocorrelation swings to {whole.rho.min():.2f}, which is less than three standard "
+                                   "errors; a longer record would tell"] * bool(unsure))
+    for note in (*doubts, *(chain.notes if chain.deviation > MATCH * band.deviation else ())):
+        warnings.warn(note, UserWarning, stacklevel=2)
+    return dataclasses.replace(chain, name=f"narrow band of {record.source or 'a record'}", fit=band, notes=(
+        str(band), *doubts, *chain.notes), meant=measured(whole, *spectrum_of(record, whole)))
 
-    def fitted(memory: Memory) -> "Array":
+
+def _fitted(record: Record, whole: Memory) -> Band:
+    """The band whose autocorrelation is closest to that of the record, and what it is without each of the blocks."""
+    def best(memory: Memory) -> "Array":
         first = memory.time[max(int(memory.rho.argmin()), 1)]
         try:
             found, _ = optimize.curve_fit(lambda t, gamma, omega: numpy.exp(-gamma * t) * numpy.cos(omega * t), memory.time,
@@ -57,22 +108,6 @@ def narrow_band_of(record: Record, delta: float | None = None, *, longest: float
             raise ValueError("record: no narrow band comes close to its autocorrelation; take a longer record") from None
         return numpy.array([math.sqrt(memory.variance), *abs(found)])
 
-    if -whole.rho.min() < 3 * whole.error:
-        raise ValueError("record: its autocorrelation does not swing; noise.record(record) makes a chain of levels")
-    deviation, gamma, omega = best = fitted(whole)
-    off = abs(whole.rho - numpy.exp(-gamma * whole.time) * numpy.cos(omega * whole.time)).max()
-    if off > SWING + 3 * whole.error:
-        raise ValueError(f"record: its autocorrelation leaves that of a narrow band by {off:.2f}; several bands, or a "
-                         "shaking that begins and ends, are no single narrow band: filter it, or take record.between()")
-    parts = numpy.array([fitted(memory_of(record, whole.time[-1], n)) for n in range(BLOCKS)])
+    parts = numpy.array([best(memory_of(record, whole.time[-1], n)) for n in range(BLOCKS)])
     errors = numpy.sqrt((BLOCKS - 1) / BLOCKS * ((parts - parts.mean(axis=0)) ** 2).sum(axis=0))
-    step = deviation / 2 if delta is None else delta
-    positive(delta=step)
-    chain = narrow_band(*best, step) + float(record.value.mean())
-    notes = (*unsteady(record), *(chain.notes if chain.deviation > MATCH * deviation else ()))
-    for note in notes:
-        warnings.warn(note, UserWarning, stacklevel=2)
-    said = ", ".join(f"{name} {value:.4g} +- {error:.1g}" for name, value, error in zip(
-        ("deviation", "gamma", "omega"), best, errors))
-    return dataclasses.replace(chain, name=f"narrow band of {record.source or 'a record'}", notes=(
-        said, *unsteady(record), *chain.notes), meant=measured(whole, *spectrum_of(record, whole)))
+    return Band(*best(whole).tolist(), tuple(errors.tolist()))

@@ -8,6 +8,6 @@
 from .chains import Chain, Meant
 from .chains_by_name import narrow_band, ou, periodic, telegraph
 from .chains_of_records import Fit, record
-from .narrow_bands_of_records import narrow_band_of
+from .narrow_bands_of_records import Band, narrow_band_of
 
-__all__ = ["Chain", "Fit", "Meant", "narrow_band", "narrow_band_of", "ou", "periodic", "record", "telegraph"]
+__all__ = ["Band", "Chain", "Fit", "Meant", "narrow_band", "narrow_band_of", "ou", "periodic", "record", "telegraph"]

@@ -129,6 +129,11 @@ class Record:
         return dataclasses.replace(self, time=time, value=numpy.interp(time, self.time, self.value), notes=(
             *self.notes, f"interpolated to steps of {step:g} s"))
 
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the file of `-force_file`: a line `time,force` for each sample. The force on a body is minus the
+        acceleration of the ground, `record.scaled(-1)`."""
+        numpy.savetxt(path, numpy.column_stack([self.time, self.value]), "%.17g", ",", header="time,force", comments="")
+
 
 def read_record(path: str | os.PathLike[str], *, column: int | str | None = None, time: int | str | None = None,
                 step: float | None = None, unit: str | None = None, delimiter: str | None = None,

@@ -19,7 +19,7 @@ sys.path.insert(0, str(SOURCES / "python"))
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import stickslip
-from stickslip import explore, knobs, live_pictures
+from stickslip import cases, explore, knobs, live_pictures
 from stickslip.program import BadInput, Cancelled
 
 SECONDS = 60  # until what never comes is given up
@@ -69,6 +69,26 @@ class Pictures(Case):
         found = stickslip.run(**COARSE, delta=0.5, mu_d=0.9, quantities="sticking")
         self.assertNotEqual(shown.words.get_text(), words)
         self.assertIn(f"{found['P_stick'].value:.6g}", shown.words.get_text())
+
+    def test_parts_are_drawn_as_the_whole_is(self):
+        """Every point of the picture, after results, after what is refused, and after it is no longer."""
+        made = self.explorer(scene={"mu_s": 1})
+        canvas, shown = made.figure.canvas, []
+        canvas.blit = shown.append
+        self.settled(made)
+        canvas.draw()
+        self.assertEqual(shown, [])  # there was no whole picture yet
+        for option, value in (("mu_d", 0.9), ("bias", 1.5), ("bias", 0.3)):
+            made.sliders[option].set_val(value)
+            self.until(lambda: made.status.get_text().endswith(" s") or made.problem, made.poll)
+            parts = numpy.array(canvas.buffer_rgba())
+            canvas.draw()
+            self.assertLess((abs(parts.astype(int) - numpy.array(canvas.buffer_rgba())).max(axis=-1) > 8).sum(), 1, option)
+        self.assertGreater(len(shown), 9)
+        made.save_picture("png")
+        before = len(shown)
+        made.show("after another resolution the whole is drawn")
+        self.assertEqual(len(shown), before)
 
     def test_force_is_across_and_velocity_upwards_as_in_every_picture(self):
         made = self.explorer(scene={"bias": 0.6})  # a body that a constant force pulls moves upwards only
@@ -165,14 +185,34 @@ class Newest(Case):
         self.assertEqual(asked[-1], 0.8)
 
     def test_a_run_that_is_cancelled_ends_the_program(self):
-        cancel = threading.Event()
-        timer = threading.Timer(0.3, cancel.set)
-        timer.start()
-        self.addCleanup(timer.cancel)
-        start = time.monotonic()
+        worker = cases.Worker()
+        self.addCleanup(worker.end)
+        for run in (stickslip.run, worker.run):
+            cancel = threading.Event()
+            timer = threading.Timer(0.3, cancel.set)
+            timer.start()
+            self.addCleanup(timer.cancel)
+            start = time.monotonic()
+            with self.assertRaises(Cancelled):
+                run(cancel=cancel, route="monte_carlo", excursions=10**12, quantities="sticking")
+            self.assertLess(time.monotonic() - start, SECONDS / 2)
+
+    def test_one_process_answers_until_a_run_is_cancelled(self):
+        worker, cancel = cases.Worker(), threading.Event()
+        self.addCleanup(worker.end)
+        asked = {**COARSE, "delta": 0.5, "quantities": "sticking,density"}
+        first = worker.run(cancel=threading.Event(), **asked)
+        process = worker._process
+        with self.assertRaises(BadInput):
+            worker.run(cancel=threading.Event(), mu_d=-1)
+        again = worker.run(cancel=threading.Event(), **asked)
+        self.assertIs(worker._process, process)
+        self.assertEqual(again["P_stick"].value, stickslip.run(**asked)["P_stick"].value)
+        numpy.testing.assert_array_equal(again.density.values, first.density.values)
+        cancel.set()
         with self.assertRaises(Cancelled):
-            stickslip.run(cancel=cancel, route="monte_carlo", excursions=10**12, quantities="sticking")
-        self.assertLess(time.monotonic() - start, SECONDS / 2)
+            worker.run(cancel=cancel, route="monte_carlo", excursions=10**12, quantities="sticking")
+        self.assertEqual(worker.run(**asked)["P_stick"].value, first["P_stick"].value)
 
 
 class Knobs(Case):

@@ -265,15 +265,38 @@ class OfRecords(unittest.TestCase):
         with self.assertWarnsRegex(UserWarning, "add .* % to the diffusion"):
             noise.narrow_band_of(record)
         chain = noise.narrow_band_of(record, delta=0.5)
-        said = dict(zip(("deviation", "gamma", "omega"), ([float(word) for word in part.split()[1::2]] for part in
-                                                          chain.notes[0].replace("+-", "x").split(", "))))
-        for (name, (value, error)), true in zip(said.items(), (1.5, 0.3, 2)):
+        for name, error, true in zip(("deviation", "gamma", "omega"), chain.fit.errors, (1.5, 0.3, 2)):
+            value = getattr(chain.fit, name)
             self.assertLess(abs(value - true), 4 * error, name)
             self.assertLess(error, 0.2 * true, name)
+            self.assertIn(f"{name} {value:.4g} +- {error:.1g}", chain.notes[0])
+        t = numpy.linspace(0, 10, 100001)
+        self.assertAlmostEqual(chain.fit.swing, -(numpy.exp(-chain.fit.gamma * t) * numpy.cos(chain.fit.omega * t)).min(),
+                               delta=1e-8)
         self.assertAlmostEqual(chain.mean, record.value.mean(), delta=1e-9)
         self.refused("does not swing", record_of(filtered(100000, 1, 1)), function=noise.narrow_band_of)
         two = record_of(filtered(100000, 0.1 + 2j, 1) + filtered(100000, 0.1 + 5j, 2))
         self.refused("leaves that of a narrow band by", two, function=noise.narrow_band_of)
+
+    def test_short_records(self):
+        """Ten seconds hold some 14 swings of a ground: too few for three standard errors, enough for a band."""
+        def accepted(rate):
+            found = []
+            for seed in range(12):
+                try:
+                    found.append(noise.narrow_band_of(record_of(filtered(1000, rate, seed))).fit.omega)
+                except ValueError as refused:
+                    self.assertRegex(str(refused), "does not swing, or the record is too short|less than twice its memory")
+            return numpy.array(found)
+
+        omega = accepted(4 + 9j)
+        self.assertGreaterEqual(len(omega), 10)
+        self.assertLess(abs(omega.mean() - 9), 3 * omega.std() / len(omega) ** 0.5)
+        self.assertLessEqual(len(accepted(4)), 4)
+        short = record_of(filtered(1000, 4 + 9j, 0))
+        with self.assertWarnsRegex(UserWarning, "swings to -0.*less than three standard errors"):
+            noise.narrow_band_of(short)
+        self.refused("too few to count.*swings to -0.*narrow_band_of", short)
 
     def test_a_shaking_that_ends_is_said_to_be_none(self):
         time = STEP * numpy.arange(4000)

@@ -11,6 +11,8 @@ import numpy
 import scipy.io
 
 SOURCES = pathlib.Path(__file__).resolve().parents[2]
+BINARIES = pathlib.Path(os.environ.get("STICKSLIP_BINARIES", SOURCES / "build"))
+os.environ["STICKSLIP"] = str(BINARIES / "stickslip")
 sys.path.insert(0, str(SOURCES / "python"))
 import stickslip
 
@@ -221,6 +223,18 @@ class Records(Case):
         self.same(record.between(0.02, 0.06), "N", time=TIME[1:4], value=VALUE[1:4])
         self.same(record.scaled(2, "kN"), "kN", 2)
         self.assertIn("multiplied by 2", str(record.scaled(2)))
+
+    def test_a_record_as_the_given_force(self):
+        """A force of 2 for the time 1 moves a body without friction to 1, and leaves it with the velocity 2."""
+        record = stickslip.Record([0, 1, 1.5], [2, 0, 0])
+        options = {"quantities": "given_force", "drag": "none", "mu_s": 1e-9, "mu_d": 0, "force_interpolation": "constant"}
+        one = stickslip.run(force_file=record, **options)
+        self.assertAlmostEqual(one["path_displacement"].value[1], 1, delta=1e-12)
+        self.assertAlmostEqual(one["final_displacement"].value, 2, delta=1e-12)
+        swept = stickslip.sweep(force_file=record, force_scale=[1, -3], **options)
+        numpy.testing.assert_allclose(swept["final_displacement"].value, [2, -6])
+        both = stickslip.map([{"force_file": record}, {"force_file": record.scaled(0.5)}], **options)
+        numpy.testing.assert_allclose([r["final_displacement"].value for r in both], [2, 1])
 
     def test_what_is_no_record(self):
         for time, value, message in (([0, 1], [1, numpy.inf], r"value\[1\] = inf: must be finite"),
