@@ -22,6 +22,7 @@
 #include "stickslip/catalogue/moments_keys.hpp"
 #include "stickslip/catalogue/noise_law_keys.hpp"
 #include "stickslip/catalogue/noise_spectrum_keys.hpp"
+#include "stickslip/catalogue/passage_distribution_keys.hpp"
 #include "stickslip/catalogue/peak_keys.hpp"
 #include "stickslip/catalogue/relaxation_keys.hpp"
 #include "stickslip/catalogue/resolvent_keys.hpp"
@@ -53,6 +54,8 @@ constexpr const Entry* kAll[] = {&kSticking,
                                  &kSlip,
                                  &kPeak,
                                  &kFirstPassageTime,
+                                 &kPassageTimeTransform,
+                                 &kPassageTimeDistribution,
                                  &kDisplacement,
                                  &kExpectation,
                                  &kTrajectory,
@@ -94,10 +97,10 @@ std::pair<const Entry*, const Row*> find(std::string_view key) {
   const std::string pattern = pattern_of(key);
   for (const Entry* entry : kAll) {
     for (const Row* row : entry->rows) {
-      const bool of_time =
-          row->key.ends_with("(t)") && pattern.ends_with("(f)") &&
+      const bool of_number =
+          (row->key.ends_with("(t)") || row->key.ends_with("(w)")) && pattern.ends_with("(f)") &&
           row->key.substr(0, row->key.size() - 2) == pattern.substr(0, pattern.size() - 2);
-      if (row->key == pattern || of_time) return {entry, row};
+      if (row->key == pattern || of_number) return {entry, row};
     }
   }
   return {nullptr, nullptr};

@@ -202,13 +202,14 @@ std::vector<PetscScalar> KolmogorovOperator::entry_rates(Vec nu) const {
   return rates;
 }
 
-double KolmogorovOperator::rate_at_top(Vec nu) const {
-  PetscScalar rate = 0;
-  const petsc::ReadView local(nu);
-  for (const auto& c : top_coupling_) rate += c.rate * local[c.row];
-  MPI_Allreduce(MPI_IN_PLACE, &rate, 1, MPIU_SCALAR, MPIU_SUM, states().comm());
-  return PetscRealPart(rate);
+petsc::VecHandle KolmogorovOperator::rates_to_top() const {
+  petsc::VecHandle rates = zeros();
+  petsc::WriteView local(rates);
+  for (const auto& c : top_coupling_) local[c.row] += c.rate;
+  return rates;
 }
+
+double KolmogorovOperator::rate_at_top(Vec nu) const { return petsc::dot(nu, rates_to_top()); }
 
 petsc::VecHandle KolmogorovOperator::from_static(const std::vector<PetscScalar>& s) const {
   const int lowest = discretisation().process.lowest_static();

@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "reading.hpp"
-#include "stickslip/catalogue/first_passage_keys.hpp"
 #include "stickslip/catalogue/given_force_keys.hpp"
 #include "stickslip/catalogue/trajectory_keys.hpp"
 #include "stickslip/outputs/reference.hpp"
@@ -211,7 +210,7 @@ void check_speeds(Settings& settings, const Request& request) {
   const auto process = request.scene.meant();
   const double up = process.terminal_velocity(), down = process.mirrored().terminal_velocity();
   double reached = std::max({0.0, up, down});
-  if (question.wants(catalogue::kFirstPassageTime.quantity)) {
+  if (question.depends_on("passage")) {
     if (question.passage == model::Passage::up) reached = std::max(0.0, up);
     if (question.passage == model::Passage::down) reached = std::max(0.0, down);
   }
@@ -232,8 +231,7 @@ void check_speeds(Settings& settings, const Request& request) {
 // A state beyond a speed has passed it.
 void check_passages(Settings& settings, const Question& question) {
   const auto& start = question.start;
-  const bool asked = question.wants(catalogue::kFirstPassageTime.quantity);
-  if (!asked || start.kind != model::Start::Kind::state) return;
+  if (!question.depends_on("passage") || start.kind != model::Start::Kind::state) return;
   for (double speed : question.velocity) {
     if (!model::has_passed(question.passage, start.v, speed)) continue;
     settings.refuse("start",

@@ -62,13 +62,14 @@ std::vector<Option> quantity_options() {
           .called({"q", "compute", "observables"}),
       arguments("lambda", "1/time",
                 "arguments of the Laplace transforms and the resolvent (laplace, F_stick, "
-                "resolvent). With -route lambda one positive value, chosen from -accuracy unless "
+                "resolvent, passage_transform). With -route lambda one positive value, chosen from "
+                "-accuracy unless "
                 "given"),
       arguments("omega", "1/time", "angular frequencies of spectrum and noise_spectrum")
           .called({"freq", "frequency", "frequencies"}),
       arguments("time", "time",
                 "times of duration_density, autocorrelation, displacement, displacement_transform, "
-                "displacement_distribution and expectation")
+                "displacement_distribution, passage_distribution and expectation")
           .called({"t", "times"}),
       numbers("distance", "velocity*time", {},
               "path lengths > 0 of slip, for f_slip and cdf_slip; displacements of either sign of "
@@ -76,14 +77,16 @@ std::vector<Option> quantity_options() {
               "take for example 0.01:10:31:log"),
       arguments("inverse_distance", "1/(velocity*time)",
                 "arguments s of the Laplace transform F_slip of slip"),
-      arguments("velocity", "velocity", "speeds w > 0 of peak and first_passage")
+      arguments("velocity", "velocity",
+                "speeds w > 0 of peak, first_passage, passage_transform and passage_distribution")
           .called({"speed", "speeds"}),
       Option::text_of("start", "state", "s+",
                       "state at time 0 of expectation, displacement, displacement_transform, "
-                      "displacement_distribution, first_passage and trajectory")
+                      "displacement_distribution, first_passage, passage_transform, "
+                      "passage_distribution and trajectory")
           .called({"x0", "v0", "initial", "initial_state"}),
       choice("passage", "both", words_of(kPassages),
-             "what first_passage waits for: both: |V| reaches the speed w. up: V does. down: V "
+             "what passages wait for: both: |V| reaches the speed w. up: V does. down: V "
              "reaches -w"),
       Option::text_of(
           "observable", "functions", "",

@@ -21,12 +21,6 @@ using operators::KolmogorovOperator;
 using petsc::check;
 using petsc::dot;
 
-/// u -> sliding . u + at_rest . u over the states of a start.
-struct StartingPoint {
-  petsc::VecHandle sliding;
-  ByLevel at_rest;
-};
-
 // The stationary distribution, with what is beyond the speed.
 StartingPoint stationary_start(operators::Systems& systems, double speed,
                                const KolmogorovOperator& a) {
@@ -54,6 +48,8 @@ StartingPoint stationary_start(operators::Systems& systems, double speed,
   return start;
 }
 
+}  // namespace
+
 StartingPoint starting_point(operators::Systems& systems, double speed, const model::Start& start,
                              const KolmogorovOperator& a, const StickingPhases& sticking) {
   using enum model::Start::Kind;
@@ -68,6 +64,20 @@ StartingPoint starting_point(operators::Systems& systems, double speed, const mo
   if (rests) at_rest[start.level - lowest] = 1;
   return {a.value_at(start.level, start.v), std::move(at_rest)};
 }
+
+StickingPhases sticking_phases(const model::Process& process, operators::Symmetry symmetry,
+                               double lambda) {
+  const bool reduced = symmetry != operators::Symmetry::none;
+  return {process, reduced ? Starts::upwards(process).levels : process.starts(), reduced, lambda};
+}
+
+petsc::VecHandle inside(const KolmogorovOperator& a, const operators::SystemKey& key) {
+  return a.values([&](double, double, double v) {
+    return model::has_passed(*key.passage, v, key.speed_limit) ? 0.0 : 1.0;
+  });
+}
+
+namespace {
 
 // Of starts about their mean.
 double spread(const StartingPoint& start, Vec m, const ByLevel& at_rest, double mean) {
@@ -87,16 +97,11 @@ PassageTime passage_time(operators::Systems& systems, const operators::SystemKey
                          const model::Start& start) {
   auto& system = systems.at(key);
   const KolmogorovOperator& a = system.a();
-  const auto& process = systems.process();
-  const bool reduced = a.states().symmetry_reduced();
-  const StickingPhases sticking(
-      process, reduced ? Starts::upwards(process).levels : process.starts(), reduced);
+  const StickingPhases sticking = sticking_phases(systems.process(), key.symmetry);
   const StartingPoint first = starting_point(systems, key.speed_limit, start, a, sticking);
-  const auto inside = a.values([&](double, double, double v) {
-    return model::has_passed(*key.passage, v, key.speed_limit) ? 0.0 : 1.0;
-  });
+  const petsc::VecHandle before = inside(a, key);
   petsc::VecHandle still_to_pass = petsc::copy_of(first.sliding);
-  check(VecPointwiseMult(still_to_pass, still_to_pass, inside));
+  check(VecPointwiseMult(still_to_pass, still_to_pass, before));
   const auto nu = occupations_from(system, sticking.starts, std::move(still_to_pass));
   const UntilPassage until(a, sticking, first.at_rest, nu, &petsc::Solution::x),
       roughly(a, sticking, first.at_rest, nu, &petsc::Solution::correction);
@@ -118,7 +123,7 @@ PassageTime passage_time(operators::Systems& systems, const operators::SystemKey
         by.integral(field, sticking.square_field(time.at_rest, time.at_starts)).overall;
     if (start.kind == model::Start::Kind::state) return paths;
     const petsc::VecHandle to_come = petsc::copy_of(on);
-    check(VecPointwiseMult(to_come, to_come, inside));
+    check(VecPointwiseMult(to_come, to_come, before));
     return paths + spread(first, to_come, time.at_rest, time.overall);
   };
   const double var = variance(until, m.x);
@@ -135,25 +140,31 @@ void append_passage_times(const Computation& computation, const std::vector<Pass
 
 }  // namespace
 
-// With symmetry |V| has that of one branch; passages of V itself need both.
+operators::SystemKey passage_system(Planner& planner, double speed) {
+  planner.needs().rates.speed = std::max(planner.needs().rates.speed, speed);
+  auto key = planner.system();
+  key.speed_limit = speed;
+  key.passage = planner.question().passage;
+  if (key.passage != model::Passage::both) key.symmetry = operators::Symmetry::none;
+  return key;
+}
+
+int starts_in(const Planner& planner, const operators::SystemKey& key) {
+  if (key.symmetry != operators::Symmetry::none) return planner.starts();
+  return static_cast<int>(planner.given().scene.meant().starts().size());
+}
+
 void first_passage_tasks(Planner& planner) {
-  const auto& [start, passage] = std::pair{planner.question().start, planner.question().passage};
+  const auto& start = planner.question().start;
   const bool stationary = start.kind == model::Start::Kind::stationary;
   const auto found = planner.collect<PassageTime>(append_passage_times);
   for (double speed : planner.question().velocity) {
-    planner.needs().rates.speed = std::max(planner.needs().rates.speed, speed);
-    auto key = planner.system();
-    key.speed_limit = speed;
-    key.passage = passage;
-    if (passage != model::Passage::both) key.symmetry = operators::Symmetry::none;
-    const auto scene = planner.given().scene.meant();
-    const int starts = key.symmetry == operators::Symmetry::none
-                           ? static_cast<int>(scene.starts().size())
-                           : planner.starts();
+    const auto key = passage_system(planner, speed);
     const auto find = [=, start = start](Computation& computation) {
       found->push_back(passage_time(computation.systems, key, start));
     };
-    Task task{fmt::format("passage time to w = {:g}", speed), {{key, 0, starts + 1}, {key, 1, 0}}};
+    Task task{fmt::format("passage time to w = {:g}", speed),
+              {{key, 0, starts_in(planner, key) + 1}, {key, 1, 0}}};
     task.carry_out = find;
     task.adaptive = stationary;
     if (stationary) task.usual_factorizations = 1, task.usual_solves = planner.starts();

@@ -7,6 +7,7 @@
 #include "stickslip/catalogue/displacement_transform_keys.hpp"
 #include "stickslip/catalogue/first_passage_keys.hpp"
 #include "stickslip/catalogue/large_deviation_keys.hpp"
+#include "stickslip/catalogue/passage_distribution_keys.hpp"
 #include "stickslip/quantities/stationary.hpp"
 #include "stickslip/quantities/time_functions.hpp"
 #include "stickslip/support/infinity.hpp"
@@ -21,7 +22,7 @@ Tasks sticking_tasks, mean_slip_tasks, moments_tasks, density_tasks, averages_ta
     spectrum_tasks, duration_density_tasks, slip_tasks, peak_tasks, first_passage_tasks,
     displacement_tasks, autocorrelation_tasks, expectation_tasks, relaxation_tasks,
     noise_spectrum_tasks, large_deviation_tasks, displacement_transform_tasks,
-    displacement_distribution_tasks;
+    displacement_distribution_tasks, passage_transform_tasks, passage_distribution_tasks;
 
 namespace {
 
@@ -42,6 +43,8 @@ constexpr std::pair<Quantity, Tasks*> kAll[] = {
     {Quantity::slip, slip_tasks},
     {Quantity::peak, peak_tasks},
     {catalogue::kFirstPassageTime.quantity, first_passage_tasks},
+    {catalogue::kPassageTimeTransform.quantity, passage_transform_tasks},
+    {catalogue::kPassageTimeDistribution.quantity, passage_distribution_tasks},
     {Quantity::displacement, displacement_tasks},
     {Quantity::autocorrelation, autocorrelation_tasks},
     {Quantity::expectation, expectation_tasks},

@@ -243,7 +243,10 @@ StationaryDistribution::velocity(const KolmogorovOperator& a) const {
 
 // High order leaves far tails with signs of their own.
 petsc::VecHandle StationaryDistribution::weight_on(const KolmogorovOperator& a) const {
-  petsc::VecHandle weight = occupation_on(a);
+  return positive_weight(occupation_on(a));
+}
+
+petsc::VecHandle positive_weight(petsc::VecHandle weight) {
   PetscReal largest = 0;
   petsc::check(VecAbs(weight));
   petsc::check(VecNorm(weight, NORM_INFINITY, &largest));

@@ -17,11 +17,12 @@ double sum_of_products(const ByLevel& a, const ByLevel& b) {
 
 }  // namespace
 
-StickingPhases::StickingPhases(const model::Process& of, std::vector<int> from, bool reduced)
+StickingPhases::StickingPhases(const model::Process& of, std::vector<int> from, bool reduced,
+                               double lambda)
     : process(of), symmetric(reduced) {
   if (!process.sticks()) return;
   starts = std::move(from);
-  chain.emplace(operators::StaticChain::of(process));
+  chain.emplace(operators::StaticChain::of(process, lambda));
   for (int level : starts) {
     exits.push_back(symmetric ? chain->exit_transform() : chain->exit_transform_to(level));
   }
@@ -83,18 +84,38 @@ UntilPassage::Integral UntilPassage::integral(Vec f, const ByLevel& f_at_rest) c
   Integral sum{petsc::dot(nu_.back(), f), {}, {}};
   if (!sticking_.chain) return sum;
   sum.at_rest = sticking_.chain->integral(f_at_rest);
+  for (std::size_t t = 0; t < sticking_.starts.size(); ++t) {
+    sum.at_starts.push_back(petsc::dot(nu_[t], f));
+  }
+  return renewed(std::move(sum), {reached_.begin(), reached_.end() - 1});
+}
+
+// Discounted, a phase ends nowhere with the probability of lambda times its discounted time.
+double UntilPassage::transform(double lambda, Vec one) const {
+  if (!sticking_.chain) return reached_.back();
+  std::vector<double> killing(reached_.begin(), reached_.end() - 1);
+  Integral sum{reached_.back(), sticking_.each(0), killing};
+  const ByLevel stuck = sticking_.chain->integral(sticking_.each(1));
+  for (std::size_t t = 0; t < killing.size(); ++t) {
+    killing[t] += lambda * (petsc::dot(nu_[t], one) + sum_of_products(entry_[t], stuck));
+  }
+  return renewed(std::move(sum), std::move(killing)).overall;
+}
+
+// From what is gathered in the first sliding or sticking phase alone.
+UntilPassage::Integral UntilPassage::renewed(Integral sum, std::vector<double> killing) const {
   const std::size_t count = sticking_.starts.size();
   std::vector<algebra::RateElimination::Rate> steps;
   for (std::size_t t = 0; t < count; ++t) {
-    sum.at_starts.push_back(petsc::dot(nu_[t], f) + sum_of_products(entry_[t], sum.at_rest));
+    sum.at_starts[t] += sum_of_products(entry_[t], sum.at_rest);
     for (std::size_t u = 0; u < count; ++u) {
       if (u == t) continue;
       steps.push_back({static_cast<int>(t), static_cast<int>(u),
                        sum_of_products(entry_[t], sticking_.exits[u])});
     }
   }
-  const std::vector<double> killing(reached_.begin(), reached_.end() - 1);
-  sum.at_starts = algebra::RateElimination(killing, steps).integral(std::move(sum.at_starts));
+  sum.at_starts =
+      algebra::RateElimination(std::move(killing), steps).integral(std::move(sum.at_starts));
   for (std::size_t u = 0; u < count; ++u) {
     for (std::size_t i = 0; i < sum.at_rest.size(); ++i) {
       sum.at_rest[i] += sticking_.exits[u][i] * sum.at_starts[u];

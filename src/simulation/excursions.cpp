@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "rise_time.hpp"
 #include "stickslip/simulation/any_jumps.hpp"
 #include "stickslip/simulation/flow.hpp"
+#include "stickslip/simulation/rise_time.hpp"
 
 namespace stickslip::simulation {
 namespace {

@@ -7,9 +7,9 @@
 #include <numeric>
 #include <optional>
 
-#include "rise_time.hpp"
 #include "stickslip/simulation/any_jumps.hpp"
 #include "stickslip/simulation/flow.hpp"
+#include "stickslip/simulation/rise_time.hpp"
 #include "stickslip/support/infinity.hpp"
 
 namespace stickslip::simulation {

@@ -9,6 +9,7 @@
 #include "stickslip/catalogue/displacement_distribution_keys.hpp"
 #include "stickslip/catalogue/displacement_transform_keys.hpp"
 #include "stickslip/catalogue/first_passage_keys.hpp"
+#include "stickslip/catalogue/passage_distribution_keys.hpp"
 
 namespace stickslip::simulation {
 
@@ -18,7 +19,8 @@ using Follow = void(Tally&);
 Follow sticking_tally, moments_tally, averages_tally, noise_law_tally, entry_law_tally,
     laplace_tally, stick_transform_tally, duration_density_tally, slip_tally, peak_tally,
     spectrum_tally, resolvent_tally, autocorrelation_tally, displacement_tally, expectation_tally,
-    displacement_transform_tally, displacement_distribution_tally, first_passage_tally;
+    displacement_transform_tally, displacement_distribution_tally, first_passage_tally,
+    passage_transform_tally, passage_distribution_tally;
 
 namespace {
 
@@ -35,6 +37,8 @@ constexpr std::pair<Quantity, Follow*> kAll[] = {
     {Quantity::slip, slip_tally},
     {Quantity::peak, peak_tally},
     {catalogue::kFirstPassageTime.quantity, first_passage_tally},
+    {catalogue::kPassageTimeTransform.quantity, passage_transform_tally},
+    {catalogue::kPassageTimeDistribution.quantity, passage_distribution_tally},
     {Quantity::spectrum, spectrum_tally},
     {Quantity::resolvent, resolvent_tally},
     {Quantity::autocorrelation, autocorrelation_tally},

@@ -5,8 +5,8 @@
 #include "stickslip/support/errors.hpp"
 
 using stickslip::NotReached;
-using stickslip::algebra::LuFactors;
 using stickslip::algebra::least_squares;
+using stickslip::algebra::LuFactors;
 using stickslip::algebra::SingularValues;
 using Complex = std::complex<double>;
 using Matrix = stickslip::algebra::Matrix<double>;

@@ -29,8 +29,9 @@ def table(page, heading):
 
 
 def pattern(key):
-    """pi(f) for pi(v^2), dA_dp for derivatives, (t) for times."""
-    return "dA_dp" if DERIVATIVE.match(key) else re.sub(r"\([\d.]+\)$", "(t)", key.replace("(v^2", "(f"))
+    """pi(f) for pi(v^2), dA_dp for derivatives, (t) for times, (w) for speeds."""
+    number = "(w)" if "_passage(" in key else "(t)"
+    return "dA_dp" if DERIVATIVE.match(key) else re.sub(r"\([\d.]+\)$", number, key.replace("(v^2", "(f"))
 
 
 class Keys(Case):

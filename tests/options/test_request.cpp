@@ -586,6 +586,17 @@ TEST_CASE("request: first passages are of speeds that are reached, and not at on
   check_refusal({passage + "0.5 -passage down -start 0.5,-2", {"-start", "passed at once"}});
   check_refusal({passage + "0.5 -passage sideways", {"-passage = sideways", "both, up or down"}});
   CHECK(Given("-quantities peak -velocity 0.5 -passage up").read().warnings.size() == 1);
+  CHECK(Given(passage + "0.5 -lambda 1 -time 1").read().warnings.size() == 2);
+  const std::string transform = "-quantities passage_transform -velocity 0.5 ",
+                    distribution = "-quantities passage_distribution -velocity 0.5 ";
+  CHECK(Given(transform + "-lambda 0,1 -passage up").read().warnings.empty());
+  CHECK(Given(distribution + "-time 0,1 -start stationary").read().warnings.empty());
+  check_refusal({transform, {"-lambda", "no values of lambda are given"}});
+  check_refusal({distribution, {"-time", "no times are given"}});
+  check_refusal({distribution + "-time -1", {"-time"}});
+  check_refusal({"-quantities passage_distribution -time 1", {"add for example -velocity"}});
+  check_refusal({transform + "-lambda 1 -start 0.5,0.75", {"-start", "passed at once"}});
+  check_refusal({distribution + "-time 1 -velocity 99", {"-velocity", "no body reaches"}});
 }
 
 // Lambda = 128 at delta = 1/8.

@@ -55,6 +55,7 @@ TEST_CASE("synonyms: the word that is meant") {
   const Option& quantities = *find("quantities");
   CHECK(meant_word(quantities, "psd") == "spectrum");
   CHECK(meant_word(quantities, "mfpt") == "first_passage");
+  CHECK(meant_word(quantities, "first_passage_distribution") == "passage_distribution");
   CHECK(meant_word(quantities, "P_stick") == "sticking");  // a key, not a misspelt F_stick
   CHECK(meant_word(quantities, "momens") == "moments");
   CHECK(meant_word(quantities, "simulation") == "trajectory");

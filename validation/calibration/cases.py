@@ -153,6 +153,9 @@ GROUPS = {
     "slips": Group("slips and displacement", quick, {
         "quantities": "slip,peak,displacement", "distance": "0.1,0.3,1,3", "inverse_distance": "0.3,1,5",
         "velocity": "0.1,0.3", **TIMES}, (1e-2, 1e-4), 1e-6, cases=12),
+    "passages": Group("first passages", quick, {
+        "quantities": "passage_transform,passage_distribution", "lambda": "0.1,1,5", "velocity": "0.1,0.3",
+        "start": "rest", **TIMES}, (1e-2, 1e-4), 1e-6, cases=12),
     "few_levels": Group("few levels: scalars", many, SCALARS, truth="direct", most=3, cases=40),
     "few_spectra": Group("few levels: spectra", many, {"quantities": "spectrum", "omega": "0.01,0.1,0.5,2,8,30"},
                          truth="direct", cases=30),

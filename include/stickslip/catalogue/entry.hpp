@@ -59,7 +59,7 @@ enum class Kind {
 };
 
 /// A result of a quantity. A key may stand for many: f is an observable, as in pi(f), A a scalar
-/// and p a parameter, as in dA_dp; t is a time.
+/// and p a parameter, as in dA_dp; t is a time, w a speed.
 struct Row {
   std::string_view key;
   std::string_view symbol;           ///< in the formulas of the model, in ASCII

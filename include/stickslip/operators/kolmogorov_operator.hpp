@@ -103,6 +103,8 @@ class KolmogorovOperator {
   /// nu -> -nu A_us, from the lowest static level up: the rate at which an occupation flows into
   /// each static level; the same on all ranks. StaticPhase::killing only. Collective.
   [[nodiscard]] std::vector<PetscScalar> entry_rates(Vec nu) const;
+  /// The rate at which states flow over the largest speed, where bodies are killed. Collective.
+  [[nodiscard]] petsc::VecHandle rates_to_top() const;
   /// The rate at which an occupation flows over the largest speed, where bodies are killed; the
   /// same on all ranks. Collective.
   [[nodiscard]] double rate_at_top(Vec nu) const;

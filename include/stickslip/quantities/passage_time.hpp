@@ -5,8 +5,36 @@
 #include "stickslip/model/start.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/quantities/uncertain.hpp"
+#include "stickslip/quantities/until_passage.hpp"
 
 namespace stickslip::quantities {
+
+/// u -> sliding . u + at_rest . u over the states of a start.
+struct StartingPoint {
+  petsc::VecHandle sliding;
+  ByLevel at_rest;
+};
+/// On sliding states alone, those of `a`, which ends elements at `speed`. A stationary one has what
+/// is beyond it; it is found on the same elements without killing, by a factorisation of its own.
+/// Collective. Throws NotReached or NoMemory.
+[[nodiscard]] StartingPoint starting_point(operators::Systems& systems, double speed,
+                                           const model::Start& start,
+                                           const operators::KolmogorovOperator& a,
+                                           const StickingPhases& sticking);
+
+/// Where excursions start, by the states that a system of that symmetry keeps.
+[[nodiscard]] StickingPhases sticking_phases(const model::Process& process,
+                                             operators::Symmetry symmetry, double lambda = 0);
+
+/// 1 in the states of `a` that are not beyond the speed of a passage, 0 in others. Collective.
+[[nodiscard]] petsc::VecHandle inside(const operators::KolmogorovOperator& a,
+                                      const operators::SystemKey& key);
+
+/// The systems of a passage of `speed` as asked for, which the discretisation will resolve: with
+/// symmetry |V| has that of one branch; passages of V itself need both.
+[[nodiscard]] operators::SystemKey passage_system(Planner& planner, double speed);
+/// From how many levels excursions start in these.
+[[nodiscard]] int starts_in(const Planner& planner, const operators::SystemKey& key);
 
 struct PassageTime {
   Uncertain mean;      ///< [time]

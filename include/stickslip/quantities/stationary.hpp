@@ -88,4 +88,7 @@ class StationaryDistribution {
   Starts starts_;
 };
 
+/// |x| and 1e-12 of the largest more. Collective.
+[[nodiscard]] petsc::VecHandle positive_weight(petsc::VecHandle x);
+
 }  // namespace stickslip::quantities

@@ -19,7 +19,9 @@ using ByLevel = std::vector<double>;  ///< of static levels, from the lowest up
 /// Where sticking phases lead; nothing of a body that never rests.
 struct StickingPhases {
   /// With `reduced`, by the half of the states that symmetry leaves, where all starts are alike.
-  StickingPhases(const model::Process& process, std::vector<int> starts, bool reduced);
+  /// With a discount lambda, `exits` are transforms and integrals discounted ones.
+  StickingPhases(const model::Process& process, std::vector<int> starts, bool reduced,
+                 double lambda = 0);
 
   [[nodiscard]] ByLevel each(double value) const;
   /// The part that the noise has on static levels in its stationary distribution.
@@ -68,7 +70,17 @@ class UntilPassage {
   };
   [[nodiscard]] Integral integral(Vec f, const ByLevel& f_at_rest) const;
 
+  /// E[exp(-lambda T)], where the occupations and the sticking phases are those of lambda: with the
+  /// discounted time c_t of both phases from a start,
+  ///
+  ///   (P_t + lambda c_t) m_t + sum_u q_tu (m_t - m_u) = P_t.
+  ///
+  /// `one`: 1 in all sliding states. Collective.
+  [[nodiscard]] double transform(double lambda, Vec one) const;
+
  private:
+  [[nodiscard]] Integral renewed(Integral sum, std::vector<double> killing) const;
+
   const StickingPhases& sticking_;
   const ByLevel& at_rest_;
   std::vector<Vec> nu_;
