@@ -191,19 +191,19 @@ FourierInversion::Sum FourierInversion::sum_up_to(std::size_t panels, double hig
   // Real and imaginary parts. The last rows keep small what errors of phi leave open: coefficients
   // are about as large as the mass.
   algebra::Matrix<double> a(2 * points + count, count);
-  std::vector<double> y(static_cast<std::size_t>(a.rows()));
+  std::vector<double> y;
   for (int n = 0; n < points; ++n) {
     const double weight = std::sqrt(k[n] * scale_);
     const Complex value = weight * sampled(k[n]);
     const auto terms = basis(k[n]);
-    y[2 * n] = value.real();
-    y[2 * n + 1] = value.imag();
+    y.insert(y.end(), {value.real(), value.imag()});
     for (int j = 0; j < count; ++j) {
       a(2 * n, j) = weight * terms[j].real();
       a(2 * n + 1, j) = weight * terms[j].imag();
     }
   }
   for (int j = 0; j < count; ++j) a(2 * points + j, j) = accuracy_;
+  y.resize(static_cast<std::size_t>(a.rows()));
   return {panels, algebra::least_squares(std::move(a), std::move(y))};
 }
 

@@ -225,6 +225,7 @@ void find_displacements(Computation& computation) {
     computation.report("displacement_wavenumbers", distribution.evaluations(),
                        "wavenumbers at which the characteristic function was found");
   }
+  probability.diagnostic = largest_size(probability.value) < question.accuracy;
   for (auto* result : {&probability, &position}) results.push_back(std::move(*result));
 }
 

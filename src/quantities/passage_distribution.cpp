@@ -248,7 +248,6 @@ void passage_transform_tasks(Planner& planner) {
 }
 
 void passage_distribution_tasks(Planner& planner) {
-  planner.resolve_times();
   for (double speed : planner.question().velocity) {
     const auto key = passage_system(planner, speed);
     const int starts = starts_in(planner, key);

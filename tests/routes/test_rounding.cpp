@@ -9,6 +9,7 @@
 #include "../common/near.hpp"
 #include "../common/options.hpp"
 #include "../common/scenes.hpp"
+#include "stickslip/catalogue/passage_distribution_keys.hpp"
 #include "stickslip/quantities/stationary.hpp"
 #include "stickslip/routes/evaluation.hpp"
 
@@ -77,8 +78,13 @@ Results all_by_rough_solves() {
 /// new quantity is among them.
 Case given_all(const model::Scene& s) {
   using enum Quantity;
-  const std::set<Quantity> by_reduced_models{spectrum,        relaxation,   duration_density,
-                                             autocorrelation, displacement, expectation};
+  const std::set<Quantity> by_reduced_models{spectrum,
+                                             relaxation,
+                                             duration_density,
+                                             autocorrelation,
+                                             displacement,
+                                             expectation,
+                                             catalogue::kPassageTimeDistribution.quantity};
   Case r = given(s, {});
   for (const auto* entry : catalogue::entries()) {
     const bool gives = entry->routes.contains(Route::excursion);

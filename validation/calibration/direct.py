@@ -41,8 +41,8 @@ class Few:
         self.at, size = {}, 0
         for sign in (1, -1):
             strongest = (sign * self.force).max() - mu_d
-            if (sign * self.force).max() <= mu_s:
-                continue
+            if strongest <= 0:
+                continue  # bodies thrown to this side are slowed down by all levels; others have modes there
             high = 1.0
             while strongest + drag(high) > 0:
                 high *= 2
@@ -64,7 +64,7 @@ class Few:
             self.level[here] = self.x[i]
         self.velocity, self.at_rest = self.sign * self.speed, self.sign == 0
         self.exits = {s: self.at[s, i, 0] for s, i in ((1, self.static[-1] + 1), (-1, self.static[0] - 1))
-                      if s in self.panels}
+                      if s in self.panels and i in range(self.count)}
         self.fixed = numpy.zeros(self.size, bool)  # rows with a condition instead of the equation
         self.kept, self.killed = (self._generator(kept) for kept in (True, False))
 

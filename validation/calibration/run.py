@@ -167,7 +167,7 @@ class Judgement:
         self.true = numpy.abs(self.value - truth)
         rounding = ROUNDING * numpy.abs(truth)
         counts = (3 * doubt <= self.error) & (self.error > rounding) & numpy.isfinite(self.error)
-        self.left_out = 1 - counts.mean()
+        self.counts, self.left_out = counts, 1 - counts.mean()
         self.excess = numpy.zeros(len(counts))
         self.excess[counts] = (self.true - doubt - rounding)[counts] / self.error[counts]
         self.missed = self.excess > 1
@@ -210,18 +210,15 @@ def write_page(page, table, words, picture):
 
 def draw(rows):
     """Error estimates against true errors, relative to the size of the value: how many values are where, and each of
-    those whose estimate is too small."""
-    value, error, truth = (numpy.array([row[COLUMNS.index(key)] for row in rows], float)
-                           for key in ("value", "error", "truth"))
-    size = numpy.maximum(numpy.abs(truth), 1e-300)
-    true, estimate = numpy.maximum(numpy.abs(value - truth) / size, LEAST), error / size
-    known = estimate > 0
-    true, estimate = true[known], estimate[known]
+    those whose estimate is too small. Values that are not judged would show errors of the truth."""
+    judged = Judgement(rows)
+    size = numpy.maximum(numpy.abs(numpy.array([row[COLUMNS.index("truth")] for row in rows], float)), 1e-300)
+    true, estimate, missed = (part[judged.counts] for part in (
+        numpy.maximum(judged.true / size, LEAST), judged.error / size, judged.missed))
     figure, axes = subplots(figsize=(6, 5.2))
     cells = axes.hexbin(true, estimate, xscale="log", yscale="log", bins="log", gridsize=70, mincnt=1, cmap="cividis_r",
                         linewidths=0.1)
     figure.colorbar(cells, label="values")
-    missed = estimate < true
     axes.plot(true[missed], estimate[missed], "o", color=COLOURS[1], markersize=3, markeredgewidth=0,
               label="estimate too small")
     line = numpy.array([LEAST, true.max()])
