@@ -46,7 +46,7 @@ struct Needs {
 /// Tasks in the order of execution. Each system is assembled and factored when the first task asks
 /// for it, and freed after the last one has used it.
 struct Plan {
-  std::vector<Task> tasks;
+  std::vector<Task> tasks = {};
   std::vector<Action> afterwards = {};  ///< what appends results that several tasks have found
   Needs needs = {};
 
