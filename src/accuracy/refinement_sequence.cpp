@@ -68,10 +68,6 @@ RefinementSequence::RefinementSequence(const cases::Case& given)
       accuracy_(given.question.accuracy),
       needs_(quantities::plan_of(given).needs) {
   first_degree_ = method_.degree.value_or(starting_degree(given.question));
-  if (given.method.row().small_lambda) {
-    needs_.rates.lambda =
-        std::max(needs_.rates.lambda, quantities::largest_size(given.question.lambda));
-  }
   table_ = given.scene.meant().noise.table != nullptr;
   integrands_ = integrands_of(given.question, needs_.phase);
   const bool full_grid = given.method.row().full_grid;

@@ -213,6 +213,19 @@ template void add_product(const Matrix<Complex>&, const Complex*, Complex*, bool
 template void add_product(const Matrix<double>&, Columns<double>, Columns<double>, bool);
 template void add_product(const Matrix<Complex>&, Columns<Complex>, Columns<Complex>, bool);
 
+Matrix<double> exponential(Matrix<double> m, double t) {
+  m *= t;
+  int squarings = 0;
+  for (double size = m.rows() * m.largest(); size > 0.5; size /= 2) ++squarings;
+  m *= std::exp2(-squarings);
+  // Horner: 1 + M (1 + M/2 (1 + M/3 (...))).
+  const auto one = Matrix<double>::identity(m.rows());
+  auto sum = one;
+  for (int n = 15; n >= 1; --n) sum = 1.0 / n * (m * sum) + one;
+  for (int n = 0; n < squarings; ++n) sum = sum * sum;
+  return sum;
+}
+
 std::vector<double> least_squares(Matrix<double> a, std::vector<double> y) {
   const int rows = a.rows(), n = a.columns(), one = 1, work_size = 64 * (n + 1);
   std::vector<double> work(static_cast<std::size_t>(work_size));

@@ -141,7 +141,7 @@ petsc::VecHandle KolmogorovOperator::trace_at_start(int level) const {
 void KolmogorovOperator::add_value_at(int i, double v, double weight, Vec functional) const {
   const auto& [process, noise, velocities] = discretisation();
   const int lowest = process.lowest_static();
-  const bool at_rest = v == 0 && i >= lowest && i <= process.highest_static();
+  const bool at_rest = v == 0 && process.sticks(i);
   const bool below = v < 0 || (v == 0 && (at_rest ? i < 0 : i < lowest));
   const bool mirrored = below && states().symmetry_reduced();
   const double sign = mirrored && states().symmetry() == Symmetry::odd ? -weight : weight;

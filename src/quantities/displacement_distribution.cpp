@@ -42,7 +42,7 @@ Uncertain still_at_rest(const model::Process& process, const std::vector<double>
 // Of a body on one level, which moves as long as the noise does not jump, and may come to rest.
 Atom without_jumps(const model::Process& process, const Start& start, double time) {
   const int level = start.level, lowest = process.lowest_static();
-  const bool holds = lowest <= level && level <= process.highest_static();
+  const bool holds = process.sticks(level);
   const auto mirrored = process.mirrored();
   Atom atom;
   double speed = std::abs(start.v), now = 0;
@@ -75,7 +75,6 @@ std::vector<Atom> atoms_at(const Computation& computation, double time) {
   const auto& start = computation.question().start;
   if (time == 0) return {{0, {1, 0}}};
   if (start.kind == Start::Kind::state) return {without_jumps(process, start, time)};
-  const int lowest = process.lowest_static(), highest = process.highest_static();
   std::vector<double> rests;
   if (start.kind == Start::Kind::stationary) {
     const auto& excursion = computation.distribution().excursion();
@@ -88,7 +87,7 @@ std::vector<Atom> atoms_at(const Computation& computation, double time) {
   std::vector<Atom> all(1);
   for (int i = process.noise.lowest(); i <= process.noise.highest(); ++i) {
     const double p = levels[static_cast<std::size_t>(i - process.noise.lowest())];
-    if (lowest <= i && i <= highest) {
+    if (process.sticks(i)) {
       rests.push_back(p);
     } else if (p * std::exp(-process.noise.rate(i) * time) > rounding) {
       all.push_back(without_jumps(process, {i, 0}, time));
@@ -108,7 +107,7 @@ class Distribution {
     const auto& question = computation.question();
     const auto& process = computation.process();
     even_ = model::mirrors_itself(process, question.start);
-    if (process.lowest_static() > process.highest_static()) centre_ = atoms_[0].at;
+    if (!process.sticks()) centre_ = atoms_[0].at;
     if (time > 0) invert(computation, time);
   }
 

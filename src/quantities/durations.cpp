@@ -179,8 +179,7 @@ double slide_density_at_zero(const model::Process& process, const Starts& starts
     double density = 0;
     seen.noise.for_each_jump(level, [&](int to, double rate) {
       const double down = -seen.net_force(to);
-      const bool sticks = seen.lowest_static() <= to && to <= seen.highest_static();
-      if (sticks && down > 0) density += rate * down / (up + down);
+      if (seen.sticks(to) && down > 0) density += rate * down / (up + down);
     });
     return density;
   };

@@ -60,11 +60,11 @@ void append_first_passages(const Computation& computation,
 
 // From each start, and from rest.
 void peak_tasks(Planner& planner) {
+  planner.resolve_speeds();
   const bool symmetric = planner.symmetric();
   if (!symmetric) planner.need_distribution();  // which has the shares of starts
   const auto found = planner.collect<FirstPassage>(append_first_passages);
   for (double speed : planner.question().velocity) {
-    planner.needs().rates.speed = std::max(planner.needs().rates.speed, speed);
     auto system = planner.system();
     system.speed_limit = speed;
     const auto find = [=](Computation& computation) {

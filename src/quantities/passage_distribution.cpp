@@ -25,12 +25,7 @@ using operators::KolmogorovOperator;
 using operators::StaticPhase;
 using petsc::check;
 using petsc::dot;
-
-petsc::VecHandle product(Vec x, Vec y) {
-  petsc::VecHandle z = petsc::copy_of(x);
-  check(VecPointwiseMult(z, x, y));
-  return z;
-}
+using petsc::product;
 
 // The probability that a start is beyond the speed.
 double passed(const StartingPoint& first, const KolmogorovOperator& a,
@@ -39,6 +34,23 @@ double passed(const StartingPoint& first, const KolmogorovOperator& a,
   check(VecScale(beyond, -1));
   check(VecShift(beyond, 1));
   return dot(first.sliding, beyond);
+}
+
+// E[exp(-lambda T)] with the lambda of `key`, from a start below the speed or a stationary one.
+Uncertain transform_from(const StartingPoint& first, bool stationary, operators::Systems& systems,
+                         const operators::SystemKey& key) {
+  auto& system = systems.at(key);
+  const KolmogorovOperator& a = system.a();
+  const StickingPhases sticking = sticking_phases(systems.process(), key.symmetry, key.lambda);
+  const auto nu = occupations_from(system, sticking.starts, product(first.sliding, inside(a, key)));
+  const auto one = a.values([](double, double, double) { return 1.0; });
+  const auto by = [&](petsc::VecHandle petsc::Solution::*which) {
+    return UntilPassage(a, sticking, first.at_rest, nu, which).transform(key.lambda, one);
+  };
+  const double later = by(&petsc::Solution::x),
+               value = later + (stationary ? passed(first, a, key) : 0),
+               rounding = std::abs(later - by(&petsc::Solution::correction));
+  return value > 2 * rounding ? Uncertain{value, rounding} : kTooRare;
 }
 
 // A start on an operator that keeps static states, which lists sliding states in the same order;
@@ -130,21 +142,12 @@ std::vector<Uncertain> passage_transform(operators::Systems& systems, operators:
   std::optional<StartingPoint> first;
   for (double s : lambda) {
     key.lambda = s;
-    auto& system = systems.at(key);
-    const KolmogorovOperator& a = system.a();
-    const StickingPhases sticking = sticking_phases(systems.process(), key.symmetry, s);
-    if (!first) first = starting_point(systems, key.speed_limit, start, a, sticking);
-    const auto nu =
-        occupations_from(system, sticking.starts, product(first->sliding, inside(a, key)));
-    const auto one = a.values([](double, double, double) { return 1.0; });
-    const auto by = [&](petsc::VecHandle petsc::Solution::*which) {
-      return UntilPassage(a, sticking, first->at_rest, nu, which).transform(s, one);
-    };
+    if (!first) {
+      first = starting_point(systems, key.speed_limit, start, systems.at(key).a(),
+                             sticking_phases(systems.process(), key.symmetry));
+    }
     const bool stationary = start.kind == model::Start::Kind::stationary;
-    const double at_once = stationary ? passed(*first, a, key) : 0,
-                 value = by(&petsc::Solution::x) + at_once,
-                 rounding = std::abs(by(&petsc::Solution::x) - by(&petsc::Solution::correction));
-    values.push_back(value > 2 * rounding ? Uncertain{value, rounding} : kTooRare);
+    values.push_back(transform_from(*first, stationary, systems, key));
     systems.release(key);
   }
   return values;
@@ -155,7 +158,7 @@ DurationDistribution passage_distribution(operators::Systems& systems,
                                           const model::Start& start,
                                           const std::vector<double>& time,
                                           const ModelTolerance& tolerance) {
-  using enum model::Start::Kind;
+  const bool stationary = start.kind == model::Start::Kind::stationary;
   const double mean = passage_time(systems, key, start).mean.value, w = key.speed_limit;
   const std::vector<Uncertain> too_rare(time.size(), kTooRare);
   if (!(mean > 0)) return {too_rare, too_rare};
@@ -164,33 +167,38 @@ DurationDistribution passage_distribution(operators::Systems& systems,
   ProcessPencil pencil(killed, key.symmetry, StaticPhase::kept);
   const KolmogorovOperator &a = pencil.a(), &moving = systems.at(key).a();
   const StickingPhases sticking = sticking_phases(systems.process(), key.symmetry);
-  const StartingPoint first = starting_point(systems, w, start, moving, sticking),
-                      law = starting_point(systems, w, {.kind = stationary}, moving, sticking);
+  const StartingPoint first = starting_point(systems, w, start, moving, sticking);
+  std::optional<StartingPoint> law;
+  if (!stationary) {
+    const model::Start of_law{.kind = model::Start::Kind::stationary};
+    law = starting_point(systems, w, of_law, moving, sticking);
+  }
   const petsc::VecHandle b = a.rates_to_top(), c = product(on_all_states(a, first), inside(a, key)),
-                         d = positive_weight(on_all_states(a, law));
+                         d = positive_weight(on_all_states(a, law ? *law : first));
   const Ends ends{b, c, d};
   Curves curves(pencil, ends, w, mean, tolerance);
   const double longest = 10 * *std::ranges::max_element(time),
-               earliest = start.kind == stationary
-                              ? 0
-                              : earliest_arrival(killed.discretisation(), key, start, longest);
+               earliest =
+                   stationary ? 0 : earliest_arrival(killed.discretisation(), key, start, longest);
   std::vector<double> later;
   std::ranges::copy_if(time, std::back_inserter(later),
                        [earliest](double t) { return t > 0 && t >= earliest; });
   std::ranges::sort(later);
   later.erase(std::unique(later.begin(), later.end()), later.end());
-  double at_once = 0, missed = 0;
-  if (start.kind == stationary) at_once = passed(first, moving, key);
+  const double at_once = stationary ? passed(first, moving, key) : 0;
+  double missed = 0;
   if (!later.empty()) {
     curves.find(later);
-    if (start.kind != stationary) {
+    if (!stationary) {
       const double least = 1e-2 * tolerance.value;
       curves.sharpen(later, before_first_jump(killed.discretisation(), key, start, later, least));
     }
-    const double z = 1 / later.back();
+    auto at_the_end = key;
+    at_the_end.lambda = 1 / later.back();
     const petsc::VecHandle x = a.zeros();
-    pencil.solve(z, b, x, false, true);
-    const auto known = passage_transform(systems, key, start, {z})[0];
+    pencil.solve(at_the_end.lambda, b, x, false, true);
+    const Uncertain known = transform_from(first, stationary, systems, at_the_end);
+    systems.release(at_the_end);
     missed = std::numbers::e * std::abs(dot(c, x) + at_once - known.value);
   }
   DurationDistribution found{{}, {}, curves.pairs()};
@@ -199,7 +207,7 @@ DurationDistribution passage_distribution(operators::Systems& systems,
     const auto [density, below] = known ? Curves::Values{} : curves.at(t);
     found.density.push_back(density + Uncertain{0, known ? 0 : missed / t});
     found.distribution.push_back(below + Uncertain{at_once, known ? 0 : missed});
-    if (t == 0 && start.kind == stationary) found.density.back().value = dot(c, b);
+    if (t == 0 && stationary) found.density.back().value = dot(c, b);
   }
   return found;
 }
@@ -215,23 +223,15 @@ Result of_speed(const Row& row, const std::vector<double>& abscissa, double spee
   return result;
 }
 
-// A stationary start takes one with a factorisation of its own.
-Task of_passage(const Planner& planner, const char* name, const operators::SystemKey& key) {
-  Task task{fmt::format("{} to w = {:g}", name, key.speed_limit)};
-  task.adaptive = planner.question().start.kind == model::Start::Kind::stationary;
-  if (task.adaptive) task.usual_factorizations = 1, task.usual_solves = planner.starts();
-  return task;
-}
-
 }  // namespace
 
 void passage_transform_tasks(Planner& planner) {
   const auto& question = planner.question();
-  double& fastest = planner.needs().rates.lambda;
-  fastest = std::max(fastest, largest_size(question.lambda));
+  planner.resolve_lambda();
+  planner.resolve_speeds();
   for (double speed : question.velocity) {
     const auto key = passage_system(planner, speed);
-    Task task = of_passage(planner, "transform of the passage time", key);
+    Task task = passage_task(planner, "transform of the passage time", key);
     for (double s : question.lambda) {
       task.uses.push_back({key, 0, starts_in(planner, key) + 1});
       task.uses.back().system.lambda = s;
@@ -248,10 +248,11 @@ void passage_transform_tasks(Planner& planner) {
 }
 
 void passage_distribution_tasks(Planner& planner) {
+  planner.resolve_speeds();
   for (double speed : planner.question().velocity) {
     const auto key = passage_system(planner, speed);
     const int starts = starts_in(planner, key);
-    Task task = of_passage(planner, "distribution of the passage time", key);
+    Task task = passage_task(planner, "distribution of the passage time", key);
     task.uses = {{key, 0, starts + 1}, {key, 1, 0}};
     task.adaptive = true;
     task.usual_factorizations += 16;

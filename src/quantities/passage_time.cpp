@@ -100,9 +100,7 @@ PassageTime passage_time(operators::Systems& systems, const operators::SystemKey
   const StickingPhases sticking = sticking_phases(systems.process(), key.symmetry);
   const StartingPoint first = starting_point(systems, key.speed_limit, start, a, sticking);
   const petsc::VecHandle before = inside(a, key);
-  petsc::VecHandle still_to_pass = petsc::copy_of(first.sliding);
-  check(VecPointwiseMult(still_to_pass, still_to_pass, before));
-  const auto nu = occupations_from(system, sticking.starts, std::move(still_to_pass));
+  const auto nu = occupations_from(system, sticking.starts, petsc::product(first.sliding, before));
   const UntilPassage until(a, sticking, first.at_rest, nu, &petsc::Solution::x),
       roughly(a, sticking, first.at_rest, nu, &petsc::Solution::correction);
   double reached = 0, rounding = 0;
@@ -122,8 +120,7 @@ PassageTime passage_time(operators::Systems& systems, const operators::SystemKey
     const auto paths =
         by.integral(field, sticking.square_field(time.at_rest, time.at_starts)).overall;
     if (start.kind == model::Start::Kind::state) return paths;
-    const petsc::VecHandle to_come = petsc::copy_of(on);
-    check(VecPointwiseMult(to_come, to_come, before));
+    const petsc::VecHandle to_come = petsc::product(on, before);
     return paths + spread(first, to_come, time.at_rest, time.overall);
   };
   const double var = variance(until, m.x);
@@ -140,8 +137,7 @@ void append_passage_times(const Computation& computation, const std::vector<Pass
 
 }  // namespace
 
-operators::SystemKey passage_system(Planner& planner, double speed) {
-  planner.needs().rates.speed = std::max(planner.needs().rates.speed, speed);
+operators::SystemKey passage_system(const Planner& planner, double speed) {
   auto key = planner.system();
   key.speed_limit = speed;
   key.passage = planner.question().passage;
@@ -154,20 +150,25 @@ int starts_in(const Planner& planner, const operators::SystemKey& key) {
   return static_cast<int>(planner.given().scene.meant().starts().size());
 }
 
+Task passage_task(const Planner& planner, const char* name, const operators::SystemKey& key) {
+  Task task{fmt::format("{} to w = {:g}", name, key.speed_limit)};
+  task.adaptive = planner.question().start.kind == model::Start::Kind::stationary;
+  if (task.adaptive) task.usual_factorizations = 1, task.usual_solves = planner.starts();
+  return task;
+}
+
 void first_passage_tasks(Planner& planner) {
+  planner.resolve_speeds();
   const auto& start = planner.question().start;
-  const bool stationary = start.kind == model::Start::Kind::stationary;
   const auto found = planner.collect<PassageTime>(append_passage_times);
   for (double speed : planner.question().velocity) {
     const auto key = passage_system(planner, speed);
     const auto find = [=, start = start](Computation& computation) {
       found->push_back(passage_time(computation.systems, key, start));
     };
-    Task task{fmt::format("passage time to w = {:g}", speed),
-              {{key, 0, starts_in(planner, key) + 1}, {key, 1, 0}}};
+    Task task = passage_task(planner, "passage time", key);
+    task.uses = {{key, 0, starts_in(planner, key) + 1}, {key, 1, 0}};
     task.carry_out = find;
-    task.adaptive = stationary;
-    if (stationary) task.usual_factorizations = 1, task.usual_solves = planner.starts();
     planner.add(std::move(task));
   }
 }

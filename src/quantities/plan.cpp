@@ -10,7 +10,6 @@
 #include "stickslip/catalogue/passage_distribution_keys.hpp"
 #include "stickslip/quantities/stationary.hpp"
 #include "stickslip/quantities/time_functions.hpp"
-#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::quantities {
 
@@ -93,15 +92,22 @@ void Planner::add_adaptive(std::string name, int factorizations, int solves, Act
 }
 
 void Planner::add_at_each_lambda(const std::function<Task(double)>& task) {
+  resolve_lambda();
   auto& tasks = plan_.tasks;
   if (at_each_lambda_++ == 0) at_lambda_ = tasks.size();
   std::size_t end = at_lambda_;
   for (double lambda : question().lambda) {
-    needs().rates.lambda = std::max(needs().rates.lambda, lambda);
     end += at_each_lambda_;
     tasks.insert(tasks.begin() + static_cast<std::ptrdiff_t>(end - 1), task(lambda));
   }
 }
+
+void Planner::resolve_lambda() {
+  double& fastest = needs().rates.lambda;
+  fastest = std::max(fastest, largest_size(question().lambda));
+}
+
+void Planner::resolve_speeds() { needs().rates.speed = largest_size(question().velocity); }
 
 void Planner::resolve_times() { resolve_rate(kFastestOnContour / least_positive(question().time)); }
 
@@ -128,15 +134,10 @@ Plan Planner::plan() && {
   return std::move(plan_);
 }
 
-double least_positive(const std::vector<double>& values) {
-  double least = kInfinity;
-  for (double value : values) least = value > 0 ? std::min(least, value) : least;
-  return least;
-}
-
 Plan plan_of(const cases::Case& given) {
   Planner planner(given);
   if (given.scene.v_max) planner.need_distribution();  // it has the mass beyond v_max
+  if (given.method.row().small_lambda) planner.resolve_lambda();
   for (const auto& [quantity, add_tasks] : kAll) {
     if (given.question.wants(quantity)) add_tasks(planner);
   }

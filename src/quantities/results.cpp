@@ -14,6 +14,12 @@ double largest_size(const std::vector<double>& values) {
   return size;
 }
 
+double least_positive(const std::vector<double>& values) {
+  double least = kInfinity;
+  for (double value : values) least = value > 0 ? std::min(least, value) : least;
+  return least;
+}
+
 Result blank(const Row& row) {
   const bool known = row.unit.find('[') == row.unit.npos;  // that of an observable is not
   return {.key = std::string(row.key),

@@ -46,10 +46,10 @@ ByLevel StickingPhases::square_field(const ByLevel& at_rest, const ByLevel& at_s
   const int lowest = process.lowest_static();
   for (std::size_t n = 0; n < f.size(); ++n) {
     process.noise.for_each_jump(lowest + static_cast<int>(n), [&](int to, double rate) {
-      const bool rests = lowest <= to && to <= process.highest_static();
       const auto start = std::ranges::find(starts, symmetric ? std::abs(to) : to);
       const double change =
-          (rests ? at_rest[to - lowest] : at_starts[start - starts.begin()]) - at_rest[n];
+          (process.sticks(to) ? at_rest[to - lowest] : at_starts[start - starts.begin()]) -
+          at_rest[n];
       f[n] += rate * change * change;
     });
   }

@@ -15,7 +15,7 @@ double arrival(const model::Process& process, const operators::SystemKey& key, i
                double longest) {
   const double w = key.speed_limit;
   const auto mirrored = process.mirrored();
-  const bool rests = process.lowest_static() <= level && level <= process.highest_static();
+  const bool rests = process.sticks(level);
   bool upwards = v != 0 ? v > 0 : level > process.highest_static();
   double speed = std::abs(v), now = 0;
   for (bool turned = false; speed > 0 || !rests; turned = true, upwards = !upwards, speed = 0) {
@@ -37,19 +37,6 @@ double arrival(const model::Process& process, const operators::SystemKey& key, i
   return kInfinity;
 }
 
-// exp(M t), by squaring a Taylor polynomial.
-algebra::Matrix<double> exponential(algebra::Matrix<double> m, double t) {
-  m *= t;
-  int squarings = 0;
-  for (double size = m.rows() * m.largest(); size > 0.5; size /= 2) ++squarings;
-  m *= std::exp2(-squarings);
-  const auto one = algebra::Matrix<double>::identity(m.rows());
-  auto sum = one;
-  for (int n = 15; n >= 1; --n) sum = 1.0 / n * (m * sum) + one;
-  for (int n = 0; n < squarings; ++n) sum = sum * sum;
-  return sum;
-}
-
 /// Transport by one level on elements, without a way back after jumps: u' = M u, where the last
 /// state is that of having passed, and u -> start u.
 struct Transport {
@@ -65,7 +52,7 @@ Transport transport(const operators::Discretisation& killed, int level, double v
   const auto nodes = axis.nodes();
   const int size = static_cast<int>(
       std::abs(v) < w ? std::ranges::lower_bound(nodes, w) - nodes.begin() : axis.size());
-  const bool rests = process.lowest_static() <= level && level <= process.highest_static();
+  const bool rests = process.sticks(level);
   const bool pushed_up = level > process.highest_static(), starts_up = v != 0 ? v > 0 : pushed_up;
   const int branches = v == 0 || rests || starts_up == pushed_up ? 1 : 2, last = branches * size;
   Transport t{algebra::Matrix<double>(last + 1, last + 1),
@@ -133,7 +120,7 @@ std::vector<Unturned> before_first_jump(const operators::Discretisation& killed,
     if (jump < least) continue;
     const Transport moved = transport(killed, i, v, key.speed_limit);
     for (std::size_t n = 0; n < time.size(); ++n) {
-      const auto states = moved.start * exponential(moved.m, time[n]);
+      const auto states = moved.start * algebra::exponential(moved.m, time[n]);
       all[n].exact += time[n] >= arrives ? jump : 0;
       all[n].distribution += p * states.back();
       all[n].density += p * (states * moved.m).back();

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <complex>
 
 #include "../common/catch.hpp"
@@ -5,6 +6,7 @@
 #include "stickslip/support/errors.hpp"
 
 using stickslip::NotReached;
+using stickslip::algebra::exponential;
 using stickslip::algebra::least_squares;
 using stickslip::algebra::LuFactors;
 using stickslip::algebra::SingularValues;
@@ -133,6 +135,21 @@ TEST_CASE("dense: singular values of singular and of empty matrices") {
   CHECK(s.value[1] == Approx(0.6180339887498949).epsilon(1e-14));
   CHECK(s.value[2] < 1e-15);
   CHECK(SingularValues(Matrix(0, 0)).value.empty());
+}
+
+TEST_CASE("dense: exponentials of a rotation, and of what has one eigenvector alone") {
+  Matrix turn(2, 2), block(2, 2);
+  turn(0, 1) = -3;
+  turn(1, 0) = 3;
+  const auto turned = exponential(turn, 2);
+  CHECK(turned(0, 0) == Approx(std::cos(6)).epsilon(1e-12));
+  CHECK(turned(1, 0) == Approx(std::sin(6)).epsilon(1e-12));
+  block(0, 0) = block(1, 1) = -2;
+  block(0, 1) = 5;
+  const auto grown = exponential(block, 1.5);
+  CHECK(grown(0, 0) == Approx(std::exp(-3)).epsilon(1e-13));
+  CHECK(grown(0, 1) == Approx(7.5 * std::exp(-3)).epsilon(1e-13));
+  CHECK(grown(1, 0) == 0);
 }
 
 TEST_CASE("dense: least squares leave what is orthogonal to the columns") {

@@ -10,6 +10,11 @@ namespace stickslip::test {
 
 using Values = std::map<std::string, quantities::Result>;
 
+/// Standard deviation of a simulated value.
+inline double sigma(const quantities::Result& simulated, std::size_t n) {
+  return (simulated.ci95[n].second - simulated.ci95[n].first) / 2 / 1.96;
+}
+
 /// Collective.
 inline Values values(const cases::Case& c) {
   Values by_key;

@@ -1,9 +1,9 @@
 #include <cmath>
 
 #include "../common/catch.hpp"
-#include "../common/exponential.hpp"
 #include "../common/matrices.hpp"
 #include "../common/options.hpp"
+#include "stickslip/algebra/dense.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/time_stepper.hpp"
 #include "stickslip/support/errors.hpp"
@@ -11,7 +11,7 @@
 using namespace stickslip;
 using namespace stickslip::petsc;
 using test::Given;
-using test::Matrix;
+using Matrix = algebra::Matrix<double>;
 
 namespace {
 
@@ -58,7 +58,7 @@ VecHandle start_on(Mat a) {
 std::vector<double> exact(const Matrix& m, double time) {
   std::vector<double> u;
   for (PetscInt r = 0; r < kSize; ++r) u.push_back(start(r));
-  return test::exponential(m, -time) * u;
+  return algebra::exponential(m, -time) * u;
 }
 
 // max |u - expected|, the same on all ranks.

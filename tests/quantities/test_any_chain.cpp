@@ -181,7 +181,7 @@ TEST_CASE("any chain: simulated cycles give the same, within 4.5 sigma", "[real]
     const bool by_cells = key.starts_with("f_s") || key.starts_with("f_e");
     if (by_cells || !found.contains(key) || r.ci95.empty()) continue;
     for (std::size_t n = 0; n < r.value.size(); ++n) {
-      const double sigma = (r.ci95[n].second - r.ci95[n].first) / 2 / 1.96;
+      const double sigma = test::sigma(r, n);
       INFO(key << " " << n << ": " << r.value[n] << " +- " << sigma << " for "
                << found.at(key).value[n]);
       CHECK(std::abs(r.value[n] - found.at(key).value[n]) <=

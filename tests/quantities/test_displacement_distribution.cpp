@@ -146,7 +146,7 @@ TEST_CASE("displacement distribution: simulated, within 4.5 sigma", "[real]") {
     const auto sampled = values_at_the_time(c);
     const auto &cdf = found.at("displacement_cdf"), &r = sampled.at("displacement_cdf");
     for (std::size_t n = 0; n < r.value.size(); ++n) {
-      const double sigma = (r.ci95[n].second - r.ci95[n].first) / 2 / 1.96;
+      const double sigma = test::sigma(r, n);
       INFO(n << ": " << r.value[n] << " +- " << sigma << ", " << cdf.value[n]);
       CHECK(std::abs(r.value[n] - cdf.value[n]) <= 4.5 * sigma + cdf.error[n]);
       CHECK(sigma < 0.01);

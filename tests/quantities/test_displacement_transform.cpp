@@ -48,7 +48,7 @@ Values check_simulated(cases::Case c) {
   for (const char* key : {"displacement_cosine", "displacement_sine"}) {
     const auto& r = sampled.at(key);
     for (std::size_t n = 0; n < r.value.size(); ++n) {
-      const double sigma = (r.ci95[n].second - r.ci95[n].first) / 2 / 1.96;
+      const double sigma = test::sigma(r, n);
       INFO(key << " " << n << ": " << r.value[n] << " +- " << sigma);
       CHECK(std::abs(r.value[n] - found.at(key).value[n]) <= 4.5 * sigma + 1e-12);
     }

@@ -3,12 +3,12 @@
 #include <numeric>
 
 #include "../common/catch.hpp"
-#include "../common/exponential.hpp"
 #include "../common/full_grid.hpp"
 #include "../common/made_results.hpp"
 #include "../common/near.hpp"
 #include "../common/quadrature.hpp"
 #include "../common/solved.hpp"
+#include "stickslip/algebra/dense.hpp"
 #include "stickslip/catalogue/duration_density_keys.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/time_stepper.hpp"
@@ -24,7 +24,7 @@ using operators::Symmetry;
 using petsc::check;
 using quantities::DurationDistribution;
 using quantities::Uncertain;
-using test::Matrix;
+using Matrix = algebra::Matrix<double>;
 using test::relative_difference;
 using test::scene;
 using test::Solved;
@@ -135,7 +135,7 @@ class DenseDurations {
   }
 
   [[nodiscard]] double density(double time) const {
-    return (test::exponential(m_, time) * rates_)[start_];
+    return (algebra::exponential(m_, time) * rates_)[start_];
   }
   [[nodiscard]] double distribution(double time) const {
     // What has ended is no state here; at rest, the static states still are.
@@ -145,7 +145,7 @@ class DenseDurations {
       for (int c = 0; c < n; ++c) all(r, c) = m_(r, c);
       all(r, n) = rates_[r];
     }
-    return test::exponential(all, time)(start_, n);
+    return algebra::exponential(all, time)(start_, n);
   }
 
  private:
@@ -344,7 +344,7 @@ TEST_CASE("durations: sticking phases by dense exponentials, right relative to t
     const std::vector<double> time{20, 0.5, 3, 1e-3, 0.02};  // in any order
     const auto duration = quantities::stick_distribution(process, entry, time);
     for (std::size_t n = 0; n < time.size(); ++n) {
-      const auto flow = test::exponential(q, time[n]);
+      const auto flow = algebra::exponential(q, time[n]);
       const double shift = std::exp(-rate * time[n]);
       double density = 0;
       for (int c = 0; c < left; ++c) density += flow(middle, c) * q(c, left);

@@ -3,10 +3,11 @@
 
 #include "../common/catch.hpp"
 #include "../common/chains.hpp"
-#include "../common/exponential.hpp"
 #include "../common/full_grid.hpp"
+#include "../common/passages.hpp"
 #include "../common/solved.hpp"
 #include "../common/values.hpp"
+#include "stickslip/algebra/dense.hpp"
 #include "stickslip/catalogue/passage_distribution_keys.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/quantities/passage_distribution.hpp"
@@ -17,17 +18,15 @@ using namespace stickslip;
 using model::Passage;
 using model::Start;
 using operators::Symmetry;
-using test::Matrix;
+using Matrix = algebra::Matrix<double>;
+using test::passage_key;
+using test::passing;
 using test::Solved;
 
 namespace {
 
 constexpr Passage kPassages[] = {Passage::both, Passage::up, Passage::down};
 const Start kRest{0, 0, Start::Kind::rest}, kStationary{0, 0, Start::Kind::stationary};
-
-model::Scene passing(double bias = 0) {
-  return test::biased(test::scene(1, 0.5, 1, 0.5, {1, 0}), bias);
-}
 
 // Levels +-1 without drag. Without bias bodies never rest where mu_s < 1; with 0.3 and mu_s = 1
 // they rest on the lower level.
@@ -37,14 +36,6 @@ model::Scene telegraph(double bias, double mu_s) {
   s.noise.table =
       std::make_shared<const model::LevelTable>(std::vector<model::Level>{{-1, 1, 0}, {1, 0, 1}});
   return s;
-}
-
-operators::SystemKey key_of(const model::Process& process, Passage passage, double w) {
-  operators::SystemKey key{0, operators::symmetry_of(process)};
-  key.speed_limit = w;
-  key.passage = passage;
-  if (passage != Passage::both) key.symmetry = Symmetry::none;
-  return key;
 }
 
 // On the upper level bodies get faster at the rate p, on the lower one slower at the rate q; with u
@@ -86,7 +77,7 @@ class DensePassage {
     std::vector<double> density, distribution;
   };
   [[nodiscard]] OfStates at(double time) const {
-    const auto e = test::exponential(m_, time);
+    const auto e = algebra::exponential(m_, time);
     const int n = grid_.size();
     OfStates law;
     for (int r = 0; r < n; ++r) {
@@ -120,7 +111,7 @@ TEST_CASE("passage transform: its derivatives at 0 are the moments", "[parallel]
           INFO("symmetric " << solved.systems.process().symmetric() << ", passage "
                             << static_cast<int>(passage) << ", start "
                             << static_cast<int>(start.kind));
-          const auto key = key_of(solved.systems.process(), passage, 0.3);
+          const auto key = passage_key(solved.systems.process(), passage, 0.3);
           const auto known = quantities::passage_time(solved.systems, key, start);
           const double m = known.mean.value, h = 1e-3 / std::max(1.0, m);
           const auto f = quantities::passage_transform(solved.systems, key, start,
@@ -149,7 +140,7 @@ TEST_CASE("passage transform: telegraph noise without drag, in closed form") {
   const int lower = telegraph(0, 1).noise.table->lowest();
   const auto transforms = [&](Solved& solved, Passage passage, const Start& start) {
     return quantities::passage_transform(
-        solved.systems, key_of(solved.systems.process(), passage, w), start, lambda);
+        solved.systems, passage_key(solved.systems.process(), passage, w), start, lambda);
   };
   const auto both = transforms(turning, Passage::both, kRest),
              fast = transforms(turning, Passage::both, {lower, 0.4}),
@@ -182,7 +173,7 @@ TEST_CASE("passage distribution: upwind equals dense exponentials on the whole g
     const auto p = model::stationary_distribution(process.noise);
     const auto pi = grid.stationary();
     for (const Passage passage : kPassages) {
-      const auto key = key_of(process, passage, j * spacing);
+      const auto key = passage_key(process, passage, j * spacing);
       const DensePassage dense(grid, passage, j, process);
       for (const auto& start : {kRest, kStationary, Start{1, 0.25}}) {
         const auto found = quantities::passage_distribution(s.systems, key, start, time, 1e-10);
@@ -252,7 +243,7 @@ TEST_CASE("passage distribution: a stationary start may be beyond the speed") {
   });
   const double beyond =
       (all - velocities.mass_below(mass, 0.4)) / solved.distribution.excursion().mean_excursion();
-  const auto key = key_of(solved.systems.process(), Passage::up, 0.4);
+  const auto key = passage_key(solved.systems.process(), Passage::up, 0.4);
   const auto law = quantities::passage_distribution(solved.systems, key, kStationary, {0}, 1e-8);
   const auto f = quantities::passage_transform(solved.systems, key, kStationary, {1e7});
   CHECK(beyond > 0.1);
@@ -266,7 +257,7 @@ TEST_CASE("passage distribution: its density is the derivative, and holds all ma
   std::vector<double> time{0};
   for (double t = 1.5; t < 90; t *= 1.02) time.push_back(t);
   for (const auto& start : {kRest, kStationary}) {
-    const auto key = key_of(solved.systems.process(), Passage::up, 0.4);
+    const auto key = passage_key(solved.systems.process(), Passage::up, 0.4);
     const auto found = quantities::passage_distribution(solved.systems, key, start, time, 1e-8);
     const auto &f = found.density, &cdf = found.distribution;
     for (std::size_t n = 2; n < time.size(); ++n) {
@@ -305,7 +296,7 @@ TEST_CASE("passage distribution: simulated, within 4.5 sigma", "[real][long]") {
           if (key.starts_with("f_")) continue;  // averages over wide cells
           const auto& r = found.at(key);
           for (std::size_t n = 0; n < r.value.size(); ++n) {
-            const double sigma = (sampled.ci95[n].second - sampled.ci95[n].first) / 2 / 1.96;
+            const double sigma = test::sigma(sampled, n);
             INFO("bias " << s.bias << ", passage " << static_cast<int>(passage) << ", start "
                          << static_cast<int>(start.kind) << ", " << key << " at " << r.abscissa[n]
                          << ": " << r.value[n] << " +- " << r.error[n] << ", " << sampled.value[n]

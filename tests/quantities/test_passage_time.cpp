@@ -2,6 +2,7 @@
 
 #include "../common/catch.hpp"
 #include "../common/chains.hpp"
+#include "../common/passages.hpp"
 #include "../common/solved.hpp"
 #include "../common/tallies.hpp"
 #include "stickslip/catalogue/first_passage_keys.hpp"
@@ -15,23 +16,13 @@ using model::Passage;
 using model::Start;
 using operators::StaticPhase;
 using operators::Symmetry;
+using test::passage_key;
+using test::passing;
 using test::Solved;
 
 namespace {
 
-model::Scene passing(double bias = 0) {
-  return test::biased(test::scene(1, 0.5, 1, 0.5, {1, 0}), bias);
-}
-
 model::Scene passing_by_direction() { return test::by_direction(passing(0.2)); }
-
-operators::SystemKey passage_key(const model::Process& process, Passage passage, double w) {
-  operators::SystemKey key{0, operators::symmetry_of(process)};
-  key.speed_limit = w;
-  key.passage = passage;
-  if (passage != Passage::both) key.symmetry = Symmetry::none;
-  return key;
-}
 
 quantities::PassageTime time_of(Solved& solved, Passage passage, double w, const Start& start) {
   return quantities::passage_time(solved.systems, passage_key(solved.systems.process(), passage, w),

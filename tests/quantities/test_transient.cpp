@@ -1,11 +1,11 @@
 #include <cmath>
 
 #include "../common/catch.hpp"
-#include "../common/exponential.hpp"
 #include "../common/full_grid.hpp"
 #include "../common/near.hpp"
 #include "../common/quadrature.hpp"
 #include "../common/solved.hpp"
+#include "stickslip/algebra/dense.hpp"
 #include "stickslip/quantities/spectrum.hpp"
 #include "stickslip/quantities/transient.hpp"
 #include "stickslip/velocity/upwind_discretisation.hpp"
@@ -302,7 +302,7 @@ TEST_CASE("transient: upwind equals dense exponentials on the whole grid", "[par
     const std::vector<double> time{0.05, 0.6, 3};
     std::vector<std::vector<double>> known;
     for (double t : time) {
-      known.push_back(test::exponential(grid.generator(), t) * values);
+      known.push_back(algebra::exponential(grid.generator(), t) * values);
     }
     for (int i : {-4, -3, -1, 0, 1, 2, 3}) {
       for (int j : {-5, 0, 2}) {

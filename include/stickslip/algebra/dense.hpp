@@ -116,6 +116,9 @@ template <class Scalar>
   add_product(a, x.data(), y.data(), true);
   return y;
 }
+/// exp(M t) of a square matrix, by squaring a Taylor polynomial. O(size^3 log |M t|).
+[[nodiscard]] Matrix<double> exponential(Matrix<double> m, double t);
+
 /// LU factors of a square matrix with row interchanges (getrf).
 template <class Scalar>
 class LuFactors {

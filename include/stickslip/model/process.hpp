@@ -63,6 +63,8 @@ struct Process {
   [[nodiscard]] std::vector<double> exit_rates() const;
   /// Whether there are levels on which bodies stick. On none, v = 0 is passed and never held.
   [[nodiscard]] bool sticks() const { return lowest_static() <= highest_static(); }
+  /// Whether bodies stick on level i.
+  [[nodiscard]] bool sticks(int i) const { return lowest_static() <= i && i <= highest_static(); }
   /// g + E[X]: what drives bodies over long times.
   [[nodiscard]] double mean_force() const { return bias + noise.mean(); }
   /// x_i + g - F(0+): the speed of V at v = 0+ on level i.

@@ -135,6 +135,13 @@ class WholeVectors {
   return copy;
 }
 
+/// Entry by entry. Collective.
+[[nodiscard]] inline VecHandle product(Vec a, Vec b) {
+  VecHandle both = copy_of(a);
+  check(VecPointwiseMult(both, a, b));
+  return both;
+}
+
 /// Real part of sum_n a_n b_n, without conjugation. Collective.
 [[nodiscard]] inline double dot(Vec a, Vec b) {
   PetscScalar sum = 0;

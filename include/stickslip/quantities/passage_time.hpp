@@ -30,9 +30,12 @@ struct StartingPoint {
 [[nodiscard]] petsc::VecHandle inside(const operators::KolmogorovOperator& a,
                                       const operators::SystemKey& key);
 
-/// The systems of a passage of `speed` as asked for, which the discretisation will resolve: with
-/// symmetry |V| has that of one branch; passages of V itself need both.
-[[nodiscard]] operators::SystemKey passage_system(Planner& planner, double speed);
+/// The systems of a passage of `speed` as asked for: with symmetry |V| has that of one branch;
+/// passages of V itself need both.
+[[nodiscard]] operators::SystemKey passage_system(const Planner& planner, double speed);
+/// One about that passage, still without uses: a stationary start takes a factorisation of its own.
+[[nodiscard]] Task passage_task(const Planner& planner, const char* name,
+                                const operators::SystemKey& key);
 /// From how many levels excursions start in these.
 [[nodiscard]] int starts_in(const Planner& planner, const operators::SystemKey& key);
 

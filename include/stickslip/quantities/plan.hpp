@@ -66,9 +66,6 @@ struct Plan {
 /// thing each, and their plan has no tasks. Local.
 [[nodiscard]] Plan plan_of(const cases::Case& given);
 
-/// The least of the values above 0; infinity where there is none.
-[[nodiscard]] double least_positive(const std::vector<double>& values);
-
 /// Collects the tasks of quantities. Each quantity is a function in a file of its own that adds
 /// what it takes; plan.cpp lists them.
 class Planner {
@@ -90,6 +87,9 @@ class Planner {
   void add(Task task) { plan_.tasks.push_back(std::move(task)); }
   /// What the discretisation has to resolve; each quantity raises it to what it needs.
   [[nodiscard]] Needs& needs() { return plan_.needs; }
+  /// Has all -lambda resolved, or passages of all -velocity.
+  void resolve_lambda();
+  void resolve_speeds();
   /// Has a function of time resolved from the first of -time on, by its inverse Laplace transform.
   void resolve_times();
   /// Has rates of such transforms resolved where the noise is a table: levels of -delta smooth what

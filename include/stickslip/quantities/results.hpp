@@ -63,6 +63,8 @@ struct Check {
 
 /// The largest absolute value; 0 where there is none.
 [[nodiscard]] double largest_size(const std::vector<double>& values);
+/// The least of the values above 0; infinity where there is none.
+[[nodiscard]] double least_positive(const std::vector<double>& values);
 
 /// Largest error relative to the size of the values; infinite where one is not a number, unless the
 /// result is partial.
