@@ -52,29 +52,6 @@ Solved evaluated(MPI_Comm comm, const cases::Case& given, const Resolution& reso
   return solved;
 }
 
-// Beyond the levels and the velocity discretisation of the first discretisation there is nothing
-// but extrapolation.
-void require_start_within(const cases::Case& given, const Resolution& first) {
-  const cases::Question& question = given.question;
-  const auto starts = [&](const catalogue::Entry* entry) {
-    return question.wants(entry->quantity) && entry->takes("start") && !entry->of_one_run;
-  };
-  if (std::ranges::none_of(catalogue::entries(), starts)) return;
-  const auto noise = given.scene.process(first.levels).noise;
-  const int level = question.start.level;
-  const double x = given.scene.meant().noise.level(level), v = question.start.v;
-  const auto refuse = [&](const char* what, double largest, const char* more) {
-    throw BadInput(fmt::format("-start = {:g},{:g}: starts beyond the largest {} on which the mean "
-                               "is computed at -accuracy {:g}; take |{}| at most {:g}, or {}",
-                               x, v, what, question.accuracy, what, largest, more));
-  };
-  const char* simulated = "-route monte_carlo, which starts at any state that occurs";
-  if (level < noise.lowest() || level > noise.highest()) {
-    refuse("x", noise.level(noise.highest()), noise.table ? simulated : "-noise_levels full");
-  }
-  if (std::abs(v) > first.v_max) refuse("v", first.v_max, simulated);
-}
-
 // What has no digit after so many will have none, as modes in a continuous spectrum have not.
 constexpr double kOneDigit = 0.1;
 constexpr int kRefinementsWithoutDigit = 6;
@@ -265,6 +242,9 @@ class Refiner {
   void conclude(Step& step) {
     outcome_.reached = given_up_.empty();
     outcome_.shortfall = limit_;
+    for (auto& result : outcome_.results) {
+      if (given_up_.contains(result.key)) doubt_without_digit(kOneDigit, result);
+    }
     check_truncation();
     check_partial();
     check_bounds();

@@ -352,6 +352,10 @@ TEST_CASE("refinement: modes without a digit end early, and what is asked for be
   CHECK_THAT(outcome.shortfall, Catch::Contains("refinement cannot resolve") &&
                                     Catch::Contains("relaxation_frequency"));
   CHECK(outcome.steps.size() < 10);  // of 17
+  const auto& rates = result(outcome, "relaxation");
+  for (std::size_t n = 0; n < rates.value.size(); ++n) {
+    CHECK((rates.error[n] <= 0.1 * rates.value[n] || rates.error[n] >= rates.value[n]));
+  }
   CHECK(result(outcome, "P_stick").error[0] < 1e-2 * value(outcome, "P_stick"));
 }
 
