@@ -44,6 +44,9 @@ def memory_of(record: Record, longest: float | None = None, without: int | None 
 
     Raises ValueError where steps are uneven, the value does not change, or the record is short beside its memory.
     """
+    if not isinstance(record, Record):
+        raise TypeError(f"record: is a {type(record).__name__}; stickslip.read_record(path) reads a file, and "
+                        "stickslip.Record(time, value) takes arrays")
     if not record.even:
         steps = numpy.diff(record.time)
         raise ValueError(f"record: steps from {steps.min():g} to {steps.max():g} are uneven; take "

@@ -311,8 +311,8 @@ class CommandLine(unittest.TestCase):
         self.addCleanup(holder.cleanup)
         self.folder = pathlib.Path(holder.name)
 
-    def levels(self, *words, status=0):
-        done = subprocess.run([sys.executable, "-m", "stickslip", "levels", *map(str, words)], cwd=self.folder,
+    def levels(self, *words, status=0, command="levels"):
+        done = subprocess.run([sys.executable, "-m", "stickslip", command, *map(str, words)], cwd=self.folder,
                               capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(SOURCES / "python")})
         self.assertEqual(done.returncode, status, done.stderr)
         return done.stdout if status == 0 else done.stderr
@@ -341,6 +341,28 @@ class CommandLine(unittest.TestCase):
         numpy.save(self.folder / "b.npy", filtered(50000, 1 + 2j, 4))
         self.assertIn("swings to", self.levels("b.npy", "--step", STEP, status=2))
         self.assertIn("gamma", self.levels("b.npy", "--step", STEP, "--narrow-band"))
+
+
+    def test_a_record_for_force_file(self):
+        time = 0.01 * numpy.arange(400)
+        value = 0.5 + 0.2 * numpy.sin(numpy.pi * time)
+        rows = [f"{t:.2f};{v:.9f}".replace(".", ",") for t, v in zip(time, value)]
+        rows[200:202] = ["2,00;nan", "2,01;nan"]
+        (self.folder / "ground.csv").write_text("Zeit [s];a [g]\n" + "\n".join(rows))
+
+        def force(*words, status=0):
+            return self.levels("ground.csv", *words, status=status, command="force")
+
+        self.assertIn("missing in 1 gaps; --fill 0.03 joins them", force(status=2))
+        said = force("--fill", 0.03, "--centre", "--scale", -1)
+        self.assertIn("-quantities given_force -force_file ground_force.csv", said)
+        t, x = numpy.loadtxt(self.folder / "ground_force.csv", delimiter=",", skiprows=1).T
+        numpy.testing.assert_allclose(t, time, atol=1e-9)
+        numpy.testing.assert_allclose(x, -9.80665 * (value - value.mean()), atol=1e-3)
+        force("--between", 0.5, 1, "-o", "part.csv")
+        part = stickslip.run(force_file=self.folder / "part.csv", mu_d=0, drag="none", quantities="given_force")
+        numpy.testing.assert_allclose(part["path_force"].abscissa[[0, -1]], [0.5, 1])
+        self.assertIn("no such column", force("--column", "b", status=2))
 
 
 class WithoutSciPy(unittest.TestCase):
