@@ -570,6 +570,27 @@ class Pictures(Case):
             self.assertEqual(sweep.plot()["E_X2"].axes[0].get_xlabel(), "tau")
         self.assertEqual((self.folder / "asked").read_text(), "asked\n")  # once for all symbols
 
+    def test_slips_are_shaded_behind_the_path(self):
+        r = stickslip.run(quantities="given_force", force_file=SOURCES / "options" / "given_force.csv")
+        for axes, key in zip(r.plot()["given_force"].axes, ("path_force", "path_velocity", "path_displacement")):
+            values = r[key].value
+            self.assertLess(numpy.ptp(axes.get_ylim()), 1.2 * numpy.ptp(values))
+            (shade,) = axes.collections
+            self.assertEqual(len(shade.get_paths()), r["slip_count"].value)
+
+    def test_arrays_of_a_sweep_over_what_has_more_values(self):
+        options = {"delta": 1, "noise_deviation": 2, "quantities": "displacement_distribution", "start": "rest", "time": 1,
+                   "route": "monte_carlo", "excursions": 100}
+        for taus, distances, curves, over, said in (
+                ([1, 2, 3], [0.1, 0.2], ["$d$ = 0.1", "$d$ = 0.2"], "tau", ""),
+                ([1, 2], [0.1, 0.2], ["$\\tau$ = 1", "$\\tau$ = 2"], "displacement $d$", ""),
+                (range(1, 7), range(1, 9), [f"$\\tau$ = {n}" for n in (1, 2, 3, 5, 6)], "displacement $d$", "5 of 6 values")):
+            s = stickslip.sweep(tau=list(taus), distance=list(distances), **options)
+            (axes,) = s.plot(kind="displacement_cdf(1)")["displacement_cdf(1)"].axes
+            self.assertEqual([text.get_text() for text in axes.get_legend().texts], curves)
+            self.assertIn(over, axes.get_xlabel())
+            self.assertEqual(axes.get_title(), said)
+
     def test_pictures_on_request(self):
         s = stickslip.sweep(bias=[0.1, 0.2], delta=0.5, quantities="sticking,moments,spectrum", accuracy=1e-2)
         self.assertEqual(list(s.plot(kind="drift")), ["drift"])
