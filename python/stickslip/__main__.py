@@ -57,6 +57,7 @@ def main(words: Sequence[str] | None = None) -> int:
     levels.add_argument("--jumps", choices=("neighbours", "any"), default="neighbours", help="where jumps lead")
     levels.add_argument("--match-time", action="store_true", help="multiply all rates to match the correlation time")
     levels.add_argument("--narrow-band", action="store_true", help="a narrow band in the place of levels")
+    levels.add_argument("--filtered", action="store_true", help="filtered noise (Kanai and Tajimi) in the place of levels")
     levels.add_argument("--picture", type=pathlib.Path, help="autocovariance and spectrum of chain and record")
     levels.set_defaults(act=write_levels)
     force = commands.add_parser("force", description=FORCE)
@@ -136,6 +137,10 @@ def write_levels(arguments: argparse.Namespace) -> int:
         print(record)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # the chain prints them
+            if arguments.filtered:
+                fit = noise.filtered_of(record)
+                print(fit, " ".join(f"-{name} {value}" for name, value in fit.options.items()), sep="\n")
+                return 0
             chain = noise.narrow_band_of(record) if arguments.narrow_band else noise.record(
                 record, arguments.levels, mu_s=arguments.mu_s, jumps=arguments.jumps, match_time=arguments.match_time)
         print(chain)

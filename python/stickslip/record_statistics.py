@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from .chains import Meant
@@ -73,6 +74,14 @@ def memory_of(record: Record, longest: float | None = None, without: int | None 
                          "one, or a number for `longest`, the time beyond which it is uncorrelated")
     duration = record.step * pairs[0]
     return Memory(record.step, rho[:last + 1], math.sqrt(2 * squares[last] / duration), products[0] / pairs[0], duration)
+
+
+def jackknife(record: Record, whole: Memory, best: Callable[[Memory], Sequence[float]]) -> tuple[
+        tuple[float, ...], tuple[float, ...]]:
+    """What a fit finds of a record, and its standard errors from what it finds without each of the blocks."""
+    parts = numpy.array([best(memory_of(record, whole.time[-1], n)) for n in range(BLOCKS)])
+    errors = numpy.sqrt((BLOCKS - 1) / BLOCKS * ((parts - parts.mean(axis=0)) ** 2).sum(axis=0))
+    return tuple(best(whole)), tuple(errors.tolist())
 
 
 def spectrum_of(record: Record, memory: Memory) -> "tuple[Array, Array]":

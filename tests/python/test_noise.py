@@ -305,6 +305,46 @@ class OfRecords(unittest.TestCase):
             noise.narrow_band_of(shaking)
 
 
+def ground(count, frequency, damping, deviation, seed, step=STEP):
+    """The acceleration of a damped oscillator whose foot is shaken by white noise, exact at the steps."""
+    drift = numpy.array([[0, 1], [-frequency**2, -2 * damping * frequency]])
+    stay = scipy.linalg.expm(drift * step)
+    still = scipy.linalg.solve_continuous_lyapunov(drift, -numpy.diag([0, 1.0]))
+    force, z = numpy.array([frequency**2, 2 * damping * frequency]), numpy.random.default_rng(seed).standard_normal((count, 2))
+    shocks = z @ numpy.linalg.cholesky(still - stay @ still @ stay.T).T
+    states = numpy.empty((count, 2))
+    states[0] = numpy.linalg.cholesky(still) @ z[0]
+    for n in range(1, count):
+        states[n] = stay @ states[n - 1] + shocks[n]
+    return record_of(deviation * (states @ force) / (force @ still @ force) ** 0.5, step)
+
+
+class FilteredOfRecords(unittest.TestCase):
+    def test_the_numbers_of_a_ground(self):
+        for damping in (0.1, 0.3, 0.6, 0.8):
+            fit = noise.filtered_of(ground(40000, 15, damping, 1.5, 3))
+            for found, error, true in zip((fit.deviation, fit.frequency, fit.damping), fit.errors, (1.5, 15, damping)):
+                self.assertLess(abs(found - true), 4 * error)
+                self.assertLess(error, 0.15 * true)
+            self.assertLess(fit.misfit, 0.05)
+
+    def test_the_program_takes_its_options(self):
+        fit = noise.filtered_of(ground(20000, 15, 0.6, 1.5, 4))
+        r = stickslip.run(**fit.options, delta=0.5, mu_d=0.5, quantities="noise_law")
+        self.assertAlmostEqual(r["E_X2"].value / fit.deviation**2, 1, delta=0.05)
+
+    def test_what_is_no_ground(self):
+        def refused(message, values):
+            with self.assertRaisesRegex(ValueError, message):
+                noise.filtered_of(record_of(values))
+
+        refused("decays without a swing, as that of no ground does", filtered(40000, 5, 1))
+        refused("leaves that of filtered noise by", filtered(40000, 0.5, 2) + filtered(40000, 3 + 40j, 1))
+        shaken = ground(4000, 15, 0.5, 1, 1)
+        self.assertIn("the mean of the record, 5, is left out: -bias takes it",
+                      str(noise.filtered_of(record_of(shaken.value - shaken.value.mean() + 5))))
+
+
 class CommandLine(unittest.TestCase):
     def setUp(self):
         holder = tempfile.TemporaryDirectory(prefix="levels µ ")
@@ -341,6 +381,9 @@ class CommandLine(unittest.TestCase):
         numpy.save(self.folder / "b.npy", filtered(50000, 1 + 2j, 4))
         self.assertIn("swings to", self.levels("b.npy", "--step", STEP, status=2))
         self.assertIn("gamma", self.levels("b.npy", "--step", STEP, "--narrow-band"))
+        numpy.save(self.folder / "c.npy", ground(20000, 15, 0.6, 1.5, 5).value)
+        self.assertRegex(self.levels("c.npy", "--step", STEP, "--filtered"),
+                         r"-noise filtered -noise_deviation 1\.\d+ -ground_frequency 1\d\.\d+ -ground_damping 0\.\d+\n")
 
 
     def test_a_record_for_force_file(self):
