@@ -102,7 +102,7 @@ def prepared(options: Mapping[str, Any], folder: pathlib.Path, keep: Path | None
     if hasattr(options.get("noise"), "save"):
         options |= _files_of(options, folder)
     if hasattr(options.get("force_file"), "save"):
-        options["force_file"] = _force_of(options, folder / "force.csv")
+        options["force_file"] = _force_of(options, folder)
     return options
 
 
@@ -213,8 +213,9 @@ def _files_of(options: Mapping[str, Any], folder: pathlib.Path) -> dict[str, Any
     return {"noise": "chain", **files}
 
 
-def _force_of(options: Mapping[str, Any], path: pathlib.Path) -> pathlib.Path:
-    """Writes a `Record` for -force_file; refuses gaps as the program does, which knows neither `resampled` nor `between`."""
+def _force_of(options: Mapping[str, Any], folder: pathlib.Path) -> pathlib.Path:
+    """Writes a `Record` for -force_file, under the name of its source, which pictures show; refuses gaps as the program
+    does, which knows neither `resampled` nor `between`."""
     record, scale = options["force_file"], options.get("force_scale", 1)
     gaps = record.gaps
     if record.even and 0 < len(gaps) <= len(record.time) / 10:
@@ -224,6 +225,9 @@ def _force_of(options: Mapping[str, Any], path: pathlib.Path) -> pathlib.Path:
                        f"across={longest:g}) joins them by straight lines, record.between() takes a part without them")
     if isinstance(scale, int | float):
         warn_of_gravity(record, scale, "force_scale", 7)
+    place = folder / "record"  # apart from other files, whose names it may have
+    place.mkdir()
+    path = place / f"{pathlib.PurePath(record.source.partition(':')[0]).stem[:80] or 'force'}.csv"
     record.save(path)
     return path
 

@@ -1,6 +1,7 @@
 """Records read from files of every kind, which the tests write themselves."""
 
 import codecs
+import dataclasses
 import os
 import pathlib
 import sys
@@ -294,6 +295,9 @@ class Records(Case):
         one = stickslip.run(force_file=record, **options)
         self.assertAlmostEqual(one["path_displacement"].value[1], 1, delta=1e-12)
         self.assertAlmostEqual(one["final_displacement"].value, 2, delta=1e-12)
+        self.assertTrue(one.options["force_file"].endswith("/force.csv"))
+        named = dataclasses.replace(record, source="../Kobe.AT2: AT2 of PEER, column acceleration")
+        self.assertTrue(stickslip.run(force_file=named, **options).options["force_file"].endswith("/Kobe.csv"))
         swept = stickslip.sweep(force_file=record, force_scale=[1, -3], **options)
         numpy.testing.assert_allclose(swept["final_displacement"].value, [2, -6])
         both = stickslip.map([{"force_file": record}, {"force_file": record.scaled(0.5)}], **options)
