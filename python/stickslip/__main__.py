@@ -104,6 +104,11 @@ def levels_command() -> int:
     return main(["levels", *sys.argv[1:]])
 
 
+def force_command() -> int:
+    """The console script stickslip-force."""
+    return main(["force", *sys.argv[1:]])
+
+
 def plot_command() -> int:
     """The console script stickslip-plot."""
     return main(["plot", *sys.argv[1:]])
