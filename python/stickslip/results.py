@@ -304,11 +304,9 @@ class Results(Mapping):
         path.write_text(json.dumps(self.summary, indent=1) + "\n")
 
 
-def array(values: Any, missing: float = math.nan) -> "Array":
-    """Numbers of JSON, where null stands for what is no number."""
-    if isinstance(values, list):
-        return numpy.array([array(v, missing) for v in values], float)
-    return numpy.asarray(missing if values is None else values, float)
+def array(values: Any) -> "Array":
+    """Numbers of JSON; null, which stands for what is no number, becomes NaN."""
+    return numpy.asarray(values, float)
 
 
 def _number(values: "Array") -> "float | Array":

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..results import Results
-from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, Figure, Line2D, curve, decades, drag, fraction, memory, number,
+from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, Figure, Line2D, curve, decades, drag, fraction, memory, number, over,
                     numpy, scale, step, styled, title, units)
 
 if TYPE_CHECKING:
@@ -145,7 +145,7 @@ def _panel(axes: "Axes", panel: Panel, items: Sequence[Results]) -> None:
             if key in item:
                 words = [item.name if len(items) > 1 else "", SPELT.get(key, "")]
                 curve(axes, item[key], n, style=style, label=", ".join(filter(None, words)) or None)
-                axes.set_xlabel(ABSCISSAE.get(item[key].abscissa_name, item[key].abscissa_name))
+                axes.set_xlabel(over(item[key]))
         if "displacement_variance" in keys and {keys[0], "S_0"} <= item.keys():
             t = item[keys[0]].abscissa
             axes.plot(t, item["S_0"].value * t, color="#888888", linewidth=0.9, linestyle=STYLES[3], zorder=1,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from ..results import Result, Results
 from ..sweeps import Sweep
 from . import style
-from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, WORDS, Figure, bars, decades, numpy, on_axis, scale, styled,
+from .style import (COLOURS, MARKERS, STYLES, WORDS, Figure, bars, decades, numpy, on_axis, over, scale, styled,
                     symbol, units)
 
 if TYPE_CHECKING:
@@ -22,8 +22,10 @@ def each(sweep: Sweep) -> "dict[str, Figure]":
 
     One option is an axis, errors are bars; of two options the second is the axis and the first one distinguishes
     curves, up to five values, or makes a map of more. Further options stay at their first value, which the title
-    shows. Points that fell short are marked by crosses. An array is drawn against its abscissa, a curve for each
-    value of the last option, five of them if there are more; the other options stay at their first value.
+    shows. Points that fell short are marked by crosses. An array of more places than the last option has values is
+    drawn against its abscissa, a curve for each value of the last option; any other against the last option, a curve for
+    each place of its abscissa. There are at most five curves, as the title says; the other options stay at their first
+    value.
     """
     return {key: one(sweep, key) for key in sweep}
 
@@ -39,20 +41,47 @@ def _array(sweep: Sweep, result: Result) -> "Figure":
     axes = figure.subplots()
     *others, last = sweep.dims
     values = sweep.coords[last]
-    shown = numpy.unique(numpy.linspace(0, len(values) - 1, min(FEW, len(values))).round().astype(int))
+    if result.abscissa.ndim == 1 and len(result.abscissa) < len(values):
+        _against_option(axes, sweep, result)
+        return figure
+    shown = _some(len(values))
     for n, point in enumerate(shown):
         at = (0,) * len(others) + (point,)
         abscissa = result.abscissa if result.abscissa.ndim == 1 else result.abscissa[at]
         one = Result(result.key, result.value[at], result.error[at], result.unit, result.dims[-1:],
                      result.abscissa_name, abscissa, None if result.ci95 is None else result.ci95[at])
         style.curve(axes, one, n, label=f"{symbol(last)} = {values[point]:g}")
-    name = result.abscissa_name
     low, high = numpy.nanmin(result.value), numpy.nanmax(result.value)
-    axes.set(xscale=scale(abscissa), xlabel=ABSCISSAE.get(name, name), ylabel=_label(sweep, result.key),
+    axes.set(xscale=scale(abscissa), xlabel=over(result), ylabel=_label(sweep, result.key),
              **({"yscale": "log", "ylim": (low / 2, high * 2)} if 0 < 100 * low < high else {}))
-    axes.set_title(", ".join(f"{symbol(name)} = {sweep.coords[name][0]:g}" for name in others), fontsize=9)
+    _state(axes, sweep, others, len(shown), len(values))
     axes.legend()
     return figure
+
+
+def _some(count: int) -> "numpy.ndarray":
+    """At most `FEW` places of so many, evenly."""
+    return numpy.unique(numpy.linspace(0, count - 1, min(FEW, count)).round().astype(int))
+
+
+def _state(axes: "Axes", sweep: Sweep, others: Sequence[str], shown: int, count: int) -> None:
+    """A title with the options that stay at their first value, and with how many curves are left out."""
+    axes.set_title(", ".join([*(f"{symbol(name)} = {sweep.coords[name][0]:g}" for name in others),
+                              *[f"{shown} of {count} values"] * (shown < count)]), fontsize=9)
+
+
+def _against_option(axes: "Axes", sweep: Sweep, result: Result) -> None:
+    """A curve over the last swept option for each place of the abscissa, as fragility curves are drawn."""
+    *others, last = sweep.dims
+    first, x, shown = (0,) * len(others), sweep.coords[last], _some(len(result.abscissa))
+    sign = over(result).partition("$")[2].partition("$")[0]
+    for n, place in enumerate(shown):
+        curve(axes, x, result.value[first][:, place], result.error[first][:, place], n,
+              f"${sign}$ = {result.abscissa[place]:g}" if sign else f"{result.abscissa_name} = {result.abscissa[place]:g}",
+              None if result.ci95 is None else result.ci95[first][:, place], (sweep.status == "reached")[first])
+    axes.set(xscale=scale(x), xlabel=_label(sweep, last), ylabel=_label(sweep, result.key))
+    _state(axes, sweep, others, len(shown), len(result.abscissa))
+    axes.legend()
 
 
 def _scalar(sweep: Sweep, result: Result) -> "Figure":
