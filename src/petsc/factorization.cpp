@@ -149,8 +149,8 @@ std::string Factorization::advice() const {
   if (direct == PETSC_TRUE) {
     return fmt::format("; -{0}ksp_type gmres iterates around what -{0}pc_type chooses", prefix_);
   }
-  return fmt::format(
-      "; try another -{0}pc_type, a smaller -{0}ksp_rtol or a larger -{0}ksp_max_it", prefix_);
+  return fmt::format("; try another -{0}pc_type, a smaller -{0}ksp_rtol or a larger -{0}ksp_max_it",
+                     prefix_);
 }
 
 Analysis Factorization::analyse(Mat matrix, const std::string& prefix, SolverStatistics& statistics,

@@ -67,6 +67,8 @@ class Refusals(Case):
                                                               "did you mean gmres?"))
         self.refuse(*SMALL, "-slide_pc_typ", "lu", message=("-slide_pc_typ:", "did you mean -slide_pc_type?"))
         self.refuse(*SMALL, "-relax_eps_tpye", "x", message=("did you mean -relax_eps_type?",))
+        self.refuse(*SMALL, "-quantities", "relaxation", "-relax_eps_ncv", "3", message=("ncv must be at least nev+1",))
+        self.run_ok(*SMALL, "-relax_eps_target", "3", "-accuracy", "1e-3")
         self.refuse(*SMALL, "-backward_ts_type", "foo", message=("-backward_ts_type = foo:",))
         self.refuse(*SMALL, "-slide_pc_factor_mat_solver_type", "foo",
                     message=("-slide_pc_factor_mat_solver_type = foo:",))
