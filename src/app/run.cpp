@@ -53,7 +53,7 @@ bool contains(const std::vector<std::string>& words, const char* word) {
 /// Texts that need neither PETSc nor model parameters; empty when none is asked for.
 std::string text_asked_for(const std::vector<std::string>& words) {
   const auto asked = [&](const char* word) { return contains(words, word); };
-  if (asked("-help") || asked("--help") || asked("-h")) return pages::help_text();
+  if (asked("-help") || asked("--help") || asked("-h") || asked("-?")) return pages::help_text();
   if (asked("-version") || asked("--version")) return io::version_text();
   if (asked("-reference")) return pages::reference_page();
   if (asked("-reference_json")) return pages::reference_json();
@@ -174,13 +174,22 @@ int compute(const options::Request& request, const Beginning& beginning, const E
   return status_of(outcome);
 }
 
+/// What is wrong where ranks were started with different words (`mpiexec -n 1 ... : -n 1 ...`):
+/// they would wait for one another for ever. Empty if nothing is. Collective.
+std::string difference_of_options(MPI_Comm comm) {
+  const std::string own = petsc::options_text();
+  if (petsc::first_text(comm, own) == own) return "";
+  return fmt::format("rank {} has other options than rank 0; start all ranks with the same",
+                     petsc::rank(comm));
+}
+
 /// The request, or BadInput on all ranks with the message of the first that found any: files may
 /// look different from another machine, or a moment later. Collective.
 options::Request agreed_request(const std::vector<std::string>& words) {
   options::Request request;
-  std::string problem;
+  std::string problem = difference_of_options(MPI_COMM_WORLD);
   try {
-    request = options::read_request(words);
+    if (problem.empty()) request = options::read_request(words);
   } catch (const BadInput& bad) {
     problem = bad.what();
   }
@@ -206,8 +215,13 @@ Ending ending_of(const std::function<int()>& work) {
   } catch (const std::bad_alloc&) {
     return {status(ExitStatus::no_memory), kOutOfMemory, false};
   } catch (const petsc::PetscFailure& failure) {
-    if (failure.code() != PETSC_ERR_MEM) return {status(ExitStatus::other), failure.what(), false};
-    return {status(ExitStatus::no_memory), kOutOfMemory, false};
+    const std::string text = failure.what(), message = text.substr(0, text.find('\n'));
+    switch (failure.code()) {
+    case PETSC_ERR_MEM: return {status(ExitStatus::no_memory), kOutOfMemory, false};
+    case PETSC_ERR_NOT_CONVERGED: return {status(ExitStatus::not_reached), message, false};
+    case PETSC_ERR_USER_INPUT: return {status(ExitStatus::bad_input), message, false};
+    default: return {status(ExitStatus::other), text, false};
+    }
   } catch (const std::exception& failure) {
     return {status(ExitStatus::other), failure.what(), false};
   }

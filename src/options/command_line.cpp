@@ -76,6 +76,16 @@ void check_line(const std::string& line, const std::string& place, Problems& pro
                            line.substr(first, 40)));
 }
 
+// What is wrong with the encoding of a line; empty if nothing is.
+std::string unfit_text(const std::string& line) {
+  if (line.starts_with("\xEF\xBB\xBF")) {
+    return "begins with a byte order mark; save the file as UTF-8 without one";
+  }
+  const auto unprintable = [](unsigned char c) { return c < ' ' && c != '\t' && c != '\r'; };
+  if (std::none_of(line.begin(), line.end(), unprintable)) return "";
+  return "is no text; an options file is text with one -name value a line";
+}
+
 void check_options_file(const std::string& name, std::vector<std::string> above,
                         Problems& problems) {
   const std::string unfit = unfit_file(name, above);
@@ -85,7 +95,9 @@ void check_options_file(const std::string& name, std::vector<std::string> above,
   std::ifstream file(name);
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
-    check_line(line, fmt::format("{}:{}", name, number), problems);
+    const std::string place = fmt::format("{}:{}", name, number), unfit_line = unfit_text(line);
+    if (!unfit_line.empty()) return problems.add(place + ": " + unfit_line);
+    check_line(line, place, problems);
     if (const auto inner = included_file(line)) check_options_file(*inner, above, problems);
   }
 }

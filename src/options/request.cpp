@@ -1,6 +1,7 @@
 #include "stickslip/options/request.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -40,6 +41,13 @@ effects::Drive drive_of(const Settings& settings) {
   return asked.size() == 1 ? effects::Drive::given_force : effects::Drive::both;
 }
 
+bool is_standard_output(const std::filesystem::path& file) {
+  struct stat ours = {};
+  struct stat its = {};
+  return fstat(STDOUT_FILENO, &ours) == 0 && stat(file.c_str(), &its) == 0 &&
+         ours.st_dev == its.st_dev && ours.st_ino == its.st_ino;
+}
+
 void check_writable(Settings& settings, const Option& option) {
   const std::string& name = option.name;
   if (option.kind != Kind::path || settings.text(name).empty()) return;
@@ -53,6 +61,11 @@ void check_writable(Settings& settings, const Option& option) {
     settings.refuse(name, "is in a folder that cannot be written", "name another place");
   } else if (std::filesystem::is_directory(file, error)) {
     settings.refuse(name, "is a folder", "name a file");
+  } else if (std::filesystem::exists(file, error) &&
+             !std::filesystem::is_regular_file(file, error)) {
+    settings.refuse(name, "is a device or a pipe, which a file would replace", "name a file");
+  } else if (is_standard_output(file)) {
+    settings.refuse(name, "is where standard output goes, with the table", "name another file");
   } else if (std::filesystem::exists(file, error) && access(file.c_str(), W_OK) != 0) {
     settings.refuse(name, "is a file that cannot be written", "name another file");
   }

@@ -274,7 +274,7 @@ class Rules {
                     "bias {:g}: the body never sticks, and ",
                     noise.level(noise.lowest()), noise.level(noise.highest()), r_.scene.bias);
     const std::string finer = noise.table ? "" : ", or a smaller -delta";
-    report("mu_s", !missing.empty(), why + enumerate(missing, "and") + " are about sticking phases",
+    report("mu_s", !missing.empty(), why + enumerate(missing, "and") + " need sticking phases",
            fmt::format("take -quantities of {}, or a larger -mu_s{}", enumerate(without, "and"),
                        finer));
     report("route", missing.empty() && method_.needs_sticking,

@@ -99,7 +99,9 @@ void check_value(const Option& option, const std::string& value, Problems& probl
 
 void Problems::add(const Option& option, const std::string& value, const std::string& why,
                    const std::string& fix) {
-  std::string message = fmt::format("-{} = {}: {}", option.name, value, why);
+  constexpr std::size_t longest = 200;  // of values that a message repeats
+  const std::string shown = value.size() <= longest ? value : value.substr(0, longest) + "...";
+  std::string message = fmt::format("-{} = {}: {}", option.name, shown, why);
   if (!fix.empty()) message += "; " + fix;
   add(message);
 }

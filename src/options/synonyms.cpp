@@ -15,9 +15,9 @@ namespace {
 // How options of PETSc's objects begin, and the prefixes of the solvers that have such an object.
 constexpr struct {
   const char *beginning, *solvers;
-} kFamilies[] = {{"ksp_", "slide_"},       {"pc_", "slide_"},         {"sub_", "slide_"},
-                 {"mat_mumps_", "slide_"}, {"eps_", "relax_, null_"}, {"st_", "relax_, null_"},
-                 {"ts_", "backward_"},     {"snes_", "backward_"}};
+} kFamilies[] = {{"ksp_", "slide_"},       {"pc_", "slide_"},      {"sub_", "slide_"},
+                 {"mat_mumps_", "slide_"}, {"mat_view", "slide_"}, {"eps_", "relax_, null_"},
+                 {"st_", "relax_, null_"}, {"ts_", "backward_"},   {"snes_", "backward_"}};
 
 const Synonyms* synonyms_of(const std::string& other, const std::string& option) {
   for (const auto& row : all_synonyms()) {

@@ -306,7 +306,8 @@ std::span<const OtherOption> other_options() {
       {"-man_page", "print the manual page in roff and stop"},
       {"-completion", "print the completion of the command line for bash and stop"},
       {"-slide_...", "PETSc options of the solver for the sliding operator, for example "
-                     "-slide_ksp_view, or -slide_pc_type with elements or lu (by MUMPS)"},
+                     "-slide_ksp_view, -slide_mat_view binary:FILE, or -slide_pc_type with "
+                     "elements or lu (by MUMPS)"},
       {"-null_..., -relax_...", "SLEPc options of the eigensolvers of -route null_vector and of "
                                 "relaxation, for example -relax_eps_nev 10 or -null_eps_view"},
       {"-log_view, ...", "PETSc's own options"},

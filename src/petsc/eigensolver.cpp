@@ -151,8 +151,8 @@ void probe_eigensolver(const std::string& prefix) {
   MatHandle diagonal;
   check(MatCreateAIJ(PETSC_COMM_SELF, size, size, size, size, 1, nullptr, 0, nullptr,
                      diagonal.out()));
-  for (PetscInt n = 0; n < size; ++n) {
-    check(MatSetValue(diagonal, n, n, static_cast<PetscScalar>(n + 1), INSERT_VALUES));
+  for (PetscInt n = 0; n < size; ++n) {  // no eigenvalue that a user may name as a target
+    check(MatSetValue(diagonal, n, n, static_cast<PetscScalar>(n + M_SQRT2), INSERT_VALUES));
   }
   check(MatAssemblyBegin(diagonal, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(diagonal, MAT_FINAL_ASSEMBLY));

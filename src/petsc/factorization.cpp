@@ -142,7 +142,15 @@ void Factorization::solve_some(std::span<const Vec> b, std::span<Solution> solut
 }
 
 std::string Factorization::advice() const {
-  return is_own(ksp_) ? fmt::format("; -{}pc_type lu exchanges more rows", prefix_) : "";
+  if (is_own(ksp_)) return fmt::format("; -{}pc_type lu exchanges more rows", prefix_);
+  PetscBool direct = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(static_cast<KSP>(ksp_)), KSPPREONLY,
+                               &direct));
+  if (direct == PETSC_TRUE) {
+    return fmt::format("; -{0}ksp_type gmres iterates around what -{0}pc_type chooses", prefix_);
+  }
+  return fmt::format("; try another -{0}pc_type, a smaller -{0}ksp_rtol or a larger -{0}ksp_max_it",
+                     prefix_);
 }
 
 Analysis Factorization::analyse(Mat matrix, const std::string& prefix, SolverStatistics& statistics,

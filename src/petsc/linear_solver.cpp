@@ -122,7 +122,7 @@ std::string implied_pc_type(const std::string& prefix) {
   bool others = false;
   for (const auto& name : given_options()) {
     if (name.starts_with(own)) return kElementsPc;
-    others = others || name.starts_with(pc) || name.starts_with(mat);
+    others = others || name.starts_with(pc) || (name.starts_with(mat) && name != mat + "view");
   }
   return others ? PCLU : "";
 }
@@ -166,6 +166,8 @@ bool solve_together(KSP ksp, std::span<const Vec> b, std::span<const Vec> x, boo
 
 void factor(KspHandle& ksp, Mat matrix, const std::string& prefix) {
   const auto amf = default_ordering(prefix);
+  const auto owner = reinterpret_cast<PetscObject>(static_cast<KSP>(ksp));
+  check(PetscObjectViewFromOptions(reinterpret_cast<PetscObject>(matrix), owner, "-mat_view"));
   check(KSPSetUp(ksp));
   if (lacks_workspace(ksp)) ksp = with_more_workspace(ksp, matrix, prefix);
   require_factored(ksp, prefix);

@@ -77,8 +77,11 @@ PetscErrorCode start(int& count, char**& values) {
     check(code);
   } catch (const PetscFailure& failure) {
     const std::string text = failure.what();
+    const bool crowded = text.find("extra token") != text.npos;
+    const char* const fix =
+        crowded ? "; write one -name value a line, and values with blanks in quotes" : "";
     throw PetscFailure(code, "PETSc cannot start with these options: " +
-                                 text.substr(0, text.find("\n  in ")));
+                                 text.substr(0, text.find("\n  in ")) + fix);
   }
   throw PetscFailure(code, "PETSc cannot start");
 }
@@ -100,6 +103,10 @@ Session::Session(int& argc, char**& argv) : arguments_(argv, argv + argc) {
   (void)ranks_on_node();          // all ranks are here
   take_blas_space();
   std::signal(SIGPIPE, SIG_DFL);  // a closed pipe (| head) is no crash
+  // Nor are a closed terminal and Ctrl-\, which PETSc would explain; what nohup ignores stays so.
+  for (const int wanted : {SIGHUP, SIGQUIT}) {
+    if (std::signal(wanted, SIG_DFL) == SIG_IGN) std::signal(wanted, SIG_IGN);
+  }
   std::signal(SIGXFSZ, SIG_IGN);  // the write that fails reports a limit of file sizes
 }
 

@@ -41,9 +41,11 @@ constexpr const char* kEpsLater =
 constexpr const char* kEpsCommon = "eps_type eps_tol eps_nev eps_ncv eps_max_it eps_monitor";
 const SolverRole kRoles[] = {
     {"slide_", probe_linear_solver,
-     "ksp_view ksp_view_pre ksp_converged_reason ksp_converged_rate ksp_view_final_residual",
+     "ksp_view ksp_view_pre ksp_converged_reason ksp_converged_rate ksp_view_final_residual "
+     "mat_view",
      "pc_type pc_elements_share pc_factor_mat_solver_type pc_factor_levels sub_pc_type "
-     "sub_pc_factor_levels ksp_type ksp_rtol ksp_max_it ksp_monitor"},
+     "sub_pc_factor_levels ksp_type ksp_rtol ksp_atol ksp_max_it ksp_gmres_restart "
+     "ksp_monitor"},
     {"null_", probe_eigensolver, kEpsLater, kEpsCommon},
     {"relax_", probe_eigensolver, kEpsLater, kEpsCommon},
     {"backward_", probe_time_stepper, "ts_view ts_view_pre ts_adapt_view snes_view ksp_view",
@@ -69,6 +71,17 @@ std::string nearest_option(const SolverRole& role, const std::string& name) {
   const auto names = split(fmt::format("{} {}", role.read_later, role.common), ' ');
   const std::string near = nearest_word(name.substr(role.prefix.size()), names);
   return near.empty() ? "" : role.prefix + near;
+}
+
+// What makes a solver read an option, that of the default solver being direct; empty if nothing is
+// known to. Both without the prefix of the role.
+std::string made_readable_by(const std::string& option) {
+  constexpr std::pair<const char*, const char*> known[] = {
+      {"ksp_", "ksp_type gmres"}, {"pc_factor_levels", "pc_type ilu"}, {"sub_", "pc_type bjacobi"}};
+  for (const auto& [start, choice] : known) {
+    if (option.starts_with(start)) return choice;
+  }
+  return "";
 }
 
 // Of the types that PETSc has, those that work from options alone and apply transposes. Others,
@@ -138,14 +151,19 @@ OptionsOf::~OptionsOf() {
   (void)PetscOptionsDestroy(&options_);
 }
 
-std::vector<std::string> given_options() {
-  std::vector<std::string> names;
+std::string options_text() {
   char* all = nullptr;
   check(PetscOptionsGetAll(nullptr, &all));
-  for (const auto& word : split(all, ' ')) {
+  const std::string text = all;
+  check(PetscFree(all));
+  return text;
+}
+
+std::vector<std::string> given_options() {
+  std::vector<std::string> names;
+  for (const auto& word : split(options_text(), ' ')) {
     if (is_option_name(word)) names.push_back(word.substr(1));
   }
-  check(PetscFree(all));
   return names;
 }
 
@@ -205,9 +223,14 @@ std::vector<std::string> wrong_solver_options() {
 std::string unknown_solver_option(const std::string& name) {
   const SolverRole* role = role_of(name);
   if (role == nullptr) return "";
-  const std::string near = nearest_option(*role, name);
+  const std::string near = nearest_option(*role, name), prefix = role->prefix;
+  if (near == name) {
+    const std::string choice = made_readable_by(name.substr(prefix.size()));
+    return fmt::format("-{}: the solver chosen does not read it; {}leave it out", name,
+                       choice.empty() ? "" : fmt::format("add -{}{}, or ", prefix, choice));
+  }
   return fmt::format("-{}: this solver has no such option; {}-{}{} shows its options", name,
-                     near.empty() ? "" : fmt::format("did you mean -{}? ", near), role->prefix,
+                     near.empty() ? "" : fmt::format("did you mean -{}? ", near), prefix,
                      split(role->read_later, ' ').front());
 }
 

@@ -43,10 +43,21 @@ void remove_with_companions(const std::filesystem::path& start) {
   }
 }
 
+// What a symbolic link stands for, lest a file takes the place of the link.
+std::string followed(const std::string& target) {
+  constexpr int most = 40;  // links from one to the next, as for the system
+  std::filesystem::path file = target;
+  std::error_code error;
+  for (int n = 0; n < most && std::filesystem::is_symlink(file, error); ++n) {
+    file = file.parent_path() / std::filesystem::read_symlink(file, error);
+  }
+  return file.string();
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(std::string target, long tag)
-    : target_(std::move(target)), part_(fmt::format("{}.part{}", target_, tag)) {}
+    : target_(followed(target)), part_(fmt::format("{}.part{}", target_, tag)) {}
 
 // MPI leaves a lock beside the part where a disk was full.
 AtomicFile::~AtomicFile() {
@@ -55,6 +66,12 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::commit() {
   flush_to_disk(part_);
+  std::error_code error;
+  if (std::filesystem::exists(target_, error) &&
+      !std::filesystem::is_regular_file(target_, error)) {
+    errno = EINVAL;  // a device or a pipe would be gone
+    fail("cannot replace", target_);
+  }
   if (std::rename(part_.c_str(), target_.c_str()) != 0) fail("cannot write", target_);
   committed_ = true;
 }

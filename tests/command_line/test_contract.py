@@ -2,6 +2,7 @@
 
 import json
 import os
+import struct
 import subprocess
 import unittest
 
@@ -66,9 +67,15 @@ class Refusals(Case):
                                                               "did you mean gmres?"))
         self.refuse(*SMALL, "-slide_pc_typ", "lu", message=("-slide_pc_typ:", "did you mean -slide_pc_type?"))
         self.refuse(*SMALL, "-relax_eps_tpye", "x", message=("did you mean -relax_eps_type?",))
+        self.refuse(*SMALL, "-quantities", "relaxation", "-relax_eps_ncv", "3", message=("ncv must be at least nev+1",))
+        self.run_ok(*SMALL, "-relax_eps_target", "3", "-accuracy", "1e-3")
         self.refuse(*SMALL, "-backward_ts_type", "foo", message=("-backward_ts_type = foo:",))
         self.refuse(*SMALL, "-slide_pc_factor_mat_solver_type", "foo",
                     message=("-slide_pc_factor_mat_solver_type = foo:",))
+        for option, choice in (("ksp_rtol", "ksp_type gmres"), ("ksp_gmres_restart", "ksp_type gmres"),
+                               ("pc_factor_levels", "pc_type ilu"), ("sub_pc_type", "pc_type bjacobi")):
+            self.refuse(*SMALL, f"-slide_{option}", "3",
+                        message=(f"-slide_{option}: the solver chosen does not read it; add -slide_{choice}, or",))
         for pc in ("elements", "lu", "qr", "redundant"):
             self.run_ok(*SMALL, "-slide_pc_type", pc, "-accuracy", "1e-3")
         self.run_ok(*SMALL, "-slide_ksp_type", "gmres", "-accuracy", "1e-3")
@@ -134,8 +141,27 @@ class Refusals(Case):
         self.refuse("-options_file", "/no/such/file", message=("cannot be read",))
         self.refuse("-output", "/no/such/folder/x.h5", message=("-output", "does not exist"))
         broken = self.folder / "broken.opts"
-        broken.write_text("-mu_s 1\nmu_d 0.5\n")
-        self.refuse("-options_file", broken, message=("broken.opts:2",))
+        for text, message in ((b"-mu_s 1\nmu_d 0.5\n", "broken.opts:2"), (b"\xef\xbb\xbf-mu_d 1\n", "byte order mark"),
+                              (b"-mu_s 1\n\0\x1b[2J\n", "broken.opts:2: is no text"),
+                              (b"-mu_s 1 -mu_d 0.5\n", "write one -name value a line")):
+            broken.write_bytes(text)
+            self.refuse("-options_file", broken, message=(message,))
+
+    def test_devices_and_pipes_stay(self):
+        pipe = self.folder / "pipe"
+        os.mkfifo(pipe)
+        for option in ("-summary", "-output", "-checkpoint"):
+            done = run(*SMALL, *(("-sweep_mu_d", "1") if option == "-checkpoint" else ()), option, pipe)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(f"{option} = {pipe}: is a device or a pipe", done.stderr)
+            self.assertTrue(pipe.is_fifo())
+
+    def test_the_table_and_a_file_have_places_of_their_own(self):
+        with open(self.folder / "table.txt", "w") as table:
+            done = subprocess.run([BINARIES / "stickslip", *SMALL, "-summary", "table.txt"], cwd=self.folder,
+                                  stdout=table, stderr=subprocess.PIPE, text=True, timeout=60)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("-summary = table.txt: is where standard output goes", done.stderr)
 
     def test_every_rank_knows_but_one_speaks(self):
         done = run("-delta", "-1", ranks=2, folder=self.folder)
@@ -276,6 +302,19 @@ class Summary(Case):
         other = self.summary(*SMALL, "-slide_pc_factor_mat_solver_type", "klu")
         self.assert_close(usual["results"]["P_stick"]["value"],
                           other["results"]["P_stick"]["value"], 1e-12)
+
+    def test_a_solver_that_does_not_converge(self):
+        done = self.run_ok(*SMALL, *"-slide_ksp_type gmres -slide_pc_type none -slide_ksp_max_it 1".split(), status=3)
+        self.assertIn("or a larger -slide_ksp_max_it", done.stderr)
+        self.run_ok(*SMALL, *"-slide_ksp_type gmres -slide_pc_type none -slide_ksp_max_it 1".split(),
+                    "-slide_ksp_error_if_not_converged", status=3)
+
+    def test_the_matrix_is_written(self):
+        fixed = (*SMALL, "-degree", "4", "-layers", "3")
+        step = self.summary(*fixed, "-slide_mat_view", "binary:matrix.petsc", status=3)["cost"]["steps"][-1]
+        code, rows, columns, entries = struct.unpack(">4i", (self.folder / "matrix.petsc").read_bytes()[:16])
+        self.assertEqual((code, rows, columns, entries), (1211216, step["unknowns"], step["unknowns"], step["nonzeros"]))
+        self.assertEqual((self.folder / "matrix.petsc").stat().st_size, 16 + 4 * rows + 12 * entries)
 
 
 class Hdf5(Case):

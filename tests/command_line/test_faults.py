@@ -110,6 +110,18 @@ class Killed(Faults):
         self.assertGreater(kills, 0)
         self.assertEqual(self.summary(*SIMULATE, "-checkpoint", file)["results"], whole)
 
+    def test_the_terminal_goes(self):
+        """a hang-up: ends a run without words, and not one that nohup started"""
+        for action, ended in ((signal.SIG_DFL, -signal.SIGHUP), (signal.SIG_IGN, None)):
+            file = self.folder / str(ended)
+            process = self.start(*LONG, "-checkpoint", file, preexec_fn=lambda: signal.signal(signal.SIGHUP, action))
+            self.wait_for_file(file, process)
+            process.send_signal(signal.SIGHUP)
+            time.sleep(1)
+            self.assertEqual(process.poll(), ended)
+            process.kill()
+            self.assertEqual(process.communicate()[1], "")
+
     def test_one_rank_of_two(self):
         """kill -9 of one rank of two: the other ends, old files stay"""
         (self.folder / "old.json").write_text("old")

@@ -32,6 +32,13 @@ class OneRankAlone(Case):
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertEqual(done.stderr.count("-output = place/out.h5"), 1)
 
+    def test_ranks_with_different_options(self):
+        program = str(BINARIES / "stickslip")
+        done = subprocess.run(["mpiexec", "-n", "1", program, "-delta", "0.5", ":", "-n", "1", program, "-mu_s", "3"],
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("rank 1 has other options than rank 0", done.stderr)
+
 
 class Ranks(Case):
     OPTIONS = ("-mu_d", "0.25", "-delta", "0.25", "-accuracy", "1e-9", "-quantities",

@@ -1,3 +1,6 @@
+#include <sys/stat.h>
+
+#include <filesystem>
 #include <fstream>
 
 #include "../common/catch.hpp"
@@ -31,6 +34,27 @@ TEST_CASE("atomic file: without commit nothing changes and nothing is left") {
     std::ofstream(file.part()) << "half";
   }
   CHECK(content(target) == "old");
+  CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("atomic file: a link stays, and the file behind it changes") {
+  const TemporaryFolder folder;
+  const auto target = folder / "result", link = folder / "link";
+  std::filesystem::create_symlink("result", link);
+  for (const std::string text : {"first", "second"}) {
+    write_text(link, text);
+    CHECK(content(target) == text);
+  }
+  CHECK(std::filesystem::is_symlink(link));
+  CHECK(folder.entries() == 2);
+}
+
+TEST_CASE("atomic file: no file takes the place of a pipe") {
+  const TemporaryFolder folder;
+  const std::string pipe = folder / "pipe";
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  CHECK_THROWS_WITH(write_text(pipe, "text"), Catch::Contains("cannot replace " + pipe));
+  CHECK(std::filesystem::is_fifo(pipe));
   CHECK(folder.entries() == 1);
 }
 

@@ -46,6 +46,9 @@ class OptionsOf {
   _n_PetscOptions* options_ = nullptr;
 };
 
+/// All options given, with their values, in the order of PETSc's table.
+[[nodiscard]] std::string options_text();
+
 /// Names of all options given, without the dash.
 [[nodiscard]] std::vector<std::string> given_options();
 

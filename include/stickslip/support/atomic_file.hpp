@@ -6,7 +6,8 @@
 namespace stickslip {
 
 /// A name beside `target` to write to; commit() moves it over the target in one step. Without
-/// commit, the destructor removes what was written, and the target stays as it was.
+/// commit, the destructor removes what was written, and the target stays as it was. Of a symbolic
+/// link the file that it stands for is the target.
 class AtomicFile {
  public:
   /// `tag` distinguishes runs that write the same target; ranks of one run share it.
@@ -18,7 +19,7 @@ class AtomicFile {
   /// Where to write.
   [[nodiscard]] const std::string& part() const { return part_; }
   /// Flushes to disk and renames; to be called by one process. Throws std::runtime_error when the
-  /// disk refuses.
+  /// disk refuses, and where the target is no regular file.
   void commit();
 
  private:
