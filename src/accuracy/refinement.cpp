@@ -238,10 +238,22 @@ class Refiner {
                           given_.method.row().small_lambda ? "another -lambda or " : "", 2 * least)
             : "no digit of it is certain: leave it out";
     if (given_up_.empty()) {
-      limit_ = fmt::format("{} the relative error of {} to {:.1e}; {}", what_limits(),
-                           step.limiting_key, least, looser);
+      limit_ = fmt::format("{} the relative error of {}{} to {:.1e}; {}", what_limits(),
+                           step.limiting_key, where_unknown(step.limiting_key), least, looser);
     }
     given_up_.insert(step.limiting_key);
+  }
+
+  // " at tilt = 5", of the first entry of an array that is no number.
+  [[nodiscard]] std::string where_unknown(const std::string& key) const {
+    for (const auto& result : outcome_.results) {
+      if (result.key != key || result.is_scalar()) continue;
+      const auto found = std::ranges::find_if(result.value, [](double v) { return std::isnan(v); });
+      if (found == result.value.end()) continue;
+      const auto at = result.abscissa[static_cast<std::size_t>(found - result.value.begin())];
+      return fmt::format(" at {} = {:g}", result.abscissa_name, at);
+    }
+    return "";
   }
 
   void conclude(Step& step) {

@@ -23,8 +23,7 @@ void check_words(const Option& option, const std::string& value, Problems& probl
   if (given.empty()) problems.add(option, value, must, "");
   for (auto word = given.begin(); word != given.end(); ++word) {
     if (std::count(option.words.begin(), option.words.end(), *word) == 0) {
-      const std::string near = meant_word(option, *word);
-      problems.add(option, *word, must, near.empty() ? "" : "did you mean " + near + "?");
+      problems.add(option, *word, must, suggestion_for_word(option, *word));
     }
     if (std::find(given.begin(), word, *word) != word) {
       problems.add(option, value, "names " + *word + " twice", "name it once");
@@ -47,7 +46,11 @@ void check_number(const Option& option, const std::string& value, Problems& prob
   const auto number = parse_number(value);
   const bool fits = number && option.range.contains(*number) &&
                     (option.kind == Kind::real || *number == std::floor(*number));
-  if (!is_word && !fits) problems.add(option, value, "must be " + requirement(option), option.fix);
+  if (is_word || fits) return;
+  const bool several = !number && parse_numbers(value) && find("sweep_" + option.name) != nullptr;
+  problems.add(option, value, "must be " + requirement(option),
+               several ? fmt::format("-sweep_{} {} takes several values", option.name, value)
+                       : option.fix);
 }
 
 void check_value(const Option& option, const std::string& value, Problems& problems) {
@@ -80,7 +83,8 @@ void check_value(const Option& option, const std::string& value, Problems& probl
 
 void Problems::add(const Option& option, const std::string& value, const std::string& why,
                    const std::string& fix) {
-  std::string message = fmt::format("-{} = {}: {}", option.name, value, why);
+  const std::string given = value.empty() ? "" : " = " + value;
+  std::string message = fmt::format("-{}{}: {}", option.name, given, why);
   if (!fix.empty()) message += "; " + fix;
   add(message);
 }
