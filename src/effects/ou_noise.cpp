@@ -53,10 +53,10 @@ bool check_levels(Given& given, model::Scene& scene) {
   try {
     full = scene.full_levels();
   } catch (const std::out_of_range&) {
-    const std::string limit =
-        scene.noise.deviation ? "" : "; the limit of small -tau is that of -study tau";
+    const bool white = !scene.noise.deviation && scene.tau < 1e-3;
+    const std::string limit = white ? "; the limit of small -tau is that of -study tau" : "";
     refuse_step(given, "gives more than 2147483647 noise levels", "take fewer steps" + limit,
-                fmt::format("take a larger one, such as {:g}, an eighth of the deviation of the "
+                fmt::format("take a larger step, such as {:g}, an eighth of the deviation of the "
                             "noise{}",
                             sigma / 8, limit));
     return false;

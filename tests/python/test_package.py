@@ -558,6 +558,18 @@ class Pictures(Case):
         s = stickslip.sweep(mu_d=[0.1, 0.2, 0.3, 0.4, 0.5, 0.6], tau=[1, 2], delta=0.5, quantities="noise_law")
         self.assertEqual(len(s.plot()["E_X2"].axes), 2)  # a map with its scale
 
+    def test_a_map_of_a_plane_with_a_refused_corner(self):
+        values = numpy.geomspace(0.125, 4, 6)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", stickslip.AccuracyWarning)
+            s = stickslip.sweep(mu_s=values, mu_d=values, delta=0.125, quantities="sticking", accuracy=1e-2)
+        self.assertEqual(set(s.failures), {(s, d) for s in range(6) for d in range(s + 1, 6)})
+        axes = s.plot()["P_stick"].axes[0]
+        mesh = next(one for one in axes.collections if hasattr(one, "get_coordinates"))
+        numpy.testing.assert_allclose(mesh.get_coordinates()[0, :, 0], values[0] * 2.0 ** (numpy.arange(7) - 0.5))
+        self.assertEqual(numpy.ma.count_masked(mesh.get_array()), len(s.failures))
+        self.assertGreater(len(axes.texts), 0)  # contours with their levels
+
     def test_titles_say_what_the_parameters_are(self):
         coulomb = r"$\mu_s$ = 1, $\mu_d$ = 0.25, "
         levels = self.folder / "levels.csv"
