@@ -67,7 +67,7 @@ class Result:
     def __repr__(self) -> str:
         shown = (f"{self.value:.17g} +- {self.error:.1e}" if numpy.ndim(self.value) == 0 else
                  f"{' x '.join(map(str, numpy.shape(self.value)))} values by {', '.join(self.dims)}")
-        return f"{self.key} = {shown} {self.unit}".rstrip()
+        return f"{self.key} = {shown}{f' [{self.unit}]' if self.unit else ''}"
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -174,7 +174,8 @@ class Results(Mapping):
     comparison
         With `compare`: by key the columns `argument`, `value`, `error`, `reference`, `low`, `high` and `z`; or None.
     study
-        With `study`: tables by name, each with columns by name; or None. `runs` has the results of its runs.
+        With `study`: tables by name, each with columns by name; or None. `runs` has the results of its runs, and the
+        results by key are the limits, where the study has limits.
     summary
         All that `-summary` wrote; empty after reading HDF5.
     name
@@ -233,7 +234,8 @@ class Results(Mapping):
         Parameters
         ----------
         picture
-            Where to save; of several figures each has its name appended.
+            Where to save; of several figures each has its name appended, those of a sweep go into a folder of that
+            name without its ending.
         kind
             One of `stickslip.plots.KINDS`, or a key of a sweep; without it, all that fit.
 
@@ -343,7 +345,14 @@ def from_summary(tree: Mapping[str, Any], name: str = "") -> Results:
         parts["study_kind"] = tree["study"]["kind"]
         parts["runs"] = [from_summary({"provenance": tree["provenance"], **run}) for run in tree["runs"]]
     results = {key: result_of(key, result) for key, result in tree.get("results", {}).items()}
+    results |= _limits(parts.get("study", {}))
     return Results(results, options=options, name=name, summary=tree, **parts)
+
+
+def _limits(tables: "Mapping[str, Mapping[str, Array]]") -> dict[str, Result]:
+    """What the tables of a study have as limits in their last rows."""
+    return {name: Result(name, float(table["limit"][-1]), float(table["limit_error"][-1]))
+            for name, table in tables.items() if "limit" in table}
 
 
 def _comparison(rows: list[dict[str, Any]]) -> "dict[str, dict[str, Array]]":
@@ -380,6 +389,7 @@ def from_hdf5(file: "h5py.File", name: str = "") -> Results:
     for group, data in file.get("results", {}).items():
         key = group.replace(":", "/")  # names of groups have no /
         results[key] = result_of(key, {**dict(data.attrs), **_datasets(data)})
+    results |= _limits(parts.get("study", {}))
     return Results(results, options=options, name=name, **parts)
 
 

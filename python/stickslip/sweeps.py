@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     Array = numpy.ndarray
 numpy = needed("numpy")
 
-STATES = ("reached", "not reached", "failed", "no memory")
+STATES = ("reached", "not reached", "failed", "no memory", "refused")
 
 
 class Sweep(Results):
@@ -26,9 +26,9 @@ class Sweep(Results):
     dims, coords
         Names of the swept options in the order of the dimensions, and their values by name.
     status
-        Of each point: "reached", "not reached", "failed" or "no memory".
+        Of each point: "reached", "not reached", "failed", "no memory" or "refused", where the model is none.
     failures
-        Messages of the points that failed or lacked memory, by their index; their results are NaN.
+        Messages of the points that failed, lacked memory or were refused, by their index; their results are NaN.
     shortfalls
         Messages of the points that did not reach the accuracy, by their index; their results are there.
     units

@@ -221,6 +221,8 @@ class Refiner {
 
   void give_up(const Step& step, double rounding) {
     const std::string& key = step.limiting_key;
+    const auto& results = outcome_.results;
+    const auto& limiting = *std::ranges::find(results, key, &quantities::Result::key);
     const double least = std::max(rounding, step.estimate);
     const std::string looser =
         least < 0.05
@@ -228,14 +230,13 @@ class Refiner {
                           given_.method.row().small_lambda ? "another -lambda or " : "", 2 * least)
             : "no digit of it is certain: leave it out";
     if (given_up_.empty()) {
-      limit_ = fmt::format("{} the relative error of {} to {:.1e}; {}", what_limits(limits_[key]),
-                           key, least, looser);
+      limit_ = fmt::format("{} the relative error of {}{} to {:.1e}; {}", what_limits(limits_[key]),
+                           key, quantities::where_no_number(limiting), least, looser);
     }
     given_up_.insert(key);
     // Rates and frequencies are of the same modes.
-    const auto of = std::ranges::find(outcome_.results, key, &quantities::Result::key);
-    for (const auto& r : outcome_.results) {
-      if (of->abscissa_name == "mode" && r.abscissa_name == "mode") given_up_.insert(r.key);
+    for (const auto& r : results) {
+      if (limiting.abscissa_name == "mode" && r.abscissa_name == "mode") given_up_.insert(r.key);
     }
   }
 

@@ -159,7 +159,8 @@ int run_sweep(const options::Request& request, const Beginning& beginning, const
   if (petsc::rank(comm) == 0) {
     emit(sweeps::report_of(comm, request, sweep, beginning.until_now()), request);
     if (status != 0)
-      print_error("stickslip: some points failed or missed the accuracy; the table lists them");
+      print_error(
+          "stickslip: some points have no results, or missed the accuracy; the table lists them");
   }
   MPI_Bcast(&status, 1, MPI_INT, 0, comm);
   return status;

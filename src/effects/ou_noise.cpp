@@ -53,8 +53,12 @@ bool check_levels(Given& given, model::Scene& scene) {
   try {
     full = scene.full_levels();
   } catch (const std::out_of_range&) {
-    const char* fix = "take a larger step";
-    refuse_step(given, "gives more than 2147483647 noise levels", fix, fix);
+    const bool white = !scene.noise.deviation && scene.tau < 1e-3;
+    const std::string limit = white ? "; the limit of small -tau is that of -study tau" : "";
+    refuse_step(given, "gives more than 2147483647 noise levels", "take fewer steps" + limit,
+                fmt::format("take a larger step, such as {:g}, an eighth of the deviation of the "
+                            "noise{}",
+                            sigma / 8, limit));
     return false;
   }
   const bool word = given.has(kLevels) && !scene.noise_levels;
@@ -102,7 +106,8 @@ Option delta_option() {
   return Option::real(
       kDelta, "force", "0.125", Range::positive(),
       "step between neighbouring noise levels. Unless given, with -noise narrow_band and filtered "
-      "about half the deviation, so that mu_s lies halfway between two of them",
+      "about half the deviation, so that mu_s lies halfway between two of them, and with -study "
+      "tau half the deviation",
       "the continuous noise is the limit of small steps such as 0.125",
       {.symbol = "\\delta", .label = "noise step", .others = {"dx", "step", "noise_step"}});
 }
@@ -117,14 +122,15 @@ Option deviation_option() {
       {.symbol = "\\sigma",
        .label = "standard deviation of the noise",
        .slider = Slider{.low = 0.1, .high = 5, .logarithmic = true},
-       .others = {"sigma", "std", "stddev", "deviation", "intensity", "rms"}});
+       .others = {"sigma", "std", "stddev", "deviation", "intensity", "rms", "D", "noise_intensity",
+                  "temperature"}});
 }
 
 const Effect kOrnsteinUhlenbeck{
     .word = "ou",
     .sentence = "the chain of the paper, which tends to the Ornstein-Uhlenbeck process as -delta "
                 "-> 0",
-    .others = {"gaussian", "ornstein_uhlenbeck", "white"},
+    .others = {"gaussian", "ornstein_uhlenbeck"},
     .parameters =
         {{tau_option()},
          {delta_option()},

@@ -28,7 +28,7 @@ std::string telegraph_text(const model::Scene& scene) {
 const Effect kTelegraph{
     .word = "telegraph",
     .sentence = "two levels",
-    .others = {"dichotomous", "two_level", "rtn"},
+    .others = {"dichotomous", "two_level", "rtn", "run_and_tumble", "rtp", "active"},
     .parameters =
         {{Option::real(kAmplitude, "force", "", Range::positive(),
                        "amplitude a of -noise telegraph, X = a or -a", "take for example 1",

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "reading.hpp"
+#include "stickslip/catalogue/displacement_distribution_keys.hpp"
 #include "stickslip/catalogue/given_force_keys.hpp"
 #include "stickslip/catalogue/trajectory_keys.hpp"
 #include "stickslip/outputs/reference.hpp"
@@ -198,8 +199,15 @@ void read_start(Settings& settings, Request& request) {
     start = read_state(settings, request.scene, (*state)[0], (*state)[1]);
   } else {
     settings.refuse("start", "must be s+, s-, stationary, rest or x,v",
-                    "write for example -start 0.5,0");
+                    "rest is V = 0 under any force; write for example -start 0.5,0");
   }
+}
+
+// Each digit of a distribution of displacements takes an octave of wavenumbers more: 1e-6 would
+// take hours.
+double wanted_accuracy(const Settings& settings, const Question& question) {
+  const auto slow = catalogue::kDisplacementDistribution.quantity;
+  return question.wants(slow) && !settings.has("accuracy") ? 0.01 : settings.real("accuracy");
 }
 
 // Below the speed to which bodies tend on the highest level of the noise, on either side or on that
@@ -282,7 +290,7 @@ void read_question(Settings& settings, Request& request) {
     question.arguments[option] = arguments(settings, known, option, argument->low < 0);
   }
   question.observables = read_observables(settings, request.scene.friction);
-  question.accuracy = settings.real("accuracy");
+  question.accuracy = wanted_accuracy(settings, question);
   question.accuracy_given = settings.has("accuracy");
   question.horizon = settings.real("horizon");
   check_horizon(settings, request);

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "reading.hpp"
@@ -71,6 +72,27 @@ void check_writable(Settings& settings, const Option& option) {
   }
 }
 
+// In the limit of white noise coarse levels are as good as fine ones, and much cheaper.
+void choose_step(const Settings& settings, Request& request) {
+  const bool given = settings.has("delta") || settings.has("delta_per_mu_s");
+  if (given || request.study.kind != StudyKind::white_noise) return;
+  request.scene.delta = 0.5 / std::sqrt(request.scene.tau);
+}
+
+// The value of an option as it is used.
+std::string used_text(const Settings& settings, const Request& request, const Option& option) {
+  const std::string& name = option.name;
+  if (name == "delta" && settings.has("delta_per_mu_s")) return "mu_s/delta_per_mu_s";
+  const bool chosen = !settings.has(name) && !option.initial.empty();
+  const auto given_or = [&](double used) {
+    return chosen && used != settings.real(name) ? fmt::format("{}", used) : settings.text(name);
+  };
+  if (name == "accuracy") return given_or(request.question.accuracy);
+  const bool white_noise = request.study.kind == StudyKind::white_noise;
+  if (name == "delta" && white_noise) return given_or(request.scene.delta);
+  return settings.text(name);
+}
+
 // Options of the solvers, and those that nobody knows.
 void check_solver_options(Problems& problems) {
   const auto wrong_types = petsc::wrong_solver_types();
@@ -113,10 +135,11 @@ std::vector<std::string> Files::holding(Quantity field) const {
 Request request_of(Settings& settings) {
   Request request;
   request.scene = effects::read_scene(settings, drive_of(settings));
-  request.method = read_method(settings);
-  read_question(settings, request);
   request.study = {meaning(kStudies, settings.text("study")), settings.integer("study_steps"),
                    settings.integer("study_repeats").value_or(3)};
+  choose_step(settings, request);
+  request.method = read_method(settings);
+  read_question(settings, request);
   request.files = read_files(settings);
   request.sweep_ranks = settings.integer("sweep_ranks").value_or(1);
   request.plan_only = settings.flag("plan");
@@ -125,9 +148,7 @@ Request request_of(Settings& settings) {
   const auto& method = request.method.row();
   if (!method.discretises_velocity && !method.simulates) request.method.scheme = Scheme::none;
   for (const auto& option : all_options()) {
-    const bool derived = option.name == "delta" && settings.has("delta_per_mu_s");
-    request.resolved.emplace_back(option.name,
-                                  derived ? "mu_s/delta_per_mu_s" : settings.text(option.name));
+    request.resolved.emplace_back(option.name, used_text(settings, request, option));
   }
   return request;
 }

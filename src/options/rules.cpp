@@ -202,7 +202,7 @@ class Rules {
     report("quantities", to_white_noise_ && !unfit.empty(),
            "asks for " + enumerate(unfit, "and") +
                ", and -study tau follows numbers at arguments that do not depend on the noise",
-           "leave that out");
+           "leave that out; averages of functions such as -observable \"abs(v)<=0.5\" have limits");
     const auto& friction = r_.scene.friction;
     const double bias = r_.scene.bias;
     const bool held = bias <= friction.mu_s && -bias <= friction.mu_s_minus.value_or(friction.mu_s);
@@ -250,7 +250,8 @@ class Rules {
            "must be positive with slip: paths have no negative lengths",
            "leave negative ones out, or slip");
     report("distance", any([](double d) { return d == 0; }),
-           "must not be 0: densities are not defined there", "leave 0 out");
+           "must not be 0: densities are not defined there",
+           "leave 0 out, as an even number of values from -2 to 2 does: -2:2:8");
     require("distance", moves && q_.distance.empty() && q_.values("probability").empty(),
             "asks for displacement_distribution, but neither distances nor probabilities are given",
             "add for example -distance -2:2:40 or -probability 0.05,0.5,0.95");

@@ -25,8 +25,7 @@ void check_words(const Option& option, const std::string& value, Problems& probl
   if (given.empty()) problems.add(option, value, must, "");
   for (auto word = given.begin(); word != given.end(); ++word) {
     if (std::count(option.words.begin(), option.words.end(), *word) == 0) {
-      const std::string near = meant_word(option, *word);
-      problems.add(option, *word, must, near.empty() ? "" : "did you mean " + near + "?");
+      problems.add(option, *word, must, suggestion_for_word(option, *word));
     }
     if (std::find(given.begin(), word, *word) != word) {
       problems.add(option, value, "names " + *word + " twice", "name it once");
@@ -41,7 +40,7 @@ std::string written_plainly(const std::string& value, bool is_list, const std::s
   const double number = std::strtod(value.c_str(), &behind);
   if (behind == value.c_str()) return fix;
   if (*behind == '%') return fmt::format("write {:g} for {:g} %", number / 100, number);
-  if (*behind == ',' && !is_list) return "write the number with a decimal point";
+  if (*behind == ',' && !is_list) return "write the number with a decimal point; " + fix;
   if (std::isalpha(static_cast<unsigned char>(*behind)) == 0) return fix;
   return "write the number alone: units are yours, such as m/s^2 for all forces and s for all "
          "times";
@@ -65,8 +64,11 @@ void check_number(const Option& option, const std::string& value, Problems& prob
   const bool fits = number && option.range.contains(*number) &&
                     (option.kind == Kind::real || *number == std::floor(*number));
   if (is_word || fits) return;
+  const bool several = !number && parse_numbers(value) && find("sweep_" + option.name) != nullptr;
+  const std::string fix =
+      several ? fmt::format("-sweep_{} {} takes several values", option.name, value) : option.fix;
   problems.add(option, value, "must be " + requirement(option),
-               number ? option.fix : written_plainly(value, false, option.fix));
+               number ? option.fix : written_plainly(value, false, fix));
 }
 
 void check_value(const Option& option, const std::string& value, Problems& problems) {
@@ -101,7 +103,8 @@ void Problems::add(const Option& option, const std::string& value, const std::st
                    const std::string& fix) {
   constexpr std::size_t longest = 200;  // of values that a message repeats
   const std::string shown = value.size() <= longest ? value : value.substr(0, longest) + "...";
-  std::string message = fmt::format("-{} = {}: {}", option.name, shown, why);
+  std::string message =
+      fmt::format("-{}{}: {}", option.name, shown.empty() ? "" : " = " + shown, why);
   if (!fix.empty()) message += "; " + fix;
   add(message);
 }

@@ -1,6 +1,7 @@
 #include "stickslip/options/sweep.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <petscsys.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <sstream>
+#include <utility>
 
 #include "reading.hpp"
 #include "stickslip/effects/read_scene.hpp"
@@ -100,33 +102,60 @@ std::string where(const Sweep& sweep, const std::vector<std::size_t>& points) {
   return fmt::format("at {}{}: ", sweep.place(points.front()), more);
 }
 
-// What is wrong with the points, each message once with the places it holds at. Returns where
+/// Messages about points, each once, in the order in which they came up.
+class Messages {
+ public:
+  void add(const std::string& message, std::size_t point) {
+    auto& points = points_of_[message];
+    if (points.empty()) order_.push_back(message);
+    points.push_back(point);
+  }
+  /// Each with the places it holds at; of many the first.
+  void report(const Sweep& sweep, Problems& problems) const {
+    for (std::size_t n = 0; n < std::min(order_.size(), kMostMessages); ++n) {
+      problems.add(where(sweep, points_of_.at(order_[n])) + order_[n]);
+    }
+    if (order_.size() <= kMostMessages) return;
+    problems.add(fmt::format("and {} more problems of this kind", order_.size() - kMostMessages));
+  }
+  /// The first with its places; empty without any.
+  [[nodiscard]] std::string first(const Sweep& sweep) const {
+    return order_.empty() ? "" : where(sweep, points_of_.at(order_[0])) + order_[0];
+  }
+
+ private:
+  std::map<std::string, std::vector<std::size_t>> points_of_;
+  std::vector<std::string> order_;
+};
+
+// Finds the points that the model refuses, which is a problem if it refuses all of them, and where
 // static friction acts with another value than the one given.
-std::string check_points(const Sweep& sweep, Problems& problems) {
-  std::map<std::string, std::vector<std::size_t>> points_of;
+void check_points(Sweep& sweep, Problems& problems, std::vector<std::string>& warnings) {
+  Messages refusals;
   std::vector<std::size_t> between_levels;
   std::string step;
-  std::vector<std::string> messages;
+  bool examined = false;
   for (std::size_t point = 0; point < sweep.size(); ++point) {
     Settings own = sweep.settings(point);
     const Request request = own.sound() ? request_of(own) : Request();
-    if (point == 0) check_effects(sweep, request, problems);
-    const std::string warning = own.sound() ? effects::step_warning(request.scene) : "";
+    const auto& messages = own.problems().messages();
+    for (const auto& message : messages) refusals.add(message, point);
+    if (!messages.empty()) {
+      sweep.leave_out(point, fmt::format("{}", fmt::join(messages, "; ")));
+      continue;
+    }
+    if (!std::exchange(examined, true)) check_effects(sweep, request, problems);
+    const std::string warning = effects::step_warning(request.scene);
     if (!warning.empty()) between_levels.push_back(point);
     if (step.empty()) step = warning;
-    for (const auto& message : own.problems().messages()) {
-      auto& points = points_of[message];
-      if (points.empty()) messages.push_back(message);
-      points.push_back(point);
-    }
   }
-  for (std::size_t n = 0; n < std::min(messages.size(), kMostMessages); ++n) {
-    problems.add(where(sweep, points_of[messages[n]]) + messages[n]);
+  if (!examined) refusals.report(sweep, problems);
+  const auto refused = sweep.left_out().size();
+  if (refused > 0) {
+    warnings.push_back(fmt::format("{} of {} points are refused and left out, such as {}", refused,
+                                   sweep.size(), refusals.first(sweep)));
   }
-  if (messages.size() > kMostMessages) {
-    problems.add(fmt::format("and {} more problems of this kind", messages.size() - kMostMessages));
-  }
-  return step.empty() ? "" : where(sweep, between_levels) + step;
+  if (!step.empty()) warnings.push_back(where(sweep, between_levels) + step);
 }
 
 bool is_axis(const std::vector<SweepAxis>& axes, const std::string& name) {
@@ -214,11 +243,14 @@ Request read_sweep(Settings settings) {
   check_alone(settings);
   check_ranks(settings);
   problems.raise();
-  const auto sweep = std::make_shared<const Sweep>(settings, std::move(axes));
-  const std::string step = check_points(*sweep, problems);
+  const auto sweep = std::make_shared<Sweep>(settings, std::move(axes));
+  std::vector<std::string> warnings;
+  check_points(*sweep, problems, warnings);
   problems.raise();
-  Request request = sweep->request(0);
-  if (!step.empty()) request.warnings.push_back(step);
+  std::size_t first = 0;
+  while (sweep->left_out().contains(first)) ++first;
+  Request request = sweep->request(first);
+  request.warnings.insert(request.warnings.end(), warnings.begin(), warnings.end());
   request.sweep = sweep;
   request.files = read_files(settings);
   for (auto& [name, value] : request.resolved) {

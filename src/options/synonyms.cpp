@@ -46,7 +46,12 @@ std::string meant_option(const std::string& name) {
   return row != nullptr ? "-" + row->option : nearest_word("-" + name, all_names());
 }
 
-// The same for a name and a value that are joined by an equals sign at `sign`.
+std::string suggested(const std::string& meant, const Synonyms* row) {
+  const bool has_page = row != nullptr && !row->page.empty();
+  return fmt::format("did you mean {}?{}", meant, has_page ? " See " + row->page : "");
+}
+
+// The same as meant_option for a name and a value that are joined by an equals sign at `sign`.
 std::string apart(const std::string& name, std::size_t sign) {
   const std::string before = name.substr(0, sign), after = name.substr(sign + 1);
   const std::string meant = find(before) != nullptr ? "-" + before : meant_option(before);
@@ -78,6 +83,8 @@ std::span<const Synonyms> all_synonyms() {
     for (const auto* entry : catalogue::entries()) {
       add("quantities", entry->word, split(entry->synonyms, ','));
     }
+    add(effects::noises().option, "ou", {"white", "white_noise"},
+        "-study tau in docs/white_noise.md");
     add_words("route", catalogue::solution_methods());
     add_words("scheme", kSchemes);
     return rows;
@@ -89,9 +96,13 @@ std::string suggestion_for_option(const std::string& name) {
   if (const auto sign = name.find('='); sign != name.npos) return apart(name, sign);
   const std::string meant = meant_option(name);
   if (meant.empty()) return "-help lists all";
-  const Synonyms* row = synonyms_of(name, "");
-  const bool has_page = row != nullptr && !row->page.empty();
-  return fmt::format("did you mean {}?{}", meant, has_page ? " See " + row->page : "");
+  return suggested(meant, synonyms_of(name, ""));
+}
+
+std::string suggestion_for_word(const Option& option, const std::string& word) {
+  const std::string meant = meant_word(option, word);
+  if (meant.empty()) return "";
+  return suggested(meant, synonyms_of(word, option.name));
 }
 
 std::string meant_word(const Option& option, const std::string& word) {

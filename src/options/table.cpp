@@ -96,8 +96,10 @@ std::vector<Option> quantity_options() {
       Option::real(
           "accuracy", "", "1e-6", {1e-15, 0.1, true, true},
           "relative error wanted for every scalar, at the given -delta; the discretisation is "
-          "refined until the error estimates are below it",
-          "double precision allows down to about 1e-14, case by case")
+          "refined until the error estimates are below it. Unless given, it is 0.01 with "
+          "displacement_distribution",
+          "six digits are -accuracy 1e-6; double precision allows down to about 1e-14, case by "
+          "case")
           .called({"tol", "tolerance", "rtol", "precision", "eps", "error", "digits"}),
   };
   const auto own = own_options_of_quantities();
@@ -280,7 +282,8 @@ std::span<const Group> table() {
       {"Study", "A series of runs that examines the accuracy", study_options()},
       {"Sweep",
        "A run for each combination of the swept values. The last option of this list changes "
-       "fastest; -checkpoint keeps the finished points",
+       "fastest; points that the model refuses, such as mu_d above mu_s, are left out. -checkpoint "
+       "keeps the finished points",
        sweep_options()},
       {"Output", "A table goes to standard output, progress to standard error", output_options()}};
   return groups;

@@ -249,7 +249,8 @@ void displacement_distribution_tasks(Planner& planner) {
   planner.need_distribution();
   resolve_distribution(planner);
   const auto times = static_cast<int>(planner.question().time.size());
-  planner.add_adaptive("distribution of displacements", 15 * times, 350 * times,
+  // At two digits; a complex factorisation or solve is about four real ones.
+  planner.add_adaptive("distribution of displacements", 80 * times, 900 * times,
                        find_displacements);
 }
 

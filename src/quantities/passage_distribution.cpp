@@ -255,8 +255,8 @@ void passage_distribution_tasks(Planner& planner) {
     Task task = passage_task(planner, "distribution of the passage time", key);
     task.uses = {{key, 0, starts + 1}, {key, 1, 0}};
     task.adaptive = true;
-    task.usual_factorizations += 16;
-    task.usual_solves += 160;
+    task.usual_factorizations += 28;
+    task.usual_solves += 480;
     task.carry_out = [=](Computation& computation) {
       const auto& question = computation.question();
       const auto found = passage_distribution(computation.systems, key, question.start,

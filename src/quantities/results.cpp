@@ -1,5 +1,7 @@
 #include "stickslip/quantities/results.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -62,6 +64,13 @@ double relative_error(const Result& result) {
     relative = std::max(relative, result.error[n] / own);
   }
   return relative;
+}
+
+std::string where_no_number(const Result& result) {
+  const auto found = std::ranges::find_if(result.value, [](double v) { return std::isnan(v); });
+  if (result.is_scalar() || found == result.value.end()) return "";
+  const auto at = result.abscissa[static_cast<std::size_t>(found - result.value.begin())];
+  return fmt::format(" at {} = {:g}", result.abscissa_name, at);
 }
 
 }  // namespace stickslip::quantities

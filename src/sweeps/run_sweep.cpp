@@ -112,6 +112,7 @@ class Worker {
         if (finished[run.point] != 0) resumed_.push_back(std::move(run));
       });
     }
+    for (const auto& [point, reason] : sweep_.left_out()) finished[point] = 1;
     MPI_Bcast(finished.data(), static_cast<int>(finished.size()), MPI_CHAR, 0, comm_);
     for (std::size_t point = 0; point < finished.size(); ++point) {
       if (finished[point] == 0) open_.push_back(point);
@@ -164,7 +165,10 @@ class Worker {
     };
     for (const auto& line : lines_) add(line);
     for (std::size_t n = lines_.size(); n < open_.size(); ++n) add(receive_line());
-    all.resumed = sweep_.size() - open_.size();
+    for (const auto& [point, reason] : sweep_.left_out()) {
+      all.runs[point] = refused_run(point, reason);
+    }
+    all.resumed = sweep_.size() - open_.size() - sweep_.left_out().size();
     return all;
   }
 

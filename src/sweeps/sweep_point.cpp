@@ -15,7 +15,7 @@ namespace {
 using outputs::Json;
 
 constexpr std::array kStatuses{Status::reached, Status::not_reached, Status::failed,
-                               Status::no_memory};
+                               Status::no_memory, Status::refused};
 
 Status status_named(const std::string& text) {
   for (Status status : kStatuses) {
@@ -56,12 +56,20 @@ const char* status_text(Status status) {
   case Status::not_reached: return "not reached";
   case Status::failed: return "failed";
   case Status::no_memory: return "no memory";
+  case Status::refused: return "refused";
   }
   return "";
 }
 
 SweepPoint compute_run(MPI_Comm comm, const cases::Case& given, std::size_t point) {
   return read_run(entry_of(comm, given, point).dump());
+}
+
+SweepPoint refused_run(std::size_t point, const std::string& reason) {
+  Json json = head(point, Status::refused, reason);
+  json["scene"] = json["results"] = Json::object();
+  json["cost"]["seconds"] = 0;
+  return read_run(json.dump());
 }
 
 SweepPoint read_run(std::string entry) {

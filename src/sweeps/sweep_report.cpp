@@ -286,7 +286,10 @@ outputs::Grid grid_of(const options::Sweep& sweep, const std::vector<SweepPoint>
     seconds.push_back(run.seconds);
   }
   grid.arrays.push_back(
-      {"status", sizes, status, {{"meaning", "0 reached, 1 not reached, 2 failed, 3 no memory"}}});
+      {"status",
+       sizes,
+       status,
+       {{"meaning", "0 reached, 1 not reached, 2 failed, 3 no memory, 4 refused"}}});
   grid.arrays.push_back({"seconds", sizes, seconds});
   return grid;
 }

@@ -205,7 +205,7 @@ class Ends(Case):
             self.assertIn(part, done.stderr)
 
     def test_bad_input(self):
-        self.refuse("-sweep_mu_d", "0.5,2", "-checkpoint", "kept", message=("at mu_d = 2: ",))
+        self.refuse("-sweep_mu_d", "3,2", "-checkpoint", "kept", message=("at mu_d = 2: ",))
         self.refuse("-sweep_mud", "0.5", message=("did you mean -sweep_mu_d?",))
         self.refuse("-sweep_tau", "0", message=("-sweep_tau = 0", "(0, inf)"))
         self.refuse("-sweep_tau", "1,2", "-study", "p", message=("-study = p",))
@@ -240,6 +240,19 @@ class Ends(Case):
             self.assertEqual([r["status"] for r in s["runs"]], ["not reached", "reached"])
             self.assertIn("excludes", s["runs"][0]["message"])
             self.assertIn(",not reached\n", (self.folder / "s.csv").read_text())
+
+    def test_refused_points_stop_no_other_and_are_not_kept(self):
+        options = ("-delta", "0.5", "-accuracy", "1e-4", "-sweep_mu_d", "2,0.5", "-sweep_csv",
+                   "s.csv", "-output", "s.h5", "-checkpoint", "kept")
+        for kept in (0, 1):
+            s = self.summary(*options, status=3)
+            self.assertEqual(s["sweep"]["from_record"], kept)
+            self.assertEqual([r["status"] for r in s["runs"]], ["refused", "reached"])
+            self.assertIn("must be in [0, mu_s]", s["runs"][0]["message"])
+            self.assertIn(",refused\n", (self.folder / "s.csv").read_text())
+            with h5py.File(self.folder / "s.h5") as file:
+                self.assertEqual(file["sweep/status"][:].tolist(), [4, 0])
+                self.assertTrue(math.isnan(file["sweep/P_stick"][0]))
 
     def test_points_without_memory_are_tried_again(self):
         options = ("-sweep_delta", "4e-5,0.5", "-noise_degree", "0", "-quantities", "sticking",

@@ -78,8 +78,26 @@ TEST_CASE("sweep: a point is what a single run would be") {
 TEST_CASE("sweep: values need to be valid at their points only") {
   // mu_d = 1 without a sweep, which is above mu_s here.
   CHECK_NOTHROW(read({{"-sweep_mu_s", "0.5,0.75"}, {"-sweep_mu_d", "0.25,0.5"}}));
-  CHECK_THAT(complaint({{"-sweep_mu_s", "0.5,0.75"}, {"-sweep_mu_d", "0.25,0.6"}}),
-             Catch::StartsWith("at mu_s = 0.5, mu_d = 0.6: -mu_d = 0.6: must be in [0, mu_s]"));
+  CHECK_THAT(complaint({{"-sweep_mu_s", "0.25,0.5"}, {"-sweep_mu_d", "0.75,0.6"}}),
+             Catch::StartsWith("at mu_s = 0.25, mu_d = 0.75: -mu_d = 0.75: must be in [0, mu_s]"));
+}
+
+TEST_CASE("sweep: points that the model refuses are left out, with a warning") {
+  const auto request = read({{"-sweep_mu_s", "0.5,1"}, {"-sweep_mu_d", "0.75,0.25"}});
+  const auto& left_out = request.sweep->left_out();
+  REQUIRE(left_out.size() == 1);
+  CHECK_THAT(left_out.at(0), Catch::StartsWith("-mu_d = 0.75: must be in [0, mu_s]"));
+  CHECK(request.scene.friction.mu_d == 0.25);  // of the first point that is computed
+  REQUIRE(request.warnings.size() == 1);
+  CHECK_THAT(request.warnings[0],
+             Catch::StartsWith("1 of 4 points are refused and left out, such as at mu_s = 0.5, "
+                               "mu_d = 0.75: -mu_d = 0.75: must be"));
+}
+
+TEST_CASE("sweep: a body that never moves at some points stops no other") {
+  const auto left_out = read({{"-delta", "0.25"}, {"-sweep_mu_s", "1,8"}}).sweep->left_out();
+  REQUIRE(left_out.size() == 1);
+  CHECK_THAT(left_out.at(1), Catch::Contains("never slides, P_stick = 1"));
 }
 
 TEST_CASE("sweep: refusals name the point, the option and a way out") {
@@ -93,8 +111,8 @@ TEST_CASE("sweep: refusals name the point, the option and a way out") {
       {{{"-sweep_mud", "1"}}, {"-sweep_mud", "did you mean -sweep_mu_d?"}},
       {{{"-sweep_seed", "1"}}, {"-sweep_seed", "unknown option"}},
       {{{"-sweep_mu_d", "0.5,0.25,0.5"}}, {"-sweep_mu_d", "names 0.5 twice"}},
-      {{{"-delta", "0.25"}, {"-sweep_mu_s", "1,8"}}, {"at mu_s = 8: ", "never slides"}},
-      {{{"-sweep_noise_levels", "20,20.5"}}, {"at noise_levels = 20.5: ", "whole number"}},
+      {{{"-delta", "0.25"}, {"-sweep_mu_s", "8,9"}}, {"at mu_s = 8: ", "never slides"}},
+      {{{"-sweep_noise_levels", "21.5,20.5"}}, {"at noise_levels = 20.5: ", "whole number"}},
       {{{"-sweep_drag_cubic", "0,1"}},
        {"-sweep_drag_cubic", "no effect with -drag linear", "leave it out"}},
       {{{"-sweep_tau", "1,2"}, {"-study", "p"}}, {"-study = p", "-sweep_"}},
@@ -116,7 +134,7 @@ TEST_CASE(
   const std::string everywhere = complaint({{"-sweep_tau", "1,2,3"}, {"-summary", "/no/such/x"}});
   CHECK_THAT(everywhere, Catch::StartsWith("-summary = /no/such/x"));
   CHECK(everywhere.find("-summary", 1) == everywhere.npos);
-  CHECK_THAT(complaint({{"-sweep_mu_d", "0.5,2"}, {"-sweep_tau", "0.5,1,2"}}),
+  CHECK_THAT(complaint({{"-sweep_mu_d", "2,3"}, {"-sweep_tau", "0.5,1,2"}}),
              Catch::StartsWith("at mu_d = 2, tau = 0.5 and 2 more points: "));
 }
 

@@ -42,6 +42,7 @@ TEST_CASE("synonyms: the option that is meant") {
   CHECK(suggestion_for_option("mat_view") == "did you mean -slide_mat_view?");
   CHECK(suggestion_for_option("eps_nev") == "did you mean -relax_eps_nev or -null_eps_nev?");
   CHECK(suggestion_for_option("detla") == "did you mean -delta?");
+  CHECK(suggestion_for_option("D") == "did you mean -noise_deviation?");
   CHECK(suggestion_for_option("zzzzzzzz") == "-help lists all");
 }
 

@@ -325,6 +325,13 @@ class Sweeps(Case):
         self.assertIn("GB of memory", s.failures[1,])
         self.assertEqual(list(numpy.isnan(s["P_stick"].value)), [False, True])
 
+    def test_points_that_the_model_refuses_are_nan_with_their_message(self):
+        with self.assertWarnsRegex(stickslip.AccuracyWarning, "1 of 4 points"):
+            s = stickslip.sweep(mu_s=[0.5, 1], mu_d=[0.25, 0.75], delta=0.25, quantities="sticking", accuracy=1e-3)
+        self.assertEqual((list(s.failures), s.status[0, 1]), ([(0, 1)], "refused"))
+        self.assertIn("must be in [0, mu_s]", s.failures[0, 1])
+        self.assertEqual(numpy.isnan(s["P_stick"].value).tolist(), [[False, True], [False, False]])
+
     def test_nothing_to_sweep(self):
         self.assertRaisesRegex(ValueError, "sequence of values", stickslip.sweep, **SMALL)
         self.assertRaisesRegex(stickslip.BadInput, "sweep_seed", stickslip.sweep, seed=[1, 2])
@@ -408,8 +415,18 @@ class Tables(Case):
     def test_short_texts(self):
         r = stickslip.run(**SMALL, quantities="sticking,spectrum", omega=[1, 2])
         self.assertRegex(repr(r["P_stick"]), r"^P_stick = 0\.\d+ \+- \de-\d\d$".replace(r"\de", r"\d\.\de"))
-        self.assertEqual(repr(r["S_v"]), "S_v = 2 values by omega velocity^2*time")
+        self.assertEqual(repr(r["S_v"]), "S_v = 2 values by omega [velocity^2*time]")
         self.assertEqual(repr(r).splitlines(), [repr(one) for one in r.values()])
+
+    def test_limits_of_a_study_are_its_results(self):
+        # Without drag V has the density exp(-|v|)/2 under white noise and mu_d = 1.
+        names = {"summary": self.folder / "study.json", "output": self.folder / "study.h5"}
+        r = stickslip.run(study="tau", study_steps=5, drag="none", quantities="moments,spectrum", omega=1, **names)
+        for found in (r, *map(stickslip.load, names.values())):
+            for key, limit in (("E_V2", 2), ("E_absV", 1), ("S_0", 10)):
+                self.assertLessEqual(abs(found[key].value - limit), found[key].error)
+                self.assertLess(found[key].error, 1e-2)
+        self.assertEqual(repr(r).splitlines()[0], repr(r["E_V2"]))
 
     def test_pickled_results(self):
         s = stickslip.sweep(mu_d=[0.25, 0.5], delta=0.5, quantities="sticking", accuracy=1e-2)
@@ -541,6 +558,18 @@ class Pictures(Case):
                 self.assertEqual(len(axes.containers if bars else axes.collections), 3, key)
         s = stickslip.sweep(mu_d=[0.1, 0.2, 0.3, 0.4, 0.5, 0.6], tau=[1, 2], delta=0.5, quantities="noise_law")
         self.assertEqual(len(s.plot()["E_X2"].axes), 2)  # a map with its scale
+
+    def test_a_map_of_a_plane_with_a_refused_corner(self):
+        values = numpy.geomspace(0.125, 4, 6)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", stickslip.AccuracyWarning)
+            s = stickslip.sweep(mu_s=values, mu_d=values, delta=0.125, quantities="sticking", accuracy=1e-2)
+        self.assertEqual(set(s.failures), {(s, d) for s in range(6) for d in range(s + 1, 6)})
+        axes = s.plot()["P_stick"].axes[0]
+        mesh = next(one for one in axes.collections if hasattr(one, "get_coordinates"))
+        numpy.testing.assert_allclose(mesh.get_coordinates()[0, :, 0], values[0] * 2.0 ** (numpy.arange(7) - 0.5))
+        self.assertEqual(numpy.ma.count_masked(mesh.get_array()), len(s.failures))
+        self.assertGreater(len(axes.texts), 0)  # contours with their levels
 
     def test_titles_say_what_the_parameters_are(self):
         coulomb = r"$\mu_s$ = 1, $\mu_d$ = 0.25, "

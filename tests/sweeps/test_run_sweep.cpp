@@ -133,6 +133,17 @@ TEST_CASE("sweeps: what does not fit in memory stops no other", "[parallel]") {
   CHECK(exit_status(sweep.runs) == 4);
 }
 
+TEST_CASE("sweeps: points that the model refuses stop no other", "[parallel]") {
+  const auto sweep = result(read({{"-delta", "0.5"}, {"-sweep_mu_d", "2,0.5"}}));
+  if (!first_rank()) return;
+  CHECK(sweep.runs[0].status == Status::refused);
+  CHECK_THAT(sweep.runs[0].message, Catch::Contains("must be in [0, mu_s]"));
+  CHECK(sweep.runs[0].results.empty());
+  CHECK(sweep.runs[1].status == Status::reached);
+  CHECK(sweep.resumed == 0);
+  CHECK(exit_status(sweep.runs) == 3);
+}
+
 TEST_CASE("sweeps: what the checkpoint holds is not computed again") {
   const test::TemporaryFolder folder;
   const std::string file = folder / "checkpoint";

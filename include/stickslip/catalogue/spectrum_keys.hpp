@@ -43,7 +43,8 @@ inline constexpr Row kCorrelationTime{.key = "t_corr",
                                       .symbol = "1/Delta omega",
                                       .definition = "correlation time of the velocity",
                                       .unit = "time",
-                                      .convention = "inverse of fwhm",
+                                      .convention = "inverse of fwhm; of exp(-t/T) it is T/2. The "
+                                                    "integral of C_vv(t)/C_vv(0) is S_0/(2 Var V)",
                                       .paper = "sec. 5.3",
                                       .without = {Route::monte_carlo},
                                       .asks = true};

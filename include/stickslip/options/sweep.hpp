@@ -2,6 +2,7 @@
 /// -sweep_<option>: a run for each combination of values of some options of the model.
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,8 +35,12 @@ class Sweep {
 
   /// The settings of a single run with the values of the point.
   [[nodiscard]] Settings settings(std::size_t point) const;
-  /// What such a run would be asked, of a point that has been validated; it writes no files. Local.
+  /// What such a run would be asked, of a point that is not left out; it writes no files. Local.
   [[nodiscard]] Request request(std::size_t point) const;
+
+  /// Points at which the model cannot be computed, such as mu_d above mu_s, with the reason.
+  [[nodiscard]] const std::map<std::size_t, std::string>& left_out() const { return left_out_; }
+  void leave_out(std::size_t point, std::string reason) { left_out_[point] = std::move(reason); }
 
   /// Name and value of every option that may change a number, those of the solvers included.
   [[nodiscard]] const std::vector<std::pair<std::string, std::string>>& identity() const {
@@ -46,6 +51,7 @@ class Sweep {
   Settings settings_;
   std::vector<SweepAxis> axes_;
   std::vector<std::pair<std::string, std::string>> identity_;
+  std::map<std::size_t, std::string> left_out_;
 };
 
 }  // namespace stickslip::options

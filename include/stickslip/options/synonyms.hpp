@@ -29,4 +29,7 @@ struct Synonyms {
 /// of a result means the quantity that it belongs to.
 [[nodiscard]] std::string meant_word(const Option& option, const std::string& word);
 
+/// "did you mean ou?", of a word that the option does not have; empty if none is near.
+[[nodiscard]] std::string suggestion_for_word(const Option& option, const std::string& word);
+
 }  // namespace stickslip::options

@@ -69,5 +69,7 @@ struct Check {
 /// Largest error relative to the size of the values; infinite where one is not a number, unless the
 /// result is partial.
 [[nodiscard]] double relative_error(const Result& result);
+/// " at tilt = 5", of the first entry of an array that is not a number; empty without any.
+[[nodiscard]] std::string where_no_number(const Result& result);
 
 }  // namespace stickslip::quantities

@@ -39,7 +39,7 @@ using SweepProgress = std::function<void(const State&)>;
 [[nodiscard]] SweepResult run_sweep(MPI_Comm comm, const options::Request& request,
                                     const SweepProgress& progress);
 
-/// 4 if a point lacked memory, else 3 if one fell short, else 0.
+/// 4 if a point lacked memory, else 3 if one fell short or was refused, else 0.
 [[nodiscard]] int exit_status(const std::vector<SweepPoint>& runs);
 
 }  // namespace stickslip::sweeps

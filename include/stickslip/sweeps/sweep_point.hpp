@@ -12,9 +12,9 @@
 namespace stickslip::sweeps {
 
 /// How a point ended. Results are there for the first two.
-enum class Status { reached, not_reached, failed, no_memory };
+enum class Status { reached, not_reached, failed, no_memory, refused };
 
-/// "reached", "not reached", "failed", "no memory".
+/// "reached", "not reached", "failed", "no memory", "refused".
 [[nodiscard]] const char* status_text(Status status);
 
 struct SweepPoint {
@@ -29,6 +29,9 @@ struct SweepPoint {
 /// Computes a point on its own; failures of solvers and of memory become its status. Collective.
 /// Throws what is no stickslip::Failure.
 [[nodiscard]] SweepPoint compute_run(MPI_Comm comm, const cases::Case& given, std::size_t point);
+
+/// A point at which the model cannot be computed, for the reason given. Local.
+[[nodiscard]] SweepPoint refused_run(std::size_t point, const std::string& reason);
 
 /// The run of an entry of `runs`, JSON in one line. Throws std::exception, nlohmann's too, if it is
 /// none.

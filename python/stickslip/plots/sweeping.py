@@ -120,15 +120,26 @@ def curve(axes: "Axes", x: "numpy.ndarray", value: "numpy.ndarray", error: "nump
         axes.plot(x[~reached], value[~reached], linestyle="", marker="x", markersize=9, color=colour)
 
 
+def _edges(values: "numpy.ndarray") -> "numpy.ndarray":
+    """Edges of cells around rising values, halfway between them on their axis."""
+    logarithmic = scale(values) == "log"
+    at = numpy.log(values) if logarithmic else values
+    steps = numpy.diff(at) if len(at) > 1 else numpy.ones(1)
+    edges = numpy.concatenate([[at[0] - steps[0] / 2], (at[1:] + at[:-1]) / 2, [at[-1] + steps[-1] / 2]])
+    return numpy.exp(edges) if logarithmic else edges
+
+
 def _map(figure: "Figure", axes: "Axes", sweep: Sweep, result: Result, value: "numpy.ndarray",
          reached: "numpy.ndarray") -> None:
     down, across = sweep.dims[:2]
     y, x = sweep.coords[down], sweep.coords[across]
     rows, columns = numpy.argsort(y), numpy.argsort(x)
     ordered = value[rows][:, columns]
-    mesh = axes.pcolormesh(x[columns], y[rows], ordered, shading="nearest", cmap="cividis")
-    if len(columns) > FEW and numpy.isfinite(ordered).all() and numpy.ptp(ordered) > 0:
-        lines = axes.contour(x[columns], y[rows], ordered, colors="white", linewidths=0.8)
+    axes.set_facecolor("0.8")  # of points without a result
+    mesh = axes.pcolormesh(_edges(x[columns]), _edges(y[rows]), ordered, cmap="cividis")
+    known = numpy.ma.masked_invalid(ordered)
+    if len(columns) > FEW and known.count() > FEW and numpy.ptp(known) > 0:
+        lines = axes.contour(x[columns], y[rows], known, colors="white", linewidths=0.8)
         axes.clabel(lines, fontsize=7)
     short = numpy.argwhere(~reached)
     axes.plot(x[short[:, 1]], y[short[:, 0]], linestyle="", marker="x", color="white")
