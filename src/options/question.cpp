@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "reading.hpp"
-#include "stickslip/catalogue/displacement_distribution_keys.hpp"
 #include "stickslip/catalogue/given_force_keys.hpp"
 #include "stickslip/catalogue/trajectory_keys.hpp"
 #include "stickslip/outputs/reference.hpp"
@@ -203,13 +202,6 @@ void read_start(Settings& settings, Request& request) {
   }
 }
 
-// Each digit of a distribution of displacements takes an octave of wavenumbers more: 1e-6 would
-// take hours.
-double wanted_accuracy(const Settings& settings, const Question& question) {
-  const auto slow = catalogue::kDisplacementDistribution.quantity;
-  return question.wants(slow) && !settings.has("accuracy") ? 0.01 : settings.real("accuracy");
-}
-
 // Below the speed to which bodies tend on the highest level of the noise, on either side or on that
 // of the passage.
 void check_speeds(Settings& settings, const Request& request) {
@@ -290,8 +282,11 @@ void read_question(Settings& settings, Request& request) {
     question.arguments[option] = arguments(settings, known, option, argument->low < 0);
   }
   question.observables = read_observables(settings, request.scene.friction);
-  question.accuracy = wanted_accuracy(settings, question);
+  question.accuracy = settings.real("accuracy");
   question.accuracy_given = settings.has("accuracy");
+  if (!question.accuracy_given) {
+    question.accuracy = std::max(question.accuracy, question.usual_accuracy());
+  }
   question.horizon = settings.real("horizon");
   check_horizon(settings, request);
   question.passage = meaning(kPassages, settings.text("passage"));

@@ -4,7 +4,6 @@
 #include <functional>
 #include <span>
 
-#include "stickslip/catalogue/displacement_distribution_keys.hpp"
 #include "stickslip/effects/effect.hpp"
 #include "stickslip/studies/limit.hpp"
 #include "stickslip/support/number_text.hpp"
@@ -57,9 +56,9 @@ Series of_tau(const Context& context) {
       std::max(scene.friction.mu_s, scene.friction.mu_s_minus.value_or(0)) + std::abs(scene.bias);
   const double first = std::min(scene.tau, std::pow(share / (2 * opposed), 2));
   const auto& question = context.given.question;
-  const bool slow = question.wants(catalogue::kDisplacementDistribution.quantity);
-  Series series{"tau", "", ", tau -> 0",
-                slow ? question.accuracy : std::min(question.accuracy, 1e-8)};
+  const double accuracy =
+      question.usual_accuracy() > 0 ? question.accuracy : std::min(question.accuracy, 1e-8);
+  Series series{"tau", "", ", tau -> 0", accuracy};
   for (int n = 0; n < context.study.steps.value_or(7); ++n) {
     cases::Case at = context.given;
     at.scene.tau = first * std::ldexp(1, -2 * n);

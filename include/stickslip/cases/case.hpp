@@ -72,6 +72,14 @@ struct Question {
       return wants(entry->quantity) && entry->*fact;
     });
   }
+  /// The loosest that is usual for what is asked for; 0 where all take that of the option.
+  [[nodiscard]] double usual_accuracy() const {
+    double loosest = 0;
+    for (const auto* entry : catalogue::entries()) {
+      if (wants(entry->quantity)) loosest = std::max(loosest, entry->usual_accuracy);
+    }
+    return loosest;
+  }
   /// Whether anything asked for depends on the option (a name without dash).
   [[nodiscard]] bool depends_on(std::string_view option) const {
     const auto all = catalogue::entries();

@@ -71,6 +71,7 @@ inline constexpr Entry kDisplacementDistribution{
     .options = "time, start, distance",
     .arguments = kDisplacementDistributionArguments,
     .rows = kDisplacementDistributionRows,
+    .usual_accuracy = 0.01,
     .weighs_tail = true,
     .both_branches = true};
 

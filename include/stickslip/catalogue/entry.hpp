@@ -114,6 +114,8 @@ struct Entry {
   /// The degree of elements at which error estimates meet an accuracy of 10^-n is expected to be
   /// degrees_per_digit n + degrees_besides.
   double degrees_per_digit = 1, degrees_besides = 1;
+  /// Where -accuracy is not given; 0: that of the option. A digit of some costs an octave more.
+  double usual_accuracy = 0;
   bool of_phases = false;  ///< about sticking and sliding phases: nothing where a body never sticks
   bool of_one_run = false;     ///< a field or a path, which has no place in a sweep
   bool without_limit = false;  ///< not a number that white noise has, which -study tau follows
