@@ -86,11 +86,19 @@ class Fit:
 
     def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
         """Confidence interval from the standard error, of the logarithm where a parameter is positive, within bounds."""
-        n = self.names.index(name)
+        n = self._number(name)
+        if not 0 < level < 1:
+            raise ValueError(f"level = {level}: must be between 0 and 1, such as 0.95")
         axis, u = self._search.axes[n], self._u[n]
         width = stats.norm.ppf((1 + level) / 2) * self.errors[name] / abs(axis.slope(u))
         low, high = sorted((axis.value(u - width), axis.value(u + width)))
         return low, high
+
+    def _number(self, name: str) -> int:
+        """Of a free parameter."""
+        if name not in self.names:
+            raise ValueError(f"{name}: was not fitted; take one of {', '.join(self.names)}")
+        return self.names.index(name)
 
     def profile(self, name: str, points: int = 9, width: float = 2.5) -> "Profile":
         """Twice the rise of chi^2/2 - log likelihood where a parameter is held and the others are fitted.
@@ -104,7 +112,7 @@ class Fit:
         width
             How far they reach, in standard errors.
         """
-        n = self.names.index(name)
+        n = self._number(name)
         axis, search = self._search.axes[n], self._search
         if not math.isfinite(self.errors[name]):
             raise ValueError(f"{name} has no standard error, which sets the width of the profile: {self.message}")
@@ -130,7 +138,7 @@ class Fit:
         return fits.draw(self._search.sets, self.results, self.estimates, self.errors, picture)
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Profile:
     """Values of a parameter, and by how much twice the misfit rises from the best fit (`rise`)."""
 
@@ -138,6 +146,11 @@ class Profile:
     values: "Array"
     rise: "Array"
     unit: str
+
+    def __repr__(self) -> str:
+        low, high = self.interval()
+        return (f"profile of {self.name} at {len(self.values)} values from {self.values[0]:.4g} to {self.values[-1]:.4g}; "
+                f"95 % confidence interval {low:.4g} to {high:.4g}")
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
         """Where the rise is below the quantile of chi^2; infinite where the profile does not reach it."""

@@ -44,6 +44,8 @@ def memory_of(record: Record, longest: float | None = None, without: int | None 
 
     Raises ValueError where steps are uneven, the value does not change, or the record is short beside its memory.
     """
+    if not isinstance(record, Record):
+        raise TypeError(f"record: must be a Record, not {type(record).__name__}; stickslip.Record(time, value) makes one")
     if not record.even:
         steps = numpy.diff(record.time)
         raise ValueError(f"record: steps from {steps.min():g} to {steps.max():g} are uneven; take "

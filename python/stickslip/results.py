@@ -6,16 +6,18 @@ import json
 import math
 import os
 import pathlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, KeysView, Mapping
 from typing import TYPE_CHECKING, Any
 
 from .needed import needed
+from .program import ProgramError
 
 if TYPE_CHECKING:
     import h5py
     import numpy
     import pandas
     import xarray
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     Array = numpy.ndarray
 numpy = needed("numpy")
@@ -64,13 +66,47 @@ class Result:
         found = numpy.asarray(self.value, dtype)
         return found.copy() if copy else found
 
+    def __format__(self, form: str) -> str:
+        """A number in a form such as ".3f"."""
+        return format(self.value, form) if form else str(self)
+
     def __repr__(self) -> str:
-        shown = (f"{self.value:.17g} +- {self.error:.1e}" if numpy.ndim(self.value) == 0 else
-                 f"{' x '.join(map(str, numpy.shape(self.value)))} values by {', '.join(self.dims)}")
-        return f"{self.key} = {shown} {self.unit}".rstrip()
+        if numpy.ndim(self.value) == 0:
+            return f"{self.key} = {to_its_error(self.value, self.error)} +- {self.error:.1e} {self.unit}".rstrip()
+        shape = " x ".join(map(str, numpy.shape(self.value)))
+        return f"{self.key} = {shape} values by {', '.join(self.dims)}" + (f" [{self.unit}]" if self.unit else "")
+
+    def plot(self, axes: "Axes | None" = None, **look: Any) -> "Axes":
+        """Draw an array against what it depends on, with its errors or confidence intervals.
+
+        Parameters
+        ----------
+        axes
+            Where to; without it, the current ones of `matplotlib.pyplot`. Their labels are set, their scales are not.
+        look
+            `colour`, `style` and `label` of the curve.
+
+        Returns
+        -------
+        axes
+
+        Raises
+        ------
+        ValueError
+            If this is a number, or an array of a sweep, which `Sweep.plot` draws.
+        """
+        if numpy.ndim(self.value) != 1 or self.abscissa is None:
+            raise ValueError(f"{self.key}: is no array over one abscissa; plot() of the results draws sweeps, and "
+                             "matplotlib's errorbar numbers")
+        from .plots import style
+        axes = axes or needed("matplotlib.pyplot").gca()
+        style.curve(axes, self, len(axes.lines), **look)
+        axes.set(xlabel=style.ABSCISSAE.get(self.abscissa_name, self.abscissa_name),
+                 ylabel=style.WORDS.get(self.key, self.key) + style.units(self.unit))
+        return axes
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Density:
     """The stationary distribution of (X, V).
 
@@ -122,13 +158,20 @@ class Density:
         """Probability that the body sticks."""
         return float(self.at_rest.sum())
 
-    def at(self, v: "Array") -> "Array":
-        """`values` at any velocities, by [x, v]; 0 beyond the cells."""
-        return self.values @ self._interpolation(v).T
+    def __repr__(self) -> str:
+        return (f"density of {len(self.x)} states by {len(self.v)} velocities, {self.x[0]:g} <= x <= {self.x[-1]:g}, "
+                f"{self.v[0]:.4g} <= v <= {self.v[-1]:.4g}, at rest with probability {self.mass_at_rest:.6g}; "
+                + ", ".join(field.name for field in dataclasses.fields(self)))
 
-    def marginal(self, v: "Array") -> "Array":
-        """`marginal_v` at any velocities."""
-        return self._interpolation(v) @ self.marginal_v
+    def at(self, v: "float | Array") -> "Array":
+        """`values` at any velocities, by [x, v], or by [x] at one; 0 beyond the cells."""
+        found = self.values @ self._interpolation(numpy.atleast_1d(v)).T
+        return found if numpy.ndim(v) else found[:, 0]
+
+    def marginal(self, v: "float | Array") -> "float | Array":
+        """`marginal_v` at any velocities, or at one."""
+        found = self._interpolation(numpy.atleast_1d(v)) @ self.marginal_v
+        return found if numpy.ndim(v) else float(found[0])
 
     def window(self, outside: float = 1e-3, count: int = 400) -> "Array":
         """Evenly spaced velocities that leave out so much of the probability of sliding, on both sides together."""
@@ -203,9 +246,13 @@ class Results(Mapping):
     def __getitem__(self, key: str) -> Result:
         if key in self._results:
             return self._results[key]
-        near = difflib.get_close_matches(str(key), self._results, 1, 0.6)
-        advice = f"did you mean {near[0]}?" if near else f"there are {', '.join(self._results) or 'no results'}"
-        raise KeyError(f"{key}: {advice}")
+        computed, near = _computed_by(str(key)), closest(str(key), self._results)
+        there = f"{computed}there are {', '.join(self._results) or 'no scalars and arrays'}"
+        raise KeyError(f"{key}: " + (f"did you mean {near}?" if near and not computed else there))
+
+    def keys(self) -> "KeysView[str]":
+        """Keys of the results, as of a dict."""
+        return self._results.keys()
 
     def __contains__(self, key: object) -> bool:
         return key in self._results
@@ -219,8 +266,11 @@ class Results(Mapping):
     __eq__, __hash__ = object.__eq__, object.__hash__  # arrays have no truth value
 
     def __repr__(self) -> str:
-        lines = map(repr, self.values())
-        return "\n".join(lines) or f"<{type(self).__name__} without scalars and arrays>"
+        if self:
+            return "\n".join(map(repr, self.values()))
+        held = [part for part in ("density", "trajectory", "modes", "comparison", "study", "runs", "plan", "summary")
+                if getattr(self, part)]
+        return f"<{type(self).__name__} without scalars and arrays; there are {', '.join(held) or 'options'}>"
 
     @property
     def reached(self) -> bool:
@@ -302,6 +352,29 @@ class Results(Mapping):
         if not self.summary:
             raise ValueError(f"results of {self.name or 'a file'} have no summary; copy the file that they come from")
         path.write_text(json.dumps(self.summary, indent=1) + "\n")
+
+
+def to_its_error(value: float, error: float) -> str:
+    """A number to the first digit of its error, as the program prints it; all digits of what is exact."""
+    if not (math.isfinite(error) and error > 0 and value and math.isfinite(value)):
+        return f"{value:.17g}" if error == 0 else f"{value:.7g}"
+    digits = math.floor(math.log10(abs(value))) - math.floor(math.log10(error)) + 1
+    return f"{value:.{min(max(digits, 1), 17)}g}"
+
+
+def closest(name: str, names: Iterable[str]) -> str | None:
+    """The most similar of some names, first of all one that differs in the case of letters; None if none is similar."""
+    alike = [other for other in names if other.lower() == name.lower()]
+    return next(iter(alike or difflib.get_close_matches(name, names, 1, 0.6)), None)
+
+
+def _computed_by(key: str) -> str:
+    """Which quantity a key of the program belongs to; empty where there is none to ask, or it does not know it."""
+    from .reference import keys
+    try:
+        return f'quantities="{keys()[key][0]}" computes it; ' if key in keys() else ""
+    except ProgramError:
+        return ""
 
 
 def array(values: Any, missing: float = math.nan) -> "Array":

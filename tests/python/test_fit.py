@@ -148,6 +148,9 @@ class Likelihood(Fits):
         self.assertAlmostEqual(both.errors["mu_d"], error / math.sqrt(2), delta=0.05 * error)
         self.assertIsNone(both.degrees_of_freedom)
         self.assertIn("of 1 values\nlog likelihood", repr(both))
+        for wrong in (lambda: both.interval("mu"), lambda: both.profile("mu")):
+            self.assertRaisesRegex(ValueError, "mu: was not fitted; take one of", wrong)
+        self.assertRaisesRegex(ValueError, "level = 95", both.interval, both.names[0], 95)
 
     def test_information_is_that_of_scores_and_of_second_differences(self):
         sticks = drawn("stick", 20000)

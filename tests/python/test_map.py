@@ -1,5 +1,7 @@
 """Many cases by few processes: stickslip.map, and the program's option -cases."""
 
+import contextlib
+import io
 import json
 import os
 import signal
@@ -105,6 +107,21 @@ class Maps(Case):
         for wrong in ({"cases": {"mu_d": 1}}, {"cases": [], "workers": 0}, {"cases": [], "failures": "ignore"}):
             with self.assertRaises(ValueError):
                 stickslip.map(**wrong)
+
+    def test_keywords_of_the_function_in_a_case(self):
+        for own in ("timeout", "keep", "ranks", "progress"):
+            with self.assertRaisesRegex(ValueError, rf"cases\[1\]: {own} is no option of a case"):
+                stickslip.map([SMALL, {**SMALL, own: 1}])
+        with self.assertRaisesRegex(ValueError, "map: keep is no option"):
+            stickslip.map([SMALL], keep="file.h5")
+
+    def test_progress(self):
+        told = []
+        stickslip.map([SMALL, {"mu_d": 5}, SMALL], failures="return", progress=lambda *counts: told.append(counts))
+        self.assertEqual(told, [(1, 3), (2, 3), (3, 3)])
+        with contextlib.redirect_stderr(io.StringIO()) as shown:
+            stickslip.map([SMALL, SMALL], progress=True)
+        self.assertRegex(shown.getvalue(), r"\r1 of 2 cases, about \d+ s left *\r2 of 2 cases, \d+ s\n *$")
 
     def test_an_accuracy_that_is_missed_is_a_warning(self):
         with warnings.catch_warnings(record=True) as caught:

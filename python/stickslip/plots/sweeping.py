@@ -1,13 +1,14 @@
 """Sweeps: each result, and drift against the bias."""
 
+import copy
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..results import Result, Results
 from ..sweeps import Sweep
 from . import style
-from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, WORDS, Figure, bars, decades, numpy, on_axis, scale, styled,
-                    symbol, units)
+from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, WORDS, Figure, bars, decades, known, numpy, on_axis, scale,
+                    styled, symbol, title, units)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,7 +51,7 @@ def _array(sweep: Sweep, result: Result) -> "Figure":
     low, high = numpy.nanmin(result.value), numpy.nanmax(result.value)
     axes.set(xscale=scale(abscissa), xlabel=ABSCISSAE.get(name, name), ylabel=_label(sweep, result.key),
              **({"yscale": "log", "ylim": (low / 2, high * 2)} if 0 < 100 * low < high else {}))
-    axes.set_title(", ".join(f"{symbol(name)} = {sweep.coords[name][0]:g}" for name in others), fontsize=9)
+    _title(axes, sweep, others)
     axes.legend()
     return figure
 
@@ -61,8 +62,7 @@ def _scalar(sweep: Sweep, result: Result) -> "Figure":
     names, first = sweep.dims[:2], (slice(None),) * min(2, len(sweep.dims)) + (0,) * (len(sweep.dims) - 2)
     value, error, reached = result.value[first], result.error[first], (sweep.status == "reached")[first]
     ci95 = None if result.ci95 is None else result.ci95[first]
-    if len(sweep.dims) > 2:
-        axes.set_title(", ".join(f"{symbol(name)} = {sweep.coords[name][0]:g}" for name in sweep.dims[2:]), fontsize=9)
+    _title(axes, sweep, sweep.dims[2:])
     if len(names) == 2 and len(value) > FEW:
         _map(figure, axes, sweep, result, value, reached)
         return figure
@@ -74,6 +74,8 @@ def _scalar(sweep: Sweep, result: Result) -> "Figure":
     if len(names) == 2:
         axes.legend()
     axes.set(xscale=scale(x), xlabel=_label(sweep, names[-1]), ylabel=_label(sweep, result.key))
+    if scale(x) == "log" and x.max() < 100 * x.min():  # powers of ten alone would be one or two
+        decades(axes.xaxis)
     return figure
 
 
@@ -111,10 +113,19 @@ def _map(figure: "Figure", axes: "Axes", sweep: Sweep, result: Result, value: "n
     axes.grid(False)
 
 
+def _title(axes: "Axes", sweep: Sweep, held: Sequence[str]) -> None:
+    """The parameters that were not swept, and in another line the first values of those that the picture holds."""
+    fixed = copy.copy(sweep)
+    fixed.options = {name: text for name, text in sweep.options.items() if name not in sweep.dims}
+    first = ", ".join(f"{symbol(name)} = {sweep.coords[name][0]:g}, the first of {len(sweep.coords[name])} values"
+                      for name in held)
+    axes.set_title("\n".join(filter(None, [title(fixed), first])), fontsize=9)
+
+
 def _label(sweep: Sweep, name: str) -> str:
     if name in sweep:
         return WORDS.get(name, name) + units(sweep[name].unit)
-    return on_axis(name) + units(sweep.units.get(name, ""))
+    return on_axis(name) + units(sweep.units.get(name) or known().get(name, {}).get("unit", ""))
 
 
 @styled
