@@ -90,6 +90,27 @@ class Pictures(Case):
         made.show("after another resolution the whole is drawn")
         self.assertEqual(len(shown), before)
 
+    def test_a_page_is_sent_one_picture_for_all_regions_of_a_move(self):
+        made = self.explorer()
+        self.settled(made)
+        shown, canvas = [], made.figure.canvas
+        canvas.draw()
+        canvas.blit = shown.append
+        made._show_knobs()
+        made.show("two regions")
+        self.assertEqual(len(shown), 2)
+        canvas.get_diff_image = lambda: None  # as the canvas of a page has
+        shown.clear()
+        with made.regions.together():
+            made._show_knobs()
+            with made.regions.together():
+                made.show("two regions")
+            self.assertEqual(shown, [])
+        self.assertEqual(len(shown), 1)
+        with made.regions.together():
+            pass
+        self.assertEqual(len(shown), 1)
+
     def test_force_is_across_and_velocity_upwards_as_in_every_picture(self):
         made = self.explorer(scene={"bias": 0.6})  # a body that a constant force pulls moves upwards only
         self.settled(made)
