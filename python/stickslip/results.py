@@ -296,8 +296,13 @@ class Results(Mapping):
         return plots.draw([self], picture, kind)
 
 
-    def to_pandas(self) -> "pandas.DataFrame":
+    def to_pandas(self, *options: str) -> "pandas.DataFrame":
         """A table with a row for each number.
+
+        Parameters
+        ----------
+        options
+            Names of options that get a column too, such as those in which the cases of `map` differ.
 
         Returns
         -------
@@ -307,11 +312,18 @@ class Results(Mapping):
 
         Raises
         ------
+        KeyError
+            If there is no such option.
         ImportError
             Without pandas.
+
+        Examples
+        --------
+        >>> rows = stickslip.map([{"mu_d": 0.25}, {"mu_d": 0.5, "tau": 2}], quantities="sticking")
+        >>> pandas.concat([r.to_pandas("mu_d", "tau") for r in rows])
         """
         from . import frames
-        return frames.to_pandas(self)
+        return frames.to_pandas(self, options)
 
     def to_xarray(self) -> "xarray.Dataset":
         """A data set with a variable for each key.
@@ -444,8 +456,8 @@ def from_hdf5(file: "h5py.File", name: str = "") -> Results:
     options = {key: str(value) for key, value in file["record/options"].attrs.items()}
     parts: dict[str, Any] = {
         "provenance": record, "cost": {"seconds": float(record.get("seconds", math.nan))}, **fields(file),
-        "scene": {key: _parameter(value) for key, value in options.items()},
-        "accuracy": {"asked": _parameter(options.get("accuracy", "")),
+        "scene": {key: parameter(value) for key, value in options.items()},
+        "accuracy": {"asked": parameter(options.get("accuracy", "")),
                      "reached": str(record.get("accuracy_reached", "yes")) == "yes"}}
     if "comparison" in file:
         parts["comparison"] = _datasets(file["comparison"])
@@ -458,7 +470,7 @@ def from_hdf5(file: "h5py.File", name: str = "") -> Results:
     return Results(results, options=options, name=name, **parts)
 
 
-def _parameter(text: str) -> Any:
+def parameter(text: str) -> Any:
     """A number where the option is one."""
     try:
         return float(text)

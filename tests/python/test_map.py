@@ -115,6 +115,14 @@ class Maps(Case):
         with self.assertRaisesRegex(ValueError, "map: keep is no option"):
             stickslip.map([SMALL], keep="file.h5")
 
+    def test_a_table_with_what_the_cases_differ_in(self):
+        rows = stickslip.map([{"mu_d": 0.25}, {"mu_d": 0.5, "drag": "none"}], delta=0.5, quantities="sticking")
+        tables = [r.to_pandas("mu_d", "drag") for r in rows]
+        self.assertEqual(list(tables[0]), ["key", "mu_d", "drag", "value", "error", "unit"])
+        self.assertEqual([(t.mu_d[0], t.drag[4]) for t in tables], [(0.25, "linear"), (0.5, "none")])
+        with self.assertRaisesRegex(KeyError, "mud: is no option; did you mean mu_d?"):
+            rows[0].to_pandas("mud")
+
     def test_progress(self):
         told = []
         stickslip.map([SMALL, {"mu_d": 5}, SMALL], failures="return", progress=lambda *counts: told.append(counts))
