@@ -82,7 +82,23 @@ class Fit:
                 f", {freedom} degrees of freedom, p = {stats.chi2.sf(self.chi2, freedom):.2g}" if freedom else ""))
         if drawn:
             lines.append(f"log likelihood = {self.log_likelihood:.6g} of {drawn} observations")
+            lines += [f"{name}: distance {distance:.3g} of the distribution functions, p < {p:.2g}"
+                      for name, distance, p in self.distances()]
         return "\n".join([*lines, self.message])
+
+    def distances(self) -> list[tuple[str, float, float]]:
+        """How well the samples are met, in the order of the data sets.
+
+        Returns
+        -------
+        rows
+            Of each sample its name, the largest distance of its distribution function from that of the model, and the
+            probability of a larger one if the model is right (Kolmogorov and Smirnov). That is an upper limit, as the
+            parameters were fitted to the same data.
+        """
+        samples = [(sample, found) for one, found in zip(self._search.sets, self.results) for sample in one.samples]
+        return [(sample.name, distance := sample.distance(found), float(stats.kstwo.sf(distance, sample.values.size)))
+                for sample, found in samples]
 
     def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
         """Confidence interval from the standard error, of the logarithm where a parameter is positive, within bounds."""

@@ -58,6 +58,15 @@ class Sample:
         """Probability of what is too short to be observed."""
         return float(at(results, f"cdf_{PHASES[self.name][0]}", self.smallest)) if self.smallest else 0.0
 
+    def distance(self, results: Results) -> float:
+        """Largest distance of the distribution functions of the observations and of the model, given that it is observed,
+        which is interpolated in the logarithm (Kolmogorov's statistic)."""
+        cdf, n = results[f"cdf_{PHASES[self.name][0]}"], self.values.size
+        below = numpy.interp(numpy.log(self.values), numpy.log(cdf.abscissa), cdf.value)
+        model = (below - (missed := self.missed(results))) / (1 - missed)
+        steps = numpy.arange(n + 1) / n
+        return float(max((steps[1:] - model).max(), (model - steps[:-1]).max()))
+
     def of(self, results: Results, refined: int) -> "tuple[Array, Array, Array]":
         """Logarithms of the density, given that it is observed, at the observations and on the grid, and probabilities
         around the points of the grid."""
