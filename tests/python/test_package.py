@@ -581,6 +581,8 @@ class Pictures(Case):
                 ("arrays", 3, {"quantities": "laplace", "lambda": [1, 2]}),
                 ("comparison", 8, {"quantities": "sticking,laplace", "lambda": [1, 2],
                                    "compare": self.folder / "reference.h5"}),
+                ("convergence", 5, {"quantities": "sticking", "study": "delta", "study_steps": 4, "accuracy": 1e-2}),
+                ("convergence", 5, {"quantities": "sticking", "study": "p", "study_steps": 4}),
                 ("cost", 1, {"quantities": "sticking", "study": "cost", "study_steps": 4, "study_repeats": 1}),
                 ("spectra", 1, {"quantities": "spectrum", "omega": [0.1, 1], **mc})):
             r = stickslip.run(**{**SMALL, **options})
@@ -629,6 +631,21 @@ class Pictures(Case):
         axes = s.plot(kind="P_stick")["P_stick"].axes[0]
         self.assertEqual(axes.get_title(), r"$\mu_s$ = 1, $b(v) = -v$" + "\n" + r"$\delta$ = 0.5, the first of 2 values")
         self.assertTrue(axes.get_xlabel().endswith("[time]"))
+        s = stickslip.sweep(tau=[1, 2], delta=0.5, quantities="sticking", accuracy=1e-1)
+        self.assertEqual(s.plot(kind="P_stick")["P_stick"].axes[0].get_title(),
+                         r"$\mu_s$ = 1, $\mu_d$ = 1, $\delta$ = 1/2, $b(v) = -v$")
+
+    def test_the_limit_of_a_study_is_drawn_in_its_error(self):
+        r = stickslip.run(mu_d=0.25, delta=0.5, accuracy=1e-2, quantities="sticking", study="delta", study_steps=4)
+        axes = r.plot()["convergence"].axes[0]
+        table = r.study["P_stick on a level"]
+        self.assertEqual(axes.lines[0].get_ydata().tolist(), table["value"].tolist())
+        self.assertEqual(axes.lines[1].get_ydata()[0], table["limit"][-1])
+        ends = axes.patches[0].get_extents().transformed(axes.transData.inverted())
+        self.assertAlmostEqual((ends.y1 - ends.y0) / 2, table["limit_error"][-1], delta=1e-9)
+        self.assertEqual(axes.get_legend_handles_labels()[1], ["on a level", "between levels"])
+        self.assertIn("duration", r.plot()["convergence"].axes[2].get_ylabel())
+        self.assertIn("[time]", r.plot()["convergence"].axes[2].get_ylabel())
 
     def test_errors_of_sweeps_are_drawn(self):
         for more in ({}, {"route": "monte_carlo", "excursions": 500}):

@@ -26,13 +26,15 @@ KINDS: "dict[str, tuple[Callable[[Results], bool], Callable[[Sequence[Results]],
     "durations": (lambda r: "f_slide" in r, curves.durations),
     "slips": (lambda r: any(key in r for panel in curves.SLIPS for key in panel[0]), curves.slips),
     "arrays": (lambda r: bool(curves.other_arrays([r])), curves.arrays),
+    "convergence": (lambda r: r.study_kind in studies.CONVERGENCE, studies.convergence),
     "cost": (lambda r: r.study_kind == "cost", studies.cost),
     "correlation_time": (lambda r: "t_corr" in r, curves.correlation_time),  # on request, as the next one
     "drift": (lambda r: isinstance(r, Sweep) and r.dims == ("bias",), sweeping.drift)}
 ON_REQUEST = ("correlation_time", "drift")
 TOGETHER = ("spectra", "durations", "slips", "arrays", "correlation_time")  # kinds that show several files at once
 ASK = ("ask the program for density, trajectory, given_force, spectrum with -omega, duration_density, slip with "
-       "-distance, peak or displacement with -quantities; or for -compare, -study cost or a sweep")
+       "-distance, peak or displacement with -quantities; or for -compare, "
+       "-study or a sweep")
 
 
 class Figures(dict):

@@ -193,7 +193,7 @@ def memory(results: Results) -> str:
 def noise(results: Results) -> str:
     """The noise in words; TeX."""
     delta = step(results)
-    return memory(results) + (f", {symbol('delta')} = {fraction(delta)}" if delta else "")
+    return ", ".join(filter(None, [memory(results), f"{symbol('delta')} = {fraction(delta)}" if delta else ""]))
 
 
 def drag(results: Results) -> str:
