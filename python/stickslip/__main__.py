@@ -1,6 +1,7 @@
 """python3 -m stickslip plot FILE... [PICTURE.png]: draws what files of the program hold.
 python3 -m stickslip explore [SCENE.opts]: sliders over the model parameters, pictures that follow.
-python3 -m stickslip levels FILE: the levels of a measured force, for -noise file."""
+python3 -m stickslip levels FILE: the levels of a measured force, for -noise file.
+python3 -m stickslip force FILE: a measured force or acceleration, for -force_file."""
 
 import argparse
 import pathlib
@@ -8,6 +9,10 @@ import re
 import sys
 import warnings
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .records import Record
 
 TEXT = """Draws what the program wrote to FILE: HDF5, the JSON of -summary, or CSV. Without PICTURE the picture goes
 next to the file, under its name. A file that holds several kinds of results makes a picture of each, with the kind in
@@ -25,10 +30,15 @@ separator, decimal comma), AT2, COSMOS V2, SAC, .npy or .mat. Prints how the cha
 of the program that use it. Exit status 2 where such a chain cannot stand for the record."""
 
 
+FORCE = """Writes a measured force or acceleration as the CSV file that -force_file takes: text with columns (any separator,
+decimal comma), AT2, COSMOS V2, SAC, .npy or .mat. Accelerations in g, gal and the like become m/s^2. Prints what was
+read, and the options of the program that use it. Without --output the file is FILE_force.csv in this folder."""
+
+
 def main(words: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status."""
     parser = argparse.ArgumentParser(prog="python3 -m stickslip", description=__doc__)
-    commands = parser.add_subparsers(required=True, metavar="plot | explore | levels")
+    commands = parser.add_subparsers(required=True, metavar="plot | explore | levels | force")
     plot = commands.add_parser(
         "plot", usage="%(prog)s [--kind KIND] FILE... [PICTURE | -o PICTURE]", description=TEXT)
     plot.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE")
@@ -42,19 +52,19 @@ def main(words: Sequence[str] | None = None) -> int:
     explore.add_argument("--port", type=int, default=8988, help="of that page (default 8988)")
     explore.set_defaults(act=explore_scene)
     levels = commands.add_parser("levels", description=LEVELS)
-    levels.add_argument("file", type=pathlib.Path, metavar="FILE")
-    levels.add_argument("--column", help="name of the values, or its number from 0")
-    levels.add_argument("--time", help="name of the times, or its number from 0")
-    levels.add_argument("--step", type=float, help="sampling interval in seconds, where the file has no times")
-    levels.add_argument("--unit", help="of the values, such as g, gal or m/s^2, where the file does not say")
-    levels.add_argument("--scale", type=float, default=1, help="what values are multiplied by (default 1)")
+    _add_record(levels)
     levels.add_argument("--levels", type=int, help="how many (default: the most of 15 to 5 that can be counted)")
     levels.add_argument("--mu-s", type=float, help="static friction, which then lies halfway between two levels")
     levels.add_argument("--jumps", choices=("neighbours", "any"), default="neighbours", help="where jumps lead")
     levels.add_argument("--match-time", action="store_true", help="multiply all rates to match the correlation time")
     levels.add_argument("--narrow-band", action="store_true", help="a narrow band in the place of levels")
+    levels.add_argument("--filtered", action="store_true", help="filtered noise (Kanai and Tajimi) in the place of levels")
     levels.add_argument("--picture", type=pathlib.Path, help="autocovariance and spectrum of chain and record")
     levels.set_defaults(act=write_levels)
+    force = commands.add_parser("force", description=FORCE)
+    _add_record(force)
+    force.add_argument("-o", "--output", type=pathlib.Path, metavar="CSV", help="the file to write")
+    force.set_defaults(act=write_force)
     words = list(sys.argv[1:] if words is None else words)
     given = taken_options(words) if words[:1] == ["explore"] else {}
     arguments = parser.parse_args(words, argparse.Namespace(given=given))
@@ -76,6 +86,32 @@ def is_option(word: str) -> bool:
     return re.fullmatch(r"-[A-Za-z]\w+", word) is not None
 
 
+def _add_record(parser: argparse.ArgumentParser) -> None:
+    """The arguments that say how a file of a record is read, and what is done to it."""
+    parser.add_argument("file", type=pathlib.Path, metavar="FILE")
+    parser.add_argument("--column", help="name of the values, or its number from 0")
+    parser.add_argument("--time", help="name of the times, or its number from 0")
+    parser.add_argument("--step", type=float, help="sampling interval in seconds, where the file has no times")
+    parser.add_argument("--unit", help="of the values, such as g, gal or m/s^2, where the file does not say")
+    parser.add_argument("--between", type=float, nargs=2, metavar=("BEGIN", "END"), help="take these times [s] alone")
+    parser.add_argument("--centre", action="store_true", help="take the mean off")
+    parser.add_argument("--fill", type=float, metavar="LONGEST",
+                        help="join gaps of at most LONGEST seconds by straight lines")
+    parser.add_argument("--scale", type=float, default=1, help="what values are multiplied by (default 1): -1 makes the "
+                        "force on a body of the acceleration of the ground")
+
+
+def _record_of(arguments: argparse.Namespace) -> "Record":
+    """The record that `_add_record` describes."""
+    from . import read_record
+    record = read_record(arguments.file, column=arguments.column, time=arguments.time, step=arguments.step,
+                         unit=arguments.unit)
+    record = record.between(*arguments.between) if arguments.between else record
+    record = record.resampled(record.step, across=arguments.fill) if arguments.fill else record
+    record = record.centred() if arguments.centre else record
+    return record if arguments.scale == 1 else record.scaled(arguments.scale)
+
+
 def explore_command() -> int:
     """The console script stickslip-explore."""
     return main(["explore", *sys.argv[1:]])
@@ -84,6 +120,11 @@ def explore_command() -> int:
 def levels_command() -> int:
     """The console script stickslip-levels."""
     return main(["levels", *sys.argv[1:]])
+
+
+def force_command() -> int:
+    """The console script stickslip-force."""
+    return main(["force", *sys.argv[1:]])
 
 
 def plot_command() -> int:
@@ -110,17 +151,19 @@ def explore_scene(arguments: argparse.Namespace) -> int:
 def write_levels(arguments: argparse.Namespace) -> int:
     """Reads a record and writes its levels, or its chain; returns the exit status."""
     try:
-        from . import noise, read_record
+        from . import noise
     except ImportError as problem:
         print(problem, file=sys.stderr)
         return 1
     try:
-        record = read_record(arguments.file, column=arguments.column, time=arguments.time, step=arguments.step,
-                             unit=arguments.unit)
-        record = record if arguments.scale == 1 else record.scaled(arguments.scale)
+        record = _record_of(arguments)
         print(record)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # the chain prints them
+            if arguments.filtered:
+                fit = noise.filtered_of(record)
+                print(fit, " ".join(f"-{name} {value}" for name, value in fit.options.items()), sep="\n")
+                return 0
             chain = noise.narrow_band_of(record) if arguments.narrow_band else noise.record(
                 record, arguments.levels, mu_s=arguments.mu_s, jumps=arguments.jumps, match_time=arguments.match_time)
         print(chain)
@@ -140,6 +183,26 @@ def write_levels(arguments: argparse.Namespace) -> int:
     except ImportError as problem:
         print(problem, file=sys.stderr)
         return 1
+    return 0
+
+
+def write_force(arguments: argparse.Namespace) -> int:
+    """Reads a record and writes the file of -force_file; returns the exit status."""
+    try:
+        record = _record_of(arguments)
+        place = arguments.output or pathlib.Path(f"{arguments.file.stem}_force.csv")
+        if len(record.gaps):
+            longest = (record.gaps[:, 1] - record.gaps[:, 0]).max()
+            raise ValueError(f"{arguments.file}: samples are missing in {len(record.gaps)} gaps; --fill {longest:g} joins "
+                             "them by straight lines, --between takes a part without them")
+        record.save(place)
+    except (ValueError, OSError) as problem:
+        print(f"stickslip: {problem}", file=sys.stderr)
+        return 2
+    except ImportError as problem:
+        print(problem, file=sys.stderr)
+        return 1
+    print(record, f"-quantities given_force -force_file {place}", sep="\n")
     return 0
 
 

@@ -14,7 +14,7 @@ from . import results, sweeps
 from .needed import needed
 from .program import (DONE, NO_MEMORY, SHORT, AccuracyWarning, BadInput, OutOfMemory, ProgramError, Unsolved, execute, find_program,
                       words_of)
-from .records import Record
+from .records import Record, warn_of_gravity
 from .reference import declared, with_options
 from .results import Results
 from .sweeps import Sweep
@@ -111,8 +111,7 @@ def prepared(options: Mapping[str, Any], folder: pathlib.Path, keep: Path | None
     if hasattr(options.get("noise"), "save"):
         options |= _files_of(options, folder)
     if hasattr(options.get("force_file"), "save"):
-        record, options["force_file"] = options["force_file"], folder / "force.csv"
-        record.save(options["force_file"])
+        options["force_file"] = _force_of(options, folder)
     return options
 
 
@@ -120,8 +119,7 @@ def _refuse_arrays(options: Mapping[str, Any]) -> None:
     """Refuses sequences where the program would not say what to do with them."""
     for name, text in FROM_ARRAYS.items():
         value = options.get(name)
-        if not (value is None or isinstance(value, (str, os.PathLike)) or isinstance(value, Record) == (name == "force_file")
-                and hasattr(value, "save")):
+        if not (value is None or isinstance(value, (str, os.PathLike)) or hasattr(value, "save")):
             raise BadInput(text)
     for name, value in options.items():
         if is_swept(name, value) and len(value) > 1 and f"sweep_{name}" in _known():
@@ -236,12 +234,34 @@ def load(path: Path) -> Results:
 
 def _files_of(options: Mapping[str, Any], folder: pathlib.Path) -> dict[str, Any]:
     """Options for a chain of `stickslip.noise`, whose files go to a folder."""
+    if not hasattr(options["noise"], "rates"):
+        raise BadInput("noise: is a record; stickslip.noise.record() or noise.narrow_band_of() makes a chain of it, and "
+                       "force_file takes it as it is")
     files = {name: folder / f"{name}.csv" for name in ("noise_states", "noise_rates")}
     for name in files:
         if name in options:
             raise ValueError(f"{name} = {options[name]}: the chain {options['noise'].name} has its own; leave one out")
     options["noise"].save(*files.values())
     return {"noise": "chain", **files}
+
+
+def _force_of(options: Mapping[str, Any], folder: pathlib.Path) -> pathlib.Path:
+    """Writes a `Record` for -force_file, under the name of its source, which pictures show; refuses gaps as the program
+    does, which knows neither `resampled` nor `between`."""
+    record, scale = options["force_file"], options.get("force_scale", 1)
+    gaps = record.gaps
+    if record.even and 0 < len(gaps) <= len(record.time) / 10:
+        longest = (gaps[:, 1] - gaps[:, 0]).max()
+        raise BadInput(f"force_file: samples are missing in {len(gaps)} gaps, the longest of {longest:g} s from "
+                       f"{gaps[(gaps[:, 1] - gaps[:, 0]).argmax()][0]:g} s on; record.resampled({record.step:g}, "
+                       f"across={longest:g}) joins them by straight lines, record.between() takes a part without them")
+    if isinstance(scale, int | float):
+        warn_of_gravity(record, scale, "force_scale", 7)
+    place = folder / "record"  # apart from other files, whose names it may have
+    place.mkdir()
+    path = place / f"{pathlib.PurePath(record.source.partition(':')[0]).stem[:80] or 'force'}.csv"
+    record.save(path)
+    return path
 
 
 def _stamp(path: pathlib.Path) -> tuple[int, int] | None:

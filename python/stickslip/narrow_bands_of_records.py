@@ -3,17 +3,13 @@
 import dataclasses
 import math
 import warnings
-from typing import TYPE_CHECKING
 
 from .chains import Chain
 from .chains_by_name import narrow_band, positive
 from .needed import needed
-from .record_statistics import BLOCKS, MATCH, SWING, Memory, measured, memory_of, spectrum_of, unsteady
+from .record_statistics import MATCH, SWING, Memory, jackknife, measured, memory_of, spectrum_of, unsteady
 from .records import Record
 
-if TYPE_CHECKING:
-    import numpy
-    Array = numpy.ndarray
 numpy, optimize = needed("numpy"), needed("scipy.optimize")
 
 
@@ -99,15 +95,14 @@ def narrow_band_of(record: Record, delta: float | None = None, *, longest: float
 
 def _fitted(record: Record, whole: Memory) -> Band:
     """The band whose autocorrelation is closest to that of the record, and what it is without each of the blocks."""
-    def best(memory: Memory) -> "Array":
+    def best(memory: Memory) -> list[float]:
         first = memory.time[max(int(memory.rho.argmin()), 1)]
         try:
             found, _ = optimize.curve_fit(lambda t, gamma, omega: numpy.exp(-gamma * t) * numpy.cos(omega * t), memory.time,
                                           memory.rho, (3 / memory.time[-1], math.pi / first))
         except RuntimeError:
             raise ValueError("record: no narrow band comes close to its autocorrelation; take a longer record") from None
-        return numpy.array([math.sqrt(memory.variance), *abs(found)])
+        return [math.sqrt(memory.variance), *abs(found).tolist()]
 
-    parts = numpy.array([best(memory_of(record, whole.time[-1], n)) for n in range(BLOCKS)])
-    errors = numpy.sqrt((BLOCKS - 1) / BLOCKS * ((parts - parts.mean(axis=0)) ** 2).sum(axis=0))
-    return Band(*best(whole).tolist(), tuple(errors.tolist()))
+    numbers, errors = jackknife(record, whole, best)
+    return Band(*numbers, errors)

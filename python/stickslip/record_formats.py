@@ -21,7 +21,7 @@ SAMPLE = 50  # lines that have to agree on how columns are separated
 # Readings of a line: separator (None is white space) and decimal sign, the more likely ones first.
 READINGS = (("\t", "."), ("\t", ","), (";", "."), (";", ","), ("|", "."), (",", "."), (None, "."), (None, ","))
 IN_BRACKETS = re.compile(r"(.*?)[\s_,]*[\[(]([^\])]*)[\])]\s*")
-BEHIND = re.compile(r"(.+?)(?:_|\s|,|\sin\s)+(s|ms|us|min|g|mg|gal|mgal|[cm]?m/s(?:\^2|2|/s|\*\*2))", re.IGNORECASE)
+BEHIND = re.compile(r"(.+?)(?:_|\s|,|\sin\s)+(s|ms|us|min|%?g|mg|gal|mgal|(?:[cm]?m|ft|in)/s(?:\^2|2|/s|\*\*2))", re.IGNORECASE)
 COSMOS = re.compile(r"^\s*(\d+)\s+([^\n]*?)\s*pts,\s*approx\s+([\d.]+)\s+secs,\s*units=\s*([^\s(,]+)[^\n]*"
                     r"Format=\s*\(\s*\d*[A-Z](\d+)[^\n]*\n", re.IGNORECASE | re.MULTILINE)
 CSMIP = re.compile(r"^\s*(\d+) points of (accel) data equally spaced at\s*([\d.]+)\s*sec[^\n]*?in\s+([^\s.(]+)[^\n]*?"
@@ -45,8 +45,8 @@ class Column:
 def plain_unit(text: str) -> str:
     """A unit in one spelling: "CM/SEC/SEC", "cm/s2" and "cm s^-2" are cm/s^2."""
     text = text.strip().lower().replace("seconds", "s").replace("sec", "s").replace("²", "^2").replace("**", "^")
-    text = re.sub(r"(m)[\s·*]?s\^?-2", r"\1/s^2", text)
-    return re.sub(r"m/s(?:/s|\^?2)", "m/s^2", text)
+    text = re.sub(r"(m|ft|in)[\s·*]?s\^?-2", r"\1/s^2", text)
+    return re.sub(r"(m|ft|in)/s(?:/s|\^?2)", r"\1/s^2", text)
 
 
 def columns_of(path: pathlib.Path, delimiter: str | None = None, decimal: str | None = None) -> tuple[str, list[Column]]:
@@ -94,10 +94,10 @@ def _of_at2(head: Sequence[str], text: str) -> Column:
     stated = {name.upper(): re.search(pattern, head[line], re.IGNORECASE) for name, pattern in (
         ("NPTS", r"NPTS\s*=\s*(\d+)"), ("DT", rf"DT\s*=\s*({NUMBER})"))}
     plain = re.match(rf"\s*(\d+)\s+({NUMBER})", head[line])  # older files: 5366 0.0100 NPTS, DT
-    if not (all(stated.values()) or plain):
-        raise ValueError(f"line {line + 1}: {head[line].strip()}: needs NPTS= and DT=")
+    if not (stated["NPTS"] or plain):
+        raise ValueError(f"line {line + 1}: {head[line].strip()}: needs NPTS= and DT=, such as NPTS= 5366, DT= .01 SEC")
     count = int(stated["NPTS"][1] if stated["NPTS"] else plain[1])
-    step = float(stated["DT"][1] if stated["DT"] else plain[2])
+    step = float(stated["DT"][1]) if stated["DT"] else float(plain[2]) if plain else None
     values = numpy.array(re.findall(NUMBER, "\n".join(text.split("\n")[line + 1:])), float)
     if len(values) != count:
         raise ValueError(f"holds {len(values)} samples, NPTS = {count}; fetch it anew")

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from .chains import Meant
@@ -45,7 +46,8 @@ def memory_of(record: Record, longest: float | None = None, without: int | None 
     Raises ValueError where steps are uneven, the value does not change, or the record is short beside its memory.
     """
     if not isinstance(record, Record):
-        raise TypeError(f"record: must be a Record, not {type(record).__name__}; stickslip.Record(time, value) makes one")
+        raise TypeError(f"record: is a {type(record).__name__}; stickslip.read_record(path) reads a file, and "
+                        "stickslip.Record(time, value) takes arrays")
     if not record.even:
         steps = numpy.diff(record.time)
         raise ValueError(f"record: steps from {steps.min():g} to {steps.max():g} are uneven; take "
@@ -72,6 +74,14 @@ def memory_of(record: Record, longest: float | None = None, without: int | None 
                          "one, or a number for `longest`, the time beyond which it is uncorrelated")
     duration = record.step * pairs[0]
     return Memory(record.step, rho[:last + 1], math.sqrt(2 * squares[last] / duration), products[0] / pairs[0], duration)
+
+
+def jackknife(record: Record, whole: Memory, best: Callable[[Memory], Sequence[float]]) -> tuple[
+        tuple[float, ...], tuple[float, ...]]:
+    """What a fit finds of a record, and its standard errors from what it finds without each of the blocks."""
+    parts = numpy.array([best(memory_of(record, whole.time[-1], n)) for n in range(BLOCKS)])
+    errors = numpy.sqrt((BLOCKS - 1) / BLOCKS * ((parts - parts.mean(axis=0)) ** 2).sum(axis=0))
+    return tuple(best(whole)), tuple(errors.tolist())
 
 
 def spectrum_of(record: Record, memory: Memory) -> "tuple[Array, Array]":

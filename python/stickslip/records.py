@@ -3,6 +3,7 @@
 import dataclasses
 import os
 import pathlib
+import warnings
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -17,9 +18,11 @@ numpy = needed("numpy")
 
 STANDARD_GRAVITY = 9.80665  # m/s^2, by the General Conference on Weights and Measures of 1901
 ACCELERATIONS = {"g": STANDARD_GRAVITY, "mg": STANDARD_GRAVITY / 1000, "gal": 0.01, "mgal": 1e-5, "m/s^2": 1,
-                 "cm/s^2": 0.01, "mm/s^2": 1e-3}
+                 "cm/s^2": 0.01, "mm/s^2": 1e-3, "%g": STANDARD_GRAVITY / 100, "ft/s^2": 0.3048, "in/s^2": 0.0254}
 TIMES = {"s": 1, "ms": 1e-3, "us": 1e-6, "min": 60, "h": 3600}
 NAMES_OF_TIME = ("t", "time", "times", "timestamp", "datetime", "date", "seconds", "sec", "zeit", "temps")
+ABOUT_GRAVITY = (9.7, 9.9)  # factors that make m/s^2 of g
+OFFSET = 3     # of the largest integral of an acceleration without its mean, beyond which its mean is in doubt
 GAP = 1.5      # steps between two samples, from which on samples are missing
 EVEN = 0.01    # of the step, to which all steps of an even record agree
 PARTS = 16     # of a record, whose means show its drift
@@ -122,18 +125,33 @@ class Record:
     def between(self, begin: float, end: float) -> "Record":
         """The samples of these times [s], both ends included."""
         inside = (self.time >= begin) & (self.time <= end)
+        if inside.sum() < 2:
+            raise ValueError(f"between({begin:g}, {end:g}): holds {inside.sum()} samples; take two times in rising order "
+                             f"from {self.time[0]:g} to {self.time[-1]:g}")
         return dataclasses.replace(self, time=self.time[inside], value=self.value[inside])
 
     def scaled(self, factor: float, unit: str = "") -> "Record":
-        """All values times a factor, in another unit: `record.scaled(1/9.81, "weight")`."""
+        """All values times a factor, in another unit: `record.scaled(1/9.81, "weight")`. Warns where m/s^2 would be taken
+        for g."""
+        if not unit:
+            warn_of_gravity(self, factor, "scaled", 3)
         return dataclasses.replace(self, value=self.value * factor, unit=unit or self.unit,
                                    notes=(*self.notes, f"values were multiplied by {factor:g}"))
 
-    def resampled(self, step: float) -> "Record":
-        """Values at even steps [s], linear between samples; in gaps there are none."""
+    def centred(self) -> "Record":
+        """The values less their mean, which is 0 for the acceleration of a ground that rests before and after."""
+        mean = self.value.mean()
+        return dataclasses.replace(self, value=self.value - mean, notes=(
+            *self.notes, f"the mean, {mean:.4g}, was taken off"))
+
+    def resampled(self, step: float, across: float = 0) -> "Record":
+        """Values at even steps [s], linear between samples; in gaps there are none, but in those of at most `across` s."""
+        if not step > 0:
+            raise ValueError(f"step = {step}: must be in (0, inf); take for example {self.step:g}")
         time = numpy.arange(self.time[0], self.time[-1] + step * 1e-9, step)
         for low, high in self.gaps:
-            time = time[(time <= low) | (time >= high)]
+            if high - low > across * (1 + 1e-9):
+                time = time[(time <= low) | (time >= high)]
         return dataclasses.replace(self, time=time, value=numpy.interp(time, self.time, self.value), notes=(
             *self.notes, f"interpolated to steps of {step:g} s"))
 
@@ -143,14 +161,23 @@ class Record:
         numpy.savetxt(path, numpy.column_stack([self.time, self.value]), "%.17g", ",", header="time,force", comments="")
 
 
+def warn_of_gravity(record: Record, factor: float, name: str, stacklevel: int) -> None:
+    """Warn of a factor that takes accelerations in m/s^2 for ones in g."""
+    low, high = ABOUT_GRAVITY
+    if record.unit == "m/s^2" and low < abs(factor) < high:
+        warnings.warn(f"{name}: the values are in m/s^2 already, and {factor:g} times them would be right for g; -1 makes "
+                      "the force on a body of the acceleration of the ground", UserWarning, stacklevel=stacklevel)
+
+
 def read_record(path: str | os.PathLike[str], *, column: int | str | None = None, time: int | str | None = None,
                 step: float | None = None, unit: str | None = None, delimiter: str | None = None,
                 decimal: str | None = None) -> Record:
     """Read a measured force or acceleration.
 
     Text with columns (any separator, decimal comma, header, byte-order mark, times as dates), AT2 of PEER, V2 of COSMOS
-    and of CSMIP, SAC in its alphanumeric form, .npy, and .mat of MATLAB 5 to 7 (needs SciPy). Accelerations in g, mg,
-    gal, mgal, cm/s^2 and mm/s^2 become m/s^2, with g = 9.80665 m/s^2; times in ms, us, min and h become s; `notes` say so.
+    and of CSMIP, SAC in its alphanumeric form, .npy, and .mat of MATLAB 5 to 7 (needs SciPy). Accelerations in g, %g, mg,
+    gal, mgal, cm/s^2, mm/s^2, ft/s^2 and in/s^2 become m/s^2, with g = 9.80665 m/s^2; times in ms, us, min and h become s;
+    `notes` say so.
 
     Parameters
     ----------
@@ -169,7 +196,8 @@ def read_record(path: str | os.PathLike[str], *, column: int | str | None = None
     Returns
     -------
     record
-        Samples that are no numbers are left out and counted in `notes`, as gaps and a significant drift are.
+        Samples that are no numbers are left out and counted in `notes`, as gaps and a significant drift are, values
+        without a unit, and accelerations whose mean would leave the ground in motion.
 
     Raises
     ------
@@ -202,13 +230,14 @@ def read_record(path: str | os.PathLike[str], *, column: int | str | None = None
 def _named(columns: Sequence[Column], wanted: int | str, option: str) -> Column:
     """The column of a name or a number."""
     for n, column in enumerate(columns):
-        if str(wanted) in (str(n), column.name) or str(wanted).lower() == column.name.lower():
+        names = (column.name.lower(), f"{column.name} ({column.unit})".lower(), f"{column.name} [{column.unit}]".lower())
+        if str(wanted) == str(n) or str(wanted).lower() in names:
             return column
     raise ValueError(f"{option} = {wanted}: there is no such column; take one of {_listed(columns)}")
 
 
-def _listed(columns: Sequence[Column]) -> str:
-    return ", ".join(f"{n} ({column.name})" for n, column in enumerate(columns))
+def _listed(columns: Sequence[Column], without: Column | None = None) -> str:
+    return ", ".join(f"{n} ({column.name})" for n, column in enumerate(columns) if column is not without)
 
 
 def _time_column(columns: Sequence[Column], wanted: int | str | None) -> Column | None:
@@ -227,7 +256,7 @@ def _value_column(columns: Sequence[Column], times: Column | None, wanted: int |
     others = [column for column in columns if column is not times]
     if len(others) == 1:
         return others[0]
-    raise ValueError(f"column: there are {len(others)} columns of values; take one of {_listed(columns)}")
+    raise ValueError(f"column: there are {len(others)} columns of values; take one of {_listed(columns, times)}")
 
 
 def _record(chosen: Column, times: Column | None, step: float | None, unit: str | None, source: str) -> Record:
@@ -242,6 +271,14 @@ def _record(chosen: Column, times: Column | None, step: float | None, unit: str 
             notes.append(f"{given} became {standard}: times {table[plain]:g}")
         return values * table[plain], standard
 
+    if unit is not None and record_formats.plain_unit(unit) not in ACCELERATIONS:
+        notes.append(f"{unit} is none of {', '.join(ACCELERATIONS)}: values are as in the file")
+    elif unit is None and not chosen.unit:
+        notes.append('no unit is named: values are as in the file; unit="g" makes m/s^2 of g')
+    elif unit is not None and chosen.unit and record_formats.plain_unit(unit) != record_formats.plain_unit(chosen.unit):
+        notes.append(f"the file says {chosen.unit}, and was taken to be in {unit}")
+    if chosen.step and step != chosen.step:
+        notes.append(f"the file says steps of {chosen.step:g} s, and {step:g} s were taken")
     values, unit = converted(chosen.values, chosen.unit if unit is None else unit, ACCELERATIONS, "m/s^2")
     if times is None and step is None:
         raise ValueError("step: the file has no times; give the sampling interval in seconds, as step=0.01")
@@ -271,4 +308,11 @@ def _findings(record: Record) -> list[str]:
     drift, error = record.drift
     if abs(drift) > 4 * error:
         found.append(f"the value drifts by {drift:.3g} +- {error:.1g} {record.unit}".rstrip() + " from begin to end")
+    if record.unit == "m/s^2":
+        steps, time = numpy.diff(record.time), record.time - record.time[0]
+        speed = numpy.append(0, numpy.cumsum(steps * (record.value[1:] + record.value[:-1]) / 2))
+        largest = abs(speed - speed[-1] * time / time[-1]).max()
+        if abs(speed[-1]) > OFFSET * largest:
+            found.append(f"its integral ends at {speed[-1]:.3g} m/s, and would reach {largest:.3g} m/s without its mean: a "
+                         "ground that comes to rest has none; centred() takes it off")
     return found

@@ -102,7 +102,7 @@ class Result:
         from .plots import style
         axes = axes or needed("matplotlib.pyplot").gca()
         style.curve(axes, self, len(axes.lines), **look)
-        axes.set(xlabel=style.ABSCISSAE.get(self.abscissa_name, self.abscissa_name),
+        axes.set(xlabel=style.over(self),
                  ylabel=style.WORDS.get(self.key, self.key) + style.units(self.unit))
         return axes
 
@@ -299,11 +299,9 @@ def _computed_by(key: str) -> str:
         return ""
 
 
-def array(values: Any, missing: float = math.nan) -> "Array":
-    """Numbers of JSON, where null stands for what is no number."""
-    if isinstance(values, list):
-        return numpy.array([array(v, missing) for v in values], float)
-    return numpy.asarray(missing if values is None else values, float)
+def array(values: Any) -> "Array":
+    """Numbers of JSON; null, which stands for what is no number, becomes NaN."""
+    return numpy.asarray(values, float)
 
 
 def _number(values: "Array") -> "float | Array":

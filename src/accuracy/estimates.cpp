@@ -92,6 +92,13 @@ void require_least_error(double least, Results& results) {
   }
 }
 
+void doubt_without_digit(double digit, Result& result) {
+  for (std::size_t e = 0; e < result.value.size(); ++e) {
+    const double size = std::abs(result.value[e]);
+    if (result.error[e] > digit * size) result.error[e] = std::max(result.error[e], size);
+  }
+}
+
 Changes add_discretisation(const ErrorPerChange& factor, const Results& coarse,
                            const Changes& before, Results& results) {
   Changes changes(results.size()), errors(results.size());

@@ -26,6 +26,7 @@ constexpr Speed kByElements{0.8, 1e-8, 1.5e-9, false};
 constexpr Speed kByMumps{0.35, 8e-9, 2.5e-9, true};
 constexpr double kSecondsPerNonzero = 5e-9;  // of a residual
 constexpr double kFixedSeconds = 5e-4;       // of a factorisation
+constexpr double kSecondsOfModel = 0.03;     // of dense matrices, on small discretisations the most
 
 class Predictor {
  public:
@@ -91,7 +92,7 @@ class Predictor {
     if (task.derivatives == 0 && !task.adaptive) return seconds;
     // Operators of its own look like the sliding operator.
     const Predicted& like = assemble({0, operators::symmetry_of(discretisation_.process)});
-    return seconds + task.derivatives * like.assembly +
+    return seconds + (task.adaptive ? kSecondsOfModel : 0) + task.derivatives * like.assembly +
            task.usual_factorizations * (like.assembly + like.factorization) +
            task.usual_solves * like.solve;
   }

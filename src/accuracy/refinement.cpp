@@ -52,29 +52,9 @@ Solved evaluated(MPI_Comm comm, const cases::Case& given, const Resolution& reso
   return solved;
 }
 
-// Beyond the levels and the velocity discretisation of the first discretisation there is nothing
-// but extrapolation.
-void require_start_within(const cases::Case& given, const Resolution& first) {
-  const cases::Question& question = given.question;
-  const auto starts = [&](const catalogue::Entry* entry) {
-    return question.wants(entry->quantity) && entry->takes("start") && !entry->of_one_run;
-  };
-  if (std::ranges::none_of(catalogue::entries(), starts)) return;
-  const auto noise = given.scene.process(first.levels).noise;
-  const int level = question.start.level;
-  const double x = given.scene.meant().noise.level(level), v = question.start.v;
-  const auto refuse = [&](const char* what, double largest, const char* more) {
-    throw BadInput(fmt::format("-start = {:g},{:g}: starts beyond the largest {} on which the mean "
-                               "is computed at -accuracy {:g}; take |{}| at most {:g}, or {}",
-                               x, v, what, question.accuracy, what, largest, more));
-  };
-  const char* simulated = "-route monte_carlo, which starts at any state that occurs";
-  if (level < noise.lowest() || level > noise.highest()) {
-    refuse("x", noise.level(noise.highest()), noise.table ? simulated : "-noise_levels full");
-  }
-  if (std::abs(v) > first.v_max) refuse("v", first.v_max, simulated);
-}
-
+// What has no digit after so many will have none, as modes in a continuous spectrum have not.
+constexpr double kOneDigit = 0.1;
+constexpr int kRefinementsWithoutDigit = 6;
 // Below as many unknowns a step takes hardly longer than to predict how long.
 constexpr std::int64_t kWorthPrediction = 30'000;
 
@@ -95,6 +75,12 @@ class Refiner {
   }
 
  private:
+  struct Limit {
+    double last = kInfinity;  // rounding of the refinement level before
+    int in_vain = 0;          // refinements
+    int without_digit = 0;    // refinements in a row
+  };
+
   void refine() {
     require_start_within(given_, sequence_.refinement_level(sequence_.first()));
     require_memory(comm_, given_.scene, sequence_.refinement_level(1));
@@ -215,7 +201,8 @@ class Refiner {
         conclude(step);
         return true;
       }
-      if (limits_[step.limiting_key].in_vain < patience) return false;
+      const Limit& limit = limits_[step.limiting_key];
+      if (limit.in_vain < patience && limit.without_digit < kRefinementsWithoutDigit) return false;
       give_up(step, rounding);
     }
   }
@@ -224,13 +211,16 @@ class Refiner {
   void count_refinements_in_vain(bool anew) {
     for (std::size_t r = 0; r < outcome_.results.size(); ++r) {
       Limit& limit = limits_[outcome_.results[r].key];
-      if (anew) limit.last = kInfinity;
+      if (anew) limit = {.in_vain = limit.in_vain};
       const bool falls = rounding_[r] < 0.5 * std::exchange(limit.last, rounding_[r]);
       if (!(rounding_[r] <= question_.accuracy || falls)) ++limit.in_vain;
+      ++limit.without_digit;
+      if (quantities::relative_error(outcome_.results[r]) <= kOneDigit) limit.without_digit = 0;
     }
   }
 
   void give_up(const Step& step, double rounding) {
+    const std::string& key = step.limiting_key;
     const double least = std::max(rounding, step.estimate);
     const std::string looser =
         least < 0.05
@@ -238,15 +228,23 @@ class Refiner {
                           given_.method.row().small_lambda ? "another -lambda or " : "", 2 * least)
             : "no digit of it is certain: leave it out";
     if (given_up_.empty()) {
-      limit_ = fmt::format("{} the relative error of {} to {:.1e}; {}", what_limits(),
-                           step.limiting_key, least, looser);
+      limit_ = fmt::format("{} the relative error of {} to {:.1e}; {}", what_limits(limits_[key]),
+                           key, least, looser);
     }
-    given_up_.insert(step.limiting_key);
+    given_up_.insert(key);
+    // Rates and frequencies are of the same modes.
+    const auto of = std::ranges::find(outcome_.results, key, &quantities::Result::key);
+    for (const auto& r : outcome_.results) {
+      if (of->abscissa_name == "mode" && r.abscissa_name == "mode") given_up_.insert(r.key);
+    }
   }
 
   void conclude(Step& step) {
     outcome_.reached = given_up_.empty();
     outcome_.shortfall = limit_;
+    for (auto& result : outcome_.results) {
+      if (given_up_.contains(result.key)) doubt_without_digit(kOneDigit, result);
+    }
     check_truncation();
     check_partial();
     check_bounds();
@@ -268,7 +266,9 @@ class Refiner {
     }
   }
 
-  [[nodiscard]] const char* what_limits() const {
+  [[nodiscard]] const char* what_limits(const Limit& of) const {
+    if (of.without_digit >= kRefinementsWithoutDigit)
+      return "what refinement cannot resolve limits";
     if (given_.scene.v_max && !given_.scene.limits_speed) return "-v_max, or rounding, limits";
     if (given_.method.row().small_lambda) return "lambda > 0 or rounding limits";
     if (question_.observables.empty()) return "rounding limits";
@@ -340,13 +340,9 @@ class Refiner {
   const Progress& progress_;
   RefinementSequence sequence_;
   Outcome outcome_;
-  std::vector<double> rounding_;  // relative, of each result
-  struct Limit {
-    double last = kInfinity;  // rounding of the refinement level before
-    int in_vain = 0;          // refinements
-  };
+  std::vector<double> rounding_;         // relative, of each result
   std::map<std::string, Limit> limits_;  // by key of results
-  std::set<std::string> given_up_;       // keys of results that rounding limits
+  std::set<std::string> given_up_;       // keys of results that stay inaccurate
   std::string limit_;                    // what limits the first of them
   Changes changes_;                      // of the last step
   std::shared_ptr<quantities::Recipes> recipes_ = std::make_shared<quantities::Recipes>();

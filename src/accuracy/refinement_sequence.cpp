@@ -12,8 +12,11 @@ namespace {
 
 // Errors of hp functionals fall about tenfold a degree, more at low degrees than at high ones. Each
 // change is the error one degree lower, unless that vanishes by accident; the two together rarely
-// do. For each degree; see validation/calibration.
-constexpr ErrorPerChange kHpErrorPerChange{0.07, 0.0026, 2.2};
+// do. For each degree, at low degrees for this one; see validation/calibration.
+constexpr ErrorPerChange kHpErrorPerChange{0.07, 0.0035, 2.2};
+constexpr int kLeastDegreeOfErrors = 10;
+// Under the levels of a table errors fall in uneven steps, of which the change before tells more.
+constexpr double kEarlierOfTables = 4;
 // Where elements move from level to level changes tell less.
 constexpr double kOnOtherElements = 1.4;
 // Where friction weakens errors fall as they otherwise do so many degrees higher.
@@ -168,8 +171,9 @@ ErrorPerChange RefinementSequence::error_per_change(int n) const {
   case cases::Scheme::hp: {
     const int weakening = scene_.friction.stribeck ? kDegreesOfWeakening : 0;
     const double moving = tail_counts_ ? kOnOtherElements : 1;
-    const double degrees = moving * std::max(1, degree(n) + weakening);
-    return {degrees * kHpErrorPerChange.last, degrees * kHpErrorPerChange.earlier,
+    const double degrees = moving * std::max(kLeastDegreeOfErrors, degree(n) + weakening);
+    const double earlier = table_ ? kEarlierOfTables : 1;
+    return {degrees * kHpErrorPerChange.last, earlier * degrees * kHpErrorPerChange.earlier,
             kHpErrorPerChange.alone};
   }
   case cases::Scheme::upwind: {

@@ -300,4 +300,25 @@ double relative_work(const model::Scene& scene, const Resolution& resolution) {
   return work;
 }
 
+void require_start_within(const cases::Case& given, const Resolution& first) {
+  const cases::Question& question = given.question;
+  const auto starts = [&](const catalogue::Entry* entry) {
+    return question.wants(entry->quantity) && entry->takes("start") && !entry->of_one_run;
+  };
+  if (std::ranges::none_of(catalogue::entries(), starts)) return;
+  const auto noise = given.scene.process(first.levels).noise;
+  const int level = question.start.level;
+  const double x = given.scene.meant().noise.level(level), v = question.start.v;
+  const auto refuse = [&](const char* what, double largest, const char* more) {
+    throw BadInput(fmt::format("-start = {:g},{:g}: starts beyond the largest {} on which the mean "
+                               "is computed at -accuracy {:g}; take |{}| at most {:g}, or {}",
+                               x, v, what, question.accuracy, what, largest, more));
+  };
+  const char* simulated = "-route monte_carlo, which starts at any state that occurs";
+  if (level < noise.lowest() || level > noise.highest()) {
+    refuse("x", noise.level(noise.highest()), noise.table ? simulated : "-noise_levels full");
+  }
+  if (std::abs(v) > first.v_max) refuse("v", first.v_max, simulated);
+}
+
 }  // namespace stickslip::accuracy

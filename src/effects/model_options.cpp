@@ -50,7 +50,7 @@ std::vector<Option> made() {
           {.symbol = "\\mu_s",
            .label = "static friction",
            .slider = Slider{.low = 0.1, .high = 3, .start = 1},
-           .others = {"static_friction"}}),
+           .others = {"static_friction", "yield_acceleration", "critical_acceleration", "ky"}}),
       Option::real("mu_d", "force", "1", Range::not_negative(),
                    "dynamic friction coefficient, at most mu_s", "friction must not drive the body",
                    {.symbol = "\\mu_d",

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "csv_rows.hpp"
+#include "stickslip/effects/read_scene.hpp"
 
 namespace stickslip::effects {
 namespace {
@@ -81,10 +82,11 @@ std::vector<Option> force_options() {
            "the force of -force_file between two samples. linear: from one to the other, unless "
            "this option is given. constant: that of the first",
            ""},
-          Option::real(kScale, "", "", {}, "factor of the forces of -force_file; 1 unless given",
-                       "take for example -9.81 for a ground acceleration in g, which pushes a body "
-                       "the other way",
-                       {.symbol = {}, .label = "scale of the force"})};
+          Option::real(
+              kScale, "", "", {}, "factor of the forces of -force_file; 1 unless given",
+              "take for example -9.81 for a ground acceleration in g, which pushes a body "
+              "the other way",
+              {.symbol = {}, .label = "scale of the force", .others = {"scale_factor", "pga"}})};
 }
 
 void read_force(Given& given, model::Scene& scene) {
@@ -97,10 +99,25 @@ void read_force(Given& given, model::Scene& scene) {
     for (double& force : record.force) force *= record.scale;
     scene.force = std::make_shared<const model::ForceRecord>(std::move(record));
   } catch (const std::invalid_argument& unfit) {
-    given.refuse(kForceFile, unfit.what(),
-                 "write CSV with the columns time,force and their names in the first line, times "
-                 "rising, commas between numbers and points within");
+    given.refuse(
+        kForceFile, unfit.what(),
+        "write CSV with the columns time,force and their names in the first line, times "
+        "rising, commas between numbers and points within; python3 -m stickslip force FILE "
+        "writes it of AT2, V2, and tables with other names and units");
   }
+}
+
+std::string force_note(const model::Scene& scene) {
+  if (!scene.force) return "";
+  const auto [low, high] = std::ranges::minmax(scene.force->force);
+  const double up = scene.friction.mu_s - scene.bias;
+  const double down = scene.friction.mirrored().mu_s + scene.bias;
+  if (high > up || -low > down) return "";
+  return fmt::format(
+      "the body never moves: forces of {} reach from {:.4g} to {:.4g}, and friction holds it from "
+      "{:.4g} to {:.4g}; are both in one unit, and has the force the right sign? -force_scale "
+      "changes these",
+      scene.force->file, low, high, -down, up);
 }
 
 }  // namespace stickslip::effects

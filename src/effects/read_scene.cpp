@@ -66,7 +66,11 @@ class SceneReader {
     const auto backwards = forwards.mirrored();
     const char* grows = "dynamic friction cannot exceed static friction";
     if (forwards.mu_d > forwards.mu_s) {
-      report("mu_d", fmt::format("must be in [0, mu_s], and mu_s = {:g}", forwards.mu_s), grows);
+      report("mu_d", fmt::format("must be in [0, mu_s], and mu_s = {:g}", forwards.mu_s),
+             given_.has("mu_d") ? grows
+                                : fmt::format("give it as well, such as -mu_d {:g}: it does not "
+                                              "follow -mu_s",
+                                              forwards.mu_s));
     }
     if (!forwards.symmetric() && backwards.mu_d > backwards.mu_s) {
       report(forwards.mu_d_minus ? "mu_d_minus" : "mu_s_minus",

@@ -129,8 +129,10 @@ Request read_request(const std::vector<std::string>& argv) {
   Request request = request_of(settings);
   problems.raise();
   if (request.study.kind == StudyKind::none) {
+    const bool follows = request.question.wants(catalogue::kGivenForce.quantity);
     for (const auto& said :
-         {effects::step_warning(request.scene), effects::noise_note(request.scene)}) {
+         {effects::step_warning(request.scene), effects::noise_note(request.scene),
+          follows ? effects::force_note(request.scene) : std::string()}) {
       if (!said.empty()) request.warnings.push_back(said);
     }
   }

@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstdlib>
 
 #include "stickslip/options/synonyms.hpp"
 #include "stickslip/petsc/solver_options.hpp"
@@ -32,11 +34,26 @@ void check_words(const Option& option, const std::string& value, Problems& probl
   }
 }
 
+// What to write in the place of a number with a unit, a per cent sign or a decimal comma; else the
+// fix given.
+std::string written_plainly(const std::string& value, bool is_list, const std::string& fix) {
+  char* behind = nullptr;
+  const double number = std::strtod(value.c_str(), &behind);
+  if (behind == value.c_str()) return fix;
+  if (*behind == '%') return fmt::format("write {:g} for {:g} %", number / 100, number);
+  if (*behind == ',' && !is_list) return "write the number with a decimal point";
+  if (std::isalpha(static_cast<unsigned char>(*behind)) == 0) return fix;
+  return "write the number alone: units are yours, such as m/s^2 for all forces and s for all "
+         "times";
+}
+
 void check_numbers(const Option& option, const std::string& value, Problems& problems) {
   const std::string must = "must be " + requirement(option);
   const auto numbers = parse_numbers(value);
-  if (!numbers)
-    return problems.add(option, value, must, "write for example 0.1,1 or 0.01:10:31:log");
+  if (!numbers) {
+    const char* example = "write for example 0.1,1 or 0.01:10:31:log";
+    return problems.add(option, value, must, written_plainly(value, true, example));
+  }
   const auto bad = std::find_if(numbers->begin(), numbers->end(),
                                 [&option](double v) { return !option.range.contains(v); });
   if (bad != numbers->end()) problems.add(option, fmt::format("{:g}", *bad), must, option.fix);
@@ -47,7 +64,9 @@ void check_number(const Option& option, const std::string& value, Problems& prob
   const auto number = parse_number(value);
   const bool fits = number && option.range.contains(*number) &&
                     (option.kind == Kind::real || *number == std::floor(*number));
-  if (!is_word && !fits) problems.add(option, value, "must be " + requirement(option), option.fix);
+  if (is_word || fits) return;
+  problems.add(option, value, "must be " + requirement(option),
+               number ? option.fix : written_plainly(value, false, option.fix));
 }
 
 void check_value(const Option& option, const std::string& value, Problems& problems) {

@@ -52,8 +52,9 @@ extern const Output kSweepCsv{
     .option = "sweep_csv",
     .ending = "csv",
     .sentence =
-        "write a row for each point of a sweep as CSV to this file: swept values, every scalar "
-        "with its error estimate, status",
+        "write a row for each point of a sweep as CSV to this file: swept values, every scalar and "
+        "every number that belongs to a value of an option, such as displacement_cdf(10)[0.1] to "
+        "-distance 0.1, with its error estimate, status",
     .subjects = {Subject::sweep},
     .write = write_rows};
 

@@ -20,16 +20,18 @@ using outputs::Json;
 using quantities::Result;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kShown = 8, kWritten = 100;  // numbers of an array in table and CSV file
 
 /// Numbers of one result at all points: a column of tables and CSV, a dataset of HDF5.
 struct Column {
   const Result* result;  // of the first point that has it
   std::string name;      // its key, with _error, _low, _high or its abscissa behind it
   std::vector<std::vector<double>> at;  // by point: one number of a scalar; none where it lacks
+  std::size_t place = 0;                // of the number that a table has, in arrays
 
   [[nodiscard]] bool is_values() const { return name == result->key; }
   [[nodiscard]] double number(const SweepPoint& run) const {
-    return at[run.point].empty() ? kNone : at[run.point][0];
+    return at[run.point].size() > place ? at[run.point][place] : kNone;
   }
 };
 
@@ -66,13 +68,34 @@ std::vector<Column> columns_of(const std::vector<SweepPoint>& runs) {
   return columns;
 }
 
-/// Values and errors of scalars, one after the other.
-std::vector<Column> scalars_of(const std::vector<SweepPoint>& runs) {
-  auto columns = columns_of(runs);
-  std::erase_if(columns, [](const Column& c) {
-    return !c.result->is_scalar() || !(c.is_values() || c.name == c.result->key + "_error");
-  });
-  return columns;
+/// Whether an array has numbers for the values of an option, such as -distance, and how many.
+bool is_listed(const options::Request& request, const Result& r, std::size_t most) {
+  return !r.is_scalar() && r.value.size() <= most &&
+         std::ranges::any_of(request.resolved, [&](const auto& option) {
+           return option.first == r.abscissa_name && !option.second.empty();
+         });
+}
+
+/// Values and errors of scalars, one after the other, and of arrays that have a number for each of
+/// at most so many values of an option: "displacement_cdf(10)[0.1]".
+std::vector<Column> numbers_of(const options::Request& request, const std::vector<SweepPoint>& runs,
+                               std::size_t most) {
+  const auto columns = columns_of(runs);
+  std::vector<Column> numbers;
+  for (std::size_t n = 0; n + 1 < columns.size(); ++n) {
+    if (!columns[n].is_values()) continue;
+    const Result& r = *columns[n].result;
+    const bool listed = is_listed(request, r, most);
+    const std::size_t count = listed ? r.value.size() : r.is_scalar() ? 1 : 0;
+    for (std::size_t place = 0; place < count; ++place) {
+      for (Column column : {columns[n], columns[n + 1]}) {
+        column.place = place;
+        if (listed) column.name.insert(r.key.size(), fmt::format("[{:.12g}]", r.abscissa[place]));
+        numbers.push_back(std::move(column));
+      }
+    }
+  }
+  return numbers;
 }
 
 // The model parameters that are not swept.
@@ -138,9 +161,10 @@ std::size_t longest_line(const std::string& text) {
 }
 
 // As many scalars side by side as lines have room for.
-std::string blocks(const options::Sweep& sweep, const std::vector<SweepPoint>& runs) {
+std::string blocks(const options::Request& request, const std::vector<SweepPoint>& runs) {
+  const auto& sweep = *request.sweep;
   std::vector<Pair> pairs;
-  const auto columns = scalars_of(runs);
+  const auto columns = numbers_of(request, runs, kShown);
   for (std::size_t n = 0; n + 1 < columns.size(); n += 2) {
     pairs.push_back({columns[n], columns[n + 1]});
   }
@@ -188,11 +212,12 @@ std::string counts(const SweepResult& result, const io::RunTimes& times) {
 std::string text_of(const options::Request& request, const SweepResult& result,
                     const io::RunTimes& times) {
   const auto& sweep = *request.sweep;
-  std::string text = title(sweep) + fixed_options(request) + blocks(sweep, result.runs) + "\n";
+  std::string text = title(sweep) + fixed_options(request) + blocks(request, result.runs) + "\n";
   for (const auto& column : columns_of(result.runs)) {
-    if (column.result->is_scalar() || !column.is_values()) continue;
+    const Result& r = *column.result;
+    if (r.is_scalar() || !column.is_values() || is_listed(request, r, kShown)) continue;
     text += fmt::format("{} by {}: in the files of -summary and -output\n", column.name,
-                        column.result->abscissa_name);
+                        r.abscissa_name);
   }
   return text + shortfalls(sweep, result.runs) + counts(result, times);
 }
@@ -209,9 +234,10 @@ Json tree_of(const options::Request& request, const SweepResult& result,
   return tree;
 }
 
-std::vector<std::vector<std::string>> rows_of(const options::Sweep& sweep,
+std::vector<std::vector<std::string>> rows_of(const options::Request& request,
                                               const std::vector<SweepPoint>& runs) {
-  const auto scalars = scalars_of(runs);
+  const auto& sweep = *request.sweep;
+  const auto scalars = numbers_of(request, runs, kWritten);
   std::vector<std::vector<std::string>> rows(1);
   for (const auto& axis : sweep.axes()) rows[0].push_back(axis.option);
   for (const auto& scalar : scalars) rows[0].push_back(scalar.name);
@@ -273,7 +299,7 @@ outputs::Report report_of(MPI_Comm comm, const options::Request& request, const 
   report.comm = MPI_COMM_SELF;
   report.text = text_of(request, sweep, times);
   report.tree = [&request, &sweep, times] { return tree_of(request, sweep, times); };
-  report.rows = [&request, &sweep] { return rows_of(*request.sweep, sweep.runs); };
+  report.rows = [&request, &sweep] { return rows_of(request, sweep.runs); };
   report.grid = [&request, &sweep] { return grid_of(*request.sweep, sweep.runs); };
   return report;
 }

@@ -260,7 +260,7 @@ TEST_CASE("refinement: error estimates are honest and not far off", "[slow][real
               << " more than 100 times too large");
   CHECK(values > 250);
   CHECK(dishonest <= 0.05 * values);
-  CHECK(timid <= 0.15 * values);
+  CHECK(timid <= 0.2 * values);
 }
 
 TEST_CASE("refinement: what is zero by symmetry is exactly zero", "[parallel]") {
@@ -336,6 +336,27 @@ TEST_CASE("refinement: rounding is distinguished from discretisation") {
   const Outcome outcome = solve(r);
   CHECK_FALSE(outcome.reached);
   CHECK_THAT(outcome.shortfall, Catch::Contains("rounding"));
+}
+
+// Between rare pulses a body rests: most modes lie in a continuous spectrum, and their frequencies
+// are those of the elements.
+TEST_CASE("refinement: modes without a digit end early, and what is asked for beside them stays") {
+  auto r = given(1, 0.07, 1, 1, {1.5, 0.85});
+  r.question.quantities = {Quantity::sticking, Quantity::relaxation};
+  r.question.accuracy = 1e-2;
+  r.scene.noise.name = "file";
+  const std::vector<model::Level> rows{{-3.4, 7, 0}, {-0.12, 0.0084, 0.00012}, {3.8, 0, 7}};
+  r.scene.noise.table = std::make_shared<const model::LevelTable>(rows);
+  const auto outcome = solve(r);
+  CHECK_FALSE(outcome.reached);
+  CHECK_THAT(outcome.shortfall, Catch::Contains("refinement cannot resolve") &&
+                                    Catch::Contains("relaxation_frequency"));
+  CHECK(outcome.steps.size() < 10);  // of 17
+  const auto& rates = result(outcome, "relaxation");
+  for (std::size_t n = 0; n < rates.value.size(); ++n) {
+    CHECK((rates.error[n] <= 0.1 * rates.value[n] || rates.error[n] >= rates.value[n]));
+  }
+  CHECK(result(outcome, "P_stick").error[0] < 1e-2 * value(outcome, "P_stick"));
 }
 
 TEST_CASE("refinement: the upwind scheme reports early what an accuracy would take") {

@@ -310,16 +310,22 @@ TEST_CASE("refinement sequence: two hp changes make an error, the larger the hig
   given.question.quantities = {catalogue::Quantity::sticking};
   given.scene = scene(1, 0.25, 1, 0.25);
   const accuracy::RefinementSequence sequence(given);
-  for (int n = 1; n < 5; ++n) {
-    const int degree = sequence.refinement_level(n).degree;
+  for (int n = 1; n < 9; ++n) {
+    const int degree = std::max(10, sequence.refinement_level(n).degree);
     CHECK(sequence.error_per_change(n).last == Approx(0.07 * degree));
-    CHECK(sequence.error_per_change(n).earlier == Approx(0.0026 * degree));
+    CHECK(sequence.error_per_change(n).earlier == Approx(0.0035 * degree));
   }
   CHECK_FALSE(sequence.first_order());
+  cases::Case levels = given;
+  levels.scene.noise.name = "telegraph";
+  const std::vector<model::Level> rows{{-1.5, 2, 0}, {0, 1, 3}, {2, 0, 1}};
+  levels.scene.noise.table = std::make_shared<const model::LevelTable>(rows);
+  CHECK(accuracy::RefinementSequence(levels).error_per_change(1).earlier == Approx(4 * 0.035));
   given.scene.friction_name = "stribeck";
   given.scene.friction.stribeck = model::Stribeck{0.1, 1};
   const accuracy::RefinementSequence weakening(given);
   const int degree = weakening.refinement_level(1).degree;
+  REQUIRE(degree + 4 > 10);
   CHECK(weakening.error_per_change(1).last == Approx(0.07 * (degree + 4)));
   given.question.quantities = {catalogue::Quantity::peak};
   CHECK(accuracy::RefinementSequence(given).error_per_change(1).last ==

@@ -111,6 +111,18 @@ class GivenForce(Case):
         self.assertIn("no significant disagreement", done.stdout)
         self.run_ok(*options, "-force_scale", "1.01", "-compare", "a.h5", folder=self.folder, status=3)
 
+    def test_a_body_that_friction_holds(self):
+        """Forces from -3 to 2 do not move a body that 3 and 1 + 1 hold; a little more of one does."""
+        (self.folder / "record.csv").write_text(HEADER + "0,2\n1,-3\n2,0\n")
+        held = (*ASKED, "record.csv", "-mu_s", "3", "-mu_d", "1", "-bias", "1", "-mu_s_minus", "2", "-drag", "none")
+        done = self.run_ok(*held)
+        for part in ("never moves: forces of record.csv reach from -3 to 2, and friction holds it from -3 to 2",
+                     "are both in one unit"):
+            self.assertIn(part, done.stderr)
+        for more in (("-mu_s", "2.99"), ("-mu_s_minus", "1.99"), ("-force_scale", "1.01"), ("-bias", "1.01")):
+            self.assertNotIn("never moves", self.run_ok(*held, *more).stderr)
+        self.refuse(*ASKED, "record.csv", "-mu_s", "0.1", message=("such as -mu_d 0.1: it does not follow -mu_s",))
+
     def test_errors_hold(self):
         # Where the force hardly exceeds static friction, its rounding decides on a slip.
         (self.folder / "record.csv").write_text(HEADER + "0,0\n1,1.000000000000002\n2,0\n3,2\n4,0\n")

@@ -162,6 +162,25 @@ class Files(Case):
                 numpy.testing.assert_array_equal(sweep[name][n][:length], values)
                 self.assertTrue(numpy.isnan(sweep[name][n][length:]).all())
 
+    def test_numbers_of_an_option_are_columns(self):
+        """As the rows of the summary, and in the table as long as they are few."""
+        asked = ("-delta", "0.5", "-sweep_tau", "0.5,1", "-quantities", "F_stick,entry_law", "-accuracy", "1e-3")
+        for count, shown in ((2, True), (9, False)):
+            rates = [0.5 * n for n in range(1, count + 1)]
+            done = self.run_ok(*asked, "-lambda", ",".join(map(str, rates)), "-sweep_csv", "s.csv", "-summary", "s.json")
+            runs = json.loads((self.folder / "s.json").read_text())["runs"]
+            with open(self.folder / "s.csv", newline="") as file:
+                rows = list(csv.DictReader(file))
+            for entry, row in zip(runs, rows):
+                result = entry["results"]["F_stick"]
+                for n, rate in enumerate(rates):
+                    self.assertEqual(float(row[f"F_stick[{rate:g}]"]), result["value"][n])
+                    self.assertEqual(float(row[f"F_stick[{rate:g}]_error"]), result["error"][n])
+                self.assertEqual(len(row), 2 * count + 4)  # and f_stick_0, but no entry_law, whose levels are nobody's
+            self.assertEqual("F_stick[1]" in done.stdout, shown)
+            self.assertEqual("F_stick by lambda: in the files" in done.stdout, not shown)
+            self.assertIn("entry_law by k: in the files", done.stdout)
+
     def test_progress_on_request(self):
         self.assertEqual(run(*SMALL).stderr, "")
         self.assertIn("6 of 6 points; ", run(*SMALL, "-progress", "on").stderr)

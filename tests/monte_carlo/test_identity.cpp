@@ -32,8 +32,8 @@ const std::set<std::string> kFree{"excursions",  // more of them extend a simula
                                   // What -route monte_carlo does not know, or takes no notice of:
                                   "route", "scheme", "degree", "layers", "noise_degree",
                                   "noise_grading", "p", "v_max", "speed_limit", "spectrum_solver",
-                                  "tilt", "transient_solver", "force_file", "force_interpolation",
-                                  "force_scale"};
+                                  "tilt", "probability", "transient_solver", "force_file",
+                                  "force_interpolation", "force_scale"};
 
 // Options that change only along with others: each command line below has its own.
 const std::set<std::string> kWithOthers{"friction", "noise"};
@@ -66,7 +66,6 @@ std::vector<Options> command_lines(const NoiseFiles& files) {
                     {"distance", "0.5"},
                     {"inverse_distance", "0.5"},
                     {"wavenumber", "0.5"},
-                    {"probability", "0.5"},
                     {"velocity", "0.5"}};
   std::vector<Options> lines(10, all);
   lines[0].insert({{"delta", "0.5"}});

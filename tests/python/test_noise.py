@@ -308,14 +308,54 @@ class OfRecords(unittest.TestCase):
             noise.narrow_band_of(shaking)
 
 
+def ground(count, frequency, damping, deviation, seed, step=STEP):
+    """The acceleration of a damped oscillator whose foot is shaken by white noise, exact at the steps."""
+    drift = numpy.array([[0, 1], [-frequency**2, -2 * damping * frequency]])
+    stay = scipy.linalg.expm(drift * step)
+    still = scipy.linalg.solve_continuous_lyapunov(drift, -numpy.diag([0, 1.0]))
+    force, z = numpy.array([frequency**2, 2 * damping * frequency]), numpy.random.default_rng(seed).standard_normal((count, 2))
+    shocks = z @ numpy.linalg.cholesky(still - stay @ still @ stay.T).T
+    states = numpy.empty((count, 2))
+    states[0] = numpy.linalg.cholesky(still) @ z[0]
+    for n in range(1, count):
+        states[n] = stay @ states[n - 1] + shocks[n]
+    return record_of(deviation * (states @ force) / (force @ still @ force) ** 0.5, step)
+
+
+class FilteredOfRecords(unittest.TestCase):
+    def test_the_numbers_of_a_ground(self):
+        for damping in (0.1, 0.3, 0.6, 0.8):
+            fit = noise.filtered_of(ground(40000, 15, damping, 1.5, 3))
+            for found, error, true in zip((fit.deviation, fit.frequency, fit.damping), fit.errors, (1.5, 15, damping)):
+                self.assertLess(abs(found - true), 4 * error)
+                self.assertLess(error, 0.15 * true)
+            self.assertLess(fit.misfit, 0.05)
+
+    def test_the_program_takes_its_options(self):
+        fit = noise.filtered_of(ground(20000, 15, 0.6, 1.5, 4))
+        r = stickslip.run(**fit.options, delta=0.5, mu_d=0.5, quantities="noise_law")
+        self.assertAlmostEqual(r["E_X2"].value / fit.deviation**2, 1, delta=0.05)
+
+    def test_what_is_no_ground(self):
+        def refused(message, values):
+            with self.assertRaisesRegex(ValueError, message):
+                noise.filtered_of(record_of(values))
+
+        refused("decays without a swing, as that of no ground does", filtered(40000, 5, 1))
+        refused("leaves that of filtered noise by", filtered(40000, 0.5, 2) + filtered(40000, 3 + 40j, 1))
+        shaken = ground(4000, 15, 0.5, 1, 1)
+        self.assertIn("the mean of the record, 5, is left out: -bias takes it",
+                      str(noise.filtered_of(record_of(shaken.value - shaken.value.mean() + 5))))
+
+
 class CommandLine(unittest.TestCase):
     def setUp(self):
         holder = tempfile.TemporaryDirectory(prefix="levels µ ")
         self.addCleanup(holder.cleanup)
         self.folder = pathlib.Path(holder.name)
 
-    def levels(self, *words, status=0):
-        done = subprocess.run([sys.executable, "-m", "stickslip", "levels", *map(str, words)], cwd=self.folder,
+    def levels(self, *words, status=0, command="levels"):
+        done = subprocess.run([sys.executable, "-m", "stickslip", command, *map(str, words)], cwd=self.folder,
                               capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(SOURCES / "python")})
         self.assertEqual(done.returncode, status, done.stderr)
         return done.stdout if status == 0 else done.stderr
@@ -344,6 +384,31 @@ class CommandLine(unittest.TestCase):
         numpy.save(self.folder / "b.npy", filtered(50000, 1 + 2j, 4))
         self.assertIn("swings to", self.levels("b.npy", "--step", STEP, status=2))
         self.assertIn("gamma", self.levels("b.npy", "--step", STEP, "--narrow-band"))
+        numpy.save(self.folder / "c.npy", ground(20000, 15, 0.6, 1.5, 5).value)
+        self.assertRegex(self.levels("c.npy", "--step", STEP, "--filtered"),
+                         r"-noise filtered -noise_deviation 1\.\d+ -ground_frequency 1\d\.\d+ -ground_damping 0\.\d+\n")
+
+
+    def test_a_record_for_force_file(self):
+        time = 0.01 * numpy.arange(400)
+        value = 0.5 + 0.2 * numpy.sin(numpy.pi * time)
+        rows = [f"{t:.2f};{v:.9f}".replace(".", ",") for t, v in zip(time, value)]
+        rows[200:202] = ["2,00;nan", "2,01;nan"]
+        (self.folder / "ground.csv").write_text("Zeit [s];a [g]\n" + "\n".join(rows))
+
+        def force(*words, status=0):
+            return self.levels("ground.csv", *words, status=status, command="force")
+
+        self.assertIn("missing in 1 gaps; --fill 0.03 joins them", force(status=2))
+        said = force("--fill", 0.03, "--centre", "--scale", -1)
+        self.assertIn("-quantities given_force -force_file ground_force.csv", said)
+        t, x = numpy.loadtxt(self.folder / "ground_force.csv", delimiter=",", skiprows=1).T
+        numpy.testing.assert_allclose(t, time, atol=1e-9)
+        numpy.testing.assert_allclose(x, -9.80665 * (value - value.mean()), atol=1e-3)
+        force("--between", 0.5, 1, "-o", "part.csv")
+        part = stickslip.run(force_file=self.folder / "part.csv", mu_d=0, drag="none", quantities="given_force")
+        numpy.testing.assert_allclose(part["path_force"].abscissa[[0, -1]], [0.5, 1])
+        self.assertIn("no such column", force("--column", "b", status=2))
 
 
 class WithoutSciPy(unittest.TestCase):

@@ -1,11 +1,13 @@
 """Records read from files of every kind, which the tests write themselves."""
 
 import codecs
+import dataclasses
 import os
 import pathlib
 import sys
 import tempfile
 import unittest
+import warnings
 
 import numpy
 import scipy.io
@@ -70,7 +72,7 @@ class Text(Case):
 
     def test_units_are_converted_and_said(self):
         for unit, factor in (("g", G), ("mg", G / 1000), ("gal", 0.01), ("cm/s^2", 0.01), ("CM/SEC/SEC", 0.01),
-                             ("mm/s2", 1e-3), ("m/s/s", 1)):
+                             ("mm/s2", 1e-3), ("m/s/s", 1), ("%g", G / 100), ("ft/s/s", 0.3048), ("in s^-2", 0.0254)):
             record = self.read(columns(head=f"time (ms),acc ({unit})"))
             self.same(record, "m/s^2", factor, TIME / 1000)
             self.assertTrue(any("ms became s" in note for note in record.notes))
@@ -82,13 +84,36 @@ class Text(Case):
         self.same(self.read(columns(" ", head="time [s] a [g]")), "m/s^2", G)
         self.same(self.read(columns(head="time,a\n[s],[g]")), "m/s^2", G)
 
+    def test_units_and_steps_that_are_in_doubt_are_said(self):
+        for text, options, note in ((columns(head="t,a"), {}, 'no unit is named: .*unit="g"'),
+                                    (columns(head="t,a"), {"unit": "milli-g"}, "milli-g is none of g, mg, gal"),
+                                    (columns(head="t,a [g]"), {"unit": "gal"}, "the file says g, and was taken to be in gal")):
+            self.assertRegex(" ".join(self.read(text, **options).notes), note)
+        for head, options in (("t,a [N]", {}), ("t,a [g]", {"unit": "G"}), ("t,a", {"unit": "gal"})):
+            self.assertNotRegex(" ".join(self.read(columns(head=head), **options).notes), "none of|no unit|taken to be")
+
+    def test_a_ground_that_does_not_come_to_rest(self):
+        """One period of a sine of amplitude 1 m/s^2 reaches the velocity T/pi; the offset adds T times it."""
+        time = numpy.linspace(0, 2, 401)
+
+        def notes(offset, unit="m/s2"):
+            text = f"t,a [{unit}]\n" + "".join(f"{t!r},{v!r}\n" for t, v in zip(
+                time.tolist(), (numpy.sin(numpy.pi * time) + offset).tolist()))
+            return " ".join(self.read(text).notes)
+
+        self.assertNotIn("integral", notes(0.9))
+        self.assertNotIn("integral", notes(2, "N"))
+        self.assertRegex(notes(2), r"its integral ends at 4 m/s, and would reach 0.637 m/s without its mean.*centred\(\)")
+
     def test_columns_by_name_and_number(self):
         text = "NS,time,EW\n" + "".join(f"{-v},{t},{v}\n" for t, v in zip(TIME, VALUE))
         for column in ("EW", "ew", 2, "2"):
             self.same(self.read(text, column=column))
         self.same(self.read(text, column=0), factor=-1)
         self.same(self.read(text.replace("time", "clock"), column="EW", time="clock"))
-        self.refused(r"2 columns of values; take one of 0 \(NS\), 1 \(time\), 2 \(EW\)", text)
+        self.refused(r"2 columns of values; take one of 0 \(NS\), 2 \(EW\)", text)
+        for name in ("Up (g)", "up [G]", "up"):
+            self.same(self.read(columns(head="t,Up (g)"), column=name), "m/s^2", G)
         self.refused(r"column = up: there is no such column; take one of 0 \(NS\)", text, column="up")
 
     def test_one_column_needs_a_step(self):
@@ -154,7 +179,13 @@ class Formats(Case):
             record = self.read(text, "a.AT2")
             self.same(record, "m/s^2", G, 0.02 * numpy.arange(24), long, 1e-6)
             self.assertIn("G became m/s^2", str(record))
+            self.assertIn("steps of 0.02 s, and 0.01 s were taken", str(self.read(text, "c.AT2", step=0.01)))
             self.refused("holds 24 samples, NPTS = 99", text.replace("24,", "99,").replace("   24 ", "   99 "), "b.AT2")
+
+        lacking = text.replace(line, "NPTS= 24")
+        self.same(self.read(lacking, "d.AT2", step=0.02), "m/s^2", G, 0.02 * numpy.arange(24), long, 1e-6)
+        self.refused("the file has no times; .* step=0.01", lacking, "e.AT2")
+        self.refused("line 4: NPTS: needs NPTS= and DT=, such as", text.replace(line, "NPTS"), "f.AT2")
 
     def cosmos(self, step=20.0, values=VALUE):
         real = numpy.full(100, -999.0)
@@ -223,6 +254,39 @@ class Records(Case):
         self.same(record.between(0.02, 0.06), "N", time=TIME[1:4], value=VALUE[1:4])
         self.same(record.scaled(2, "kN"), "kN", 2)
         self.assertIn("multiplied by 2", str(record.scaled(2)))
+        self.same(record.centred(), "N", value=VALUE - VALUE.mean())
+        self.assertRaisesRegex(ValueError, r"between\(0.06, 0.02\): holds 0 samples; take two times .* from 0 to 0.14",
+                               record.between, 0.06, 0.02)
+
+    def test_gaps_are_joined_where_that_is_asked_for(self):
+        record = stickslip.Record([0, 1, 2, 4, 5, 6, 9], [0, 1, 2, 4, 5, 6, 9])
+        numpy.testing.assert_array_equal(record.resampled(1).time, record.time)
+        joined = record.resampled(1, across=2)
+        numpy.testing.assert_array_equal(joined.time, [0, 1, 2, 3, 4, 5, 6, 9])
+        numpy.testing.assert_allclose(joined.value, joined.time)
+        self.assertRaisesRegex(ValueError, r"step = 0: must be in \(0, inf\); take for example 1", record.resampled, 0)
+
+    def test_gravity_twice(self):
+        record = stickslip.Record(TIME, VALUE, "m/s^2")
+        options = {"force_file": record, "drag": "none", "quantities": "given_force"}
+        for act in (lambda: record.scaled(-9.81), lambda: stickslip.run(force_scale=9.81, **options)):
+            with self.assertWarnsRegex(UserWarning, "in m/s.2 already.*right for g") as caught:
+                act()
+            self.assertEqual(pathlib.Path(caught.filename).name, "test_records.py")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", UserWarning)
+            record.scaled(9.81, "m/s^2")
+            stickslip.Record(TIME, VALUE, "g").scaled(9.81)
+            record.scaled(-1)
+
+    def test_records_where_something_else_is_wanted(self):
+        time = numpy.delete(0.01 * numpy.arange(100), [50, 51])
+        record = stickslip.Record(time, numpy.sin(time))
+        self.assertRaisesRegex(stickslip.BadInput, r"1 gaps, the longest of 0.03 s from 0.49 s on; "
+                               r"record.resampled\(0.01, across=0.03\)", stickslip.run, force_file=record)
+        self.assertRaisesRegex(stickslip.BadInput, "noise: is a record; .*narrow_band_of", stickslip.run, noise=record)
+        for make in (stickslip.noise.record, stickslip.noise.narrow_band_of):
+            self.assertRaisesRegex(TypeError, r"record: is a str; stickslip.read_record\(path\)", make, "a.AT2")
 
     def test_a_record_as_the_given_force(self):
         """A force of 2 for the time 1 moves a body without friction to 1, and leaves it with the velocity 2."""
@@ -231,6 +295,9 @@ class Records(Case):
         one = stickslip.run(force_file=record, **options)
         self.assertAlmostEqual(one["path_displacement"].value[1], 1, delta=1e-12)
         self.assertAlmostEqual(one["final_displacement"].value, 2, delta=1e-12)
+        self.assertTrue(one.options["force_file"].endswith("/force.csv"))
+        named = dataclasses.replace(record, source="../Kobe.AT2: AT2 of PEER, column acceleration")
+        self.assertTrue(stickslip.run(force_file=named, **options).options["force_file"].endswith("/Kobe.csv"))
         swept = stickslip.sweep(force_file=record, force_scale=[1, -3], **options)
         numpy.testing.assert_allclose(swept["final_displacement"].value, [2, -6])
         both = stickslip.map([{"force_file": record}, {"force_file": record.scaled(0.5)}], **options)

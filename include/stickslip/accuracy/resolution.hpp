@@ -86,4 +86,8 @@ struct Resolution {
 /// Arithmetic of the factorisation up to a common factor, to scale measured times with.
 [[nodiscard]] double relative_work(const model::Scene& scene, const Resolution& resolution);
 
+/// Refuses a -start beyond the levels and the velocities of the first discretisation, where there
+/// is nothing but extrapolation, if a quantity starts there. Throws BadInput with the largest.
+void require_start_within(const cases::Case& given, const Resolution& first);
+
 }  // namespace stickslip::accuracy

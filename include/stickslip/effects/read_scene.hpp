@@ -17,6 +17,10 @@ enum class Drive { noise, given_force, both };
 /// How the chain of a scene's noise differs from the noise that is meant; may be empty.
 [[nodiscard]] std::string noise_note(const model::Scene& scene);
 
+/// What to say of a given force under which friction holds the body all the time; empty where it
+/// moves, and without such a force.
+[[nodiscard]] std::string force_note(const model::Scene& scene);
+
 /// What to say where static friction acts with another value than the one given, because it lies
 /// between two noise levels; empty where it does not.
 [[nodiscard]] std::string step_warning(const model::Scene& scene);

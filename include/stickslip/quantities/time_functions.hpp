@@ -36,8 +36,8 @@ struct TimeCurve {
   std::vector<std::vector<Uncertain>> value;
   int pairs = 0;  ///< of vectors of the reduced model
 };
-/// By reduced models grown until they stand still; where that is short of the tolerance, and A is
-/// small, with A itself. Collective.
+/// By reduced models grown until they stand still; what they miss of the tolerance is in the
+/// errors. Collective.
 [[nodiscard]] TimeCurve time_curve(Pencil& pencil, const Ends& ends, ReducedModel::Nature nature,
                                    const std::vector<Fold>& folds, const std::vector<double>& time,
                                    const TimeScales& scales, double tolerance, Recipe& recipe);

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..results import Result, Results
 from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, WORDS, Figure, Line2D, curve, decades, drag, fraction, memory,
-                    number, numpy, scale, step, styled, title, units)
+                    number, numpy, over, scale, step, styled, title, units)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -168,7 +168,7 @@ def _panel(axes: "Axes", panel: Panel, items: Sequence[Results]) -> None:
                 words = [item.name if len(items) > 1 else "", SPELT.get(key, key if len(keys) > 1 else "")]
                 result, arguments = _against(item, key), len(keys) > 1 and key not in SPELT
                 curve(axes, result, m if arguments else n, style=style, label=", ".join(filter(None, words)) or None)
-                axes.set_xlabel(ABSCISSAE.get(result.abscissa_name, result.abscissa_name))
+                axes.set_xlabel(over(result))
         if "displacement_variance" in keys and {keys[0], "S_0"} <= item.keys():
             t = item[keys[0]].abscissa
             axes.plot(t, item["S_0"].value * t, color="#888888", linewidth=0.9, linestyle=STYLES[3], zorder=1,

@@ -30,7 +30,8 @@ ABSCISSAE = {"omega": r"angular frequency $\omega$  [1/time]", "time": "time $t$
              "lambda": r"$\lambda$  [1/time]", "k": "level $i$", "distance": "path length $d$  [length]",
              "inverse_distance": "$s$  [1/length]", "velocity": "speed $w$  [velocity]", "mode": "mode",
              "tilt": "tilt $s$  [1/length]", "wavenumber": "wavenumber $k$  [1/length]",
-             "tilted_velocity": "mean velocity $u$  [velocity]"}
+             "tilted_velocity": "mean velocity $u$  [velocity]",
+             "probability": "probability $p$"}
 WORDS = {"P_stick": r"probability of sticking $P_\mathrm{stick}$", "P_slide": r"probability of sliding $P_\mathrm{slide}$",
          "mean_stick": "mean duration of sticking", "mean_slide": "mean duration of sliding",
          "mean_excursion": "mean duration of an excursion",
@@ -95,6 +96,14 @@ def bars(axes: "Axes", x: "numpy.ndarray", value: "numpy.ndarray", ci95: "numpy.
     """Simulated values with their 95 % confidence intervals, which may be infinite."""
     sides = numpy.abs(numpy.nan_to_num(numpy.asarray(ci95).T - value, posinf=0, neginf=0))
     axes.errorbar(x, value, yerr=sides, fmt=marker, color=colour, markersize=3, capsize=2, linewidth=1, label=label)
+
+
+def over(result: Result) -> str:
+    """The label of what an array depends on; displacements have a sign, paths have none."""
+    name = result.abscissa_name
+    if name == "distance" and result.key.startswith("displacement"):
+        return "displacement $d$  [length]"
+    return ABSCISSAE.get(name, name)
 
 
 def scale(values: "numpy.ndarray") -> str:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from ..results import Result, Results
 from ..sweeps import Sweep
 from . import style
-from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, WORDS, Figure, bars, decades, known, numpy, on_axis, scale,
+from .style import (COLOURS, MARKERS, STYLES, WORDS, Figure, bars, decades, known, numpy, on_axis, over, scale,
                     styled, symbol, title, units)
 
 if TYPE_CHECKING:
@@ -23,8 +23,10 @@ def each(sweep: Sweep) -> "dict[str, Figure]":
 
     One option is an axis, errors are bars; of two options the second is the axis and the first one distinguishes
     curves, up to five values, or makes a map of more. Further options stay at their first value, which the title
-    shows. Points that fell short are marked by crosses. An array is drawn against its abscissa, a curve for each
-    value of the last option, five of them if there are more; the other options stay at their first value.
+    shows. Points that fell short are marked by crosses. An array of more places than the last option has values is
+    drawn against its abscissa, a curve for each value of the last option; any other against the last option, a curve for
+    each place of its abscissa. There are at most five curves, as the title says; the other options stay at their first
+    value.
     """
     return {key: one(sweep, key) for key in sweep}
 
@@ -40,20 +42,41 @@ def _array(sweep: Sweep, result: Result) -> "Figure":
     axes = figure.subplots()
     *others, last = sweep.dims
     values = sweep.coords[last]
-    shown = numpy.unique(numpy.linspace(0, len(values) - 1, min(FEW, len(values))).round().astype(int))
+    if result.abscissa.ndim == 1 and len(result.abscissa) < len(values):
+        _against_option(axes, sweep, result)
+        return figure
+    shown = _some(len(values))
     for n, point in enumerate(shown):
         at = (0,) * len(others) + (point,)
         abscissa = result.abscissa if result.abscissa.ndim == 1 else result.abscissa[at]
         one = Result(result.key, result.value[at], result.error[at], result.unit, result.dims[-1:],
                      result.abscissa_name, abscissa, None if result.ci95 is None else result.ci95[at])
         style.curve(axes, one, n, label=f"{symbol(last)} = {values[point]:g}")
-    name = result.abscissa_name
     low, high = numpy.nanmin(result.value), numpy.nanmax(result.value)
-    axes.set(xscale=scale(abscissa), xlabel=ABSCISSAE.get(name, name), ylabel=_label(sweep, result.key),
+    axes.set(xscale=scale(abscissa), xlabel=over(result), ylabel=_label(sweep, result.key),
              **({"yscale": "log", "ylim": (low / 2, high * 2)} if 0 < 100 * low < high else {}))
-    _title(axes, sweep, others)
+    _title(axes, sweep, others, len(shown), len(values))
     axes.legend()
     return figure
+
+
+def _some(count: int) -> "numpy.ndarray":
+    """At most `FEW` places of so many, evenly."""
+    return numpy.unique(numpy.linspace(0, count - 1, min(FEW, count)).round().astype(int))
+
+
+def _against_option(axes: "Axes", sweep: Sweep, result: Result) -> None:
+    """A curve over the last swept option for each place of the abscissa, as fragility curves are drawn."""
+    *others, last = sweep.dims
+    first, x, shown = (0,) * len(others), sweep.coords[last], _some(len(result.abscissa))
+    sign = over(result).partition("$")[2].partition("$")[0]
+    for n, place in enumerate(shown):
+        curve(axes, x, result.value[first][:, place], result.error[first][:, place], n,
+              f"${sign}$ = {result.abscissa[place]:g}" if sign else f"{result.abscissa_name} = {result.abscissa[place]:g}",
+              None if result.ci95 is None else result.ci95[first][:, place], (sweep.status == "reached")[first])
+    axes.set(xscale=scale(x), xlabel=_label(sweep, last), ylabel=_label(sweep, result.key))
+    _title(axes, sweep, others, len(shown), len(result.abscissa))
+    axes.legend()
 
 
 def _scalar(sweep: Sweep, result: Result) -> "Figure":
@@ -113,13 +136,14 @@ def _map(figure: "Figure", axes: "Axes", sweep: Sweep, result: Result, value: "n
     axes.grid(False)
 
 
-def _title(axes: "Axes", sweep: Sweep, held: Sequence[str]) -> None:
-    """The parameters that were not swept, and in another line the first values of those that the picture holds."""
+def _title(axes: "Axes", sweep: Sweep, held: Sequence[str], shown: int = 0, count: int = 0) -> None:
+    """The parameters that were not swept; in another line the first values of those that the picture holds, and how many
+    curves of all are shown."""
     fixed = copy.copy(sweep)
     fixed.options = {name: text for name, text in sweep.options.items() if name not in sweep.dims}
-    first = ", ".join(f"{symbol(name)} = {sweep.coords[name][0]:g}, the first of {len(sweep.coords[name])} values"
-                      for name in held)
-    axes.set_title("\n".join(filter(None, [title(fixed), first])), fontsize=9)
+    first = [f"{symbol(name)} = {sweep.coords[name][0]:g}, the first of {len(sweep.coords[name])} values" for name in held]
+    picked = [f"{shown} of {count} values"] * (shown < count)
+    axes.set_title("\n".join(filter(None, [title(fixed), ", ".join([*first, *picked])])), fontsize=9)
 
 
 def _label(sweep: Sweep, name: str) -> str:
