@@ -23,13 +23,13 @@ except ImportError as problem:
     raise
 
 __all__ = ["AccuracyWarning", "BadInput", "Cancelled", "Density", "OutOfMemory", "ProgramError", "Record", "Result",
-           "Results", "Sweep", "TimedOut", "Unsolved", "__version__", "find_program", "fit", "load", "map", "noise", "read_record",
-           "run", "sweep"]
+           "Results", "Sweep", "TimedOut", "Unsolved", "__version__", "find_program", "fit", "load", "map", "noise",
+           "plots", "read_record", "run", "sweep"]
 
 
 def __getattr__(name: str) -> Any:
-    if name == "noise":  # needs SciPy, which other parts do without
-        return importlib.import_module(".noise", __name__)
+    if name in ("noise", "plots"):  # which need SciPy and Matplotlib; other parts do without
+        return importlib.import_module(f".{name}", __name__)
     if name == "fit":
         return importlib.import_module(".fitting", __name__).fit
     raise AttributeError(f"module {__name__} has no attribute {name}")

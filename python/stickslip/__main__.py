@@ -5,6 +5,7 @@ python3 -m stickslip force FILE: a measured force or acceleration, for -force_fi
 
 import argparse
 import pathlib
+import re
 import sys
 import warnings
 from collections.abc import Sequence
@@ -20,9 +21,9 @@ the pictures are. PICTURE ends in .png, .svg or .pdf. Exit status 2 if there is 
 
 EXPLORE = """Sliders over the model parameters, choices of friction law, noise and drag. The stationary distribution with its
 marginals, probabilities and mean durations with their errors, the power spectral density of the velocity and the
-densities of durations follow. What the program refuses greys them, and is said beside the slider. Buttons save the parameters as an options file, and the picture. In a window
-(python3-tk), or in a browser on this machine (python3-tornado)."""
-
+densities of durations follow. What the program refuses greys them, and is said beside the slider. Buttons save the
+parameters as an options file, and the picture. In a window (python3-tk), or in a browser on this machine
+(python3-tornado). Options of the program may follow, such as -mu_d 0.3 -drag none."""
 
 LEVELS = """Makes the levels and jump rates, or the chain, of a measured force or acceleration: text with columns (any
 separator, decimal comma), AT2, COSMOS V2, SAC, .npy or .mat. Prints how the chain compares with the record, and the options
@@ -64,8 +65,25 @@ def main(words: Sequence[str] | None = None) -> int:
     _add_record(force)
     force.add_argument("-o", "--output", type=pathlib.Path, metavar="CSV", help="the file to write")
     force.set_defaults(act=write_force)
-    arguments = parser.parse_args(words)
+    words = list(sys.argv[1:] if words is None else words)
+    given = taken_options(words) if words[:1] == ["explore"] else {}
+    arguments = parser.parse_args(words, argparse.Namespace(given=given))
     return arguments.act(arguments)
+
+
+def taken_options(words: list[str]) -> dict[str, str | bool]:
+    """Takes the options of the program, such as -mu_d 0.3, out of a command line; returns their values by name."""
+    given: dict[str, str | bool] = {}
+    for at in [n for n, word in enumerate(words) if is_option(word)][::-1]:
+        alone = at + 1 == len(words) or is_option(words[at + 1]) or words[at + 1].startswith("--")
+        given[words[at][1:]] = True if alone else words.pop(at + 1)
+        del words[at]
+    return dict(reversed(given.items()))
+
+
+def is_option(word: str) -> bool:
+    """Whether a word is an option of the program: one of this command is a letter, or begins with two signs."""
+    return re.fullmatch(r"-[A-Za-z]\w+", word) is not None
 
 
 def _add_record(parser: argparse.ArgumentParser) -> None:
@@ -120,7 +138,7 @@ def explore_scene(arguments: argparse.Namespace) -> int:
         from . import BadInput, ProgramError
         from .explore import explore
         try:
-            explore(arguments.scene, arguments.accuracy, arguments.browser, arguments.port)
+            explore(arguments.scene, arguments.accuracy, arguments.browser, arguments.port, arguments.given)
         except (BadInput, ProgramError, OSError) as problem:
             print(f"stickslip: {problem}", file=sys.stderr)
             return 2 if isinstance(problem, BadInput) else 1

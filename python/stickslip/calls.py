@@ -7,14 +7,14 @@ import pathlib
 import tempfile
 import threading
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Set, Sized
 from typing import Any
 
 from . import results, sweeps
 from .needed import needed
 from .program import (DONE, NO_MEMORY, SHORT, AccuracyWarning, BadInput, OutOfMemory, ProgramError, Unsolved, execute, find_program,
                       words_of)
-from .records import warn_of_gravity
+from .records import Record, warn_of_gravity
 from .reference import declared, with_options
 from .results import Results
 from .sweeps import Sweep
@@ -22,7 +22,11 @@ from .sweeps import Sweep
 # A sequence for another option is swept, unless the program declares it as a list of numbers.
 LISTS = ("quantities", "lambda", "omega", "time", "distance", "inverse_distance", "velocity", "observable", "start")
 FIELDS = ("density", "trajectory", "relaxation")  # what only HDF5 holds
+numpy = needed("numpy")
 Path = str | os.PathLike[str]
+FROM_ARRAYS = {
+    "noise": "noise: must be a word or a chain, of which stickslip.noise.record(stickslip.Record(time, force)) makes one",
+    "force_file": "force_file: must be a file or a record; stickslip.Record(time, force) makes one of arrays"}
 
 
 @with_options
@@ -73,6 +77,10 @@ def run(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = Non
 
 def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | None,
          options: Mapping[str, Any], cancel: threading.Event | None = None) -> Results:
+    if ranks and (isinstance(ranks, bool) or int(ranks) != float(ranks) or int(ranks) < 1):
+        raise ValueError(f"ranks = {ranks}: must be a whole number of at least 1")
+    if timeout is not None and not timeout > 0:
+        raise ValueError(f"timeout = {timeout}: must be above 0 seconds")
     with tempfile.TemporaryDirectory(prefix="stickslip-") as folder:
         options = prepared(options, pathlib.Path(folder), keep)
         summary = pathlib.Path(options.pop("summary", None) or pathlib.Path(folder) / "summary.json")
@@ -93,6 +101,7 @@ def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | N
 def prepared(options: Mapping[str, Any], folder: pathlib.Path, keep: Path | None = None) -> dict[str, Any]:
     """Options as the program takes them; files that they need are written to a folder, and fields go there."""
     options = {name.rstrip("_"): value for name, value in options.items()}
+    _refuse_arrays(options)
     output = keep or options.pop("output", None)
     asked = str(options.get("quantities", ""))
     if output is None and ("options_file" in options or any(word in asked for word in FIELDS)):
@@ -104,6 +113,31 @@ def prepared(options: Mapping[str, Any], folder: pathlib.Path, keep: Path | None
     if hasattr(options.get("force_file"), "save"):
         options["force_file"] = _force_of(options, folder)
     return options
+
+
+def _refuse_arrays(options: Mapping[str, Any]) -> None:
+    """Refuses sequences where the program would not say what to do with them."""
+    for name, text in FROM_ARRAYS.items():
+        value = options.get(name)
+        if not (value is None or isinstance(value, (str, os.PathLike)) or hasattr(value, "save")):
+            raise BadInput(text)
+    for name, value in options.items():
+        if is_swept(name, value) and len(value) > 1 and f"sweep_{name}" in _known():
+            raise BadInput(f"{name}: has {len(value)} values where a run takes one; stickslip.sweep runs each")
+
+
+def _known() -> Mapping[str, Mapping[str, Any]]:
+    """Options of the program; none where there is none to ask, which a run reports."""
+    try:
+        return declared()
+    except ProgramError:
+        return {}
+
+
+def is_swept(name: str, value: Any) -> bool:
+    """Whether a value is a sequence, and that of an option that takes one value in a run."""
+    return (isinstance(value, Sized) and not isinstance(value, (str, bytes, Mapping, Record)) and numpy.ndim(value) > 0
+            and not (name.startswith("sweep_") or name in LISTS or _known().get(name, {}).get("form") == "numbers"))
 
 
 def found_in(tree: Mapping[str, Any], output: Path | None) -> Results:
@@ -151,15 +185,13 @@ def sweep(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = N
     >>> s["P_stick"].value.shape, s["P_stick"].dims
     ((2, 3), ('mu_d', 'tau'))
     """
-    def many(name: str, value: Any) -> bool:
-        return not isinstance(value, (str, bytes, Mapping)) and hasattr(value, "__len__") and not is_list(name)
-
-    def is_list(name: str) -> bool:
-        return name in LISTS or declared().get(name, {}).get("form") == "numbers"
-
-    options = {name.rstrip("_"): value for name, value in options.items()}
-    named = {f"sweep_{name}" if many(name, value) and not name.startswith("sweep_") else name: value
-             for name, value in options.items()}
+    options = {name.rstrip("_"): list(value) if isinstance(value, (Set, Iterator)) else value
+               for name, value in options.items()}
+    named = {f"sweep_{name}" if is_swept(name, value) else name: value for name, value in options.items()}
+    for name in options:
+        if name not in named and name in _known() and f"sweep_{name}" not in _known():
+            raise BadInput(f"{name}: cannot be swept; stickslip.map([{{\"{name}\": value}} for value in ...]) runs cases that "
+                           "differ in anything")
     found = _run(ranks, timeout, keep, program, named)
     if not isinstance(found, Sweep):
         raise ValueError("no option is swept: give one of them a sequence of values, as in mu_d=[0.25, 0.5]")

@@ -8,11 +8,12 @@ import pathlib
 import queue
 import shlex
 import subprocess
+import sys
 import tempfile
 import threading
 import time
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import TracebackType
 from typing import Any, BinaryIO
 
@@ -26,6 +27,7 @@ ANSWER = b'{"status":'  # how the program begins a line that answers a case
 KINDS = {programs.BAD_INPUT: BadInput, programs.SHORT: Unsolved, programs.NO_MEMORY: OutOfMemory}
 FAILURES = (BadInput, OutOfMemory, ProgramError)
 SHOWN = 3  # cases named in a warning
+OWN = {"cancel", "failures", "keep", "program", "progress", "ranks", "timeout", "workers"}  # keywords of functions
 
 
 class Worker:
@@ -154,13 +156,17 @@ class Pool:
         for worker in self._workers:
             worker.end()
 
-    def results(self, cases: Iterable[Mapping[str, Any]], stop: bool = False) -> list[Results | Exception]:
-        """Results of cases or their failures, in their order; the first failure ends what follows if `stop`."""
+    def results(self, cases: Iterable[Mapping[str, Any]], stop: bool = False,
+                tell: Callable[[int, int], Any] = lambda done, all: None) -> list[Results | Exception]:
+        """Results of cases or their failures, in their order; the first failure ends what follows if `stop`. `tell` is
+        called with the number of those found and of all."""
         found: list[Results | Exception] = []
         threads = concurrent.futures.ThreadPoolExecutor(len(self._workers))
         try:
-            for future in [threads.submit(self._one, case) for case in cases]:
+            futures = [threads.submit(self._one, case) for case in cases]
+            for future in futures:
                 found.append(future.result())
+                tell(len(found), len(futures))
                 if stop and isinstance(found[-1], Exception):
                     break
         except BaseException:
@@ -181,9 +187,24 @@ class Pool:
             self._idle.put(worker)
 
 
+def _teller(progress: "bool | Callable[[int, int], Any]") -> Callable[[int, int], Any]:
+    """What is called with the number of cases that are done and of all."""
+    if callable(progress):
+        return progress
+    begin = time.monotonic()
+
+    def write(done: int, count: int) -> None:
+        seconds = time.monotonic() - begin
+        left = f"about {seconds * (count - done) / done:.0f} s left" if done < count else f"{seconds:.0f} s\n"
+        print(f"\r{done} of {count} cases, {left:<20}", end="", file=sys.stderr, flush=True)
+
+    return write if progress else lambda done, count: None
+
+
 @with_options
 def map(cases: Iterable[Mapping[str, Any]], workers: int = 2, *, failures: str = "raise", timeout: float | None = None,
-        program: Path | None = None, **common: Any) -> list[Results | Exception]:
+        program: Path | None = None, progress: "bool | Callable[[int, int], Any]" = False,
+        **common: Any) -> list[Results | Exception]:
     """Run many cases with few processes, which saves the start of the program: some 40 ms of each run.
 
     Parameters
@@ -199,6 +220,8 @@ def map(cases: Iterable[Mapping[str, Any]], workers: int = 2, *, failures: str =
         Seconds that a case may take.
     program
         Path of the program; by default that of `find_program`.
+    progress
+        True: a line on standard error counts the cases that are done. Or what to call with their number and that of all.
     **common
         Options of all cases; those of a case count more.
 
@@ -227,8 +250,13 @@ def map(cases: Iterable[Mapping[str, Any]], workers: int = 2, *, failures: str =
     cases = list(cases)
     if not all(isinstance(case, Mapping) for case in cases):  # one alone is a sequence of names
         raise ValueError('cases: must be a sequence of options by name, such as [{"mu_d": 0.25}, {"mu_d": 0.5}]')
+    for n, case in enumerate([*cases, common]):
+        if own := sorted(OWN & case.keys()):
+            where = f"cases[{n}]" if n < len(cases) else "map"
+            raise ValueError(f"{where}: {own[0]} is no option of a case; " + (
+                "run() keeps files and takes ranks" if own[0] in ("keep", "ranks") else f"give map({own[0]}=...)"))
     with Pool(workers, program, timeout) as pool:
-        found = pool.results([{**common, **case} for case in cases], failures == "raise")
+        found = pool.results([{**common, **case} for case in cases], failures == "raise", _teller(progress))
     if failures == "raise" and found and isinstance(found[-1], Exception):
         raise type(found[-1])(f"case {len(found) - 1}: {found[-1]}") from None
     short = [f"case {n}: {shortfall(one)}" for n, one in enumerate(found)

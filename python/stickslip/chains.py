@@ -85,7 +85,8 @@ class Chain:
 
     def __add__(self, other: "Chain | float") -> "Chain":
         if not isinstance(other, Chain):
-            return dataclasses.replace(self, x=self.x + float(other), name=f"{self.name} + {float(other):g}", fit=None)
+            return dataclasses.replace(self, x=self.x + float(other), name=f"{self.name} + {float(other):g}", fit=None,
+                                       notes=self._of_this())
         here, there = (sparse.identity(len(chain.x)) for chain in (self, other))
         meant = None
         if self.meant and other.meant:
@@ -93,12 +94,19 @@ class Chain:
             meant = Meant(lambda t: a.covariance(t) + b.covariance(t), lambda w: a.spectrum(w) + b.spectrum(w))
         return Chain(numpy.add.outer(self.x, other.x).ravel(),
                      sparse.kron(self.rates, there) + sparse.kron(here, other.rates), f"{self.name} + {other.name}",
-                     meant, None, self.notes + other.notes)
+                     meant, None, tuple(dict.fromkeys(self._of_this() + other._of_this())))
 
     def __mul__(self, factor: float) -> "Chain":
         factor, m = float(factor), self.meant
+        if not (math.isfinite(factor) and factor):
+            raise ValueError(f"factor = {factor:g}: must be finite and not 0, which leaves no noise")
         meant = m and Meant(lambda t: factor**2 * m.covariance(t), lambda w: factor**2 * m.spectrum(w), m.label)
-        return dataclasses.replace(self, x=factor * self.x, name=f"{factor:g} ({self.name})", meant=meant, fit=None)
+        return dataclasses.replace(self, x=factor * self.x, name=f"{factor:g} ({self.name})", meant=meant, fit=None,
+                                   notes=self._of_this())
+
+    def _of_this(self) -> tuple[str, ...]:
+        """The notes as those of a chain of which another one is made."""
+        return tuple(note if note.startswith("of ") else f"of {self.name}: {note}" for note in self.notes)
 
     __radd__, __rmul__ = __add__, __mul__
 

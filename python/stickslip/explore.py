@@ -25,6 +25,8 @@ from .sweeps import Sweep
 TITLE = "stickslip explorer"
 ADDRESS = "127.0.0.1"  # of the page: this machine alone
 POLL = 20  # milliseconds between looks for new results
+PATIENCE = 0.5  # seconds for which pictures of other parameters than those of the sliders are not greyed
+LONGEST = 100  # characters of the line at the bottom, which are clear of the buttons
 REFUSED = "#b00000"
 OUT_OF_USE = "#aaaaaa"
 KNOBS_BELOW = 6  # one another
@@ -124,6 +126,7 @@ class Explorer:
         self.by_steps = bool(scene.get("delta_per_mu_s"))  # in the file, which then has no delta
         self.stated = {option for option in self.knobs if isinstance(scene.get(option), (int, float))}
         self.asked_at, self.problem = 0.0, ""
+        self._late: set[int] = set()  # parts that show other parameters than the sliders do, and are not grey
         self._lay_out(scene)
         self._show_knobs()
         self.solver.start()
@@ -239,8 +242,9 @@ class Explorer:
         for other, value in carried(option, friction).items():
             self._place(other, value)
             self.moved.add(other)
-        self._show_knobs()
-        self.ask()
+        with self.regions.together():
+            self._show_knobs()
+            self.ask()
 
     def choose(self, choice: str, word: str) -> None:
         """A choice was made; what the user has not moved starts with values that work."""
@@ -252,8 +256,9 @@ class Explorer:
                 self._place(option, value)
                 if not self.knobs[option].choices:  # a word does not have it, so that a file could
                     self.moved.add(option)
-        self._show_knobs()
-        self.ask()
+        with self.regions.together():
+            self._show_knobs()
+            self.ask()
 
     def restart(self) -> None:
         """Set all sliders and choices to where they began."""
@@ -263,12 +268,13 @@ class Explorer:
         for option, slider in self.sliders.items():
             self._place(option, self.knobs[option].at(slider.valinit))
         self.moved.clear()
-        self._show_knobs()
-        self.ask()
+        with self.regions.together():
+            self._show_knobs()
+            self.ask()
 
     def ask(self) -> None:
         """Have the model computed; what was being computed is ended."""
-        self.asked_at = time.monotonic()
+        self.asked_at, self._late = time.monotonic(), set(range(len(PARTS)))
         scene = self.scene()
         self.show("computing " + "  ".join(f"{name} = {value}" for name, value in scene.items()))
         self.solver.ask({**self.options, **scene})
@@ -276,7 +282,7 @@ class Explorer:
     def show(self, text: str, color: str = "black") -> None:
         """The line at the bottom."""
         self.status.set_color(color)
-        self.status.set_text(text if len(text) < 120 else text[:117] + "...")
+        self.status.set_text(textwrap.shorten(text, LONGEST, placeholder=" ..."))
         self.regions.draw("status")
 
     def refuse(self, text: str) -> None:
@@ -301,6 +307,10 @@ class Explorer:
 
     def poll(self) -> bool:
         """Draw what has arrived for the newest parameters; whether there was any."""
+        with self.regions.together():
+            return self._drawn()
+
+    def _drawn(self) -> bool:
         news = False
         while not self.solver.results.empty():
             number, part, found = self.solver.results.get()
@@ -308,9 +318,7 @@ class Explorer:
                 continue
             news = True
             if isinstance(found, Exception):
-                veiled = range(len(PARTS)) if part == 0 else (part,)
-                self.pictures.veil(veiled, True)
-                self.regions.draw("numbers", *[PICTURES[n] for n in veiled])
+                self._grey(set(range(len(PARTS))) if part == 0 else {part})
                 self.refuse(str(found))
                 continue
             if part == 0:
@@ -319,12 +327,21 @@ class Explorer:
                     self.complaint.set_visible(False)
                     self.regions.draw("knobs")
             self.pictures.draw(part, found)
+            self._late.discard(part)
             self.regions.draw("numbers", PICTURES[part])
             if part + 1 < len(PARTS):
                 self.show(f"computing {PARTS[part + 1][0]}")
             elif not self.problem:
                 self.show(f"{time.monotonic() - self.asked_at:.2f} s")
+        if self._late and time.monotonic() - self.asked_at > PATIENCE:
+            self._grey(self._late)
         return news
+
+    def _grey(self, parts: set[int]) -> None:
+        """Show that parts are not of the parameters that the sliders have."""
+        self.pictures.veil(parts, True)
+        self.regions.draw("numbers", *[PICTURES[n] for n in parts])
+        self._late = self._late - parts
 
     # Files
 
@@ -333,7 +350,8 @@ class Explorer:
         path = free_name(self.folder / "explored.opts")
         given = self.options.get("options_file")
         text = pathlib.Path(given).read_text() + "\n# changed since\n" if given else ""
-        for name, value in self.scene().items():
+        stated = {name: value for name, value in self.options.items() if name not in ("options_file", "accuracy")}
+        for name, value in {**stated, **self.scene()}.items():
             text += f"-{name} {value}\n"
         path.write_text(text)
         return self._saved(path)
@@ -368,9 +386,15 @@ def free_name(path: pathlib.Path) -> pathlib.Path:
 def use_backend(browser: bool, port: int) -> None:
     """Choose a window, or a page in the browser, whose address Matplotlib prints."""
     matplotlib = needed("matplotlib")
+    if not 0 < port < 2**16:
+        raise BadInput(f"--port {port}: must be between 1 and {2**16 - 1}")
     if not browser and (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         needed("tkinter")
-        matplotlib.use("TkAgg")
+        try:
+            needed("matplotlib.pyplot").switch_backend("TkAgg")
+        except ImportError:  # by which Matplotlib says that it cannot open the display
+            raise ProgramError(f"the display {os.environ.get('DISPLAY', '')} cannot be opened; --browser makes a page "
+                               "in the place of the window") from None
         return
     needed("tornado")
     matplotlib.rcParams |= {"webagg.address": ADDRESS, "webagg.port": port, "webagg.open_in_browser": browser}
@@ -381,7 +405,8 @@ def use_backend(browser: bool, port: int) -> None:
     manager.get_javascript = classmethod(lambda cls, stream=None: script + title)
 
 
-def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = False, port: int = 8988) -> None:
+def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = False, port: int = 8988,
+            given: Mapping[str, Any] = {}) -> None:
     """Show the explorer until it is closed.
 
     Parameters
@@ -392,6 +417,8 @@ def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = F
         Of all runs.
     browser
         A page of `port` in the browser instead of a window.
+    given
+        Options of the program besides, which count more than those of the file.
 
     Raises
     ------
@@ -399,12 +426,14 @@ def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = F
         If the program does not take the options.
     """
     options: dict[str, Any] = {"options_file": file} if file else {}
-    options["accuracy"] = accuracy  # behind the file, whose own accuracy does not count
+    options |= {**given, "accuracy": accuracy}  # behind the file, whose own accuracy does not count
     scene: Mapping[str, Any] = {}
-    if file:
+    if not file and not given:
+        run(**options, plan=True)  # which refuses an accuracy before there is a window
+    else:
         found = run(**options, **PARTS[0][1])
         if isinstance(found, Sweep):
-            raise BadInput(f"{file} is a sweep; leave the options -sweep_... out")
+            raise BadInput(f"{file or 'this'} is a sweep; leave the options -sweep_... out")
         scene = {**found.options, **found.scene}
     use_backend(browser, port)
     pyplot = needed("matplotlib.pyplot")

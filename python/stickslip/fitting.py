@@ -82,15 +82,39 @@ class Fit:
                 f", {freedom} degrees of freedom, p = {stats.chi2.sf(self.chi2, freedom):.2g}" if freedom else ""))
         if drawn:
             lines.append(f"log likelihood = {self.log_likelihood:.6g} of {drawn} observations")
+            lines += [f"{name}: distance {distance:.3g} of the distribution functions, p < {p:.2g}"
+                      for name, distance, p in self.distances()]
         return "\n".join([*lines, self.message])
+
+    def distances(self) -> list[tuple[str, float, float]]:
+        """How well the samples are met, in the order of the data sets.
+
+        Returns
+        -------
+        rows
+            Of each sample its name, the largest distance of its distribution function from that of the model, and the
+            probability of a larger one if the model is right (Kolmogorov and Smirnov). That is an upper limit, as the
+            parameters were fitted to the same data.
+        """
+        samples = [(sample, found) for one, found in zip(self._search.sets, self.results) for sample in one.samples]
+        return [(sample.name, distance := sample.distance(found), float(stats.kstwo.sf(distance, sample.values.size)))
+                for sample, found in samples]
 
     def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
         """Confidence interval from the standard error, of the logarithm where a parameter is positive, within bounds."""
-        n = self.names.index(name)
+        n = self._number(name)
+        if not 0 < level < 1:
+            raise ValueError(f"level = {level}: must be between 0 and 1, such as 0.95")
         axis, u = self._search.axes[n], self._u[n]
         width = stats.norm.ppf((1 + level) / 2) * self.errors[name] / abs(axis.slope(u))
         low, high = sorted((axis.value(u - width), axis.value(u + width)))
         return low, high
+
+    def _number(self, name: str) -> int:
+        """Of a free parameter."""
+        if name not in self.names:
+            raise ValueError(f"{name}: was not fitted; take one of {', '.join(self.names)}")
+        return self.names.index(name)
 
     def profile(self, name: str, points: int = 9, width: float = 2.5) -> "Profile":
         """Twice the rise of chi^2/2 - log likelihood where a parameter is held and the others are fitted.
@@ -104,7 +128,7 @@ class Fit:
         width
             How far they reach, in standard errors.
         """
-        n = self.names.index(name)
+        n = self._number(name)
         axis, search = self._search.axes[n], self._search
         if not math.isfinite(self.errors[name]):
             raise ValueError(f"{name} has no standard error, which sets the width of the profile: {self.message}")
@@ -130,7 +154,7 @@ class Fit:
         return fits.draw(self._search.sets, self.results, self.estimates, self.errors, picture)
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Profile:
     """Values of a parameter, and by how much twice the misfit rises from the best fit (`rise`)."""
 
@@ -138,6 +162,11 @@ class Profile:
     values: "Array"
     rise: "Array"
     unit: str
+
+    def __repr__(self) -> str:
+        low, high = self.interval()
+        return (f"profile of {self.name} at {len(self.values)} values from {self.values[0]:.4g} to {self.values[-1]:.4g}; "
+                f"95 % confidence interval {low:.4g} to {high:.4g}")
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
         """Where the rise is below the quantile of chi^2; infinite where the profile does not reach it."""

@@ -1,11 +1,12 @@
 """Results as tables of pandas and data sets of xarray."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from .needed import needed
 from .program import ProgramError
 from .reference import declared
-from .results import Result, Results
+from .results import Result, Results, closest, parameter
 
 if TYPE_CHECKING:
     import pandas
@@ -36,11 +37,16 @@ def _columns(results: Results, result: Result) -> dict[str, Any]:
     return found
 
 
-def to_pandas(results: Results) -> "pandas.DataFrame":
+def to_pandas(results: Results, options: Sequence[str] = ()) -> "pandas.DataFrame":
     """One row for each number, in the order of the results; what a result does not have is NaN."""
     pandas = needed("pandas")
     tables = [pandas.DataFrame({"key": key, **_columns(results, one), "unit": one.unit}) for key, one in results.items()]
     table = pandas.concat(tables, ignore_index=True) if tables else pandas.DataFrame(columns=["key", "value", "error", "unit"])
+    for at, name in enumerate(options, 1):
+        if name not in results.options:
+            raise KeyError(f"{name}: is no option" + (f"; did you mean {near}?" if (near := closest(name, results.options))
+                                                      else ""))
+        table.insert(at, name, parameter(results.options[name]))
     last = [name for name in ("value", "error", "low", "high", "unit") if name in table]
     return table[[name for name in table if name not in last] + last]
 

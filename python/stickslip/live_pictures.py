@@ -1,11 +1,12 @@
 """Pictures that follow the parameters: what is drawn stays, and new results move it, several times faster than drawing
 anew."""
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from .needed import needed
 from .plots.curves import DURATIONS
-from .plots.fields import SLIDE, STICK, cells_around
+from .plots.fields import SLIDE, STICK, cells_around, resolved
 from .plots.style import ABSCISSAE
 from .results import Results
 
@@ -76,19 +77,19 @@ class LivePictures:
         # What is not of the parameters shown is veiled: distribution, spectrum, durations.
         self.veils = [figure.add_artist(patches.Rectangle(
             (left, low), right - left, high - low, transform=figure.transFigure, color="#eeeeee", alpha=0.75, linewidth=0,
-            zorder=5, visible=False)) for left, low, right, high in map(PLACES.get, PICTURES)]
+            antialiased=False, zorder=5, visible=False)) for left, low, right, high in map(PLACES.get, PICTURES)]
 
     def _curves(self, axes: Any, abscissa: str, ordinate: str, curves: "dict[str, tuple[str, str]]") -> None:
         for key, (label, color) in curves.items():
             self.curves[key], = axes.loglog([], [], color=color, label=label)
         axes.set(xlabel=abscissa, ylabel=ordinate)
-        axes.yaxis.set_label_coords(-0.12, 0.5)  # within the region, however long its numbers are
+        axes.yaxis.set_label_coords(-0.115, 0.5)  # within the region, however long its numbers are
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_minor_locator(needed("matplotlib.ticker").NullLocator())
         axes.grid(alpha=0.3)
         axes.legend(fontsize=8, loc="lower left", frameon=False)
 
-    def veil(self, parts: "range | tuple[int, ...]", veiled: bool) -> None:
+    def veil(self, parts: "Iterable[int]", veiled: bool) -> None:
         """Grey what is not of the parameters shown, or no longer: 0 distribution, 1 spectrum, 2 durations."""
         for part in parts:
             self.veils[part].set_visible(veiled)
@@ -108,7 +109,7 @@ class LivePictures:
         likely = numpy.flatnonzero(density.marginal_x > LEAST * density.marginal_x.max())
         low, high = edges[likely[0]], edges[likely[-1] + 1]
         columns = numpy.searchsorted(edges, numpy.linspace(low, high, COLUMNS)) - 1  # of the level at each force
-        picture = (density.at(v) / steps[:, None])[numpy.clip(columns, 0, len(x) - 1)].T
+        picture = (resolved(density.at(v)) / steps[:, None])[numpy.clip(columns, 0, len(x) - 1)].T
         largest = picture.max()
         self.image.set_data(numpy.maximum(picture / largest, DEPTH))  # a scale that changes takes its time to draw
         self.scale.ax.yaxis.label.set_text(f"density of sliding over its largest, {largest:.3g}/(force velocity)")

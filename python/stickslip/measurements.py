@@ -1,7 +1,6 @@
 """What a fit is made to: values with errors and samples of durations and slips, as the program is asked for them."""
 
 import dataclasses
-import difflib
 import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -9,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from .calls import Path
 from .needed import needed
 from .reference import keys
-from .results import Results
+from .results import Results, closest
 
 if TYPE_CHECKING:
     import numpy
@@ -58,6 +57,15 @@ class Sample:
     def missed(self, results: Results) -> float:
         """Probability of what is too short to be observed."""
         return float(at(results, f"cdf_{PHASES[self.name][0]}", self.smallest)) if self.smallest else 0.0
+
+    def distance(self, results: Results) -> float:
+        """Largest distance of the distribution functions of the observations and of the model, given that it is observed,
+        which is interpolated in the logarithm (Kolmogorov's statistic)."""
+        cdf, n = results[f"cdf_{PHASES[self.name][0]}"], self.values.size
+        below = numpy.interp(numpy.log(self.values), numpy.log(cdf.abscissa), cdf.value)
+        model = (below - (missed := self.missed(results))) / (1 - missed)
+        steps = numpy.arange(n + 1) / n
+        return float(max((steps[1:] - model).max(), (model - steps[:-1]).max()))
 
     def of(self, results: Results, refined: int) -> "tuple[Array, Array, Array]":
         """Logarithms of the density, given that it is observed, at the observations and on the grid, and probabilities
@@ -125,8 +133,8 @@ def data_sets(data: Mapping[str, Any] | Sequence[Mapping[str, Any]], fixed: Mapp
 
 def _values(key: str, given: Any, options: Mapping[str, Any], known: Mapping[str, tuple[str, str]]) -> Values:
     if key not in known and not (options.get("quantities") and "(" in key):
-        near = difflib.get_close_matches(key, [*known, *PHASES], 1)
-        raise ValueError(f"data: {key} is no key of results" + (f"; did you mean {near[0]}?" if near else
+        near = closest(key, [*known, *PHASES])
+        raise ValueError(f"data: {key} is no key of results" + (f"; did you mean {near}?" if near else
                          " (docs/quantities.md) and no sample; samples are " + ", ".join(PHASES)))
     quantity, over = known.get(key, ("", ""))
     form = f"({over} values, values, errors)" if over else "(value, error)"
@@ -143,8 +151,12 @@ def _values(key: str, given: Any, options: Mapping[str, Any], known: Mapping[str
 
 def _sample(name: str, given: Any, smallest: float, known: Mapping[str, tuple[str, str]]) -> Sample:
     values = numpy.sort(numpy.asarray(given, float).ravel())
-    if not (values.size and numpy.isfinite(values).all() and values[0] > 0 and 0 <= smallest < math.inf):
-        raise ValueError(f"data: {name} must be positive numbers, at least one of them, and the smallest observable one >= 0")
+    wrong = values[~(numpy.isfinite(values) & (values > 0))]
+    if wrong.size or not values.size:
+        raise ValueError(f"data: {name} has {wrong.size} of {values.size} values that are not positive numbers"
+                         + (f", such as {wrong[0]:g}; leave them out" if wrong.size else "; give at least one"))
+    if not 0 <= smallest < math.inf:
+        raise ValueError(f"smallest = {smallest:g}: of {name}, must be a number >= 0")
     if values[0] < smallest:
         raise ValueError(f"data: {name} has {(values < smallest).sum()} of {values.size} values below the smallest observable "
                          f"one, {smallest:g}; the least is {values[0]:g}: leave them out, or state a smaller one")

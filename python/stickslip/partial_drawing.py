@@ -1,6 +1,7 @@
 """Parts of a figure that are drawn anew by themselves, several times faster than the whole figure."""
 
-from collections.abc import Mapping
+import contextlib
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from .needed import needed
@@ -25,6 +26,8 @@ class Regions:
     def __init__(self, figure: "Figure", places: Mapping[str, Place]) -> None:
         self.figure, self.places = figure, places
         self._renderer: Any = None  # which has the whole figure
+        self._boxes: list[Any] = []  # drawn and not shown yet
+        self._held = False
         figure.canvas.mpl_connect("draw_event", lambda event: setattr(self, "_renderer", event.renderer))
 
     def draw(self, *names: str) -> None:
@@ -32,6 +35,7 @@ class Regions:
         canvas = self.figure.canvas
         whole = self._renderer is not None and hasattr(canvas, "blit") and canvas.get_renderer() is self._renderer
         if not whole:  # such as after a change of the size, or a saved picture
+            self._boxes.clear()
             canvas.draw_idle()
             return
         patches, transforms = needed("matplotlib.patches"), needed("matplotlib.transforms")
@@ -44,8 +48,27 @@ class Regions:
                       and artist.get_visible() and within(middle_of(artist), self.places[name])]
             for artist in (ground, *sorted(inside, key=lambda artist: artist.get_zorder())):
                 artist.draw(self._renderer)
-            canvas.blit(transforms.TransformedBbox(transforms.Bbox.from_extents(*self.places[name]),
-                                                   self.figure.transFigure))
+            self._boxes.append(transforms.TransformedBbox(transforms.Bbox.from_extents(*self.places[name]),
+                                                          self.figure.transFigure))
+        if not self._held:
+            self._show()
+
+    @contextlib.contextmanager
+    def together(self) -> Iterator[None]:
+        """Shows what is drawn within at its end: to a page in the browser a picture of the whole is sent each time."""
+        outer, self._held = self._held, True
+        try:
+            yield
+        finally:
+            self._held = outer
+        if not self._held:
+            self._show()
+
+    def _show(self) -> None:
+        boxes, self._boxes = self._boxes, []
+        of_page = hasattr(self.figure.canvas, "get_diff_image")  # which finds out by itself what has changed
+        for box in boxes[:1] if of_page else boxes:
+            self.figure.canvas.blit(box)
 
 
 def middle_of(artist: Any) -> tuple[float, float]:

@@ -26,6 +26,7 @@ REFUSALS = (
      {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}),
     ("not enough slots available", "to start more ranks than there are cores",
      {"OMPI_MCA_rmaps_base_oversubscribe": "1", "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe"}))  # 4 and 5
+FORMULAS = ("observable", "drag_expression")  # options whose values may begin with a minus sign, and have powers
 PACKAGE = pathlib.Path(__file__).resolve().parent
 
 
@@ -126,23 +127,36 @@ def words_of(options: Mapping[str, Any]) -> list[str]:
     options
         Values by the names of options. True makes an option without a value, None leaves the option out, and a
         sequence becomes a list with commas (functions of `observable` with semicolons). An underscore behind a
-        name is dropped, so that `lambda_` can be written.
+        name is dropped, so that `lambda_` can be written. Powers of formulas may be written v**2.
 
     Returns
     -------
     words
+
+    Raises
+    ------
+    BadInput
+        If a value looks like an option.
     """
     words: list[str] = []
     for name, value in options.items():
         name = name.rstrip("_")
-        if value is not None:
-            words += ["-" + name] if value is True else ["-" + name, text_of(value, name)]
+        if value is None:
+            continue
+        words.append("-" + name)
+        if value is not True:
+            words.append(text_of(value, name))
+            if name not in FORMULAS and re.match("-[A-Za-z]", words[-1]) and words[-1].lower() not in ("-inf", "-nan"):
+                raise BadInput(f"-{name} = {words[-1]}: cannot begin with a minus sign and a letter, as options do; "
+                               "a formula of the velocity goes into drag_expression, with drag=\"expression\"")
     return words
 
 
 def text_of(value: Any, name: str = "") -> str:
     """A value as the program reads it; floating-point numbers keep all their bits."""
     value = value.tolist() if hasattr(value, "tolist") else value  # NumPy's arrays and numbers
+    if name in FORMULAS and isinstance(value, str):
+        return value.replace("**", "^")
     if isinstance(value, (list, tuple, range)):
         return ("; " if name == "observable" else ",").join(map(text_of, value))
     return "no" if value is False else repr(value) if isinstance(value, float) else str(value)

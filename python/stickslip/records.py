@@ -77,6 +77,14 @@ class Record:
                  f"mean {self.value.mean():.4g}, standard deviation {self.value.std():.4g} {self.unit}".rstrip()]
         return "\n".join(filter(None, [self.source, *lines, *self.notes]))
 
+    def __len__(self) -> int:
+        return len(self.value)
+
+    def __array__(self, dtype: "numpy.dtype | None" = None, copy: bool | None = None) -> "Array":
+        """The values, for `numpy.asarray`."""
+        found = numpy.asarray(self.value, dtype)
+        return found.copy() if copy else found
+
     @property
     def step(self) -> float:
         """Median of the steps between samples [s]."""
@@ -202,6 +210,8 @@ def read_record(path: str | os.PathLike[str], *, column: int | str | None = None
     ------
     PEER ground motion database; COSMOS strong motion data format 1.20; SAC manual, "SAC data file format".
     """
+    if not isinstance(path, (str, os.PathLike)):
+        raise TypeError(f"path: must be the name of a file, not {type(path).__name__}; Record(time, value) takes arrays")
     path = pathlib.Path(path)
     if not path.is_file():
         raise FileNotFoundError(f"{path}: no such file")

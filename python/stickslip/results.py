@@ -6,16 +6,19 @@ import json
 import math
 import os
 import pathlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, KeysView, Mapping
 from typing import TYPE_CHECKING, Any
 
+from .density import Density
 from .needed import needed
+from .program import ProgramError
 
 if TYPE_CHECKING:
     import h5py
     import numpy
     import pandas
     import xarray
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     Array = numpy.ndarray
 numpy = needed("numpy")
@@ -64,94 +67,45 @@ class Result:
         found = numpy.asarray(self.value, dtype)
         return found.copy() if copy else found
 
+    def __format__(self, form: str) -> str:
+        """A number in a form such as ".3f"."""
+        return format(self.value, form) if form else str(self)
+
     def __repr__(self) -> str:
-        shown = (f"{self.value:.17g} +- {self.error:.1e}" if numpy.ndim(self.value) == 0 else
-                 f"{' x '.join(map(str, numpy.shape(self.value)))} values by {', '.join(self.dims)}")
+        if numpy.ndim(self.value) == 0:
+            shown = f"{to_its_error(self.value, self.error)} +- {self.error:.1e}"
+        else:
+            shown = f"{' x '.join(map(str, numpy.shape(self.value)))} values by {', '.join(self.dims)}"
         return f"{self.key} = {shown}{f' [{self.unit}]' if self.unit else ''}"
 
+    def plot(self, axes: "Axes | None" = None, **look: Any) -> "Axes":
+        """Draw an array against what it depends on, with its errors or confidence intervals.
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class Density:
-    """The stationary distribution of (X, V).
+        Parameters
+        ----------
+        axes
+            Where to; without it, the current ones of `matplotlib.pyplot`. Their labels are set, their scales are not.
+        look
+            `colour`, `style` and `label` of the curve.
 
-    Attributes
-    ----------
-    x, v
-        Levels of the noise, and velocities of the nodes.
-    values
-        P(X = x_i, V in dv)/dv while the body slides, by [x, v].
-    at_rest
-        P(X = x_i, the body sticks), by [x].
-    marginal_x, marginal_v
-        P(X = x_i), and the density of V without its atom at 0.
-    weights
-        Of the nodes: `(weights * f(v)).sum()` is the integral of f.
-    cells
-        Ends of the elements in v: between two of them densities are the polynomials through the values there.
-    error
-        Error estimate of the distribution function of the speed.
-    states
-        Number of the state of each row, as the noise numbers them: of `-noise chain`, or the phase of `-noise
-        periodic`. Several states may have the same x.
-    """
+        Returns
+        -------
+        axes
 
-    x: "Array"
-    v: "Array"
-    values: "Array"
-    at_rest: "Array"
-    marginal_x: "Array"
-    marginal_v: "Array"
-    weights: "Array"
-    cells: "Array"
-    error: float
-    states: "Array"
-
-    def by_force(self) -> "Density":
-        """The same with one row for each force, the sum of those of all states that have it."""
-        x, place = numpy.unique(self.x, return_inverse=True)
-        if len(x) == len(self.x):
-            return self
-        rows = {name: numpy.zeros((len(x), *numpy.shape(getattr(self, name))[1:]))
-                for name in ("values", "at_rest", "marginal_x")}
-        for name, sums in rows.items():
-            numpy.add.at(sums, place, getattr(self, name))
-        return dataclasses.replace(self, x=x, states=numpy.arange(len(x)), **rows)
-
-    @property
-    def mass_at_rest(self) -> float:
-        """Probability that the body sticks."""
-        return float(self.at_rest.sum())
-
-    def at(self, v: "Array") -> "Array":
-        """`values` at any velocities, by [x, v]; 0 beyond the cells."""
-        return self.values @ self._interpolation(v).T
-
-    def marginal(self, v: "Array") -> "Array":
-        """`marginal_v` at any velocities."""
-        return self._interpolation(v) @ self.marginal_v
-
-    def window(self, outside: float = 1e-3, count: int = 400) -> "Array":
-        """Evenly spaced velocities that leave out so much of the probability of sliding, on both sides together."""
-        mass = numpy.maximum(self.weights * self.marginal_v, 0)
-        below = (numpy.cumsum(mass) - mass / 2) / mass.sum()
-        ends = numpy.interp([outside / 2, 1 - outside / 2], below, self.v)
-        return numpy.linspace(*ends, count)
-
-    def _interpolation(self, v: "Array") -> "Array":
-        """Matrix from the nodes to values at v, of the polynomial through the nodes of each cell."""
-        v = numpy.asarray(v, float)
-        matrix = numpy.zeros((len(v), len(self.v)))
-        of_nodes = numpy.searchsorted(self.cells, self.v) - 1
-        of_points = numpy.clip(numpy.searchsorted(self.cells, v) - 1, 0, len(self.cells) - 2)
-        inside = (v >= self.cells[0]) & (v <= self.cells[-1])
-        for cell in numpy.unique(of_points[inside]):
-            points, nodes = numpy.flatnonzero(inside & (of_points == cell)), numpy.flatnonzero(of_nodes == cell)
-            low, high = self.cells[cell:cell + 2]
-            t, s = ((2 * part - low - high) / (high - low) for part in (v[points], self.v[nodes]))
-            for n, node in enumerate(nodes):
-                others = numpy.delete(s, n)
-                matrix[points, node] = numpy.prod((t[:, None] - others) / (s[n] - others), axis=1)
-        return matrix
+        Raises
+        ------
+        ValueError
+            If this is a number, or an array of a sweep, which `Sweep.plot` draws.
+        """
+        if numpy.ndim(self.value) != 1 or self.abscissa is None:
+            raise ValueError(f"{self.key}: is no array over one abscissa; plot() of the results draws sweeps, and "
+                             "matplotlib's errorbar numbers")
+        from .plots import style
+        axes = axes or needed("matplotlib.pyplot").gca()
+        style.curve(axes, self, len(axes.lines), **look)
+        axes.set(xlabel=style.over(self),
+                 ylabel=style.WORDS.get(self.key, self.key) + style.units(self.unit))
+        return axes
 
 
 class Results(Mapping):
@@ -204,9 +158,13 @@ class Results(Mapping):
     def __getitem__(self, key: str) -> Result:
         if key in self._results:
             return self._results[key]
-        near = difflib.get_close_matches(str(key), self._results, 1, 0.6)
-        advice = f"did you mean {near[0]}?" if near else f"there are {', '.join(self._results) or 'no results'}"
-        raise KeyError(f"{key}: {advice}")
+        computed, near = _computed_by(str(key)), closest(str(key), self._results)
+        there = f"{computed}there are {', '.join(self._results) or 'no scalars and arrays'}"
+        raise KeyError(f"{key}: " + (f"did you mean {near}?" if near and not computed else there))
+
+    def keys(self) -> "KeysView[str]":
+        """Keys of the results, as of a dict."""
+        return self._results.keys()
 
     def __contains__(self, key: object) -> bool:
         return key in self._results
@@ -220,8 +178,11 @@ class Results(Mapping):
     __eq__, __hash__ = object.__eq__, object.__hash__  # arrays have no truth value
 
     def __repr__(self) -> str:
-        lines = map(repr, self.values())
-        return "\n".join(lines) or f"<{type(self).__name__} without scalars and arrays>"
+        if self:
+            return "\n".join(map(repr, self.values()))
+        held = [part for part in ("density", "trajectory", "modes", "comparison", "study", "runs", "plan", "summary")
+                if getattr(self, part)]
+        return f"<{type(self).__name__} without scalars and arrays; there are {', '.join(held) or 'options'}>"
 
     @property
     def reached(self) -> bool:
@@ -248,8 +209,13 @@ class Results(Mapping):
         return plots.draw([self], picture, kind)
 
 
-    def to_pandas(self) -> "pandas.DataFrame":
+    def to_pandas(self, *options: str) -> "pandas.DataFrame":
         """A table with a row for each number.
+
+        Parameters
+        ----------
+        options
+            Names of options that get a column too, such as those in which the cases of `map` differ.
 
         Returns
         -------
@@ -259,11 +225,18 @@ class Results(Mapping):
 
         Raises
         ------
+        KeyError
+            If there is no such option.
         ImportError
             Without pandas.
+
+        Examples
+        --------
+        >>> rows = stickslip.map([{"mu_d": 0.25}, {"mu_d": 0.5, "tau": 2}], quantities="sticking")
+        >>> pandas.concat([r.to_pandas("mu_d", "tau") for r in rows])
         """
         from . import frames
-        return frames.to_pandas(self)
+        return frames.to_pandas(self, options)
 
     def to_xarray(self) -> "xarray.Dataset":
         """A data set with a variable for each key.
@@ -304,6 +277,29 @@ class Results(Mapping):
         if not self.summary:
             raise ValueError(f"results of {self.name or 'a file'} have no summary; copy the file that they come from")
         path.write_text(json.dumps(self.summary, indent=1) + "\n")
+
+
+def to_its_error(value: float, error: float) -> str:
+    """A number to the first digit of its error, as the program prints it; all digits of what is exact."""
+    if not (math.isfinite(error) and error > 0 and value and math.isfinite(value)):
+        return f"{value:.17g}" if error == 0 else f"{value:.7g}"
+    digits = math.floor(math.log10(abs(value))) - math.floor(math.log10(error)) + 1
+    return f"{value:.{min(max(digits, 1), 17)}g}"
+
+
+def closest(name: str, names: Iterable[str]) -> str | None:
+    """The most similar of some names, first of all one that differs in the case of letters; None if none is similar."""
+    alike = [other for other in names if other.lower() == name.lower()]
+    return next(iter(alike or difflib.get_close_matches(name, names, 1, 0.6)), None)
+
+
+def _computed_by(key: str) -> str:
+    """Which quantity a key of the program belongs to; empty where there is none to ask, or it does not know it."""
+    from .reference import keys
+    try:
+        return f'quantities="{keys()[key][0]}" computes it; ' if key in keys() else ""
+    except ProgramError:
+        return ""
 
 
 def array(values: Any) -> "Array":
@@ -378,8 +374,8 @@ def from_hdf5(file: "h5py.File", name: str = "") -> Results:
     options = {key: str(value) for key, value in file["record/options"].attrs.items()}
     parts: dict[str, Any] = {
         "provenance": record, "cost": {"seconds": float(record.get("seconds", math.nan))}, **fields(file),
-        "scene": {key: _parameter(value) for key, value in options.items()},
-        "accuracy": {"asked": _parameter(options.get("accuracy", "")),
+        "scene": {key: parameter(value) for key, value in options.items()},
+        "accuracy": {"asked": parameter(options.get("accuracy", "")),
                      "reached": str(record.get("accuracy_reached", "yes")) == "yes"}}
     if "comparison" in file:
         parts["comparison"] = _datasets(file["comparison"])
@@ -393,7 +389,7 @@ def from_hdf5(file: "h5py.File", name: str = "") -> Results:
     return Results(results, options=options, name=name, **parts)
 
 
-def _parameter(text: str) -> Any:
+def parameter(text: str) -> Any:
     """A number where the option is one."""
     try:
         return float(text)

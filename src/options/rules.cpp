@@ -272,10 +272,10 @@ class Rules {
     const auto noise = r_.scene.meant().noise;
     const auto why =
         fmt::format("holds the body on none of the noise levels, from {:g} to {:g}, shifted by the "
-                    "bias {:g}: the body never sticks, and ",
+                    "bias {:g}: the body never sticks, so that there are no phases for ",
                     noise.level(noise.lowest()), noise.level(noise.highest()), r_.scene.bias);
     const std::string finer = noise.table ? "" : ", or a smaller -delta";
-    report("mu_s", !missing.empty(), why + enumerate(missing, "and") + " need sticking phases",
+    report("mu_s", !missing.empty(), why + enumerate(missing, "and"),
            fmt::format("take -quantities of {}, or a larger -mu_s{}", enumerate(without, "and"),
                        finer));
     report("route", missing.empty() && method_.needs_sticking,

@@ -19,7 +19,7 @@ sys.path.insert(0, str(SOURCES / "python"))
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import stickslip
-from stickslip import cases, explore, knobs, live_pictures
+from stickslip import __main__, cases, explore, knobs, live_pictures
 from stickslip.program import BadInput, Cancelled
 
 SECONDS = 60  # until what never comes is given up
@@ -90,6 +90,27 @@ class Pictures(Case):
         made.show("after another resolution the whole is drawn")
         self.assertEqual(len(shown), before)
 
+    def test_a_page_is_sent_one_picture_for_all_regions_of_a_move(self):
+        made = self.explorer()
+        self.settled(made)
+        shown, canvas = [], made.figure.canvas
+        canvas.draw()
+        canvas.blit = shown.append
+        made._show_knobs()
+        made.show("two regions")
+        self.assertEqual(len(shown), 2)
+        canvas.get_diff_image = lambda: None  # as the canvas of a page has
+        shown.clear()
+        with made.regions.together():
+            made._show_knobs()
+            with made.regions.together():
+                made.show("two regions")
+            self.assertEqual(shown, [])
+        self.assertEqual(len(shown), 1)
+        with made.regions.together():
+            pass
+        self.assertEqual(len(shown), 1)
+
     def test_force_is_across_and_velocity_upwards_as_in_every_picture(self):
         made = self.explorer(scene={"bias": 0.6})  # a body that a constant force pulls moves upwards only
         self.settled(made)
@@ -146,6 +167,32 @@ class Pictures(Case):
         self.until(lambda: made.pictures.quantiles.get_text(), made.poll)
         self.assertEqual([veil.get_visible() for veil in made.pictures.veils], [False, True, False])
         self.assertIn("cannot be had", made.status.get_text())
+
+    def test_what_shows_other_parameters_is_greyed_after_a_while(self):
+        wanted = threading.Event()
+
+        def slow_spectrum(cancel, **options):
+            if options["quantities"] == "spectrum" and options["mu_d"] == 0.9:
+                while not wanted.wait(0.01) and not cancel.is_set():
+                    pass
+            return stickslip.run(cancel=cancel, **options)
+
+        def greyed():
+            return [veil.get_visible() for veil in made.pictures.veils]
+
+        made = self.explorer(compute=slow_spectrum)
+        self.settled(made)
+        self.assertEqual(greyed(), [False, False, False])
+        made.sliders["mu_d"].set_val(0.9)
+        made.asked_at = float("inf")  # no time passes
+        self.until(lambda: "spectrum" in made.status.get_text(), made.poll)
+        self.assertEqual(greyed(), [False, False, False])
+        made.asked_at = 0
+        made.poll()
+        self.assertEqual(greyed(), [False, True, True])
+        wanted.set()
+        self.settled(made)
+        self.assertEqual(greyed(), [False, False, False])
 
     def test_quantiles_invert_the_distribution_function(self):
         t = numpy.geomspace(0.02, 20, 60)
@@ -311,6 +358,25 @@ class Knobs(Case):
         made.save_scene()
         again = stickslip.run(**COARSE, options_file=self.folder / "explored.opts", quantities="sticking")
         self.assertEqual((again.scene["mu_d"], again.scene["mu_s_minus"]), (0.6, 1.5))
+
+
+    def test_options_of_the_command_line_count_more_than_those_of_the_file(self):
+        words = ["explore", "-mu_d", "0.3", "scene.opts", "-bias", "-0.2", "-plan", "--browser", "-drag", "none"]
+        given = __main__.taken_options(words)
+        self.assertEqual(given, {"mu_d": "0.3", "bias": "-0.2", "plan": True, "drag": "none"})
+        self.assertEqual(words, ["explore", "scene.opts", "--browser"])
+        made = self.explorer({**COARSE, "v_max": "6", "mu_d": "0.3"}, {"mu_d": 0.3})
+        self.settled(made)
+        made.sliders["mu_d"].set_val(0.6)
+        self.settled(made)
+        made.save_scene()
+        again = stickslip.run(**COARSE, options_file=self.folder / "explored.opts", quantities="sticking")
+        self.assertEqual((again.options["mu_d"], again.options["v_max"]), ("0.6", "6"))
+
+    def test_a_port_that_cannot_be_is_refused(self):
+        for port in (0, 80000):
+            with self.assertRaisesRegex(BadInput, "65535"):
+                explore.use_backend(True, port)
 
 
 class Files(Case):

@@ -134,7 +134,16 @@ class Likelihood(Fits):
         seen = sticks[sticks > 1]
         fit = stickslip.fit({"sticks": seen, "smallest": {"sticks": 1}}, "tau", mu_d=0.3, **COARSE)
         self.within(fit, {"tau": 1.5})
+        ((name, distance, p),) = fit.distances()
+        table = stickslip.run(quantities="duration_density", time=TIMES, accuracy=1e-4, **COARSE, mu_d=0.3,
+                              tau=fit.estimates["tau"])["cdf_stick"]
+        missed = numpy.interp(1, table.abscissa, table.value)
+        right = scipy.stats.kstest(seen, lambda t: (numpy.interp(t, table.abscissa, table.value) - missed) / (1 - missed))
+        self.assertEqual(name, "sticks")
+        self.assertAlmostEqual(distance, right.statistic, delta=2e-3)
+        self.assertAlmostEqual(p, right.pvalue, delta=0.05)
         naive = stickslip.fit({"sticks": seen}, "tau", mu_d=0.3, **COARSE)
+        self.assertLess(naive.distances()[0][2], 1e-6)
         self.assertGreater(abs(naive.estimates["tau"] - 1.5), 4 * naive.errors["tau"])
 
     def test_slips_and_values_count_together(self):
@@ -148,6 +157,9 @@ class Likelihood(Fits):
         self.assertAlmostEqual(both.errors["mu_d"], error / math.sqrt(2), delta=0.05 * error)
         self.assertIsNone(both.degrees_of_freedom)
         self.assertIn("of 1 values\nlog likelihood", repr(both))
+        for wrong in (lambda: both.interval("mu"), lambda: both.profile("mu")):
+            self.assertRaisesRegex(ValueError, "mu: was not fitted; take one of", wrong)
+        self.assertRaisesRegex(ValueError, "level = 95", both.interval, both.names[0], 95)
 
     def test_information_is_that_of_scores_and_of_second_differences(self):
         sticks = drawn("stick", 20000)

@@ -1,5 +1,7 @@
 """Many cases by few processes: stickslip.map, and the program's option -cases."""
 
+import contextlib
+import io
 import json
 import os
 import signal
@@ -105,6 +107,29 @@ class Maps(Case):
         for wrong in ({"cases": {"mu_d": 1}}, {"cases": [], "workers": 0}, {"cases": [], "failures": "ignore"}):
             with self.assertRaises(ValueError):
                 stickslip.map(**wrong)
+
+    def test_keywords_of_the_function_in_a_case(self):
+        for own in ("timeout", "keep", "ranks", "progress"):
+            with self.assertRaisesRegex(ValueError, rf"cases\[1\]: {own} is no option of a case"):
+                stickslip.map([SMALL, {**SMALL, own: 1}])
+        with self.assertRaisesRegex(ValueError, "map: keep is no option"):
+            stickslip.map([SMALL], keep="file.h5")
+
+    def test_a_table_with_what_the_cases_differ_in(self):
+        rows = stickslip.map([{"mu_d": 0.25}, {"mu_d": 0.5, "drag": "none"}], delta=0.5, quantities="sticking")
+        tables = [r.to_pandas("mu_d", "drag") for r in rows]
+        self.assertEqual(list(tables[0]), ["key", "mu_d", "drag", "value", "error", "unit"])
+        self.assertEqual([(t.mu_d[0], t.drag[4]) for t in tables], [(0.25, "linear"), (0.5, "none")])
+        with self.assertRaisesRegex(KeyError, "mud: is no option; did you mean mu_d?"):
+            rows[0].to_pandas("mud")
+
+    def test_progress(self):
+        told = []
+        stickslip.map([SMALL, {"mu_d": 5}, SMALL], failures="return", progress=lambda *counts: told.append(counts))
+        self.assertEqual(told, [(1, 3), (2, 3), (3, 3)])
+        with contextlib.redirect_stderr(io.StringIO()) as shown:
+            stickslip.map([SMALL, SMALL], progress=True)
+        self.assertRegex(shown.getvalue(), r"\r1 of 2 cases, about \d+ s left *\r2 of 2 cases, \d+ s\n *$")
 
     def test_an_accuracy_that_is_missed_is_a_warning(self):
         with warnings.catch_warnings(record=True) as caught:

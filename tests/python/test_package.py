@@ -23,8 +23,8 @@ BINARIES = pathlib.Path(os.environ.get("STICKSLIP_BINARIES", SOURCES / "build"))
 os.environ["STICKSLIP"] = str(BINARIES / "stickslip")
 sys.path.insert(0, str(SOURCES / "python"))
 import stickslip
-from stickslip import program
-from stickslip.plots import style
+from stickslip import program, results
+from stickslip.plots import fields, style
 
 SMALL = {"mu_d": 0.25, "delta": 0.5, "accuracy": 1e-3}
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -83,6 +83,13 @@ class Runs(Case):
         self.assertEqual(r.density.values.shape, (r.density.x.size, r.density.v.size))
         self.assertAlmostEqual(r.density.marginal_x.sum(), 1, delta=1e-9)
         self.assertIsNone(stickslip.run(**SMALL).density)
+
+    def test_densities_at_one_velocity(self):
+        found = stickslip.run(**SMALL, quantities="density").density
+        for v in (0.3, 1e3):
+            self.assertEqual(found.at(v).tolist(), found.at([v])[:, 0].tolist())
+            self.assertEqual(found.marginal(v), found.marginal([v])[0])
+        self.assertLess(len(repr(found)), 400)
 
     def test_densities_are_polynomials_on_elements(self):
         for scheme in ({}, {"scheme": "upwind", "p": 4, "accuracy": 0.1}):
@@ -299,6 +306,67 @@ class Reference(Case):
         self.assertEqual(released[0], (stickslip.__version__, date))
 
 
+class Misunderstandings(Case):
+    """What Python programmers try first is done, or refused with what to do instead."""
+
+    def refused(self, words, call, kind=ValueError):
+        with self.assertRaises(kind) as problem:
+            call()
+        for word in words:
+            self.assertIn(word, str(problem.exception))
+
+    def test_numbers_have_the_digits_that_their_errors_allow(self):
+        for value, error, shown in ((0.15648616853236222, 3.2e-10, "0.1564861685"), (1234.5678, 20.0, "1.23e+03"),
+                                    (-0.00123456, 1e-5, "-0.00123"), (1e-3, 5.0, "0.001"), (0.1, 0.0, "0.10000000000000001"),
+                                    (0.123456789, float("nan"), "0.1234568"), (0.0, 1e-3, "0")):
+            self.assertEqual(results.to_its_error(value, error), shown)
+
+    def test_a_key_that_was_not_computed_has_its_quantity(self):
+        r = stickslip.run(**SMALL, quantities="sticking", plan=True)
+        self.assertIn("plan", repr(r))
+        r = stickslip.run(**SMALL, quantities="sticking")
+        self.refused(['quantities="moments" computes it; there are P_stick'], lambda: r["E_V2"], KeyError)
+        self.refused(["did you mean P_stick?"], lambda: r["p_stick"], KeyError)
+        with self.fake("exit 1"):
+            self.refused(["there are P_stick"], lambda: r["E_V2"], KeyError)
+
+    def test_powers_of_python(self):
+        one, other = (stickslip.run(**SMALL, quantities="averages", observable=power) for power in ("v**2", "v^2"))
+        self.assertEqual(one["pi(v^2)"].value, other["pi(v^2)"].value)
+
+    def test_texts_that_look_like_options(self):
+        self.refused(["-drag = -v^3", "drag_expression"], lambda: stickslip.run(drag="-v^3"))
+        self.assertEqual(program.words_of({"bias": -0.5, "drag_expression": "-v**3", "rate": -numpy.inf}),
+                         ["-bias", "-0.5", "-drag_expression", "-v^3", "-rate", "-inf"])
+
+    def test_sequences_in_a_single_run(self):
+        self.refused(["mu_d", "stickslip.sweep"], lambda: stickslip.run(mu_d=[0.3, 0.4]))
+        self.refused(["mu_d", "stickslip.sweep"], lambda: stickslip.map([{"mu_d": numpy.array([0.3, 0.4])}]))
+        self.assertEqual(stickslip.run(**{**SMALL, "mu_d": [0.3]}, quantities="sticking").scene["mu_d"], 0.3)
+
+    def test_what_cannot_be_swept(self):
+        self.refused(["noise", "stickslip.map"], lambda: stickslip.sweep(noise=["ou", "telegraph"]))
+        self.refused(["-sweep_mu_d"], lambda: stickslip.sweep(mud=[0.1, 0.2]))
+        found = stickslip.sweep(**{**SMALL, "mu_d": (x for x in (0.25, 0.5))}, quantities="sticking")
+        self.assertEqual(found.coords["mu_d"].tolist(), [0.25, 0.5])
+
+    def test_arrays_in_the_place_of_records_and_chains(self):
+        t = numpy.arange(5.0)
+        record = stickslip.Record(t, t * t)
+        for noise in (t, (t, t)):
+            self.refused(["noise", "stickslip.Record"], lambda: stickslip.run(noise=noise))
+        for force in (t, (t, t), {"time": t}):
+            self.refused(["force_file", "stickslip.Record"], lambda: stickslip.run(force_file=force))
+        self.refused(["Record(time, value)"], lambda: stickslip.read_record(t), TypeError)
+        self.refused(["Record(time, value)"], lambda: stickslip.noise.record(t), TypeError)
+        self.assertEqual((len(record), numpy.asarray(record).tolist()), (5, (t * t).tolist()))
+
+    def test_ranks_and_times_that_cannot_be(self):
+        for ranks in (-1, True, 1.5):
+            self.refused(["ranks"], lambda: stickslip.run(ranks=ranks))
+        self.refused(["timeout"], lambda: stickslip.run(timeout=-1))
+
+
 class Sweeps(Case):
     def test_shapes_names_and_order(self):
         asked = {"delta": 0.5, "quantities": "sticking,spectrum", "omega": [1, 2, 3, 4], "accuracy": 1e-3}
@@ -334,7 +402,7 @@ class Sweeps(Case):
 
     def test_nothing_to_sweep(self):
         self.assertRaisesRegex(ValueError, "sequence of values", stickslip.sweep, **SMALL)
-        self.assertRaisesRegex(stickslip.BadInput, "sweep_seed", stickslip.sweep, seed=[1, 2])
+        self.assertRaisesRegex(stickslip.BadInput, "seed: cannot be swept", stickslip.sweep, seed=[1, 2])
 
     def test_simulated_intervals_follow_the_order(self):
         s = stickslip.sweep(tau=[1, 1.5, 2], mu_d=[0.25, 0.5], delta=0.5, quantities="sticking", route="monte_carlo",
@@ -409,13 +477,16 @@ class Tables(Case):
     def test_names_that_are_not_there(self):
         r = stickslip.run(**SMALL, quantities="sticking")
         self.assertRaisesRegex(KeyError, r"P_stik: did you mean P_stick\?", lambda: r["P_stik"])
-        self.assertRaisesRegex(KeyError, "S_v: there are P_stick, P_slide", lambda: r["S_v"])
+        self.assertRaisesRegex(KeyError, "S_v: quantities=\"spectrum\" computes it; there are P_stick, P_slide", lambda: r["S_v"])
         self.assertEqual((r.get("P_stik"), "P_stik" in r, "P_stick" in r), (None, False, True))
 
     def test_short_texts(self):
         r = stickslip.run(**SMALL, quantities="sticking,spectrum", omega=[1, 2])
         self.assertRegex(repr(r["P_stick"]), r"^P_stick = 0\.\d+ \+- \de-\d\d$".replace(r"\de", r"\d\.\de"))
         self.assertEqual(repr(r["S_v"]), "S_v = 2 values by omega [velocity^2*time]")
+        self.assertEqual(f"{r['P_stick']:.3f}", f"{r['P_stick'].value:.3f}")
+        self.assertEqual(list(r.keys()), list(r))
+        self.assertNotIn("=", repr(r.keys()))
         self.assertEqual(repr(r).splitlines(), [repr(one) for one in r.values()])
 
     def test_limits_of_a_study_are_its_results(self):
@@ -528,6 +599,8 @@ class Pictures(Case):
                 ("arrays", 3, {"quantities": "laplace", "lambda": [1, 2]}),
                 ("comparison", 8, {"quantities": "sticking,laplace", "lambda": [1, 2],
                                    "compare": self.folder / "reference.h5"}),
+                ("convergence", 5, {"quantities": "sticking", "study": "delta", "study_steps": 4, "accuracy": 1e-2}),
+                ("convergence", 5, {"quantities": "sticking", "study": "p", "study_steps": 4}),
                 ("cost", 1, {"quantities": "sticking", "study": "cost", "study_steps": 4, "study_repeats": 1}),
                 ("spectra", 1, {"quantities": "spectrum", "omega": [0.1, 1], **mc})):
             r = stickslip.run(**{**SMALL, **options})
@@ -540,6 +613,57 @@ class Pictures(Case):
             if kind in ("spectra", "slips", "arrays", "durations"):
                 marked = figure.axes[-1]
                 self.assertTrue(marked.containers if "route" in options else marked.collections, kind)
+
+    def test_what_the_discretisation_does_not_resolve_is_not_drawn(self):
+        density = numpy.array([[1, 0.5, 0.3, -0.2, 0.1], [1e-9, 0, 1e-8, 0, 1e-30]])
+        self.assertEqual(fields.resolved(density).tolist(), [[1, 0.5, 0, 0, 0], density[1].tolist()])
+        found = stickslip.run(**SMALL, quantities="density")
+        self.assertLess(found.density.at(found.density.window(1e-4)).min(), 0)  # so that there is something to leave out
+        mesh = found.plot()["density"].axes[0].collections[0].get_array()
+        self.assertEqual(sorted(set(numpy.sign(mesh).ravel().tolist())), [1])
+
+    def test_axes_of_ones_own(self):
+        axes = style.Figure().subplots()
+        r = stickslip.run(**SMALL, quantities="spectrum", omega=[0.1, 1, 10])
+        self.assertIs(r["S_v"].plot(axes, label="one"), axes)
+        self.assertEqual(axes.lines[0].get_ydata().tolist(), r["S_v"].value.tolist())
+        self.assertIn("[velocity$^2$ time]", axes.get_ylabel())
+        self.assertIn("omega", axes.get_xlabel())
+        self.assertRaisesRegex(ValueError, "S_0", r["S_0"].plot, axes)
+        self.assertIn('<img src="data:image/png;base64,', r.plot()._repr_html_())
+        self.assertIn("density", stickslip.plots.KINDS)
+
+    def test_panels_of_arrays(self):
+        options = {**SMALL, "accuracy": 1e-2, "tilt": [-0.2, 0, 0.2], "time": [1, 2], "wavenumber": [0, 1]}
+        r = stickslip.run(**options, quantities="large_deviation,displacement_transform")
+        panels = {axes.get_ylabel(): axes for axes in r.plot(kind="arrays")["arrays"].axes}
+        self.assertEqual(len(panels), 5)
+        rate = panels["rate function $I(u)$  [1/time]"]
+        self.assertEqual(rate.lines[0].get_xdata().tolist(), r["tilted_velocity"].value.tolist())
+        self.assertIn("velocity", rate.get_xlabel())
+        labels = panels["displacement_cosine"].get_legend_handles_labels()[1]
+        self.assertEqual(labels, ["displacement_cosine(1)", "displacement_cosine(2)"])
+
+    def test_sweeps_say_what_was_not_swept(self):
+        s = stickslip.sweep(mu_d=[0.25, 0.5], tau=[1, 2], delta=[0.5, 0.25], quantities="sticking", accuracy=1e-1)
+        axes = s.plot(kind="P_stick")["P_stick"].axes[0]
+        self.assertEqual(axes.get_title(), r"$\mu_s$ = 1, $b(v) = -v$" + "\n" + r"$\delta$ = 0.5, the first of 2 values")
+        self.assertTrue(axes.get_xlabel().endswith("[time]"))
+        s = stickslip.sweep(tau=[1, 2], delta=0.5, quantities="sticking", accuracy=1e-1)
+        self.assertEqual(s.plot(kind="P_stick")["P_stick"].axes[0].get_title(),
+                         r"$\mu_s$ = 1, $\mu_d$ = 1, $\delta$ = 1/2, $b(v) = -v$")
+
+    def test_the_limit_of_a_study_is_drawn_in_its_error(self):
+        r = stickslip.run(mu_d=0.25, delta=0.5, accuracy=1e-2, quantities="sticking", study="delta", study_steps=4)
+        axes = r.plot()["convergence"].axes[0]
+        table = r.study["P_stick on a level"]
+        self.assertEqual(axes.lines[0].get_ydata().tolist(), table["value"].tolist())
+        self.assertEqual(axes.lines[1].get_ydata()[0], table["limit"][-1])
+        ends = axes.patches[0].get_extents().transformed(axes.transData.inverted())
+        self.assertAlmostEqual((ends.y1 - ends.y0) / 2, table["limit_error"][-1], delta=1e-9)
+        self.assertEqual(axes.get_legend_handles_labels()[1], ["on a level", "between levels"])
+        self.assertIn("duration", r.plot()["convergence"].axes[2].get_ylabel())
+        self.assertIn("[time]", r.plot()["convergence"].axes[2].get_ylabel())
 
     def test_errors_of_sweeps_are_drawn(self):
         for more in ({}, {"route": "monte_carlo", "excursions": 500}):
@@ -619,7 +743,7 @@ class Pictures(Case):
             (axes,) = s.plot(kind="displacement_cdf(1)")["displacement_cdf(1)"].axes
             self.assertEqual([text.get_text() for text in axes.get_legend().texts], curves)
             self.assertIn(over, axes.get_xlabel())
-            self.assertEqual(axes.get_title(), said)
+            self.assertEqual(axes.get_title().partition("\n")[2], said)
 
     def test_pictures_on_request(self):
         s = stickslip.sweep(bias=[0.1, 0.2], delta=0.5, quantities="sticking,moments,spectrum", accuracy=1e-2)

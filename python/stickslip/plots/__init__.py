@@ -1,5 +1,7 @@
 """Pictures of what the program computed. matplotlib is imported with this module, not before."""
 
+import base64
+import io
 import pathlib
 import re
 from collections.abc import Callable, Sequence
@@ -24,13 +26,26 @@ KINDS: "dict[str, tuple[Callable[[Results], bool], Callable[[Sequence[Results]],
     "durations": (lambda r: "f_slide" in r, curves.durations),
     "slips": (lambda r: any(key in r for panel in curves.SLIPS for key in panel[0]), curves.slips),
     "arrays": (lambda r: bool(curves.other_arrays([r])), curves.arrays),
+    "convergence": (lambda r: r.study_kind in studies.CONVERGENCE, studies.convergence),
     "cost": (lambda r: r.study_kind == "cost", studies.cost),
     "correlation_time": (lambda r: "t_corr" in r, curves.correlation_time),  # on request, as the next one
     "drift": (lambda r: isinstance(r, Sweep) and r.dims == ("bias",), sweeping.drift)}
 ON_REQUEST = ("correlation_time", "drift")
 TOGETHER = ("spectra", "durations", "slips", "arrays", "correlation_time")  # kinds that show several files at once
 ASK = ("ask the program for density, trajectory, given_force, spectrum with -omega, duration_density, slip with "
-       "-distance, peak or displacement with -quantities; or for -compare, -study cost or a sweep")
+       "-distance, peak or displacement with -quantities; or for -compare, "
+       "-study or a sweep")
+
+
+class Figures(dict):
+    """Figures by name; a notebook shows them as pictures."""
+
+    def _repr_html_(self) -> str:
+        def picture(figure: "Figure") -> str:
+            stream = io.BytesIO()
+            figure.savefig(stream, format="png", dpi=100)
+            return f'<img src="data:image/png;base64,{base64.b64encode(stream.getvalue()).decode()}">'
+        return "".join(map(picture, self.values()))
 
 
 def kinds_of(items: Sequence[Results]) -> list[str]:
@@ -67,7 +82,7 @@ def draw(items: Sequence[Results], picture: str | pathlib.Path | None = None,
     ValueError
         If there is nothing to draw, or a picture cannot be of that name.
     """
-    return {name: figure for name, figure, _ in drawn(items, picture, kind)}
+    return Figures((name, figure) for name, figure, _ in drawn(items, picture, kind))
 
 
 def drawn(items: Sequence[Results], picture: str | pathlib.Path | None = None,

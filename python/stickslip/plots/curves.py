@@ -1,11 +1,13 @@
 """Arrays against what they depend on: spectra, durations, slips, anything else; and the correlation time."""
 
+import dataclasses
+import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..results import Results
-from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, Figure, Line2D, curve, decades, drag, fraction, memory, number, over,
-                    numpy, scale, step, styled, title, units)
+from ..results import Result, Results
+from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, WORDS, Figure, Line2D, curve, decades, drag, fraction, memory,
+                    number, numpy, over, scale, step, styled, title, units)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -53,6 +55,10 @@ def spectra(items: Sequence[Results]) -> "Figure":
                 place.text(0.5, 0.5, "no file", transform=place.transAxes, ha="center")
     for place in axes[-1]:
         place.set_xlabel(ABSCISSAE["omega"])
+    if len(items) == 1:
+        axes[0][0].set_title("Power spectral density of the velocity", fontsize=9)
+        figure.suptitle(title(items[0]), fontsize=10)
+        return figure
     handles = {label: handle for place in axes.flat for handle, label in zip(*place.get_legend_handles_labels())}
     axes[0][0].legend(handles.values(), handles, loc="lower left")
     mu_s = ", ".join(f"{x:g}" for x in sorted({number(item, "mu_s") for item in items}))
@@ -83,12 +89,13 @@ def durations(items: Sequence[Results]) -> "Figure":
         for item in same:
             for key, (_, colour) in DURATIONS.items():
                 curve(axes, item[key], colour=colour, style=lines[step(item) or 0])
-        axes.set_title(rf"$\mu_s$ = {mu_s:g}, $\mu_d$ = {mu_d:g}, {noise}, $b(v) = {force}$", fontsize=9)
+        axes.set_title(rf"$\mu_s$ = {mu_s:g}, $\mu_d$ = {mu_d:g}, {noise}, $b(v) = {force}$" if len(deltas) > 1 else
+                       title(same[0]), fontsize=9)
         axes.set(xlabel="duration  [time]", ylabel="probability density  [1/time]", ylim=(0, None))
         if all(scale(item["f_slide"].abscissa) == "log" for item in same):
             highest = max(item[key].value.max() for item in same for key in DURATIONS)
             axes.set(xscale="log", yscale="log", ylim=(1e-5 * highest, 2 * highest))
-        axes.margins(x=0)
+        axes.margins(x=0.02 if any(item["f_slide"].ci95 is not None for item in same) else 0)  # bars are seen whole
     return figure
 
 
@@ -96,7 +103,7 @@ def _duration_legend(axes: "Axes", lines: dict[float, Any]) -> None:
     """In a row of its own: curves reach every corner of a panel."""
     handles = [Line2D([], [], color=colour, label=label) for label, colour in DURATIONS.values()]
     handles += [Line2D([], [], color="#888888", linestyle=line, label=rf"$\delta$ = {fraction(delta)}")
-                for delta, line in lines.items() if delta]
+                for delta, line in lines.items() if delta and len(lines) > 1]
     axes.legend(handles=handles, loc="center", ncol=len(handles), columnspacing=1.2)
     axes.axis("off")
 
@@ -120,11 +127,26 @@ def other_arrays(items: Sequence[Results]) -> list[str]:
 
 @styled
 def arrays(items: Sequence[Results]) -> "Figure":
-    """Every array that no other picture shows, each in a panel of its own."""
-    def panel(key: str) -> Panel:
-        result = next(item[key] for item in items if key in item)
-        return (key,), key + units(result.unit), scale(result.abscissa), "linear"
-    return _panels(items, [panel(key) for key in other_arrays(items)])
+    """Every array that no other picture shows, in panels of their own; those that differ in an argument alone, such as
+    f_passage(1) and f_passage(2), share one."""
+    groups: dict[str, list[str]] = {}
+    for key in other_arrays(items):
+        stem = re.sub(r"\([-+.e\d]+\)$", "", key)
+        full = len(groups.get(stem, ())) >= len(STYLES) or len(items) > 1
+        groups.setdefault(key if full else stem, []).append(key)
+
+    def panel(stem: str, keys: Sequence[str]) -> Panel:
+        result = next(item[keys[0]] for item in items if keys[0] in item)
+        name = stem if len(keys) > 1 else keys[0]
+        return tuple(keys), WORDS.get(name, name) + units(result.unit), scale(result.abscissa), "linear"
+    return _panels(items, [panel(*group) for group in groups.items()])
+
+
+def _against(item: Results, key: str) -> Result:
+    """A result with what its picture has it over: a rate function over the velocity whose rate it is."""
+    if key == "rate_function" and "tilted_velocity" in item:
+        return dataclasses.replace(item[key], abscissa=item["tilted_velocity"].value, abscissa_name="tilted_velocity")
+    return item[key]
 
 
 def _panels(items: Sequence[Results], panels: Sequence[Panel]) -> "Figure":
@@ -141,16 +163,19 @@ def _panels(items: Sequence[Results], panels: Sequence[Panel]) -> "Figure":
 def _panel(axes: "Axes", panel: Panel, items: Sequence[Results]) -> None:
     keys, y_label, x_scale, y_scale = panel
     for n, item in enumerate(items):
-        for key, style in zip(keys, STYLES):
+        for m, (key, style) in enumerate(zip(keys, STYLES)):
             if key in item:
-                words = [item.name if len(items) > 1 else "", SPELT.get(key, "")]
-                curve(axes, item[key], n, style=style, label=", ".join(filter(None, words)) or None)
-                axes.set_xlabel(over(item[key]))
+                words = [item.name if len(items) > 1 else "", SPELT.get(key, key if len(keys) > 1 else "")]
+                result, arguments = _against(item, key), len(keys) > 1 and key not in SPELT
+                curve(axes, result, m if arguments else n, style=style, label=", ".join(filter(None, words)) or None)
+                axes.set_xlabel(over(result))
         if "displacement_variance" in keys and {keys[0], "S_0"} <= item.keys():
             t = item[keys[0]].abscissa
             axes.plot(t, item["S_0"].value * t, color="#888888", linewidth=0.9, linestyle=STYLES[3], zorder=1,
                       label=None if n else "$S_0 t$")
     axes.set(ylabel=y_label, xscale=x_scale, yscale=y_scale)
+    if axes.get_xlabel() in (ABSCISSAE["k"], ABSCISSAE["mode"]):
+        axes.xaxis.get_major_locator().set_params(integer=True)
     low, high = axes.get_ylim()
     if y_scale == "log" and high < 100 * low:  # powers of ten alone would be one or two
         decades(axes.yaxis)

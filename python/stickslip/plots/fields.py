@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 SLIDE, STICK, FORCING = COLOURS[0], COLOURS[1], COLOURS[4]
 needed("matplotlib.collections")
+CLEAR = 2  # least density that is shown, by the swings of its level
 
 
 def shade(axes: "Axes", begins: "numpy.ndarray", ends: "numpy.ndarray") -> None:
@@ -33,9 +34,16 @@ def cells_around(levels: "numpy.ndarray") -> "numpy.ndarray":
     return ends
 
 
+def resolved(density: "numpy.ndarray") -> "numpy.ndarray":
+    """A density by [level, velocity], and 0 where it is not resolved: a level whose polynomials swing below 0
+    swings above it as far, which is no density but the error of the discretisation."""
+    swing = numpy.maximum(-density.min(axis=1, keepdims=True), 0)
+    return numpy.where(density > CLEAR * swing, density, 0)
+
+
 @styled
 def density(items: Sequence[Results]) -> "Figure":
-    """The stationary distribution of (X, V), its marginals, and the static states."""
+    """The stationary distribution of (X, V), its marginals, and the static states. What is not resolved is white."""
     (results,) = items
     field = results.density.by_force()
     x, v, ends = field.x, field.window(1e-4), cells_around(field.x)
@@ -45,7 +53,7 @@ def density(items: Sequence[Results]) -> "Figure":
         2, 2, sharex="col", sharey="row", gridspec_kw={"width_ratios": (3, 1), "height_ratios": (3, 1.2)})
     corner.axis("off")
 
-    pdf = numpy.maximum(field.at(v).T / width, 1e-12)  # discretisation errors are on both sides of 0
+    pdf = numpy.maximum(resolved(field.at(v)).T / width, 1e-300)
     seen = numpy.flatnonzero(field.marginal_x > 1e-4 * field.marginal_x.max())
     image = plane.pcolormesh(ends, _edges(v), pdf, norm=matplotlib.colors.LogNorm(1e-5 * pdf.max(), pdf.max()),
                              cmap="Blues", rasterized=True)
@@ -62,8 +70,9 @@ def density(items: Sequence[Results]) -> "Figure":
     by_v.xaxis.tick_top()
     by_v.xaxis.set_label_position("top")  # below, it would part the plane from the levels
     by_v.tick_params(labeltop=True, labelbottom=False)
-    by_v.axhline(0, color=STICK, linewidth=1, zorder=1)  # behind the curve, which has its shape here
-    by_v.plot(1, 0, ">", color=STICK, markersize=5, clip_on=False, transform=by_v.get_yaxis_transform())
+    if stuck.any():
+        by_v.axhline(0, color=STICK, linewidth=1, zorder=1)  # behind the curve, which has its shape here
+        by_v.plot(1, 0, ">", color=STICK, markersize=5, clip_on=False, transform=by_v.get_yaxis_transform())
     by_x.bar(x, field.marginal_x - field.at_rest, width * 0.9, field.at_rest, color=SLIDE)
     by_x.bar(x, field.at_rest, width * 0.9, color=STICK)
     by_x.set(xlabel="force $x$  [force]", ylabel="$P(X = x)$")

@@ -1,11 +1,13 @@
-"""What -compare found, and error against time of every method."""
+"""What -compare found, the convergence that a study found, and error against time of every method."""
 
+import copy
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..results import Results
-from .style import ABSCISSAE, COLOURS, STYLES, Figure, Line2D, Patch, matplotlib, numpy, styled, title, units
+from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, WORDS, Figure, Line2D, Patch, matplotlib, numpy, styled, title,
+                    units)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,6 +18,9 @@ WIDTH = 1.96  # of a 95 % confidence interval, in standard deviations to each si
 COLUMNS = 3
 METHODS = {"hp": ("hp elements", "degree"), "upwind": ("upwind", "p"), "richardson": ("upwind, Richardson", "p"),
            "monte_carlo": ("Monte Carlo", "excursions")}
+CONVERGENCE = {"delta": r"step of the noise $\delta$  [force]", "tau": r"correlation time of the noise $\tau$  [time]",
+               "p": "velocities of a noise step $p$"}  # what studies vary
+PLACES = ("on a level", "between levels")  # of mu_s
 
 
 @styled
@@ -129,3 +134,41 @@ def cost(items: Sequence[Results]) -> "Figure":
     axes.legend(loc="lower right")
     axes.set_title(title(results), fontsize=9)
     return figure
+
+
+@styled
+def convergence(items: Sequence[Results]) -> "Figure":
+    """Each scalar of a study against what it varies, with its limit in the band of the limit's error. Of the upwind scheme
+    the values of Richardson's extrapolation are beside."""
+    (results,) = items
+    over, panels = results.study_kind, dict[str, dict[str, Any]]()
+    for name, table in results.study.items():
+        kind = next((kind for kind in PLACES if name.endswith(f" {kind}")), "")
+        panels.setdefault(name.removesuffix(f" {kind}"), {})[kind] = table
+    columns = min(len(panels), 3)
+    rows = -(-len(panels) // columns)
+    figure = Figure(figsize=(0.6 + 3.4 * columns, 0.4 + 2.8 * rows))
+    for place, (key, tables) in enumerate(panels.items(), 1):
+        axes = figure.add_subplot(rows, columns, place)
+        for n, (kind, table) in enumerate(tables.items()):
+            look = {"color": COLOURS[n], "marker": MARKERS[n], "markersize": 4}
+            axes.plot(table[over], table["value"], label=kind or None, **look)
+            if "limit" in table:
+                limit, error = table["limit"][-1], table["limit_error"][-1]
+                axes.axhline(limit, color=COLOURS[n], linewidth=0.8, linestyle="--")
+                axes.axhspan(limit - error, limit + error, color=COLOURS[n], alpha=0.2, linewidth=0)
+            else:
+                axes.plot(table[over], table["richardson"], linestyle="--", label="extrapolated", **look, mfc="white")
+        axes.set(xscale="log", xlabel=CONVERGENCE[over], ylabel=WORDS.get(key, key) + units(unit_of(results, key)))
+        if axes.get_legend_handles_labels()[1]:
+            axes.legend(fontsize=8)
+    fixed = copy.copy(results)
+    fixed.options = {name: text for name, text in results.options.items()
+                     if name != over and (over, name) != ("tau", "delta")}  # which is a share of the deviation
+    figure.suptitle(title(fixed), fontsize=10)
+    return figure
+
+
+def unit_of(results: Results, key: str) -> str:
+    """Of a scalar, as the runs of a study have it."""
+    return next((run[key].unit for run in results.runs if key in run), "")

@@ -29,12 +29,21 @@ LOOK = {"figure.facecolor": "white", "axes.grid": True, "grid.color": "#e4e4e4",
 ABSCISSAE = {"omega": r"angular frequency $\omega$  [1/time]", "time": "time $t$  [time]",
              "lambda": r"$\lambda$  [1/time]", "k": "level $i$", "distance": "path length $d$  [length]",
              "inverse_distance": "$s$  [1/length]", "velocity": "speed $w$  [velocity]", "mode": "mode",
+             "tilt": "tilt $s$  [1/length]", "wavenumber": "wavenumber $k$  [1/length]",
+             "tilted_velocity": "mean velocity $u$  [velocity]",
              "probability": "probability $p$"}
 WORDS = {"P_stick": r"probability of sticking $P_\mathrm{stick}$", "P_slide": r"probability of sliding $P_\mathrm{slide}$",
          "mean_stick": "mean duration of sticking", "mean_slide": "mean duration of sliding",
          "mean_excursion": "mean duration of an excursion",
          "E_V": "mean velocity $E[V]$", "E_V2": "$E[V^2]$", "E_absV": "mean speed $E[|V|]$", "E_XV": "$E[XV]$",
-         "S_v": "power spectral density $S_v$", "diffusivity": "diffusivity $S_0/2$"}
+         "S_v": "power spectral density $S_v$", "diffusivity": "diffusivity $S_0/2$", "S_0": "$S_v(0)$",
+         "fwhm": "full width of $S_v$ at half its maximum", "t_corr": r"correlation time $t_\mathrm{corr}$",
+         "variance_from_spectrum": "Var $V$", "E_X2": "$E[X^2]$", "P_X_le_mu_s": r"$P(|X| \leq \mu_s)$",
+         "C_vv": "autocovariance $C_{vv}(t)$", "S_x": "$S_X$ of the chain", "S_x_target": "$S_X$ of what it stands for",
+         "F_stick": r"$E[e^{-\lambda T_\mathrm{stick}}]$", "F_slide": r"$E[e^{-\lambda T_\mathrm{slide}}]$",
+         "F_excursion": r"$E[e^{-\lambda (T_\mathrm{slide} + T_\mathrm{stick})}]$",
+         "theta": r"growth rate $\theta(s)$", "tilted_velocity": r"mean velocity $\theta'(s)$",
+         "rate_function": "rate function $I(u)$", "entry_law": "probability that sticking begins on level $i$"}
 FEW_POINTS = 20  # of a curve, each of which is marked, as the line between them is straight
 LEVELS = ("delta", "delta_per_mu_s", "noise_levels")  # of the noise: distance, stated apart, and range, which is not
 
@@ -193,7 +202,7 @@ def memory(results: Results) -> str:
 def noise(results: Results) -> str:
     """The noise in words; TeX."""
     delta = step(results)
-    return memory(results) + (f", {symbol('delta')} = {fraction(delta)}" if delta else "")
+    return ", ".join(filter(None, [memory(results), f"{symbol('delta')} = {fraction(delta)}" if delta else ""]))
 
 
 def drag(results: Results) -> str:
@@ -224,7 +233,7 @@ def title(results: Results) -> str:
             parts.append(f"$b(v) = {drag(results)}$")
         elif not users(results, name) & {"noise", "drag"} and not known().get(name, {}).get("meanings"):
             parts.append(stated(name, text))
-    return ", ".join(parts)
+    return ", ".join(filter(None, parts))
 
 
 def fraction(x: float) -> str:

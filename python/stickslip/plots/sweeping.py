@@ -1,13 +1,14 @@
 """Sweeps: each result, and drift against the bias."""
 
+import copy
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..results import Result, Results
 from ..sweeps import Sweep
 from . import style
-from .style import (COLOURS, MARKERS, STYLES, WORDS, Figure, bars, decades, numpy, on_axis, over, scale, styled,
-                    symbol, units)
+from .style import (COLOURS, MARKERS, STYLES, WORDS, Figure, bars, decades, known, numpy, on_axis, over, scale,
+                    styled, symbol, title, units)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,7 +55,7 @@ def _array(sweep: Sweep, result: Result) -> "Figure":
     low, high = numpy.nanmin(result.value), numpy.nanmax(result.value)
     axes.set(xscale=scale(abscissa), xlabel=over(result), ylabel=_label(sweep, result.key),
              **({"yscale": "log", "ylim": (low / 2, high * 2)} if 0 < 100 * low < high else {}))
-    _state(axes, sweep, others, len(shown), len(values))
+    _title(axes, sweep, others, len(shown), len(values))
     axes.legend()
     return figure
 
@@ -62,12 +63,6 @@ def _array(sweep: Sweep, result: Result) -> "Figure":
 def _some(count: int) -> "numpy.ndarray":
     """At most `FEW` places of so many, evenly."""
     return numpy.unique(numpy.linspace(0, count - 1, min(FEW, count)).round().astype(int))
-
-
-def _state(axes: "Axes", sweep: Sweep, others: Sequence[str], shown: int, count: int) -> None:
-    """A title with the options that stay at their first value, and with how many curves are left out."""
-    axes.set_title(", ".join([*(f"{symbol(name)} = {sweep.coords[name][0]:g}" for name in others),
-                              *[f"{shown} of {count} values"] * (shown < count)]), fontsize=9)
 
 
 def _against_option(axes: "Axes", sweep: Sweep, result: Result) -> None:
@@ -80,7 +75,7 @@ def _against_option(axes: "Axes", sweep: Sweep, result: Result) -> None:
               f"${sign}$ = {result.abscissa[place]:g}" if sign else f"{result.abscissa_name} = {result.abscissa[place]:g}",
               None if result.ci95 is None else result.ci95[first][:, place], (sweep.status == "reached")[first])
     axes.set(xscale=scale(x), xlabel=_label(sweep, last), ylabel=_label(sweep, result.key))
-    _state(axes, sweep, others, len(shown), len(result.abscissa))
+    _title(axes, sweep, others, len(shown), len(result.abscissa))
     axes.legend()
 
 
@@ -90,8 +85,7 @@ def _scalar(sweep: Sweep, result: Result) -> "Figure":
     names, first = sweep.dims[:2], (slice(None),) * min(2, len(sweep.dims)) + (0,) * (len(sweep.dims) - 2)
     value, error, reached = result.value[first], result.error[first], (sweep.status == "reached")[first]
     ci95 = None if result.ci95 is None else result.ci95[first]
-    if len(sweep.dims) > 2:
-        axes.set_title(", ".join(f"{symbol(name)} = {sweep.coords[name][0]:g}" for name in sweep.dims[2:]), fontsize=9)
+    _title(axes, sweep, sweep.dims[2:])
     if len(names) == 2 and len(value) > FEW:
         _map(figure, axes, sweep, result, value, reached)
         return figure
@@ -103,6 +97,8 @@ def _scalar(sweep: Sweep, result: Result) -> "Figure":
     if len(names) == 2:
         axes.legend()
     axes.set(xscale=scale(x), xlabel=_label(sweep, names[-1]), ylabel=_label(sweep, result.key))
+    if scale(x) == "log" and x.max() < 100 * x.min():  # powers of ten alone would be one or two
+        decades(axes.xaxis)
     return figure
 
 
@@ -151,10 +147,20 @@ def _map(figure: "Figure", axes: "Axes", sweep: Sweep, result: Result, value: "n
     axes.grid(False)
 
 
+def _title(axes: "Axes", sweep: Sweep, held: Sequence[str], shown: int = 0, count: int = 0) -> None:
+    """The parameters that were not swept; in another line the first values of those that the picture holds, and how many
+    curves of all are shown."""
+    fixed = copy.copy(sweep)
+    fixed.options = {name: text for name, text in sweep.options.items() if name not in sweep.dims}
+    first = [f"{symbol(name)} = {sweep.coords[name][0]:g}, the first of {len(sweep.coords[name])} values" for name in held]
+    picked = [f"{shown} of {count} values"] * (shown < count)
+    axes.set_title("\n".join(filter(None, [title(fixed), ", ".join([*first, *picked])])), fontsize=9)
+
+
 def _label(sweep: Sweep, name: str) -> str:
     if name in sweep:
         return WORDS.get(name, name) + units(sweep[name].unit)
-    return on_axis(name) + units(sweep.units.get(name, ""))
+    return on_axis(name) + units(sweep.units.get(name) or known().get(name, {}).get("unit", ""))
 
 
 @styled
