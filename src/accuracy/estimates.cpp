@@ -73,9 +73,9 @@ void share_between_neighbours(std::vector<double>& errors, const Result& result)
   const std::vector<double> own = errors;
   const int count = static_cast<int>(own.size());
   for (int e = 0; e < count; ++e) {
-    const double value = std::abs(result.value[e]);
+    const double value = quantities::size_of(result, e);
     for (int other = std::max(0, e - kReach); other <= std::min(count - 1, e + kReach); ++other) {
-      const double size = std::abs(result.value[other]);
+      const double size = quantities::size_of(result, other);
       const double ratio = value < size ? value / size : 1;
       errors[e] = std::max(errors[e], kOfNeighbours * ratio * own[other]);
     }
@@ -87,7 +87,7 @@ void share_between_neighbours(std::vector<double>& errors, const Result& result)
 void require_least_error(double least, Results& results) {
   for (auto& result : results) {
     for (std::size_t e = 0; e < result.value.size(); ++e) {
-      result.error[e] = std::max(result.error[e], least * std::abs(result.value[e]));
+      result.error[e] = std::max(result.error[e], least * quantities::size_of(result, e));
     }
   }
 }

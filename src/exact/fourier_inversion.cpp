@@ -99,6 +99,12 @@ FourierInversion::FourierInversion(const Transform& phi, double mass, double mea
     sums_.push_back(falls ? Sum{panels_.size(), {}} : sum_up_to(panels_.size(), high));
     low = high;
   }
+  const double octave = panels_.back().high / 2;
+  for (const Panel& p : panels_) {
+    if (p.low < octave) continue;
+    for (const double k : {p.low, p.at(0)})
+      left_ = std::max(left_, std::abs(rest(sums_.back(), k)));
+  }
 }
 
 // Doubles degrees and halves panels until the polynomials hold.
@@ -264,6 +270,7 @@ FourierInversion::Value FourierInversion::between(double x, double Integrals::*w
                                                       : 1;
     error += width / kPi * (p.rough + p.doubt);
   }
+  if (which == &Integrals::below) error += left_ / kPi;
   return {value, error};
 }
 

@@ -4,11 +4,12 @@
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <optional>
 
 #include "stickslip/catalogue/displacement_distribution_keys.hpp"
 #include "stickslip/exact/fourier_inversion.hpp"
-#include "stickslip/quantities/displacement_model.hpp"
+#include "stickslip/quantities/displacement_tail.hpp"
 #include "stickslip/quantities/durations.hpp"
 #include "stickslip/quantities/plan.hpp"
 #include "stickslip/simulation/flow.hpp"
@@ -18,12 +19,6 @@ namespace {
 
 using Inversion = exact::FourierInversion;
 using model::Start;
-
-/// A displacement that has a probability.
-struct Atom {
-  double at = 0;
-  Uncertain probability = {};
-};
 
 // Of bodies at rest, by level that sticks: that the noise does not push them up to a time.
 Uncertain still_at_rest(const model::Process& process, const std::vector<double>& rests,
@@ -99,79 +94,127 @@ std::vector<Atom> atoms_at(const Computation& computation, double time) {
 }
 
 /// The distribution at one time: atoms, and a density that is singular where bodies rest: at 0, as
-/// many slips are short; where none rests, at the first atom.
+/// many slips are short; where none rests, at the first atom. Where quantiles are asked for that
+/// far out, probabilities below kTail on either side of d are found by weighted paths, unless drag
+/// leaves the velocity unbounded.
 class Distribution {
  public:
+  /// Those that are found by weighted paths.
+  enum class Tails { none, lower, upper, both };
+
   Distribution(const Computation& computation, double time, std::vector<Atom> atoms)
-      : atoms_(std::move(atoms)) {
+      : computation_(computation), time_(time), atoms_(std::move(atoms)) {
     const auto& question = computation.question();
     const auto& process = computation.process();
     even_ = model::mirrors_itself(process, question.start);
+    const bool bounded = process.drag.bounds_velocity() || computation.problem.given.scene.v_max;
+    const auto probabilities = question.values(catalogue::kProbability.option);
+    weighs_ = bounded && std::any_of(probabilities.begin(), probabilities.end(),
+                                     [](double p) { return std::min(p, 1 - p) < kTail; });
     if (!process.sticks()) centre_ = atoms_[0].at;
-    if (time > 0) invert(computation, time);
+    if (time > 0) invert(time);
   }
 
-  [[nodiscard]] Uncertain density(double d) const {
+  [[nodiscard]] Uncertain density(double d) {
     if (!inversion_) return {};
+    const double at_most = cdf(d).value;
+    for (const int side : {-1, 1}) {
+      const bool rare = (side > 0 ? 1 - at_most : at_most) < kTail;
+      if (rare && resolves_tails()) {
+        const bool mirrored = even_ && side > 0;
+        return tail(mirrored ? -1 : side).density(mirrored ? -d : d);
+      }
+    }
     const auto found = inversion_->density(d - centre_);
     return {found.value, found.error};
   }
   // P(x <= d), or P(x < d).
-  [[nodiscard]] Uncertain below(double d, bool or_at) const {
-    if (even_ && d > 0) return Uncertain{1, 0} - below(-d, !or_at);
+  [[nodiscard]] Uncertain below(double d, bool or_at, Tails which) {
+    if (even_ && d > 0) return Uncertain{1, 0} - below(-d, !or_at, mirrored(which));
     Uncertain sum;
     if (inversion_) {
       const auto found = inversion_->below(d - centre_);
       sum = {found.value, found.error};
     }
+    Uncertain atoms, above;
     for (const Atom& atom : atoms_) {
-      if (d > atom.at || (or_at && d == atom.at)) sum = sum + atom.probability;
+      Uncertain& all = d > atom.at || (or_at && d == atom.at) ? atoms : above;
+      all = all + atom.probability;
     }
+    sum = sum + atoms;
     sum.value = std::clamp(sum.value, 0.0, 1.0);  // nearer to the truth than what lies outside
-    return sum;
+    const bool low = which != Tails::upper && sum.value < kTail,
+               high = which != Tails::lower && 1 - sum.value < kTail;
+    if (which == Tails::none || !resolves_tails() || !(low || high)) return sum;
+    if (low) return atoms + tail(-1).beyond(d);
+    return Uncertain{1, 0} - (above + tail(1).beyond(d));
   }
-  [[nodiscard]] Uncertain cdf(double d) const { return below(d, true); }
+  [[nodiscard]] Uncertain cdf(double d) { return below(d, true, Tails::both); }
   // As far off as the quantiles of the probabilities that may be meant.
-  [[nodiscard]] Uncertain quantile(double p) const {
+  [[nodiscard]] Uncertain quantile(double p) {
     if (even_ && p == 0.5) return {0, 0};
     const double value = inverse(p), doubt = cdf(value).error;
     return {value,
             std::max(std::abs(inverse(p + doubt) - value), std::abs(inverse(p - doubt) - value))};
   }
-  [[nodiscard]] int evaluations() const { return inversion_ ? inversion_->evaluations() : 0; }
+  [[nodiscard]] int evaluations() const {
+    int all = inversion_ ? inversion_->evaluations() : 0;
+    for (const auto& [side, of] : tails_) all += of.evaluations();
+    return all;
+  }
+  [[nodiscard]] bool resolves_tails() const { return weighs_ && inversion_; }
 
  private:
-  void invert(const Computation& computation, double time);
+  [[nodiscard]] static Tails mirrored(Tails which) {
+    if (which == Tails::lower) return Tails::upper;
+    return which == Tails::upper ? Tails::lower : which;
+  }
+  void invert(double time);
+  [[nodiscard]] DisplacementTail& tail(int side) {
+    return tails_
+        .try_emplace(side, computation_, time_, atoms_, side, mass_, centre_ + mean_, spread_)
+        .first->second;
+  }
 
-  [[nodiscard]] double inverse(double p) const {
+  [[nodiscard]] double inverse(double p) {
+    if (even_ && p > 0.5) return 0 - inverse(1 - p);
+    const bool tails = resolves_tails(), low = tails && p < kTail, high = tails && 1 - p < kTail;
+    const Tails which = low ? Tails::lower : high ? Tails::upper : Tails::none;
     for (const Atom& atom : atoms_) {
-      if (below(atom.at, false).value < p && p <= cdf(atom.at).value) return atom.at;
+      if (below(atom.at, false, which).value < p && p <= below(atom.at, true, which).value) {
+        return atom.at;
+      }
     }
     if (!inversion_) return atoms_[0].at;
-    const auto off = [&](double d) { return cdf(d).value - p; };
-    if (off(lowest_) >= 0) return lowest_;
-    if (off(highest_) <= 0) return highest_;
+    const auto off = [&](double d) { return below(d, true, which).value - p; };
+    const double lowest = low ? tail(-1).end(p) : lowest_,
+                 highest = high ? tail(1).end(1 - p) : highest_;
+    if (off(lowest) >= 0) return lowest;
+    if (off(highest) <= 0) return highest;
     constexpr double relative = 1e-12;
     const auto near = [&](double a, double b) { return std::abs(b - a) < relative * spread_; };
     std::uintmax_t steps = 200;
-    const auto [a, b] = boost::math::tools::toms748_solve(off, lowest_, highest_, near, steps);
+    const auto [a, b] = boost::math::tools::toms748_solve(off, lowest, highest, near, steps);
     return (a + b) / 2;
   }
 
+  const Computation& computation_;
+  double time_;
   std::vector<Atom> atoms_;
-  bool even_ = false;
+  bool even_ = false, weighs_ = false;
   double centre_ = 0;  // the place of the singularity
   std::optional<Inversion> inversion_;
-  double spread_ = 0, lowest_ = 0, highest_ = 0;  // beyond which nothing is looked for
+  double mass_ = 1, mean_ = 0, spread_ = 0;  // without atoms, the mean from the centre on
+  double lowest_ = 0, highest_ = 0;          // beyond which nothing is looked for
+  std::map<int, DisplacementTail> tails_;    // by side
 };
 
 // phi without the atoms, about the singularity.
-void Distribution::invert(const Computation& computation, double time) {
-  const auto& question = computation.question();
-  double mass = 1;
-  for (const Atom& atom : atoms_) mass -= atom.probability.value;
-  if (mass < 1e-14) return;
-  DisplacementModel model(computation.systems, computation.distribution(), question.start, time,
+void Distribution::invert(double time) {
+  const auto& question = computation_.question();
+  for (const Atom& atom : atoms_) mass_ -= atom.probability.value;
+  if (mass_ < 1e-14) return;
+  DisplacementModel model(computation_.systems, computation_.distribution(), question.start, time,
                           0.03 * question.accuracy);
   const auto phi = [&](double k) -> Inversion::Transformed {
     const auto found = model.at(k);
@@ -185,15 +228,15 @@ void Distribution::invert(const Computation& computation, double time) {
   };
   // Mean and deviation from small k. The mean is that of what is inverted, from the singularity on.
   const double h = 0.1 / (model.speed() * time);
-  const auto small = phi(h).value / mass;
-  const double mean = even_ ? 0 : std::arg(small) / h;
+  const auto small = phi(h).value / mass_;
+  mean_ = even_ ? 0 : std::arg(small) / h;
   spread_ = std::sqrt(std::max(-2 * std::log(std::abs(small)), 1e-12)) / h;
   constexpr double furthest = 60;
   // An octave more for each digit.
   const double units = std::exp2(std::ceil(-std::log10(question.accuracy)));
-  lowest_ = centre_ + mean - furthest * spread_;
-  highest_ = centre_ + mean + furthest * spread_;
-  inversion_.emplace(phi, mass, mean, spread_, even_,
+  lowest_ = centre_ + mean_ - furthest * spread_;
+  highest_ = centre_ + mean_ + furthest * spread_;
+  inversion_.emplace(phi, mass_, mean_, spread_, even_,
                      Inversion::Limits{0.3 * question.accuracy, units * 2 / spread_, 400});
 }
 
@@ -205,7 +248,7 @@ void find_displacements(Computation& computation) {
          position = array(catalogue::kDisplacementAtomAt, question.time);
   for (double t : question.time) {
     const auto atoms = atoms_at(computation, t);
-    const Distribution distribution(computation, t, atoms);
+    Distribution distribution(computation, t, atoms);
     append_value(probability, atoms[0].probability);
     append_value(position, {atoms[0].at, 1e-11 * std::abs(atoms[0].at)});
     const auto append = [&](const Row& row, const std::vector<double>& abscissa, auto of) {
@@ -215,6 +258,8 @@ void find_displacements(Computation& computation) {
       // Near 0, where it is singular, no discretisation gives the digits of the distribution
       // function.
       result.diagnostic = &row == &catalogue::kDisplacementDensity;
+      result.tails_by_their_size =
+          &row == &catalogue::kDisplacementCdf && distribution.resolves_tails();
       for (double x : abscissa) append_value(result, (distribution.*of)(x));
       results.push_back(std::move(result));
     };

@@ -1,6 +1,7 @@
 #include "stickslip/quantities/displacement_model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -23,6 +24,7 @@ using operators::State;
 using operators::StateKind;
 using operators::StaticPhase;
 using operators::Symmetry;
+using petsc::check;
 using Entries = std::vector<double>;  // of this rank
 using Vector = std::vector<Complex>;
 
@@ -76,16 +78,16 @@ std::vector<Complex> conjugate(std::vector<Complex> x) {
   return x;
 }
 
-// g exp(t a) b by eigenvectors.
+// g exp(t a) b by eigenvectors, which grow by no more than the rate `most`.
 Complex exponential(const Matrix<Complex>& a, const std::vector<Complex>& b,
-                    const std::vector<Complex>& g, double t) {
+                    const std::vector<Complex>& g, double t, double most) {
   const algebra::Eigenvectors modes(a);
   auto shares = b;
   algebra::LuFactors<Complex>(modes.right).solve(shares, false);
   const auto seen = g * modes.right;
   Complex sum = 0;
   for (std::size_t n = 0; n < b.size(); ++n) {
-    const Complex rate(std::min(modes.value[n].real(), 0.0), modes.value[n].imag());
+    const Complex rate(std::min(modes.value[n].real(), most), modes.value[n].imag());
     sum += seen[n] * shares[n] * std::exp(t * rate);
   }
   return sum;
@@ -157,9 +159,8 @@ class Basis {
 // a few vectors less: A = z - 1/(its resolvent) there.
 template <class Resolvent>
 DisplacementModel::Transform exponential_of(MPI_Comm comm, const Vector& one, const Vector& c,
-                                            double z, double t, double enough,
-                                            const Resolvent& resolvent) {
-  constexpr int most = 120;
+                                            double z, double t, int most, double most_growth,
+                                            double enough, const Resolvent& resolvent) {
   Basis basis(comm, one.size());
   const Vector start{basis.add(one).back()};
   Matrix<Complex> h(most, most);
@@ -185,7 +186,7 @@ DisplacementModel::Transform exponential_of(MPI_Comm comm, const Vector& one, co
     for (int r = 0; r < count; ++r) a(r, r) += z;
     Vector b = start;
     b.resize(static_cast<std::size_t>(count));
-    const Complex last = std::exchange(found.value, exponential(a, b, seen, t));
+    const Complex last = std::exchange(found.value, exponential(a, b, seen, t, most_growth));
     found.error = std::max(std::abs(found.value - last), std::abs(found.value - before));
     before = last;
     if (exhausted) found.error = 1e-14;
@@ -198,32 +199,92 @@ DisplacementModel::Transform exponential_of(MPI_Comm comm, const Vector& one, co
 
 DisplacementModel::DisplacementModel(operators::Systems& systems,
                                      const StationaryDistribution& distribution,
-                                     const model::Start& start, double t, double accuracy)
+                                     const model::Start& start, double t, double accuracy,
+                                     Tilt tilt)
     : systems_(systems),
       a_(operators::assemble(systems.comm(), systems.discretisation(), 0, Symmetry::none,
                              StaticPhase::kept, systems.statistics())),
       t_(t),
-      accuracy_(accuracy) {
-  const Entries v = entries_of(a_.values([](double, double, double u) { return u; }));
+      accuracy_(accuracy),
+      tilt_(tilt),
+      pole_(6 / t) {
   const Entries pi = stationary_on(systems, distribution, a_);
   const bool stationary = start.kind == model::Start::Kind::stationary;
   const Entries c = stationary ? pi : entries_of(start_on(a_, start));
-  double most = 0, square = 0;
-  for (double p : pi) most = std::max(most, p);
-  MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, systems.comm());
-  for (std::size_t n = 0; n < pi.size(); ++n) {
-    root_.push_back(std::sqrt(std::abs(pi[n]) + 1e-14 * most));
+  tilt.s == 0 ? weigh_by(pi, Entries(pi.size(), 1), c) : weigh_tilted(c);
+}
+
+// l and r are known up to a factor that is the same for all.
+void DisplacementModel::weigh_by(const Entries& l, const Entries& r, const Entries& c) {
+  constexpr double rounding = 1e-14;
+  const Entries v = entries_of(a_.values([](double, double, double u) { return u; }));
+  std::array<double, 2> most{};
+  std::array<double, 3> sums{};
+  for (std::size_t n = 0; n < l.size(); ++n) {
+    most = {std::max(most[0], l[n]), std::max(most[1], r[n])};
+  }
+  MPI_Allreduce(MPI_IN_PLACE, most.data(), 2, MPI_DOUBLE, MPI_MAX, systems_.comm());
+  const double least = rounding * most[1];
+  for (std::size_t n = 0; n < l.size(); ++n) {
+    root_.push_back(
+        std::sqrt((std::abs(l[n]) + rounding * most[0]) / std::max(std::abs(r[n]), least)));
     one_.emplace_back(root_[n]);
     c_.emplace_back(c[n] / root_[n]);
-    square += pi[n] * v[n] * v[n];
+    const double both = l[n] * r[n];
+    sums = {sums[0] + both, sums[1] + both * v[n], sums[2] + both * v[n] * v[n]};
   }
-  MPI_Allreduce(MPI_IN_PLACE, &square, 1, MPI_DOUBLE, MPI_SUM, systems.comm());
-  speed_ = std::sqrt(square);
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), 3, MPI_DOUBLE, MPI_SUM, systems_.comm());
+  if (tilt_.s != 0) drift_ = sums[1] / sums[0];
+  speed_ = std::sqrt(std::abs(sums[2] / sums[0] - drift_ * drift_));
+  resolved_ = true;
+}
+
+// Implicit steps to half of the time from either side, with the resolvent at some z beyond the
+// growth. With z above all modes they keep l and r positive, where elements resolve them; no mode
+// lies above the largest s v, and those of bodies too fast to count need not be followed. With z
+// below that of a mode that counts, l r has both signs, or another size than is expected.
+void DisplacementModel::weigh_tilted(const Entries& c) {
+  constexpr double negative = 0.1, at_most = 2, other = 10;
+  const auto gain = a_.values([s = tilt_.s](double, double, double v) { return s * v; });
+  PetscReal most = 0;
+  check(VecMax(gain, nullptr, &most));
+  const double first = 12 / t_, last = std::max(first / 2 + most - tilt_.growth, first);
+  pole_ = first;
+  for (double z = first; !resolved_; z = std::min(2 * z, last)) {
+    operators::SystemKey key{tilt_.growth + z, Symmetry::none, StaticPhase::kept};
+    key.tilt = tilt_.s;
+    auto& factors = systems_.at(key).factors();
+    petsc::VecHandle l = a_.zeros(), r = a_.values([](double, double, double) { return 1; });
+    put(c, l);
+    for (int n = static_cast<int>(std::lround(z * t_ / 2)); n > 0; --n) {
+      l = std::move(factors.solve_transposed(l).x);
+      r = std::move(factors.solve(r).x);
+      for (Vec x : {Vec(l), Vec(r)}) check(VecScale(x, z));
+    }
+    systems_.release(key);
+    const petsc::VecHandle both = petsc::product(l, r);
+    PetscScalar sum = 0;
+    PetscReal sizes = 0;
+    check(VecSum(both, &sum));
+    check(VecNorm(both, NORM_1, &sizes));
+    const double size = PetscRealPart(sum);
+    const double limit = z < last ? negative : at_most;
+    const bool kept =
+        sizes < (1 + limit) * size && (z == last || (size > 1 / other && size < other));
+    if (kept) weigh_by(entries_of(l), entries_of(r), c);
+    if (z == last) return;
+  }
 }
 
 DisplacementModel::Transform DisplacementModel::projected(double k, double z) {
-  operators::ComplexSolver solver(a_, {Complex(z, 0), 0.0, Complex(0, k)}, systems_.statistics());
-  return exponential_of(systems_.comm(), one_, c_, z, t_, accuracy_, [&](const Vector& y) {
+  const operators::Shift<Complex> shift{Complex(tilt_.growth + z, k * drift_), 0.0,
+                                        Complex(tilt_.s, k)};
+  operators::ComplexSolver solver(a_, shift, systems_.statistics());
+  // Where bodies too fast to count let the space converge slowly, the error says so.
+  const bool tilted = tilt_.s != 0;
+  const int most = tilted ? 60 : 120;
+  const double most_growth = tilted ? 40 / t_ : 0;
+  const auto resolvent = [&](const Vector& y) {
     operators::ComplexVector b{a_.zeros(), a_.zeros()};
     Entries real, imaginary;
     for (std::size_t m = 0; m < y.size(); ++m) {
@@ -240,14 +301,18 @@ DisplacementModel::Transform DisplacementModel::projected(double k, double z) {
       next.push_back(root_[m] * Complex(real[m], imaginary[m]));
     }
     return next;
-  });
+  };
+  auto found =
+      exponential_of(systems_.comm(), one_, c_, z, t_, most, most_growth, accuracy_, resolvent);
+  found.value *= std::polar(1.0, k * drift_ * t_);
+  return found;
 }
 
 DisplacementModel::Transform DisplacementModel::at(double k) {
   const double turns = std::abs(k);
-  const double z = 6 / t_ + turns * speed_;  // further away where the weight turns fast
+  const double z = pole_ + turns * speed_;  // further away where the weight turns fast
   Transform found = projected(turns, z);
-  if (turns > 2 * checked_) {
+  if (turns > (tilt_.s == 0 ? 2 : 4) * checked_) {
     checked_ = turns;
     const Transform other = projected(turns, 1.7 * z);
     other_pole_ = std::max(other_pole_, std::abs(other.value - found.value));

@@ -60,7 +60,9 @@ double relative_error(const Result& result) {
     const bool number = !std::isnan(result.value[n]) && !std::isnan(result.error[n]);
     if (!number) return kInfinity;
     if (result.error[n] == 0) continue;
-    const double own = result.each_by_its_size ? std::abs(result.value[n]) : size;
+    double own = result.each_by_its_size ? std::abs(result.value[n]) : size;
+    const double rare = size_of(result, n);
+    if (result.tails_by_their_size && rare < kTail && rare > kLeastTail) own = rare;
     relative = std::max(relative, result.error[n] / own);
   }
   return relative;

@@ -596,6 +596,8 @@ class Pictures(Case):
                 ("durations", 2, {"quantities": "duration_density", "time": "0:1:5", "accuracy": 1e-2}),
                 ("slips", 4, {"quantities": "slip,peak", "distance": [1, 2], "velocity": [0.1, 0.2], "accuracy": 1e-2}),
                 ("slips", 2, {"quantities": "displacement", "time": [1, 2], "bias": 0.1}),
+                ("displacements", 3, {"quantities": "displacement_distribution", "distance": [-1, -0.5, 0.5, 1],
+                                      "probability": 0.9, "start": "rest", "time": 2, "accuracy": 0.05}),
                 ("arrays", 3, {"quantities": "laplace", "lambda": [1, 2]}),
                 ("comparison", 8, {"quantities": "sticking,laplace", "lambda": [1, 2],
                                    "compare": self.folder / "reference.h5"}),
@@ -610,7 +612,7 @@ class Pictures(Case):
                                  or not figure.subfigs), axes, kind)
             self.assertTrue(picture.read_bytes().startswith(PNG), kind)
             self.assertGreater(picture.stat().st_size, 5000)
-            if kind in ("spectra", "slips", "arrays", "durations"):
+            if kind in ("spectra", "slips", "displacements", "arrays", "durations"):
                 marked = figure.axes[-1]
                 self.assertTrue(marked.containers if "route" in options else marked.collections, kind)
 

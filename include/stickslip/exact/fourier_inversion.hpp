@@ -21,8 +21,10 @@ namespace stickslip::exact {
 /// are those of least squares over the upper two octaves of k. Only what is left of phi is
 /// integrated numerically.
 ///
-/// Errors have three parts: those of phi; the last Chebyshev coefficients of each panel; and how
-/// far off the sum is that ends an octave of k below, with coefficients of its own. Local.
+/// Errors have four parts: those of phi; the last Chebyshev coefficients of each panel; how far off
+/// the sum is that ends an octave of k below, with coefficients of its own; and, of the
+/// distribution function, what is left of phi at the largest k, as edges of f elsewhere leave it.
+/// Local.
 class FourierInversion {
  public:
   struct Value {
@@ -89,6 +91,7 @@ class FourierInversion {
   int evaluations_ = 0;
   std::vector<Panel> panels_;
   std::vector<Sum> sums_;  // by octave
+  double left_ = 0;        // of phi in the last octave
   std::map<double, Transformed> known_;
 };
 

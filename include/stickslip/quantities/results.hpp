@@ -1,6 +1,8 @@
 #pragma once
 /// Named results with their errors.
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,6 +27,8 @@ struct Result {
   Kind kind = Kind::other;
   /// Whether accuracy is meant relative to each value of an array, not to the largest one.
   bool each_by_its_size = false;
+  /// Whether accuracy of small probabilities P(x <= d) and P(x > d) is meant relative to these.
+  bool tails_by_their_size = false;
   /// Whether its error decides nothing: it shows how good others are and was not asked for, or it
   /// is the derivative of another one that decides.
   bool diagnostic = false;
@@ -65,6 +69,17 @@ struct Check {
 [[nodiscard]] double largest_size(const std::vector<double>& values);
 /// The least of the values above 0; infinity where there is none.
 [[nodiscard]] double least_positive(const std::vector<double>& values);
+
+/// A probability of P(x <= d) or P(x > d) below this one is small; below the other one so small
+/// that no more is asked of it.
+inline constexpr double kTail = 0.02, kLeastTail = 1e-12;
+
+/// What errors of a value are compared with where it is compared with others: its size, or the
+/// smaller one of P(x <= d) and P(x > d).
+[[nodiscard]] inline double size_of(const Result& result, std::size_t n) {
+  const double size = std::abs(result.value[n]);
+  return result.tails_by_their_size ? std::min(size, std::abs(1 - result.value[n])) : size;
+}
 
 /// Largest error relative to the size of the values; infinite where one is not a number, unless the
 /// result is partial.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ..results import Results
 from ..sweeps import Sweep
-from . import curves, fields, studies, sweeping
+from . import curves, distributions, fields, studies, sweeping
 from .style import saved
 
 if TYPE_CHECKING:
@@ -25,15 +25,17 @@ KINDS: "dict[str, tuple[Callable[[Results], bool], Callable[[Sequence[Results]],
     "spectra": (lambda r: "S_v" in r, curves.spectra),
     "durations": (lambda r: "f_slide" in r, curves.durations),
     "slips": (lambda r: any(key in r for panel in curves.SLIPS for key in panel[0]), curves.slips),
+    "displacements": (distributions.has_distribution, distributions.displacements),
     "arrays": (lambda r: bool(curves.other_arrays([r])), curves.arrays),
     "convergence": (lambda r: r.study_kind in studies.CONVERGENCE, studies.convergence),
     "cost": (lambda r: r.study_kind == "cost", studies.cost),
     "correlation_time": (lambda r: "t_corr" in r, curves.correlation_time),  # on request, as the next one
     "drift": (lambda r: isinstance(r, Sweep) and r.dims == ("bias",), sweeping.drift)}
 ON_REQUEST = ("correlation_time", "drift")
-TOGETHER = ("spectra", "durations", "slips", "arrays", "correlation_time")  # kinds that show several files at once
+# Kinds that show several files at once.
+TOGETHER = ("spectra", "durations", "slips", "displacements", "arrays", "correlation_time")
 ASK = ("ask the program for density, trajectory, given_force, spectrum with -omega, duration_density, slip with "
-       "-distance, peak or displacement with -quantities; or for -compare, "
+       "-distance, peak, displacement or displacement_distribution with -quantities; or for -compare, "
        "-study or a sweep")
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..results import Result, Results
+from .distributions import is_part
 from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, WORDS, Figure, Line2D, curve, decades, drag, fraction, memory,
                     number, numpy, over, scale, step, styled, title, units)
 
@@ -122,7 +123,7 @@ def other_arrays(items: Sequence[Results]) -> list[str]:
     shown = {"S_v", *DURATIONS, *(key.replace("f_", "cdf_") for key in DURATIONS),
              *(key for panel in SLIPS for key in panel[0]), *OF_A_FORCE}
     return list(dict.fromkeys(key for item in items for key, result in item.items()
-                              if result.dims and key not in shown))
+                              if result.dims and key not in shown and not is_part(key)))
 
 
 @styled
