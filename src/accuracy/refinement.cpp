@@ -213,7 +213,10 @@ class Refiner {
       Limit& limit = limits_[outcome_.results[r].key];
       if (anew) limit = {.in_vain = limit.in_vain};
       const bool falls = rounding_[r] < 0.5 * std::exchange(limit.last, rounding_[r]);
-      if (!(rounding_[r] <= question_.accuracy || falls)) ++limit.in_vain;
+      // Where a value has no error estimate yet, finer discretisations may reach further.
+      const bool out_of_reach =
+          std::isinf(rounding_[r]) && quantities::all_numbers(outcome_.results[r]);
+      if (!(rounding_[r] <= question_.accuracy || falls || out_of_reach)) ++limit.in_vain;
       ++limit.without_digit;
       if (quantities::relative_error(outcome_.results[r]) <= kOneDigit) limit.without_digit = 0;
     }
@@ -231,7 +234,7 @@ class Refiner {
             : "no digit of it is certain: leave it out";
     if (given_up_.empty()) {
       limit_ = fmt::format("{} the relative error of {}{} to {:.1e}; {}", what_limits(limits_[key]),
-                           key, quantities::where_no_number(limiting), least, looser);
+                           key, quantities::where_unknown(limiting), least, looser);
     }
     given_up_.insert(key);
     // Rates and frequencies are of the same modes.
@@ -243,8 +246,8 @@ class Refiner {
   void conclude(Step& step) {
     outcome_.reached = given_up_.empty();
     outcome_.shortfall = limit_;
-    for (auto& result : outcome_.results) {
-      if (given_up_.contains(result.key)) doubt_without_digit(kOneDigit, result);
+    for (auto& r : outcome_.results) {
+      if (r.abscissa_name == "mode" && given_up_.contains(r.key)) doubt_without_digit(kOneDigit, r);
     }
     check_truncation();
     check_partial();

@@ -13,12 +13,15 @@
 #include "stickslip/quantities/durations.hpp"
 #include "stickslip/quantities/plan.hpp"
 #include "stickslip/simulation/flow.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
 using Inversion = exact::FourierInversion;
 using model::Start;
+
+constexpr double kRootFound = 1e-9;  // of a probability at a quantile found
 
 // Of bodies at rest, by level that sticks: that the noise does not push them up to a time.
 Uncertain still_at_rest(const model::Process& process, const std::vector<double>& rests,
@@ -150,10 +153,18 @@ class Distribution {
     return Uncertain{1, 0} - (above + tail(1).beyond(d));
   }
   [[nodiscard]] Uncertain cdf(double d) { return below(d, true, Tails::both); }
-  // As far off as the quantiles of the probabilities that may be meant.
+  // As far off as the quantiles of the probabilities that may be meant; anywhere, where weighted
+  // paths do not reach as far out.
   [[nodiscard]] Uncertain quantile(double p) {
     if (even_ && p == 0.5) return {0, 0};
     const double value = inverse(p), doubt = cdf(value).error;
+    const bool atom = std::ranges::find(atoms_, value, &Atom::at) != atoms_.end();
+    const auto tails = tails_for(p);
+    const Uncertain at_most = below(value, true, tails);
+    const bool reached = atom || std::abs(at_most.value - p) <= at_most.error + kRootFound * p;
+    if (!reached || (tails != Tails::none && doubt >= std::min(p, 1 - p))) {
+      return {value, kInfinity};
+    }
     return {value,
             std::max(std::abs(inverse(p + doubt) - value), std::abs(inverse(p - doubt) - value))};
   }
@@ -176,10 +187,15 @@ class Distribution {
         .first->second;
   }
 
+  // Those that a quantile lies in.
+  [[nodiscard]] Tails tails_for(double p) const {
+    if (!resolves_tails() || std::min(p, 1 - p) >= kTail) return Tails::none;
+    return p < kTail ? Tails::lower : Tails::upper;
+  }
+
   [[nodiscard]] double inverse(double p) {
     if (even_ && p > 0.5) return 0 - inverse(1 - p);
-    const bool tails = resolves_tails(), low = tails && p < kTail, high = tails && 1 - p < kTail;
-    const Tails which = low ? Tails::lower : high ? Tails::upper : Tails::none;
+    const Tails which = tails_for(p);
     for (const Atom& atom : atoms_) {
       if (below(atom.at, false, which).value < p && p <= below(atom.at, true, which).value) {
         return atom.at;
@@ -187,8 +203,8 @@ class Distribution {
     }
     if (!inversion_) return atoms_[0].at;
     const auto off = [&](double d) { return below(d, true, which).value - p; };
-    const double lowest = low ? tail(-1).end(p) : lowest_,
-                 highest = high ? tail(1).end(1 - p) : highest_;
+    const double lowest = which == Tails::lower ? tail(-1).end(p) : lowest_,
+                 highest = which == Tails::upper ? tail(1).end(1 - p) : highest_;
     if (off(lowest) >= 0) return lowest;
     if (off(highest) <= 0) return highest;
     constexpr double relative = 1e-12;

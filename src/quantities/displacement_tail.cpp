@@ -10,6 +10,7 @@ using Complex = std::complex<double>;
 
 // Logarithm of probabilities that nobody looks for.
 constexpr double kNothing = -32;
+constexpr double kWithin = 2;  // deviations beyond the mean of the last weight
 
 DisplacementTail::DisplacementTail(const Computation& computation, double time,
                                    std::vector<Atom> atoms, int side, double mass, double mean,
@@ -77,12 +78,11 @@ Uncertain DisplacementTail::by(Weight& weight, double d, OfInversion of) {
 }
 
 Uncertain DisplacementTail::at(double d, OfInversion of) {
-  constexpr double within = 2;  // deviations
   const auto bound = [&] { return weights_.back().log_size - weights_.back().s * d; };
   const auto below = [&] { return side_ * (d - weights_.back().mean); };
   while ((weights_.size() < 3 || below() > 0) && bound() > kNothing && add_weight()) {
   }
-  if (weights_.size() < 3 || below() > within * weights_.back().deviation) {
+  if (weights_.size() < 3 || below() > kWithin * weights_.back().deviation) {
     return {0, std::exp(bound())};
   }
   std::size_t n = 2;
@@ -99,7 +99,7 @@ double DisplacementTail::end(double p) {
   };
   while ((weights_.size() < 3 || beyond_last() > std::log(p)) && add_weight()) {
   }
-  return weights_.back().mean + side_ * weights_.back().deviation;
+  return weights_.back().mean + side_ * kWithin * weights_.back().deviation;
 }
 
 int DisplacementTail::evaluations() const {

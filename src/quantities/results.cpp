@@ -68,11 +68,16 @@ double relative_error(const Result& result) {
   return relative;
 }
 
-std::string where_no_number(const Result& result) {
-  const auto found = std::ranges::find_if(result.value, [](double v) { return std::isnan(v); });
-  if (result.is_scalar() || found == result.value.end()) return "";
-  const auto at = result.abscissa[static_cast<std::size_t>(found - result.value.begin())];
-  return fmt::format(" at {} = {:g}", result.abscissa_name, at);
+bool all_numbers(const Result& result) {
+  return std::ranges::none_of(result.value, [](double v) { return std::isnan(v); });
+}
+
+std::string where_unknown(const Result& result) {
+  for (std::size_t n = 0; n < result.value.size() && !result.is_scalar(); ++n) {
+    if (std::isfinite(result.value[n]) && std::isfinite(result.error[n])) continue;
+    return fmt::format(" at {} = {:g}", result.abscissa_name, result.abscissa[n]);
+  }
+  return "";
 }
 
 }  // namespace stickslip::quantities

@@ -156,6 +156,20 @@ TEST_CASE("displacement distribution: tails with an accuracy of their own", "[re
   CHECK(quantile.error[1] < 0.02);
 }
 
+// What is beyond the last weight that the elements resolve has no error estimate; what is within
+// has the probability asked for.
+TEST_CASE("displacement distribution: quantiles out of reach are said to be unknown", "[real]") {
+  auto c = asking(test::scene(1, 0.5, 1, 0.5, {1, 0}), {}, 2, 3e-2, kRest);
+  c.method.degree = 5;
+  c.question.arguments["probability"] = {1e-3, 1e-11};
+  const auto quantile = values_at_the_time(c).at("displacement_quantile");
+  CHECK(std::isinf(quantile.error[1]));
+  CHECK(quantile.error[0] < 0.2);
+  c.question.distance = {quantile.value[0]};
+  const auto cdf = values_at_the_time(c).at("displacement_cdf");
+  CHECK(std::abs(cdf.value[0] - 1e-3) <= cdf.error[0]);
+}
+
 TEST_CASE("displacement distribution: simulated, within 4.5 sigma", "[real]") {
   for (const model::Start& start : {kStationary, kRest}) {
     const bool rest = start.kind == Kind::rest;

@@ -12,8 +12,9 @@ namespace stickslip::accuracy {
 /// distribution on every discretisation; what all discretisations cut off changes with none.
 void require_least_error(double least, quantities::Results& results);
 
-/// The error of an entry whose relative error is above `digit` is at least its size: what does not
-/// converge moves slowly, and changes understate how far.
+/// The error of an entry whose relative error is above `digit` is at least its size: a mode in a
+/// continuous spectrum moves slowly from one discretisation to the next, and changes understate how
+/// far.
 void doubt_without_digit(double digit, quantities::Result& result);
 
 /// |change| from one discretisation to the next, by result and entry.

@@ -84,7 +84,10 @@ inline constexpr double kTail = 0.02, kLeastTail = 1e-12;
 /// Largest error relative to the size of the values; infinite where one is not a number, unless the
 /// result is partial.
 [[nodiscard]] double relative_error(const Result& result);
-/// " at tilt = 5", of the first entry of an array that is not a number; empty without any.
-[[nodiscard]] std::string where_no_number(const Result& result);
+/// Whether no value is NaN.
+[[nodiscard]] bool all_numbers(const Result& result);
+/// " at tilt = 5", of the first entry of an array of which nothing is known: it is no number, or has
+/// an infinite error. Empty without any.
+[[nodiscard]] std::string where_unknown(const Result& result);
 
 }  // namespace stickslip::quantities
