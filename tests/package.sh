@@ -1,16 +1,19 @@
 #!/usr/bin/env bash
-# The Debian package in a bare Debian 12: it installs with what it depends on, runs an installed
-# options file, and leaves nothing behind when it is removed. Needs root, debootstrap, a mirror, and a
-# build folder with all programs.
-#   tests/package.sh BUILD_FOLDER NEW_FOLDER_FOR_THE_SYSTEM
+# The Debian package in a bare Debian: it installs with what it depends on, runs an installed options
+# file, and leaves nothing behind when it is removed. Needs root, debootstrap, a mirror, and a build
+# folder with all programs, or a package that was made on the same release.
+#   tests/package.sh BUILD_FOLDER|PACKAGE NEW_FOLDER_FOR_THE_SYSTEM [RELEASE]
+# RELEASE is bookworm unless given.
 set -euo pipefail
 # shellcheck source=tests/debian_root.sh
 . "$(dirname "$0")/debian_root.sh"
-build=$1 system=$2
+package=$1 system=$2 release=${3:-bookworm}
 
-(cd "$build" && cpack -G DEB)
-package=$(find "$build" -maxdepth 1 -name 'stickslip_*.deb' | sort | tail -n 1)
-make_root bookworm "$system"
+if [ -d "$1" ]; then
+  (cd "$1" && cpack -G DEB)
+  package=$(find "$1" -maxdepth 1 -name 'stickslip_*.deb' | sort | tail -n 1)
+fi
+make_root "$release" "$system"
 
 cp "$package" "$system/root/stickslip.deb"
 inside "$system" / apt-get update -qq

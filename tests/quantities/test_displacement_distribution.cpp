@@ -158,7 +158,8 @@ TEST_CASE("displacement distribution: tails with an accuracy of their own", "[re
 
 // What is beyond the last weight that the elements resolve has no error estimate; what is within
 // has the probability asked for.
-TEST_CASE("displacement distribution: quantiles out of reach are said to be unknown", "[real]") {
+TEST_CASE("displacement distribution: quantiles out of reach are said to be unknown",
+          "[real][long]") {
   auto c = asking(test::scene(1, 0.5, 1, 0.5, {1, 0}), {}, 2, 3e-2, kRest);
   c.method.degree = 5;
   c.question.arguments["probability"] = {1e-3, 1e-11};
