@@ -160,7 +160,7 @@ class Extension(Case):
         self.assertEqual(style.title(stickslip.run(**both)),
                          r"$\mu_s$ = 1, $\mu_d$ = 0.5, $F$ = 2, $\nu$ = 1, step_end_rate = 3, $b(v) = -2 v |v|$")
         axes = stickslip.sweep(**{**both, "step_rate": [0.5, 1]}).plot()["P_stick"].axes[0]
-        self.assertEqual(axes.get_xlabel(), r"rate of the pulses $\nu$")
+        self.assertEqual(axes.get_xlabel(), r"rate of the pulses $\nu$  [1/time]")
 
     def test_the_explorer_has_their_sliders(self):
         self.use_in_python()
