@@ -5,12 +5,15 @@
 #include <utility>
 
 namespace stickslip::quantities {
+namespace {
 
 using Complex = std::complex<double>;
 
 // Logarithm of probabilities that nobody looks for.
 constexpr double kNothing = -32;
 constexpr double kWithin = 2;  // deviations beyond the mean of the last weight
+
+}  // namespace
 
 DisplacementTail::DisplacementTail(const Computation& computation, double time,
                                    std::vector<Atom> atoms, int side, double mass, double mean,
