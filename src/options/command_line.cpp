@@ -96,7 +96,7 @@ void check_options_file(const std::string& name, std::vector<std::string> above,
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
     const std::string place = fmt::format("{}:{}", name, number), unfit_line = unfit_text(line);
-    if (!unfit_line.empty()) return problems.add(place + ": " + unfit_line);
+    if (!unfit_line.empty()) return problems.add(fmt::format("{}: {}", place, unfit_line));
     check_line(line, place, problems);
     if (const auto inner = included_file(line)) check_options_file(*inner, above, problems);
   }
