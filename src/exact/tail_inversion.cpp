@@ -22,7 +22,7 @@ double window(double x) {
 
 }  // namespace
 
-TailInversion::TailInversion(FourierInversion::Transform phi, double s, double mean,
+TailInversion::TailInversion(const FourierInversion::Transform& phi, double s, double mean,
                              double deviation, double accuracy, int most)
     : s_(s), step_(0.6 / deviation) {
   for (bool open = true; open;) {

@@ -27,7 +27,7 @@ class TailInversion {
 
   /// Takes mean and standard deviation of the weighted density; `accuracy` is relative, `most` the
   /// largest number of wavenumbers.
-  TailInversion(FourierInversion::Transform phi, double s, double mean, double deviation,
+  TailInversion(const FourierInversion::Transform& phi, double s, double mean, double deviation,
                 double accuracy, int most);
 
   /// exp(s d) P(d)/m. O(wavenumbers).
