@@ -154,7 +154,7 @@ OptionsOf::~OptionsOf() {
 std::string options_text() {
   char* all = nullptr;
   check(PetscOptionsGetAll(nullptr, &all));
-  const std::string text = all;
+  std::string text = all;
   check(PetscFree(all));
   return text;
 }

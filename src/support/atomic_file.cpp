@@ -56,7 +56,7 @@ std::string followed(const std::string& target) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::string target, long tag)
+AtomicFile::AtomicFile(const std::string& target, long tag)
     : target_(followed(target)), part_(fmt::format("{}.part{}", target_, tag)) {}
 
 // MPI leaves a lock beside the part where a disk was full.

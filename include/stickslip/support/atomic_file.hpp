@@ -11,7 +11,7 @@ namespace stickslip {
 class AtomicFile {
  public:
   /// `tag` distinguishes runs that write the same target; ranks of one run share it.
-  AtomicFile(std::string target, long tag);
+  AtomicFile(const std::string& target, long tag);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
