@@ -86,8 +86,8 @@ inline constexpr double kTail = 0.02, kLeastTail = 1e-12;
 [[nodiscard]] double relative_error(const Result& result);
 /// Whether no value is NaN.
 [[nodiscard]] bool all_numbers(const Result& result);
-/// " at tilt = 5", of the first entry of an array of which nothing is known: it is no number, or has
-/// an infinite error. Empty without any.
+/// " at tilt = 5", of the first entry of an array of which nothing is known: it is no number, or
+/// has an infinite error. Empty without any.
 [[nodiscard]] std::string where_unknown(const Result& result);
 
 }  // namespace stickslip::quantities
