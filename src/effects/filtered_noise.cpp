@@ -71,7 +71,7 @@ const Effect kFilteredNoise{
                        "intensity D of the white noise that -noise filtered passes on: half the "
                        "integral of its covariance, pi times its two-sided spectrum per angular "
                        "frequency. X has the variance D w (1 + 4 zeta^2)/(2 zeta)",
-                       "or give -noise_deviation in its place",
+                       fmt::format("or give -{} in its place", kDeviation),
                        {.symbol = "D", .label = "intensity of the ground"}),
           true},
          {deviation_option()},

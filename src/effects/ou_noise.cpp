@@ -37,12 +37,13 @@ void refuse_step(Given& given, const std::string& why, const std::string& steps_
 
 void refuse_coarse_steps(Given& given, const model::Scene& scene, double sigma) {
   const double largest = std::sqrt(2) * sigma;
-  refuse_step(given,
-              fmt::format("leaves no noise level besides 0: {} = {:g} must be at most 2",
-                          scene.noise.deviation ? "(delta/noise_deviation)^2" : "tau delta^2",
-                          std::pow(scene.delta / sigma, 2)),
-              fmt::format("take at least {:.0f}", std::ceil(scene.friction.mu_s / largest)),
-              fmt::format("take -delta at most {:g}", largest));
+  refuse_step(
+      given,
+      fmt::format("leaves no noise level besides 0: {} = {:g} must be at most 2",
+                  scene.noise.deviation ? fmt::format("(delta/{})^2", kDeviation) : "tau delta^2",
+                  std::pow(scene.delta / sigma, 2)),
+      fmt::format("take at least {:.0f}", std::ceil(scene.friction.mu_s / largest)),
+      fmt::format("take -delta at most {:g}", largest));
 }
 
 bool check_levels(Given& given, model::Scene& scene) {
@@ -72,7 +73,8 @@ bool check_levels(Given& given, model::Scene& scene) {
     given.refuse(
         kLevels,
         fmt::format("gives {} = {:g} with L_X = N delta, but jump probabilities need at most 2",
-                    scene.noise.deviation ? "delta L_X/noise_deviation^2" : "tau delta L_X",
+                    scene.noise.deviation ? fmt::format("delta L_X/{}^2", kDeviation)
+                                          : "tau delta L_X",
                     ratio * levels),
         fmt::format("take at most {}, or full", full));
     return false;
@@ -87,7 +89,7 @@ model::Parameters ou_values(const model::Scene& scene) {
 }
 
 std::string stronger_ou(const model::Scene& scene) {
-  return scene.noise.deviation ? "a larger -noise_deviation or a smaller -delta"
+  return scene.noise.deviation ? fmt::format("a larger -{} or a smaller -delta", kDeviation)
                                : "a smaller -tau or -delta";
 }
 
@@ -131,6 +133,8 @@ const Effect kOrnsteinUhlenbeck{
     .sentence = "the chain of the paper, which tends to the Ornstein-Uhlenbeck process as -delta "
                 "-> 0",
     .others = {"gaussian", "ornstein_uhlenbeck"},
+    .explained = {"white", "white_noise"},
+    .page = "-study tau in docs/white_noise.md",
     .parameters =
         {{tau_option()},
          {delta_option()},

@@ -199,7 +199,9 @@ bool complete_lattice(Given& given, model::Scene& scene) {
                      "take a larger -delta, or a smaller -noise_radius");
 }
 
-std::string stronger_lattice(const model::Scene&) { return "a larger -noise_deviation"; }
+std::string stronger_lattice(const model::Scene&) {
+  return fmt::format("a larger -{}", kDeviation);
+}
 
 std::string lattice_note(const model::Scene& scene, const PlaneNoise& noise) {
   const auto lattice = made(noise, scene.delta, own_number(scene, kRadius));

@@ -23,7 +23,7 @@ struct PlaneNoise {
 /// The power spectral density of such a noise.
 [[nodiscard]] std::function<double(double)> spectrum_of(const PlaneNoise& noise);
 
-/// Reads the options of its own, which are numbers, -noise_deviation, if it is given, -delta and
+/// Reads the options of its own, which are numbers, the deviation, if it is given, -delta and
 /// -noise_radius of a lattice. Unless given, the step is about half the deviation, with mu_s
 /// halfway between two levels.
 void read_lattice(Given& given, model::Scene& scene, std::initializer_list<const char*> own,

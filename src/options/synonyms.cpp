@@ -78,13 +78,14 @@ std::span<const Synonyms> all_synonyms() {
       add(other.name.substr(1), "", split(other.synonyms, ','));
     }
     for (const auto* choice : effects::choices()) {
-      for (const auto* effect : choice->effects) add(choice->option, effect->word, effect->others);
+      for (const auto* effect : choice->effects) {
+        add(choice->option, effect->word, effect->others);
+        add(choice->option, effect->word, effect->explained, effect->page);
+      }
     }
     for (const auto* entry : catalogue::entries()) {
       add("quantities", entry->word, split(entry->synonyms, ','));
     }
-    add(effects::noises().option, "ou", {"white", "white_noise"},
-        "-study tau in docs/white_noise.md");
     add_words("route", catalogue::solution_methods());
     add_words("scheme", kSchemes);
     return rows;

@@ -54,6 +54,17 @@ std::vector<Option> own_options_of_quantities() {
   return options;
 }
 
+// Of quantities that have an accuracy of their own where -accuracy is not given.
+std::string usual_accuracies() {
+  std::string text;
+  for (const auto* entry : catalogue::entries()) {
+    if (entry->usual_accuracy == 0) continue;
+    text += fmt::format("{} {:g} with {}", text.empty() ? ". Unless given, it is" : ",",
+                        entry->usual_accuracy, entry->word);
+  }
+  return text;
+}
+
 std::vector<Option> quantity_options() {
   Words words;
   for (const auto* entry : catalogue::entries()) words.emplace_back(entry->word);
@@ -96,8 +107,8 @@ std::vector<Option> quantity_options() {
       Option::real(
           "accuracy", "", "1e-6", {1e-15, 0.1, true, true},
           "relative error wanted for every scalar, at the given -delta; the discretisation is "
-          "refined until the error estimates are below it. Unless given, it is 0.01 with "
-          "displacement_distribution",
+          "refined until the error estimates are below it" +
+              usual_accuracies(),
           "six digits are -accuracy 1e-6; double precision allows down to about 1e-14, case by "
           "case")
           .called({"tol", "tolerance", "rtol", "precision", "eps", "error", "digits"}),

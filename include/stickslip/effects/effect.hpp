@@ -52,7 +52,9 @@ struct Effect {
   std::string_view word;
   /// What it is, for the help of its choice; of a drag law b(v), with the symbols of its options.
   std::string_view sentence;
-  std::vector<std::string> others = {};  ///< words that mean it elsewhere
+  std::vector<std::string> others = {};     ///< words that mean it elsewhere
+  std::vector<std::string> explained = {};  ///< words that mean what `page` says how to get by it
+  std::string page = {};
   std::vector<Parameter> parameters = {};
   /// Puts the values of its options, with all that it cannot do without, into a scene that holds
   /// friction coefficients and bias. Without this function they go into Scene::own.

@@ -80,7 +80,8 @@ struct Option {
     return option;
   }
   static Option real(const char* name, const char* unit, const char* initial, Range range,
-                     const char* sentence, const char* fix = kChosen, const Shown& shown = {}) {
+                     const std::string& sentence, const std::string& fix = kChosen,
+                     const Shown& shown = {}) {
     return {name, Kind::real, "number", unit, initial, range, {}, sentence, fix, shown};
   }
   static Option integer(const char* name, const char* initial, Range range, const char* sentence,
