@@ -69,7 +69,7 @@ void share_between_means(Changes& errors, const Results& results) {
 }
 
 void share_between_neighbours(std::vector<double>& errors, const Result& result) {
-  if (result.is_scalar() || result.abscissa_name == "mode") return;
+  if (result.is_scalar() || quantities::over_modes(result)) return;
   const std::vector<double> own = errors;
   const int count = static_cast<int>(own.size());
   for (int e = 0; e < count; ++e) {

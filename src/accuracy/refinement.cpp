@@ -237,9 +237,10 @@ class Refiner {
                            key, quantities::where_unknown(limiting), least, looser);
     }
     given_up_.insert(key);
+    if (!over_modes(limiting)) return;
     // Rates and frequencies are of the same modes.
     for (const auto& r : results) {
-      if (limiting.abscissa_name == "mode" && r.abscissa_name == "mode") given_up_.insert(r.key);
+      if (over_modes(r)) given_up_.insert(r.key);
     }
   }
 
@@ -247,7 +248,7 @@ class Refiner {
     outcome_.reached = given_up_.empty();
     outcome_.shortfall = limit_;
     for (auto& r : outcome_.results) {
-      if (r.abscissa_name == "mode" && given_up_.contains(r.key)) doubt_without_digit(kOneDigit, r);
+      if (over_modes(r) && given_up_.contains(r.key)) doubt_without_digit(kOneDigit, r);
     }
     check_truncation();
     check_partial();

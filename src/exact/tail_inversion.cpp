@@ -27,11 +27,11 @@ TailInversion::TailInversion(const FourierInversion::Transform& phi, double s, d
     : s_(s), step_(0.6 / deviation) {
   for (bool open = true; open;) {
     sample(phi);
-    const Value here{sum(mean, false, 1, 1), accuracy * std::abs(sum(mean, false, 1, 1))};
+    const double here = sum(mean, false, 1, 1);
     // What phi leaves open is no matter of step and range.
-    const double enough = std::max(here.error, doubt(mean, false));
-    const bool coarse = !(aliased(mean, false, here.value) <= enough),
-               cut = !(std::abs(here.value - sum(mean, false, 1, kShorter)) <= enough);
+    const double enough = std::max(accuracy * std::abs(here), doubt(mean, false));
+    const bool coarse = !(aliased(mean, false, here) <= enough),
+               cut = !(std::abs(here - sum(mean, false, 1, kShorter)) <= enough);
     open = (coarse || cut) && count_ < most;
     if (open && coarse) step_ /= 2;
     if (open) count_ = coarse ? 2 * count_ : count_ + count_ / 2;

@@ -120,13 +120,10 @@ class Distribution {
 
   [[nodiscard]] Uncertain density(double d) {
     if (!inversion_) return {};
-    const double at_most = cdf(d).value;
-    for (const int side : {-1, 1}) {
-      const bool rare = (side > 0 ? 1 - at_most : at_most) < kTail;
-      if (rare && resolves_tails()) {
-        const bool mirrored = even_ && side > 0;
-        return tail(mirrored ? -1 : side).density(mirrored ? -d : d);
-      }
+    if (resolves_tails()) {
+      const double at_most = cdf(d).value;
+      if (at_most < kTail) return tail(-1).density(d);
+      if (1 - at_most < kTail) return even_ ? tail(-1).density(-d) : tail(1).density(d);
     }
     const auto found = inversion_->density(d - centre_);
     return {found.value, found.error};
@@ -157,11 +154,11 @@ class Distribution {
   // paths do not reach as far out.
   [[nodiscard]] Uncertain quantile(double p) {
     if (even_ && p == 0.5) return {0, 0};
-    const double value = inverse(p), doubt = cdf(value).error;
-    const bool atom = std::ranges::find(atoms_, value, &Atom::at) != atoms_.end();
     const auto tails = tails_for(p);
-    const Uncertain at_most = below(value, true, tails);
-    const bool reached = atom || std::abs(at_most.value - p) <= at_most.error + kRootFound * p;
+    const double value = inverse(p);
+    const auto [at_most, doubt] = below(value, true, tails);
+    const bool atom = std::ranges::find(atoms_, value, &Atom::at) != atoms_.end();
+    const bool reached = atom || std::abs(at_most - p) <= doubt + kRootFound * p;
     if (!reached || (tails != Tails::none && doubt >= std::min(p, 1 - p))) {
       return {value, kInfinity};
     }

@@ -108,9 +108,10 @@ double DisplacementTail::end(double p) {
 int DisplacementTail::evaluations() const {
   int all = 0;
   for (const Weight& weight : weights_) {
-    all += 2 + (weight.inversion ? weight.inversion->evaluations() : 0);
+    if (weight.model) all += 2;
+    if (weight.inversion) all += weight.inversion->evaluations();
   }
-  return all - 2;
+  return all;
 }
 
 }  // namespace stickslip::quantities

@@ -17,7 +17,7 @@ struct Atom {
 };
 
 /// The distribution of x(t) on one side of its mean, without atoms, with relative errors, down to
-/// probabilities of 1e-14: by inversion with paths weighted with exp(s x). Weights that rise by 1.5
+/// probabilities of 1e-14: by inversion with paths weighted with exp(s x). Weights that rise by 1.2
 /// in units of the deviation, one after the other, have their means further and further out. The
 /// two whose means are next to d both give P, and their difference is part of the error. A weight
 /// costs a dozen wavenumbers, and some 12 more where it is used.

@@ -84,6 +84,10 @@ inline constexpr double kTail = 0.02, kLeastTail = 1e-12;
 /// Largest error relative to the size of the values; infinite where one is not a number, unless the
 /// result is partial.
 [[nodiscard]] double relative_error(const Result& result);
+/// Whether its entries are of relaxation modes.
+[[nodiscard]] inline bool over_modes(const Result& result) {
+  return result.abscissa_name == "mode";
+}
 /// Whether no value is NaN.
 [[nodiscard]] bool all_numbers(const Result& result);
 /// " at tilt = 5", of the first entry of an array of which nothing is known: it is no number, or
