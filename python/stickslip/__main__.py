@@ -8,7 +8,7 @@ import pathlib
 import re
 import sys
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -148,62 +148,57 @@ def explore_scene(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def write_levels(arguments: argparse.Namespace) -> int:
-    """Reads a record and writes its levels, or its chain; returns the exit status."""
-    try:
-        from . import noise
-    except ImportError as problem:
-        print(problem, file=sys.stderr)
-        return 1
-    try:
-        record = _record_of(arguments)
-        print(record)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # the chain prints them
-            if arguments.filtered:
-                fit = noise.filtered_of(record)
-                print(fit, " ".join(f"-{name} {value}" for name, value in fit.options.items()), sep="\n")
-                return 0
-            chain = noise.narrow_band_of(record) if arguments.narrow_band else noise.record(
-                record, arguments.levels, mu_s=arguments.mu_s, jumps=arguments.jumps, match_time=arguments.match_time)
-        print(chain)
-        states, rates, levels = (f"{arguments.file.stem}_{what}.csv" for what in ("states", "rates", "levels"))
-        if chain.neighbours_only:
-            chain.save(levels)
-            print(f"-noise file -noise_file {levels}")
-        else:
-            chain.save(states, rates)
-            print(f"-noise chain -noise_states {states} -noise_rates {rates}")
-        if arguments.picture:
-            chain.plot().savefig(arguments.picture)
-            print(arguments.picture)
-    except (ValueError, OSError) as problem:
-        print(f"stickslip: {problem}", file=sys.stderr)
-        return 2
-    except ImportError as problem:
-        print(problem, file=sys.stderr)
-        return 1
-    return 0
+def write_of_record(write: "Callable[[argparse.Namespace, Record], None]") -> Callable[[argparse.Namespace], int]:
+    """A command that writes something of a record, with its messages and exit status."""
+    def act(arguments: argparse.Namespace) -> int:
+        try:
+            write(arguments, _record_of(arguments))
+        except (ValueError, OSError) as problem:
+            print(f"stickslip: {problem}", file=sys.stderr)
+            return 2
+        except ImportError as problem:
+            print(problem, file=sys.stderr)
+            return 1
+        return 0
+    return act
 
 
-def write_force(arguments: argparse.Namespace) -> int:
-    """Reads a record and writes the file of -force_file; returns the exit status."""
-    try:
-        record = _record_of(arguments)
-        place = arguments.output or pathlib.Path(f"{arguments.file.stem}_force.csv")
-        if len(record.gaps):
-            longest = (record.gaps[:, 1] - record.gaps[:, 0]).max()
-            raise ValueError(f"{arguments.file}: samples are missing in {len(record.gaps)} gaps; --fill {longest:g} joins "
-                             "them by straight lines, --between takes a part without them")
-        record.save(place)
-    except (ValueError, OSError) as problem:
-        print(f"stickslip: {problem}", file=sys.stderr)
-        return 2
-    except ImportError as problem:
-        print(problem, file=sys.stderr)
-        return 1
+@write_of_record
+def write_levels(arguments: argparse.Namespace, record: "Record") -> None:
+    """Writes the levels of a record, or its chain."""
+    from . import noise
+    print(record)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # the chain prints them
+        if arguments.filtered:
+            fit = noise.filtered_of(record)
+            print(fit, " ".join(f"-{name} {value}" for name, value in fit.options.items()), sep="\n")
+            return
+        chain = noise.narrow_band_of(record) if arguments.narrow_band else noise.record(
+            record, arguments.levels, mu_s=arguments.mu_s, jumps=arguments.jumps, match_time=arguments.match_time)
+    print(chain)
+    states, rates, levels = (f"{arguments.file.stem}_{what}.csv" for what in ("states", "rates", "levels"))
+    if chain.neighbours_only:
+        chain.save(levels)
+        print(f"-noise file -noise_file {levels}")
+    else:
+        chain.save(states, rates)
+        print(f"-noise chain -noise_states {states} -noise_rates {rates}")
+    if arguments.picture:
+        chain.plot().savefig(arguments.picture)
+        print(arguments.picture)
+
+
+@write_of_record
+def write_force(arguments: argparse.Namespace, record: "Record") -> None:
+    """Writes the file of -force_file."""
+    place = arguments.output or pathlib.Path(f"{arguments.file.stem}_force.csv")
+    if len(record.gaps):
+        begin, end = record.longest_gap
+        raise ValueError(f"{arguments.file}: samples are missing in {len(record.gaps)} gaps; --fill "
+                         f"{end - begin:g} joins them by straight lines, --between takes a part without them")
+    record.save(place)
     print(record, f"-quantities given_force -force_file {place}", sep="\n")
-    return 0
 
 
 def plot_files(arguments: argparse.Namespace) -> int:

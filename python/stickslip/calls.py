@@ -12,8 +12,8 @@ from typing import Any
 
 from . import results, sweeps
 from .needed import needed
-from .program import (DONE, NO_MEMORY, SHORT, AccuracyWarning, BadInput, OutOfMemory, ProgramError, Unsolved, execute, find_program,
-                      words_of)
+from .program import (DONE, NO_MEMORY, SHORT, AccuracyWarning, BadInput, OutOfMemory, ProgramError, Unsolved, execute,
+                      find_program, words_of)
 from .records import Record, warn_of_gravity
 from .reference import declared, with_options
 from .results import Results
@@ -249,12 +249,12 @@ def _force_of(options: Mapping[str, Any], folder: pathlib.Path) -> pathlib.Path:
     """Writes a `Record` for -force_file, under the name of its source, which pictures show; refuses gaps as the program
     does, which knows neither `resampled` nor `between`."""
     record, scale = options["force_file"], options.get("force_scale", 1)
-    gaps = record.gaps
-    if record.even and 0 < len(gaps) <= len(record.time) / 10:
-        longest = (gaps[:, 1] - gaps[:, 0]).max()
-        raise BadInput(f"force_file: samples are missing in {len(gaps)} gaps, the longest of {longest:g} s from "
-                       f"{gaps[(gaps[:, 1] - gaps[:, 0]).argmax()][0]:g} s on; record.resampled({record.step:g}, "
-                       f"across={longest:g}) joins them by straight lines, record.between() takes a part without them")
+    count = len(record.gaps)
+    if record.even and 0 < count <= len(record.time) / 10:
+        begin, end = record.longest_gap
+        raise BadInput(f"force_file: samples are missing in {count} gaps, the longest of {end - begin:g} s from {begin:g} s "
+                       f"on; record.resampled({record.step:g}, across={end - begin:g}) joins them by straight lines, "
+                       "record.between() takes a part without them")
     if isinstance(scale, int | float):
         warn_of_gravity(record, scale, "force_scale", 7)
     place = folder / "record"  # apart from other files, whose names it may have

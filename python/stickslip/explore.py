@@ -242,9 +242,7 @@ class Explorer:
         for other, value in carried(option, friction).items():
             self._place(other, value)
             self.moved.add(other)
-        with self.regions.together():
-            self._show_knobs()
-            self.ask()
+        self._follow()
 
     def choose(self, choice: str, word: str) -> None:
         """A choice was made; what the user has not moved starts with values that work."""
@@ -256,9 +254,7 @@ class Explorer:
                 self._place(option, value)
                 if not self.knobs[option].choices:  # a word does not have it, so that a file could
                     self.moved.add(option)
-        with self.regions.together():
-            self._show_knobs()
-            self.ask()
+        self._follow()
 
     def restart(self) -> None:
         """Set all sliders and choices to where they began."""
@@ -268,6 +264,10 @@ class Explorer:
         for option, slider in self.sliders.items():
             self._place(option, self.knobs[option].at(slider.valinit))
         self.moved.clear()
+        self._follow()
+
+    def _follow(self) -> None:
+        """Show the knobs as they are now, and have the model computed."""
         with self.regions.together():
             self._show_knobs()
             self.ask()

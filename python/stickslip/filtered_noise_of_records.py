@@ -105,7 +105,7 @@ def filtered_of(record: Record, *, longest: float | None = None) -> Filtered:
 
 def _closest(memory: Memory) -> list[float]:
     """Deviation, frequency and damping ratio, the best of several starts."""
-    first = memory.time[max(int(memory.rho.argmin()), 1)]
+    first = memory.half_swing
     found = [optimize.least_squares(lambda p: autocorrelation(memory.time, *p) - memory.rho, (2 / first, damping),
                                     bounds=((1e-3 / first, 1e-3), (1e3 / first, 0.999)), x_scale=(1 / first, 1))
              for damping in STARTS]

@@ -1,7 +1,6 @@
 """Parameters of the model from measurements: maximum likelihood, which for values with errors is least squares."""
 
 import dataclasses
-import difflib
 import math
 import warnings
 from collections.abc import Mapping, Sequence
@@ -13,7 +12,7 @@ from .likelihood import FAR, MOVED, Axis, Search
 from .measurements import DataSet, data_sets
 from .needed import needed
 from .reference import declared, with_options
-from .results import Results
+from .results import Results, closest
 
 if TYPE_CHECKING:
     import numpy
@@ -297,10 +296,10 @@ def _axes(free: Sequence[str], start: Mapping[str, float], bounds: Mapping[str, 
         raise ValueError(f"free = {names}: must name parameters, each once")
     for what, given in (("free", names), ("start", start), ("bounds", bounds)):
         for name in given:
-            near = difflib.get_close_matches(name, parameters, 1)
             if name not in parameters:
+                near = closest(name, parameters)
                 raise ValueError(f"{what}: {name} is no parameter of the model that is a number; "
-                                 + (f"did you mean {near[0]}?" if near else "docs/options.md lists them"))
+                                 + (f"did you mean {near}?" if near else "docs/options.md lists them"))
             if name not in names:
                 raise ValueError(f"{what}: {name} is not free; put it into free, or give {name}=... as an option")
     axes = []

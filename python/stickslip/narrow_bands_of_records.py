@@ -96,10 +96,9 @@ def narrow_band_of(record: Record, delta: float | None = None, *, longest: float
 def _fitted(record: Record, whole: Memory) -> Band:
     """The band whose autocorrelation is closest to that of the record, and what it is without each of the blocks."""
     def best(memory: Memory) -> list[float]:
-        first = memory.time[max(int(memory.rho.argmin()), 1)]
         try:
             found, _ = optimize.curve_fit(lambda t, gamma, omega: numpy.exp(-gamma * t) * numpy.cos(omega * t), memory.time,
-                                          memory.rho, (3 / memory.time[-1], math.pi / first))
+                                          memory.rho, (3 / memory.time[-1], math.pi / memory.half_swing))
         except RuntimeError:
             raise ValueError("record: no narrow band comes close to its autocorrelation; take a longer record") from None
         return [math.sqrt(memory.variance), *abs(found).tolist()]

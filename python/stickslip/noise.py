@@ -11,4 +11,5 @@ from .chains_of_records import Fit, record
 from .filtered_noise_of_records import Filtered, filtered_of
 from .narrow_bands_of_records import Band, narrow_band_of
 
-__all__ = ["Band", "Chain", "Filtered", "Fit", "Meant", "filtered_of", "narrow_band", "narrow_band_of", "ou", "periodic", "record", "telegraph"]
+__all__ = ["Band", "Chain", "Filtered", "Fit", "Meant", "filtered_of", "narrow_band", "narrow_band_of", "ou", "periodic",
+           "record", "telegraph"]

@@ -35,6 +35,11 @@ class Memory:
     def time(self) -> "Array":
         return self.step * numpy.arange(len(self.rho))
 
+    @property
+    def half_swing(self) -> float:
+        """The time of the least autocorrelation, which is half a period where it swings."""
+        return float(self.time[max(int(self.rho.argmin()), 1)])
+
     def integral(self, f: "Array") -> float:
         """Of values at `time`, by the trapezoidal rule."""
         return float(self.step * (f.sum() - (f[0] + f[-1]) / 2))

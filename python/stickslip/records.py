@@ -97,6 +97,12 @@ class Record:
         return numpy.column_stack([self.time[at], self.time[at + 1]])
 
     @property
+    def longest_gap(self) -> tuple[float, float]:
+        """Ends of the longest of `gaps`, of which there is at least one [s]."""
+        begin, end = max(self.gaps.tolist(), key=lambda gap: gap[1] - gap[0])
+        return begin, end
+
+    @property
     def even(self) -> bool:
         """Whether all steps but the gaps agree with `step` to 1 %, or to the digits of the times."""
         steps = numpy.diff(self.time)
@@ -299,9 +305,8 @@ def _findings(record: Record) -> list[str]:
     """What looks wrong with a record, in sentences."""
     found = []
     if len(record.gaps):
-        lengths = numpy.diff(record.gaps)[:, 0]
-        longest = record.gaps[lengths.argmax()]
-        found.append(f"{len(lengths)} gaps of {lengths.sum():g} s in all, the longest from {longest[0]:g} to {longest[1]:g} s")
+        lengths, (begin, end) = numpy.diff(record.gaps), record.longest_gap
+        found.append(f"{len(lengths)} gaps of {lengths.sum():g} s in all, the longest from {begin:g} to {end:g} s")
     if not record.even:
         steps = numpy.diff(record.time)
         found.append(f"steps are uneven, from {steps.min():g} to {steps.max():g} s: resampled() makes them even")

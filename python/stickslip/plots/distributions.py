@@ -6,13 +6,12 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from ..results import Result, Results
-from .style import COLOURS, Figure, curve, numpy, styled, title
+from .style import COLOURS, DISPLACEMENT, Figure, curve, numpy, styled, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 DISTRIBUTIONS = ("displacement_density", "displacement_cdf", "displacement_quantile")
-DISTANCE = "displacement $d$  [length]"
 
 
 def times(item: Results, key: str) -> list[str]:
@@ -49,9 +48,9 @@ def displacements(items: Sequence[Results]) -> "Figure":
                 curve(axes[0], side, n)
         _quantiles(axes[-1], item, time, n, label)
     if dense:
-        axes[0].set(xlabel=DISTANCE, ylabel="density  [1/length]", ylim=(0, None))
+        axes[0].set(xlabel=DISPLACEMENT, ylabel="density  [1/length]", ylim=(0, None))
         _atoms(axes[0], curves)
-    axes[-1].set(xlabel=DISTANCE, ylabel=r"$P(x(t) \leq d)$", ylim=(-0.03, 1.03))
+    axes[-1].set(xlabel=DISPLACEMENT, ylabel=r"$P(x(t) \leq d)$", ylim=(-0.03, 1.03))
     axes[-1].legend(fontsize=8)
     if len(items) == 1:
         figure.suptitle(title(items[0]), fontsize=10)

@@ -28,7 +28,9 @@ def _edges(points: "numpy.ndarray") -> "numpy.ndarray":
 
 
 def cells_around(levels: "numpy.ndarray") -> "numpy.ndarray":
-    """Ends of the cells around noise levels, the outer ones as wide to both sides."""
+    """Ends of the cells around rising values, the outer ones as wide to both sides; 1 is the width of one alone."""
+    if len(levels) == 1:
+        return levels[0] + numpy.array([-0.5, 0.5])
     ends = _edges(levels)
     ends[[0, -1]] = 2 * levels[[0, -1]] - ends[[1, -2]]
     return ends

@@ -1,13 +1,12 @@
 """What -compare found, the convergence that a study found, and error against time of every method."""
 
-import copy
 import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..results import Results
 from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, WORDS, Figure, Line2D, Patch, matplotlib, numpy, styled, title,
-                    units)
+                    units, without)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -162,10 +161,8 @@ def convergence(items: Sequence[Results]) -> "Figure":
         axes.set(xscale="log", xlabel=CONVERGENCE[over], ylabel=WORDS.get(key, key) + units(unit_of(results, key)))
         if axes.get_legend_handles_labels()[1]:
             axes.legend(fontsize=8)
-    fixed = copy.copy(results)
-    fixed.options = {name: text for name, text in results.options.items()
-                     if name != over and (over, name) != ("tau", "delta")}  # which is a share of the deviation
-    figure.suptitle(title(fixed), fontsize=10)
+    varied = ("tau", "delta") if over == "tau" else (over,)  # delta is a share of the deviation there
+    figure.suptitle(title(without(results, varied)), fontsize=10)
     return figure
 
 

@@ -1,9 +1,10 @@
 """What the pictures share: colours, curves with their errors, and the words for results and parameters."""
 
+import copy
 import functools
 import pathlib
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..needed import needed
@@ -32,6 +33,7 @@ ABSCISSAE = {"omega": r"angular frequency $\omega$  [1/time]", "time": "time $t$
              "tilt": "tilt $s$  [1/length]", "wavenumber": "wavenumber $k$  [1/length]",
              "tilted_velocity": "mean velocity $u$  [velocity]",
              "probability": "probability $p$"}
+DISPLACEMENT = "displacement $d$  [length]"
 WORDS = {"P_stick": r"probability of sticking $P_\mathrm{stick}$", "P_slide": r"probability of sliding $P_\mathrm{slide}$",
          "mean_stick": "mean duration of sticking", "mean_slide": "mean duration of sliding",
          "mean_excursion": "mean duration of an excursion",
@@ -102,7 +104,7 @@ def over(result: Result) -> str:
     """The label of what an array depends on; displacements have a sign, paths have none."""
     name = result.abscissa_name
     if name == "distance" and result.key.startswith("displacement"):
-        return "displacement $d$  [length]"
+        return DISPLACEMENT
     return ABSCISSAE.get(name, name)
 
 
@@ -219,6 +221,13 @@ def drag(results: Results) -> str:
             text = re.sub(rf"\s*[-+]?\s*\b{plain}\b \S+", "", text) if float(value) == 0 else re.sub(
                 rf"\b{plain}\b ?", "" if float(value) == 1 else f"{float(value):g} ", text)
     return re.sub(r"^\s*- ", "-", text) or "0"
+
+
+def without(results: Results, names: Collection[str]) -> Results:
+    """The same results, as if the options of these names had not been given, for a title that leaves them out."""
+    other = copy.copy(results)
+    other.options = {name: text for name, text in results.options.items() if name not in names}
+    return other
 
 
 def title(results: Results) -> str:

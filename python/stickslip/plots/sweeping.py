@@ -1,14 +1,14 @@
 """Sweeps: each result, and drift against the bias."""
 
-import copy
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..results import Result, Results
 from ..sweeps import Sweep
 from . import style
+from .fields import cells_around
 from .style import (COLOURS, MARKERS, STYLES, WORDS, Figure, bars, decades, known, numpy, on_axis, over, scale,
-                    styled, symbol, title, units)
+                    styled, symbol, title, units, without)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -118,11 +118,7 @@ def curve(axes: "Axes", x: "numpy.ndarray", value: "numpy.ndarray", error: "nump
 
 def _edges(values: "numpy.ndarray") -> "numpy.ndarray":
     """Edges of cells around rising values, halfway between them on their axis."""
-    logarithmic = scale(values) == "log"
-    at = numpy.log(values) if logarithmic else values
-    steps = numpy.diff(at) if len(at) > 1 else numpy.ones(1)
-    edges = numpy.concatenate([[at[0] - steps[0] / 2], (at[1:] + at[:-1]) / 2, [at[-1] + steps[-1] / 2]])
-    return numpy.exp(edges) if logarithmic else edges
+    return numpy.exp(cells_around(numpy.log(values))) if scale(values) == "log" else cells_around(values)
 
 
 def _map(figure: "Figure", axes: "Axes", sweep: Sweep, result: Result, value: "numpy.ndarray",
@@ -150,11 +146,9 @@ def _map(figure: "Figure", axes: "Axes", sweep: Sweep, result: Result, value: "n
 def _title(axes: "Axes", sweep: Sweep, held: Sequence[str], shown: int = 0, count: int = 0) -> None:
     """The parameters that were not swept; in another line the first values of those that the picture holds, and how many
     curves of all are shown."""
-    fixed = copy.copy(sweep)
-    fixed.options = {name: text for name, text in sweep.options.items() if name not in sweep.dims}
     first = [f"{symbol(name)} = {sweep.coords[name][0]:g}, the first of {len(sweep.coords[name])} values" for name in held]
     picked = [f"{shown} of {count} values"] * (shown < count)
-    axes.set_title("\n".join(filter(None, [title(fixed), ", ".join([*first, *picked])])), fontsize=9)
+    axes.set_title("\n".join(filter(None, [title(without(sweep, sweep.dims)), ", ".join([*first, *picked])])), fontsize=9)
 
 
 def _label(sweep: Sweep, name: str) -> str:
