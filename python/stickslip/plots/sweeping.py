@@ -127,16 +127,17 @@ def _map(figure: "Figure", axes: "Axes", sweep: Sweep, result: Result, value: "n
     y, x = sweep.coords[down], sweep.coords[across]
     rows, columns = numpy.argsort(y), numpy.argsort(x)
     ordered = value[rows][:, columns]
+    # The scales come first: labels of contours stand where there is room on the axes as they are.
+    axes.set(xscale=scale(x), yscale=scale(y), xlabel=_label(sweep, across), ylabel=_label(sweep, down))
     axes.set_facecolor("0.8")  # of points without a result
     mesh = axes.pcolormesh(_edges(x[columns]), _edges(y[rows]), ordered, cmap="cividis")
     known = numpy.ma.masked_invalid(ordered)
-    if len(columns) > FEW and known.count() > FEW and numpy.ptp(known) > 0:
+    if len(columns) > FEW and known.count() > FEW and known.max() > known.min():  # numpy.ptp of NumPy 2 ignores masks
         lines = axes.contour(x[columns], y[rows], known, colors="white", linewidths=0.8)
         axes.clabel(lines, fontsize=7)
     short = numpy.argwhere(~reached)
     axes.plot(x[short[:, 1]], y[short[:, 0]], linestyle="", marker="x", color="white")
     figure.colorbar(mesh, label=_label(sweep, result.key))
-    axes.set(xscale=scale(x), yscale=scale(y), xlabel=_label(sweep, across), ylabel=_label(sweep, down))
     for axis, values in ((axes.xaxis, x), (axes.yaxis, y)):
         if scale(values) == "log":
             decades(axis)
