@@ -34,14 +34,16 @@ constexpr int kFirstPoints = 8;
 // Errors are about 10^-d at degree d; those of displacements tenfold smaller, those of the density
 // of sticking times at 0+ tenfold larger, of the tail of a spectrum and of densities of durations a
 // hundredfold. (On coarser elements reduced models search long for waves that are not resolved.)
-// Densities of path lengths lose a digit in one and a half degrees. The catalogue has the numbers.
-int starting_degree(const cases::Question& question) {
+// The catalogue has the numbers. On the elements for path lengths a degree is worth one digit and a
+// half, but to the densities of these it is worth less than one.
+int starting_degree(const cases::Question& question, bool lengths) {
   const double digits = -std::log10(question.accuracy);
   double highest = 0;
   for (const auto* entry : catalogue::entries()) {
     if (!question.wants(entry->quantity)) continue;
-    highest = std::max(highest, entry->degrees_per_digit * digits + entry->degrees_besides);
+    highest = std::max(highest, digits + entry->degrees_besides);
   }
+  if (lengths) highest = std::max(highest / 1.5, 1.2 * digits + 1.2);
   return std::clamp(static_cast<int>(std::ceil(highest)), kLowestDegree, kHighestDegree);
 }
 
@@ -70,7 +72,7 @@ RefinementSequence::RefinementSequence(const cases::Case& given)
       method_(given.method),
       accuracy_(given.question.accuracy),
       needs_(quantities::plan_of(given).needs) {
-  first_degree_ = method_.degree.value_or(starting_degree(given.question));
+  first_degree_ = method_.degree.value_or(starting_degree(given.question, needs_.rates.lengths));
   table_ = given.scene.meant().noise.table != nullptr;
   integrands_ = integrands_of(given.question, needs_.phase);
   const bool full_grid = given.method.row().full_grid;

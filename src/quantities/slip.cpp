@@ -117,12 +117,14 @@ void slip_tasks(Planner& planner) {
       "moments of slips", {{planner.system(), planner.symmetric() ? 3 : 4, 0}}, find_moments};
   if (planner.symmetric()) moments.uses.push_back({{0, Symmetry::odd}, 1, 0});
   planner.add(std::move(moments));
+  const auto& question = planner.question();
+  planner.needs().rates.lengths = !question.distance.empty() || !question.inverse_distance.empty();
   const auto found =
       planner.collect<Uncertain>([](const Computation& computation, const auto& all) {
         append_array(array(catalogue::kTransformSlip, computation.question().inverse_distance), all,
                      computation.results());
       });
-  for (double s : planner.question().inverse_distance) {
+  for (double s : question.inverse_distance) {
     auto system = planner.system(s);
     system.clock = Clock::path_length;
     planner.add({fmt::format("transform of slips at s = {:g}", s),
@@ -132,7 +134,7 @@ void slip_tasks(Planner& planner) {
                        slip_transform(computation.systems, computation.distribution(), s));
                  }});
   }
-  if (planner.question().distance.empty()) return;
+  if (question.distance.empty()) return;
   resolve_lengths(planner);
   planner.add_adaptive("distribution of slips", 6, 80, find_distribution);
 }

@@ -342,14 +342,19 @@ TEST_CASE(
     return accuracy::RefinementSequence(given).refinement_level(1).degree;
   };
   // Errors are 10^-d at degree d, and the estimate is that of a degree less; ten times that for
-  // densities at 0+, a hundred times for densities of durations; those of path lengths fall slower.
+  // densities at 0+, a hundred times for densities of durations; those of path lengths fall slower,
+  // on elements on which others fall faster.
   CHECK(first(1e-6, catalogue::Quantity::sticking) == 7);
   CHECK(first(1e-6, catalogue::Quantity::entry_law) == 8);
   CHECK(first(1e-6, catalogue::Quantity::duration_density) == 9);
-  CHECK(first(1e-6, catalogue::Quantity::slip) == 11);
+  CHECK(first(1e-6, catalogue::Quantity::slip) == 7);
   CHECK(first(1e-6, catalogue::Quantity::displacement) == 6);
+  given.question.distance = {1};
+  CHECK(first(1e-6, catalogue::Quantity::slip) == 9);
+  CHECK(first(1e-2, catalogue::Quantity::slip) == 5);
   given.question.quantities = {catalogue::Quantity::slip, catalogue::Quantity::sticking};
-  CHECK(accuracy::RefinementSequence(given).refinement_level(1).degree == 11);
+  CHECK(accuracy::RefinementSequence(given).refinement_level(1).degree == 5);
+  given.question.distance.clear();
   CHECK(first(3e-7, catalogue::Quantity::sticking) == 8);
   CHECK(first(0.1, catalogue::Quantity::sticking) == 5);
   CHECK(first(1e-30, catalogue::Quantity::sticking) == 19);

@@ -79,6 +79,22 @@ TEST_CASE("mesh: degrees fall by one in two layers towards v = 0, and only there
   CHECK(velocity::element_degrees(p, rule, 9) == std::vector(elements, 9));
 }
 
+TEST_CASE("mesh: elements for path lengths halve towards v = 0, degrees fall by one in three") {
+  const auto p = process(0.25, 1, 0.25, {1, 0});
+  auto rule = rule_to(7, 8);
+  rule.whole_tail = true;
+  rule.rates.lengths = true;
+  const auto ends = velocity::element_ends(p, rule);
+  for (int e = 1; e < 8; ++e) CHECK(ends[e] == Approx(ends[e + 1] / 2).epsilon(1e-14));
+  const auto degrees = velocity::element_degrees(p, rule, 9);
+  const std::vector graded(degrees.begin(), degrees.begin() + 8);
+  CHECK(graded == std::vector{7, 7, 8, 8, 8, 9, 9, 9});
+  rule.layers = 0;
+  const int fine = velocity::natural_layers(p, rule);
+  rule.rates.lengths = false;
+  CHECK(fine > 1.5 * velocity::natural_layers(p, rule));
+}
+
 // Without drag the density is exp(-mu_d v/D), D = 2/tau: a digit each ln(10) D/mu_d.
 TEST_CASE("mesh: degrees fall by a half for each digit that the density is below 1e-3") {
   const auto p = process(0.5, 1, 0.25, {0, 0});

@@ -112,8 +112,8 @@ struct Entry {
   std::string_view others = {};  ///< keys of other quantities that come with it, a comma list
   std::span<const Row* const> rows = {};
   /// The degree of elements at which error estimates meet an accuracy of 10^-n is expected to be
-  /// degrees_per_digit n + degrees_besides.
-  double degrees_per_digit = 1, degrees_besides = 1;
+  /// n + degrees_besides.
+  double degrees_besides = 1;
   /// Where -accuracy is not given; 0: that of the option. A digit of some costs an octave more.
   double usual_accuracy = 0;
   bool of_phases = false;  ///< about sticking and sliding phases: nothing where a body never sticks

@@ -65,8 +65,6 @@ inline constexpr Entry kSlip{.quantity = Quantity::slip,
                              .routes = {Route::excursion, Route::monte_carlo},
                              .options = "distance, inverse_distance",
                              .rows = kSlipRows,
-                             .degrees_per_digit = 1.5,
-                             .degrees_besides = 2,
                              .of_phases = true};
 
 }  // namespace stickslip::catalogue

@@ -10,10 +10,11 @@ namespace stickslip::velocity {
 
 /// How far the equations (z - L) u = f to be solved go.
 struct Rates {
-  double lambda = 0;  ///< largest real z [1/time]
-  double omega = 0;   ///< largest |Im z| [1/time]
-  double speed = 0;   ///< largest |v| of which first passages are asked for
-  double tilt = 0;    ///< largest |s| of equations for exp(s x(t)) [1/(velocity time)]
+  double lambda = 0;     ///< largest real z [1/time]
+  double omega = 0;      ///< largest |Im z| [1/time]
+  double speed = 0;      ///< largest |v| of which first passages are asked for
+  double tilt = 0;       ///< largest |s| of equations for exp(s x(t)) [1/(velocity time)]
+  bool lengths = false;  ///< whether functions of path lengths are asked for
 };
 
 /// Functions of |v| that are seen on the nodes of the elements, as the drag is.
@@ -25,7 +26,6 @@ struct Integrands {
 /// What fixes the elements. See mesh.cpp for the reasons behind the numbers.
 struct MeshRule {
   double v_max = 1;          ///< end of the velocity discretisation
-  double ratio = 0.3;        ///< quotient of neighbouring element ends near v = 0
   double decay = 8;          ///< largest drop of log-density over one element
   int layers = 0;            ///< elements of the graded part; 0: from smallest_scale
   int least_degree = 2;      ///< of an element where those elsewhere have at least this one
@@ -33,6 +33,11 @@ struct MeshRule {
   bool whole_tail = false;   ///< degrees do not fall with the density
   Rates rates;
   Integrands integrands;
+
+  /// Quotient of neighbouring element ends near v = 0.
+  [[nodiscard]] double ratio() const { return rates.lengths ? 0.5 : 0.3; }
+  /// Graded elements of one degree, the next ones towards v = 0 having one less.
+  [[nodiscard]] int elements_per_degree() const { return rates.lengths ? 3 : 2; }
 };
 
 /// Whether the noise leaves waves of the frequency omega [1/time] that graded elements do not
