@@ -8,6 +8,7 @@
 #include "stickslip/catalogue/duration_density_keys.hpp"
 #include "stickslip/catalogue/entry_law_keys.hpp"
 #include "stickslip/catalogue/laplace_keys.hpp"
+#include "stickslip/catalogue/phase_durations_keys.hpp"
 #include "stickslip/catalogue/sticking_keys.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"

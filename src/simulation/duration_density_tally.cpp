@@ -1,4 +1,5 @@
 #include "stickslip/catalogue/duration_density_keys.hpp"
+#include "stickslip/catalogue/phase_durations_keys.hpp"
 
 #include "stickslip/simulation/tally.hpp"
 

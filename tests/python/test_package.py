@@ -620,6 +620,7 @@ class Pictures(Case):
                 ("given_force", 3, {"quantities": "trajectory", "force_file": SOURCES / "options" / "given_force.csv"}),
                 ("spectra", 1, {"quantities": "spectrum", "omega": [0.1, 1]}),
                 ("durations", 2, {"quantities": "duration_density", "time": "0:1:5", "accuracy": 1e-2}),
+                ("durations", 2, {"quantities": "phase_durations", "time": [1, 2], "accuracy": 1e-2}),
                 ("slips", 4, {"quantities": "slip,peak", "distance": [1, 2], "velocity": [0.1, 0.2], "accuracy": 1e-2}),
                 ("slips", 2, {"quantities": "displacement", "time": [1, 2], "bias": 0.1}),
                 ("displacements", 3, {"quantities": "displacement_distribution", "distance": [-1, -0.5, 0.5, 1],
