@@ -374,7 +374,6 @@ class Knobs(Case):
         again = stickslip.run(**COARSE, options_file=self.folder / "explored.opts", quantities="sticking")
         self.assertEqual((again.scene["mu_d"], again.scene["mu_s_minus"]), (0.6, 1.5))
 
-
     def test_options_of_the_command_line_count_more_than_those_of_the_file(self):
         words = ["explore", "-mu_d", "0.3", "scene.opts", "-bias", "-0.2", "-plan", "--browser", "-drag", "none"]
         given = __main__.taken_options(words)
