@@ -230,6 +230,24 @@ class Newest(Case):
         self.assertLessEqual(len(asked), 4)
         self.assertEqual(asked[-1], 0.8)
 
+    def test_results_of_other_parameters_than_the_newest_are_not_shown(self):
+        go = threading.Event()
+        go.set()
+
+        def answer(cancel, **options):
+            go.wait()
+            raise BadInput(f"answer to {options['mu_d']}")
+
+        made = self.explorer(compute=answer)
+        self.addCleanup(go.set)
+        while made.solver.working:
+            time.sleep(0.005)
+        go.clear()
+        made.sliders["mu_d"].set_val(0.6)
+        self.assertFalse(made.poll())  # though the answer to 0.5 is there
+        go.set()
+        self.until(made, lambda: made.status.get_text() == "answer to 0.6")
+
     def test_curves_are_as_accurate_as_a_screen_shows(self):
         asked, last = {}, threading.Event()
 
