@@ -47,7 +47,8 @@ def main(words: Sequence[str] | None = None) -> int:
     plot.set_defaults(act=plot_files)
     explore = commands.add_parser("explore", description=EXPLORE)
     explore.add_argument("scene", nargs="?", type=pathlib.Path, metavar="SCENE.opts", help="options file to start from")
-    explore.add_argument("--accuracy", type=float, default=1e-4, help="of the program (default 1e-4)")
+    explore.add_argument("--accuracy", type=float, default=1e-4,
+                         help="of the program (default 1e-4); curves are computed to 1e-3 at best")
     explore.add_argument("--browser", action="store_true", help="a page in the browser instead of a window")
     explore.add_argument("--port", type=int, default=8988, help="of that page (default 8988)")
     explore.set_defaults(act=explore_scene)

@@ -349,7 +349,7 @@ def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = F
     file
         Options file to start from.
     accuracy
-        Of all runs.
+        Of all runs; of curves at best `newest.OF_CURVES`.
     browser
         A page of `port` in the browser instead of a window.
     given
