@@ -17,7 +17,7 @@ sys.path.insert(0, str(ROOT / "python"))
 import stickslip
 from sliding import MU_D, MU_S, sliding_operator
 from stickslip.plots.fields import FORCING, SLIDE, STICK
-from stickslip.plots.style import ABSCISSAE, COLOURS, MARKERS, STYLES, Figure, Line2D, Patch, numpy, saved, styled
+from stickslip.plots.style import ABSCISSAE, COLOURS, MARKERS, STYLES, Figure, numpy, saved, styled
 
 warnings.simplefilter("ignore", stickslip.AccuracyWarning)  # a discretisation fixed by hand is not refined
 WIDTH, LARGEST = 7.0, 160_000  # inches of every figure, so that all have letters of one size; bytes of a file

@@ -47,7 +47,8 @@ def main(words: Sequence[str] | None = None) -> int:
     plot.set_defaults(act=plot_files)
     explore = commands.add_parser("explore", description=EXPLORE)
     explore.add_argument("scene", nargs="?", type=pathlib.Path, metavar="SCENE.opts", help="options file to start from")
-    explore.add_argument("--accuracy", type=float, default=1e-4, help="of the program (default 1e-4)")
+    explore.add_argument("--accuracy", type=float, default=1e-4,
+                         help="of the program (default 1e-4); curves are computed to 1e-3 at best")
     explore.add_argument("--browser", action="store_true", help="a page in the browser instead of a window")
     explore.add_argument("--port", type=int, default=8988, help="of that page (default 8988)")
     explore.set_defaults(act=explore_scene)
@@ -56,7 +57,8 @@ def main(words: Sequence[str] | None = None) -> int:
     levels.add_argument("--levels", type=int, help="how many (default: the most of 15 to 5 that can be counted)")
     levels.add_argument("--mu-s", type=float, help="static friction, which then lies halfway between two levels")
     levels.add_argument("--jumps", choices=("neighbours", "any"), default="neighbours", help="where jumps lead")
-    levels.add_argument("--match-time", action="store_true", help="multiply all rates to match the correlation time")
+    levels.add_argument("--match-time", action=argparse.BooleanOptionalAction, help="multiply all rates by one number, with "
+                        "which the chain has the correlation time of the record (default: unless levels are all its values)")
     levels.add_argument("--narrow-band", action="store_true", help="a narrow band in the place of levels")
     levels.add_argument("--filtered", action="store_true", help="filtered noise (Kanai and Tajimi) in the place of levels")
     levels.add_argument("--picture", type=pathlib.Path, help="autocovariance and spectrum of chain and record")

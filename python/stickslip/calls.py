@@ -4,10 +4,11 @@ import csv
 import json
 import os
 import pathlib
+import sys
 import tempfile
 import threading
 import warnings
-from collections.abc import Iterator, Mapping, Set, Sized
+from collections.abc import Callable, Iterator, Mapping, Set, Sized
 from typing import Any
 
 from . import results, sweeps
@@ -31,7 +32,8 @@ FROM_ARRAYS = {
 
 @with_options
 def run(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = None, program: Path | None = None,
-        cancel: threading.Event | None = None, **options: Any) -> Results:
+        cancel: threading.Event | None = None, progress: bool | str | Callable[[str], Any] = False,
+        **options: Any) -> Results:
     """Run the program once.
 
     Parameters
@@ -46,6 +48,9 @@ def run(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = Non
         Path of the program; by default that of `find_program`.
     cancel
         Ends the run when another thread sets it.
+    progress
+        True: what the program says while it works, such as the refinement level and the seconds left, goes on to standard
+        error. Or what to call with each of these lines.
     **options
         Parameters of the model and options of the program by name: numbers, text, sequences of them, or True for
         an option without a value. Write `lambda_` for lambda. The program checks them. `noise` may be a chain of
@@ -72,22 +77,24 @@ def run(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = Non
     >>> r["P_stick"].value, r["P_stick"].error
     >>> r["S_v"].abscissa, r["S_v"].value
     """
-    return _run(ranks, timeout, keep, program, options, cancel)
+    return _run(ranks, timeout, keep, program, options, progress, cancel)
 
 
-def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | None,
-         options: Mapping[str, Any], cancel: threading.Event | None = None) -> Results:
+def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | None, options: Mapping[str, Any],
+         progress: bool | str | Callable[[str], Any], cancel: threading.Event | None = None) -> Results:
     if ranks and (isinstance(ranks, bool) or int(ranks) != float(ranks) or int(ranks) < 1):
         raise ValueError(f"ranks = {ranks}: must be a whole number of at least 1")
     if timeout is not None and not timeout > 0:
         raise ValueError(f"timeout = {timeout}: must be above 0 seconds")
     with tempfile.TemporaryDirectory(prefix="stickslip-") as folder:
         options = prepared(options, pathlib.Path(folder), keep)
+        tell = progress if callable(progress) else _print_error if _wanted(progress) else None
+        options |= {"progress": "on"} if tell else {}
         summary = pathlib.Path(options.pop("summary", None) or pathlib.Path(folder) / "summary.json")
         launcher = ["mpiexec", "-n", str(ranks)] if ranks else []
         before = _stamp(summary)
         finished = execute([*launcher, os.fspath(program or find_program()), *words_of(options), "-summary",
-                            str(summary)], timeout, cancel)
+                            str(summary)], timeout, cancel, tell)
         if _stamp(summary) == before:
             kind = {NO_MEMORY: OutOfMemory, SHORT: Unsolved}.get(finished.status, ProgramError)
             prefix = "the program wrote no results: " if kind is ProgramError else ""
@@ -96,6 +103,15 @@ def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | N
     if finished.status != DONE:
         warnings.warn(shortfall(found) or finished.message(), AccuracyWarning, stacklevel=3)
     return found
+
+
+def _print_error(line: str) -> None:
+    print(line, file=sys.stderr, flush=True)
+
+
+def _wanted(progress: bool | str) -> bool:
+    """Whether progress is to be shown; a word is one of the option -progress."""
+    return sys.stderr.isatty() if progress == "auto" else progress not in (False, "off")
 
 
 def prepared(options: Mapping[str, Any], folder: pathlib.Path, keep: Path | None = None) -> dict[str, Any]:
@@ -153,13 +169,13 @@ def found_in(tree: Mapping[str, Any], output: Path | None) -> Results:
 
 @with_options
 def sweep(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = None, program: Path | None = None,
-          **options: Any) -> Sweep:
+          progress: bool | str | Callable[[str], Any] = False, **options: Any) -> Sweep:
     """Run the program for every combination of values of some options.
 
     Parameters
     ----------
-    ranks, timeout, keep, program
-        As for `run`; on several ranks the points are distributed.
+    ranks, timeout, keep, program, progress
+        As for `run`; on several ranks the points are distributed, and progress is the number of those done.
     **options
         As for `run`. An option whose value is a sequence is swept, but for those that are lists in any run
         (`LISTS`). Text such as "0.1:1:10" is swept under the name `sweep_mu_d`.
@@ -192,7 +208,7 @@ def sweep(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = N
         if name not in named and name in _known() and f"sweep_{name}" not in _known():
             raise BadInput(f"{name}: cannot be swept; stickslip.map([{{\"{name}\": value}} for value in ...]) runs cases that "
                            "differ in anything")
-    found = _run(ranks, timeout, keep, program, named)
+    found = _run(ranks, timeout, keep, program, named, progress)
     if not isinstance(found, Sweep):
         raise ValueError("no option is swept: give one of them a sequence of values, as in mu_d=[0.25, 0.5]")
     order = [name.removeprefix("sweep_") for name in named]

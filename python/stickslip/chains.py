@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 numpy, sparse = needed("numpy"), needed("scipy.sparse")
 linalg, csgraph = needed("scipy.sparse.linalg"), needed("scipy.sparse.csgraph")
 
+
 @dataclasses.dataclass(frozen=True, eq=False)
 class Meant:
     """What a chain stands for: covariance [force^2] of times, and spectrum [force^2 time] of angular frequencies."""
@@ -199,21 +200,8 @@ class Chain:
         """Draw autocovariance and spectrum of the chain, beside those that it stands for; returns the figure.
 
         `ax` are two axes of matplotlib to draw in."""
-        if ax is None:
-            ax = needed("matplotlib.figure").Figure(figsize=(9, 3.4), layout="constrained").subplots(1, 2)
-        longest, variance = 1 / abs(self.generator.diagonal()).max(), self.deviation**2
-        while longest < 1e9 and abs(self.covariance(numpy.linspace(longest, 2 * longest, 9))).max() > 0.02 * variance:
-            longest *= 2
-        t, w = numpy.linspace(0, 2 * longest, 201), numpy.geomspace(0.3 / longest, 1000 / longest, 201)
-        for axes, points, part in ((ax[0], t, "covariance"), (ax[1], w, "spectrum")):
-            if self.meant:
-                axes.plot(points, getattr(self.meant, part)(points), color="0.6", lw=3, label=self.meant.label)
-            axes.plot(points, getattr(self, part)(points), color="#0072b2", label="chain")
-        ax[0].set(xlabel="time $t$  [time]", ylabel="autocovariance  [force$^2$]")
-        ax[1].set(xlabel=r"angular frequency $\omega$  [1/time]", ylabel="spectrum  [force$^2$ time]", xscale="log",
-                  yscale="log")
-        ax[0].legend()
-        return ax[0].figure
+        from .plots import chains
+        return chains.draw(self, ax)
 
 
 def _write(path: str | os.PathLike[str], said: str, head: str, rows: Any) -> None:

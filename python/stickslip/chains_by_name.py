@@ -92,19 +92,17 @@ def narrow_band(deviation: float, gamma: float, omega: float, delta: float, radi
     i, j = (part.ravel() for part in numpy.mgrid[-most:most + 1, -most:most + 1])
     kept = (i**2 + j**2) * delta**2 <= (radius * deviation) ** 2 * (1 + 1e-9)
     i, j = i[kept], j[kept]
-    number = {place: n for n, place in enumerate(zip(i.tolist(), j.tolist()))}
+    number = numpy.full(2 * (2 * most + 3,), -1)  # of the state at a place, and -1 around the lattice
+    number[i, j] = numpy.arange(len(i))  # negative places count from the end
     spread = gamma * (deviation / delta) ** 2
-    rates, added = sparse.lil_matrix((len(i), len(i))), numpy.zeros(len(i))
-    for along, drift in ((0, -gamma * i - omega * j), (1, omega * i - gamma * j)):  # in steps
+    rates, added = sparse.csr_matrix(2 * (len(i),)), numpy.zeros(len(i))
+    for drift, right, up in ((-gamma * i - omega * j, 1, 0), (omega * i - gamma * j, 0, 1)):  # in steps
         added += numpy.maximum(abs(drift) / (2 * spread) - 1, 0) / 2
-        for n, (a, b) in enumerate(number):
-            for way in (-1, 1):
-                to = number.get((a + way, b) if along == 0 else (a, b + way))
-                one_sided = abs(drift[n]) / 2 > spread
-                rate = max(way * drift[n], 0) if one_sided else spread + way * drift[n] / 2
-                if to is not None and rate > 0:
-                    rates[n, to] = rate
-    rates = rates.tocsr()
+        for way in (-1, 1):
+            to = number[i + way * right, j + way * up]
+            rate = numpy.where(abs(drift) / 2 > spread, numpy.maximum(way * drift, 0), spread + way * drift / 2)
+            jumps = numpy.flatnonzero((to >= 0) & (rate > 0))
+            rates += sparse.csr_matrix((rate[jumps], (jumps, to[jumps])), rates.shape)
     reached = csgraph.connected_components(rates, connection="strong")[1]
     inside = reached == reached[number[0, 0]]
     chain = Chain(delta * i[inside], rates[inside][:, inside], "narrow band", Meant(

@@ -46,7 +46,7 @@ class Fit:
     bands
         Rows (from, to, ratio of the spectra chain/record, its standard error) in angular frequency.
     factor
-        By which all rates were multiplied, 1 unless asked for.
+        By which all rates were multiplied; 1 for rates as they were counted.
     """
 
     spent: "Array"
@@ -68,17 +68,19 @@ class Fit:
                  f"{self.jumps[self.jumps > 0].min():g}",
                  *(f"spectrum chain/record, {low:.3g} < omega < {high:.3g}: {ratio:.2f} +- {error:.2f}"
                    for low, high, ratio, error in self.bands)]
-        return "\n".join(lines + [f"all rates were multiplied by {self.factor:.4g}"] * (self.factor != 1))
+        matched = f"all rates were multiplied by {self.factor:.4g}, which gives the chain the correlation time of the record"
+        return "\n".join([*lines, "rates are those counted" if self.factor == 1 else matched])
 
 
 def record(record: Record, levels: int | Sequence[float] | None = None, *, mu_s: float | None = None,
-           jumps: str = "neighbours", match_time: bool = False, longest: float | None = None,
+           jumps: str = "neighbours", match_time: bool | None = None, longest: float | None = None,
            confidence: float = 0.95) -> Chain:
-    """The chain of levels of a record: rate = jumps counted/time spent on the level.
+    """The chain of levels of a record: rate = jumps counted/time spent on the level, times one factor for all rates.
 
     A jump is counted when the record reaches another level, not when it leaves a bin around its own: a rough record
     crosses the edge of a bin many times in a row. Between samples it reaches levels unseen, and a smooth record keeps its
-    way where a chain turns round: such chains remember too long, which `fit` shows and `match_time` corrects.
+    way where a chain turns round: rates as counted make a chain that remembers too long. By default the factor gives the
+    chain the correlation time of the record; a record of few values, all of whose jumps are seen, has the factor 1.
 
     Parameters
     ----------
@@ -94,7 +96,9 @@ def record(record: Record, levels: int | Sequence[float] | None = None, *, mu_s:
         "neighbours": a jump over several levels is one over each of them, and at most 5 % of jumps may be such.
         "any": jumps lead where the record is at its next sample, as in one of pulses or switches.
     match_time
-        Multiply all rates by one number, with which the chain has the correlation time of the record; it is in `fit`.
+        True: the factor gives the chain the correlation time of the record, the integral of its autocorrelation. False:
+        the factor is 1, and the chain has the correlation time that follows from the rates. By default True unless the
+        levels are all the values of the record. `fit` has the factor and both times.
     longest
         Time beyond which the record is uncorrelated; by default 12 times the integral of the squared autocorrelation.
     confidence
@@ -134,10 +138,12 @@ def record(record: Record, levels: int | Sequence[float] | None = None, *, mu_s:
                          "fit" if swings else str(problem)) from None
     rates = counts / spent[:, None]
     rough = Chain(x, rates, f"levels of {record.source or 'a record'}")
+    if match_time is None:
+        match_time = not numpy.isin(record.value, x).all()
     factor = rough.correlation_time / time if match_time else 1.0
     if not 1 / MOST <= factor <= MOST:
         raise ValueError(f"match_time: would multiply all rates by {factor:.3g}, beyond [1/{MOST:g}, {MOST:g}]; take other "
-                         "levels, or a record that is sampled more finely")
+                         "levels, a record that is sampled more finely, or match_time=False")
     frequencies, power = spectrum_of(record, memory)
     chain = dataclasses.replace(rough, rates=rates * factor, meant=measured(memory, frequencies, power))
     neighbours = numpy.eye(len(x), k=1) + numpy.eye(len(x), k=-1)

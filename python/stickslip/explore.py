@@ -2,23 +2,21 @@
 
 import os
 import pathlib
-import queue
 import re
 import textwrap
-import threading
 import time
-import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from .calls import run
 from .cases import Worker
 from .knobs import Knob, carried, choices, knobs, starts
-from .live_pictures import PICTURES, PLACES, LivePictures
+from .live_pictures import NUMBERED, PICTURES, PLACES, LivePictures
 from .needed import needed
 from .partial_drawing import Regions
 from .plots.fields import SLIDE
-from .program import BadInput, Cancelled, OutOfMemory, ProgramError
+from .newest import PARTS, Solver, asked
+from .program import BadInput, ProgramError
 from .results import Results
 from .sweeps import Sweep
 
@@ -32,66 +30,6 @@ OUT_OF_USE = "#aaaaaa"
 KNOBS_BELOW = 6  # one another
 FIGURE = (13, 8)  # inches
 REGIONS = {**PLACES, "knobs": (0.33, 0.05, 1, PLACES["distribution"][1]), "status": (0, 0, 0.59, 0.05)}
-TIMES, FREQUENCIES = "0.02:20:60:log", "0.02:50:60:log"
-PARTS = (("the stationary distribution", {"quantities": "sticking,moments,density"}),
-         ("the spectrum", {"quantities": "spectrum", "omega": FREQUENCIES}),
-         ("densities of durations", {"quantities": "duration_density", "time": TIMES}))
-
-
-class Solver(threading.Thread):
-    """Computes the newest parameters asked for; what it was computing before is ended.
-
-    Results come in the order of `PARTS`, as (number of the request, part, results or exception). Without the first
-    part there are no others.
-    """
-
-    def __init__(self, compute: Callable[..., Results]) -> None:
-        super().__init__(daemon=True)
-        self.results: "queue.Queue[tuple[int, int, Results | Exception]]" = queue.Queue()
-        self._compute = compute
-        self._condition = threading.Condition()
-        self._wanted: tuple[int, Mapping[str, Any]] | None = None
-        self._cancel = threading.Event()
-        self._closed = False
-        self.number = 0
-
-    def ask(self, options: Mapping[str, Any]) -> None:
-        """Compute these options next; returns at once."""
-        with self._condition:
-            self.number += 1
-            self._wanted = self.number, dict(options)
-            self._cancel.set()
-            self._condition.notify()
-
-    def close(self) -> None:
-        """End what is being computed, and the thread."""
-        with self._condition:
-            self._closed = True
-            self._cancel.set()
-            self._condition.notify()
-        self.join()
-
-    def run(self) -> None:
-        while True:
-            with self._condition:
-                while not (self._wanted or self._closed):
-                    self._condition.wait()
-                if self._closed:
-                    return
-                (number, options), self._wanted = self._wanted, None
-                self._cancel = cancel = threading.Event()
-            for part, (_, asked) in enumerate(PARTS):
-                try:
-                    with warnings.catch_warnings():
-                        warnings.simplefilter("ignore")  # errors are drawn
-                        found: Results | Exception = self._compute(cancel=cancel, **{**options, **asked})
-                except Cancelled:
-                    break
-                except (BadInput, OutOfMemory, ProgramError, ImportError) as problem:
-                    found = problem
-                self.results.put((number, part, found))
-                if part == 0 and isinstance(found, Exception):
-                    break
 
 
 class Explorer:
@@ -306,36 +244,33 @@ class Explorer:
     # From results to pictures
 
     def poll(self) -> bool:
-        """Draw what has arrived for the newest parameters; whether there was any."""
+        """Draw the next part that has arrived for the newest parameters; whether there was one."""
         with self.regions.together():
-            return self._drawn()
+            news = self.solver.next_result()
+            if news:
+                self._take(*news)
+            if self._late and time.monotonic() - self.asked_at > PATIENCE:
+                self._grey(self._late)
+        return news is not None
 
-    def _drawn(self) -> bool:
-        news = False
-        while not self.solver.results.empty():
-            number, part, found = self.solver.results.get()
-            if number != self.solver.number:
-                continue
-            news = True
-            if isinstance(found, Exception):
-                self._grey(set(range(len(PARTS))) if part == 0 else {part})
-                self.refuse(str(found))
-                continue
-            if part == 0:
-                self.problem = ""
-                if self.complaint.get_visible():
-                    self.complaint.set_visible(False)
-                    self.regions.draw("knobs")
-            self.pictures.draw(part, found)
-            self._late.discard(part)
-            self.regions.draw("numbers", PICTURES[part])
-            if part + 1 < len(PARTS):
-                self.show(f"computing {PARTS[part + 1][0]}")
-            elif not self.problem:
-                self.show(f"{time.monotonic() - self.asked_at:.2f} s")
-        if self._late and time.monotonic() - self.asked_at > PATIENCE:
-            self._grey(self._late)
-        return news
+    def _take(self, part: int, found: Results | Exception) -> None:
+        """Show results of a part, or why there are none."""
+        if isinstance(found, Exception):
+            self._grey(set(range(len(PARTS))) if part == 0 else {part})
+            self.refuse(str(found))
+            return
+        if part == 0:
+            self.problem = ""
+            if self.complaint.get_visible():
+                self.complaint.set_visible(False)
+                self.regions.draw("knobs")
+        self.pictures.draw(part, found)
+        self._late.discard(part)
+        self.regions.draw(PICTURES[part], *(["numbers"] if part in NUMBERED else []))
+        if part + 1 < len(PARTS):
+            self.show(f"computing {PARTS[part + 1][0]}")
+        elif not self.problem:
+            self.show(f"{time.monotonic() - self.asked_at:.2f} s")
 
     def _grey(self, parts: set[int]) -> None:
         """Show that parts are not of the parameters that the sliders have."""
@@ -414,7 +349,7 @@ def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = F
     file
         Options file to start from.
     accuracy
-        Of all runs.
+        Of all runs; of curves at best `newest.OF_CURVES`.
     browser
         A page of `port` in the browser instead of a window.
     given
@@ -431,7 +366,7 @@ def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = F
     if not file and not given:
         run(**options, plan=True)  # which refuses an accuracy before there is a window
     else:
-        found = run(**options, **PARTS[0][1])
+        found = run(**asked(options, 0))
         if isinstance(found, Sweep):
             raise BadInput(f"{file or 'this'} is a sweep; leave the options -sweep_... out")
         scene = {**found.options, **found.scene}

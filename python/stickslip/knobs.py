@@ -1,13 +1,11 @@
 """What can be turned in the explorer: sliders and choices as the program declares them, and what turns along."""
 
 import dataclasses
+import math
 from collections.abc import Mapping, Sequence
 
-from .needed import needed
 from .plots.style import on_axis
 from .reference import declared
-
-numpy = needed("numpy")
 
 # Two levels of force let a body both stick and slide only beside a constant force; in units of mu_d, as a body that has
 # no drag slides for ever under more.
@@ -53,7 +51,7 @@ class Knob:
     def place(self, value: float) -> float:
         """The place of a value on the slider, at most its ends."""
         value = min(max(value, self.low), self.high)
-        return float(numpy.log10(value)) if self.log else value
+        return math.log10(value) if self.log else value
 
     def owners(self, chosen: Mapping[str, str]) -> set[str]:
         """The choices whose word has this option."""

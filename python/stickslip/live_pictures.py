@@ -27,6 +27,7 @@ LOWEST, MIDDLE = BOTTOM - 0.075, (BOTTOM + 1) / 2 - 0.04  # with their labels; b
 PLACES = {"distribution": (0, LOWEST, 0.557, 1), "spectrum": (0.557, MIDDLE, 1, 1),
           "durations": (0.557, LOWEST, 1, MIDDLE), "numbers": (0, 0.05, 0.22, LOWEST)}
 PICTURES = tuple(PLACES)[:3]
+NUMBERED = (0, 2)  # pictures that numbers belong to
 
 
 class LivePictures:
@@ -51,7 +52,7 @@ class LivePictures:
         self.scale.minorticks_off()  # each takes its time to draw
         self.scale.ax.yaxis.label.set_size(9)  # all of it fits beside the scale
         self.at_rest = self.density.scatter([], [], color=STICK, zorder=3)
-        self.density.set_title("", fontsize=9, color=STICK)
+        self.density.set_title("", y=1, fontsize=9, color=STICK)
         self.density.set_ylabel("velocity $v$  [velocity]")
         self.density.tick_params(labelbottom=False)
         self.curve_v, = self.by_v.plot([], [], color=SLIDE)
@@ -72,6 +73,8 @@ class LivePictures:
         self._curves(self.durations, "duration  [time]", "probability density  [1/time]",
                      {key: DURATIONS[key] for key in ("f_stick", "f_slide")})
         self.axes = (self.density, self.by_v, self.by_x, self.spectrum, self.durations)
+        for axes in (*self.axes[1:], self.scale.ax, corner):
+            axes.set_title("", y=1)  # or each drawing looks for a free place of the title, at a third of its time
         self.words = figure.text(0.012, 0.365, "", va="top", family="monospace", fontsize=8)
         self.quantiles = figure.text(0.012, 0.235, "", va="top", family="monospace", fontsize=8)
         # What is not of the parameters shown is veiled: distribution, spectrum, durations.

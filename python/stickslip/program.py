@@ -9,11 +9,12 @@ import re
 import shutil
 import signal
 import subprocess
+import tempfile
 import threading
 import time
 import urllib.parse
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, BinaryIO
 
 DONE, BAD_INPUT, SHORT, NO_MEMORY = 0, 2, 3, 4  # exit statuses
 NAME = "stickslip(-complex)?: "  # in front of what it reports
@@ -167,7 +168,8 @@ def last_lines(text: str, count: int = TAIL) -> str:
     return "\n".join([line for line in text.splitlines() if line.strip()][-count:])
 
 
-def execute(words: Sequence[str], timeout: float | None = None, cancel: threading.Event | None = None) -> Finished:
+def execute(words: Sequence[str], timeout: float | None = None, cancel: threading.Event | None = None,
+            tell: Callable[[str], Any] | None = None) -> Finished:
     """Run a command line of the program to its end.
 
     Parameters
@@ -178,6 +180,8 @@ def execute(words: Sequence[str], timeout: float | None = None, cancel: threadin
         Seconds after which the program is ended, and with it what mpiexec started.
     cancel
         Ends the program when it is set by another thread.
+    tell
+        Called with each line that the program prints on standard error, soon after.
 
     Returns
     -------
@@ -188,20 +192,22 @@ def execute(words: Sequence[str], timeout: float | None = None, cancel: threadin
     BadInput, TimedOut, Cancelled, ProgramError
         By exit status. Statuses 3 and 4 may have left results and are returned.
     """
-    try:
-        process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                   start_new_session=True)
-    except OSError as problem:
-        advice = "; apt-get install openmpi-bin" if words[0] == "mpiexec" else ""
-        raise ProgramError(f"{words[0]} does not run: {problem.strerror}{advice}") from None
-    try:
-        out, err = (text.decode(errors="replace") for text in _printed(process, timeout, cancel))
-    except BaseException as problem:
-        _end(process)
-        if isinstance(problem, subprocess.TimeoutExpired):
-            raise TimedOut(f"the program was ended after {timeout:g} s") from None
-        raise
-    finished = Finished(process.returncode, out, err)
+    with tempfile.TemporaryFile() as errors:
+        try:
+            process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=errors,
+                                       start_new_session=True)
+        except OSError as problem:
+            advice = "; apt-get install openmpi-bin" if words[0] == "mpiexec" else ""
+            raise ProgramError(f"{words[0]} does not run: {problem.strerror}{advice}") from None
+        try:
+            out = _printed(process, timeout, cancel, _Told(errors, tell) if tell else None)
+        except BaseException as problem:
+            _end(process)
+            if isinstance(problem, subprocess.TimeoutExpired):
+                raise TimedOut(f"the program was ended after {timeout:g} s") from None
+            raise
+        errors.seek(0)
+        finished = Finished(process.returncode, *(text.decode(errors="replace") for text in (out, errors.read())))
     if finished.status == BAD_INPUT:
         raise BadInput(finished.message())
     if finished.status not in (DONE, SHORT, NO_MEMORY):
@@ -209,18 +215,35 @@ def execute(words: Sequence[str], timeout: float | None = None, cancel: threadin
     return finished
 
 
-def _printed(process: subprocess.Popen, timeout: float | None, cancel: threading.Event | None) -> tuple[bytes, bytes]:
+class _Told:
+    """Passes the lines of a file on that the program has written since the last call."""
+
+    def __init__(self, file: BinaryIO, tell: Callable[[str], Any]) -> None:
+        self._file, self._tell, self._at = file, tell, 0
+
+    def __call__(self) -> None:
+        new = os.pread(self._file.fileno(), 2**20, self._at)  # as reading would move the place where the program writes
+        whole = new[:new.rfind(b"\n") + 1]
+        self._at += len(whole)
+        for line in whole.decode(errors="replace").splitlines():
+            self._tell(line)
+
+
+def _printed(process: subprocess.Popen, timeout: float | None, cancel: threading.Event | None, told: _Told | None) -> bytes:
     """What the program prints until its end, or until it is no longer wanted."""
-    if cancel is None:
-        return process.communicate(timeout=timeout)
+    if cancel is None and told is None:
+        return process.communicate(timeout=timeout)[0]
     end = time.monotonic() + (math.inf if timeout is None else timeout)
     while time.monotonic() < end:
-        if cancel.is_set():
+        if cancel is not None and cancel.is_set():
             raise Cancelled("the run was cancelled")
         try:
-            return process.communicate(timeout=LOOK)
+            return process.communicate(timeout=LOOK)[0]
         except subprocess.TimeoutExpired:
             continue
+        finally:
+            if told is not None:
+                told()
     raise subprocess.TimeoutExpired(process.args, timeout or 0)
 
 

@@ -12,7 +12,7 @@ from .records import Record
 if TYPE_CHECKING:
     import numpy
     Array = numpy.ndarray
-numpy, signal = needed("numpy"), needed("scipy.signal")
+numpy, signal, integrate = needed("numpy"), needed("scipy.signal"), needed("scipy.integrate")
 
 MEMORIES = 12     # integrals of the squared autocorrelation after which a record is taken for uncorrelated
 SWING = 0.1       # of the autocorrelation below zero, beside three standard errors
@@ -42,7 +42,7 @@ class Memory:
 
     def integral(self, f: "Array") -> float:
         """Of values at `time`, by the trapezoidal rule."""
-        return float(self.step * (f.sum() - (f[0] + f[-1]) / 2))
+        return float(integrate.trapezoid(f, dx=self.step))
 
 
 def memory_of(record: Record, longest: float | None = None, without: int | None = None) -> Memory:

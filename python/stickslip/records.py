@@ -72,7 +72,7 @@ class Record:
                              "the samples, leave repeated ones out, or name another column of times")
 
     def __repr__(self) -> str:
-        lines = [f"{len(self.time)} samples in {self.time[-1] - self.time[0]:g} s, step {self.step:g} s"
+        lines = [f"{len(self.time)} samples in {self.duration:g} s, step {self.step:g} s"
                  + ("" if self.even else " (uneven)"),
                  f"mean {self.value.mean():.4g}, standard deviation {self.value.std():.4g} {self.unit}".rstrip()]
         return "\n".join(filter(None, [self.source, *lines, *self.notes]))
@@ -84,6 +84,11 @@ class Record:
         """The values, for `numpy.asarray`."""
         found = numpy.asarray(self.value, dtype)
         return found.copy() if copy else found
+
+    @property
+    def duration(self) -> float:
+        """From the first to the last sample [s]."""
+        return float(self.time[-1] - self.time[0])
 
     @property
     def step(self) -> float:
@@ -116,12 +121,9 @@ class Record:
         if len(self.value) < SMALLEST:
             return numpy.nan, numpy.nan
         middle, means = (numpy.array([part.mean() for part in numpy.array_split(values, PARTS)])
-                         for values in (self.time, self.value))
-        away = middle - middle.mean()
-        slope = away @ means / (away @ away)
-        off = means - means.mean() - slope * away
-        length = self.time[-1] - self.time[0]
-        return float(slope * length), float(length * numpy.sqrt(off @ off / (PARTS - 2) / (away @ away)))
+                         for values in (self.time - self.time[0], self.value))
+        line, covariance = numpy.polyfit(middle, means, 1, cov=True)
+        return float(line[0] * self.duration), float(numpy.sqrt(covariance[0, 0]) * self.duration)
 
     def stretches(self) -> "list[Array]":
         """The samples between gaps, an array each."""

@@ -208,7 +208,6 @@ class Results(Mapping):
         from . import plots
         return plots.draw([self], picture, kind)
 
-
     def to_pandas(self, *options: str) -> "pandas.DataFrame":
         """A table with a row for each number.
 

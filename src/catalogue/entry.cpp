@@ -24,6 +24,7 @@
 #include "stickslip/catalogue/noise_spectrum_keys.hpp"
 #include "stickslip/catalogue/passage_distribution_keys.hpp"
 #include "stickslip/catalogue/peak_keys.hpp"
+#include "stickslip/catalogue/phase_durations_keys.hpp"
 #include "stickslip/catalogue/relaxation_keys.hpp"
 #include "stickslip/catalogue/resolvent_keys.hpp"
 #include "stickslip/catalogue/sensitivity_keys.hpp"
@@ -49,6 +50,7 @@ constexpr const Entry* kAll[] = {&kSticking,
                                  &kResolvent,
                                  &kRelaxation,
                                  &kSpectrum,
+                                 &kPhaseDurations,
                                  &kDurationDensity,
                                  &kAutocorrelation,
                                  &kSlip,

@@ -79,7 +79,8 @@ std::vector<Option> quantity_options() {
       arguments("omega", "1/time", "angular frequencies of spectrum and noise_spectrum")
           .called({"freq", "frequency", "frequencies"}),
       arguments("time", "time",
-                "times of duration_density, autocorrelation, displacement, displacement_transform, "
+                "times of duration_density, phase_durations, autocorrelation, displacement, "
+                "displacement_transform, "
                 "displacement_distribution, passage_distribution and expectation")
           .called({"t", "times"}),
       numbers("distance", "velocity*time", {},

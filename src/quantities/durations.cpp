@@ -8,6 +8,7 @@
 #include "stickslip/catalogue/duration_density_keys.hpp"
 #include "stickslip/catalogue/entry_law_keys.hpp"
 #include "stickslip/catalogue/laplace_keys.hpp"
+#include "stickslip/catalogue/phase_durations_keys.hpp"
 #include "stickslip/catalogue/sticking_keys.hpp"
 #include "stickslip/operators/static_chain.hpp"
 #include "stickslip/petsc/check.hpp"
@@ -257,31 +258,46 @@ void append_distribution(const Row& density_row, const Row& distribution_row,
 
 namespace {
 
-void find_distributions(Computation& computation) {
+void find_distributions_of_phases(Computation& computation) {
   using namespace catalogue;
   const auto& time = computation.question().time;
   const auto& distribution = computation.distribution();
-  const auto tolerance = computation.tolerance();
-  auto& systems = computation.systems;
   auto& results = computation.results();
-  const auto slide = slide_distribution(systems, distribution, time, tolerance);
-  const auto stick = stick_distribution(computation.process(), distribution.entry(), time);
-  const auto excursion = excursion_distribution(systems, distribution, time, tolerance);
+  const auto slide =
+      slide_distribution(computation.systems, distribution, time, computation.tolerance());
   append_distribution(kDensitySlide, kCdfSlide, time, slide, results);
-  append_distribution(kDensityStick, kCdfStick, time, stick, results);
-  append_distribution(kDensityExcursion, kCdfExcursion, time, excursion, results);
+  append_distribution(kDensityStick, kCdfStick, time,
+                      stick_distribution(computation.process(), distribution.entry(), time),
+                      results);
   computation.report("slide_pairs", slide.pairs,
                      "pairs of Krylov vectors in the reduced model of sliding durations");
+}
+
+void find_distribution_of_excursions(Computation& computation) {
+  using namespace catalogue;
+  const auto& time = computation.question().time;
+  const auto excursion = excursion_distribution(computation.systems, computation.distribution(),
+                                                time, computation.tolerance());
+  append_distribution(kDensityExcursion, kCdfExcursion, time, excursion, computation.results());
   computation.report("excursion_pairs", excursion.pairs,
                      "pairs of Krylov vectors in the reduced model of excursion durations");
+}
+
+void add_phases(Planner& planner) {
+  planner.need_distribution();
+  planner.resolve_times();
+  planner.add_adaptive("distributions of phases", 7, 80, find_distributions_of_phases);
 }
 
 }  // namespace
 
 void duration_density_tasks(Planner& planner) {
-  planner.need_distribution();
-  planner.resolve_times();
-  planner.add_adaptive("distributions of durations", 14, 160, find_distributions);
+  add_phases(planner);
+  planner.add_adaptive("distribution of excursions", 7, 80, find_distribution_of_excursions);
+}
+
+void phase_durations_tasks(Planner& planner) {
+  if (!planner.question().wants(catalogue::Quantity::duration_density)) add_phases(planner);
 }
 
 }  // namespace stickslip::quantities

@@ -8,6 +8,7 @@
 #include "stickslip/catalogue/first_passage_keys.hpp"
 #include "stickslip/catalogue/large_deviation_keys.hpp"
 #include "stickslip/catalogue/passage_distribution_keys.hpp"
+#include "stickslip/catalogue/phase_durations_keys.hpp"
 #include "stickslip/quantities/stationary.hpp"
 #include "stickslip/quantities/time_functions.hpp"
 
@@ -18,9 +19,9 @@ using Tasks = void(Planner&);
 
 Tasks sticking_tasks, mean_slip_tasks, moments_tasks, density_tasks, averages_tasks,
     entry_law_tasks, sensitivity_tasks, stick_transform_tasks, laplace_tasks, resolvent_tasks,
-    spectrum_tasks, duration_density_tasks, slip_tasks, peak_tasks, first_passage_tasks,
-    displacement_tasks, autocorrelation_tasks, expectation_tasks, relaxation_tasks,
-    noise_spectrum_tasks, large_deviation_tasks, displacement_transform_tasks,
+    spectrum_tasks, duration_density_tasks, phase_durations_tasks, slip_tasks, peak_tasks,
+    first_passage_tasks, displacement_tasks, autocorrelation_tasks, expectation_tasks,
+    relaxation_tasks, noise_spectrum_tasks, large_deviation_tasks, displacement_transform_tasks,
     displacement_distribution_tasks, passage_transform_tasks, passage_distribution_tasks;
 
 namespace {
@@ -39,6 +40,7 @@ constexpr std::pair<Quantity, Tasks*> kAll[] = {
     {Quantity::resolvent, resolvent_tasks},
     {Quantity::spectrum, spectrum_tasks},
     {Quantity::duration_density, duration_density_tasks},
+    {catalogue::kPhaseDurations.quantity, phase_durations_tasks},
     {Quantity::slip, slip_tasks},
     {Quantity::peak, peak_tasks},
     {catalogue::kFirstPassageTime.quantity, first_passage_tasks},

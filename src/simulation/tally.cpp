@@ -10,6 +10,7 @@
 #include "stickslip/catalogue/displacement_transform_keys.hpp"
 #include "stickslip/catalogue/first_passage_keys.hpp"
 #include "stickslip/catalogue/passage_distribution_keys.hpp"
+#include "stickslip/catalogue/phase_durations_keys.hpp"
 
 namespace stickslip::simulation {
 
@@ -17,10 +18,10 @@ using catalogue::Quantity;
 using Follow = void(Tally&);
 
 Follow sticking_tally, moments_tally, averages_tally, noise_law_tally, entry_law_tally,
-    laplace_tally, stick_transform_tally, duration_density_tally, slip_tally, peak_tally,
-    spectrum_tally, resolvent_tally, autocorrelation_tally, displacement_tally, expectation_tally,
-    displacement_transform_tally, displacement_distribution_tally, first_passage_tally,
-    passage_transform_tally, passage_distribution_tally;
+    laplace_tally, stick_transform_tally, duration_density_tally, phase_durations_tally, slip_tally,
+    peak_tally, spectrum_tally, resolvent_tally, autocorrelation_tally, displacement_tally,
+    expectation_tally, displacement_transform_tally, displacement_distribution_tally,
+    first_passage_tally, passage_transform_tally, passage_distribution_tally;
 
 namespace {
 
@@ -34,6 +35,7 @@ constexpr std::pair<Quantity, Follow*> kAll[] = {
     {Quantity::laplace, laplace_tally},
     {Quantity::stick_duration_transform, stick_transform_tally},
     {Quantity::duration_density, duration_density_tally},
+    {catalogue::kPhaseDurations.quantity, phase_durations_tally},
     {Quantity::slip, slip_tally},
     {Quantity::peak, peak_tally},
     {catalogue::kFirstPassageTime.quantity, first_passage_tally},

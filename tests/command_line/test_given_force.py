@@ -4,7 +4,7 @@ import csv
 import json
 import unittest
 
-from running import SOURCES, Case, run
+from running import SOURCES, Case
 
 RECORD = SOURCES / "options" / "given_force.csv"
 ASKED = ("-quantities", "trajectory", "-force_file")

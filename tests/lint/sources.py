@@ -8,8 +8,10 @@
 6. Identifiers are the field's: words that have been replaced do not come back.
 7. No two modules have files of one name.
 8. No file is longer than 450 lines.
+9. What Python files import, they use.
 """
 
+import ast
 import pathlib
 import re
 import statistics
@@ -162,10 +164,31 @@ def check_files(root):
             yield f"files named {stem} in {' and '.join(sorted(where))}"
 
 
+def names_in(annotation):
+    """Names in an annotation that is written as text."""
+    texts = (node.value for node in ast.walk(annotation) if isinstance(node, ast.Constant) and isinstance(node.value, str))
+    return {name for text in texts for name in re.findall(r"\w+", text)}
+
+
+def check_imports(root):
+    for path in sorted(path for folder in ("python", "docs", "tests", "validation") for path in (root / folder).rglob("*.py")):
+        nodes = list(ast.walk(ast.parse(path.read_text())))
+        used = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
+        for node in nodes:
+            for part in ("annotation", "returns"):
+                used |= names_in(getattr(node, part)) if getattr(node, part, None) else set()
+            if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__all__":
+                used |= set(ast.literal_eval(node.value))
+        for node in nodes:
+            for name in node.names if isinstance(node, ast.Import | ast.ImportFrom) else ():
+                if (name.asname or name.name.partition(".")[0]) not in used:
+                    yield f"{path}:{node.lineno}: {name.name} is imported and not used"
+
+
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     complaints = [text for rule in (check_order, check_scalars, check_petsc_calls, check_function_lengths,
-                                    check_words, check_vocabulary, check_files) for text in rule(root)]
+                                    check_words, check_vocabulary, check_files, check_imports) for text in rule(root)]
     print("\n".join(complaints) or "sources follow the rules")
     sys.exit(1 if complaints else 0)
 

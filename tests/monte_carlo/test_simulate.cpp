@@ -10,6 +10,7 @@
 #include "../common/scenes.hpp"
 #include "../common/temporary.hpp"
 #include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/catalogue/phase_durations_keys.hpp"
 #include "stickslip/monte_carlo/simulate.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
@@ -150,6 +151,17 @@ TEST_CASE("monte carlo: densities are those of cells up to halfway between times
     const auto& one = result(around, "cdf_" + name).value;
     CHECK(result(alone, "f_" + name).value[0] == Approx((one[1] - one[0]) / 0.2));
   }
+}
+
+TEST_CASE("monte carlo: phase_durations is what duration_density has of phases") {
+  auto r = given(small(), 2000);
+  r.question.quantities = {Quantity::duration_density};
+  const auto all = simulate(r).results;
+  r.question.quantities = {catalogue::kPhaseDurations.quantity};
+  const auto phases = simulate(r).results;
+  CHECK(numbers(phases) == numbers(Results(all.begin(), all.end() - 2)));
+  r.question.quantities.insert(Quantity::duration_density);
+  CHECK(numbers(simulate(r).results) == numbers(all));
 }
 
 TEST_CASE("monte carlo: half of S_v(0) is the diffusivity, with half its interval") {

@@ -6,6 +6,7 @@
 
 #include "../common/catch.hpp"
 #include "../common/temporary.hpp"
+#include "stickslip/catalogue/phase_durations_keys.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/support/errors.hpp"
@@ -678,7 +679,7 @@ TEST_CASE("request: arguments come from the file to compare with, each once") {
   CHECK(r.question.omega == std::vector<double>{3});
   CHECK(r.question.time == std::vector<double>{4, 5});
   CHECK(r.question.quantities == std::set{Quantity::sticking, Quantity::laplace, Quantity::spectrum,
-                                          Quantity::duration_density});
+                                          catalogue::kPhaseDurations.quantity});
   CHECK(Given("-lambda 7 -compare " + file).read().question.lambda == std::vector<double>{7});
 }
 

@@ -200,17 +200,18 @@ class OfRecords(unittest.TestCase):
         numpy.testing.assert_allclose(chain.rates.toarray()[where], ANY[where], atol=0.15)
         self.assertFalse(chain.neighbours_only)
 
-    def test_rates_are_multiplied_on_request_alone(self):
+    def test_a_chain_has_the_correlation_time_of_the_record_unless_rates_are_to_be_those_counted(self):
         record = record_of(filtered(200000, 1, 1))
         with self.assertWarnsRegex(UserWarning, "correlation time of the chain is 1.4.* times that of the record"):
-            plain = noise.record(record)
+            plain = noise.record(record, match_time=False)
         self.assertEqual(plain.fit.factor, 1)
         self.assertTrue(any("match_time=True" in note for note in plain.notes))
         self.assertTrue(all(note.startswith(f"of {plain.name}: ") for note in (2 * (3 * plain) + 1).notes))
         self.assertEqual(len((plain + plain).notes), len(set(plain.notes)))
         self.assertRaisesRegex(ValueError, "factor = 0", lambda: 0 * plain)
         numpy.testing.assert_allclose(plain.rates.toarray(), plain.fit.jumps / plain.fit.spent[:, None])
-        matched = noise.record(record, match_time=True)
+        self.assertIn("rates are those counted", str(plain))
+        matched = noise.record(record)
         self.assertAlmostEqual(matched.correlation_time, matched.fit.correlation_time[1], delta=1e-9)
         self.assertIn(f"all rates were multiplied by {matched.fit.factor:.4g}", str(matched))
         self.assertGreater(matched.fit.factor, 1.2)
@@ -219,8 +220,15 @@ class OfRecords(unittest.TestCase):
         for low, high, ratio, error in matched.fit.bands:
             self.assertLess(abs(ratio - 1), 0.1 + 3 * error, (low, high))
 
+    def test_jumps_of_a_record_of_few_values_are_all_seen(self):
+        record = path_of([0, 1.0], numpy.array([[0, 1.0], [1, 0]]), 400, 3)
+        counted, matched = noise.record(record), noise.record(record, match_time=True)
+        self.assertEqual(counted.fit.factor, 1)
+        self.assertNotEqual(matched.fit.factor, 1)
+        self.assertIn("which gives the chain the correlation time of the record", str(matched))
+
     def test_the_chain_of_ou_noise_does_what_the_program_has_for_it(self):
-        chain = noise.record(record_of(filtered(400000, 1, 5)), 0.4 * numpy.arange(-7, 8), match_time=True)
+        chain = noise.record(record_of(filtered(400000, 1, 5)), 0.4 * numpy.arange(-7, 8))
         ours, theirs = (stickslip.run(mu_d=0.5, accuracy=1e-4, **options)["P_stick"].value
                         for options in ({"noise": chain}, {"delta": 0.4}))
         self.assertLess(abs(ours - theirs), 0.02)  # about 0.01 by the length of the record

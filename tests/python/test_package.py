@@ -1,6 +1,8 @@
 """The Python package, as a script meets it."""
 
+import contextlib
 import inspect
+import io
 import itertools
 import json
 import os
@@ -140,6 +142,30 @@ class Runs(Case):
         with self.assertRaisesRegex(stickslip.BadInput, r"^-mu_d = 2: .*$") as caught:
             stickslip.run(mu_d=2, ranks=2)
         self.assertNotIn("mpiexec", str(caught.exception))
+
+    def test_progress_is_told_while_the_program_works(self):
+        told, go = [], self.folder / "go"
+
+        def tell(line):
+            told.append(line)
+            go.touch()
+
+        with self.fake(f"echo level 1 >&2; until [ -e '{go}' ]; do sleep 0.01; done; echo stickslip: no. >&2; exit 2"):
+            self.assertRaisesRegex(stickslip.BadInput, "^no.$", stickslip.run, progress=tell, timeout=60)
+        self.assertEqual(told, ["level 1", "stickslip: no."])
+        with contextlib.redirect_stderr(io.StringIO()) as shown:
+            stickslip.run(**SMALL, progress=True)
+            stickslip.run(**SMALL)
+            stickslip.run(**SMALL, progress="off")
+            stickslip.sweep(mu_d=[0.25, 0.5], delta=0.5, quantities="sticking", progress=True)
+        self.assertRegex(shown.getvalue(), r"^(refinement level \d: .*\n){3}(\d of 2 points; mu_d = .*\n)+$")
+
+    def test_what_is_told_ends_the_program_where_it_fails(self):
+        def tell(line):
+            raise KeyError(line)
+
+        with self.fake("echo level 1 >&2; sleep 600"):
+            self.assertRaisesRegex(KeyError, "level 1", stickslip.run, progress=tell, timeout=60)
 
     def test_an_accuracy_that_is_missed_is_a_warning(self):
         with self.assertWarnsRegex(stickslip.AccuracyWarning, "take -accuracy") as caught:
@@ -594,6 +620,7 @@ class Pictures(Case):
                 ("given_force", 3, {"quantities": "trajectory", "force_file": SOURCES / "options" / "given_force.csv"}),
                 ("spectra", 1, {"quantities": "spectrum", "omega": [0.1, 1]}),
                 ("durations", 2, {"quantities": "duration_density", "time": "0:1:5", "accuracy": 1e-2}),
+                ("durations", 2, {"quantities": "phase_durations", "time": [1, 2], "accuracy": 1e-2}),
                 ("slips", 4, {"quantities": "slip,peak", "distance": [1, 2], "velocity": [0.1, 0.2], "accuracy": 1e-2}),
                 ("slips", 2, {"quantities": "displacement", "time": [1, 2], "bias": 0.1}),
                 ("displacements", 3, {"quantities": "displacement_distribution", "distance": [-1, -0.5, 0.5, 1],

@@ -9,7 +9,7 @@
 #include "../common/quadrature.hpp"
 #include "../common/solved.hpp"
 #include "stickslip/algebra/dense.hpp"
-#include "stickslip/catalogue/duration_density_keys.hpp"
+#include "stickslip/catalogue/phase_durations_keys.hpp"
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/time_stepper.hpp"
 #include "stickslip/quantities/durations.hpp"

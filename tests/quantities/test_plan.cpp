@@ -4,6 +4,7 @@
 #include "../common/scenes.hpp"
 #include "stickslip/accuracy/prediction.hpp"
 #include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/catalogue/phase_durations_keys.hpp"
 #include "stickslip/quantities/plan.hpp"
 
 using namespace stickslip;
@@ -167,6 +168,27 @@ TEST_CASE("plan: adaptive tasks are marked, and take complex arithmetic for comp
     CHECK(l.solves >= plan.solves());
     if (!PetscDefined(USE_COMPLEX)) CHECK(l.factorizations_complex <= 4);
   }
+}
+
+TEST_CASE("plan: phase_durations takes half of the work of duration_density for the same numbers") {
+  Case r = given({"", {}, {}});
+  r.question.time = {0.5, 2};
+  const auto with = [&](std::set<Quantity> quantities) {
+    r.question.quantities = std::move(quantities);
+    return accuracy::carry_out(PETSC_COMM_WORLD, r, {}, {});
+  };
+  const Quantity part = catalogue::kPhaseDurations.quantity;
+  const auto all = with({Quantity::duration_density}), phases = with({part}),
+             both = with({Quantity::duration_density, part});
+  CHECK(both.results.size() == all.results.size());
+  REQUIRE(phases.results.size() + 2 == all.results.size());
+  for (std::size_t n = 0; n < phases.results.size(); ++n) {
+    INFO(phases.results[n].key);
+    CHECK(phases.results[n].key == all.results[n].key);
+    CHECK(phases.results[n].value == all.results[n].value);
+  }
+  const auto& most = all.steps.front().statistics;
+  CHECK(phases.steps.front().statistics.solves < 0.7 * most.solves);
 }
 
 TEST_CASE("plan: sizes are those of the run, by the analysis alone") {

@@ -249,8 +249,8 @@ def scaled(f):
 def neighbour(f):
     """Within 1e-9 of the case with mu_d on the grid: nothing depends on the side."""
     other = f.again(mu_d=round(f.options["mu_d"], 9))
-    for words, apart, allowed, value in compared(f, other):
-        yield words, apart, allowed + 1e-9 * value, value
+    for what, apart, allowed, value in compared(f, other):
+        yield what, apart, allowed + 1e-9 * value, value
 
 
 def as_if_plain(f):
@@ -262,8 +262,8 @@ def as_if_plain(f):
 def near_no_drag(f):
     """Drag changes E[V^2] by about c E[V^2] times the time of relaxation: 1e-3 allowed."""
     other = f.again(drag="none", drag_coefficient=None)
-    for words, apart, _, value in compared(f, other):
-        yield words, apart, 1e-3 * value, value
+    for what, apart, _, value in compared(f, other):
+        yield what, apart, 1e-3 * value, value
 
 
 def finer(f):

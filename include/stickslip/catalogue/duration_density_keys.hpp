@@ -1,43 +1,11 @@
 #pragma once
 /// The quantity duration_density: probability densities and distribution functions of the
-/// durations.
+/// durations of phases and of excursions.
 
 #include "stickslip/catalogue/entry.hpp"
 
 namespace stickslip::catalogue {
 
-inline constexpr Row kDensitySlide{.key = "f_slide",
-                                   .symbol = "f_slide(t)",
-                                   .definition = "probability density of the sliding duration",
-                                   .unit = "1/time",
-                                   .abscissa = "time",
-                                   .convention = "monte_carlo: average over a cell",
-                                   .paper = "sec. 5.3",
-                                   .by_cells = true,
-                                   .asks = true};
-inline constexpr Row kCdfSlide{.key = "cdf_slide",
-                               .symbol = "P(T_slide <= t)",
-                               .definition = "distribution function of the sliding duration",
-                               .abscissa = "time",
-                               .convention = "average per excursion",
-                               .kind = Kind::distribution,
-                               .asks = true};
-inline constexpr Row kDensityStick{.key = "f_stick",
-                                   .symbol = "f_stick(t)",
-                                   .definition = "probability density of the sticking duration",
-                                   .unit = "1/time",
-                                   .abscissa = "time",
-                                   .convention = "monte_carlo: average over a cell",
-                                   .paper = "sec. 5.3",
-                                   .by_cells = true,
-                                   .asks = true};
-inline constexpr Row kCdfStick{.key = "cdf_stick",
-                               .symbol = "P(T_stick <= t)",
-                               .definition = "distribution function of the sticking duration",
-                               .abscissa = "time",
-                               .convention = "average per excursion",
-                               .kind = Kind::distribution,
-                               .asks = true};
 inline constexpr Row kDensityExcursion{.key = "f_excursion",
                                        .symbol = "f(t)",
                                        .definition =
@@ -57,8 +25,7 @@ inline constexpr Row kCdfExcursion{.key = "cdf_excursion",
                                    .kind = Kind::distribution,
                                    .asks = true};
 
-inline constexpr const Row* kDurationDensityRows[] = {
-    &kDensitySlide, &kCdfSlide, &kDensityStick, &kCdfStick, &kDensityExcursion, &kCdfExcursion};
+inline constexpr const Row* kDurationDensityRows[] = {&kDensityExcursion, &kCdfExcursion};
 
 inline constexpr Entry kDurationDensity{
     .quantity = Quantity::duration_density,
@@ -67,6 +34,7 @@ inline constexpr Entry kDurationDensity{
     .title = "probability densities and distribution functions of the durations",
     .routes = {Route::excursion, Route::monte_carlo},
     .options = "time, transient_solver",
+    .others = "f_slide, cdf_slide, f_stick, cdf_stick",
     .rows = kDurationDensityRows,
     .degrees_besides = 3,
     .of_phases = true};

@@ -80,29 +80,30 @@ def durations(items: Sequence[Results]) -> "Figure":
     if len(deltas) > len(LINES):
         raise ValueError(f"{len(deltas)} values of delta; at most {len(LINES)} can be distinguished")
     lines = dict(zip(deltas, LINES))
+    kinds = [key for key in DURATIONS if any(key in item for item in items)]
     columns = min(len(panels), 2)
     rows = -(-len(panels) // columns)
     figure = Figure(figsize=(max(5.4, 0.6 + 3.9 * columns), 0.3 + 2.9 * rows))
     grid = figure.add_gridspec(rows + 1, columns, height_ratios=[0.3] + [2.9] * rows)
-    _duration_legend(figure.add_subplot(grid[0, :]), lines)
+    _duration_legend(figure.add_subplot(grid[0, :]), kinds, lines)
     for n, ((mu_s, mu_d, noise, force), same) in enumerate(panels.items()):
         axes = figure.add_subplot(grid[1 + n // columns, n % columns])
         for item in same:
-            for key, (_, colour) in DURATIONS.items():
-                curve(axes, item[key], colour=colour, style=lines[step(item) or 0])
+            for key in filter(item.__contains__, kinds):
+                curve(axes, item[key], colour=DURATIONS[key][1], style=lines[step(item) or 0])
         axes.set_title(rf"$\mu_s$ = {mu_s:g}, $\mu_d$ = {mu_d:g}, {noise}, $b(v) = {force}$" if len(deltas) > 1 else
                        title(same[0]), fontsize=9)
         axes.set(xlabel="duration  [time]", ylabel="probability density  [1/time]", ylim=(0, None))
         if all(scale(item["f_slide"].abscissa) == "log" for item in same):
-            highest = max(item[key].value.max() for item in same for key in DURATIONS)
+            highest = max(item[key].value.max() for item in same for key in kinds if key in item)
             axes.set(xscale="log", yscale="log", ylim=(1e-5 * highest, 2 * highest))
         axes.margins(x=0.02 if any(item["f_slide"].ci95 is not None for item in same) else 0)  # bars are seen whole
     return figure
 
 
-def _duration_legend(axes: "Axes", lines: dict[float, Any]) -> None:
+def _duration_legend(axes: "Axes", kinds: Sequence[str], lines: dict[float, Any]) -> None:
     """In a row of its own: curves reach every corner of a panel."""
-    handles = [Line2D([], [], color=colour, label=label) for label, colour in DURATIONS.values()]
+    handles = [Line2D([], [], color=colour, label=label) for label, colour in map(DURATIONS.get, kinds)]
     handles += [Line2D([], [], color="#888888", linestyle=line, label=rf"$\delta$ = {fraction(delta)}")
                 for delta, line in lines.items() if delta and len(lines) > 1]
     axes.legend(handles=handles, loc="center", ncol=len(handles), columnspacing=1.2)

@@ -85,7 +85,7 @@ def draw_profile(profile: "Profile", picture: str | pathlib.Path | None) -> "Fig
     """The rise of twice the misfit, and the limits of confidence intervals."""
     figure = Figure(figsize=(4.4, 3.2))
     axes = figure.subplots()
-    axes.plot(profile.values, profile.rise, "o-", color=COLOURS[0], markersize=3)
+    axes.plot(profile.values, profile.rise, "o-", color=COLOURS[0], markersize=3, clip_on=False)  # the least is whole
     for limit, share in zip(LIMITS, ("68 %", "95 %")):
         axes.axhline(limit, color=COLOURS[4], linewidth=0.8, linestyle="--")
         axes.text(profile.values[0], limit, share, fontsize=8, va="bottom")

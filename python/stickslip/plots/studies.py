@@ -118,7 +118,7 @@ def cost(items: Sequence[Results]) -> "Figure":
         table = results.study.get(method)
         if table is None:
             continue
-        axes.plot(table["seconds"], table["error"], color=COLOURS[n], linestyle=STYLES[n], marker="os^D"[n],
+        axes.plot(table["seconds"], table["error"], color=COLOURS[n], linestyle=STYLES[n], marker=MARKERS[n],
                   markersize=4, label=name)
         ends = (((-7, -3), "right"), ((0, -13), "center")) if method == "monte_carlo" else (
             ((0, 7), "left"), ((7, -3), "left"))
