@@ -32,10 +32,10 @@ constexpr int kFirstPoints = 8;
 
 // Degree at which the estimate, the error one degree below, is expected to meet the accuracy.
 // Errors are about 10^-d at degree d; those of displacements tenfold smaller, those of the density
-// of sticking times at 0+ tenfold larger, of the tail of a spectrum and of densities of durations a
-// hundredfold. (On coarser elements reduced models search long for waves that are not resolved.)
-// The catalogue has the numbers. On the elements for path lengths a degree is worth one digit and a
-// half, but to the densities of these it is worth less than one.
+// of sticking times at 0+ tenfold larger, of densities of durations a hundredfold. (On coarser
+// elements reduced models search long for waves that are not resolved.) The catalogue has the
+// numbers. On the elements for path lengths a degree is worth one digit and a half, but to the
+// densities of these it is worth less than one.
 int starting_degree(const cases::Question& question, bool lengths) {
   const double digits = -std::log10(question.accuracy);
   double highest = 0;

@@ -66,7 +66,6 @@ inline constexpr Entry kSpectrum{
     .title = "power spectral density of the velocity, diffusivity",
     .routes = {Route::excursion, Route::monte_carlo},
     .options = "omega, spectrum_solver",
-    .rows = kSpectrumRows,
-    .degrees_besides = 3};
+    .rows = kSpectrumRows};
 
 }  // namespace stickslip::catalogue
