@@ -245,6 +245,25 @@ TEST_CASE("request: formulas that begin with a sign are no options") {
   CHECK(words[9] == "-v");
 }
 
+TEST_CASE("request: dynamic friction that is not given stays below static friction") {
+  const Request small = Given("-mu_s 0.3").read(), large = Given("-mu_s 3").read();
+  CHECK(small.scene.friction.mu_d == 0.3);
+  CHECK(small.scene.symmetric());
+  CHECK(large.scene.friction.mu_d == 1);
+  const auto used = [](const Request& r) {
+    return std::find_if(r.resolved.begin(), r.resolved.end(),
+                        [](const auto& option) { return option.first == "mu_d"; })
+        ->second;
+  };
+  CHECK(used(small) == "0.3");
+  CHECK(used(large) == "1");
+  for (const char* options : {"-mu_s_minus 0.5", "-mu_s 0.3 -mu_s_minus 0.5"}) {
+    CHECK(Given(options).read().scene.friction.mirrored().mu_d == 0.5);
+  }
+  CHECK(Given("-mu_s 0.3 -mu_s_minus 3").read().scene.friction.mirrored().mu_d == 1);
+  CHECK(Given("-mu_s 3 -mu_s_minus 2").read().scene.friction.mirrored().mu_d == 1);
+}
+
 TEST_CASE("request: every refusal names option, value, range and a way out") {
   const std::vector<Refusal> refusals{
       {"-delta -0.5", {"-delta = -0.5", "(0, inf)", "0.125"}},
