@@ -186,6 +186,7 @@ int report_plan(const options::Request& request, const Emit& emit) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const auto prediction = accuracy::predict(comm, request);
   emit(io::report_of(comm, request, prediction), request);
+  if (!prediction.shortfall.empty()) throw NoMemory(prediction.shortfall);
   return 0;
 }
 
