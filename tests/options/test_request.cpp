@@ -523,6 +523,8 @@ TEST_CASE("request: options of the eigensolvers are known or reported") {
   CHECK_NOTHROW(Given("-relax_eps_view -null_eps_converged_reason -slide_ksp_view").read());
   const std::vector<Refusal> refusals{
       {"-null_eps_tolerance 1e-10", {"-null_eps_tolerance", "-null_eps_view"}},
+      {"-relax_eps_nev 5000", {"-relax_eps_nev = 5000", "at most 100"}},
+      {"-null_eps_ncv 5000", {"-null_eps_ncv = 5000", "at most 1000"}},
       {"-relax_eps_nevs 10", {"-relax_eps_nevs", "-relax_eps_view"}},
       {"-null_eps_type nonsense", {"-null_", "nonsense"}},
       {"-relax_st_mat_mumps_icntl_99 1", {"-relax_st_mat_mumps_icntl_99"}}};
