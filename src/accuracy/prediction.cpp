@@ -131,10 +131,14 @@ Prediction predict(MPI_Comm comm, const cases::Case& given) {
   prediction.plan = quantities::plan_of(given);
   if (given.method.row().simulates) return prediction;
   const RefinementSequence sequence(given);
-  require_memory(comm, given.scene, sequence.refinement_level(1));
   for (int n = sequence.first(); n <= 1; ++n) {
+    const Resolution& resolution = sequence.refinement_level(n);
+    const std::string shortfall = shortfall_of_memory(comm, given.scene, resolution);
+    const bool fits = shortfall.empty();
+    if (prediction.shortfall.empty()) prediction.shortfall = shortfall;
     prediction.steps.push_back(
-        predicted_step(comm, given, prediction.plan, sequence.refinement_level(n)));
+        predicted_step(comm, given, fits ? prediction.plan : quantities::Plan{}, resolution));
+    prediction.steps.back().fits = fits;
     prediction.seconds += prediction.steps.back().seconds;
   }
   return prediction;

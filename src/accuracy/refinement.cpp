@@ -373,14 +373,20 @@ Outcome by_simulation(MPI_Comm comm, const cases::Case& given, const std::string
 
 }  // namespace
 
-void require_memory(MPI_Comm comm, const model::Scene& scene, const Resolution& resolution) {
+std::string shortfall_of_memory(MPI_Comm comm, const model::Scene& scene,
+                                const Resolution& resolution) {
   const double need = predicted_bytes(scene, resolution, petsc::ranks(comm));
   const double have = petsc::available_bytes(comm, need);
-  if (need <= have) return;
-  throw NoMemory(fmt::format(
+  if (need <= have) return "";
+  return fmt::format(
       "about {:.3g} unknowns would need {} of memory, and {} are free; take a larger -delta, a "
       "looser -accuracy, fewer -noise_levels or more machines",
-      static_cast<double>(unknowns(scene, resolution)), gigabytes(need), gigabytes(have)));
+      static_cast<double>(unknowns(scene, resolution)), gigabytes(need), gigabytes(have));
+}
+
+void require_memory(MPI_Comm comm, const model::Scene& scene, const Resolution& resolution) {
+  const std::string shortfall = shortfall_of_memory(comm, scene, resolution);
+  if (!shortfall.empty()) throw NoMemory(shortfall);
 }
 
 bool needs_system(const cases::Case& given) {

@@ -4,11 +4,14 @@
 #include <mpi.h>
 #include <petscsys.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <functional>
 #include <new>
@@ -44,6 +47,51 @@ double seconds_since(Clock::time_point start) {
 void print_error(const std::string& text) {
   std::fputs((text + "\n").c_str(), stderr);
   std::fflush(stderr);
+}
+
+// Signals by which a terminal, a limit of processor time or a batch system ends a run.
+struct RequestToEnd {
+  int signal;
+  const char* name;
+};
+constexpr RequestToEnd kRequestsToEnd[] = {
+    {SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGXCPU, "SIGXCPU"}};
+std::chrono::steady_clock::time_point program_start;
+
+// Says in one line what ends the program, and ends it as the signal does. With functions that a
+// signal may call, and the digits of the seconds by hand.
+void end_by_signal(int signal) {
+  char line[160] = "stickslip: ended by ";
+  std::size_t size = std::strlen(line);
+  const auto add = [&](const char* text) {
+    while (*text != 0 && size < sizeof line) line[size++] = *text++;
+  };
+  for (const auto& request : kRequestsToEnd) {
+    if (request.signal == signal) add(request.name);
+  }
+  char digits[24] = "";
+  char* first = digits + sizeof digits - 1;
+  auto seconds = static_cast<long>(seconds_since(program_start));
+  do *--first = static_cast<char>('0' + seconds % 10);
+  while ((seconds /= 10) > 0);
+  add(" after ");
+  add(first);
+  add(" s, before its results were complete; files that exist are whole\n");
+  if (write(STDERR_FILENO, line, size) < 0) std::_Exit(static_cast<int>(ExitStatus::other));
+  std::raise(signal);  // whose action is the usual one again
+}
+
+// On the first rank alone: mpiexec tells all of them. What nohup and shells let a process ignore
+// stays so.
+void tell_of_signals() {
+  if (petsc::rank(MPI_COMM_WORLD) != 0) return;
+  for (const auto& request : kRequestsToEnd) {
+    struct sigaction action = {}, before = {};
+    action.sa_handler = end_by_signal;
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    sigaction(request.signal, &action, &before);
+    if (before.sa_handler == SIG_IGN) sigaction(request.signal, &before, nullptr);
+  }
 }
 
 bool contains(const std::vector<std::string>& words, const char* word) {
@@ -138,6 +186,7 @@ int report_plan(const options::Request& request, const Emit& emit) {
   const MPI_Comm comm = MPI_COMM_WORLD;
   const auto prediction = accuracy::predict(comm, request);
   emit(io::report_of(comm, request, prediction), request);
+  if (!prediction.shortfall.empty()) throw NoMemory(prediction.shortfall);
   return 0;
 }
 
@@ -286,6 +335,8 @@ int run(int argc, char** argv) {
     for (auto& word : words) arguments.push_back(word.data());
     char** values = arguments.data();
     const petsc::Session session(argc, values);
+    program_start = start;
+    tell_of_signals();
     petsc::keep_blas_to_one_thread();
     operators::register_preconditioners();
     if (contains(words, "-help_solvers")) {

@@ -29,6 +29,17 @@ install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}
 install(FILES CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES python/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME python.md)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
+# Installed pages name the installed program, but for those about building it.
+install(CODE "
+  file(GLOB pages \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}/*.md\")
+  foreach(page IN LISTS pages)
+    if(NOT page MATCHES \"/(install|development)[.]md$\")
+      file(READ \"\${page}\" text)
+      string(REGEX REPLACE \"build/stickslip|[.]/bootstrap run\" stickslip text \"\${text}\")
+      string(REPLACE \"./bootstrap plot\" \"python3 -m stickslip plot\" text \"\${text}\")
+      file(WRITE \"\${page}\" \"\${text}\")
+    endif()
+  endforeach()")
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The stickslip authors")

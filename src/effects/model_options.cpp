@@ -44,20 +44,21 @@ std::vector<Option> made() {
   std::vector<Option> all{
       Option::real(
           "mu_s", "force", "1", Range::positive(),
-          "static friction coefficient: a body at rest sticks while the force on it is at most "
-          "mu_s",
+          "static friction coefficient: a body at rest sticks while the force is at most mu_s",
           "friction must be able to hold the body",
           {.symbol = "\\mu_s",
            .label = "static friction",
            .slider = Slider{.low = 0.1, .high = 3, .start = 1},
            .others = {"static_friction", "yield_acceleration", "critical_acceleration", "ky"}}),
-      Option::real("mu_d", "force", "1", Range::not_negative(),
-                   "dynamic friction coefficient, at most mu_s", "friction must not drive the body",
-                   {.symbol = "\\mu_d",
-                    .label = "dynamic friction",
-                    .slider = Slider{.low = 0.05, .high = 3, .start = 0.5},
-                    .others = {"mu", "mu_k", "friction_coefficient", "dynamic_friction",
-                               "kinetic_friction"}}),
+      Option::real(
+          "mu_d", "force", "1", Range::not_negative(),
+          "dynamic friction coefficient, at most mu_s; the smaller of 1 and mu_s unless given",
+          "friction must not drive the body",
+          {.symbol = "\\mu_d",
+           .label = "dynamic friction",
+           .slider = Slider{.low = 0.05, .high = 3, .start = 0.5},
+           .others = {"mu", "mu_k", "friction_coefficient", "dynamic_friction",
+                      "kinetic_friction"}}),
       Option::real(
           "mu_s_minus", "force", "", Range::positive(),
           "static friction coefficient against motion towards negative v; mu_s unless given. "

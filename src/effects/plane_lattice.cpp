@@ -196,7 +196,8 @@ model::LevelTable lattice_of(const PlaneNoise& noise, const model::Scene& scene)
 
 bool complete_lattice(Given& given, model::Scene& scene) {
   return make_levels(given, scene, given.has(kDelta) ? kDelta : kRadius,
-                     "take a larger -delta, or a smaller -noise_radius");
+                     "a smaller -delta or a larger -noise_radius makes more states, a larger "
+                     "-delta or a smaller -noise_radius fewer");
 }
 
 std::string stronger_lattice(const model::Scene&) {

@@ -40,12 +40,20 @@ class SceneReader {
   }
 
   void read_numbers() {
-    scene_.friction = {given_.real("mu_s"), given_.real("mu_d")};
+    auto& friction = scene_.friction;
+    friction = {given_.real("mu_s"), given_.real("mu_d")};
     const auto by_direction = [this](const char* option) {
       return given_.has(option) ? std::optional(given_.real(option)) : std::nullopt;
     };
-    scene_.friction.mu_s_minus = by_direction("mu_s_minus");
-    scene_.friction.mu_d_minus = by_direction("mu_d_minus");
+    friction.mu_s_minus = by_direction("mu_s_minus");
+    friction.mu_d_minus = by_direction("mu_d_minus");
+    if (!given_.has("mu_d")) {
+      const double usual = friction.mu_d;
+      friction.mu_d = std::min(usual, friction.mu_s);
+      const double least = friction.mu_s_minus.value_or(friction.mu_s);
+      if (!friction.mu_d_minus && least != friction.mu_s)
+        friction.mu_d_minus = std::min(usual, least);
+    }
     scene_.friction_name = given_.text("friction");
     scene_.noise.name = given_.text("noise");
     scene_.drag_name = given_.text("drag");
@@ -66,11 +74,7 @@ class SceneReader {
     const auto backwards = forwards.mirrored();
     const char* grows = "dynamic friction cannot exceed static friction";
     if (forwards.mu_d > forwards.mu_s) {
-      report("mu_d", fmt::format("must be in [0, mu_s], and mu_s = {:g}", forwards.mu_s),
-             given_.has("mu_d") ? grows
-                                : fmt::format("give it as well, such as -mu_d {:g}: it does not "
-                                              "follow -mu_s",
-                                              forwards.mu_s));
+      report("mu_d", fmt::format("must be in [0, mu_s], and mu_s = {:g}", forwards.mu_s), grows);
     }
     if (!forwards.symmetric() && backwards.mu_d > backwards.mu_s) {
       report(forwards.mu_d_minus ? "mu_d_minus" : "mu_s_minus",

@@ -78,11 +78,11 @@ std::string steps_table(cases::Scheme scheme, const std::vector<accuracy::Predic
   for (const auto& step : steps) {
     auto cells = size_cells(step.resolution, step.unknowns, step.nonzeros);
     if (system) {
-      cells.push_back(count_text(step.factor_entries));
+      cells.push_back(step.fits ? count_text(step.factor_entries) : "-");
       cells.push_back(fmt::format("{:.0f}", step.megabytes));
     }
     // What is not predicted is 0.
-    cells.push_back(step.seconds > 0 ? seconds_text(step.seconds) : "-");
+    cells.push_back(!step.fits ? "too large" : step.seconds > 0 ? seconds_text(step.seconds) : "-");
     table.add(std::move(cells));
   }
   return table.text();
@@ -123,7 +123,7 @@ std::string text_of(const options::Request& request, const accuracy::Prediction&
                               request.method.excursions);
   }
   text += tasks_table(plan) + "\n" + steps_table(request.method.scheme, prediction.steps);
-  if (plan.tasks.empty()) return text;
+  if (plan.tasks.empty() || !prediction.shortfall.empty()) return text;
   return text +
          fmt::format("about {:.2g} s for these refinement levels; finer ones follow if error "
                      "estimates exceed -accuracy\n",

@@ -87,6 +87,7 @@ std::string used_text(const Settings& settings, const Request& request, const Op
   const auto given_or = [&](double used) {
     return chosen && used != settings.real(name) ? fmt::format("{}", used) : settings.text(name);
   };
+  if (name == "mu_d") return given_or(request.scene.friction.mu_d);
   if (name == "accuracy") return given_or(request.question.accuracy);
   const bool white_noise = request.study.kind == StudyKind::white_noise;
   if (name == "delta" && white_noise) return given_or(request.scene.delta);

@@ -255,6 +255,7 @@ Request read_sweep(Settings settings) {
   request.files = read_files(settings);
   for (auto& [name, value] : request.resolved) {
     if (is_axis(sweep->axes(), name)) value = kSwept;
+    if (name == "mu_d" && !settings.has(name) && is_axis(sweep->axes(), "mu_s")) value.clear();
   }
   return request;
 }

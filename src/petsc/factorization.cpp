@@ -4,12 +4,15 @@
 #include <petscsys.h>
 
 #include <algorithm>
+#include <cstdarg>
+#include <sstream>
 #include <string>
 #include <utility>
 
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/linear_solver.hpp"
 #include "stickslip/petsc/scalars.hpp"
+#include "stickslip/petsc/solver_options.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -162,8 +165,7 @@ Analysis Factorization::analyse(Mat matrix, const std::string& prefix, SolverSta
 
 namespace {
 
-// What a solver of that type reads, on a small matrix.
-void read_all_options(const std::string& prefix, PCType pc_type) {
+MatHandle small_matrix() {
   MatHandle unit;
   check(MatCreate(PETSC_COMM_SELF, unit.out()));
   check(MatSetSizes(unit, 2, 2, 2, 2));
@@ -172,19 +174,52 @@ void read_all_options(const std::string& prefix, PCType pc_type) {
   for (PetscInt i = 0; i < 2; ++i) check(MatSetValue(unit, i, i, 1, INSERT_VALUES));
   check(MatAssemblyBegin(unit, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(unit, MAT_FINAL_ASSEMBLY));
-  const KspHandle ksp = linear_solver(unit, prefix, pc_type);
+  return unit;
+}
+
+// What a solver of that type reads.
+void read_all_options(Mat matrix, const std::string& prefix, PCType pc_type) {
+  const KspHandle ksp = linear_solver(matrix, prefix, pc_type);
   const auto amf = default_ordering(prefix);
   if (!is_own(ksp)) check(KSPSetUp(ksp));
 }
 
+std::string help_of_petsc;
+
+PetscErrorCode collect_help(FILE* /*file*/, const char format[], va_list values) {
+  constexpr std::size_t most = 1 << 16;
+  std::string text(most, '\0');
+  std::size_t size = 0;
+  const PetscErrorCode code = PetscVSNPrintf(text.data(), most, format, &size, values);
+  if (code == 0) help_of_petsc += text.c_str();
+  return code;
+}
+
 }  // namespace
 
-void probe_linear_solver(const std::string& prefix) { read_all_options(prefix, PCLU); }
+void probe_linear_solver(const std::string& prefix) {
+  read_all_options(small_matrix(), prefix, PCLU);
+}
 
+// Without options and types that this program refuses, and one that needs a known solution.
 void print_linear_solver_options(const std::string& prefix) {
+  const MatHandle unit = small_matrix();
+  const auto usual = std::exchange(PetscVFPrintf, collect_help);
   check(PetscOptionsSetValue(nullptr, "-help", nullptr));
-  read_all_options(prefix, kElementsPc);
+  read_all_options(unit, prefix, kElementsPc);
   check(PetscOptionsClearValue(nullptr, "-help"));
+  PetscVFPrintf = usual;
+  std::istringstream lines(help_of_petsc);
+  for (std::string line; std::getline(lines, line);) {
+    const bool option = line.starts_with("  -");
+    const bool own = line.starts_with("  -" + prefix) &&
+                     !line.starts_with(fmt::format("  -{}ksp_monitor_error", prefix));
+    if (option && !own) continue;
+    const std::string types = option ? types_of(line.substr(3, line.find(' ', 3) - 3)) : "";
+    const auto list = line.find("(one of) ");
+    if (!types.empty() && list != line.npos) line = line.substr(0, list + 9) + types;
+    fmt::print("{}\n", line);
+  }
 }
 
 }  // namespace stickslip::petsc

@@ -94,6 +94,10 @@ constexpr std::pair<const char*, const char*> kSolverTypes[] = {
      "preonly gmres fgmres lgmres dgmres pgmres pipefgmres gcr bcgs bcgsl ibcgs fbcgs fbcgsr cgs "
      "qmrcgs tfqmr tcqmr pipebcgs"}};
 
+// Numbers of eigenvalues, and of vectors that they are found among, beyond which a run takes hours.
+constexpr std::pair<const char*, int> kMost[] = {
+    {"relax_eps_nev", 100}, {"relax_eps_ncv", 1000}, {"null_eps_nev", 100}, {"null_eps_ncv", 1000}};
+
 // The option of a role whose value a message names; the prefix alone if there is none.
 std::string blamed_option(const SolverRole& role, const std::string& message) {
   for (const auto& name : given_options()) {
@@ -189,6 +193,13 @@ std::vector<std::pair<std::string, std::string>> given_solver_options() {
   return found;
 }
 
+std::string types_of(const std::string& option) {
+  for (const auto& [name, words] : kSolverTypes) {
+    if (name == option) return words;
+  }
+  return "";
+}
+
 std::vector<std::string> wrong_solver_types() {
   std::vector<std::string> messages;
   for (const auto& [name, words] : kSolverTypes) {
@@ -204,6 +215,14 @@ std::vector<std::string> wrong_solver_types() {
 
 std::vector<std::string> wrong_solver_options() {
   std::vector<std::string> messages;
+  for (const auto& [name, most] : kMost) {
+    const auto number = parse_number(option_value(name).value_or("1"));
+    if (!number || *number <= most) continue;
+    messages.push_back(fmt::format("-{} = {:g}: must be at most {}, as each eigenvalue takes "
+                                   "solutions and vectors of its own; take for example {}",
+                                   name, *number, most, most / 10));
+  }
+  if (!messages.empty()) return messages;
   const auto names = given_options();
   for (const auto& role : kRoles) {
     const bool used = std::any_of(names.begin(), names.end(), [&role](const std::string& name) {

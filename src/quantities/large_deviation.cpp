@@ -1,18 +1,18 @@
 #include "stickslip/catalogue/large_deviation_keys.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
+#include <utility>
 
-#include "stickslip/operators/solver_policy.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/petsc/check.hpp"
-#include "stickslip/petsc/eigensolver.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/quantities/plan.hpp"
-#include "stickslip/quantities/relaxation.hpp"
 #include "stickslip/quantities/uncertain.hpp"
+#include "stickslip/support/errors.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -25,9 +25,6 @@ using operators::Symmetry;
 using petsc::check;
 using petsc::dot;
 
-// The largest eigenvalue, and how far below it the next one lies.
-constexpr int kEigenvalues = 2;
-
 /// theta(s) and theta'(s) at one s.
 struct TiltedGrowth {
   Uncertain theta, velocity;
@@ -38,6 +35,8 @@ struct Vectors {
   petsc::VecHandle right, left;
 };
 
+Vectors copies_of(const Vectors& of) { return {petsc::copy_of(of.right), petsc::copy_of(of.left)}; }
+
 petsc::VecHandle velocities(const KolmogorovOperator& a) {
   return a.values([](double, double, double v) { return v; });
 }
@@ -45,45 +44,6 @@ petsc::VecHandle velocities(const KolmogorovOperator& a) {
 void make_unit(Vec x) {
   PetscReal size = 0;
   check(VecNormalize(x, &size));
-}
-
-// Exp(s x) weighs no state negatively: with z above theta all of (z - L - s v)^-1 is positive, and
-// its largest eigenvalue, 1/(z - theta), is the one nearest to z. No speed exceeds the largest.
-double above_theta(const operators::Systems& systems, double s) {
-  const double tau = systems.process().noise.correlation_time();
-  return std::abs(s) * systems.discretisation().velocities->v_max() + 0.1 / tau;
-}
-
-/// theta by SLEPc, to start with.
-struct Found {
-  double theta = 0, gap = 0;
-  petsc::VecHandle right = {};  // none where there is no single one
-};
-Found find(operators::Systems& systems, double s) {
-  const auto a = operators::assemble(systems.comm(), systems.discretisation(), {0.0, 0.0, s},
-                                     Symmetry::none, StaticPhase::kept, systems.statistics());
-  const petsc::Eigensolver solver(a.matrix(), kRelaxPrefix, -above_theta(systems, s), kEigenvalues,
-                                  systems.statistics(),
-                                  {[&a](PetscScalar at) { return a.shifted(-at); },
-                                   operators::default_pc_type(systems.discretisation())});
-  const auto& pairs = solver.pairs();
-  const auto smaller = [](const petsc::Eigenpair& one, const petsc::Eigenpair& other) {
-    return one.value.real() < other.value.real();
-  };
-  const auto first = std::min_element(pairs.begin(), pairs.end(), smaller);
-  double gap = above_theta(systems, s) + first->value.real();
-  for (auto next = pairs.begin(); next != pairs.end(); ++next) {
-    if (next != first) gap = std::min(gap, next->value.real() - first->value.real());
-  }
-  // What coarse elements make of steep weights may be anything. With complex scalars what is real
-  // comes with rounding and a phase of its own.
-  constexpr double rounding = 1e-6;
-  if (!(gap > 0) || std::abs(first->value.imag()) > rounding * gap) return {};
-  auto right = petsc::copy_of(first->real);
-  PetscScalar sum = 0;
-  check(VecSum(right, &sum));
-  if (sum != PetscScalar(0)) check(VecScale(right, PetscAbsScalar(sum) / sum));
-  return {-first->value.real(), gap, std::move(right)};
 }
 
 // Share of the weighted paths that a truncation velocity holds back.
@@ -99,38 +59,187 @@ double held(const KolmogorovOperator& a, const Vectors& of) {
   return std::abs(sum / dot(of.left, of.right));
 }
 
-// By inverse iteration from both sides next to theta, each of which makes the vectors a hundred
-// times more accurate; their product counts in theta. With w = (z - L - s v)^-1 r, 1/(z - theta) is
-// (l, w)/(l, r). The last iterations, which change nothing but rounding, show the error.
-TiltedGrowth growth(operators::Systems& systems, double s, bool truncated) {
-  constexpr double nearer = 1e-2;
-  constexpr int iterations = 7;
-  auto [theta, gap, right] = find(systems, s);
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  if (right == nullptr) return {{none, none}, {none, none}};
-  operators::SystemKey key{theta + nearer * gap, Symmetry::none, StaticPhase::kept};
-  key.tilt = s;
-  auto& system = systems.at(key);
-  const auto& a = system.a();
-  const petsc::VecHandle v = velocities(a), moving = a.zeros();
-  Vectors of{std::move(right), a.values([](double, double, double) { return 1; })};
-  TiltedGrowth now, before;
-  for (int n = 0; n < iterations; ++n) {
-    before = now;
-    petsc::VecHandle next = std::move(system.factors().solve(of.right).x);
-    now.theta.value = key.lambda - dot(of.left, of.right) / dot(of.left, next);
-    of.right = std::move(next);
-    make_unit(of.right);
-    of.left = std::move(system.factors().solve_transposed(of.left).x);
-    make_unit(of.left);
-    check(VecPointwiseMult(moving, v, of.right));
-    now.velocity.value = dot(of.left, moving) / dot(of.left, of.right);
+// Powers of (z - L - s v)^-1 from both sides. The vectors range over more orders of magnitude than
+// numbers have digits, which leads Krylov spaces astray, as they see lengths. Here the vectors are
+// seen through their product alone, the probability of states on weighted paths.
+class Powers {
+ public:
+  Powers(operators::Systems& systems, double s, double z) : systems_(systems) {
+    key_.symmetry = Symmetry::none;
+    key_.static_phase = StaticPhase::kept;
+    move(s, z);
+    const auto alike = [](double, double, double) { return 1; };
+    vectors_ = {a().values(alike), a().values(alike)};
   }
-  const double cut = truncated ? held(a, of) * systems.discretisation().velocities->v_max() : 0;
-  systems.release(key);
-  now.theta.error = std::abs(now.theta.value - before.theta.value) + cut * std::abs(s);
-  now.velocity.error = std::abs(now.velocity.value - before.velocity.value) + cut;
-  return now;
+  Powers(const Powers&) = delete;
+  Powers& operator=(const Powers&) = delete;
+  ~Powers() { systems_.release(key_); }
+
+  void move(double s, double z) {
+    systems_.release(key_);
+    key_.tilt = s;
+    key_.lambda = z;
+  }
+  [[nodiscard]] Vectors copies() const { return copies_of(vectors_); }
+  void restart(const Vectors& from) { vectors_ = copies_of(from); }
+
+  // With iterative refinement or without.
+  void step(bool refined) {
+    auto& factors = systems_.at(key_).factors();
+    Vectors next{a().zeros(), a().zeros()};
+    if (refined) {
+      next.right = std::move(factors.solve(vectors_.right).x);
+      next.left = std::move(factors.solve_transposed(vectors_.left).x);
+    } else {
+      factors.solve_once(vectors_.right, next.right);
+      factors.solve_transposed_once(vectors_.left, next.left);
+    }
+    const double mean = dot(vectors_.left, next.right) / dot(vectors_.left, vectors_.right),
+                 before = std::exchange(off_, 0);
+    compare(vectors_.left, vectors_.right, next.right, mean);
+    compare(vectors_.right, vectors_.left, next.left, mean);
+    fall_ = off_ / before;
+    theta_ = key_.lambda - 1 / mean;
+    vectors_ = std::move(next);
+    make_unit(vectors_.right);
+    make_unit(vectors_.left);
+  }
+
+  // Whether the vectors become the positive eigenvectors, by a percent.
+  bool converges(int most) {
+    constexpr double near = 1e-2;
+    for (int n = 0; n < most; ++n) {
+      step(false);
+      if (positive_ && off_ < near) return true;
+    }
+    return false;
+  }
+
+  // As far as rounding lets them.
+  void finish() {
+    constexpr int most = 60;
+    constexpr double still = 0.5;
+    for (int n = 0; n < most && (n < 3 || fall_ < still); ++n) step(false);
+    for (int n = 0; n < 3; ++n) step(true);
+  }
+
+  [[nodiscard]] double velocity() {
+    const petsc::VecHandle moving = product(velocities(a()), vectors_.right);
+    return dot(vectors_.left, moving) / dot(vectors_.left, vectors_.right);
+  }
+  [[nodiscard]] double theta() const { return theta_; }
+  // Distance from theta to the next eigenvalue, by how fast its eigenvectors vanish.
+  [[nodiscard]] double gap() const {
+    return std::abs(key_.lambda - theta_) * (1 / std::clamp(fall_, 1e-3, 0.99) - 1);
+  }
+  [[nodiscard]] const KolmogorovOperator& a() { return systems_.at(key_).a(); }
+  [[nodiscard]] const Vectors& vectors() const { return vectors_; }
+
+ private:
+  // How far w, what becomes of r, is from m r: the mean of |w/r - m|/m. By Perron and Frobenius the
+  // eigenvectors of theta alone have no negative entries, but for those that elements leave.
+  void compare(Vec weight, Vec before, Vec after, double mean) {
+    double sums[] = {0, 0, 0, 0};
+    {
+      const petsc::ReadView l(weight), r(before), w(after);
+      for (PetscInt n = 0; n < l.size(); ++n) {
+        const double was = mean * PetscRealPart(l[n] * r[n]), is = PetscRealPart(l[n] * w[n]);
+        sums[0] += is;
+        sums[1] += std::abs(is);
+        sums[2] += std::abs(is - was);
+        sums[3] += std::abs(was);
+      }
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, systems_.comm());
+    constexpr double least = 0.3;
+    positive_ = std::abs(sums[0]) > least * sums[1];
+    off_ = std::max(off_, sums[2] / sums[3]);
+  }
+
+  operators::Systems& systems_;
+  operators::SystemKey key_;
+  Vectors vectors_;
+  double theta_ = 0, off_ = 1, fall_ = 1;
+  bool positive_ = false;
+};
+
+[[noreturn]] void refuse(double goal, double reached) {
+  throw NotReached(fmt::format(
+      "-tilt = {:g}: weights that steep are not resolved, as E[exp(s x(t))] is that of a few fast "
+      "bodies; |s| up to {:.2g} was reached: take such -tilt, or a larger -delta",
+      goal, std::abs(reached)));
+}
+
+// From s = 0, where theta = 0, in steps that change the vectors little. Theta is smooth, so that it
+// rises by the mean of theta' at both ends, but for a part of what that changes; another eigenvalue
+// does not lie there.
+void approach(Powers& powers, double goal, double tau) {
+  constexpr double part = 0.2;
+  const double small = 1e-3 / tau;
+  constexpr int first = 12, steps = 3, shifts = 3, most = 32;
+  double s = 0, step = goal;
+  powers.move(s, 1e-3 * small);
+  if (!powers.converges(first)) refuse(goal, s);
+  Vectors at_s = powers.copies();
+  double theta = 0, velocity = powers.velocity();
+  for (int tried = 0; s != goal; ++tried) {
+    if (tried == most) refuse(goal, s);
+    const double next = std::abs(goal - s) < 1.5 * std::abs(step) ? goal : s + step,
+                 width = next - s;
+    powers.move(next, theta + width * velocity + small);
+    bool found = false;
+    for (int n = 0; n < shifts && !found; ++n) {
+      if (powers.converges(steps)) {
+        const double now = powers.velocity(),
+                     misfit = powers.theta() - theta - width * (velocity + now) / 2;
+        found = std::abs(misfit) < part * std::abs(width * (now - velocity)) + small;
+      }
+      if (!found) powers.move(next, powers.theta());
+    }
+    step *= found ? 1.4 : 0.5;
+    if (found) {
+      s = next;
+      theta = powers.theta();
+      velocity = powers.velocity();
+      at_s = powers.copies();
+    } else {
+      powers.restart(at_s);
+    }
+  }
+}
+
+// Next to theta each step makes the vectors a hundred times more accurate. The last one, which
+// changes nothing but rounding, shows the error. `recipe` holds z and z - theta of the refinement
+// level before.
+TiltedGrowth growth(operators::Systems& systems, double s, bool truncated, Recipe& recipe) {
+  constexpr double nearer = 1e-2;
+  constexpr int steps = 40;
+  const double tau = systems.process().noise.correlation_time();
+  auto& known = recipe.steps;
+  Powers powers(systems, s, known.empty() ? 1 / tau : known[0].z.real());
+  const auto next_to_theta = [&] {  // and to no other one
+    constexpr double share = 0.3;
+    if (known.empty() || !powers.converges(steps)) return false;
+    const double gap = (known[1].z / nearer).real();
+    return std::abs(powers.theta() - known[0].z.real()) < share * gap;
+  };
+  if (!next_to_theta()) {
+    approach(powers, s, tau);
+    const double away = nearer * powers.gap();
+    known = {{powers.theta() + away}, {away}};
+    powers.move(s, powers.theta() + away);
+  }
+  powers.finish();
+  const double theta = powers.theta(), velocity = powers.velocity();
+  powers.step(true);
+  known[0].z = powers.theta() + known[1].z;
+  const double v_max = systems.discretisation().velocities->v_max(),
+               cut = truncated ? held(powers.a(), powers.vectors()) * v_max : 0;
+  const auto with_error = [](double now, double before, double more) {
+    return Uncertain{now, std::abs(now - before) + more};
+  };
+  return {with_error(powers.theta(), theta, cut * std::abs(s)),
+          with_error(powers.velocity(), velocity, cut)};
 }
 
 void find_growth(Computation& computation) {
@@ -143,7 +252,10 @@ void find_growth(Computation& computation) {
   for (double s : tilts) {
     const bool mirrored = computation.process().symmetric() && s < 0;
     const double tilt = mirrored ? -s : s;
-    if (!known.contains(tilt)) known[tilt] = growth(computation.systems, tilt, !scene.limits_speed);
+    if (!known.contains(tilt)) {
+      known[tilt] = growth(computation.systems, tilt, !scene.limits_speed,
+                           computation.tolerance().recipe(fmt::format("tilt {}", tilt)));
+    }
     TiltedGrowth g = known[tilt];
     if (mirrored) g.velocity.value = -g.velocity.value;
     append_value(theta, g.theta);
@@ -160,7 +272,7 @@ void large_deviation_tasks(Planner& planner) {
   const auto& tilts = planner.question().values(catalogue::kTilt.option);
   planner.needs().rates.tilt = largest_size(tilts);
   const auto count = static_cast<int>(tilts.size());
-  planner.add_adaptive("large deviations", 2 * count, 56 * count, find_growth);
+  planner.add_adaptive("large deviations", 2 * count, 40 * count, find_growth);
 }
 
 }  // namespace stickslip::quantities

@@ -175,21 +175,26 @@ int natural_layers(const model::Process& process, const MeshRule& rule) {
 
 namespace {
 
-/// decay_rate(), and beyond the speeds that bodies reach on both velocity branches that of the
-/// branch on which they do, where the next element may end.
+/// decay_rate(), or what weights exp(s x(t)) add: the log of E[exp(s x(t))] rises with v by about s
+/// times the time until a body rests. Without weights, beyond the speeds that bodies reach on both
+/// velocity branches that of the branch on which they do, where the next element may end.
 class DecayRate {
  public:
   DecayRate(const model::Process& process, const MeshRule& rule)
       : process_(process),
         ratio_(rule.ratio()),
-        weighted_(rule.rates.tilt > 0),
+        tilt_(rule.rates.tilt),
         upper_(process, rule.v_max),
         lower_(process.mirrored(), rule.v_max) {}
 
   [[nodiscard]] double operator()(double v) const {
     constexpr double nothing = -45;  // below all rounding
     const double both = decay_rate(process_, v), up = upper_(v), down = lower_(v);
-    if (weighted_ || std::max(up, down) < nothing || std::min(up, down) > nothing) return both;
+    constexpr double steeper = 2;
+    if (tilt_ > 0) {
+      return std::max(both, steeper * tilt_ * v / (both * process_.noise.intensity()));
+    }
+    if (std::max(up, down) < nothing || std::min(up, down) > nothing) return both;
     const LogDensity& counts = up > down ? upper_ : lower_;
     const double own = std::abs(counts.slope - counts.drag(v / ratio_));
     return std::min(both, own / process_.noise.intensity());
@@ -198,7 +203,7 @@ class DecayRate {
  private:
   const model::Process& process_;
   double ratio_;
-  bool weighted_;  // with exp(s x(t)), which may make of a rare branch the one that counts
+  double tilt_;  // which may make of a rare branch the one that counts
   LogDensity upper_, lower_;
 };
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import struct
 import subprocess
 import unittest
@@ -233,6 +234,11 @@ class Texts(Case):
         self.assertEqual((own.returncode, own.stderr), (0, ""))
         self.assertIn("-slide_pc_elements_share", own.stdout)
         self.assertNotIn("-slide_mat_mumps_icntl_14", own.stdout)
+        names = set(re.findall(r"^ +(-[a-z]\w+)", own.stdout, re.MULTILINE))
+        self.assertGreater(len(names), 20)
+        self.assertEqual([name for name in names if not name.startswith("-slide_")], [])
+        self.assertRegex(own.stdout, r"-slide_pc_type .* elements .*\bilu\b")
+        self.assertNotRegex(own.stdout, r"-slide_pc_type .*\bshell\b")
         lu = run("-help_solvers", "-slide_pc_type", "lu").stdout
         self.assertRegex(lu, "-slide_mat_mumps_icntl_7:? <now 2")  # with a colon after PETSc 3.18
 

@@ -110,6 +110,19 @@ class Killed(Faults):
         self.assertGreater(kills, 0)
         self.assertEqual(self.summary(*SIMULATE, "-checkpoint", file)["results"], whole)
 
+    def test_a_request_to_end(self):
+        """what a terminal and a batch system send: one line, the status of the signal, old files stay"""
+        (self.folder / "old.json").write_text("old")
+        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGXCPU):
+            file = self.folder / number.name
+            process = self.start(*LONG, "-checkpoint", file, "-summary", "old.json")
+            self.wait_for_file(file, process)
+            process.send_signal(number)
+            out, err = process.communicate(timeout=20)
+            self.assertEqual((process.returncode, out), (-number, ""))  # of a shell 128 + number
+            self.assertRegex(err, rf"^stickslip: ended by {number.name} after \d+ s, .*\n$")
+            self.assertEqual((self.folder / "old.json").read_text(), "old")
+
     def test_the_terminal_goes(self):
         """a hang-up: ends a run without words, and not one that nohup started"""
         for action, ended in ((signal.SIG_DFL, -signal.SIGHUP), (signal.SIG_IGN, None)):

@@ -1,6 +1,7 @@
 """What `cmake --install` puts under a prefix works from there."""
 
 import os
+import pathlib
 import subprocess
 import sys
 import unittest
@@ -50,6 +51,13 @@ class Install(Case):
         self.assertIn("copyright", self.installed("share/doc/stickslip"))
         self.assertIn("python.md", self.installed("share/doc/stickslip"))
         self.assertIn("paper", self.installed("share/stickslip/options"))
+
+    def test_pages_name_the_installed_program(self):
+        pages = self.prefix / "share/doc/stickslip"
+        for page in set(pages.glob("*.md")) - {pages / "install.md", pages / "development.md"}:
+            self.assertNotRegex(page.read_text(), r"build/stickslip|\./bootstrap (run|plot)", page.name)
+        source = pathlib.Path(__file__).parents[2] / "docs/performance.md"
+        self.assertEqual((pages / "performance.md").read_text(), source.read_text().replace("build/stickslip", "stickslip"))
 
     def test_python_package_finds_the_installed_program(self):
         script = "import stickslip; print(stickslip.run(delta=0.5, quantities='sticking')['P_stick'].value)"

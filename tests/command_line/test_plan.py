@@ -16,6 +16,13 @@ class Plans(Case):
         self.assertIn("1 transposed", done.stdout)
         self.assertEqual(list(self.folder.iterdir()), [])
 
+    def test_what_does_not_fit(self):
+        """The table shows it, as far as it is known; then the message of the run."""
+        done = self.run_ok("-plan", "-scheme", "upwind", "-p", "100000", "-delta", "0.01", status=4)
+        self.assertEqual(done.stdout.count("too large"), 2)
+        self.assertIn("factorisations", done.stdout)
+        self.assertIn("of memory, and", done.stderr)
+
     def test_words(self):
         for words in (("-plan",), ("-plan", "yes")):
             self.assertIn("nonzeros", self.run_ok(*SMALL, *words).stdout)

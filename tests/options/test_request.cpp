@@ -246,9 +246,30 @@ TEST_CASE("request: formulas that begin with a sign are no options") {
   CHECK(words[9] == "-v");
 }
 
+TEST_CASE("request: dynamic friction that is not given stays below static friction") {
+  const Request small = Given("-mu_s 0.3").read(), large = Given("-mu_s 3").read();
+  CHECK(small.scene.friction.mu_d == 0.3);
+  CHECK(small.scene.symmetric());
+  CHECK(large.scene.friction.mu_d == 1);
+  const auto used = [](const Request& r) {
+    return std::find_if(r.resolved.begin(), r.resolved.end(),
+                        [](const auto& option) { return option.first == "mu_d"; })
+        ->second;
+  };
+  CHECK(used(small) == "0.3");
+  CHECK(used(large) == "1");
+  for (const char* options : {"-mu_s_minus 0.5", "-mu_s 0.3 -mu_s_minus 0.5"}) {
+    CHECK(Given(options).read().scene.friction.mirrored().mu_d == 0.5);
+  }
+  CHECK(Given("-mu_s 0.3 -mu_s_minus 3").read().scene.friction.mirrored().mu_d == 1);
+  CHECK(Given("-mu_s 3 -mu_s_minus 2").read().scene.friction.mirrored().mu_d == 1);
+}
+
 TEST_CASE("request: every refusal names option, value, range and a way out") {
   const std::vector<Refusal> refusals{
       {"-delta -0.5", {"-delta = -0.5", "(0, inf)", "0.125"}},
+      {"-noise filtered -ground_frequency 15 -ground_damping 0.02 -ground_intensity 0.05 -delta 1",
+       {"-delta = 1", "at least two states", "a smaller -delta"}},
       {"-tau nan", {"-tau = nan", "(0, inf)"}},
       {"-tau 1e400", {"-tau = 1e400", "(0, inf)"}},
       {"-mu_s 1 -mu_d 2", {"-mu_d = 2", "[0, mu_s]", "mu_s = 1"}},
@@ -505,6 +526,8 @@ TEST_CASE("request: options of the eigensolvers are known or reported") {
   CHECK_NOTHROW(Given("-relax_eps_view -null_eps_converged_reason -slide_ksp_view").read());
   const std::vector<Refusal> refusals{
       {"-null_eps_tolerance 1e-10", {"-null_eps_tolerance", "-null_eps_view"}},
+      {"-relax_eps_nev 5000", {"-relax_eps_nev = 5000", "at most 100"}},
+      {"-null_eps_ncv 5000", {"-null_eps_ncv = 5000", "at most 1000"}},
       {"-relax_eps_nevs 10", {"-relax_eps_nevs", "-relax_eps_view"}},
       {"-null_eps_type nonsense", {"-null_", "nonsense"}},
       {"-relax_st_mat_mumps_icntl_99 1", {"-relax_st_mat_mumps_icntl_99"}}};

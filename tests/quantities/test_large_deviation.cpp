@@ -50,25 +50,39 @@ model::LevelTable cut_levels(double delta, int n) {
   return {x, transitions};
 }
 
-}  // namespace
-
-// Without friction x(t) is a linear functional of the noise, which is a sum of 2 N independent
-// switches of +-delta/2 that turn at the rate 1/(2 tau).
-TEST_CASE("large deviations: without friction that of the noise", "[parallel]") {
-  auto s = test::scene(1e-3, 0, 1, 0.5, {1, 0});
-  s.bias = 0.1;
-  const std::vector<double> tilts{-1, 0.3, 1};
+// Without friction x(t) is a linear functional of the noise, which is a sum of switches of
+// +-delta/2, 4/delta^2 of them, that turn at the rate 1/(2 tau).
+void require_that_of_the_noise(double delta, double bias, const std::vector<double>& tilts,
+                               double accuracy, double tolerance) {
+  auto s = test::scene(1e-3, 0, 1, delta, {1, 0});
+  s.bias = bias;
+  const double count = 4 / (delta * delta);
   std::vector<double> theta, velocity, rate;
   for (double a : tilts) {
-    const double half = a * 0.25, root = std::sqrt(0.25 + half * half);
-    theta.push_back(16 * half * half / (root + 0.5) + 0.1 * a);
-    velocity.push_back(16 * 0.25 * half / root + 0.1);
+    const double half = a * delta / 2, root = std::sqrt(0.25 + half * half);
+    theta.push_back(count * half * half / (root + 0.5) + bias * a);
+    velocity.push_back(count * delta / 2 * half / root + bias);
     rate.push_back(a * velocity.back() - theta.back());
   }
-  const auto found = values(asking(s, tilts, 1e-7));
-  require_near(found.at("theta"), theta, 1e-6);
-  require_near(found.at("tilted_velocity"), velocity, 1e-6);
-  require_near(found.at("rate_function"), rate, 1e-6);
+  const auto found = values(asking(s, tilts, accuracy));
+  require_near(found.at("theta"), theta, tolerance);
+  require_near(found.at("tilted_velocity"), velocity, tolerance);
+  require_near(found.at("rate_function"), rate, tolerance);
+}
+
+}  // namespace
+
+TEST_CASE("large deviations: without friction that of the noise", "[parallel]") {
+  require_that_of_the_noise(0.5, 0.1, {-1, 0.3, 1}, 1e-7, 1e-6);
+}
+
+TEST_CASE("large deviations: steep weights", "[real][long]") {
+  require_that_of_the_noise(0.125, 0, {3}, 1e-4, 1e-3);
+}
+
+TEST_CASE("large deviations: weights that are too steep are named", "[real]") {
+  const auto c = asking(test::scene(1, 1, 1, 0.25, {1, 0}), {30}, 1e-4);
+  CHECK_THROWS_WITH(values(c), Catch::Contains("-tilt = 30") && Catch::Contains("|s| up to"));
 }
 
 // By inverse iteration with a sparse matrix of another discretisation, in another program.

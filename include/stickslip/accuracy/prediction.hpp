@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <string>
 #include <vector>
 
 #include "stickslip/accuracy/resolution.hpp"
@@ -21,20 +22,21 @@ struct PredictedStep {
   double operations = 0;      ///< of all factorisations, by the same analysis
   double seconds = 0;
   double seconds_per_solution = 0;  ///< of one solution through the factors
+  bool fits = true;                 ///< into memory; if not, sizes only, and megabytes of all
 };
 
 struct Prediction {
   quantities::Plan plan;             ///< of each step
   std::vector<PredictedStep> steps;  ///< the least number that can meet the accuracy
   double seconds = 0;                ///< of all of them and of what is not refined
+  std::string shortfall = {};        ///< of memory, on the first that does not fit
 };
 
 /// Assembles each system of the first steps and has the solver analyse it; nothing is factored or
 /// solved. Times follow from the operations and entries counted by that analysis, with the speed of
 /// a matrix product measured now, and were found within a factor 2 of real ones; a run may need
 /// one or two steps more than predicted. Solution methods other than excursion: the sizes only,
-/// with seconds
-/// 0. Collective. Throws NoMemory as the run would.
+/// with seconds 0. Collective.
 [[nodiscard]] Prediction predict(MPI_Comm comm, const cases::Case& given);
 
 /// The same for one step of a deterministic solution method at a given resolution. Collective.

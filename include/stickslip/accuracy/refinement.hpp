@@ -33,7 +33,11 @@ struct Step {
 /// not.
 [[nodiscard]] bool needs_system(const cases::Case& given);
 
-/// Throws NoMemory, with what would help, if the predicted need exceeds what is free. Collective.
+/// By how much the predicted need of memory exceeds what is free, and what would help; empty if it
+/// does not. Collective.
+[[nodiscard]] std::string shortfall_of_memory(MPI_Comm comm, const model::Scene& scene,
+                                              const Resolution& resolution);
+/// Throws NoMemory with these words. Collective.
 void require_memory(MPI_Comm comm, const model::Scene& scene, const Resolution& resolution);
 
 /// What is asked for on one discretisation.

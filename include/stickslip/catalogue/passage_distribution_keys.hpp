@@ -59,6 +59,7 @@ inline constexpr Entry kPassageTimeDistribution{
     .options = "time, velocity, start, passage",
     .rows = kPassageDistributionRows,
     .degrees_besides = 3,
+    .usual_accuracy = 1e-4,
     .weighs_tail = true,
     .both_branches = true};
 

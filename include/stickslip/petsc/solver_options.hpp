@@ -59,6 +59,10 @@ class OptionsOf {
 /// Name and value of the options given to the solvers, by name.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> given_solver_options();
 
+/// The types that -slide_pc_type and -slide_ksp_type may name, separated by blanks; empty for other
+/// options.
+[[nodiscard]] std::string types_of(const std::string& option);
+
 /// Messages about types of solvers that do not work from options alone.
 [[nodiscard]] std::vector<std::string> wrong_solver_types();
 
