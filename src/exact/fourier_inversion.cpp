@@ -127,8 +127,9 @@ FourierInversion::Panel FourierInversion::interpolated(const Transform& phi, dou
   Panel panel{low, high};
   const auto x = nodes(degree);
   std::vector<Complex> values;
-  for (const double place : x) {
-    const double k = panel.at(place);
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    // Ends to the last bit, as neighbours share them.
+    const double k = n == 0 ? high : n + 1 == x.size() ? low : panel.at(x[n]);
     if (k == 0) {
       values.emplace_back(mass_);
       continue;

@@ -190,3 +190,15 @@ TEST_CASE("displacement distribution: simulated, within 4.5 sigma", "[real]") {
     }
   }
 }
+
+// From rest without drag: bodies have the velocity 0.3 on average until the time, and 8 in the end.
+TEST_CASE("displacement distribution: speeds that are not reached by the time cost nothing",
+          "[real]") {
+  auto c = asking(test::biased(test::scene(1, 0.4657, 1.518, 0.4657, {0, 0}), 0.0734), {}, 1.102,
+                  2e-2, kRest);
+  c.method.degree = 3;
+  const auto total = accuracy::carry_out(PETSC_COMM_WORLD, c, {}).total;
+  INFO(total.solves << " solves with " << total.factorizations_complex << " complex factors");
+  CHECK(total.factorizations_complex > 10);
+  CHECK(total.solves < 40 * total.factorizations_complex);
+}
