@@ -97,9 +97,9 @@ std::vector<Atom> atoms_at(const Computation& computation, double time) {
 }
 
 /// The distribution at one time: atoms, and a density that is singular where bodies rest: at 0, as
-/// many slips are short; where none rests, at the first atom. Where quantiles are asked for that
-/// far out, probabilities below kTail on either side of d are found by weighted paths, unless drag
-/// leaves the velocity unbounded.
+/// many slips are short; from a state of sliding or where none rests, at the first atom. Where
+/// quantiles are asked for that far out, probabilities below kTail on either side of d are found by
+/// weighted paths, unless drag leaves the velocity unbounded.
 class Distribution {
  public:
   /// Those that are found by weighted paths.
