@@ -92,6 +92,7 @@ FourierInversion::FourierInversion(const Transform& phi, double mass, double mea
     // The last octave has to be foreseen by the terms found below it.
     const bool falls = left < tolerance;
     open = !falls && unforeseen > tolerance && high < limits.highest;
+    unforeseen_ = falls ? 0 : unforeseen;
     // What falls by itself has no singularity that shows, and no sum needs terms for one.
     for (Sum& sum : sums_) {
       if (falls) sum.singular.clear();
@@ -127,8 +128,9 @@ FourierInversion::Panel FourierInversion::interpolated(const Transform& phi, dou
   Panel panel{low, high};
   const auto x = nodes(degree);
   std::vector<Complex> values;
-  for (const double place : x) {
-    const double k = panel.at(place);
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    // Ends to the last bit, as neighbours share them.
+    const double k = n == 0 ? high : n + 1 == x.size() ? low : panel.at(x[n]);
     if (k == 0) {
       values.emplace_back(mass_);
       continue;
@@ -260,6 +262,18 @@ FourierInversion::Integrals FourierInversion::integrals(const Sum& sum, double x
   return {found.density + beside.density, mass / 2 + found.below + beside.below};
 }
 
+double FourierInversion::beyond(double x) const {
+  constexpr int octaves = 40;
+  double k = panels_.back().high, size = std::abs(sampled(k)), sum = 0;
+  for (int octave = 1; octave <= octaves; ++octave) {
+    k *= 2;
+    size /= std::numbers::sqrt2;
+    sum += std::numbers::ln2 * std::min((1 + octave) / 2.0 * unforeseen_, size) /
+           std::max(1.0, k * std::abs(x));
+  }
+  return sum;
+}
+
 FourierInversion::Value FourierInversion::between(double x, double Integrals::*which) const {
   const auto of = [&](std::size_t n) { return integrals(sums_[n], x).*which; };
   const double value = of(sums_.size() - 1);
@@ -270,7 +284,7 @@ FourierInversion::Value FourierInversion::between(double x, double Integrals::*w
                                                       : 1;
     error += width / kPi * (p.rough + p.doubt);
   }
-  if (which == &Integrals::below) error += left_ / kPi;
+  if (which == &Integrals::below) error += (left_ + beyond(x)) / kPi;
   return {value, error};
 }
 

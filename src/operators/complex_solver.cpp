@@ -199,17 +199,24 @@ ComplexVector ComplexSolver::residual(const ComplexVector& b, const ComplexVecto
   return r;
 }
 
-ComplexSolver::Solution ComplexSolver::solve(const ComplexVector& b, bool transposed) {
+ComplexVector ComplexSolver::solve_once(const ComplexVector& b, bool transposed) {
   const petsc::PhaseTimer timer("solve", statistics_.solve_seconds);
-  Solution s{{a_.zeros(), a_.zeros()}, {a_.zeros(), a_.zeros()}};
-  factors_->solve(b, s.x, transposed);
+  ComplexVector x{a_.zeros(), a_.zeros()};
+  factors_->solve(b, x, transposed);
+  ++statistics_.solves;
+  return x;
+}
+
+ComplexSolver::Solution ComplexSolver::solve(const ComplexVector& b, bool transposed) {
+  Solution s{solve_once(b, transposed), {a_.zeros(), a_.zeros()}};
+  const petsc::PhaseTimer timer("solve", statistics_.solve_seconds);
   factors_->solve(residual(b, s.x, transposed), s.correction, transposed);
   check(VecAXPY(s.x.real, 1, s.correction.real));
   check(VecAXPY(s.x.imaginary, 1, s.correction.imaginary));
-  ++statistics_.solves;
   ++statistics_.corrections;
-  const double size = norm(s.x), change = norm(s.correction);
-  if (!(change <= kLargestCorrection * size)) {
+  const double size = norm(s.x);
+  s.change = size > 0 ? norm(s.correction) / size : 0;
+  if (!(s.change <= kLargestCorrection)) {
     throw NotReached("complex factors of z - L are too inaccurate for iterative refinement");
   }
   return s;

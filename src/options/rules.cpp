@@ -255,10 +255,6 @@ class Rules {
     require("distance", moves && q_.distance.empty() && q_.values("probability").empty(),
             "asks for displacement_distribution, but neither distances nor probabilities are given",
             "add for example -distance -2:2:40 or -probability 0.05,0.5,0.95");
-    const bool counted = moves && method_.simulates, bare = q_.distance.empty();
-    refuse({"probability"}, counted && bare, "asks for quantiles, which a simulation does not find",
-           "add for example -distance -2:2:40, below which it counts paths");
-    warn({"probability"}, counted && !bare, "in a simulation, which finds no quantiles");
   }
 
   // Where no level of the noise holds the body, there are no phases, and the rest exists.

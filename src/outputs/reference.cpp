@@ -32,7 +32,7 @@ void require_numbers(const quantities::Result& r) {
   for (const auto* values : {&r.abscissa, &r.value}) {
     for (double value : *values) sound = sound && std::isfinite(value);
   }
-  // A simulation may have bounded a value from below alone.
+  // A simulation may have bounded a value from one side alone.
   const bool finite = r.ci95.empty();
   for (double error : r.error) sound = sound && error >= 0 && (!finite || std::isfinite(error));
   for (const auto& [low, high] : r.ci95) sound = sound && low <= high;
@@ -42,9 +42,14 @@ void require_numbers(const quantities::Result& r) {
 void append(quantities::Result r, std::vector<Reference>& all) {
   const bool simulated = !r.ci95.empty();
   // JSON has no infinity: null stands for it where an interval has one end.
-  const auto open = [](double& end) { end = std::isnan(end) ? kInfinity : end; };
-  if (simulated) std::for_each(r.error.begin(), r.error.end(), open);
-  for (auto& interval : r.ci95) open(interval.second);
+  const auto open = [](double& end, double side) { end = std::isnan(end) ? side : end; };
+  if (simulated) {
+    for (double& error : r.error) open(error, kInfinity);
+  }
+  for (auto& [low, high] : r.ci95) {
+    open(low, -kInfinity);
+    open(high, kInfinity);
+  }
   require_numbers(r);
   const auto* row = catalogue::find_row(r.key);
   if (simulated && !r.is_scalar() && row != nullptr && row->by_cells) return;

@@ -97,9 +97,9 @@ std::vector<Atom> atoms_at(const Computation& computation, double time) {
 }
 
 /// The distribution at one time: atoms, and a density that is singular where bodies rest: at 0, as
-/// many slips are short; where none rests, at the first atom. Where quantiles are asked for that
-/// far out, probabilities below kTail on either side of d are found by weighted paths, unless drag
-/// leaves the velocity unbounded.
+/// many slips are short; from a state of sliding or where none rests, at the first atom. Where
+/// quantiles are asked for that far out, probabilities below kTail on either side of d are found by
+/// weighted paths, unless drag leaves the velocity unbounded.
 class Distribution {
  public:
   /// Those that are found by weighted paths.
@@ -114,7 +114,7 @@ class Distribution {
     const auto probabilities = question.values(catalogue::kProbability.option);
     weighs_ = bounded && std::any_of(probabilities.begin(), probabilities.end(),
                                      [](double p) { return std::min(p, 1 - p) < kTail; });
-    if (!process.sticks()) centre_ = atoms_[0].at;
+    if (!process.sticks() || question.start.kind == Start::Kind::state) centre_ = atoms_[0].at;
     if (time > 0) invert(time);
   }
 
@@ -162,8 +162,7 @@ class Distribution {
     if (!reached || (tails != Tails::none && doubt >= std::min(p, 1 - p))) {
       return {value, kInfinity};
     }
-    return {value,
-            std::max(std::abs(inverse(p + doubt) - value), std::abs(inverse(p - doubt) - value))};
+    return {value, std::max(reach(p, value, -1, tails), reach(p, value, 1, tails))};
   }
   [[nodiscard]] int evaluations() const {
     int all = inversion_ ? inversion_->evaluations() : 0;
@@ -188,6 +187,29 @@ class Distribution {
   [[nodiscard]] Tails tails_for(double p) const {
     if (!resolves_tails() || std::min(p, 1 - p) >= kTail) return Tails::none;
     return p < kTail ? Tails::lower : Tails::upper;
+  }
+
+  // How far to a side of d the distribution function may still be p, by its errors. Where it
+  // oscillates within them it may be that again further out; so the search goes on for three
+  // octaves.
+  [[nodiscard]] double reach(double p, double d, int side, Tails which) {
+    constexpr double nearest = 1e-7, furthest = 100;
+    const auto may_be = [&](double away) {
+      const auto [at_most, doubt] = below(d + side * away, true, which);
+      return side * (at_most - p) <= doubt;
+    };
+    double last = 0;
+    int rejected = 0;
+    for (double away = nearest * spread_; rejected < 3 && away < furthest * spread_; away *= 2) {
+      rejected = may_be(away) ? 0 : rejected + 1;
+      if (rejected == 0) last = away;
+    }
+    double beyond = 2 * last;
+    for (int step = 0; step < 3; ++step) {
+      const double middle = (last + beyond) / 2;
+      (may_be(middle) ? last : beyond) = middle;
+    }
+    return beyond;
   }
 
   [[nodiscard]] double inverse(double p) {

@@ -28,6 +28,9 @@ using petsc::check;
 using Entries = std::vector<double>;  // of this rank
 using Vector = std::vector<Complex>;
 
+constexpr double kLeaving = 2;     // the rate of the exponential time, in units of 1/t
+constexpr double kRefined = 1e-9;  // of a vector, where refinement is not worth its time
+
 Entries entries_of(Vec x) {
   const petsc::ReadView local(x);
   Entries all;
@@ -208,10 +211,25 @@ DisplacementModel::DisplacementModel(operators::Systems& systems,
       accuracy_(accuracy),
       tilt_(tilt),
       pole_(6 / t) {
-  const Entries pi = stationary_on(systems, distribution, a_);
   const bool stationary = start.kind == model::Start::Kind::stationary;
-  const Entries c = stationary ? pi : entries_of(start_on(a_, start));
-  tilt.s == 0 ? weigh_by(pi, Entries(pi.size(), 1), c) : weigh_tilted(c);
+  const Entries c =
+      stationary ? stationary_on(systems, distribution, a_) : entries_of(start_on(a_, start));
+  if (tilt.s != 0) {
+    weigh_tilted(c);
+  } else {
+    weigh_by(stationary ? c : after_exponential_time(c), Entries(c.size(), 1), c);
+  }
+}
+
+// w = c z (z - L)^-1, the distribution after an exponential time of mean 1/z, up to a factor. As
+// w L <= z w, L + i k v lets no function grow faster than exp(z t/2) in the norm with this weight.
+Entries DisplacementModel::after_exponential_time(const Entries& c) {
+  const operators::SystemKey key{kLeaving / t_, Symmetry::none, StaticPhase::kept};
+  const petsc::VecHandle start = a_.zeros();
+  put(c, start);
+  const petsc::VecHandle l = std::move(systems_.at(key).factors().solve_transposed(start).x);
+  systems_.release(key);
+  return entries_of(l);
 }
 
 // l and r are known up to a factor that is the same for all.
@@ -283,24 +301,28 @@ DisplacementModel::Transform DisplacementModel::projected(double k, double z) {
   // Where bodies too fast to count let the space converge slowly, the error says so.
   const bool tilted = tilt_.s != 0;
   const int most = tilted ? 60 : 120;
-  const double most_growth = tilted ? 40 / t_ : 0;
-  const auto resolvent = [&](const Vector& y) {
-    operators::ComplexVector b{a_.zeros(), a_.zeros()};
-    Entries real, imaginary;
-    for (std::size_t m = 0; m < y.size(); ++m) {
-      real.push_back(y[m].real() / root_[m]);
-      imaginary.push_back(y[m].imag() / root_[m]);
+  const double most_growth = (tilted ? 40 : kLeaving / 2) / t_;
+  // What refinement changes in the first vector says whether the others need it.
+  bool refined = true;
+  const operators::ComplexVector b{a_.zeros(), a_.zeros()};
+  const auto solve = [&] {
+    if (!refined) return solver.solve_once(b, false);
+    auto found = solver.solve(b, false);
+    refined = found.change > kRefined;
+    return std::move(found.x);
+  };
+  const auto resolvent = [&](Vector y) {
+    {
+      petsc::WriteView real(b.real), imaginary(b.imaginary);
+      for (std::size_t m = 0; m < y.size(); ++m) {
+        real[static_cast<PetscInt>(m)] = y[m].real() / root_[m];
+        imaginary[static_cast<PetscInt>(m)] = y[m].imag() / root_[m];
+      }
     }
-    put(real, b.real);
-    put(imaginary, b.imaginary);
-    const auto x = solver.solve(b, false).x;
-    real = entries_of(x.real);
-    imaginary = entries_of(x.imaginary);
-    Vector next;
-    for (std::size_t m = 0; m < y.size(); ++m) {
-      next.push_back(root_[m] * Complex(real[m], imaginary[m]));
-    }
-    return next;
+    const auto x = solve();
+    const Entries real = entries_of(x.real), imaginary = entries_of(x.imaginary);
+    for (std::size_t m = 0; m < y.size(); ++m) y[m] = root_[m] * Complex(real[m], imaginary[m]);
+    return y;
   };
   auto found =
       exponential_of(systems_.comm(), one_, c_, z, t_, most, most_growth, accuracy_, resolvent);

@@ -166,6 +166,41 @@ Sampled Tally::sampled() const {
   return process_.symmetric() ? Sampled::one_side : Sampled::sides;
 }
 
+Sampled Tally::sampled_from(const model::Start& start) const {
+  const bool stationary = start.kind == model::Start::Kind::stationary;
+  return stationary || sampled() == Sampled::cycles ? sampled() : Sampled::one_side;
+}
+
+void Tally::follow(const model::Start& start,
+                   std::function<void(const FollowedPath&, bool turned)> take) {
+  const bool stationary = start.kind == model::Start::Kind::stationary;
+  if (stationary) wanted_.stationary_paths = true;
+  if (!stationary) wanted_.start = start;
+  const bool cycles = sampled() == Sampled::cycles;
+  of_paths_.emplace_back([=, take = std::move(take)](const FollowedPath& path) {
+    if (path.stationary == stationary) take(path, path.turned || cycles);
+  });
+}
+
+// Stationary paths have weights, and keep more numbers in fewer bins.
+std::vector<const PathBins*> Tally::bins_along(const model::Start& start, bool both_signs,
+                                               const std::function<double(double)>& of) {
+  const auto& noise = process_.noise;
+  const double step = start.kind == model::Start::Kind::stationary ? 0.01 : 0.002;
+  wanted_.time = question_.time;
+  std::vector<const PathBins*> all;
+  for (std::size_t n = 0; n < question_.time.size(); ++n) {
+    const double t = question_.time[n],
+                 scale = noise.standard_deviation() * t * std::min(t, noise.correlation_time());
+    PathBins& bins = bins_.emplace_back(sampled_from(start), both_signs, scale, step);
+    all.push_back(&bins);
+    follow(start, [&bins, of, n](const FollowedPath& path, bool turned) {
+      bins.add(path.side, turned, path.weight, of(path.states[n].displacement));
+    });
+  }
+  return all;
+}
+
 void Tally::add_cycle(const Excursion& cycle) {
   for (const auto& take : of_cycles_) take(cycle);
 }
@@ -194,6 +229,7 @@ void Tally::each_row(Self& tally, const Action& action) {
     for (auto& comoments : sides) action(comoments.numbers());
   }
   for (auto& histogram : tally.histograms_) action(histogram.counts());
+  for (auto& bins : tally.bins_) action(bins.numbers());
 }
 
 void Tally::clear() {
@@ -222,9 +258,11 @@ void Tally::merge(std::span<const double> packed) {
   for (auto& sides : comoments_) {
     for (auto& comoments : sides) comoments.merge(next(comoments.numbers().size()));
   }
-  for (auto& histogram : histograms_) {
-    for (double& count : histogram.counts()) count += next(1)[0];
-  }
+  const auto add_to = [&](std::span<double> numbers) {
+    std::ranges::transform(numbers, next(numbers.size()), numbers.begin(), std::plus<>());
+  };
+  for (auto& histogram : histograms_) add_to(histogram.counts());
+  for (auto& bins : bins_) add_to(bins.numbers());
 }
 
 }  // namespace stickslip::simulation

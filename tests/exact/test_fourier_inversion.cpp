@@ -101,3 +101,20 @@ TEST_CASE("fourier inversion: a bell alone") {
     CHECK(below.error < 2e-6);
   }
 }
+
+// A gamma distribution of shape 1/2 with a share of a thirtieth of its scale, as where the shortest
+// slips are of another kind: what lies beyond the largest k has not begun to show.
+TEST_CASE("fourier inversion: a smaller scale near the singularity is within the errors") {
+  for (const double small : {0.03, 0.01}) {
+    const auto phi = [small](double k) -> Inversion::Transformed {
+      return {0.7 / std::sqrt(Complex(1, -k)) + 0.3 / std::sqrt(Complex(1, -k * small)), 1e-12};
+    };
+    const Inversion f(phi, 1, 0.36, 0.63, false, {0.01, 12, 200});
+    for (const double x : {1e-3, 1e-2, 0.1, 1.0}) {
+      const auto below = f.below(x);
+      const double known = 0.7 * std::erf(std::sqrt(x)) + 0.3 * std::erf(std::sqrt(x / small));
+      INFO(small << " at " << x << ": " << below.value << " +- " << below.error << ", " << known);
+      CHECK(std::abs(below.value - known) <= below.error);
+    }
+  }
+}

@@ -47,7 +47,7 @@ TEST_CASE("complex solver: both ways, by elements and in the real form") {
         const ComplexVector b{a.zeros(), a.zeros()};
         fill(b.real, 0.2);
         fill(b.imaginary, 1.1);
-        const auto [x, correction] =
+        const auto [x, correction, change] =
             solver.solve({petsc::copy_of(b.real), petsc::copy_of(b.imaginary)}, transposed);
         const auto real = product(a, x.real, transposed),
                    imaginary = product(a, x.imaginary, transposed);
@@ -62,6 +62,12 @@ TEST_CASE("complex solver: both ways, by elements and in the real form") {
         check(VecNorm(correction.real, NORM_2, &corrected));
         CHECK(std::max(left, more) < 1e-10);
         CHECK(corrected < 1e-9 * size);
+        CHECK(change > 0);
+        CHECK(change < 1e-9);
+        const auto once = solver.solve_once(b, transposed);
+        check(VecAXPBYPCZ(correction.real, 1, -1, 1, once.real, x.real));
+        check(VecNorm(correction.real, NORM_2, &corrected));
+        CHECK(corrected < 1e-15 * size);
       }
     }
   }

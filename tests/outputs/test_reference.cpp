@@ -182,6 +182,7 @@ TEST_CASE("reference: values that are no numbers are refused") {
   CHECK_THAT(json(R"({"value": 1, "error": null})"), Contains("a has values"));
   CHECK_THAT(json(R"({"value": null, "error": 1})"), Contains("a has values"));
   CHECK(json(R"({"value": 1, "error": null, "ci95": [1, null]})") == "nothing");
+  CHECK(json(R"({"value": 1, "error": null, "ci95": [null, 2]})") == "nothing");
 }
 
 // In JSON null may stand for infinity; HDF5 has both.

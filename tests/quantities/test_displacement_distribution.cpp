@@ -171,11 +171,14 @@ TEST_CASE("displacement distribution: quantiles out of reach are said to be unkn
   CHECK(std::abs(cdf.value[0] - 1e-3) <= cdf.error[0]);
 }
 
+// Bodies that start with a velocity come to rest first, and short slips begin there.
 TEST_CASE("displacement distribution: simulated, within 4.5 sigma", "[real]") {
-  for (const model::Start& start : {kStationary, kRest}) {
-    const bool rest = start.kind == Kind::rest;
-    const auto scene = rest ? test::scene(1, 0.5, 1, 0.5, {1, 0}) : test::pushed_by_telegraph();
-    auto c = asking(scene, {-0.4, 0.2, 0.6, 1.5}, 2, 1e-2, start);
+  for (const model::Start& start : {kStationary, kRest, model::Start{0, 1}}) {
+    const bool stationary = start.kind == Kind::stationary;
+    const auto scene =
+        stationary ? test::pushed_by_telegraph() : test::scene(1, 0.5, 1, 0.5, {1, 0});
+    auto c = asking(scene, {-0.4, 0.05, 0.6, 1.5}, 2, 1e-2, start);
+    c.question.arguments["probability"] = {0.1, 0.4, 0.9};
     const auto found = values_at_the_time(c);
     c.method.degree.reset();
     c.method.route = catalogue::Route::monte_carlo;
@@ -187,6 +190,49 @@ TEST_CASE("displacement distribution: simulated, within 4.5 sigma", "[real]") {
       INFO(n << ": " << r.value[n] << " +- " << sigma << ", " << cdf.value[n]);
       CHECK(std::abs(r.value[n] - cdf.value[n]) <= 4.5 * sigma + cdf.error[n]);
       CHECK(sigma < 0.01);
+      CHECK(cdf.error[n] < 0.03);
+    }
+    const auto &quantile = found.at("displacement_quantile"),
+               &of_paths = sampled.at("displacement_quantile");
+    for (std::size_t n = 0; n < quantile.value.size(); ++n) {
+      const double sigma = test::sigma(of_paths, n);
+      INFO(n << ": " << of_paths.value[n] << " +- " << sigma << ", " << quantile.value[n] << " +- "
+             << quantile.error[n]);
+      CHECK(std::abs(of_paths.value[n] - quantile.value[n]) <= 4.5 * sigma + quantile.error[n]);
+      CHECK(sigma < 0.04);
+      CHECK(quantile.error[n] < 0.1);
+    }
+  }
+}
+
+// From rest without drag: bodies have the velocity 0.3 on average until the time, and 8 in the end.
+TEST_CASE("displacement distribution: speeds that are not reached by the time cost nothing",
+          "[real]") {
+  auto c = asking(test::biased(test::scene(1, 0.4657, 1.518, 0.4657, {0, 0}), 0.0734), {}, 1.102,
+                  2e-2, kRest);
+  c.method.degree = 3;
+  const auto total = accuracy::carry_out(PETSC_COMM_WORLD, c, {}).total;
+  INFO(total.solves << " solves with " << total.factorizations_complex << " complex factors");
+  CHECK(total.factorizations_complex > 10);
+  CHECK(total.solves < 40 * total.factorizations_complex);
+}
+
+// Over a short time densities have edges, and distribution functions oscillate within their errors.
+TEST_CASE("displacement distribution: quantiles lie within their errors, as far as is known",
+          "[real]") {
+  auto c = asking(test::pushed_by_telegraph(), {}, 0.5, 3e-2);
+  c.method.degree = 4;
+  c.question.arguments["probability"] = {0.7, 0.8, 0.9, 0.95};
+  const auto& p = c.question.arguments.at("probability");
+  const auto quantile = values_at_the_time(c).at("displacement_quantile");
+  for (std::size_t n = 0; n < p.size(); ++n) {
+    const double d = quantile.value[n], away = 1.01 * quantile.error[n];
+    c.question.distance = {d + away, d + 2 * away, d - away, d - 2 * away};
+    const auto cdf = values_at_the_time(c).at("displacement_cdf");
+    for (std::size_t m = 0; m < 4; ++m) {
+      INFO(p[n] << ": " << d << " +- " << quantile.error[n] << ", " << c.question.distance[m]
+                << " has " << cdf.value[m] << " +- " << cdf.error[m]);
+      CHECK((m < 2 ? 1 : -1) * (cdf.value[m] - p[n]) > cdf.error[m]);
     }
   }
 }

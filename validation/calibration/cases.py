@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import zlib
 
 
 def log_uniform(random, low, high):
@@ -107,6 +108,16 @@ def few(random, most=5):
 
 def many(random):
     return few(random, 9)
+
+
+def levels_in_file(options, entry):
+    """The options for the program, with the levels in a file of an entry."""
+    if "levels" not in options:
+        return options
+    text = "x,rate_up,rate_down\n" + "".join(f"{x!r},{up!r},{down!r}\n" for x, up, down in options["levels"])
+    file = entry.file(f"levels_{zlib.crc32(text.encode()):08x}.csv")
+    file.write_text(text)
+    return {name: value for name, value in options.items() if name != "levels"} | {"noise_file": file}
 
 
 def pulses(random):

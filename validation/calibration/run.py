@@ -24,14 +24,13 @@ import random
 import shutil
 import sys
 import textwrap
-import zlib
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # cases run side by side
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import direct
-from cases import GROUPS, QUICK
+from cases import GROUPS, QUICK, levels_in_file
 from entry import Entry, subplots
 from harness import ROOT, words_of
 
@@ -71,17 +70,7 @@ def truth_of(entry, options, truth):
     program, more = entry.program.path, {"accuracy": truth}
     if truth == "complex":
         program, more = entry.arguments.complex_program, {"accuracy": 1e-8, "spectrum_solver": "direct"}
-    return {key: pairs(result) for key, result in run(program, {**for_program(entry, options), **more})["results"].items()}
-
-
-def for_program(entry, options):
-    """The options with the levels in a file."""
-    if "levels" not in options:
-        return options
-    text = "x,rate_up,rate_down\n" + "".join(f"{x!r},{up!r},{down!r}\n" for x, up, down in options["levels"])
-    file = entry.file(f"levels_{zlib.crc32(text.encode()):08x}.csv")
-    file.write_text(text)
-    return {name: value for name, value in options.items() if name != "levels"} | {"noise_file": file}
+    return {key: pairs(result) for key, result in run(program, {**levels_in_file(options, entry), **more})["results"].items()}
 
 
 def known(truth, key, values):
@@ -112,7 +101,7 @@ def judged(entry, name, number):
     truth = truth_of(entry, options, group.truth)
     rows, slow = [], []
     for accuracy in group.accuracies:
-        asked = {**for_program(entry, options), "accuracy": accuracy}
+        asked = {**levels_in_file(options, entry), "accuracy": accuracy}
         summary = run(entry.program.path, asked)
         found = summary["results"]
         command = " ".join(["stickslip", *(f"'{w}'" if "*" in w else w for w in words_of(asked))])

@@ -39,7 +39,6 @@ inline constexpr Row kDisplacementQuantile{.key = "displacement_quantile(t)",
                                            .abscissa = "probability",
                                            .convention =
                                                "for each -time; that of the atom where p is in it",
-                                           .without = {Route::monte_carlo},
                                            .asks = true};
 inline constexpr Row kDisplacementAtom{
     .key = "displacement_atom",

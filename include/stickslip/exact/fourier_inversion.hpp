@@ -21,10 +21,10 @@ namespace stickslip::exact {
 /// are those of least squares over the upper two octaves of k. Only what is left of phi is
 /// integrated numerically.
 ///
-/// Errors have four parts: those of phi; the last Chebyshev coefficients of each panel; how far off
+/// Errors have five parts: those of phi; the last Chebyshev coefficients of each panel; how far off
 /// the sum is that ends an octave of k below, with coefficients of its own; and, of the
-/// distribution function, what is left of phi at the largest k, as edges of f elsewhere leave it.
-/// Local.
+/// distribution function, what is left of phi at the largest k, as edges of f elsewhere leave it,
+/// and what the coefficients do not foresee of larger k, where f near 0 has a smaller scale. Local.
 class FourierInversion {
  public:
   struct Value {
@@ -84,6 +84,9 @@ class FourierInversion {
   [[nodiscard]] Sum sum_up_to(std::size_t panels, double highest) const;
   [[nodiscard]] Integrals integrals(const Sum& sum, double x) const;
   [[nodiscard]] Integrals singular(const Sum& sum, double x) const;
+  // How far off int phi dk/k beyond the largest k may be: the terms foresee the next octave but for
+  // so much, each further one by half of that more, and phi falls like k^(-1/2) at least.
+  [[nodiscard]] double beyond(double x) const;
   [[nodiscard]] Value between(double x, double Integrals::*which) const;
 
   bool even_;
@@ -92,6 +95,7 @@ class FourierInversion {
   std::vector<Panel> panels_;
   std::vector<Sum> sums_;  // by octave
   double left_ = 0;        // of phi in the last octave
+  double unforeseen_ = 0;  // of it by the terms found below that
   std::map<double, Transformed> known_;
 };
 

@@ -39,10 +39,13 @@ class ComplexSolver {
   struct Solution {
     ComplexVector x;
     ComplexVector correction;  ///< of iterative refinement: a measure of rounding
+    double change = 0;         ///< the norm of the correction relative to that of x
   };
   /// (A + d) x = b, or with the transpose (no conjugation), with a step of iterative refinement.
   /// Collective. Throws NotReached if it does not converge.
   [[nodiscard]] Solution solve(const ComplexVector& b, bool transposed);
+  /// The same without refinement, at half the cost. Collective.
+  [[nodiscard]] ComplexVector solve_once(const ComplexVector& b, bool transposed);
 
  private:
   class Factors;

@@ -23,6 +23,8 @@ struct Tilt {
 /// By projection on the Krylov space of (z - L - i k v)^-1 from 1, z real: one complex
 /// factorisation a wavenumber, and 10 to 60 solves. Vectors are orthonormal in the stationary
 /// distribution, in which L + i k v lets no function grow, so that no projection has growing modes.
+/// From another start they are so in the distribution after an exponential time of mean t/2, where
+/// speeds count as far as they are reached, and functions grow by e at most in the time t.
 /// With a tilt sum l u^2/r takes the place of its norm, l = c exp((L + s v) t/2) and r =
 /// exp((L + s v) t/2) 1: the density of weighted paths halfway is l r, and is kept by
 /// L + s v on functions u/r where t is long. Some implicit steps give both.
@@ -33,8 +35,9 @@ class DisplacementModel {
     double error = 0;  ///< of the modulus
   };
 
-  /// `accuracy` of phi, relative to phi(0). Local without tilt; with it collective, and as many
-  /// real solves as for two to four wavenumbers.
+  /// `accuracy` of phi, relative to phi(0). Collective, but local for a stationary start without
+  /// tilt; from another one a real factorisation and solve, with a tilt as many solves as for two
+  /// to four wavenumbers.
   DisplacementModel(operators::Systems& systems, const StationaryDistribution& distribution,
                     const model::Start& start, double t, double accuracy, Tilt tilt = {});
 
@@ -51,6 +54,7 @@ class DisplacementModel {
   void weigh_by(const std::vector<double>& l, const std::vector<double>& r,
                 const std::vector<double>& c);
   void weigh_tilted(const std::vector<double>& c);
+  [[nodiscard]] std::vector<double> after_exponential_time(const std::vector<double>& c);
   [[nodiscard]] Transform projected(double k, double z);
 
   operators::Systems& systems_;

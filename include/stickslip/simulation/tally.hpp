@@ -14,6 +14,7 @@
 #include "stickslip/simulation/histogram.hpp"
 #include "stickslip/simulation/means.hpp"
 #include "stickslip/simulation/path.hpp"
+#include "stickslip/simulation/path_bins.hpp"
 
 namespace stickslip::simulation {
 
@@ -101,15 +102,9 @@ class Tally {
   }
   /// Sums of of(path), of paths from a start.
   auto sums_of_paths(const model::Start& start, const auto& of) {
-    const bool stationary = start.kind == model::Start::Kind::stationary;
-    if (stationary) wanted_.stationary_paths = true;
-    if (!stationary) wanted_.start = start;
-    const bool cycles = sampled() == Sampled::cycles;
-    auto all = new_sums<decltype(of(FollowedPath{}))>(stationary || cycles ? sampled()
-                                                                           : Sampled::one_side);
-    of_paths_.emplace_back([all, of, stationary, cycles](const FollowedPath& path) mutable {
-      if (path.stationary != stationary) return;
-      all.add(path.side, {path.turned || cycles ? 1.0 : 0.0, of(path)});
+    auto all = new_sums<decltype(of(FollowedPath{}))>(sampled_from(start));
+    follow(start, [all, of](const FollowedPath& path, bool turned) mutable {
+      all.add(path.side, {turned ? 1.0 : 0.0, of(path)});
     });
     return all;
   }
@@ -123,6 +118,11 @@ class Tally {
     }
     return all;
   }
+  /// For each time of the question bins of the number of(displacement) of paths from a start, which
+  /// last as long as the tally.
+  [[nodiscard]] std::vector<const PathBins*>
+  bins_along(const model::Start& start, bool both_signs,
+             const std::function<double(double displacement)>& of);
   /// Probabilities that a number lies in [low, high), by the place of the range. An interval has
   /// some width also where all samples agree.
   struct Range {
@@ -166,6 +166,10 @@ class Tally {
     const std::size_t sides = sampled == Sampled::sides ? 2 : 1;
     return {comoments_.emplace_back(sides, Comoments(Sums<Sample>::kSize)), sampled};
   }
+  // What paths from a start are, and what is done with each of them.
+  [[nodiscard]] Sampled sampled_from(const model::Start& start) const;
+  void follow(const model::Start& start,
+              std::function<void(const FollowedPath&, bool turned)> take);
   template <class Self, class Action>
   static void each_row(Self& tally, const Action& action);
 
@@ -175,6 +179,7 @@ class Tally {
   std::array<double, 2> counts_{};                // samples, jumps
   std::deque<std::vector<Comoments>> comoments_;  // by side; these and histograms stay in place
   std::deque<Histogram> histograms_;
+  std::deque<PathBins> bins_;
   std::vector<std::function<void(std::size_t, const Excursion&)>> of_excursions_;
   std::vector<std::function<void(const Excursion&)>> of_cycles_;
   std::vector<std::function<void(const FollowedPath&)>> of_paths_;
