@@ -40,7 +40,8 @@ PathBins::PathBins(Sampled sampled, bool both_signs, double scale, double step)
 void PathBins::add(std::size_t side, bool turned, double weight, double y) {
   std::size_t bin = zero_;
   if (y != 0) {
-    const auto away = std::min(1 + std::asinh(std::abs(y) / scale_) / step_, side_bins_ + 0.0);
+    const double away =
+        std::min(1 + std::asinh(std::abs(y) / scale_) / step_, static_cast<double>(side_bins_));
     bin = y > 0 ? bin + static_cast<std::size_t>(away) : bin - static_cast<std::size_t>(away);
   }
   double* const sums = &numbers_[((2 * side + (turned ? 1 : 0)) * bins_ + bin) * kKept];
@@ -52,8 +53,9 @@ void PathBins::add(std::size_t side, bool turned, double weight, double y) {
 PathBins::Edges PathBins::edges(std::size_t bin) const {
   if (bin == zero_) return {0, 0};
   const std::size_t n = bin > zero_ ? bin - zero_ : zero_ - bin;
-  const double low = scale_ * std::sinh((n - 1) * step_),
-               high = n == side_bins_ ? kInfinity : scale_ * std::sinh(n * step_);
+  const auto outer = static_cast<double>(n);
+  const double low = scale_ * std::sinh((outer - 1) * step_),
+               high = n == side_bins_ ? kInfinity : scale_ * std::sinh(outer * step_);
   return bin > zero_ ? Edges{low, high} : Edges{-high, -low};
 }
 
