@@ -32,13 +32,13 @@ constexpr int kFirstPoints = 8;
 
 // Degree at which the estimate, the error one degree below, is expected to meet the accuracy.
 // Errors are about 10^-d at degree d; those of displacements tenfold smaller, those of the density
-// of sticking times at 0+ tenfold larger, of densities of durations a hundredfold. (On coarser
-// elements reduced models search long for waves that are not resolved.) The catalogue has the
-// numbers. On the elements for path lengths a degree is worth one digit and a half, but to the
-// densities of these it is worth less than one.
-int starting_degree(const cases::Question& question, bool lengths) {
+// of sticking times at 0+ tenfold larger, of densities of durations and of spectra where there are
+// waves a hundredfold. (On coarser elements reduced models search long for waves that are not
+// resolved.) The catalogue has the numbers. On the elements for path lengths a degree is worth one
+// digit and a half, but to the densities of these it is worth less than one.
+int starting_degree(const cases::Question& question, bool waves, bool lengths) {
   const double digits = -std::log10(question.accuracy);
-  double highest = 0;
+  double highest = waves ? digits + 3 : 0;
   for (const auto* entry : catalogue::entries()) {
     if (!question.wants(entry->quantity)) continue;
     highest = std::max(highest, digits + entry->degrees_besides);
@@ -72,8 +72,12 @@ RefinementSequence::RefinementSequence(const cases::Case& given)
       method_(given.method),
       accuracy_(given.question.accuracy),
       needs_(quantities::plan_of(given).needs) {
-  first_degree_ = method_.degree.value_or(starting_degree(given.question, needs_.rates.lengths));
-  table_ = given.scene.meant().noise.table != nullptr;
+  const auto process = given.scene.meant();
+  const bool waves = std::ranges::any_of(
+      needs_.omega, [&](double omega) { return velocity::has_waves(process, omega); });
+  first_degree_ =
+      method_.degree.value_or(starting_degree(given.question, waves, needs_.rates.lengths));
+  table_ = process.noise.table != nullptr;
   integrands_ = integrands_of(given.question, needs_.phase);
   const bool full_grid = given.method.row().full_grid;
   const bool both = given.question.any(&catalogue::Entry::both_branches);
