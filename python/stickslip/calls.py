@@ -88,7 +88,7 @@ def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | N
         raise ValueError(f"timeout = {timeout}: must be above 0 seconds")
     with tempfile.TemporaryDirectory(prefix="stickslip-") as folder:
         options = prepared(options, pathlib.Path(folder), keep)
-        tell = progress if callable(progress) else _print_error if _wanted(progress) else None
+        tell = _teller(progress)
         options |= {"progress": "on"} if tell else {}
         summary = pathlib.Path(options.pop("summary", None) or pathlib.Path(folder) / "summary.json")
         launcher = ["mpiexec", "-n", str(ranks)] if ranks else []
@@ -105,13 +105,14 @@ def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | N
     return found
 
 
-def _print_error(line: str) -> None:
-    print(line, file=sys.stderr, flush=True)
-
-
-def _wanted(progress: bool | str) -> bool:
-    """Whether progress is to be shown; a word is one of the option -progress."""
-    return sys.stderr.isatty() if progress == "auto" else progress not in (False, "off")
+def _teller(progress: bool | str | Callable[[str], Any]) -> Callable[[str], Any] | None:
+    """What is called with each line of progress; a word is one of the option -progress. None where none is shown."""
+    def write(line: str) -> None:
+        print(line, file=sys.stderr, flush=True)
+    if callable(progress):
+        return progress
+    wanted = sys.stderr.isatty() if progress == "auto" else progress not in (False, "off")
+    return write if wanted else None
 
 
 def prepared(options: Mapping[str, Any], folder: pathlib.Path, keep: Path | None = None) -> dict[str, Any]:

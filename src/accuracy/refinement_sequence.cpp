@@ -73,10 +73,10 @@ RefinementSequence::RefinementSequence(const cases::Case& given)
       accuracy_(given.question.accuracy),
       needs_(quantities::plan_of(given).needs) {
   const auto process = given.scene.meant();
-  const bool waves = std::ranges::any_of(
-      needs_.omega, [&](double omega) { return velocity::has_waves(process, omega); });
-  first_degree_ =
-      method_.degree.value_or(starting_degree(given.question, waves, needs_.rates.lengths));
+  std::ranges::copy_if(needs_.omega, std::back_inserter(waves_),
+                       [&](double omega) { return velocity::has_waves(process, omega); });
+  first_degree_ = method_.degree.value_or(
+      starting_degree(given.question, !waves_.empty(), needs_.rates.lengths));
   table_ = process.noise.table != nullptr;
   integrands_ = integrands_of(given.question, needs_.phase);
   const bool full_grid = given.method.row().full_grid;
@@ -137,12 +137,8 @@ noise::Grouping RefinementSequence::grouping(int n) const {
 // Levels of a table may not, and then changes between coarse discretisations say nothing.
 std::vector<double> RefinementSequence::waves(int n) const {
   constexpr int first_with_waves = 2;
-  if (n < first_with_waves && !method_.fixed() && !table_) return {};
-  std::vector<double> waves;
-  const auto process = scene_.meant();
-  std::copy_if(needs_.omega.begin(), needs_.omega.end(), std::back_inserter(waves),
-               [&](double omega) { return velocity::has_waves(process, omega); });
-  return waves;
+  const bool follows = n >= first_with_waves || method_.fixed() || table_;
+  return follows ? waves_ : std::vector<double>{};
 }
 
 const Resolution& RefinementSequence::refinement_level(int n) const {

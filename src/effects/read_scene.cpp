@@ -51,8 +51,9 @@ class SceneReader {
       const double usual = friction.mu_d;
       friction.mu_d = std::min(usual, friction.mu_s);
       const double least = friction.mu_s_minus.value_or(friction.mu_s);
-      if (!friction.mu_d_minus && least != friction.mu_s)
+      if (!friction.mu_d_minus && least != friction.mu_s) {
         friction.mu_d_minus = std::min(usual, least);
+      }
     }
     scene_.friction_name = given_.text("friction");
     scene_.noise.name = given_.text("noise");

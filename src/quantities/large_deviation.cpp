@@ -80,7 +80,6 @@ class Powers {
     key_.tilt = s;
     key_.lambda = z;
   }
-  [[nodiscard]] Vectors copies() const { return copies_of(vectors_); }
   void restart(const Vectors& from) { vectors_ = copies_of(from); }
 
   // With iterative refinement or without.
@@ -180,7 +179,7 @@ void approach(Powers& powers, double goal, double tau) {
   double s = 0, step = goal;
   powers.move(s, 1e-3 * small);
   if (!powers.converges(first)) refuse(goal, s);
-  Vectors at_s = powers.copies();
+  Vectors at_s = copies_of(powers.vectors());
   double theta = 0, velocity = powers.velocity();
   for (int tried = 0; s != goal; ++tried) {
     if (tried == most) refuse(goal, s);
@@ -201,7 +200,7 @@ void approach(Powers& powers, double goal, double tau) {
       s = next;
       theta = powers.theta();
       velocity = powers.velocity();
-      at_s = powers.copies();
+      at_s = copies_of(powers.vectors());
     } else {
       powers.restart(at_s);
     }

@@ -48,7 +48,8 @@ class RefinementSequence {
   cases::Method method_;
   double accuracy_;
   quantities::Needs needs_;
-  int first_degree_ = 0;  // of refinement level 1
+  std::vector<double> waves_;  // frequencies of needs_ that leave waves
+  int first_degree_ = 0;       // of refinement level 1
   velocity::Integrands integrands_;
   int branches_ = 1;
   bool all_levels_ = false;   // every noise level is a node
