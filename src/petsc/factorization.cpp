@@ -191,7 +191,7 @@ PetscErrorCode collect_help(FILE* /*file*/, const char format[], va_list values)
   std::string text(most, '\0');
   std::size_t size = 0;
   const PetscErrorCode code = PetscVSNPrintf(text.data(), most, format, &size, values);
-  if (code == 0) help_of_petsc += text.c_str();
+  if (code == 0) help_of_petsc.append(text, 0, text.find('\0'));
   return code;
 }
 
@@ -217,7 +217,7 @@ void print_linear_solver_options(const std::string& prefix) {
     if (option && !own) continue;
     const std::string types = option ? types_of(line.substr(3, line.find(' ', 3) - 3)) : "";
     const auto list = line.find("(one of) ");
-    if (!types.empty() && list != line.npos) line = line.substr(0, list + 9) + types;
+    if (!types.empty() && list != line.npos) line.replace(list + 9, line.npos, types);
     fmt::print("{}\n", line);
   }
 }
