@@ -111,8 +111,11 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
     const double overlooked = std::abs(dot(pi, a.overlooked(part)));
     unseen += overlooked;
     if (symmetry != Symmetry::odd) {
-      result.stationary = dot(pi, b);
-      result.unseen = overlooked;
+      // Where mirrored states are as likely, odd functions have exactly no average.
+      const auto mean =
+          operators::part_of(f, systems.process().drifts() ? symmetry : Symmetry::even);
+      result.stationary = dot(pi, a.values(mean));
+      result.unseen = std::abs(dot(pi, a.overlooked(mean)));
     }
     if (unit == 0) continue;
     if (start.kind == model::Start::Kind::stationary) {

@@ -158,6 +158,11 @@ TEST_CASE("any chain: what its mirror image makes vanish is exactly zero") {
     }
     CHECK(found.at("displacement_variance").value[1] > 0);
   }
+  // A state has no mirror image of its own, but what it tends to has.
+  const auto from_state = values(asking(s, {Quantity::expectation}, 1e-3));
+  CHECK(std::abs(from_state.at("E(v^3)").value[0]) > from_state.at("E(v^3)").error[0]);
+  CHECK(from_state.at("stationary(v^3)").value == std::vector<double>{0});
+  CHECK(from_state.at("stationary(v^3)").error == std::vector<double>{0});
 }
 
 TEST_CASE("any chain: simulated cycles give the same, within 4.5 sigma", "[real]") {
