@@ -272,8 +272,7 @@ class Refiner {
   }
 
   [[nodiscard]] const char* what_limits(const Limit& of) const {
-    if (of.without_digit >= kRefinementsWithoutDigit)
-      return "what refinement cannot resolve limits";
+    if (of.without_digit > 0) return "what refinement cannot resolve limits";
     if (given_.scene.v_max && !given_.scene.limits_speed) return "-v_max, or rounding, limits";
     if (given_.method.row().small_lambda) return "lambda > 0 or rounding limits";
     if (question_.observables.empty()) return "rounding limits";

@@ -15,6 +15,7 @@
 #include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/quantities/plan.hpp"
+#include "stickslip/velocity/mesh.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -275,7 +276,13 @@ void put_waves(const Computation& computation, Spectrum& spectrum) {
                                computation.systems.statistics());
     const StationaryDistribution distribution(systems);
     systems.release({0, operators::symmetry_of(systems.process())});
-    spectrum.value.push_back(direct_spectrum(systems, distribution, {omega}).front());
+    auto& value =
+        spectrum.value.emplace_back(direct_spectrum(systems, distribution, {omega}).front());
+    const auto& process = systems.process();
+    // No change between refinement levels shows waves that none of them follows.
+    if (process.noise.table && omega > velocity::highest_followed(process)) {
+      value.error = std::max(value.error, std::abs(value.value));
+    }
   }
 }
 

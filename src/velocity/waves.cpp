@@ -11,6 +11,10 @@
 namespace stickslip::velocity {
 namespace {
 
+// In units of the largest rate of jumps. Many levels damp what is faster than the first; few do
+// not, as bodies at the speed at which the drag holds them all take the same time to come to rest.
+constexpr double kFastestOfNoise = 40, kFastestOfTables = 4000;
+
 // The widest element for the levels of a table, each with its own rate, at the speed v: one wave an
 // element. Bodies carry a phase from v = 0 or to it, for as long as their level lasts: none where
 // they are beyond a speed at which the drag holds them.
@@ -34,7 +38,7 @@ double wave_width_of_table(const model::Process& process, double omega, double v
       if (jumps < lives) slowest = std::min(slowest, std::abs(force + at_end));
     }
   }
-  return 2 * std::numbers::pi * slowest / std::min(omega, 40 * process.noise.rate());
+  return 2 * std::numbers::pi * slowest / std::min(omega, highest_followed(process));
 }
 
 double end_of_thinnest_waves(const model::Process& process, double gap) {
@@ -47,17 +51,21 @@ double end_of_thinnest_waves(const model::Process& process, double gap) {
 // enough at the degrees in use; where Lambda v/a > 20 nothing is left of a wave, and then the next
 // level, delta further from mu_d, has the shortest ones. Up to 4 Lambda the
 // damping is so strong that graded elements do, and waves much faster than the noise are small
-// beside the smooth part, so that they are followed up to 40 Lambda only.
+// beside the smooth part, so that they are followed up to kFastestOfNoise only.
 double wave_width(const model::Process& process, double omega, double gap, double v) {
   if (process.noise.table) return wave_width_of_table(process, omega, v);
   const double rate = process.noise.rate();
   const double slowest = v < end_of_thinnest_waves(process, gap)
                              ? gap
                              : std::max(gap + process.noise.step(), rate * v / 20);
-  return 4 * std::numbers::pi * slowest / std::min(omega, 40 * rate);
+  return 4 * std::numbers::pi * slowest / std::min(omega, kFastestOfNoise * rate);
 }
 
 }  // namespace
+
+double highest_followed(const model::Process& process) {
+  return (process.noise.table ? kFastestOfTables : kFastestOfNoise) * process.noise.rate();
+}
 
 bool has_waves(const model::Process& process, double omega) {
   const auto& noise = process.noise;

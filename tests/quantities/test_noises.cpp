@@ -182,6 +182,25 @@ TEST_CASE("noise of few levels, uneven ones: all methods agree") {
   require_close(values(s, Route::fluid_queue), values(s), 1e-9);
 }
 
+// The rate is 1/2, and bodies at their largest speed come to rest after the same time, whose phase
+// graded elements do not follow: on all of them S_v(300) was 2.249e-10.
+TEST_CASE("noise of few levels: far above the rates the spectrum is as simulated", "[real]") {
+  cases::Case c;
+  c.scene = with_levels(scene(1, 0.5, 1, 1, {1, 0}), {{-2, 0.5, 0}, {0, 0.25, 0.25}, {2, 0, 0.5}});
+  c.question.quantities = {Quantity::spectrum};
+  c.question.omega = {300, 1e4};
+  c.question.accuracy = 1e-3;
+  const auto found = test::values(c).at("S_v");
+  c.method.route = Route::monte_carlo;
+  c.method.excursions = 2000000;
+  const auto simulated = test::values(c).at("S_v");
+  CHECK(found.error[0] < 1e-3 * found.value[0]);
+  CHECK(std::abs(found.value[0] - simulated.value[0]) <=
+        4.5 * test::sigma(simulated, 0) + found.error[0]);
+  // Nothing follows these, and no digit is claimed.
+  CHECK(found.error[1] >= found.value[1]);
+}
+
 TEST_CASE("noise of an even number of levels: no level stands at 0") {
   auto s = with_levels(scene(1, 0.4, 1, 0.25, {1, 0}),
                        {{-1.5, 1, 0}, {-0.5, 1, 1}, {0.5, 1, 1}, {1.5, 0, 1}});
