@@ -280,7 +280,7 @@ void put_waves(const Computation& computation, Spectrum& spectrum) {
         spectrum.value.emplace_back(direct_spectrum(systems, distribution, {omega}).front());
     const auto& process = systems.process();
     // No change between refinement levels shows waves that none of them follows.
-    if (process.noise.table && omega > velocity::highest_followed(process)) {
+    if (!velocity::damps_fast_waves(process) && omega > velocity::highest_followed(process)) {
       value.error = std::max(value.error, std::abs(value.value));
     }
   }

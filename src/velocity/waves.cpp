@@ -11,9 +11,10 @@
 namespace stickslip::velocity {
 namespace {
 
-// In units of the largest rate of jumps. Many levels damp what is faster than the first; few do
-// not, as bodies at the speed at which the drag holds them all take the same time to come to rest.
-constexpr double kFastestOfNoise = 40, kFastestOfTables = 4000;
+// In units of the largest rate of jumps. Many levels damp what is faster than the first. Few levels
+// do not, as bodies at the speed at which the drag holds them all take the same time to come to
+// rest.
+constexpr double kFastest = 40, kFastestOfFew = 4000;
 
 // The widest element for the levels of a table, each with its own rate, at the speed v: one wave an
 // element. Bodies carry a phase from v = 0 or to it, for as long as their level lasts: none where
@@ -51,20 +52,26 @@ double end_of_thinnest_waves(const model::Process& process, double gap) {
 // enough at the degrees in use; where Lambda v/a > 20 nothing is left of a wave, and then the next
 // level, delta further from mu_d, has the shortest ones. Up to 4 Lambda the
 // damping is so strong that graded elements do, and waves much faster than the noise are small
-// beside the smooth part, so that they are followed up to kFastestOfNoise only.
+// beside the smooth part, so that they are followed up to highest_followed() only.
 double wave_width(const model::Process& process, double omega, double gap, double v) {
   if (process.noise.table) return wave_width_of_table(process, omega, v);
   const double rate = process.noise.rate();
   const double slowest = v < end_of_thinnest_waves(process, gap)
                              ? gap
                              : std::max(gap + process.noise.step(), rate * v / 20);
-  return 4 * std::numbers::pi * slowest / std::min(omega, kFastestOfNoise * rate);
+  return 4 * std::numbers::pi * slowest / std::min(omega, highest_followed(process));
 }
 
 }  // namespace
 
+bool damps_fast_waves(const model::Process& process) {
+  constexpr double jumps = 20;  // while the noise forgets itself
+  const auto& noise = process.noise;
+  return !noise.table && noise.rate() * noise.correlation_time() > jumps;
+}
+
 double highest_followed(const model::Process& process) {
-  return (process.noise.table ? kFastestOfTables : kFastestOfNoise) * process.noise.rate();
+  return (damps_fast_waves(process) ? kFastest : kFastestOfFew) * process.noise.rate();
 }
 
 bool has_waves(const model::Process& process, double omega) {

@@ -44,9 +44,10 @@ struct MeshRule {
 /// follow. Levels of -delta jump equally fast; those of a table may be left so rarely that waves
 /// live long on them. O(levels).
 [[nodiscard]] bool has_waves(const model::Process& process, double omega);
-/// The largest frequency whose waves elements follow [1/time]. Faster ones count for nothing but
-/// under the levels of a table.
+/// The largest frequency whose waves elements follow [1/time]. Where the noise damps them, which few
+/// levels do not, faster ones count for nothing.
 [[nodiscard]] double highest_followed(const model::Process& process);
+[[nodiscard]] bool damps_fast_waves(const model::Process& process);
 
 /// Thickness of the finest layer at v = 0 that a solution of (lambda - L) u = f shows, or one for
 /// any smaller lambda [velocity].
