@@ -278,9 +278,8 @@ void put_waves(const Computation& computation, Spectrum& spectrum) {
     systems.release({0, operators::symmetry_of(systems.process())});
     auto& value =
         spectrum.value.emplace_back(direct_spectrum(systems, distribution, {omega}).front());
-    const auto& process = systems.process();
     // No change between refinement levels shows waves that none of them follows.
-    if (!velocity::damps_fast_waves(process) && omega > velocity::highest_followed(process)) {
+    if (velocity::has_unfollowed_waves(systems.process(), omega)) {
       value.error = std::max(value.error, std::abs(value.value));
     }
   }

@@ -24,8 +24,7 @@ struct Integral {
 Integral integral(const StationaryDistribution& distribution, double defect,
                   const KolmogorovOperator& a, const model::Observable& f) {
   const auto& process = distribution.process();
-  // Where mirrored states are as likely, odd functions have exactly no average.
-  const auto part = operators::part_of(f, process.drifts() ? Symmetry::none : Symmetry::even);
+  const auto part = operators::part_with_mean(f, process);
   Integral sum;
   const auto &now = distribution.excursion().stick_time,
              &before = distribution.uncorrected().stick_time;

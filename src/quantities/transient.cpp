@@ -111,9 +111,7 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
     const double overlooked = std::abs(dot(pi, a.overlooked(part)));
     unseen += overlooked;
     if (symmetry != Symmetry::odd) {
-      // Where mirrored states are as likely, odd functions have exactly no average.
-      const auto mean =
-          operators::part_of(f, systems.process().drifts() ? symmetry : Symmetry::even);
+      const auto mean = operators::part_with_mean(f, systems.process());
       result.stationary = dot(pi, a.values(mean));
       result.unseen = std::abs(dot(pi, a.overlooked(mean)));
     }

@@ -11,10 +11,18 @@
 namespace stickslip::velocity {
 namespace {
 
-// In units of the largest rate of jumps. Many levels damp what is faster than the first. Few levels
-// do not, as bodies at the speed at which the drag holds them all take the same time to come to
-// rest.
-constexpr double kFastest = 40, kFastestOfFew = 4000;
+// Many levels damp waves much faster than the noise. Few do not, as bodies at the speed at which
+// the drag holds them all take the same time to come to rest.
+bool damps_fast_waves(const model::Process& process) {
+  constexpr double jumps = 20;  // while the noise forgets itself
+  const auto& noise = process.noise;
+  return !noise.table && noise.rate() * noise.correlation_time() > jumps;
+}
+
+// The largest frequency whose waves elements follow.
+double highest_followed(const model::Process& process) {
+  return (damps_fast_waves(process) ? 40 : 4000) * process.noise.rate();
+}
 
 // The widest element for the levels of a table, each with its own rate, at the speed v: one wave an
 // element. Bodies carry a phase from v = 0 or to it, for as long as their level lasts: none where
@@ -64,14 +72,8 @@ double wave_width(const model::Process& process, double omega, double gap, doubl
 
 }  // namespace
 
-bool damps_fast_waves(const model::Process& process) {
-  constexpr double jumps = 20;  // while the noise forgets itself
-  const auto& noise = process.noise;
-  return !noise.table && noise.rate() * noise.correlation_time() > jumps;
-}
-
-double highest_followed(const model::Process& process) {
-  return (damps_fast_waves(process) ? kFastest : kFastestOfFew) * process.noise.rate();
+bool has_unfollowed_waves(const model::Process& process, double omega) {
+  return !damps_fast_waves(process) && omega > highest_followed(process);
 }
 
 bool has_waves(const model::Process& process, double omega) {

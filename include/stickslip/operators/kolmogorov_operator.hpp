@@ -168,4 +168,11 @@ class KolmogorovOperator {
   return f.value;
 }
 
+/// The part of f that has a stationary average: where mirrored states are as likely, odd functions
+/// have exactly none. It refers to f.
+[[nodiscard]] inline KolmogorovOperator::Observable part_with_mean(const model::Observable& f,
+                                                                   const model::Process& process) {
+  return part_of(f, process.drifts() ? Symmetry::none : Symmetry::even);
+}
+
 }  // namespace stickslip::operators

@@ -44,10 +44,9 @@ struct MeshRule {
 /// follow. Levels of -delta jump equally fast; those of a table may be left so rarely that waves
 /// live long on them. O(levels).
 [[nodiscard]] bool has_waves(const model::Process& process, double omega);
-/// The largest frequency whose waves elements follow [1/time]. Where the noise damps them, which few
-/// levels do not, faster ones count for nothing.
-[[nodiscard]] double highest_followed(const model::Process& process);
-[[nodiscard]] bool damps_fast_waves(const model::Process& process);
+/// Whether waves of the frequency omega [1/time] are too fast for elements to follow them, and
+/// count all the same, as few levels do not damp them. O(1).
+[[nodiscard]] bool has_unfollowed_waves(const model::Process& process, double omega);
 
 /// Thickness of the finest layer at v = 0 that a solution of (lambda - L) u = f shows, or one for
 /// any smaller lambda [velocity].
