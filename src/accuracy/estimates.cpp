@@ -13,9 +13,15 @@ using quantities::Results;
 
 // Of the root mean square of relative errors of the means of a family.
 constexpr double kShared = 0.65;
+// Of what the other family gives: its errors are of another size, but follow the same refinement.
+constexpr double kOfOther = 0.6;
 // A mean that changes less does not depend on the grid, as the mean duration of sticking at a
 // single static level.
 constexpr double kUnchanged = 1e-13;
+// Where no element follows the waves of a spectrum, its values change unevenly from one degree to
+// the next: by how much more the error exceeds both changes, and what the earlier one counts beside
+// the last.
+constexpr double kOfSpectrum = 1.5, kEarlierOfSpectrum = 0.2;
 // Of the errors of so many entries to either side.
 constexpr double kOfNeighbours = 0.7;
 constexpr int kReach = 2;
@@ -63,9 +69,20 @@ void share_between_means(Changes& errors, const Results& results) {
     double& error = errors[r][0];
     const double value = std::abs(results[r].value[0]);
     if (error <= kUnchanged * value) continue;
-    const double relative = is_duration(results[r]) ? of_time : of_velocity;
+    const bool time = is_duration(results[r]);
+    const double own = time ? of_time : of_velocity, other = time ? of_velocity : of_time;
+    const double relative = std::max(own, kOfOther * other);
     error = std::hypot(error, relative * (share ? product : value));
   }
+}
+
+ErrorPerChange factor_of(const Result& result, ErrorPerChange factor) {
+  if (is_mean(result) || result.kind == Kind::share) factor.alone = 1;
+  if (result.kind == Kind::spectrum && !result.is_scalar()) {
+    factor.alone *= kOfSpectrum;
+    factor.earlier = std::max(factor.earlier, kEarlierOfSpectrum * factor.last);
+  }
+  return factor;
 }
 
 void share_between_neighbours(std::vector<double>& errors, const Result& result) {
@@ -104,15 +121,15 @@ Changes add_discretisation(const ErrorPerChange& factor, const Results& coarse,
   Changes changes(results.size()), errors(results.size());
   for (std::size_t r = 0; r < results.size(); ++r) {
     const auto& value = results[r].value;
-    const bool shares = is_mean(results[r]) || results[r].kind == Kind::share;
+    const auto of = factor_of(results[r], factor);
     for (std::size_t e = 0; e < value.size(); ++e) {
       // A mode that the coarser grid did not find is all change.
       const double last = e < coarse[r].value.size() ? coarse[r].value[e] : 0;
       const bool known = r < before.size() && e < before[r].size();
       changes[r].push_back(std::abs(value[e] - last));
       const double both =
-          std::hypot(factor.last * changes[r][e], known ? factor.earlier * before[r][e] : 0);
-      errors[r].push_back(shares ? both : factor.alone * both);
+          std::hypot(of.last * changes[r][e], known ? of.earlier * before[r][e] : 0);
+      errors[r].push_back(of.alone * both);
     }
   }
   share_between_means(errors, results);

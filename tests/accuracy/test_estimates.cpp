@@ -69,6 +69,21 @@ TEST_CASE("estimates: what shares no errors with means has a factor of its own")
   check_errors(results, {40, std::hypot(10, 6.5)});
 }
 
+TEST_CASE("estimates: values of a spectrum change unevenly") {
+  Result spectrum = test::array("S_v", "velocity^2 time", "omega", {1, 2});
+  spectrum.kind = Kind::spectrum;
+  spectrum.value = {8, 8};
+  spectrum.error = {0, 0};
+  Results results{spectrum};
+  Results coarse = results;
+  coarse[0].value = {9, 8};
+  (void)add_discretisation({3, 0.5, 4}, coarse, {{16, 0}}, results);
+  const double error = 1.5 * 4 * std::hypot(3, 0.6 * 16);
+  check_errors(results, {error, 0.7 * error});
+  (void)add_discretisation({3, 1, 4}, coarse, {}, results = {spectrum});
+  check_errors(results, {18, 0.7 * 18});
+}
+
 TEST_CASE("estimates: without an earlier change the last one counts alone") {
   Results results{test::scalar("f", "", 1, 0.5)};
   (void)add_discretisation({3, 0.5}, {test::scalar("f", "", 3, 9)}, {}, results);
@@ -106,6 +121,18 @@ TEST_CASE("estimates: durations and functions of the velocity share errors among
   check_errors(changed(means, {3, 4e-11, 0.02, 8e-12, 1}),
                {std::hypot(3, 10 * of_time), 20 * of_time, std::hypot(0.02, 0.05 * of_time),
                 4 * of_velocity, std::hypot(1, 2 * of_velocity)});
+}
+
+TEST_CASE("estimates: where all changes of one family vanish, those of the other one count") {
+  constexpr double of_other = 0.6;
+  const Results means{scalar(catalogue::kMeanSlide, 10, 0), scalar(catalogue::kEV2, 4, 0),
+                      scalar(catalogue::kEAbsV, 2, 0)};
+  check_errors(changed(means, {3, 8e-12, 4e-12}),
+               {std::hypot(3, 10 * kShared * 0.3), 4 * of_other * kShared * 0.3,
+                2 * of_other * kShared * 0.3});
+  check_errors(changed(means, {2e-11, 1.2, 0.6}),
+               {10 * of_other * kShared * 0.3, std::hypot(1.2, 4 * kShared * 0.3),
+                std::hypot(0.6, 2 * kShared * 0.3)});
 }
 
 TEST_CASE("estimates: the drift takes its share of the errors of means, and gives none") {

@@ -201,6 +201,27 @@ TEST_CASE("noise of few levels: far above the rates the spectrum is as simulated
   CHECK(found.error[1] >= found.value[1]);
 }
 
+// Rare pulses to either side. The value is that of time steps at -accuracy 1e-7, and of Chebyshev
+// collocation with two inversions of its Laplace transform. The contour of a single inversion loses
+// the fast waves that such noise hardly damps, 2e-5 of the value.
+TEST_CASE("noise of few levels: the autocorrelation knows what its contour loses") {
+  cases::Case c;
+  c.scene =
+      with_levels(scene(1, 0.07666909861843972, 1, 1, {1.8394815366442943, 1.0345586483261693}),
+                  {{-2.877147874202222, 1.1618122459357072, 0},
+                   {0.12353312465206306, 0.05486607463064788, 0.03071637988462228},
+                   {5.177155097172437, 0, 1.1618122459357072}});
+  c.question.quantities = {Quantity::autocorrelation};
+  c.question.time = {1};
+  for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5}) {
+    c.question.accuracy = accuracy;
+    const auto found = test::values(c).at("C_vv");
+    INFO("accuracy " << accuracy << ": " << found.value[0] << " +- " << found.error[0]);
+    CHECK(std::abs(found.value[0] - 0.04315142) <= found.error[0]);
+    CHECK(found.error[0] < 1e-4 * found.value[0]);
+  }
+}
+
 TEST_CASE("noise of an even number of levels: no level stands at 0") {
   auto s = with_levels(scene(1, 0.4, 1, 0.25, {1, 0}),
                        {{-1.5, 1, 0}, {-0.5, 1, 1}, {0.5, 1, 1}, {1.5, 0, 1}});

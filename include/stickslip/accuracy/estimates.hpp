@@ -35,16 +35,18 @@ struct ErrorPerChange {
 /// where the mean square is over the means of the same stationary distribution and family, whose
 /// errors are alike within a decade or two: a change that vanishes by accident hides an error,
 /// which the changes before it and of the other means show. Durations are one family, functions of
-/// the velocity the other. The size of a mean is its value; that of P_stick and P_slide, of which
-/// P_slide/P_stick is a ratio of two durations, is P_stick P_slide. What changes by less than 1e-13
-/// does not depend on the discretisation and takes no share; the drift, which may vanish, gives
-/// none.
+/// the velocity the other; 0.6 times the root of the other's mean square takes its place where it
+/// is larger, as all changes of a family may vanish at once. The size of a mean is its value; that
+/// of P_stick and P_slide, of which P_slide/P_stick is a ratio of two durations, is P_stick
+/// P_slide. What changes by less than 1e-13 does not depend on the discretisation and takes no
+/// share; the drift, which may vanish, gives none.
 ///
 /// An entry u_i of an array over anything but modes gets at least
 ///
 ///   error_i = 0.7 max over |j - i| <= 2 of d_j min(1, |u_i/u_j|).
 ///
-/// What is no mean and no probability of a phase has `alone` d in the place of d.
+/// What is no mean and no probability of a phase has `alone` d in the place of d; values of a
+/// spectrum 1.5 times that, with `earlier` at least 0.2 `last`.
 ///
 /// A value that `coarse` lacks is all change; `before` is empty where there are no two coarser
 /// discretisations. Returns the changes from `coarse`.
