@@ -13,15 +13,11 @@ using quantities::Results;
 
 // Of the root mean square of relative errors of the means of a family.
 constexpr double kShared = 0.65;
-// Of what the other family gives: its errors are of another size, but follow the same refinement.
-constexpr double kOfOther = 0.6;
 // A mean that changes less does not depend on the grid, as the mean duration of sticking at a
 // single static level.
 constexpr double kUnchanged = 1e-13;
-// Where no element follows the waves of a spectrum, its values change unevenly from one degree to
-// the next: by how much more the error exceeds both changes, and what the earlier one counts beside
-// the last.
-constexpr double kOfSpectrum = 1.5, kEarlierOfSpectrum = 0.2;
+// What the earlier change of a spectrum counts at least, beside the last.
+constexpr double kEarlierOfSpectrum = 0.2;
 // Of the errors of so many entries to either side.
 constexpr double kOfNeighbours = 0.7;
 constexpr int kReach = 2;
@@ -60,7 +56,7 @@ double shared_error(bool durations, const Changes& errors, const Results& result
   return count == 0 ? 0 : kShared * std::sqrt(squares / count);
 }
 
-void share_between_means(Changes& errors, const Results& results) {
+void share_between_means(double of_other, const Results& results, Changes& errors) {
   const double of_velocity = shared_error(false, errors, results),
                of_time = shared_error(true, errors, results), product = odds(results);
   for (std::size_t r = 0; r < results.size(); ++r) {
@@ -71,15 +67,15 @@ void share_between_means(Changes& errors, const Results& results) {
     if (error <= kUnchanged * value) continue;
     const bool time = is_duration(results[r]);
     const double own = time ? of_time : of_velocity, other = time ? of_velocity : of_time;
-    const double relative = std::max(own, kOfOther * other);
+    const double relative = std::max(own, of_other * other);
     error = std::hypot(error, relative * (share ? product : value));
   }
 }
 
 ErrorPerChange factor_of(const Result& result, ErrorPerChange factor) {
   if (is_mean(result) || result.kind == Kind::share) factor.alone = 1;
-  if (result.kind == Kind::spectrum && !result.is_scalar()) {
-    factor.alone *= kOfSpectrum;
+  if (result.kind == Kind::spectrum && !result.is_scalar() && factor.of_spectrum > 1) {
+    factor.alone *= factor.of_spectrum;
     factor.earlier = std::max(factor.earlier, kEarlierOfSpectrum * factor.last);
   }
   return factor;
@@ -132,7 +128,7 @@ Changes add_discretisation(const ErrorPerChange& factor, const Results& coarse,
       errors[r].push_back(of.alone * both);
     }
   }
-  share_between_means(errors, results);
+  share_between_means(factor.of_other_family, results, errors);
   for (std::size_t r = 0; r < results.size(); ++r) {
     share_between_neighbours(errors[r], results[r]);
     for (std::size_t e = 0; e < errors[r].size(); ++e) results[r].error[e] += errors[r][e];

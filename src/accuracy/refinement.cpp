@@ -251,21 +251,21 @@ class Refiner {
       if (over_modes(r) && given_up_.contains(r.key)) doubt_without_digit(kOneDigit, r);
     }
     check_truncation();
-    check_partial();
+    check_unreached();
     check_bounds();
     given_up_.clear();
     (void)judge(step);  // for the table, of all
   }
 
-  // Entries beyond double precision leave the others as they are.
-  void check_partial() {
+  // Entries without a value leave the others as they are.
+  void check_unreached() {
     for (const auto& result : outcome_.results) {
       for (std::size_t n = 0; n < result.value.size(); ++n) {
-        if (!result.partial || !std::isnan(result.value[n])) continue;
+        if (result.unreached.empty() || !std::isnan(result.value[n])) continue;
         outcome_.reached = false;
-        outcome_.shortfall = fmt::format(
-            "{} at {} = {:g} is beyond double precision, being too rare; leave that entry out",
-            result.key, result.abscissa_name, result.abscissa[n]);
+        outcome_.shortfall +=
+            fmt::format("{}{} at {} = {:g} {}", outcome_.shortfall.empty() ? "" : "; ", result.key,
+                        result.abscissa_name, result.abscissa[n], result.unreached);
         return;
       }
     }

@@ -13,10 +13,13 @@ namespace {
 // Errors of hp functionals fall about tenfold a degree, more at low degrees than at high ones. Each
 // change is the error one degree lower, unless that vanishes by accident; the two together rarely
 // do. For each degree, at low degrees for this one; see validation/calibration.
-constexpr ErrorPerChange kHpErrorPerChange{0.07, 0.0035, 2.2};
+// Where no element follows waves of a spectrum, they come and go with the degree.
+constexpr ErrorPerChange kHpErrorPerChange{
+    .last = 0.07, .earlier = 0.0035, .alone = 2.2, .of_spectrum = 1.5};
 constexpr int kLeastDegreeOfErrors = 10;
-// Under the levels of a table errors fall in uneven steps, of which the change before tells more.
-constexpr double kEarlierOfTables = 4;
+// Under the levels of a table errors fall in uneven steps, of which the change before tells more,
+// and the other family of means: all changes of one are small at once now and then.
+constexpr double kEarlierOfTables = 4, kOtherFamilyOfTables = 0.6;
 // Where elements move from level to level changes tell less.
 constexpr double kOnOtherElements = 1.4;
 // Where friction weakens errors fall as they otherwise do so many degrees higher.
@@ -174,9 +177,14 @@ ErrorPerChange RefinementSequence::error_per_change(int n) const {
     const int weakening = scene_.friction.stribeck ? kDegreesOfWeakening : 0;
     const double moving = tail_counts_ ? kOnOtherElements : 1;
     const double degrees = moving * std::max(kLeastDegreeOfErrors, degree(n) + weakening);
-    const double earlier = table_ ? kEarlierOfTables : 1;
-    return {degrees * kHpErrorPerChange.last, earlier * degrees * kHpErrorPerChange.earlier,
-            kHpErrorPerChange.alone};
+    ErrorPerChange factor = kHpErrorPerChange;
+    factor.last *= degrees;
+    factor.earlier *= degrees;
+    if (table_) {
+      factor.earlier *= kEarlierOfTables;
+      factor.of_other_family = kOtherFamilyOfTables;
+    }
+    return factor;
   }
   case cases::Scheme::upwind: {
     const double ratio = static_cast<double>(points(n)) / points(n - 1);

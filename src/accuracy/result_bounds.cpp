@@ -47,8 +47,8 @@ std::string place(const Result& result, std::size_t n) {
 std::string out_of_range(const Result& result, double highest) {
   for (std::size_t n = 0; n < result.value.size(); ++n) {
     const double value = result.value[n], slack = result.error[n] + kRounding;
-    const bool beyond_precision = result.partial && std::isnan(value);
-    if (beyond_precision || (value >= -slack && value <= highest + slack)) continue;
+    const bool unreached = !result.unreached.empty() && std::isnan(value);
+    if (unreached || (value >= -slack && value <= highest + slack)) continue;
     return fmt::format("{} is {:.9g}{}", result.key, value, place(result, n));
   }
   return "";

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "stickslip/operators/systems.hpp"
@@ -162,27 +164,20 @@ class Powers {
   bool positive_ = false;
 };
 
-[[noreturn]] void refuse(double goal, double reached) {
-  throw NotReached(fmt::format(
-      "-tilt = {:g}: weights that steep are not resolved, as E[exp(s x(t))] is that of a few fast "
-      "bodies; |s| up to {:.2g} was reached: take such -tilt, or a larger -delta",
-      goal, std::abs(reached)));
-}
-
 // From s = 0, where theta = 0, in steps that change the vectors little. Theta is smooth, so that it
 // rises by the mean of theta' at both ends, but for a part of what that changes; another eigenvalue
-// does not lie there.
-void approach(Powers& powers, double goal, double tau) {
+// does not lie there. Returns where it ended, if not at the goal.
+std::optional<double> approach(Powers& powers, double goal, double tau) {
   constexpr double part = 0.2;
   const double small = 1e-3 / tau;
   constexpr int first = 12, steps = 3, shifts = 3, most = 32;
   double s = 0, step = goal;
   powers.move(s, 1e-3 * small);
-  if (!powers.converges(first)) refuse(goal, s);
+  if (!powers.converges(first)) return 0;
   Vectors at_s = copies_of(powers.vectors());
   double theta = 0, velocity = powers.velocity();
   for (int tried = 0; s != goal; ++tried) {
-    if (tried == most) refuse(goal, s);
+    if (tried == most) return s;
     const double next = std::abs(goal - s) < 1.5 * std::abs(step) ? goal : s + step,
                  width = next - s;
     powers.move(next, theta + width * velocity + small);
@@ -205,16 +200,19 @@ void approach(Powers& powers, double goal, double tau) {
       powers.restart(at_s);
     }
   }
+  return {};
 }
 
 // Next to theta each step makes the vectors a hundred times more accurate. The last one, which
 // changes nothing but rounding, shows the error. `recipe` holds z and z - theta of the refinement
-// level before.
-TiltedGrowth growth(operators::Systems& systems, double s, bool truncated, Recipe& recipe) {
+// level before. Nothing for weights that are not resolved, which finer levels then do not try.
+std::optional<TiltedGrowth> growth(operators::Systems& systems, double s, bool truncated,
+                                   Recipe& recipe) {
   constexpr double nearer = 1e-2;
   constexpr int steps = 40;
   const double tau = systems.process().noise.correlation_time();
   auto& known = recipe.steps;
+  if (!recipe.unreached.empty()) return {};
   Powers powers(systems, s, known.empty() ? 1 / tau : known[0].z.real());
   const auto next_to_theta = [&] {  // and to no other one
     constexpr double share = 0.3;
@@ -223,7 +221,13 @@ TiltedGrowth growth(operators::Systems& systems, double s, bool truncated, Recip
     return std::abs(powers.theta() - known[0].z.real()) < share * gap;
   };
   if (!next_to_theta()) {
-    approach(powers, s, tau);
+    if (const auto reached = approach(powers, s, tau)) {
+      recipe.unreached = fmt::format(
+          "is not resolved, as so steep a weight makes E[exp(s x(t))] that of a few fast bodies; "
+          "|s| up to {:.2g} was reached: take such -tilt, or a larger -delta",
+          std::abs(*reached));
+      return {};
+    }
     const double away = nearer * powers.gap();
     known = {{powers.theta() + away}, {away}};
     powers.move(s, powers.theta() + away);
@@ -237,8 +241,8 @@ TiltedGrowth growth(operators::Systems& systems, double s, bool truncated, Recip
   const auto with_error = [](double now, double before, double more) {
     return Uncertain{now, std::abs(now - before) + more};
   };
-  return {with_error(powers.theta(), theta, cut * std::abs(s)),
-          with_error(powers.velocity(), velocity, cut)};
+  return TiltedGrowth{with_error(powers.theta(), theta, cut * std::abs(s)),
+                      with_error(powers.velocity(), velocity, cut)};
 }
 
 void find_growth(Computation& computation) {
@@ -251,9 +255,15 @@ void find_growth(Computation& computation) {
   for (double s : tilts) {
     const bool mirrored = computation.process().symmetric() && s < 0;
     const double tilt = mirrored ? -s : s;
+    auto& recipe = computation.tolerance().recipe(fmt::format("tilt {}", tilt));
     if (!known.contains(tilt)) {
-      known[tilt] = growth(computation.systems, tilt, !scene.limits_speed,
-                           computation.tolerance().recipe(fmt::format("tilt {}", tilt)));
+      constexpr Uncertain none{std::numeric_limits<double>::quiet_NaN(),
+                               std::numeric_limits<double>::quiet_NaN()};
+      known[tilt] = growth(computation.systems, tilt, !scene.limits_speed, recipe)
+                        .value_or(TiltedGrowth{none, none});
+    }
+    for (auto* result : {&theta, &velocity, &rate}) {
+      if (!recipe.unreached.empty()) result->unreached = recipe.unreached;
     }
     TiltedGrowth g = known[tilt];
     if (mirrored) g.velocity.value = -g.velocity.value;

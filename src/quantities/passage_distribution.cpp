@@ -219,7 +219,7 @@ Result of_speed(const Row& row, const std::vector<double>& abscissa, double spee
   Result result = array(row, abscissa);
   result.key = row.key_of(fmt::format("{}", speed));
   for (const Uncertain& value : values) append_value(result, value);
-  result.partial = std::ranges::any_of(result.value, [](double v) { return std::isnan(v); });
+  name_too_rare(result);
   return result;
 }
 

@@ -56,7 +56,7 @@ double relative_error(const Result& result) {
   const double size = largest_size(result.value);
   double relative = 0;
   for (std::size_t n = 0; n < result.value.size(); ++n) {
-    if (result.partial && std::isnan(result.value[n])) continue;
+    if (!result.unreached.empty() && std::isnan(result.value[n])) continue;
     const bool number = !std::isnan(result.value[n]) && !std::isnan(result.error[n]);
     if (!number) return kInfinity;
     if (result.error[n] == 0) continue;

@@ -41,6 +41,7 @@ std::optional<std::vector<double>> parse_range(const std::vector<std::string>& p
 std::string number_text(double value, double error) {
   constexpr int all = 16;      // digits after the first that tell every double from its neighbours
   if (value == 0) return "0";  // without the sign of -0
+  if (std::isnan(value)) return "nan";
   if (error == 0 || !std::isfinite(value)) return fmt::format("{}", value);
   const int leading = exponent(value, all);
   const int place = std::isfinite(error) ? exponent(error, 1) : leading;

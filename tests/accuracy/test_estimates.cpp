@@ -77,11 +77,13 @@ TEST_CASE("estimates: values of a spectrum change unevenly") {
   Results results{spectrum};
   Results coarse = results;
   coarse[0].value = {9, 8};
-  (void)add_discretisation({3, 0.5, 4}, coarse, {{16, 0}}, results);
+  accuracy::ErrorPerChange factor{.last = 3, .earlier = 0.5, .alone = 4, .of_spectrum = 1.5};
+  (void)add_discretisation(factor, coarse, {{16, 0}}, results);
   const double error = 1.5 * 4 * std::hypot(3, 0.6 * 16);
   check_errors(results, {error, 0.7 * error});
-  (void)add_discretisation({3, 1, 4}, coarse, {}, results = {spectrum});
-  check_errors(results, {18, 0.7 * 18});
+  factor.of_spectrum = 1;
+  (void)add_discretisation(factor, coarse, {{16, 0}}, results = {spectrum});
+  check_errors(results, {4 * std::hypot(3, 8), 0.7 * 4 * std::hypot(3, 8)});
 }
 
 TEST_CASE("estimates: without an earlier change the last one counts alone") {
@@ -93,10 +95,10 @@ TEST_CASE("estimates: without an earlier change the last one counts alone") {
 namespace {
 
 // Results after changes by such amounts.
-Results changed(Results results, const std::vector<double>& amounts) {
+Results changed(Results results, const std::vector<double>& amounts, double of_other_family = 0) {
   Results coarse = results;
   for (std::size_t r = 0; r < results.size(); ++r) coarse[r].value[0] += amounts[r];
-  (void)add_discretisation({1, 0}, coarse, {}, results);
+  (void)add_discretisation({.last = 1, .of_other_family = of_other_family}, coarse, {}, results);
   return results;
 }
 
@@ -127,10 +129,10 @@ TEST_CASE("estimates: where all changes of one family vanish, those of the other
   constexpr double of_other = 0.6;
   const Results means{scalar(catalogue::kMeanSlide, 10, 0), scalar(catalogue::kEV2, 4, 0),
                       scalar(catalogue::kEAbsV, 2, 0)};
-  check_errors(changed(means, {3, 8e-12, 4e-12}),
+  check_errors(changed(means, {3, 8e-12, 4e-12}, of_other),
                {std::hypot(3, 10 * kShared * 0.3), 4 * of_other * kShared * 0.3,
                 2 * of_other * kShared * 0.3});
-  check_errors(changed(means, {2e-11, 1.2, 0.6}),
+  check_errors(changed(means, {2e-11, 1.2, 0.6}, of_other),
                {10 * of_other * kShared * 0.3, std::hypot(1.2, 4 * kShared * 0.3),
                 std::hypot(0.6, 2 * kShared * 0.3)});
 }

@@ -320,7 +320,10 @@ TEST_CASE("refinement sequence: two hp changes make an error, the larger the hig
   levels.scene.noise.name = "telegraph";
   const std::vector<model::Level> rows{{-1.5, 2, 0}, {0, 1, 3}, {2, 0, 1}};
   levels.scene.noise.table = std::make_shared<const model::LevelTable>(rows);
-  CHECK(accuracy::RefinementSequence(levels).error_per_change(1).earlier == Approx(4 * 0.035));
+  const auto of_table = accuracy::RefinementSequence(levels).error_per_change(1);
+  CHECK(of_table.earlier == Approx(4 * 0.035));
+  CHECK(of_table.of_other_family == 0.6);
+  CHECK(sequence.error_per_change(1).of_other_family == 0);
   given.scene.friction_name = "stribeck";
   given.scene.friction.stribeck = model::Stribeck{0.1, 1};
   const accuracy::RefinementSequence weakening(given);

@@ -64,6 +64,7 @@ TEST_CASE("numbers: of a value below its error the leading digit stays") {
 
 TEST_CASE("numbers: none, and infinite ones") {
   CHECK(number_text(kNan, 1) == "nan");
+  CHECK(number_text(-kNan, 1) == "nan");
   CHECK(number_text(kInfinity, kNan) == "inf");
   CHECK(number_text(-kInfinity, 0) == "-inf");
   CHECK(number_text(0.25, kInfinity) == "0.2");

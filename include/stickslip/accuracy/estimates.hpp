@@ -22,9 +22,11 @@ using Changes = std::vector<std::vector<double>>;
 
 /// By how much an error exceeds a change.
 struct ErrorPerChange {
-  double last = 1;     ///< the change to this discretisation
-  double earlier = 0;  ///< the change to the one before
-  double alone = 1;    ///< both, of what shares no errors with means of its family
+  double last = 1;             ///< the change to this discretisation
+  double earlier = 0;          ///< the change to the one before
+  double alone = 1;            ///< both, of what shares no errors with means of its family
+  double of_other_family = 0;  ///< what the means of one family tell of the other
+  double of_spectrum = 1;      ///< both, of values at frequencies whose waves no element follows
 };
 
 /// Adds the error of the discretisation,
@@ -35,7 +37,7 @@ struct ErrorPerChange {
 /// where the mean square is over the means of the same stationary distribution and family, whose
 /// errors are alike within a decade or two: a change that vanishes by accident hides an error,
 /// which the changes before it and of the other means show. Durations are one family, functions of
-/// the velocity the other; 0.6 times the root of the other's mean square takes its place where it
+/// the velocity the other; `of_other_family` times its rms takes the place of the own one where it
 /// is larger, as all changes of a family may vanish at once. The size of a mean is its value; that
 /// of P_stick and P_slide, of which P_slide/P_stick is a ratio of two durations, is P_stick
 /// P_slide. What changes by less than 1e-13 does not depend on the discretisation and takes no
@@ -45,8 +47,9 @@ struct ErrorPerChange {
 ///
 ///   error_i = 0.7 max over |j - i| <= 2 of d_j min(1, |u_i/u_j|).
 ///
-/// What is no mean and no probability of a phase has `alone` d in the place of d; values of a
-/// spectrum 1.5 times that, with `earlier` at least 0.2 `last`.
+/// What is no mean and no probability of a phase has `alone` d in the place of d; an array of
+/// values of a spectrum has `of_spectrum` times that and, if this is no 1, `earlier` is at least
+/// 0.2 `last`.
 ///
 /// A value that `coarse` lacks is all change; `before` is empty where there are no two coarser
 /// discretisations. Returns the changes from `coarse`.

@@ -32,8 +32,9 @@ struct Result {
   /// Whether its error decides nothing: it shows how good others are and was not asked for, or it
   /// is the derivative of another one that decides.
   bool diagnostic = false;
-  /// Whether values that are not numbers lie beyond double precision; the others do not.
-  bool partial = false;
+  /// Why entries that are not numbers have no value, which leaves the others as they are: "is too
+  /// rare". Empty where all are to be numbers.
+  std::string unreached = {};
   /// 95 % confidence intervals, one for each value; none for deterministic results.
   std::vector<std::pair<double, double>> ci95 = {};
 
@@ -81,8 +82,8 @@ inline constexpr double kTail = 0.02, kLeastTail = 1e-12;
   return result.tails_by_their_size ? std::min(size, std::abs(1 - result.value[n])) : size;
 }
 
-/// Largest error relative to the size of the values; infinite where one is not a number, unless the
-/// result is partial.
+/// Largest error relative to the size of the values; infinite where one is not a number without a
+/// reason.
 [[nodiscard]] double relative_error(const Result& result);
 /// Whether its entries are of relaxation modes.
 [[nodiscard]] inline bool over_modes(const Result& result) {

@@ -92,13 +92,19 @@ class UntilPassage {
 inline constexpr Uncertain kTooRare{std::numeric_limits<double>::quiet_NaN(),
                                     std::numeric_limits<double>::quiet_NaN()};
 
+inline void name_too_rare(Result& result) {
+  if (!all_numbers(result)) {
+    result.unreached = "is beyond double precision, being too rare; leave that entry out";
+  }
+}
+
 /// Appends one of the numbers of each speed of -velocity as an array.
 template <class Passage>
 void append_by_speed(const Computation& computation, const Row& row,
                      const std::vector<Passage>& passages, Uncertain Passage::*member) {
   Result result = array(row, computation.question().velocity);
   for (const auto& passage : passages) append_value(result, passage.*member);
-  result.partial = std::ranges::any_of(result.value, [](double v) { return std::isnan(v); });
+  name_too_rare(result);
   computation.results().push_back(std::move(result));
 }
 
