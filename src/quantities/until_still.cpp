@@ -26,6 +26,7 @@ class Growth {
     grow_until_still();
     compare_with_truths();
     doubt_best();
+    add_evaluation();
     best_.pairs = model_.pairs();
     best_.truths = static_cast<int>(truths_.size());
     best_.shifts = shifts_;
@@ -60,8 +61,11 @@ class Growth {
     const bool grew = extend();
     Answers now;
     now.model = model_.reduce();
-    // What evaluation adds changes from block to block as well.
-    for (const Uncertain& value : questions_.values(now.model)) now.value.push_back(value.value);
+    std::vector<double> evaluation;
+    for (const auto& [value, error] : questions_.values(now.model)) {
+      now.value.push_back(value);
+      evaluation.push_back(error);
+    }
     judge(now);
     met_.push_back(now.value);
     const exact::TransferFunction transfer(now.model.m, now.model.gamma, now.model.beta);
@@ -71,6 +75,7 @@ class Growth {
     if (best_.value.empty() || now.relative_error < best_.relative_error) {
       best_ = std::move(now);
       best_at_ = met_.size() - 1;
+      evaluation_ = std::move(evaluation);
     }
     return grew;
   }
@@ -173,6 +178,14 @@ class Growth {
     }
   }
 
+  // What evaluation leaves may be the same in all models, as waves that a contour loses.
+  void add_evaluation() {
+    for (std::size_t n = 0; n < best_.value.size(); ++n) {
+      best_.error[n] += evaluation_[n];
+      best_.relative_error = std::max(best_.relative_error, best_.error[n]);
+    }
+  }
+
   // Where the error is largest.
   [[nodiscard]] double worst_shift() const {
     return questions_.shift[static_cast<std::size_t>(
@@ -194,6 +207,7 @@ class Growth {
   bool known_before_;
   Answers best_;
   std::size_t best_at_ = 0;
+  std::vector<double> evaluation_;        // of the best, what it leaves
   std::vector<std::vector<double>> met_;  // values of all models
   std::vector<Complex> last_, before_;    // transfer functions of the last two, by point
   std::vector<std::pair<std::size_t, Complex>> truths_;

@@ -197,11 +197,11 @@ struct Scripted {
   Questions questions;
   std::size_t asked = 0;
 
-  Scripted(std::vector<std::vector<double>> script, double tolerance) {
+  Scripted(std::vector<std::vector<double>> script, double tolerance, double evaluation = 0) {
     questions.points = {{1, 0}};
-    questions.values = [this, script](const Reduced&) {
+    questions.values = [this, script, evaluation](const Reduced&) {
       std::vector<Uncertain> values;
-      for (double v : script[std::min(asked, script.size() - 1)]) values.push_back({v, 0});
+      for (double v : script[std::min(asked, script.size() - 1)]) values.push_back({v, evaluation});
       ++asked;
       return values;
     };
@@ -228,6 +228,14 @@ TEST_CASE("reduced model: stands still within what the last vectors changed") {
   CHECK(s.asked == 4);
   CHECK(found.value == std::vector<double>{1.328125});
   CHECK(found.error == std::vector<double>{0.015625});
+}
+
+TEST_CASE("reduced model: what the evaluation of values leaves is an error") {
+  Scripted s({{1}, {1.25}, {1.3125}, {1.328125}, {2}}, 0.02, 0.5);
+  const Answers found = grown(s);
+  CHECK(s.asked == 4);  // more vectors do not help
+  CHECK(found.error == std::vector<double>{0.515625});
+  CHECK(found.relative_error == 0.515625);
 }
 
 TEST_CASE("reduced model: the best one met is kept, when patience ends") {

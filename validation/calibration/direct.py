@@ -192,7 +192,8 @@ class Inversion:
     """The function of t > 0 with this Laplace transform, and what two methods or lengths of a sum differ by.
 
     Euler summation for what has kinks in time; Talbot's contour (Int. J. Numer. Meth. Engng 60, 2004, 979), which
-    avoids waves that no polynomial follows, for what is smooth.
+    avoids waves that no polynomial follows, for what is smooth. Short contours of nearly one length lose the same
+    waves: 10 and 12 points agreed to 6e-5 where both were wrong by 3e-3.
     """
 
     def __init__(self, transform):
@@ -200,7 +201,7 @@ class Inversion:
 
     def at(self, t):
         pairs = [[method(self.transform, t, n) for n in lengths]
-                 for method, lengths in ((talbot, (10, 12)), (euler, (15, 20)))]
+                 for method, lengths in ((talbot, (16, 24)), (euler, (15, 20)))]
         doubts = [2 * abs(a - b) + 1e-8 * abs(b) for a, b in pairs]
         best, apart = int(numpy.argmin(doubts)), abs(pairs[0][1] - pairs[1][1])
         return pairs[best][1], apart if apart > sum(doubts) else doubts[best]
