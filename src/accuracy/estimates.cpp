@@ -18,6 +18,9 @@ constexpr double kShared = 0.65;
 constexpr double kUnchanged = 1e-13;
 // What the earlier change of a spectrum counts at least, beside the last.
 constexpr double kEarlierOfSpectrum = 0.2;
+// By how much more the errors of derivatives exceed their changes: they decide no status, and are
+// for searches that trust them.
+constexpr double kOfDerivative = 1.5;
 // Of the errors of so many entries to either side.
 constexpr double kOfNeighbours = 0.7;
 constexpr int kReach = 2;
@@ -56,29 +59,32 @@ double shared_error(bool durations, const Changes& errors, const Results& result
   return count == 0 ? 0 : kShared * std::sqrt(squares / count);
 }
 
-void share_between_means(double of_other, const Results& results, Changes& errors) {
-  const double of_velocity = shared_error(false, errors, results),
-               of_time = shared_error(true, errors, results), product = odds(results);
-  for (std::size_t r = 0; r < results.size(); ++r) {
-    const bool share = results[r].kind == Kind::share;
-    if (!is_mean(results[r]) && !share) continue;
-    double& error = errors[r][0];
-    const double value = std::abs(results[r].value[0]);
-    if (error <= kUnchanged * value) continue;
-    const bool time = is_duration(results[r]);
-    const double own = time ? of_time : of_velocity, other = time ? of_velocity : of_time;
-    const double relative = std::max(own, of_other * other);
-    error = std::hypot(error, relative * (share ? product : value));
-  }
-}
-
 ErrorPerChange factor_of(const Result& result, ErrorPerChange factor) {
   if (is_mean(result) || result.kind == Kind::share) factor.alone = 1;
   if (result.kind == Kind::spectrum && !result.is_scalar() && factor.of_spectrum > 1) {
     factor.alone *= factor.of_spectrum;
     factor.earlier = std::max(factor.earlier, kEarlierOfSpectrum * factor.last);
   }
+  if (result.kind == Kind::derivative) factor.alone *= kOfDerivative;
   return factor;
+}
+
+void share_between_means(const ErrorPerChange& factor, const Results& results, Changes& errors) {
+  const double of_velocity = shared_error(false, errors, results),
+               of_time = shared_error(true, errors, results), product = odds(results);
+  for (std::size_t r = 0; r < results.size(); ++r) {
+    const bool share = results[r].kind == Kind::share;
+    const bool derivative = results[r].kind == Kind::derivative;
+    if (!is_mean(results[r]) && !share && !derivative) continue;
+    double& error = errors[r][0];
+    const double value = std::abs(results[r].value[0]);
+    if (error <= kUnchanged * value) continue;
+    const bool time = is_duration(results[r]);
+    const double own = time ? of_time : of_velocity, other = time ? of_velocity : of_time;
+    const double relative = derivative ? factor_of(results[r], factor).alone * std::max(own, other)
+                                       : std::max(own, factor.of_other_family * other);
+    error = std::hypot(error, relative * (share ? product : value));
+  }
 }
 
 void share_between_neighbours(std::vector<double>& errors, const Result& result) {
@@ -128,7 +134,7 @@ Changes add_discretisation(const ErrorPerChange& factor, const Results& coarse,
       errors[r].push_back(of.alone * both);
     }
   }
-  share_between_means(factor.of_other_family, results, errors);
+  share_between_means(factor, results, errors);
   for (std::size_t r = 0; r < results.size(); ++r) {
     share_between_neighbours(errors[r], results[r]);
     for (std::size_t e = 0; e < errors[r].size(); ++e) results[r].error[e] += errors[r][e];

@@ -34,7 +34,8 @@ std::optional<Bounds> bounds_of(Kind kind) {
   case Kind::spectrum: return Bounds{kInfinity};
   case Kind::other:
   case Kind::mean:
-  case Kind::drift: break;
+  case Kind::drift:
+  case Kind::derivative: break;
   }
   return std::nullopt;
 }

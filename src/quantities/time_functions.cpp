@@ -14,6 +14,12 @@
 namespace stickslip::quantities {
 namespace {
 
+// Waves that few levels hardly damp lie to the right of a contour beyond some 0.8 points / t. With
+// a Laplace transform that falls as 1/z^2 or faster there, the wide contour loses at most what the
+// narrow one loses more; wider ones multiply rounding by exp(0.17 points).
+constexpr int kWide = 34, kNarrow = 24;
+constexpr double kDoubt = 3;
+
 /// Points and weights of sum Re w F(z) for t = 1, upper half of Talbot's contour.
 struct Contour {
   std::vector<std::complex<double>> z, weight;
@@ -36,10 +42,10 @@ struct Contour {
 //
 //   |df| <= (e/pi) int |dH((1 + i y)/t)| dy/t,  y >= 0,
 //
-// which two points of this line stand for: what is off further out is over long before t.
+// which three points of this line stand for, up to where the contour reaches.
 void add_points(const std::vector<Fold>& folds, const std::vector<double>& time,
                 Questions& questions) {
-  constexpr std::array<std::pair<double, double>, 2> line{{{0, 1}, {2, 2}}};
+  constexpr std::array<std::pair<double, double>, 3> line{{{0, 1}, {2, 2}, {14, 24}}};
   struct Place {
     std::complex<double> z;
     std::size_t time;
@@ -68,9 +74,7 @@ void add_points(const std::vector<Fold>& folds, const std::vector<double>& time,
 
 std::vector<std::vector<Uncertain>>
 evaluate(const Reduced& reduced, const std::vector<double>& time, const std::vector<int>& folds) {
-  // Waves that few levels hardly damp lie to the right of a contour beyond some 0.8 points / t: the
-  // narrow one shows how much they are. Wider ones multiply rounding by exp(0.17 points).
-  static const std::array<Contour, 2> contours{Contour(44), Contour(24)};
+  static const std::array<Contour, 2> contours{Contour(kWide), Contour(kNarrow)};
   const exact::TransferFunction transfer(reduced.m, reduced.gamma, reduced.beta);
   std::vector<std::vector<Uncertain>> values(folds.size());
   for (double t : time) {
@@ -86,7 +90,7 @@ evaluate(const Reduced& reduced, const std::vector<double>& time, const std::vec
       }
     }
     for (std::size_t f = 0; f < folds.size(); ++f) {
-      values[f].push_back({found[f][0], std::abs(found[f][1] - found[f][0])});
+      values[f].push_back({found[f][0], kDoubt * std::abs(found[f][1] - found[f][0])});
     }
   }
   return values;

@@ -137,6 +137,20 @@ TEST_CASE("estimates: where all changes of one family vanish, those of the other
                 std::hypot(0.6, 2 * kShared * 0.3)});
 }
 
+TEST_CASE("estimates: derivatives take the larger share of both families") {
+  Result by_mu_d = test::scalar("dE_V2_dmu_d", "velocity^2/force", -6, 0);
+  by_mu_d.kind = Kind::derivative;
+  const Results means{scalar(catalogue::kMeanSlide, 10, 0), scalar(catalogue::kEV2, 4, 0), by_mu_d};
+  Results results = means;
+  Results coarse = results;
+  coarse[0].value[0] += 3;
+  coarse[1].value[0] += 0.4;
+  coarse[2].value[0] += 0.5;
+  (void)add_discretisation({.last = 1, .alone = 2}, coarse, {}, results);
+  check_errors(results, {std::hypot(3, 3 * kShared), std::hypot(0.4, 0.4 * kShared),
+                         std::hypot(1.5 * 2 * 0.5, 6 * 1.5 * 2 * 0.3 * kShared)});
+}
+
 TEST_CASE("estimates: the drift takes its share of the errors of means, and gives none") {
   constexpr double small = 0x1p-20;
   const Results means{scalar(catalogue::kEAbsV, -10, 0), scalar(catalogue::kEV, 0.5, 0),

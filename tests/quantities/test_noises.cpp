@@ -222,6 +222,28 @@ TEST_CASE("noise of few levels: the autocorrelation knows what its contour loses
   }
 }
 
+// The path without jumps comes to rest at the time 0.215, where the mean velocity has a kink. Truth
+// by Chebyshev collocation and Euler summation of the Laplace transform.
+TEST_CASE("displacement from a state: errors cover what contours lose of a kink", "[real]") {
+  cases::Case c;
+  c.scene = scene(1, 0.25, 1, 0.5, {1, 0});
+  c.question.quantities = {Quantity::displacement};
+  c.question.start = {2, -0.3};
+  c.question.time = {0.1, 0.2, 0.3, 0.45, 0.6};
+  const std::vector<double> known{-0.022660579, -0.032226557, -0.032875283, -0.026077004,
+                                  -0.012474805};
+  for (const double accuracy : {1e-3, 1e-4, 1e-6}) {
+    c.question.accuracy = accuracy;
+    const auto mean = test::values(c).at("displacement_mean");
+    for (std::size_t n = 0; n < known.size(); ++n) {
+      INFO("accuracy " << accuracy << ", time " << c.question.time[n] << ": " << mean.value[n]
+                       << " +- " << mean.error[n]);
+      CHECK(std::abs(mean.value[n] - known[n]) <= mean.error[n] + 1e-8);
+      CHECK(mean.error[n] < 1e-4);
+    }
+  }
+}
+
 TEST_CASE("noise of an even number of levels: no level stands at 0") {
   auto s = with_levels(scene(1, 0.4, 1, 0.25, {1, 0}),
                        {{-1.5, 1, 0}, {-0.5, 1, 1}, {0.5, 1, 1}, {1.5, 0, 1}});

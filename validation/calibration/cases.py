@@ -106,6 +106,13 @@ def few(random, most=5):
     return options | {"mu_s": 1, "mu_d": random.uniform(0.05, 1), "noise": "file", "levels": levels}
 
 
+def started(random):
+    """From a state that moves slower than the strongest level can make it: paths without jumps have kinks in time."""
+    options = few(random) | {"mu_d": random.uniform(0.05, 0.8)}
+    level = random.choice(options["levels"])[0]
+    return options | {"start": f"{level!r},{random.uniform(0.02, 0.15)!r}"}
+
+
 def many(random):
     return few(random, 9)
 
@@ -182,6 +189,9 @@ GROUPS = {
     "jumps": Group("observables that jump", few, {
         "quantities": "averages,expectation", "observable": "stick;abs(v)>0.2", "time": "1,3,8", "start": "s+"},
         (1e-2, 1e-4), "direct", cases=12),
+    "starts": Group("from a state: velocity and displacement", started, {
+        "quantities": "displacement,expectation", "observable": "v", "time": "0.1,0.3,1,3"}, (1e-2, 1e-4, 1e-6), "direct",
+        cases=20),
     "weak_friction": Group("weak friction, short memory: spectra", weak_friction,
                            {"quantities": "spectrum", "omega": "0.1,1,5,30"}, truth="complex", cases=20),
     "far_spectra": Group("omega far above and below the rates", quick,

@@ -170,6 +170,12 @@ class Few:
         """Laplace transform of E[f] from s+."""
         return self.solve(self.kept, s, f)[self.exits[1]]
 
+    def from_state(self, f, level, speed, s):
+        """Laplace transform of E[f] from a state on a break between panels, moving upwards."""
+        i = int(numpy.abs(self.x - level).argmin())
+        panel = next(p for p, (points, _) in enumerate(self.panels[1]) if points[0] == speed)
+        return self.solve(self.kept, s, f)[self.at[1, i, panel]]
+
     def slide(self, s):
         return self.at_exits(self.solve(self.killed, s, numpy.zeros(self.size), 1.0))
 
@@ -201,7 +207,7 @@ class Inversion:
 
     def at(self, t):
         pairs = [[method(self.transform, t, n) for n in lengths]
-                 for method, lengths in ((talbot, (16, 24)), (euler, (15, 20)))]
+                 for method, lengths in ((talbot, (16, 24)), (euler, (20, 30)))]
         doubts = [2 * abs(a - b) + 1e-8 * abs(b) for a, b in pairs]
         best, apart = int(numpy.argmin(doubts)), abs(pairs[0][1] - pairs[1][1])
         return pairs[best][1], apart if apart > sum(doubts) else doubts[best]
@@ -248,6 +254,8 @@ def stationary(few):
 
 def observable(few, text):
     """Of those that the groups ask for; a point at a jump belongs to the panel that it ends."""
+    if text == "v":
+        return few.velocity
     if text == "stick":
         return few.at_rest.astype(float)
     limit = float(text.removeprefix("abs(v)>"))
@@ -261,6 +269,8 @@ def observable(few, text):
 def made(options, degree):
     breaks = [float(text.removeprefix("abs(v)>")) for text in options.get("observable", "").split(";")
               if text.startswith("abs")]
+    if "," in options.get("start", ""):
+        breaks.append(numbers(options, "start")[1])
     return Few(options["levels"], options["mu_s"], options["mu_d"], drag_of(options), options.get("bias", 0.0), breaks,
                degree)
 
@@ -307,6 +317,10 @@ def truth(options):
     for text in options.get("observable", "").split(";"):
         if "averages" in asked:
             both(lambda few: {f"pi({text})": few.mean(observable(few, text))})
-        if "expectation" in asked:
+        if "," in options.get("start", ""):
+            start = numbers(options, "start")
+            over("time", lambda few, s: few.from_state(observable(few, text), *start, s),
+                 **{f"E({text})": itself, "displacement_mean": integral})
+        elif "expectation" in asked:
             over("time", lambda few, s: few.expectation(observable(few, text), s), **{f"E({text})": itself})
     return found

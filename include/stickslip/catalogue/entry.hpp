@@ -55,7 +55,8 @@ enum class Kind {
   positive_mean,  ///< of a duration or a square
   transform,      ///< E[exp(-lambda T)]: in [0, 1], falls with lambda
   distribution,   ///< P(T <= t): in [0, 1], rises with t
-  spectrum        ///< a power spectral density, >= 0
+  spectrum,       ///< a power spectral density, >= 0
+  derivative      ///< of a mean or a share by a parameter
 };
 
 /// A result of a quantity. A key may stand for many: f is an observable, as in pi(f), A a scalar

@@ -12,7 +12,8 @@ inline constexpr Row kDerivative{
                   "for, such as dP_stick_dtau",
     .unit = "[A]/[p]",
     .convention = "p: mu_d, mu_d_minus if given, tau at fixed N, drag_coefficient, with -friction "
-                  "stribeck also mu_s and stribeck_velocity; the static levels are held fixed"};
+                  "stribeck also mu_s and stribeck_velocity; the static levels are held fixed",
+    .kind = Kind::derivative};
 
 /// The parameters p of these keys.
 inline constexpr std::string_view kDifferentiatedBy[] = {

@@ -13,9 +13,9 @@ constexpr double kFastestOnContour = 12;
 
 /// n-fold integrals from 0 to t of gamma exp(m t) beta, for each n of `folds` one for each time >
 /// 0, by quadrature of the inverse Laplace transform on Talbot's contour with the parameters of
-/// Weideman (SIAM J. Numer. Anal. 44, 2006); the error is what a narrower contour makes of it.
-/// Growing modes that a two-sided projection may have lie outside the contour and do no harm, as
-/// they would to exp(m t). Local. O(size^2) a time.
+/// Weideman (SIAM J. Numer. Anal. 44, 2006); the error is three times what a narrower contour makes
+/// of it. Growing modes that a two-sided projection may have lie outside the contour and do no
+/// harm, as they would to exp(m t). Local. O(size^2) a time.
 [[nodiscard]] std::vector<std::vector<Uncertain>>
 evaluate(const Reduced& reduced, const std::vector<double>& time, const std::vector<int>& folds);
 
