@@ -261,7 +261,7 @@ class Refiner {
   void check_unreached() {
     for (const auto& result : outcome_.results) {
       for (std::size_t n = 0; n < result.value.size(); ++n) {
-        if (result.unreached.empty() || !std::isnan(result.value[n])) continue;
+        if (!quantities::is_unreached(result, n)) continue;
         outcome_.reached = false;
         outcome_.shortfall +=
             fmt::format("{}{} at {} = {:g} {}", outcome_.shortfall.empty() ? "" : "; ", result.key,

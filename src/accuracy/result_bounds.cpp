@@ -48,8 +48,8 @@ std::string place(const Result& result, std::size_t n) {
 std::string out_of_range(const Result& result, double highest) {
   for (std::size_t n = 0; n < result.value.size(); ++n) {
     const double value = result.value[n], slack = result.error[n] + kRounding;
-    const bool unreached = !result.unreached.empty() && std::isnan(value);
-    if (unreached || (value >= -slack && value <= highest + slack)) continue;
+    if (quantities::is_unreached(result, n) || (value >= -slack && value <= highest + slack))
+      continue;
     return fmt::format("{} is {:.9g}{}", result.key, value, place(result, n));
   }
   return "";

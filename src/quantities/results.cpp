@@ -52,11 +52,15 @@ Result array(Result blank, std::vector<double> abscissa) {
   return blank;
 }
 
+bool is_unreached(const Result& result, std::size_t n) {
+  return !result.unreached.empty() && std::isnan(result.value[n]);
+}
+
 double relative_error(const Result& result) {
   const double size = largest_size(result.value);
   double relative = 0;
   for (std::size_t n = 0; n < result.value.size(); ++n) {
-    if (!result.unreached.empty() && std::isnan(result.value[n])) continue;
+    if (is_unreached(result, n)) continue;
     const bool number = !std::isnan(result.value[n]) && !std::isnan(result.error[n]);
     if (!number) return kInfinity;
     if (result.error[n] == 0) continue;

@@ -15,8 +15,9 @@ namespace stickslip::quantities {
 namespace {
 
 // Waves that few levels hardly damp lie to the right of a contour beyond some 0.8 points / t. With
-// a Laplace transform that falls as 1/z^2 or faster there, the wide contour loses at most what the
-// narrow one loses more; wider ones multiply rounding by exp(0.17 points).
+// a Laplace transform that falls as 1/z^2 there, the wide contour loses about what the two differ
+// by; three times that stands for it, as waves come with any phase. Wider ones multiply rounding by
+// exp(0.17 points).
 constexpr int kWide = 34, kNarrow = 24;
 constexpr double kDoubt = 3;
 

@@ -13,7 +13,7 @@ namespace stickslip::io {
 /// host, ranks, date (UTC). Local.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> provenance(MPI_Comm comm);
 
-/// "1.0.0".
+/// Such as "1.0.0".
 [[nodiscard]] std::string version_number();
 
 /// The lines of -version.

@@ -82,6 +82,8 @@ inline constexpr double kTail = 0.02, kLeastTail = 1e-12;
   return result.tails_by_their_size ? std::min(size, std::abs(1 - result.value[n])) : size;
 }
 
+/// Whether this entry has no value, with a reason.
+[[nodiscard]] bool is_unreached(const Result& result, std::size_t n);
 /// Largest error relative to the size of the values; infinite where one is not a number without a
 /// reason.
 [[nodiscard]] double relative_error(const Result& result);
