@@ -16,8 +16,8 @@ constexpr double kShared = 0.65;
 // A mean that changes less does not depend on the grid, as the mean duration of sticking at a
 // single static level.
 constexpr double kUnchanged = 1e-13;
-// What the earlier change of a spectrum counts at least, beside the last.
-constexpr double kEarlierOfSpectrum = 0.2;
+// What the earlier change counts at least beside the last, where there may be waves.
+constexpr double kEarlierOfWaves = 0.2;
 // By how much more the errors of derivatives exceed their changes: they decide no status, and are
 // for searches that trust them.
 constexpr double kOfDerivative = 1.5;
@@ -59,11 +59,12 @@ double shared_error(bool durations, const Changes& errors, const Results& result
   return count == 0 ? 0 : kShared * std::sqrt(squares / count);
 }
 
-ErrorPerChange factor_of(const Result& result, ErrorPerChange factor) {
+ErrorPerChange factor_of(const Result& result, std::size_t entry, ErrorPerChange factor) {
   if (is_mean(result) || result.kind == Kind::share) factor.alone = 1;
-  if (result.kind == Kind::spectrum && !result.is_scalar() && factor.of_spectrum > 1) {
-    factor.alone *= factor.of_spectrum;
-    factor.earlier = std::max(factor.earlier, kEarlierOfSpectrum * factor.last);
+  if (result.kind == Kind::spectrum && !result.is_scalar() &&
+      result.abscissa[entry] >= factor.waves_from) {
+    factor.alone *= factor.of_waves;
+    factor.earlier = std::max(factor.earlier, kEarlierOfWaves * factor.last);
   }
   if (result.kind == Kind::derivative) factor.alone *= kOfDerivative;
   return factor;
@@ -81,8 +82,9 @@ void share_between_means(const ErrorPerChange& factor, const Results& results, C
     if (error <= kUnchanged * value) continue;
     const bool time = is_duration(results[r]);
     const double own = time ? of_time : of_velocity, other = time ? of_velocity : of_time;
-    const double relative = derivative ? factor_of(results[r], factor).alone * std::max(own, other)
-                                       : std::max(own, factor.of_other_family * other);
+    const double relative = derivative
+                                ? factor_of(results[r], 0, factor).alone * std::max(own, other)
+                                : std::max(own, factor.of_other_family * other);
     error = std::hypot(error, relative * (share ? product : value));
   }
 }
@@ -123,8 +125,8 @@ Changes add_discretisation(const ErrorPerChange& factor, const Results& coarse,
   Changes changes(results.size()), errors(results.size());
   for (std::size_t r = 0; r < results.size(); ++r) {
     const auto& value = results[r].value;
-    const auto of = factor_of(results[r], factor);
     for (std::size_t e = 0; e < value.size(); ++e) {
+      const auto of = factor_of(results[r], e, factor);
       // A mode that the coarser grid did not find is all change.
       const double last = e < coarse[r].value.size() ? coarse[r].value[e] : 0;
       const bool known = r < before.size() && e < before[r].size();

@@ -69,7 +69,7 @@ TEST_CASE("estimates: what shares no errors with means has a factor of its own")
   check_errors(results, {40, std::hypot(10, 6.5)});
 }
 
-TEST_CASE("estimates: values of a spectrum change unevenly") {
+TEST_CASE("estimates: values of a spectrum that may have waves change unevenly") {
   Result spectrum = test::array("S_v", "velocity^2 time", "omega", {1, 2});
   spectrum.kind = Kind::spectrum;
   spectrum.value = {8, 8};
@@ -77,11 +77,12 @@ TEST_CASE("estimates: values of a spectrum change unevenly") {
   Results results{spectrum};
   Results coarse = results;
   coarse[0].value = {9, 8};
-  accuracy::ErrorPerChange factor{.last = 3, .earlier = 0.5, .alone = 4, .of_spectrum = 1.5};
+  accuracy::ErrorPerChange factor{
+      .last = 3, .earlier = 0.5, .alone = 4, .of_waves = 1.5, .waves_from = 1};
   (void)add_discretisation(factor, coarse, {{16, 0}}, results);
   const double error = 1.5 * 4 * std::hypot(3, 0.6 * 16);
   check_errors(results, {error, 0.7 * error});
-  factor.of_spectrum = 1;
+  factor.waves_from = 1.5;
   (void)add_discretisation(factor, coarse, {{16, 0}}, results = {spectrum});
   check_errors(results, {4 * std::hypot(3, 8), 0.7 * 4 * std::hypot(3, 8)});
 }

@@ -70,17 +70,14 @@ Values everything_on_hp(const model::Scene& s, bool mirrored = false) {
   return evaluated(everything(s, mirrored), test::on_hp(test::on_full_noise(s), 7));
 }
 
-// Reduced models of what is rough are as good as their errors, five digits of the largest value at
-// least; all others leave ten digits or more.
+// Reduced models of what is rough agree within their errors, and to five digits of the largest
+// value at least; all others leave ten digits or more.
 void check_alike(const Values& found, const Values& expected, double tolerance) {
   for (const auto& [key, values] : expected) {
     REQUIRE(found.count(key) == 1);
     double size = 0;
     for (double value : values) size = std::max(size, std::abs(value));
-    if (key.ends_with(kError)) {
-      CHECK(size <= 2e-5);
-      continue;
-    }
+    if (key.ends_with(kError)) continue;
     // How many of the faster modes are found depends on the scalar type.
     const std::size_t count = key.starts_with("relaxation") ? 3 : values.size();
     REQUIRE(found.at(key).size() >= count);
@@ -88,7 +85,7 @@ void check_alike(const Values& found, const Values& expected, double tolerance) 
       INFO(key << " " << n << " " << found.at(key)[n] << " " << values[n]);
       double allowed = tolerance * size + 1e-13;
       if (is_rough(key)) {
-        allowed += found.at(key + kError)[n] + expected.at(key + kError)[n];
+        allowed += std::min(found.at(key + kError)[n] + expected.at(key + kError)[n], 1e-5 * size);
       }
       CHECK(std::abs(found.at(key)[n] - values[n]) <= allowed);
     }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "stickslip/quantities/results.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::accuracy {
 
@@ -22,11 +23,12 @@ using Changes = std::vector<std::vector<double>>;
 
 /// By how much an error exceeds a change.
 struct ErrorPerChange {
-  double last = 1;             ///< the change to this discretisation
-  double earlier = 0;          ///< the change to the one before
-  double alone = 1;            ///< both, of what shares no errors with means of its family
-  double of_other_family = 0;  ///< what the means of one family tell of the other
-  double of_spectrum = 1;      ///< both, of values at frequencies whose waves no element follows
+  double last = 1;                ///< the change to this discretisation
+  double earlier = 0;             ///< the change to the one before
+  double alone = 1;               ///< both, of what shares no errors with means of its family
+  double of_other_family = 0;     ///< what the means of one family tell of the other
+  double of_waves = 1;            ///< both, of values of a spectrum that may have waves
+  double waves_from = kInfinity;  ///< the lowest frequency of these
 };
 
 /// Adds the error of the discretisation,
@@ -47,9 +49,8 @@ struct ErrorPerChange {
 ///
 ///   error_i = 0.7 max over |j - i| <= 2 of d_j min(1, |u_i/u_j|).
 ///
-/// What is no mean and no probability of a phase has `alone` d in the place of d; an array of
-/// values of a spectrum has `of_spectrum` times that and, if this is no 1, `earlier` is at least
-/// 0.2 `last`.
+/// What is no mean and no probability of a phase has `alone` d in the place of d; values of a
+/// spectrum from `waves_from` on have `of_waves` times that, with `earlier` at least 0.2 `last`.
 ///
 /// The derivative of a mean by a parameter has 1.5 `alone` d, and takes 1.5 `alone` times the
 /// larger share of both families: derivatives decide no status, but searches trust their errors.
