@@ -189,7 +189,7 @@ GROUPS = {
     "jumps": Group("observables that jump", few, {
         "quantities": "averages,expectation", "observable": "stick;abs(v)>0.2", "time": "1,3,8", "start": "s+"},
         (1e-2, 1e-4), "direct", cases=12),
-    "starts": Group("from a state: velocity and displacement", started, {
+    "starts": Group("starts from a state: velocity and displacement", started, {
         "quantities": "displacement,expectation", "observable": "v", "time": "0.1,0.3,1,3"}, (1e-2, 1e-4, 1e-6), "direct",
         cases=20),
     "weak_friction": Group("weak friction, short memory: spectra", weak_friction,
