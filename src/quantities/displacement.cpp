@@ -207,8 +207,8 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
     const petsc::VecHandle first = start_on(inner.a(), start), second = start_on(outer.a(), start),
                            none = inner.a().zeros(), nothing = outer.a().zeros();
     if (!still && counts(first)) {
-      x.mean = time_curve(inner, {b, first, weight}, Nature::rough, {{1, std::sqrt(spread)}}, time,
-                          scales, tolerance.value, tolerance.recipe("mean of displacement"))
+      x.mean = time_curve(inner, {b, first, weight}, nature_of(start), {{1, std::sqrt(spread)}},
+                          time, scales, tolerance.value, tolerance.recipe("mean of displacement"))
                    .value[0];
     }
     if (beside_stationary) {
@@ -218,7 +218,7 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
     const petsc::VecHandle all_b = both.joined(nothing, b), all_c = both.joined(second, none),
                            all = both.joined(distribution.weight_on(outer.a()), weight);
     const auto square =
-        time_curve(both, {all_b, all_c, all}, Nature::rough, {{1, spread}}, time, scales,
+        time_curve(both, {all_b, all_c, all}, nature_of(start), {{1, spread}}, time, scales,
                    tolerance.value, tolerance.recipe("square of displacement"))
             .value[0];
     for (std::size_t n = 0; n < time.size(); ++n) {

@@ -180,7 +180,7 @@ ReducedModel::ReducedModel(Pencil& pencil, const Ends& ends, Nature nature, int 
   check(VecReciprocal(inverse_root_));
   check(VecPointwiseMult(b_, b_, root_));
   check(VecPointwiseMult(c_, c_, inverse_root_));
-  if (nature == Nature::rough) return;
+  if (nature != Nature::smooth) return;
   ab_ = copy_of(b_);
   ca_ = copy_of(c_);
   multiply(b_, ab_, false);

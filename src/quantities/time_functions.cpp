@@ -43,10 +43,12 @@ struct Contour {
 //
 //   |df| <= (e/pi) int |dH((1 + i y)/t)| dy/t,  y >= 0,
 //
-// which three points of this line stand for, up to where the contour reaches.
+// which three points of this line stand for, up to where the contour reaches. Models of rough ends
+// miss most there of what is over long before t; without kinks that has the first two.
 void add_points(const std::vector<Fold>& folds, const std::vector<double>& time,
-                Questions& questions) {
-  constexpr std::array<std::pair<double, double>, 3> line{{{0, 1}, {2, 2}, {14, 24}}};
+                ReducedModel::Nature nature, Questions& questions) {
+  std::vector<std::pair<double, double>> line{{0, 1}, {2, 2}};
+  if (nature != ReducedModel::Nature::rough) line.emplace_back(14, 24);
   struct Place {
     std::complex<double> z;
     std::size_t time;
@@ -128,7 +130,7 @@ TimeCurve time_curve(Pencil& pencil, const Ends& ends, ReducedModel::Nature natu
     }
     return values;
   };
-  add_points(folds, later, questions);
+  add_points(folds, later, nature, questions);
   for (std::size_t n = 0; n < folds.size() * later.size(); ++n) {
     questions.shift.push_back(2 / std::max(later[n % later.size()], 1e-6 * scales.correlation));
   }

@@ -67,6 +67,11 @@ std::vector<Uncertain> curve(const std::string& name, operators::Systems& system
 
 }  // namespace
 
+ReducedModel::Nature nature_of(const model::Start& start) {
+  const bool one_state = start.kind == model::Start::Kind::state;
+  return one_state ? ReducedModel::Nature::kinked : ReducedModel::Nature::rough;
+}
+
 petsc::VecHandle start_on(const KolmogorovOperator& a, const model::Start& start) {
   if (start.kind == model::Start::Kind::state) return a.value_at(start.level, start.v);
   return a.mean_at_zero(model::stationary_distribution(a.discretisation().process.noise));
@@ -123,8 +128,8 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
     const petsc::VecHandle c = start_on(a, start);
     if (!counts(c)) continue;  // as odd functions at rest at x = 0
     const std::string name = "E(" + f.name + ")" + std::to_string(static_cast<int>(symmetry));
-    const auto of_part = curve(name, systems, distribution, whole, b, c,
-                               ReducedModel::Nature::rough, time, unit, method, tolerance);
+    const auto of_part = curve(name, systems, distribution, whole, b, c, nature_of(start), time,
+                               unit, method, tolerance);
     for (std::size_t n = 0; n < time.size(); ++n) result.value[n] = result.value[n] + of_part[n];
   }
   for (auto& value : result.value) value.error += unseen;

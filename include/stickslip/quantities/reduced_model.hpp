@@ -72,7 +72,8 @@ class ReducedModel {
  public:
   /// Smooth b and c: V and W start with b, A b, c, c A. Rough ones, such as the value at a point,
   /// give no information at infinity; then W^T V is near singular all the same (1e-11 was seen).
-  enum class Nature { smooth, rough };
+  /// Those of a start in one state are rough, and what becomes of it has kinks in time.
+  enum class Nature { smooth, rough, kinked };
   /// `pencil` must live as long; `ends.weight` > 0. Collective.
   ReducedModel(Pencil& pencil, const Ends& ends, Nature nature, int most_pairs);
 

@@ -21,6 +21,8 @@ inline const std::string kBackwardPrefix = "backward_";
 /// TS), which shares nothing with them but L.
 enum class TransientMethod { krylov, stepping };
 
+/// That of functionals which this start makes: from one state, the path without jumps has kinks.
+[[nodiscard]] ReducedModel::Nature nature_of(const model::Start& start);
 /// u -> E[u(Z_0)] for functions on an operator that keeps the static states. Collective.
 [[nodiscard]] petsc::VecHandle start_on(const operators::KolmogorovOperator& a,
                                         const model::Start& start);
