@@ -34,7 +34,7 @@ FirstPassage first_passage(operators::Systems& systems, const Starts& starts, do
       roughly(a, sticking, at_rest, nu, &petsc::Solution::correction);
   const double exceeded = mean_over(starts, until.reached());
   const double rounding = std::abs(exceeded - mean_over(starts, roughly.reached()));
-  if (!(exceeded > 2 * rounding)) return {kTooRare, kTooRare, kTooRare};
+  if (!(exceeded > 2 * rounding)) return {kNoValue, kNoValue, kNoValue};
   const auto one = a.values([](double, double, double) { return 1.0; });
   const auto times = [&](const UntilPassage& by) {
     const auto time = by.integral(one, sticking.each(1));

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -257,10 +256,8 @@ void find_growth(Computation& computation) {
     const double tilt = mirrored ? -s : s;
     auto& recipe = computation.tolerance().recipe(fmt::format("tilt {}", tilt));
     if (!known.contains(tilt)) {
-      constexpr Uncertain none{std::numeric_limits<double>::quiet_NaN(),
-                               std::numeric_limits<double>::quiet_NaN()};
       known[tilt] = growth(computation.systems, tilt, !scene.limits_speed, recipe)
-                        .value_or(TiltedGrowth{none, none});
+                        .value_or(TiltedGrowth{kNoValue, kNoValue});
     }
     for (auto* result : {&theta, &velocity, &rate}) {
       if (!recipe.unreached.empty()) result->unreached = recipe.unreached;

@@ -50,7 +50,7 @@ Uncertain transform_from(const StartingPoint& first, bool stationary, operators:
   const double later = by(&petsc::Solution::x),
                value = later + (stationary ? passed(first, a, key) : 0),
                rounding = std::abs(later - by(&petsc::Solution::correction));
-  return value > 2 * rounding ? Uncertain{value, rounding} : kTooRare;
+  return value > 2 * rounding ? Uncertain{value, rounding} : kNoValue;
 }
 
 // A start on an operator that keeps static states, which lists sliding states in the same order;
@@ -160,7 +160,7 @@ DurationDistribution passage_distribution(operators::Systems& systems,
                                           const ModelTolerance& tolerance) {
   const bool stationary = start.kind == model::Start::Kind::stationary;
   const double mean = passage_time(systems, key, start).mean.value, w = key.speed_limit;
-  const std::vector<Uncertain> too_rare(time.size(), kTooRare);
+  const std::vector<Uncertain> too_rare(time.size(), kNoValue);
   if (!(mean > 0)) return {too_rare, too_rare};
   operators::Systems killed(systems.comm(), systems.discretisation().passing(w, key.passage),
                             systems.statistics());

@@ -108,7 +108,7 @@ PassageTime passage_time(operators::Systems& systems, const operators::SystemKey
     reached += until.reached()[t];
     rounding += std::abs(until.reached()[t] - roughly.reached()[t]);
   }
-  if (!(reached > 2 * rounding)) return {kTooRare, kTooRare};
+  if (!(reached > 2 * rounding)) return {kNoValue, kNoValue};
   const auto one = a.values([](double, double, double) { return 1.0; });
   const auto time = until.integral(one, sticking.each(1));
   const petsc::VecHandle source = a.from_static({time.at_rest.begin(), time.at_rest.end()});

@@ -2,6 +2,7 @@
 /// Numbers that carry a bound for their error through arithmetic.
 
 #include <cmath>
+#include <limits>
 
 #include "stickslip/petsc/factorization.hpp"
 #include "stickslip/quantities/results.hpp"
@@ -13,6 +14,10 @@ struct Uncertain {
   double value = 0;
   double error = 0;
 };
+
+/// Of an entry without a value (Result::unreached).
+inline constexpr Uncertain kNoValue{std::numeric_limits<double>::quiet_NaN(),
+                                    std::numeric_limits<double>::quiet_NaN()};
 
 [[nodiscard]] inline Uncertain operator+(Uncertain a, Uncertain b) {
   return {a.value + b.value, a.error + b.error};

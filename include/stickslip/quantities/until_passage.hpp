@@ -1,9 +1,6 @@
 #pragma once
 /// What is gathered until a speed is first passed.
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -88,10 +85,8 @@ class UntilPassage {
   std::vector<double> reached_;
 };
 
-/// Of a speed that is reached so rarely that rounding is all there is.
-inline constexpr Uncertain kTooRare{std::numeric_limits<double>::quiet_NaN(),
-                                    std::numeric_limits<double>::quiet_NaN()};
-
+/// The reason of entries without a value: speeds that are reached so rarely that rounding is all
+/// there is.
 inline void name_too_rare(Result& result) {
   if (!all_numbers(result)) {
     result.unreached = "is beyond double precision, being too rare; leave that entry out";
