@@ -1,3 +1,3 @@
 """Version of the package: that of the program in CMakeLists.txt, as a test makes sure."""
 
-__version__ = "1.0.1"
+__version__ = "1.0.2"

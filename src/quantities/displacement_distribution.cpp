@@ -22,6 +22,7 @@ using Inversion = exact::FourierInversion;
 using model::Start;
 
 constexpr double kRootFound = 1e-9;  // of a probability at a quantile found
+constexpr double kPlace = 1e-11;     // relative error of the place of an atom
 
 // Of bodies at rest, by level that sticks: that the noise does not push them up to a time.
 Uncertain still_at_rest(const model::Process& process, const std::vector<double>& rests,
@@ -133,8 +134,10 @@ class Distribution {
     if (even_ && d > 0) return Uncertain{1, 0} - below(-d, !or_at, mirrored(which));
     Uncertain sum;
     if (inversion_) {
+      // However inaccurate, it is no less than 0 and no more than all that is no atom.
       const auto found = inversion_->below(d - centre_);
-      sum = {found.value, found.error};
+      const double value = std::clamp(found.value, 0.0, mass_);
+      sum = {value, std::min(found.error, std::max(value, mass_ - value))};
     }
     Uncertain atoms, above;
     for (const Atom& atom : atoms_) {
@@ -162,7 +165,8 @@ class Distribution {
     if (!reached || (tails != Tails::none && doubt >= std::min(p, 1 - p))) {
       return {value, kInfinity};
     }
-    return {value, std::max(reach(p, value, -1, tails), reach(p, value, 1, tails))};
+    return {value, std::max({reach(p, value, -1, tails), reach(p, value, 1, tails),
+                             atom ? kPlace * std::abs(value) : 0})};
   }
   [[nodiscard]] int evaluations() const {
     int all = inversion_ ? inversion_->evaluations() : 0;
@@ -285,7 +289,7 @@ void find_displacements(Computation& computation) {
     const auto atoms = atoms_at(computation, t);
     Distribution distribution(computation, t, atoms);
     append_value(probability, atoms[0].probability);
-    append_value(position, {atoms[0].at, 1e-11 * std::abs(atoms[0].at)});
+    append_value(position, {atoms[0].at, kPlace * std::abs(atoms[0].at)});
     const auto append = [&](const Row& row, const std::vector<double>& abscissa, auto of) {
       if (abscissa.empty()) return;
       Result result = array(row, abscissa);

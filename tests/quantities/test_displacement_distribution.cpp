@@ -4,7 +4,7 @@
 #include "../common/catch.hpp"
 #include "../common/scenes.hpp"
 #include "../common/values.hpp"
-#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/accuracy/carry_out.hpp"
 #include "stickslip/catalogue/displacement_distribution_keys.hpp"
 
 using namespace stickslip;
@@ -84,6 +84,28 @@ TEST_CASE("displacement distribution: the atom in closed form", "[real]") {
         Approx(1.8 * (1 - 2 * (1 - std::exp(-0.5)))).epsilon(1e-9));
   // Fewer than 0.9 are above it, more than 0.5.
   CHECK(values_from({1}, 0.1, {lower, 0}).at("displacement_quantile").value[0] == 0);
+}
+
+// Whatever the density is, a probability that lies within an atom has its place for a quantile.
+// Only one body in 13 meets a jump by that time, and what no jumps leave is less than that.
+TEST_CASE("displacement distribution: quantiles at atoms, though the density is not resolved",
+          "[real]") {
+  constexpr double time = 0.1;
+  auto c = asking(test::pushed_by_telegraph(), {1e-4, 2e-3}, time, 0.05, kRest);
+  c.question.arguments["probability"] = {0.1, 0.35, 0.65, 0.9};
+  c.method.degree = 3;
+  const auto found = values_at_the_time(c);
+  const auto& quantile = found.at("displacement_quantile");
+  const double moved = 1.8 * (time - 2 * (1 - std::exp(-time / 2)));
+  const double expected[] = {0, 0, moved, moved};
+  for (std::size_t n = 0; n < quantile.value.size(); ++n) {
+    INFO(quantile.value[n] << " +- " << quantile.error[n]);
+    CHECK(quantile.value[n] == Approx(expected[n]).epsilon(1e-9));
+    CHECK(quantile.error[n] < 1e-9);
+  }
+  for (double error : found.at("displacement_cdf").error) {
+    CHECK(error <= 2 * (1 - std::exp(-0.8 * time)));
+  }
 }
 
 // E[x] = int P(x > d) dd and E[x^2] = 2 int d P(x > d) dd, as no body moves downwards.
