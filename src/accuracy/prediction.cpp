@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/accuracy/carry_out.hpp"
 #include "stickslip/accuracy/refinement_sequence.hpp"
 #include "stickslip/petsc/blas.hpp"
 #include "stickslip/petsc/session.hpp"

@@ -15,11 +15,9 @@
 #include "stickslip/accuracy/prediction.hpp"
 #include "stickslip/accuracy/refinement_sequence.hpp"
 #include "stickslip/accuracy/result_bounds.hpp"
-#include "stickslip/catalogue/given_force_keys.hpp"
 #include "stickslip/petsc/memory.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/quantities/excursion.hpp"
-#include "stickslip/quantities/given_force.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/infinity.hpp"
 
@@ -354,22 +352,6 @@ class Refiner {
   std::optional<quantities::SpeedDistribution> speed_;
 };
 
-bool closed_noise_distribution(const cases::Case& given) {
-  return given.question.wants(Quantity::noise_law) && given.method.row().closed_noise_law;
-}
-
-Outcome by_simulation(MPI_Comm comm, const cases::Case& given, const std::string& checkpoint,
-                      const monte_carlo::SimulationProgress& progress) {
-  Outcome outcome;
-  auto simulated = monte_carlo::simulate(comm, given, checkpoint, progress);
-  outcome.results = std::move(simulated.results);
-  outcome.reached = simulated.reached;
-  outcome.shortfall = simulated.shortfall;
-  outcome.next_digit_seconds = 100 * simulated.state.seconds;
-  outcome.simulation = std::move(simulated);
-  return outcome;
-}
-
 }  // namespace
 
 std::string shortfall_of_memory(MPI_Comm comm, const model::Scene& scene,
@@ -388,53 +370,13 @@ void require_memory(MPI_Comm comm, const model::Scene& scene, const Resolution& 
   if (!shortfall.empty()) throw NoMemory(shortfall);
 }
 
-bool needs_system(const cases::Case& given) {
-  const cases::Question& question = given.question;
-  std::size_t others = question.quantities.size();
-  for (bool closed :
-       {closed_noise_distribution(given), question.wants(Quantity::trajectory),
-        question.wants(catalogue::kGivenForce.quantity), question.wants(Quantity::sensitivity)}) {
-    others -= closed ? 1 : 0;
-  }
-  return others > 0;
-}
-
 Solved solve_on(MPI_Comm comm, const cases::Case& given, const Resolution& resolution) {
   require_memory(comm, given.scene, resolution);
   return evaluated(comm, given, resolution, std::make_shared<quantities::Recipes>());
 }
 
-Outcome carry_out(MPI_Comm comm, const cases::Case& given, const Progress& progress,
-                  const monte_carlo::SimulationProgress& simulation_progress,
-                  const std::string& checkpoint) {
-  const cases::Question& question = given.question;
-  Outcome outcome;
-  outcome.reached = true;
-  if (needs_system(given)) {
-    outcome = given.method.row().simulates
-                  ? by_simulation(comm, given, checkpoint, simulation_progress)
-                  : Refiner(comm, given, progress).run();
-  }
-  if (closed_noise_distribution(given)) {
-    quantities::append_noise_distribution(given.scene.meant(), outcome.results);
-    if (question.wants(Quantity::sensitivity)) {
-      quantities::append_noise_sensitivity(given.scene.meant(), outcome.results);
-    }
-  }
-  if (question.wants(Quantity::trajectory)) {
-    outcome.path = simulation::simulate_path(given.scene.meant(), question.start, question.horizon,
-                                             given.method.seed);
-  }
-  if (question.wants(catalogue::kGivenForce.quantity)) {
-    const auto missed =
-        quantities::append_given_force(given.scene, question.accuracy, outcome.results);
-    if (!missed.empty()) outcome.shortfall = missed;
-    outcome.reached = outcome.reached && missed.empty();
-  }
-  if (!question.references.empty()) {
-    outcome.comparison = compare(question.references, outcome.results);
-  }
-  return outcome;
+Outcome refine(MPI_Comm comm, const cases::Case& given, const Progress& progress) {
+  return Refiner(comm, given, progress).run();
 }
 
 }  // namespace stickslip::accuracy

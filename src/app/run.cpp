@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "cases.hpp"
-#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/accuracy/carry_out.hpp"
 #include "stickslip/io/provenance.hpp"
 #include "stickslip/io/reports.hpp"
 #include "stickslip/operators/element_pc.hpp"

@@ -28,6 +28,7 @@
 #include "stickslip/catalogue/relaxation_keys.hpp"
 #include "stickslip/catalogue/resolvent_keys.hpp"
 #include "stickslip/catalogue/sensitivity_keys.hpp"
+#include "stickslip/catalogue/shared_arguments.hpp"
 #include "stickslip/catalogue/slip_keys.hpp"
 #include "stickslip/catalogue/spectrum_keys.hpp"
 #include "stickslip/catalogue/stick_transform_keys.hpp"
@@ -130,7 +131,8 @@ std::span<const Entry* const> entries() { return kAll; }
 
 std::span<const Argument* const> arguments() {
   static const auto all = [] {
-    std::vector<const Argument*> found;
+    std::vector<const Argument*> found{&kLambda,   &kOmega,           &kTime,
+                                       &kDistance, &kInverseDistance, &kVelocity};
     for (const Entry* entry : kAll) {
       for (const Argument* argument : entry->arguments) {
         if (std::find(found.begin(), found.end(), argument) == found.end())
@@ -140,6 +142,14 @@ std::span<const Argument* const> arguments() {
     return found;
   }();
   return all;
+}
+
+std::string takers_of(std::string_view option) {
+  std::vector<std::string> words;
+  for (const Entry* entry : kAll) {
+    if (entry->takes(option)) words.emplace_back(entry->word);
+  }
+  return enumerate(words, "and");
 }
 
 const Entry* find_entry(std::string_view word) {

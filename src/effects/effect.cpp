@@ -48,28 +48,22 @@ bool Choice::knows(const model::Scene& scene, std::string_view name) const {
 }
 
 const Choice& frictions() {
-  static constexpr const Effect* effects[] = {&kCoulomb, &kStribeck};
   static const Choice choice{
-      "friction", "friction law", effects,
+      "friction", "friction law", kFrictions,
       [](const model::Scene& s) -> const std::string& { return s.friction_name; }};
   return choice;
 }
 
 const Choice& noises() {
-  static constexpr const Effect* effects[] = {&kOrnsteinUhlenbeck, &kTelegraph, &kNarrowBand,
-                                              &kFilteredNoise,     &kPeriodic,  &kPulses,
-                                              &kNoiseFile,         &kNoiseChain};
   static const Choice choice{
-      "noise", "noise X", effects,
+      "noise", "noise X", kNoises,
       [](const model::Scene& s) -> const std::string& { return s.noise.name; }, &kNoiseSum};
   return choice;
 }
 
 const Choice& drags() {
-  static constexpr const Effect* effects[] = {&kLinearDrag, &kNoDrag, &kCubicDrag,
-                                              &kDragExpression};
   static const Choice choice{
-      "drag", "drag law b(v)", effects,
+      "drag", "drag law b(v)", kDrags,
       [](const model::Scene& s) -> const std::string& { return s.drag_name; }};
   return choice;
 }

@@ -53,12 +53,6 @@ void add_question(const cases::Question& question, checkpoint::Identity& found) 
   found.emplace_back("-quantities", text(words));
   for (const auto& [option, value] :
        {std::pair{"observable", text(observables)},
-        {"lambda", text(question.lambda)},
-        {"omega", text(question.omega)},
-        {"time", text(question.time)},
-        {"velocity", text(question.velocity)},
-        {"inverse_distance", text(question.inverse_distance)},
-        {"distance", text(question.distance)},
         {"passage", fmt::format("{}", static_cast<int>(question.passage))},
         {"start", fmt::format("{} {} {}", static_cast<int>(start.kind), start.level, start.v)}}) {
     if (options.contains(option)) found.emplace_back(fmt::format("-{}", option), value);

@@ -80,18 +80,18 @@ void read_quantities(Settings& settings, Request& request) {
                   "take -route excursion, or other quantities");
 }
 
-// The values given, or those of the file to compare with: of results over the abscissa `option`.
-std::vector<double> arguments(Settings& settings, const std::vector<cases::Reference>& references,
-                              const std::string& option, bool negative = false) {
+// The values given, or those of the file to compare with: of results over that abscissa.
+std::vector<double> values_of(const catalogue::Argument& argument, const Settings& settings,
+                              const std::vector<cases::Reference>& references) {
+  const std::string option(argument.option);
   std::vector<double> values = settings.numbers(option);
   if (settings.has(option)) return values;
   for (const auto& reference : references) {
     const auto* row = catalogue::find_row(reference.quantity);
     const bool asks = reference.argument && row != nullptr && row->abscissa == option;
     const double value = reference.argument.value_or(0);
-    if (asks && (negative || value >= 0) && std::count(values.begin(), values.end(), value) == 0) {
-      values.push_back(value);
-    }
+    const bool known = std::count(values.begin(), values.end(), value) > 0;
+    if (asks && argument.allows(value) && !known) values.push_back(value);
   }
   return values;
 }
@@ -271,15 +271,8 @@ void read_question(Settings& settings, Request& request) {
   question.references = read_compared(settings);
   read_quantities(settings, request);
   const auto& known = question.references;
-  question.lambda = arguments(settings, known, "lambda");
-  question.omega = arguments(settings, known, "omega");
-  question.time = arguments(settings, known, "time");
-  question.distance = arguments(settings, known, "distance", true);
-  question.inverse_distance = arguments(settings, known, "inverse_distance");
-  question.velocity = arguments(settings, known, "velocity");
   for (const auto* argument : catalogue::arguments()) {
-    const std::string option(argument->option);
-    question.arguments[option] = arguments(settings, known, option, argument->low < 0);
+    question.set_values(std::string(argument->option), values_of(*argument, settings, known));
   }
   question.observables = read_observables(settings, request.scene.friction);
   question.accuracy = settings.real("accuracy");

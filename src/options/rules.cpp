@@ -51,7 +51,6 @@ class Rules {
   void unused() {
     const bool simulates = method_.simulates, swept = sweeps(settings_);
     const std::string no_simulation = "without " + routes_that(&SolutionMethod::simulates, true);
-    warn({"lambda"}, !method_.small_lambda && !asked("lambda"));
     warn({"excursions"}, !simulates, no_simulation);
     warn({"seed"}, !simulates && !asked("seed"));
     warn({"checkpoint"}, !simulates && !swept, no_simulation + " or a sweep");
@@ -62,14 +61,14 @@ class Rules {
                    : swept      ? Subject::sweep
                                 : Subject::run);
     for (const char* option :
-         {"observable", "time", "start", "horizon", "transient_solver", "omega", "spectrum_solver",
-          "distance", "inverse_distance", "velocity", "passage", "force_file",
-          "force_interpolation", "force_scale"}) {
+         {"observable", "start", "horizon", "transient_solver", "spectrum_solver", "passage",
+          "force_file", "force_interpolation", "force_scale"}) {
       warn({option}, !asked(option));
     }
     for (const auto* argument : catalogue::arguments()) {
       const std::string option(argument->option);
-      warn({option.c_str()}, !asked(option.c_str()));
+      const bool of_method = method_.small_lambda && option == "lambda";
+      warn({option.c_str()}, !of_method && !asked(option));
     }
   }
 
@@ -116,23 +115,12 @@ class Rules {
       return q != sticking && q != moments && q != noise_law;
     });
     const bool one_lambda = q_.lambda.empty() || (q_.lambda.size() == 1 && q_.lambda[0] != 0);
-    require("lambda", asked("lambda") && q_.lambda.empty(),
-            "asks for functions of lambda, but no values of lambda are given",
-            "add for example -lambda 0.1,1,10");
     require("observable", (q_.wants(resolvent) || q_.wants(expectation)) && q_.observables.empty(),
             "asks for averages of functions of the state, but none are given",
             "add for example -observable \"v^2; stick\"");
-    require("time", asked("time") && q_.time.empty(),
-            "asks for functions of time, but no times are given",
-            "add for example -time 0.01:10:31:log");
     require("force_file", q_.wants(catalogue::kGivenForce.quantity) && !r_.scene.force,
             "asks for the motion under a given force, but none is given",
             "add for example -force_file record.csv");
-    require("velocity", asked("velocity") && q_.velocity.empty(),
-            "asks for functions of a speed, but no speeds are given",
-            "add for example -velocity 0.1:2:20");
-    report("velocity", std::count(q_.velocity.begin(), q_.velocity.end(), 0) > 0,
-           "must be positive: every sliding phase exceeds the speed 0", "leave 0 out");
     distances();
     require_file(density, "density, a field,");
     require_file(trajectory, "a trajectory,");
@@ -141,6 +129,7 @@ class Rules {
            "add sticking, moments or noise_law");
     require_sticking();
     require_own();
+    require_arguments();
     report("quantities", study_ && !to_white_noise_ && others,
            "must be sticking, moments and noise_law, or some of these, in a study",
            "leave the others out");
@@ -233,12 +222,19 @@ class Rules {
              fmt::format("asks for {}, but where drag does not bound the velocity {}", entry->word,
                          entry->unbounded),
              std::string(entry->instead));
-      for (const auto* argument : entry->arguments) {
-        const std::string option(argument->option);
-        require(option.c_str(), !argument->optional && q_.values(option).empty(),
-                fmt::format("asks for {}, but no values of -{} are given", entry->word, option),
-                fmt::format("add for example -{} {}", option, argument->example));
-      }
+    }
+  }
+
+  // Numbers for which quantities are wanted.
+  void require_arguments() {
+    for (const auto* argument : catalogue::arguments()) {
+      const auto words =
+          wanted([argument](const auto& entry) { return entry.takes(argument->option); });
+      const std::string option(argument->option);
+      require(option.c_str(), !argument->optional && !words.empty() && q_.values(option).empty(),
+              fmt::format("asks for {}, but no values of -{} are given", enumerate(words, "and"),
+                          option),
+              fmt::format("add for example -{} {}", option, argument->example));
     }
   }
 
@@ -289,7 +285,7 @@ class Rules {
     return "-route " + enumerate(words, "or");
   }
 
-  [[nodiscard]] bool asked(const char* option) const { return q_.depends_on(option); }
+  [[nodiscard]] bool asked(std::string_view option) const { return q_.depends_on(option); }
 
   void warn(Options options, bool when, const std::string& why = "on the quantities asked for") {
     for (const char* option : options) {

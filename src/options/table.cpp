@@ -36,22 +36,15 @@ Option numbers(const std::string& name, const std::string& unit, Range range,
   return {name, Kind::numbers, "numbers", unit, "", range, {}, sentence, fix};
 }
 
-Option arguments(const char* name, const char* unit, const char* sentence) {
-  return numbers(name, unit, Range::not_negative(), sentence,
-                 "negative and missing values mean nothing here");
-}
-
-std::vector<Option> own_options_of_quantities() {
-  std::vector<Option> options;
-  for (const auto* argument : catalogue::arguments()) {
-    std::vector<std::string> synonyms;
-    for (auto& word : split(argument->synonyms, ',')) synonyms.push_back(std::move(word));
-    options.push_back(numbers(std::string(argument->option), std::string(argument->unit),
-                              {argument->low, argument->high}, std::string(argument->sentence),
-                              fmt::format("take for example {}", argument->example))
-                          .called(synonyms));
-  }
-  return options;
+// A list of numbers that quantities take.
+Option argument_option(const catalogue::Argument& argument) {
+  std::string sentence =
+      fmt::format("{} of {}", argument.sentence, catalogue::takers_of(argument.option));
+  if (!argument.besides.empty()) sentence += fmt::format(". {}", argument.besides);
+  return numbers(std::string(argument.option), std::string(argument.unit),
+                 {argument.low, argument.high, argument.low_included, false}, sentence,
+                 fmt::format("take for example {}", argument.example))
+      .called(split(argument.synonyms, ','));
 }
 
 // Of quantities that have an accuracy of their own where -accuracy is not given.
@@ -71,39 +64,19 @@ std::vector<Option> quantity_options() {
   std::vector<Option> options{
       list("quantities", "sticking,moments,noise_law", words, "quantities to compute")
           .called({"q", "compute", "observables"}),
-      arguments("lambda", "1/time",
-                "arguments of the Laplace transforms and the resolvent (laplace, F_stick, "
-                "resolvent, passage_transform). With -route lambda one positive value, chosen from "
-                "-accuracy unless "
-                "given"),
-      arguments("omega", "1/time", "angular frequencies of spectrum and noise_spectrum")
-          .called({"freq", "frequency", "frequencies"}),
-      arguments("time", "time",
-                "times of duration_density, phase_durations, autocorrelation, displacement, "
-                "displacement_transform, "
-                "displacement_distribution, passage_distribution and expectation")
-          .called({"t", "times"}),
-      numbers("distance", "velocity*time", {},
-              "path lengths > 0 of slip, for f_slip and cdf_slip; displacements of either sign of "
-              "displacement_distribution",
-              "take for example 0.01:10:31:log"),
-      arguments("inverse_distance", "1/(velocity*time)",
-                "arguments s of the Laplace transform F_slip of slip"),
-      arguments("velocity", "velocity",
-                "speeds w > 0 of peak, first_passage, passage_transform and passage_distribution")
-          .called({"speed", "speeds"}),
-      Option::text_of("start", "state", "s+",
-                      "state at time 0 of expectation, displacement, displacement_transform, "
-                      "displacement_distribution, first_passage, passage_transform, "
-                      "passage_distribution and trajectory")
+  };
+  for (const auto* argument : catalogue::arguments()) options.push_back(argument_option(*argument));
+  const std::vector<Option> others{
+      Option::text_of("start", "state", "s+", "state at time 0 of " + catalogue::takers_of("start"))
           .called({"x0", "v0", "initial", "initial_state"}),
       choice("passage", "both", words_of(kPassages),
              "what passages wait for: both: |V| reaches the speed w. up: V does. down: V "
              "reaches -w"),
       Option::text_of(
           "observable", "functions", "",
-          "functions of the state for averages, resolvent and expectation. With -scheme hp "
-          "elements end at their jumps and kinks in v: at most 64, the same for all x")
+          fmt::format("functions of the state for {}. With -scheme hp elements end at their jumps "
+                      "and kinks in v: at most 64, the same for all x",
+                      catalogue::takers_of("observable")))
           .called({"function", "functions"}),
       Option::real(
           "accuracy", "", "1e-6", {1e-15, 0.1, true, true},
@@ -114,8 +87,7 @@ std::vector<Option> quantity_options() {
           "case")
           .called({"tol", "tolerance", "rtol", "precision", "eps", "error", "digits"}),
   };
-  const auto own = own_options_of_quantities();
-  options.insert(options.end() - 1, own.begin(), own.end());
+  options.insert(options.end(), others.begin(), others.end());
   return options;
 }
 
@@ -161,7 +133,7 @@ std::vector<Option> method_options() {
           "spectrum_solver", "krylov", words_of(kSpectrumSolvers),
           "krylov: two-sided rational Krylov projection, a few real factorisations for all "
           "frequencies but those whose waves need elements of their own. direct: complex factors "
-          "for each frequency, a check that gives S_v, S_0 and diffusivity"),
+          "for each frequency, a check that gives the spectrum and the diffusivity"),
       choice("transient_solver", "krylov", words_of(kTransientSolvers),
              "krylov: reduced models for all times at once. stepping: the backward Kolmogorov "
              "equation by PETSc's time steppers (-backward_ts_...), a check"),

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/accuracy/carry_out.hpp"
 #include "stickslip/io/parts.hpp"
 #include "stickslip/petsc/solver_statistics.hpp"
 #include "stickslip/support/errors.hpp"

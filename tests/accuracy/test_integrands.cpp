@@ -3,7 +3,7 @@
 
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
-#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/accuracy/carry_out.hpp"
 #include "stickslip/accuracy/refinement_sequence.hpp"
 #include "stickslip/model/drag_law.hpp"
 #include "stickslip/quantities/density.hpp"

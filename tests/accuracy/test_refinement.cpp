@@ -7,8 +7,8 @@
 
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
+#include "stickslip/accuracy/carry_out.hpp"
 #include "stickslip/accuracy/estimates.hpp"
-#include "stickslip/accuracy/refinement.hpp"
 #include "stickslip/accuracy/refinement_sequence.hpp"
 #include "stickslip/support/errors.hpp"
 

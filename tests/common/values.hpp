@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/accuracy/carry_out.hpp"
 
 namespace stickslip::test {
 

@@ -9,7 +9,7 @@
 #include "../common/catch.hpp"
 #include "../common/scenes.hpp"
 #include "../common/temporary.hpp"
-#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/accuracy/carry_out.hpp"
 #include "stickslip/catalogue/phase_durations_keys.hpp"
 #include "stickslip/monte_carlo/simulate.hpp"
 #include "stickslip/petsc/session.hpp"

@@ -6,7 +6,7 @@
 #include "../common/near.hpp"
 #include "../common/scenes.hpp"
 #include "../common/values.hpp"
-#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/accuracy/carry_out.hpp"
 #include "stickslip/catalogue/large_deviation_keys.hpp"
 
 using namespace stickslip;

@@ -2,8 +2,8 @@
 
 #include "../common/catch.hpp"
 #include "../common/scenes.hpp"
+#include "stickslip/accuracy/carry_out.hpp"
 #include "stickslip/accuracy/prediction.hpp"
-#include "stickslip/accuracy/refinement.hpp"
 #include "stickslip/catalogue/phase_durations_keys.hpp"
 #include "stickslip/quantities/plan.hpp"
 

@@ -290,11 +290,11 @@ TEST_CASE("tally: there are estimates for each quantity that is said to be simul
     const auto p = process(1);
     const Tally t({.quantities = {entry->quantity},
                    .lambda = {1},
-                   .observables = {model::parse_observable("v", p.friction)},
                    .omega = {1},
                    .time = {1},
                    .distance = {1},
-                   .velocity = {1}},
+                   .velocity = {1},
+                   .observables = {model::parse_observable("v", p.friction)}},
                   p);
     CHECK(t.estimates().empty() == (!simulated || entry->of_one_run));
   }

@@ -11,7 +11,7 @@
 #include "../common/options.hpp"
 #include "../common/temporary.hpp"
 #include "../common/written.hpp"
-#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/accuracy/carry_out.hpp"
 #include "stickslip/petsc/session.hpp"
 #include "stickslip/petsc/solver_statistics.hpp"
 #include "stickslip/support/errors.hpp"

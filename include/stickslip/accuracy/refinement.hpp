@@ -29,10 +29,6 @@ struct Step {
   std::vector<quantities::Check> checks;  ///< what the solution method reports of itself
 };
 
-/// Whether anything asked for takes a discretisation or a simulation; closed forms and paths do
-/// not.
-[[nodiscard]] bool needs_system(const cases::Case& given);
-
 /// By how much the predicted need of memory exceeds what is free, and what would help; empty if it
 /// does not. Collective.
 [[nodiscard]] std::string shortfall_of_memory(MPI_Comm comm, const model::Scene& scene,
@@ -72,14 +68,11 @@ struct Outcome {
 /// (0 for a small first one). Given on all ranks or on none.
 using Progress = std::function<void(int, const Resolution&, double)>;
 
-/// All that is asked for. Deterministic solution methods follow the refinement sequence of the
-/// case; the error estimate of a value is that of add_discretisation() and the error of the
-/// solution method on this discretisation, mostly rounding; see routes::Evaluation. Stops when
-/// every scalar meets the accuracy, when rounding forbids it, or at the end of the refinement
-/// sequence. Collective. Throws NoMemory before anything is allocated that would not fit,
-/// NotReached when a solver fails.
-[[nodiscard]] Outcome carry_out(MPI_Comm comm, const cases::Case& given, const Progress& progress,
-                                const monte_carlo::SimulationProgress& simulation_progress = {},
-                                const std::string& checkpoint = {});
+/// What takes a discretisation, along the refinement sequence of the case; the error estimate of a
+/// value is that of add_discretisation() and the error of the solution method on this
+/// discretisation, mostly rounding; see routes::Evaluation. Stops when every scalar meets the
+/// accuracy, when rounding forbids it, or at the end of the refinement sequence. Collective. Throws
+/// NoMemory before anything is allocated that would not fit, NotReached when a solver fails.
+[[nodiscard]] Outcome refine(MPI_Comm comm, const cases::Case& given, const Progress& progress);
 
 }  // namespace stickslip::accuracy

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "stickslip/catalogue/entry.hpp"
@@ -45,14 +47,11 @@ struct Reference {
 /// What is asked for, and how accurate it has to be.
 struct Question {
   std::set<Quantity> quantities = {};
-  std::vector<double> lambda = {};  ///< of laplace and resolvent; one for -route lambda [1/time]
-  std::vector<model::Observable> observables = {};  ///< of averages, resolvent and expectation
-  std::vector<double> omega = {};                   ///< of spectrum [1/time]
-  std::vector<double> time = {};                    ///< of functions of time [time]
-  std::vector<double> distance = {};                ///< of the densities of slip [velocity*time]
-  std::vector<double> inverse_distance = {};        ///< of the transform of slip
-  std::vector<double> velocity = {};                ///< of peak and first_passage [velocity]
+  /// Arguments that quantities share (catalogue/shared_arguments.hpp), by their options.
+  std::vector<double> lambda = {}, omega = {}, time = {}, distance = {}, inverse_distance = {},
+                      velocity = {};
   std::map<std::string, std::vector<double>, std::less<>> arguments = {};  ///< others, by option
+  std::vector<model::Observable> observables = {};  ///< of averages, resolvent and expectation
   model::Start start = {};  ///< of expectation, displacement, first_passage and trajectory
   model::Passage passage = model::Passage::both;  ///< of first_passage
   double horizon = 100;                           ///< end of the trajectory [time]
@@ -61,10 +60,15 @@ struct Question {
   std::vector<Reference> references = {};  ///< of -compare
 
   [[nodiscard]] bool wants(Quantity q) const { return quantities.contains(q); }
-  /// The values given for an option of a quantity of its own.
+  /// The values given for an argument, shared or not.
   [[nodiscard]] std::vector<double> values(std::string_view option) const {
+    if (const auto shared = shared_argument(option)) return this->*shared;
     const auto given = arguments.find(option);
     return given == arguments.end() ? std::vector<double>() : given->second;
+  }
+  void set_values(const std::string& option, std::vector<double> values) {
+    const auto shared = shared_argument(option);
+    (shared != nullptr ? this->*shared : arguments[option]) = std::move(values);
   }
   /// Whether a fact holds of anything asked for.
   [[nodiscard]] bool any(bool catalogue::Entry::*fact) const {
@@ -86,6 +90,21 @@ struct Question {
     return std::any_of(all.begin(), all.end(), [&](const catalogue::Entry* entry) {
       return wants(entry->quantity) && entry->takes(option);
     });
+  }
+
+ private:
+  using Values = std::vector<double> Question::*;
+  [[nodiscard]] static Values shared_argument(std::string_view option) {
+    for (const auto& [name, values] : std::initializer_list<std::pair<std::string_view, Values>>{
+             {"lambda", &Question::lambda},
+             {"omega", &Question::omega},
+             {"time", &Question::time},
+             {"distance", &Question::distance},
+             {"inverse_distance", &Question::inverse_distance},
+             {"velocity", &Question::velocity}}) {
+      if (name == option) return values;
+    }
+    return nullptr;
   }
 };
 

@@ -7,8 +7,7 @@
 namespace stickslip::catalogue {
 
 inline constexpr Argument kProbability{.option = "probability",
-                                       .sentence =
-                                           "probabilities between 0 and 1 of displacement_quantile",
+                                       .sentence = "probabilities between 0 and 1 of quantiles",
                                        .example = "0.05,0.5,0.95",
                                        .synonyms = "probabilities, percentile, quantile",
                                        .low = 0,

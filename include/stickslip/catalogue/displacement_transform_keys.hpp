@@ -7,7 +7,7 @@ namespace stickslip::catalogue {
 
 inline constexpr Argument kWavenumber{.option = "wavenumber",
                                       .unit = "1/(velocity*time)",
-                                      .sentence = "wavenumbers k of displacement_transform",
+                                      .sentence = "wavenumbers k",
                                       .example = "0.5,1,2",
                                       .synonyms = "wavenumbers, wave_number"};
 

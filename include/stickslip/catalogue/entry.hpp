@@ -88,17 +88,24 @@ struct Row {
   [[nodiscard]] std::string key_of(std::string_view f) const;
 };
 
-/// Values for which a quantity is wanted, an option of its own: a list of numbers.
+/// Values for which quantities are wanted: an option that is a list of numbers.
 struct Argument {
   std::string_view option;         ///< name, the abscissa of the rows
   std::string_view unit = {};      ///< of the numbers
-  std::string_view sentence;       ///< for the help
+  std::string_view sentence;       ///< for the help, where "of" the quantities follows
+  std::string_view besides = {};   ///< a sentence after it
   std::string_view example;        ///< numbers that make sense
   std::string_view synonyms = {};  ///< names that mean it elsewhere, a comma list
-  /// Open range of the numbers.
+  /// Range of the numbers, without its ends.
   double low = -std::numeric_limits<double>::infinity(),
          high = std::numeric_limits<double>::infinity();
-  bool optional = false;  ///< whether the quantity gives something without it
+  bool low_included = false;  ///< whether the lower end is in the range
+  bool optional = false;      ///< whether quantities give something without it
+
+  /// Whether a number is in the range.
+  [[nodiscard]] constexpr bool allows(double value) const {
+    return (low < value || (low_included && low == value)) && value < high;
+  }
 };
 
 /// A quantity that can be asked for.
@@ -118,8 +125,9 @@ struct Entry {
   /// Where -accuracy is not given; 0: that of the option. A digit of some costs an octave more.
   double usual_accuracy = 0;
   bool of_phases = false;  ///< about sticking and sliding phases: nothing where a body never sticks
-  bool of_one_run = false;     ///< a field or a path, which has no place in a sweep
-  bool without_limit = false;  ///< not a number that white noise has, which -study tau follows
+  bool without_system = false;  ///< from the model parameters, or from what others give, alone
+  bool of_one_run = false;      ///< a field or a path, which has no place in a sweep
+  bool without_limit = false;   ///< not a number that white noise has, which -study tau follows
   /// What is wrong with it where drag does not bound the velocity, and what to take; empty where
   /// nothing is.
   std::string_view unbounded = {}, instead = {};
@@ -135,8 +143,11 @@ struct Entry {
 /// All quantities, in the order of the help text.
 [[nodiscard]] std::span<const Entry* const> entries();
 
-/// The options of their own of all quantities, each once.
+/// The lists of numbers that quantities take, each once: shared ones first.
 [[nodiscard]] std::span<const Argument* const> arguments();
+
+/// The words of the quantities that depend on an option, as in "times of slip and peak".
+[[nodiscard]] std::string takers_of(std::string_view option);
 
 /// The quantity of a word; nullptr if there is none of that name.
 [[nodiscard]] const Entry* find_entry(std::string_view word);

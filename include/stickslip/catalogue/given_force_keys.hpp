@@ -88,6 +88,7 @@ inline constexpr Entry kGivenForce{
     .routes = {Route::excursion},
     .options = "force_file, force_interpolation, force_scale",
     .rows = kGivenForceRows,
+    .without_system = true,
     .without_limit = true};
 
 }  // namespace stickslip::catalogue

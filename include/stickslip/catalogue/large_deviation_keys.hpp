@@ -7,9 +7,7 @@ namespace stickslip::catalogue {
 
 inline constexpr Argument kTilt{.option = "tilt",
                                 .unit = "1/(velocity*time)",
-                                .sentence =
-                                    "weights s of the displacement in E[exp(s x(t))], of either "
-                                    "sign, for large_deviation",
+                                .sentence = "weights s of either sign in E[exp(s x(t))]",
                                 .example = "-0.5,0.2,0.5,1",
                                 .synonyms = "tilts, counting_field, bias_field"};
 

@@ -90,7 +90,7 @@ struct Option {
     return {name, Kind::integer, "integer", "", initial, range, words, sentence, fix, shown};
   }
   static Option text_of(const char* name, const char* form, const char* initial,
-                        const char* sentence) {
+                        const std::string& sentence) {
     return {name, Kind::text, form, "", initial, {}, {}, sentence, ""};
   }
   static Option file(const std::string& name, Kind kind, const std::string& sentence,

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/accuracy/carry_out.hpp"
 #include "stickslip/options/request.hpp"
 
 namespace stickslip::studies {
