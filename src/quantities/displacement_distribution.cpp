@@ -165,8 +165,8 @@ class Distribution {
     if (!reached || (tails != Tails::none && doubt >= std::min(p, 1 - p))) {
       return {value, kInfinity};
     }
-    return {value, std::max({reach(p, value, -1, tails), reach(p, value, 1, tails),
-                             atom ? kPlace * std::abs(value) : 0})};
+    const double off = std::max(reach(p, value, -1, tails), reach(p, value, 1, tails));
+    return {value, std::max(off, atom ? kPlace * std::abs(value) : 0)};
   }
   [[nodiscard]] int evaluations() const {
     int all = inversion_ ? inversion_->evaluations() : 0;
