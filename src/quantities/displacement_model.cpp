@@ -134,7 +134,7 @@ class Basis {
     shares.emplace_back(left > rounding * size ? left : 0);
     if (shares.back() == 0.0) return shares;
     if (size_ == columns_.columns()) {
-      Matrix<Complex> more(columns_.rows(), 2 * size_);
+      Matrix<Complex> more(columns_.rows(), size_ + 16);
       std::copy_n(columns_.data(), x.size() * static_cast<std::size_t>(size_), more.data());
       columns_ = std::move(more);
     }
