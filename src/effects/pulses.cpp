@@ -3,6 +3,8 @@
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <cstdlib>
+#include <map>
+#include <utility>
 
 #include "all.hpp"
 #include "levels.hpp"
@@ -14,24 +16,46 @@ constexpr const char *kPulseHeight = "pulse_height", *kPulseRate = "pulse_rate",
                      *kPulseDuration = "pulse_duration", *kPulseDecay = "pulse_decay",
                      *kPulseSteps = "pulse_steps", *kPulseSign = "pulse_sign";
 
+constexpr double kNoWeight = 1e-18;
+
+// P(N >= n) of the number of pulses at work, of a mean.
+double weight(int n, double mean) {
+  if (n == 0) return 1;
+  return mean > 0 ? boost::math::gamma_p(n, mean) : 0;
+}
+
 // So many pulses at once that more have no weight.
 int most_pulses(double mean) {
-  constexpr double no_weight = 1e-16;
   require_number_of_states(mean);
   int most = 1;
-  while (boost::math::gamma_p(most + 1.0, mean) > no_weight) ++most;
+  while (weight(most + 1, mean) > kNoWeight) ++most;
   return most;
 }
 
-// Pulses of one sign, each of which ends by itself: the number of those at work.
-States pulses_that_end(double height, double rate, double duration) {
-  const int most = most_pulses(rate * duration);
+// Pulses of either sign, each of which ends by itself: the numbers of those at work, up to so many
+// of both at once that more have no weight.
+States pulses_that_end(double height, double up, double down, double duration) {
+  require_number_of_states((up + down) * duration);
+  std::map<std::pair<int, int>, std::size_t> known;
   States states;
-  for (int n = 0; n <= most; ++n) {
-    const auto here = static_cast<std::size_t>(n);
-    states.x.push_back(n * height);
-    if (n < most) states.transitions.push_back({here, here + 1, rate});
-    if (n > 0) states.transitions.push_back({here, here - 1, n / duration});
+  for (int n = 0; weight(n, up * duration) > kNoWeight; ++n) {
+    const double left = kNoWeight / weight(n, up * duration);
+    for (int m = 0; weight(m, down * duration) > left; ++m) {
+      known.emplace(std::pair(n, m), states.x.size());
+      states.x.push_back((n - m) * height);
+    }
+  }
+  require_number_of_states(static_cast<double>(states.x.size()));
+  const auto link = [&](std::size_t here, std::pair<int, int> more, double begins, int at_work) {
+    const auto there = known.find(more);
+    if (there == known.end()) return;
+    states.transitions.push_back({here, there->second, begins});
+    states.transitions.push_back({there->second, here, at_work / duration});
+  };
+  for (const auto& [numbers, here] : known) {
+    const auto [n, m] = numbers;
+    link(here, {n + 1, m}, up, n + 1);
+    link(here, {n, m + 1}, down, m + 1);
   }
   return states;
 }
@@ -70,11 +94,7 @@ model::LevelTable pulse_levels(const model::Scene& scene) {
                              static_cast<int>(own_number(scene, kPulseSteps)))
         .table();
   }
-  const double duration = own_number(scene, kPulseDuration);
-  States all{{0}, {}};
-  if (up > 0) all = sum(all, pulses_that_end(height, up, duration));
-  if (down > 0) all = sum(all, pulses_that_end(-height, down, duration));
-  return all.table();
+  return pulses_that_end(height, up, down, own_number(scene, kPulseDuration)).table();
 }
 
 bool complete_pulses(Given& given, model::Scene& scene) {

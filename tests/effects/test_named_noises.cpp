@@ -167,6 +167,13 @@ TEST_CASE("pulses: mean and variance are those of shot noise") {
   const auto two = scene_of(with(kPulses, {{"pulse_duration", "0.5"}}));
   CHECK(table_of(two).even());
   CHECK(!table_of(two).even_in_order());
+  CHECK(near(table_of(two).variance(), height * height * rate * time, 4e-15));
+  // The mean is 2 of each sign, and 23 of one have weight, but not with many of the other.
+  const auto many = scene_of(with(kPulses, {{"pulse_duration", "5"}}));
+  CHECK(table_of(many).even());
+  CHECK(table_of(many).highest() - table_of(many).lowest() < 0.9 * 23 * 23);
+  CHECK(table_of(many).at(table_of(many).highest()).x >= 22 * height);
+  CHECK(near(table_of(many).variance(), height * height * rate * 5, 2e-14));
   // Where forces of both signs decay on one lattice, steps add no noise of their own for long.
   const auto both = scene_of(with(kPulses, {{"pulse_decay", "0.5"}, {"pulse_steps", "16"}}));
   CHECK(table_of(both).even());
