@@ -32,12 +32,12 @@ inline constexpr Argument kTime{.option = "time",
                                 .low = 0,
                                 .low_included = true};
 
-inline constexpr Argument kDistance{
-    .option = "distance",
-    .unit = "velocity*time",
-    .sentence = "distances, positive where they are lengths of paths,",
-    .example = "0.01:10:31:log",
-    .optional = true};
+inline constexpr Argument kDistance{.option = "distance",
+                                    .unit = "velocity*time",
+                                    .sentence =
+                                        "distances, positive where they are lengths of paths,",
+                                    .example = "0.01:10:31:log",
+                                    .optional = true};
 
 inline constexpr Argument kInverseDistance{.option = "inverse_distance",
                                            .unit = "1/(velocity*time)",
