@@ -31,10 +31,10 @@ Outcome by_simulation(MPI_Comm comm, const cases::Case& given, const std::string
 }  // namespace
 
 bool needs_system(const cases::Case& given) {
+  const bool closed = closed_noise_distribution(given);
   return std::ranges::any_of(catalogue::entries(), [&](const catalogue::Entry* entry) {
-    const bool closed =
-        entry->quantity == Quantity::noise_law && given.method.row().closed_noise_law;
-    return given.question.wants(entry->quantity) && !entry->without_system && !closed;
+    if (!given.question.wants(entry->quantity) || entry->without_system) return false;
+    return !closed || entry->quantity != Quantity::noise_law;
   });
 }
 

@@ -146,7 +146,7 @@ struct Entry {
 /// The lists of numbers that quantities take, each once: shared ones first.
 [[nodiscard]] std::span<const Argument* const> arguments();
 
-/// The words of the quantities that depend on an option, as in "times of slip and peak".
+/// The words of the quantities that depend on an option: "peak and first_passage".
 [[nodiscard]] std::string takers_of(std::string_view option);
 
 /// The quantity of a word; nullptr if there is none of that name.

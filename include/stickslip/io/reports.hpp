@@ -3,8 +3,8 @@
 
 #include <mpi.h>
 
-#include "stickslip/accuracy/prediction.hpp"
 #include "stickslip/accuracy/carry_out.hpp"
+#include "stickslip/accuracy/prediction.hpp"
 #include "stickslip/options/request.hpp"
 #include "stickslip/outputs/report.hpp"
 #include "stickslip/studies/study.hpp"
