@@ -347,7 +347,8 @@ TEST_CASE("request: routes and what they need arrive where they belong") {
 
 TEST_CASE("request: arguments that are missing or make no sense are reported") {
   const std::vector<Refusal> refusals{
-      {"-quantities laplace", {"-quantities = laplace", "no values of -lambda", "-lambda 0.1,1,10"}},
+      {"-quantities laplace",
+       {"-quantities = laplace", "no values of -lambda", "-lambda 0.1,1,10"}},
       {"-quantities resolvent -observable v",
        {"no values of -lambda are given", "add for example -lambda"}},
       {"-quantities resolvent -lambda 1", {"none are given", "-observable"}},
@@ -470,7 +471,8 @@ TEST_CASE("request: quantities that need a file or times, or derive nothing, are
       {"-quantities displacement_distribution -time 1 -probability 1.5",
        {"-probability = 1.5: must be numbers in (0, 1)"}},
       {"-quantities slip -distance -1,1", {"paths have no negative lengths"}},
-      {"-quantities expectation -observable v", {"no values of -time are given", "add for example -time"}}};
+      {"-quantities expectation -observable v",
+       {"no values of -time are given", "add for example -time"}}};
   for (const auto& refusal : refusals) check_refusal(refusal);
 }
 
