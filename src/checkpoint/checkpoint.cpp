@@ -90,6 +90,11 @@ std::string header_of(const std::string& kind, const Identity& identity) {
   return json.dump() + "\n";
 }
 
+// The order of options means nothing.
+bool same(const std::string& header, const std::string& other) {
+  return nlohmann::json::parse(header, nullptr, false) == nlohmann::json::parse(other);
+}
+
 }  // namespace
 
 Checkpoint::Checkpoint(std::string file, Kind kind, const Identity& identity)
@@ -144,9 +149,10 @@ void Checkpoint::read(const Take& take) const {
     file.append(header_);
     return;
   }
-  if (!text.starts_with(header_)) refuse_other(text.substr(0, text.find('\n')));
+  const std::string header = text.substr(0, text.find('\n') + 1);
+  if (!same(header, header_)) refuse_other(header);
   const std::size_t whole = text.rfind('\n') + 1;
-  std::vector<std::string> lines = split(text.substr(header_.size(), whole - header_.size()), '\n');
+  std::vector<std::string> lines = split(text.substr(header.size(), whole - header.size()), '\n');
   if (!lines.empty()) lines.pop_back();  // behind the last end of line
   // A file that is always replaced as a whole is never truncated.
   if (kind_ == name_of(Kind::simulation) && (lines.size() > 1 || whole < text.size())) {

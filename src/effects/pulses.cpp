@@ -35,7 +35,7 @@ int most_pulses(double mean) {
 // Pulses of either sign, each of which ends by itself: the numbers of those at work, up to so many
 // of both at once that more have no weight.
 States pulses_that_end(double height, double up, double down, double duration) {
-  require_number_of_states((up + down) * duration);
+  require_number_of_states((1 + up * duration) * (1 + down * duration));  // at least
   std::map<std::pair<int, int>, std::size_t> known;
   States states;
   for (int n = 0; weight(n, up * duration) > kNoWeight; ++n) {

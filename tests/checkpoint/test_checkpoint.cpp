@@ -47,6 +47,15 @@ TEST_CASE("checkpoint: entries come back as they were written") {
   CHECK(entries(checkpoint) == Entries{R"({"point":1})", R"({"point":0})"});
 }
 
+TEST_CASE("checkpoint: options in another order are the same run") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "kept";
+  const Checkpoint before = sweep(file);
+  (void)entries(before);
+  before.append(R"({"point":1})");
+  CHECK(entries(sweep(file, {kRun.rbegin(), kRun.rend()})) == Entries{R"({"point":1})"});
+}
+
 TEST_CASE("checkpoint: a truncated line goes, wherever it ends") {
   const test::TemporaryFolder folder;
   const std::string file = folder / "kept";

@@ -66,6 +66,7 @@ struct Question {
     const auto given = arguments.find(option);
     return given == arguments.end() ? std::vector<double>() : given->second;
   }
+  /// Gives an argument its values.
   void set_values(const std::string& option, std::vector<double> values) {
     const auto shared = shared_argument(option);
     (shared != nullptr ? this->*shared : arguments[option]) = std::move(values);
