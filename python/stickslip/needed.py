@@ -4,7 +4,7 @@ import importlib
 from types import ModuleType
 
 COMMANDS = {name: f"pip install {name}, or on Debian apt-get install python3-{name}"
-            for name in ("numpy", "h5py", "matplotlib", "tornado", "scipy", "pandas", "xarray")}
+            for name in ("numpy", "h5py", "matplotlib", "tornado", "scipy", "pandas", "xarray", "obspy")}
 COMMANDS["tkinter"] = "on Debian apt-get install python3-tk"  # a part of Python, which pip does not have
 
 
