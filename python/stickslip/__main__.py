@@ -25,13 +25,13 @@ densities of durations follow. What the program refuses greys them, and is said 
 parameters as an options file, and the picture. In a window (python3-tk), or in a browser on this machine
 (python3-tornado). Options of the program may follow, such as -mu_d 0.3 -drag none."""
 
-LEVELS = """Makes the levels and jump rates, or the chain, of a measured force or acceleration: text with columns (any
-separator, decimal comma), AT2, COSMOS V2, SAC, .npy or .mat. Prints how the chain compares with the record, and the options
+LEVELS = """Makes the levels and jump rates, or the chain, of a measured force or acceleration, in any of the formats of
+stickslip.read_record. Prints how the chain compares with the record, and the options
 of the program that use it. Exit status 2 where such a chain cannot stand for the record."""
 
 
-FORCE = """Writes a measured force or acceleration as the CSV file that -force_file takes: text with columns (any separator,
-decimal comma), AT2, COSMOS V2, SAC, .npy or .mat. Accelerations in g, gal and the like become m/s^2. Prints what was
+FORCE = """Writes a measured force or acceleration, in any of the formats of stickslip.read_record, as the CSV file that
+-force_file takes. Accelerations in g, gal and the like become m/s^2. Prints what was
 read, and the options of the program that use it. Without --output the file is FILE_force.csv in this folder."""
 
 
@@ -92,13 +92,19 @@ def _add_record(parser: argparse.ArgumentParser) -> None:
     """The arguments that say how a file of a record is read, and what is done to it."""
     parser.add_argument("file", type=pathlib.Path, metavar="FILE")
     parser.add_argument("--column", help="name of the values, or its number from 0")
+    parser.add_argument("--channel", help='words of the name of a channel, such as "90 Deg", in the place of --column')
     parser.add_argument("--time", help="name of the times, or its number from 0")
     parser.add_argument("--step", type=float, help="sampling interval in seconds, where the file has no times")
     parser.add_argument("--unit", help="of the values, such as g, gal or m/s^2, where the file does not say")
+    parser.add_argument("--time-unit", help="of the times, such as ms, where the file does not say")
+    parser.add_argument("--layout", choices=("columns", "rows", "pairs"),
+                        help="of numbers without names: rows of samples, pairs of time and sample, or columns")
+    parser.add_argument("--differentiate", action="store_true", help="take the acceleration of a velocity or displacement")
     parser.add_argument("--between", type=float, nargs=2, metavar=("BEGIN", "END"), help="take these times [s] alone")
     parser.add_argument("--centre", action="store_true", help="take the mean off")
     parser.add_argument("--fill", type=float, metavar="LONGEST",
                         help="join gaps of at most LONGEST seconds by straight lines")
+    parser.add_argument("--rest", type=float, default=0, help="append so many seconds of no force")
     parser.add_argument("--scale", type=float, default=1, help="what values are multiplied by (default 1): -1 makes the "
                         "force on a body of the acceleration of the ground")
 
@@ -106,12 +112,12 @@ def _add_record(parser: argparse.ArgumentParser) -> None:
 def _record_of(arguments: argparse.Namespace) -> "Record":
     """The record that `_add_record` describes."""
     from . import read_record
-    record = read_record(arguments.file, column=arguments.column, time=arguments.time, step=arguments.step,
-                         unit=arguments.unit)
+    record = read_record(arguments.file, **{name: getattr(arguments, name) for name in (
+        "column", "channel", "time", "step", "unit", "time_unit", "layout", "differentiate")})
     record = record.between(*arguments.between) if arguments.between else record
     record = record.resampled(record.step, across=arguments.fill) if arguments.fill else record
     record = record.centred() if arguments.centre else record
-    return record if arguments.scale == 1 else record.scaled(arguments.scale)
+    return (record if arguments.scale == 1 else record.scaled(arguments.scale)).rested(arguments.rest)
 
 
 def explore_command() -> int:

@@ -164,6 +164,15 @@ class Record:
         return dataclasses.replace(self, time=time, value=numpy.interp(time, self.time, self.value), notes=(
             *self.notes, f"interpolated to steps of {step:g} s"))
 
+    def rested(self, rest: float) -> "Record":
+        """With samples of no force at the end for some seconds, in which a body comes to rest."""
+        if not 0 <= rest < numpy.inf:
+            raise ValueError(f"rest = {rest}: must be in [0, inf); give the seconds of no force to append")
+        time = self.time[-1] + self.step * numpy.arange(1, numpy.ceil(rest / self.step - 1e-9) + 1)
+        said = [f"{rest:g} s of no force were appended"] if rest else []
+        return dataclasses.replace(self, time=numpy.append(self.time, time), value=numpy.append(self.value, 0 * time),
+                                   notes=(*self.notes, *said))
+
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the file of `-force_file`: a line `time,force` for each sample. The force on a body is minus the
         acceleration of the ground, `record.scaled(-1)`."""
@@ -237,8 +246,6 @@ def read_record(path: str | os.PathLike[str], *, column: int | str | None = None
         raise FileNotFoundError(f"{path}: no such file")
     if step is not None and not step > 0:
         raise ValueError(f"step = {step}: must be in (0, inf); give the sampling interval in seconds")
-    if not 0 <= rest < numpy.inf:
-        raise ValueError(f"rest = {rest}: must be in [0, inf); give the seconds of no force to append")
     if time_unit is not None and kind_of(time_unit) != "time":
         raise ValueError(f"time_unit = {time_unit}: must be one of {', '.join(KINDS['time'][1])}")
     try:
@@ -249,7 +256,7 @@ def read_record(path: str | os.PathLike[str], *, column: int | str | None = None
         record = _record(chosen, moments, unit, differentiate, f"{path.name}: {form}, column {chosen.name}", said)
     except ValueError as problem:
         raise ValueError(f"{path}: {problem}") from None
-    return _rested(dataclasses.replace(record, notes=(*record.notes, *_findings(record))), rest)
+    return dataclasses.replace(record, notes=(*record.notes, *_findings(record))).rested(rest)
 
 
 def _named(columns: Sequence[Column], wanted: int | str, option: str, words: bool = False) -> Column:
@@ -280,7 +287,7 @@ def _time_column(columns: Sequence[Column], wanted: int | str | None) -> Column 
     if any(column.step or column.times is not None for column in columns):
         return None
     rising = [column for column in columns if (numpy.diff(column.values) > 0).all()]
-    for column in columns:
+    for column in (*rising, *columns):
         if column.name.lower() in NAMES_OF_TIME or column in rising and kind_of(column.unit) == "time":
             return column
     if len(columns) < 2 or columns[0] not in rising:
@@ -326,7 +333,7 @@ def _times(chosen: Column, times: Column | None, step: float | None, unit: str |
                          'time_unit="ms" or the like, or the sampling interval in seconds, as step=0.01')
     factor, first, notes = in_si(given or "s")[0], times.values[0], []
     if not given and abs(first) > 1e3 * EPOCH:
-        raise ValueError(f'time_unit: {times.name} begins at {first:.10g} without a unit; give time_unit="ms", "us" or "ns"')
+        raise ValueError(f'time_unit: {times.name} begins at {first:.15g} without a unit; give time_unit="ms", "us" or "ns"')
     if times.kind == "date" and unit is None:
         notes.append(f"times are from the first sample, {numpy.datetime64(int(first), 'us')}")
     elif abs(first * factor) > EPOCH:
@@ -349,8 +356,8 @@ def _kind(chosen: Column, unit: str | None, differentiate: bool) -> str:
     if moved and not differentiate:
         raise ValueError(f"{chosen.name}: is a {kind}, no force or acceleration; differentiate=True takes its "
                          f"{'' if kind == 'velocity' else 'second '}derivative, or take the file of the acceleration")
-    if kind not in ("", "time", *KINDS):
-        raise ValueError(f"{chosen.name}: is a {kind}, no force or acceleration over time; take another file")
+    if chosen.kind not in ("", *KINDS):
+        raise ValueError(f"{chosen.name}: is a {chosen.kind}, no force or acceleration over time; take another file")
     if differentiate and not moved:
         raise ValueError(f'differentiate: {chosen.name} is no velocity or displacement; leave it out, or say unit="cm/s"')
     if differentiate and not kind_of(given):
@@ -382,15 +389,6 @@ def _record(chosen: Column, time: "Array", unit: str | None, differentiate: bool
         record = dataclasses.replace(record, value=numpy.gradient(record.value, record.time), unit="m/s^2")
     notes += [f"the {kind} was differentiated by central differences"] if differentiate else []
     return dataclasses.replace(record, notes=tuple(notes))
-
-
-def _rested(record: Record, rest: float) -> Record:
-    """With samples of no force for some seconds at the end."""
-    if not rest:
-        return record
-    time = record.time[-1] + record.step * numpy.arange(1, numpy.ceil(rest / record.step - 1e-9) + 1)
-    return dataclasses.replace(record, time=numpy.append(record.time, time), value=numpy.append(record.value, 0 * time),
-                               notes=(*record.notes, f"{time[-1] - record.time[-1]:g} s of no force were appended"))
 
 
 def _findings(record: Record) -> list[str]:

@@ -5,10 +5,12 @@ One of the lines has NPTS and DT [s], another the quantity and its unit: ACCELER
 
 import re
 
+from ..units import kind_of
 from .reading import NUMBER, Column, Format, counted, kind_in, numbers
 
 TEXT = 5  # lines that may have the header
-UNIT = re.compile(r"\bunits?\b(?:\s+(?:of|are|is|in))*[\s:=]+\(?\s*([a-z%][\w/^*%.-]*)", re.IGNORECASE)
+UNITS = [re.compile(pattern, re.IGNORECASE) for pattern in (
+    r"\bunits?\b(?:\s+(?:of|are|is|in))*[\s:=]+\(?\s*([a-z%][\w/^*%.-]*)", r"\bin\s+(\S+)\s+units", r"[(\[]\s*(\S+)\s*[)\]]")]
 
 
 def _read(lines: list[str]) -> list[Column]:
@@ -20,8 +22,8 @@ def _read(lines: list[str]) -> list[Column]:
         raise ValueError(f"line {at + 1}: {lines[at].strip()}: needs NPTS= and DT=, such as NPTS= 5366, DT= .01 SEC")
     count = int((stated["NPTS"] or plain)[1])
     step = float(stated["DT"][1]) if stated["DT"] else float(plain[2]) if plain else None
-    said = next((line for line in lines[:at] if UNIT.search(line)), "")
-    unit = UNIT.search(said)[1].rstrip(".-") if said else ""
+    found = [(line, match[1].rstrip(".,-")) for pattern in UNITS for line in lines[:at] if (match := pattern.search(line))]
+    said, unit = next(((line, unit) for line, unit in found if kind_of(unit)), ("", ""))
     kind = kind_in(said) or kind_in(" ".join(lines[:at])) or "acceleration"
     return [Column(kind, counted(numbers([line for line in lines[at + 1:] if line.strip()]), count, "NPTS"), unit, step, kind=kind)]
 

@@ -27,7 +27,9 @@ READINGS = (("\t", "."), ("\t", ","), (";", "."), (";", ","), ("|", "."), (",", 
 CLOCK = re.compile(r"(\d+):([0-5]\d):([0-5]\d(?:[.,]\d+)?)")
 SPLIT_DATE = re.compile(r"(\d{4}[-/]\d\d[-/]\d\d)\s+(?=\d\d:\d\d)")
 IN_BRACKETS = re.compile(r"(.*?)[\s_,/]*[\[(]([^\])]*)[\])]\s*")
-BEHIND = re.compile(r"(.+?)(?:\s+in\s+|\s*/\s*|[\s_,]+)([^\s_,]+)")
+STATED = re.compile(r"(.+?)(?:\s+in\s+|\s*/\s*)(\S+)")
+BEHIND = re.compile(r"(.+?)[\s_,]+([^\s_,]+)")
+AMBIGUOUS = ("in", "d", "h", "min", "-", "1")  # are words or parts of names, too
 NAMES_OF_TIME = ("t", "time", "times", "timestamp", "datetime", "date", "zeit", "temps", "elapsed", "clock", "tiempo", "tempo")
 GLUED = re.compile(r"(t|time|timestamp|elapsed)(s|ms|us|ns|sec|secs|msec|millis|micros|min)", re.IGNORECASE)
 
@@ -114,29 +116,31 @@ def columns_of(lines: Sequence[str], layout: str | None, delimiter: str | None, 
     names, units, doubt = _names(heads, count)
     values = numpy.array(rows).T
     if layout is None and count > 1 and names[0] == UNNAMED.format(0):
-        _require_columns(values, heads)
-    dates = _fields(plain[-1], reading[0])
-    return [Column(name, column, "us", doubt=doubt, kind="date") if DATE.fullmatch(date.strip().strip('"'))
-            else Column(name, column, unit, doubt=doubt) for name, unit, column, date in zip(names, units, values, dates)]
+        _require_columns(values, [head for head in heads if len(head) > 2 and all(re.fullmatch(NUMBER, field) for field in head)])
+    last = [field.strip().strip('"').strip() for field in _fields(plain[-1], reading[0])]
+    units = ["us" if DATE.fullmatch(field) else "s" if CLOCK.fullmatch(field) else unit for field, unit in zip(last, units)]
+    return [Column(name, column, unit, doubt=doubt, kind="date" if DATE.fullmatch(field) else "")
+            for name, unit, column, field in zip(names, units, values, last)]
 
 
-def _require_columns(values: "Array", heads: Sequence[Sequence[str]]) -> None:
+def _require_columns(values: "Array", above: Sequence[Sequence[str]]) -> None:
     """Refuses columns without names that may be rows: without rising times, or where all numbers of the file rise, or every
-    second one, or below numbers of another layout."""
+    second one, or below lines with other counts of numbers."""
     count, flat = len(values), values.T.ravel()
 
     def rise(numbers: "Array") -> bool:
         return bool((numpy.diff(numbers) > 0).all())
 
-    pairs = count % 2 == 0 and rise(flat[::2])
-    other = [head for head in heads if len(head) > 2 and all(re.fullmatch(NUMBER, field) for field in head)]
-    if other:
-        raise ValueError(f"layout: rows of {count} numbers below {len(other[0])}, {other[0][0]} ...: leave those lines out, or say "
+    short = bool(above) and values.shape[1] == 1  # the last row of a file of rows
+    if above and not short:
+        raise ValueError(f"layout: rows of {count} numbers below {len(above[0])}, {above[0][0]} ...: leave those lines out, or say "
                          'layout="columns"')
-    if not rise(values[0]) or rise(flat) or count > 2 and pairs:
-        raise ValueError(f"layout: {count} columns of one kind without names: layout=\"rows\" takes the samples of each row one "
-                         "after the other, with step=" + (', layout="pairs" pairs of time and value' if pairs else "")
-                         + '; layout="columns" takes a column alone')
+    pairs = count % 2 == 0 and rise(flat[::2])
+    if short or not rise(values[0]) or rise(flat) or count > 2 and pairs:
+        raise ValueError(f"layout: {len(above[0]) if short else count} columns of one kind without names: layout=\"rows\" takes the "
+                         "samples of each row one after the other, with step="
+                         + (', layout="pairs" pairs of time and value' if pairs or short else "")
+                         + ('' if short else '; layout="columns" takes a column alone'))
 
 
 def _names(heads: Sequence[Sequence[str]], count: int) -> tuple[list[str], list[str], str]:
@@ -170,13 +174,16 @@ def name_and_unit(name: str) -> tuple[str, str]:
     """Name of a column and the unit that stands in brackets or behind it: "a [g]", "a_g", "t/ms", "time in ms", "timeMs"."""
     if found := IN_BRACKETS.fullmatch(name):
         return found[1].strip() or name, found[2].strip()
-    apart = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
     if (kind_of(name) == "time" and name.lower() not in ("h", "d", "min", "ns")) or "/" in name and kind_of(name):
         return name, name
-    found = BEHIND.fullmatch(apart) or GLUED.fullmatch(name)
-    if found and (kind_of(found[2]) in ("time", "acceleration") or is_unit(found[2]) and (len(found[2]) > 1 or "/" in name)
-                  or found[2] == "N") and found[2].lower() not in ("in", "d", "-", "1"):
+    if (found := STATED.fullmatch(name)) and is_unit(found[2]):
         return found[1].strip(), found[2]
+    apart = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
+    if found := BEHIND.fullmatch(apart) or GLUED.fullmatch(name):
+        head, unit, kind = found[1].strip(), found[2], kind_of(found[2])
+        if unit.lower() not in AMBIGUOUS and (kind in ("time", "acceleration") or is_unit(unit) and (len(unit) > 1 or unit == "N")) \
+                or kind == "time" and head.lower() in NAMES_OF_TIME:
+            return head, unit
     first, _, rest = re.sub(r"[_,:;/]+", " ", apart).strip().partition(" ")
     return (first, rest.strip()) if first.lower() in NAMES_OF_TIME and rest.strip() else (name, "")
 
