@@ -308,7 +308,8 @@ def _value_column(columns: Sequence[Column], times: Column | None, column: int |
     others = [column for column in columns if column is not times]
     if len(others) == 1:
         return others[0]
-    raise ValueError(f"column: there are {len(others)} columns of values; take one of {_listed(columns, times)}{_doubt(columns)}")
+    raise ValueError(f"column: there are {len(others)} columns of values; take one of {_listed(columns, times)}"
+                     + _doubt(columns))
 
 
 def _times(chosen: Column, times: Column | None, step: float | None, unit: str | None) -> "tuple[Array, list[str]]":
@@ -317,9 +318,11 @@ def _times(chosen: Column, times: Column | None, step: float | None, unit: str |
         times = dataclasses.replace(chosen, values=chosen.times, unit="" if chosen.doubt else "s", notes=())
     elif times is None:
         if step is None and not chosen.step:
-            raise ValueError(f"step: {chosen.doubt or 'the file has no times'}; give the sampling interval in seconds, as step=0.01")
+            raise ValueError(f"step: {chosen.doubt or 'the file has no times'}; give the sampling interval in seconds, as "
+                             "step=0.01")
         start, usual = (chosen.start, chosen.step) if chosen.times is None else (chosen.times[0], None)
-        notes = [f"the file says steps of {usual:g} s, and {step:g} s were taken"] if usual and step and step != usual else []
+        other = usual and step not in (None, usual)
+        notes = [f"the file says steps of {usual:g} s, and {step:g} s were taken"] if other else []
         return start + (step or usual) * numpy.arange(len(chosen.values)), notes
     if len(times.values) != len(chosen.values):
         raise ValueError(f"time = {times.name}: has {len(times.values)} entries, {chosen.name} has {len(chosen.values)}; name "
@@ -351,7 +354,7 @@ def _kind(chosen: Column, unit: str | None, differentiate: bool) -> str:
     given, declared = chosen.unit if unit is None else unit, kind_of(chosen.unit) or chosen.kind
     kind = kind_of(given) or (declared if unit is None else "")
     if unit is not None and kind and declared not in ("", kind):
-        raise ValueError(f"unit = {unit}: is one of {kind}, and the file says that {chosen.name} is a {declared}; leave unit out")
+        raise ValueError(f"unit = {unit}: is one of {kind}, and the file says that {chosen.name} is a {declared}; leave it out")
     moved = kind in ("velocity", "displacement")
     if moved and not differentiate:
         raise ValueError(f"{chosen.name}: is a {kind}, no force or acceleration; differentiate=True takes its "
@@ -367,7 +370,8 @@ def _kind(chosen: Column, unit: str | None, differentiate: bool) -> str:
     return kind
 
 
-def _record(chosen: Column, time: "Array", unit: str | None, differentiate: bool, source: str, said: Sequence[str]) -> Record:
+def _record(chosen: Column, time: "Array", unit: str | None, differentiate: bool, source: str,
+            said: Sequence[str]) -> Record:
     """The record of a column, in SI units where it has units."""
     kind, given, notes = _kind(chosen, unit, differentiate), chosen.unit if unit is None else unit, [*chosen.notes, *said]
     factor, standard = in_si(given) if kind_of(given) not in ("", "time") else (1, given)

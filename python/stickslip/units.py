@@ -21,9 +21,9 @@ _WORDS = (("milliseconds?|millisec|millis|msecs?", "ms"), ("microseconds?|micros
           ("minutes?|mins?|minuten", "min"), ("hours?|hrs?|stunden?|heures?", "h"), ("days?|tage?|jours?", "d"),
           ("centimet(?:er|re)s?", "cm"), ("millimet(?:er|re)s?", "mm"), ("micromet(?:er|re)s?|microns?", "um"),
           ("nanomet(?:er|re)s?", "nm"), ("kilomet(?:er|re)s?", "km"), ("met(?:er|re)s?", "m"), ("feet|foot", "ft"),
-          ("inch(?:es)?", "in"), ("milli-?g", "mg"), ("micro-?g", "ug"), ("milli-?gals?", "mgal"), ("gals", "gal"), ("g's", "g"),
+          ("inch(?:es)?", "in"), ("milli-?g", "mg"), ("micro-?g", "ug"), ("milli-?gals?", "mgal"), ("gals", "gal"),
           ("kilonewtons?", "kn"), ("millinewtons?", "mn"), ("newtons?", "n"), ("millivolts?", "mv"), ("volts?", "v"),
-          ("squared?|sq", "^2"), ("per", "/"))
+          ("g's", "g"), ("squared?|sq", "^2"), ("per", "/"))
 
 
 def plain_unit(text: str) -> str:

@@ -146,6 +146,11 @@ model::Parameters parameters_of(const model::Scene& s) {
     add("force_file", s.force->file);
     if (s.force->scale != 1) add("force_scale", s.force->scale);
     if (s.force->constant) add("force_interpolation", std::string("constant"));
+    if (s.force->rest > 0) add("force_rest", s.force->rest);
+    if (s.force->step > 0) {
+      add("sample_layout", std::string("rows"));
+      add("sample_step", s.force->step);
+    }
   }
   if (s.limits_speed) add("speed_limit", *s.v_max);
   return all;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "csv_rows.hpp"
+#include "sample_rows.hpp"
 #include "stickslip/effects/read_scene.hpp"
 
 namespace stickslip::effects {
@@ -29,9 +30,14 @@ void require_no_gap(const CsvRows<2>& rows) {
   if (static_cast<double>(even) < most * static_cast<double>(steps.size())) return;
   for (std::size_t n = 1; n < rows.values.size(); ++n) {
     if (step(n) <= missing * usual) continue;
-    throw std::invalid_argument(
-        fmt::format("{}time = {:.9g} follows {:.9g}, where steps are {:g}: samples are missing",
-                    rows.place(n), rows.values[n][0], rows.values[n - 1][0], usual));
+    const bool last = n + 1 == rows.values.size() && rows.values[n][1] == 0;
+    if (last && rows.values[n - 1][1] == 0) continue;  // no force from one to the other
+    throw std::invalid_argument(fmt::format(
+        "{}time = {:.9g} follows {:.9g}, where steps are {:g}: samples are missing{}",
+        rows.place(n), rows.values[n][0], rows.values[n - 1][0], usual,
+        last ? fmt::format("; for no force at the end leave this one out and add -force_rest {:g}",
+                           step(n))
+             : ""));
   }
 }
 
@@ -90,9 +96,9 @@ std::vector<Option> force_options() {
 }
 
 void read_force(Given& given, model::Scene& scene) {
-  if (!given.has(kForceFile)) return;
+  if (!given.has(kForceFile) || !layout_is_sound(given)) return;
   try {
-    auto record = read_record(given.text(kForceFile));
+    auto record = read_samples(given, given.text(kForceFile), read_record);
     record.file = given.text(kForceFile);
     if (given.has(kScale)) record.scale = given.real(kScale);
     record.constant = given.text(kInterpolation) == "constant";
@@ -102,7 +108,8 @@ void read_force(Given& given, model::Scene& scene) {
     given.refuse(
         kForceFile, unfit.what(),
         "write CSV with the columns time,force and their names in the first line, times "
-        "rising, commas between numbers and points within; python3 -m stickslip force FILE "
+        "rising, commas between numbers and points within, or add -sample_layout rows where rows "
+        "hold samples; python3 -m stickslip force FILE "
         "writes it of AT2, V2, and tables with other names and units");
   }
 }

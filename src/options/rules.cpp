@@ -60,9 +60,9 @@ class Rules {
                    : study_     ? Subject::study
                    : swept      ? Subject::sweep
                                 : Subject::run);
-    for (const char* option :
-         {"observable", "start", "horizon", "transient_solver", "spectrum_solver", "passage",
-          "force_file", "force_interpolation", "force_scale"}) {
+    for (const char* option : {"observable", "start", "horizon", "transient_solver",
+                               "spectrum_solver", "passage", "force_file", "force_interpolation",
+                               "force_scale", "force_rest", "sample_layout", "sample_step"}) {
       warn({option}, !asked(option));
     }
     for (const auto* argument : catalogue::arguments()) {

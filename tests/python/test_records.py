@@ -291,7 +291,7 @@ class Descriptions(Case):
         self.refused(r"take one of 0 \(Chan 1: 360 Deg\), 1 \(Chan 2: Up\), 2 \(Chan 3: 90 Deg\)", three, "c.V2")
         for n, chosen in ((3, {"channel": "90 Deg"}), (3, {"channel": "3"}), (1, {"channel": "360"}), (1, {"column": 0}), (2, {"channel": "up"})):
             self.same(self.read(three, "d.V2", **chosen), "m/s^2", 0.01 * n, value=value)
-        self.refused("needs the number of points, their interval in sec and unit", three.replace("spaced at  .020 sec, in", "spaced, in", 1),
+        self.refused("needs the number of points, their interval and unit", three.replace("spaced at  .020 sec, in", "spaced, in", 1),
                      "e.V2")
 
     def test_csmip_volume_1(self):
@@ -356,7 +356,7 @@ class Descriptions(Case):
         counts = numpy.round(VALUE * 1e5 + 12000).astype(int) if counts is None else counts
         return (f"Origin Time       2018/01/24 19:51:00\nLat.              41.0\nStation Code      AOM001\nSampling Freq(Hz) {rate}\n"
                 f"Duration Time(s)  {max(round(len(counts) / float(rate[:-2])), 0)}\nDir.              {direction}\nScale Factor      {scale}\n"
-                "Max. Acc. (gal)   4.078\nLast Correction   2018/01/24 19:51:43\nMemo.             \n" + fixed(counts, "9d", wide))
+                "Max. Acc. (gal)   4.078\nStation Height(m) 39\nMemo.             \n" + fixed(counts, "9d", wide))
 
     def test_knet(self):
         factor = 0.01 * 3920 / 6182761 * 1e5

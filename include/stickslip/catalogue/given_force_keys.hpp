@@ -86,7 +86,8 @@ inline constexpr Entry kGivenForce{
     .synonyms = "newmark, sliding_block, response, time_history",
     .title = "motion from rest under the force of -force_file, as trajectory with that option",
     .routes = {Route::excursion},
-    .options = "force_file, force_interpolation, force_scale",
+    .options = "force_file, force_interpolation, force_scale, force_rest, sample_layout, "
+               "sample_step",
     .rows = kGivenForceRows,
     .without_system = true,
     .without_limit = true};

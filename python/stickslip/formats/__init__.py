@@ -9,7 +9,8 @@ import pathlib
 from . import agencies, arrays, cosmos, csmip, fdsn, geonet, peer, smc, tables
 from .reading import Column, Format, numeric
 
-FORMATS: tuple[Format, ...] = (peer.FORMAT, cosmos.FORMAT, csmip.FORMAT, geonet.FORMAT, smc.FORMAT, *agencies.FORMATS, *fdsn.FORMATS)
+FORMATS: tuple[Format, ...] = (peer.FORMAT, cosmos.FORMAT, csmip.FORMAT, geonet.FORMAT, smc.FORMAT, *agencies.FORMATS,
+                               *fdsn.FORMATS)
 NAMES = ", ".join(["text with columns", *(form.name for form in FORMATS), "SAC", "MiniSEED (by ObsPy)", ".npy", ".mat"])
 LAYOUTS = ("columns", "rows", "pairs")
 
@@ -47,8 +48,8 @@ def columns_of(path: pathlib.Path, layout: str | None = None, delimiter: str | N
     nearest = max(FORMATS, key=lambda form: len(form.signs) - len(missing[form]))
     share = 1 - len(missing[nearest]) / len(nearest.signs)
     if share >= 0.5 and not layout:
-        raise ValueError(f"is no whole file of {nearest.name}, which has {' and '.join(missing[nearest])}; fetch it anew, or read "
-                         f"its numbers alone: {tables.ways(lines)}")
+        raise ValueError(f"is no whole file of {nearest.name}, which has {' and '.join(missing[nearest])}; fetch it anew, or "
+                         f"read its numbers alone: {tables.ways(lines)}")
     try:
         return "text", tables.columns_of(lines, layout, delimiter, decimal)
     except ValueError as problem:

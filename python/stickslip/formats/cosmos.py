@@ -1,8 +1,8 @@
 """COSMOS V0, V1, V2: strong motion data tape format 1.20 (Consortium of Organizations for Strong-Motion Observation Systems).
 
 Each channel has lines of text, integers and numbers, whose counts and Fortran formats the lines above them state, comments,
-and samples. Of the numbers, 62 is the sampling interval of the samples in ms and 63 their duration in s; 34 is the interval of
-the recorder in s. The line above the samples has their number, about their duration, their unit with its code, and their format.
+and samples. Of the numbers, 62 is the sampling interval of the samples in ms and 63 their duration in s; 34 is the interval
+of the recorder in s. The line above the samples has their number, about their duration, unit with its code, and format.
 """
 
 import re
@@ -39,9 +39,10 @@ def _read(lines: list[str]) -> list[Column]:
             values = counted(numbers(lines[at + 1:at + 1 + int(found[3])], found[4]), int(found[1]))
             real = [*values, *real[len(values):]] if found[2].lower() == "real" else real
         elif found := SAMPLES.match(line):
-            count, unit, code = int(found[1]), found[4] or CODES.get(int(found[5] or 0), ""), CODES.get(int(found[5] or 0))
+            count, code = int(found[1]), CODES.get(int(found[5] or 0), "")
+            unit = found[4] or code
             if code and plain_unit(unit) != code:
-                raise ValueError(f"line {at + 1}: the unit is {unit}, its code {found[5]} stands for {code}; correct one of them")
+                raise ValueError(f"line {at + 1}: the unit is {unit}, its code {found[5]} stands for {code}; correct either")
             step, doubt = _step(real, count, float(found[3]))
             kind = kind_in(found[2])
             columns.append(Column(direction or f"{kind or 'channel'} {len(columns)}",

@@ -30,7 +30,8 @@ def _pairs(lines: list[str], at: int, count: int, name: str) -> Column:
     first = next(n for n in range(at, len(lines)) if block(lines, n))
     values = numbers(block(lines, first)[-(-(-count // 5)):], "10F7.3")
     counted(values, 2 * count)
-    return Column(name, values[1::2] / 10, "g", times=values[::2], kind="acceleration", notes=("values are in g/10 in the file",))
+    return Column(name, values[1::2] / 10, "g", times=values[::2], kind="acceleration",
+                  notes=("values are in g/10 in the file",))
 
 
 def _read(lines: list[str]) -> list[Column]:
@@ -48,8 +49,8 @@ def _read(lines: list[str]) -> list[Column]:
             column = _even(lines, at, found, name or f"channel {len(columns)}")
             if column.kind == "acceleration" or column.name not in columns:
                 columns[column.name] = column
-        elif re.search(r"points of (acc|vel|dis)\w* data|equally spaced at", line, re.IGNORECASE):
-            raise ValueError(f"line {at + 1}: {line.strip()[:70]!r}: needs the number of points, their interval in sec and unit")
+        elif re.search(r"points of (acc|vel|dis)\w* data", line, re.IGNORECASE):
+            raise ValueError(f"line {at + 1}: {line.strip()[:60]!r}: needs the number of points, their interval and unit")
     if len(columns) < len(announced):
         raise ValueError(f"has {len(announced)} channels, and samples of {len(columns)}: {', '.join(columns)}; fetch it anew")
     return list(columns.values())

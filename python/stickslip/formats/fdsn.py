@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     Array = numpy.ndarray
 numpy = needed("numpy")
 
-SERIES = re.compile(r"TIMESERIES\s+(\S+),\s*(\d+) samples,\s*([\d.]+) sps,\s*([^,\s]+),\s*(TSPAIR|SLIST),\s*\w+(?:,\s*(\S.*?))?\s*$",
-                    re.IGNORECASE)
+SERIES = re.compile(r"TIMESERIES\s+(\S+),\s*(\d+) samples,\s*([\d.]+) sps,\s*([^,\s]+),\s*(TSPAIR|SLIST),\s*\w+"
+                    r"(?:,\s*(\S.*?))?\s*$", re.IGNORECASE)
 
 
 def from_first(name: str, unit: str, pieces: "Sequence[tuple[Array, Array]]") -> Column:
@@ -61,7 +61,8 @@ def _geocsv(lines: list[str]) -> list[Column]:
         at = next((n for n, unit in enumerate(units) if unit.upper() in ("ISO_8601", "UTC")), None)
         value = next((n for n in range(len(units)) if n != at), None)
         if len(names) != len(units) or len(units) != (1 if at is None else 2) or value is None:
-            raise ValueError(f"field_unit: {said['FIELD_UNIT']} and the columns {', '.join(names)}: needs a value, perhaps with a time")
+            raise ValueError(f"field_unit: {said['FIELD_UNIT']} and the columns {', '.join(names)}: needs a value, with or "
+                             "without a time")
         if at is None:
             values = numbers(body[1:])
             times = microseconds(said["START_TIME"]) + 1e6 / float(said["SAMPLE_RATE_HZ"]) * numpy.arange(len(values))
@@ -73,6 +74,7 @@ def _geocsv(lines: list[str]) -> list[Column]:
 
 
 FORMATS = (
-    Format("TSPAIR or SLIST", {'a line "TIMESERIES ..., ... samples, ... sps, ..., SLIST, ..."': rf"^{SERIES.pattern}"}, _series),
-    Format("GeoCSV", {'a line "# dataset: GeoCSV"': r"^#\s*dataset\s*:\s*GeoCSV", 'a line "# field_unit:"': r"^#\s*field_unit\s*:"},
-           _geocsv))
+    Format("TSPAIR or SLIST", {
+        'a line "TIMESERIES ..., ... samples, ... sps, ..., SLIST, ..."': rf"^{SERIES.pattern}"}, _series),
+    Format("GeoCSV", {'a line "# dataset: GeoCSV"': r"^#\s*dataset\s*:\s*GeoCSV",
+                      'a line "# field_unit:"': r"^#\s*field_unit\s*:"}, _geocsv))

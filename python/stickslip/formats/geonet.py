@@ -11,8 +11,8 @@ from .reading import Column, Format, block, counted, lasting, numbers
 
 TITLE = re.compile(r"\s*(un)?corrected accelerogram", re.IGNORECASE)
 POINTS = re.compile(r"^\s*number of points\s+(\d+)\s+duration\s+([\d.]+)", re.IGNORECASE | re.MULTILINE)
-STEP = re.compile(r"^\s*(?:instrument corrected data at|raw readings in units of\s+([\d.]+)\s*(\S+)\s+at intervals of)\s+([\d.]+)\s*s",
-                  re.IGNORECASE | re.MULTILINE)
+STEP = re.compile(r"^\s*(?:instrument corrected data at|raw readings in units of\s+([\d.]+)\s*(\S+)\s+at intervals of)"
+                  r"\s+([\d.]+)\s*s", re.IGNORECASE | re.MULTILINE)
 COMPONENT = re.compile(r"^\s*component\s+(\S+)", re.IGNORECASE | re.MULTILINE)
 INTEGERS, HEADER, WIDE = 4, 10, 10  # lines of integers, of all numbers of the header; samples in a line
 
@@ -28,8 +28,8 @@ def _component(lines: list[str]) -> Column:
     count, step, factor = int(points[1]), float(steps[3]), float(steps[1] or 1)
     held = [-(-n // WIDE) for n in stated]
     if stated[:1] != [count] or len(body) != HEADER + sum(held):
-        raise ValueError(f"component {component[1]}: {len(body) - HEADER} lines of samples, {stated} samples and {count} points "
-                         "do not fit together; fetch it anew")
+        raise ValueError(f"component {component[1]}: {len(body) - HEADER} lines of samples, {stated} samples and {count} "
+                         "points do not fit together; fetch it anew")
     doubt = lasting(step, count, float(points[2]), 2 * step + 0.005)
     return Column(component[1], factor * counted(numbers(body[HEADER:HEADER + held[0]], "10F8.1"), count),
                   steps[2] or "mm/s^2", None if doubt else step, kind="acceleration", doubt=doubt)

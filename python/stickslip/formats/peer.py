@@ -25,7 +25,8 @@ def _read(lines: list[str]) -> list[Column]:
     found = [(line, match[1].rstrip(".,-")) for pattern in UNITS for line in lines[:at] if (match := pattern.search(line))]
     said, unit = next(((line, unit) for line, unit in found if kind_of(unit)), ("", ""))
     kind = kind_in(said) or kind_in(" ".join(lines[:at])) or "acceleration"
-    return [Column(kind, counted(numbers([line for line in lines[at + 1:] if line.strip()]), count, "NPTS"), unit, step, kind=kind)]
+    values = numbers([line for line in lines[at + 1:] if line.strip()])
+    return [Column(kind, counted(values, count, "NPTS"), unit, step, kind=kind)]
 
 
 FORMAT = Format("AT2 of PEER", {"NPTS and DT in one of the first five lines": rf"\A(?:.*\n){{0,{TEXT - 1}}}.*NPTS"}, _read)

@@ -24,7 +24,7 @@ def _read(lines: list[str]) -> list[Column]:
     values = counted(numbers([line for line in lines[at:] if line.strip()], "8E10.4"), count)
     kind = kind_in(lines[0])
     if not kind:
-        raise ValueError(f"line 1: {lines[0].strip()!r}: is neither acceleration, velocity nor displacement; fetch another file")
+        raise ValueError(f"line 1: {lines[0].strip()!r}: is no acceleration, velocity or displacement; fetch another file")
     name = re.search(r"component\s*=\s*(\S.*?)\s*$", "\n".join(lines[:first]), re.IGNORECASE | re.MULTILINE)
     if 0 < rate < NONE:
         return [Column(name[1] if name else kind, values, UNITS[kind], 1 / rate, kind=kind)]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from ..needed import needed
 from ..units import is_unit, kind_of
-from .reading import DATE, NUMBER, NUMBERS, Column, microseconds, numbers
+from .reading import DATE, NUMBER, NUMBERS, ONE, Column, microseconds, numbers
 
 if TYPE_CHECKING:
     import numpy
@@ -116,7 +116,7 @@ def columns_of(lines: Sequence[str], layout: str | None, delimiter: str | None, 
     names, units, doubt = _names(heads, count)
     values = numpy.array(rows).T
     if layout is None and count > 1 and names[0] == UNNAMED.format(0):
-        _require_columns(values, [head for head in heads if len(head) > 2 and all(re.fullmatch(NUMBER, field) for field in head)])
+        _require_columns(values, [head for head in heads if len(head) > 2 and all(map(ONE.fullmatch, head))])
     last = [field.strip().strip('"').strip() for field in _fields(plain[-1], reading[0])]
     units = ["us" if DATE.fullmatch(field) else "s" if CLOCK.fullmatch(field) else unit for field, unit in zip(last, units)]
     return [Column(name, column, unit, doubt=doubt, kind="date" if DATE.fullmatch(field) else "")
@@ -133,12 +133,12 @@ def _require_columns(values: "Array", above: Sequence[Sequence[str]]) -> None:
 
     short = bool(above) and values.shape[1] == 1  # the last row of a file of rows
     if above and not short:
-        raise ValueError(f"layout: rows of {count} numbers below {len(above[0])}, {above[0][0]} ...: leave those lines out, or say "
-                         'layout="columns"')
+        raise ValueError(f"layout: rows of {count} numbers below {len(above[0])}, {above[0][0]} ...: leave those lines out, or "
+                         'say layout="columns"')
     pairs = count % 2 == 0 and rise(flat[::2])
     if short or not rise(values[0]) or rise(flat) or count > 2 and pairs:
-        raise ValueError(f"layout: {len(above[0]) if short else count} columns of one kind without names: layout=\"rows\" takes the "
-                         "samples of each row one after the other, with step="
+        raise ValueError(f"layout: {len(above[0]) if short else count} columns of one kind without names: layout=\"rows\" takes "
+                         "the samples of each row one after the other, with step="
                          + (', layout="pairs" pairs of time and value' if pairs or short else "")
                          + ('' if short else '; layout="columns" takes a column alone'))
 
@@ -161,8 +161,8 @@ def _names(heads: Sequence[Sequence[str]], count: int) -> tuple[list[str], list[
         return [name for name, _ in split], [unit for _, unit in split], ""
     elif not any(_proper([name_and_unit(field) for field in head]) for head in fitting) and not last:
         return unnamed, [""] * count, ""
-    return unnamed, [""] * count, (f"{len(fitting)} lines could name the columns, and none is directly above the numbers with names "
-                                   "of times or known units")
+    return unnamed, [""] * count, (f"{len(fitting)} lines could name the columns, and none is directly above the numbers with "
+                                   "names of times or known units")
 
 
 def _proper(split: Sequence[tuple[str, str]]) -> bool:
@@ -181,8 +181,8 @@ def name_and_unit(name: str) -> tuple[str, str]:
     apart = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
     if found := BEHIND.fullmatch(apart) or GLUED.fullmatch(name):
         head, unit, kind = found[1].strip(), found[2], kind_of(found[2])
-        if unit.lower() not in AMBIGUOUS and (kind in ("time", "acceleration") or is_unit(unit) and (len(unit) > 1 or unit == "N")) \
-                or kind == "time" and head.lower() in NAMES_OF_TIME:
+        plain = kind in ("time", "acceleration") or is_unit(unit) and (len(unit) > 1 or unit == "N")
+        if plain and unit.lower() not in AMBIGUOUS or kind == "time" and head.lower() in NAMES_OF_TIME:
             return head, unit
     first, _, rest = re.sub(r"[_,:;/]+", " ", apart).strip().partition(" ")
     return (first, rest.strip()) if first.lower() in NAMES_OF_TIME and rest.strip() else (name, "")
@@ -210,8 +210,8 @@ def _channel(name: str, rows: Sequence[str], layout: str) -> Column:
     lengths = [len(numbers([row])) for row in rows]
     wrong = next((n for n, length in enumerate(lengths[:-1]) if length != max(lengths)), None)
     if wrong is not None:
-        raise ValueError(f"line {rows[wrong].strip()[:60]!r}: has {lengths[wrong]} numbers, other rows {max(lengths)}; correct or "
-                         "remove the line")
+        raise ValueError(f"line {rows[wrong].strip()[:60]!r}: has {lengths[wrong]} numbers, other rows {max(lengths)}; correct "
+                         "or remove the line")
     values = numbers(rows)
     if layout == "rows":
         return Column(name, values)
