@@ -37,14 +37,12 @@ def columns_of(path: pathlib.Path, layout: str | None = None, delimiter: str | N
     words = "\n".join(line for line in lines if not numeric(line))
     missing = {form: form.missing(words) for form in FORMATS}
     known = next((form for form, lacking in missing.items() if not lacking), None)
-    if known and layout:
-        raise ValueError(f"layout = {layout}: the file is one of {known.name}, which needs none; leave layout out")
-    if known:
+    if known and not layout:
         try:
             return known.name, _wanted(known.read(lines))
         except (ValueError, IndexError, KeyError, StopIteration) as problem:
-            said = str(problem) if isinstance(problem, ValueError) else "its header ends too early; fetch it anew"
-            raise ValueError(f"{known.name}: {said}") from None
+            said = str(problem) if isinstance(problem, ValueError) else "its header ends too early"
+            raise ValueError(f"{known.name}: {said}; fetch it anew, or read its numbers alone: {tables.ways(lines)}") from None
     nearest = max(FORMATS, key=lambda form: len(form.signs) - len(missing[form]))
     share = 1 - len(missing[nearest]) / len(nearest.signs)
     if share >= 0.5 and not layout:

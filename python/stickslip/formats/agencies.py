@@ -18,13 +18,13 @@ def _nied(lines: list[str]) -> list[Column]:
         ("direction", r"^Dir\.\s+(\S+)"), ("scale", r"^Scale Factor\s+([\d.]+)\s*\((\S+?)\)\s*/\s*([\d.]+)"))}
     wrong = [name for name, found in said.items() if not found]
     if wrong:
-        raise ValueError(f"header: {', '.join(wrong)} cannot be read; fetch it anew")
+        raise ValueError(f"header: {', '.join(wrong)} cannot be read")
     at = next(n for n, line in enumerate(lines) if line.lower().startswith("memo"))
     values = numbers([line for line in lines[at + 1:] if line.strip()]) * float(said["scale"][1]) / float(said["scale"][3])
     step = 1 / float(said["rate"][1])
     doubt = lasting(step, len(values), float(said["seconds"][1]), 1)
     if doubt:
-        raise ValueError(f"{doubt}; fetch it anew")
+        raise ValueError(f"{doubt}")
     mean, unit = values.mean(), said["scale"][2]
     return [Column(PLACES.get(said["direction"][1], said["direction"][1]), values - mean, unit, step, kind="acceleration",
                    notes=(f"the mean, {mean:.4g} {unit}, was taken off, as samples of this format have an arbitrary offset",))]
@@ -54,7 +54,7 @@ def _dyna(lines: list[str]) -> list[Column]:
 def _afad(lines: list[str]) -> list[Column]:
     said, data = keys(lines), data_of(lines)
     names = [line for line in lines[:lines.index(data[0])] if line.strip()][-1].split()
-    unit = next(re.search(r"\((\S+)\)", key)[1].lower() for key in said if "PGA" in key)
+    unit = next((found[1].lower() for key in said if (found := re.search(r"PGA.*\((\S+)\)", key))), "")
     step = float(next(value for key, value in said.items() if key.startswith("SAMPLING INTERVAL")))
     columns = table(data, len(names))
     counted(columns[0], int(said["NUMBER OF DATA"]))
@@ -67,5 +67,4 @@ FORMATS = (
     Format("CWA", {f'a line "#{key}:"': r"^#\s*" + re.escape(key) + ":" for key in (
         "SampleRate(Hz)", "AmplitudeUnit", "DataSequence")}, _cwa),
     Format("ESM", {f'a line "{key}:"': f"^{key}:" for key in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS")}, _dyna),
-    Format("AFAD", {f'a line "{key}"': "^" + re.escape(key) for key in (
-        "NUMBER OF DATA", "SAMPLING INTERVAL", "RAW PGA VALUES")}, _afad))
+    Format("AFAD", {f'a line "{key}"': "^" + key for key in ("NUMBER OF DATA", "SAMPLING INTERVAL")}, _afad))

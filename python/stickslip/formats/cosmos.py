@@ -8,7 +8,7 @@ of the recorder in s. The line above the samples has their number, about their d
 import re
 from collections.abc import Sequence
 
-from ..units import plain_unit
+from ..units import in_si, plain_unit
 from .reading import Column, Format, block, counted, kind_in, lasting, numbers
 
 HEADER = re.compile(r"\s*(\d+)\s+(integer|real)-header values follow on\s+(\d+)\s+lines.*?format\s*=\s*(.*)", re.IGNORECASE)
@@ -41,7 +41,7 @@ def _read(lines: list[str]) -> list[Column]:
         elif found := SAMPLES.match(line):
             count, code = int(found[1]), CODES.get(int(found[5] or 0), "")
             unit = found[4] or code
-            if code and plain_unit(unit) != code:
+            if code and in_si(plain_unit(unit)) != in_si(code):
                 raise ValueError(f"line {at + 1}: the unit is {unit}, its code {found[5]} stands for {code}; correct either")
             step, doubt = _step(real, count, float(found[3]))
             kind = kind_in(found[2])

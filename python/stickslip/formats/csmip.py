@@ -30,8 +30,7 @@ def _pairs(lines: list[str], at: int, count: int, name: str) -> Column:
     first = next(n for n in range(at, len(lines)) if block(lines, n))
     values = numbers(block(lines, first)[-(-(-count // 5)):], "10F7.3")
     counted(values, 2 * count)
-    return Column(name, values[1::2] / 10, "g", times=values[::2], kind="acceleration",
-                  notes=("values are in g/10 in the file",))
+    return Column(name, values[1::2], "g/10", times=values[::2], kind="acceleration")
 
 
 def _read(lines: list[str]) -> list[Column]:
@@ -52,7 +51,7 @@ def _read(lines: list[str]) -> list[Column]:
         elif re.search(r"points of (acc|vel|dis)\w* data", line, re.IGNORECASE):
             raise ValueError(f"line {at + 1}: {line.strip()[:60]!r}: needs the number of points, their interval and unit")
     if len(columns) < len(announced):
-        raise ValueError(f"has {len(announced)} channels, and samples of {len(columns)}: {', '.join(columns)}; fetch it anew")
+        raise ValueError(f"has {len(announced)} channels, and samples of {len(columns)}: {', '.join(columns)}")
     return list(columns.values())
 
 

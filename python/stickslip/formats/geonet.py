@@ -29,7 +29,7 @@ def _component(lines: list[str]) -> Column:
     held = [-(-n // WIDE) for n in stated]
     if stated[:1] != [count] or len(body) != HEADER + sum(held):
         raise ValueError(f"component {component[1]}: {len(body) - HEADER} lines of samples, {stated} samples and {count} "
-                         "points do not fit together; fetch it anew")
+                         "points do not fit together")
     doubt = lasting(step, count, float(points[2]), 2 * step + 0.005)
     return Column(component[1], factor * counted(numbers(body[HEADER:HEADER + held[0]], "10F8.1"), count),
                   steps[2] or "mm/s^2", None if doubt else step, kind="acceleration", doubt=doubt)

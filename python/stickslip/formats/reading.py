@@ -108,14 +108,14 @@ def table(lines: Sequence[str], wide: int, form: str = "") -> "list[Array]":
     """Columns of lines of as many numbers each."""
     for line, row in zip(lines, rows(lines, form)):
         if len(row) != wide:
-            raise ValueError(f"line {line.strip()[:60]!r}: needs {wide} numbers; fetch it anew")
+            raise ValueError(f"line {line.strip()[:60]!r}: needs {wide} numbers")
     return list(numbers(lines, form).reshape(-1, wide).T)
 
 
 def counted(values: "Array", count: int, what: str = "its header") -> "Array":
     """The values, if there are as many as announced."""
     if len(values) != count:
-        raise ValueError(f"holds {len(values)} of the {count} samples that {what} announces; fetch it anew")
+        raise ValueError(f"holds {len(values)} of the {count} samples that {what} announces")
     return values
 
 

@@ -20,11 +20,11 @@ def _read(lines: list[str]) -> list[Column]:
     at = first + len(block(lines, first)) + comments
     said = lines[at - comments:at]
     if not all(line.startswith("|") for line in said):
-        raise ValueError(f"line {at}: {comments} lines of comments with a | are announced; fetch it anew")
+        raise ValueError(f"line {at}: {comments} lines of comments with a | are announced")
     values = counted(numbers([line for line in lines[at:] if line.strip()], "8E10.4"), count)
     kind = kind_in(lines[0])
     if not kind:
-        raise ValueError(f"line 1: {lines[0].strip()!r}: is no acceleration, velocity or displacement; fetch another file")
+        raise ValueError(f"line 1: {lines[0].strip()!r}: is no acceleration, velocity or displacement")
     name = re.search(r"component\s*=\s*(\S.*?)\s*$", "\n".join(lines[:first]), re.IGNORECASE | re.MULTILINE)
     if 0 < rate < NONE:
         return [Column(name[1] if name else kind, values, UNITS[kind], 1 / rate, kind=kind)]
@@ -32,6 +32,4 @@ def _read(lines: list[str]) -> list[Column]:
 
 
 FORMAT = Format("SMC", {
-    'a first line such as "2 CORRECTED ACCELEROGRAM"': r"\A\s*[0-9] +[a-z ]+$",
-    'a line "station = ... component= ..."': r"^station\s*=.*component\s*=",
-    'a line "inst type= ... data source ="': r"^inst type\s*=.*data source\s*="}, _read)
+    'a first line such as "2 CORRECTED ACCELEROGRAM"': r"\A\s*[0-9] +(un)?(corrected|velocity|displacement|response)"}, _read)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from ..needed import needed
 from ..units import is_unit, kind_of
-from .reading import DATE, NUMBER, NUMBERS, ONE, Column, microseconds, numbers
+from .reading import DATE, NUMBER, NUMBERS, ONE, Column, microseconds, numbers, rows
 
 if TYPE_CHECKING:
     import numpy
@@ -21,6 +21,7 @@ numpy = needed("numpy")
 UNNAMED = "column {}"
 MISSING = ("", "nan", "na", "n/a", "null", "-", "--")
 COMMENT = ("#", "%", "//")
+MOST = 6     # blocks that a message lists
 SAMPLE = 50  # lines that have to agree on how columns are separated
 # Readings of a line: separator (None is white space) and decimal sign, the more likely ones first.
 READINGS = (("\t", "."), ("\t", ","), (";", "."), (";", ","), ("|", "."), (",", "."), (None, "."), (None, ","))
@@ -68,14 +69,14 @@ def _reading_of(lines: Sequence[str], delimiter: str | None, decimal: str | None
     """Separator and decimal sign with which most of the last lines are numbers, as many on each."""
     found: dict[tuple[str | None, str], list] = {}
     for reading in READINGS if delimiter is None else ((delimiter, "."), (delimiter, ",")):
-        rows: list[list[float]] = []
+        table: list[list[float]] = []
         for line in reversed(lines[-SAMPLE:] if decimal in (None, reading[1]) else ()):
             row = _numbers(line, reading)
-            if row is None or rows and len(row) != len(rows[0]):
+            if row is None or table and len(row) != len(table[0]):
                 break
-            rows.append(row)
-        if rows and (len(rows[0]) > 1 or reading[0] is None) and not numpy.isnan(rows).all():
-            found[reading] = rows
+            table.append(row)
+        if table and (len(table[0]) > 1 or reading[0] is None) and not numpy.isnan(table).all():
+            found[reading] = table
     if not found:
         raise ValueError(f"line {lines[-1]!r}: no numbers in columns")
     best = max(found, key=lambda reading: len(found[reading]))
@@ -103,18 +104,18 @@ def columns_of(lines: Sequence[str], layout: str | None, delimiter: str | None, 
     if not plain:
         raise ValueError("is empty; give a file with samples")
     reading = _reading_of(plain, delimiter, decimal)
-    count, heads, rows = len(_fields(plain[-1], reading[0])), [], []
+    count, heads, table = len(_fields(plain[-1], reading[0])), [], []
     for n, line in numbered:
         values = None if n in comments else _numbers(line, reading)
         if values is not None and len(values) == count:
-            rows.append(values)
-        elif rows and n not in comments:
+            table.append(values)
+        elif table and n not in comments:
             raise ValueError(f"line {n + 1}: {line.strip()!r}: needs {count} numbers; correct or remove the line")
-        elif not rows:
+        elif not table:
             fields = _fields(re.sub(r"\s+(?=[\[(])", "", line) if reading[0] is None else line, reading[0])
             heads.append([field.strip().strip('"').strip() for field in fields])
     names, units, doubt = _names(heads, count)
-    values = numpy.array(rows).T
+    values = numpy.array(table).T
     if layout is None and count > 1 and names[0] == UNNAMED.format(0):
         _require_columns(values, [head for head in heads if len(head) > 2 and all(map(ONE.fullmatch, head))])
     last = [field.strip().strip('"').strip() for field in _fields(plain[-1], reading[0])]
@@ -189,42 +190,43 @@ def name_and_unit(name: str) -> tuple[str, str]:
 
 
 def _channels(lines: Sequence[str], layout: str, delimiter: str | None) -> list[Column]:
-    """Blocks of numbers between lines of text, a channel each: rows of as many samples, or of pairs of time and sample."""
+    """Blocks of rows of as many numbers, the last of which may have fewer, a channel each; its name is the line of text above."""
     channels: list[tuple[str, list[str]]] = []
-    name, inside = "", False
+    name, wide, ended = "", 0, True
     for line in lines:
         plain = line.replace(delimiter or ("\t" if "\t" in line else ";" if ";" in line else ","), " ")
         if line.strip() and not NUMBERS.fullmatch(plain):
-            name, inside = line.strip().lstrip("#%/ ")[:60], False
+            name, ended = line.strip().lstrip("#%/ ")[:60], True
         elif line.strip():
-            if not inside:
-                channels.append((name or f"channel {len(channels)}", []))
+            count = len(rows([plain])[0])
+            if ended or count > wide:
+                channels.append((name, []))
+                wide = count
             channels[-1][1].append(plain)
-            inside = True
+            ended = count < wide
     if not channels:
         raise ValueError("no numbers in rows; give a file with samples")
-    return [_channel(name, rows, layout) for name, rows in channels]
+    return [_channel(name, n, numbers(block), layout) for n, (name, block) in enumerate(channels)]
 
 
-def _channel(name: str, rows: Sequence[str], layout: str) -> Column:
-    lengths = [len(numbers([row])) for row in rows]
-    wrong = next((n for n, length in enumerate(lengths[:-1]) if length != max(lengths)), None)
-    if wrong is not None:
-        raise ValueError(f"line {rows[wrong].strip()[:60]!r}: has {lengths[wrong]} numbers, other rows {max(lengths)}; correct "
-                         "or remove the line")
-    values = numbers(rows)
+def _channel(name: str, n: int, values: "Array", layout: str) -> Column:
+    name = name or f"block {n} of {len(values)}"
     if layout == "rows":
         return Column(name, values)
     if len(values) % 2:
         raise ValueError(f"{name}: {len(values)} numbers are no pairs; correct the last row")
-    return Column(name, values[1::2], times=values[::2], doubt="times of pairs have no unit")
+    return Column(name, values[1::2], times=values[::2])
 
 
 def ways(lines: Sequence[str]) -> str:
     """How the numbers of lines can be read without what the text says, in words; what was tried."""
-    try:
-        channels = _channels(lines, "rows", None)
-    except ValueError:
-        return "by a stickslip.Record(time, value, unit) of your own arrays"
-    listed = ", ".join(f"{n} ({channel.name}, {len(channel.values)} samples)" for n, channel in enumerate(channels))
-    return f'layout="rows" with step=, unit= and column= of {listed}'
+    found = []
+    for layout, how in (("rows", "samples one after the other"), ("columns", "a column each")):
+        try:
+            columns = columns_of(lines, layout, None, None)
+        except ValueError:
+            continue
+        largest = sorted(range(len(columns)), key=lambda n: -len(columns[n].values))[:MOST]
+        found.append(f'layout="{layout}" ({how}) with step=, unit= and column= of ' + ", ".join(
+            f"{n} ({columns[n].name}: {len(columns[n].values)})" for n in sorted(largest)))
+    return " or ".join(found) or "by a stickslip.Record(time, value, unit) of your own arrays"
