@@ -162,12 +162,16 @@ def write_of_record(write: "Callable[[argparse.Namespace, Record], None]") -> Ca
         try:
             write(arguments, _record_of(arguments))
         except (ValueError, OSError) as problem:
-            print(f"stickslip: {problem}", file=sys.stderr)
+            print("stickslip:", re.sub(r'\b(column|channel|step|unit|time_unit|layout|rest)=("?)([\w./^]*)\2', as_option,
+                                       str(problem)).replace("differentiate=True", "--differentiate"), file=sys.stderr)
             return 2
         except ImportError as problem:
             print(problem, file=sys.stderr)
             return 1
         return 0
+
+    def as_option(found: re.Match) -> str:
+        return f"--{found[1].replace('_', '-')} {found[3]}".rstrip()
     return act
 
 

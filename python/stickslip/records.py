@@ -400,7 +400,9 @@ def _findings(record: Record) -> list[str]:
     found = []
     if len(record.gaps):
         lengths, (begin, end) = numpy.diff(record.gaps), record.longest_gap
-        found.append(f"{len(lengths)} gaps of {lengths.sum():g} s in all, the longest from {begin:g} to {end:g} s")
+        appended = end == record.time[-1] and record.value[-1] == 0
+        found.append(f"{len(lengths)} gaps of {lengths.sum():g} s in all, the longest from {begin:g} to {end:g} s"
+                     + (f": rest={end - begin:g} in the place of the last sample appends no force" if appended else ""))
     if not record.even:
         steps = numpy.diff(record.time)
         found.append(f"steps are uneven, from {steps.min():g} to {steps.max():g} s: resampled() makes them even")

@@ -34,7 +34,9 @@ class GivenForce(Case):
     def test_samples_in_rows(self):
         given = [line.split(",") for line in RECORD.read_text().splitlines()[2:]]
         force = [value for _, value in given]
-        (self.folder / "rows.txt").write_text("# made\n" + "".join(" ".join(force[n:n + 7]) + "\n" for n in range(0, len(force), 7)))
+        (self.folder / "rows.txt").write_text("# made\n" + "".join(" ".join(force[n:n + 7]) + "\n" for n in range(0,
+                                                                                                                  len(force),
+                                                                                                                  7)))
         (self.folder / "commas.txt").write_text("\n".join(", ".join(force[n:n + 4]) for n in range(0, len(force), 4)))
         right = self.summary(*ASKED, RECORD)["results"]
         for name in ("rows.txt", "commas.txt"):
@@ -44,7 +46,8 @@ class GivenForce(Case):
             self.assertEqual((found["scene"]["sample_layout"], found["scene"]["sample_step"]), ("rows", 0.1))
         rows = (*ASKED, "rows.txt", "-sample_layout", "rows")
         self.refuse(*rows, message=("-sample_layout = rows: rows have no times", "add -sample_step"))
-        self.refuse(*ASKED, RECORD, "-sample_step", "0.1", message=("-sample_step = 0.1: has no effect on columns", "add -sample_layout rows"))
+        self.refuse(*ASKED, RECORD, "-sample_step", "0.1",
+                    message=("-sample_step = 0.1: has no effect on columns", "add -sample_layout rows"))
         self.refuse(*rows, "-sample_step", "-1", message=("must be in (0, inf)",))
         (self.folder / "rows.txt").write_text(HEADER + "0,1\n1,2\n")
         self.refuse(*rows, "-sample_step", "0.1", message=("line 1: time is no finite number",))
@@ -71,7 +74,8 @@ class GivenForce(Case):
         (self.folder / "record.csv").write_text(even + "2.0,0\n12,0\n")
         appended = self.summary(*ASKED, "record.csv", "-drag", "none")["results"]
         (self.folder / "record.csv").write_text(even + "12,0\n")
-        self.refuse(*ASKED, "record.csv", message=("samples are missing; for no force at the end leave this one out", "add -force_rest 10.1"))
+        self.refuse(*ASKED, "record.csv",
+                    message=("samples are missing; for no force at the end leave this one out", "add -force_rest 10.1"))
         (self.folder / "record.csv").write_text(even)
         rested = self.summary(*ASKED, "record.csv", "-drag", "none", "-force_rest", "10.1")["results"]
         self.assert_close(rested["final_displacement"]["value"], appended["final_displacement"]["value"], 1e-12)

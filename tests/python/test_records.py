@@ -182,7 +182,8 @@ class Formats(Case):
             self.same(record, "m/s^2", G, 0.02 * numpy.arange(24), long, 1e-6)
             self.assertIn("G became m/s^2", str(record))
             self.assertIn("steps of 0.02 s, and 0.01 s were taken", str(self.read(text, "c.AT2", step=0.01)))
-            self.refused("holds 24 of the 99 samples that NPTS announces", text.replace("24,", "99,").replace("   24 ", "   99 "), "b.AT2")
+            self.refused("holds 24 of the 99 samples that NPTS announces",
+                         text.replace("24,", "99,").replace("   24 ", "   99 "), "b.AT2")
 
         lacking = text.replace(line, "NPTS= 24")
         self.same(self.read(lacking, "d.AT2", step=0.02), "m/s^2", G, 0.02 * numpy.arange(24), long, 1e-6)
@@ -234,7 +235,8 @@ def fixed(values, form, wide):
 class Descriptions(Case):
     """Files as the published description of each format has them, each with a second one of other counts and packing."""
 
-    def cosmos(self, values=VALUE, step=20.0, text=13, counts=(100, 100), form=("5F15.6", "15.6f", 5), samples=("8F10.5", "10.5f", 8),
+    def cosmos(self, values=VALUE, step=20.0, text=13, counts=(100, 100), form=("5F15.6", "15.6f", 5),
+               samples=("8F10.5", "10.5f", 8),
                seconds=0, what="acceleration", unit="cm/sec2(04)", direction="90 Deg", recorder=-999.0, duration=-999.0):
         real = numpy.full(counts[1], -999.0)
         real[[33, 61, 62]] = recorder, step, duration
@@ -245,15 +247,18 @@ class Descriptions(Case):
         return ("\n".join(words) + f"\n {counts[0]} Integer-header values follow on {integers.count(chr(10)):3d} lines, Format= (10I8)\n"
                 + integers + f" {counts[1]} Real-header values follow on {numbers.count(chr(10)):3d} lines, Format= ({form[0]})\n" + numbers
                 + f'    1 Comment line(s) follow, each starting with a "|":\n| words\n{len(values):8d} {what} pts, approx {seconds:4d} '
-                f"secs, units={unit},Format=({samples[0]})\n" + fixed(values, *samples[1:]) + "End-of-data for Chan  1 acceleration\n")
+                f"secs, units={unit},Format=({samples[0]})\n" + fixed(values,
+                                                                      *samples[1:]) + "End-of-data for Chan  1 acceleration\n")
 
     def test_cosmos(self):
         large = VALUE * 100 - 500  # numbers without a space between them
         self.same(self.read(self.cosmos(large), "a.v2"), "m/s^2", 0.01, value=large, within=1e-6)
-        other = self.cosmos(text=15, counts=(120, 110), form=("6F13.6", "13.6f", 6), samples=("1E15.6", "15.6e", 1), unit="g.     (02)",
+        other = self.cosmos(text=15, counts=(120, 110), form=("6F13.6", "13.6f", 6), samples=("1E15.6", "15.6e", 1),
+                            unit="g.     (02)",
                             duration=0.16)
         self.same(self.read(other, "b.v1"), "m/s^2", G, within=1e-6)
-        self.same(self.read(self.cosmos(numpy.round(1e6 * VALUE), samples=("10I8", "8.0f", 10), what="raw accel.  ", unit="counts (50)"),
+        self.same(self.read(self.cosmos(numpy.round(1e6 * VALUE), samples=("10I8", "8.0f", 10), what="raw accel.  ",
+                                        unit="counts (50)"),
                             "c.V0c"), "counts", 1e6)
         self.same(self.read(self.cosmos(step=-999.0, recorder=0.02), "d.v2"), "m/s^2", 0.01, within=1e-7)
         two = self.cosmos() + self.cosmos(-VALUE, direction="Up")
@@ -271,9 +276,11 @@ class Descriptions(Case):
         self.refused("holds 8 of the 9 samples", whole.replace("       8 acc", "       9 acc"), "c.v2")
         self.refused("holds 8 of the 7 samples", whole.replace("       8 acc", "       7 acc"), "d.v2")
         self.refused("the unit is g, its code 04 stands for cm/s", self.cosmos(unit="g(04)"), "e.v2")
-        self.refused('no whole file of COSMOS, which has a line "... Real-header', whole.replace("Real-header", "header"), "f.v2")
+        self.refused('no whole file of COSMOS, which has a line "... Real-header', whole.replace("Real-header", "header"),
+                     "f.v2")
 
-    def csmip(self, values, direction="90 Deg", line="{count:5d} points of {kind} data equally spaced at  .020 sec, in {unit}. (8f10.3)",
+    def csmip(self, values, direction="90 Deg",
+              line="{count:5d} points of {kind} data equally spaced at  .020 sec, in {unit}. (8f10.3)",
               form=("10.3f", 8)):
         """Acceleration and velocity of a channel."""
         text = f"Corrected accelerogram   1-2      Chan  1: {direction}     from\n" + "words, 5 points of 3\n" * 5
@@ -287,18 +294,23 @@ class Descriptions(Case):
         older = "{count:5d} POINTS OF {kind} DATA EQUALLY SPACED AT  .020 SEC.  (UNITS: {unit})"
         self.same(self.read(self.csmip(value, line=older, form=("9.3f", 7)), "b.V2"), "m/s^2", 0.01, value=value)
         three = "".join(self.csmip(n * value, way, *more).replace("Chan  1", f"Chan  {n}") for n, way, more in (
-            (1, "360 Deg", ("{count:5d} points of {kind} data equally spaced at  .020 sec, in {unit}.",)), (2, "Up", ()), (3, "90 Deg", ())))
+            (1, "360 Deg", ("{count:5d} points of {kind} data equally spaced at  .020 sec, in {unit}.",)), (2, "Up", ()),
+                                                                                                                (3, "90 Deg",
+                                                                                                                 ())))
         self.refused(r"take one of 0 \(Chan 1: 360 Deg\), 1 \(Chan 2: Up\), 2 \(Chan 3: 90 Deg\)", three, "c.V2")
-        for n, chosen in ((3, {"channel": "90 Deg"}), (3, {"channel": "3"}), (1, {"channel": "360"}), (1, {"column": 0}), (2, {"channel": "up"})):
+        for n, chosen in ((3, {"channel": "90 Deg"}), (3, {"channel": "3"}), (1, {"channel": "360"}), (1, {"column": 0}),
+                          (2, {"channel": "up"})):
             self.same(self.read(three, "d.V2", **chosen), "m/s^2", 0.01 * n, value=value)
-        self.refused("needs the number of points, their interval and unit", three.replace("spaced at  .020 sec, in", "spaced, in", 1),
+        self.refused("needs the number of points, their interval and unit",
+                     three.replace("spaced at  .020 sec, in", "spaced, in", 1),
                      "e.V2")
 
     def test_csmip_volume_1(self):
         head = "Uncorrected Accelerogram Data\n" + "words\n" * 5 + "Chan  1: 360 Deg\nNo. of Points =  {}  Record Length = 0.16 sec\n"
         numbers = fixed([1] * 100, "5d", 16) + fixed([2.5] * 50, "10.3f", 8)
         new = head.format(8) + "Units of uncor data are sec and g .\n" + numbers + \
-            "     8 Accelerogram points at  50 pts/sec in units of g .      Format: (8f9.6)\n" + fixed(VALUE, "9.6f", 8) + "/& ---\n"
+            "     8 Accelerogram points at  50 pts/sec in units of g .      Format: (8f9.6)\n" + fixed(VALUE, "9.6f",
+                                                                                                       8) + "/& ---\n"
         self.same(self.read(new, "a.V1"), "m/s^2", G)
         time = 99.96 + TIME  # seven characters without a blank
         pairs = fixed(numpy.column_stack([time, 10 * VALUE]).ravel(), "7.3f", 10)
@@ -311,7 +323,8 @@ class Descriptions(Case):
         words = [f"{'C' if velocity else 'Unc'}orrected accelerogram 2001_X GNS Science", *["words"] * 8,
                  f"Number of points {len(values):5d}    Duration {0.02 * len(values):.2f} sec",
                  "Instrument corrected data at 0.020 sec intervals" if velocity else
-                 "Raw readings in units of 0.10 mm/s/s  at intervals of 0.020 s", "words", f"Component {component}  Longitudinal"]
+                 "Raw readings in units of 0.10 mm/s/s  at intervals of 0.020 s", "words",
+                 f"Component {component}  Longitudinal"]
         return ("\n".join(words) + "\nwords\nwords\nwords\n" + fixed(integers, "8d", 10) + fixed([0.5] * 60, "8.2f", 10)
                 + fixed(values, "8.1f", 10) + (fixed(7 * values, "8.2f", 10) + fixed(values, "8.3f", 10) if velocity else ""))
 
@@ -323,23 +336,27 @@ class Descriptions(Case):
             self.refused(r"0 \(N28W\), 1 \(Up\)", text, "a.V2A")
             self.same(self.read(text, "b.V2A", channel="Up"), "m/s^2", -factor, time, value)
         self.refused("do not fit together", text.replace("      24", "      25"), "c.V1A")
-        self.refused('no whole file of GeoNet V1A or V2A, which has a line "Component', text.replace("Component", "words"), "d.V1A")
+        self.refused('no whole file of GeoNet V1A or V2A, which has a line "Component', text.replace("Component", "words"),
+                     "d.V1A")
 
     def test_blocks_of_a_format_that_is_not_whole(self):
         """What the refusal names reads the numbers."""
         blocks = "Corrected accelerogram\nInstrument corrected data at 0.02 sec intervals\n" + fixed(VALUE, "10.4f", 3) + \
             "Corrected accelerogram, second\n" + fixed(-VALUE, "10.4f", 3)
         self.refused(r'no whole file of GeoNet V1A or V2A, which has a line "Number of points.* and a line "Component.*layout="rows" '
-                     r"\(.*\) with step=, unit= and column= of 0 \(Instrument.*: 8\), 1 \(Corrected accelerogram, second: 8\)", blocks, "a.V2A")
+                     r"\(.*\) with step=, unit= and column= of 0 \(Instrument.*: 8\), 1 \(Corrected accelerogram, second: 8\)",
+                     blocks, "a.V2A")
         self.same(self.read(blocks, "b.V2A", layout="rows", step=0.02, unit="mm/s^2", column=1), "m/s^2", -1e-3)
         cut = self.csmip(numpy.round(VALUE, 3)).replace("    8 points", "    9 points")
         self.refused(r'CSMIP: holds 8 of the 9 samples.*layout="rows".* 0 \(.*in cm/se: 8\)', cut, "c.V2")
-        self.same(self.read(cut, "d.V2", layout="rows", step=0.02, unit="gal", column=0), "m/s^2", 0.01, value=numpy.round(VALUE, 3))
+        self.same(self.read(cut, "d.V2", layout="rows", step=0.02, unit="gal", column=0), "m/s^2", 0.01,
+                  value=numpy.round(VALUE, 3))
 
     def smc(self, values, title="2 CORRECTED ACCELEROGRAM", rate=50.0, comments=3):
         integers, real = numpy.full(48, -32768), numpy.full(50, 1.7e38)
         integers[[15, 16]], real[1] = (comments, len(values)), rate
-        text = [title, "*", "0001A", "     2001   1   1    0004 Somewhere", "Moment Mag= 7.1", "station = A, B  component=    360",
+        text = [title, "*", "0001A", "     2001   1   1    0004 Somewhere", "Moment Mag= 7.1",
+                "station = A, B  component=    360",
                 "epicentral dist = 89.0", "inst type=SMA-1      data source = USGS", "*", "*", "*"]
         pieces = [f"{v:10.4E}".replace("E+0", "E+").replace("E-0", "E-") for v in values]
         return ("\n".join(text) + "\n" + fixed(integers, "10d", 8) + fixed(real, "15.7E", 5) + "|5 comments of 3\n" * comments
@@ -371,7 +388,8 @@ class Descriptions(Case):
         many = numpy.arange(500)
         self.refused("a sampling interval of 0.02 s does not make 500 samples last 99 s",
                      self.knet(rate="50Hz", counts=many).replace("Time(s)  10", "Time(s)  99"), "b.EW")
-        self.refused('no whole file of K-NET or KiK-net, which has a line "Scale Factor"', self.knet().replace("Scale Factor", "Scale"), "c.EW")
+        self.refused('no whole file of K-NET or KiK-net, which has a line "Scale Factor"',
+                     self.knet().replace("Scale Factor", "Scale"), "c.EW")
         csv = "#Sampling Freq(Hz),50\n#Time,NS(gal),EW(gal),UD(gal)\n" + "".join(
             f"2001/01/01 23:59:59.{round(900 + 20 * n):03d},{v},{-v},{2 * v}\n" for n, v in enumerate(VALUE[:5]))
         self.same(self.read(csv, "d.csv", channel="EW"), "m/s^2", -0.01, TIME[:5], VALUE[:5])
@@ -395,11 +413,13 @@ class Descriptions(Case):
         head = "EVENT_NAME: X\nVS30_M/S: \nSAMPLING_INTERVAL_S: {}\nNDATA: {}\nSTREAM: HNE\nUNITS: {}\nDATA_TYPE: {}\nUSER5: \n"
         body = fixed(VALUE, "15.6f", 1)
         self.same(self.read(head.format(0.02, 8, "cm/s^2", "ACCELERATION") + body, "a.asc"), "m/s^2", 0.01, within=1e-9)
-        self.same(self.read("EVENT_ID: 3\n" + head.format("0.020000", 8, "mg", "ACCELERATION") + body, "b.asc"), "m/s^2", G / 1e3)
+        self.same(self.read("EVENT_ID: 3\n" + head.format("0.020000", 8, "mg", "ACCELERATION") + body, "b.asc"), "m/s^2",
+                  G / 1e3)
         self.refused("HNE: is a velocity", head.format(0.02, 8, "cm/s", "VELOCITY") + body, "c.asc")
         self.refused("HNE: is a spectrum", head.format(0.02, 8, "cm/s^2", "ACCELERATION RESPONSE SPECTRUM") + body, "d.asc")
         self.refused("holds 8 of the 9 samples", head.format(0.02, 9, "cm/s^2", "ACCELERATION") + body, "e.asc")
-        self.refused("furlong/s2 is no unit of an acceleration that is known", head.format(0.02, 8, "furlong/s2", "ACCELERATION") + body,
+        self.refused("furlong/s2 is no unit of an acceleration that is known",
+                     head.format(0.02, 8, "furlong/s2", "ACCELERATION") + body,
                      "f.asc")
         older = ("STRONG GROUND MOTION RECORDS OF TURKIYE\nRECORD TIME             : 20/07/2017 22:30:58.000000 (GMT)\nNUMBER OF DATA          "
                  ": 8\nSAMPLING INTERVAL (sec) : 0.02\nRAW PGA VALUES (gal)    : (N-S) 13.2 (E-W) 12.1 (U-D) 9.8\nCopyright\n"
@@ -414,9 +434,11 @@ class Descriptions(Case):
         geo = "# dataset: GeoCSV 2.0\n# delimiter: ,\n# field_unit: {}, m/s**2\n# field_type: datetime, float\nTime, Sample\n"
         single = ("# dataset: GeoCSV 2.0\n# SID: A_B\n# sample_count: 5\n# sample_rate_hz: 50\n# start_time: 2001-01-01T00:00:00.5Z\n"
                   "# field_unit: m/s**2\n# field_type: float\nSample\n" + "".join(f"{v}\n" for v in VALUE[:5]))
-        for text in (head.format(5, "TSPAIR", "m/s**2") + "".join(pairs), head.format(5, "SLIST", "M/S**2") + "0.1\t-0.25\t0.5\n0.125\t-1.5\n",
+        for text in (head.format(5, "TSPAIR", "m/s**2") + "".join(pairs),
+                     head.format(5, "SLIST", "M/S**2") + "0.1\t-0.25\t0.5\n0.125\t-1.5\n",
                      geo.format("ISO_8601") + comma, geo.format("UTC") + comma, single,
-                     head.format(2, "TSPAIR", "m/s**2") + "".join(pairs[:2]) + head.format(3, "TSPAIR", "m/s**2") + "".join(pairs[2:])):
+                     head.format(2, "TSPAIR", "m/s**2") + "".join(pairs[:2]) + head.format(3, "TSPAIR",
+                                                                                           "m/s**2") + "".join(pairs[2:])):
             record = self.read(text, "a.txt")
             self.same(record, "m/s^2", 1, TIME[:5], VALUE[:5])
             self.assertRegex(" ".join(record.notes), "times are from the first sample, 2001-01-01T")
@@ -426,12 +448,15 @@ class Descriptions(Case):
         def text(line):
             return f"PEER\nSomewhere, 1/2/1999, Hill, 90\n{line}\nNPTS=     8, DT=   .0200 SEC,\n" + fixed(VALUE, "15.7E", 5)
 
-        for line in ("The units are (g)", "ACCELERATION TIME HISTORY IN UNITS OF (G)", "Units: g", "ACCELERATION IN UNITS OF G."):
+        for line in ("The units are (g)", "ACCELERATION TIME HISTORY IN UNITS OF (G)", "Units: g",
+                     "ACCELERATION IN UNITS OF G."):
             self.same(self.read(text(line), "a.AT2"), "m/s^2", G, within=1e-6)
-        self.refused("is a velocity, no force or acceleration; differentiate=True takes its derivative", text("VELOCITY TIME SERIES IN UNITS OF CM/S"),
+        self.refused("is a velocity, no force or acceleration; differentiate=True takes its derivative",
+                     text("VELOCITY TIME SERIES IN UNITS OF CM/S"),
                      "a.VT2")
         self.refused("is a displacement.*second derivative", text("DISPLACEMENT TIME SERIES IN UNITS OF CM"), "a.DT2")
-        self.refused("unit = g: is one of acceleration, and the file says that velocity is a velocity", text("VELOCITY TIME SERIES IN UNITS OF CM/S"),
+        self.refused("unit = g: is one of acceleration, and the file says that velocity is a velocity",
+                     text("VELOCITY TIME SERIES IN UNITS OF CM/S"),
                      "b.VT2", unit="g")
 
     def test_derivatives(self):
@@ -447,22 +472,28 @@ class Descriptions(Case):
 
 class Times(Case):
     def test_units_of_time(self):
-        for factor, spellings in ((1e-3, ("ms", "millisec", "msec", "Milliseconds", "MSEC")), (1e-6, ("us", "µs", "μs", "microseconds", "usec")),
-                                  (1e-9, ("ns", "nanoseconds")), (60, ("min", "minutes", "mins.")), (3600, ("h", "hrs", "hours")),
+        for factor, spellings in ((1e-3, ("ms", "millisec", "msec", "Milliseconds", "MSEC")),
+                                  (1e-6, ("us", "µs", "μs", "microseconds", "usec")),
+                                  (1e-9, ("ns", "nanoseconds")), (60, ("min", "minutes", "mins.")),
+                                  (3600, ("h", "hrs", "hours")),
                                   (86400, ("d", "days")), (1, ("s", "sec", "SEC.", "seconds", "Sekunden"))):
             for unit in spellings:
-                for head in (f"time [{unit}],F", f"t/{unit},F/N", f"time ({unit}),F (N)", f"Time,Force\n{unit},N", f"time in {unit},F",
+                for head in (f"time [{unit}],F", f"t/{unit},F/N", f"time ({unit}),F (N)", f"Time,Force\n{unit},N",
+                             f"time in {unit},F",
                              f'"Time, {unit}","F, N"'):
                     record = self.read(columns(head=head))
                     numpy.testing.assert_allclose(record.time, factor * TIME, rtol=1e-12)
-        for head in ("t_ms,F", "time ms,F", "timeMs,F", "tms,F", "millis,F", "elapsed_ms,F", "ms;N".replace(";", ","), "timestamp_ms,F"):
+        for head in ("t_ms,F", "time ms,F", "timeMs,F", "tms,F", "millis,F", "elapsed_ms,F", "ms;N".replace(";", ","),
+                     "timestamp_ms,F"):
             numpy.testing.assert_allclose(self.read(columns(head=head)).time, 1e-3 * TIME, rtol=1e-12)
 
     def test_units_of_time_that_are_not_known(self):
-        for head in ("time [frames],F", "Time,Force\nticks,N", "t/sampl,F/N", "time msek,F", "time since start,F", "Time\t[0.1 s],F"):
+        for head in ("time [frames],F", "Time,Force\nticks,N", "t/sampl,F/N", "time msek,F", "time since start,F",
+                     "Time\t[0.1 s],F"):
             self.refused("time_unit", columns(head=head))
             for options in ({"time_unit": "ms", "column": 1}, {"step": 2e-5, "column": 1}):
-                self.same(self.read(columns(head=head), **options), self.read(columns(head=head), **options).unit, time=TIME / 1000)
+                self.same(self.read(columns(head=head), **options), self.read(columns(head=head), **options).unit,
+                          time=TIME / 1000)
         with self.assertRaisesRegex(ValueError, "time_unit = fortnight: must be one of s, ms"):
             self.read(columns(), time_unit="fortnight")
         self.assertIn("times are read as seconds, which the file does not say", " ".join(self.read(columns(head="t,F")).notes))
@@ -488,7 +519,8 @@ class Times(Case):
         self.refused("no such column", "t [ms] E N\nmore of it\n" + body, column="E")
 
     def test_dates_count_from_the_first_sample(self):
-        for form in ("2024-02-29T23:59:59.{:03d}Z", "2024/02/29 23:59:59.{:03d}", "2024-02-29 23:59:59,{:03d}", "2024-02-29T23:59:59.{:03d}+09:00"):
+        for form in ("2024-02-29T23:59:59.{:03d}Z", "2024/02/29 23:59:59.{:03d}", "2024-02-29 23:59:59,{:03d}",
+                     "2024-02-29T23:59:59.{:03d}+09:00"):
             for separator in (";", "\t", " "):
                 text = separator.join(("date", "a")) + "\n" + "".join(
                     form.format(20 * n) + f"{separator}{v}\n" for n, v in enumerate(VALUE))
@@ -506,7 +538,8 @@ class Rows(Case):
             self.refused("layout", text[:300], **options)
         for rows in (text, fixed(long, "9.4f", 4), text.replace("   ", " , ")):
             self.same(self.read(rows, layout="rows", step=0.02), time=0.02 * numpy.arange(24), value=long)
-        self.same(self.read(fixed(long, "12.5f", 4), layout="columns", column=1, step=0.08), time=0.08 * numpy.arange(6), value=long[1::4])
+        self.same(self.read(fixed(long, "12.5f", 4), layout="columns", column=1, step=0.08), time=0.08 * numpy.arange(6),
+                  value=long[1::4])
         self.refused(r"take one of 0 \(block 0 of 2\), 1 \(block 1 of 24\)", "24 0.02\n" + text, layout="rows", step=0.02)
         self.same(self.read("24 0.02\n" + text, layout="rows", step=0.02, column=1), time=0.02 * numpy.arange(24), value=long)
         self.refused("layout = 'row': must be one of columns, rows, pairs", text, layout="row")
@@ -536,18 +569,22 @@ class Readers(Case):
 
     def test_miniseed_by_obspy(self):
         data = b"000001D " + b"XYZ  00HNEXX" + b"\0" * 500
-        with unittest.mock.patch.dict(sys.modules, obspy=None), self.assertRaisesRegex(ImportError, "needs obspy.*pip install obspy"):
+        with unittest.mock.patch.dict(sys.modules, obspy=None), self.assertRaisesRegex(ImportError,
+                                                                                       "needs obspy.*pip install obspy"):
             self.read(data, "a.mseed")
-        traces = [types.SimpleNamespace(id=f"XX.XYZ.00.HN{way}", data=(sign * VALUE).astype("f4"), stats=types.SimpleNamespace(delta=0.02))
+        traces = [types.SimpleNamespace(id=f"XX.XYZ.00.HN{way}", data=(sign * VALUE).astype("f4"),
+                                        stats=types.SimpleNamespace(delta=0.02))
                   for way, sign in (("E", 1), ("N", -1))]
         with unittest.mock.patch.dict(sys.modules, obspy=types.SimpleNamespace(read=lambda path: traces)):
             self.same(self.read(data, "a.mseed", channel="XX.XYZ.00.HNN", unit="g"), "m/s^2", -G, within=1e-6)
             self.refused(r"2 columns of values; take one of 0 \(XX.XYZ.00.HNE\)", data, "b.mseed")
 
     def test_units_of_every_spelling(self):
-        for spellings, factor in ((("g", "G", "g.", "g's"), G), (("milli-g", "mg"), G / 1000), (("gal", "Gals", "cm/sec2", "cm/s/s", "CM/SEC/SEC",
+        for spellings, factor in ((("g", "G", "g.", "g's"), G), (("milli-g", "mg"), G / 1000),
+                                  (("gal", "Gals", "cm/sec2", "cm/s/s", "CM/SEC/SEC",
                                   "cm s-2", "cm·s⁻²", "cm/s^{2}", "cm.s^-2", "centimetres per second squared"), 0.01),
-                                  (("m/s²", "m/s**2", "m / s^2", "m/sec/sec", "meters/second^2", "m s⁻²"), 1), (("ft/sec^2",), 0.3048)):
+                                  (("m/s²", "m/s**2", "m / s^2", "m/sec/sec", "meters/second^2", "m s⁻²"), 1),
+                                  (("ft/sec^2",), 0.3048)):
             for unit in spellings:
                 self.same(self.read(columns(), unit=unit), "m/s^2", factor)
 

@@ -138,7 +138,8 @@ def _require_columns(values: "Array", above: Sequence[Sequence[str]]) -> None:
                          'say layout="columns"')
     pairs = count % 2 == 0 and rise(flat[::2])
     if short or not rise(values[0]) or rise(flat) or count > 2 and pairs:
-        raise ValueError(f"layout: {len(above[0]) if short else count} columns of one kind without names: layout=\"rows\" takes "
+        count = len(above[0]) if short else count
+        raise ValueError(f"layout: {count} columns of one kind without names: layout=\"rows\" takes "
                          "the samples of each row one after the other, with step="
                          + (', layout="pairs" pairs of time and value' if pairs or short else "")
                          + ('' if short else '; layout="columns" takes a column alone'))
@@ -190,7 +191,7 @@ def name_and_unit(name: str) -> tuple[str, str]:
 
 
 def _channels(lines: Sequence[str], layout: str, delimiter: str | None) -> list[Column]:
-    """Blocks of rows of as many numbers, the last of which may have fewer, a channel each; its name is the line of text above."""
+    """Blocks of rows of as many numbers, the last of which may have fewer: channels, named by the line of text above."""
     channels: list[tuple[str, list[str]]] = []
     name, wide, ended = "", 0, True
     for line in lines:
