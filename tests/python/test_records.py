@@ -442,6 +442,9 @@ class Descriptions(Case):
             record = self.read(text, "a.txt")
             self.same(record, "m/s^2", 1, TIME[:5], VALUE[:5])
             self.assertRegex(" ".join(record.notes), "times are from the first sample, 2001-01-01T")
+        three = "# dataset: GeoCSV 2.0\n# delimiter: |\n# field_unit: ISO 8601 datetime UTC, m/s**2, g\nTime | E | N\n" + "".join(
+            f"{stamp} | {7 * v} | {v}\n" for stamp, v in zip(stamps, VALUE))
+        self.same(self.read(three, "c.txt", column="N"), "m/s^2", G, TIME[:5], VALUE[:5])
         self.refused("holds 5 of the 6 samples", head.format(6, "TSPAIR", "m/s**2") + "".join(pairs), "b.txt")
 
     def test_peer_words_and_other_quantities(self):

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..needed import needed
-from .reading import DATE, Column, Format, counted, keys, microseconds, numbers
+from .reading import DATE, Column, Format, counted, keys, microseconds, numbers, table
 
 if TYPE_CHECKING:
     import numpy
@@ -27,12 +27,14 @@ def from_first(name: str, unit: str, pieces: "Sequence[tuple[Array, Array]]") ->
     return Column(name, values, unit, times=(times - times[0]) / 1e6, notes=(f"times are from the first sample, {first}",))
 
 
-def _pairs(lines: list[str], delimiter: str | None, at: int, value: int) -> "tuple[Array, Array]":
-    rows = [[field.strip() for field in line.split(delimiter)] for line in lines]
-    wrong = next((row for row in rows if len(row) <= max(at, value) or not DATE.fullmatch(row[at])), None)
+def _dated(lines: list[str], delimiter: str | None, at: int) -> "tuple[Array, list[Array]]":
+    """Times [microseconds] of lines with a date, and the columns of the other numbers."""
+    fields = [[field.strip() for field in line.split(delimiter)] for line in lines]
+    wrong = next((row for row in fields if len(row) != len(fields[0]) or not DATE.fullmatch(row[at])), None)
     if wrong:
-        raise ValueError(f"{wrong}: needs a time such as 2001-01-31T23:59:58.5Z, and a value")
-    return numpy.array([microseconds(row[at]) for row in rows], float), numbers([row[value] for row in rows])
+        raise ValueError(f"{wrong}: needs a time such as 2001-01-31T23:59:58.5Z, and {len(fields[0]) - 1} values")
+    times = numpy.array([microseconds(row.pop(at)) for row in fields], float)
+    return times, table([" ".join(row) for row in fields], len(fields[0]))
 
 
 def _series(lines: list[str]) -> list[Column]:
@@ -41,7 +43,7 @@ def _series(lines: list[str]) -> list[Column]:
     for low, high in zip(heads, [*heads[1:], len(lines)]):
         name, count, rate, start, form, unit = SERIES.match(lines[low]).groups()
         body = [line for line in lines[low + 1:high] if line.strip()]
-        times, values = _pairs(body, None, 0, 1) if form.upper() == "TSPAIR" else (None, numbers(body))
+        times, (values, *_) = _dated(body, None, 0) if form.upper() == "TSPAIR" else (None, [numbers(body)])
         counted(values, int(count))
         even = microseconds(start) + 1e6 / float(rate) * numpy.arange(len(values))
         channels.setdefault((name, unit or ""), []).append((even if times is None else times, values))
@@ -58,18 +60,18 @@ def _geocsv(lines: list[str]) -> list[Column]:
         delimiter = said.get("DELIMITER", ",") or " "
         units = [unit.strip() for unit in said["FIELD_UNIT"].split(",")]
         names = [name.strip() for name in body[0].split(delimiter)]
-        at = next((n for n, unit in enumerate(units) if unit.upper() in ("ISO_8601", "UTC")), None)
-        value = next((n for n in range(len(units)) if n != at), None)
-        if len(names) != len(units) or len(units) != (1 if at is None else 2) or value is None:
-            raise ValueError(f"field_unit: {said['FIELD_UNIT']} and the columns {', '.join(names)}: needs a value, with or "
-                             "without a time")
-        if at is None:
-            values = numbers(body[1:])
-            times = microseconds(said["START_TIME"]) + 1e6 / float(said["SAMPLE_RATE_HZ"]) * numpy.arange(len(values))
-        else:
-            times, values = _pairs(body[1:], delimiter, at, value)
-        counted(values, int(said.get("SAMPLE_COUNT", len(values))))
-        channels.setdefault((said.get("SID", names[value]), units[value]), []).append((times, values))
+        at = next((n for n, unit in enumerate(units) if re.match(r"ISO.?8601|UTC", unit, re.IGNORECASE)), None)
+        if len(names) != len(units) or at is None and len(units) > 1:
+            raise ValueError(f"field_unit: {said['FIELD_UNIT']} and the columns {', '.join(names)}: needs as many units, one "
+                             "of them ISO_8601 or UTC")
+        times, columns = (None, [numbers(body[1:])]) if at is None else _dated(body[1:], delimiter, at)
+        if times is None:
+            times = microseconds(said["START_TIME"]) + 1e6 / float(said["SAMPLE_RATE_HZ"]) * numpy.arange(len(columns[0]))
+        counted(times, int(said.get("SAMPLE_COUNT", len(times))))
+        values = [n for n in range(len(units)) if n != at]
+        for n, column in zip(values, columns):
+            name = said.get("SID", names[n]) if len(values) == 1 else names[n]
+            channels.setdefault((name, units[n]), []).append((times, column))
     return [from_first(name, unit, pieces) for (name, unit), pieces in channels.items()]
 
 
