@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     Array = numpy.ndarray
 numpy = needed("numpy")
 
-COUNTS = ("index", "sample", "samples", "frame", "point", "number", "no", "n", "i", "nr", "id", "row", "count")  # no times
+COUNTS = ("index", "sample", "samples", "frame", "frames", "point", "points", "number", "no", "n", "i", "nr", "id", "row",
+          "count", "step", "timestep")  # are no times
 RAW = ("counts", "count", "v", "mv", "uv")  # units of what a recorder writes
 EPOCH = 1e8    # times beyond it [s] count from a date
 ABOUT_GRAVITY = (9.7, 9.9)  # factors that make m/s^2 of g
@@ -315,7 +316,7 @@ def _value_column(columns: Sequence[Column], times: Column | None, column: int |
 def _times(chosen: Column, times: Column | None, step: float | None, unit: str | None) -> "tuple[Array, list[str]]":
     """Times [s] of the samples of a column, and what was done to them."""
     if step is None and times is None and chosen.times is not None:
-        times = dataclasses.replace(chosen, values=chosen.times, unit="" if chosen.doubt else "s", notes=())
+        times = dataclasses.replace(chosen, values=chosen.times, unit=chosen.time_unit, notes=())
     elif times is None:
         if step is None and not chosen.step:
             raise ValueError(f"step: {chosen.doubt or 'the file has no times'}; give the sampling interval in seconds, as "

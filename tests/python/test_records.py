@@ -457,6 +457,7 @@ class Descriptions(Case):
         self.refused("is a velocity, no force or acceleration; differentiate=True takes its derivative",
                      text("VELOCITY TIME SERIES IN UNITS OF CM/S"),
                      "a.VT2")
+        self.refused("velocity: is a velocity", text("The units are (cm/s)"), "c.VT2")
         self.refused("is a displacement.*second derivative", text("DISPLACEMENT TIME SERIES IN UNITS OF CM"), "a.DT2")
         self.refused("unit = g: is one of acceleration, and the file says that velocity is a velocity",
                      text("VELOCITY TIME SERIES IN UNITS OF CM/S"),
@@ -537,8 +538,10 @@ class Rows(Case):
         long = numpy.tile(VALUE, 3)
         text = fixed(long, "12.5f", 5)
         self.refused(r'layout: 5 columns of one kind without names: layout="rows" .* with step=', text[:300])
-        for options in ({}, {"step": 0.02}, {"column": 0, "step": 0.02}):
-            self.refused("layout", text[:300], **options)
+        for rows in (text[:300], text, fixed(long, "12.5f", 23),
+                     ", ".join(map(str, long[:-1])) + f"\n{long[-1]}\n"):
+            for options in ({}, {"step": 0.02}, {"column": 0, "step": 0.02}):
+                self.refused("layout", rows, **options)
         for rows in (text, fixed(long, "9.4f", 4), text.replace("   ", " , ")):
             self.same(self.read(rows, layout="rows", step=0.02), time=0.02 * numpy.arange(24), value=long)
         self.same(self.read(fixed(long, "12.5f", 4), layout="columns", column=1, step=0.08), time=0.08 * numpy.arange(6),
@@ -551,6 +554,7 @@ class Rows(Case):
         text = fixed(numpy.column_stack([TIME, VALUE]).ravel(), "10.4f", 6)
         self.refused('layout="pairs" pairs of time and value', text[:120])
         self.same(self.read(text, layout="pairs", time_unit="s"))
+        self.assertIn("times are read as seconds", str(self.read(text, layout="pairs")))
         self.same(self.read(text, layout="pairs", time_unit="ms"), time=TIME / 1000)
 
     def test_rest(self):

@@ -24,7 +24,7 @@ def _read(lines: list[str]) -> list[Column]:
     step = float(stated["DT"][1]) if stated["DT"] else float(plain[2]) if plain else None
     found = [(line, match[1].rstrip(".,-")) for pattern in UNITS for line in lines[:at] if (match := pattern.search(line))]
     said, unit = next(((line, unit) for line, unit in found if kind_of(unit)), ("", ""))
-    kind = kind_in(said) or kind_in(" ".join(lines[:at])) or "acceleration"
+    kind = kind_in(said) or kind_of(unit) or kind_in(" ".join(lines[:at])) or "acceleration"
     values = numbers([line for line in lines[at + 1:] if line.strip()])
     return [Column(kind, counted(values, count, "NPTS"), unit, step, kind=kind)]
 

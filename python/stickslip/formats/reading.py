@@ -30,8 +30,8 @@ class Column:
     ----------
     name, values, unit
         As in the file; the name of a channel has its direction.
-    step, start, times
-        Sampling interval and first time [s], or all times [s], where the format has them.
+    step, start, times, time_unit
+        Sampling interval and first time [s], or all times [time_unit], where the format has them.
     kind
         One of `stickslip.units.KINDS`, where the format says it.
     doubt
@@ -46,6 +46,7 @@ class Column:
     step: float | None = None
     start: float = 0
     times: "Array | None" = None
+    time_unit: str = "s"
     kind: str = ""
     doubt: str = ""
     notes: tuple[str, ...] = ()
@@ -139,8 +140,8 @@ def data_of(lines: Sequence[str]) -> list[str]:
 
 def kind_in(words: str) -> str:
     """The kind that words such as "Corrected accelerogram" name; "" if none."""
-    found = re.search(r"(acc|vel|dis)", words, re.IGNORECASE)
-    return KINDS[found[1].lower()] if found else ""
+    found = re.search(r"\b(?:acc(?=\b|el)|vel(?=\b|oc)|dis(?=\b|p))", words, re.IGNORECASE)
+    return KINDS[found[0].lower()] if found else ""
 
 
 def microseconds(text: str) -> int:

@@ -116,8 +116,9 @@ def columns_of(lines: Sequence[str], layout: str | None, delimiter: str | None, 
             heads.append([field.strip().strip('"').strip() for field in fields])
     names, units, doubt = _names(heads, count)
     values = numpy.array(table).T
-    if layout is None and count > 1 and names[0] == UNNAMED.format(0):
-        _require_columns(values, [head for head in heads if len(head) > 2 and all(map(ONE.fullmatch, head))])
+    if layout is None and names[0] == UNNAMED.format(0):
+        parts = [re.split(r"[,;\s]+", " ".join(head)) for head in heads]
+        _require_columns(values, [head for head in parts if len(head) > 2 and all(map(ONE.fullmatch, head))])
     last = [field.strip().strip('"').strip() for field in _fields(plain[-1], reading[0])]
     units = ["us" if DATE.fullmatch(field) else "s" if CLOCK.fullmatch(field) else unit for field, unit in zip(last, units)]
     return [Column(name, column, unit, doubt=doubt, kind="date" if DATE.fullmatch(field) else "")
@@ -137,7 +138,7 @@ def _require_columns(values: "Array", above: Sequence[Sequence[str]]) -> None:
         raise ValueError(f"layout: rows of {count} numbers below {len(above[0])}, {above[0][0]} ...: leave those lines out, or "
                          'say layout="columns"')
     pairs = count % 2 == 0 and rise(flat[::2])
-    if short or not rise(values[0]) or rise(flat) or count > 2 and pairs:
+    if short or count > 1 and (not rise(values[0]) or rise(flat) or count > 2 and pairs):
         count = len(above[0]) if short else count
         raise ValueError(f"layout: {count} columns of one kind without names: layout=\"rows\" takes "
                          "the samples of each row one after the other, with step="
@@ -216,7 +217,7 @@ def _channel(name: str, n: int, values: "Array", layout: str) -> Column:
         return Column(name, values)
     if len(values) % 2:
         raise ValueError(f"{name}: {len(values)} numbers are no pairs; correct the last row")
-    return Column(name, values[1::2], times=values[::2])
+    return Column(name, values[1::2], times=values[::2], time_unit="")
 
 
 def ways(lines: Sequence[str]) -> str:
