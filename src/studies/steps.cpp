@@ -134,10 +134,11 @@ std::string conclusion(Table table) {
                      error, vanishes ? ", which is 0: vanishes in the limit" : "");
 }
 
-// Of the run that has most: some may have failed.
+// Of the run with most values: some may have failed.
 std::vector<std::string> keys_of(const std::vector<Run>& runs) {
-  const auto most = std::ranges::max_element(std::views::reverse(runs), {},
-                                             [](const Run& run) { return run.results.size(); });
+  const auto most = std::ranges::max_element(std::views::reverse(runs), {}, [](const Run& run) {
+    return std::ranges::count_if(run.results, quantities::all_numbers);
+  });
   std::vector<std::string> keys;
   for (const auto& result : most->results) keys.push_back(result.key);
   return keys;
