@@ -268,8 +268,8 @@ class Refiner {
     const auto& results = outcome_.results;
     const auto& limiting = *std::ranges::find(results, key, &quantities::Result::key);
     const double least = std::max(rounding, step.estimate);
-    outcome_.attainable = std::max(outcome_.attainable, 2 * least);
-    if (given_up_.empty()) {
+    if (2 * least > outcome_.attainable) {
+      outcome_.attainable = 2 * least;
       limit_ = fmt::format("{} the relative error of {}{} to {:.1e}{}", what_limits(limits_[key]),
                            key, quantities::where_unknown(limiting), least,
                            least < kLoosest ? "" : "; no digit of it is certain: leave it out");
@@ -387,7 +387,7 @@ class Refiner {
   std::vector<double> rounding_;         // relative, of each result
   std::map<std::string, Limit> limits_;  // by key of results
   std::set<std::string> given_up_;       // keys of results that stay inaccurate
-  std::string limit_;                    // what limits the first of them
+  std::string limit_;                    // what limits the worst of them
   Changes changes_;                      // of the last step
   std::shared_ptr<quantities::Recipes> recipes_ = std::make_shared<quantities::Recipes>();
   std::shared_ptr<const StationaryDistribution> distribution_;  // of the last step, if needed
@@ -429,7 +429,7 @@ std::string tried_accuracy(MPI_Comm comm, const cases::Case& given, const Outcom
     const Outcome tried = Refiner(comm, looser, {}).run();
     const char* other = given.method.row().small_lambda ? "another -lambda or " : "";
     if (tried.reached) return fmt::format("; take {}-accuracy {}", other, text);
-    next = std::max(2 * next, tried.attainable);
+    next = std::max(10 * next, tried.attainable);
   }
   return outcome.attainable > 0 && outcome.attainable < 2 * kLoosest
              ? "; a looser -accuracy does not help: leave it out"
