@@ -127,7 +127,8 @@ class SceneReader {
     const auto process = balanced.meant();
     const double left = process.mean_force();
     const bool held = -backwards.mu_d < left && left < forwards.mu_d;
-    if (held && (process.starts_upwards() || process.starts_downwards())) {
+    const bool moves = process.starts_upwards() || process.starts_downwards();
+    if (held && moves && process.sticks()) {
       ways.push_back(mean == 0 ? "take a bias smaller than mu_d" : "take -bias " + bias);
     }
     if (std::abs(force) < (force > 0 ? forwards : backwards).mu_s) {
