@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     Array = numpy.ndarray
 numpy = needed("numpy")
 
-PARTS = ("value", "error", "unit", "ci95", "low", "high")  # of a result; what else there is, is the abscissa
+PARTS = ("value", "error", "unit", "ci95", "low", "high", "reason")  # of a result; what else there is, is the abscissa
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

@@ -53,6 +53,8 @@ Solved evaluated(MPI_Comm comm, const cases::Case& given, const Resolution& reso
 // What has no digit after so many will have none, as modes in a continuous spectrum have not.
 constexpr double kOneDigit = 0.1;
 constexpr int kRefinementsWithoutDigit = 6;
+// The loosest accuracy that is advised.
+constexpr double kLoosest = 0.05;
 // Below as many unknowns a step takes hardly longer than to predict how long.
 constexpr std::int64_t kWorthPrediction = 30'000;
 
@@ -63,10 +65,12 @@ class Refiner {
         given_(given),
         question_(given.question),
         progress_(progress),
-        sequence_(given) {}
+        sequence_(given),
+        left_(given) {}
 
   Outcome run() {
     refine();
+    append_failed();
     if (question_.wants(Quantity::density))
       outcome_.density = quantities::density_field(*distribution_);
     return std::move(outcome_);
@@ -109,7 +113,8 @@ class Refiner {
     leave_out_settled(resolution.waves);
     const int step_number = static_cast<int>(outcome_.steps.size());
     if (progress_) progress_(step_number, resolution, expected_seconds(resolution));
-    auto [evaluation, step] = evaluated(comm_, given_, resolution, recipes_);
+    auto [evaluation, step] = evaluated(comm_, left_, resolution, recipes_);
+    leave_out_failed(n, evaluation);
     remember_rounding(evaluation.results);
     if (!outcome_.steps.empty()) add_discretisation(n, evaluation.results);
     outcome_.results = std::move(evaluation.results);
@@ -117,6 +122,44 @@ class Refiner {
     follow(std::move(evaluation.distribution));
     outcome_.total += step.statistics;
     outcome_.steps.push_back(std::move(step));
+  }
+
+  // A quantity that fails is asked for no longer. Its values are those of the step before where
+  // these have error estimates, and else not known.
+  void leave_out_failed(int n, const routes::Evaluation& evaluation) {
+    if (evaluation.failed.empty()) return;
+    const bool estimated = n >= 2;
+    for (const auto& [quantity, reason] : evaluation.failed) {
+      const auto& entries = catalogue::entries();
+      const auto* entry = *std::ranges::find(entries, quantity, &catalogue::Entry::quantity);
+      left_.question.quantities.erase(quantity);
+      outcome_.failures +=
+          fmt::format("{}{}: {}", outcome_.failures.empty() ? "" : "; ", entry->word, reason);
+      if (estimated) continue;
+      for (auto& result : quantities::without_values(given_, quantity, reason)) {
+        failed_.push_back(std::move(result));
+      }
+    }
+    Results before = std::exchange(outcome_.results, {});
+    Changes changes = std::exchange(changes_, {});
+    for (std::size_t r = 0; r < before.size(); ++r) {
+      const auto& now = evaluation.results;
+      const bool goes_on =
+          std::ranges::find(now, before[r].key, &quantities::Result::key) != now.end();
+      if (goes_on && r < changes.size()) changes_.push_back(std::move(changes[r]));
+      if (goes_on || estimated) {
+        (goes_on ? outcome_.results : failed_).push_back(std::move(before[r]));
+      }
+    }
+    const bool nothing = std::ranges::none_of(failed_, quantities::all_numbers);
+    if (evaluation.results.empty() && nothing) throw NotReached(outcome_.failures);
+  }
+
+  void append_failed() {
+    if (outcome_.failures.empty()) return;
+    outcome_.reached = false;
+    outcome_.shortfall += (outcome_.shortfall.empty() ? "" : "; ") + outcome_.failures;
+    for (auto& result : failed_) outcome_.results.push_back(std::move(result));
   }
 
   // Waves are followed only where a frequency misses the accuracy without, and from then on.
@@ -225,14 +268,11 @@ class Refiner {
     const auto& results = outcome_.results;
     const auto& limiting = *std::ranges::find(results, key, &quantities::Result::key);
     const double least = std::max(rounding, step.estimate);
-    const std::string looser =
-        least < 0.05
-            ? fmt::format("take {}-accuracy {:.0e}",
-                          given_.method.row().small_lambda ? "another -lambda or " : "", 2 * least)
-            : "no digit of it is certain: leave it out";
-    if (given_up_.empty()) {
-      limit_ = fmt::format("{} the relative error of {}{} to {:.1e}; {}", what_limits(limits_[key]),
-                           key, quantities::where_unknown(limiting), least, looser);
+    if (2 * least > outcome_.attainable) {
+      outcome_.attainable = 2 * least;
+      limit_ = fmt::format("{} the relative error of {}{} to {:.1e}{}", what_limits(limits_[key]),
+                           key, quantities::where_unknown(limiting), least,
+                           least < kLoosest ? "" : "; no digit of it is certain: leave it out");
     }
     given_up_.insert(key);
     if (!over_modes(limiting)) return;
@@ -262,8 +302,8 @@ class Refiner {
         if (!quantities::is_unreached(result, n)) continue;
         outcome_.reached = false;
         outcome_.shortfall +=
-            fmt::format("{}{} at {} = {:g} {}", outcome_.shortfall.empty() ? "" : "; ", result.key,
-                        result.abscissa_name, result.abscissa[n], result.unreached);
+            fmt::format("{}{}{} {}", outcome_.shortfall.empty() ? "" : "; ", result.key,
+                        quantities::place(result, n), result.unreached);
         return;
       }
     }
@@ -341,11 +381,13 @@ class Refiner {
   const cases::Question& question_;
   const Progress& progress_;
   RefinementSequence sequence_;
+  cases::Case left_;  // without what has failed
+  Results failed_;    // what is known of that
   Outcome outcome_;
   std::vector<double> rounding_;         // relative, of each result
   std::map<std::string, Limit> limits_;  // by key of results
   std::set<std::string> given_up_;       // keys of results that stay inaccurate
-  std::string limit_;                    // what limits the first of them
+  std::string limit_;                    // what limits the worst of them
   Changes changes_;                      // of the last step
   std::shared_ptr<quantities::Recipes> recipes_ = std::make_shared<quantities::Recipes>();
   std::shared_ptr<const StationaryDistribution> distribution_;  // of the last step, if needed
@@ -377,6 +419,21 @@ Solved solve_on(MPI_Comm comm, const cases::Case& given, const Resolution& resol
 
 Outcome refine(MPI_Comm comm, const cases::Case& given, const Progress& progress) {
   return Refiner(comm, given, progress).run();
+}
+
+std::string tried_accuracy(MPI_Comm comm, const cases::Case& given, const Outcome& outcome) {
+  cases::Case looser = given;
+  for (double next = outcome.attainable; next > 0 && next < 2 * kLoosest;) {
+    const std::string text = fmt::format("{:.0e}", next);
+    looser.question.accuracy = std::stod(text);
+    const Outcome tried = Refiner(comm, looser, {}).run();
+    const char* other = given.method.row().small_lambda ? "another -lambda or " : "";
+    if (tried.reached) return fmt::format("; take {}-accuracy {}", other, text);
+    next = std::max(10 * next, tried.attainable);
+  }
+  return outcome.attainable > 0 && outcome.attainable < 2 * kLoosest
+             ? "; a looser -accuracy does not help: leave it out"
+             : "";
 }
 
 }  // namespace stickslip::accuracy

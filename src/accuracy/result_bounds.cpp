@@ -14,6 +14,7 @@ namespace stickslip::accuracy {
 namespace {
 
 using quantities::Kind;
+using quantities::place;
 using quantities::Result;
 
 constexpr double kRounding = 1e-10;  // where errors are smaller, they are estimates themselves
@@ -40,11 +41,6 @@ std::optional<Bounds> bounds_of(Kind kind) {
   return std::nullopt;
 }
 
-std::string place(const Result& result, std::size_t n) {
-  if (result.is_scalar()) return "";
-  return fmt::format(" at {} = {:g}", result.abscissa_name, result.abscissa[n]);
-}
-
 std::string out_of_range(const Result& result, double highest) {
   for (std::size_t n = 0; n < result.value.size(); ++n) {
     const double value = result.value[n], slack = result.error[n] + kRounding;
@@ -58,6 +54,7 @@ std::string out_of_range(const Result& result, double highest) {
 std::string wrong_way(const Result& result, int direction) {
   std::vector<std::size_t> order(result.value.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
+  std::erase_if(order, [&](std::size_t n) { return quantities::is_unreached(result, n); });
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return result.abscissa[a] < result.abscissa[b]; });
   for (std::size_t n = 1; n < order.size(); ++n) {

@@ -26,9 +26,8 @@ using Run = std::function<Ending(const std::vector<std::string>& words, const Em
 /// Runs a case for each line of a file, or of standard input for "-", one after the other: its
 /// options are the words `common` and those of the line. Each is answered on standard output by a
 /// line of JSON: its exit status, and what -summary writes or what went wrong. A case that fails
-/// leaves the others alone, but for an error that nobody expected, after which this process is not
-/// to be trusted: it ends. Returns the largest status. Not for several ranks. Throws BadInput where
-/// there is no such file.
+/// leaves the others alone. Returns the largest status. Not for several ranks. Throws BadInput
+/// where there is no such file.
 int run_cases(const std::vector<std::string>& common, const std::string& file, const Run& run);
 
 }  // namespace stickslip::app

@@ -14,7 +14,6 @@
 #include <cstring>
 #include <exception>
 #include <functional>
-#include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -179,7 +178,7 @@ int run_study(const options::Request& request, const Beginning& beginning, const
   const auto study = studies::run_study(comm, request, request.study,
                                         study_progress_of(request, petsc::rank(comm) == 0));
   emit(io::report_of(comm, request, study, beginning.until_now()), request);
-  return 0;
+  return static_cast<int>(study.complete ? ExitStatus::done : ExitStatus::not_reached);
 }
 
 int report_plan(const options::Request& request, const Emit& emit) {
@@ -217,9 +216,11 @@ int run_sweep(const options::Request& request, const Beginning& beginning, const
 
 int compute(const options::Request& request, const Beginning& beginning, const Emit& emit) {
   const MPI_Comm comm = MPI_COMM_WORLD;
-  const auto outcome =
-      accuracy::carry_out(comm, request, progress_of(comm, request),
-                          simulation_progress_of(request), request.files.checkpoint);
+  auto outcome = accuracy::carry_out(comm, request, progress_of(comm, request),
+                                     simulation_progress_of(request), request.files.checkpoint);
+  if (outcome.attainable > 0) {
+    outcome.shortfall += accuracy::tried_accuracy(comm, request, outcome);
+  }
   emit(io::report_of(comm, request, outcome, beginning.until_now()), request);
   return status_of(outcome);
 }
@@ -248,10 +249,6 @@ options::Request agreed_request(const std::vector<std::string>& words) {
   return request;
 }
 
-constexpr const char* kOutOfMemory =
-    "memory ran out; take a larger -delta, a looser -accuracy or more ranks, or raise the limit "
-    "(ulimit -v)";
-
 /// The status that the work returns, or what its error says. Bad input is found on all ranks alike;
 /// any other error may be known to one rank alone.
 Ending ending_of(const std::function<int()>& work) {
@@ -260,20 +257,9 @@ Ending ending_of(const std::function<int()>& work) {
     return {work()};
   } catch (const BadInput& failure) {
     return {status(failure.status()), failure.what()};
-  } catch (const Failure& failure) {
+  } catch (...) {
+    const Failure failure = petsc::failure_in_flight();
     return {status(failure.status()), failure.what(), false};
-  } catch (const std::bad_alloc&) {
-    return {status(ExitStatus::no_memory), kOutOfMemory, false};
-  } catch (const petsc::PetscFailure& failure) {
-    const std::string text = failure.what(), message = text.substr(0, text.find('\n'));
-    switch (failure.code()) {
-    case PETSC_ERR_MEM: return {status(ExitStatus::no_memory), kOutOfMemory, false};
-    case PETSC_ERR_NOT_CONVERGED: return {status(ExitStatus::not_reached), message, false};
-    case PETSC_ERR_USER_INPUT: return {status(ExitStatus::bad_input), message, false};
-    default: return {status(ExitStatus::other), text, false};
-    }
-  } catch (const std::exception& failure) {
-    return {status(ExitStatus::other), failure.what(), false};
   }
 }
 

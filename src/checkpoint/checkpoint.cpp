@@ -74,7 +74,7 @@ class LockedFile {
 
  private:
   [[noreturn]] void fail(const char* what) const {
-    throw std::runtime_error(fmt::format("{} {}: {}", what, name_, std::strerror(errno)));
+    throw SystemFailure(fmt::format("{} {}: {}", what, name_, std::strerror(errno)));
   }
 
   std::string name_;

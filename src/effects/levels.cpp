@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <exception>
 #include <memory>
+#include <new>
 #include <stdexcept>
 
 namespace stickslip::effects {
@@ -11,7 +13,9 @@ bool make_levels(Given& given, model::Scene& scene, const char* option, const ch
   if (!given.sound()) return false;
   try {
     make_noise_levels(scene);
-  } catch (const std::invalid_argument& unfit) {
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& unfit) {  // files have errors of their own
     given.refuse(option, unfit.what(), fix);
   }
   return scene.noise.table != nullptr;

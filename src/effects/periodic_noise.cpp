@@ -16,14 +16,21 @@ constexpr const char *kPeriodicAmplitude = "periodic_amplitude", *kPeriod = "per
 // The force at each phase, over the amplitude.
 std::vector<double> shape_of(const model::Scene& scene) {
   std::vector<double> shape;
+  double phases = 0;
+  bool sine = true;
   for (const auto& [name, value] : scene.own) {
+    if (name == kPhases) phases = std::get<double>(value);
     if (name != kShape) continue;
+    sine = false;
     const auto rows = read_csv<1>(std::get<std::string>(value), {"x"}, ::io::ignore_extra_column);
     for (const auto& row : rows.values) shape.push_back(row[0]);
-    return shape;
   }
-  const int phases = static_cast<int>(own_number(scene, kPhases));
-  for (int k = 0; k < phases; ++k) shape.push_back(std::sin(2 * std::numbers::pi * k / phases));
+  if (!sine && phases != 0 && phases != static_cast<double>(shape.size())) {
+    throw std::invalid_argument(
+        fmt::format("holds {} phases, but -{} is {:g}", shape.size(), kPhases, phases));
+  }
+  for (int k = 0; sine && k < phases; ++k)
+    shape.push_back(std::sin(2 * std::numbers::pi * k / phases));
   return shape;
 }
 
@@ -42,14 +49,12 @@ model::LevelTable periodic_levels(const model::Scene& scene) {
 }
 
 bool complete_periodic(Given& given, model::Scene& scene) {
-  if (given.has(kShape) && given.has(kPhases)) {
-    given.refuse(kPhases, "is the number of lines of -period_shape", "leave one of them out");
-  }
-  if (given.has(kShape)) {
+  if (given.has(kShape) && !given.has(kPhases)) {
     std::erase_if(scene.own, [](const auto& each) { return each.first == kPhases; });
   }
   return make_levels(given, scene, given.has(kShape) ? kShape : kPhases,
-                     "write CSV with the column x, the force at three or more phases");
+                     "write CSV with the column x, the force at three or more phases, as many as "
+                     "-period_phases where that is given");
 }
 
 }  // namespace

@@ -26,7 +26,9 @@ class SceneReader {
       read_effect(given_, *choice, word, scene_);
     }
     check_friction();
-    if (noisy() && complete(noises())) check_starts();
+    const bool made = noisy() && complete(noises());
+    if (made || (noisy() && noises().in(scene_).levels == nullptr)) check_mean_force();
+    if (made) check_starts();
     if (given_.sound()) (void)complete(drags());  // which looks at the noise
     if (scene_.noise.table && given_.sound()) check_returns();
     return scene_;
@@ -83,21 +85,56 @@ class SceneReader {
                          backwards.mu_d, backwards.mu_s),
              grows);
     }
+  }
+
+  // Without drag, friction alone opposes what drives bodies over long times. A drag of a formula is
+  // judged where it is read.
+  void check_mean_force() {
+    const auto& forwards = scene_.friction;
+    const auto backwards = forwards.mirrored();
     const double mean = scene_.noise.table ? scene_.noise.table->mean() : 0;
     const double force = scene_.bias + mean, mu_d = force > 0 ? forwards.mu_d : backwards.mu_d;
     const bool made_later = drags().in(scene_).complete != nullptr;
-    if (made_later || !noisy() || !scene_.drag.is_none() || std::abs(force) < mu_d) return;
+    if (made_later || !scene_.drag.is_none() || std::abs(force) < mu_d) return;
     if (force == 0) {
       return report("mu_d", "leaves nothing that slows a body: there is no drag either",
                     "take a positive -mu_d, or add drag");
     }
+    const char* of_side = force < 0 && forwards.mu_d_minus ? "mu_d_minus" : "mu_d";
     const auto noise = mean == 0 ? "" : fmt::format("with the mean {:g} of the noise ", mean);
-    report("bias",
-           fmt::format(
-               "{}accelerates a sliding body for ever: without drag, friction mu_d = {:g} alone "
-               "opposes it",
-               noise, mu_d),
-           "take a bias smaller than mu_d, or add drag");
+    if (scene_.bias != 0) {
+      return report("bias",
+                    fmt::format("{}accelerates a sliding body for ever: without drag, friction "
+                                "{} = {:g} alone opposes it",
+                                noise, of_side, mu_d),
+                    ways_to_hold(force, mean));
+    }
+    report(of_side,
+           fmt::format("does not hold the mean {:g} of the noise, which accelerates a sliding body "
+                       "for ever: without drag, friction alone opposes it",
+                       mean),
+           ways_to_hold(force, mean));
+  }
+
+  // What makes friction stronger than the mean force, or drag bound the speed.
+  [[nodiscard]] std::string ways_to_hold(double force, double mean) const {
+    const auto& forwards = scene_.friction;
+    const auto backwards = forwards.mirrored();
+    std::vector<std::string> ways{"add drag, such as -drag linear"};
+    model::Scene balanced = scene_;
+    const auto bias = fmt::format("{:g}", (forwards.mu_d - backwards.mu_d) / 2 - mean);
+    balanced.bias = std::stod(bias);
+    const auto process = balanced.meant();
+    const double left = process.mean_force();
+    const bool held = -backwards.mu_d < left && left < forwards.mu_d;
+    const bool moves = process.starts_upwards() || process.starts_downwards();
+    if (held && moves && process.sticks()) {
+      ways.push_back(mean == 0 ? "take a bias smaller than mu_d" : "take -bias " + bias);
+    }
+    if (std::abs(force) < (force > 0 ? forwards : backwards).mu_s) {
+      ways.push_back(fmt::format("take a larger -mu_d, above {:g}", std::abs(force)));
+    }
+    return enumerate(ways, "or");
   }
 
   // That there is a level on which bodies slide. Where there is none on which they stick, what asks
@@ -133,8 +170,8 @@ class SceneReader {
                     : fmt::format("take {}", stronger));
   }
 
-  // On the lowest level bodies must come to rest from every velocity that they reach: otherwise
-  // some slide for ever.
+  // On the lowest level bodies that ever stick must come to rest from every velocity that they
+  // reach: otherwise some slide for ever.
   void check_returns() {
     const auto process = scene_.meant();
     for (const auto& branch : {process, process.mirrored()}) {
@@ -143,12 +180,16 @@ class SceneReader {
                    highest = branch.net_force(noise.highest());
       const double rise = branch.drag.highest(branch.drag.terminal_velocity(highest));
       if (!branch.starts_upwards() || lowest + rise < 0) continue;
+      if (!process.sticks() && branch.moves_on()) continue;
       return report(
           "mu_d",
           fmt::format("does not stop sliding bodies: on the outermost noise level, {:g} from the "
                       "mean, a force of {:g} still accelerates them",
                       noise.level(noise.lowest()) - noise.mean(), lowest + rise),
-          "take a larger -mu_d, or levels on both sides of it");
+          lowest < 0 ? "take a larger -mu_d, or levels on both sides of it"
+                     : fmt::format("take a static coefficient as small as mu_d for the motion that "
+                                   "goes on, or a larger -mu_d, above {:g}",
+                                   lowest + branch.friction.at_rest()));
     }
   }
 

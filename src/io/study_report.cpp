@@ -46,7 +46,9 @@ Json run_json(const model::Scene& meant, const studies::Run& run) {
   cost["seconds"] = run.seconds;
   cost["unknowns"] = run.statistics.unknowns;
   cost["factor_megabytes"] = run.statistics.factor_megabytes;
-  return {{"scene", scene}, {"results", outputs::results_json(run.results)}, {"cost", cost}};
+  Json json{{"scene", scene}, {"results", outputs::results_json(run.results)}, {"cost", cost}};
+  if (!run.failure.empty()) json["message"] = run.failure;
+  return json;
 }
 
 Json table_json(const studies::Table& table) {

@@ -55,11 +55,11 @@ double reach_of(const Side& b, double force, const Friction& friction, double bi
   }
   const std::string driven =
       bias == 0 ? fmt::format("drives a body for ever from about v = {:.2g} on", b.sign * held)
-                : fmt::format("does not hold a body that the bias {:g} drives", bias);
+                : fmt::format("does not hold a body that the mean force {:g} drives", bias);
   throw UnfitLaw(fmt::format("{}: it is {:g} at v = {:g}, and friction takes {:g}", driven,
                              b.sign * b(far / scale) + 0.0, b.sign * far / scale, mu_d),
-                 "check the signs, as in \"-v - 0.1*v*abs(v)\"; take a smaller bias, or a drag "
-                 "that grows");
+                 "check the signs, as in \"-v - 0.1*v*abs(v)\"; take a bias and noise of a smaller "
+                 "mean, or a drag that grows");
 }
 
 // Evenly spaced, and in even ratios down to 1e-10 of the reach.

@@ -8,6 +8,7 @@
 #include <complex>
 #include <cstdint>
 #include <cstdlib>
+#include <map>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -193,15 +194,21 @@ bool MirroredOrder::reversed() const {
 MirroredOrder mirrored_order(const std::vector<double>& x,
                              const std::vector<Transition>& transitions) {
   const auto look = looks(x, transitions, 1), mirrored = looks(x, transitions, -1);
+  // Looks are numbers that change with the units: what counts is where each is first seen.
+  std::map<std::uint64_t, std::size_t> first;
+  for (std::size_t n = 0; n < x.size(); ++n) first.try_emplace(look[n], n);
+  const bool may_be_even =
+      std::ranges::all_of(mirrored, [&](std::uint64_t image) { return first.contains(image); });
   // Below 0 the mirror decides; at 0 states come before their images, in the images' reverse order,
-  // with those between them that are their own images.
+  // with those between them that are their own images. All others keep their order.
   const auto key = [&](std::size_t n) {
-    const std::uint64_t most = ~std::uint64_t{0};
-    if (x[n] > 0) return std::tuple(0, look[n]);
-    if (x[n] < 0) return std::tuple(0, most - mirrored[n]);
-    if (look[n] < mirrored[n]) return std::tuple(0, look[n]);
-    if (look[n] == mirrored[n]) return std::tuple(1, look[n]);
-    return std::tuple(2, most - mirrored[n]);
+    if (!may_be_even) return std::tuple(0, std::size_t{0});
+    const std::size_t own = first.at(look[n]), other = first.at(mirrored[n]);
+    if (x[n] > 0) return std::tuple(0, own);
+    if (x[n] < 0) return std::tuple(0, x.size() - other);
+    if (own < other) return std::tuple(0, own);
+    if (own == other) return std::tuple(1, own);
+    return std::tuple(2, x.size() - other);
   };
   MirroredOrder order;
   auto& states = order.states;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <type_traits>
 
 #include "branch_factors.hpp"
@@ -115,7 +116,10 @@ auto ElementElimination<Scalar>::unfactored(Branch branch) const -> std::unique_
   const noise::Nodes& nodes = upper ? *noise : noise->mirrored();
   std::vector<double> net_force;
   for (int n = nodes.first(); n <= nodes.last(); ++n) {
-    net_force.push_back(along.net_force_at(nodes.x(n)));
+    const double force = along.net_force_at(nodes.x(n));
+    // Where no level holds a body, one at v = 0 passes to this side, however slowly.
+    const bool passes = force == 0 && !process.sticks();
+    net_force.push_back(passes ? std::numeric_limits<double>::min() : force);
   }
   const auto& on =
       dynamic_cast<const velocity::HpDiscretisation&>(upper ? *velocities : velocities->mirrored());

@@ -262,10 +262,12 @@ class Rules {
       if (!entry->of_phases) without.emplace_back(entry->word);
     }
     const auto noise = r_.scene.meant().noise;
+    const double bias = r_.scene.bias;
     const auto why =
-        fmt::format("holds the body on none of the noise levels, from {:g} to {:g}, shifted by the "
-                    "bias {:g}: the body never sticks, so that there are no phases for ",
-                    noise.level(noise.lowest()), noise.level(noise.highest()), r_.scene.bias);
+        fmt::format("holds the body on none of the noise levels, from {:g} to {:g}{}: the body "
+                    "never sticks, so that there are no phases for ",
+                    noise.level(noise.lowest()), noise.level(noise.highest()),
+                    bias == 0 ? "" : fmt::format(", shifted by the bias {:g}", bias));
     const std::string finer = noise.table ? "" : ", or a smaller -delta";
     report("mu_s", !missing.empty(), why + enumerate(missing, "and"),
            fmt::format("take -quantities of {}, or a larger -mu_s{}", enumerate(without, "and"),

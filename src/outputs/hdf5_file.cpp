@@ -5,10 +5,10 @@
 
 #include <array>
 #include <exception>
-#include <stdexcept>
 #include <utility>
 
 #include "stickslip/petsc/session.hpp"
+#include "stickslip/support/errors.hpp"
 #include "stickslip/support/hdf5_id.hpp"
 
 namespace stickslip::outputs {
@@ -24,12 +24,12 @@ long shared_tag(MPI_Comm comm) {
 
 // Throws when HDF5 refused to give an identifier.
 Hdf5Id given(hid_t id, herr_t (*close)(hid_t), const std::string& what) {
-  if (id < 0) throw std::runtime_error("HDF5 refused " + what);
+  if (id < 0) throw SystemFailure("HDF5 refused " + what);
   return {id, close};
 }
 
 void require(herr_t status, const std::string& what) {
-  if (status < 0) throw std::runtime_error("HDF5 could not write " + what);
+  if (status < 0) throw SystemFailure("HDF5 could not write " + what);
 }
 
 Hdf5Id space_of(std::span<const hsize_t> sizes, const std::string& what) {
@@ -66,7 +66,7 @@ Hdf5File::Hdf5File(MPI_Comm comm, const std::string& target)
   const Hdf5Id access = given(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "a list of properties");
   require(H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL), file_.part());
   id_ = H5Fcreate(file_.part().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
-  if (id_ < 0) throw std::runtime_error("cannot create " + file_.part());
+  if (id_ < 0) throw SystemFailure("cannot create " + file_.part());
 }
 
 Hdf5File::~Hdf5File() {

@@ -15,6 +15,7 @@ Json results_json(const quantities::Results& results) {
       json[r.key] = {{r.abscissa_name, r.abscissa}, {"value", r.value}, {"error", r.error}};
     }
     if (!r.unit.empty()) json[r.key]["unit"] = r.unit;
+    if (!quantities::all_numbers(r) && !r.unreached.empty()) json[r.key]["reason"] = r.unreached;
     if (r.ci95.empty()) continue;
     json[r.key]["ci95"] = r.is_scalar() ? Json(r.ci95[0]) : Json(r.ci95);
   }

@@ -1,14 +1,14 @@
 #include <cstdio>
-#include <stdexcept>
 
 #include "stickslip/outputs/report.hpp"
+#include "stickslip/support/errors.hpp"
 
 namespace stickslip::outputs {
 namespace {
 
 void print(const Report& report, const std::string& /*file*/) {
   const bool printed = std::fputs(report.text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
-  if (!printed) throw std::runtime_error("standard output cannot be written");
+  if (!printed) throw SystemFailure("standard output cannot be written");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 #include <vector>
@@ -15,6 +16,27 @@
 #include "stickslip/petsc/memory.hpp"
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/infinity.hpp"
+
+namespace {
+
+constexpr const char* kOfOpenBlas = "OPENBLAS_NUM_THREADS";
+
+bool names_threads() {
+  return secure_getenv(kOfOpenBlas) != nullptr || secure_getenv("OMP_NUM_THREADS") != nullptr;
+}
+
+}  // namespace
+
+// The program's getenv() stands before that of the C library, also for shared libraries. OpenBLAS
+// makes its threads when it is loaded, before main() could set a variable; where a limit of the
+// address space leaves them no work space, they try for ever, and the end of the program waits for
+// them. To start the program anew with the variable set would double the time of loading.
+extern "C" char* getenv(const char* name) noexcept {
+  static char one[] = "1";
+  char* const value = secure_getenv(name);
+  const bool open = value == nullptr && std::strcmp(name, kOfOpenBlas) == 0 && !names_threads();
+  return open ? one : value;
+}
 
 namespace stickslip::petsc {
 namespace {
@@ -57,9 +79,7 @@ Blas loaded_blas() {
 }
 
 void keep_blas_to_one_thread() {
-  for (const char* name : {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"}) {
-    if (std::getenv(name) != nullptr) return;
-  }
+  if (names_threads()) return;
   using SetThreads = void (*)(int);
   if (auto set = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))) {
     set(1);

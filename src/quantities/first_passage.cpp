@@ -70,7 +70,9 @@ void peak_tasks(Planner& planner) {
     const auto find = [=](Computation& computation) {
       const Starts starts =
           symmetric ? Starts::upwards(computation.process()) : computation.distribution().starts();
-      found->push_back(first_passage(computation.systems, starts, speed));
+      found->push_back(computation.value_or(FirstPassage{kNoValue, kNoValue, kNoValue}, [&] {
+        return first_passage(computation.systems, starts, speed);
+      }));
     };
     planner.add({fmt::format("first passage to |v| = {:g}", speed),
                  {{system, 0, planner.starts() + 1}},

@@ -81,10 +81,13 @@ void laplace_tasks(Planner& planner) {
       });
   planner.add_at_each_lambda([&](double lambda) -> Task {
     const auto find = [=](Computation& computation) {
-      const auto& distribution = computation.distribution();
-      const auto t = sliding_transforms(computation.systems, distribution, lambda);
-      const auto stick = stick_transform(computation.process(), lambda, distribution.entry());
-      found->push_back({t.slide, stick, t.excursion});
+      const DurationTransforms none{kNoValue, kNoValue, kNoValue};
+      found->push_back(computation.value_or(none, [&]() -> DurationTransforms {
+        const auto& distribution = computation.distribution();
+        const auto t = sliding_transforms(computation.systems, distribution, lambda);
+        const auto stick = stick_transform(computation.process(), lambda, distribution.entry());
+        return {t.slide, stick, t.excursion};
+      }));
     };
     return {fmt::format("Laplace transforms at lambda = {:g}", lambda),
             {{planner.system(lambda), 2, 0}},

@@ -237,9 +237,11 @@ void passage_transform_tasks(Planner& planner) {
       task.uses.back().system.lambda = s;
     }
     task.carry_out = [=](Computation& computation) {
-      const auto& [lambda, start] =
-          std::pair{computation.question().lambda, computation.question().start};
-      const auto values = passage_transform(computation.systems, key, start, lambda);
+      const auto lambda = computation.question().lambda;
+      const auto start = computation.question().start;
+      const std::vector<Uncertain> none(lambda.size(), kNoValue);
+      const auto values = computation.value_or(
+          none, [&] { return passage_transform(computation.systems, key, start, lambda); });
       computation.results().push_back(
           of_speed(catalogue::kPassageTransform, lambda, speed, values));
     };
@@ -259,8 +261,11 @@ void passage_distribution_tasks(Planner& planner) {
     task.usual_solves += 480;
     task.carry_out = [=](Computation& computation) {
       const auto& question = computation.question();
-      const auto found = passage_distribution(computation.systems, key, question.start,
-                                              question.time, computation.tolerance());
+      const std::vector<Uncertain> none(question.time.size(), kNoValue);
+      const auto found = computation.value_or(DurationDistribution{none, none}, [&] {
+        return passage_distribution(computation.systems, key, question.start, question.time,
+                                    computation.tolerance());
+      });
       auto& results = computation.results();
       results.push_back(of_speed(catalogue::kPassageDensity, question.time, speed, found.density));
       results.back().diagnostic = true;  // the derivative of the other one, which decides

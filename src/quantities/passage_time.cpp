@@ -164,7 +164,9 @@ void first_passage_tasks(Planner& planner) {
   for (double speed : planner.question().velocity) {
     const auto key = passage_system(planner, speed);
     const auto find = [=, start = start](Computation& computation) {
-      found->push_back(passage_time(computation.systems, key, start));
+      found->push_back(computation.value_or(PassageTime{kNoValue, kNoValue}, [&] {
+        return passage_time(computation.systems, key, start);
+      }));
     };
     Task task = passage_task(planner, "passage time", key);
     task.uses = {{key, 0, starts_in(planner, key) + 1}, {key, 1, 0}};

@@ -100,7 +100,7 @@ void Planner::add_at_each_lambda(const std::function<Task(double)>& task) {
   std::size_t end = at_lambda_;
   for (double lambda : question().lambda) {
     end += at_each_lambda_;
-    tasks.insert(tasks.begin() + static_cast<std::ptrdiff_t>(end - 1), task(lambda));
+    tasks.insert(tasks.begin() + static_cast<std::ptrdiff_t>(end - 1), of_quantity(task(lambda)));
   }
 }
 
@@ -141,7 +141,9 @@ Plan plan_of(const cases::Case& given) {
   if (given.scene.v_max) planner.need_distribution();  // it has the mass beyond v_max
   if (given.method.row().small_lambda) planner.resolve_lambda();
   for (const auto& [quantity, add_tasks] : kAll) {
-    if (given.question.wants(quantity)) add_tasks(planner);
+    if (!given.question.wants(quantity)) continue;
+    planner.begin(quantity);
+    add_tasks(planner);
   }
   Plan plan = std::move(planner).plan();
   if (given.method.route != catalogue::Route::excursion) return {.needs = std::move(plan.needs)};

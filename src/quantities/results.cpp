@@ -10,6 +10,12 @@
 
 namespace stickslip::quantities {
 
+namespace {
+
+constexpr double kVanishing = 1e-6;  // of the scale of a derivative
+
+}  // namespace
+
 double largest_size(const std::vector<double>& values) {
   double size = 0;
   for (double v : values) size = std::fmax(size, std::abs(v));
@@ -52,6 +58,11 @@ Result array(Result blank, std::vector<double> abscissa) {
   return blank;
 }
 
+std::string place(const Result& result, std::size_t n) {
+  if (result.is_scalar()) return "";
+  return fmt::format(" at {} = {:g}", result.abscissa_name, result.abscissa[n]);
+}
+
 bool is_unreached(const Result& result, std::size_t n) {
   return !result.unreached.empty() && std::isnan(result.value[n]);
 }
@@ -66,6 +77,9 @@ double relative_error(const Result& result) {
     if (result.error[n] == 0) continue;
     double own = result.each_by_its_size ? std::abs(result.value[n]) : size;
     const double rare = size_of(result, n);
+    const bool vanishes = std::abs(result.value[n]) <= result.error[n] &&
+                          result.error[n] <= kVanishing * result.scale;
+    if (vanishes) own = result.scale;
     if (result.tails_by_their_size && rare < kTail && rare > kLeastTail) own = rare;
     relative = std::max(relative, result.error[n] / own);
   }
@@ -79,7 +93,7 @@ bool all_numbers(const Result& result) {
 std::string where_unknown(const Result& result) {
   for (std::size_t n = 0; n < result.value.size() && !result.is_scalar(); ++n) {
     if (std::isfinite(result.value[n]) && std::isfinite(result.error[n])) continue;
-    return fmt::format(" at {} = {:g}", result.abscissa_name, result.abscissa[n]);
+    return place(result, n);
   }
   return "";
 }

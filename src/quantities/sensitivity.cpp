@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -252,6 +253,26 @@ void append_noise_sensitivity(const model::Process& process, Results& results) {
   results.push_back(derivative(catalogue::kEX2, "tau", {by_square, rounding * size}));
 }
 
+namespace {
+
+// The sizes |A/p| by which derivatives dA/dp without digits are judged.
+void set_scales(const model::Scene& scene, const std::vector<model::Derivative>& parameters,
+                Results& results) {
+  const auto given = effects::parameters_of(scene);
+  for (const auto& theta : parameters) {
+    const auto p = std::ranges::find(given, theta.option, &model::Parameters::value_type::first);
+    if (p == given.end()) continue;
+    const double size = std::abs(std::get<double>(p->second));
+    for (const Result& a : results) {
+      const auto of =
+          std::ranges::find(results, fmt::format("d{}_d{}", a.key, theta.option), &Result::key);
+      if (of != results.end() && size > 0) of->scale = std::abs(a.value[0]) / size;
+    }
+  }
+}
+
+}  // namespace
+
 // Adjoints of mean_slide and mean_stick, which every derivative needs, of three moments and of E_V.
 // With a single static level mean_stick needs none. Where excursions start from several levels each
 // has a second one, by that of the next excursion.
@@ -272,6 +293,7 @@ void sensitivity_tasks(Planner& planner) {
     const Sensitivity sensitivity(computation.systems, computation.distribution(), parameters);
     if (sticking) sensitivity.append_sticking(computation.results());
     if (moments) sensitivity.append_moments(computation.results());
+    set_scales(computation.problem.given.scene, parameters, computation.results());
   };
   planner.add({"sensitivity",
                {{planner.system(), adjoints, 0}},

@@ -130,8 +130,9 @@ void slip_tasks(Planner& planner) {
     planner.add({fmt::format("transform of slips at s = {:g}", s),
                  {{system, 1, 0}},
                  [=](Computation& computation) {
-                   found->push_back(
-                       slip_transform(computation.systems, computation.distribution(), s));
+                   found->push_back(computation.value_or(kNoValue, [&] {
+                     return slip_transform(computation.systems, computation.distribution(), s);
+                   }));
                  }});
   }
   if (question.distance.empty()) return;

@@ -90,6 +90,7 @@ double half_width(const Density& s, double tau) {
     high *= step;
     if (high * tau > most) return std::numeric_limits<double>::quiet_NaN();
   }
+  if (!(s(high) <= half)) return std::numeric_limits<double>::quiet_NaN();
   std::uintmax_t iterations = 100;
   const auto bracket =
       boost::math::tools::toms748_solve([&](double w) { return s(w) - half; }, low, high,

@@ -1,3 +1,6 @@
+#include <optional>
+#include <vector>
+
 #include "routes.hpp"
 #include "stickslip/operators/systems.hpp"
 #include "stickslip/quantities/plan.hpp"
@@ -9,11 +12,27 @@ Evaluation by_excursion(const Problem& problem) {
   operators::Systems systems(problem.comm, problem.discretisation, problem.statistics);
   quantities::Computation computation{problem, systems, evaluation};
   const quantities::Plan plan = quantities::plan_of(problem.given);
+  std::vector<std::optional<catalogue::Quantity>> owners;  // of the results
+  const auto carry_out = [&](const quantities::Task& task) {
+    const auto work = [&] { task.carry_out(computation); };
+    if (task.quantity) quantities::attempt(problem, evaluation, *task.quantity, work);
+    if (!task.quantity) work();
+    owners.resize(evaluation.results.size(), task.quantity);
+  };
   for (std::size_t n = 0; n < plan.tasks.size(); ++n) {
-    plan.tasks[n].carry_out(computation);
+    carry_out(plan.tasks[n]);
     systems.keep(plan.used_from(n + 1));
   }
-  for (const auto& append : plan.afterwards) append(computation);
+  for (const auto& task : plan.afterwards) carry_out(task);
+  std::size_t at = 0;
+  std::erase_if(evaluation.results, [&](const auto&) {
+    const auto owner = owners[at++];
+    return owner && evaluation.failed.contains(*owner);
+  });
+  for (auto& result : evaluation.results) {
+    const bool complete = evaluation.missed.empty() || quantities::all_numbers(result);
+    if (!complete) result.unreached = evaluation.missed;
+  }
   return evaluation;
 }
 

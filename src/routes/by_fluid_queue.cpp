@@ -147,7 +147,10 @@ Evaluation by_fluid_queue(const Problem& problem) {
       r.error[n] = rounding * std::max(std::abs(r.value[n]), least);
     }
   }
-  if (question.wants(Quantity::laplace)) append_laplace(problem, excursions, rounding, results);
+  if (question.wants(Quantity::laplace)) {
+    quantities::attempt(problem, evaluation, Quantity::laplace,
+                        [&] { append_laplace(problem, excursions, rounding, results); });
+  }
   if (question.wants(Quantity::stick_duration_transform) && !question.wants(Quantity::laplace)) {
     quantities::append_stick_transform(process, question.lambda,
                                        uncertain(excursion.entry, rounding), results);

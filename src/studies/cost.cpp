@@ -96,12 +96,14 @@ class CostStudy {
       const auto resolution = accuracy::hp_resolution(
           given.scene, degree, 0, std::max(std::pow(10.0, -(degree + 3)), 1e-18));
       Run run = median_run(repeats_, [&] {
-        auto [evaluation, step] = accuracy::solve_on(context_.comm, given, resolution);
-        return Run{"hp",
-                   {{"degree", degree}, {"layers", resolution.layers}},
-                   scalars(evaluation.results),
-                   step.seconds,
-                   step.statistics};
+        return attempted(context_.comm, {"hp", {{"degree", degree}, {"layers", resolution.layers}}},
+                         [&](Run& found) {
+                           auto [evaluation, step] =
+                               accuracy::solve_on(context_.comm, given, resolution);
+                           found.results = scalars(evaluation.results);
+                           found.seconds = step.seconds;
+                           found.statistics = step.statistics;
+                         });
       });
       set_errors(reference_, run.results);
       add(curve, run, degree, error_of(run.results));

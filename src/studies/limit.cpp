@@ -76,7 +76,7 @@ double observed_order(Samples samples) {
   };
   constexpr double low = 0.05, high = 8;
   const bool changes = std::abs(b.value - c.value) > b.error + c.error;
-  if (!changes || !(ratio > 0) || defect(low) * defect(high) > 0) return kNone;
+  if (!changes || !(ratio > 0) || !(defect(low) * defect(high) <= 0)) return kNone;
   std::uintmax_t iterations = 100;
   const auto root = boost::math::tools::toms748_solve(
       defect, low, high, boost::math::tools::eps_tolerance<double>(40), iterations);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <ranges>
 #include <span>
 
 #include "stickslip/effects/effect.hpp"
@@ -99,20 +100,24 @@ Table table_of_limits(const Series& series, const std::string& key, const std::v
               {}};
   std::vector<Sample> samples;
   for (const auto& run : runs) {
-    for (const auto& result : run.results) {
-      if (result.key != key) continue;
-      samples.push_back({run.parameters[0].second, result.value[0], result.error[0]});
-      const auto& now = samples.back();
-      const double order = observed_order(samples);
-      const Limit limit = series.limit(samples, order);
-      table.rows.push_back({now.at, now.value, now.error, order, limit.value, limit.error});
+    const auto found = std::ranges::find(run.results, key, &quantities::Result::key);
+    const double at = run.parameters[0].second;
+    if (found == run.results.end() || std::isnan(found->value[0])) {
+      table.rows.push_back({at, kNone, kNone, kNone, kNone, kNone});
+      continue;
     }
+    samples.push_back({at, found->value[0], found->error[0]});
+    const double order = observed_order(samples);
+    const Limit limit = series.limit(samples, order);
+    table.rows.push_back({at, found->value[0], found->error[0], order, limit.value, limit.error});
   }
   return table;
 }
 
 // What the last two rows say of a quantity without a limit, and of one whose limit is 0.
-std::string conclusion(const Table& table) {
+std::string conclusion(Table table) {
+  std::erase_if(table.rows, [](const auto& row) { return std::isnan(row[1]); });
+  if (table.rows.empty()) return table.name + ": no values";
   const auto& last = table.rows.back();
   const double value = std::abs(last[1]), order = last[3], limit = last[4], error = last[5];
   const auto& name = table.columns[0].name;
@@ -129,6 +134,16 @@ std::string conclusion(const Table& table) {
                      error, vanishes ? ", which is 0: vanishes in the limit" : "");
 }
 
+// Of the run with most values: some may have failed.
+std::vector<std::string> keys_of(const std::vector<Run>& runs) {
+  const auto most = std::ranges::max_element(std::views::reverse(runs), {}, [](const Run& run) {
+    return std::ranges::count_if(run.results, quantities::all_numbers);
+  });
+  std::vector<std::string> keys;
+  for (const auto& result : most->results) keys.push_back(result.key);
+  return keys;
+}
+
 Study study_of(const Context& context, const std::vector<Series>& all) {
   Study study;
   study.kind = all[0].parameter;
@@ -136,8 +151,8 @@ Study study_of(const Context& context, const std::vector<Series>& all) {
   for (const auto& series : all) count += static_cast<int>(series.cases.size());
   for (const auto& series : all) {
     const auto runs = runs_of(context, series, number, count);
-    for (const auto& result : runs.back().results) {
-      study.tables.push_back(table_of_limits(series, result.key, runs));
+    for (const auto& key : keys_of(runs)) {
+      study.tables.push_back(table_of_limits(series, key, runs));
       study.conclusions.push_back(conclusion(study.tables.back()));
     }
     study.runs.insert(study.runs.end(), runs.begin(), runs.end());

@@ -47,6 +47,8 @@ constexpr double kUpwindTail = 1e-9;
 /// Throws NoMemory if that run would not fit: no study computes for long only to end there.
 void require_upwind_memory(const Context& context, const cases::Case& given, int points,
                            double tail = kUpwindTail);
+/// Has a run found its results; where that fails it has none, and says why.
+[[nodiscard]] Run attempted(MPI_Comm comm, Run run, const std::function<void(Run&)>& find);
 /// Refined hp.
 [[nodiscard]] Run converged_run(const Context& context, const cases::Case& given, double accuracy);
 

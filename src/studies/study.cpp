@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "stickslip/effects/effect.hpp"
+#include "stickslip/petsc/check.hpp"
+#include "stickslip/petsc/session.hpp"
 #include "stickslip/support/errors.hpp"
 #include "studies.hpp"
 
@@ -11,22 +13,32 @@ namespace stickslip::studies {
 Study run_study(MPI_Comm comm, const cases::Case& given, const options::StudyOptions& study,
                 const StudyProgress& progress) {
   const Context context{comm, given, study, progress};
-  switch (study.kind) {
-  case options::StudyKind::points: return study_points(context);
-  case options::StudyKind::steps: return study_steps(context);
-  case options::StudyKind::white_noise: return study_white_noise(context);
-  case options::StudyKind::heuristic: return study_heuristic(context);
-  case options::StudyKind::cost: return study_cost(context);
-  case options::StudyKind::none: break;
+  const std::pair<options::StudyKind, Study (*)(const Context&)> all[] = {
+      {options::StudyKind::points, study_points},
+      {options::StudyKind::steps, study_steps},
+      {options::StudyKind::white_noise, study_white_noise},
+      {options::StudyKind::heuristic, study_heuristic},
+      {options::StudyKind::cost, study_cost}};
+  Study found;
+  for (const auto& [kind, carry_out] : all) {
+    if (kind == study.kind) found = carry_out(context);
   }
-  return {};
+  for (const auto& run : found.runs) {
+    if (run.failure.empty()) continue;
+    found.complete = false;
+    const auto& [parameter, value] = run.parameters.front();
+    found.conclusions.push_back(
+        fmt::format("{}, {} = {:g}: {}", run.method, parameter, value, run.failure));
+  }
+  return found;
 }
 
 quantities::Results scalars(const quantities::Results& results) {
   quantities::Results found;
   for (const auto& result : results) {
     for (std::size_t n = 0; n < result.value.size(); ++n) {
-      if (result.value[n] == 0) continue;
+      const bool asked = !result.diagnostic || !result.is_scalar();
+      if (result.value[n] == 0 || !asked) continue;
       auto& one = found.emplace_back(result);
       if (!result.is_scalar()) {
         one.key += fmt::format(" {}={:g}", result.abscissa_name, result.abscissa[n]);
@@ -88,29 +100,41 @@ void require_upwind_memory(const Context& context, const cases::Case& given, int
   }
 }
 
+Run attempted(MPI_Comm comm, Run run, const std::function<void(Run&)>& find) {
+  try {
+    find(run);
+  } catch (...) {
+    const Failure failure = petsc::failure_in_flight();
+    if (petsc::ranks(comm) > 1) throw;  // of which one may fail alone
+    run.failure = failure.what();
+  }
+  return run;
+}
+
 Run upwind_run(const Context& context, const cases::Case& given, int points, double tail) {
   const auto upwind = upwind_case(given);
-  const auto resolution = accuracy::upwind_resolution(upwind.scene, points, tail);
-  auto [evaluation, step] = accuracy::solve_on(context.comm, upwind, resolution);
-  return {"upwind",
-          {{"delta", upwind.scene.delta}, {"p", points}},
-          scalars(evaluation.results),
-          step.seconds,
-          step.statistics};
+  return attempted(
+      context.comm, {"upwind", {{"delta", upwind.scene.delta}, {"p", points}}}, [&](Run& run) {
+        const auto resolution = accuracy::upwind_resolution(upwind.scene, points, tail);
+        auto [evaluation, step] = accuracy::solve_on(context.comm, upwind, resolution);
+        run.results = scalars(evaluation.results);
+        run.seconds = step.seconds;
+        run.statistics = step.statistics;
+      });
 }
 
 Run converged_run(const Context& context, const cases::Case& given, double accuracy) {
   cases::Case hp = given;
   hp.method = {};
   hp.question.accuracy = accuracy;
-  const auto outcome = accuracy::carry_out(context.comm, hp, {}, {});
-  double seconds = 0;
-  for (const auto& step : outcome.steps) seconds += step.seconds;
-  return {"hp",
-          {{"delta", hp.scene.delta}, {"accuracy", accuracy}},
-          scalars(outcome.results),
-          seconds,
-          outcome.total};
+  return attempted(context.comm, {"hp", {{"delta", hp.scene.delta}, {"accuracy", accuracy}}},
+                   [&](Run& run) {
+                     const auto outcome = accuracy::carry_out(context.comm, hp, {}, {});
+                     for (const auto& step : outcome.steps) run.seconds += step.seconds;
+                     run.results = scalars(outcome.results);
+                     run.statistics = outcome.total;
+                     run.failure = outcome.failures;
+                   });
 }
 
 }  // namespace stickslip::studies

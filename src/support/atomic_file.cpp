@@ -9,13 +9,14 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <stdexcept>
+
+#include "stickslip/support/errors.hpp"
 
 namespace stickslip {
 namespace {
 
 [[noreturn]] void fail(const std::string& what, const std::string& file) {
-  throw std::runtime_error(fmt::format("{} {}: {}", what, file, std::strerror(errno)));
+  throw SystemFailure(fmt::format("{} {}: {}", what, file, std::strerror(errno)));
 }
 
 void flush_to_disk(const std::string& file) {

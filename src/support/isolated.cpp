@@ -10,13 +10,14 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <stdexcept>
+
+#include "stickslip/support/errors.hpp"
 
 namespace stickslip {
 namespace {
 
 [[noreturn]] void fail(const char* what) {
-  throw std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
+  throw SystemFailure(fmt::format("{}: {}", what, std::strerror(errno)));
 }
 
 // How the child ends shows a fault: no handler and no core file is wanted.

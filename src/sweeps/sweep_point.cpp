@@ -6,6 +6,7 @@
 
 #include "stickslip/accuracy/carry_out.hpp"
 #include "stickslip/io/parts.hpp"
+#include "stickslip/petsc/check.hpp"
 #include "stickslip/petsc/solver_statistics.hpp"
 #include "stickslip/support/errors.hpp"
 
@@ -38,7 +39,8 @@ Json entry_of(MPI_Comm comm, const cases::Case& given, std::size_t point) {
         head(point, outcome.reached ? Status::reached : Status::not_reached, outcome.shortfall);
     json.update(io::run_json(given, outcome, {0, petsc::wall_seconds() - start}));
     return json;
-  } catch (const Failure& failure) {
+  } catch (...) {
+    const Failure failure = petsc::failure_in_flight();
     const bool memory = failure.status() == ExitStatus::no_memory;
     Json json = head(point, memory ? Status::no_memory : Status::failed, failure.what());
     json["scene"] = io::scene_json(given.scene);

@@ -48,6 +48,17 @@ TEST_CASE("result bounds: every violation is reported with its place") {
   CHECK(broken_bound({quantities::scalar(catalogue::kMeanSlide, nan, 0)}) == "mean_slide is nan");
 }
 
+TEST_CASE("result bounds: an entry without a value, for a reason, breaks none") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  auto falls = transform({nan, 0.6, 0.4});
+  falls.unreached = "is beyond double precision";
+  CHECK(broken_bound({falls}).empty());
+  falls.value[2] = 0.7;
+  CHECK(broken_bound({falls}) == "F_slide rises from 0.6 at lambda = 0.5 to 0.7 at lambda = 1");
+  falls.unreached.clear();
+  CHECK_FALSE(broken_bound({falls}).empty());
+}
+
 TEST_CASE("result bounds: an error excuses its own size, and 1e-10, and no more") {
   const auto passes = [](Kind kind, double value, double error) {
     auto result = test::scalar("a", "", value, error);

@@ -18,6 +18,10 @@ SIX = "-mu_s 1.3 -mu_d 0.026 -drag expression -drag_expression -1.5*tanh(v)-0.1*
 CUBIC = "-mu_s 0.7 -mu_d 0.4 -tau 4 -delta 0.25 -drag cubic -drag_coefficient 2 -drag_cubic 1 -quantities spectrum "
 NEVER_STICKS = "-noise telegraph -telegraph_amplitude 2 -telegraph_rate 1 "
 
+ALWAYS_MOVES = "-noise telegraph -telegraph_amplitude 0.5 -telegraph_rate 1 -mu_s 1 -mu_d 1 -bias 2 "
+# Off, where the force equals friction exactly, and on.
+GENE = f"-noise chain -noise_states {DATA}/gene_states.csv -noise_rates {DATA}/gene_rates.csv -mu_s 0.1 -mu_d 0.1 "
+
 # Command line, key, right value, its relative precision, where it comes from. A run has to reach its accuracy and to
 # state an error that covers the difference.
 RIGHT = [
@@ -46,6 +50,15 @@ RIGHT = [
      2.464393, 1e-6, "the same at -accuracy 1e-8"),
     ("-drag_coefficient 1e-6 -bias 0.5 -mu_d 0.5 -delta 0.25", "E_XV", 0.999194051, 2e-9,
      "mu_d E|V| + c E[V^2] - bias E[V]"),
+    (noise("on_off.csv") + "-mu_s 0.8 -mu_d 0.5 -bias -0.6 -drag none", "P_stick", 7 / 22, 1e-14,
+     "no mean acceleration: 0.4 in half of the time, -1.1 in the rest of the sliding time"),
+    (ALWAYS_MOVES + "-quantities moments,spectrum", "E_V", 1, 1e-14, "E X + g - mu over c"),
+    (ALWAYS_MOVES + "-quantities moments,spectrum", "E_V2", 13 / 12, 1e-12, "telegraph noise through a linear filter"),
+    (ALWAYS_MOVES + "-quantities moments,spectrum", "S_0", 0.25, 1e-10, "that of the noise over c^2"),
+    (ALWAYS_MOVES + "-quantities averages -observable v<0.9", "pi(v<0.9)", 0.4, 1e-9, "V is uniform from 0.5 to 1.5"),
+    (GENE + "-quantities moments", "E_V", 0.4, 1e-14, "V is Beta(2, 3)"),
+    (GENE + "-quantities moments", "E_V2", 0.2, 1e-14, "V is Beta(2, 3)"),
+    (GENE + "-quantities averages -observable v<0.5", "pi(v<0.5)", 0.6875, 1e-9, "V is Beta(2, 3)"),
     (NEVER_STICKS + "-quantities moments", "E_V2", 1 / 3, 1e-15, "moments of the two densities"),
     ("-noise_levels full -tau 3 -delta 0.281 -noise_deviation 0.42 -quantities noise_law", "E_X2", 0.17457228, 1e-7,
      "birth-death chain that jumps inwards at the rate Lambda from its ends"),

@@ -39,11 +39,11 @@ class Faults(Case):
         self.addCleanup(process.kill)
         return process
 
-    def limited(self, kind, amount, *options):
+    def limited(self, kind, amount, *options, timeout=120):
         """A run under a resource limit."""
         process = self.start(*options,
                              preexec_fn=lambda: resource.setrlimit(kind, (amount, amount)))
-        _, message = process.communicate(timeout=120)
+        _, message = process.communicate(timeout=timeout)
         return process.returncode, message
 
     def ranks_of(self, parent):
@@ -218,6 +218,12 @@ class Disks(Faults):
 
 
 class Memory(Faults):
+    def test_little_address_space(self):
+        """ulimit -v of 200 MB: the version is printed, and a run refused, without threads that try for ever"""
+        for options, wanted in ((("-version",), 0), (SMALL, 4)):
+            status, message = self.limited(resource.RLIMIT_AS, 200_000 << 10, *options, timeout=20)
+            self.assertEqual(status, wanted, message)
+
     def test_limits(self):
         """ulimit -v of 400, 500, 600 MB: reported before it is allocated or when it runs out, status 4"""
         for megabytes in (400, 500, 600):

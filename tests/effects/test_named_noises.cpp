@@ -140,8 +140,10 @@ TEST_CASE("periodic noise: phases follow one another, with the force of each") {
   const auto shaped = scene_of(with(kSine, {{"period_shape", file}}));
   CHECK(near(table_of(shaped).mean(), 0.3, 1e-12));
   CHECK(near(table_of(shaped).rate(), 1, 1e-12));
-  CHECK_THAT(said_of(with(kSine, {{"period_shape", file}, {"period_phases", "4"}})),
-             Catch::Contains("is the number of lines"));
+  const auto both = scene_of(with(kSine, {{"period_shape", file}, {"period_phases", "4"}}));
+  CHECK(difference(table_of(both), table_of(shaped)) == 0);
+  CHECK_THAT(said_of(with(kSine, {{"period_shape", file}, {"period_phases", "5"}})),
+             Catch::Contains("holds 4 phases, but -period_phases is 5"));
   std::ofstream(file) << "x\n-1\n1\n";
   CHECK_THAT(said_of(with(kSine, {{"period_shape", file}})), Catch::Contains("three phases"));
 }

@@ -82,7 +82,7 @@ TEST_CASE("drag laws: one that rises is sound where friction and drag still slow
              Catch::Contains("drives a body for ever from about v = 1.9") &&
                  Catch::Contains("friction takes 0.25"));
   CHECK_THAT(refusal("-v + 0.2*v*abs(v)"), Catch::Contains("for ever from about v = 5.1"));
-  CHECK_THAT(refusal("0.2*tanh(v)", 0.1), Catch::Contains("the bias 0.1 drives"));
+  CHECK_THAT(refusal("0.2*tanh(v)", 0.1), Catch::Contains("the mean force 0.1 drives"));
   CHECK_THAT(refusal("sqrt(abs(v))*sign(v)/10 - v"), Catch::Contains("infinitely steep"));
   CHECK_THAT(refusal("abs(v) < 1 ? -v : -0.9*v"), Catch::Contains("at v = 1,"));
 }

@@ -251,6 +251,21 @@ TEST_CASE("level table: an image in the mirror is found among states of one x, h
   CHECK(table.step() == Approx(1));
 }
 
+TEST_CASE("level table: states of one x keep their order, whatever the units") {
+  std::vector<double> x{0.1, 0.1, -0.9, -0.8, -2, 1.2, -0.9, 0.1};
+  std::vector<Transition> transitions{{0, 1, 0.3}, {1, 2, 4.1}, {2, 3, 4.9}, {3, 4, 0.5},
+                                      {4, 5, 2.7}, {5, 6, 1.1}, {6, 7, 0.8}, {7, 0, 0.4},
+                                      {0, 4, 0.1}, {3, 0, 1.8}, {1, 5, 2}};
+  for (int unit = 0; unit < 12; ++unit) {
+    const LevelTable table(x, transitions);
+    std::vector<std::size_t> order;
+    for (int i = table.lowest(); i <= table.highest(); ++i) order.push_back(table.listed(i));
+    CHECK(order == std::vector<std::size_t>{4, 2, 6, 3, 0, 1, 7, 5});
+    for (double& force : x) force *= 1e-3;
+    for (auto& transition : transitions) transition.rate *= 7;
+  }
+}
+
 TEST_CASE("level table: states that do not all reach one another are refused by their number") {
   const auto unfit = [](const std::vector<double>& x, const std::vector<Transition>& transitions) {
     try {

@@ -200,7 +200,11 @@ TEST_CASE("request: drag that is no drag is reported with place and way out") {
       {law + "0.1*v", {"-drag_expression", "for ever from about v = 9.9", "check the signs"}},
       {law + "2*v/(1+abs(v))", {"-drag_expression", "for ever", "friction takes 1"}},
       {law + "0-v-sign(v)", {"-drag_expression", "slope", "smooth it"}},
-      {law + "0-tanh(v) -bias 3", {"-drag_expression", "the bias 3 drives", "a drag that grows"}},
+      {law + "0-tanh(v) -bias 3",
+       {"-drag_expression", "the mean force 3 drives", "a drag that grows"}},
+      {law + "0-tanh(v) -mu_d 0.5 -noise pulses -pulse_height 2 -pulse_rate 1 -pulse_duration 1 "
+             "-pulse_sign up",
+       {"-drag_expression", "the mean force 2 drives", "of a smaller mean"}},
       {law + "0-v -route fluid_queue", {"-route = fluid_queue", "needs a model without drag"}}};
   for (const auto& refusal : refusals) check_refusal(refusal);
 }
@@ -222,7 +226,8 @@ TEST_CASE("request: without symmetry") {
   CHECK_NOTHROW(Given("-mu_s_minus 1e12 -delta 0.25").read());
   const std::vector<Refusal> refusals{
       {"-bias 1 -drag none", {"-bias = 1", "for ever", "smaller than mu_d"}},
-      {"-bias -0.6 -mu_d_minus 0.5 -drag none", {"-bias = -0.6", "mu_d = 0.5 alone", "for ever"}},
+      {"-bias -0.6 -mu_d_minus 0.5 -drag none",
+       {"-bias = -0.6", "mu_d_minus = 0.5 alone", "for ever"}},
       {"-bias 0.5 -mu_s 9 -delta 0.25", {"-mu_s = 9", "never slides", "P_stick = 1", "below 8.5"}},
       {"-mu_s 9 -mu_s_minus 8.5 -delta 0.25", {"-mu_s_minus = 8.5", "never slides", "below 8"}},
       {"-bias 0.5 -mu_s_minus 1e12 -start s- -quantities trajectory -trajectory t.csv",
@@ -676,6 +681,34 @@ TEST_CASE("request: bounds of the noise and of the bias belong to what is allowe
   CHECK_NOTHROW(Given("-mu_s 0.1 -mu_d 0.1 -delta 0.5").read());  // rests on x = 0 alone
   CHECK_NOTHROW(Given("-bias -0.99 -drag none").read());
   check_refusal({"-bias -1 -drag none", {"-bias = -1", "for ever"}});
+}
+
+// Levels 0 and 1.5 with the mean 0.75: friction of 0.5 does not hold it.
+TEST_CASE("request: the bias is judged together with the mean of the noise") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "on_off.csv";
+  std::ofstream(file) << "x,rate_up,rate_down\n0,1,0\n1.5,0,1\n";
+  const std::string held = "-drag none -mu_d 0.5 -noise file -noise_file " + file,
+                    on_off = held + " -mu_s 0.7";
+  for (const char* way : {" -bias -0.6", " -bias -1.2", " -drag linear"}) {
+    CHECK_NOTHROW(Given(on_off + way).read());
+  }
+  CHECK_NOTHROW(Given(held + " -mu_d 0.76").read());
+  const std::vector<Refusal> refusals{
+      {on_off,
+       {"-mu_d = 0.5: does not hold the mean 0.75 of the noise", "for ever",
+        "add drag, such as -drag linear"}},
+      {held, {"add drag, such as -drag linear or take a larger -mu_d, above 0.75"}},
+      {on_off + " -route monte_carlo", {"-mu_d = 0.5: does not hold the mean 0.75"}},
+      {on_off + " -friction stribeck -stribeck_velocity 0.5", {"-mu_d = 0.5: does not hold"}},
+      {on_off + " -bias 0.1", {"-bias = 0.1: with the mean 0.75 of the noise", "add drag"}},
+      {on_off + " -bias -1.3", {"-bias = -1.3", "mu_d = 0.5 alone", "above 0.55"}},
+      {on_off + " -bias -1.3 -mu_d_minus 0.4", {"-bias = -1.3", "mu_d_minus = 0.4 alone"}},
+      {"-mu_d 0.5 -drag none -noise pulses -pulse_height 1.5 -pulse_rate 1 -pulse_sign up "
+       "-pulse_duration 1",
+       {"-mu_d = 0.5: does not hold the mean 1.5 of the noise", "take -bias -1.5"}}};
+  CHECK_NOTHROW(Given(refusals.back().line + " -bias -1.5").read());
+  for (const auto& refusal : refusals) check_refusal(refusal);
 }
 
 // A law is tried up to twice the terminal velocity of mu_s + delta + 12 deviations + |bias| - mu_d.

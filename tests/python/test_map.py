@@ -54,6 +54,14 @@ class Cases(Case):
             self.assertIn(said, one["message"])
         self.assertEqual(found[7]["results"], answers("-mu_d 0.25\n", "-delta", "0.5")[0]["results"])
 
+    def test_no_failure_ends_the_others(self):
+        lines = "-summary /proc/none.json\n-sweep_mu_d 0.25,0.5 -relax_eps_max_it 1 -quantities relaxation\n-mu_d 0.25\n"
+        first, second, last = answers(lines, "-delta", "0.5", status=3)
+        self.assertEqual(first["status"], 1)
+        self.assertIn("cannot write", first["message"])
+        self.assertEqual([run["status"] for run in second["runs"]], ["failed", "failed"])
+        self.assertEqual(last["results"], answers("-mu_d 0.25\n", "-delta", "0.5")[0]["results"])
+
     def test_files_and_statuses(self):
         (self.folder / "cases.txt").write_text("-summary one.json\n-accuracy 1e-9 -degree 2\n")
         done = subprocess.run([PROGRAM, "-delta", "0.5", "-cases", "cases.txt"], cwd=self.folder, capture_output=True,

@@ -56,6 +56,10 @@ struct Outcome {
   double speed_error = 0;  ///< of the distribution function of |V|, if the density is asked for
   bool reached = false;    ///< whether all estimates are within the accuracy
   std::string shortfall;   ///< why not, and what would help
+  /// The accuracy that a looser demand may meet, where rounding limits the one asked for; 0: none.
+  double attainable = 0;
+  /// Why quantities have no values, or those of a coarser discretisation.
+  std::string failures;
   double next_digit_seconds = 0;  ///< predicted time of a run at a tenth of the error; 0: unknown
   std::vector<Step> steps;
   petsc::SolverStatistics total;
@@ -74,5 +78,10 @@ using Progress = std::function<void(int, const Resolution&, double)>;
 /// accuracy, when rounding forbids it, or at the end of the refinement sequence. Collective. Throws
 /// NoMemory before anything is allocated that would not fit, NotReached when a solver fails.
 [[nodiscard]] Outcome refine(MPI_Comm comm, const cases::Case& given, const Progress& progress);
+
+/// What to take in the place of the accuracy that an outcome has missed, after "; ", once a run has
+/// met it; empty if nothing is attainable. As long as looser runs take. Collective.
+[[nodiscard]] std::string tried_accuracy(MPI_Comm comm, const cases::Case& given,
+                                         const Outcome& outcome);
 
 }  // namespace stickslip::accuracy

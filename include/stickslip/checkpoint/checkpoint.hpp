@@ -28,16 +28,16 @@ class Checkpoint {
   /// Hands the entries of the file to `take`, in their order, on the first rank, or makes the file.
   /// A last line of a sweep that was cut off when its writer was killed is removed. Collective.
   /// Throws BadInput on all ranks, and leaves the file alone, if it belongs to something else (the
-  /// message names the difference) or is damaged; std::runtime_error on the first rank when the
+  /// message names the difference) or is damaged; SystemFailure on the first rank when the
   /// disk refuses.
   void open(MPI_Comm comm, const Take& take) const;
 
   /// Adds an entry and flushes it to disk, whole or not at all. By one process at a time: others
-  /// wait, on network file systems too. Throws std::runtime_error when the disk refuses.
+  /// wait, on network file systems too. Throws SystemFailure when the disk refuses.
   void append(const std::string& entry) const;
 
   /// Puts an entry in the place of all others, in one step. By one process. Throws
-  /// std::runtime_error when the disk refuses.
+  /// SystemFailure when the disk refuses.
   void replace(const std::string& entry) const;
 
  private:

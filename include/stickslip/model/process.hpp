@@ -35,10 +35,15 @@ struct Process {
   }
 
   /// The highest level that can stick; k with symmetry, where the levels |i| <= k stick.
-  [[nodiscard]] int highest_static() const { return noise.last_up_to(friction.mu_s - bias); }
+  [[nodiscard]] int highest_static() const {
+    return balances(noise.lowest(), friction, 1) ? noise.lowest() - 1
+                                                 : noise.last_up_to(friction.mu_s - bias);
+  }
   /// The lowest level that can stick; -k with symmetry.
   [[nodiscard]] int lowest_static() const {
-    return noise.first_from(-friction.mirrored().mu_s - bias);
+    return balances(noise.highest(), friction.mirrored(), -1)
+               ? noise.highest() + 1
+               : noise.first_from(-friction.mirrored().mu_s - bias);
   }
   /// Whether bodies at rest start upwards: there is a level s+ beyond those that stick, and of the
   /// jumps by which the noise leaves these, more than one in 1e18 leads there. Otherwise all
@@ -63,6 +68,8 @@ struct Process {
   [[nodiscard]] std::vector<double> exit_rates() const;
   /// Whether there are levels on which bodies stick. On none, v = 0 is passed and never held.
   [[nodiscard]] bool sticks() const { return lowest_static() <= highest_static(); }
+  /// Whether bodies that slide upwards do so for ever, as friction exceeds the force on no level.
+  [[nodiscard]] bool moves_on() const { return net_force(noise.lowest()) >= 0; }
   /// Whether bodies stick on level i.
   [[nodiscard]] bool sticks(int i) const { return lowest_static() <= i && i <= highest_static(); }
   /// g + E[X]: what drives bodies over long times.
@@ -81,6 +88,14 @@ struct Process {
   [[nodiscard]] double net_force_at(double x) const { return friction.net_force(x, bias); }
 
  private:
+  // Whether the force on the outermost level of a direction equals friction, at rest and sliding
+  // alike. Then bodies that slide that way come to rest on no level, and are never pushed the other
+  // way: none sticks in the long run. The end of a truncated range is no such level.
+  [[nodiscard]] bool balances(int level, const Friction& that_way, double sign) const {
+    const double force = that_way.net_force(sign * noise.level(level), sign * bias);
+    return force == 0 && that_way.at_rest() == that_way.mu_s &&
+           (noise.table || noise.levels == full_range(noise.tau, noise.delta, noise.deviation));
+  }
   [[nodiscard]] int most_frequent_start(bool up) const;
 };
 

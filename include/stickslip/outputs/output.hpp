@@ -27,7 +27,7 @@ struct Output {
   std::set<catalogue::Quantity> fields = {};
   /// Whether all ranks of a report write it together; otherwise the first one does.
   bool collective = false;
-  /// Throws std::runtime_error when the file cannot be written.
+  /// Throws SystemFailure when the file cannot be written.
   void (*write)(const Report&, const std::string& file);
 };
 

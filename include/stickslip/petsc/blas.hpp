@@ -14,7 +14,8 @@ struct Blas {
 [[nodiscard]] Blas loaded_blas();
 
 /// Keeps an OpenBLAS to one thread unless the environment names a number: the blocks of these
-/// factorisations are too small to gain from threads, and ranks share the cores.
+/// factorisations are too small to gain from threads, and ranks share the cores. One that has
+/// threads of its own has one from when it is loaded; this is for one that takes those of OpenMP.
 void keep_blas_to_one_thread();
 
 /// Makes OpenBLAS take its work space now: at its first use it would try for ever where there is

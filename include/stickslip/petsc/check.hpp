@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "stickslip/support/errors.hpp"
+
 namespace stickslip::petsc {
 
 /// PETSc or one of its packages reported an error; the text holds its message and call chain.
@@ -39,6 +41,10 @@ template <class F>
   }
   return 0;
 }
+
+/// What the exception in flight says to a user, with the exit status that it means. What no code
+/// foresaw, as errors of libraries, asks for a report. Called in a catch block.
+[[nodiscard]] Failure failure_in_flight();
 
 /// Routes PETSc's error reports into the text of the next PetscFailure. Called once by Session.
 void collect_error_messages();

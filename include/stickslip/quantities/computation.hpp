@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <vector>
@@ -37,7 +38,23 @@ struct Evaluation {
   std::vector<Check> checks;  ///< what the solution method reports of itself
   std::shared_ptr<StationaryDistribution> distribution;  ///< of method excursion, if it was needed
   std::vector<RelaxationSector> modes;                   ///< if asked for
+  /// Why quantities have no results.
+  std::map<catalogue::Quantity, std::string> failed = {};
+  std::string missed = {};  ///< why some points of others have none
 };
+
+/// What the exception in flight says. Throws it again where others must not go on: without memory,
+/// and on several ranks, of which one may fail alone. Called in a catch block.
+[[nodiscard]] std::string reason_to_go_on(MPI_Comm comm);
+
+/// Does the work for a quantity, unless that has failed. What fails there leaves all others alone,
+/// as far as reason_to_go_on() allows. Results of a quantity that has failed are of no use.
+void attempt(const Problem& problem, Evaluation& evaluation, catalogue::Quantity quantity,
+             const std::function<void()>& work);
+
+/// The results of a quantity that has failed, without values, as far as their arguments are known.
+[[nodiscard]] Results without_values(const cases::Case& given, catalogue::Quantity quantity,
+                                     const std::string& reason);
 
 /// What a task works with, and adds to. Tasks that need the stationary distribution find it there.
 struct Computation {
@@ -49,6 +66,16 @@ struct Computation {
   [[nodiscard]] const model::Process& process() const { return problem.discretisation.process; }
   [[nodiscard]] const StationaryDistribution& distribution() const { return *found.distribution; }
   [[nodiscard]] Results& results() const { return found.results; }
+  /// What `find` returns, or `none`, which has no values, where it fails.
+  template <class Value, class Find>
+  [[nodiscard]] Value value_or(Value none, const Find& find) const {
+    try {
+      return find();
+    } catch (...) {
+      found.missed = "has no value: " + reason_to_go_on(problem.comm);
+      return none;
+    }
+  }
   void report(const char* name, double value, std::string_view meaning) const {
     found.checks.push_back({name, value, meaning});
   }

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -33,6 +34,8 @@ struct Task {
   /// asks for: rational Krylov models, eigensolvers, time steps.
   bool adaptive = false;
   int usual_factorizations = 0, usual_solves = 0;  ///< of an adaptive task, for predictions
+  /// Whose results it gives; all rest on a task of none.
+  std::optional<catalogue::Quantity> quantity = {};
 };
 
 /// What tasks need resolved by the discretisation.
@@ -47,7 +50,7 @@ struct Needs {
 /// for it, and freed after the last one has used it.
 struct Plan {
   std::vector<Task> tasks = {};
-  std::vector<Action> afterwards = {};  ///< what appends results that several tasks have found
+  std::vector<Task> afterwards = {};  ///< what appends results that several tasks have found
   Needs needs = {};
 
   /// Each system once.
@@ -84,7 +87,7 @@ class Planner {
   void need_distribution() { needs_distribution_ = true; }
   /// What follows from means over excursions is appended with the stationary distribution.
   void append_from(const FunctionOfExcursion& append);
-  void add(Task task) { plan_.tasks.push_back(std::move(task)); }
+  void add(Task task) { plan_.tasks.push_back(of_quantity(std::move(task))); }
   /// What the discretisation has to resolve; each quantity raises it to what it needs.
   [[nodiscard]] Needs& needs() { return plan_.needs; }
   /// Has all -lambda resolved, or passages of all -velocity.
@@ -109,19 +112,28 @@ class Planner {
           bool last = false) {
     auto values = std::make_shared<std::vector<Value>>();
     auto& actions = last ? last_ : plan_.afterwards;
-    actions.emplace_back([=](const Computation& computation) {
+    const auto carry_out = [=](const Computation& computation) {
       if (!values->empty()) append(computation, std::exchange(*values, {}));
-    });
+    };
+    actions.push_back(of_quantity({.name = {}, .carry_out = carry_out}));
     return values;
   }
 
+  /// Whose tasks follow.
+  void begin(catalogue::Quantity quantity) { quantity_ = quantity; }
   /// All that has been added.
   [[nodiscard]] Plan plan() &&;
 
  private:
+  [[nodiscard]] Task of_quantity(Task task) const {
+    task.quantity = quantity_;
+    return task;
+  }
+
   const cases::Case& given_;
   Plan plan_;
-  std::vector<Action> last_;
+  std::optional<catalogue::Quantity> quantity_;
+  std::vector<Task> last_;
   bool needs_distribution_ = false;
   std::vector<FunctionOfExcursion> of_excursions_;
   // The place of the tasks at the first lambda, and how many there are at each.

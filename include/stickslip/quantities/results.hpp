@@ -32,6 +32,9 @@ struct Result {
   /// Whether its error decides nothing: it shows how good others are and was not asked for, or it
   /// is the derivative of another one that decides.
   bool diagnostic = false;
+  /// Of a derivative dA/dp: |A/p|. Where it has no digit, and less than 1e-6 of that for its error,
+  /// it is 0 as far as it matters, and judged by this size.
+  double scale = 0;
   /// Why entries that are not numbers have no value, which leaves the others as they are: "is too
   /// rare". Empty where all are to be numbers.
   std::string unreached = {};
@@ -82,6 +85,8 @@ inline constexpr double kTail = 0.02, kLeastTail = 1e-12;
   return result.tails_by_their_size ? std::min(size, std::abs(1 - result.value[n])) : size;
 }
 
+/// " at time = 5", of an entry of an array.
+[[nodiscard]] std::string place(const Result& result, std::size_t n);
 /// Whether this entry has no value, with a reason.
 [[nodiscard]] bool is_unreached(const Result& result, std::size_t n);
 /// Largest error relative to the size of the values; infinite where one is not a number without a

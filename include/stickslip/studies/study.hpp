@@ -18,6 +18,7 @@ struct Run {
   quantities::Results results;                             ///< scalars
   double seconds = 0;                                      ///< median of the repeated runs
   petsc::SolverStatistics statistics;  ///< of the run that took this long; empty for a simulation
+  std::string failure = {};            ///< why some of its results have no values
 };
 
 /// How many digits of a column are printed; files hold all.
@@ -48,6 +49,7 @@ struct Study {
   std::vector<Run> runs;
   std::vector<Table> tables;
   std::vector<std::string> conclusions;  ///< in words
+  bool complete = true;                  ///< whether no run failed
 };
 
 /// Called on all ranks before each run with its number, how many there are, and what it is.
@@ -65,7 +67,8 @@ using StudyProgress = std::function<void(int, int, const std::string&)>;
 ///   values.
 /// cost: error against time for upwind, Richardson, hp and Monte Carlo.
 ///
-/// Collective. Throws what the runs throw.
+/// A run that fails leaves the others alone, but on several ranks. Collective. Throws what such
+/// runs throw.
 [[nodiscard]] Study run_study(MPI_Comm comm, const cases::Case& given,
                               const options::StudyOptions& study, const StudyProgress& progress);
 

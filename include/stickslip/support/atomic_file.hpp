@@ -18,7 +18,7 @@ class AtomicFile {
 
   /// Where to write.
   [[nodiscard]] const std::string& part() const { return part_; }
-  /// Flushes to disk and renames; to be called by one process. Throws std::runtime_error when the
+  /// Flushes to disk and renames; to be called by one process. Throws SystemFailure when the
   /// disk refuses, and where the target is no regular file.
   void commit();
 
@@ -27,7 +27,7 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-/// Writes `text` to `target` atomically. Throws std::runtime_error with the system's reason.
+/// Writes `text` to `target` atomically. Throws SystemFailure with the system's reason.
 void write_text(const std::string& target, const std::string& text);
 
 }  // namespace stickslip

@@ -47,4 +47,10 @@ class NoMemory : public Failure {
   explicit NoMemory(const std::string& message) : Failure(ExitStatus::no_memory, message) {}
 };
 
+/// The machine refused: a file cannot be written, a process not be started.
+class SystemFailure : public Failure {
+ public:
+  explicit SystemFailure(const std::string& message) : Failure(ExitStatus::other, message) {}
+};
+
 }  // namespace stickslip
