@@ -308,6 +308,7 @@ int run_session(const std::vector<std::string>& words, double start_up) {
 
 int run(int argc, char** argv) {
   const auto start = Clock::now();
+  petsc::restart_with_one_blas_thread(argv);
   std::vector<std::string> words(argv + 1, argv + argc);
   options::shield_formulas(words);
   const std::string text = text_asked_for(words);

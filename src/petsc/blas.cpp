@@ -2,13 +2,14 @@
 
 #include <dlfcn.h>
 #include <petscsys.h>
+#include <unistd.h>
 // After PETSc itself, whose types it uses.
 #include <petscblaslapack.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <system_error>
 #include <vector>
@@ -17,29 +18,13 @@
 #include "stickslip/support/errors.hpp"
 #include "stickslip/support/infinity.hpp"
 
-namespace {
-
-constexpr const char* kOfOpenBlas = "OPENBLAS_NUM_THREADS";
-
-bool names_threads() {
-  return secure_getenv(kOfOpenBlas) != nullptr || secure_getenv("OMP_NUM_THREADS") != nullptr;
-}
-
-}  // namespace
-
-// The program's getenv() stands before that of the C library, also for shared libraries. OpenBLAS
-// makes its threads when it is loaded, before main() could set a variable; where a limit of the
-// address space leaves them no work space, they try for ever, and the end of the program waits for
-// them. To start the program anew with the variable set would double the time of loading.
-extern "C" char* getenv(const char* name) noexcept {
-  static char one[] = "1";
-  char* const value = secure_getenv(name);
-  const bool open = value == nullptr && std::strcmp(name, kOfOpenBlas) == 0 && !names_threads();
-  return open ? one : value;
-}
-
 namespace stickslip::petsc {
 namespace {
+
+bool names_threads() {
+  return std::getenv("OPENBLAS_NUM_THREADS") != nullptr ||
+         std::getenv("OMP_NUM_THREADS") != nullptr;
+}
 
 bool names_optimised(const std::string& path) {
   for (const char* name : {"openblas", "mkl", "blis", "atlas", "armpl", "nvpl"}) {
@@ -76,6 +61,12 @@ Blas loaded_blas() {
   const auto resolved = std::filesystem::canonical(info.dli_fname, error);
   const std::string path = error ? std::string(info.dli_fname) : resolved.string();
   return {path, !names_optimised(path)};
+}
+
+void restart_with_one_blas_thread(char** arguments) {
+  if (names_threads() || std::isinf(left_in_address_space())) return;
+  setenv("OPENBLAS_NUM_THREADS", "1", 1);
+  execv("/proc/self/exe", arguments);  // where it fails, this process goes on
 }
 
 void keep_blas_to_one_thread() {

@@ -13,9 +13,14 @@ struct Blas {
 /// Looks the loaded library up; local, microseconds.
 [[nodiscard]] Blas loaded_blas();
 
+/// Under a limit of the address space, starts the program anew with one thread for OpenBLAS. That
+/// makes its threads while it is loaded, before main(); without space for their work they try for
+/// ever, and the end of the program would wait for them. Takes as long as loading the program, and
+/// returns where there is no limit or the environment names a number of threads.
+void restart_with_one_blas_thread(char** arguments);
+
 /// Keeps an OpenBLAS to one thread unless the environment names a number: the blocks of these
-/// factorisations are too small to gain from threads, and ranks share the cores. One that has
-/// threads of its own has one from when it is loaded; this is for one that takes those of OpenMP.
+/// factorisations are too small to gain from threads, and ranks share the cores.
 void keep_blas_to_one_thread();
 
 /// Makes OpenBLAS take its work space now: at its first use it would try for ever where there is
