@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "log_density.hpp"
 #include "waves.hpp"
@@ -130,14 +131,14 @@ using Layers = std::map<double, int>;
 // Where a level does not move but is left for both sides, at speeds beta (v - v*) with beta > 0, on
 // either branch: solutions are like |v - v*|^(Lambda/beta).
 Layers partings(const model::Process& process, const MeshRule& rule, bool on_both = true) {
-  constexpr double fine = 1.01, smallest = 1e-12;
+  constexpr double smallest = 1e-12;
   const auto& [noise, friction, drag, bias] = process;
   const double end = std::min(rule.v_max, drag.rises_until), rest = friction.at_rest() - bias;
   Layers found;
-  double high = smallest * end;
-  while (high < end) {
-    const double low = high;
-    high *= fine;
+  if (!(end > 0)) return found;
+  double next = smallest * end;
+  for (double high : drag.speeds(next, end)) {
+    const double low = std::exchange(next, high);
     const double from = drag(low), rise = drag(high) - from;
     if (!(rise > 0)) continue;
     for (int i = std::min(noise.last_up_to(rest - from), noise.highest());
@@ -268,10 +269,12 @@ class Halving {
  public:
   Halving(const model::Process& process, const MeshRule& rule)
       : functions_(rule.integrands.functions),
+        places_(rule.integrands.places),
         upper_(process, rule.v_max),
         lower_(process.mirrored(), rule.v_max) {
     if (process.drag.law) functions_.emplace_back(process.drag.law);
     if (!process.drag.odd()) functions_.emplace_back(lower_.drag.law);
+    model::merge(places_, process.drag.places);
     sizes_.assign(functions_.size(), 0);
   }
 
@@ -313,7 +316,7 @@ class Halving {
     Element element{0, low, high};
     for (std::size_t n = 0; n < functions_.size(); ++n) {
       const auto& f = functions_[n];
-      const double error = model::interpolation_error(f, low + margin, high - margin);
+      const double error = model::interpolation_error(f, low + margin, high - margin, places_);
       sizes_[n] = std::fmax(sizes_[n], at_middle * std::fmax(std::abs(f(middle)), error));
       element.misfit = std::fmax(element.misfit, at_low * error / (accepted * sizes_[n]));
     }
@@ -321,7 +324,8 @@ class Halving {
   }
 
   std::vector<model::FunctionOfSpeed> functions_;
-  std::vector<double> sizes_;  // largest weighted values
+  std::vector<double> places_;  // between which they have no features
+  std::vector<double> sizes_;   // largest weighted values
   LogDensity upper_, lower_;
 };
 
