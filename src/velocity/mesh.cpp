@@ -143,14 +143,16 @@ Layers partings(const model::Process& process, const MeshRule& rule, bool on_bot
     if (!(rise > 0)) continue;
     for (int i = std::min(noise.last_up_to(rest - from), noise.highest());
          i >= noise.lowest() && process.net_force(i) + from + rise > 0; --i) {
-      const double force = process.net_force(i), power = noise.rate(i) * (high - low) / rise;
-      if (force + from > 0 || power > kSmooth) continue;
+      const double force = process.net_force(i);
+      if (force + from > 0) continue;
       const auto speed = [force, &b = drag](double v) { return force + b(v); };
       const boost::math::tools::eps_tolerance<double> rounding(52);
       std::uintmax_t iterations = 200;
       const double v =
           boost::math::tools::toms748_solve(speed, low, high, rounding, iterations).first;
-      if (v < rule.v_max) found[v] = layers_towards(power, rule);
+      const double near = 1e-6 * v, slope = (drag(v + near) - drag(v - near)) / (2 * near);
+      const double power = slope > 0 ? noise.rate(i) / slope : kSmooth;
+      if (v < rule.v_max && power < kSmooth) found[v] = layers_towards(power, rule);
     }
   }
   if (on_both && !process.symmetric()) found.merge(partings(process.mirrored(), rule, false));
