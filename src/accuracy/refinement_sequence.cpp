@@ -59,6 +59,7 @@ velocity::Integrands integrands_of(const cases::Question& question, double phase
   for (const auto& observable : question.observables) {
     const auto f = std::make_shared<const model::Observable>(observable);
     integrands.breaks.insert(integrands.breaks.end(), f->breaks.begin(), f->breaks.end());
+    model::merge(integrands.places, f->places);
     for (double x : f->levels) {
       for (double sign : {1.0, -1.0}) {
         integrands.functions.emplace_back(model::section(f, x, sign));

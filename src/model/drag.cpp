@@ -24,7 +24,7 @@ double extrapolated_slope(const Drag& b) {
   std::array<double, columns> last{}, row{};
   double best = 0, least = kInfinity;
   for (int n = 0; n < rows; ++n, last = row) {
-    const double h = std::ldexp(16, -n);
+    const double h = std::ldexp(b.scale(), -n);
     row[0] = b(h) / h;
     for (std::size_t m = 1; m < columns && static_cast<int>(m) <= n; ++m) {
       row[m] = row[m - 1] + (row[m - 1] - last[m - 1]) / (std::ldexp(1, static_cast<int>(m)) - 1);
@@ -37,13 +37,17 @@ double extrapolated_slope(const Drag& b) {
   return b.rises_until > 0 ? best : std::min(best, 0.0);
 }
 
-// Secants over intervals of one ratio down to the scale of rounding.
+// Secants over intervals of one ratio down to the scale of rounding, and between places.
 double steepest_secant(const Drag& b, double v) {
+  constexpr double ratio = 0.7;
+  std::vector<double> ends(b.places.begin(), std::lower_bound(b.places.begin(), b.places.end(), v));
+  for (int n = 0; n < 40 && v > 0; ++n) ends.push_back(v * std::pow(ratio, n));
+  std::sort(ends.begin(), ends.end());
   double steepest = 0;
-  for (int n = 0; n < 40 && v > 0; ++n) {
-    const double below = 0.7 * v;
-    steepest = std::max(steepest, std::abs(b(below) - b(v)) / (v - below));
-    v = below;
+  for (std::size_t n = 1; n < ends.size(); ++n) {
+    const double width = ends[n] - ends[n - 1], rounding = 1e-12 * ends[n];
+    if (width < rounding) continue;
+    steepest = std::max(steepest, std::abs(b(ends[n]) - b(ends[n - 1])) / width);
   }
   return steepest;
 }
@@ -73,14 +77,15 @@ double change_between(double low, double high, bool pushed, const Drag& b, doubl
   }
 }
 
+constexpr double kNearRest = 1e-60, kFar = 1e90;  // speeds that pass for 0 and for infinity
+
 double smallest_balance(const Drag& b, double force) {
-  const double ratio = b.rises_until > 0 ? kFine : 2;
-  double high = 0x1p-200;
-  while (force + b(high) > 0) {
-    high *= ratio;
-    if (high > 0x1p300) return kInfinity;
+  double low = 0;
+  for (double high : b.speeds(kNearRest * b.scale(), kFar * b.scale())) {
+    if (!(force + b(high) > 0)) return change_between(low, high, true, b, force);
+    low = high;
   }
-  return change_between(high / ratio, high, true, b, force);
+  return kInfinity;
 }
 
 }  // namespace
@@ -96,15 +101,14 @@ double Drag::potential(double v) const {
 }
 
 // A law that still grows between the square root of the largest v at which it can be computed and
-// that v, as log v does, is taken to grow for ever.
+// that v, as log v does, is taken to grow for ever; both in units of a speed of the law.
 bool Drag::bounds_velocity() const {
   if (!law) return linear > 0 || cubic > 0;
   for (int digits = 100; digits > 0; --digits) {
-    const double v = std::pow(10.0, digits);
-    const double far = (*this)(v);
+    const double far = (*this)(scale() * std::pow(10.0, digits));
     if (std::isnan(far)) continue;
     if (std::isinf(far)) return far < 0;
-    return far < 0 && far < 1.01 * (*this)(std::sqrt(v));
+    return far < 0 && far < 1.01 * (*this)(scale() * std::pow(10.0, digits / 2.0));
   }
   return false;
 }
@@ -133,48 +137,49 @@ std::vector<double> Drag::balances(double force) const {
   constexpr double smallest = 1e-30;
   std::vector<double> found;
   bool pushed = force > 0;
-  double high = smallest * rises_until;
-  while (high < 0x1p300) {
-    const double low = high;
-    high *= low < rises_until ? kFine : 2;
+  double low = 0;
+  for (double high : speeds(smallest * rises_until, kFar * scale())) {
+    const double below = std::exchange(low, high);
     if ((force + (*this)(high) > 0) == pushed) continue;
-    found.push_back(change_between(low, high, pushed, *this, force));
+    found.push_back(change_between(below, high, pushed, *this, force));
     pushed = !pushed;
-    if (!pushed && low >= rises_until) break;
+    if (!pushed && below >= rises_until) break;
   }
   return found;
+}
+
+std::vector<double> Drag::speeds(double from, double to) const {
+  std::vector<double> all;
+  for (double v = from; v < to; v *= v < rises_until ? kFine : 2) all.push_back(v);
+  const auto first = std::upper_bound(places.begin(), places.end(), from);
+  const auto middle = static_cast<std::ptrdiff_t>(all.size());
+  all.insert(all.end(), first, std::lower_bound(first, places.end(), to));
+  std::inplace_merge(all.begin(), all.begin() + middle, all.end());
+  all.push_back(to);
+  return all;
+}
+
+// 16: where nothing is known of a law.
+double Drag::scale() const {
+  if (std::isfinite(reach)) return reach;
+  return rises_until > 0 ? rises_until : 16;
 }
 
 double Drag::highest(double v) const {
   constexpr double smallest = 1e-9;
   const double end = std::min(v, rises_until);
   double most = 0;
-  double u = end;
-  while (u > smallest * end) {
-    most = std::max(most, (*this)(u));
-    u /= kFine;
+  if (end > 0) {
+    for (double u : speeds(smallest * end, end)) most = std::max(most, (*this)(u));
   }
   return most;
 }
 
-std::optional<double> Drag::asymmetry() const {
-  if (!law) return std::nullopt;
-  constexpr double rounding = 1e-12;
-  const double far = std::min(reach, 1e6);
-  const double size = std::max(std::abs(law(far)), std::abs(law(-far)));
-  constexpr int places = 680;  // down to 1e-9 of it
-  for (int n = 0; n < places; ++n) {
-    const double v = far * std::pow(0.97, n);
-    const double sum = std::abs(law(v) + law(-v));
-    if (!(sum <= rounding * (std::abs(law(v)) + 1e-3 * size))) return v;
-  }
-  return std::nullopt;
-}
-
 Drag Drag::mirrored() const {
   if (!law) return *this;
-  return {linear, cubic,      [b = law](double v) { return -b(-v); }, reach, law_is_odd,
-          breaks, rises_until};
+  Drag other = *this;
+  other.law = [b = law](double v) { return -b(-v); };
+  return other;
 }
 
 Drag with_weakening(const Drag& drag, const Friction& friction) {

@@ -43,9 +43,11 @@ struct Side {
 double reach_of(const Side& b, double force, const Friction& friction, double bias,
                 double intensity) {
   constexpr double ratio = 1.02, far = 1e6, farthest = 1e100;
-  const double mu_d = friction.mu_d, drop = 51 * intensity, scale = mu_d > 0 ? mu_d : friction.mu_s;
+  const double mu_d = friction.mu_d, drop = 51 * intensity,
+               scale = intensity / (mu_d > 0 ? mu_d : friction.mu_s);
   double left = drop, slope = 1, held = 0;
-  for (double v = 1e-12 / scale; v < far / scale || (slope > 0 && v < farthest); v *= ratio) {
+  for (double v = 1e-12 * scale; v < far * scale || (slope > 0 && v < farthest * scale);
+       v *= ratio) {
     const double drag = -b(v);
     if (force <= drag) return 2 * v;
     slope = friction(v) - std::abs(bias) + drag;
@@ -57,26 +59,16 @@ double reach_of(const Side& b, double force, const Friction& friction, double bi
       bias == 0 ? fmt::format("drives a body for ever from about v = {:.2g} on", b.sign * held)
                 : fmt::format("does not hold a body that the mean force {:g} drives", bias);
   throw UnfitLaw(fmt::format("{}: it is {:g} at v = {:g}, and friction takes {:g}", driven,
-                             b.sign * b(far / scale) + 0.0, b.sign * far / scale, mu_d),
+                             b.sign * b(far * scale) + 0.0, b.sign * far * scale, mu_d),
                  "check the signs, as in \"-v - 0.1*v*abs(v)\"; take a bias and noise of a smaller "
                  "mean, or a drag that grows");
 }
 
-// Evenly spaced, and in even ratios down to 1e-10 of the reach.
-std::vector<double> places(double reach) {
-  constexpr int even = 2000, ratios = 1000;
-  std::vector<double> v;
-  for (int n = 0; n <= even; ++n) v.push_back(reach * n / even);
-  for (int n = 1; n < ratios; ++n) v.push_back(reach * std::pow(1e-10, n * 1.0 / ratios));
-  std::sort(v.begin(), v.end());
-  return v;
-}
-
-// Looks at all places: b must be finite there.
-bool rises(const Side& b, double reach, double mu_d) {
+// Looks at all speeds that show the law: b must be finite there.
+bool rises(const Side& b, const std::vector<double>& speeds, double mu_d) {
   bool found = false;
   double before = 0;
-  for (double v : places(reach)) {
+  for (double v : speeds) {
     const double now = b(v);
     found = found || now > before + kNegligible * (std::abs(before) + mu_d);
     before = now;
@@ -93,20 +85,24 @@ bool rises(const Side& b, double reach, double mu_d) {
 }
 
 // At rest, where b/v settles unless it grows without bound, as that of v^0.99 does.
-void require_slope_at_rest(const Side& b, double reach) {
-  const double far = 1e-8 * std::min(reach, 1.0), near = far / 100;
-  const double slope = std::abs(b(near) / near), before = std::abs(b(far) / far);
-  if (slope > 1.02 * before && slope > 1e-6) refuse_slope(b, near, -b(near) / near);
+void require_slope_at_rest(const Side& b) {
+  const auto slope = [&b](double part) { return b(part * b.b.scale()) / (part * b.b.scale()); };
+  for (double part : {1e-8, 1e-40, 1e-80}) {
+    if (!(std::abs(slope(part / 100)) > 1.02 * std::abs(slope(part)))) return;
+  }
+  refuse_slope(b, 1e-10 * b.b.scale(), slope(1e-10));
 }
 
-// Kinks have the order 1, rounding apart. What is left of a jump nearby is all of it.
+// At kinks slopes on both sides are bounded.
 void require_bounded_slope(const Side& b, const Break& at) {
-  constexpr double of_roots = 0.75;
-  if (at.order > of_roots) return;
-  const double near = 4 * at.width, far = 1000 * near;
-  const double before = b(at.v - near), after = b(at.v + near);
-  const bool jumps = before - after > 0.5 * (b(at.v - far) - b(at.v + far));
-  if (!jumps) refuse_slope(b, at.v, (before - after) / (2 * near));
+  constexpr double near = 1e-12, steep = 1e-8;
+  (void)b(at.v);
+  const double side = at.kind == Break::Kind::jump ? near : steep;
+  const double before = b((1 - side) * at.v), after = b((1 + side) * at.v);
+  if (at.kind == Break::Kind::kink) return;
+  if (at.kind != Break::Kind::jump || after > before) {
+    refuse_slope(b, at.v, (after - before) / (2 * side * at.v));
+  }
   throw UnfitLaw(
       fmt::format("jumps from {:.9g} to {:.9g} at v = {:.9g}; there forces on both sides "
                   "can hold a body, and no density shows how long",
@@ -114,25 +110,33 @@ void require_bounded_slope(const Side& b, const Break& at) {
       "smooth it, for example tanh((v - 0.5)/0.01) for sign(v - 0.5)");
 }
 
-// Kinks, on either side.
-std::vector<double> kinks(const Drag& drag, const std::vector<double>& numbers) {
-  std::vector<Break> found;
+// What the formula is like on either side.
+void examine(const Expression& b, Drag& drag, double mu_d) {
+  std::vector<Break> kinks;
+  bool rising = false;
   for (double sign : {1.0, -1.0}) {
     const Side side{drag, sign};
-    constexpr double slow = 1e-3;  // intervals on the whole reach leave out the slowest speeds
-    for (const Break& b : breaks(side, numbers, slow * drag.reach)) require_bounded_slope(side, b);
-    const auto of_side = breaks(side, numbers, drag.reach);
-    for (const Break& b : of_side) require_bounded_slope(side, b);
-    merge(found, of_side);
+    const Shape shape = shape_of(b, {0}, 0, sign, drag.reach);
+    constexpr std::size_t most = 64;
+    for (const Break& at : shape.breaks) require_bounded_slope(side, at);
+    Drag looked_at{.reach = drag.reach, .rises_until = drag.reach, .places = shape.places};
+    const auto speeds = looked_at.speeds(1e-12 * drag.reach, drag.reach);
+    rising = rises(side, speeds, mu_d) || rising;
+    require_slope_at_rest(side);
+    if (shape.breaks.size() > most) {
+      throw UnfitLaw(fmt::format("has more than {} kinks", most),
+                     "take one with fewer, or smooth it");
+    }
+    if (!shape.resolved) {
+      throw UnfitLaw(
+          fmt::format("changes too often up to v = {:.2g} to be resolved", sign * drag.reach),
+          "take one with fewer or wider features");
+    }
+    merge(kinks, shape.breaks);
+    merge(drag.places, shape.places);
   }
-  constexpr std::size_t most = 64;
-  if (found.size() > most) {
-    throw UnfitLaw(fmt::format("has more than {} kinks", most),
-                   "take one with fewer, or smooth it");
-  }
-  std::vector<double> speeds;
-  for (const Break& b : found) speeds.push_back(b.v);
-  return speeds;
+  for (const Break& kink : kinks) drag.breaks.push_back(kink.v);
+  if (rising) drag.rises_until = drag.reach;
 }
 
 Expression read(const std::string& text, const Friction& friction, double tau) {
@@ -149,7 +153,7 @@ Expression read(const std::string& text, const Friction& friction, double tau) {
 Drag parse_drag(const std::string& text, const Friction& friction, double tau, double force,
                 double bias, double intensity) {
   const Expression b = read(text, friction, tau);
-  Drag drag{0, 0, [b](double v) { return b({v}); }, 0};
+  Drag drag{0, 0, [b](double v) { return b({v}); }, 0, b.odd()};
   const Friction backwards = friction.mirrored();
   const double mu_d = std::min(friction.mu_d, backwards.mu_d);
   const Friction least{std::min(friction.mu_s, backwards.mu_s), mu_d, {}, {}, friction.stribeck};
@@ -157,15 +161,7 @@ Drag parse_drag(const std::string& text, const Friction& friction, double tau, d
   for (double sign : {1.0, -1.0}) {
     drag.reach = std::max(drag.reach, reach_of({drag, sign}, force, least, bias, intensity));
   }
-  for (double sign : {1.0, -1.0}) {
-    const Side side{drag, sign};
-    if (rises(side, drag.reach, mu_d)) drag.rises_until = drag.reach;
-    require_slope_at_rest(side, drag.reach);
-  }
-  drag.law_is_odd = !drag.asymmetry();
-  auto numbers = numbers_in(text);
-  numbers.insert(numbers.end(), {friction.mu_s, friction.mu_d, tau});
-  drag.breaks = kinks(drag, numbers);
+  examine(b, drag, mu_d);
   return drag;
 }
 

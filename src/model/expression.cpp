@@ -1,8 +1,11 @@
 #include "stickslip/model/expression.hpp"
 
 #include <muParser.h>
+#include <muParserBytecode.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <stdexcept>
 #include <string_view>
 
@@ -20,54 +23,311 @@ bool assigns(std::string_view text) {
   return false;
 }
 
-}  // namespace
+double minimum(double a, double b) { return b < a ? b : a; }
+double less(double a, double b) { return a < b; }
+double equal(double a, double b) { return a == b; }
+double both(double a, double b) { return a != 0 && b != 0; }
+double choose(double condition, double a, double b) { return condition != 0 ? a : b; }
+double sign(double a) { return (a > 0) - (a < 0); }
+double rint(double a) { return std::floor(a + 0.5); }
+double at_most(double a, double b) { return a <= b; }
+Jet at_most(const Jet& a, const Jet& b) { return choose(less(b, a), Jet(0), Jet(1)); }
 
-// The variables live beside the parser, which keeps their addresses. muParser: small, maintained,
-// packaged, compiles to bytecode.
-struct Expression::Reader {
-  Reader(const std::string& text, const std::vector<std::string>& variables,
-         const Constants& constants)
-      : values(variables.size(), 0.0) {
-    for (std::size_t n = 0; n < variables.size(); ++n) parser.DefineVar(variables[n], &values[n]);
-    for (const auto& [name, value] : constants) parser.DefineConst(name, value);
-    parser.SetExpr(text);
+using Node = Expression::Node;
+using Operation::divide;
+
+// The operations that one operand has, for numbers and for what they can be on an interval.
+template <class T>
+T function(Operation operation, const T& a) {
+  using std::abs, std::acos, std::acosh, std::asin, std::asinh, std::atan, std::atanh, std::cos,
+      std::cosh, std::exp, std::log, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
+  switch (operation) {
+  case Operation::negate: return -a;
+  case Operation::sin: return sin(a);
+  case Operation::cos: return cos(a);
+  case Operation::tan: return tan(a);
+  case Operation::asin: return asin(a);
+  case Operation::acos: return acos(a);
+  case Operation::atan: return atan(a);
+  case Operation::sinh: return sinh(a);
+  case Operation::cosh: return cosh(a);
+  case Operation::tanh: return tanh(a);
+  case Operation::asinh: return asinh(a);
+  case Operation::acosh: return acosh(a);
+  case Operation::atanh: return atanh(a);
+  case Operation::exp: return exp(a);
+  case Operation::log: return log(a);
+  case Operation::sqrt: return sqrt(a);
+  case Operation::abs: return abs(a);
+  case Operation::sign: return sign(a);
+  default: return rint(a);
+  }
+}
+
+template <class T>
+T combined(Operation operation, const T& a, const T& b) {
+  using std::atan2, std::pow;
+  switch (operation) {
+  case Operation::add: return a + b;
+  case Operation::subtract: return a - b;
+  case Operation::multiply: return a * b;
+  case Operation::divide: return a / b;
+  case Operation::pow: return pow(a, b);
+  case Operation::minimum: return minimum(a, b);
+  case Operation::less: return less(a, b);
+  case Operation::at_most: return at_most(a, b);
+  case Operation::equal: return equal(a, b);
+  case Operation::both: return both(a, b);
+  default: return atan2(a, b);
+  }
+}
+
+int operands(Operation operation) {
+  if (operation <= Operation::variable) return 0;
+  if (operation == Operation::choose) return 3;
+  return operation < Operation::choose || operation == Operation::atan2 ? 2 : 1;
+}
+
+template <class T>
+T value_of(const Node& node, const std::vector<T>& of_nodes, const std::vector<T>& variables) {
+  const auto& [operation, a, b, c, value] = node;
+  if (operation == Operation::constant) return T(value);
+  if (operation == Operation::variable) return variables[a];
+  if (operation == Operation::choose) return choose(of_nodes[a], of_nodes[b], of_nodes[c]);
+  if (operands(operation) == 1) return function(operation, of_nodes[a]);
+  return combined(operation, of_nodes[a], of_nodes[b]);
+}
+
+// What depends on no variable that moves is exact.
+Jet value_of(const Node& node, const std::vector<Jet>& of_nodes,
+             const std::vector<Jet>& variables) {
+  const std::array places{node.a, node.b, node.c};
+  std::vector<double> numbers;
+  for (int n = 0; n < operands(node.operation); ++n) {
+    const Jet& operand = of_nodes[places[n]];
+    if (!operand.is_constant()) return value_of<Jet>(node, of_nodes, variables);
+    numbers.push_back(operand.at[0].low);
+  }
+  if (numbers.empty()) return value_of<Jet>(node, of_nodes, variables);
+  return Jet(value_of<double>({node.operation, 0, 1, 2}, numbers, {}));
+}
+
+template <class T>
+T evaluated(const std::vector<Node>& nodes, const std::vector<T>& variables) {
+  std::vector<T> values;
+  values.reserve(nodes.size());
+  for (const Node& node : nodes) values.push_back(value_of(node, values, variables));
+  return values.back();
+}
+
+// Functions of several numbers, which are written with those of two.
+enum class Many : int { sum = 100, avg, min, max };
+enum class Other : int { plus = 200, cot, coth, log2, log10 };
+
+// muParser calls a function that the reader knows by what it returns.
+template <auto which>
+double named(double) {
+  return static_cast<double>(which);
+}
+template <auto which>
+double named_of_two(double, double) {
+  return static_cast<double>(which);
+}
+template <auto which>
+double named_of_many(const double*, int count) {
+  if (count == 0) throw mu::ParserError("Too few parameters for a function");
+  return static_cast<double>(which);
+}
+
+void define_functions(mu::Parser& parser) {
+  parser.ClearFun();  // among them random numbers
+  parser.ClearInfixOprt();
+  parser.DefineInfixOprt("-", named<Operation::negate>);
+  parser.DefineInfixOprt("+", named<Other::plus>);
+  parser.DefineFun("sin", named<Operation::sin>);
+  parser.DefineFun("cos", named<Operation::cos>);
+  parser.DefineFun("tan", named<Operation::tan>);
+  parser.DefineFun("cot", named<Other::cot>);
+  parser.DefineFun("asin", named<Operation::asin>);
+  parser.DefineFun("acos", named<Operation::acos>);
+  parser.DefineFun("atan", named<Operation::atan>);
+  parser.DefineFun("atan2", named_of_two<Operation::atan2>);
+  parser.DefineFun("sinh", named<Operation::sinh>);
+  parser.DefineFun("cosh", named<Operation::cosh>);
+  parser.DefineFun("tanh", named<Operation::tanh>);
+  parser.DefineFun("coth", named<Other::coth>);
+  parser.DefineFun("asinh", named<Operation::asinh>);
+  parser.DefineFun("acosh", named<Operation::acosh>);
+  parser.DefineFun("atanh", named<Operation::atanh>);
+  parser.DefineFun("exp", named<Operation::exp>);
+  for (const char* natural : {"log", "ln"}) parser.DefineFun(natural, named<Operation::log>);
+  parser.DefineFun("log2", named<Other::log2>);
+  parser.DefineFun("log10", named<Other::log10>);
+  parser.DefineFun("sqrt", named<Operation::sqrt>);
+  parser.DefineFun("sign", named<Operation::sign>);
+  parser.DefineFun("rint", named<Operation::rint>);
+  parser.DefineFun("abs", named<Operation::abs>);
+  parser.DefineFun("sum", named_of_many<Many::sum>);
+  parser.DefineFun("avg", named_of_many<Many::avg>);
+  parser.DefineFun("min", named_of_many<Many::min>);
+  parser.DefineFun("max", named_of_many<Many::max>);
+}
+
+/// The tree of muParser's bytecode, which is in reverse Polish notation.
+class Reader {
+ public:
+  Reader(const mu::SToken* code, const std::vector<double>& variables) : variables_(variables) {
+    for (; code->Cmd != mu::cmEND; ++code) read(*code);
   }
 
-  /// Number of values, of which muParser gives the last: two for "v, x". Reads the text.
-  [[nodiscard]] int count() {
-    int found = 0;
-    (void)parser.Eval(found);
-    return found;
+  std::vector<Node> nodes;
+
+ private:
+  std::size_t push(Node node) {
+    nodes.push_back(node);
+    fold();
+    return nodes.size() - 1;
+  }
+  std::size_t pop() {
+    const std::size_t top = stack_.back();
+    stack_.pop_back();
+    return top;
+  }
+  std::size_t number(double value) { return push({Operation::constant, 0, 0, 0, value}); }
+  std::size_t apply(Operation operation, std::size_t a, std::size_t b = 0, std::size_t c = 0) {
+    return push({operation, a, b, c});
   }
 
-  std::vector<double> values;
-  mu::Parser parser;
+  // Operations on constants alone are one.
+  void fold() {
+    const Node& last = nodes.back();
+    const std::array operand{last.a, last.b, last.c};
+    const int count = operands(last.operation);
+    for (int n = 0; n < count; ++n) {
+      if (nodes[operand[n]].operation != Operation::constant) return;
+    }
+    if (count > 0)
+      nodes.back() = {Operation::constant, 0, 0, 0, evaluated<double>(nodes, variables_)};
+  }
+
+  void read(const mu::SToken& token) {
+    if (token.Cmd == mu::cmIF || token.Cmd == mu::cmELSE) return;
+    if (token.Cmd == mu::cmVAL) return stack_.push_back(number(token.Val.data2));
+    if (token.Cmd == mu::cmVAR) {
+      const auto place = static_cast<std::size_t>(token.Val.ptr - variables_.data());
+      return stack_.push_back(apply(Operation::variable, place));
+    }
+    if (token.Cmd == mu::cmFUNC) return stack_.push_back(called(token));
+    const std::size_t b = pop(), a = pop();
+    stack_.push_back(token.Cmd == mu::cmENDIF ? apply(Operation::choose, pop(), a, b)
+                                              : infix(token.Cmd, a, b));
+  }
+
+  std::size_t negation(std::size_t a) { return apply(Operation::equal, a, number(0)); }
+
+  std::size_t infix(mu::ECmdCode code, std::size_t a, std::size_t b) {
+    switch (code) {
+    case mu::cmADD: return apply(Operation::add, a, b);
+    case mu::cmSUB: return apply(Operation::subtract, a, b);
+    case mu::cmMUL: return apply(Operation::multiply, a, b);
+    case mu::cmDIV: return apply(Operation::divide, a, b);
+    case mu::cmPOW: return apply(Operation::pow, a, b);
+    case mu::cmLT: return apply(Operation::less, a, b);
+    case mu::cmGT: return apply(Operation::less, b, a);
+    case mu::cmLE: return apply(Operation::at_most, a, b);
+    case mu::cmGE: return apply(Operation::at_most, b, a);
+    case mu::cmEQ: return apply(Operation::equal, a, b);
+    case mu::cmNEQ: return negation(apply(Operation::equal, a, b));
+    case mu::cmLAND: return apply(Operation::both, a, b);
+    case mu::cmLOR: return negation(apply(Operation::both, negation(a), negation(b)));
+    default: throw std::invalid_argument("an operator that is none of formulas");
+    }
+  }
+
+  std::size_t called(const mu::SToken& token) {
+    const int count = token.Fun.argc;
+    if (count < 0) return of_many(-count, token.Fun.cb.call_multfun(nullptr, 1));
+    if (count == 2) {
+      const std::size_t b = pop(), a = pop();
+      return apply(Operation::atan2, a, b);
+    }
+    const auto which = static_cast<int>(token.Fun.cb.call_fun<1>(0.0));
+    const std::size_t a = pop();
+    switch (static_cast<Other>(which)) {
+    case Other::plus: return a;
+    case Other::cot: return apply(divide, number(1), apply(Operation::tan, a));
+    case Other::coth: return apply(divide, number(1), apply(Operation::tanh, a));
+    case Other::log2: return apply(divide, apply(Operation::log, a), number(std::log(2)));
+    case Other::log10: return apply(divide, apply(Operation::log, a), number(std::log(10)));
+    }
+    return apply(static_cast<Operation>(which), a);
+  }
+
+  std::size_t of_many(int count, double which) {
+    const auto many = static_cast<Many>(static_cast<int>(which));
+    std::size_t all = pop();
+    if (many == Many::max) all = apply(Operation::negate, all);
+    for (int n = 1; n < count; ++n) {
+      const std::size_t next = pop();
+      if (many == Many::max) {
+        all = apply(Operation::minimum, apply(Operation::negate, next), all);
+      } else {
+        all = apply(many == Many::min ? Operation::minimum : Operation::add, next, all);
+      }
+    }
+    if (many == Many::max) return apply(Operation::negate, all);
+    return many == Many::avg ? apply(divide, all, number(count)) : all;
+  }
+
+  const std::vector<double>& variables_;
+  std::vector<std::size_t> stack_;
 };
 
-Expression::Expression(std::string text, std::vector<std::string> variables, Constants constants)
-    : text_(std::move(text)), variables_(std::move(variables)), constants_(std::move(constants)) {
+std::vector<Node> read(const std::string& text, const std::vector<std::string>& variables,
+                       const Expression::Constants& constants) {
+  std::vector<double> values(variables.size(), 0.0);
+  mu::Parser parser;
+  parser.EnableOptimizer(false);
+  define_functions(parser);
+  for (std::size_t n = 0; n < variables.size(); ++n) parser.DefineVar(variables[n], &values[n]);
+  for (const auto& [name, value] : constants) parser.DefineConst(name, value);
+  parser.SetExpr(text);
+  int count = 0;  // of values, of which muParser gives the last: two for "v, x"
+  (void)parser.Eval(count);
+  if (count != 1) throw std::invalid_argument(text + " is more than one expression");
+  return Reader(parser.GetByteCode().GetBase(), values).nodes;
+}
+
+}  // namespace
+
+// muParser: small, maintained, packaged; its grammar and its messages.
+Expression::Expression(std::string text, const std::vector<std::string>& variables,
+                       const Constants& constants)
+    : text_(std::move(text)) {
   if (assigns(text_)) {
     throw std::invalid_argument(text_ + " assigns a value; == is the comparison");
   }
   try {
-    reader_ = std::make_unique<Reader>(text_, variables_, constants_);
-    if (reader_->count() == 1) return;
+    nodes_ = read(text_, variables, constants);
   } catch (const mu::ParserError& error) {
     std::string message = error.GetMsg();
     if (message.ends_with('.')) message.pop_back();
     throw std::invalid_argument(message);
   }
-  throw std::invalid_argument(text_ + " is more than one expression");
 }
 
-Expression::Expression(const Expression& other)
-    : Expression(other.text_, other.variables_, other.constants_) {}
+double Expression::operator()(const std::vector<double>& values) const {
+  return evaluated(nodes_, values);
+}
 
-Expression::~Expression() = default;
+Jet Expression::jet(const std::vector<Jet>& values) const { return evaluated(nodes_, values); }
 
-double Expression::operator()(std::initializer_list<double> values) const {
-  std::copy(values.begin(), values.end(), reader_->values.begin());
-  return reader_->parser.Eval();
+std::vector<double> Expression::numbers() const {
+  std::vector<double> found;
+  for (const Node& node : nodes_) {
+    if (node.operation == Operation::constant) found.push_back(std::abs(node.value));
+  }
+  return found;
 }
 
 }  // namespace stickslip::model

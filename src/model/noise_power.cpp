@@ -7,10 +7,26 @@
 #include <vector>
 
 namespace stickslip::model {
+namespace {
+
+// int_0^infinity Cov(X_0, X_t) dt of the chain of steps as it ends: an edge passes on S_i = sum_(j
+// <= i) pi_j x_j, as LevelTable has it, and both halves are alike.
+double intensity(const NoiseChain& chain) {
+  const auto p = stationary_distribution(chain);
+  double below = 0, sum = 0;
+  for (int i = chain.lowest(); i < 0; ++i) {
+    const double weight = p[i - chain.lowest()], flow = weight * chain.up_rate(i);
+    below += weight * chain.level(i);
+    if (flow > 0) sum += below * (below / flow);
+  }
+  return 2 * sum;
+}
+
+}  // namespace
 
 double power_spectral_density(const NoiseChain& chain, double omega) {
-  // Where i omega - Q is singular, the integral over all times is known.
-  if (omega == 0) return 2 * chain.intensity();
+  // Where i omega - Q is singular, the integral over all times.
+  if (omega == 0) return 2 * (chain.table ? chain.intensity() : intensity(chain));
   const int lowest = chain.lowest(), count = chain.count();
   const auto p = stationary_distribution(chain);
   int band = 0;

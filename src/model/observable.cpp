@@ -30,7 +30,7 @@ std::string not_finite(const std::string& text, double value, double x, double y
 
 // Tried at rest, as motion starts and in slow motion, where every process has states like these.
 void require_finite(const std::string& text, const Function& f, const Friction& friction) {
-  const double some_x = friction.mu_s / 2, some_v = 1e-3;
+  const double some_x = friction.mu_s / 2, some_v = 1e-3 * friction.mu_s;
   for (double x : {0.0, some_x, -some_x}) {
     for (double y : {0.0, 1.0, -1.0}) {
       for (double v : {0.0, y * some_v}) {
@@ -43,13 +43,14 @@ void require_finite(const std::string& text, const Function& f, const Friction& 
 }
 
 Observable from_expression(const std::string& text, const Friction& friction) {
-  const Expression formula(text, {"x", "y", "v", "stick", "slide"},
-                           {{"mu_s", friction.mu_s}, {"mu_d", friction.mu_d}});
+  const std::vector<std::string> variables{"x", "y", "v", "stick", "slide"};
+  const auto formula = std::make_shared<const Expression>(
+      text, variables, Expression::Constants{{"mu_s", friction.mu_s}, {"mu_d", friction.mu_d}});
   const auto f = [formula](double x, double y, double v) {
-    return formula({x, y, v, y == 0 ? 1.0 : 0.0, y == 0 ? 0.0 : 1.0});
+    return (*formula)({x, y, v, y == 0 ? 1.0 : 0.0, y == 0 ? 0.0 : 1.0});
   };
   require_finite(text, f, friction);
-  auto numbers = numbers_in(text);
+  auto numbers = formula->numbers();
   numbers.insert(numbers.end(), {friction.mu_s, friction.mu_d});
   return {text,
           [f, text](double x, double y, double v) {
@@ -57,7 +58,7 @@ Observable from_expression(const std::string& text, const Friction& friction) {
             if (std::isfinite(value)) return value;
             throw Failure(ExitStatus::bad_input, not_finite(text, value, x, y, v));
           },
-          numbers};
+          formula, numbers};
 }
 
 bool within(double x, double threshold) {
@@ -84,7 +85,7 @@ Observable parse_observable(const std::string& text, const Friction& friction) {
       {"slide", [](double, double y, double) { return y == 0 ? 0.0 : 1.0; }},
       {"|x|<=mu_s", [mu_s](double x, double, double) { return within(x, mu_s) ? 1.0 : 0.0; }}};
   const auto found = named.find(text);
-  if (found != named.end()) return {text, found->second, {}, true};
+  if (found != named.end()) return {text, found->second, {}, {}, true};
   return from_expression(text, friction);
 }
 
@@ -108,19 +109,23 @@ class Examination {
 
   /// The breaks on a level with sign v = sign.
   std::vector<Break> look(double x, double sign) {
-    auto numbers = f_->numbers;
-    numbers.push_back(std::abs(x));
-    const auto seen = [this, of_speed = section(f_, x, sign)](double speed) {
+    Shape shape;
+    if (f_->formula) shape = shape_of(*f_->formula, {x, sign, 0, 0, 1}, 2, sign, reach_);
+    if (!shape.resolved) refuse(fmt::format("changes too often to be resolved (x = {:g})", x));
+    auto speeds = shape.places;
+    for (int n = 0; n < 40; ++n) speeds.push_back(reach_ * std::pow(0.7, n));
+    const auto of_speed = section(f_, x, sign);
+    for (double speed : speeds) {
       const double value = of_speed(speed);
       least = std::min(least, value);  // not where it is not a number
       most = std::max(most, value);
-      return value;
-    };
-    auto found = breaks(seen, numbers, reach_);
-    for (const Break& b : found) {
-      if (b.unbounded) refuse(fmt::format("is unbounded at v = {:.9g} (x = {:g})", sign * b.v, x));
     }
-    return found;
+    for (const Break& b : shape.breaks) {
+      if (b.kind != Break::Kind::pole) continue;
+      refuse(fmt::format("is unbounded at v = {:.9g} (x = {:g})", sign * b.v, x));
+    }
+    merge(places, shape.places);
+    return shape.breaks;
   }
 
   [[noreturn]] void refuse(const std::string& why) const {
@@ -128,6 +133,7 @@ class Examination {
   }
 
   double least = kInfinity, most = -kInfinity;
+  std::vector<double> places;
 
  private:
   std::shared_ptr<const Observable> f_;
@@ -165,6 +171,7 @@ Observable friction_power(const Friction& friction) {
             return v > 0 ? along(v) * v : -backwards(-v) * v;
           },
           {},
+          {},
           !friction.weakens()};
 }
 
@@ -196,6 +203,7 @@ void examine(Observable& f, const std::vector<double>& x, double step, double re
   f.levels = x;
   f.breaks.clear();
   for (const Break& b : found) f.breaks.push_back(b.v);
+  f.places = examination.places;
   f.least = examination.least;
   f.most = examination.most;
   for (double level : x) {

@@ -1,15 +1,21 @@
+#include <algorithm>
+#include <cmath>
+
 #include "stickslip/catalogue/noise_spectrum_keys.hpp"
 #include "stickslip/model/noise_power.hpp"
 #include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 
-// The chain is solved for directly: what is truncated of it differs between refinement levels.
+// The chain is solved for directly, as it is meant: what is truncated of it differs between
+// refinement levels. Levels beyond 40 deviations are below all rounding.
 void noise_spectrum_tasks(Planner& planner) {
   const auto& scene = planner.given().scene;
   const auto target = scene.noise.target;
-  planner.add({"noise spectrum", {}, [target](Computation& computation) {
-                 const auto& chain = computation.process().noise;
+  auto chain = scene.meant().noise;
+  const double far = 40 * chain.standard_deviation() / chain.step();
+  chain.levels = static_cast<int>(std::min<double>(chain.levels, std::ceil(far)));
+  planner.add({"noise spectrum", {}, [target, chain](Computation& computation) {
                  auto found = array(catalogue::kSX, computation.question().omega),
                       meant = array(catalogue::kSXTarget, computation.question().omega);
                  for (double omega : computation.question().omega) {

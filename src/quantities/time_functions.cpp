@@ -104,7 +104,8 @@ TimeScales time_scales(const model::Process& process) {
   const auto force = [&](double v) {
     return process.friction.at_rest() - std::abs(process.bias) - process.drag(v);
   };
-  double low = 1e-9, high = 1e9;
+  const double scale = process.noise.intensity() / process.noise.standard_deviation();
+  double low = 1e-9 * scale, high = 1e9 * scale;
   for (int n = 0; n < 60; ++n) {
     const double v = std::sqrt(low * high);
     (v * force(v) < process.noise.intensity() ? low : high) = v;

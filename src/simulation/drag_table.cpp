@@ -44,7 +44,8 @@ DragTable::DragTable(const model::Drag& drag) : drag_(drag) {
 
 const DragPanel& DragTable::at(double speed) {
   while (panel_.empty() || panel_.back().high <= speed) {
-    const double low = panel_.empty() ? 0 : panel_.back().high, high = std::max(1.0, 2 * low);
+    const double low = panel_.empty() ? 0 : panel_.back().high,
+                 high = low > 0 ? 2 * low : drag_.scale() / 16;
     floor_ = 1e-3 * std::abs(drag_(high));
     add(low, high, 0, kInfinity);
   }
@@ -60,7 +61,7 @@ const DragPanel& DragTable::at(double speed) {
 
 // Bodies cross the end of a panel by rounding at least, but never that at 0.
 DragPanel DragTable::interpolant(double low, double high, double overlap) const {
-  const double more = overlap * (high - low), rounding = 1e-12 * (1 + high);
+  const double more = overlap * (high - low), rounding = 1e-12 * (drag_.scale() / 16 + high);
   const double from = std::max(0.0, low - more), to = high + more;
   const double half = (to - from) / 2, centre = from + half;
   constexpr auto count = static_cast<double>(kDragTerms);
@@ -82,12 +83,17 @@ DragPanel DragTable::interpolant(double low, double high, double overlap) const 
 double DragTable::relative_error(const DragPanel& panel) const {
   constexpr int places = 31;
   double size = std::max(floor_, panel.centre * std::abs(panel.coefficient[1])), error = 0;
-  for (int n = 1; n <= places; ++n) {
-    const double share = std::fmod(n * 0.618033988749895, 1);
-    const double u = panel.from + (panel.to - panel.from) * share, b = drag_(u);
+  const auto look = [&](double u) {
+    const double b = drag_(u);
     size = std::max(size, std::abs(b));
     error = std::max(error, std::abs(b - horner(panel.coefficient, u - panel.centre)));
+  };
+  for (int n = 1; n <= places; ++n) {
+    look(panel.from + (panel.to - panel.from) * std::fmod(n * 0.618033988749895, 1));
   }
+  const auto& all = drag_.places;
+  auto next = std::upper_bound(all.begin(), all.end(), panel.from);
+  for (; next != all.end() && *next < panel.to; ++next) look(*next);
   return error > 0 ? error / size : 0;  // 0 where the law is 0 throughout
 }
 
@@ -111,7 +117,7 @@ void DragTable::add(double low, double high, int depth, double error_of_whole) {
   for (double overlap : {0.25, 0.0}) {
     const DragPanel panel = interpolant(low, high, overlap);
     error = relative_error(panel);
-    const bool smallest = overlap == 0 && width <= 1e-13 * (1 + high);
+    const bool smallest = overlap == 0 && width <= 1e-13 * (drag_.scale() / 16 + high);
     const bool rounding = depth >= is_short && error < is_small && overlap == 0 &&
                           error > hardly_better * error_of_whole;
     if (smallest || rounding || error <= kError) return panel_.push_back(panel);

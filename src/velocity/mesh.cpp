@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "log_density.hpp"
 #include "waves.hpp"
@@ -130,26 +131,28 @@ using Layers = std::map<double, int>;
 // Where a level does not move but is left for both sides, at speeds beta (v - v*) with beta > 0, on
 // either branch: solutions are like |v - v*|^(Lambda/beta).
 Layers partings(const model::Process& process, const MeshRule& rule, bool on_both = true) {
-  constexpr double fine = 1.01, smallest = 1e-12;
+  constexpr double smallest = 1e-12;
   const auto& [noise, friction, drag, bias] = process;
   const double end = std::min(rule.v_max, drag.rises_until), rest = friction.at_rest() - bias;
   Layers found;
-  double high = smallest * end;
-  while (high < end) {
-    const double low = high;
-    high *= fine;
+  if (!(end > 0)) return found;
+  double next = smallest * end;
+  for (double high : drag.speeds(next, end)) {
+    const double low = std::exchange(next, high);
     const double from = drag(low), rise = drag(high) - from;
     if (!(rise > 0)) continue;
     for (int i = std::min(noise.last_up_to(rest - from), noise.highest());
          i >= noise.lowest() && process.net_force(i) + from + rise > 0; --i) {
-      const double force = process.net_force(i), power = noise.rate(i) * (high - low) / rise;
-      if (force + from > 0 || power > kSmooth) continue;
+      const double force = process.net_force(i);
+      if (force + from > 0) continue;
       const auto speed = [force, &b = drag](double v) { return force + b(v); };
       const boost::math::tools::eps_tolerance<double> rounding(52);
       std::uintmax_t iterations = 200;
       const double v =
           boost::math::tools::toms748_solve(speed, low, high, rounding, iterations).first;
-      if (v < rule.v_max) found[v] = layers_towards(power, rule);
+      const double near = 1e-6 * v, slope = (drag(v + near) - drag(v - near)) / (2 * near);
+      const double power = slope > 0 ? noise.rate(i) / slope : kSmooth;
+      if (v < rule.v_max && power < kSmooth) found[v] = layers_towards(power, rule);
     }
   }
   if (on_both && !process.symmetric()) found.merge(partings(process.mirrored(), rule, false));
@@ -268,10 +271,12 @@ class Halving {
  public:
   Halving(const model::Process& process, const MeshRule& rule)
       : functions_(rule.integrands.functions),
+        places_(rule.integrands.places),
         upper_(process, rule.v_max),
         lower_(process.mirrored(), rule.v_max) {
     if (process.drag.law) functions_.emplace_back(process.drag.law);
     if (!process.drag.odd()) functions_.emplace_back(lower_.drag.law);
+    model::merge(places_, process.drag.places);
     sizes_.assign(functions_.size(), 0);
   }
 
@@ -313,7 +318,7 @@ class Halving {
     Element element{0, low, high};
     for (std::size_t n = 0; n < functions_.size(); ++n) {
       const auto& f = functions_[n];
-      const double error = model::interpolation_error(f, low + margin, high - margin);
+      const double error = model::interpolation_error(f, low + margin, high - margin, places_);
       sizes_[n] = std::fmax(sizes_[n], at_middle * std::fmax(std::abs(f(middle)), error));
       element.misfit = std::fmax(element.misfit, at_low * error / (accepted * sizes_[n]));
     }
@@ -321,7 +326,8 @@ class Halving {
   }
 
   std::vector<model::FunctionOfSpeed> functions_;
-  std::vector<double> sizes_;  // largest weighted values
+  std::vector<double> places_;  // between which they have no features
+  std::vector<double> sizes_;   // largest weighted values
   LogDensity upper_, lower_;
 };
 

@@ -21,7 +21,8 @@ double upper_tail(const model::Process& process, double tolerance, double most) 
   const auto left = [&](double v) { return log_density(v, drop); };
   double last = 0;  // with a density that counts
   for (double v : log_density.extrema) last = left(v) > 0 ? v : last;
-  double end = std::max(slope > 0 ? drop * log_density.intensity / slope : 1.0, 2 * last);
+  const double force = slope > 0 ? slope : process.noise.standard_deviation();
+  double end = std::max(drop * log_density.intensity / force, 2 * last);
   const bool open = slope <= 0 || process.drag.rises_until > 0;
   while (open && left(end) > 0 && end < process.drag.reach) end *= 2;
   end = std::min(end, process.drag.reach);
@@ -51,8 +52,9 @@ double weighted_tail(const model::Process& process, double tolerance, double til
   constexpr double step = 0.02;
   const double drop = -std::log(tolerance) + 5, reach = process.drag.reach;
   const LogDensity log_density(process, kInfinity);
-  const double most = std::isfinite(reach) ? reach : 1e12, d = log_density.intensity;
-  double v = 1e-3 * std::sqrt(d), fallen = 0;
+  const double d = log_density.intensity, scale = d / process.noise.standard_deviation(),
+               most = std::isfinite(reach) ? reach : 1e12 * scale;
+  double v = 1e-3 * scale, fallen = 0;
   while (fallen < drop && v < most) {
     const double force = log_density.slope - process.drag(v), rate = force / d;
     const double square = rate * rate - 4 * tilt * v / d;

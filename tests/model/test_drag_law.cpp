@@ -95,7 +95,7 @@ TEST_CASE("drag laws: friction that weakens is what holds a fast body") {
 
 TEST_CASE("drag laws: jumps and infinite slopes are refused, with the place") {
   CHECK_THAT(refusal("-sqrt(abs(v))*sign(v)"),
-             Catch::Contains("slope") && Catch::Contains("1e-10"));
+             Catch::Contains("slope") && Catch::Contains("at v = 1.72072833e-09"));
   CHECK_THAT(refusal("-sign(v)"), Catch::Contains("slope"));
   CHECK_THAT(refusal("-v - 0.1*sign(v)"), Catch::Contains("slope"));
   CHECK_THAT(refusal("-sign(v)*abs(v)^0.98"), Catch::Contains("slope"));
@@ -148,4 +148,42 @@ TEST_CASE("drag laws: the side with less drag decides how far they are tried") {
 TEST_CASE("drag laws: what is left at rest is compared with dry friction") {
   CHECK_THROWS_AS(parse_drag("1e-15 - v", {1, 1e-3}, 1, 6), UnfitLaw);
   CHECK_NOTHROW(parse_drag("1e-17 - v", {1, 1e-3}, 1, 6));
+}
+
+// What a law is like follows from its formula, in any unit of length: no speed is special.
+TEST_CASE("drag laws: the same in metres and in nanometres") {
+  for (const char* unit : {"1", "1e3", "1e9", "1e-6"}) {
+    const double u = std::stod(unit);
+    const auto of_unit = [&](std::string text) {
+      for (auto at = text.find('u'); at != std::string::npos; at = text.find('u')) {
+        text.replace(at, 1, unit);
+      }
+      return parse_drag(text, {u, 0.5 * u}, 1, 12 * u, 0, u * u);
+    };
+    INFO(unit);
+    const Drag kinked = of_unit("-0.5*v - 5*max(v - 2*u, 0)");
+    CHECK_FALSE(kinked.odd());
+    REQUIRE(kinked.breaks.size() == 1);
+    CHECK(kinked.breaks[0] == Approx(2 * u).epsilon(1e-14));
+    CHECK(kinked.reach / u == Approx(of_unit("-0.5*v").reach / u).epsilon(1e-12));
+    CHECK(of_unit("-v").reach / u == Approx(9.61).epsilon(0.02));
+    CHECK(of_unit("-tanh(v/(1e-9*u))*u").slope_at_rest() == Approx(-1e9).epsilon(1e-6));
+    CHECK(of_unit("-4e-13*v").slope_at_rest() == Approx(-4e-13).epsilon(1e-9));
+    CHECK(of_unit("-v - 0.01*v*abs(v)/(1*u)").bounds_velocity());
+    CHECK_THROWS_AS(of_unit("-sign(v)*sqrt(abs(v)/(1*u))*u"), UnfitLaw);
+    CHECK_THROWS_AS(of_unit("abs(v) < 2*u ? -v : -1.1*v"), UnfitLaw);
+  }
+}
+
+// However narrow: 1e-4 of v, between all places at which a law can be tried.
+TEST_CASE("drag laws: a narrow feature is seen") {
+  const Drag bump = parse_drag("-0.5*v - 5*exp(-((v - 0.921)/1e-4)^2)", {1, 0.5}, 1, 12);
+  CHECK_FALSE(bump.odd());
+  CHECK(bump.rises_until == bump.reach);
+  CHECK(bump.terminal_velocity(1) == Approx(0.921).margin(5e-4));
+  CHECK(bump.balances(-1).empty());
+  CHECK(bump.balances(1).size() == 3);
+  CHECK(bump.steepest(2) > 2e4);
+  CHECK(bump.mirrored().terminal_velocity(1) == Approx(2).epsilon(1e-6));
+  CHECK_THAT(refusal("-v + 0*sin(1e7*v) - 0.1*v*sin(1e7*v)"), Catch::Contains("changes too often"));
 }

@@ -80,3 +80,12 @@ TEST_CASE("noise power: that of a sum is the sum, where all of it is known") {
                               added(omega)) < 1e-9);
   }
 }
+
+// Not that of the full range, 2; from a dense solve of the 11 levels.
+TEST_CASE("noise power: at omega = 0 of a chain that ends early") {
+  const model::NoiseChain chain{1, 0.25, 5};
+  CHECK(model::power_spectral_density(chain, 0) == Approx(0.412457991464).epsilon(1e-11));
+  CHECK(model::power_spectral_density(chain, 1e-7) == Approx(0.412457991464).epsilon(1e-11));
+  CHECK(model::power_spectral_density(model::NoiseChain{1, 0.25, 32}, 0) ==
+        Approx(2).epsilon(1e-13));
+}

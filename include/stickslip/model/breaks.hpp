@@ -1,40 +1,46 @@
 #pragma once
-/// Where a function of the speed is not smooth.
+/// Where a formula is not smooth in the speed, and how finely it changes.
 
+#include <cstddef>
 #include <functional>
-#include <string>
 #include <vector>
+
+#include "stickslip/model/expression.hpp"
 
 namespace stickslip::model {
 
 using FunctionOfSpeed = std::function<double(double)>;
 
-/// A jump, a kink or another speed v > 0 at which a function is not smooth.
+/// A jump, a kink or another speed v > 0 at which a formula is not smooth.
 struct Break {
-  double v;
-  double width;    ///< of the interval that it was found in, at least the spacing of doubles
-  bool unbounded;  ///< whether the function is
-  /// About 0 for a jump, the power for a root, 1 for a kink.
-  double order = 1;
+  enum class Kind { kink, jump, steep, pole };
+  double v;   ///< to rounding
+  Kind kind;  ///< steep: its slope has no bound, as that of a root; pole: its values have none
   [[nodiscard]] bool same_as(const Break& other) const;
 };
 
-/// Largest |f - p| at 8 places of [a, b], its ends among them, p interpolating f at the 8 Chebyshev
-/// nodes between. Not a number where f is none. 16 values of f.
-[[nodiscard]] double interpolation_error(const FunctionOfSpeed& f, double a, double b);
+/// Largest |f - p| at 8 places of [a, b], its ends among them, and at those of `places` within, p
+/// interpolating f at the 8 Chebyshev nodes between. Not a number where f is none.
+[[nodiscard]] double interpolation_error(const FunctionOfSpeed& f, double a, double b,
+                                         const std::vector<double>& places = {});
 
-/// Breaks of f on (0, reach], rising: those that 400 intervals show, and intervals around each
-/// number and around the products, quotients, sums and differences of two. A break that equals one
-/// of these is set to it. Others have the precision at which f stops to show them: that of v for a
-/// jump. Functions that doubles resolve have none, however steep. Kinks below about 1e-5 of the
-/// size of f are not seen, nor narrow windows whose ends are no such numbers.
-[[nodiscard]] std::vector<Break> breaks(const FunctionOfSpeed& f,
-                                        const std::vector<double>& numbers, double reach);
+/// What a formula is like as a function of one of its variables.
+struct Shape {
+  std::vector<Break> breaks;  ///< rising
+  /// Speeds, rising, between any two of which f is a polynomial of degree 7 to 1e-10 of its size:
+  /// no feature, however narrow, lies between them.
+  std::vector<double> places;
+  bool resolved = true;  ///< otherwise f has more features than places were allowed
+};
 
-/// `found` with those of `more` that are new, rising; of two at one place the sharper one stays.
+/// The shape of |v| -> f at 0 < |v| <= reach, `v` being the place of the velocity among the
+/// variables, with that sign, and the others having the values given. By bisection, guided by
+/// bounds on f and its derivatives on whole intervals.
+[[nodiscard]] Shape shape_of(const Expression& f, const std::vector<double>& values, std::size_t v,
+                             double sign, double reach);
+
+/// `found` with those of `more` that are new, rising.
 void merge(std::vector<Break>& found, const std::vector<Break>& more);
-
-/// The numbers in a formula, digits of names such as log10 left out.
-[[nodiscard]] std::vector<double> numbers_in(const std::string& formula);
+void merge(std::vector<double>& places, const std::vector<double>& more);
 
 }  // namespace stickslip::model

@@ -2,7 +2,6 @@
 /// Drag b(v): a force with b(0) = 0, as a rule falling with v.
 
 #include <functional>
-#include <optional>
 #include <vector>
 
 #include "stickslip/model/friction.hpp"
@@ -22,6 +21,7 @@ struct Drag {
   bool law_is_odd = true;           ///< b(-v) = -b(v)
   std::vector<double> breaks = {};  ///< |v| > 0 at which a law has kinks, rising
   double rises_until = 0;           ///< |v| beyond which a law falls; 0: it falls everywhere
+  std::vector<double> places = {};  ///< |v| that show all of a law on either side, see Shape
 
   /// b(v) [force].
   [[nodiscard]] double operator()(double v) const {
@@ -44,14 +44,17 @@ struct Drag {
   /// there is none.
   [[nodiscard]] double terminal_velocity(double force) const;
   /// For a law that rises somewhere: all v > 0 at which force + b(v) changes its sign, rising, each
-  /// to rounding and beyond it. Between two there is a factor of 1.01 at least.
+  /// to rounding and beyond it. Of two between the same speeds() neither is found.
   [[nodiscard]] std::vector<double> balances(double force) const;
   /// Largest b on [0, v], to about 1e-4 of it.
   [[nodiscard]] double highest(double v) const;
+  /// Speeds from `from` to `to`, rising: in ratios of 1.01 where a law may rise and of 2 beyond,
+  /// and its places.
+  [[nodiscard]] std::vector<double> speeds(double from, double to) const;
+  /// A speed that has the unit in which a law is written.
+  [[nodiscard]] double scale() const;
 
   [[nodiscard]] bool odd() const { return !law || law_is_odd; }
-  /// A v > 0 with b(-v) != -b(v) beyond rounding; nothing if b is odd. Samples the law.
-  [[nodiscard]] std::optional<double> asymmetry() const;
   /// v -> -b(-v), the drag in the mirror.
   [[nodiscard]] Drag mirrored() const;
 };

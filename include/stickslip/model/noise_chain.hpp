@@ -66,7 +66,7 @@ struct NoiseChain {
   [[nodiscard]] double mean() const { return table ? table->mean() : 0; }
   [[nodiscard]] double standard_deviation() const;
   /// int_0^infinity Cov(X_0, X_t) dt = sigma^2 tau: over long times X is white noise of twice this
-  /// strength [force^2 time].
+  /// strength [force^2 time]. Without a table that of the full range; see power_spectral_density().
   [[nodiscard]] double intensity() const;
   /// The same for large speeds; see LevelTable.
   [[nodiscard]] double tail_intensity() const { return table ? table->upper_tail() : intensity(); }

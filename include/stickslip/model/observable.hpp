@@ -19,11 +19,13 @@ struct Observable {
   using Function = std::function<double(double x, double y, double v)>;
   std::string name;  ///< as given by the user
   Function value;
+  std::shared_ptr<const Expression> formula = {};  ///< of an expression, in x, y, v, stick, slide
   std::vector<double> numbers = {};  ///< that stand in an expression, mu_s and mu_d included
   bool quadratic = false;  ///< a polynomial in |v|, of degree 2 at most, which every element holds
   // Set by examine().
   std::vector<double> levels = {};  ///< x on which it has been looked at
   std::vector<double> breaks = {};  ///< |v| at which it jumps or has a kink on any of them, rising
+  std::vector<double> places = {};  ///< |v| that show all of it on any of them, see Shape
   double least = -kInfinity;        ///< of the values seen
   double most = kInfinity;
 
@@ -56,11 +58,11 @@ struct Observable {
 /// F(v) |v| with the F of the direction: the power that dry friction takes.
 [[nodiscard]] Observable friction_power(const Friction& friction);
 
-/// Finds the breaks of f in v, 0 < |v| <= reach, on the levels x and for both signs of v, as
-/// breaks() does. Throws std::invalid_argument, with the reason, where f is unbounded, for more
+/// Finds the breaks of f in v, 0 < |v| <= reach, on the levels x and for both signs of v, by its
+/// shape(). Throws std::invalid_argument, with the reason, where f is unbounded, for more
 /// than 64 breaks, and for one on a level `step` nearer to 0, between levels of x, that none of
-/// these shows: it moves with x, and elements cannot end there on all levels. Jumps at v = 0 and in
-/// x do not count. About 14 000 values of f a level and sign.
+/// these shows: it moves with x, and elements cannot end there on all levels; or for more features
+/// than can be resolved. Jumps at v = 0 and in x do not count.
 void examine(Observable& f, const std::vector<double>& x, double step, double reach);
 
 /// The same on up to 17 levels of the noise, evenly, and on those next to the numbers of f.

@@ -21,6 +21,7 @@ struct Rates {
 struct Integrands {
   std::vector<double> breaks;                     ///< where elements end [velocity]
   std::vector<model::FunctionOfSpeed> functions;  ///< that elements resolve between the breaks
+  std::vector<double> places = {};  ///< speeds that show all of them, see model::Shape
 };
 
 /// What fixes the elements. See mesh.cpp for the reasons behind the numbers.
