@@ -75,9 +75,11 @@ class Powers {
     key_.static_phase = StaticPhase::kept;
     key_.tilt = s;
     key_.lambda = z;
-    reached_ = a().values(
-        [up = bound_of(systems.process()), down = bound_of(systems.process().mirrored())](
-            double, double y, double v) { return y * v < (y > 0 ? up : down) || y == 0 ? 1 : 0; });
+    key_.highest = bound_of(systems.process());
+    key_.lowest = -bound_of(systems.process().mirrored());
+    reached_ = a().values([up = key_.highest, down = key_.lowest](double, double y, double v) {
+      return y == 0 || (y > 0 ? v < up : v > down) ? 1 : 0;
+    });
     restart();
   }
   Powers(const Powers&) = delete;
