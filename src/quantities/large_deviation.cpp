@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
+#include <tuple>
 #include <utility>
 
 #include "stickslip/operators/systems.hpp"
@@ -13,7 +15,7 @@
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/quantities/plan.hpp"
 #include "stickslip/quantities/uncertain.hpp"
-#include "stickslip/support/errors.hpp"
+#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -36,10 +38,13 @@ struct Vectors {
   petsc::VecHandle right, left;
 };
 
-Vectors copies_of(const Vectors& of) { return {petsc::copy_of(of.right), petsc::copy_of(of.left)}; }
-
 petsc::VecHandle velocities(const KolmogorovOperator& a) {
   return a.values([](double, double, double v) { return v; });
+}
+
+// Whether bodies come to move upwards, however seldom.
+bool starts(const model::Process& process) {
+  return process.noise.highest() > process.highest_static();
 }
 
 void make_unit(Vec x) {
@@ -68,20 +73,35 @@ class Powers {
   Powers(operators::Systems& systems, double s, double z) : systems_(systems) {
     key_.symmetry = Symmetry::none;
     key_.static_phase = StaticPhase::kept;
-    move(s, z);
-    const auto alike = [](double, double, double) { return 1; };
-    vectors_ = {a().values(alike), a().values(alike)};
+    key_.tilt = s;
+    key_.lambda = z;
+    key_.highest = bound_of(systems.process());
+    key_.lowest = -bound_of(systems.process().mirrored());
+    reached_ = a().values([up = key_.highest, down = key_.lowest](double, double y, double v) {
+      return y == 0 || (y > 0 ? v < up : v > down) ? 1 : 0;
+    });
+    restart();
   }
   Powers(const Powers&) = delete;
   Powers& operator=(const Powers&) = delete;
   ~Powers() { systems_.release(key_); }
 
-  void move(double s, double z) {
+  void move(double z) {
+    if (z == key_.lambda) return;
     systems_.release(key_);
-    key_.tilt = s;
     key_.lambda = z;
   }
-  void restart(const Vectors& from) { vectors_ = copies_of(from); }
+  void restart() { vectors_ = {petsc::copy_of(reached_), petsc::copy_of(reached_)}; }
+
+  // Whether z is above theta, and moves there. It is if and only if (z - L - s v) u = 1 has a
+  // positive solution on all states: with the left eigenvector l of theta, which is positive, (z -
+  // theta) (l, u) = (l, 1).
+  bool is_above(double z) {
+    move(z);
+    petsc::VecHandle u = a().zeros();
+    systems_.at(key_).factors().solve_once(reached_, u);
+    return positive(u);
+  }
 
   // With iterative refinement or without.
   void step(bool refined) {
@@ -94,6 +114,8 @@ class Powers {
       factors.solve_once(vectors_.right, next.right);
       factors.solve_transposed_once(vectors_.left, next.left);
     }
+    leave_unreached_out(next.right);
+    leave_unreached_out(next.left);
     const double mean = dot(vectors_.left, next.right) / dot(vectors_.left, vectors_.right),
                  before = std::exchange(off_, 0);
     compare(vectors_.left, vectors_.right, next.right, mean);
@@ -105,12 +127,12 @@ class Powers {
     make_unit(vectors_.left);
   }
 
-  // Whether the vectors become the positive eigenvectors, by a percent.
+  // Whether the vectors become eigenvectors, by a percent.
   bool converges(int most) {
     constexpr double near = 1e-2;
     for (int n = 0; n < most; ++n) {
       step(false);
-      if (positive_ && off_ < near) return true;
+      if (off_ < near) return true;
     }
     return false;
   }
@@ -136,67 +158,121 @@ class Powers {
   [[nodiscard]] const Vectors& vectors() const { return vectors_; }
 
  private:
-  // How far w, what becomes of r, is from m r: the mean of |w/r - m|/m. By Perron and Frobenius the
-  // eigenvectors of theta alone have no negative entries, but for those that elements leave.
+  // The speed that no body on the positive velocity branch goes beyond, which is an end of
+  // elements: whatever would grow on branches where none starts, or at speeds that only those of
+  // the other branch have, is never seen.
+  [[nodiscard]] double bound_of(const model::Process& process) const {
+    constexpr double rounding = 1e-9;
+    if (!starts(process)) return 0;
+    const auto ends = systems_.discretisation().velocities->cells();
+    const auto end =
+        std::lower_bound(ends.begin(), ends.end(), (1 - rounding) * process.terminal_velocity());
+    return end == ends.end() ? kInfinity : *end;
+  }
+  void leave_unreached_out(Vec u) {
+    const petsc::ReadView reached(reached_);
+    petsc::WriteView values(u);
+    for (PetscInt n = 0; n < values.size(); ++n) {
+      if (PetscRealPart(reached[n]) == 0) values[n] = 0;
+    }
+  }
+
+  // How far w, what becomes of r, is from m r: the mean of |w/r - m|/m.
   void compare(Vec weight, Vec before, Vec after, double mean) {
-    double sums[] = {0, 0, 0, 0};
+    double sums[] = {0, 0};
     {
       const petsc::ReadView l(weight), r(before), w(after);
       for (PetscInt n = 0; n < l.size(); ++n) {
         const double was = mean * PetscRealPart(l[n] * r[n]), is = PetscRealPart(l[n] * w[n]);
-        sums[0] += is;
-        sums[1] += std::abs(is);
-        sums[2] += std::abs(is - was);
-        sums[3] += std::abs(was);
+        sums[0] += std::abs(is - was);
+        sums[1] += std::abs(was);
       }
     }
-    MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, systems_.comm());
-    constexpr double least = 0.3;
-    positive_ = std::abs(sums[0]) > least * sums[1];
-    off_ = std::max(off_, sums[2] / sums[3]);
+    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, systems_.comm());
+    off_ = std::max(off_, sums[0] / sums[1]);
+  }
+
+  // On all states that bodies reach, but for the ripples of polynomials on elements.
+  bool positive(Vec u) {
+    constexpr double ripple = 1e-2;
+    const auto nodes = systems_.discretisation().velocities->nodes(),
+               ends = systems_.discretisation().velocities->cells();
+    std::map<std::tuple<operators::Branch, int, std::ptrdiff_t>, std::pair<double, double>>
+        extremes;
+    int negative = 0;
+    {
+      const petsc::ReadView values(u), reached(reached_);
+      PetscInt at = 0;
+      a().states().for_each_local([&](const State& state) {
+        const double value = PetscRealPart(values[at]);
+        if (PetscRealPart(reached[at++]) == 0) return;
+        if (state.kind != StateKind::node) {
+          negative += !(value > 0);
+          return;
+        }
+        const auto end = std::upper_bound(ends.begin(), ends.end(), nodes[state.node]);
+        auto& [least, most] = extremes[{state.branch, state.noise, end - ends.begin()}];
+        least = std::min(least, value);
+        most = std::max(most, value);
+      });
+    }
+    for (const auto& [cell, of] : extremes)
+      negative += !(of.second > 0 && -of.first < ripple * of.second);
+    MPI_Allreduce(MPI_IN_PLACE, &negative, 1, MPI_INT, MPI_SUM, systems_.comm());
+    return negative == 0;
   }
 
   operators::Systems& systems_;
   operators::SystemKey key_;
+  petsc::VecHandle reached_;  // 1 on the states that bodies reach, 0 on others
   Vectors vectors_;
   double theta_ = 0, off_ = 1, fall_ = 1;
-  bool positive_ = false;
 };
 
-// From s = 0, where theta = 0, in steps that change the vectors little. Theta is smooth, so that it
-// rises by the mean of theta' at both ends, but for a part of what that changes; another eigenvalue
-// does not lie there. Returns where it ended, if not at the goal.
-std::optional<double> approach(Powers& powers, double goal, double tau) {
-  constexpr double part = 0.2;
-  const double small = 1e-3 / tau;
-  constexpr int first = 12, steps = 3, shifts = 3, most = 32;
-  double s = 0, step = goal;
-  powers.move(s, 1e-3 * small);
-  if (!powers.converges(first)) return 0;
-  Vectors at_s = copies_of(powers.vectors());
-  double theta = 0, velocity = powers.velocity();
-  for (int tried = 0; s != goal; ++tried) {
-    if (tried == most) return s;
-    const double next = std::abs(goal - s) < 1.5 * std::abs(step) ? goal : s + step,
-                 width = next - s;
-    powers.move(next, theta + width * velocity + small);
-    bool found = false;
-    for (int n = 0; n < shifts && !found; ++n) {
-      if (powers.converges(steps)) {
-        const double now = powers.velocity(),
-                     misfit = powers.theta() - theta - width * (velocity + now) / 2;
-        found = std::abs(misfit) < part * std::abs(width * (now - velocity)) + small;
-      }
-      if (!found) powers.move(next, powers.theta());
+// Theta is no less than the growth on one level alone, of bodies that rest there or slide as fast
+// as it drives them, until the noise jumps.
+double least_growth(const model::Process& process, double s, double v_max) {
+  double least = -HUGE_VAL;
+  const auto on_branch = [&](const model::Process& branch, double tilt) {
+    const auto& noise = branch.noise;
+    for (int i = noise.lowest(); i <= noise.highest(); ++i) {
+      const double force = branch.net_force(i), leaving = noise.rate(i);
+      if (branch.sticks(i)) least = std::max(least, -leaving);
+      if (!starts(branch) || force <= 0) continue;
+      least =
+          std::max(least, tilt * std::min(branch.drag.terminal_velocity(force), v_max) - leaving);
     }
-    step *= found ? 1.4 : 0.5;
-    if (found) {
-      s = next;
-      theta = powers.theta();
-      velocity = powers.velocity();
-      at_s = copies_of(powers.vectors());
+  };
+  on_branch(process, s);
+  on_branch(process.mirrored(), -s);
+  return least;
+}
+
+constexpr double kNearer = 1e-2;  // of the gap, away from theta
+
+// From a z that is above theta, which is the eigenvalue nearest to any such z, down to a hundredth
+// of the gap above it. Branches of eigenvalues of which one grows by sliding and another by resting
+// cross almost without coupling, so that no eigenvalue near to one at another s need be theta.
+// Returns that hundredth; none if no z above theta has been found.
+std::optional<double> approach(Powers& powers, double below, double step, double top) {
+  constexpr int most = 40, steps = 8;
+  double z = below + step;
+  for (; !powers.is_above(z); z = below + step) {
+    if (z > top) return {};
+    step = 2 * (z - below);
+    below = z;
+  }
+  powers.restart();
+  for (int n = 0; n < most; ++n) {
+    const bool near = powers.converges(steps);
+    const double theta = powers.theta(), away = near ? kNearer * powers.gap() : 0.2 * (z - theta),
+                 next = std::max(theta + away, below + 0.1 * (z - below));
+    if (powers.is_above(next)) {
+      z = next;
+      if (near && z == theta + away) return away;
     } else {
-      powers.restart(at_s);
+      below = next;
+      powers.move(z);
     }
   }
   return {};
@@ -204,39 +280,33 @@ std::optional<double> approach(Powers& powers, double goal, double tau) {
 
 // Next to theta each step makes the vectors a hundred times more accurate. The last one, which
 // changes nothing but rounding, shows the error. `recipe` holds z and z - theta of the refinement
-// level before. Nothing for weights that are not resolved, which finer levels then do not try.
+// level before. Nothing where the discretisation shows no largest eigenvalue.
 std::optional<TiltedGrowth> growth(operators::Systems& systems, double s, bool truncated,
                                    Recipe& recipe) {
-  constexpr double nearer = 1e-2;
-  constexpr int steps = 40;
-  const double tau = systems.process().noise.correlation_time();
+  const double rate = 1 / systems.process().noise.correlation_time(),
+               v_max = systems.discretisation().velocities->v_max(),
+               least = least_growth(systems.process(), s, v_max);
   auto& known = recipe.steps;
-  if (!recipe.unreached.empty()) return {};
-  Powers powers(systems, s, known.empty() ? 1 / tau : known[0].z.real());
-  const auto next_to_theta = [&] {  // and to no other one
+  Powers powers(systems, s, known.empty() ? least + rate : known[0].z.real());
+  const auto next_to_theta = [&] {  // as on the level before
     constexpr double share = 0.3;
-    if (known.empty() || !powers.converges(steps)) return false;
-    const double gap = (known[1].z / nearer).real();
+    constexpr int steps = 40;
+    if (known.empty() || !powers.is_above(known[0].z.real()) || !powers.converges(steps))
+      return false;
+    const double gap = known[1].z.real() / kNearer;
     return std::abs(powers.theta() - known[0].z.real()) < share * gap;
   };
   if (!next_to_theta()) {
-    if (const auto reached = approach(powers, s, tau)) {
-      recipe.unreached = fmt::format(
-          "is not resolved, as so steep a weight makes E[exp(s x(t))] that of a few fast bodies; "
-          "|s| up to {:.2g} was reached: take such -tilt, or a larger -delta",
-          std::abs(*reached));
-      return {};
-    }
-    const double away = nearer * powers.gap();
-    known = {{powers.theta() + away}, {away}};
-    powers.move(s, powers.theta() + away);
+    known.clear();
+    const auto away = approach(powers, least, rate, std::abs(s) * v_max);
+    if (!away) return {};
+    known = {{powers.theta() + *away}, {*away}};
   }
   powers.finish();
   const double theta = powers.theta(), velocity = powers.velocity();
   powers.step(true);
   known[0].z = powers.theta() + known[1].z;
-  const double v_max = systems.discretisation().velocities->v_max(),
-               cut = truncated ? held(powers.a(), powers.vectors()) * v_max : 0;
+  const double cut = truncated ? held(powers.a(), powers.vectors()) * v_max : 0;
   const auto with_error = [](double now, double before, double more) {
     return Uncertain{now, std::abs(now - before) + more};
   };
@@ -244,32 +314,60 @@ std::optional<TiltedGrowth> growth(operators::Systems& systems, double s, bool t
                       with_error(powers.velocity(), velocity, cut)};
 }
 
+// Theta is convex, 0 at s = 0, and its slopes are velocities of bodies. Where grossly another
+// eigenvalue was taken, there is no value.
+void leave_out_contradictions(std::map<double, TiltedGrowth>& known, double v_max) {
+  constexpr double share = 1e-2;
+  std::set<double> doubtful;
+  const auto below_tangent = [&](double s, double theta, double at) {
+    const auto& [there, slope] = known[at];
+    const double rise = slope.value * (s - at);
+    return theta - there.value - rise <
+           -share * (std::abs(theta) + std::abs(there.value) + std::abs(rise));
+  };
+  for (const auto& [s, g] : known) {
+    if (below_tangent(0, 0, s) || std::abs(g.velocity.value) > (1 + share) * v_max) {
+      doubtful.insert(s);
+    }
+    for (const auto& [at, other] : known) {
+      if (below_tangent(s, g.theta.value, at)) doubtful.insert({s, at});
+    }
+  }
+  for (double s : doubtful) known[s] = {kNoValue, kNoValue};
+}
+
 void find_growth(Computation& computation) {
   const auto tilts = computation.question().values(catalogue::kTilt.option);
   const auto& scene = computation.problem.given.scene;
-  std::map<double, TiltedGrowth> known;  // mirror images grow alike
-  Result theta = array(catalogue::kTheta, tilts),
-         velocity = array(catalogue::kTiltedVelocity, tilts),
-         rate = array(catalogue::kRateFunction, tilts);
+  std::map<double, TiltedGrowth> known;
+  // Mirror images grow alike.
+  const auto alike = [mirrored = computation.process().symmetric()](double s) {
+    return mirrored ? std::abs(s) : s;
+  };
   for (double s : tilts) {
-    const bool mirrored = computation.process().symmetric() && s < 0;
-    const double tilt = mirrored ? -s : s;
+    const double tilt = alike(s);
     auto& recipe = computation.tolerance().recipe(fmt::format("tilt {}", tilt));
     if (!known.contains(tilt)) {
       known[tilt] = growth(computation.systems, tilt, !scene.limits_speed, recipe)
                         .value_or(TiltedGrowth{kNoValue, kNoValue});
     }
-    for (auto* result : {&theta, &velocity, &rate}) {
-      if (!recipe.unreached.empty()) result->unreached = recipe.unreached;
-    }
-    TiltedGrowth g = known[tilt];
-    if (mirrored) g.velocity.value = -g.velocity.value;
+  }
+  leave_out_contradictions(known, computation.problem.discretisation.velocities->v_max());
+  Result theta = array(catalogue::kTheta, tilts),
+         velocity = array(catalogue::kTiltedVelocity, tilts),
+         rate = array(catalogue::kRateFunction, tilts);
+  for (double s : tilts) {
+    TiltedGrowth g = known[alike(s)];
+    if (s != alike(s)) g.velocity.value = -g.velocity.value;
     append_value(theta, g.theta);
     append_value(velocity, g.velocity);
     append_value(rate, s * g.velocity - g.theta);
   }
-  for (auto* result : {&theta, &velocity, &rate})
+  for (auto* result : {&theta, &velocity, &rate}) {
+    result->unreached = "is not resolved: no eigenvalue was found for certain to be the largest "
+                        "one; take a smaller |s|";
     computation.results().push_back(std::move(*result));
+  }
 }
 
 }  // namespace

@@ -19,18 +19,23 @@ namespace {
 
 // Local decay rate of log-density in white noise of intensity D, (F(v) - b(v))/D, or of its growth.
 // A mean force g changes it by -g on one velocity branch and by g on the other; elements serve
-// both.
-double decay_rate(const model::Process& process, double v) {
+// both. With weights exp(s x(t)), |s| up to `tilt`, log of E[exp(s x(t))] rises with v by about s
+// times the time until a body rests, which may make of a rare branch the one that counts.
+double decay_rate(const model::Process& process, double v, double tilt = 0) {
   const double drag =
       process.drag.odd() ? -process.drag(v) : std::max(-process.drag(v), process.drag(-v));
   const double rest = std::max(process.friction.at_rest(), process.friction.mirrored().at_rest());
-  return (std::abs(rest + drag) + std::abs(process.mean_force())) / process.noise.intensity();
+  const double slowing = std::abs(rest + drag) + std::abs(process.mean_force());
+  constexpr double steeper = 4;
+  return std::max(slowing / process.noise.intensity(), steeper * tilt * v / slowing);
 }
 
 // Where geometric growth stops because an element would span more than `decay` of log-density.
 double graded_end(const model::Process& process, const MeshRule& rule) {
   const double growth = 1 / rule.ratio() - 1;
-  const auto spare = [&](double v) { return rule.decay - growth * v * decay_rate(process, v); };
+  const auto spare = [&](double v) {
+    return rule.decay - growth * v * decay_rate(process, v, rule.rates.tilt);
+  };
   if (spare(rule.v_max) >= 0) return rule.v_max;
   std::uintmax_t iterations = 200;
   const auto bracket = boost::math::tools::toms748_solve(
@@ -178,9 +183,8 @@ int natural_layers(const model::Process& process, const MeshRule& rule) {
 
 namespace {
 
-/// decay_rate(), or what weights exp(s x(t)) add: the log of E[exp(s x(t))] rises with v by about s
-/// times the time until a body rests. Without weights, beyond the speeds that bodies reach on both
-/// velocity branches that of the branch on which they do, where the next element may end.
+/// decay_rate(). Without weights, beyond the speeds that bodies reach on both velocity branches
+/// that of the branch on which they do, where the next element may end.
 class DecayRate {
  public:
   DecayRate(const model::Process& process, const MeshRule& rule)
@@ -192,11 +196,8 @@ class DecayRate {
 
   [[nodiscard]] double operator()(double v) const {
     constexpr double nothing = -45;  // below all rounding
-    const double both = decay_rate(process_, v), up = upper_(v), down = lower_(v);
-    constexpr double steeper = 2;
-    if (tilt_ > 0) {
-      return std::max(both, steeper * tilt_ * v / (both * process_.noise.intensity()));
-    }
+    const double both = decay_rate(process_, v, tilt_), up = upper_(v), down = lower_(v);
+    if (tilt_ > 0) return both;
     if (std::max(up, down) < nothing || std::min(up, down) > nothing) return both;
     const LogDensity& counts = up > down ? upper_ : lower_;
     const double own = std::abs(counts.slope - counts.drag(v / ratio_));
@@ -206,7 +207,7 @@ class DecayRate {
  private:
   const model::Process& process_;
   double ratio_;
-  double tilt_;  // which may make of a rare branch the one that counts
+  double tilt_;
   LogDensity upper_, lower_;
 };
 
@@ -338,6 +339,10 @@ std::vector<double> element_ends(const model::Process& process, const MeshRule& 
   for (const auto& kinks : {rule.integrands.breaks, process.drag.breaks}) {
     for (double v : kinks) breaks.try_emplace(v, kLayersAtBreaks);
   }
+  // Weights grow on beyond the speeds that bodies reach on one velocity branch alone.
+  const double slower =
+      std::min(process.terminal_velocity(), process.mirrored().terminal_velocity());
+  if (rule.rates.tilt > 0 && slower > 0) breaks.try_emplace(slower, 1);
   const auto regular = regular_ends(process, rule);
   constexpr double rounding = 1e-9;
   std::erase_if(breaks, [&](const auto& b) { return b.first >= (1 - rounding) * regular.back(); });

@@ -78,6 +78,7 @@ TEST_CASE("large deviations: without friction that of the noise", "[parallel]") 
 
 TEST_CASE("large deviations: steep weights", "[real][long]") {
   require_that_of_the_noise(0.125, 0, {3}, 1e-4, 1e-3);
+  require_that_of_the_noise(0.5, 0.1, {-300, 30}, 1e-4, 1e-3);
 }
 
 TEST_CASE("large deviations: weights that are too steep are named, and take nothing along",
@@ -151,5 +152,45 @@ TEST_CASE("large deviations: chosen ends reach as far as the weight does", "[rea
   for (const char* key : {"theta", "tilted_velocity", "rate_function"}) {
     INFO(key);
     CHECK(std::abs(chosen.at(key).value[0] - known.at(key).value[0]) <= chosen.at(key).error[0]);
+  }
+}
+
+namespace {
+
+// Levels with rates of jumps to neighbours.
+model::Scene on_levels(double mu_s, double mu_d, double drag, std::vector<model::Level> levels) {
+  return test::with_table(test::scene(mu_s, mu_d, 1, 1, {drag, 0}),
+                          model::LevelTable(std::move(levels)));
+}
+
+}  // namespace
+
+// Against the motion theta is hardly more than the rate of leaving rest, where no sliding body has
+// its eigenvalues. By collocation on two meshes.
+TEST_CASE("large deviations: bodies that start on one side, against the motion", "[real]") {
+  const auto few = on_levels(
+      1, 0.5, 0.597,
+      {{-1.769, 2.754, 0}, {-0.0735, 0.4514, 0.6054}, {0, 2.915, 2.915}, {0.0735, 0, 0.4514}});
+  const std::vector<double> known{-0.1293396469, -0.13717218915};
+  require_near(values(asking(few, {60, 400}, 1e-4)).at("theta"), known, 1e-4, 1e-9);
+  const auto more = on_levels(1.53, 0.765, 0.854,
+                              {{-3.416, 0.2027, 0},
+                               {-1.249, 1.432, 0.7982},
+                               {-1.072, 8.69, 2.054},
+                               {-0.7683, 0.2754, 1.154},
+                               {-0.2841, 0.3471, 0.3077},
+                               {-0.206, 0, 9.466}});
+  require_near(values(asking(more, {3.922}, 1e-4)).at("theta"), {-0.0397721740}, 1e-4, 1e-9);
+}
+
+// On the level 0.9 a body that slides upwards would go on to slide, but none does.
+TEST_CASE("large deviations: states that no body reaches are left out", "[real]") {
+  const auto s = on_levels(1, 0.25, 0.3, {{-2, 1, 0}, {0, 0.5, 0.5}, {0.9, 0, 1}});
+  const auto found = values(asking(s, {0.5, 5, 50}, 1e-4));
+  // Among the levels that stick: jumps 0 to 0.9 and back, out of 0 at 0.5.
+  const double leaving = 1 - std::sqrt(0.5);
+  for (double theta : found.at("theta").value) {
+    CHECK(theta < 0);
+    CHECK(theta >= -leaving);
   }
 }

@@ -1,6 +1,8 @@
 #pragma once
 /// What an operator is of: the part that plans and reports need, independent of the scalar type.
 
+#include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <optional>
 #include <tuple>
@@ -59,6 +61,8 @@ struct Shift {
   Scalar lambda = 0;  ///< [1/time]
   Scalar path = 0;    ///< [1/(velocity time)], as tilt
   Scalar tilt = 0;
+  /// Velocities beyond which the tilt does not go on to grow, where no body gets.
+  double lowest = -kInfinity, highest = kInfinity;
   Shift() = default;
   Shift(Scalar by_time, Scalar by_path, Scalar by_tilt)
       : lambda(by_time), path(by_path), tilt(by_tilt) {}
@@ -68,14 +72,24 @@ struct Shift {
         path(clock == Clock::time ? Scalar(0) : Scalar(by)) {}
   template <std::convertible_to<Scalar> Other>
   // NOLINTNEXTLINE(google-explicit-constructor): a real one is a complex one
-  Shift(const Shift<Other>& other) : lambda(other.lambda), path(other.path), tilt(other.tilt) {}
+  Shift(const Shift<Other>& other)
+      : lambda(other.lambda),
+        path(other.path),
+        tilt(other.tilt),
+        lowest(other.lowest),
+        highest(other.highest) {}
 
   [[nodiscard]] Scalar at(double v) const {
-    return lambda + (v < 0 ? -path - tilt : path - tilt) * v;
+    return lambda + path * std::abs(v) - tilt * std::clamp(v, lowest, highest);
   }
   /// By the speeds of a branch.
   [[nodiscard]] Shift along(Branch branch) const {
-    return {lambda, path, branch == Branch::positive ? tilt : -tilt};
+    Shift turned = *this;
+    if (branch == Branch::positive) return turned;
+    turned.tilt = -tilt;
+    turned.lowest = -highest;
+    turned.highest = -lowest;
+    return turned;
   }
 };
 
@@ -90,17 +104,21 @@ struct SystemKey {
   double speed_limit = kInfinity;
   double path = 0, tilt = 0;  ///< [1/(velocity time)]
   std::optional<model::Passage> passage = {};
+  double lowest = -kInfinity, highest = kInfinity;  ///< velocities up to which the tilt grows
 
   [[nodiscard]] Shift<double> shift() const {
     Shift<double> all(lambda, clock);
     all.path += path;
     all.tilt = tilt;
+    all.lowest = lowest;
+    all.highest = highest;
     return all;
   }
   friend bool operator<(const SystemKey& a, const SystemKey& b) {
     return std::tie(a.lambda, a.symmetry, a.static_phase, a.clock, a.speed_limit, a.path, a.tilt,
-                    a.passage) < std::tie(b.lambda, b.symmetry, b.static_phase, b.clock,
-                                          b.speed_limit, b.path, b.tilt, b.passage);
+                    a.passage, a.lowest, a.highest) <
+           std::tie(b.lambda, b.symmetry, b.static_phase, b.clock, b.speed_limit, b.path, b.tilt,
+                    b.passage, b.lowest, b.highest);
   }
   friend bool operator==(const SystemKey&, const SystemKey&) = default;
 };

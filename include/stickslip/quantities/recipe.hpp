@@ -25,7 +25,6 @@ struct Recipe {
   };
   std::vector<Scale> scales;
   bool verified = false;  ///< by until_still(), at both ends
-  std::string unreached;  ///< why there is no such model, nor will be
 };
 
 /// By name of what the model is of.
