@@ -276,7 +276,8 @@ void Distribution::invert(double time) {
   lowest_ = centre_ + mean_ - furthest * spread_;
   highest_ = centre_ + mean_ + furthest * spread_;
   inversion_.emplace(phi, mass_, mean_, spread_, even_,
-                     Inversion::Limits{0.3 * question.accuracy, units * 2 / spread_, 400});
+                     Inversion::Limits{0.3 * question.accuracy, units * 2 / spread_, 400,
+                                       furthest * units * 2 / spread_});
 }
 
 void find_displacements(Computation& computation) {
