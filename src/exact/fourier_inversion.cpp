@@ -103,8 +103,8 @@ FourierInversion::FourierInversion(const Transform& phi, double mass, double mea
     find_what_is_left(first);
     double degrees = 0;
     for (std::size_t n = first; n < panels_.size(); ++n) degrees += panels_[n].degree();
-    closest_ = degrees / (high - low);
-    const bool resolved = left_ <= kResolved * limits.accuracy,
+    if (limits.furthest > 0) closest_ = degrees / (high - low);
+    const bool resolved = std::max(left_, unforeseen_) <= kResolved * limits.accuracy,
                affordable = 3 * evaluations_ - 2 * before < limits.evaluations;
     const double next =
         std::min(2 * high, high < limits.highest ? limits.highest : limits.furthest);

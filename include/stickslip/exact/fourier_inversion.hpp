@@ -21,6 +21,10 @@ namespace stickslip::exact {
 /// are those of least squares over the upper two octaves of k. Only what is left of phi is
 /// integrated numerically.
 ///
+/// Beyond the highest k of the limits it goes on to the furthest while more is left than was asked
+/// for, with points at least half as close as in the octave below. Densities are >= 0, and the
+/// distribution function lies within the bounds that phi up to the largest k leaves for any f >= 0.
+///
 /// Errors have five parts: those of phi; the last Chebyshev coefficients of each panel; how far off
 /// the sum is that ends an octave of k below, with coefficients of its own; and, of the
 /// distribution function, what is left of phi at the largest k, as edges of f elsewhere leave it,
