@@ -22,6 +22,8 @@ constexpr double kPi = std::numbers::pi;
 // Degrees of the polynomials on a panel: doubled, so that points serve again, before it is halved.
 constexpr int kLeastDegree = 4, kMostDegree = 16;
 
+constexpr double kResolved = 3;  // of phi, in units of the accuracy, which pi divides
+
 /// |x|^(n/2 - 1) on either side. Jumps of what is smooth on both sides are all that shows at large
 /// k.
 struct Singularity {
@@ -74,8 +76,9 @@ FourierInversion::FourierInversion(const Transform& phi, double mass, double mea
     : even_(even), mass_(mass), mean_(mean), scale_(deviation), accuracy_(limits.accuracy) {
   const double tolerance = 0.4 * limits.accuracy;
   double low = 0, high = std::min(2 / scale_, limits.highest);
-  for (bool open = true; open; high = std::min(2 * high, limits.highest)) {
+  for (bool open = true; open;) {
     const std::size_t first = panels_.size();
+    const int before = evaluations_;
     sample(phi, low, high, tolerance, limits.evaluations);
     if (evaluations_ >= limits.evaluations && sums_.size() > 1) {
       panels_.resize(first);
@@ -91,28 +94,47 @@ FourierInversion::FourierInversion(const Transform& phi, double mass, double mea
     }
     // The last octave has to be foreseen by the terms found below it.
     const bool falls = left < tolerance;
-    open = !falls && unforeseen > tolerance && high < limits.highest;
     unforeseen_ = falls ? 0 : unforeseen;
     // What falls by itself has no singularity that shows, and no sum needs terms for one.
     for (Sum& sum : sums_) {
       if (falls) sum.singular.clear();
     }
     sums_.push_back(falls ? Sum{panels_.size(), {}} : sum_up_to(panels_.size(), high));
+    find_what_is_left(first);
+    double degrees = 0;
+    for (std::size_t n = first; n < panels_.size(); ++n) degrees += panels_[n].degree();
+    if (limits.furthest > 0) closest_ = degrees / (high - low);
+    const bool resolved = std::max(left_, unforeseen_) <= kResolved * limits.accuracy,
+               affordable = 3 * evaluations_ - 2 * before < limits.evaluations;
+    const double next =
+        std::min(2 * high, high < limits.highest ? limits.highest : limits.furthest);
+    open = !falls && next > high &&
+           (next <= limits.highest ? unforeseen > tolerance : !resolved && affordable);
     low = high;
-  }
-  const double octave = panels_.back().high / 2;
-  for (const Panel& p : panels_) {
-    if (p.low < octave) continue;
-    for (const double k : {p.low, p.at(0)})
-      left_ = std::max(left_, std::abs(rest(sums_.back(), k)));
+    high = next;
   }
 }
 
-// Doubles degrees and halves panels until the polynomials hold.
+// Narrow parts of f leave much of phi, added with changing phases. What is left goes on falling as
+// it did in the last octave.
+void FourierInversion::find_what_is_left(std::size_t first) {
+  constexpr double slowest = 0.97;
+  const double before = std::exchange(left_, 0);
+  for (std::size_t n = first; n < panels_.size(); ++n) {
+    for (const double place : nodes(kMostDegree / 2))
+      left_ = std::max(left_, std::abs(rest(sums_.back(), panels_[n].at(place))));
+  }
+  const double ratio = left_ < slowest * before ? left_ / before : slowest;
+  further_ = left_ * std::max(1.0, std::numbers::ln2 * ratio / (1 - ratio));
+}
+
+// Doubles degrees and halves panels until the polynomials hold. Points are no further apart than
+// twice as far as in the octave below, or they miss waves that go on: few of them may look smooth.
 void FourierInversion::sample(const Transform& phi, double low, double high, double tolerance,
                               int most) {
   Panel panel{low, high};
   for (int degree = kLeastDegree; degree <= kMostDegree; degree *= 2) {
+    if (degree < closest_ / 2 * (high - low)) continue;
     panel = interpolated(phi, low, high, degree);
     if (panel.rough <= tolerance || evaluations_ >= most) {
       panels_.push_back(std::move(panel));
@@ -229,37 +251,58 @@ FourierInversion::Integrals FourierInversion::singular(const Sum& sum, double x)
   return found;
 }
 
+template <class Add>
+void FourierInversion::over_panels(std::size_t panels, double x, const Add& add) const {
+  using Rule = boost::math::quadrature::gauss<double, 20>;
+  constexpr double phase = 8;  // over the points of a rule
+  for (std::size_t n = 0; n < panels; ++n) {
+    const Panel& p = panels_[n];
+    const double width = p.high - p.low;
+    const int parts = 1 + static_cast<int>(width * (std::abs(x) + std::abs(p.shift)) / phase);
+    for (int part = 0; part < parts; ++part) {
+      const double half = width / parts / 2, middle = p.low + (2 * part + 1) * half;
+      for (std::size_t m = 0; m < Rule::abscissa().size(); ++m) {
+        const double away = half * Rule::abscissa()[m], weight = half * Rule::weights()[m];
+        for (const double k : {middle - away, middle + away}) {
+          add(k, std::polar(weight / kPi, -k * x));
+        }
+      }
+    }
+  }
+}
+
 // f(x) = 1/pi int_0^K Re exp(-i k x) phi dk, and half of the mass less 1/pi int_0^K Im exp(-i k x)
 // phi dk/k below x.
 FourierInversion::Integrals FourierInversion::integrals(const Sum& sum, double x) const {
-  using Rule = boost::math::quadrature::gauss<double, 20>;
-  constexpr double phase = 8;  // over the points of a rule
   Integrals found;
   double mass = mass_;
   for (std::size_t j = 0; j < sum.singular.size(); ++j) {
     const auto& [n, right, left] = kinds(even_)[j];
     mass -= sum.singular[j] * (right + left);
   }
-  for (std::size_t n = 0; n < sum.panels; ++n) {
-    const Panel& p = panels_[n];
-    const double width = p.high - p.low;
-    const int parts = 1 + static_cast<int>(width * (std::abs(x) + std::abs(p.shift)) / phase);
-    const auto add = [&](double k, double weight) {
-      const Complex left = rest(sum, k) * std::polar(weight / kPi, -k * x);
-      found.density += left.real();
-      found.below -= left.imag() / k;
-    };
-    for (int part = 0; part < parts; ++part) {
-      const double half = width / parts / 2, middle = p.low + (2 * part + 1) * half;
-      for (std::size_t m = 0; m < Rule::abscissa().size(); ++m) {
-        const double away = half * Rule::abscissa()[m], weight = half * Rule::weights()[m];
-        add(middle - away, weight);
-        add(middle + away, weight);
-      }
-    }
-  }
+  over_panels(sum.panels, x, [&](double k, Complex weight) {
+    const Complex left = rest(sum, k) * weight;
+    found.density += left.real();
+    found.below -= left.imag() / k;
+  });
   const Integrals beside = singular(sum, x);
   return {found.density + beside.density, mass / 2 + found.below + beside.below};
+}
+
+// By Vaaler's function H of exponential type 2 pi, |sgn - H| <= (sin(pi x)/(pi x))^2, in units of
+// 2 pi/K (Bulletin of the AMS 12, 1985, 183): the error is as much of f as lies within about 2/K.
+FourierInversion::Value FourierInversion::bounds(double x) const {
+  const double highest = panels_.back().high;
+  Value found{mass_ / 2, 0};
+  over_panels(panels_.size(), x, [&](double k, Complex weight) {
+    const Complex seen = sampled(k) * weight;
+    const double t = k / highest;
+    found.value -= seen.imag() / k * (kPi * t * (1 - t) / std::tan(kPi * t) + t);
+    found.error += seen.real() * kPi / highest * (1 - t);
+  });
+  found.error = std::max(found.error, 0.0);
+  for (const Panel& p : panels_) found.error += (p.high - p.low) / highest * (p.rough + p.doubt);
+  return found;
 }
 
 double FourierInversion::beyond(double x) const {
@@ -276,15 +319,25 @@ double FourierInversion::beyond(double x) const {
 
 FourierInversion::Value FourierInversion::between(double x, double Integrals::*which) const {
   const auto of = [&](std::size_t n) { return integrals(sums_[n], x).*which; };
-  const double value = of(sums_.size() - 1);
+  double value = of(sums_.size() - 1);
   double error = std::abs(value - (sums_.size() > 1 ? of(sums_.size() - 2) : mass_));
+  if (which == &Integrals::below) {
+    // A step is off by half of its height.
+    error += (std::min(further_, 2 * left_) + beyond(x)) / kPi;
+    const Value proven = bounds(x);
+    value = std::clamp(value, proven.value - proven.error, proven.value + proven.error);
+    error = std::min(error, std::abs(value - proven.value) + proven.error);
+  } else {
+    if (left_ > accuracy_) error += further_ * panels_.back().high / kPi;
+    error += std::max(-value, 0.0);
+    value = std::max(value, 0.0);
+  }
   for (const Panel& p : panels_) {
     const double width = which == &Integrals::density ? p.high - p.low
                          : p.low > 0                  ? std::log(p.high / p.low)
                                                       : 1;
     error += width / kPi * (p.rough + p.doubt);
   }
-  if (which == &Integrals::below) error += (left_ + beyond(x)) / kPi;
   return {value, error};
 }
 

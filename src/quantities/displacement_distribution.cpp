@@ -275,8 +275,11 @@ void Distribution::invert(double time) {
   const double units = std::exp2(std::ceil(-std::log10(question.accuracy)));
   lowest_ = centre_ + mean_ - furthest * spread_;
   highest_ = centre_ + mean_ + furthest * spread_;
+  // Few levels leave clusters far narrower than the deviation of all.
+  const double highest = units * 2 / spread_,
+               last = computation_.process().noise.table ? furthest * highest : 0;
   inversion_.emplace(phi, mass_, mean_, spread_, even_,
-                     Inversion::Limits{0.3 * question.accuracy, units * 2 / spread_, 400});
+                     Inversion::Limits{0.3 * question.accuracy, highest, 400, last});
 }
 
 void find_displacements(Computation& computation) {

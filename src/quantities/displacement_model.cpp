@@ -252,7 +252,7 @@ void DisplacementModel::weigh_by(const Entries& l, const Entries& r, const Entri
     sums = {sums[0] + both, sums[1] + both * v[n], sums[2] + both * v[n] * v[n]};
   }
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), 3, MPI_DOUBLE, MPI_SUM, systems_.comm());
-  if (tilt_.s != 0) drift_ = sums[1] / sums[0];
+  drift_ = sums[1] / sums[0];
   speed_ = std::sqrt(std::abs(sums[2] / sums[0] - drift_ * drift_));
   resolved_ = true;
 }

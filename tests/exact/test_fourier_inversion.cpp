@@ -118,3 +118,48 @@ TEST_CASE("fourier inversion: a smaller scale near the singularity is within the
     }
   }
 }
+
+// Bells of which some are far narrower than the deviation of all: their transforms, added, fall and
+// rise again, whether k goes on until nothing is left or not.
+TEST_CASE("fourier inversion: narrow parts are within the errors, resolved or not") {
+  struct Bell {
+    double mass, mean, deviation;
+  };
+  const std::vector<std::vector<Bell>> mixtures{{{0.86, 2.09, 0.03}, {0.14, 0.7, 0.9}},
+                                                {{0.3, 2.1, 0.02}, {0.3, 1.9, 0.02}, {0.4, 0, 0.7}},
+                                                {{0.5, 1, 0.02}, {0.5, -1, 0.02}}};
+  for (const auto& bells : mixtures) {
+    const auto phi = [&](double k) {
+      Complex sum = 0;
+      for (const auto& [mass, mean, deviation] : bells)
+        sum += mass * std::exp(Complex(-k * k * deviation * deviation / 2, k * mean));
+      return Inversion::Transformed{sum, 1e-12};
+    };
+    double mean = 0, square = 0;
+    for (const Bell& b : bells) {
+      mean += b.mass * b.mean;
+      square += b.mass * (b.mean * b.mean + b.deviation * b.deviation);
+    }
+    const double spread = std::sqrt(square - mean * mean);
+    for (const double furthest : {0.0, 500 / spread}) {
+      const Inversion f(phi, 1, mean, spread, false, {0.01, 8 / spread, 400, furthest});
+      for (double x = -1.497; x < 3; x += 0.01) {
+        double density = 0, below = 0;
+        for (const Bell& b : bells) {
+          const double u = (x - b.mean) / b.deviation;
+          density += b.mass * std::exp(-u * u / 2) / b.deviation / std::sqrt(2 * pi);
+          below += b.mass * std::erfc(-u / std::sqrt(2.0)) / 2;
+        }
+        const auto of = f.density(x), up_to = f.below(x);
+        INFO("up to " << furthest << ", at " << x << ": " << up_to.value << " +- " << up_to.error
+                      << " for " << below << ", density " << of.value << " +- " << of.error
+                      << " for " << density);
+        CHECK(std::abs(up_to.value - below) <= up_to.error);
+        CHECK(std::abs(of.value - density) <= 2 * of.error);
+        CHECK(of.value >= 0);
+      }
+    }
+    const Inversion resolved(phi, 1, mean, spread, false, {0.01, 8 / spread, 1000, 500 / spread});
+    CHECK(resolved.below(2.1).error < 0.02);
+  }
+}

@@ -21,6 +21,10 @@ namespace stickslip::exact {
 /// are those of least squares over the upper two octaves of k. Only what is left of phi is
 /// integrated numerically.
 ///
+/// Beyond the highest k of the limits it goes on to the furthest while more is left than was asked
+/// for, with points at least half as close as in the octave below. Densities are >= 0, and the
+/// distribution function lies within the bounds that phi up to the largest k leaves for any f >= 0.
+///
 /// Errors have five parts: those of phi; the last Chebyshev coefficients of each panel; how far off
 /// the sum is that ends an octave of k below, with coefficients of its own; and, of the
 /// distribution function, what is left of phi at the largest k, as edges of f elsewhere leave it,
@@ -40,6 +44,7 @@ class FourierInversion {
     double accuracy = 1e-6;  ///< absolute, of the distribution function
     double highest = 0;      ///< of k
     int evaluations = 200;   ///< of phi, about
+    double furthest = 0;     ///< of k, where more of phi than the accuracy is left at the highest
   };
   /// `even`: whether f is. Takes `mass` = phi(0), and mean and standard deviation of f/mass for the
   /// scales.
@@ -62,6 +67,7 @@ class FourierInversion {
     double rough = 0;                 // of the polynomial
     double doubt = 0;                 // of phi
 
+    [[nodiscard]] int degree() const { return static_cast<int>(terms.size()) - 1; }
     /// k of a place from -1 to 1.
     [[nodiscard]] double at(double place) const {
       return (low + high) / 2 + (high - low) / 2 * place;
@@ -82,7 +88,13 @@ class FourierInversion {
   [[nodiscard]] Complex rest(const Sum& sum, double k) const;
   [[nodiscard]] std::vector<Complex> basis(double k) const;
   [[nodiscard]] Sum sum_up_to(std::size_t panels, double highest) const;
+  // Sums over points k of panels weight exp(-i k x)/pi dk.
+  template <class Add>
+  void over_panels(std::size_t panels, double x, const Add& add) const;
   [[nodiscard]] Integrals integrals(const Sum& sum, double x) const;
+  // int f up to x within an error that holds for whatever f >= 0 has the phi known.
+  [[nodiscard]] Value bounds(double x) const;
+  void find_what_is_left(std::size_t first);  // on panels from that on, the last octave
   [[nodiscard]] Integrals singular(const Sum& sum, double x) const;
   // How far off int phi dk/k beyond the largest k may be: the terms foresee the next octave but for
   // so much, each further one by half of that more, and phi falls like k^(-1/2) at least.
@@ -94,7 +106,9 @@ class FourierInversion {
   int evaluations_ = 0;
   std::vector<Panel> panels_;
   std::vector<Sum> sums_;  // by octave
+  double closest_ = 0;     // degrees of the polynomials of the last octave, by k
   double left_ = 0;        // of phi in the last octave
+  double further_ = 0;     // of it in all that follow, as it falls
   double unforeseen_ = 0;  // of it by the terms found below that
   std::map<double, Transformed> known_;
 };

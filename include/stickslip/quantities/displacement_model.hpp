@@ -1,6 +1,7 @@
 #pragma once
 /// The characteristic function of the displacement after a time.
 
+#include <cmath>
 #include <complex>
 #include <vector>
 
@@ -47,7 +48,7 @@ class DisplacementModel {
 
   /// Whether the discretisation resolves the tilt.
   [[nodiscard]] bool resolved() const { return resolved_; }
-  [[nodiscard]] double speed() const { return speed_; }  ///< E[V^2]^(1/2)
+  [[nodiscard]] double speed() const { return std::hypot(speed_, drift_); }  ///< E[V^2]^(1/2)
 
  private:
   // By l and r; c is the distribution of the start.
@@ -61,7 +62,7 @@ class DisplacementModel {
   operators::KolmogorovOperator a_;
   double t_, accuracy_, speed_ = 0;
   bool resolved_ = false;
-  double drift_ = 0;  // a velocity that all have in common, of weighted paths
+  double drift_ = 0;  // a velocity that all have in common
   Tilt tilt_;
   double pole_;               // beyond the growth
   std::vector<double> root_;  // of the weight of the inner product, on this rank
