@@ -114,7 +114,7 @@ class Results(Mapping):
     Attributes
     ----------
     scene, options
-        Parameters as they were used, and every option as it was given, as text.
+        Parameters as they were used, and every option as text; empty where it belongs to no effect in use.
     cost, plan, provenance
         Seconds and sizes, counts of what was done, versions and machine.
     accuracy

@@ -5,6 +5,7 @@
 #include <petscsys.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -23,7 +24,8 @@ namespace {
 using outputs::Subject;
 
 constexpr double kMostPoints = 100000;
-constexpr const char* kSwept = "swept";  // in the place of a value, in the options as used
+constexpr const char* kSwept = "swept";   // in the place of a value, in the options as used
+constexpr std::size_t kMostMessages = 8;  // of the points
 
 std::vector<SweepAxis> read_axes(Settings& settings) {
   std::vector<SweepAxis> axes;
@@ -93,14 +95,17 @@ void check_effects(const Sweep& sweep, const Request& request, Problems& problem
   }
 }
 
+// A message without its numbers.
+std::string kind_of(std::string message) {
+  std::erase_if(message, [](char c) { return std::strchr("0123456789.+-e", c) != nullptr; });
+  return message;
+}
+
 /// Messages about points, each once with the places it holds at, in the order in which they came
-/// up. Those that differ in their numbers alone count as one.
+/// up. Those of one kind count as one.
 class Messages {
  public:
-  void add(const std::string& message, std::size_t point) {
-    std::string kind = message;
-    std::erase_if(kind,
-                  [](char c) { return std::string_view("0123456789.+-e").find(c) != kNowhere; });
+  void add(const std::string& message, std::size_t point, const std::string& kind) {
     auto& points = points_of_[kind];
     if (points.empty()) order_.emplace_back(kind, message);
     points.push_back(point);
@@ -121,10 +126,17 @@ class Messages {
   }
 
  private:
-  static constexpr auto kNowhere = std::string_view::npos;
   std::map<std::string, std::vector<std::size_t>> points_of_;
   std::vector<std::pair<std::string, std::string>> order_;  // kind, first message
 };
+
+// Of many the first.
+void report(const std::vector<std::string>& reasons, Problems& problems) {
+  for (std::size_t n = 0; n < std::min(reasons.size(), kMostMessages); ++n)
+    problems.add(reasons[n]);
+  if (reasons.size() <= kMostMessages) return;
+  problems.add(fmt::format("and {} more problems of this kind", reasons.size() - kMostMessages));
+}
 
 // Finds the points that the model refuses, which is a problem if it refuses all of them; returns
 // the warnings about the others.
@@ -135,21 +147,19 @@ std::vector<std::string> check_points(Sweep& sweep, Problems& problems) {
     Settings own = sweep.settings(point);
     const Request request = own.sound() ? request_of(own) : Request();
     const auto& messages = own.problems().messages();
-    for (const auto& message : messages) refusals.add(message, point);
+    for (const auto& message : messages) refusals.add(message, point, message);
     if (!messages.empty()) {
       sweep.leave_out(point, fmt::format("{}", fmt::join(messages, "; ")));
       continue;
     }
     if (!std::exchange(examined, true)) check_effects(sweep, request, problems);
-    for (const auto& warning : request.warnings) notes.add(warning, point);
+    for (const auto& said : request.warnings) notes.add(said, point, kind_of(said));
   }
   const auto refused = sweep.left_out().size();
   auto warnings = notes.texts(sweep, sweep.size() - refused);
   if (refused == 0) return warnings;
   const auto reasons = refusals.texts(sweep, sweep.size());
-  if (!examined) {
-    for (const auto& reason : reasons) problems.add(reason);
-  }
+  if (!examined) report(reasons, problems);
   warnings.push_back(fmt::format("{} of {} points are refused and left out, such as {}", refused,
                                  sweep.size(), reasons.front()));
   return warnings;
