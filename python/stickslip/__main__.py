@@ -27,17 +27,17 @@ densities of durations follow. What the program refuses greys them, and is said 
 parameters as an options file, and the picture. In a window (python3-tk), or in a browser on this machine
 (python3-tornado). Options of the program may follow, such as -mu_d 0.3 -drag none."""
 
-LEVELS = """Makes the levels and jump rates, or the chain, of a measured force or acceleration: text with columns (any
-separator, decimal comma), AT2, COSMOS V2, SAC, .npy or .mat. Prints how the chain compares with the record, and the options
+LEVELS = """Makes the levels and jump rates, or the chain, of a measured force or acceleration, in any of the formats of
+stickslip.read_record. Prints how the chain compares with the record, and the options
 of the program that use it. Exit status 2 where such a chain cannot stand for the record."""
 
 
-FORCE = """Writes a measured force or acceleration as the CSV file that -force_file takes: text with columns (any separator,
-decimal comma), AT2, COSMOS V2, SAC, .npy or .mat. Accelerations in g, gal and the like become m/s^2. Prints what was
+FORCE = """Writes a measured force or acceleration, in any of the formats of stickslip.read_record, as the CSV file that
+-force_file takes. Accelerations in g, gal and the like become m/s^2. Prints what was
 read, and the options of the program that use it. Without --output the file is FILE_force.csv in this folder."""
 
-NEWMARK = """The sliding block of Newmark (1965) on ground that accelerates as FILE says: text with columns, AT2, COSMOS V2, SAC,
-.npy or .mat. Prints its displacement and its slips, and writes its path to FILE_newmark.csv and a picture to
+NEWMARK = """The sliding block of Newmark (1965) on ground that accelerates as FILE says, in any of the formats of
+stickslip.read_record. Prints its displacement and its slips, and writes its path to FILE_newmark.csv and a picture to
 FILE_newmark.png in this folder. Positive is the direction of positive accelerations."""
 
 
@@ -105,14 +105,20 @@ def _add_record(parser: argparse.ArgumentParser) -> None:
     """The arguments that say how a file of a record is read, and what is done to it."""
     parser.add_argument("file", type=pathlib.Path, metavar="FILE")
     parser.add_argument("--column", help="name of the values, or its number from 0")
+    parser.add_argument("--channel", help='words of the name of a channel, such as "90 Deg", in the place of --column')
     parser.add_argument("--time", help="name of the times, or its number from 0")
     parser.add_argument("--vertical", help="name of vertical accelerations, or their number from 0, which change friction")
     parser.add_argument("--step", type=float, help="sampling interval in seconds, where the file has no times")
     parser.add_argument("--unit", help="of the values, such as g, gal or m/s^2, where the file does not say")
+    parser.add_argument("--time-unit", help="of the times, such as ms, where the file does not say")
+    parser.add_argument("--layout", choices=("columns", "rows", "pairs"),
+                        help="of numbers without names: rows of samples, pairs of time and sample, or columns")
+    parser.add_argument("--differentiate", action="store_true", help="take the acceleration of a velocity or displacement")
     parser.add_argument("--between", type=float, nargs=2, metavar=("BEGIN", "END"), help="take these times [s] alone")
     parser.add_argument("--centre", action="store_true", help="take the mean off")
     parser.add_argument("--fill", type=float, metavar="LONGEST",
                         help="join gaps of at most LONGEST seconds by straight lines")
+    parser.add_argument("--rest", type=float, default=0, help="append so many seconds of no force")
     parser.add_argument("--scale", type=float, default=1, help="what values are multiplied by (default 1): -1 makes the "
                         "force on a body of the acceleration of the ground")
 
@@ -121,16 +127,17 @@ def _record_of(arguments: argparse.Namespace) -> "Record":
     """The record that `_add_record` describes."""
     from . import read_record
 
-    def read(column: str | None) -> "Record":
-        return read_record(arguments.file, column=column, time=arguments.time, step=arguments.step, unit=arguments.unit)
+    def read(column: str | None, channel: str | None) -> "Record":
+        return read_record(arguments.file, column=column, channel=channel, **{name: getattr(arguments, name) for name in (
+            "time", "step", "unit", "time_unit", "layout", "differentiate")})
 
-    record = read(arguments.column)
+    record = read(arguments.column, arguments.channel)
     if arguments.vertical is not None:
-        record = dataclasses.replace(record, vertical=read(arguments.vertical).value)
+        record = dataclasses.replace(record, vertical=read(arguments.vertical, None).value)
     record = record.between(*arguments.between) if arguments.between else record
     record = record.resampled(record.step, across=arguments.fill) if arguments.fill else record
     record = record.centred() if arguments.centre else record
-    return record if arguments.scale == 1 else record.scaled(arguments.scale)
+    return (record if arguments.scale == 1 else record.scaled(arguments.scale)).rested(arguments.rest)
 
 
 def explore_command() -> int:
@@ -180,12 +187,16 @@ def write_of_record(write: "Callable[[argparse.Namespace, Record], None]") -> Ca
         try:
             write(arguments, _record_of(arguments))
         except (ValueError, OSError) as problem:
-            print(f"stickslip: {problem}", file=sys.stderr)
+            print("stickslip:", re.sub(r'\b(column|channel|step|unit|time_unit|layout|rest)=("?)([\w./^]*)\2', as_option,
+                                       str(problem)).replace("differentiate=True", "--differentiate"), file=sys.stderr)
             return 2
         except ImportError as problem:
             print(problem, file=sys.stderr)
             return 1
         return 0
+
+    def as_option(found: re.Match) -> str:
+        return f"--{found[1].replace('_', '-')} {found[3]}".rstrip()
     return act
 
 

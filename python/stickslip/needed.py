@@ -6,6 +6,7 @@ from types import ModuleType
 COMMANDS = {name: f"pip install {name}, or on Debian apt-get install python3-{name}"
             for name in ("numpy", "h5py", "matplotlib", "tornado", "scipy", "pandas", "xarray")}
 COMMANDS["tkinter"] = "on Debian apt-get install python3-tk"  # a part of Python, which pip does not have
+COMMANDS["obspy"] = "pip install obspy"
 
 
 def needed(name: str) -> ModuleType:

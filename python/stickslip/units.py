@@ -8,7 +8,7 @@ _LENGTHS = {"m": 1, "cm": 0.01, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "km": 1e3, "
 # By kind: the SI unit, and the factors that make it of other ones.
 KINDS: dict[str, tuple[str, dict[str, float]]] = {
     "acceleration": ("m/s^2", {"g": STANDARD_GRAVITY, "mg": STANDARD_GRAVITY / 1e3, "ug": STANDARD_GRAVITY / 1e6,
-                               "%g": STANDARD_GRAVITY / 100, "gal": 0.01, "mgal": 1e-5,
+                               "%g": STANDARD_GRAVITY / 100, "g/10": STANDARD_GRAVITY / 10, "gal": 0.01, "mgal": 1e-5,
                                **{f"{name}/s^2": factor for name, factor in _LENGTHS.items()}}),
     "velocity": ("m/s", {f"{name}/s": factor for name, factor in _LENGTHS.items()}),
     "displacement": ("m", _LENGTHS),
@@ -21,9 +21,9 @@ _WORDS = (("milliseconds?|millisec|millis|msecs?", "ms"), ("microseconds?|micros
           ("minutes?|mins?|minuten", "min"), ("hours?|hrs?|stunden?|heures?", "h"), ("days?|tage?|jours?", "d"),
           ("centimet(?:er|re)s?", "cm"), ("millimet(?:er|re)s?", "mm"), ("micromet(?:er|re)s?|microns?", "um"),
           ("nanomet(?:er|re)s?", "nm"), ("kilomet(?:er|re)s?", "km"), ("met(?:er|re)s?", "m"), ("feet|foot", "ft"),
-          ("inch(?:es)?", "in"), ("milli-?g", "mg"), ("micro-?g", "ug"), ("milli-?gals?", "mgal"), ("gals", "gal"), ("g's", "g"),
-          ("kilonewtons?", "kn"), ("millinewtons?", "mn"), ("newtons?", "n"), ("millivolts?", "mv"), ("volts?", "v"),
-          ("squared?|sq", "^2"), ("per", "/"))
+          ("inch(?:es)?", "in"), ("milli-?g", "mg"), ("micro-?g", "ug"), ("milli-?gals?", "mgal"), ("gals", "gal"),
+          ("kilonewtons?", "kn"), ("millinewtons?", "mn"), ("newtons?", "n"), ("m(?:illi)?volts?", "mv"), ("volts?", "v"),
+          ("g's", "g"), ("squared?|sq", "^2"), ("per", "/"))
 
 
 def plain_unit(text: str) -> str:

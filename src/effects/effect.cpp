@@ -157,6 +157,11 @@ model::Parameters parameters_of(const model::Scene& s) {
     if (s.force->scale != 1) add("force_scale", s.force->scale);
     if (s.force->gravity > 0) add("gravity", s.force->gravity);
     if (s.force->constant) add("force_interpolation", std::string("constant"));
+    if (s.force->rest > 0) add("force_rest", s.force->rest);
+    if (s.force->step > 0) {
+      add("sample_layout", std::string("rows"));
+      add("sample_step", s.force->step);
+    }
   }
   if (s.limits_speed) add("speed_limit", *s.v_max);
   return all;

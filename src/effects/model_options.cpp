@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "read_force.hpp"
+#include "sample_rows.hpp"
 #include "stickslip/effects/effect.hpp"
 
 namespace stickslip::effects {
@@ -75,8 +76,8 @@ std::vector<Option> made() {
            .label = "dynamic friction towards negative velocities",
            .slider = Slider{.low = 0.05, .high = 3}})};
   for (const auto* each : choices()) append(*each, all);
-  const auto force = force_options();
-  all.insert(all.end(), force.begin(), force.end());
+  for (const auto& force : {force_options(), sample_options()})
+    all.insert(all.end(), force.begin(), force.end());
   const std::vector<Option> others{
       Option::real(
           "bias", "force", "0", {},

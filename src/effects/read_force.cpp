@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "csv_rows.hpp"
+#include "sample_rows.hpp"
 #include "stickslip/effects/read_scene.hpp"
 #include "stickslip/support/text.hpp"
 
@@ -36,9 +37,14 @@ void require_no_gap(const CsvRows<columns>& rows) {
   if (static_cast<double>(even) < most * static_cast<double>(steps.size())) return;
   for (std::size_t n = 1; n < rows.values.size(); ++n) {
     if (step(n) <= missing * usual) continue;
-    throw std::invalid_argument(
-        fmt::format("{}time = {:.9g} follows {:.9g}, where steps are {:g}: samples are missing",
-                    rows.place(n), rows.values[n][0], rows.values[n - 1][0], usual));
+    const bool last = n + 1 == rows.values.size() && rows.values[n][1] == 0;
+    if (last && rows.values[n - 1][1] == 0) continue;  // no force from one to the other
+    throw std::invalid_argument(fmt::format(
+        "{}time = {:.9g} follows {:.9g}, where steps are {:g}: samples are missing{}",
+        rows.place(n), rows.values[n][0], rows.values[n - 1][0], usual,
+        last ? fmt::format("; for no force at the end leave this one out and add -force_rest {:g}",
+                           step(n))
+             : ""));
   }
 }
 
@@ -68,7 +74,7 @@ Head read_head(const std::string& file) {
 
 // Time, force and, of three columns, vertical acceleration.
 template <std::size_t columns>
-model::ForceRecord read_samples(const std::string& file,
+model::ForceRecord read_columns(const std::string& file,
                                 const std::array<const char*, columns>& names) {
   CsvRows<columns> rows;
   try {
@@ -98,8 +104,8 @@ model::ForceRecord read_samples(const std::string& file,
 
 model::ForceRecord read_record(const std::string& file) {
   const Head head = read_head(file);
-  auto record = head.vertical ? read_samples<3>(file, {"time", "force", kVertical})
-                              : read_samples<2>(file, {"time", "force"});
+  auto record = head.vertical ? read_columns<3>(file, {"time", "force", kVertical})
+                              : read_columns<2>(file, {"time", "force"});
   record.unit = head.unit;
   return record;
 }
@@ -165,9 +171,9 @@ std::vector<Option> force_options() {
 }
 
 void read_force(Given& given, model::Scene& scene) {
-  if (!given.has(kForceFile)) return;
+  if (!given.has(kForceFile) || !layout_is_sound(given)) return;
   try {
-    auto record = read_record(given.text(kForceFile));
+    auto record = read_samples(given, given.text(kForceFile), read_record);
     record.file = given.text(kForceFile);
     if (given.has(kScale)) record.scale = given.real(kScale);
     record.constant = given.text(kInterpolation) == "constant";
@@ -178,7 +184,8 @@ void read_force(Given& given, model::Scene& scene) {
     given.refuse(
         kForceFile, unfit.what(),
         "write CSV with the columns time,force and their names in the first line, times "
-        "rising, commas between numbers and points within; python3 -m stickslip force FILE "
+        "rising, commas between numbers and points within, or add -sample_layout rows where rows "
+        "hold samples; python3 -m stickslip force FILE "
         "writes it of AT2, V2, and tables with other names and units");
   }
 }

@@ -63,7 +63,8 @@ class Rules {
                                 : Subject::run);
     for (const char* option :
          {"observable", "start", "horizon", "transient_solver", "spectrum_solver", "passage",
-          "force_file", "force_interpolation", "force_scale", "gravity"}) {
+          "force_file", "force_interpolation", "force_scale", "force_rest", "sample_layout",
+          "sample_step", "gravity"}) {
       warn({option}, !asked(option));
     }
     const bool lifts = r_.scene.force && !r_.scene.force->load.empty();

@@ -31,6 +31,55 @@ class GivenForce(Case):
         even = "".join(f"{n / 10},1\n" for n in (*range(20), *range(25, 40)))
         self.refuse_file(HEADER + even, "line 22: time = 2.5 follows 1.9, where steps are 0.1: samples are missing")
 
+    def test_samples_in_rows(self):
+        given = [line.split(",") for line in RECORD.read_text().splitlines()[2:]]
+        force = [value for _, value in given]
+        (self.folder / "rows.txt").write_text("# made\n" + "".join(" ".join(force[n:n + 7]) + "\n" for n in range(0,
+                                                                                                                  len(force),
+                                                                                                                  7)))
+        (self.folder / "commas.txt").write_text("\n".join(", ".join(force[n:n + 4]) for n in range(0, len(force), 4)))
+        right = self.summary(*ASKED, RECORD)["results"]
+        for name in ("rows.txt", "commas.txt"):
+            found = self.summary(*ASKED, name, "-sample_layout", "rows", "-sample_step", "0.1")
+            self.assert_close(found["results"]["final_displacement"]["value"], right["final_displacement"]["value"], 1e-12)
+            self.assertEqual(found["results"]["slip_count"]["value"], right["slip_count"]["value"])
+            self.assertEqual((found["scene"]["sample_layout"], found["scene"]["sample_step"]), ("rows", 0.1))
+        rows = (*ASKED, "rows.txt", "-sample_layout", "rows")
+        self.refuse(*rows, message=("-sample_layout = rows: rows have no times", "add -sample_step"))
+        self.refuse(*ASKED, RECORD, "-sample_step", "0.1",
+                    message=("-sample_step = 0.1: has no effect on columns", "add -sample_layout rows"))
+        self.refuse(*rows, "-sample_step", "-1", message=("must be in (0, inf)",))
+        (self.folder / "rows.txt").write_text(HEADER + "0,1\n1,2\n")
+        self.refuse(*rows, "-sample_step", "0.1", message=("line 1: time is no finite number",))
+        (self.folder / "rows.txt").write_text("1")
+        self.refuse(*rows, "-sample_step", "0.1", message=("has 1 samples",))
+        self.refuse(*ASKED, "rows.txt", message=("-sample_layout rows",))
+
+    def test_rest(self):
+        """Under a force of 2 a body with friction 1 reaches the velocity 1 in a time 1, and then stops in 1 more: 1/2 + 1/2."""
+        (self.folder / "record.csv").write_text(HEADER + "0,2\n1,2\n")
+        still = (*ASKED, "record.csv", "-drag", "none", "-mu_d", "1", "-force_interpolation", "constant")
+        moving = self.summary(*still)["results"]
+        self.assert_close(moving["final_displacement"]["value"], 0.5, 1e-12)
+        rested = self.summary(*still, "-force_rest", "5")  # 2 lasts until the first sample of the rest
+        self.assert_close(rested["results"]["final_displacement"]["value"], 4, 1e-12)
+        self.assertEqual(rested["results"]["path_velocity"]["value"][-1], 0)
+        self.assertEqual(rested["scene"]["force_rest"], 5)
+        short = self.summary(*still, "-force_rest", "0.5")["results"]
+        self.assert_close(short["final_displacement"]["value"], 1.125, 1e-12)
+        self.refuse(*still, "-force_rest", "-1", message=("must be in [0, inf)",))
+
+    def test_one_sample_that_is_appended(self):
+        even = HEADER + "".join(f"{n / 10},2\n" for n in range(20))
+        (self.folder / "record.csv").write_text(even + "2.0,0\n12,0\n")
+        appended = self.summary(*ASKED, "record.csv", "-drag", "none")["results"]
+        (self.folder / "record.csv").write_text(even + "12,0\n")
+        self.refuse(*ASKED, "record.csv",
+                    message=("samples are missing; for no force at the end leave this one out", "add -force_rest 10.1"))
+        (self.folder / "record.csv").write_text(even)
+        rested = self.summary(*ASKED, "record.csv", "-drag", "none", "-force_rest", "10.1")["results"]
+        self.assert_close(rested["final_displacement"]["value"], appended["final_displacement"]["value"], 1e-12)
+
     def test_uneven_records_have_no_gaps(self):
         (self.folder / "record.csv").write_text(HEADER + "0,0\n1,2\n1.001,0\n9,0\n")
         self.run_ok(*ASKED, "record.csv")

@@ -6,7 +6,9 @@ import os
 import pathlib
 import sys
 import tempfile
+import types
 import unittest
+import unittest.mock
 import warnings
 
 import numpy
@@ -86,7 +88,7 @@ class Text(Case):
 
     def test_units_and_steps_that_are_in_doubt_are_said(self):
         for text, options, note in ((columns(head="t,a"), {}, 'no unit is named: .*unit="g"'),
-                                    (columns(head="t,a"), {"unit": "milli-g"}, "milli-g is none of g, mg, gal"),
+                                    (columns(head="t,a"), {"unit": "bananas"}, "bananas is none of g, mg, ug, %g, g/10, gal"),
                                     (columns(head="t,a [g]"), {"unit": "gal"}, "the file says g, and was taken to be in gal")):
             self.assertRegex(" ".join(self.read(text, **options).notes), note)
         for head, options in (("t,a [N]", {}), ("t,a [g]", {"unit": "G"}), ("t,a", {"unit": "gal"})):
@@ -180,37 +182,13 @@ class Formats(Case):
             self.same(record, "m/s^2", G, 0.02 * numpy.arange(24), long, 1e-6)
             self.assertIn("G became m/s^2", str(record))
             self.assertIn("steps of 0.02 s, and 0.01 s were taken", str(self.read(text, "c.AT2", step=0.01)))
-            self.refused("holds 24 samples, NPTS = 99", text.replace("24,", "99,").replace("   24 ", "   99 "), "b.AT2")
+            self.refused("holds 24 of the 99 samples that NPTS announces",
+                         text.replace("24,", "99,").replace("   24 ", "   99 "), "b.AT2")
 
         lacking = text.replace(line, "NPTS= 24")
         self.same(self.read(lacking, "d.AT2", step=0.02), "m/s^2", G, 0.02 * numpy.arange(24), long, 1e-6)
         self.refused("the file has no times; .* step=0.01", lacking, "e.AT2")
         self.refused("line 4: NPTS: needs NPTS= and DT=, such as", text.replace(line, "NPTS"), "f.AT2")
-
-    def cosmos(self, step=20.0, values=VALUE):
-        real = numpy.full(100, -999.0)
-        real[33] = step
-        lines = [f"{''.join(f'{x:15.6f}' for x in real[n:n + 5])}" for n in range(0, 100, 5)]
-        body = "\n".join("".join(f"{v:10.5f}" for v in values[n:n + 8]) for n in range(0, len(values), 8))
-        return ("Corrected acceleration     (Format v01.20 with 13 text lines)\n" + "words\n" * 12
-                + " 100 Real-header values follow on  20 lines, Format= (5F15.6)\n" + "\n".join(lines)
-                + f"\n    1 Comment line(s) follow, each starting with a \"|\":\n|\n{len(values):8d} acceleration pts, approx   0 "
-                f"secs, units=cm/sec2(04),Format=(8F10.5)\n{body}\nEnd-of-data for Chan  1 acceleration\n")
-
-    def test_cosmos_v2(self):
-        large = VALUE * 100 - 500  # numbers without a space between them
-        self.same(self.read(self.cosmos(values=large), "a.v2"), "m/s^2", 0.01, value=large, within=1e-6)
-        self.refused("real header, value 34: .* 9000 s does not make 8 samples last 0 s", self.cosmos(9e6), "b.v2")
-        self.refused("holds 8 of the 9 samples", self.cosmos().replace("       8 acc", "       9 acc").partition("End")[0], "c.v2")
-        two = self.cosmos() + self.cosmos(values=-VALUE)
-        self.refused(r"2 columns of values; take one of 0 \(acceleration 0\), 1 \(acceleration 1\)", two, "d.v2")
-        self.same(self.read(two, "e.v2", column=1), "m/s^2", -0.01, within=1e-7)
-
-    def test_csmip_v2(self):
-        body = "".join(f"{v:10.3f}" for v in VALUE)
-        text = f"Corrected accelerogram\nwords\n    8 points of accel data equally spaced at  .020 sec, in cm/sec2. (8f10.3)\n{body}\n" \
-               f"    8 points of veloc data equally spaced at  .020 sec, in cm/sec. (8f10.3)\n{body}\n"
-        self.same(self.read(text, "a.V2"), "m/s^2", 0.01, value=numpy.round(VALUE, 3))
 
     def test_sac(self):
         numbers, integers = numpy.full(70, -12345.0), numpy.full(40, -12345)
@@ -246,6 +224,372 @@ class Formats(Case):
         self.same(stickslip.read_record(path, unit="g"), "m/s^2", G)
         path.write_bytes(b"MATLAB 7.3 MAT-file" + b"\0" * 200)
         self.assertRaisesRegex(ValueError, "save.*-v7", stickslip.read_record, path)
+
+
+def fixed(values, form, wide):
+    """Lines of numbers of a Python format, so many in each."""
+    pieces = [format(v, form) for v in values]
+    return "".join("".join(pieces[n:n + wide]) + "\n" for n in range(0, len(pieces), wide))
+
+
+class Descriptions(Case):
+    """Files as the published description of each format has them, each with a second one of other counts and packing."""
+
+    def cosmos(self, values=VALUE, step=20.0, text=13, counts=(100, 100), form=("5F15.6", "15.6f", 5),
+               samples=("8F10.5", "10.5f", 8),
+               seconds=0, what="acceleration", unit="cm/sec2(04)", direction="90 Deg", recorder=-999.0, duration=-999.0):
+        real = numpy.full(counts[1], -999.0)
+        real[[33, 61, 62]] = recorder, step, duration
+        words = [f"Corrected acceleration    (Format v01.20 with {text:2d} text lines)", *["words, 1 to 2 of 3"] * (text - 1)]
+        words[8] = f"Sta Chan   1: {direction} (Rcrdr Chan  1) Location: Roof" if direction else words[8]
+        integers = fixed([-999] * counts[0], "8d", 10)
+        numbers = fixed(real, form[1], form[2])
+        return ("\n".join(words) + f"\n {counts[0]} Integer-header values follow on {integers.count(chr(10)):3d} lines, Format= (10I8)\n"
+                + integers + f" {counts[1]} Real-header values follow on {numbers.count(chr(10)):3d} lines, Format= ({form[0]})\n" + numbers
+                + f'    1 Comment line(s) follow, each starting with a "|":\n| words\n{len(values):8d} {what} pts, approx {seconds:4d} '
+                f"secs, units={unit},Format=({samples[0]})\n" + fixed(values,
+                                                                      *samples[1:]) + "End-of-data for Chan  1 acceleration\n")
+
+    def test_cosmos(self):
+        large = VALUE * 100 - 500  # numbers without a space between them
+        self.same(self.read(self.cosmos(large), "a.v2"), "m/s^2", 0.01, value=large, within=1e-6)
+        other = self.cosmos(text=15, counts=(120, 110), form=("6F13.6", "13.6f", 6), samples=("1E15.6", "15.6e", 1),
+                            unit="g.     (02)",
+                            duration=0.16)
+        self.same(self.read(other, "b.v1"), "m/s^2", G, within=1e-6)
+        self.same(self.read(self.cosmos(numpy.round(1e6 * VALUE), samples=("10I8", "8.0f", 10), what="raw accel.  ",
+                                        unit="counts (50)"),
+                            "c.V0c"), "counts", 1e6)
+        self.same(self.read(self.cosmos(step=-999.0, recorder=0.02), "d.v2"), "m/s^2", 0.01, within=1e-7)
+        two = self.cosmos() + self.cosmos(-VALUE, direction="Up")
+        self.refused(r"2 columns of values; take one of 0 \(Chan 1: 90 Deg\), 1 \(Chan 1: Up\)", two, "e.v2")
+        for chosen in ({"column": 1}, {"channel": "Up"}, {"column": "chan 1: up"}):
+            self.same(self.read(two, "f.v2", **chosen), "m/s^2", -0.01, within=1e-7)
+
+    def test_cosmos_that_contradicts_itself(self):
+        short = numpy.tile(VALUE, 25)
+        for text in (self.cosmos(short, step=9e6, seconds=4), self.cosmos(short, step=0.02, seconds=4),
+                     self.cosmos(short, step=-999.0, recorder=20.0, seconds=4), self.cosmos(step=20.0, duration=3.0)):
+            self.refused("real header: a sampling interval of .* s does not make .* samples last .*step=0.01", text, "a.v2")
+        self.same(self.read(text, "b.v2", step=0.02), "m/s^2", 0.01, within=1e-7)
+        whole = self.cosmos()
+        self.refused("holds 8 of the 9 samples", whole.replace("       8 acc", "       9 acc"), "c.v2")
+        self.refused("holds 8 of the 7 samples", whole.replace("       8 acc", "       7 acc"), "d.v2")
+        self.refused("the unit is g, its code 04 stands for cm/s", self.cosmos(unit="g(04)"), "e.v2")
+        self.refused('no whole file of COSMOS, which has a line "... Real-header', whole.replace("Real-header", "header"),
+                     "f.v2")
+
+    def csmip(self, values, direction="90 Deg",
+              line="{count:5d} points of {kind} data equally spaced at  .020 sec, in {unit}. (8f10.3)",
+              form=("10.3f", 8)):
+        """Acceleration and velocity of a channel."""
+        text = f"Corrected accelerogram   1-2      Chan  1: {direction}     from\n" + "words, 5 points of 3\n" * 5
+        for kind, unit, factor in (("accel", "cm/sec2", 1), ("veloc", "cm/sec", 7)):
+            text += line.format(count=len(values), kind=kind, unit=unit) + "\n" + fixed(factor * values, *form)
+        return text + "/&  ----------  End of data for channel  1  ----------\n"
+
+    def test_csmip(self):
+        value = numpy.round(VALUE, 3) - 800
+        self.same(self.read(self.csmip(value), "a.V2"), "m/s^2", 0.01, value=value)
+        older = "{count:5d} POINTS OF {kind} DATA EQUALLY SPACED AT  .020 SEC.  (UNITS: {unit})"
+        self.same(self.read(self.csmip(value, line=older, form=("9.3f", 7)), "b.V2"), "m/s^2", 0.01, value=value)
+        three = "".join(self.csmip(n * value, way, *more).replace("Chan  1", f"Chan  {n}") for n, way, more in (
+            (1, "360 Deg", ("{count:5d} points of {kind} data equally spaced at  .020 sec, in {unit}.",)), (2, "Up", ()),
+                                                                                                                (3, "90 Deg",
+                                                                                                                 ())))
+        self.refused(r"take one of 0 \(Chan 1: 360 Deg\), 1 \(Chan 2: Up\), 2 \(Chan 3: 90 Deg\)", three, "c.V2")
+        for n, chosen in ((3, {"channel": "90 Deg"}), (3, {"channel": "3"}), (1, {"channel": "360"}), (1, {"column": 0}),
+                          (2, {"channel": "up"})):
+            self.same(self.read(three, "d.V2", **chosen), "m/s^2", 0.01 * n, value=value)
+        self.refused("needs the number of points, their interval and unit",
+                     three.replace("spaced at  .020 sec, in", "spaced, in", 1),
+                     "e.V2")
+
+    def test_csmip_volume_1(self):
+        head = "Uncorrected Accelerogram Data\n" + "words\n" * 5 + "Chan  1: 360 Deg\nNo. of Points =  {}  Record Length = 0.16 sec\n"
+        numbers = fixed([1] * 100, "5d", 16) + fixed([2.5] * 50, "10.3f", 8)
+        new = head.format(8) + "Units of uncor data are sec and g .\n" + numbers + \
+            "     8 Accelerogram points at  50 pts/sec in units of g .      Format: (8f9.6)\n" + fixed(VALUE, "9.6f",
+                                                                                                       8) + "/& ---\n"
+        self.same(self.read(new, "a.V1"), "m/s^2", G)
+        time = 99.96 + TIME  # seven characters without a blank
+        pairs = fixed(numpy.column_stack([time, 10 * VALUE]).ravel(), "7.3f", 10)
+        old = head.format(8).upper() + "UNITS OF UNCOR ACCEL ARE SEC AND G/10.   MAX = 1 G\n" + numbers + pairs + "/& ---\n"
+        self.same(self.read(old, "b.RAW"), "m/s^2", G, time=time, within=1e-3 * G)
+
+    def geonet(self, values, component, velocity=True):
+        held = [len(values), len(values) * velocity, len(values) * velocity]
+        integers = [0] * 33 + held + [0] * 4
+        words = [f"{'C' if velocity else 'Unc'}orrected accelerogram 2001_X GNS Science", *["words"] * 8,
+                 f"Number of points {len(values):5d}    Duration {0.02 * len(values):.2f} sec",
+                 "Instrument corrected data at 0.020 sec intervals" if velocity else
+                 "Raw readings in units of 0.10 mm/s/s  at intervals of 0.020 s", "words",
+                 f"Component {component}  Longitudinal"]
+        return ("\n".join(words) + "\nwords\nwords\nwords\n" + fixed(integers, "8d", 10) + fixed([0.5] * 60, "8.2f", 10)
+                + fixed(values, "8.1f", 10) + (fixed(7 * values, "8.2f", 10) + fixed(values, "8.3f", 10) if velocity else ""))
+
+    def test_geonet(self):
+        value = numpy.round(1000 * numpy.tile(VALUE, 3), 1) - 9000
+        time = 0.02 * numpy.arange(24)
+        for velocity, factor in ((True, 1e-3), (False, 1e-4)):
+            text = self.geonet(value, "N28W", velocity) + self.geonet(-value, "Up", velocity)
+            self.refused(r"0 \(N28W\), 1 \(Up\)", text, "a.V2A")
+            self.same(self.read(text, "b.V2A", channel="Up"), "m/s^2", -factor, time, value)
+        self.refused("do not fit together", text.replace("      24", "      25"), "c.V1A")
+        self.refused('no whole file of GeoNet V1A or V2A, which has a line "Component', text.replace("Component", "words"),
+                     "d.V1A")
+
+    def test_blocks_of_a_format_that_is_not_whole(self):
+        """What the refusal names reads the numbers."""
+        blocks = "Corrected accelerogram\nInstrument corrected data at 0.02 sec intervals\n" + fixed(VALUE, "10.4f", 3) + \
+            "Corrected accelerogram, second\n" + fixed(-VALUE, "10.4f", 3)
+        self.refused(r'no whole file of GeoNet V1A or V2A, which has a line "Number of points.* and a line "Component.*layout="rows" '
+                     r"\(.*\) with step=, unit= and column= of 0 \(Instrument.*: 8\), 1 \(Corrected accelerogram, second: 8\)",
+                     blocks, "a.V2A")
+        self.same(self.read(blocks, "b.V2A", layout="rows", step=0.02, unit="mm/s^2", column=1), "m/s^2", -1e-3)
+        cut = self.csmip(numpy.round(VALUE, 3)).replace("    8 points", "    9 points")
+        self.refused(r'CSMIP: holds 8 of the 9 samples.*layout="rows".* 0 \(.*in cm/se: 8\)', cut, "c.V2")
+        self.same(self.read(cut, "d.V2", layout="rows", step=0.02, unit="gal", column=0), "m/s^2", 0.01,
+                  value=numpy.round(VALUE, 3))
+
+    def smc(self, values, title="2 CORRECTED ACCELEROGRAM", rate=50.0, comments=3):
+        integers, real = numpy.full(48, -32768), numpy.full(50, 1.7e38)
+        integers[[15, 16]], real[1] = (comments, len(values)), rate
+        text = [title, "*", "0001A", "     2001   1   1    0004 Somewhere", "Moment Mag= 7.1",
+                "station = A, B  component=    360",
+                "epicentral dist = 89.0", "inst type=SMA-1      data source = USGS", "*", "*", "*"]
+        pieces = [f"{v:10.4E}".replace("E+0", "E+").replace("E-0", "E-") for v in values]
+        return ("\n".join(text) + "\n" + fixed(integers, "10d", 8) + fixed(real, "15.7E", 5) + "|5 comments of 3\n" * comments
+                + "".join("".join(f"{piece:>10}" for piece in pieces[n:n + 8]) + "\n" for n in range(0, len(pieces), 8)))
+
+    def test_smc(self):
+        record = self.read(self.smc(VALUE), "a.smc")
+        self.same(record, "m/s^2", 0.01, within=1e-7)
+        self.assertIn("column 360", record.source)
+        pairs = numpy.column_stack([TIME, VALUE]).ravel()
+        self.same(self.read(self.smc(pairs, "1 UNCORRECTED ACCELEROGRAM", 1.7e38, 11), "b.smc"), "m/s^2", 0.01, within=1e-7)
+        self.refused("holds 7 of the 8 samples", self.smc(VALUE).replace(" 6.2500E-2", ""), "c.smc")
+        self.refused("360: is a velocity, no force or acceleration; differentiate=True", self.smc(VALUE, "3 VELOCITY"), "d.smc")
+
+    def knet(self, direction="E-W", rate="100Hz", scale="3920(gal)/6182761", counts=None, wide=8):
+        counts = numpy.round(VALUE * 1e5 + 12000).astype(int) if counts is None else counts
+        return (f"Origin Time       2018/01/24 19:51:00\nLat.              41.0\nStation Code      AOM001\nSampling Freq(Hz) {rate}\n"
+                f"Duration Time(s)  {max(round(len(counts) / float(rate[:-2])), 0)}\nDir.              {direction}\nScale Factor      {scale}\n"
+                "Max. Acc. (gal)   4.078\nStation Height(m) 39\nMemo.             \n" + fixed(counts, "9d", wide))
+
+    def test_knet(self):
+        factor = 0.01 * 3920 / 6182761 * 1e5
+        for text, name, scale in ((self.knet(rate="50Hz"), "E-W", factor),
+                                  (self.knet("4", "50Hz", "2000(gal)/8388608", wide=5), "N-S surface", 20 / 8388608 * 1e5)):
+            record = self.read(text, "a.EW")
+            self.same(record, "m/s^2", scale, value=VALUE - VALUE.mean(), within=1e-9)
+            self.assertRegex(" ".join(record.notes), "the mean, .* gal, was taken off")
+            self.assertIn(f"column {name}", record.source)
+        many = numpy.arange(500)
+        self.refused("a sampling interval of 0.02 s does not make 500 samples last 99 s",
+                     self.knet(rate="50Hz", counts=many).replace("Time(s)  10", "Time(s)  99"), "b.EW")
+        self.refused('no whole file of K-NET or KiK-net, which has a line "Scale Factor"',
+                     self.knet().replace("Scale Factor", "Scale"), "c.EW")
+        csv = "#Sampling Freq(Hz),50\n#Time,NS(gal),EW(gal),UD(gal)\n" + "".join(
+            f"2001/01/01 23:59:59.{round(900 + 20 * n):03d},{v},{-v},{2 * v}\n" for n, v in enumerate(VALUE[:5]))
+        self.same(self.read(csv, "d.csv", channel="EW"), "m/s^2", -0.01, TIME[:5], VALUE[:5])
+
+    def cwa(self, sequence="Time U(+); N(+); E(+)", form="4F10.3", unit="gal. DCoffset(corr)"):
+        rows = [[t] * ("Time" in sequence) + [v, 2 * v, 3 * v] for t, v in zip(TIME, numpy.round(VALUE, 3))]
+        width = int(form[2:].split(".")[0])
+        return (f"#StationCode: XYZ\n#RecordLength(sec): 0\n#SampleRate(Hz): 50\n#AmplitudeUnit:  {unit}\n#AmplitudeMAX. U:   10.0~  -10.0\n"
+                f"#AmplitudeMAX. E:   30.0~  -30.0\n#DataSequence: {sequence}\n#Data: {form}\n"
+                + "".join(fixed(row, f"{width}.3f", 9) for row in rows))
+
+    def test_cwa(self):
+        value = numpy.round(VALUE, 3)
+        for text in (self.cwa(), self.cwa("N(+); U(+); E(+)", "3F8.3"), self.cwa(form="4F12.3", unit="cm/s^2")):
+            self.same(self.read(text, "a.dat", channel="E"), "m/s^2", 0.03, value=value)
+        self.refused(r"take one of 0 \(U\(\+\)\), 1 \(N", self.cwa(), "b.dat")
+        self.refused("does not make 8 samples last 60 s", self.cwa().replace("(sec): 0", "(sec): 60"), "c.dat", column=0)
+        self.refused('no whole file of CWA, which has a line "#SampleRate', self.cwa().replace("SampleRate", "Rate"), "d.dat")
+
+    def test_esm_and_afad(self):
+        head = "EVENT_NAME: X\nVS30_M/S: \nSAMPLING_INTERVAL_S: {}\nNDATA: {}\nSTREAM: HNE\nUNITS: {}\nDATA_TYPE: {}\nUSER5: \n"
+        body = fixed(VALUE, "15.6f", 1)
+        self.same(self.read(head.format(0.02, 8, "cm/s^2", "ACCELERATION") + body, "a.asc"), "m/s^2", 0.01, within=1e-9)
+        self.same(self.read("EVENT_ID: 3\n" + head.format("0.020000", 8, "mg", "ACCELERATION") + body, "b.asc"), "m/s^2",
+                  G / 1e3)
+        self.refused("HNE: is a velocity", head.format(0.02, 8, "cm/s", "VELOCITY") + body, "c.asc")
+        self.refused("HNE: is a spectrum", head.format(0.02, 8, "cm/s^2", "ACCELERATION RESPONSE SPECTRUM") + body, "d.asc")
+        self.refused("holds 8 of the 9 samples", head.format(0.02, 9, "cm/s^2", "ACCELERATION") + body, "e.asc")
+        self.refused("furlong/s2 is no unit of an acceleration that is known",
+                     head.format(0.02, 8, "furlong/s2", "ACCELERATION") + body,
+                     "f.asc")
+        older = ("STRONG GROUND MOTION RECORDS OF TURKIYE\nRECORD TIME             : 20/07/2017 22:30:58.000000 (GMT)\nNUMBER OF DATA          "
+                 ": 8\nSAMPLING INTERVAL (sec) : 0.02\nRAW PGA VALUES (gal)    : (N-S) 13.2 (E-W) 12.1 (U-D) 9.8\nCopyright\n"
+                 "       N-S          E-W          U-D\n" + "".join(fixed([v, -v, 2 * v], "13.6f", 3) for v in VALUE))
+        self.same(self.read(older, "g.txt", channel="E-W"), "m/s^2", -0.01, within=1e-9)
+
+    def test_geocsv_and_time_series(self):
+        stamps = [f"2001-01-01T23:59:59.{900000 + 20000 * n:06d}" for n in range(5)]
+        head = "TIMESERIES XX_XYZ_00_HNE_D, {} samples, 50 sps, 2001-01-01T23:59:59.900000, {}, FLOAT, {}\n"
+        pairs = [f"{stamp}  {v}\n" for stamp, v in zip(stamps, VALUE)]
+        comma = "".join(f"{stamp}Z, {v}\n" for stamp, v in zip(stamps, VALUE))
+        geo = "# dataset: GeoCSV 2.0\n# delimiter: ,\n# field_unit: {}, m/s**2\n# field_type: datetime, float\nTime, Sample\n"
+        single = ("# dataset: GeoCSV 2.0\n# SID: A_B\n# sample_count: 5\n# sample_rate_hz: 50\n# start_time: 2001-01-01T00:00:00.5Z\n"
+                  "# field_unit: m/s**2\n# field_type: float\nSample\n" + "".join(f"{v}\n" for v in VALUE[:5]))
+        for text in (head.format(5, "TSPAIR", "m/s**2") + "".join(pairs),
+                     head.format(5, "SLIST", "M/S**2") + "0.1\t-0.25\t0.5\n0.125\t-1.5\n",
+                     geo.format("ISO_8601") + comma, geo.format("UTC") + comma, single,
+                     head.format(2, "TSPAIR", "m/s**2") + "".join(pairs[:2]) + head.format(3, "TSPAIR",
+                                                                                           "m/s**2") + "".join(pairs[2:])):
+            record = self.read(text, "a.txt")
+            self.same(record, "m/s^2", 1, TIME[:5], VALUE[:5])
+            self.assertRegex(" ".join(record.notes), "times are from the first sample, 2001-01-01T")
+        three = "# dataset: GeoCSV 2.0\n# delimiter: |\n# field_unit: ISO 8601 datetime UTC, m/s**2, g\nTime | E | N\n" + "".join(
+            f"{stamp} | {7 * v} | {v}\n" for stamp, v in zip(stamps, VALUE))
+        self.same(self.read(three, "c.txt", column="N"), "m/s^2", G, TIME[:5], VALUE[:5])
+        self.refused("holds 5 of the 6 samples", head.format(6, "TSPAIR", "m/s**2") + "".join(pairs), "b.txt")
+
+    def test_peer_words_and_other_quantities(self):
+        def text(line):
+            return f"PEER\nSomewhere, 1/2/1999, Hill, 90\n{line}\nNPTS=     8, DT=   .0200 SEC,\n" + fixed(VALUE, "15.7E", 5)
+
+        for line in ("The units are (g)", "ACCELERATION TIME HISTORY IN UNITS OF (G)", "Units: g",
+                     "ACCELERATION IN UNITS OF G."):
+            self.same(self.read(text(line), "a.AT2"), "m/s^2", G, within=1e-6)
+        self.refused("is a velocity, no force or acceleration; differentiate=True takes its derivative",
+                     text("VELOCITY TIME SERIES IN UNITS OF CM/S"),
+                     "a.VT2")
+        self.refused("is a displacement.*second derivative", text("DISPLACEMENT TIME SERIES IN UNITS OF CM"), "a.DT2")
+        self.refused("unit = g: is one of acceleration, and the file says that velocity is a velocity",
+                     text("VELOCITY TIME SERIES IN UNITS OF CM/S"),
+                     "b.VT2", unit="g")
+
+    def test_derivatives(self):
+        """Of t^2 cm/s and t^2 cm by t, with even and uneven steps: 2 t cm/s^2 and 2 cm/s^2."""
+        time = numpy.cumsum([0, 1, 1, 2, 1, 1.0])
+        for unit, expected in (("cm/s", 0.02 * time), ("cm", numpy.full(6, 0.02))):
+            record = self.read(f"t [s],a [{unit}]\n" + "".join(f"{t},{t * t}\n" for t in time), differentiate=True)
+            inner = slice(1, -1) if unit == "cm/s" else slice(2, 3)
+            numpy.testing.assert_allclose(record.value[inner], expected[inner], atol=2e-3)
+            self.assertEqual(record.unit, "m/s^2")
+        self.refused("differentiate: a is no velocity", columns(head="t,a [g]"), differentiate=True)
+
+
+class Times(Case):
+    def test_units_of_time(self):
+        for factor, spellings in ((1e-3, ("ms", "millisec", "msec", "Milliseconds", "MSEC")),
+                                  (1e-6, ("us", "µs", "μs", "microseconds", "usec")),
+                                  (1e-9, ("ns", "nanoseconds")), (60, ("min", "minutes", "mins.")),
+                                  (3600, ("h", "hrs", "hours")),
+                                  (86400, ("d", "days")), (1, ("s", "sec", "SEC.", "seconds", "Sekunden"))):
+            for unit in spellings:
+                for head in (f"time [{unit}],F", f"t/{unit},F/N", f"time ({unit}),F (N)", f"Time,Force\n{unit},N",
+                             f"time in {unit},F",
+                             f'"Time, {unit}","F, N"'):
+                    record = self.read(columns(head=head))
+                    numpy.testing.assert_allclose(record.time, factor * TIME, rtol=1e-12)
+        for head in ("t_ms,F", "time ms,F", "timeMs,F", "tms,F", "millis,F", "elapsed_ms,F", "ms;N".replace(";", ","),
+                     "timestamp_ms,F"):
+            numpy.testing.assert_allclose(self.read(columns(head=head)).time, 1e-3 * TIME, rtol=1e-12)
+
+    def test_units_of_time_that_are_not_known(self):
+        for head in ("time [frames],F", "Time,Force\nticks,N", "t/sampl,F/N", "time msek,F", "time since start,F",
+                     "Time\t[0.1 s],F"):
+            self.refused("time_unit", columns(head=head))
+            for options in ({"time_unit": "ms", "column": 1}, {"step": 2e-5, "column": 1}):
+                self.same(self.read(columns(head=head), **options), self.read(columns(head=head), **options).unit,
+                          time=TIME / 1000)
+        with self.assertRaisesRegex(ValueError, "time_unit = fortnight: must be one of s, ms"):
+            self.read(columns(), time_unit="fortnight")
+        self.assertIn("times are read as seconds, which the file does not say", " ".join(self.read(columns(head="t,F")).notes))
+        self.assertNotIn("read as seconds", " ".join(self.read(columns(head="t,F"), time_unit="ms").notes))
+        stamps = "timestamp,F\n" + "".join(f"{1700000000000 + 20 * n},{v}\n" for n, v in enumerate(VALUE))
+        self.refused('begins at 1700000000000 without a unit; give time_unit="ms"', stamps)
+        self.same(self.read(stamps, time_unit="ms"))
+        counts = "sample,F\n" + "".join(f"{n},{v}\n" for n, v in enumerate(VALUE))
+        self.refused("sample: counts samples; give the sampling interval", counts)
+        self.same(self.read(counts, step=0.02, column="F"))
+
+    def test_of_several_lines_of_words_none_names_columns_by_being_last(self):
+        rows = "Interval,0.02,Interval,0.02\nChannel name,Force,Channel name,Position\nUnit,V,Unit,V\n" + "".join(
+            f"{t:.2f},{v},{t:.2f},{2 * v}\n" for t, v in zip(TIME, VALUE))
+        self.refused(r"take one of 1 \(column 1\).*3 lines could name the columns", rows)
+        self.refused('time_unit: 3 lines could name.*time_unit="s"', rows, column=1)
+        for options in ({"time_unit": "s"}, {"step": 0.02}):
+            self.same(self.read(rows, column=1, **options))
+        body = "".join(f"{t:.2f} {v} {2 * v}\n" for t, v in zip(TIME, VALUE))
+        self.same(self.read("# peaks: 1 2\n# t N E\n" + body, column="N"))
+        self.refused("no such column.*2 lines could name", "# t E N\n# U N E\n" + body, column="E")
+        self.same(self.read("made up, twice\nTime [ms],F [N]\n" + columns()), "N", time=TIME / 1000)
+        self.refused("no such column", "t [ms] E N\nmore of it\n" + body, column="E")
+
+    def test_dates_count_from_the_first_sample(self):
+        for form in ("2024-02-29T23:59:59.{:03d}Z", "2024/02/29 23:59:59.{:03d}", "2024-02-29 23:59:59,{:03d}",
+                     "2024-02-29T23:59:59.{:03d}+09:00"):
+            for separator in (";", "\t", " "):
+                text = separator.join(("date", "a")) + "\n" + "".join(
+                    form.format(20 * n) + f"{separator}{v}\n" for n, v in enumerate(VALUE))
+                record = self.read(text if "," not in form or separator == ";" else text.replace(",", "."))
+                self.same(record)
+        self.assertIn("times are from the first sample, 2024-02-29T", " ".join(record.notes))
+
+
+class Rows(Case):
+    def test_samples_in_rows(self):
+        long = numpy.tile(VALUE, 3)
+        text = fixed(long, "12.5f", 5)
+        self.refused(r'layout: 5 columns of one kind without names: layout="rows" .* with step=', text[:300])
+        for options in ({}, {"step": 0.02}, {"column": 0, "step": 0.02}):
+            self.refused("layout", text[:300], **options)
+        for rows in (text, fixed(long, "9.4f", 4), text.replace("   ", " , ")):
+            self.same(self.read(rows, layout="rows", step=0.02), time=0.02 * numpy.arange(24), value=long)
+        self.same(self.read(fixed(long, "12.5f", 4), layout="columns", column=1, step=0.08), time=0.08 * numpy.arange(6),
+                  value=long[1::4])
+        self.refused(r"take one of 0 \(block 0 of 2\), 1 \(block 1 of 24\)", "24 0.02\n" + text, layout="rows", step=0.02)
+        self.same(self.read("24 0.02\n" + text, layout="rows", step=0.02, column=1), time=0.02 * numpy.arange(24), value=long)
+        self.refused("layout = 'row': must be one of columns, rows, pairs", text, layout="row")
+
+    def test_pairs_of_time_and_sample(self):
+        text = fixed(numpy.column_stack([TIME, VALUE]).ravel(), "10.4f", 6)
+        self.refused('layout="pairs" pairs of time and value', text[:120])
+        self.same(self.read(text, layout="pairs", time_unit="s"))
+        self.same(self.read(text, layout="pairs", time_unit="ms"), time=TIME / 1000)
+
+    def test_rest(self):
+        record = self.read(columns(head="t [s],F [N]"), rest=0.1)
+        self.same(record, "N", time=0.02 * numpy.arange(13), value=numpy.append(VALUE, numpy.zeros(5)))
+        self.assertIn("0.1 s of no force were appended", str(record))
+        with self.assertRaisesRegex(ValueError, r"rest = -1: must be in \[0, inf\)"):
+            self.read(columns(), rest=-1)
+
+
+class Readers(Case):
+    def test_sac_binary(self):
+        for order in "<>":
+            numbers, integers = numpy.full(70, -12345.0, f"{order}f4"), numpy.full(40, -12345, f"{order}i4")
+            numbers[0], numbers[5] = 0.02, 3
+            integers[[6, 9, 16, 35]] = 6, len(VALUE), 8, 1
+            data = numbers.tobytes() + integers.tobytes() + b"-12345  " * 24 + VALUE.astype(f"{order}f4").tobytes()
+            self.same(self.read(data, "a.sac", unit="mm/s^2"), "m/s^2", 1e-3, 3 + TIME, within=1e-7)
+
+    def test_miniseed_by_obspy(self):
+        data = b"000001D " + b"XYZ  00HNEXX" + b"\0" * 500
+        with unittest.mock.patch.dict(sys.modules, obspy=None), self.assertRaisesRegex(ImportError,
+                                                                                       "needs obspy.*pip install obspy"):
+            self.read(data, "a.mseed")
+        traces = [types.SimpleNamespace(id=f"XX.XYZ.00.HN{way}", data=(sign * VALUE).astype("f4"),
+                                        stats=types.SimpleNamespace(delta=0.02))
+                  for way, sign in (("E", 1), ("N", -1))]
+        with unittest.mock.patch.dict(sys.modules, obspy=types.SimpleNamespace(read=lambda path: traces)):
+            self.same(self.read(data, "a.mseed", channel="XX.XYZ.00.HNN", unit="g"), "m/s^2", -G, within=1e-6)
+            self.refused(r"2 columns of values; take one of 0 \(XX.XYZ.00.HNE\)", data, "b.mseed")
+
+    def test_units_of_every_spelling(self):
+        for spellings, factor in ((("g", "G", "g.", "g's"), G), (("milli-g", "mg"), G / 1000),
+                                  (("gal", "Gals", "cm/sec2", "cm/s/s", "CM/SEC/SEC",
+                                  "cm s-2", "cm·s⁻²", "cm/s^{2}", "cm.s^-2", "centimetres per second squared"), 0.01),
+                                  (("m/s²", "m/s**2", "m / s^2", "m/sec/sec", "meters/second^2", "m s⁻²"), 1),
+                                  (("ft/sec^2",), 0.3048)):
+            for unit in spellings:
+                self.same(self.read(columns(), unit=unit), "m/s^2", factor)
 
 
 class Records(Case):

@@ -86,7 +86,8 @@ inline constexpr Entry kGivenForce{
     .synonyms = "newmark, sliding_block, response, time_history",
     .title = "motion under the force of -force_file",
     .routes = {Route::excursion},
-    .options = "force_file, force_interpolation, force_scale, gravity, start",
+    .options = "force_file, force_interpolation, force_scale, force_rest, sample_layout, "
+               "sample_step, gravity, start",
     .rows = kGivenForceRows,
     .without_system = true,
     .without_limit = true};

@@ -15,6 +15,8 @@ struct ForceRecord {
   bool constant = false;
   std::string file = {};  ///< from which it was read
   double scale = 1;       ///< by which the values of the file have been multiplied
+  double step = 0;        ///< [time], of a file of rows of samples
+  double rest = 0;        ///< [time] without force behind the last sample of the file
   /// Normal force over the weight, by which all friction is multiplied: 1 + a/g under a vertical
   /// acceleration a of the ground. Empty where it is 1.
   std::vector<double> load = {};
