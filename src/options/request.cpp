@@ -81,7 +81,8 @@ void choose_step(const Settings& settings, Request& request) {
 
 // What the model says of its parameters.
 void add_notes(Request& request) {
-  const bool follows = request.question.wants(catalogue::kGivenForce.quantity);
+  const bool follows =
+      request.question.wants(catalogue::kGivenForce.quantity) && request.question.start.v == 0;
   for (const auto& said : {effects::step_warning(request.scene), effects::noise_note(request.scene),
                            follows ? effects::force_note(request.scene) : std::string()}) {
     if (!said.empty()) request.warnings.push_back(said);

@@ -613,7 +613,7 @@ class Records(Case):
     def test_arrays_with_a_unit_are_as_a_file_with_it(self):
         for unit, factor in (("g", G), ("cm/s^2", 0.01), ("gal", 0.01), ("m/s2", 1), ("", 1)):
             with self.subTest(unit):
-                read = self.read(columns(), unit=unit or None)
+                read = self.read(columns(head="t (s),a"), unit=unit or None)
                 made = stickslip.Record(TIME, VALUE, unit)
                 self.same(made, read.unit, factor)
                 self.assertEqual([note for note in read.notes if "no unit" not in note], list(made.notes))
