@@ -56,10 +56,10 @@ std::vector<Option> sample_options() {
            "how -force_file holds its samples. columns: below the names time,force, unless this "
            "option is given. rows: one after the other in rows, without times and names",
            ""},
-          Option::real(kStep, "", "time", Range::positive(),
+          Option::real(kStep, "time", "", Range::positive(),
                        "time between two samples of -sample_layout rows",
                        "take for example 0.005, that of 200 samples in a second"),
-          Option::real(kRest, "", "time", Range::not_negative(),
+          Option::real(kRest, "time", "", Range::not_negative(),
                        "time without force that is appended to -force_file; 0 unless given",
                        "take as long as the body needs to stop")};
 }

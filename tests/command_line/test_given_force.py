@@ -48,7 +48,7 @@ class GivenForce(Case):
         self.refuse(*rows, message=("-sample_layout = rows: rows have no times", "add -sample_step"))
         self.refuse(*ASKED, RECORD, "-sample_step", "0.1",
                     message=("-sample_step = 0.1: has no effect on columns", "add -sample_layout rows"))
-        self.refuse(*rows, "-sample_step", "-1", message=("must be in (0, inf)",))
+        self.refuse(*rows, "-sample_step", "-1", message=("must be a number in (0, inf)",))
         (self.folder / "rows.txt").write_text(HEADER + "0,1\n1,2\n")
         self.refuse(*rows, "-sample_step", "0.1", message=("line 1: time is no finite number",))
         (self.folder / "rows.txt").write_text("1")
@@ -67,7 +67,7 @@ class GivenForce(Case):
         self.assertEqual(rested["scene"]["force_rest"], 5)
         short = self.summary(*still, "-force_rest", "0.5")["results"]
         self.assert_close(short["final_displacement"]["value"], 1.125, 1e-12)
-        self.refuse(*still, "-force_rest", "-1", message=("must be in [0, inf)",))
+        self.refuse(*still, "-force_rest", "-1", message=("must be a number in [0, inf)",))
 
     def test_one_sample_that_is_appended(self):
         even = HEADER + "".join(f"{n / 10},2\n" for n in range(20))
